@@ -1,0 +1,134 @@
+//! Assignments from the command line, put into the document before it is read.
+use std::collections::BTreeMap;
+
+use toml::de::DeValue;
+
+use super::document::{Document, Entry, Node, Source, Span, Table, Value, convert};
+use super::problem::{Place, Problem};
+
+/// Tables that an assignment may nest; more than any input has, few enough to recurse over.
+const DEEPEST: usize = 32;
+
+impl Document {
+    /// Puts in one assignment `a.b.c=VALUE`. The value is TOML, or else taken as text without quotes.
+    ///
+    /// # Errors
+    /// A text that is no assignment, or a path that leads through a value.
+    #[expect(
+        clippy::result_large_err,
+        reason = "rare, and all problems have one type"
+    )]
+    pub fn set(&mut self, assignment: &str) -> Result<(), Problem> {
+        let refuse = |key: &str, message: String, hint: &str| Problem {
+            place: Place {
+                file: format!("--set {assignment}"),
+                ..Place::default()
+            },
+            key: key.to_string(),
+            message,
+            hint: hint.to_string(),
+            ..Problem::default()
+        };
+        let form = "write --set table.key=VALUE";
+        let Some((path, text)) = assignment.split_once('=') else {
+            return Err(refuse("", "no `=` in the assignment".to_string(), form));
+        };
+        let (path, text) = (path.trim(), text.trim());
+        let keys: Vec<&str> = path.split('.').map(str::trim).collect();
+        if keys.iter().any(|key| key.is_empty()) || keys.len() > DEEPEST {
+            return Err(refuse(path, format!("`{path}` is no key"), form));
+        }
+        if text.is_empty() {
+            return Err(refuse(path, format!("no value for `{path}`"), form));
+        }
+        let source = self.sources.len();
+        let value = match DeValue::parse(text) {
+            Ok(value) => convert(value.get_ref(), source),
+            Err(_) => Value::Text(text.to_string()),
+        };
+        let node = Node {
+            value,
+            span: Span {
+                source,
+                range: 0..text.len(),
+            },
+        };
+        insert(&mut self.root, &keys, node).map_err(|depth| {
+            let value = keys[..=depth].join(".");
+            let message = format!("`{value}` is a value, so `{path}` cannot exist");
+            refuse(path, message, &format!("set `{value}` itself"))
+        })?;
+        let name = format!("--set {assignment}");
+        self.sources.push(Source {
+            name,
+            text: text.to_string(),
+            has_lines: false,
+        });
+        Ok(())
+    }
+}
+
+/// Puts `node` at the path `keys`; fails with the depth at which a value stands in the way.
+fn insert(table: &mut Table, keys: &[&str], node: Node) -> Result<(), usize> {
+    let Some((last, parents)) = keys.split_last() else {
+        return Ok(());
+    };
+    let mut table = table;
+    for (depth, key) in parents.iter().enumerate() {
+        let empty = Node {
+            value: Value::Table(Table::default()),
+            span: node.span.clone(),
+        };
+        let entry = Entry {
+            key: node.span.clone(),
+            node: empty,
+        };
+        let entry = table.entries.entry((*key).to_string()).or_insert(entry);
+        make_room(&mut entry.node);
+        match &mut entry.node.value {
+            Value::Table(inner) if inner.wrapped().is_none() => table = inner,
+            _ => return Err(depth),
+        }
+    }
+    if let Some(Entry {
+        node: Node {
+            value: Value::Table(options),
+            ..
+        },
+        ..
+    }) = table.entries.get_mut(*last)
+    {
+        // A word for a table names one of its options; what the file says about it stays.
+        if matches!(node.value, Value::Text(_)) && options.wrapped().is_none() {
+            options.choice = Some(Box::new(node));
+            return Ok(());
+        }
+    }
+    table.entries.insert(
+        (*last).to_string(),
+        Entry {
+            key: node.span.clone(),
+            node,
+        },
+    );
+    Ok(())
+}
+
+/// Turns a word, which may name an option, into a table that can hold that option's keys. The file's
+/// word gives way to the assigned key, an assigned word is kept.
+fn make_room(node: &mut Node) {
+    let is_word = match &node.value {
+        Value::Text(_) => true,
+        Value::Table(table) => table
+            .wrapped()
+            .is_some_and(|node| matches!(node.value, Value::Text(_))),
+        _ => false,
+    };
+    if is_word {
+        let choice = node.span.is_set().then(|| Box::new(node.clone()));
+        node.value = Value::Table(Table {
+            entries: BTreeMap::new(),
+            choice,
+        });
+    }
+}

@@ -1,0 +1,31 @@
+//! Text to checked input: values in SI units, each with its origin, and every problem with its place.
+//!
+//! A [`Document`] is the parsed text with its places, a [`Reader`] one pass over it. Whoever reads a
+//! key states its allowed range and its meaning in the same call, so that the messages, `explain` and
+//! the page of assumptions cannot drift from what the program really reads.
+mod assign;
+mod bound;
+mod choice;
+mod document;
+mod lists;
+mod near;
+mod problem;
+mod reader;
+mod render;
+mod section;
+mod syntax;
+mod units;
+mod value;
+
+pub use bound::Bound;
+pub use document::Document;
+pub use near::near;
+pub use problem::{Place, Problem};
+pub use reader::{KeyInfo, Reader};
+pub use render::render;
+pub use section::Section;
+pub use syntax::decode;
+pub use units::{to_si, unit_of};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,87 @@
+//! Names that a mistyped one may have meant.
+
+/// Likeness below which a known name is no plausible reading of the written one.
+const PLAUSIBLE: f64 = 0.6;
+
+/// Likeness of two names, from 0 to 1.
+pub(super) fn likeness(a: &str, b: &str) -> f64 {
+    let edit = strsim::normalized_damerau_levenshtein(a, b);
+    // Truncated and extended names ("mass" for "mass_kg") cost many edits; their common start
+    // counts only when the likeness is high, since names of one table often begin alike.
+    let start = strsim::jaro_winkler(a, b);
+    if start > 0.9 { edit.max(start) } else { edit }
+}
+
+/// Whether a likeness is high enough to suggest the name.
+pub(super) fn plausible(likeness: f64) -> bool {
+    likeness >= PLAUSIBLE
+}
+
+/// Up to three of the `known` names that are plausible readings of `wanted`, best first.
+pub fn near<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let lower = wanted.to_lowercase();
+    let mut rated: Vec<(f64, &str)> = known
+        .map(|name| (likeness(&lower, &name.to_lowercase()), name))
+        .filter(|(rating, _)| plausible(*rating))
+        .collect();
+    rated.sort_by(|a, b| b.0.total_cmp(&a.0));
+    rated.dedup_by(|a, b| a.1 == b.1);
+    rated.into_iter().take(3).map(|(_, name)| name).collect()
+}
+
+/// "did you mean `a` or `b`?", or nothing without names.
+pub(super) fn question<S: AsRef<str>>(names: &[S]) -> String {
+    if names.is_empty() {
+        return String::new();
+    }
+    let quoted: Vec<String> = names
+        .iter()
+        .map(|name| format!("`{}`", name.as_ref()))
+        .collect();
+    format!("did you mean {}?", quoted.join(" or "))
+}
+
+/// "one of a, b, c".
+pub(super) fn one_of(words: &[&str]) -> String {
+    format!("one of {}", words.join(", "))
+}
+
+/// Question for near names, else the list of what is known.
+pub(super) fn suggest(wanted: &str, known: &[&str]) -> String {
+    let names = near(wanted, known.iter().copied());
+    if names.is_empty() {
+        format!("write {}", one_of(known))
+    } else {
+        question(&names)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_of_the_finger_is_found() {
+        let known = ["band_offset_mm", "band_width_mm", "pitch_mm", "mass_kg"];
+        assert_eq!(
+            near("band_ofset_mm", known.into_iter())[0],
+            "band_offset_mm"
+        );
+        assert_eq!(near("mass", known.into_iter()), ["mass_kg"]);
+        assert_eq!(near("Mass_Kg", known.into_iter()), ["mass_kg"]);
+    }
+
+    #[test]
+    fn nothing_is_suggested_for_something_else() {
+        assert!(near("zebra", ["band_offset_mm", "mass_kg"].into_iter()).is_empty());
+        assert!(near("", ["a"].into_iter()).is_empty());
+    }
+
+    #[test]
+    fn at_most_three_and_the_best_first() {
+        let known = ["abcd1", "abcd2", "abcd3", "abcde", "abcd5"];
+        let found = near("abcde", known.into_iter());
+        assert_eq!(found.len(), 3);
+        assert_eq!(found[0], "abcde");
+    }
+}

@@ -1,0 +1,308 @@
+//! One pass over a document: what was read, what is known, what is wrong.
+use std::cell::RefCell;
+use std::collections::{BTreeSet, HashMap};
+
+use super::document::{Document, Entry, Span, Table, Value};
+use super::near::{likeness, plausible, question};
+use super::problem::{Place, Problem};
+use super::section::Section;
+use super::units::{stem, unit_of};
+
+/// What is known about one key after reading it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KeyInfo {
+    /// Dotted path.
+    pub key: String,
+    /// Unit as people write it, `-` for none.
+    pub unit: String,
+    /// Value in the key's unit; empty for an optional key that is not given.
+    pub value: String,
+    /// Value in SI units; none for what is no single number.
+    pub si: Option<f64>,
+    /// Where it comes from: source, derived, fitted, assumed, user, set or default.
+    pub status: String,
+    /// Reference for the value; empty where none is given.
+    pub source: String,
+    /// Remark on the value; may be empty.
+    pub note: String,
+    /// Allowed range or words.
+    pub allowed: String,
+    /// Meaning of the key.
+    pub doc: String,
+}
+
+#[derive(Default)]
+pub(super) struct Log {
+    pub problems: Vec<Problem>,
+    /// Missing keys, apart because a mistyped key explains them.
+    pub missing: Vec<Problem>,
+    pub keys: Vec<KeyInfo>,
+    /// Index of `keys` by their dotted path.
+    pub index: HashMap<String, usize>,
+    /// Paths whose whole content counts as read.
+    pub read: BTreeSet<String>,
+    /// Paths of tables that were asked for.
+    pub tables: BTreeSet<String>,
+    /// Paths at which one of several options is chosen.
+    pub choices: BTreeSet<String>,
+}
+
+/// One reading session. It collects all problems and what is known about every key that is read.
+pub struct Reader<'d> {
+    pub(super) document: &'d Document,
+    pub(super) log: RefCell<Log>,
+}
+
+impl<'d> Reader<'d> {
+    /// Starts to read `document`.
+    pub fn new(document: &'d Document) -> Self {
+        Reader {
+            document,
+            log: RefCell::default(),
+        }
+    }
+
+    /// The table of the whole document.
+    pub fn root(&self) -> Section<'_> {
+        Section::root(self)
+    }
+
+    /// Adds a problem found outside the reader.
+    pub fn problem(&self, problem: Problem) {
+        self.log.borrow_mut().problems.push(problem);
+    }
+
+    /// Ends the session with every key that was read, in the order of reading.
+    ///
+    /// # Errors
+    /// All problems, in the order of their places, including keys that are present but were never read.
+    pub fn finish(self) -> Result<Vec<KeyInfo>, Vec<Problem>> {
+        let document = self.document;
+        let mut log = self.log.into_inner();
+        let mut unknown = Vec::new();
+        unread(&log, &document.root, "", &mut unknown);
+        for (path, entry) in unknown {
+            let (problem, meant) = log.unknown(document, &path, entry);
+            // A mistyped option explains the missing choice around it, too.
+            let explained = |key: &str| {
+                meant
+                    .as_deref()
+                    .is_some_and(|meant| key == meant || key == parent(meant))
+            };
+            log.missing.retain(|missing| !explained(&missing.key));
+            log.problems.push(problem);
+        }
+        log.problems.append(&mut log.missing);
+        if log.problems.is_empty() {
+            return Ok(log.keys);
+        }
+        let rank = |place: &Place| {
+            document
+                .sources
+                .iter()
+                .position(|source| source.name == place.file)
+        };
+        log.problems.sort_by_key(|problem| {
+            let place = &problem.place;
+            (rank(place).unwrap_or(usize::MAX), place.line, place.column)
+        });
+        let mut problems: Vec<Problem> = Vec::new();
+        for problem in log.problems {
+            if !problems.contains(&problem) {
+                problems.push(problem);
+            }
+        }
+        Err(problems)
+    }
+}
+
+impl Log {
+    /// Adds a key; the first reading counts if it is read twice.
+    pub fn register(&mut self, info: KeyInfo) {
+        if !self.index.contains_key(&info.key) {
+            self.index.insert(info.key.clone(), self.keys.len());
+            self.keys.push(info);
+        }
+    }
+
+    /// The problem of an entry that nobody read, and the known key it most likely means.
+    fn unknown(&self, document: &Document, path: &str, entry: &Entry) -> (Problem, Option<String>) {
+        let is_table =
+            matches!(&entry.node.value, Value::Table(table) if table.wrapped().is_none());
+        let span = if is_table {
+            &entry.node.span
+        } else {
+            &entry.key
+        };
+        let mut problem = Problem {
+            place: document.place(span),
+            key: path.to_string(),
+            value: if is_table {
+                String::new()
+            } else {
+                document.written(&entry.node.span).to_string()
+            },
+            message: format!(
+                "unknown {} `{path}`",
+                if is_table { "table" } else { "key" }
+            ),
+            ..Problem::default()
+        };
+        if self.tables.contains(path) {
+            if let Value::Table(Table {
+                choice: Some(word), ..
+            }) = &entry.node.value
+            {
+                (problem.place, problem.value) = (
+                    document.place(&word.span),
+                    document.written(&word.span).to_string(),
+                );
+            }
+            problem.message = format!("`{path}` is a table, not a value");
+            return (problem, None);
+        }
+        if let Some(known) = self.other_unit(path, span) {
+            let (unit, shown) = (unit_of(known), shown(path, known, span));
+            problem.message = match unit_of(last(path)) {
+                "-" => format!("no unit: `{path}` is not known, `{shown}` is"),
+                _ => format!("wrong unit: `{path}` is not known, `{shown}` is"),
+            };
+            problem.hint = match unit {
+                "-" => format!("write `{shown}`, which has no unit"),
+                unit => format!("give the value in {unit} as `{shown}`"),
+            };
+            return (problem, Some(known.to_string()));
+        }
+        let names = self.nearest(path);
+        let meant = names
+            .first()
+            .filter(|name| span.is_set() || parent(name) == parent(path));
+        let shown: Vec<&str> = names.iter().map(|name| shown(path, name, span)).collect();
+        problem.hint = if names.is_empty() {
+            self.neighbours(path)
+        } else {
+            question(&shown)
+        };
+        (problem, meant.map(|name| (*name).to_string()))
+    }
+
+    fn known(&self) -> impl Iterator<Item = &str> {
+        self.keys
+            .iter()
+            .map(|info| info.key.as_str())
+            .chain(self.tables.iter().map(String::as_str))
+    }
+
+    /// The known key for the same quantity in another unit; assignments may name the wrong table too.
+    fn other_unit(&self, path: &str, span: &Span) -> Option<&str> {
+        let same = |key: &&str| {
+            stem(last(key)) == stem(last(path)) && (span.is_set() || parent(key) == parent(path))
+        };
+        let keys = || self.keys.iter().map(|info| info.key.as_str());
+        let misplaced = keys().any(|key| last(key) == last(path));
+        keys()
+            .filter(|_| !misplaced)
+            .filter(same)
+            .max_by(|a, b| likeness(a, path).total_cmp(&likeness(b, path)))
+    }
+
+    /// Up to three known paths like this one. The last names decide, whole paths only between equals:
+    /// paths share long beginnings, which say nothing about the slip.
+    fn nearest(&self, path: &str) -> Vec<&str> {
+        let lower = path.to_lowercase();
+        let mut rated: Vec<(f64, f64, &str)> = self
+            .known()
+            .map(|known| {
+                (
+                    likeness(last(known), last(&lower)),
+                    likeness(known, &lower),
+                    known,
+                )
+            })
+            .filter(|(own, _, known)| plausible(*own) && *known != path)
+            .collect();
+        rated.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
+        rated
+            .into_iter()
+            .take(3)
+            .map(|(_, _, known)| known)
+            .collect()
+    }
+
+    /// What may stand beside an entry that is like nothing known.
+    fn neighbours(&self, path: &str) -> String {
+        let names: BTreeSet<&str> = self
+            .known()
+            .filter(|known| parent(known) == parent(path))
+            .map(last)
+            .collect();
+        if names.is_empty() || names.len() > 12 {
+            return "remove it".to_string();
+        }
+        let names: Vec<&str> = names.into_iter().collect();
+        format!("remove it; known here: {}", names.join(", "))
+    }
+}
+
+/// Collects the entries that nobody asked for; an unknown table counts as one entry.
+fn unread<'t>(log: &Log, table: &'t Table, path: &str, unknown: &mut Vec<(String, &'t Entry)>) {
+    for (name, entry) in &table.entries {
+        let path = join(path, name);
+        if log.read.contains(&path) {
+            continue;
+        }
+        match &entry.node.value {
+            Value::Table(inner) if log.tables.contains(&path) => {
+                if inner.choice.is_some() && !log.choices.contains(&path) {
+                    unknown.push((path.clone(), entry));
+                }
+                unread(log, inner, &path, unknown);
+            }
+            // An assignment makes its tables itself: the user wrote the whole path.
+            Value::Table(inner)
+                if entry.node.span.is_set()
+                    && inner.wrapped().is_none()
+                    && !inner.entries.is_empty() =>
+            {
+                unread(log, inner, &path, unknown);
+            }
+            _ => unknown.push((path, entry)),
+        }
+    }
+}
+
+/// A known path as the user should write it: the bare name within the same table of a file.
+fn shown<'k>(path: &str, known: &'k str, span: &Span) -> &'k str {
+    if !span.is_set() && parent(path) == parent(known) {
+        last(known)
+    } else {
+        known
+    }
+}
+
+/// Dotted path of an entry; names with unusual characters are quoted, so that a dot within a name
+/// does not look like a table.
+pub(super) fn join(path: &str, name: &str) -> String {
+    let bare = !name.is_empty()
+        && name
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    let name = if bare {
+        name.to_string()
+    } else {
+        format!("{name:?}")
+    };
+    if path.is_empty() {
+        name
+    } else {
+        format!("{path}.{name}")
+    }
+}
+
+fn last(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
+
+fn parent(path: &str) -> &str {
+    path.rsplit_once('.').map_or("", |(parent, _)| parent)
+}

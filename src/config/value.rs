@@ -1,0 +1,302 @@
+//! What the readings of all kinds of values have in common: look-up, origin, registration, complaints.
+use super::bound::Bound;
+use super::document::{Node, Span, Value};
+use super::near::{near, one_of, question, suggest};
+use super::problem::{Place, Problem};
+use super::reader::{KeyInfo, join};
+use super::section::Section;
+use super::syntax::{decimal_comma, number_hint, number_with_unit};
+use super::units::{to_si, unit_of};
+
+/// What a value's status may be in a file.
+const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
+
+/// A value as found, with its origin.
+pub(super) struct Found<'r> {
+    pub node: &'r Node,
+    pub status: String,
+    pub source: String,
+    pub note: String,
+}
+
+/// What stands at a key.
+pub(super) enum Lookup<'r> {
+    Absent,
+    /// Something that is no value; reported already.
+    Bad,
+    Found(Found<'r>),
+}
+
+impl<'r> Section<'r> {
+    /// The number in SI units; an error says whether the key is absent (else it is reported already).
+    pub(super) fn read_number(&self, key: &str, allowed: Bound, doc: &str) -> Result<f64, bool> {
+        match self.open(key, &allowed.in_unit(unit_of(key)), doc) {
+            Lookup::Found(found) => {
+                let value = self
+                    .check_number(key, key, found.node, allowed)
+                    .ok_or(false)?;
+                let si = to_si(key, value);
+                self.given(key, &found, value.to_string(), Some(si));
+                Ok(si)
+            }
+            Lookup::Absent => Err(true),
+            Lookup::Bad => Err(false),
+        }
+    }
+
+    pub(super) fn read_text(&self, key: &str, allowed: &str, doc: &str) -> Result<String, bool> {
+        match self.open(key, allowed, doc) {
+            Lookup::Found(found) => match &found.node.value {
+                Value::Text(text) => {
+                    self.given(key, &found, text.clone(), None);
+                    Ok(text.clone())
+                }
+                _ => {
+                    self.wrong_type(key, found.node, "text");
+                    Err(false)
+                }
+            },
+            Lookup::Absent => Err(true),
+            Lookup::Bad => Err(false),
+        }
+    }
+
+    /// A finite number within its range, in its own unit; `quantity` carries the unit.
+    pub(super) fn check_number(
+        &self,
+        key: &str,
+        quantity: &str,
+        node: &Node,
+        allowed: Bound,
+    ) -> Option<f64> {
+        let value = match &node.value {
+            Value::Integer(value) => *value as f64,
+            Value::Float(value) => *value,
+            _ => {
+                self.wrong_type(key, node, "a number");
+                return None;
+            }
+        };
+        let range = allowed.in_unit(unit_of(quantity));
+        if !value.is_finite() {
+            let message = format!("`{}` is not a finite number", join(&self.path, key));
+            self.report(&node.span, key, &range, message, String::new());
+            return None;
+        }
+        if !allowed.contains(value) {
+            self.out_of_range(key, node, &range);
+            return None;
+        }
+        Some(value)
+    }
+
+    /// Looks a key up, counts it as read and as known, and unwraps `{ value = …, status = … }`.
+    pub(super) fn open(&self, key: &str, allowed: &str, doc: &str) -> Lookup<'r> {
+        let path = join(&self.path, key);
+        let info = KeyInfo {
+            key: path.clone(),
+            unit: unit_of(key).to_string(),
+            allowed: allowed.to_string(),
+            doc: doc.to_string(),
+            ..KeyInfo::default()
+        };
+        let mut log = self.reader.log.borrow_mut();
+        log.register(info);
+        log.read.insert(path);
+        drop(log);
+        let Some(entry) = self.table.and_then(|table| table.entries.get(key)) else {
+            return Lookup::Absent;
+        };
+        self.unwrap(key, &entry.node)
+    }
+
+    /// The value with its origin, from either of its two forms.
+    pub(super) fn unwrap(&self, key: &str, node: &'r Node) -> Lookup<'r> {
+        let status = if node.span.is_set() { "set" } else { "user" };
+        let source = if node.span.is_set() {
+            "command line"
+        } else {
+            ""
+        };
+        let (status, source, note) = (status.to_string(), source.to_string(), String::new());
+        let mut found = Found {
+            node,
+            status,
+            source,
+            note,
+        };
+        let Value::Table(table) = &node.value else {
+            return Lookup::Found(found);
+        };
+        let Some(value) = table.wrapped() else {
+            let message = format!("`{}` is a table without `value`", join(&self.path, key));
+            let hint = "write `KEY = VALUE` or `KEY = { value = VALUE, status = \"…\" }`";
+            self.report(&node.span, key, "", message, hint.to_string());
+            return Lookup::Bad;
+        };
+        found.node = value;
+        for (name, entry) in table.entries.iter().filter(|(name, _)| *name != "value") {
+            let text = match &entry.node.value {
+                Value::Text(text) => text.clone(),
+                _ => String::new(),
+            };
+            match name.as_str() {
+                "status" => self.check_status(key, &entry.node, &text, &mut found.status),
+                "source" | "note" if !matches!(entry.node.value, Value::Text(_)) => {
+                    self.wrong_type(key, &entry.node, "text");
+                }
+                "source" => found.source = text,
+                "note" => found.note = text,
+                _ => {
+                    let hint = suggest(name, &["value", "status", "source", "note"]);
+                    let message = format!("unknown field `{name}` in `{}`", join(&self.path, key));
+                    self.report(
+                        &entry.key,
+                        key,
+                        "value, status, source, note",
+                        message,
+                        hint,
+                    );
+                }
+            }
+        }
+        Lookup::Found(found)
+    }
+
+    fn check_status(&self, key: &str, node: &Node, text: &str, status: &mut String) {
+        if !STATUSES.contains(&text) {
+            let names = near(text, STATUSES.into_iter());
+            let message = format!("`{}` has no known status", join(&self.path, key));
+            self.report(
+                &node.span,
+                key,
+                &one_of(&STATUSES),
+                message,
+                question(&names),
+            );
+        } else if status != "set" {
+            *status = text.to_string();
+        }
+    }
+
+    /// Completes what is known about a key with the value that was given.
+    pub(super) fn given(&self, key: &str, found: &Found<'_>, value: String, si: Option<f64>) {
+        self.fill(key, |info| {
+            (info.value, info.si) = (value, si);
+            info.status.clone_from(&found.status);
+            info.source.clone_from(&found.source);
+            info.note.clone_from(&found.note);
+        });
+    }
+
+    /// Completes what is known about a key with its default.
+    pub(super) fn defaulted(&self, key: &str, value: String, si: Option<f64>) {
+        self.fill(key, |info| {
+            (info.value, info.si) = (value, si);
+            info.status = "default".to_string();
+        });
+    }
+
+    /// Names the unit of a key whose name does not carry it.
+    pub(super) fn unit(&self, key: &str, unit: &str) {
+        self.fill(key, |info| info.unit = unit.to_string());
+    }
+
+    fn fill(&self, key: &str, write: impl FnOnce(&mut KeyInfo)) {
+        let log = &mut *self.reader.log.borrow_mut();
+        if let Some(info) = log
+            .index
+            .get(&join(&self.path, key))
+            .and_then(|at| log.keys.get_mut(*at))
+        {
+            write(info);
+        }
+    }
+
+    pub(super) fn out_of_range(&self, key: &str, node: &Node, allowed: &str) {
+        let message = format!("`{}` is out of range", join(&self.path, key));
+        self.report(&node.span, key, allowed, message, String::new());
+    }
+
+    pub(super) fn wrong_type(&self, key: &str, node: &Node, expected: &str) {
+        let mut hint = String::new();
+        if let (Value::Text(text), true) = (
+            &node.value,
+            expected.contains("number") || expected.contains("integer"),
+        ) {
+            if let Some((_, point)) =
+                decimal_comma(text).filter(|(length, _)| *length == text.len())
+            {
+                hint = format!("write {point} with a decimal point and without quotes");
+            } else if let Some((figure, unit)) = number_with_unit(text) {
+                hint = number_hint(figure, unit);
+            } else if text.trim().parse::<f64>().is_ok() {
+                hint = format!("write {} without quotes", text.trim());
+            }
+        }
+        let message = format!(
+            "`{}`: expected {expected}, found {}",
+            join(&self.path, key),
+            node.value.kind()
+        );
+        self.report(&node.span, key, "", message, hint);
+    }
+
+    /// Reports a required key that is absent.
+    pub(super) fn missing(&self, key: &str, allowed: &str) {
+        if !self.muted {
+            let table = if self.path.is_empty() {
+                "the top of the file".to_string()
+            } else {
+                format!("[{}]", self.path)
+            };
+            let message = format!("missing key `{}`", join(&self.path, key));
+            let problem = self.absent(key, allowed, message, format!("add `{key} = …` to {table}"));
+            self.reader.log.borrow_mut().missing.push(problem);
+        }
+    }
+
+    pub(super) fn absent(
+        &self,
+        key: &str,
+        allowed: &str,
+        message: String,
+        hint: String,
+    ) -> Problem {
+        let document = self.reader.document;
+        let whole = || Place {
+            file: document.sources[0].name.clone(),
+            ..Place::default()
+        };
+        Problem {
+            place: self
+                .header
+                .as_ref()
+                .map_or_else(whole, |span| document.place(span)),
+            key: join(&self.path, key),
+            allowed: allowed.to_string(),
+            message,
+            hint,
+            ..Problem::default()
+        }
+    }
+
+    pub(super) fn report(
+        &self,
+        span: &Span,
+        key: &str,
+        allowed: &str,
+        message: String,
+        hint: String,
+    ) {
+        let document = self.reader.document;
+        self.reader.problem(Problem {
+            place: document.place(span),
+            key: join(&self.path, key),
+            value: document.written(span).to_string(),
+            allowed: allowed.to_string(),
+            message,
+            hint,
+        });
+    }
+}

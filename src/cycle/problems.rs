@@ -1,0 +1,267 @@
+//! Collecting the problems of a CSV file and saying where each stands.
+
+use super::text::Field;
+use crate::config::{Place, Problem};
+
+/// More than these help nobody; the rest is counted.
+const SHOWN: usize = 50;
+// a longer line is no table row and would only fill the screen
+const LONGEST_LINE: usize = 500;
+const LONGEST_VALUE: usize = 60;
+
+/// One line of the file.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line<'t> {
+    /// Counted from 1.
+    pub(super) number: usize,
+    pub(super) text: &'t str,
+}
+
+/// One value in its column, for reading and for complaining.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell<'t> {
+    pub(super) line: Line<'t>,
+    pub(super) key: &'static str,
+    pub(super) field: Field<'t>,
+}
+
+/// What is wrong, without the place.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Complaint {
+    pub(super) message: String,
+    pub(super) allowed: String,
+    pub(super) hint: String,
+}
+
+impl Complaint {
+    pub(super) fn new(
+        message: impl Into<String>,
+        allowed: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Self {
+        Self {
+            message: message.into(),
+            allowed: allowed.into(),
+            hint: hint.into(),
+        }
+    }
+}
+
+/// The problems found so far.
+pub(super) struct Problems<'f> {
+    file: &'f str,
+    list: Vec<Problem>,
+    more: usize,
+}
+
+impl<'f> Problems<'f> {
+    pub(super) fn new(file: &'f str) -> Self {
+        Self {
+            file,
+            list: Vec::new(),
+            more: 0,
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// A problem of the whole file.
+    pub(super) fn file(&mut self, complaint: Complaint) {
+        self.push("", |file| {
+            (
+                Place {
+                    file: file.to_owned(),
+                    ..Place::default()
+                },
+                String::new(),
+                complaint,
+            )
+        });
+    }
+
+    /// A problem of a whole line; `key` is the column that is meant, if any.
+    pub(super) fn line(
+        &mut self,
+        line: Line<'_>,
+        key: &str,
+        complaint: impl FnOnce() -> Complaint,
+    ) {
+        let whole = Field {
+            text: line.text,
+            start: 0,
+        };
+        self.push(key, |file| {
+            (place(file, line, whole), String::new(), complaint())
+        });
+    }
+
+    /// A problem of one value, `key` being its column.
+    pub(super) fn value(
+        &mut self,
+        line: Line<'_>,
+        field: Field<'_>,
+        key: &str,
+        complaint: impl FnOnce() -> Complaint,
+    ) {
+        self.push(key, |file| {
+            (place(file, line, field), shortened(field.text), complaint())
+        });
+    }
+
+    /// A problem of one table cell.
+    pub(super) fn cell(&mut self, cell: &Cell<'_>, complaint: impl FnOnce() -> Complaint) {
+        self.value(cell.line, cell.field, cell.key, complaint);
+    }
+
+    // built only while it will be shown, so that a file of a million bad rows costs nothing
+    fn push(&mut self, key: &str, build: impl FnOnce(&str) -> (Place, String, Complaint)) {
+        if self.list.len() >= SHOWN {
+            self.more += 1;
+            return;
+        }
+        let (
+            place,
+            value,
+            Complaint {
+                message,
+                allowed,
+                hint,
+            },
+        ) = build(self.file);
+        self.list.push(Problem {
+            place,
+            key: key.to_owned(),
+            value,
+            allowed,
+            message,
+            hint,
+        });
+    }
+
+    /// All of them; beyond the first 50, one last entry says how many more there are.
+    pub(super) fn finish(mut self) -> Vec<Problem> {
+        if self.more > 0 {
+            let are = if self.more == 1 {
+                "problem is"
+            } else {
+                "problems are"
+            };
+            self.list.push(Problem {
+                place: Place {
+                    file: self.file.to_owned(),
+                    ..Place::default()
+                },
+                message: format!("{} more {are} not shown", self.more),
+                hint: "mend the ones above first; they often have one cause".to_owned(),
+                ..Problem::default()
+            });
+        }
+        self.list
+    }
+}
+
+fn place(file: &str, line: Line<'_>, field: Field<'_>) -> Place {
+    let before = line.text.get(..field.start).unwrap_or_default();
+    let shown = line.text.len() <= LONGEST_LINE;
+    Place {
+        file: file.to_owned(),
+        line: line.number,
+        column: before.chars().count() + 1,
+        line_text: if shown {
+            line.text.to_owned()
+        } else {
+            String::new()
+        },
+        width: field.text.chars().count().max(1),
+    }
+}
+
+fn shortened(text: &str) -> String {
+    match text.char_indices().nth(LONGEST_VALUE) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_counts_characters_and_not_bytes() {
+        let line = Line {
+            number: 7,
+            text: "é,ü,12",
+        };
+        let mut problems = Problems::new("f.csv");
+        problems.value(
+            line,
+            Field {
+                text: "12",
+                start: 6,
+            },
+            "k",
+            Complaint::default,
+        );
+        let place = &problems.finish()[0].place;
+        assert_eq!(
+            (
+                place.line,
+                place.column,
+                place.width,
+                place.line_text.as_str()
+            ),
+            (7, 5, 2, "é,ü,12")
+        );
+    }
+
+    #[test]
+    fn long_lines_and_values_are_kept_off_the_screen() {
+        let text = "ö".repeat(1000);
+        let mut problems = Problems::new("f.csv");
+        problems.value(
+            Line {
+                number: 1,
+                text: &text,
+            },
+            Field {
+                text: &text,
+                start: 0,
+            },
+            "k",
+            Complaint::default,
+        );
+        let problem = &problems.finish()[0];
+        assert_eq!(
+            (
+                problem.place.line_text.as_str(),
+                problem.value.chars().count()
+            ),
+            ("", 63)
+        );
+    }
+
+    #[test]
+    fn the_rest_is_counted() {
+        for (count, last) in [
+            (50, None),
+            (51, Some("1 more problem is not shown")),
+            (250, Some("200 more problems are not shown")),
+        ] {
+            let mut problems = Problems::new("f.csv");
+            for _ in 0..count {
+                problems.file(Complaint::default());
+            }
+            let list = problems.finish();
+            assert_eq!(list.len(), count.min(50) + usize::from(last.is_some()));
+            assert_eq!(
+                list.last()
+                    .map(|p| p.message.as_str())
+                    .filter(|m| !m.is_empty()),
+                last
+            );
+        }
+    }
+}

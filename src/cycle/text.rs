@@ -1,0 +1,172 @@
+//! Bytes to text, lines to fields.
+//!
+//! Written here and not taken from a CSV library because a complaint needs the character at which a value stands.
+
+use super::problems::Complaint;
+
+/// A value of a line, without surrounding blanks and quotes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Field<'t> {
+    pub(super) text: &'t str,
+    /// Byte at which it begins in its line.
+    pub(super) start: usize,
+}
+
+/// The text of a file, without byte order mark.
+///
+/// # Errors
+/// An empty or binary file, or one in another encoding than UTF-8.
+pub(super) fn decode(bytes: &[u8]) -> Result<&str, Complaint> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Err(Complaint::new(
+            "the file is UTF-16 text",
+            "UTF-8 text",
+            "save it as CSV UTF-8",
+        ));
+    }
+    if let Some(at) = bytes.iter().position(|&byte| byte == 0) {
+        let message = format!(
+            "the file is not text: it has a zero byte in line {}",
+            line_of(bytes, at)
+        );
+        return Err(Complaint::new(
+            message,
+            "UTF-8 text",
+            "save the table as CSV; a spreadsheet's own format cannot be read",
+        ));
+    }
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let message = format!(
+            "the file is not UTF-8 text: line {} has a byte that is none",
+            line_of(bytes, error.valid_up_to())
+        );
+        Complaint::new(
+            message,
+            "UTF-8 text",
+            "save it as CSV UTF-8; a spreadsheet's own format cannot be read",
+        )
+    })?;
+    if text.trim().is_empty() {
+        return Err(Complaint::new(
+            "the file is empty",
+            "",
+            "it needs a line of column names and at least two rows",
+        ));
+    }
+    if text.contains('\r') && !text.contains('\n') {
+        let message = "the lines end with a carriage return alone";
+        return Err(Complaint::new(
+            message,
+            "lines that end with LF or CR LF",
+            "save it with the line ends of today",
+        ));
+    }
+    Ok(text)
+}
+
+fn line_of(bytes: &[u8], at: usize) -> usize {
+    bytes.iter().take(at).filter(|&&byte| byte == b'\n').count() + 1
+}
+
+/// Splits a line at its commas. A field may stand in double quotes, and then hold commas; a quote in it is written twice
+/// and stays so.
+///
+/// # Errors
+/// The byte of a quote that is not closed, or after which something follows.
+pub(super) fn split<'t>(line: &'t str, fields: &mut Vec<Field<'t>>) -> Result<(), usize> {
+    fields.clear();
+    let mut at = 0;
+    loop {
+        let rest = &line[at..];
+        let blanks = rest.len() - rest.trim_start().len();
+        let end = if rest[blanks..].starts_with('"') {
+            let start = at + blanks + 1;
+            let close = closing_quote(line, start).ok_or(start - 1)?;
+            fields.push(Field {
+                text: &line[start..close],
+                start,
+            });
+            let after = &line[close + 1..];
+            let comma = after.find(',').unwrap_or(after.len());
+            if !after[..comma].trim().is_empty() {
+                return Err(start - 1);
+            }
+            close + 1 + comma
+        } else {
+            let comma = rest.find(',').unwrap_or(rest.len());
+            let start = at + blanks.min(comma);
+            fields.push(Field {
+                text: rest[..comma].trim(),
+                start,
+            });
+            at + comma
+        };
+        if end >= line.len() {
+            return Ok(());
+        }
+        at = end + 1;
+    }
+}
+
+fn closing_quote(line: &str, start: usize) -> Option<usize> {
+    let bytes = line.as_bytes();
+    let mut at = start;
+    while at < bytes.len() {
+        if bytes[at] != b'"' {
+            at += 1;
+        } else if bytes.get(at + 1) == Some(&b'"') {
+            at += 2;
+        } else {
+            return Some(at);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fields(line: &str) -> Vec<(&str, usize)> {
+        let mut fields = Vec::new();
+        split(line, &mut fields).unwrap();
+        fields
+            .into_iter()
+            .map(|field| (field.text, field.start))
+            .collect()
+    }
+
+    #[test]
+    fn a_line_is_split_at_commas() {
+        assert_eq!(fields("a,b"), [("a", 0), ("b", 2)]);
+        assert_eq!(fields("  a b ,\t,c "), [("a b", 2), ("", 8), ("c", 9)]);
+        assert_eq!(fields(""), [("", 0)]);
+        assert_eq!(fields(",é,"), [("", 0), ("é", 1), ("", 4)]);
+    }
+
+    #[test]
+    fn quotes_hold_commas_together() {
+        assert_eq!(fields("\"a,b\",c"), [("a,b", 1), ("c", 6)]);
+        assert_eq!(
+            fields(" \"\" , \"x \"\"y\"\"\""),
+            [("", 2), ("x \"\"y\"\"", 7)]
+        );
+        let mut list = Vec::new();
+        assert_eq!(split("a,\"b,c", &mut list), Err(2));
+        assert_eq!(split("a,\"b\" c,d", &mut list), Err(2));
+    }
+
+    #[test]
+    fn what_is_no_text_is_named() {
+        let message = |bytes: &[u8]| decode(bytes).unwrap_err().message;
+        assert!(message(b"\xff\xfet\0").contains("UTF-16"));
+        assert!(message(b"PK\n\0\x01").contains("zero byte in line 2"));
+        assert!(message(b"a\nb\n\xe9\n").contains("UTF-8 text: line 3"));
+        assert!(
+            message(b"\xef\xbb\xbf \r\n\n").contains("empty") && message(b"").contains("empty")
+        );
+        assert!(message(b"a,b\r1,2\r").contains("carriage return"));
+        assert_eq!(decode(b"\xef\xbb\xbfa,b\r\n").unwrap(), "a,b\r\n");
+    }
+}

@@ -1,0 +1,66 @@
+//! Reads a lubricant file.
+
+use super::{Friction, Lubricant, Viscosity, ZERO_DEGC_K};
+use crate::config::{Bound, Section};
+
+/// Reads a checked lubricant from the root of its file; problems go to the reader.
+#[must_use]
+pub fn load(root: &Section, name: &str) -> Lubricant {
+    Lubricant {
+        name: name.to_owned(),
+        title: root.text_or("title", name, "name for people"),
+        viscosity: viscosity(root),
+        density15_kg_m3: root.number("density15_kg_m3", Bound::closed(650.0, 1200.0), "density at 15 degC (LU-2, LU-3)"),
+        friction: friction(&root.table("friction")),
+    }
+}
+
+fn viscosity(root: &Section) -> Viscosity {
+    let columns = [("temp_degc", Bound::closed(-60.0, 200.0)), ("kinematic_mm2_s", Bound::closed(1.0, 1e7))];
+    let table = root.rows("viscosity_table", &columns, "rows [temperature degC, kinematic viscosity mm2/s]; replaces kv40 and kv100 (LU-1)");
+    let points: Vec<(f64, f64)> = if table.is_empty() {
+        let allowed = Bound::closed(1.5, 5000.0);
+        let kv40 = root.number("kv40_mm2_s", allowed, "kinematic viscosity at 40 degC (LU-1)");
+        let kv100 = root.number("kv100_mm2_s", allowed, "kinematic viscosity at 100 degC (LU-1)");
+        if kv40.is_nan() || kv100.is_nan() {
+            return placeholder();
+        }
+        vec![(40.0 + ZERO_DEGC_K, kv40), (100.0 + ZERO_DEGC_K, kv100)]
+    } else {
+        for key in ["kv40_mm2_s", "kv100_mm2_s"] {
+            if root.has(key) {
+                let _ = root.optional_number(key, Bound::closed(1.5, 5000.0), "kinematic viscosity (LU-1)");
+                root.complain(key, "", "both a viscosity table and this value are given", "keep one of them: the table replaces kv40 and kv100");
+            }
+        }
+        table.iter().map(|r| (r[0], r[1])).collect()
+    };
+    Viscosity::new(&points).unwrap_or_else(|why| {
+        let key = if table.is_empty() { "kv40_mm2_s" } else { "viscosity_table" };
+        if points.iter().all(|p| p.0.is_finite() && p.1.is_finite()) {
+            root.complain(key, "", &why, "check the order of the points and their unit, mm2/s (cSt)");
+        }
+        placeholder()
+    })
+}
+
+/// Stands in after a problem, so that reading goes on and finds the others.
+fn placeholder() -> Viscosity {
+    Viscosity::new(&[(313.15, 36e-6), (373.15, 7.2e-6)]).unwrap_or_else(|_| unreachable!("constant points"))
+}
+
+fn friction(s: &Section) -> Friction {
+    let mu = Bound::closed(0.0, 0.4);
+    let lift = s.table("lift_off");
+    Friction {
+        band: s.number_or("band", mu, 0.13, "band boundary friction at 85 degC (LU-4)"),
+        band_rise_per_k: s.number_or("band_rise_per_k", Bound::closed(0.0, 0.02), 0.004, "rise of band friction with belt temperature (LU-4)"),
+        band_floor: s.number_or("band_floor", Bound::closed(0.1, 1.0), 0.7, "lower bound of the temperature factor (LU-4)"),
+        segment: s.number_or("segment", Bound::closed(0.02, 0.4), 0.125, "friction segment on pulley (SL-4, VA-2)"),
+        flank: s.number_or("flank", mu, 0.13, "friction in wedging and penetration (WE-3, PE-1)"),
+        lift_reduction: lift.number_or("reduction", Bound::closed(0.0, 0.95), 0.25, "part of the boundary friction that a carrying film removes (LU-4)"),
+        lift_n_m: lift.number_or("load_n_per_m", Bound::open_low(0.0, 10.0), 0.028, "eta dv at which the film carries half (LU-4)"),
+        lift_exponent: lift.number_or("exponent", Bound::closed(0.5, 8.0), 3.2, "sharpness of lift-off (LU-4)"),
+        film_thickness_m: lift.number_or("film_thickness_um", Bound::closed(0.01, 100.0), 0.5, "thickness of the carrying film (FI-1)"),
+    }
+}

@@ -1,0 +1,115 @@
+//! A lubricant: viscosity, density, heat capacity, and the friction it lends to the belt.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | LU-1 | ln ln(nu + 0.7) = a - b ln T, nu in mm2/s, T in K | source: ASTM D341 (Walther) |
+//! | LU-2 | rho = rho15 (1 - 0.00068 (T - 15 degC)) | source: physics of petroleum oils, ASSUMED coefficient |
+//! | LU-3 | cp = (1.685 + 0.0034 T_C) / sqrt(rho15 / 1000), kJ/kgK | source: petroleum oils, ASSUMED for all fluids |
+//! | LU-4 | mu_b = mu_85 max(floor, 1 + k (T - 85 degC)) (1 - r z/(1+z)), z = (eta dv / N_lift)^p | fitted to thesis 5.5.2, 8.9 |
+//!
+//! Symbols: nu kinematic viscosity, eta dynamic viscosity Pa s, dv sliding speed of the innermost band m/s.
+//! Valid from 1.5 mm2/s upwards and from -40 to 160 degC; outside, rows are flagged.
+//!
+//! Sources: ASTM D341; Akehurst 2001, 5.5.2, 8.4.5, 8.9; Ichihashi in Akehurst 2.3 (band 0.09 to 0.135, up to 30 % with temperature).
+
+mod load;
+mod viscosity;
+
+pub use load::load;
+pub use viscosity::Viscosity;
+
+/// 0 degC in K.
+pub const ZERO_DEGC_K: f64 = 273.15;
+
+/// Friction that a fluid lends to the belt's contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// Boundary friction band on band and band on segment at 85 degC.
+    pub band: f64,
+    /// Rise of the band friction with belt temperature, 1/K.
+    pub band_rise_per_k: f64,
+    /// Lower bound of the temperature factor (Ichihashi: at most 30 % change).
+    pub band_floor: f64,
+    /// Friction segment on pulley.
+    pub segment: f64,
+    /// Friction in wedging and penetration.
+    pub flank: f64,
+    /// Part of the boundary friction that the film takes away when it carries fully.
+    pub lift_reduction: f64,
+    /// eta dv at which the film carries half, N/m.
+    pub lift_n_m: f64,
+    /// Sharpness of the lift-off.
+    pub lift_exponent: f64,
+    /// Thickness of the carrying film, m.
+    pub film_thickness_m: f64,
+}
+
+/// Band friction at one state: boundary part and the share of the contact that a film carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandFriction {
+    /// Coefficient of friction, boundary and mixed.
+    pub mu: f64,
+    /// Share z / (1 + z) of the film, 0..1.
+    pub film_share: f64,
+}
+
+impl Friction {
+    /// Band friction at belt temperature, dynamic viscosity and sliding speed (LU-4).
+    #[must_use]
+    #[inline]
+    pub fn band(&self, belt_k: f64, eta_pa_s: f64, sliding_m_s: f64) -> BandFriction {
+        let warm = 1.0 + self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0);
+        let warm = if warm > self.band_floor { warm } else { self.band_floor };
+        let load = eta_pa_s * sliding_m_s / self.lift_n_m;
+        let z = if load > 0.0 { (self.lift_exponent * load.ln()).exp() } else { 0.0 };
+        let film_share = if z.is_finite() { z / (1.0 + z) } else { 1.0 };
+        BandFriction { mu: self.band * warm * (1.0 - self.lift_reduction * film_share), film_share } // LU-4
+    }
+}
+
+/// A checked lubricant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lubricant {
+    /// Short name as in `--lubricant`.
+    pub name: String,
+    /// Name for people.
+    pub title: String,
+    /// Kinematic viscosity.
+    pub viscosity: Viscosity,
+    /// Density at 15 degC, kg/m3.
+    pub density15_kg_m3: f64,
+    /// Friction in the belt's contacts.
+    pub friction: Friction,
+}
+
+/// Validity range of the fluid models, K.
+pub const VALID_K: std::ops::RangeInclusive<f64> = 233.15..=433.15;
+
+impl Lubricant {
+    /// Kinematic viscosity, m2/s (LU-1).
+    #[must_use]
+    #[inline]
+    pub fn kinematic_m2_s(&self, temp_k: f64) -> f64 {
+        self.viscosity.kinematic_m2_s(temp_k)
+    }
+
+    /// Density, kg/m3 (LU-2).
+    #[must_use]
+    #[inline]
+    pub fn density_kg_m3(&self, temp_k: f64) -> f64 {
+        self.density15_kg_m3 * (1.0 - 0.000_68 * (temp_k - ZERO_DEGC_K - 15.0)) // LU-2
+    }
+
+    /// Dynamic viscosity, Pa s.
+    #[must_use]
+    #[inline]
+    pub fn dynamic_pa_s(&self, temp_k: f64) -> f64 {
+        self.kinematic_m2_s(temp_k) * self.density_kg_m3(temp_k)
+    }
+
+    /// Specific heat capacity, J/kgK (LU-3).
+    #[must_use]
+    pub fn heat_capacity_j_kgk(&self, temp_k: f64) -> f64 {
+        1000.0 * (1.685 + 0.0034 * (temp_k - ZERO_DEGC_K)) / (self.density15_kg_m3 / 1000.0).sqrt() // LU-3
+    }
+}

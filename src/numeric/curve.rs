@@ -1,0 +1,91 @@
+//! Piecewise linear curve through points, held at its ends.
+
+/// A curve y(x) through points with strictly rising x; between them linear, outside them held.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+impl Curve {
+    /// A curve through `points` (x, y).
+    ///
+    /// # Errors
+    /// A sentence, if there is no point or x does not rise strictly or a number is not finite.
+    pub fn new(points: &[(f64, f64)]) -> Result<Self, String> {
+        if points.is_empty() {
+            return Err("a curve needs at least one point".into());
+        }
+        if points.iter().any(|p| !p.0.is_finite() || !p.1.is_finite()) {
+            return Err("a curve takes finite numbers only".into());
+        }
+        if points.windows(2).any(|p| p[0].0 >= p[1].0) {
+            return Err("the first column must rise strictly from row to row".into());
+        }
+        Ok(Curve { x: points.iter().map(|p| p.0).collect(), y: points.iter().map(|p| p.1).collect() })
+    }
+
+    /// A curve with the same value everywhere.
+    #[must_use]
+    pub fn constant(y: f64) -> Self {
+        Curve { x: vec![0.0], y: vec![y] }
+    }
+
+    /// Value at `x`; beyond the ends the end's value; NaN for NaN.
+    #[must_use]
+    pub fn at(&self, x: f64) -> f64 {
+        let n = self.x.len();
+        if x.is_nan() {
+            return f64::NAN;
+        }
+        if x <= self.x[0] || n == 1 {
+            return self.y[0];
+        }
+        if x >= self.x[n - 1] {
+            return self.y[n - 1];
+        }
+        let hi = self.x.partition_point(|&p| p <= x);
+        let lo = hi - 1;
+        let u = (x - self.x[lo]) / (self.x[hi] - self.x[lo]);
+        self.y[lo] + u * (self.y[hi] - self.y[lo])
+    }
+
+    /// Whether `x` lies within the curve's points.
+    #[must_use]
+    pub fn covers(&self, x: f64) -> bool {
+        self.x[0] <= x && x <= self.x[self.x.len() - 1]
+    }
+
+    /// The points (x, y).
+    pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.x.iter().copied().zip(self.y.iter().copied())
+    }
+
+    /// Multiplies every y by `factor`.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.y.iter_mut().for_each(|y| *y *= factor);
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn val_interpolates_by_hand() {
+        let c = Curve::new(&[(0.0, 1.0), (2.0, 3.0), (4.0, 0.0)]).expect("valid");
+        for (x, y) in [(-1.0, 1.0), (0.0, 1.0), (1.0, 2.0), (2.0, 3.0), (3.0, 1.5), (4.0, 0.0), (9.0, 0.0)] {
+            assert!((c.at(x) - y).abs() < 1e-15, "at {x}: {} instead of {y}", c.at(x));
+        }
+        assert!(c.covers(4.0) && !c.covers(4.1));
+    }
+
+    #[test]
+    fn refuses_points_that_do_not_rise() {
+        assert!(Curve::new(&[(0.0, 1.0), (0.0, 3.0)]).is_err());
+        assert!(Curve::new(&[(0.0, f64::NAN)]).is_err());
+        assert!(Curve::new(&[]).is_err());
+    }
+}

@@ -1,0 +1,121 @@
+//! Multilinear interpolation on a full rectangular grid with up to five axes.
+
+/// Largest number of axes of a [`Grid`].
+pub const GRID_AXES: usize = 5;
+
+/// Values on a rectangular grid; multilinear inside, held outside.
+///
+/// Multilinear, because a product of monotone cubics is no longer monotone in two dimensions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    axes: [Vec<f64>; GRID_AXES],
+    values: Vec<f64>,
+}
+
+impl Grid {
+    /// A grid from scattered rows `(coordinates, value)` that fill every combination of the coordinates' values exactly once.
+    ///
+    /// An axis with one value does not matter for the result.
+    ///
+    /// # Errors
+    /// A sentence that says which combination is missing or doubled.
+    pub fn from_rows(rows: &[([f64; GRID_AXES], f64)]) -> Result<Self, String> {
+        let mut axes: [Vec<f64>; GRID_AXES] = Default::default();
+        for (k, axis) in axes.iter_mut().enumerate() {
+            axis.extend(rows.iter().map(|r| r.0[k]));
+            axis.sort_by(f64::total_cmp);
+            axis.dedup();
+        }
+        let size: usize = axes.iter().map(Vec::len).product();
+        if size != rows.len() || size == 0 {
+            return Err(format!(
+                "the {} rows do not fill the grid of {} combinations exactly once",
+                rows.len(),
+                size
+            ));
+        }
+        let mut grid = Grid { axes, values: vec![f64::NAN; size] };
+        for (x, value) in rows {
+            let index = grid.index_of(x);
+            if grid.values[index].is_nan() {
+                grid.values[index] = *value;
+            } else {
+                return Err(format!("the combination {x:?} stands twice, another is missing"));
+            }
+        }
+        Ok(grid)
+    }
+
+    fn index_of(&self, x: &[f64; GRID_AXES]) -> usize {
+        self.axes.iter().zip(x).fold(0, |index, (axis, &v)| {
+            index * axis.len() + axis.partition_point(|&a| a < v).min(axis.len() - 1)
+        })
+    }
+
+    /// Value at `x` and whether `x` lies within the grid on every axis that has more than one value.
+    #[must_use]
+    pub fn at(&self, x: [f64; GRID_AXES]) -> (f64, bool) {
+        let mut low = [0usize; GRID_AXES];
+        let mut part = [0.0f64; GRID_AXES];
+        let mut inside = true;
+        for k in 0..GRID_AXES {
+            let axis = &self.axes[k];
+            let last = axis.len() - 1;
+            if last == 0 {
+                continue;
+            }
+            inside &= axis[0] <= x[k] && x[k] <= axis[last];
+            low[k] = axis.partition_point(|&a| a <= x[k]).clamp(1, last) - 1;
+            part[k] = ((x[k] - axis[low[k]]) / (axis[low[k] + 1] - axis[low[k]])).clamp(0.0, 1.0);
+        }
+        let mut sum = 0.0;
+        for corner in 0..1usize << GRID_AXES {
+            let (mut weight, mut index) = (1.0, 0);
+            for k in 0..GRID_AXES {
+                let upper = corner >> k & 1;
+                weight *= if upper == 1 { part[k] } else { 1.0 - part[k] };
+                index = index * self.axes[k].len() + (low[k] + upper).min(self.axes[k].len() - 1);
+            }
+            if weight > 0.0 {
+                sum += weight * self.values[index];
+            }
+        }
+        (sum, inside)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plane(x: [f64; GRID_AXES]) -> f64 {
+        1.0 + 2.0 * x[0] - 3.0 * x[1] + 0.5 * x[4] + x[0] * x[1]
+    }
+
+    #[test]
+    fn val_reproduces_a_bilinear_function() {
+        let mut rows = Vec::new();
+        for a in [0.0, 1.0, 4.0] {
+            for b in [-1.0, 2.0] {
+                for e in [10.0, 20.0] {
+                    let x = [a, b, 7.0, 0.0, e];
+                    rows.push((x, plane(x)));
+                }
+            }
+        }
+        rows.reverse();
+        let grid = Grid::from_rows(&rows).expect("full grid");
+        for x in [[0.3, 0.1, 0.0, 0.0, 12.0], [3.9, 1.9, 5.0, 1.0, 19.0], [4.0, 2.0, 7.0, 0.0, 20.0]] {
+            let (y, inside) = grid.at(x);
+            assert!((y - plane(x)).abs() < 1e-12 && inside, "{x:?}: {y} {}", plane(x));
+        }
+        assert!(!grid.at([5.0, 0.0, 0.0, 0.0, 12.0]).1);
+    }
+
+    #[test]
+    fn refuses_holes_and_doubles() {
+        let row = |a: f64, b: f64| ([a, b, 0.0, 0.0, 0.0], 1.0);
+        assert!(Grid::from_rows(&[row(0.0, 0.0), row(1.0, 1.0)]).is_err());
+        assert!(Grid::from_rows(&[row(0.0, 0.0), row(1.0, 1.0), row(0.0, 1.0), row(0.0, 0.0)]).is_err());
+    }
+}

@@ -1,0 +1,256 @@
+//! Warm-up: a network of five nodes for engine and transmission.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | TH-1 | C_i dT_i/dt = P_i + sum G_ij (T_j - T_i) + G_i,air (T_air - T_i) | derived: energy balance; C from masses, G fitted or ASSUMED |
+//! | TH-2 | radiator: Q = G_r(v) open(T_c) (T_c - T_amb), open from 0 at 80 degC to 1 at 92 degC | ASSUMED (the thesis prints a knee at 70-80 degC on the oil) |
+//! | TH-3 | cooler: G = m c_p (1 - exp(-(U_0 + U_v v)/(m c_p))), flow m from the pump | source: heat exchanger with one side unlimited; coefficients fitted |
+//! | TH-4 | air under the bonnet = ambient + r (T_coolant - T_amb) | ASSUMED |
+//! | TH-5 | step: (C/dt + K - dQ_r/dT) dT = P - K T + ..., linearly implicit | derived: unconditionally stable, conserves to rounding |
+//!
+//! Nodes: coolant and block; engine oil; transmission oil; transmission metal; belt and pulleys with the oil they spray (unused in a
+//! manual box). Soak is the same network with the engine off. Speeds m/s, heat flows W.
+
+mod load;
+
+pub use load::load;
+
+use nalgebra::{SMatrix, SVector};
+
+/// Number of nodes.
+pub const NODES: usize = 5;
+/// Coolant and block.
+pub const COOLANT: usize = 0;
+/// Engine oil.
+pub const ENGINE_OIL: usize = 1;
+/// Transmission oil in the sump.
+pub const SUMP: usize = 2;
+/// Transmission metal.
+pub const METAL: usize = 3;
+/// Belt, pulleys and spray.
+pub const BELT: usize = 4;
+
+/// The oil-to-air cooler.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cooler {
+    /// U at standstill, W/K.
+    pub still_w_k: f64,
+    /// U per road speed, W s/(K m).
+    pub per_speed_w_s_k_m: f64,
+    /// Share of the pump's flow through the cooler.
+    pub flow_share: f64,
+    /// Largest flow, m3/s.
+    pub highest_m3_s: f64,
+    /// Temperature below which the cooler is bypassed, K.
+    pub bypass_below_k: f64,
+}
+
+/// The checked network.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Network {
+    /// Heat capacities, J/K; 0 for an unused node.
+    pub capacity_j_k: [f64; NODES],
+    /// Coolant to engine oil, W/K.
+    pub coolant_oil_w_k: f64,
+    /// Block to air at standstill and per speed.
+    pub block_air_w_k: f64,
+    /// Block to air per road speed, W s/(K m).
+    pub block_air_per_speed: f64,
+    /// Engine oil pan to air at standstill, W/K.
+    pub pan_air_w_k: f64,
+    /// Engine oil pan to air per road speed, W s/(K m).
+    pub pan_air_per_speed: f64,
+    /// Radiator fully open at standstill, W/K.
+    pub radiator_w_k: f64,
+    /// Radiator per road speed, W s/(K m).
+    pub radiator_per_speed: f64,
+    /// Thermostat begins to open, K.
+    pub thermostat_from_k: f64,
+    /// Thermostat fully open, K.
+    pub thermostat_to_k: f64,
+    /// Transmission oil to metal, W/K.
+    pub oil_metal_w_k: f64,
+    /// Case to air at standstill, W/K.
+    pub case_air_w_k: f64,
+    /// Case to air times v^0.7, W/K.
+    pub case_air_per_speed: f64,
+    /// Block to transmission metal through the bell housing, W/K.
+    pub bell_housing_w_k: f64,
+    /// Belt to transmission oil by spray, W/K.
+    pub spray_w_k: f64,
+    /// Coolant to transmission oil heat exchanger, W/K.
+    pub exchanger_w_k: f64,
+    /// Oil-to-air cooler.
+    pub cooler: Option<Cooler>,
+    /// Under-bonnet air: rise as a share of coolant over ambient.
+    pub under_bonnet: f64,
+}
+
+/// Temperatures of the nodes, K.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heat {
+    /// Node temperatures, K.
+    pub node_k: [f64; NODES],
+}
+
+impl Heat {
+    /// All nodes at one temperature.
+    #[must_use]
+    pub fn uniform(temp_k: f64) -> Self {
+        Heat { node_k: [temp_k; NODES] }
+    }
+}
+
+/// What happens around the nodes in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeatInput {
+    /// Heat into the nodes, W.
+    pub power_w: [f64; NODES],
+    /// Ambient temperature, K.
+    pub ambient_k: f64,
+    /// Road speed, m/s.
+    pub speed_m_s: f64,
+    /// Oil flow that the pump gives, m3/s.
+    pub oil_flow_m3_s: f64,
+    /// Heat capacity flow of the oil per volume flow, J/(m3 K).
+    pub oil_volume_heat_j_m3k: f64,
+    /// Step, s.
+    pub dt_s: f64,
+}
+
+/// Result of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeatStep {
+    /// Temperatures at its end.
+    pub heat: Heat,
+    /// Heat stored, W.
+    pub stored_w: f64,
+    /// Heat given to the air, W.
+    pub to_air_w: f64,
+    /// Oil to the cooler, K; NaN without one.
+    pub cooler_in_k: f64,
+    /// Oil from the cooler, K; NaN without one.
+    pub cooler_out_k: f64,
+}
+
+/// Conductances of one step.
+struct Now {
+    /// To air, per node, W/K.
+    air: [f64; NODES],
+    /// Air temperature, per node, K.
+    air_k: [f64; NODES],
+    /// Between nodes (i, j, G).
+    links: [(usize, usize, f64); 5],
+    /// Radiator heat now and its slope.
+    radiator: (f64, f64),
+    /// Heat capacity flow through the cooler, W/K.
+    cooler_flow_w_k: f64,
+    /// Cooler conductance, W/K.
+    cooler_w_k: f64,
+}
+
+/// v^0.7, 0 at standstill.
+#[inline]
+fn speed_power(v: f64) -> f64 {
+    if v > 0.0 { (0.7 * v.ln()).exp() } else { 0.0 }
+}
+
+impl Network {
+    fn radiator(&self, coolant_k: f64, input: &HeatInput) -> (f64, f64) {
+        let full = self.radiator_w_k + self.radiator_per_speed * input.speed_m_s;
+        let width = self.thermostat_to_k - self.thermostat_from_k;
+        let open = ((coolant_k - self.thermostat_from_k) / width).clamp(0.0, 1.0);
+        let over = coolant_k - input.ambient_k;
+        let slope = if open > 0.0 && open < 1.0 { full * (open + over / width) } else { full * open };
+        (full * open * over, if slope > 0.0 { slope } else { 0.0 }) // TH-2
+    }
+
+    fn cooler(&self, sump_k: f64, input: &HeatInput) -> (f64, f64) {
+        let Some(c) = &self.cooler else { return (0.0, 0.0) };
+        let flow = c.flow_share * input.oil_flow_m3_s;
+        let flow = if flow < c.highest_m3_s { flow } else { c.highest_m3_s };
+        let carried = flow * input.oil_volume_heat_j_m3k;
+        let open = ((sump_k - c.bypass_below_k) / 2.0).clamp(0.0, 1.0);
+        if carried <= 0.0 || open <= 0.0 {
+            return (carried, 0.0);
+        }
+        let u = c.still_w_k + c.per_speed_w_s_k_m * input.speed_m_s;
+        (carried, open * carried * (1.0 - (-u / carried).exp())) // TH-3
+    }
+
+    fn now(&self, heat: &Heat, input: &HeatInput) -> Now {
+        let t = &heat.node_k;
+        let v = input.speed_m_s;
+        let bonnet = input.ambient_k + self.under_bonnet * (t[COOLANT] - input.ambient_k); // TH-4
+        let (cooler_flow_w_k, cooler_w_k) = self.cooler(t[SUMP], input);
+        Now {
+            air: [
+                self.block_air_w_k + self.block_air_per_speed * v,
+                self.pan_air_w_k + self.pan_air_per_speed * v,
+                cooler_w_k,
+                self.case_air_w_k + self.case_air_per_speed * speed_power(v),
+                0.0,
+            ],
+            air_k: [bonnet, bonnet, input.ambient_k, bonnet, input.ambient_k],
+            links: [
+                (COOLANT, ENGINE_OIL, self.coolant_oil_w_k),
+                (COOLANT, METAL, self.bell_housing_w_k),
+                (COOLANT, SUMP, self.exchanger_w_k),
+                (SUMP, METAL, self.oil_metal_w_k),
+                (SUMP, BELT, self.spray_w_k),
+            ],
+            radiator: self.radiator(t[COOLANT], input),
+            cooler_flow_w_k,
+            cooler_w_k,
+        }
+    }
+
+    /// Advances the nodes by one step (TH-5).
+    #[must_use]
+    pub fn advance(&self, heat: &Heat, input: &HeatInput) -> HeatStep {
+        let now = self.now(heat, input);
+        let t = &heat.node_k;
+        let mut matrix = SMatrix::<f64, NODES, NODES>::zeros();
+        let mut right = SVector::<f64, NODES>::zeros();
+        for i in 0..NODES {
+            matrix[(i, i)] = self.capacity_j_k[i] / input.dt_s + now.air[i];
+            right[i] = input.power_w[i] - now.air[i] * (t[i] - now.air_k[i]);
+        }
+        matrix[(COOLANT, COOLANT)] += now.radiator.1;
+        right[COOLANT] -= now.radiator.0;
+        for &(i, j, g) in &now.links {
+            matrix[(i, i)] += g;
+            matrix[(j, j)] += g;
+            matrix[(i, j)] -= g;
+            matrix[(j, i)] -= g;
+            right[i] += g * (t[j] - t[i]);
+            right[j] += g * (t[i] - t[j]);
+        }
+        if self.capacity_j_k[BELT] <= 0.0 {
+            matrix[(BELT, BELT)] += 1.0; // unused node: keeps the matrix regular, changes nothing else
+            right[BELT] = 0.0;
+        }
+        // Symmetric and diagonally dominant with positive diagonal, hence positive definite: Cholesky always exists.
+        let rise = matrix.cholesky().map_or_else(SVector::zeros, |c| c.solve(&right));
+        let mut node_k = *t;
+        let (mut stored_w, mut to_air_w) = (0.0, now.radiator.0 + now.radiator.1 * rise[COOLANT]);
+        for i in 0..NODES {
+            node_k[i] += rise[i];
+            stored_w += self.capacity_j_k[i] * rise[i] / input.dt_s;
+            to_air_w += now.air[i] * (node_k[i] - now.air_k[i]);
+        }
+        let (cooler_in_k, cooler_out_k) = self.cooler_ends(&now, node_k[SUMP], input.ambient_k);
+        HeatStep { heat: Heat { node_k }, stored_w, to_air_w, cooler_in_k, cooler_out_k }
+    }
+
+    fn cooler_ends(&self, now: &Now, sump_k: f64, ambient_k: f64) -> (f64, f64) {
+        if self.cooler.is_none() {
+            return (f64::NAN, f64::NAN);
+        }
+        let effect = if now.cooler_flow_w_k > 0.0 { now.cooler_w_k / now.cooler_flow_w_k } else { 0.0 };
+        (sump_k, sump_k - effect * (sump_k - ambient_k))
+    }
+}
+
+#[cfg(test)]
+mod tests;

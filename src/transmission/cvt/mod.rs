@@ -1,0 +1,182 @@
+//! The CVT, backward from the wheel: final drive, variator, reverse clutch, launch clutch, pump and input shaft.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | CV-1 | w_s = i_fd w_wheel, w_p = I w_s / (1 - slip) | derived |
+//! | CV-2 | T_flywheel = T_p + T_pump(w_e) + T_shaft(w_e), T_p = T_belt + T_drag | source: thesis 1.1 (layout: pump and shaft turn with the engine) |
+//! | CV-3 | T_p >= creep torque below idle speed, >= -share (drag + accessories + pump + shaft) above it; the brakes take the rest | derived: engine can absorb no more; share LC-3 |
+//! | CV-4 | T_flywheel + accessories <= full load; the rest is a deficit | derived |
+//! | CV-5 | unknowns throttle, slip, engine speed (and output torque where CV-3 or CV-4 bind) by fixed point with secant, bounded | derived |
+//!
+//! The last iterate is accepted and every torque follows from it, so that the ledger closes whatever residual is left.
+
+pub mod controller;
+pub mod pump;
+pub mod spin;
+pub mod variator;
+mod load;
+mod solve;
+
+pub use load::load;
+
+use self::controller::{ClampLaw, ClampSignals, RatioControl};
+use self::pump::Pump;
+use self::spin::Spin;
+use self::variator::{Belt, BeltAtRatio, BeltLoad, belt_state};
+use super::launch::Launch;
+use super::loss_map::LossMap;
+use super::{Drive, DriveState, Surroundings};
+use crate::numeric::Curve;
+use std::sync::Arc;
+
+/// Measured maps in place of models.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CvtMaps {
+    /// Whole belt.
+    pub belt: Option<LossMap>,
+    /// Pump.
+    pub pump: Option<LossMap>,
+    /// Input shaft.
+    pub input_shaft: Option<LossMap>,
+    /// Reverse clutch drag.
+    pub clutch_drag: Option<LossMap>,
+    /// Final drive.
+    pub final_drive: Option<LossMap>,
+}
+
+/// The checked CVT.
+#[derive(Clone, Debug)]
+pub struct Cvt {
+    /// Final drive ratio.
+    pub final_drive: f64,
+    /// Belt and pulleys.
+    pub belt: Belt,
+    /// Secondary piston area, m2.
+    pub secondary_piston_m2: f64,
+    /// Primary piston area, m2.
+    pub primary_piston_m2: f64,
+    /// Spring force on the secondary, N.
+    pub spring_n: f64,
+    /// Uncompensated share of the centrifugal head times rho (r_o4 - r_i4) pi/4, N s2/rad2.
+    pub centrifugal_n_s2: f64,
+    /// Pump.
+    pub pump: Pump,
+    /// Input shaft, reverse clutch, final drive.
+    pub spin: Spin,
+    /// Ratio control.
+    pub ratio: RatioControl,
+    /// Clamp law.
+    pub clamp: ClampLaw,
+    /// Exponent of the primary radius in the clamp map.
+    pub radius_exponent: f64,
+    /// Smallest secondary pressure, Pa.
+    pub floor_pa: f64,
+    /// Largest secondary pressure, Pa.
+    pub cap_pa: f64,
+    /// Primary radius in low, m.
+    pub low_radius_m: f64,
+    /// Launch device.
+    pub launch: Arc<dyn Launch>,
+    /// Engine speed for a power at full load, W to rad/s.
+    pub full_load_route: Curve,
+    /// Measured maps in place of models.
+    pub maps: CvtMaps,
+    /// Share of belt loss that heats the belt node.
+    pub belt_heat_share: f64,
+}
+
+impl Cvt {
+    /// Clamping force of the secondary at a pressure, N (VA-3).
+    #[must_use]
+    #[inline]
+    pub fn secondary_clamp_n(&self, pressure_pa: f64, secondary_rad_s: f64) -> f64 {
+        pressure_pa * self.secondary_piston_m2 + self.spring_n + self.centrifugal_n_s2 * secondary_rad_s * secondary_rad_s
+    }
+
+    /// State at the beginning of a cycle: in low at rest, in the ratio that the variogram asks for when rolling.
+    #[must_use]
+    pub fn start(&self, around: &Surroundings) -> DriveState {
+        let secondary = self.final_drive * around.wheel.wheel_rad_s;
+        let demand = controller::RatioDemand {
+            secondary_rad_s: secondary,
+            power_w: around.wheel.power_w,
+            rated_w: around.engine.engine.rated_w,
+            full_load_rad_s: 0.0,
+            ratio_before: self.ratio.low,
+            flow_down_per_s: 0.0,
+            flow_up_per_s: 0.0,
+            dt_s: around.dt_s,
+        };
+        let ratio = if secondary > 0.0 {
+            (self.ratio.target_rad_s(&demand) / secondary).clamp(self.ratio.high, self.ratio.low)
+        } else {
+            self.ratio.low
+        };
+        let idle = around.engine.idle_rad_s;
+        let primary = ratio * secondary;
+        DriveState {
+            belt: Some(BeltAtRatio::new(&self.belt, ratio)),
+            gear: 0,
+            engine_rad_s: if primary > idle { primary } else { idle },
+            throttle: 0.1,
+            slip: 0.0,
+            secondary_pa: self.floor_pa,
+            coupled: primary > idle,
+            stood: true,
+        }
+    }
+
+    /// Pressure that the clamp law asks for, Pa (PC-1 to PC-4), within floor and cap.
+    #[must_use]
+    #[inline]
+    pub fn pressure_pa(&self, signals: &ClampSignals, at: &BeltAtRatio, load: &BeltLoad, secondary_rad_s: f64) -> f64 {
+        let wanted = match &self.clamp {
+            ClampLaw::Map(map) => map.pressure_pa(signals),
+            ClampLaw::TorqueFollowing { safety, least_torque_nm } => {
+                self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s)
+            }
+            ClampLaw::SlipLimited { slip, safety, least_torque_nm } => {
+                let least = self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s);
+                self.slip_pressure_pa(*slip, least, at, load, secondary_rad_s)
+            }
+        };
+        if wanted > self.cap_pa {
+            self.cap_pa
+        } else if wanted > self.floor_pa {
+            wanted
+        } else {
+            self.floor_pa
+        }
+    }
+
+    fn torque_pressure_pa(&self, safety: f64, least_nm: f64, at: &BeltAtRatio, load: &BeltLoad, secondary_rad_s: f64) -> f64 {
+        let torque = load.output_torque_nm.abs();
+        let torque = if torque > least_nm { torque } else { least_nm };
+        let mu = self.belt.formulation.segment_friction(load.segment_friction);
+        let weaker = if at.thrust_ratio < 1.0 { at.thrust_ratio } else { 1.0 };
+        let force = safety * torque * self.belt.cos_wedge / (2.0 * mu * at.geometry.secondary_radius_m * weaker); // PC-3
+        (force - self.secondary_clamp_n(0.0, secondary_rad_s)) / self.secondary_piston_m2
+    }
+
+    fn slip_pressure_pa(&self, limit: f64, least_pa: f64, at: &BeltAtRatio, load: &BeltLoad, secondary_rad_s: f64) -> f64 {
+        let slips = |pa: f64| {
+            let force = self.secondary_clamp_n(pa, secondary_rad_s);
+            belt_state(&self.belt, at, &BeltLoad { secondary_clamp_n: force, ..*load }).slip_total.abs() > limit
+        };
+        let (mut low, mut high) = (if least_pa > self.floor_pa { least_pa } else { self.floor_pa }, self.cap_pa);
+        if low >= high || !slips(low) {
+            return low;
+        }
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if slips(middle) { low = middle } else { high = middle }
+        }
+        high // PC-4
+    }
+
+    /// Solves one step (CV-1 to CV-5).
+    #[must_use]
+    pub fn solve(&self, around: &Surroundings, state: &mut DriveState) -> Drive {
+        solve::solve(self, around, state)
+    }
+}

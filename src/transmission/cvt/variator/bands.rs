@@ -1,0 +1,77 @@
+//! Heat where the bands slide on the segments and on each other.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | BT-1 | required band speeds differ by (d + (i-1) t)(w_p - w_s); the adopted speed is their mean | source: thesis eq. 8 to 21, App. C |
+//! | BT-2 | normal force of interface i: Q (1 - (i-1)/n) | source: thesis 8.4.2 |
+//! | BT-3 | torque loss of a pulley, at the primary: f mu_b Q \|1/I - 1\|/2 (d + t (n-1)/2) | derived: closed sum of thesis eq. 48, 49 |
+//! | BT-4 | f = min wrap / own wrap (App. C) or 1 (eq. 49) | source: the two disagree, see Formulation |
+//! | FI-1 | film shear, at the primary: share eta B (L_p + L_s) sum dv_i2 / (h w_in) | source: thesis eq. 52; share and h ASSUMED |
+//!
+//! Symbols: d offset of band 1 above the rocking edge m, t band thickness m, n bands, B width of both packs m, L contact arcs m, h film m.
+//! No loss at I = 1, exactly (thesis 8.3). Losses carry no sign of torque: they are positive in drive and overrun.
+
+use super::{Belt, Formulation, Geometry, Tension};
+
+/// Boundary friction loss of each pulley, referred to the primary shaft, Nm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BandLoss {
+    /// On the primary arc, Nm.
+    pub primary_nm: f64,
+    /// On the secondary arc, Nm.
+    pub secondary_nm: f64,
+}
+
+/// Half the difference of the pulleys' required band speeds over the primary speed, times the friction-weighted offset, m.
+#[inline]
+fn weighted_slide_m(belt: &Belt, ratio: f64) -> f64 {
+    let n = belt.band_count;
+    (1.0 / ratio - 1.0).abs() / 2.0 * (belt.band_offset_m + belt.band_thickness_m * (n - 1.0) / 2.0)
+}
+
+/// Sliding speed of the innermost band in each arc, m/s (BT-1).
+#[must_use]
+#[inline]
+pub fn sliding_speed_m_s(belt: &Belt, ratio: f64, primary_speed_rad_s: f64) -> f64 {
+    (1.0 / ratio - 1.0).abs() / 2.0 * belt.band_offset_m * primary_speed_rad_s.abs() // BT-1
+}
+
+/// Boundary friction loss of the bands (BT-3).
+#[must_use]
+#[inline]
+pub fn band_loss(belt: &Belt, formulation: Formulation, g: &Geometry, t: &Tension, mu_band: f64) -> BandLoss {
+    let slide = weighted_slide_m(belt, g.ratio);
+    let least = if g.primary_wrap_rad < g.secondary_wrap_rad { g.primary_wrap_rad } else { g.secondary_wrap_rad };
+    let (fp, fs) = if formulation.scales_band_force() {
+        (least / g.primary_wrap_rad, least / g.secondary_wrap_rad) // BT-4
+    } else {
+        (1.0, 1.0)
+    };
+    BandLoss {
+        primary_nm: fp * mu_band * t.primary_shoulder_n * slide,   // BT-3
+        secondary_nm: fs * mu_band * t.secondary_shoulder_n * slide, // BT-3
+    }
+}
+
+/// Viscous shear of the carrying film, torque at the primary shaft, Nm (FI-1).
+#[must_use]
+#[inline]
+pub fn film_loss_nm(belt: &Belt, g: &Geometry, film: &Film, primary_speed_rad_s: f64) -> f64 {
+    let arcs = g.primary_radius_m * g.primary_wrap_rad + g.secondary_radius_m * g.secondary_wrap_rad;
+    let spread = (1.0 / g.ratio - 1.0) / 2.0;
+    let offsets = belt.band_offset_m * belt.band_offset_m
+        + (belt.band_count - 1.0) * belt.band_thickness_m * belt.band_thickness_m;
+    film.share * film.eta_pa_s * belt.band_width_m * arcs * spread * spread * offsets * primary_speed_rad_s.abs()
+        / film.thickness_m // FI-1
+}
+
+/// State of the oil film between the bands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Film {
+    /// Share of the contact that the film carries, 0..1.
+    pub share: f64,
+    /// Dynamic viscosity at belt temperature, Pa s.
+    pub eta_pa_s: f64,
+    /// Film thickness, m.
+    pub thickness_m: f64,
+}

@@ -1,0 +1,100 @@
+//! The points where the thesis's chapter 8 and its own program (Appendix C) disagree, as one switch.
+//!
+//! In driving, every formulation keeps the smooth rules (TE-6, SL-8, real segment count, bounded slip); the choice moves only
+//! the rows below.
+
+/// Which reading of the belt model is used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Formulation {
+    /// For driving: Appendix C, with chapter 8's sign of the primary slip in inverted loading and the end-stop ramp.
+    #[default]
+    Smooth,
+    /// The printed program's choices.
+    AppendixC,
+    /// The chapter's equations.
+    Chapter8,
+}
+
+impl Formulation {
+    /// Names as on the command line.
+    pub const NAMES: [(&'static str, Formulation); 3] =
+        [("smooth", Formulation::Smooth), ("appendix_c", Formulation::AppendixC), ("chapter_8", Formulation::Chapter8)];
+
+    /// Segment friction where the formulation prescribes it; the fluid's otherwise.
+    #[must_use]
+    pub fn segment_friction(self, fluid: f64) -> f64 {
+        match self {
+            Formulation::Smooth => fluid,
+            Formulation::AppendixC => 0.125,
+            Formulation::Chapter8 => 0.13,
+        }
+    }
+
+    /// Band friction force scaled by the smaller wrap.
+    #[must_use]
+    pub fn scales_band_force(self) -> bool {
+        self != Formulation::Chapter8
+    }
+
+    /// Idle slip of conventional loading with its sign (eq. 67) instead of its magnitude.
+    #[must_use]
+    pub fn signed_idle_slip(self) -> bool {
+        self == Formulation::Chapter8
+    }
+
+    /// Slip loss of the idle arc counted (eq. 75, 76).
+    #[must_use]
+    pub fn counts_idle_arc(self) -> bool {
+        self == Formulation::Chapter8
+    }
+
+    /// The program's extra minus on the primary slip of inverted loading.
+    #[must_use]
+    pub fn flips_inverted_primary(self) -> bool {
+        self == Formulation::AppendixC
+    }
+
+    /// Wedge arcs counted for each pulley.
+    #[must_use]
+    pub fn wedge_arcs(self) -> f64 {
+        if self == Formulation::Chapter8 { 2.0 } else { 1.0 }
+    }
+
+    /// Wedge force at the secondary from the secondary's own clamping.
+    #[must_use]
+    pub fn own_wedge_force(self) -> bool {
+        self == Formulation::Chapter8
+    }
+
+    /// Penetration depth delta/(2 tan th) (eq. 95) instead of delta.
+    #[must_use]
+    pub fn radial_penetration(self) -> bool {
+        self == Formulation::Chapter8
+    }
+
+    /// tan of the angle in the wedge terms: the program has a literal 11 degrees.
+    #[must_use]
+    pub fn wedge_tan(self, own: f64) -> f64 {
+        if self == Formulation::AppendixC { 11.0f64.to_radians().tan() } else { own }
+    }
+
+    /// Part of the primary's deflection left near its end stop, from the ramp's value (1 away from the stop).
+    #[must_use]
+    pub fn primary_stop(self, ramp: f64) -> f64 {
+        match self {
+            Formulation::AppendixC => 1.0,
+            Formulation::Smooth | Formulation::Chapter8 => ramp,
+        }
+    }
+
+    /// Segment compression as the slip equations take it: the program lifts \|C_x\| < 30 N to +30 N, the chapter to 30 N with its sign.
+    #[must_use]
+    pub fn compression_n(self, cx: f64) -> f64 {
+        match self {
+            Formulation::Smooth => cx,
+            Formulation::AppendixC if cx.abs() < 30.0 => 30.0,
+            Formulation::Chapter8 if cx.abs() < 30.0 => 30.0f64.copysign(cx),
+            Formulation::AppendixC | Formulation::Chapter8 => cx,
+        }
+    }
+}

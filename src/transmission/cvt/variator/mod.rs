@@ -1,0 +1,220 @@
+//! The pushing metal V-belt between its two pulleys: from output torque to input torque, loss by loss.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | VA-1 | T_in = (T_out/I)(1 - slip) + band + film + slip loss + wedge + penetration | derived: energy with w_sec = w_pri (1 - slip)/I; the printed sum counts slip power twice |
+//! | VA-2 | T_cap = 2 mu_seg R_s min(F_p, F_s) / cos th | source: Coulomb limit on both pulleys; the thesis checks the primary only |
+//! | VA-3 | F_s = p A_s + spring + (1 - compensated) pi rho w2 (r_o4 - r_i4)/4 | source: App. C; centrifugal head from hydrostatics |
+//!
+//! Valid for clamping forces above zero; torque above VA-2 is flagged `gross_slip` and slip is bounded (SL-9).
+
+mod bands;
+mod deflection;
+mod formulation;
+mod geometry;
+mod slip;
+mod tension;
+
+pub use bands::{Film, sliding_speed_m_s};
+pub use formulation::Formulation;
+pub use geometry::Geometry;
+pub use slip::Slip;
+pub use tension::{Tension, TensionInput};
+
+use crate::lubricant::BandFriction;
+use crate::numeric::Curve;
+
+/// The checked belt and pulleys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Belt {
+    /// Centre distance of the pulleys, m.
+    pub centre_distance_m: f64,
+    /// Length of the belt, m.
+    pub length_m: f64,
+    /// Thickness of a segment, m.
+    pub segment_thickness_m: f64,
+    /// Half wedge angle: cosine.
+    pub cos_wedge: f64,
+    /// Half wedge angle: tangent.
+    pub tan_wedge: f64,
+    /// Bands in a pack.
+    pub band_count: f64,
+    /// Thickness of a band, m.
+    pub band_thickness_m: f64,
+    /// Width of both packs, m.
+    pub band_width_m: f64,
+    /// Offset of the innermost band above the rocking edge, m.
+    pub band_offset_m: f64,
+    /// Mass per length, kg/m.
+    pub mass_kg_m: f64,
+    /// Young's modulus of bands and segments, Pa.
+    pub youngs_pa: f64,
+    /// Contact area between segments in the free strut, m2.
+    pub strut_area_m2: f64,
+    /// Gap between all segments at no load, m.
+    pub initial_gap_m: f64,
+    /// Axial deflection of the primary per radius and force, 1/N.
+    pub primary_compliance_per_n: f64,
+    /// Axial deflection of the secondary per radius and force, 1/N.
+    pub secondary_compliance_per_n: f64,
+    /// Ratio from which the primary leans on its end stop.
+    pub stop_from_ratio: f64,
+    /// Ratio at which it rests on it fully.
+    pub stop_to_ratio: f64,
+    /// Width of the smoothing of the tension step in ln I.
+    pub unity_width: f64,
+    /// Force width of the blend between the loading branches, N.
+    pub blend_n: f64,
+    /// Bound of each pulley's slip.
+    pub slip_bound: f64,
+    /// Thrust ratio F_p/F_s over ln I, or none for the wrap ratio.
+    pub thrust_ratio: Option<Curve>,
+    /// Reading of the thesis.
+    pub formulation: Formulation,
+}
+
+impl Belt {
+    /// Cross-section of both band packs, m2.
+    #[must_use]
+    #[inline]
+    pub fn band_area_m2(&self) -> f64 {
+        self.band_count * self.band_width_m * self.band_thickness_m
+    }
+}
+
+/// The belt at one ratio: everything that does not depend on torque or pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeltAtRatio {
+    /// Geometry.
+    pub geometry: Geometry,
+    /// Direction of the tension step, -1 in low, +1 in high (TE-6).
+    pub direction: f64,
+    /// Primary clamp over secondary clamp (TE-1).
+    pub thrust_ratio: f64,
+}
+
+impl BeltAtRatio {
+    /// Prepares a ratio.
+    #[must_use]
+    pub fn new(belt: &Belt, ratio: f64) -> Self {
+        let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
+        let log = ratio.ln();
+        BeltAtRatio {
+            geometry,
+            direction: -(log / belt.unity_width).tanh(), // TE-6
+            thrust_ratio: match &belt.thrust_ratio {
+                Some(curve) => curve.at(log),
+                None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
+            },
+        }
+    }
+}
+
+/// What acts on the belt at one operating point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeltLoad {
+    /// Primary speed, rad/s.
+    pub primary_speed_rad_s: f64,
+    /// Torque at the secondary pulley, Nm; negative in overrun.
+    pub output_torque_nm: f64,
+    /// Axial clamping force of the secondary, N.
+    pub secondary_clamp_n: f64,
+    /// Band friction in force.
+    pub band: BandFriction,
+    /// Dynamic viscosity at belt temperature, Pa s.
+    pub eta_pa_s: f64,
+    /// Thickness of the film, m.
+    pub film_thickness_m: f64,
+    /// Segment friction of the fluid.
+    pub segment_friction: f64,
+    /// Flank friction of the fluid.
+    pub flank_friction: f64,
+}
+
+/// The belt's answer: losses are torques at the primary shaft, Nm, never negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeltState {
+    /// Torque at the primary pulley, Nm (VA-1).
+    pub input_torque_nm: f64,
+    /// Tensions and forces.
+    pub tension: Tension,
+    /// Slip in detail.
+    pub slip: Slip,
+    /// Total slip as a fraction.
+    pub slip_total: f64,
+    /// Boundary friction of the bands.
+    pub band_nm: f64,
+    /// Shear of the film.
+    pub film_nm: f64,
+    /// Sliding of segments on pulleys.
+    pub slip_nm: f64,
+    /// Wedging.
+    pub wedge_nm: f64,
+    /// Penetration.
+    pub penetration_nm: f64,
+    /// Torque capacity at the secondary, Nm (VA-2).
+    pub capacity_nm: f64,
+    /// Torque above capacity, or slip at its bound.
+    pub gross_slip: bool,
+}
+
+impl BeltState {
+    /// All belt losses, Nm at the primary shaft.
+    #[must_use]
+    #[inline]
+    pub fn loss_nm(&self) -> f64 {
+        self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
+    }
+}
+
+/// Solves the belt at one operating point.
+#[must_use]
+#[inline]
+pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
+    let g = &at.geometry;
+    let f = belt.formulation;
+    let v = load.primary_speed_rad_s * g.primary_radius_m;
+    let tension = Tension::new(
+        g,
+        &TensionInput {
+            primary_clamp_n: load.secondary_clamp_n * at.thrust_ratio,
+            secondary_clamp_n: load.secondary_clamp_n,
+            output_torque_nm: load.output_torque_nm,
+            mu_band: load.band.mu,
+            centrifugal_n: belt.mass_kg_m * v * v,
+            direction: at.direction,
+            tan_wedge: belt.tan_wedge,
+        },
+    );
+    let mu_segment = f.segment_friction(load.segment_friction);
+    let slip = slip::slip(belt, f, g, &tension, mu_segment);
+    let bands = bands::band_loss(belt, f, g, &tension, load.band.mu);
+    let film = Film { share: load.band.film_share, eta_pa_s: load.eta_pa_s, thickness_m: load.film_thickness_m };
+    let film_nm = bands::film_loss_nm(belt, g, &film, load.primary_speed_rad_s);
+    let deflection = deflection::deflection(belt, f, g, &tension, load.flank_friction);
+    let weaker =
+        if tension.primary_clamp_n < tension.secondary_clamp_n { tension.primary_clamp_n } else { tension.secondary_clamp_n };
+    let capacity_nm = 2.0 * mu_segment * g.secondary_radius_m * weaker / belt.cos_wedge; // VA-2
+    let band_nm = bands.primary_nm + bands.secondary_nm;
+    let slip_nm = slip.primary_loss_nm + slip.secondary_loss_nm;
+    let wedge_nm = deflection.wedge_primary_nm + deflection.wedge_secondary_nm;
+    let penetration_nm = deflection.penetration_primary_nm + deflection.penetration_secondary_nm;
+    let slip_total = slip.primary + slip.secondary;
+    let losses = band_nm + film_nm + slip_nm + wedge_nm + penetration_nm;
+    BeltState {
+        input_torque_nm: load.output_torque_nm / g.ratio * (1.0 - slip_total) + losses, // VA-1
+        tension,
+        slip,
+        slip_total,
+        band_nm,
+        film_nm,
+        slip_nm,
+        wedge_nm,
+        penetration_nm,
+        capacity_nm,
+        gross_slip: slip.held || load.output_torque_nm.abs() > capacity_nm,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,86 @@
+//! Band tension and segment compression from clamping force, belt speed and torque.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | TE-1 | F_p = F_s beta_p / beta_s, or F_s times a thrust ratio table | source: App. C (Fujii measured an effect of speed: table) |
+//! | TE-2 | Q_i = 2 F_i tan th + m beta_i v2 + \|C_x\| beta_i / 2 | source: thesis eq. 38, App. C |
+//! | TE-3 | dT = -s mu_b Q_p, s = -1 in low, +1 in high | source: thesis eq. 46, App. C |
+//! | TE-4 | C_x = T/R_s - dT | source: thesis eq. 42 |
+//! | TE-5 | TE-2 to TE-4 solved: A = 2 F_p tan th + m beta_p v2, Z = T/R_s + s mu_b A, c = mu_b beta_p / 2, C_x = Z/(1 - s c) for Z >= 0, Z/(1 + s c) below | derived |
+//! | TE-6 | s = -tanh(ln I / eps) | ASSUMED smoothing: the printed switch at I = 1 is a jump |
+//!
+//! Symbols: F clamping force N, th half wedge angle, m belt mass per length kg/m, v belt speed m/s, mu_b band friction.
+//! C_x is continuous in T with a bend at C_x = 0. Needs mu_b beta_p / 2 < 1, true for mu_b < 0.53.
+
+use super::Geometry;
+
+/// Band pack and segment forces at one operating point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tension {
+    /// Axial clamping force, primary, N.
+    pub primary_clamp_n: f64,
+    /// Axial clamping force, secondary, N.
+    pub secondary_clamp_n: f64,
+    /// Total shoulder normal force, primary (Q-hat), N.
+    pub primary_shoulder_n: f64,
+    /// Total shoulder normal force, secondary, N.
+    pub secondary_shoulder_n: f64,
+    /// Segment compression C_x, N; negative when it acts in the opposite strut.
+    pub compression_n: f64,
+    /// Step of band tension dT, N.
+    pub step_n: f64,
+}
+
+/// What loads the belt at one operating point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TensionInput {
+    /// Axial clamping force, primary, N.
+    pub primary_clamp_n: f64,
+    /// Axial clamping force, secondary, N.
+    pub secondary_clamp_n: f64,
+    /// Output torque at the secondary, Nm.
+    pub output_torque_nm: f64,
+    /// Band friction coefficient.
+    pub mu_band: f64,
+    /// Belt mass per length times belt speed squared, N.
+    pub centrifugal_n: f64,
+    /// Direction s of the tension step, -1 in low, +1 in high.
+    pub direction: f64,
+    /// tan of the half wedge angle.
+    pub tan_wedge: f64,
+}
+
+impl Tension {
+    /// Solves tension and compression (TE-2 to TE-5).
+    #[must_use]
+    #[inline]
+    pub fn new(g: &Geometry, input: &TensionInput) -> Self {
+        let (mu, s, bp) = (input.mu_band, input.direction, g.primary_wrap_rad);
+        let a = 2.0 * input.primary_clamp_n * input.tan_wedge + bp * input.centrifugal_n;
+        let z = input.output_torque_nm / g.secondary_radius_m + s * mu * a;
+        let c = mu * bp / 2.0;
+        let cx = if z >= 0.0 { z / (1.0 - s * c) } else { z / (1.0 + s * c) }; // TE-5
+        let q_p = a + cx.abs() * bp / 2.0; // TE-2
+        Tension {
+            primary_clamp_n: input.primary_clamp_n,
+            secondary_clamp_n: input.secondary_clamp_n,
+            primary_shoulder_n: q_p,
+            secondary_shoulder_n: secondary_shoulder(g, input, cx),
+            compression_n: cx,
+            step_n: -s * mu * q_p, // TE-3
+        }
+    }
+
+    /// Mean band tension (T1 + T2)/2, N (thesis eq. 39).
+    #[must_use]
+    #[inline]
+    pub fn mean_tension_n(&self, g: &Geometry) -> f64 {
+        self.primary_shoulder_n / g.primary_wrap_rad
+    }
+}
+
+#[inline]
+fn secondary_shoulder(g: &Geometry, input: &TensionInput, cx: f64) -> f64 {
+    let bs = g.secondary_wrap_rad;
+    2.0 * input.secondary_clamp_n * input.tan_wedge + bs * input.centrifugal_n + cx.abs() * bs / 2.0 // TE-2
+}
