@@ -33,7 +33,7 @@ fn main() {
         for (f, s) in cvtcycle::results::Flags::NAMES.iter().zip(o.totals.flag_s) { if s > 0.0 { print!("{} {s} ", f.1); } }
         println!();
         if std::env::var("TRACE").is_ok() && name == "rover_216_cvt" {
-            for r in &o.rows { println!("{} v {:.1} n {:.0} I {:.3} p {:.1} T {:.1} thr {:.3} slip {:.3}% S {:.2} sump {:.1} belt {:.1} it {} fl {:b}", r.time_s, r.speed_m_s*3.6, r.engine_speed_rad_s*9.549, r.belt_ratio, r.secondary_pressure_pa/1e5, r.engine_torque_nm, r.throttle, r.slip*100.0, r.clamp_safety, r.sump_k-273.15, r.belt_spray_k-273.15, r.iterations, r.flags.0); }
+            for r in &o.rows { println!("{} v {:.1} n {:.1} I {:.3} p {:.1} T {:.1} thr {:.3} slip {:.3}% S {:.2} sump {:.1} belt {:.1} it {} fl {:b}", r.time_s, r.speed_m_s*3.6, r.engine_speed_rad_s*30.0/std::f64::consts::PI, r.belt_ratio, r.secondary_pressure_pa/1e5, r.engine_torque_nm, r.throttle, r.slip*100.0, r.clamp_safety, r.sump_k-273.15, r.belt_spray_k-273.15, r.iterations, r.flags.0); }
         }
     }
 }

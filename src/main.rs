@@ -1,2 +1,7 @@
 //! Command line of cvtcycle.
-fn main() {}
+
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::main()
+}

@@ -5,7 +5,15 @@
 pub struct Curve {
     x: Vec<f64>,
     y: Vec<f64>,
+    /// Slope of the piece that begins at each point but the last.
+    slope: Vec<f64>,
+    /// For equal cells of x: the piece in which the cell begins, so that a look-up needs no search.
+    cell: Vec<u16>,
+    cells_per_x: f64,
 }
+
+/// Cells of the look-up table.
+const CELLS: usize = 128;
 
 impl Curve {
     /// A curve through `points` (x, y).
@@ -22,32 +30,49 @@ impl Curve {
         if points.windows(2).any(|p| p[0].0 >= p[1].0) {
             return Err("the first column must rise strictly from row to row".into());
         }
-        Ok(Curve { x: points.iter().map(|p| p.0).collect(), y: points.iter().map(|p| p.1).collect() })
+        if points.len() > usize::from(u16::MAX) {
+            return Err("a curve takes at most 65 535 points".into());
+        }
+        Ok(Curve::build(points))
+    }
+
+    fn build(points: &[(f64, f64)]) -> Self {
+        let (first, last) = (points[0].0, points[points.len() - 1].0);
+        let cells_per_x = if last > first { CELLS as f64 / (last - first) } else { 0.0 };
+        let piece = |x: f64| points.partition_point(|p| p.0 <= x).clamp(1, points.len().max(2) - 1) - 1;
+        Curve {
+            x: points.iter().map(|p| p.0).collect(),
+            y: points.iter().map(|p| p.1).collect(),
+            slope: points.windows(2).map(|p| (p[1].1 - p[0].1) / (p[1].0 - p[0].0)).collect(),
+            cell: (0..CELLS).map(|i| piece(first + i as f64 * (last - first) / CELLS as f64) as u16).collect(),
+            cells_per_x,
+        }
     }
 
     /// A curve with the same value everywhere.
     #[must_use]
     pub fn constant(y: f64) -> Self {
-        Curve { x: vec![0.0], y: vec![y] }
+        Curve::build(&[(0.0, y)])
     }
 
     /// Value at `x`; beyond the ends the end's value; NaN for NaN.
     #[must_use]
     pub fn at(&self, x: f64) -> f64 {
-        let n = self.x.len();
+        let last = self.x.len() - 1;
+        if x <= self.x[0] || last == 0 {
+            return self.y[0];
+        }
+        if x >= self.x[last] {
+            return self.y[last];
+        }
         if x.is_nan() {
             return f64::NAN;
         }
-        if x <= self.x[0] || n == 1 {
-            return self.y[0];
+        let mut piece = usize::from(self.cell[((x - self.x[0]) * self.cells_per_x) as usize % CELLS]);
+        while x >= self.x[piece + 1] {
+            piece += 1;
         }
-        if x >= self.x[n - 1] {
-            return self.y[n - 1];
-        }
-        let hi = self.x.partition_point(|&p| p <= x);
-        let lo = hi - 1;
-        let u = (x - self.x[lo]) / (self.x[hi] - self.x[lo]);
-        self.y[lo] + u * (self.y[hi] - self.y[lo])
+        self.y[piece] + self.slope[piece] * (x - self.x[piece])
     }
 
     /// Whether `x` lies within the curve's points.
@@ -64,7 +89,7 @@ impl Curve {
     /// Multiplies every y by `factor`.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
-        self.y.iter_mut().for_each(|y| *y *= factor);
+        self.y.iter_mut().chain(&mut self.slope).for_each(|y| *y *= factor);
         self
     }
 }

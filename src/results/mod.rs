@@ -6,6 +6,7 @@ mod totals;
 pub mod columns;
 pub mod trace;
 pub mod files;
+pub mod summary;
 
 pub use ledger::{TERM_NAMES, Terms};
 pub use row::{Component, Flags, Row};

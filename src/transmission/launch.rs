@@ -16,6 +16,8 @@ use crate::numeric::ramp;
 pub trait Launch: std::fmt::Debug + Send + Sync {
     /// Engine speed that goes with a transmitted torque, never below idle nor below the input shaft (LC-1, LC-5).
     fn engine_speed_rad_s(&self, torque_nm: f64, input_speed_rad_s: f64, idle_rad_s: f64, coupled: bool) -> f64;
+    /// Whether, once coupled, it holds engine and input shaft together without slip (LC-5).
+    fn holds(&self, input_speed_rad_s: f64, idle_rad_s: f64) -> bool;
     /// Torque that the idling engine passes on without being asked, Nm (LC-2).
     fn creep_torque_nm(&self, input_speed_rad_s: f64, idle_rad_s: f64) -> f64;
     /// Share of the engine's overrun torque that the coupling carries, 0..1 (LC-3).
@@ -35,6 +37,8 @@ pub struct FrictionClutch {
     pub release_rad_s: f64,
 }
 
+/// Input speed over idle speed from which a coupled clutch does not slip (LC-5).
+const LOCKED_OVER_IDLE: f64 = 1.2;
 /// Width of the transition from creeping to launching, Nm.
 const CREEP_WIDTH_NM: f64 = 5.0;
 /// Speed that rounds off the square root at zero torque, rad/s (200 rpm).
@@ -43,6 +47,10 @@ const ROUND_RAD_S: f64 = 20.944;
 impl Launch for FrictionClutch {
     #[inline]
     fn engine_speed_rad_s(&self, torque_nm: f64, input_speed_rad_s: f64, idle_rad_s: f64, coupled: bool) -> f64 {
+        let locked = LOCKED_OVER_IDLE * idle_rad_s;
+        if coupled && self.holds(input_speed_rad_s, idle_rad_s) {
+            return input_speed_rad_s;
+        }
         let above = torque_nm - self.creep_nm;
         let mut speed = idle_rad_s;
         if above > 0.0 {
@@ -54,8 +62,13 @@ impl Launch for FrictionClutch {
         if speed <= input_speed_rad_s {
             return input_speed_rad_s;
         }
-        let slips = if coupled { 1.0 - ramp(input_speed_rad_s, idle_rad_s, 1.2 * idle_rad_s) } else { 1.0 };
+        let slips = if coupled { 1.0 - ramp(input_speed_rad_s, idle_rad_s, locked) } else { 1.0 };
         input_speed_rad_s + slips * (speed - input_speed_rad_s) // LC-5
+    }
+
+    #[inline]
+    fn holds(&self, input_speed_rad_s: f64, idle_rad_s: f64) -> bool {
+        input_speed_rad_s >= LOCKED_OVER_IDLE * idle_rad_s
     }
 
     #[inline]

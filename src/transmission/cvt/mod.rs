@@ -105,6 +105,7 @@ impl Cvt {
             ratio_before: self.ratio.low,
             flow_down_per_s: 0.0,
             flow_up_per_s: 0.0,
+            coupled: true,
             dt_s: around.dt_s,
         };
         let ratio = if secondary > 0.0 {

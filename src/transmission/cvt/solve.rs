@@ -11,7 +11,7 @@ use crate::transmission::loss_map::{LossMap, MapPoint};
 use crate::transmission::{Drive, DriveState, Surroundings};
 
 /// The solve stops when throttle, slip and relative engine speed move less than this.
-const TOLERANCE: f64 = 1e-8;
+const TOLERANCE: f64 = 1e-7;
 /// Largest number of evaluations.
 const MOST_EVALUATIONS: u16 = 60;
 
@@ -106,6 +106,8 @@ impl Step<'_> {
         let mut inside_maps = true;
         let primary_rad_s = ratio * self.secondary_rad_s / (1.0 - g.slip); // CV-1
         let pa = g.pressure_pa;
+        // Never slower than the primary, and the same while locked, so that the clutch cannot give energy back.
+        let engine_rad_s = if g.engine_rad_s > primary_rad_s && !self.locked(primary_rad_s) { g.engine_rad_s } else { primary_rad_s };
         let secondary_nm = match self.mapped(maps.final_drive.as_ref(), primary_rad_s, g.output_nm, pa, &mut inside_maps) {
             Some(loss) => g.output_nm + loss * primary_rad_s / self.secondary_rad_s,
             None => cvt.spin.secondary_torque_nm(self.drive_nm, g.output_nm),
@@ -125,18 +127,18 @@ impl Step<'_> {
         // VA-1 with the slip in force, so that the power balance holds for this iterate exactly.
         let primary_nm = secondary_nm * self.secondary_rad_s / primary_rad_s + belt_loss + clutch_nm;
         let need = cvt.pump.steady_need_m3_s(pa, self.eta_sump) + self.shift_flow_m3_s;
-        let pump = cvt.pump.state(g.engine_rad_s, pa, need, self.viscous_factor);
+        let pump = cvt.pump.state(engine_rad_s, pa, need, self.viscous_factor);
         let pump_nm = self
-            .mapped(maps.pump.as_ref(), g.engine_rad_s, 0.0, pa, &mut inside_maps)
+            .mapped(maps.pump.as_ref(), engine_rad_s, 0.0, pa, &mut inside_maps)
             .unwrap_or(pump.torque_nm);
         let shaft_nm = self
-            .mapped(maps.input_shaft.as_ref(), g.engine_rad_s, 0.0, pa, &mut inside_maps)
-            .unwrap_or_else(|| self.spin.shaft_nm(g.engine_rad_s));
+            .mapped(maps.input_shaft.as_ref(), engine_rad_s, 0.0, pa, &mut inside_maps)
+            .unwrap_or_else(|| self.spin.shaft_nm(engine_rad_s));
         let flywheel = primary_nm + pump_nm + shaft_nm;
         let slip = if belt_map_nm.is_some() { 0.0 } else { belt.slip_total };
         let next = self.next(g, flywheel, primary_nm, primary_rad_s, slip, &load);
         Point {
-            guess: *g,
+            guess: Guess { engine_rad_s, ..*g },
             next,
             secondary_nm,
             primary_rad_s,
@@ -149,6 +151,11 @@ impl Step<'_> {
             flow_limited: pump.flow_limited,
             inside_maps,
         }
+    }
+
+    /// Whether the launch device holds engine and primary together (LC-5).
+    fn locked(&self, primary_rad_s: f64) -> bool {
+        self.coupled && self.cvt.launch.holds(primary_rad_s, self.around.engine.idle_rad_s)
     }
 
     fn next(&self, g: &Guess, flywheel: f64, primary_nm: f64, primary_rad_s: f64, slip: f64, load: &BeltLoad) -> Guess {
@@ -191,6 +198,7 @@ impl Step<'_> {
     fn run(&self, first: Guess, bind: Bind, count: &mut u16) -> (Point, f64) {
         let mut guess = first;
         let mut before: Option<(f64, f64)> = None;
+        let mut last: Option<(f64, f64)> = None;
         let scale = self.around.engine.full_load_nm(self.engine_before);
         let scale = if scale > 1.0 { scale } else { 1.0 };
         loop {
@@ -198,6 +206,8 @@ impl Step<'_> {
             *count += 1;
             let mut left = point.moved();
             guess = point.next;
+            guess.throttle = accelerated(last, point.guess.throttle, point.next.throttle);
+            last = Some((point.guess.throttle, point.next.throttle));
             if bind != Bind::Demand {
                 let target = if bind == Bind::Least { self.least_primary_nm(&point) } else { self.most_primary_nm(&point) };
                 let miss = point.primary_nm - target;
@@ -216,6 +226,17 @@ impl Step<'_> {
                 return (point, left);
             }
         }
+    }
+}
+
+/// Secant step on a fixed point u = g(u) from two pairs (u, g), within the range of a throttle (CV-5).
+fn accelerated(last: Option<(f64, f64)>, u: f64, g: f64) -> f64 {
+    match last {
+        Some((u0, g0)) if (u - u0).abs() > 1e-12 => {
+            let slope = ((g - g0) / (u - u0)).clamp(-0.5, 0.5);
+            (u + (g - u) / (1.0 - slope)).clamp(0.0, 1.0)
+        }
+        _ => g,
     }
 }
 
@@ -248,6 +269,7 @@ fn shift(cvt: &Cvt, around: &Surroundings, state: &DriveState, at: &BeltAtRatio,
         ratio_before: before,
         flow_down_per_s,
         flow_up_per_s,
+        coupled: state.coupled,
         dt_s: around.dt_s,
     };
     let (ratio, held) = cvt.ratio.step(&demand);
@@ -452,7 +474,7 @@ fn finish(step: &Step, p: &Point, state: &mut DriveState, outcome: Outcome) -> D
     flags.set(Flags::LAUNCH_NOT_IN_LOW, state.stood && step.at.geometry.ratio < 0.99 * step.cvt.ratio.low);
     common_flags(step, &mut drive, p.inside_maps);
     remember(state, &drive, step.at, false);
-    state.coupled = we <= wp * (1.0 + 1e-9);
+    state.coupled = step.locked(wp) || we <= wp * (1.0 + 1e-4);
     drive
 }
 

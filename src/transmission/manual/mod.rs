@@ -153,7 +153,8 @@ impl Manual {
         .clamp(0.0, 1.0);
         state.gear = if drive.gear > 0 { drive.gear } else { state.gear };
         state.engine_rad_s = drive.engine_rad_s;
-        state.coupled = drive.gear > 0 && !drive.flags.contains(Flags::CLUTCH_OPEN) && !drive.flags.contains(Flags::CLUTCH_SLIPPING);
+        let turning = drive.gear > 0 && !drive.flags.contains(Flags::CLUTCH_OPEN);
+        state.coupled = turning && !drive.flags.contains(Flags::CLUTCH_SLIPPING);
         state.stood = around.wheel.wheel_rad_s <= 0.0;
         drive
     }

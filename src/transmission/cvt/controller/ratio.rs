@@ -6,6 +6,7 @@
 //! | RC-2 | overrun target, reached linearly over 1 % of rated power | ASSUMED |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
 //! | RC-4 | \|d ln I/dt\| <= rate min(1, n_p/n_ref), up and down rates apart; none at rest | source: thesis 2.4, 3.7 in words; values ASSUMED |
+//! | RC-6 | no up-shift before the launch clutch has locked | source: thesis 1.1.2, order A-B-C-D of the variogram |
 //! | RC-5 | and <= free pump flow / (A 2 tan th \|dR/d ln I\|) | derived: thesis 9.1 |
 //!
 //! The power asked for is wheel power, so the ratio never chases its own losses.
@@ -54,6 +55,8 @@ pub struct RatioDemand {
     pub flow_down_per_s: f64,
     /// Limit from pump flow towards high, 1/s.
     pub flow_up_per_s: f64,
+    /// Whether the launch clutch has locked.
+    pub coupled: bool,
     /// Step, s.
     pub dt_s: f64,
 }
@@ -82,6 +85,7 @@ impl RatioControl {
         } else {
             d.ratio_before
         };
+        let wanted = if !d.coupled && wanted < d.ratio_before { d.ratio_before } else { wanted }; // RC-6
         let primary = d.ratio_before * d.secondary_rad_s;
         let pace = (primary / self.rate_speed_rad_s).clamp(0.0, 1.0);
         let (mut up, mut down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
@@ -126,6 +130,7 @@ mod tests {
             ratio_before: before,
             flow_down_per_s: 9.0,
             flow_up_per_s: 9.0,
+            coupled: true,
             dt_s: 1.0,
         }
     }

@@ -11,7 +11,7 @@
 //! Symbols: d offset of band 1 above the rocking edge m, t band thickness m, n bands, B width of both packs m, L contact arcs m, h film m.
 //! No loss at I = 1, exactly (thesis 8.3). Losses carry no sign of torque: they are positive in drive and overrun.
 
-use super::{Belt, Formulation, Geometry, Tension};
+use super::{Belt, BeltAtRatio, Geometry, Tension};
 
 /// Boundary friction loss of each pulley, referred to the primary shaft, Nm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,11 +22,24 @@ pub struct BandLoss {
     pub secondary_nm: f64,
 }
 
-/// Half the difference of the pulleys' required band speeds over the primary speed, times the friction-weighted offset, m.
-#[inline]
-fn weighted_slide_m(belt: &Belt, ratio: f64) -> f64 {
+/// Friction-weighted sliding of the band pack per turn of the primary, times the wrap factor of each pulley, m (BT-2 to BT-4).
+#[must_use]
+pub fn slide_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
     let n = belt.band_count;
-    (1.0 / ratio - 1.0).abs() / 2.0 * (belt.band_offset_m + belt.band_thickness_m * (n - 1.0) / 2.0)
+    let slide = (1.0 / g.ratio - 1.0).abs() / 2.0 * (belt.band_offset_m + belt.band_thickness_m * (n - 1.0) / 2.0);
+    let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
+    let least = if wraps[0] < wraps[1] { wraps[0] } else { wraps[1] };
+    wraps.map(|w| if belt.formulation.scales_band_force() { slide * least / w } else { slide }) // BT-4
+}
+
+/// Film shear torque per share, viscosity and speed over film thickness, m4 (FI-1).
+#[must_use]
+pub fn film_m4(belt: &Belt, g: &Geometry) -> f64 {
+    let arcs = g.primary_radius_m * g.primary_wrap_rad + g.secondary_radius_m * g.secondary_wrap_rad;
+    let spread = (1.0 / g.ratio - 1.0) / 2.0;
+    let offsets = belt.band_offset_m * belt.band_offset_m
+        + (belt.band_count - 1.0) * belt.band_thickness_m * belt.band_thickness_m;
+    belt.band_width_m * arcs * spread * spread * offsets
 }
 
 /// Sliding speed of the innermost band in each arc, m/s (BT-1).
@@ -39,30 +52,18 @@ pub fn sliding_speed_m_s(belt: &Belt, ratio: f64, primary_speed_rad_s: f64) -> f
 /// Boundary friction loss of the bands (BT-3).
 #[must_use]
 #[inline]
-pub fn band_loss(belt: &Belt, formulation: Formulation, g: &Geometry, t: &Tension, mu_band: f64) -> BandLoss {
-    let slide = weighted_slide_m(belt, g.ratio);
-    let least = if g.primary_wrap_rad < g.secondary_wrap_rad { g.primary_wrap_rad } else { g.secondary_wrap_rad };
-    let (fp, fs) = if formulation.scales_band_force() {
-        (least / g.primary_wrap_rad, least / g.secondary_wrap_rad) // BT-4
-    } else {
-        (1.0, 1.0)
-    };
+pub fn band_loss(at: &BeltAtRatio, t: &Tension, mu_band: f64) -> BandLoss {
     BandLoss {
-        primary_nm: fp * mu_band * t.primary_shoulder_n * slide,   // BT-3
-        secondary_nm: fs * mu_band * t.secondary_shoulder_n * slide, // BT-3
+        primary_nm: mu_band * t.primary_shoulder_n * at.prepared.slide_m[0],     // BT-3
+        secondary_nm: mu_band * t.secondary_shoulder_n * at.prepared.slide_m[1], // BT-3
     }
 }
 
 /// Viscous shear of the carrying film, torque at the primary shaft, Nm (FI-1).
 #[must_use]
 #[inline]
-pub fn film_loss_nm(belt: &Belt, g: &Geometry, film: &Film, primary_speed_rad_s: f64) -> f64 {
-    let arcs = g.primary_radius_m * g.primary_wrap_rad + g.secondary_radius_m * g.secondary_wrap_rad;
-    let spread = (1.0 / g.ratio - 1.0) / 2.0;
-    let offsets = belt.band_offset_m * belt.band_offset_m
-        + (belt.band_count - 1.0) * belt.band_thickness_m * belt.band_thickness_m;
-    film.share * film.eta_pa_s * belt.band_width_m * arcs * spread * spread * offsets * primary_speed_rad_s.abs()
-        / film.thickness_m // FI-1
+pub fn film_loss_nm(at: &BeltAtRatio, film: &Film, primary_speed_rad_s: f64) -> f64 {
+    film.share * film.eta_pa_s * at.prepared.film_m4 * primary_speed_rad_s.abs() / film.thickness_m // FI-1
 }
 
 /// State of the oil film between the bands.

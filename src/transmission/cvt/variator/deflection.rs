@@ -10,8 +10,7 @@
 //!
 //! N is the resultant normal force on a segment (both flanks), t the segment thickness. Always positive; zero at zero clamping force.
 
-use super::{Belt, Formulation, Geometry, Tension};
-use crate::numeric::ramp;
+use super::{Belt, BeltAtRatio, Tension};
 
 /// Wedge and penetration losses of both pulleys, at the primary shaft, Nm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,10 +25,9 @@ pub struct Deflection {
     pub penetration_secondary_nm: f64,
 }
 
-/// chord times sliding speed over shaft speed, m2 (WE-2).
+/// chord times sliding speed over shaft speed for a radial overlap q, m2 (WE-2).
 #[inline]
-fn wedge_area_m2(radius_m: f64, deflection_m: f64, tan_wedge: f64) -> f64 {
-    let q = deflection_m / (2.0 * tan_wedge);
+fn wedge_area_m2(radius_m: f64, q: f64) -> f64 {
     // sqrt(q (2R+q)) sqrt(2 (R+q) q) = q sqrt((2R+q) 2 (R+q))
     q * ((2.0 * radius_m + q) * 2.0 * (radius_m + q)).sqrt()
 }
@@ -37,21 +35,21 @@ fn wedge_area_m2(radius_m: f64, deflection_m: f64, tan_wedge: f64) -> f64 {
 /// Wedge and penetration losses (WE-1 to PE-1).
 #[must_use]
 #[inline]
-pub fn deflection(belt: &Belt, f: Formulation, g: &Geometry, t: &Tension, mu_flank: f64) -> Deflection {
-    let stop = f.primary_stop(ramp(g.ratio, belt.stop_to_ratio, belt.stop_from_ratio)); // WE-4
-    let delta_p = stop * g.primary_radius_m * t.primary_clamp_n * belt.primary_compliance_per_n;
+pub fn deflection(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_flank: f64) -> Deflection {
+    let (f, g, prepared) = (belt.formulation, &at.geometry, &at.prepared);
+    let delta_p = prepared.stop * g.primary_radius_m * t.primary_clamp_n * belt.primary_compliance_per_n; // WE-4
     let delta_s = g.secondary_radius_m * t.secondary_clamp_n * belt.secondary_compliance_per_n; // WE-1
-    let pitch = belt.segment_thickness_m;
-    let n_p = 2.0 * t.primary_clamp_n * pitch / (g.primary_radius_m * g.primary_wrap_rad * belt.cos_wedge);
-    let n_s = 2.0 * t.secondary_clamp_n * pitch / (g.secondary_radius_m * g.secondary_wrap_rad * belt.cos_wedge);
-    let tan = f.wedge_tan(belt.tan_wedge);
-    let common = f.wedge_arcs() * mu_flank / (2.0 * pitch);
+    let n_p = t.primary_clamp_n * prepared.normal_per_clamp[0];
+    let n_s = t.secondary_clamp_n * prepared.normal_per_clamp[1];
+    let half_cot = 0.5 / f.wedge_tan(belt.tan_wedge);
+    let per_pitch = mu_flank / belt.segment_thickness_m;
+    let common = 0.5 * f.wedge_arcs() * per_pitch;
     let wedge_s_force = if f.own_wedge_force() { n_s } else { n_p };
-    let depth = if f.radial_penetration() { 1.0 / (2.0 * belt.tan_wedge) } else { 1.0 };
-    let pen = 2.0 * mu_flank * g.primary_radius_m / pitch * depth;
+    let depth = if f.radial_penetration() { 0.5 / belt.tan_wedge } else { 1.0 };
+    let pen = 2.0 * per_pitch * g.primary_radius_m * depth;
     Deflection {
-        wedge_primary_nm: common * n_p * wedge_area_m2(g.primary_radius_m, delta_p, tan), // WE-3
-        wedge_secondary_nm: common * wedge_s_force * wedge_area_m2(g.secondary_radius_m, delta_s, tan) / g.ratio, // WE-3
+        wedge_primary_nm: common * n_p * wedge_area_m2(g.primary_radius_m, delta_p * half_cot), // WE-3
+        wedge_secondary_nm: common * wedge_s_force * wedge_area_m2(g.secondary_radius_m, delta_s * half_cot) / g.ratio, // WE-3
         penetration_primary_nm: pen * n_p * delta_p,   // PE-1
         penetration_secondary_nm: pen * n_s * delta_s, // PE-1
     }

@@ -22,7 +22,7 @@ pub use slip::Slip;
 pub use tension::{Tension, TensionInput};
 
 use crate::lubricant::BandFriction;
-use crate::numeric::Curve;
+use crate::numeric::{Curve, ramp};
 
 /// The checked belt and pulleys.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,6 +91,50 @@ pub struct BeltAtRatio {
     pub direction: f64,
     /// Primary clamp over secondary clamp (TE-1).
     pub thrust_ratio: f64,
+    /// What the loss equations need of this ratio, worked out once.
+    pub prepared: Prepared,
+}
+
+/// Coefficients of one ratio, so that an operating point costs few divisions; pairs are primary, secondary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prepared {
+    /// Contact arcs, m.
+    pub arc_m: [f64; 2],
+    /// Segments in the wraps.
+    pub count: [f64; 2],
+    /// Resultant normal force of a segment per clamping force.
+    pub normal_per_clamp: [f64; 2],
+    /// Shoulder friction of a segment per tension step.
+    pub shoulder_per_step: [f64; 2],
+    /// Extension of the band pack per shoulder force of the primary, m/N (SL-1).
+    pub band_gap_m_n: f64,
+    /// Compression of the free strut per force, m/N (SL-2).
+    pub strut_gap_m_n: f64,
+    /// Friction-weighted sliding of the band pack per turn of the primary, times BT-4, m/rad (BT-3).
+    pub slide_m: [f64; 2],
+    /// Film shear torque per share, viscosity, speed over thickness, m4 (FI-1).
+    pub film_m4: f64,
+    /// Share of the primary's deflection left by its end stop (WE-4).
+    pub stop: f64,
+}
+
+impl Prepared {
+    fn new(belt: &Belt, g: &Geometry) -> Self {
+        let pitch = belt.segment_thickness_m;
+        let arc_m = [g.primary_radius_m * g.primary_wrap_rad, g.secondary_radius_m * g.secondary_wrap_rad];
+        let least = if g.primary_wrap_rad < g.secondary_wrap_rad { g.primary_wrap_rad } else { g.secondary_wrap_rad };
+        Prepared {
+            arc_m,
+            count: arc_m.map(|a| a / pitch),
+            normal_per_clamp: arc_m.map(|a| 2.0 * pitch / (a * belt.cos_wedge)),
+            shoulder_per_step: [g.primary_radius_m, g.secondary_radius_m].map(|r| pitch / (r * least)),
+            band_gap_m_n: belt.length_m / (belt.youngs_pa * belt.band_area_m2() * g.primary_wrap_rad),
+            strut_gap_m_n: g.strut_m / (belt.youngs_pa * belt.strut_area_m2),
+            slide_m: bands::slide_m(belt, g),
+            film_m4: bands::film_m4(belt, g),
+            stop: belt.formulation.primary_stop(ramp(g.ratio, belt.stop_to_ratio, belt.stop_from_ratio)), // WE-4
+        }
+    }
 }
 
 impl BeltAtRatio {
@@ -101,6 +145,7 @@ impl BeltAtRatio {
         let log = ratio.ln();
         BeltAtRatio {
             geometry,
+            prepared: Prepared::new(belt, &geometry),
             direction: -(log / belt.unity_width).tanh(), // TE-6
             thrust_ratio: match &belt.thrust_ratio {
                 Some(curve) => curve.at(log),
@@ -187,11 +232,11 @@ pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
         },
     );
     let mu_segment = f.segment_friction(load.segment_friction);
-    let slip = slip::slip(belt, f, g, &tension, mu_segment);
-    let bands = bands::band_loss(belt, f, g, &tension, load.band.mu);
+    let slip = slip::slip(belt, at, &tension, mu_segment);
+    let bands = bands::band_loss(at, &tension, load.band.mu);
     let film = Film { share: load.band.film_share, eta_pa_s: load.eta_pa_s, thickness_m: load.film_thickness_m };
-    let film_nm = bands::film_loss_nm(belt, g, &film, load.primary_speed_rad_s);
-    let deflection = deflection::deflection(belt, f, g, &tension, load.flank_friction);
+    let film_nm = bands::film_loss_nm(at, &film, load.primary_speed_rad_s);
+    let deflection = deflection::deflection(belt, at, &tension, load.flank_friction);
     let weaker =
         if tension.primary_clamp_n < tension.secondary_clamp_n { tension.primary_clamp_n } else { tension.secondary_clamp_n };
     let capacity_nm = 2.0 * mu_segment * g.secondary_radius_m * weaker / belt.cos_wedge; // VA-2

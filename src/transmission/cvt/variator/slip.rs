@@ -15,7 +15,7 @@
 //! Slip is a fraction of belt speed, positive when the output turns slower than the geometric ratio says; independent of speed, so
 //! defined at standstill.
 
-use super::{Belt, Formulation, Geometry, Tension};
+use super::{Belt, BeltAtRatio, Tension};
 
 /// Slip and its loss.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,28 +34,11 @@ pub struct Slip {
     pub held: bool,
 }
 
-/// Forces per segment on both pulleys, N.
-struct PerSegment {
-    /// Resultant normal force (both flanks), primary and secondary.
-    normal: [f64; 2],
-    /// Band friction on the shoulder, primary and secondary, with the sign of dT.
-    shoulder: [f64; 2],
-    /// Segments in the wraps.
-    count: [f64; 2],
-}
+/// Grip never below this share of the friction limit (ASSUMED): keeps the active arc finite where the bands' pull alone takes it up.
+const LEAST_GRIP: f64 = 0.05;
 
-#[inline]
-fn per_segment(belt: &Belt, g: &Geometry, t: &Tension) -> PerSegment {
-    let pitch = belt.segment_thickness_m;
-    let least = if g.primary_wrap_rad < g.secondary_wrap_rad { g.primary_wrap_rad } else { g.secondary_wrap_rad };
-    let one = |clamp: f64, radius: f64, wrap: f64| {
-        let count = radius * wrap / pitch;
-        (2.0 * clamp / (count * belt.cos_wedge), t.step_n * pitch / (radius * least), count)
-    };
-    let p = one(t.primary_clamp_n, g.primary_radius_m, g.primary_wrap_rad);
-    let s = one(t.secondary_clamp_n, g.secondary_radius_m, g.secondary_wrap_rad);
-    PerSegment { normal: [p.0, s.0], shoulder: [p.1, s.1], count: [p.2, s.2] }
-}
+/// Blend beyond which one branch alone counts: the other's weight is below 2e-8.
+const ALONE: f64 = 9.0;
 
 /// Contact area between segments in an arc, m2 (SL-3).
 #[inline]
@@ -65,60 +48,72 @@ fn arc_area_m2(compression_n: f64) -> f64 {
     1.74142e-6 + 1.56364e-9 * c - 1.74032e-13 * c * c // SL-3
 }
 
-/// What the slip equations of both branches look at.
+/// What the slip equations of both branches look at; pairs are primary, secondary.
 #[derive(Clone, Copy)]
 struct Contact<'a> {
     belt: &'a Belt,
-    f: Formulation,
-    g: &'a Geometry,
-    t: &'a Tension,
-    seg: &'a PerSegment,
-    mu: f64,
+    at: &'a BeltAtRatio,
+    /// Extension of the band pack and initial gap, m.
+    slack_m: f64,
+    /// Normal force on a segment times friction, N.
+    grip_n: [f64; 2],
+    /// Band friction on the shoulder of a segment, with the sign of dT, N.
+    shoulder_n: [f64; 2],
     compression_n: f64,
 }
 
 /// One loading branch: `load` is the pulley where segments are loaded (0 primary, 1 secondary).
 #[inline]
 fn branch(c: &Contact, load: usize) -> Slip {
-    let Contact { belt, f, g, t, seg, mu, compression_n } = *c;
+    let (belt, prepared, f) = (c.belt, &c.at.prepared, c.belt.formulation);
     let inverted = load == 1;
     let other = 1 - load;
-    let cx = if inverted { -compression_n } else { compression_n };
-    let cx = if cx > 0.0 { cx } else { 0.0 };
     let sign = if inverted { -1.0 } else { 1.0 };
+    let cx = sign * c.compression_n;
+    let cx = if cx > 0.0 { cx } else { 0.0 };
     let pitch = belt.segment_thickness_m;
-    let arc = [seg.count[0] * pitch, seg.count[1] * pitch];
-    let grip = mu * seg.normal[load] - sign * seg.shoulder[load];
-    let floor = 0.05 * mu * seg.normal[load];
+    let shoulder = sign * c.shoulder_n[load];
+    let grip = c.grip_n[load] - shoulder;
+    let floor = LEAST_GRIP * c.grip_n[load];
     let grip = if grip > floor { grip } else { floor };
     let k = cx / grip; // SL-4
-    let active = if k * pitch < arc[load] { k * pitch } else { arc[load] };
-    let e_band = t.mean_tension_n(g) * belt.length_m / (belt.youngs_pa * belt.band_area_m2()); // SL-1
-    let e_segs = cx / belt.youngs_pa
-        * (g.strut_m / belt.strut_area_m2 + 0.5 * (active + arc[other]) / arc_area_m2(cx)); // SL-2
-    let idle = arc[load] - active;
-    let gap = (e_band + e_segs + belt.initial_gap_m) / (idle + 1e-9); // SL-5
-    let shoulder = sign * seg.shoulder[load];
-    let lambda_idle = shoulder / (mu * seg.normal[load]);
+    let arc = prepared.arc_m[load];
+    let active = if k * pitch < arc { k * pitch } else { arc };
+    let e_segs = cx
+        * (prepared.strut_gap_m_n + 0.5 * (active + prepared.arc_m[other]) / (belt.youngs_pa * arc_area_m2(cx))); // SL-2
+    let idle = arc - active;
+    let gap = (c.slack_m + e_segs) / (idle + 1e-9); // SL-5
+    let lambda_idle = shoulder / c.grip_n[load];
     let idle_slip = gap * if inverted || f.signed_idle_slip() { lambda_idle } else { lambda_idle.abs() }; // SL-6
-    let bound = belt.slip_bound;
     let loaded = gap + idle_slip;
-    let held = loaded > bound;
-    let loaded = if held { bound } else { loaded };
-    let tract_other = cx / seg.count[other] + sign * seg.shoulder[other];
-    let lambda_other = tract_other / (mu * seg.normal[other]);
-    let r = g.primary_radius_m;
-    let force_other = tract_other.abs() * seg.count[other];
-    let idle_part = if f.counts_idle_arc() && !held { idle_slip.abs() * shoulder.abs() * idle / pitch } else { 0.0 };
-    let loss_load = loaded.abs() * r * (mu * seg.normal[load] * active / pitch) + idle_part * r; // SL-7
-    let slip_other = clamp_abs(loaded * lambda_other.abs() , bound);
-    let loss_other = slip_other.abs() * r * force_other; // SL-7
+    let held = loaded > belt.slip_bound;
+    let loaded = if held { belt.slip_bound } else { loaded };
+    let r = c.at.geometry.primary_radius_m;
+    let total_other = cx + sign * c.shoulder_n[other] * prepared.count[other];
+    let lambda_other = total_other / (c.grip_n[other] * prepared.count[other]);
+    let slip_other = clamp_abs(loaded * lambda_other, belt.slip_bound);
+    let idle_loss = if f.counts_idle_arc() && !held { idle_slip.abs() * shoulder.abs() * idle / pitch } else { 0.0 };
+    let loss_load = r * (loaded.abs() * c.grip_n[load] * active / pitch + idle_loss); // SL-7
+    let loss_other = r * slip_other.abs() * total_other.abs(); // SL-7
     if inverted {
-        let signed = clamp_abs(loaded * lambda_other, bound);
-        let primary = if f.flips_inverted_primary() { signed } else { -signed }; // SL-6
-        Slip { primary, secondary: -loaded, primary_loss_nm: loss_other, secondary_loss_nm: loss_load, active_segments: k, held }
+        let primary = if f.flips_inverted_primary() { slip_other } else { -slip_other }; // SL-6
+        Slip {
+            primary,
+            secondary: -loaded,
+            primary_loss_nm: loss_other,
+            secondary_loss_nm: loss_load,
+            active_segments: k,
+            held,
+        }
     } else {
-        Slip { primary: loaded, secondary: slip_other, primary_loss_nm: loss_load, secondary_loss_nm: loss_other, active_segments: k, held }
+        Slip {
+            primary: loaded,
+            secondary: slip_other.abs(),
+            primary_loss_nm: loss_load,
+            secondary_loss_nm: loss_other,
+            active_segments: k,
+            held,
+        }
     }
 }
 
@@ -136,15 +131,25 @@ fn clamp_abs(x: f64, bound: f64) -> f64 {
 /// Slip of both pulleys and its loss (SL-1 to SL-9).
 #[must_use]
 #[inline]
-pub fn slip(belt: &Belt, f: Formulation, g: &Geometry, t: &Tension, mu_segment: f64) -> Slip {
-    let seg = &per_segment(belt, g, t);
-    let compression_n = f.compression_n(t.compression_n);
-    let contact = Contact { belt, f, g, t, seg, mu: mu_segment, compression_n };
+pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip {
+    let prepared = &at.prepared;
+    let compression_n = belt.formulation.compression_n(t.compression_n);
+    let contact = Contact {
+        belt,
+        at,
+        slack_m: t.primary_shoulder_n * prepared.band_gap_m_n + belt.initial_gap_m, // SL-1
+        grip_n: [
+            mu_segment * t.primary_clamp_n * prepared.normal_per_clamp[0],
+            mu_segment * t.secondary_clamp_n * prepared.normal_per_clamp[1],
+        ],
+        shoulder_n: [t.step_n * prepared.shoulder_per_step[0], t.step_n * prepared.shoulder_per_step[1]],
+        compression_n,
+    };
     let x = compression_n / belt.blend_n;
-    if x > 20.0 {
+    if x > ALONE {
         return branch(&contact, 0);
     }
-    if x < -20.0 {
+    if x < -ALONE {
         return branch(&contact, 1);
     }
     let a = branch(&contact, 0);
@@ -157,6 +162,6 @@ pub fn slip(belt: &Belt, f: Formulation, g: &Geometry, t: &Tension, mu_segment: 
         primary_loss_nm: mix(a.primary_loss_nm, b.primary_loss_nm),
         secondary_loss_nm: mix(a.secondary_loss_nm, b.secondary_loss_nm),
         active_segments: if x >= 0.0 { a.active_segments } else { b.active_segments },
-        held: a.held || b.held,
+        held: if x >= 0.0 { a.held } else { b.held },
     }
 }

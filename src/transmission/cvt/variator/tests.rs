@@ -96,8 +96,8 @@ fn val_golden_points_closed_forms() {
         let at = BeltAtRatio::new(&belt, row.num("ratio"));
         let l = load(row.num("input_speed_rpm"), row.num("output_torque_nm"), row.num("secondary_pressure_bar"), row.num("band_friction"));
         let s = belt_state(&belt, &at, &l);
-        let bands = super::bands::band_loss(&belt, belt.formulation, &at.geometry, &s.tension, l.band.mu);
-        let d = super::deflection::deflection(&belt, belt.formulation, &at.geometry, &s.tension, 0.13);
+        let bands = super::bands::band_loss(&at, &s.tension, l.band.mu);
+        let d = super::deflection::deflection(&belt, &at, &s.tension, 0.13);
         for (name, got) in [
             ("primary_clamp_n", s.tension.primary_clamp_n),
             ("secondary_shoulder_force_n", s.tension.secondary_shoulder_n),

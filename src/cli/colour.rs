@@ -1,0 +1,82 @@
+//! Colours: asked for, or on a terminal that has not declined them.
+
+use std::ffi::OsString;
+use std::io::IsTerminal;
+
+use clap::{ColorChoice, ValueEnum};
+
+/// When to colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Colour {
+    /// On a terminal, unless NO_COLOR is set
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// Colours on or off.
+#[derive(Clone, Copy, Debug)]
+pub struct Paint(bool);
+
+impl Colour {
+    /// The wish as far as it can be told before the words are parsed.
+    pub fn from_words(words: &[OsString]) -> Self {
+        let words: Vec<&str> = words.iter().filter_map(|word| word.to_str()).take_while(|word| *word != "--").collect();
+        let follows = words.windows(2).filter(|pair| pair[0] == "--color").map(|pair| pair[1]);
+        let joined = words.iter().filter_map(|word| word.strip_prefix("--color="));
+        follows.chain(joined).filter_map(|word| Colour::from_str(word, false).ok()).next().unwrap_or(Colour::Auto)
+    }
+
+    /// In clap's words. What to do without a wish is decided here, not there.
+    pub fn for_clap(self) -> ColorChoice {
+        match self {
+            Colour::Auto => ColorChoice::Auto,
+            Colour::Always => ColorChoice::Always,
+            Colour::Never => ColorChoice::Never,
+        }
+    }
+
+    /// Colours of standard output.
+    pub fn stdout(self) -> Paint {
+        self.on(std::io::stdout().is_terminal())
+    }
+
+    /// Colours of standard error.
+    pub fn stderr(self) -> Paint {
+        self.on(std::io::stderr().is_terminal())
+    }
+
+    fn on(self, terminal: bool) -> Paint {
+        // As no-color.org has it: set and not empty; a wish on the command line goes before it.
+        let declined = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+        Paint(match self {
+            Colour::Auto => terminal && !declined && !dumb,
+            Colour::Always => true,
+            Colour::Never => false,
+        })
+    }
+}
+
+impl Paint {
+    /// Whether colours are on.
+    pub fn is_on(self) -> bool {
+        self.0
+    }
+
+    /// A heading.
+    pub fn heading(self, text: &str) -> String {
+        self.wrap("1", text)
+    }
+
+    /// Something that went wrong.
+    pub fn bad(self, text: &str) -> String {
+        self.wrap("1;31", text)
+    }
+
+    fn wrap(self, code: &str, text: &str) -> String {
+        if self.0 { format!("\u{1b}[{code}m{text}\u{1b}[0m") } else { text.to_owned() }
+    }
+}

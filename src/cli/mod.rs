@@ -1,0 +1,92 @@
+//! The command line: words to checked input, run, print. The only place that prints.
+//!
+//! Every command is one file: its arguments, and a function from them to an [`Answer`] or to all problems of its
+//! input. Exit codes: 0 fine; 1 ran, but a check failed; 2 bad input or output that cannot be written.
+
+mod answer;
+
+mod colour;
+
+mod grid;
+mod inputs;
+
+mod number;
+mod run;
+
+
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use answer::{Answer, Reply};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use colour::{Colour, Paint};
+
+/// Drive-cycle losses and fuel of cars with a pushing-belt CVT, cold and warm, from component physics.
+#[derive(Debug, Parser)]
+#[command(
+    name = "cvtcycle",
+    version,
+    max_term_width = 100,
+    propagate_version = true,
+    after_help = "Example: cvtcycle run --cycle ece15_eudc --ambient -10\n\n\
+        Exit codes: 0 fine; 1 ran, but a check failed (trace missed, energy not balanced); 2 bad input."
+)]
+struct Cli {
+    /// When to colour the output; `auto` colours on a terminal and obeys NO_COLOR
+    #[arg(long, value_enum, global = true, value_name = "WHEN", default_value = "auto")]
+    color: Colour,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Drive a car and its baselines through a cycle: fuel, losses, temperatures
+    Run(run::Args),
+}
+
+/// What commands know of their surroundings.
+#[derive(Clone, Copy, Debug)]
+struct Context {
+    /// Colours of standard output.
+    paint: Paint,
+}
+
+/// Reads the arguments, runs the command, prints, and says how it ended.
+pub fn main() -> ExitCode {
+    let words: Vec<OsString> = std::env::args_os().collect();
+    // Looked for before clap reads the words, since its own messages are to follow it as well.
+    let asked = Colour::from_words(&words);
+    let cli = Cli::command()
+        .color(asked.for_clap())
+        .try_get_matches_from(words)
+        .and_then(|matches| Cli::from_arg_matches(&matches));
+    let (reply, colour) = match cli {
+        Ok(cli) => (cli.command.answer(Context { paint: cli.color.stdout() }), cli.color),
+        Err(error) => (Ok(usage(&error, asked)), asked),
+    };
+    answer::finish(reply, colour)
+}
+
+impl Command {
+    fn answer(self, context: Context) -> Reply {
+        match self {
+            Command::Run(args) => run::answer(&args, context),
+        }
+    }
+}
+
+/// Help, version and clap's complaints, through our own writer: a closed pipe or a full disk is handled there.
+fn usage(error: &clap::Error, colour: Colour) -> Answer {
+    let paint = if error.use_stderr() { colour.stderr() } else { colour.stdout() };
+    let text = error.render();
+    let text = if paint.is_on() { text.ansi().to_string() } else { text.to_string() };
+    // 2 for bad usage, 0 for help; no other code exists.
+    let code = u8::try_from(error.exit_code()).unwrap_or(2);
+    if error.use_stderr() {
+        Answer { stderr: text, code, ..Answer::default() }
+    } else {
+        Answer { stdout: text, code, ..Answer::default() }
+    }
+}

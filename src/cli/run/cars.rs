@@ -1,0 +1,103 @@
+//! The cars of a run: the subject with its overrides, then the baselines.
+
+use cvtcycle::config::{Document, Place, Problem};
+use cvtcycle::setup::{self, Options, Setup};
+use cvtcycle::transmission::cvt::variator::Formulation;
+
+use super::Args;
+use crate::cli::answer::problem;
+use crate::cli::inputs::Problems;
+
+/// A car under the name that it bears in this run.
+pub struct Car {
+    /// Name of the vehicle file, with a number if two cars share it.
+    pub name: String,
+    /// Checked input.
+    pub setup: Setup,
+}
+
+/// Loads all cars, subject first. Where one is bad, its problems are noted and the others are read all the same.
+pub fn load(args: &Args, formulation: Formulation, problems: &mut Problems) -> Vec<Car> {
+    syntax(args, problems);
+    let subject_sets: Vec<String> = args.set_all.iter().chain(&args.set).cloned().collect();
+    let subject = Options {
+        lubricant: args.lubricant.clone(),
+        engine_oil: args.engine_oil.clone(),
+        set: subject_sets,
+        formulation,
+    };
+    let baseline = Options { lubricant: None, set: args.set_all.clone(), ..subject.clone() };
+    let setup = problems.take(one(&args.vehicle, "--vehicle", &subject, args));
+    // The fluids by themselves: a car that cannot be read at all says nothing about them.
+    for (word, option) in [(&args.lubricant, "--lubricant"), (&args.engine_oil, "--engine-oil")] {
+        if let (Some(word), None) = (word, &setup) {
+            problems.take(setup::load_lubricant(word, option, &[], ""));
+        }
+    }
+    let own = setup.as_ref().map(|s| s.baselines.clone()).unwrap_or_default();
+    let names = baselines(args, own, problems);
+    let mut cars = Vec::new();
+    let others = names.iter().map(|name| problems.take(one(name, "--baseline", &baseline, args)));
+    let others: Vec<Option<Setup>> = others.collect();
+    for setup in [setup].into_iter().chain(others).flatten() {
+        cars.push(Car { name: unique(&setup.name, &cars), setup });
+    }
+    cars
+}
+
+/// Assignments that are none, once and without a car.
+fn syntax(args: &Args, problems: &mut Problems) {
+    for (option, list) in [("--set", &args.set), ("--set-all", &args.set_all)] {
+        for assignment in list {
+            let empty = Document::parse("", "");
+            if let Some(mut document) = problems.take(empty)
+                && let Err(problem) = document.set(assignment)
+            {
+                problems.add(renamed(problem, option, assignment));
+            }
+        }
+    }
+}
+
+/// Under the option that the user wrote: below, every assignment is called `--set`.
+fn renamed(problem: Problem, option: &str, assignment: &str) -> Problem {
+    if problem.place.file != format!("--set {assignment}") {
+        return problem;
+    }
+    Problem { place: Place { file: format!("{option} {assignment}"), ..problem.place }, ..problem }
+}
+
+fn one(word: &str, option: &str, options: &Options, args: &Args) -> Result<Setup, Vec<Problem>> {
+    setup::load(word, option, options).map_err(|problems| {
+        let for_all = |mut problem: Problem| {
+            if let Some(assignment) = args.set_all.iter().find(|a| problem.place.file == format!("--set {a}")) {
+                problem = renamed(problem, "--set-all", assignment);
+                if !problem.key.is_empty() && assignment.contains('=') {
+                    problem.message = format!("{word}: {}", problem.message);
+                }
+            }
+            problem
+        };
+        problems.into_iter().map(for_all).collect()
+    })
+}
+
+fn baselines(args: &Args, own: Vec<String>, problems: &mut Problems) -> Vec<String> {
+    if args.baseline.is_empty() {
+        return own;
+    }
+    let (none, named): (Vec<&String>, Vec<&String>) = args.baseline.iter().partition(|name| *name == "none");
+    if !none.is_empty() && !named.is_empty() {
+        problems.add(problem("--baseline", "`none` beside a baseline", "give either `--baseline none` or names"));
+    }
+    named.into_iter().cloned().collect()
+}
+
+fn unique(name: &str, cars: &[Car]) -> String {
+    let taken = |name: &str| cars.iter().any(|car| car.name.eq_ignore_ascii_case(name));
+    if !taken(name) {
+        return name.to_owned();
+    }
+    let numbered = (2..).map(|n| format!("{name}_{n}"));
+    numbered.into_iter().find(|name| !taken(name)).unwrap_or_default()
+}

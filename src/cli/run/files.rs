@@ -1,0 +1,95 @@
+//! The files of a run.
+
+use std::path::PathBuf;
+
+use cvtcycle::config::Problem;
+use cvtcycle::cycle::Cycle;
+use cvtcycle::report::{self, PlotRun};
+use cvtcycle::results::columns::columns_for;
+use cvtcycle::results::files::OutputDir;
+use cvtcycle::results::summary::{Driven, RunSummary, Summary};
+use cvtcycle::results::trace::write_trace;
+use cvtcycle::run::{components, fuel_map};
+
+/// What was written, and what an earlier run left beside it.
+#[derive(Debug, Default)]
+pub struct Written {
+    paths: Vec<PathBuf>,
+    left_over: Vec<String>,
+}
+
+impl Written {
+    /// The files, one a line.
+    pub fn text(&self) -> String {
+        if self.paths.is_empty() {
+            return String::new();
+        }
+        let lines: Vec<String> = self.paths.iter().map(|path| format!("  {}\n", path.display())).collect();
+        format!("\nFiles written\n{}", lines.concat())
+    }
+
+    /// A word about files of an earlier run that this one has not replaced.
+    pub fn left_over_text(&self) -> String {
+        if self.left_over.is_empty() {
+            return String::new();
+        }
+        format!("cvtcycle: left from an earlier run and not replaced: {}\n", self.left_over.join(", "))
+    }
+}
+
+/// Writes all files of the run under their names, or none.
+pub fn write(mut dir: OutputDir, json: &str, summary: &Summary, cycle: &Cycle, driven: &[Driven]) -> Result<Written, Problem> {
+    dir.write("summary.json", |out| out.write_all(json.as_bytes()))?;
+    let parts: Vec<_> = driven.iter().map(|car| components(car.setup.transmission())).collect();
+    let mut runs = Vec::new();
+    for ((car, run), parts) in driven.iter().zip(&summary.runs).zip(&parts) {
+        let cvt = car.setup.transmission().is_cvt();
+        let rows = &car.outcome.rows;
+        let columns = columns_for(cvt, parts);
+        let phases = if cycle.phases.is_empty() { std::slice::from_ref(&cycle.name) } else { &cycle.phases };
+        dir.write(&format!("trace_{}.csv", car.name), |out| write_trace(out, &columns, rows, phases))?;
+        let plot = PlotRun {
+            name: car.name,
+            cvt,
+            rows,
+            components: parts,
+            phases,
+            fuel_map: Some(fuel_map(car.setup)),
+            group_fuel: group_fuel(run),
+        };
+        write_plots(&mut dir, &plot)?;
+        runs.push(plot);
+    }
+    put(&mut dir, "fuel_comparison.svg", &report::fuel_bars(&runs))?;
+    let left_over = dir.left_over();
+    Ok(Written { paths: dir.commit()?, left_over })
+}
+
+fn write_plots(dir: &mut OutputDir, run: &PlotRun) -> Result<(), Problem> {
+    let mut plots = vec![("driveline", report::driveline(run))];
+    if run.cvt {
+        plots.push(("pressure", report::pressure(run)));
+    }
+    plots.push(("temperatures", report::temperatures(run)));
+    plots.push(("losses", report::losses(run)));
+    plots.push(("operating_points", report::operating_points(run)));
+    plots.into_iter().try_for_each(|(kind, svg)| put(dir, &format!("{kind}_{}.svg", run.name), &svg))
+}
+
+fn put(dir: &mut OutputDir, name: &str, text: &str) -> Result<(), Problem> {
+    dir.write(name, |out| out.write_all(text.as_bytes()))
+}
+
+fn group_fuel(run: &RunSummary) -> Vec<(String, f64)> {
+    let number = |x: Option<f64>| x.unwrap_or(f64::NAN);
+    let mut groups: Vec<(String, f64)> = Vec::new();
+    // A cycle of one group is its own total.
+    if run.phases.len() > 1 {
+        groups.extend(run.phases.iter().map(|p| (p.name.clone(), number(p.fuel_l_per_100km))));
+    }
+    groups.push(("total".to_owned(), number(run.fuel_l_per_100km)));
+    if let Some(weighted) = run.weighted_fuel_l_per_100km {
+        groups.push(("weighted".to_owned(), weighted));
+    }
+    groups
+}
