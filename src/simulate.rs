@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | SI-1 | crank torque = flywheel torque + accessories + T_k, T_k w = change of rotating energy / dt | derived |
 //! | SI-2 | T_k within the engine's room (drag below, full load above) and its largest value; rotating energy follows later otherwise | ASSUMED: a clutch slips in a shift; keeps the inertia bounded for any step |
+//! | SI-4 | braking with the clutch locked, rotating energy that the engine cannot take up goes to the brakes | derived |
 //! | SI-3 | heat: engine to coolant and oil, 70 % of belt loss to the belt, input shaft to the metal, other losses to the sump | fitted share; rest ASSUMED |
 
 use crate::cycle::Trace;
@@ -12,7 +13,7 @@ use crate::lubricant::Lubricant;
 use crate::results::{Component, Flags, Row, Terms};
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, HeatStep, METAL, NODES, Network, SUMP};
 use crate::transmission::{Drive, DriveState, Surroundings, Transmission};
-use crate::vehicle::{RoadLoad, WheelDemand};
+use crate::vehicle::RoadLoad;
 
 /// A car ready to drive: every part checked, for one ambient.
 #[derive(Clone, Debug)]
@@ -89,8 +90,9 @@ pub fn simulate(car: &Car, trace: &Trace, max_dt_s: f64, start: State, recorder:
         if state.kinetic_j.is_nan() {
             state.kinetic_j = 0.5 * car.engine.inertia_kg_m2 * memory.engine_rad_s * memory.engine_rad_s;
         }
-        let drive = car.transmission.solve(&around, &mut memory);
-        let inertia = inertia(car, &around, &drive, state.kinetic_j);
+        let mut drive = car.transmission.solve(&around, &mut memory);
+        let inertia = inertia(car, &around, &drive, state.kinetic_j, memory.coupled);
+        drive.brake_w += inertia.to_brake_w;
         let mut burn = engine.burn(drive.engine_rad_s, inertia.crank_nm);
         if step.engine_off {
             burn.to_coolant_w = -inertia.kinetic_w; // the engine runs out against its own friction
@@ -108,12 +110,14 @@ struct Inertia {
     crank_nm: f64,
     accessories_nm: f64,
     kinetic_w: f64,
+    /// Rotating energy that the brakes take up with the car's (SI-4).
+    to_brake_w: f64,
 }
 
-fn inertia(car: &Car, around: &Surroundings, drive: &Drive, kinetic_j: f64) -> Inertia {
+fn inertia(car: &Car, around: &Surroundings, drive: &Drive, kinetic_j: f64, coupled: bool) -> Inertia {
     let w = drive.engine_rad_s;
     if w <= 0.0 {
-        return Inertia { crank_nm: 0.0, accessories_nm: 0.0, kinetic_w: -kinetic_j / around.dt_s };
+        return Inertia { crank_nm: 0.0, accessories_nm: 0.0, kinetic_w: -kinetic_j / around.dt_s, to_brake_w: 0.0 };
     }
     let engine = around.engine;
     let accessories_nm = engine.accessories_nm(w);
@@ -122,10 +126,23 @@ fn inertia(car: &Car, around: &Surroundings, drive: &Drive, kinetic_j: f64) -> I
     let least = -(steady + engine.drag_nm(w));
     let most = engine.full_load_nm(w) - steady;
     let bound = car.engine.inertia_torque_nm;
-    let least = if least < -bound { -bound } else if least < 0.0 { least } else { 0.0 };
-    let most = if most > bound { bound } else if most > 0.0 { most } else { 0.0 };
+    let least = if least < -bound {
+        -bound
+    } else if least < 0.0 {
+        least
+    } else {
+        0.0
+    };
+    let most = if most > bound {
+        bound
+    } else if most > 0.0 {
+        most
+    } else {
+        0.0
+    };
     let torque = wanted.clamp(least, most); // SI-2
-    Inertia { crank_nm: steady + torque, accessories_nm, kinetic_w: torque * w } // SI-1
+    let over = if coupled && drive.brake_w > 0.0 && wanted < torque { torque - wanted } else { 0.0 };
+    Inertia { crank_nm: steady + torque, accessories_nm, kinetic_w: (torque - over) * w, to_brake_w: over * w } // SI-1, SI-4
 }
 
 fn advance(car: &Car, heat: &Heat, drive: &Drive, burn: &Burn, around: &Surroundings) -> HeatStep {
@@ -140,6 +157,7 @@ fn advance(car: &Car, heat: &Heat, drive: &Drive, burn: &Burn, around: &Surround
             speed_m_s: around.wheel.speed_m_s,
             oil_flow_m3_s: drive.oil_flow_m3_s,
             oil_volume_heat_j_m3k,
+            running: !around.engine_off,
             dt_s: around.dt_s,
         },
     )

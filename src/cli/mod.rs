@@ -13,8 +13,6 @@ mod inputs;
 mod number;
 mod run;
 
-
-
 use std::ffi::OsString;
 use std::process::ExitCode;
 
@@ -58,10 +56,7 @@ pub fn main() -> ExitCode {
     let words: Vec<OsString> = std::env::args_os().collect();
     // Looked for before clap reads the words, since its own messages are to follow it as well.
     let asked = Colour::from_words(&words);
-    let cli = Cli::command()
-        .color(asked.for_clap())
-        .try_get_matches_from(words)
-        .and_then(|matches| Cli::from_arg_matches(&matches));
+    let cli = Cli::command().color(asked.for_clap()).try_get_matches_from(words).and_then(|matches| Cli::from_arg_matches(&matches));
     let (reply, colour) = match cli {
         Ok(cli) => (cli.command.answer(Context { paint: cli.color.stdout() }), cli.color),
         Err(error) => (Ok(usage(&error, asked)), asked),
@@ -84,9 +79,5 @@ fn usage(error: &clap::Error, colour: Colour) -> Answer {
     let text = if paint.is_on() { text.ansi().to_string() } else { text.to_string() };
     // 2 for bad usage, 0 for help; no other code exists.
     let code = u8::try_from(error.exit_code()).unwrap_or(2);
-    if error.use_stderr() {
-        Answer { stderr: text, code, ..Answer::default() }
-    } else {
-        Answer { stdout: text, code, ..Answer::default() }
-    }
+    if error.use_stderr() { Answer { stderr: text, code, ..Answer::default() } } else { Answer { stdout: text, code, ..Answer::default() } }
 }

@@ -102,19 +102,11 @@ struct Plan {
 /// Runs the command.
 pub fn answer(args: &Args, context: Context) -> Reply {
     let plan = plan(args)?;
-    let conditions = Conditions {
-        ambient_k: plan.ambient_degc + ZERO_DEGC_K,
-        start: plan.start.0,
-        max_dt_s: plan.dt_s,
-        keep_rows: plan.out.is_some(),
-    };
+    let conditions =
+        Conditions { ambient_k: plan.ambient_degc + ZERO_DEGC_K, start: plan.start.0, max_dt_s: plan.dt_s, keep_rows: plan.out.is_some() };
     let outcomes: Vec<Outcome> = plan.cars.iter().map(|car| drive(&car.setup, &plan.cycle, &conditions)).collect();
-    let driven: Vec<Driven> = plan
-        .cars
-        .iter()
-        .zip(&outcomes)
-        .map(|(car, outcome)| Driven { name: &car.name, setup: &car.setup, outcome })
-        .collect();
+    let driven: Vec<Driven> =
+        plan.cars.iter().zip(&outcomes).map(|(car, outcome)| Driven { name: &car.name, setup: &car.setup, outcome }).collect();
     let settings = Settings {
         dt_s: plan.dt_s,
         formulation: name_of(plan.formulation).to_owned(),

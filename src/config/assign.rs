@@ -14,16 +14,10 @@ impl Document {
     ///
     /// # Errors
     /// A text that is no assignment, or a path that leads through a value.
-    #[expect(
-        clippy::result_large_err,
-        reason = "rare, and all problems have one type"
-    )]
+    #[expect(clippy::result_large_err, reason = "rare, and all problems have one type")]
     pub fn set(&mut self, assignment: &str) -> Result<(), Problem> {
         let refuse = |key: &str, message: String, hint: &str| Problem {
-            place: Place {
-                file: format!("--set {assignment}"),
-                ..Place::default()
-            },
+            place: Place { file: format!("--set {assignment}"), ..Place::default() },
             key: key.to_string(),
             message,
             hint: hint.to_string(),
@@ -46,24 +40,14 @@ impl Document {
             Ok(value) => convert(value.get_ref(), source),
             Err(_) => Value::Text(text.to_string()),
         };
-        let node = Node {
-            value,
-            span: Span {
-                source,
-                range: 0..text.len(),
-            },
-        };
+        let node = Node { value, span: Span { source, range: 0..text.len() } };
         insert(&mut self.root, &keys, node).map_err(|depth| {
             let value = keys[..=depth].join(".");
             let message = format!("`{value}` is a value, so `{path}` cannot exist");
             refuse(path, message, &format!("set `{value}` itself"))
         })?;
         let name = format!("--set {assignment}");
-        self.sources.push(Source {
-            name,
-            text: text.to_string(),
-            has_lines: false,
-        });
+        self.sources.push(Source { name, text: text.to_string(), has_lines: false });
         Ok(())
     }
 }
@@ -75,14 +59,8 @@ fn insert(table: &mut Table, keys: &[&str], node: Node) -> Result<(), usize> {
     };
     let mut table = table;
     for (depth, key) in parents.iter().enumerate() {
-        let empty = Node {
-            value: Value::Table(Table::default()),
-            span: node.span.clone(),
-        };
-        let entry = Entry {
-            key: node.span.clone(),
-            node: empty,
-        };
+        let empty = Node { value: Value::Table(Table::default()), span: node.span.clone() };
+        let entry = Entry { key: node.span.clone(), node: empty };
         let entry = table.entries.entry((*key).to_string()).or_insert(entry);
         make_room(&mut entry.node);
         match &mut entry.node.value {
@@ -90,27 +68,14 @@ fn insert(table: &mut Table, keys: &[&str], node: Node) -> Result<(), usize> {
             _ => return Err(depth),
         }
     }
-    if let Some(Entry {
-        node: Node {
-            value: Value::Table(options),
-            ..
-        },
-        ..
-    }) = table.entries.get_mut(*last)
-    {
+    if let Some(Entry { node: Node { value: Value::Table(options), .. }, .. }) = table.entries.get_mut(*last) {
         // A word for a table names one of its options; what the file says about it stays.
         if matches!(node.value, Value::Text(_)) && options.wrapped().is_none() {
             options.choice = Some(Box::new(node));
             return Ok(());
         }
     }
-    table.entries.insert(
-        (*last).to_string(),
-        Entry {
-            key: node.span.clone(),
-            node,
-        },
-    );
+    table.entries.insert((*last).to_string(), Entry { key: node.span.clone(), node });
     Ok(())
 }
 
@@ -119,16 +84,11 @@ fn insert(table: &mut Table, keys: &[&str], node: Node) -> Result<(), usize> {
 fn make_room(node: &mut Node) {
     let is_word = match &node.value {
         Value::Text(_) => true,
-        Value::Table(table) => table
-            .wrapped()
-            .is_some_and(|node| matches!(node.value, Value::Text(_))),
+        Value::Table(table) => table.wrapped().is_some_and(|node| matches!(node.value, Value::Text(_))),
         _ => false,
     };
     if is_word {
         let choice = node.span.is_set().then(|| Box::new(node.clone()));
-        node.value = Value::Table(Table {
-            entries: BTreeMap::new(),
-            choice,
-        });
+        node.value = Value::Table(Table { entries: BTreeMap::new(), choice });
     }
 }

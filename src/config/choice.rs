@@ -28,26 +28,11 @@ impl<'r> Section<'r> {
     ///
     /// # Panics
     /// If `options` is empty.
-    pub fn choose(
-        &self,
-        name: &str,
-        options: &[&'static str],
-        default: Option<&'static str>,
-        doc: &str,
-    ) -> (&'static str, Section<'r>) {
-        let question = Question {
-            name,
-            options,
-            default,
-        };
-        let node = self
-            .table
-            .and_then(|table| table.entries.get(name))
-            .map(|entry| &entry.node);
+    pub fn choose(&self, name: &str, options: &[&'static str], default: Option<&'static str>, doc: &str) -> (&'static str, Section<'r>) {
+        let question = Question { name, options, default };
+        let node = self.table.and_then(|table| table.entries.get(name)).map(|entry| &entry.node);
         let table = node.and_then(|node| match &node.value {
-            Value::Table(table) if table.wrapped().is_none() || options.contains(&"value") => {
-                Some(table)
-            }
+            Value::Table(table) if table.wrapped().is_none() || options.contains(&"value") => Some(table),
             _ => None,
         });
         let path = join(&self.path, name);
@@ -69,32 +54,17 @@ impl<'r> Section<'r> {
             Choice::Failed => (default.unwrap_or(options[0]), true),
         };
         let others = options.iter().filter(|other| failed || **other != option);
-        self.reader
-            .log
-            .borrow_mut()
-            .read
-            .extend(others.map(|other| join(&path, other)));
-        let header = node
-            .map(|node| node.span.clone())
-            .or_else(|| self.header.clone());
+        self.reader.log.borrow_mut().read.extend(others.map(|other| join(&path, other)));
+        let header = node.map(|node| node.span.clone()).or_else(|| self.header.clone());
         let table = table.filter(|_| !failed);
-        let section = Section {
-            path,
-            table,
-            header,
-            muted: self.muted || failed,
-            ..self.clone()
-        };
+        let section = Section { path, table, header, muted: self.muted || failed, ..self.clone() };
         (option, section.table(option))
     }
 
     /// Makes the choice and its options known.
     fn announce(&self, question: &Question<'_>, path: &str, doc: &str, is_word: bool) {
         // Looked up in an empty table: the options' tables are no value, but the key is to be known.
-        let empty = Section {
-            table: None,
-            ..self.clone()
-        };
+        let empty = Section { table: None, ..self.clone() };
         let _ = empty.open(question.name, &one_of(question.options), doc);
         let mut log = self.reader.log.borrow_mut();
         if !is_word {
@@ -102,8 +72,7 @@ impl<'r> Section<'r> {
         }
         log.choices.insert(path.to_string());
         log.tables.insert(path.to_string());
-        log.tables
-            .extend(question.options.iter().map(|option| join(path, option)));
+        log.tables.extend(question.options.iter().map(|option| join(path, option)));
     }
 
     fn default_choice(&self, question: &Question<'_>) -> Choice<'r> {
@@ -128,13 +97,7 @@ impl<'r> Section<'r> {
             Some(option) => Choice::Given(option, found),
             None => {
                 let message = format!("`{word}` is not known for `{}`", join(&self.path, name));
-                self.report(
-                    &found.node.span,
-                    name,
-                    &one_of(options),
-                    message,
-                    suggest(word, options),
-                );
+                self.report(&found.node.span, name, &one_of(options), message, suggest(word, options));
                 Choice::Failed
             }
         }
@@ -142,115 +105,55 @@ impl<'r> Section<'r> {
 
     /// The option whose table is present.
     fn by_table(&self, question: &Question<'_>, node: &'r Node, table: &'r Table) -> Choice<'r> {
-        let present: Vec<(&'static str, &'r Node)> = question
-            .options
-            .iter()
-            .filter_map(|option| {
-                table
-                    .entries
-                    .get(*option)
-                    .map(|entry| (*option, &entry.node))
-            })
-            .collect();
-        let touched: Vec<(&'static str, &'r Node)> = present
-            .iter()
-            .filter(|(_, node)| is_touched(node))
-            .copied()
-            .collect();
+        let present: Vec<(&'static str, &'r Node)> =
+            question.options.iter().filter_map(|option| table.entries.get(*option).map(|entry| (*option, &entry.node))).collect();
+        let touched: Vec<(&'static str, &'r Node)> = present.iter().filter(|(_, node)| is_touched(node)).copied().collect();
         if let Some(word) = &table.choice {
             let choice = self.by_word(question, word);
-            return match (
-                choice,
-                touched.iter().find(|(option, _)| !names(word, option)),
-            ) {
-                (Choice::Given(option, _), Some(other)) => {
-                    self.clash(question, (option, word), *other)
-                }
+            return match (choice, touched.iter().find(|(option, _)| !names(word, option))) {
+                (Choice::Given(option, _), Some(other)) => self.clash(question, (option, word), *other),
                 (choice, _) => choice,
             };
         }
         match (touched.as_slice(), present.as_slice()) {
             ([one], _) => self.taken(question, *one, "set"),
             ([first, second, ..], _) => self.clash(question, *first, *second),
-            ([], [one]) => self.taken(
-                question,
-                *one,
-                if node.span.is_set() { "set" } else { "user" },
-            ),
+            ([], [one]) => self.taken(question, *one, if node.span.is_set() { "set" } else { "user" }),
             ([], [first, second, ..]) => self.clash(question, *first, *second),
             ([], []) => self.default_choice(question),
         }
     }
 
-    fn taken(
-        &self,
-        question: &Question<'_>,
-        (option, node): (&'static str, &'r Node),
-        status: &str,
-    ) -> Choice<'r> {
+    fn taken(&self, question: &Question<'_>, (option, node): (&'static str, &'r Node), status: &str) -> Choice<'r> {
         if !matches!(node.value, Value::Table(_)) {
             self.wrong_type(&format!("{}.{option}", question.name), node, "a table");
             return Choice::Failed;
         }
         let source = if status == "set" { "command line" } else { "" };
         let (status, source, note) = (status.to_string(), source.to_string(), String::new());
-        Choice::Given(
-            option,
-            Found {
-                node,
-                status,
-                source,
-                note,
-            },
-        )
+        Choice::Given(option, Found { node, status, source, note })
     }
 
     /// Two options at once: the message stands at the later one and names the place of the other.
-    fn clash(
-        &self,
-        question: &Question<'_>,
-        first: (&'static str, &'r Node),
-        second: (&'static str, &'r Node),
-    ) -> Choice<'r> {
+    fn clash(&self, question: &Question<'_>, first: (&'static str, &'r Node), second: (&'static str, &'r Node)) -> Choice<'r> {
         let document = self.reader.document;
         let later = |node: &Node| (node.span.source, node.span.range.start);
-        let (first, second) = if later(first.1) <= later(second.1) {
-            (first, second)
-        } else {
-            (second, first)
-        };
+        let (first, second) = if later(first.1) <= later(second.1) { (first, second) } else { (second, first) };
         let at = |node: &Node| {
             let place = document.place(&node.span);
-            if place.line > 0 {
-                format!("line {}", place.line)
-            } else {
-                place.file
-            }
+            if place.line > 0 { format!("line {}", place.line) } else { place.file }
         };
         let name = join(&self.path, question.name);
-        let message = format!(
-            "two options for `{name}`: `{}` ({}) and `{}` ({})",
-            first.0,
-            at(first.1),
-            second.0,
-            at(second.1)
-        );
+        let message = format!("two options for `{name}`: `{}` ({}) and `{}` ({})", first.0, at(first.1), second.0, at(second.1));
         let hint = format!("keep one of them, or choose with --set {name}={}", first.0);
-        self.report(
-            &second.1.span,
-            question.name,
-            &one_of(question.options),
-            message,
-            hint,
-        );
+        self.report(&second.1.span, question.name, &one_of(question.options), message, hint);
         Choice::Failed
     }
 }
 
 /// Whether an assignment concerns the table of an option.
 fn is_touched(node: &Node) -> bool {
-    node.span.is_set()
-        || matches!(&node.value, Value::Table(table) if table.is_touched() || table.choice.is_some())
+    node.span.is_set() || matches!(&node.value, Value::Table(table) if table.is_touched() || table.choice.is_some())
 }
 
 fn names(word: &Node, option: &str) -> bool {

@@ -107,18 +107,11 @@ impl Document {
     /// All places where the text is not valid TOML, at most one per line.
     pub fn parse(file: &str, text: &str) -> Result<Document, Vec<Problem>> {
         let (table, errors) = DeTable::parse_recoverable(text);
-        let source = Source {
-            name: file.to_string(),
-            text: text.to_string(),
-            has_lines: true,
-        };
+        let source = Source { name: file.to_string(), text: text.to_string(), has_lines: true };
         if !errors.is_empty() {
             return Err(syntax::problems(&source, &errors));
         }
-        Ok(Document {
-            sources: vec![source],
-            root: convert_table(table.get_ref(), 0),
-        })
+        Ok(Document { sources: vec![source], root: convert_table(table.get_ref(), 0) })
     }
 
     /// Where a span stands.
@@ -128,10 +121,7 @@ impl Document {
 
     /// The text of a span as written.
     pub(super) fn written(&self, span: &Span) -> &str {
-        self.sources[span.source]
-            .text
-            .get(span.range.clone())
-            .unwrap_or_default()
+        self.sources[span.source].text.get(span.range.clone()).unwrap_or_default()
     }
 }
 
@@ -140,18 +130,12 @@ impl Source {
     pub fn place(&self, range: Range<usize>) -> Place {
         let file = self.name.clone();
         if !self.has_lines {
-            return Place {
-                file,
-                ..Place::default()
-            };
+            return Place { file, ..Place::default() };
         }
         let start = self.clamp(range.start);
         let line_start = self.line_start(start);
         let line_text = self.line_at(start);
-        let end = self.clamp(range.end).clamp(
-            start,
-            line_start.max(start).max(line_start + line_text.len()),
-        );
+        let end = self.clamp(range.end).clamp(start, line_start.max(start).max(line_start + line_text.len()));
         Place {
             file,
             line: self.text[..line_start].matches('\n').count() + 1,
@@ -163,27 +147,18 @@ impl Source {
 
     /// Start of the line in which a byte stands.
     pub fn line_start(&self, at: usize) -> usize {
-        self.text[..self.clamp(at)]
-            .rfind('\n')
-            .map_or(0, |newline| newline + 1)
+        self.text[..self.clamp(at)].rfind('\n').map_or(0, |newline| newline + 1)
     }
 
     /// The line in which a byte stands, without its end.
     pub fn line_at(&self, at: usize) -> &str {
-        self.text[self.line_start(at)..]
-            .lines()
-            .next()
-            .unwrap_or_default()
+        self.text[self.line_start(at)..].lines().next().unwrap_or_default()
     }
 
     /// The nearest earlier start of a character. The end of the text counts as the end of its last
     /// line with content, since nothing can be shown on the empty line after it.
     pub fn clamp(&self, at: usize) -> usize {
-        let mut at = if at >= self.text.len() {
-            self.text.trim_end().len()
-        } else {
-            at
-        };
+        let mut at = if at >= self.text.len() { self.text.trim_end().len() } else { at };
         while !self.text.is_char_boundary(at) {
             at -= 1;
         }
@@ -198,12 +173,7 @@ pub(super) fn convert(value: &DeValue<'_>, source: usize) -> Value {
         DeValue::Float(float) => Value::Float(float.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(boolean) => Value::Boolean(*boolean),
         DeValue::Datetime(_) => Value::Date,
-        DeValue::Array(items) => Value::List(
-            items
-                .iter()
-                .map(|item| convert_node(item, source))
-                .collect(),
-        ),
+        DeValue::Array(items) => Value::List(items.iter().map(|item| convert_node(item, source)).collect()),
         DeValue::Table(table) => Value::Table(convert_table(table, source)),
     }
 }
@@ -216,28 +186,13 @@ fn convert_integer(integer: &DeInteger<'_>) -> Value {
 }
 
 fn convert_node(value: &toml::Spanned<DeValue<'_>>, source: usize) -> Node {
-    Node {
-        value: convert(value.get_ref(), source),
-        span: Span {
-            source,
-            range: value.span(),
-        },
-    }
+    Node { value: convert(value.get_ref(), source), span: Span { source, range: value.span() } }
 }
 
 fn convert_table(table: &DeTable<'_>, source: usize) -> Table {
     let entries = table.iter().map(|(key, value)| {
-        let entry = Entry {
-            key: Span {
-                source,
-                range: key.span(),
-            },
-            node: convert_node(value, source),
-        };
+        let entry = Entry { key: Span { source, range: key.span() }, node: convert_node(value, source) };
         (key.get_ref().to_string(), entry)
     });
-    Table {
-        entries: entries.collect(),
-        choice: None,
-    }
+    Table { entries: entries.collect(), choice: None }
 }

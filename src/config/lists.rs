@@ -11,13 +11,7 @@ use super::value::Lookup;
 impl Section<'_> {
     /// A list of numbers in SI units. It is required unless `length` begins at 0. After a problem the
     /// numbers concerned are NaN, and the length is within `length` all the same.
-    pub fn numbers(
-        &self,
-        key: &str,
-        allowed: Bound,
-        length: RangeInclusive<usize>,
-        doc: &str,
-    ) -> Vec<f64> {
+    pub fn numbers(&self, key: &str, allowed: Bound, length: RangeInclusive<usize>, doc: &str) -> Vec<f64> {
         let (least, most) = (*length.start(), *length.end());
         let count = count_in_words(least, most);
         let range = format!("{count}, each {}", allowed.in_unit(unit_of(key)));
@@ -25,21 +19,11 @@ impl Section<'_> {
         match self.open(key, &range, doc) {
             Lookup::Found(found) => {
                 if let Value::List(items) = &found.node.value {
-                    values = items
-                        .iter()
-                        .map(|item| {
-                            self.check_number(key, key, item, allowed)
-                                .unwrap_or(f64::NAN)
-                        })
-                        .collect();
+                    values = items.iter().map(|item| self.check_number(key, key, item, allowed).unwrap_or(f64::NAN)).collect();
                     if length.contains(&values.len()) {
                         self.given(key, &found, format!("{values:?}"), None);
                     } else {
-                        let message = format!(
-                            "`{}`: expected {count}, found {}",
-                            join(&self.path, key),
-                            values.len()
-                        );
+                        let message = format!("`{}`: expected {count}, found {}", join(&self.path, key), values.len());
                         self.report(&found.node.span, key, &range, message, String::new());
                     }
                 } else {
@@ -58,17 +42,9 @@ impl Section<'_> {
     /// A table of numbers written as a list of rows, in SI units by the suffixes of the column names.
     /// Empty if the key is absent; rows with a problem are left out.
     pub fn rows(&self, key: &str, columns: &[(&str, Bound)], doc: &str) -> Vec<Vec<f64>> {
-        let describe =
-            |(name, bound): &(&str, Bound)| format!("{name} {}", bound.in_unit(unit_of(name)));
-        let allowed = format!(
-            "rows of {}",
-            columns.iter().map(describe).collect::<Vec<_>>().join(", ")
-        );
-        let units = columns
-            .iter()
-            .map(|(name, _)| unit_of(name))
-            .collect::<Vec<_>>()
-            .join(", ");
+        let describe = |(name, bound): &(&str, Bound)| format!("{name} {}", bound.in_unit(unit_of(name)));
+        let allowed = format!("rows of {}", columns.iter().map(describe).collect::<Vec<_>>().join(", "));
+        let units = columns.iter().map(|(name, _)| unit_of(name)).collect::<Vec<_>>().join(", ");
         let lookup = self.open(key, &allowed, doc);
         self.unit(key, &units);
         let found = match lookup {
@@ -83,56 +59,27 @@ impl Section<'_> {
             self.wrong_type(key, found.node, "a list of rows");
             return Vec::new();
         };
-        let rows: Vec<Vec<f64>> = items
-            .iter()
-            .filter_map(|item| self.row(key, item, columns, &allowed))
-            .collect();
+        let rows: Vec<Vec<f64>> = items.iter().filter_map(|item| self.row(key, item, columns, &allowed)).collect();
         self.given(key, &found, format!("{rows:?}"), None);
-        let convert = |row: Vec<f64>| {
-            columns
-                .iter()
-                .zip(row)
-                .map(|((name, _), value)| to_si(name, value))
-                .collect()
-        };
+        let convert = |row: Vec<f64>| columns.iter().zip(row).map(|((name, _), value)| to_si(name, value)).collect();
         rows.into_iter().map(convert).collect()
     }
 
     /// One row in the columns' own units.
-    fn row(
-        &self,
-        key: &str,
-        node: &Node,
-        columns: &[(&str, Bound)],
-        allowed: &str,
-    ) -> Option<Vec<f64>> {
+    fn row(&self, key: &str, node: &Node, columns: &[(&str, Bound)], allowed: &str) -> Option<Vec<f64>> {
         let Value::List(cells) = &node.value else {
             self.wrong_type(key, node, "a row of numbers in brackets");
             return None;
         };
         if cells.len() != columns.len() {
             let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
-            let message = format!(
-                "`{}`: expected {} numbers in a row, found {}",
-                join(&self.path, key),
-                columns.len(),
-                cells.len()
-            );
-            self.report(
-                &node.span,
-                key,
-                allowed,
-                message,
-                format!("write [{}]", names.join(", ")),
-            );
+            let message = format!("`{}`: expected {} numbers in a row, found {}", join(&self.path, key), columns.len(), cells.len());
+            self.report(&node.span, key, allowed, message, format!("write [{}]", names.join(", ")));
             return None;
         }
         // All cells are looked at before the row is dropped, so that every problem is reported.
-        let checked: Vec<Option<f64>> = cells
-            .iter()
-            .zip(columns)
-            .map(|(cell, (name, bound))| self.check_number(key, name, cell, *bound))
-            .collect();
+        let checked: Vec<Option<f64>> =
+            cells.iter().zip(columns).map(|(cell, (name, bound))| self.check_number(key, name, cell, *bound)).collect();
         checked.into_iter().collect()
     }
 }

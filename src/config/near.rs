@@ -20,10 +20,8 @@ pub(super) fn plausible(likeness: f64) -> bool {
 /// Up to three of the `known` names that are plausible readings of `wanted`, best first.
 pub fn near<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let lower = wanted.to_lowercase();
-    let mut rated: Vec<(f64, &str)> = known
-        .map(|name| (likeness(&lower, &name.to_lowercase()), name))
-        .filter(|(rating, _)| plausible(*rating))
-        .collect();
+    let mut rated: Vec<(f64, &str)> =
+        known.map(|name| (likeness(&lower, &name.to_lowercase()), name)).filter(|(rating, _)| plausible(*rating)).collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0));
     rated.dedup_by(|a, b| a.1 == b.1);
     rated.into_iter().take(3).map(|(_, name)| name).collect()
@@ -34,10 +32,7 @@ pub(super) fn question<S: AsRef<str>>(names: &[S]) -> String {
     if names.is_empty() {
         return String::new();
     }
-    let quoted: Vec<String> = names
-        .iter()
-        .map(|name| format!("`{}`", name.as_ref()))
-        .collect();
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{}`", name.as_ref())).collect();
     format!("did you mean {}?", quoted.join(" or "))
 }
 
@@ -49,11 +44,7 @@ pub(super) fn one_of(words: &[&str]) -> String {
 /// Question for near names, else the list of what is known.
 pub(super) fn suggest(wanted: &str, known: &[&str]) -> String {
     let names = near(wanted, known.iter().copied());
-    if names.is_empty() {
-        format!("write {}", one_of(known))
-    } else {
-        question(&names)
-    }
+    if names.is_empty() { format!("write {}", one_of(known)) } else { question(&names) }
 }
 
 #[cfg(test)]
@@ -63,10 +54,7 @@ mod tests {
     #[test]
     fn a_slip_of_the_finger_is_found() {
         let known = ["band_offset_mm", "band_width_mm", "pitch_mm", "mass_kg"];
-        assert_eq!(
-            near("band_ofset_mm", known.into_iter())[0],
-            "band_offset_mm"
-        );
+        assert_eq!(near("band_ofset_mm", known.into_iter())[0], "band_offset_mm");
         assert_eq!(near("mass", known.into_iter()), ["mass_kg"]);
         assert_eq!(near("Mass_Kg", known.into_iter()), ["mass_kg"]);
     }

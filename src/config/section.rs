@@ -23,13 +23,7 @@ pub struct Section<'r> {
 impl<'r> Section<'r> {
     pub(super) fn root(reader: &'r Reader<'r>) -> Self {
         let table = Some(&reader.document.root);
-        Section {
-            reader,
-            path: String::new(),
-            table,
-            header: None,
-            muted: false,
-        }
+        Section { reader, path: String::new(), table, header: None, muted: false }
     }
 
     /// Dotted path of the table; empty for the whole document.
@@ -44,36 +38,20 @@ impl<'r> Section<'r> {
 
     /// Whether the key is present, as a value or as a table.
     pub fn has(&self, key: &str) -> bool {
-        self.table
-            .is_some_and(|table| table.entries.contains_key(key))
+        self.table.is_some_and(|table| table.entries.contains_key(key))
     }
 
     /// The table `name` within this one. It may be absent: keys read from it are then missing.
     pub fn table(&self, name: &str) -> Section<'r> {
         let path = join(&self.path, name);
         self.reader.log.borrow_mut().tables.insert(path.clone());
-        let mut section = Section {
-            path,
-            table: None,
-            ..self.clone()
-        };
-        match self
-            .table
-            .and_then(|table| table.entries.get(name))
-            .map(|entry| &entry.node)
-        {
-            Some(Node {
-                value: Value::Table(table),
-                span,
-            }) => {
+        let mut section = Section { path, table: None, ..self.clone() };
+        match self.table.and_then(|table| table.entries.get(name)).map(|entry| &entry.node) {
+            Some(Node { value: Value::Table(table), span }) => {
                 (section.table, section.header) = (Some(table), Some(span.clone()));
             }
             Some(node) => {
-                self.reader
-                    .log
-                    .borrow_mut()
-                    .read
-                    .insert(section.path.clone());
+                self.reader.log.borrow_mut().read.insert(section.path.clone());
                 self.wrong_type(name, node, "a table");
                 section.muted = true;
             }
@@ -84,30 +62,25 @@ impl<'r> Section<'r> {
 
     /// A required number, in SI units; NaN after a problem.
     pub fn number(&self, key: &str, allowed: Bound, doc: &str) -> f64 {
-        self.read_number(key, allowed, doc)
-            .unwrap_or_else(|absent| {
-                if absent {
-                    self.missing(key, &allowed.in_unit(unit_of(key)));
-                }
-                f64::NAN
-            })
+        self.read_number(key, allowed, doc).unwrap_or_else(|absent| {
+            if absent {
+                self.missing(key, &allowed.in_unit(unit_of(key)));
+            }
+            f64::NAN
+        })
     }
 
     /// A number, in SI units, with a default in the key's own unit; NaN after a problem.
     pub fn number_or(&self, key: &str, allowed: Bound, default: f64, doc: &str) -> f64 {
-        debug_assert!(
-            allowed.contains(default),
-            "default of {key} is out of range"
-        );
-        self.read_number(key, allowed, doc)
-            .unwrap_or_else(|absent| {
-                if !absent {
-                    return f64::NAN;
-                }
-                let si = to_si(key, default);
-                self.defaulted(key, default.to_string(), Some(si));
-                si
-            })
+        debug_assert!(allowed.contains(default), "default of {key} is out of range");
+        self.read_number(key, allowed, doc).unwrap_or_else(|absent| {
+            if !absent {
+                return f64::NAN;
+            }
+            let si = to_si(key, default);
+            self.defaulted(key, default.to_string(), Some(si));
+            si
+        })
     }
 
     /// A number, in SI units, that may be absent; NaN after a problem.
@@ -119,13 +92,7 @@ impl<'r> Section<'r> {
     }
 
     /// An integer with a default; the default also after a problem. It is not converted to SI units.
-    pub fn integer_or(
-        &self,
-        key: &str,
-        allowed: RangeInclusive<i64>,
-        default: i64,
-        doc: &str,
-    ) -> i64 {
+    pub fn integer_or(&self, key: &str, allowed: RangeInclusive<i64>, default: i64, doc: &str) -> i64 {
         let range = match (*allowed.start(), *allowed.end()) {
             (low, i64::MAX) => format!("integer of at least {low}"),
             (low, high) => format!("integer from {low} to {high}"),
@@ -140,12 +107,7 @@ impl<'r> Section<'r> {
         };
         match found.node.value {
             Value::Integer(value) if allowed.contains(&value) => {
-                self.given(
-                    key,
-                    &found,
-                    value.to_string(),
-                    Some(to_si(key, value as f64)),
-                );
+                self.given(key, &found, value.to_string(), Some(to_si(key, value as f64)));
                 value
             }
             Value::Integer(_) => {
@@ -202,13 +164,7 @@ impl<'r> Section<'r> {
     }
 
     /// One of `words`, with a default; the default also after a problem.
-    pub fn word_or(
-        &self,
-        key: &str,
-        words: &[&'static str],
-        default: &'static str,
-        doc: &str,
-    ) -> &'static str {
+    pub fn word_or(&self, key: &str, words: &[&'static str], default: &'static str, doc: &str) -> &'static str {
         let allowed = one_of(words);
         match self.open(key, &allowed, doc) {
             Lookup::Found(found) => {
@@ -240,21 +196,12 @@ impl<'r> Section<'r> {
     pub fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str) {
         let entry = self.table.and_then(|table| table.entries.get(key));
         let problem = match entry.map(|entry| &entry.node) {
-            Some(Node {
-                value: Value::Table(table),
-                span,
-            }) => {
+            Some(Node { value: Value::Table(table), span }) => {
                 let span = table.wrapped().map_or(span, |node| &node.span);
                 return self.report(span, key, allowed, message.to_string(), hint.to_string());
             }
             Some(node) => {
-                return self.report(
-                    &node.span,
-                    key,
-                    allowed,
-                    message.to_string(),
-                    hint.to_string(),
-                );
+                return self.report(&node.span, key, allowed, message.to_string(), hint.to_string());
             }
             None => self.absent(key, allowed, message.to_string(), hint.to_string()),
         };

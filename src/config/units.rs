@@ -10,12 +10,7 @@ struct Unit {
 }
 
 const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Unit {
-    Unit {
-        suffix,
-        name,
-        factor,
-        offset: 0.0,
-    }
+    Unit { suffix, name, factor, offset: 0.0 }
 }
 
 /// rad/s in one rpm.
@@ -45,12 +40,7 @@ const UNITS: [Unit; 56] = [
     unit("_gpa", "GPa", 1e9),
     unit("_mpa_s", "mPa s", 1e-3),
     unit("_mm2_s", "mm²/s", 1e-6),
-    Unit {
-        suffix: "_degc",
-        name: "°C",
-        factor: 1.0,
-        offset: 273.15,
-    },
+    Unit { suffix: "_degc", name: "°C", factor: 1.0, offset: 273.15 },
     unit("_k", "K", 1.0),
     unit("_per_k", "1/K", 1.0),
     unit("_s", "s", 1.0),
@@ -87,10 +77,7 @@ const UNITS: [Unit; 56] = [
 
 /// The unit with the longest suffix that ends the key; none for dimensionless keys.
 fn find(key: &str) -> Option<&'static Unit> {
-    UNITS
-        .iter()
-        .filter(|unit| key.ends_with(unit.suffix))
-        .max_by_key(|unit| unit.suffix.len())
+    UNITS.iter().filter(|unit| key.ends_with(unit.suffix)).max_by_key(|unit| unit.suffix.len())
 }
 
 /// A value in the unit of the key, converted to SI (temperatures to kelvin).
@@ -105,9 +92,7 @@ pub fn unit_of(key: &str) -> &'static str {
 
 /// The key without its unit, to recognise the same quantity in another unit.
 pub(super) fn stem(key: &str) -> &str {
-    find(key)
-        .and_then(|unit| key.strip_suffix(unit.suffix))
-        .unwrap_or(key)
+    find(key).and_then(|unit| key.strip_suffix(unit.suffix)).unwrap_or(key)
 }
 
 #[cfg(test)]
@@ -171,18 +156,8 @@ mod tests {
         ("f2_n_per_kmh2", 0.03, 0.3888, "N/(km/h)²"),
         ("rated_nm", 140.0, 140.0, "N m"),
         ("viscous_nm_s", 0.01, 0.01, "N m s"),
-        (
-            "drag_nm_per_rpm",
-            0.001,
-            0.009_549_296_585_513_72,
-            "N m/rpm",
-        ),
-        (
-            "drag_nm_per_rpm2",
-            1e-6,
-            9.118_906_527_810_399e-5,
-            "N m/rpm²",
-        ),
+        ("drag_nm_per_rpm", 0.001, 0.009_549_296_585_513_72, "N m/rpm"),
+        ("drag_nm_per_rpm2", 1e-6, 9.118_906_527_810_399e-5, "N m/rpm²"),
         ("slip_percent", 2.5, 0.025, "%"),
         // Names that end like a unit without being one of the pair `_unit`.
         ("nm", 1.0, 1.0, "-"),
@@ -193,10 +168,7 @@ mod tests {
     fn every_unit_converts_as_worked_out_by_hand() {
         for (key, value, si, name) in EXPECTED {
             let found = to_si(key, value);
-            assert!(
-                (found - si).abs() <= 1e-12 * si.abs(),
-                "{key}: {found} instead of {si}"
-            );
+            assert!((found - si).abs() <= 1e-12 * si.abs(), "{key}: {found} instead of {si}");
             assert_eq!(unit_of(key), name, "{key}");
         }
     }
@@ -204,19 +176,9 @@ mod tests {
     #[test]
     fn the_table_above_leaves_no_unit_out() {
         for unit in &UNITS {
-            let tried = EXPECTED
-                .iter()
-                .any(|(key, ..)| find(key).is_some_and(|found| found.suffix == unit.suffix));
+            let tried = EXPECTED.iter().any(|(key, ..)| find(key).is_some_and(|found| found.suffix == unit.suffix));
             assert!(tried, "{} is not tried", unit.suffix);
-            assert_eq!(
-                UNITS
-                    .iter()
-                    .filter(|other| other.suffix == unit.suffix)
-                    .count(),
-                1,
-                "{}",
-                unit.suffix
-            );
+            assert_eq!(UNITS.iter().filter(|other| other.suffix == unit.suffix).count(), 1, "{}", unit.suffix);
         }
     }
 

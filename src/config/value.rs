@@ -32,9 +32,7 @@ impl<'r> Section<'r> {
     pub(super) fn read_number(&self, key: &str, allowed: Bound, doc: &str) -> Result<f64, bool> {
         match self.open(key, &allowed.in_unit(unit_of(key)), doc) {
             Lookup::Found(found) => {
-                let value = self
-                    .check_number(key, key, found.node, allowed)
-                    .ok_or(false)?;
+                let value = self.check_number(key, key, found.node, allowed).ok_or(false)?;
                 let si = to_si(key, value);
                 self.given(key, &found, value.to_string(), Some(si));
                 Ok(si)
@@ -62,13 +60,7 @@ impl<'r> Section<'r> {
     }
 
     /// A finite number within its range, in its own unit; `quantity` carries the unit.
-    pub(super) fn check_number(
-        &self,
-        key: &str,
-        quantity: &str,
-        node: &Node,
-        allowed: Bound,
-    ) -> Option<f64> {
+    pub(super) fn check_number(&self, key: &str, quantity: &str, node: &Node, allowed: Bound) -> Option<f64> {
         let value = match &node.value {
             Value::Integer(value) => *value as f64,
             Value::Float(value) => *value,
@@ -113,18 +105,9 @@ impl<'r> Section<'r> {
     /// The value with its origin, from either of its two forms.
     pub(super) fn unwrap(&self, key: &str, node: &'r Node) -> Lookup<'r> {
         let status = if node.span.is_set() { "set" } else { "user" };
-        let source = if node.span.is_set() {
-            "command line"
-        } else {
-            ""
-        };
+        let source = if node.span.is_set() { "command line" } else { "" };
         let (status, source, note) = (status.to_string(), source.to_string(), String::new());
-        let mut found = Found {
-            node,
-            status,
-            source,
-            note,
-        };
+        let mut found = Found { node, status, source, note };
         let Value::Table(table) = &node.value else {
             return Lookup::Found(found);
         };
@@ -150,13 +133,7 @@ impl<'r> Section<'r> {
                 _ => {
                     let hint = suggest(name, &["value", "status", "source", "note"]);
                     let message = format!("unknown field `{name}` in `{}`", join(&self.path, key));
-                    self.report(
-                        &entry.key,
-                        key,
-                        "value, status, source, note",
-                        message,
-                        hint,
-                    );
+                    self.report(&entry.key, key, "value, status, source, note", message, hint);
                 }
             }
         }
@@ -167,13 +144,7 @@ impl<'r> Section<'r> {
         if !STATUSES.contains(&text) {
             let names = near(text, STATUSES.into_iter());
             let message = format!("`{}` has no known status", join(&self.path, key));
-            self.report(
-                &node.span,
-                key,
-                &one_of(&STATUSES),
-                message,
-                question(&names),
-            );
+            self.report(&node.span, key, &one_of(&STATUSES), message, question(&names));
         } else if status != "set" {
             *status = text.to_string();
         }
@@ -204,11 +175,7 @@ impl<'r> Section<'r> {
 
     fn fill(&self, key: &str, write: impl FnOnce(&mut KeyInfo)) {
         let log = &mut *self.reader.log.borrow_mut();
-        if let Some(info) = log
-            .index
-            .get(&join(&self.path, key))
-            .and_then(|at| log.keys.get_mut(*at))
-        {
+        if let Some(info) = log.index.get(&join(&self.path, key)).and_then(|at| log.keys.get_mut(*at)) {
             write(info);
         }
     }
@@ -220,13 +187,8 @@ impl<'r> Section<'r> {
 
     pub(super) fn wrong_type(&self, key: &str, node: &Node, expected: &str) {
         let mut hint = String::new();
-        if let (Value::Text(text), true) = (
-            &node.value,
-            expected.contains("number") || expected.contains("integer"),
-        ) {
-            if let Some((_, point)) =
-                decimal_comma(text).filter(|(length, _)| *length == text.len())
-            {
+        if let (Value::Text(text), true) = (&node.value, expected.contains("number") || expected.contains("integer")) {
+            if let Some((_, point)) = decimal_comma(text).filter(|(length, _)| *length == text.len()) {
                 hint = format!("write {point} with a decimal point and without quotes");
             } else if let Some((figure, unit)) = number_with_unit(text) {
                 hint = number_hint(figure, unit);
@@ -234,45 +196,25 @@ impl<'r> Section<'r> {
                 hint = format!("write {} without quotes", text.trim());
             }
         }
-        let message = format!(
-            "`{}`: expected {expected}, found {}",
-            join(&self.path, key),
-            node.value.kind()
-        );
+        let message = format!("`{}`: expected {expected}, found {}", join(&self.path, key), node.value.kind());
         self.report(&node.span, key, "", message, hint);
     }
 
     /// Reports a required key that is absent.
     pub(super) fn missing(&self, key: &str, allowed: &str) {
         if !self.muted {
-            let table = if self.path.is_empty() {
-                "the top of the file".to_string()
-            } else {
-                format!("[{}]", self.path)
-            };
+            let table = if self.path.is_empty() { "the top of the file".to_string() } else { format!("[{}]", self.path) };
             let message = format!("missing key `{}`", join(&self.path, key));
             let problem = self.absent(key, allowed, message, format!("add `{key} = …` to {table}"));
             self.reader.log.borrow_mut().missing.push(problem);
         }
     }
 
-    pub(super) fn absent(
-        &self,
-        key: &str,
-        allowed: &str,
-        message: String,
-        hint: String,
-    ) -> Problem {
+    pub(super) fn absent(&self, key: &str, allowed: &str, message: String, hint: String) -> Problem {
         let document = self.reader.document;
-        let whole = || Place {
-            file: document.sources[0].name.clone(),
-            ..Place::default()
-        };
+        let whole = || Place { file: document.sources[0].name.clone(), ..Place::default() };
         Problem {
-            place: self
-                .header
-                .as_ref()
-                .map_or_else(whole, |span| document.place(span)),
+            place: self.header.as_ref().map_or_else(whole, |span| document.place(span)),
             key: join(&self.path, key),
             allowed: allowed.to_string(),
             message,
@@ -281,14 +223,7 @@ impl<'r> Section<'r> {
         }
     }
 
-    pub(super) fn report(
-        &self,
-        span: &Span,
-        key: &str,
-        allowed: &str,
-        message: String,
-        hint: String,
-    ) {
+    pub(super) fn report(&self, span: &Span, key: &str, allowed: &str, message: String, hint: String) {
         let document = self.reader.document;
         self.reader.problem(Problem {
             place: document.place(span),

@@ -34,16 +34,8 @@ pub(super) struct Complaint {
 }
 
 impl Complaint {
-    pub(super) fn new(
-        message: impl Into<String>,
-        allowed: impl Into<String>,
-        hint: impl Into<String>,
-    ) -> Self {
-        Self {
-            message: message.into(),
-            allowed: allowed.into(),
-            hint: hint.into(),
-        }
+    pub(super) fn new(message: impl Into<String>, allowed: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self { message: message.into(), allowed: allowed.into(), hint: hint.into() }
     }
 }
 
@@ -56,11 +48,7 @@ pub(super) struct Problems<'f> {
 
 impl<'f> Problems<'f> {
     pub(super) fn new(file: &'f str) -> Self {
-        Self {
-            file,
-            list: Vec::new(),
-            more: 0,
-        }
+        Self { file, list: Vec::new(), more: 0 }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -69,45 +57,18 @@ impl<'f> Problems<'f> {
 
     /// A problem of the whole file.
     pub(super) fn file(&mut self, complaint: Complaint) {
-        self.push("", |file| {
-            (
-                Place {
-                    file: file.to_owned(),
-                    ..Place::default()
-                },
-                String::new(),
-                complaint,
-            )
-        });
+        self.push("", |file| (Place { file: file.to_owned(), ..Place::default() }, String::new(), complaint));
     }
 
     /// A problem of a whole line; `key` is the column that is meant, if any.
-    pub(super) fn line(
-        &mut self,
-        line: Line<'_>,
-        key: &str,
-        complaint: impl FnOnce() -> Complaint,
-    ) {
-        let whole = Field {
-            text: line.text,
-            start: 0,
-        };
-        self.push(key, |file| {
-            (place(file, line, whole), String::new(), complaint())
-        });
+    pub(super) fn line(&mut self, line: Line<'_>, key: &str, complaint: impl FnOnce() -> Complaint) {
+        let whole = Field { text: line.text, start: 0 };
+        self.push(key, |file| (place(file, line, whole), String::new(), complaint()));
     }
 
     /// A problem of one value, `key` being its column.
-    pub(super) fn value(
-        &mut self,
-        line: Line<'_>,
-        field: Field<'_>,
-        key: &str,
-        complaint: impl FnOnce() -> Complaint,
-    ) {
-        self.push(key, |file| {
-            (place(file, line, field), shortened(field.text), complaint())
-        });
+    pub(super) fn value(&mut self, line: Line<'_>, field: Field<'_>, key: &str, complaint: impl FnOnce() -> Complaint) {
+        self.push(key, |file| (place(file, line, field), shortened(field.text), complaint()));
     }
 
     /// A problem of one table cell.
@@ -121,38 +82,16 @@ impl<'f> Problems<'f> {
             self.more += 1;
             return;
         }
-        let (
-            place,
-            value,
-            Complaint {
-                message,
-                allowed,
-                hint,
-            },
-        ) = build(self.file);
-        self.list.push(Problem {
-            place,
-            key: key.to_owned(),
-            value,
-            allowed,
-            message,
-            hint,
-        });
+        let (place, value, Complaint { message, allowed, hint }) = build(self.file);
+        self.list.push(Problem { place, key: key.to_owned(), value, allowed, message, hint });
     }
 
     /// All of them; beyond the first 50, one last entry says how many more there are.
     pub(super) fn finish(mut self) -> Vec<Problem> {
         if self.more > 0 {
-            let are = if self.more == 1 {
-                "problem is"
-            } else {
-                "problems are"
-            };
+            let are = if self.more == 1 { "problem is" } else { "problems are" };
             self.list.push(Problem {
-                place: Place {
-                    file: self.file.to_owned(),
-                    ..Place::default()
-                },
+                place: Place { file: self.file.to_owned(), ..Place::default() },
                 message: format!("{} more {are} not shown", self.more),
                 hint: "mend the ones above first; they often have one cause".to_owned(),
                 ..Problem::default()
@@ -169,11 +108,7 @@ fn place(file: &str, line: Line<'_>, field: Field<'_>) -> Place {
         file: file.to_owned(),
         line: line.number,
         column: before.chars().count() + 1,
-        line_text: if shown {
-            line.text.to_owned()
-        } else {
-            String::new()
-        },
+        line_text: if shown { line.text.to_owned() } else { String::new() },
         width: field.text.chars().count().max(1),
     }
 }
@@ -191,77 +126,32 @@ mod tests {
 
     #[test]
     fn a_place_counts_characters_and_not_bytes() {
-        let line = Line {
-            number: 7,
-            text: "é,ü,12",
-        };
+        let line = Line { number: 7, text: "é,ü,12" };
         let mut problems = Problems::new("f.csv");
-        problems.value(
-            line,
-            Field {
-                text: "12",
-                start: 6,
-            },
-            "k",
-            Complaint::default,
-        );
+        problems.value(line, Field { text: "12", start: 6 }, "k", Complaint::default);
         let place = &problems.finish()[0].place;
-        assert_eq!(
-            (
-                place.line,
-                place.column,
-                place.width,
-                place.line_text.as_str()
-            ),
-            (7, 5, 2, "é,ü,12")
-        );
+        assert_eq!((place.line, place.column, place.width, place.line_text.as_str()), (7, 5, 2, "é,ü,12"));
     }
 
     #[test]
     fn long_lines_and_values_are_kept_off_the_screen() {
         let text = "ö".repeat(1000);
         let mut problems = Problems::new("f.csv");
-        problems.value(
-            Line {
-                number: 1,
-                text: &text,
-            },
-            Field {
-                text: &text,
-                start: 0,
-            },
-            "k",
-            Complaint::default,
-        );
+        problems.value(Line { number: 1, text: &text }, Field { text: &text, start: 0 }, "k", Complaint::default);
         let problem = &problems.finish()[0];
-        assert_eq!(
-            (
-                problem.place.line_text.as_str(),
-                problem.value.chars().count()
-            ),
-            ("", 63)
-        );
+        assert_eq!((problem.place.line_text.as_str(), problem.value.chars().count()), ("", 63));
     }
 
     #[test]
     fn the_rest_is_counted() {
-        for (count, last) in [
-            (50, None),
-            (51, Some("1 more problem is not shown")),
-            (250, Some("200 more problems are not shown")),
-        ] {
+        for (count, last) in [(50, None), (51, Some("1 more problem is not shown")), (250, Some("200 more problems are not shown"))] {
             let mut problems = Problems::new("f.csv");
             for _ in 0..count {
                 problems.file(Complaint::default());
             }
             let list = problems.finish();
             assert_eq!(list.len(), count.min(50) + usize::from(last.is_some()));
-            assert_eq!(
-                list.last()
-                    .map(|p| p.message.as_str())
-                    .filter(|m| !m.is_empty()),
-                last
-            );
+            assert_eq!(list.last().map(|p| p.message.as_str()).filter(|m| !m.is_empty()), last);
         }
     }
 }

@@ -5,7 +5,7 @@
 //! | WI-1 | A f2 + B f - (L Theta + p) = 0; A = a2, B = a + b c + c2 cm2, L = l + l2 cm2 (positive) | source: CO2MPAS, natural aspiration set |
 //! | WI-2 | indicated = B f + A f2 | derived: WI-1 read as a balance |
 //! | BM-1 | fuel MEP = BSFC x BMEP x LHV between the map's points, linear in speed and BMEP | source: the user's map |
-//! | BM-2 | below the map's lowest BMEP the line through its two lowest points; its zero is the hot friction | derived |
+//! | BM-2 | below the map's lowest BMEP a line to zero fuel at minus the hot friction l + l2 cm2 | derived; friction from keys l, l2 |
 //! | BM-3 | cold: BMEP raised by friction above hot friction | derived: as WI-1 treats temperature |
 //!
 //! f fuel mean effective pressure, p brake mean effective pressure, both bar inside WI-1; cm mean piston speed m/s; Theta friction factor.
@@ -39,6 +39,8 @@ pub struct BsfcMap {
     pub bmep_pa: Vec<f64>,
     /// Fuel MEP `[speed][bmep]`, Pa.
     pub fuel_pa: Vec<Vec<f64>>,
+    /// Hot friction l, l2 as in the Willans line, bar and bar s2/m2 (BM-2).
+    pub friction: (f64, f64),
 }
 
 /// A fuel model.
@@ -65,10 +67,10 @@ impl FuelModel {
     /// Friction mean effective pressure of the hot engine, Pa.
     #[must_use]
     #[inline]
-    pub fn hot_friction_pa(&self, piston_m_s: f64, speed_rad_s: f64) -> f64 {
+    pub fn hot_friction_pa(&self, piston_m_s: f64) -> f64 {
         match self {
             FuelModel::Willans(w) => (w.l + w.l2 * piston_m_s * piston_m_s) * BAR,
-            FuelModel::Map(m) => m.at_speed(speed_rad_s, 0.0).1,
+            FuelModel::Map(m) => (m.friction.0 + m.friction.1 * piston_m_s * piston_m_s) * BAR,
         }
     }
 
@@ -83,8 +85,8 @@ impl FuelModel {
         match self {
             FuelModel::Willans(w) => w.fuel(piston_m_s, need),
             FuelModel::Map(m) => {
-                let hot = m.at_speed(speed_rad_s, 0.0).1;
-                let (fuel_pa, _, inside) = m.at_speed(speed_rad_s, need - hot); // BM-3
+                let hot = self.hot_friction_pa(piston_m_s);
+                let (fuel_pa, inside) = m.at_speed(speed_rad_s, need - hot, hot); // BM-3
                 FuelPoint { fuel_pa, indicated_pa: need, outside: !inside }
             }
         }
@@ -105,23 +107,22 @@ impl Willans {
 }
 
 impl BsfcMap {
-    /// (fuel MEP at `bmep_pa`, hot friction, inside) at a speed.
-    fn at_speed(&self, speed_rad_s: f64, bmep_pa: f64) -> (f64, f64, bool) {
+    /// Fuel MEP at a speed and load with hot friction, Pa, and whether the point lies within the map.
+    fn at_speed(&self, speed_rad_s: f64, bmep_pa: f64, friction_pa: f64) -> (f64, bool) {
         let n = self.speed_rad_s.len();
         let hi = self.speed_rad_s.partition_point(|&s| s <= speed_rad_s).clamp(1, n - 1);
         let (s0, s1) = (self.speed_rad_s[hi - 1], self.speed_rad_s[hi]);
         let u = ((speed_rad_s - s0) / (s1 - s0)).clamp(0.0, 1.0);
         let m = self.bmep_pa.len();
-        let k = self.bmep_pa.partition_point(|&p| p <= bmep_pa).clamp(1, m - 1);
         let row = |j: usize| self.fuel_pa[hi - 1][j] + u * (self.fuel_pa[hi][j] - self.fuel_pa[hi - 1][j]);
-        let line = |k: usize, p: f64| {
-            let (p0, p1) = (self.bmep_pa[k - 1], self.bmep_pa[k]);
-            row(k - 1) + (row(k) - row(k - 1)) * (p - p0) / (p1 - p0)
-        };
-        let slope = (row(1) - row(0)) / (self.bmep_pa[1] - self.bmep_pa[0]);
-        let friction = row(0) / slope - self.bmep_pa[0]; // BM-2
         let inside = s0 <= speed_rad_s && speed_rad_s <= s1 && bmep_pa <= self.bmep_pa[m - 1];
-        (line(k, bmep_pa), friction, inside) // BM-1
+        let lowest = self.bmep_pa[0];
+        if bmep_pa < lowest {
+            return (row(0) * (bmep_pa + friction_pa) / (lowest + friction_pa), inside); // BM-2
+        }
+        let k = self.bmep_pa.partition_point(|&p| p <= bmep_pa).clamp(1, m - 1);
+        let (p0, p1) = (self.bmep_pa[k - 1], self.bmep_pa[k]);
+        (row(k - 1) + (row(k) - row(k - 1)) * (bmep_pa - p0) / (p1 - p0), inside) // BM-1
     }
 }
 
@@ -162,13 +163,13 @@ mod tests {
         let cm = |s: f64| s * stroke / std::f64::consts::PI;
         let fuel = speeds
             .iter()
-            .map(|&s| bmeps.iter().map(|&p| line.fuel_mep(cm(s), s, p, line.hot_friction_pa(cm(s), s)).fuel_pa).collect())
+            .map(|&s| bmeps.iter().map(|&p| line.fuel_mep(cm(s), s, p, line.hot_friction_pa(cm(s))).fuel_pa).collect())
             .collect();
-        let map = FuelModel::Map(BsfcMap { speed_rad_s: speeds.to_vec(), bmep_pa: bmeps, fuel_pa: fuel });
+        let map = FuelModel::Map(BsfcMap { speed_rad_s: speeds.to_vec(), bmep_pa: bmeps, fuel_pa: fuel, friction: (2.39882, 0.00286) });
         for p in [1.0, 3.0, 6.0] {
-            let hot = line.hot_friction_pa(cm(200.0), 200.0);
+            let hot = line.hot_friction_pa(cm(200.0));
             let a = line.fuel_mep(cm(200.0), 200.0, p * BAR, 1.5 * hot).fuel_pa;
-            let b = map.fuel_mep(cm(200.0), 200.0, p * BAR, 1.5 * map.hot_friction_pa(cm(200.0), 200.0)).fuel_pa;
+            let b = map.fuel_mep(cm(200.0), 200.0, p * BAR, 1.5 * map.hot_friction_pa(cm(200.0))).fuel_pa;
             assert!((a / b - 1.0).abs() < 0.01, "{p} bar: {a} {b}");
         }
     }

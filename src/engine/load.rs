@@ -4,8 +4,8 @@ use super::{BsfcMap, Engine, FuelModel, Willans};
 use crate::config::{Bound, Section};
 use crate::lubricant::Viscosity;
 use crate::numeric::Curve;
-use crate::setup::tables;
 use crate::setup::Files;
+use crate::setup::tables;
 
 /// Reads a checked engine; problems go to the reader.
 #[must_use]
@@ -24,15 +24,24 @@ pub fn load(s: &Section, files: &dyn Files) -> Engine {
         full_load: full_load(s),
         highest_rad_s: s.number("highest_rpm", rpm, "largest speed; above it rows are flagged overspeed"),
         inertia_kg_m2: s.number("inertia_kg_m2", Bound::open_low(0.0, 5.0), "engine, flywheel and primary side (SI-1)"),
-        inertia_torque_nm: s.number_or("inertia_torque_nm", Bound::closed(5.0, 500.0), 60.0, "largest torque that changes the speed of the rotating parts (SI-2)"),
+        inertia_torque_nm: s.number_or(
+            "inertia_torque_nm",
+            Bound::closed(5.0, 500.0),
+            60.0,
+            "largest torque that changes the speed of the rotating parts (SI-2)",
+        ),
         idle_hot_rad_s: idle.number("hot_rpm", Bound::closed(400.0, 2000.0), "idle speed, warm (EN-1)"),
         idle_cold_rad_s: idle.number("cold_rpm", Bound::closed(400.0, 3000.0), "idle speed at -10 degC coolant and below (EN-1)"),
-        friction_exponent: friction.number("temperature_exponent", Bound::closed(0.0, 8.0), "exponent t of friction with temperature (EN-2)"),
+        friction_exponent: friction.number(
+            "temperature_exponent",
+            Bound::closed(0.0, 8.0),
+            "exponent t of friction with temperature (EN-2)",
+        ),
         hot_k: friction.number("hot_degc", Bound::closed(60.0, 130.0), "temperature of the warm engine (EN-2)"),
         viscous_share: friction.number("viscous_share", share, "share of friction that follows the oil's viscosity (EN-2)"),
         viscous_exponent: friction.number("viscous_exponent", Bound::closed(0.0, 1.5), "exponent of viscosity (EN-2)"),
         reference_oil: reference_oil(&friction),
-        overrun_drag: friction.number_or("overrun_factor", Bound::closed(0.5, 3.0), 1.0, "closed-throttle drag over friction (EN-7)"),
+        overrun_drag: friction.number_or("overrun_factor", Bound::closed(1.0, 3.0), 1.0, "closed-throttle drag over friction (EN-7)"),
         enrichment: fuel.number("cold_enrichment", Bound::closed(0.0, 2.0), "extra fuel at 0 degC coolant, none from 60 degC (EN-3)"),
         electrical_w: s.number("electrical_w", Bound::closed(0.0, 5000.0), "electrical load at the shaft (EN-4)"),
         accessory_nm: s.number("accessory_nm", Bound::closed(0.0, 20.0), "torque of pumps and belts (EN-4)"),
@@ -60,23 +69,26 @@ fn reference_oil(s: &Section) -> Viscosity {
 }
 
 fn fuel_model(s: &Section, files: &dyn Files, displacement_m3: f64) -> FuelModel {
-    let (kind, w) = s.choose("model", &["willans", "bsfc_map"], Some("willans"), "fuel model: extended Willans line, or a BSFC map from CSV");
+    let (kind, w) =
+        s.choose("model", &["willans", "bsfc_map"], Some("willans"), "fuel model: extended Willans line, or a BSFC map from CSV");
+    let d = DEFAULT;
+    let l = w.number_or("l", Bound::closed(0.0, 5.0), d.l, "hot friction mean effective pressure at zero speed, bar (WI-1, BM-2)");
+    let l2 = w.number_or("l2", Bound::closed(0.0, 0.05), d.l2, "its rise with piston speed squared, bar s2/m2 (WI-1, BM-2)");
     if kind == "bsfc_map" {
         let file = w.text("file", "CSV with speed_rpm, bmep_bar or torque_nm, bsfc_g_kwh on a full grid (BM-1)");
         let lhv = s.table("fuel").number("heating_value_mj_kg", Bound::closed(20.0, 60.0), "lower heating value");
         return match tables::bsfc_map(&w, &file, files, lhv, displacement_m3) {
-            Some(map) => FuelModel::Map(map),
-            None => FuelModel::Willans(DEFAULT),
+            Some(map) => FuelModel::Map(BsfcMap { friction: (l, l2), ..map }),
+            None => FuelModel::Willans(d),
         };
     }
-    let d = DEFAULT;
     FuelModel::Willans(Willans {
         a: w.number_or("a", Bound::closed(0.2, 0.7), d.a, "indicated efficiency at zero speed and load (WI-1)"),
         b: w.number_or("b", Bound::closed(-0.02, 0.05), d.b, "its rise with piston speed, s/m (WI-1)"),
         c: w.number_or("c", Bound::closed(-0.01, 0.001), d.c, "its bend with piston speed, s2/m2 (WI-1)"),
         a2: w.number_or("a2", Bound::closed(-0.02, 0.0), d.a2, "fall of efficiency with load, 1/bar (WI-1)"),
-        l: w.number_or("l", Bound::closed(0.0, 5.0), d.l, "hot friction mean effective pressure at zero speed, bar (WI-1)"),
-        l2: w.number_or("l2", Bound::closed(0.0, 0.05), d.l2, "its rise with piston speed squared, bar s2/m2 (WI-1)"),
+        l,
+        l2,
     })
 }
 
@@ -111,6 +123,6 @@ impl BsfcMap {
         if fuel.iter().any(|row| row.windows(2).any(|f| f[0] >= f[1])) {
             return Err("fuel (BSFC times BMEP) must rise with load at every speed".into());
         }
-        Ok(BsfcMap { speed_rad_s: speeds, bmep_pa: loads, fuel_pa: fuel })
+        Ok(BsfcMap { speed_rad_s: speeds, bmep_pa: loads, fuel_pa: fuel, friction: (DEFAULT.l, DEFAULT.l2) })
     }
 }

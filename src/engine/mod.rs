@@ -5,18 +5,19 @@
 //! | EN-1 | idle = hot + (cold - hot) clip((60 degC - T_c)/70 K, 0, 1) | ASSUMED |
 //! | EN-2 | friction factor = theta^-t (1 + s ((nu/nu_r)^m - 1)), theta = T/T_hot at most 1, T mean of coolant and oil | source: CO2MPAS (theta^-t); share s and m ASSUMED, so that the oil counts |
 //! | EN-3 | enrichment = 1 + e max(0, (60 degC - T_c)/60 K) | ASSUMED |
-//! | EN-4 | accessories: T = P_el/w + T_0 | source: CO2MPAS class values |
+//! | EN-4 | accessories: T = P_el/w + T_0, w at least half the idle speed | source: CO2MPAS class values |
 //! | EN-5 | full load falls with altitude as (p/p_0)^1.2 | source: ISO 1585 naturally aspirated, pressure term only |
 //! | EN-6 | waste = fuel - indicated; exhaust takes its share, falling linearly with speed; friction goes to the engine | source: ADVISOR (0.40 to 0.30); unburnt enrichment goes to the exhaust |
-//! | EN-7 | overrun torque = friction x drag factor; fuel off where the fuel line reaches zero above 1.1 idle | source: CO2MPAS rule; drag factor ASSUMED |
+//! | EN-7 | overrun torque = friction x drag factor; fuel off where the fuel line reaches zero; the wheels drag the engine only above 1.1 idle (LC-3) | source: CO2MPAS rule; drag factor ASSUMED |
+//! | EN-8 | the full-load line is not lowered by cold friction: denser charge and friction act against each other | ASSUMED |
 //!
 //! nu_r is the viscosity of the reference oil at the same temperature, so that with the reference oil EN-2 is the published law.
 
 mod fuel;
 mod load;
 
-pub use load::load;
 pub use fuel::{BsfcMap, FuelModel, FuelPoint, Willans};
+pub use load::load;
 
 use crate::lubricant::{Lubricant, Viscosity, ZERO_DEGC_K};
 use crate::numeric::Curve;
@@ -117,8 +118,12 @@ impl Engine {
     pub fn at(&self, coolant_k: f64, oil_k: f64, oil: &Lubricant, pressure_factor: f64) -> EngineNow<'_> {
         let theta = 0.5 * (coolant_k + oil_k) / self.hot_k;
         let theta = if theta < 1.0 { theta } else { 1.0 };
-        let relative = oil.kinematic_m2_s(oil_k) / self.reference_oil.kinematic_m2_s(oil_k);
-        let viscous = 1.0 + self.viscous_share * ((self.viscous_exponent * relative.ln()).exp() - 1.0);
+        let viscous = if oil.viscosity == self.reference_oil {
+            1.0 // most runs: spares eight transcendental functions a step
+        } else {
+            let relative = oil.kinematic_m2_s(oil_k) / self.reference_oil.kinematic_m2_s(oil_k);
+            1.0 + self.viscous_share * ((self.viscous_exponent * relative.ln()).exp() - 1.0)
+        };
         let cold = ((60.0 + ZERO_DEGC_K - coolant_k) / 70.0).clamp(0.0, 1.0);
         let enrich = (60.0 + ZERO_DEGC_K - coolant_k) / 60.0;
         EngineNow {
@@ -181,14 +186,16 @@ impl EngineNow<'_> {
     #[must_use]
     #[inline]
     pub fn accessories_nm(&self, speed_rad_s: f64) -> f64 {
-        if speed_rad_s > 0.0 { self.engine.electrical_w / speed_rad_s + self.engine.accessory_nm } else { 0.0 } // EN-4
+        let least = 0.5 * self.engine.idle_hot_rad_s;
+        let w = if speed_rad_s > least { speed_rad_s } else { least };
+        if speed_rad_s > 0.0 { self.engine.electrical_w / w + self.engine.accessory_nm } else { 0.0 } // EN-4
     }
 
     /// Friction mean effective pressure at the present temperature, Pa.
     #[must_use]
     #[inline]
     pub fn friction_pa(&self, speed_rad_s: f64) -> f64 {
-        self.engine.fuel.hot_friction_pa(self.engine.piston_m_s(speed_rad_s), speed_rad_s) * self.friction_factor
+        self.engine.fuel.hot_friction_pa(self.engine.piston_m_s(speed_rad_s)) * self.friction_factor
     }
 
     /// Torque that the engine takes up in overrun with fuel cut off, Nm, positive (EN-7).
@@ -225,7 +232,8 @@ impl EngineNow<'_> {
             to_oil_w: e.friction_to_oil * friction,
             exhaust_w: exhaust_share * waste + (self.enrichment - 1.0) * burnt,
             cut: point.fuel_pa <= 0.0,
-            outside: point.outside,
+            // More taken up than the closed throttle explains would be energy from nowhere in the heat of friction.
+            outside: point.outside || (point.fuel_pa <= 0.0 && -torque_nm > self.drag_nm(speed_rad_s) * (1.0 + 1e-4) + 1e-3),
         }
     }
 }

@@ -17,7 +17,8 @@ pub fn load(root: &Section, name: &str) -> Lubricant {
 
 fn viscosity(root: &Section) -> Viscosity {
     let columns = [("temp_degc", Bound::closed(-60.0, 200.0)), ("kinematic_mm2_s", Bound::closed(1.0, 1e7))];
-    let table = root.rows("viscosity_table", &columns, "rows [temperature degC, kinematic viscosity mm2/s]; replaces kv40 and kv100 (LU-1)");
+    let table =
+        root.rows("viscosity_table", &columns, "rows [temperature degC, kinematic viscosity mm2/s]; replaces kv40 and kv100 (LU-1)");
     let points: Vec<(f64, f64)> = if table.is_empty() {
         let allowed = Bound::closed(1.5, 5000.0);
         let kv40 = root.number("kv40_mm2_s", allowed, "kinematic viscosity at 40 degC (LU-1)");
@@ -30,7 +31,12 @@ fn viscosity(root: &Section) -> Viscosity {
         for key in ["kv40_mm2_s", "kv100_mm2_s"] {
             if root.has(key) {
                 let _ = root.optional_number(key, Bound::closed(1.5, 5000.0), "kinematic viscosity (LU-1)");
-                root.complain(key, "", "both a viscosity table and this value are given", "keep one of them: the table replaces kv40 and kv100");
+                root.complain(
+                    key,
+                    "",
+                    "both a viscosity table and this value are given",
+                    "keep one of them: the table replaces kv40 and kv100",
+                );
             }
         }
         table.iter().map(|r| (r[0], r[1])).collect()
@@ -54,13 +60,24 @@ fn friction(s: &Section) -> Friction {
     let lift = s.table("lift_off");
     Friction {
         band: s.number_or("band", mu, 0.13, "band boundary friction at 85 degC (LU-4)"),
-        band_rise_per_k: s.number_or("band_rise_per_k", Bound::closed(0.0, 0.02), 0.004, "rise of band friction with belt temperature (LU-4)"),
+        band_rise_per_k: s.number_or(
+            "band_rise_per_k",
+            Bound::closed(0.0, 0.02),
+            0.004,
+            "rise of band friction with belt temperature (LU-4)",
+        ),
         band_floor: s.number_or("band_floor", Bound::closed(0.1, 1.0), 0.7, "lower bound of the temperature factor (LU-4)"),
+        band_ceiling: s.number_or("band_ceiling", Bound::closed(1.0, 2.0), 1.04, "upper bound of the temperature factor (LU-4)"),
         segment: s.number_or("segment", Bound::closed(0.02, 0.4), 0.125, "friction segment on pulley (SL-4, VA-2)"),
         flank: s.number_or("flank", mu, 0.13, "friction in wedging and penetration (WE-3, PE-1)"),
-        lift_reduction: lift.number_or("reduction", Bound::closed(0.0, 0.95), 0.25, "part of the boundary friction that a carrying film removes (LU-4)"),
+        lift_reduction: lift.number_or(
+            "reduction",
+            Bound::closed(0.0, 0.95),
+            0.25,
+            "part of the boundary friction that a carrying film removes (LU-4)",
+        ),
         lift_n_m: lift.number_or("load_n_per_m", Bound::open_low(0.0, 10.0), 0.028, "eta dv at which the film carries half (LU-4)"),
         lift_exponent: lift.number_or("exponent", Bound::closed(0.5, 8.0), 3.2, "sharpness of lift-off (LU-4)"),
-        film_thickness_m: lift.number_or("film_thickness_um", Bound::closed(0.01, 100.0), 0.5, "thickness of the carrying film (FI-1)"),
+        film_thickness_m: lift.number_or("film_thickness_um", Bound::closed(0.01, 100.0), 1.5, "thickness of the carrying film (FI-1)"),
     }
 }

@@ -5,7 +5,7 @@
 //! | LU-1 | ln ln(nu + 0.7) = a - b ln T, nu in mm2/s, T in K | source: ASTM D341 (Walther) |
 //! | LU-2 | rho = rho15 (1 - 0.00068 (T - 15 degC)) | source: physics of petroleum oils, ASSUMED coefficient |
 //! | LU-3 | cp = (1.685 + 0.0034 T_C) / sqrt(rho15 / 1000), kJ/kgK | source: petroleum oils, ASSUMED for all fluids |
-//! | LU-4 | mu_b = mu_85 max(floor, 1 + k (T - 85 degC)) (1 - r z/(1+z)), z = (eta dv / N_lift)^p | fitted to thesis 5.5.2, 8.9 |
+//! | LU-4 | mu_b = mu_85 clamp(1 + k (T - 85 degC), floor, ceiling) (1 - r z/(1+z)), z = (eta dv / N_lift)^p | fitted to thesis 5.5.2, 8.9 |
 //!
 //! Symbols: nu kinematic viscosity, eta dynamic viscosity Pa s, dv sliding speed of the innermost band m/s.
 //! Valid from 1.5 mm2/s upwards and from -40 to 160 degC; outside, rows are flagged.
@@ -30,6 +30,8 @@ pub struct Friction {
     pub band_rise_per_k: f64,
     /// Lower bound of the temperature factor (Ichihashi: at most 30 % change).
     pub band_floor: f64,
+    /// Upper bound of the temperature factor.
+    pub band_ceiling: f64,
     /// Friction segment on pulley.
     pub segment: f64,
     /// Friction in wedging and penetration.
@@ -59,7 +61,7 @@ impl Friction {
     #[inline]
     pub fn band(&self, belt_k: f64, eta_pa_s: f64, sliding_m_s: f64) -> BandFriction {
         let warm = 1.0 + self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0);
-        let warm = if warm > self.band_floor { warm } else { self.band_floor };
+        let warm = warm.clamp(self.band_floor, self.band_ceiling);
         let load = eta_pa_s * sliding_m_s / self.lift_n_m;
         let z = if load > 0.0 { (self.lift_exponent * load.ln()).exp() } else { 0.0 };
         let film_share = if z.is_finite() { z / (1.0 + z) } else { 1.0 };

@@ -27,10 +27,7 @@ impl Viscosity {
         if points.windows(2).any(|p| p[0].1 <= p[1].1) {
             return Err("viscosity must fall as temperature rises".into());
         }
-        Ok(Viscosity {
-            x: points.iter().map(|p| p.0.ln()).collect(),
-            w: points.iter().map(|p| (p.1 * 1e6 + 0.7).ln().ln()).collect(),
-        })
+        Ok(Viscosity { x: points.iter().map(|p| p.0.ln()).collect(), w: points.iter().map(|p| (p.1 * 1e6 + 0.7).ln().ln()).collect() })
     }
 
     /// Kinematic viscosity at a temperature, m2/s.

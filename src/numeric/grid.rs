@@ -28,11 +28,7 @@ impl Grid {
         }
         let size: usize = axes.iter().map(Vec::len).product();
         if size != rows.len() || size == 0 {
-            return Err(format!(
-                "the {} rows do not fill the grid of {} combinations exactly once",
-                rows.len(),
-                size
-            ));
+            return Err(format!("the {} rows do not fill the grid of {} combinations exactly once", rows.len(), size));
         }
         let mut grid = Grid { axes, values: vec![f64::NAN; size] };
         for (x, value) in rows {
@@ -47,9 +43,7 @@ impl Grid {
     }
 
     fn index_of(&self, x: &[f64; GRID_AXES]) -> usize {
-        self.axes.iter().zip(x).fold(0, |index, (axis, &v)| {
-            index * axis.len() + axis.partition_point(|&a| a < v).min(axis.len() - 1)
-        })
+        self.axes.iter().zip(x).fold(0, |index, (axis, &v)| index * axis.len() + axis.partition_point(|&a| a < v).min(axis.len() - 1))
     }
 
     /// Value at `x` and whether `x` lies within the grid on every axis that has more than one value.

@@ -29,50 +29,25 @@ pub fn fuel_bars(runs: &[PlotRun]) -> String {
         [run] => run.name.to_string(),
         _ => format!("{} vehicles", runs.len()),
     };
-    let mut figure = Figure::new(
-        size,
-        PLOT_LEFT,
-        "Fuel consumption",
-        &subject,
-        &describe(runs),
-    );
-    let rect = Rect {
-        left: PLOT_LEFT,
-        right,
-        top: TOP,
-        bottom,
-    };
+    let mut figure = Figure::new(size, PLOT_LEFT, "Fuel consumption", &subject, &describe(runs));
+    let rect = Rect { left: PLOT_LEFT, right, top: TOP, bottom };
     let y = axis(runs);
     let mut x = Axis::exact("", 0.0, groups.len().max(1) as f64, 5);
     // Groups have names in place of numbers; these are written below.
     x.ticks.clear();
     let panel = Panel::draw(&mut figure, rect, x, y, false);
-    let paints: Vec<String> = (0..runs.len())
-        .map(|i| fill(&mut figure, "fuel", i, runs.len()))
-        .collect();
+    let paints: Vec<String> = (0..runs.len()).map(|i| fill(&mut figure, "fuel", i, runs.len())).collect();
     draw_groups(&mut figure, &panel, runs, &groups, &paints);
     if groups.is_empty() {
         panel.empty(&mut figure);
     }
     panel.outline(&mut figure);
     let entries: Vec<_> = paints.into_iter().map(Mark::Fill).zip(names).collect();
-    legend(
-        &mut figure,
-        (right + 16.0, TOP),
-        STRIP - 8.0,
-        "Vehicle",
-        &entries,
-    );
+    legend(&mut figure, (right + 16.0, TOP), STRIP - 8.0, "Vehicle", &entries);
     figure.finish()
 }
 
-fn draw_groups(
-    figure: &mut Figure,
-    panel: &Panel,
-    runs: &[PlotRun],
-    groups: &[String],
-    paints: &[String],
-) {
+fn draw_groups(figure: &mut Figure, panel: &Panel, runs: &[PlotRun], groups: &[String], paints: &[String]) {
     let width = (1.0 - GAP) / runs.len().max(1) as f64;
     for (g, group) in groups.iter().enumerate() {
         for (i, (run, paint)) in runs.iter().zip(paints).enumerate() {
@@ -84,11 +59,7 @@ fn draw_groups(
         let middle = panel.px(g as f64 + 0.5);
         let room = panel.px(1.0) - panel.px(0.0) - 6.0;
         let name = fit(group, 12.0, room);
-        let weight = if group == "total" {
-            "font-weight=\"bold\""
-        } else {
-            ""
-        };
+        let weight = if group == "total" { "font-weight=\"bold\"" } else { "" };
         let at = (middle, panel.rect.bottom + 20.0);
         figure.text(at, 12.0, Anchor::Middle, weight, INK, &name);
     }
@@ -96,22 +67,14 @@ fn draw_groups(
 
 /// From zero, with room for the values over the highest bar.
 fn axis(runs: &[PlotRun]) -> Axis {
-    let values = || {
-        runs.iter()
-            .flat_map(|run| run.group_fuel.iter().map(|(_, fuel)| *fuel))
-    };
+    let values = || runs.iter().flat_map(|run| run.group_fuel.iter().map(|(_, fuel)| *fuel));
     let highest = values().filter(|x| x.is_finite()).fold(0.0, f64::max);
     Axis::round("Fuel [L/100 km]", [0.0, 1.12 * highest].into_iter(), 8)
 }
 
 fn bar(figure: &mut Figure, panel: &Panel, (from, to): (f64, f64), value: f64, paint: &str) {
     let (left, right, top) = (panel.px(from), panel.px(to), panel.py(value));
-    let rect = Rect {
-        left,
-        right,
-        top,
-        bottom: panel.rect.bottom,
-    };
+    let rect = Rect { left, right, top, bottom: panel.rect.bottom };
     let attributes = format!("class=\"bar\" fill=\"{paint}\" stroke=\"{INK}\" stroke-width=\"3\"");
     figure.rect(rect, &attributes);
     let text = format!("{value:.2}");
@@ -120,19 +83,9 @@ fn bar(figure: &mut Figure, panel: &Panel, (from, to): (f64, f64), value: f64, p
         figure.text((middle, top - 4.0), LABEL, Anchor::Middle, "", INK, &text);
     } else {
         // Upright where the bars are thinner than their values are wide.
-        let (x, y) = (
-            super::figure::units(middle + 3.5),
-            super::figure::units(top - 4.0),
-        );
+        let (x, y) = (super::figure::units(middle + 3.5), super::figure::units(top - 4.0));
         let turn = format!("transform=\"rotate(-90 {x} {y})\"");
-        figure.text(
-            (middle + 3.5, top - 4.0),
-            LABEL,
-            Anchor::Start,
-            &turn,
-            INK,
-            &text,
-        );
+        figure.text((middle + 3.5, top - 4.0), LABEL, Anchor::Start, &turn, INK, &text);
     }
 }
 
@@ -158,16 +111,9 @@ fn describe(runs: &[PlotRun]) -> String {
     let told: Vec<String> = runs
         .iter()
         .map(|run| {
-            let fuel: Vec<String> = run
-                .group_fuel
-                .iter()
-                .map(|(name, fuel)| format!("{name} {fuel:.2}"))
-                .collect();
+            let fuel: Vec<String> = run.group_fuel.iter().map(|(name, fuel)| format!("{name} {fuel:.2}")).collect();
             format!("{}: {}", run.name, fuel.join(", "))
         })
         .collect();
-    format!(
-        "Fuel in L/100 km by part of the cycle, one bar per vehicle. {}.",
-        told.join("; ")
-    )
+    format!("Fuel in L/100 km by part of the cycle, one bar per vehicle. {}.", told.join("; "))
 }

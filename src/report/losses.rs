@@ -29,11 +29,7 @@ impl LossBins {
     /// Energy that a component has lost in all bins, J.
     #[must_use]
     pub fn energy_j(&self, component: Component) -> f64 {
-        self.mean_w
-            .iter()
-            .zip(&self.seconds)
-            .map(|(w, s)| w[component as usize] * s)
-            .sum()
+        self.mean_w.iter().zip(&self.seconds).map(|(w, s)| w[component as usize] * s).sum()
     }
 }
 
@@ -45,17 +41,12 @@ impl LossBins {
 pub fn bin_losses(rows: &[Row], bins: usize) -> LossBins {
     let mut out = LossBins::default();
     let seconds = |row: &Row| {
-        if row.dt_s.is_finite() {
-            row.dt_s.max(0.0)
-        } else {
-            0.0
-        }
+        if row.dt_s.is_finite() { row.dt_s.max(0.0) } else { 0.0 }
     };
     let total: f64 = rows.iter().map(seconds).sum();
     let length = total / bins.max(1) as f64;
     let (mut elapsed, mut bin, mut energy) = (0.0, 0.0, [0.0; Component::COUNT]);
-    out.edges_s
-        .extend(rows.first().map(|row| row.time_s - seconds(row)));
+    out.edges_s.extend(rows.first().map(|row| row.time_s - seconds(row)));
     for (i, row) in rows.iter().enumerate() {
         let dt = seconds(row);
         elapsed += dt;
@@ -81,12 +72,7 @@ pub fn losses(run: &PlotRun) -> String {
     let bins = bin_losses(run.rows, BINS);
     let energy: Vec<f64> = run.components.iter().map(|&c| bins.energy_j(c)).collect();
     let total: f64 = energy.iter().sum();
-    let told: Vec<String> = run
-        .components
-        .iter()
-        .zip(&energy)
-        .map(|(&component, &joule)| told(component, joule, total))
-        .collect();
+    let told: Vec<String> = run.components.iter().zip(&energy).map(|(&component, &joule)| told(component, joule, total)).collect();
     let desc = format!(
         "Loss power over time, stacked from the bottom in the order of the power flow. Energy lost in all: {}. By component: {}.",
         kilojoule(total),
@@ -94,28 +80,12 @@ pub fn losses(run: &PlotRun) -> String {
     );
     let size = (RIGHT + 16.0 + STRIP, PLOT_TOP + TALL + BELOW + 6.0);
     let mut figure = Figure::new(size, PLOT_LEFT, "Transmission losses", run.name, &desc);
-    let rect = Rect {
-        left: PLOT_LEFT,
-        right: RIGHT,
-        top: PLOT_TOP,
-        bottom: PLOT_TOP + TALL,
-    };
-    let stack = |watts: &[f64; Component::COUNT]| {
-        run.components
-            .iter()
-            .map(|&c| watts[c as usize])
-            .sum::<f64>()
-    };
-    let y = Axis::round(
-        "Loss power [W]",
-        bins.mean_w.iter().map(stack).chain([0.0]),
-        8,
-    );
+    let rect = Rect { left: PLOT_LEFT, right: RIGHT, top: PLOT_TOP, bottom: PLOT_TOP + TALL };
+    let stack = |watts: &[f64; Component::COUNT]| run.components.iter().map(|&c| watts[c as usize]).sum::<f64>();
+    let y = Axis::round("Loss power [W]", bins.mean_w.iter().map(stack).chain([0.0]), 8);
     let panel = Panel::draw(&mut figure, rect, time_axis(run.rows), y, true);
     let count = run.components.len();
-    let paints: Vec<String> = (0..count)
-        .map(|i| fill(&mut figure, "losses", i, count))
-        .collect();
+    let paints: Vec<String> = (0..count).map(|i| fill(&mut figure, "losses", i, count)).collect();
     let mut base = vec![0.0; bins.mean_w.len()];
     for (&component, paint) in run.components.iter().zip(&paints) {
         layer(&mut figure, &panel, &bins, component, &mut base, paint);
@@ -128,30 +98,13 @@ pub fn losses(run: &PlotRun) -> String {
     // Listed from the top, as they lie in the stack.
     let entries: Vec<_> = paints.into_iter().map(Mark::Fill).zip(told).rev().collect();
     let heading = format!("All losses: {}", kilojoule(total));
-    legend(
-        &mut figure,
-        (RIGHT + 16.0, PLOT_TOP),
-        STRIP - 8.0,
-        &heading,
-        &entries,
-    );
+    legend(&mut figure, (RIGHT + 16.0, PLOT_TOP), STRIP - 8.0, &heading, &entries);
     figure.finish()
 }
 
 /// Draws one component on top of `base`, and raises that.
-fn layer(
-    figure: &mut Figure,
-    panel: &Panel,
-    bins: &LossBins,
-    component: Component,
-    base: &mut [f64],
-    paint: &str,
-) {
-    let top: Vec<f64> = base
-        .iter()
-        .zip(&bins.mean_w)
-        .map(|(low, watts)| low + watts[component as usize])
-        .collect();
+fn layer(figure: &mut Figure, panel: &Panel, bins: &LossBins, component: Component, base: &mut [f64], paint: &str) {
+    let top: Vec<f64> = base.iter().zip(&bins.mean_w).map(|(low, watts)| low + watts[component as usize]).collect();
     let spans = || bins.edges_s.windows(2).zip(&top).zip(base.iter());
     if spans().any(|((_, high), low)| high > low) {
         let mut path = Path::default();
@@ -179,21 +132,8 @@ fn layer(
 fn told(component: Component, joule: f64, total: f64) -> String {
     let words = component.name().replace('_', " ");
     let mut letters = words.chars();
-    let name: String = letters
-        .next()
-        .map(|c| c.to_ascii_uppercase())
-        .into_iter()
-        .chain(letters)
-        .collect();
-    if total > 0.0 {
-        format!(
-            "{name}: {} ({:.0} %)",
-            kilojoule(joule),
-            100.0 * joule / total
-        )
-    } else {
-        name
-    }
+    let name: String = letters.next().map(|c| c.to_ascii_uppercase()).into_iter().chain(letters).collect();
+    if total > 0.0 { format!("{name}: {} ({:.0} %)", kilojoule(joule), 100.0 * joule / total) } else { name }
 }
 
 fn kilojoule(joule: f64) -> String {

@@ -23,43 +23,17 @@ type Series = (&'static str, Stroke, Points);
 /// Vehicle speed, ratio or gear, and engine speed over time.
 #[must_use]
 pub fn driveline(run: &PlotRun) -> String {
-    let ratio = if run.cvt {
-        ("belt_ratio", "Belt ratio")
-    } else {
-        ("gear", "Gear")
-    };
-    let series = [
-        ("speed_kmh", "Vehicle speed"),
-        ratio,
-        ("engine_speed_rpm", "Engine speed"),
-    ];
-    let points: Vec<Points> = series
-        .iter()
-        .map(|(name, _)| steps_or_means(run, name))
-        .collect();
-    let words: Vec<String> = series
-        .iter()
-        .zip(&points)
-        .map(|((name, title), points)| words(title, name, points))
-        .collect();
+    let ratio = if run.cvt { ("belt_ratio", "Belt ratio") } else { ("gear", "Gear") };
+    let series = [("speed_kmh", "Vehicle speed"), ratio, ("engine_speed_rpm", "Engine speed")];
+    let points: Vec<Points> = series.iter().map(|(name, _)| steps_or_means(run, name)).collect();
+    let words: Vec<String> = series.iter().zip(&points).map(|((name, title), points)| words(title, name, points)).collect();
     let desc = format!("Three panels over time. {}.", words.join("; "));
     let size = (WIDTH, PLOT_TOP + 3.0 * 165.0 + 2.0 * GAP + BELOW + 6.0);
-    let mut figure = Figure::new(
-        size,
-        PLOT_LEFT,
-        "Vehicle speed, ratio and engine speed",
-        run.name,
-        &desc,
-    );
+    let mut figure = Figure::new(size, PLOT_LEFT, "Vehicle speed, ratio and engine speed", run.name, &desc);
     let time = time_axis(run.rows);
     for (i, ((name, title), points)) in series.iter().zip(&points).enumerate() {
         let top = PLOT_TOP + i as f64 * (165.0 + GAP);
-        let rect = Rect {
-            left: PLOT_LEFT,
-            right: WIDTH - 20.0,
-            top,
-            bottom: top + 165.0,
-        };
+        let rect = Rect { left: PLOT_LEFT, right: WIDTH - 20.0, top, bottom: top + 165.0 };
         let y = Axis::round(&titled(title, name), zero_and(points), 6);
         let panel = Panel::draw(&mut figure, rect, time.clone(), y, i == 2);
         phases(&mut figure, &panel, run, i == 0);
@@ -71,10 +45,7 @@ pub fn driveline(run: &PlotRun) -> String {
 /// Secondary and primary pressure over time, with the vehicle speed for context.
 #[must_use]
 pub fn pressure(run: &PlotRun) -> String {
-    let names = [
-        ("secondary_pressure_bar", "Secondary"),
-        ("primary_pressure_bar", "Primary"),
-    ];
+    let names = [("secondary_pressure_bar", "Secondary"), ("primary_pressure_bar", "Primary")];
     let all: Vec<Series> = names
         .iter()
         .zip(PRESSURES)
@@ -82,24 +53,14 @@ pub fn pressure(run: &PlotRun) -> String {
         .filter(|(.., points)| has_data(points))
         .collect();
     let speed = means(run.rows, "speed_kmh");
-    let mut said: Vec<String> = all
-        .iter()
-        .map(|(title, _, points)| words(title, names[0].0, points))
-        .collect();
+    let mut said: Vec<String> = all.iter().map(|(title, _, points)| words(title, names[0].0, points)).collect();
     said.push(words("Vehicle speed", "speed_kmh", &speed));
     let desc = format!("Pulley pressures over time. {}.", said.join("; "));
     let (tall, low) = (280.0, 110.0);
     let size = (WIDTH + STRIP, PLOT_TOP + tall + GAP + low + BELOW + 6.0);
     let mut figure = Figure::new(size, PLOT_LEFT, "Pulley pressures", run.name, &desc);
     let y = Axis::round("Pressure [bar]", all.iter().flat_map(|s| zero_and(&s.2)), 7);
-    several(
-        &mut figure,
-        run,
-        (PLOT_TOP, PLOT_TOP + tall),
-        y,
-        &all,
-        false,
-    );
+    several(&mut figure, run, (PLOT_TOP, PLOT_TOP + tall), y, &all, false);
     let top = PLOT_TOP + tall + GAP;
     let y = Axis::round("Speed [km/h]", zero_and(&speed), 4);
     let context = [("Vehicle speed", CONTEXT, speed)];
@@ -109,20 +70,8 @@ pub fn pressure(run: &PlotRun) -> String {
 
 /// Draws a panel with its legend beside it. The last panel of a picture has the time axis, the
 /// first one the names of the phases.
-fn several(
-    figure: &mut Figure,
-    run: &PlotRun,
-    (top, bottom): (f64, f64),
-    y: Axis,
-    all: &[Series],
-    last: bool,
-) {
-    let rect = Rect {
-        left: PLOT_LEFT,
-        right: WIDTH - 20.0,
-        top,
-        bottom,
-    };
+fn several(figure: &mut Figure, run: &PlotRun, (top, bottom): (f64, f64), y: Axis, all: &[Series], last: bool) {
+    let rect = Rect { left: PLOT_LEFT, right: WIDTH - 20.0, top, bottom };
     let panel = Panel::draw(figure, rect, time_axis(run.rows), y, last);
     phases(figure, &panel, run, top <= PLOT_TOP);
     // The first of the list ends up on top.
@@ -132,10 +81,7 @@ fn several(
     if !all.iter().any(|(.., points)| has_data(points)) {
         panel.empty(figure);
     }
-    let entries: Vec<_> = all
-        .iter()
-        .map(|(title, stroke, _)| (Mark::Line(*stroke), (*title).to_string()))
-        .collect();
+    let entries: Vec<_> = all.iter().map(|(title, stroke, _)| (Mark::Line(*stroke), (*title).to_string())).collect();
     legend(figure, (WIDTH - 4.0, top), STRIP - 8.0, "", &entries);
 }
 
@@ -160,27 +106,16 @@ pub fn temperatures(run: &PlotRun) -> String {
         .iter()
         .map(|(title, _, points)| {
             let last = points.iter().rev().find(|point| point.1.is_finite());
-            let end = last.map_or(String::new(), |p| {
-                format!(" and {} at the end", number(p.1, 1.0))
-            });
+            let end = last.map_or(String::new(), |p| format!(" and {} at the end", number(p.1, 1.0)));
             words(title, "coolant_degc", points) + &end
         })
         .collect();
     let desc = format!("Temperatures over time. {}.", said.join("; "));
     let size = (WIDTH + STRIP, PLOT_TOP + 400.0 + BELOW + 6.0);
     let mut figure = Figure::new(size, PLOT_LEFT, "Temperatures", run.name, &desc);
-    let values = all
-        .iter()
-        .flat_map(|(.., points)| points.iter().map(|p| p.1));
+    let values = all.iter().flat_map(|(.., points)| points.iter().map(|p| p.1));
     let y = Axis::round("Temperature [\u{b0}C]", values, 9);
-    several(
-        &mut figure,
-        run,
-        (PLOT_TOP, PLOT_TOP + 400.0),
-        y,
-        &all,
-        true,
-    );
+    several(&mut figure, run, (PLOT_TOP, PLOT_TOP + 400.0), y, &all, true);
     figure.finish()
 }
 
@@ -208,9 +143,7 @@ fn means(rows: &[Row], name: &str) -> Points {
     let Some(column) = column(name) else {
         return Vec::new();
     };
-    rows.iter()
-        .map(|row| (row.time_s - 0.5 * row.dt_s, column.number(row)))
-        .collect()
+    rows.iter().map(|row| (row.time_s - 0.5 * row.dt_s, column.number(row))).collect()
 }
 
 /// States stand at the end of their step.
@@ -218,9 +151,7 @@ fn ends(rows: &[Row], name: &str) -> Points {
     let Some(column) = column(name) else {
         return Vec::new();
     };
-    rows.iter()
-        .map(|row| (row.time_s, column.number(row)))
-        .collect()
+    rows.iter().map(|row| (row.time_s, column.number(row))).collect()
 }
 
 /// A gear holds for its whole step; everything else goes on smoothly.
@@ -259,11 +190,7 @@ fn words(title: &str, name: &str, points: &[(f64, f64)]) -> String {
         unit => &format!(" {unit}"),
     };
     let step = if high - low < 20.0 { 0.01 } else { 1.0 };
-    format!(
-        "{title} from {} to {}{unit}",
-        number(low, step),
-        number(high, step)
-    )
+    format!("{title} from {} to {}{unit}", number(low, step), number(high, step))
 }
 
 /// Marks where phases begin, with their names above the plot where these fit.
@@ -277,18 +204,10 @@ pub(super) fn phases(figure: &mut Figure, panel: &Panel, run: &PlotRun, named: b
         };
         let (left, right) = (panel.px(from), panel.px(last.time_s));
         if i > 0 && left.is_finite() && right - left > 3.0 {
-            let attributes =
-                format!("stroke=\"{QUIET}\" stroke-width=\"3\" stroke-dasharray=\"4 10\"");
-            figure.line(
-                (left, panel.rect.top),
-                (left, panel.rect.bottom),
-                &attributes,
-            );
+            let attributes = format!("stroke=\"{QUIET}\" stroke-width=\"3\" stroke-dasharray=\"4 10\"");
+            figure.line((left, panel.rect.top), (left, panel.rect.bottom), &attributes);
         }
-        let name = run
-            .phases
-            .get(usize::from(first.phase))
-            .map_or("", String::as_str);
+        let name = run.phases.get(usize::from(first.phase)).map_or("", String::as_str);
         let short = fit(name, 10.0, right - left - 4.0);
         // A name cut to a few letters tells nothing.
         let tells = short == name || text_width(&short, 10.0) > 40.0;

@@ -82,9 +82,7 @@ pub fn column(name: &str) -> Option<&'static Column> {
 /// The column of a component's loss power.
 #[must_use]
 pub fn loss_column(component: Component) -> Option<&'static Column> {
-    COLUMNS
-        .iter()
-        .find(|column| column.scope == Scope::Has(component))
+    COLUMNS.iter().find(|column| column.scope == Scope::Has(component))
 }
 
 fn kmh(speed_m_s: f64) -> f64 {
@@ -195,18 +193,12 @@ mod tests {
                 _ => None,
             })
             .collect();
-        let wanted: Vec<_> = Component::ALL
-            .iter()
-            .map(|c| format!("{}_loss_w", c.name()))
-            .collect();
+        let wanted: Vec<_> = Component::ALL.iter().map(|c| format!("{}_loss_w", c.name())).collect();
         assert_eq!(names, wanted);
         for component in Component::ALL {
             let mut row = Row::default();
             row.loss_w[component as usize] = 7.5;
-            let sum: f64 = Component::ALL
-                .iter()
-                .map(|&c| loss_column(c).map_or(f64::NAN, |column| column.number(&row)))
-                .sum();
+            let sum: f64 = Component::ALL.iter().map(|&c| loss_column(c).map_or(f64::NAN, |column| column.number(&row))).sum();
             let own = loss_column(component).map_or(f64::NAN, |column| column.number(&row));
             assert!((own - 7.5).abs() < 1e-15 && (sum - 7.5).abs() < 1e-15);
         }

@@ -37,40 +37,18 @@ impl OutputDir {
         let path = path.as_ref().to_path_buf();
         if path.as_os_str().is_empty() {
             let hint = "name a directory, for example --out run1";
-            return Err(problem(
-                &path,
-                "the name of the output directory is empty",
-                hint,
-            ));
+            return Err(problem(&path, "the name of the output directory is empty", hint));
         }
         if path.exists() && !path.is_dir() {
             let message = format!("{} exists and is not a directory", path.display());
             return Err(problem(&path, &message, "choose another name"));
         }
-        let created = Created::new(&path).map_err(|error| {
-            failed(
-                &path,
-                &format!("cannot create directory {}", path.display()),
-                &error,
-            )
-        })?;
-        let earlier = names_in(&path).map_err(|error| {
-            failed(
-                &path,
-                &format!("cannot read directory {}", path.display()),
-                &error,
-            )
-        })?;
+        let created = Created::new(&path).map_err(|error| failed(&path, &format!("cannot create directory {}", path.display()), &error))?;
+        let earlier = names_in(&path).map_err(|error| failed(&path, &format!("cannot read directory {}", path.display()), &error))?;
         check_contents(&path, &earlier, force)?;
-        let dir = OutputDir {
-            path,
-            earlier,
-            written: Vec::new(),
-            created,
-        };
+        let dir = OutputDir { path, earlier, written: Vec::new(), created };
         // Better to learn now than after the simulation that nothing can be written here.
-        dir.temporary()
-            .map_err(|error| dir.cannot_write("a file", &error))?;
+        dir.temporary().map_err(|error| dir.cannot_write("a file", &error))?;
         Ok(dir)
     }
 
@@ -79,11 +57,7 @@ impl OutputDir {
     /// # Errors
     /// A problem of `--out` with the words of the operating system, or for a name that is not a
     /// plain file name or was used before in this run.
-    pub fn write(
-        &mut self,
-        name: &str,
-        f: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> Result<(), Problem> {
+    pub fn write(&mut self, name: &str, f: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Problem> {
         self.check_name(name)?;
         let written = self.temporary().and_then(|file| {
             // The bare file: the named one would add its temporary name to every error.
@@ -103,11 +77,7 @@ impl OutputDir {
     #[must_use]
     pub fn left_over(&self) -> Vec<String> {
         let rewritten = |name: &String| self.written.iter().any(|(other, _)| other == name);
-        self.earlier
-            .iter()
-            .filter(|name| !rewritten(name))
-            .cloned()
-            .collect()
+        self.earlier.iter().filter(|name| !rewritten(name)).cloned().collect()
     }
 
     /// Gives every file its name and returns their paths in the order of writing.
@@ -115,19 +85,13 @@ impl OutputDir {
     /// # Errors
     /// A problem of `--out`; the directory is then as it was before the run.
     pub fn commit(mut self) -> Result<Vec<PathBuf>, Problem> {
-        let paths: Vec<PathBuf> = self
-            .written
-            .iter()
-            .map(|(name, _)| self.path.join(name))
-            .collect();
+        let paths: Vec<PathBuf> = self.written.iter().map(|(name, _)| self.path.join(name)).collect();
         let mut written = std::mem::take(&mut self.written);
         // The mark comes last, so that it never stands for a run of which files are missing.
         written.sort_by_key(|(name, _)| name == MARK);
         let mut swap = Swap::default();
         for (name, temporary) in written {
-            let done = self
-                .temporary_name()
-                .and_then(|spare| swap.put(temporary, self.path.join(&name), spare));
+            let done = self.temporary_name().and_then(|spare| swap.put(temporary, self.path.join(&name), spare));
             done.map_err(|error| self.cannot_write(&name, &error))?;
         }
         swap.keep();
@@ -161,11 +125,7 @@ impl OutputDir {
         }
         // Not all file systems tell upper from lower case.
         let lower = name.to_lowercase();
-        if self
-            .written
-            .iter()
-            .any(|(other, _)| other.to_lowercase() == lower)
-        {
+        if self.written.iter().any(|(other, _)| other.to_lowercase() == lower) {
             let message = format!("two files of the run would be named {name}");
             let hint = "give every vehicle of the run a name of its own";
             return Err(problem(&self.path, &message, hint));
@@ -190,11 +150,7 @@ struct Created(Vec<PathBuf>);
 impl Created {
     fn new(path: &Path) -> io::Result<Self> {
         let missing = |dir: &&Path| !dir.as_os_str().is_empty() && !dir.exists();
-        let mut new: Vec<PathBuf> = path
-            .ancestors()
-            .take_while(missing)
-            .map(Path::to_path_buf)
-            .collect();
+        let mut new: Vec<PathBuf> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         new.reverse();
         // Kept first: what was created before an error must go again.
         let created = Created(new);
@@ -227,10 +183,7 @@ impl Swap {
     fn put(&mut self, new: TempPath, target: PathBuf, spare: TempPath) -> io::Result<()> {
         let spare = match fs::symlink_metadata(&target) {
             Ok(meta) if meta.is_dir() => {
-                return Err(io::Error::new(
-                    io::ErrorKind::IsADirectory,
-                    "is a directory",
-                ));
+                return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a directory"));
             }
             Ok(_) => {
                 fs::rename(&target, &spare)?;
@@ -279,23 +232,14 @@ fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Prob
     if names.is_empty() || (marked && force) {
         return Ok(());
     }
-    let mut list = names
-        .iter()
-        .take(LISTED)
-        .cloned()
-        .collect::<Vec<_>>()
-        .join(", ");
+    let mut list = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
     if names.len() > LISTED {
         list += &format!(" and {} more", names.len() - LISTED);
     }
     let path_text = path.display();
     Err(if marked {
         let message = format!("{path_text} holds the files of an earlier run: {list}");
-        problem(
-            path,
-            &message,
-            "choose another name, or replace them with --force",
-        )
+        problem(path, &message, "choose another name, or replace them with --force")
     } else {
         let message = format!("{path_text} holds files of something else: {list}");
         problem(path, &message, "choose another name, or an empty directory")
@@ -310,9 +254,7 @@ fn sync_directory(path: &Path) {
 }
 
 fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
-    use io::ErrorKind::{
-        NotADirectory, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull,
-    };
+    use io::ErrorKind::{NotADirectory, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
     let hint = match error.kind() {
         PermissionDenied | ReadOnlyFilesystem => "choose a directory in which you may write",
         StorageFull | QuotaExceeded => "free some space, or choose a directory on another disk",
@@ -327,10 +269,7 @@ fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
 
 fn problem(path: &Path, message: &str, hint: &str) -> Problem {
     Problem {
-        place: Place {
-            file: "--out".to_string(),
-            ..Place::default()
-        },
+        place: Place { file: "--out".to_string(), ..Place::default() },
         key: "--out".to_string(),
         value: path.display().to_string(),
         allowed: String::new(),

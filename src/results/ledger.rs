@@ -3,7 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | LE-1 | fuel + work from wheels = work to wheels + brake + accessories + transmission losses + change of rotating energy + heat to the engine + exhaust | derived: first law |
-//! | LE-2 | heat into the nodes = stored + given to the air | derived: first law |
+//! | LE-2 | transmission losses + heat to the engine = heat into the nodes = stored + given to the air | derived: first law |
 //! | LE-3 | error = \|in - out\| / sum of absolute terms, 0 for an empty row | contract |
 
 /// Terms of both ledgers in one row, W.
@@ -34,9 +34,8 @@ pub struct Terms {
 }
 
 /// Names of the terms, in the order of [`Terms::as_array`].
-pub const TERM_NAMES: [&str; 11] = [
-    "fuel", "wheels", "brake", "accessories", "losses", "kinetic", "engine_heat", "exhaust", "node_heat", "stored", "to_air",
-];
+pub const TERM_NAMES: [&str; 11] =
+    ["fuel", "wheels", "brake", "accessories", "losses", "kinetic", "engine_heat", "exhaust", "node_heat", "stored", "to_air"];
 
 fn error(input: f64, output: f64, scale: f64) -> f64 {
     if scale > 0.0 { (input - output).abs() / scale } else { 0.0 } // LE-3
@@ -48,8 +47,14 @@ impl Terms {
     pub fn power_error(&self) -> f64 {
         let (from, to) = if self.wheels < 0.0 { (-self.wheels, 0.0) } else { (0.0, self.wheels) };
         let out = to + self.brake + self.accessories + self.losses + self.kinetic + self.engine_heat + self.exhaust;
-        let scale = self.fuel.abs() + self.wheels.abs() + self.brake.abs() + self.accessories.abs() + self.losses.abs()
-            + self.kinetic.abs() + self.engine_heat.abs() + self.exhaust.abs();
+        let scale = self.fuel.abs()
+            + self.wheels.abs()
+            + self.brake.abs()
+            + self.accessories.abs()
+            + self.losses.abs()
+            + self.kinetic.abs()
+            + self.engine_heat.abs()
+            + self.exhaust.abs();
         error(self.fuel + from, out, scale)
     }
 
@@ -57,15 +62,26 @@ impl Terms {
     #[must_use]
     pub fn heat_error(&self) -> f64 {
         let scale = self.node_heat.abs() + self.stored.abs() + self.to_air.abs();
-        error(self.node_heat, self.stored + self.to_air, scale)
+        let balance = error(self.node_heat, self.stored + self.to_air, scale);
+        let handed = error(self.losses + self.engine_heat, self.node_heat, scale);
+        if handed > balance { handed } else { balance }
     }
 
     /// The terms in the order of [`TERM_NAMES`].
     #[must_use]
     pub fn as_array(&self) -> [f64; 11] {
         [
-            self.fuel, self.wheels, self.brake, self.accessories, self.losses, self.kinetic, self.engine_heat, self.exhaust,
-            self.node_heat, self.stored, self.to_air,
+            self.fuel,
+            self.wheels,
+            self.brake,
+            self.accessories,
+            self.losses,
+            self.kinetic,
+            self.engine_heat,
+            self.exhaust,
+            self.node_heat,
+            self.stored,
+            self.to_air,
         ]
     }
 
@@ -73,8 +89,17 @@ impl Terms {
     #[must_use]
     pub fn from_array(a: [f64; 11]) -> Self {
         Terms {
-            fuel: a[0], wheels: a[1], brake: a[2], accessories: a[3], losses: a[4], kinetic: a[5], engine_heat: a[6],
-            exhaust: a[7], node_heat: a[8], stored: a[9], to_air: a[10],
+            fuel: a[0],
+            wheels: a[1],
+            brake: a[2],
+            accessories: a[3],
+            losses: a[4],
+            kinetic: a[5],
+            engine_heat: a[6],
+            exhaust: a[7],
+            node_heat: a[8],
+            stored: a[9],
+            to_air: a[10],
         }
     }
 

@@ -223,11 +223,8 @@ pub fn finite(x: f64) -> Option<f64> {
 /// Puts the numbers of a run together; the first car is the subject.
 #[must_use]
 pub fn summarise(cycle: &Cycle, ambient_degc: f64, start: StartWord, settings: Settings, driven: &[Driven]) -> Summary {
-    let runs: Vec<RunSummary> = driven
-        .iter()
-        .enumerate()
-        .map(|(i, car)| run_summary(cycle, if i == 0 { "subject" } else { "baseline" }, &settings, car))
-        .collect();
+    let runs: Vec<RunSummary> =
+        driven.iter().enumerate().map(|(i, car)| run_summary(cycle, if i == 0 { "subject" } else { "baseline" }, &settings, car)).collect();
     let comparison = match runs.split_first() {
         Some((subject, baselines)) => baselines.iter().map(|b| compare(subject, b)).collect(),
         None => Vec::new(),
@@ -423,12 +420,7 @@ fn worst_deficit(cycle: &Cycle, driven: &Driven, cvt: bool) -> Option<Deficit> {
     let intervals = &cycle.trace_for(cvt).intervals;
     let interval = intervals.iter().find(|i| at_s <= i.end_s + 1e-9)?;
     let phase = cycle.phases.get(usize::from(interval.phase)).unwrap_or(&cycle.name);
-    Some(Deficit {
-        power_w: totals.worst_deficit_w,
-        wheel_torque_nm: finite(totals.worst_deficit_nm),
-        at_s,
-        phase: phase.to_lowercase(),
-    })
+    Some(Deficit { power_w: totals.worst_deficit_w, wheel_torque_nm: finite(totals.worst_deficit_nm), at_s, phase: phase.to_lowercase() })
 }
 
 fn compare(subject: &RunSummary, baseline: &RunSummary) -> Comparison {

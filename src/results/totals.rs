@@ -93,8 +93,7 @@ impl Totals {
     }
 
     fn extremes(&mut self, row: &Row) {
-        let error =
-            if row.power_ledger_error > row.heat_ledger_error { row.power_ledger_error } else { row.heat_ledger_error };
+        let error = if row.power_ledger_error > row.heat_ledger_error { row.power_ledger_error } else { row.heat_ledger_error };
         // A ledger error that is not a number must not hide.
         if error.is_nan() || error > self.ledger_error {
             self.ledger_error = error;

@@ -12,12 +12,7 @@ use super::{Flags, Row};
 ///
 /// # Errors
 /// Whatever `out` reports.
-pub fn write_trace<W: Write>(
-    out: W,
-    columns: &[&Column],
-    rows: &[Row],
-    phases: &[String],
-) -> io::Result<()> {
+pub fn write_trace<W: Write>(out: W, columns: &[&Column], rows: &[Row], phases: &[String]) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(columns.iter().map(|column| column.name))?;
     let mut text = String::new();

@@ -59,7 +59,15 @@ fn numbers(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Numbers, Vec<
     let mut problems = Vec::new();
     let names: Vec<String> = reader.headers().map(|h| h.iter().map(str::to_owned).collect()).unwrap_or_default();
     if names.len() == 1 && names[0].contains(';') {
-        return Err(vec![problem(file, 1, "", &names[0], "", "the file uses `;` between columns".into(), "save it with commas between columns and decimal points")]);
+        return Err(vec![problem(
+            file,
+            1,
+            "",
+            &names[0],
+            "",
+            "the file uses `;` between columns".into(),
+            "save it with commas between columns and decimal points",
+        )]);
     }
     for name in &names {
         if !columns.iter().any(|c| c.name == name) {
@@ -74,14 +82,30 @@ fn numbers(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Numbers, Vec<
         let Ok(record) = record else { continue };
         let line = record.position().map_or(0, |p| p.line() as usize);
         if record.len() != names.len() {
-            problems.push(problem(file, line, "", "", &format!("{} fields", names.len()), format!("the row has {} fields", record.len()), ""));
+            problems.push(problem(
+                file,
+                line,
+                "",
+                "",
+                &format!("{} fields", names.len()),
+                format!("the row has {} fields", record.len()),
+                "",
+            ));
             continue;
         }
         let values = names.iter().zip(record.iter()).map(|(name, cell)| {
             let value: f64 = cell.parse().unwrap_or(f64::NAN);
             let range = columns.iter().find(|c| c.name == name).map_or((f64::MIN, f64::MAX), |c| (c.low, c.high));
             if !(range.0 <= value && value <= range.1) {
-                problems.push(problem(file, line, name, cell, &format!("a number from {} to {}", range.0, range.1), format!("`{cell}` in column {name}"), ""));
+                problems.push(problem(
+                    file,
+                    line,
+                    name,
+                    cell,
+                    &format!("a number from {} to {}", range.0, range.1),
+                    format!("`{cell}` in column {name}"),
+                    "",
+                ));
             }
             value
         });
@@ -137,14 +161,16 @@ pub fn bsfc_map(s: &Section, file: &str, files: &dyn Files, heating_value_j_kg: 
     let per_torque = 4.0 * std::f64::consts::PI / displacement_m3;
     let load = load.or_else(|| table.index("torque_nm").map(|i| (i, per_torque)));
     let (Some(speed), Some(bsfc), Some((load, factor))) = (speed, bsfc, load) else {
-        s.complain("file", "speed_rpm, bmep_bar or torque_nm, bsfc_g_kwh", "a column is missing in the BSFC map", "name the columns with their units");
+        s.complain(
+            "file",
+            "speed_rpm, bmep_bar or torque_nm, bsfc_g_kwh",
+            "a column is missing in the BSFC map",
+            "name the columns with their units",
+        );
         return None;
     };
-    let rows: Vec<(f64, f64, f64)> = table
-        .rows
-        .iter()
-        .map(|(_, r)| (to_si("speed_rpm", r[speed]), r[load] * factor, r[bsfc] / 3.6e9))
-        .collect();
+    let rows: Vec<(f64, f64, f64)> =
+        table.rows.iter().map(|(_, r)| (to_si("speed_rpm", r[speed]), r[load] * factor, r[bsfc] / 3.6e9)).collect();
     BsfcMap::from_rows(&rows, heating_value_j_kg).map_err(|why| s.complain("file", "a full grid", &why, "")).ok()
 }
 
@@ -178,5 +204,8 @@ pub fn loss_map(s: &Section, key: &str, doc: &str, files: &dyn Files, first: &'s
             (x, r[loss])
         })
         .collect();
-    Grid::from_rows(&rows).map(LossMap::new).map_err(|why| s.complain(key, "a full grid", &why, "every combination of the columns' values must stand once")).ok()
+    Grid::from_rows(&rows)
+        .map(LossMap::new)
+        .map_err(|why| s.complain(key, "a full grid", &why, "every combination of the columns' values must stand once"))
+        .ok()
 }

@@ -39,7 +39,12 @@ pub fn load(s: &Section, cvt: bool, oil: &Lubricant) -> Network {
         spray_w_k: if cvt { gearbox.number("spray_w_k", w_k, "belt and pulleys to the sump by spray (TH-1)") } else { 0.0 },
         exchanger_w_k: gearbox.number_or("exchanger_w_k", w_k, 0.0, "coolant to transmission oil heat exchanger (TH-1)"),
         cooler: cooler(&s.table("cooler")),
-        under_bonnet: s.number_or("under_bonnet_rise", Bound::closed(0.0, 0.8), 0.0, "under-bonnet air: share of coolant over ambient (TH-4)"),
+        under_bonnet: s.number_or(
+            "under_bonnet_rise",
+            Bound::closed(0.0, 0.8),
+            0.0,
+            "under-bonnet air: share of coolant over ambient (TH-4)",
+        ),
     }
 }
 
@@ -47,7 +52,12 @@ fn thermostat_to(s: &Section) -> f64 {
     let to = s.number("thermostat_to_degc", Bound::closed(41.0, 130.0), "thermostat fully open (TH-2)");
     let from = s.number("thermostat_from_degc", Bound::closed(40.0, 120.0), "thermostat begins to open (TH-2)");
     if to <= from {
-        s.complain("thermostat_to_degc", "above thermostat_from_degc", "the thermostat closes as it warms", "give a temperature above thermostat_from_degc");
+        s.complain(
+            "thermostat_to_degc",
+            "above thermostat_from_degc",
+            "the thermostat closes as it warms",
+            "give a temperature above thermostat_from_degc",
+        );
     }
     to
 }
@@ -62,7 +72,12 @@ fn cooler(s: &Section) -> Option<Cooler> {
         per_speed_w_s_k_m: s.number_or("ram_w_k_per_m_s", w_k, 2.0, "U A over road speed (TH-3)"),
         flow_share: s.number_or("flow_share", Bound::closed(0.0, 1.0), 0.5, "share of the pump's flow through the cooler (TH-3)"),
         highest_m3_s: s.number_or("highest_l_min", Bound::closed(0.1, 100.0), 20.0, "largest flow through the cooler (TH-3)"),
-        bypass_below_k: s.number_or("bypass_below_degc", Bound::closed(-60.0, 200.0), -60.0, "sump temperature below which the cooler is bypassed (TH-3)"),
+        bypass_below_k: s.number_or(
+            "bypass_below_degc",
+            Bound::closed(-60.0, 200.0),
+            -60.0,
+            "sump temperature below which the cooler is bypassed (TH-3)",
+        ),
     };
     (!s.boolean_or("bypassed", false, "cooler always bypassed")).then_some(cooler)
 }

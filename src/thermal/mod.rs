@@ -7,6 +7,7 @@
 //! | TH-3 | cooler: G = m c_p (1 - exp(-(U_0 + U_v v)/(m c_p))), flow m from the pump | source: heat exchanger with one side unlimited; coefficients fitted |
 //! | TH-4 | air under the bonnet = ambient + r (T_coolant - T_amb) | ASSUMED |
 //! | TH-5 | step: (C/dt + K - dQ_r/dT) dT = P - K T + ..., linearly implicit | derived: unconditionally stable, conserves to rounding |
+//! | TH-6 | with the engine off, radiator and all links that need a pump or splash keep 10 % | ASSUMED |
 //!
 //! Nodes: coolant and block; engine oil; transmission oil; transmission metal; belt and pulleys with the oil they spray (unused in a
 //! manual box). Soak is the same network with the engine off. Speeds m/s, heat flows W.
@@ -86,6 +87,9 @@ pub struct Network {
     pub under_bonnet: f64,
 }
 
+/// Share of a conductance that is left with nothing turning (TH-6).
+const STILL: f64 = 0.1;
+
 /// Temperatures of the nodes, K.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heat {
@@ -114,6 +118,8 @@ pub struct HeatInput {
     pub oil_flow_m3_s: f64,
     /// Heat capacity flow of the oil per volume flow, J/(m3 K).
     pub oil_volume_heat_j_m3k: f64,
+    /// Whether engine and pumps turn.
+    pub running: bool,
     /// Step, s.
     pub dt_s: f64,
 }
@@ -158,6 +164,7 @@ fn speed_power(v: f64) -> f64 {
 impl Network {
     fn radiator(&self, coolant_k: f64, input: &HeatInput) -> (f64, f64) {
         let full = self.radiator_w_k + self.radiator_per_speed * input.speed_m_s;
+        let full = if input.running { full } else { STILL * full };
         let width = self.thermostat_to_k - self.thermostat_from_k;
         let open = ((coolant_k - self.thermostat_from_k) / width).clamp(0.0, 1.0);
         let over = coolant_k - input.ambient_k;
@@ -183,6 +190,7 @@ impl Network {
         let v = input.speed_m_s;
         let bonnet = input.ambient_k + self.under_bonnet * (t[COOLANT] - input.ambient_k); // TH-4
         let (cooler_flow_w_k, cooler_w_k) = self.cooler(t[SUMP], input);
+        let stirred = if input.running { 1.0 } else { STILL };
         Now {
             air: [
                 self.block_air_w_k + self.block_air_per_speed * v,
@@ -193,11 +201,11 @@ impl Network {
             ],
             air_k: [bonnet, bonnet, input.ambient_k, bonnet, input.ambient_k],
             links: [
-                (COOLANT, ENGINE_OIL, self.coolant_oil_w_k),
+                (COOLANT, ENGINE_OIL, stirred * self.coolant_oil_w_k),
                 (COOLANT, METAL, self.bell_housing_w_k),
-                (COOLANT, SUMP, self.exchanger_w_k),
-                (SUMP, METAL, self.oil_metal_w_k),
-                (SUMP, BELT, self.spray_w_k),
+                (COOLANT, SUMP, stirred * self.exchanger_w_k),
+                (SUMP, METAL, stirred * self.oil_metal_w_k),
+                (SUMP, BELT, stirred * self.spray_w_k),
             ],
             radiator: self.radiator(t[COOLANT], input),
             cooler_flow_w_k,

@@ -31,6 +31,7 @@ fn input(dt_s: f64) -> HeatInput {
         speed_m_s: 10.0,
         oil_flow_m3_s: 3e-4,
         oil_volume_heat_j_m3k: 1.67e6,
+        running: true,
         dt_s,
     }
 }

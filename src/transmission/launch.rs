@@ -55,9 +55,8 @@ impl Launch for FrictionClutch {
         let mut speed = idle_rad_s;
         if above > 0.0 {
             let lift = if self.engage_rad_s > idle_rad_s { self.engage_rad_s - idle_rad_s } else { 0.0 };
-            speed += lift * (1.0 - (-above / CREEP_WIDTH_NM).exp())
-                + (above / self.gain_nm_s2 + ROUND_RAD_S * ROUND_RAD_S).sqrt()
-                - ROUND_RAD_S; // LC-1
+            speed +=
+                lift * (1.0 - (-above / CREEP_WIDTH_NM).exp()) + (above / self.gain_nm_s2 + ROUND_RAD_S * ROUND_RAD_S).sqrt() - ROUND_RAD_S; // LC-1
         }
         if speed <= input_speed_rad_s {
             return input_speed_rad_s;

@@ -60,11 +60,22 @@ const R83: [(f64, f64, f64, f64); 22] = [
 /// Reads the checked road load; problems go to the reader.
 #[must_use]
 pub fn load(s: &Section) -> RoadLoadInput {
-    let surface = s.word_or("surface", &["dynamometer", "road"], "dynamometer", "dynamometer: fixed coefficients; road: air and rolling follow ambient (RL-2)");
+    let surface = s.word_or(
+        "surface",
+        &["dynamometer", "road"],
+        "dynamometer",
+        "dynamometer: fixed coefficients; road: air and rolling follow ambient (RL-2); for the road give body or coast-down coefficients, since the R83 table has most of the rolling in f2",
+    );
     let payload = s.number_or("payload_kg", Bound::closed(0.0, 5000.0), 0.0, "load added to the mass (RL-1)");
-    let rotating = s.number_or("rotating_factor", Bound::closed(0.0, 0.2), 0.015, "rotating inertia of wheels and output side over mass (RL-1)");
+    let rotating =
+        s.number_or("rotating_factor", Bound::closed(0.0, 0.2), 0.015, "rotating inertia of wheels and output side over mass (RL-1)");
     let altitude_m = s.number_or("altitude_m", Bound::closed(-500.0, 5000.0), 0.0, "altitude of the road (RL-4, EN-5)");
-    let (kind, form) = s.choose("form", &["coefficients", "body", "r83"], None, "coefficients f0 f1 f2; body (c_d, area, rolling); or r83 (class from reference mass)");
+    let (kind, form) = s.choose(
+        "form",
+        &["coefficients", "body", "r83"],
+        None,
+        "coefficients f0 f1 f2; body (c_d, area, rolling); or r83 (class from reference mass)",
+    );
     let (mass, f0, f1, f2) = match kind {
         "coefficients" => coefficients(s, &form),
         "body" => body(s, &form),
@@ -83,7 +94,12 @@ pub fn load(s: &Section) -> RoadLoadInput {
             wheel_radius_m: s.number("wheel_radius_m", Bound::closed(0.15, 0.6), "dynamic tyre radius"),
         },
         surface: if surface == "road" { Surface::Road } else { Surface::Dynamometer },
-        rolling_per_k: s.number_or("rolling_per_k", Bound::closed(0.0, 0.03), 0.00864, "rise of rolling resistance per kelvin below 20 degC (RL-2)"),
+        rolling_per_k: s.number_or(
+            "rolling_per_k",
+            Bound::closed(0.0, 0.03),
+            0.00864,
+            "rise of rolling resistance per kelvin below 20 degC (RL-2)",
+        ),
         altitude_m,
     }
 }
@@ -123,8 +139,8 @@ mod tests {
     #[test]
     fn val_r83_rows_give_the_published_force() {
         let f80 = [
-            171.0, 185.0, 194.0, 203.0, 212.0, 221.0, 230.0, 252.0, 270.0, 284.0, 302.0, 315.0, 329.0, 338.0, 351.0, 365.0,
-            378.0, 387.0, 396.0, 405.0, 423.0, 441.0,
+            171.0, 185.0, 194.0, 203.0, 212.0, 221.0, 230.0, 252.0, 270.0, 284.0, 302.0, 315.0, 329.0, 338.0, 351.0, 365.0, 378.0, 387.0,
+            396.0, 405.0, 423.0, 441.0,
         ];
         for (row, want) in R83.iter().zip(f80) {
             let got = row.2 + 6400.0 * row.3;

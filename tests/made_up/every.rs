@@ -1,7 +1,5 @@
 //! The plots of every kind of run.
-use cvtcycle::report::{
-    FuelMap, PlotRun, driveline, fuel_bars, losses, operating_points, pressure, temperatures,
-};
+use cvtcycle::report::{FuelMap, PlotRun, driveline, fuel_bars, losses, operating_points, pressure, temperatures};
 use cvtcycle::results::{Component, Row};
 
 use super::{phases, rows, run};
@@ -32,14 +30,7 @@ pub fn every_plot() -> Vec<(String, String)> {
         engine_torque_nm: f64::NEG_INFINITY,
         ..Row::default()
     };
-    let huge = Row {
-        time_s: 1e300,
-        dt_s: 1e300,
-        speed_m_s: 1e300,
-        coolant_k: -1e305,
-        loss_w: [1e290; Component::COUNT],
-        ..Row::default()
-    };
+    let huge = Row { time_s: 1e300, dt_s: 1e300, speed_m_s: 1e300, coolant_k: -1e305, loss_w: [1e290; Component::COUNT], ..Row::default() };
     let mut still = rows(40, 1.0, true);
     still.iter_mut().for_each(|row| row.time_s = 5.0);
     let cases = [
@@ -56,34 +47,17 @@ pub fn every_plot() -> Vec<(String, String)> {
     let mut plots = Vec::new();
     for (name, cvt, rows) in &cases {
         let mut run = run(name, *cvt, rows, &phases);
-        plots.extend(
-            all(&run)
-                .into_iter()
-                .map(|(plot, svg)| (format!("{name}: {plot}"), svg)),
-        );
+        plots.extend(all(&run).into_iter().map(|(plot, svg)| (format!("{name}: {plot}"), svg)));
         run.fuel_map = None;
         run.group_fuel = vec![("<odd> & so on".into(), f64::NAN), ("total".into(), 0.0)];
         run.components = &[];
-        plots.extend(
-            all(&run)
-                .into_iter()
-                .map(|(plot, svg)| (format!("{name} bare: {plot}"), svg)),
-        );
+        plots.extend(all(&run).into_iter().map(|(plot, svg)| (format!("{name} bare: {plot}"), svg)));
     }
     let (a, b) = (&cases[0].2, &cases[1].2);
-    let runs = [
-        run("cvt", true, a, &phases),
-        run("manual", false, b, &phases),
-        run(odd, true, a, &phases),
-    ];
+    let runs = [run("cvt", true, a, &phases), run("manual", false, b, &phases), run(odd, true, a, &phases)];
     plots.push(("three runs".into(), fuel_bars(&runs)));
     plots.push(("no runs".into(), fuel_bars(&[])));
-    let broken = FuelMap {
-        speed_rad_s: vec![100.0, 200.0],
-        torque_nm: vec![1.0],
-        bsfc_kg_j: vec![vec![]],
-        full_load_nm: vec![f64::NAN],
-    };
+    let broken = FuelMap { speed_rad_s: vec![100.0, 200.0], torque_nm: vec![1.0], bsfc_kg_j: vec![vec![]], full_load_nm: vec![f64::NAN] };
     let mut odd_map = run("odd map", true, a, &phases);
     odd_map.fuel_map = Some(broken);
     plots.push(("odd map".into(), operating_points(&odd_map)));

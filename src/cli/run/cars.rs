@@ -20,12 +20,7 @@ pub struct Car {
 pub fn load(args: &Args, formulation: Formulation, problems: &mut Problems) -> Vec<Car> {
     syntax(args, problems);
     let subject_sets: Vec<String> = args.set_all.iter().chain(&args.set).cloned().collect();
-    let subject = Options {
-        lubricant: args.lubricant.clone(),
-        engine_oil: args.engine_oil.clone(),
-        set: subject_sets,
-        formulation,
-    };
+    let subject = Options { lubricant: args.lubricant.clone(), engine_oil: args.engine_oil.clone(), set: subject_sets, formulation };
     let baseline = Options { lubricant: None, set: args.set_all.clone(), ..subject.clone() };
     let setup = problems.take(one(&args.vehicle, "--vehicle", &subject, args));
     // The fluids by themselves: a car that cannot be read at all says nothing about them.

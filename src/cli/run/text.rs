@@ -95,12 +95,8 @@ fn compared(summary: &Summary, comparison: &Comparison) -> String {
     };
     let (size, word) = (fixed(difference.abs(), 1), if difference < 0.0 { "less" } else { "more" });
     let mut line = format!("{subject} uses {size} % {word} fuel than {}", comparison.baseline);
-    let parts: Vec<String> = comparison
-        .phases_percent
-        .iter()
-        .filter(|(_, x)| x.is_some())
-        .map(|(name, x)| format!("{name} {} %", signed(x, 1)))
-        .collect();
+    let parts: Vec<String> =
+        comparison.phases_percent.iter().filter(|(_, x)| x.is_some()).map(|(name, x)| format!("{name} {} %", signed(x, 1))).collect();
     if parts.len() > 1 {
         line += &format!(" ({})", parts.join(", "));
     }

@@ -19,21 +19,40 @@ pub fn load(s: &Section, files: &dyn Files, engine: &Engine, oil: &Lubricant, fo
     let belt = belt(&s.table("belt"), &v, formulation);
     let low = Geometry::new(ratio.low, belt.centre_distance_m, belt.length_m);
     if !low.primary_radius_m.is_finite() || low.primary_radius_m < 0.005 {
-        s.table("ratio").complain("low", "", "the belt cannot reach this ratio", "check belt length and centre distance against the ratio limits");
+        s.table("ratio").complain(
+            "low",
+            "",
+            "the belt cannot reach this ratio",
+            "check belt length and centre distance against the ratio limits",
+        );
     }
     let clamp_table = s.table("pressure");
     let clamp = clamp_law(s);
     let bar = Bound::closed(0.0, 200.0);
-    let radius_exponent = s.table("pressure").number_or("radius_exponent", Bound::closed(0.0, 4.0), 1.43, "exponent of primary radius in the clamp map (PC-1)");
+    let radius_exponent = s.table("pressure").number_or(
+        "radius_exponent",
+        Bound::closed(0.0, 4.0),
+        1.43,
+        "exponent of primary radius in the clamp map (PC-1)",
+    );
     let cap_pa = clamp_table.number("cap_bar", Bound::closed(1.0, 200.0), "largest secondary pressure");
     let floor_pa = clamp_table.number("floor_bar", bar, "smallest secondary pressure");
     if floor_pa > cap_pa {
-        clamp_table.complain("floor_bar", "at most cap_bar", "the smallest pressure is above the largest", "lower floor_bar or raise cap_bar");
+        clamp_table.complain(
+            "floor_bar",
+            "at most cap_bar",
+            "the smallest pressure is above the largest",
+            "lower floor_bar or raise cap_bar",
+        );
     }
     Cvt {
         final_drive: s.number("final_drive_ratio", Bound::closed(1.0, 20.0), "secondary speed over wheel speed (CV-1)"),
         secondary_piston_m2: v.number("secondary_piston_cm2", Bound::closed(5.0, 1000.0), "secondary piston area (VA-3)"),
-        primary_piston_m2: v.number("primary_piston_cm2", Bound::closed(5.0, 2000.0), "primary piston area; sets primary pressure and up-shift flow only"),
+        primary_piston_m2: v.number(
+            "primary_piston_cm2",
+            Bound::closed(5.0, 2000.0),
+            "primary piston area; sets primary pressure and up-shift flow only",
+        ),
         spring_n: v.number("spring_n", Bound::closed(0.0, 10_000.0), "spring force on the secondary (VA-3)"),
         centrifugal_n_s2: centrifugal(&v, oil),
         pump: pump(s),
@@ -47,7 +66,12 @@ pub fn load(s: &Section, files: &dyn Files, engine: &Engine, oil: &Lubricant, fo
         launch: launch_load::load(s, 5.0),
         full_load_route: engine.speed_for_power(),
         maps: maps(&s.table("maps"), files),
-        belt_heat_share: s.number_or("belt_heat_share", Bound::closed(0.0, 1.0), 0.7, "share of belt loss that heats belt and pulleys (SI-3)"),
+        belt_heat_share: s.number_or(
+            "belt_heat_share",
+            Bound::closed(0.0, 1.0),
+            0.7,
+            "share of belt loss that heats belt and pulleys (SI-3)",
+        ),
         belt,
     }
 }
@@ -72,10 +96,19 @@ fn ratio_control(s: &Section, engine: &Engine) -> RatioControl {
         high: s.number("high", ratio, "belt ratio of the highest gear"),
         gentle_rad_s: s.number("gentle_rpm", rpm, "engine speed in gentle driving (RC-1)"),
         gentle_share: s.number("gentle_power_share", Bound::closed(0.0, 1.0), "share of rated power up to which driving is gentle (RC-1)"),
-        rise_rad_s: s.number("rise_rpm", Bound::closed(0.0, 20_000.0), "rise of engine speed over the share of rated power above it (RC-1)"),
+        rise_rad_s: s.number(
+            "rise_rpm",
+            Bound::closed(0.0, 20_000.0),
+            "rise of engine speed over the share of rated power above it (RC-1)",
+        ),
         overrun_rad_s: s.number("overrun_rpm", rpm, "engine speed in overrun (RC-2)"),
         highest_rad_s: engine.highest_rad_s,
-        route_efficiency: s.number_or("route_efficiency", Bound::closed(0.3, 1.0), 0.85, "wheel power over engine power on the full-load route (RC-3)"),
+        route_efficiency: s.number_or(
+            "route_efficiency",
+            Bound::closed(0.3, 1.0),
+            0.85,
+            "wheel power over engine power on the full-load route (RC-3)",
+        ),
         up_per_s: s.number("up_per_s", rate, "rate of ln I towards high (RC-4)"),
         down_per_s: s.number("down_per_s", rate, "rate of ln I towards low (RC-4)"),
         rate_speed_rad_s: s.number("rate_speed_rpm", rpm, "primary speed from which the full rates hold (RC-4)"),
@@ -106,8 +139,10 @@ fn belt(s: &Section, v: &Section, formulation: Formulation) -> Belt {
         youngs_pa: s.number("youngs_gpa", Bound::closed(50.0, 500.0), "Young's modulus of bands and segments (SL-1)"),
         strut_area_m2: s.number("strut_area_mm2", Bound::closed(0.5, 200.0), "contact area of segments in the free strut (SL-2)"),
         initial_gap_m: s.number_or("initial_gap_mm", Bound::closed(0.0, 100.0), 0.0, "sum of the gaps at no load (SL-5)"),
-        primary_compliance_per_n: 1.0 / v.number("primary_stiffness_n", Bound::closed(1e5, 1e12), "primary: deflection = R F over this (WE-1)"),
-        secondary_compliance_per_n: 1.0 / v.number("secondary_stiffness_n", Bound::closed(1e5, 1e12), "secondary: deflection = R F over this (WE-1)"),
+        primary_compliance_per_n: 1.0
+            / v.number("primary_stiffness_n", Bound::closed(1e5, 1e12), "primary: deflection = R F over this (WE-1)"),
+        secondary_compliance_per_n: 1.0
+            / v.number("secondary_stiffness_n", Bound::closed(1e5, 1e12), "secondary: deflection = R F over this (WE-1)"),
         stop_from_ratio: v.number("stop_from_ratio", Bound::closed(0.3, 5.0), "ratio from which the primary leans on its end stop (WE-4)"),
         stop_to_ratio: v.number("stop_to_ratio", Bound::closed(0.3, 5.0), "ratio at which it rests on it (WE-4)"),
         unity_width: s.number_or("unity_width", Bound::closed(1e-4, 0.2), 0.015, "smoothing of the tension step at I = 1, in ln I (TE-6)"),
@@ -120,10 +155,13 @@ fn belt(s: &Section, v: &Section, formulation: Formulation) -> Belt {
 
 fn pump(s: &Section) -> Pump {
     let p = s.table("pump");
-    let (kind, k) = p.choose("kind", &["fixed", "dual_cavity", "variable"], Some("fixed"), "fixed, dual_cavity or variable displacement (PU-4)");
+    let (kind, k) =
+        p.choose("kind", &["fixed", "dual_cavity", "variable"], Some("fixed"), "fixed, dual_cavity or variable displacement (PU-4)");
     let share = Bound::closed(0.05, 1.0);
     let kind = match kind {
-        "dual_cavity" => PumpKind::DualCavity { share: k.number_or("share", share, 0.5, "share of displacement in the cavity that always works (PU-4)") },
+        "dual_cavity" => {
+            PumpKind::DualCavity { share: k.number_or("share", share, 0.5, "share of displacement in the cavity that always works (PU-4)") }
+        }
         "variable" => PumpKind::Variable { least: k.number_or("least_share", share, 0.25, "smallest share of the displacement (PU-4)") },
         _ => PumpKind::Fixed,
     };
@@ -162,7 +200,12 @@ fn spin(s: &Section) -> Spin {
 }
 
 fn clamp_law(s: &Section) -> ClampLaw {
-    let (law, c) = s.choose("clamp", &["map", "torque_following", "slip_limited"], Some("map"), "clamp law: the Rover's map, torque following, or slip limited");
+    let (law, c) = s.choose(
+        "clamp",
+        &["map", "torque_following", "slip_limited"],
+        Some("map"),
+        "clamp law: the Rover's map, torque following, or slip limited",
+    );
     let safety = Bound::closed(0.5, 10.0);
     let torque = Bound::closed(0.0, 500.0);
     let bar = Bound::closed(0.0, 200.0);
@@ -201,4 +244,3 @@ fn maps(s: &Section, files: &dyn Files) -> CvtMaps {
         final_drive: one("final_drive", "final drive model"),
     }
 }
-

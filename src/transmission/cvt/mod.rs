@@ -101,7 +101,7 @@ impl Cvt {
             secondary_rad_s: secondary,
             power_w: around.wheel.power_w,
             rated_w: around.engine.engine.rated_w,
-            full_load_rad_s: 0.0,
+            full_load_rad_s: self.full_load_route.at(around.wheel.power_w / self.ratio.route_efficiency),
             ratio_before: self.ratio.low,
             flow_down_per_s: 0.0,
             flow_up_per_s: 0.0,
@@ -121,9 +121,11 @@ impl Cvt {
             engine_rad_s: if primary > idle { primary } else { idle },
             throttle: 0.1,
             slip: 0.0,
+            gain: 0.0,
+            overrun: false,
             secondary_pa: self.floor_pa,
             coupled: primary > idle,
-            stood: true,
+            stood: secondary <= 0.0,
         }
     }
 

@@ -63,6 +63,8 @@ pub struct PumpState {
     pub torque_nm: f64,
     /// Theoretical flow, m3/s.
     pub flow_m3_s: f64,
+    /// Flow of the displacement that works against pressure, m3/s.
+    pub working_m3_s: f64,
     /// Whether the flow falls short of the need.
     pub flow_limited: bool,
 }
@@ -97,7 +99,7 @@ impl Pump {
         let torque = self.displacement_m3_rad * (1.0 + self.friction) * pressure
             + self.viscous * ETA_REFERENCE_PA_S * viscous_factor * speed_rad_s * self.displacement_m3_rad
             + self.constant_nm; // PU-1
-        PumpState { torque_nm: torque, flow_m3_s: flow, flow_limited: need_m3_s > flow }
+        PumpState { torque_nm: torque, flow_m3_s: flow, working_m3_s: share * flow, flow_limited: need_m3_s > flow }
     }
 }
 
@@ -131,8 +133,7 @@ mod tests {
     fn smaller_displacement_at_work_costs_less_but_never_nothing() {
         let need = 8e-3 / 60.0;
         let t = |kind| pump(kind).state(300.0, 20e5, need, 1.0).torque_nm;
-        let (fixed, dual, variable) =
-            (t(PumpKind::Fixed), t(PumpKind::DualCavity { share: 0.5 }), t(PumpKind::Variable { least: 0.2 }));
+        let (fixed, dual, variable) = (t(PumpKind::Fixed), t(PumpKind::DualCavity { share: 0.5 }), t(PumpKind::Variable { least: 0.2 }));
         assert!(variable < dual && dual < fixed && variable > 0.0, "{fixed} {dual} {variable}");
     }
 

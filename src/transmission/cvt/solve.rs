@@ -12,6 +12,8 @@ use crate::transmission::{Drive, DriveState, Surroundings};
 
 /// The solve stops when throttle, slip and relative engine speed move less than this.
 const TOLERANCE: f64 = 1e-7;
+/// Kick-down ends where the route would reckon with a lower efficiency than this (RC-7).
+const LEAST_ROUTE_EFFICIENCY: f64 = 0.4;
 /// Largest number of evaluations.
 const MOST_EVALUATIONS: u16 = 60;
 
@@ -55,6 +57,7 @@ struct Point {
     pump_nm: f64,
     shaft_nm: f64,
     flow_limited: bool,
+    oil_flow_m3_s: f64,
     inside_maps: bool,
 }
 
@@ -66,7 +69,8 @@ impl Point {
     fn moved(&self) -> f64 {
         let (a, b) = (&self.guess, &self.next);
         let mut most = (a.throttle - b.throttle).abs();
-        for d in [(a.slip - b.slip).abs(), (a.engine_rad_s / b.engine_rad_s - 1.0).abs()] {
+        let pressure = (a.pressure_pa / b.pressure_pa - 1.0).abs();
+        for d in [(a.slip - b.slip).abs(), (a.engine_rad_s / b.engine_rad_s - 1.0).abs(), pressure] {
             most = if d > most { d } else { most };
         }
         most
@@ -121,16 +125,12 @@ impl Step<'_> {
         let belt = belt_state(&cvt.belt, &self.at, &load);
         let belt_map_nm = self.mapped(maps.belt.as_ref(), primary_rad_s, secondary_nm, pa, &mut inside_maps);
         let belt_loss = belt_map_nm.unwrap_or_else(|| belt.loss_nm());
-        let clutch_nm = self
-            .mapped(maps.clutch_drag.as_ref(), primary_rad_s, 0.0, pa, &mut inside_maps)
-            .unwrap_or(self.spin.clutch_nm);
+        let clutch_nm = self.mapped(maps.clutch_drag.as_ref(), primary_rad_s, 0.0, pa, &mut inside_maps).unwrap_or(self.spin.clutch_nm);
         // VA-1 with the slip in force, so that the power balance holds for this iterate exactly.
         let primary_nm = secondary_nm * self.secondary_rad_s / primary_rad_s + belt_loss + clutch_nm;
         let need = cvt.pump.steady_need_m3_s(pa, self.eta_sump) + self.shift_flow_m3_s;
         let pump = cvt.pump.state(engine_rad_s, pa, need, self.viscous_factor);
-        let pump_nm = self
-            .mapped(maps.pump.as_ref(), engine_rad_s, 0.0, pa, &mut inside_maps)
-            .unwrap_or(pump.torque_nm);
+        let pump_nm = self.mapped(maps.pump.as_ref(), engine_rad_s, 0.0, pa, &mut inside_maps).unwrap_or(pump.torque_nm);
         let shaft_nm = self
             .mapped(maps.input_shaft.as_ref(), engine_rad_s, 0.0, pa, &mut inside_maps)
             .unwrap_or_else(|| self.spin.shaft_nm(engine_rad_s));
@@ -149,6 +149,7 @@ impl Step<'_> {
             pump_nm,
             shaft_nm,
             flow_limited: pump.flow_limited,
+            oil_flow_m3_s: pump.working_m3_s,
             inside_maps,
         }
     }
@@ -163,15 +164,11 @@ impl Step<'_> {
         let wanted = self.cvt.launch.engine_speed_rad_s(primary_nm, primary_rad_s, engine.idle_rad_s, self.coupled);
         let pace = engine.engine.inertia_torque_nm / engine.engine.inertia_kg_m2 * self.around.dt_s;
         let limited = wanted.clamp(self.engine_before - pace, self.engine_before + pace);
-        let engine_rad_s = if limited > primary_rad_s { limited } else { primary_rad_s };
+        let free = limited > primary_rad_s && !self.locked(primary_rad_s);
+        let engine_rad_s = if free { limited } else { primary_rad_s };
         let full = engine.full_load_nm(engine_rad_s);
         let throttle = ((flywheel + engine.accessories_nm(engine_rad_s)) / full).clamp(0.0, 1.0);
-        let signals = ClampSignals {
-            throttle,
-            engine_rad_s,
-            oil_k: self.around.heat.node_k[SUMP],
-            radius_factor: self.radius_factor,
-        };
+        let signals = ClampSignals { throttle, engine_rad_s, oil_k: self.around.heat.node_k[SUMP], radius_factor: self.radius_factor };
         let pressure_pa = self.cvt.pressure_pa(&signals, &self.at, load, self.secondary_rad_s);
         Guess { output_nm: g.output_nm, throttle, slip, engine_rad_s, pressure_pa }
     }
@@ -183,8 +180,11 @@ impl Step<'_> {
         if p.primary_rad_s < idle {
             return self.cvt.launch.creep_torque_nm(p.primary_rad_s, idle);
         }
-        let share = self.cvt.launch.overrun_share(p.primary_rad_s, idle);
         let w = p.guess.engine_rad_s;
+        if w > p.primary_rad_s {
+            return 0.0; // a slipping clutch whose engine is faster cannot take torque from the belt
+        }
+        let share = self.cvt.launch.overrun_share(p.primary_rad_s, idle);
         -share * (engine.drag_nm(w) + engine.accessories_nm(w) + p.pump_nm + p.shaft_nm)
     }
 
@@ -194,8 +194,8 @@ impl Step<'_> {
         engine.full_load_nm(w) - engine.accessories_nm(w) - p.pump_nm - p.shaft_nm
     }
 
-    /// Solves with the output torque bound by `bind`, from a first guess; returns the point and the residual.
-    fn run(&self, first: Guess, bind: Bind, count: &mut u16) -> (Point, f64) {
+    /// Solves with the output torque bound by `bind`, from a first guess; the evaluations so far stand in `work`.
+    fn run(&self, first: Guess, bind: Bind, work: &mut Work) -> Point {
         let mut guess = first;
         let mut before: Option<(f64, f64)> = None;
         let mut last: Option<(f64, f64)> = None;
@@ -203,16 +203,21 @@ impl Step<'_> {
         let scale = if scale > 1.0 { scale } else { 1.0 };
         loop {
             let point = self.evaluate(&guess);
-            *count += 1;
-            let mut left = point.moved();
+            work.count += 1;
+            work.left = point.moved();
             guess = point.next;
-            guess.throttle = accelerated(last, point.guess.throttle, point.next.throttle);
-            last = Some((point.guess.throttle, point.next.throttle));
+            let (u, g) = (point.guess.throttle, point.next.throttle);
+            if let Some((u0, g0)) = last
+                && (u - u0).abs() > 1e-9
+            {
+                work.gain = ((g - g0) / (u - u0)).clamp(-0.5, 0.5);
+            }
+            guess.throttle = (u + (g - u) / (1.0 - work.gain)).clamp(0.0, 1.0); // CV-5
+            last = Some((u, g));
             if bind != Bind::Demand {
-                let target = if bind == Bind::Least { self.least_primary_nm(&point) } else { self.most_primary_nm(&point) };
-                let miss = point.primary_nm - target;
+                let miss = point.primary_nm - self.target_nm(&point, bind);
                 let relative = miss.abs() / scale;
-                left = if relative > left { relative } else { left };
+                work.left = if relative > work.left { relative } else { work.left };
                 let x = point.guess.output_nm;
                 let plain = 1.0 / self.at.geometry.ratio;
                 let slope = match before {
@@ -222,22 +227,23 @@ impl Step<'_> {
                 before = Some((x, miss));
                 guess.output_nm = x - miss / slope; // CV-5
             }
-            if left <= TOLERANCE || *count >= MOST_EVALUATIONS {
-                return (point, left);
+            if work.left <= TOLERANCE || work.count >= work.most {
+                return point;
             }
         }
     }
+
+    fn target_nm(&self, point: &Point, bind: Bind) -> f64 {
+        if bind == Bind::Least { self.least_primary_nm(point) } else { self.most_primary_nm(point) }
+    }
 }
 
-/// Secant step on a fixed point u = g(u) from two pairs (u, g), within the range of a throttle (CV-5).
-fn accelerated(last: Option<(f64, f64)>, u: f64, g: f64) -> f64 {
-    match last {
-        Some((u0, g0)) if (u - u0).abs() > 1e-12 => {
-            let slope = ((g - g0) / (u - u0)).clamp(-0.5, 0.5);
-            (u + (g - u) / (1.0 - slope)).clamp(0.0, 1.0)
-        }
-        _ => g,
-    }
+/// Effort and success of the solve.
+struct Work {
+    count: u16,
+    most: u16,
+    left: f64,
+    gain: f64,
 }
 
 /// Shift flow and the limits that free pump flow sets to the shift rate, 1/s towards low and high (RC-5).
@@ -256,16 +262,20 @@ fn sheave_volumes_m3(cvt: &Cvt, at: &BeltAtRatio) -> (f64, f64) {
     (cvt.secondary_piston_m2 * travel * slope, cvt.primary_piston_m2 * travel * primary)
 }
 
-fn shift(cvt: &Cvt, around: &Surroundings, state: &DriveState, at: &BeltAtRatio, eta: f64) -> (BeltAtRatio, f64, bool) {
-    let (flow_down_per_s, flow_up_per_s) = flow_limits(cvt, at, state, eta);
+/// What the shift reckons with: viscosity for the pump's flow, efficiency for the full-load route.
+struct Route {
+    eta_pa_s: f64,
+    efficiency: f64,
+}
+
+fn shift(cvt: &Cvt, around: &Surroundings, state: &DriveState, at: &BeltAtRatio, route: Route) -> (BeltAtRatio, f64, bool) {
+    let (flow_down_per_s, flow_up_per_s) = flow_limits(cvt, at, state, route.eta_pa_s);
     let before = at.geometry.ratio;
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive * around.wheel.wheel_rad_s,
         power_w: around.wheel.power_w,
         rated_w: around.engine.engine.rated_w,
-        full_load_rad_s: cvt
-            .full_load_route
-            .at(around.wheel.power_w / (cvt.ratio.route_efficiency * around.engine.full_load_factor)),
+        full_load_rad_s: cvt.full_load_route.at(around.wheel.power_w / (route.efficiency * around.engine.full_load_factor)),
         ratio_before: before,
         flow_down_per_s,
         flow_up_per_s,
@@ -284,46 +294,80 @@ fn shift(cvt: &Cvt, around: &Surroundings, state: &DriveState, at: &BeltAtRatio,
 pub(super) fn solve(cvt: &Cvt, around: &Surroundings, state: &mut DriveState) -> Drive {
     let Some(at) = state.belt else { return Drive::at_rest() };
     if around.engine_off {
-        state.engine_rad_s = 0.0;
+        state.engine_rad_s = around.engine.idle_rad_s; // the starter brings it back there
         state.stood = true;
-        let mut rest = Drive { belt_ratio: at.geometry.ratio, secondary_pa: 0.0, primary_pa: 0.0, slip: 0.0, clamp_safety: f64::INFINITY, ..Drive::at_rest() };
+        state.coupled = false;
+        let mut rest = Drive {
+            belt_ratio: at.geometry.ratio,
+            secondary_pa: 0.0,
+            primary_pa: 0.0,
+            slip: 0.0,
+            clamp_safety: f64::INFINITY,
+            ..Drive::at_rest()
+        };
         rest.flags.set(Flags::ENGINE_OFF, true);
         return rest;
     }
-    let step = prepare(cvt, around, state, &at);
-    let (step, held) = step;
-    if step.secondary_rad_s <= 0.0 {
-        return standstill(&step, state);
+    let mut work = Work { count: 0, most: MOST_EVALUATIONS, left: 0.0, gain: state.gain };
+    let mut efficiency = cvt.ratio.route_efficiency;
+    loop {
+        let (step, held) = prepare(cvt, around, state, &at, efficiency);
+        if step.secondary_rad_s <= 0.0 {
+            return standstill(&step, state);
+        }
+        let guess = Guess {
+            output_nm: around.wheel.power_w / step.secondary_rad_s,
+            throttle: state.throttle,
+            slip: state.slip,
+            engine_rad_s: state.engine_rad_s,
+            pressure_pa: state.secondary_pa,
+        };
+        work.most = work.count + MOST_EVALUATIONS;
+        let (point, bind) = bound(&step, guess, state.overrun, &mut work);
+        efficiency *= 0.9;
+        if bind == Bind::FullLoad && efficiency > LEAST_ROUTE_EFFICIENCY {
+            continue; // kick-down: losses are larger than RC-3 reckoned with, ask for more speed (RC-7)
+        }
+        state.gain = work.gain;
+        state.overrun = bind == Bind::Least;
+        return finish(&step, &point, state, Outcome { bind, left: work.left, count: work.count, held });
     }
-    let mut count = 0;
-    let demand_nm = around.wheel.power_w / step.secondary_rad_s;
-    let first = Guess {
-        output_nm: demand_nm,
-        throttle: state.throttle,
-        slip: state.slip,
-        engine_rad_s: state.engine_rad_s,
-        pressure_pa: state.secondary_pa,
-    };
-    let (mut point, mut left) = step.run(first, Bind::Demand, &mut count);
-    let mut bind = Bind::Demand;
-    if point.primary_nm < step.least_primary_nm(&point) {
-        bind = Bind::Least;
-    } else if point.primary_nm > step.most_primary_nm(&point) {
-        bind = Bind::FullLoad;
-    }
-    if bind != Bind::Demand {
-        let mut more = 0;
-        (point, left) = step.run(point.next, bind, &mut more);
-        count += more;
-    }
-    finish(&step, &point, state, Outcome { bind, left, count, held })
 }
 
-fn prepare<'a>(cvt: &'a Cvt, around: &'a Surroundings<'a>, state: &DriveState, at: &BeltAtRatio) -> (Step<'a>, bool) {
+/// Finds which condition fixes the output torque, and solves with it. In overrun the engine's least torque is tried first: it binds
+/// exactly when it leaves more at the output than the wheels demand.
+fn bound(step: &Step, guess: Guess, overrun: bool, work: &mut Work) -> (Point, Bind) {
+    let demand_nm = guess.output_nm;
+    if overrun && step.around.wheel.power_w < 0.0 {
+        let point = step.run(guess, Bind::Least, work);
+        if point.guess.output_nm > demand_nm {
+            return (point, Bind::Least);
+        }
+    }
+    work.most = work.count + MOST_EVALUATIONS;
+    let point = step.run(guess, Bind::Demand, work);
+    let bind = if point.primary_nm < step.least_primary_nm(&point) {
+        Bind::Least
+    } else if point.primary_nm > step.most_primary_nm(&point) {
+        Bind::FullLoad
+    } else {
+        return (point, Bind::Demand);
+    };
+    work.most = work.count + MOST_EVALUATIONS;
+    (step.run(point.next, bind, work), bind)
+}
+
+fn prepare<'a>(
+    cvt: &'a Cvt,
+    around: &'a Surroundings<'a>,
+    state: &DriveState,
+    at: &BeltAtRatio,
+    efficiency: f64,
+) -> (Step<'a>, bool) {
     let (sump_k, belt_k) = (around.heat.node_k[SUMP], around.heat.node_k[BELT]);
     let nu = around.oil.kinematic_m2_s(sump_k);
     let eta_sump = nu * around.oil.density_kg_m3(sump_k);
-    let (now, shift_flow, held) = shift(cvt, around, state, at, eta_sump);
+    let (now, shift_flow, held) = shift(cvt, around, state, at, Route { eta_pa_s: eta_sump, efficiency });
     let secondary_rad_s = cvt.final_drive * around.wheel.wheel_rad_s;
     let eta_belt = around.oil.dynamic_pa_s(belt_k);
     let sliding = sliding_speed_m_s(&cvt.belt, now.geometry.ratio, now.geometry.ratio * secondary_rad_s);
@@ -367,11 +411,13 @@ fn standstill(step: &Step, state: &mut DriveState) -> Drive {
     let (mut pa, mut pump_nm, mut shaft_nm, mut left, mut count) = (0.0, 0.0, 0.0, f64::INFINITY, 0);
     let mut inside = true;
     let mut flow_limited = false;
+    let mut oil_flow_m3_s = 0.0;
     while left > TOLERANCE && count < MOST_EVALUATIONS {
         let signals = ClampSignals { throttle, engine_rad_s: w, oil_k: step.around.heat.node_k[SUMP], radius_factor: step.radius_factor };
         pa = cvt.pressure_pa(&signals, &step.at, &BeltLoad { output_torque_nm: creep * step.at.geometry.ratio, ..step.load }, 0.0);
         let pump = cvt.pump.state(w, pa, cvt.pump.steady_need_m3_s(pa, step.eta_sump), step.viscous_factor);
         flow_limited = pump.flow_limited;
+        oil_flow_m3_s = pump.working_m3_s;
         pump_nm = step.mapped(cvt.maps.pump.as_ref(), w, 0.0, pa, &mut inside).unwrap_or(pump.torque_nm);
         shaft_nm = step.mapped(cvt.maps.input_shaft.as_ref(), w, 0.0, pa, &mut inside).unwrap_or_else(|| step.spin.shaft_nm(w));
         let next = ((creep + pump_nm + shaft_nm + engine.accessories_nm(w)) / engine.full_load_nm(w)).clamp(0.0, 1.0);
@@ -394,7 +440,7 @@ fn standstill(step: &Step, state: &mut DriveState) -> Drive {
         secondary_pa: pa,
         slip: 0.0,
         clamp_safety: if creep > 0.0 { capacity / (creep * step.at.geometry.ratio) } else { f64::INFINITY },
-        oil_flow_m3_s: cvt.pump.displacement_m3_rad * w,
+        oil_flow_m3_s,
         residual: left,
         iterations: count,
         ..Drive::at_rest()
@@ -437,7 +483,7 @@ fn finish(step: &Step, p: &Point, state: &mut DriveState, outcome: Outcome) -> D
         secondary_pa: g.pressure_pa,
         slip: g.slip,
         clamp_safety: p.belt.capacity_nm / p.secondary_nm.abs(),
-        oil_flow_m3_s: step.cvt.pump.displacement_m3_rad * we,
+        oil_flow_m3_s: p.oil_flow_m3_s,
         residual: outcome.left,
         iterations: outcome.count,
         ..Drive::at_rest()

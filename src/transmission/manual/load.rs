@@ -12,7 +12,12 @@ pub fn load(s: &Section, files: &dyn Files) -> Manual {
     let exponent = Bound::closed(0.0, 1.5);
     let overall = s.numbers("overall_ratios", Bound::closed(0.5, 40.0), 2..=10, "engine speed over wheel speed in each gear, from first");
     if overall.windows(2).any(|r| r[0] <= r[1]) {
-        s.complain("overall_ratios", "falling from gear to gear", "ratios must fall from first to top gear", "order them from first gear; reverse does not belong here");
+        s.complain(
+            "overall_ratios",
+            "falling from gear to gear",
+            "ratios must fall from first to top gear",
+            "order them from first gear; reverse does not belong here",
+        );
     }
     let (seal, bearing, churning, mesh) = (s.table("seal"), s.table("bearing"), s.table("churning"), s.table("mesh"));
     Manual {
@@ -27,7 +32,13 @@ pub fn load(s: &Section, files: &dyn Files) -> Manual {
         reference_m2_s: s.number("reference_mm2_s", Bound::closed(1.5, 1000.0), "viscosity at which the torques hold (MB-2)"),
         neutral_share: s.number("neutral_share", Bound::closed(0.0, 1.0), "share of the losses that turns in neutral"),
         launch: launch_load::load(s, 0.0),
-        map: tables::loss_map(&s.table("maps"), "box", "CSV of measured torque loss at the input shaft that replaces mesh, bearings, churning and seals", files, "gear"),
+        map: tables::loss_map(
+            &s.table("maps"),
+            "box",
+            "CSV of measured torque loss at the input shaft that replaces mesh, bearings, churning and seals",
+            files,
+            "gear",
+        ),
     }
 }
 
@@ -37,7 +48,12 @@ fn shifts(s: &Section, gears: usize) -> ShiftSpeeds {
     let up = s.numbers("upshift_kmh", kmh, count..=count, "vehicle speeds to shift up where a cycle has no gears (MB-5)");
     let down = s.numbers("downshift_kmh", kmh, count..=count, "vehicle speeds to shift down (MB-5)");
     if down.iter().zip(&up).any(|(d, u)| d >= u) {
-        s.complain("downshift_kmh", "below upshift_kmh in every gear", "a down-shift speed is not below its up-shift speed", "leave a gap of a few km/h so that the box does not hunt");
+        s.complain(
+            "downshift_kmh",
+            "below upshift_kmh in every gear",
+            "a down-shift speed is not below its up-shift speed",
+            "leave a gap of a few km/h so that the box does not hunt",
+        );
     }
     for (key, list) in [("upshift_kmh", &up), ("downshift_kmh", &down)] {
         if list.windows(2).any(|w| w[0] >= w[1]) {

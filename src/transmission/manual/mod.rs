@@ -9,7 +9,7 @@
 //! | MB-5 | gears: the cycle's, else shift speeds with hysteresis; a lower gear where the one in force lacks torque | prescribed gears source: UN R83; rest derived |
 //!
 //! nu_r is the gear oil's viscosity at 80 degC. At that temperature the sum follows the published 0.925 Nm + 0.000407 Nm/rpm within 5 %
-//! from 1000 to 4000 rpm. In neutral the engine turns the input shaft and a share of the losses; declutched, the wheels turn the box.
+//! from 1000 to 4000 rpm; cold it rises about as viscosity^0.3. In neutral the engine turns the input shaft and a share of the losses; declutched, the wheels turn the box.
 //! A gear change is driven in the gear that follows it: the plateau's load is small and the engine's loss of speed is not resolved.
 
 mod gears;
@@ -97,6 +97,8 @@ impl Manual {
             engine_rad_s: if input > idle { input } else { idle },
             throttle: 0.0,
             slip: 0.0,
+            gain: 0.0,
+            overrun: false,
             secondary_pa: 0.0,
             coupled: input > idle,
             stood: true,
@@ -128,8 +130,9 @@ impl Manual {
     #[must_use]
     pub fn solve(&self, around: &Surroundings, state: &mut DriveState) -> Drive {
         if around.engine_off {
-            state.engine_rad_s = 0.0;
+            state.engine_rad_s = around.engine.idle_rad_s; // the starter brings it back there
             state.stood = true;
+            state.coupled = false;
             let mut rest = Drive::at_rest();
             rest.flags.set(Flags::ENGINE_OFF, true);
             return rest;
@@ -166,9 +169,19 @@ impl Manual {
         e.idle_rad_s.clamp(state.engine_rad_s - pace, state.engine_rad_s + pace)
     }
 
+    /// Losses of the unloaded box: the model's, or the map's at no torque, counted as bearing loss.
+    fn unloaded(&self, around: &Surroundings, gear: u8, speed: f64, nu: f64) -> Spin {
+        match &self.map {
+            Some(map) => {
+                Spin { seal: 0.0, bearing: map_loss(map, gear, speed, 0.0, around.heat.node_k[SUMP]).0, churning: 0.0 }
+            }
+            None => self.spin(speed, nu),
+        }
+    }
+
     fn neutral(&self, around: &Surroundings, state: &DriveState, nu: f64) -> Drive {
         let w = Self::free_engine_rad_s(around, state);
-        let spin = self.spin(w, nu);
+        let spin = self.unloaded(around, 1, w, nu);
         let share = self.neutral_share;
         let mut drive = Drive { engine_rad_s: w, shaft_nm: share * spin.sum(), ..Drive::at_rest() };
         self.lose_spin(&mut drive, &spin, share * w);
@@ -179,7 +192,7 @@ impl Manual {
     fn declutched(&self, around: &Surroundings, state: &DriveState, gear: u8, nu: f64) -> Drive {
         let gear = if gear == 0 { self.overall.len() as u8 } else { gear };
         let input = self.overall[usize::from(gear) - 1] * around.wheel.wheel_rad_s;
-        let spin = self.spin(input, nu);
+        let spin = self.unloaded(around, gear, input, nu);
         let mut drive = Drive { engine_rad_s: Self::free_engine_rad_s(around, state), gear, ..Drive::at_rest() };
         drive.flags.set(Flags::CLUTCH_OPEN, true);
         if input > 0.0 {
@@ -200,9 +213,9 @@ impl Manual {
     /// Box loss torque at the input for an output torque referred to the input: (spin, mesh, inside map).
     fn losses(&self, gear: u8, input: f64, output_nm: f64, nu: f64, oil_k: f64) -> (Spin, f64, bool) {
         if let Some(map) = &self.map {
-            let p = MapPoint { ratio: f64::from(gear), input_speed_rad_s: input, torque_nm: output_nm, pressure_pa: 0.0, oil_k };
-            let (loss, inside) = map.loss_nm(&p);
-            return (Spin { seal: 0.0, bearing: 0.0, churning: 0.0 }, loss, inside);
+            let none = Spin { seal: 0.0, bearing: 0.0, churning: 0.0 };
+            let (loss, inside) = map_loss(map, gear, input, output_nm, oil_k);
+            return (none, loss, inside);
         }
         let spin = self.spin(input, nu);
         let eta = self.mesh_efficiency;
@@ -250,7 +263,7 @@ impl Manual {
             let wanted = self.launch.engine_speed_rad_s(torque, input, idle, state.coupled);
             let pace = engine.engine.inertia_torque_nm / engine.engine.inertia_kg_m2 * around.dt_s;
             let limited = wanted.clamp(state.engine_rad_s - pace, state.engine_rad_s + pace);
-            if torque > 0.0 && limited > input { limited } else { wanted }
+            if limited > input && wanted > input { limited } else { input }
         };
         let mut w = speed(input_nm);
         let least = if input < idle {
@@ -259,7 +272,13 @@ impl Manual {
             -self.launch.overrun_share(input, idle) * (engine.drag_nm(w) + engine.accessories_nm(w))
         };
         let most = engine.full_load_nm(w) - engine.accessories_nm(w);
-        let bound = if input_nm < least { Some(least) } else if input_nm > most { Some(most) } else { None };
+        let bound = if input_nm < least {
+            Some(least)
+        } else if input_nm > most {
+            Some(most)
+        } else {
+            None
+        };
         let mut drive = Drive { gear, iterations: 1, ..Drive::at_rest() };
         if let Some(torque) = bound {
             drive.flags.set(Flags::MISSED_TRACE, input_nm > most);
@@ -287,6 +306,16 @@ impl Manual {
     }
 }
 
+/// Loss of a measured map, whose torque axis is the input torque, for an output torque: T_in = T_out + loss(T_in) by fixed point.
+fn map_loss(map: &LossMap, gear: u8, input_speed_rad_s: f64, output_nm: f64, oil_k: f64) -> (f64, bool) {
+    let at = |torque_nm: f64| map.loss_nm(&MapPoint { ratio: f64::from(gear), input_speed_rad_s, torque_nm, pressure_pa: 0.0, oil_k });
+    let mut answer = at(output_nm);
+    for _ in 0..8 {
+        answer = at(output_nm + answer.0);
+    }
+    answer
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -296,10 +325,10 @@ mod tests {
         Manual {
             overall: vec![13.45, 7.67, 5.25, 4.15, 3.33],
             mesh_efficiency: 0.985,
-            seal_nm: 0.70,
+            seal_nm: 0.78,
             seal_exponent: 0.15,
-            bearing_nm: 0.25,
-            churning_nm: 0.79,
+            bearing_nm: 0.12,
+            churning_nm: 0.84,
             churning_exponent: 0.2,
             reference_m2_s: 12.9e-6,
             neutral_share: 0.5,
@@ -316,7 +345,7 @@ mod tests {
         for rpm in [1000.0, 2000.0, 3000.0, 4000.0] {
             let got = m.spin(rpm * std::f64::consts::PI / 30.0, 12.9e-6).sum();
             let want = 0.925 + 0.000_407 * rpm;
-            assert!((got / want - 1.0).abs() < 0.08, "{rpm} rpm: {got:.3} instead of {want:.3}");
+            assert!((got / want - 1.0).abs() < 0.05, "{rpm} rpm: {got:.3} instead of {want:.3}");
         }
     }
 

@@ -70,9 +70,7 @@ impl MapLaw {
     #[inline]
     pub fn pressure_pa(&self, s: &ClampSignals) -> f64 {
         let fast = self.slow_factor + (1.0 - self.slow_factor) * ramp(s.engine_rad_s, self.slow_rad_s, self.full_rad_s); // PC-2
-        fast * (self.base_pa + self.throttle_pa * s.throttle)
-            * s.radius_factor
-            * (1.0 + self.cold_per_k * (353.15 - s.oil_k)) // PC-1
+        fast * (self.base_pa + self.throttle_pa * s.throttle) * s.radius_factor * (1.0 + self.cold_per_k * (353.15 - s.oil_k)) // PC-1
     }
 }
 

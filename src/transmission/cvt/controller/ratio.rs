@@ -5,6 +5,7 @@
 //! | RC-1 | target speed: 1700 rpm in gentle driving, + g (P/P_max - 15 %) above 15 % power | 1700 rpm source: thesis 1.1.2, Fig 1-6; rise ASSUMED |
 //! | RC-2 | overrun target, reached linearly over 1 % of rated power | ASSUMED |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
+//! | RC-7 | where full load does not suffice, RC-3 is asked again with 10 % less efficiency each time, down to 40 % | derived: kick-down, within RC-4 and RC-5 |
 //! | RC-4 | \|d ln I/dt\| <= rate min(1, n_p/n_ref), up and down rates apart; none at rest | source: thesis 2.4, 3.7 in words; values ASSUMED |
 //! | RC-6 | no up-shift before the launch clutch has locked | source: thesis 1.1.2, order A-B-C-D of the variogram |
 //! | RC-5 | and <= free pump flow / (A 2 tan th \|dR/d ln I\|) | derived: thesis 9.1 |
@@ -80,11 +81,8 @@ impl RatioControl {
     /// Ratio after the step (RC-4, RC-5), and whether pump flow held it back.
     #[must_use]
     pub fn step(&self, d: &RatioDemand) -> (f64, bool) {
-        let wanted = if d.secondary_rad_s > 0.0 {
-            (self.target_rad_s(d) / d.secondary_rad_s).clamp(self.high, self.low)
-        } else {
-            d.ratio_before
-        };
+        let wanted =
+            if d.secondary_rad_s > 0.0 { (self.target_rad_s(d) / d.secondary_rad_s).clamp(self.high, self.low) } else { d.ratio_before };
         let wanted = if !d.coupled && wanted < d.ratio_before { d.ratio_before } else { wanted }; // RC-6
         let primary = d.ratio_before * d.secondary_rad_s;
         let pace = (primary / self.rate_speed_rad_s).clamp(0.0, 1.0);

@@ -37,8 +37,7 @@ pub fn slide_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
 pub fn film_m4(belt: &Belt, g: &Geometry) -> f64 {
     let arcs = g.primary_radius_m * g.primary_wrap_rad + g.secondary_radius_m * g.secondary_wrap_rad;
     let spread = (1.0 / g.ratio - 1.0) / 2.0;
-    let offsets = belt.band_offset_m * belt.band_offset_m
-        + (belt.band_count - 1.0) * belt.band_thickness_m * belt.band_thickness_m;
+    let offsets = belt.band_offset_m * belt.band_offset_m + (belt.band_count - 1.0) * belt.band_thickness_m * belt.band_thickness_m;
     belt.band_width_m * arcs * spread * spread * offsets
 }
 
@@ -54,7 +53,7 @@ pub fn sliding_speed_m_s(belt: &Belt, ratio: f64, primary_speed_rad_s: f64) -> f
 #[inline]
 pub fn band_loss(at: &BeltAtRatio, t: &Tension, mu_band: f64) -> BandLoss {
     BandLoss {
-        primary_nm: mu_band * t.primary_shoulder_n * at.prepared.slide_m[0],     // BT-3
+        primary_nm: mu_band * t.primary_shoulder_n * at.prepared.slide_m[0], // BT-3
         secondary_nm: mu_band * t.secondary_shoulder_n * at.prepared.slide_m[1], // BT-3
     }
 }

@@ -50,7 +50,7 @@ pub fn deflection(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_flank: f64) -> 
     Deflection {
         wedge_primary_nm: common * n_p * wedge_area_m2(g.primary_radius_m, delta_p * half_cot), // WE-3
         wedge_secondary_nm: common * wedge_s_force * wedge_area_m2(g.secondary_radius_m, delta_s * half_cot) / g.ratio, // WE-3
-        penetration_primary_nm: pen * n_p * delta_p,   // PE-1
-        penetration_secondary_nm: pen * n_s * delta_s, // PE-1
+        penetration_primary_nm: pen * n_p * delta_p,                                            // PE-1
+        penetration_secondary_nm: pen * n_s * delta_s,                                          // PE-1
     }
 }

@@ -52,9 +52,9 @@ impl Geometry {
         }
         Geometry {
             ratio,
-            primary_radius_m: r / ratio,           // GE-1
+            primary_radius_m: r / ratio, // GE-1
             secondary_radius_m: r,
-            primary_wrap_rad: PI - 2.0 * alpha,    // GE-2
+            primary_wrap_rad: PI - 2.0 * alpha, // GE-2
             secondary_wrap_rad: PI + 2.0 * alpha,
             strut_m: strut,
         }

@@ -237,8 +237,7 @@ pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
     let film = Film { share: load.band.film_share, eta_pa_s: load.eta_pa_s, thickness_m: load.film_thickness_m };
     let film_nm = bands::film_loss_nm(at, &film, load.primary_speed_rad_s);
     let deflection = deflection::deflection(belt, at, &tension, load.flank_friction);
-    let weaker =
-        if tension.primary_clamp_n < tension.secondary_clamp_n { tension.primary_clamp_n } else { tension.secondary_clamp_n };
+    let weaker = if tension.primary_clamp_n < tension.secondary_clamp_n { tension.primary_clamp_n } else { tension.secondary_clamp_n };
     let capacity_nm = 2.0 * mu_segment * g.secondary_radius_m * weaker / belt.cos_wedge; // VA-2
     let band_nm = bands.primary_nm + bands.secondary_nm;
     let slip_nm = slip.primary_loss_nm + slip.secondary_loss_nm;

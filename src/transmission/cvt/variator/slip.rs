@@ -79,8 +79,7 @@ fn branch(c: &Contact, load: usize) -> Slip {
     let k = cx / grip; // SL-4
     let arc = prepared.arc_m[load];
     let active = if k * pitch < arc { k * pitch } else { arc };
-    let e_segs = cx
-        * (prepared.strut_gap_m_n + 0.5 * (active + prepared.arc_m[other]) / (belt.youngs_pa * arc_area_m2(cx))); // SL-2
+    let e_segs = cx * (prepared.strut_gap_m_n + 0.5 * (active + prepared.arc_m[other]) / (belt.youngs_pa * arc_area_m2(cx))); // SL-2
     let idle = arc - active;
     let gap = (c.slack_m + e_segs) / (idle + 1e-9); // SL-5
     let lambda_idle = shoulder / c.grip_n[load];
@@ -97,14 +96,7 @@ fn branch(c: &Contact, load: usize) -> Slip {
     let loss_other = r * slip_other.abs() * total_other.abs(); // SL-7
     if inverted {
         let primary = if f.flips_inverted_primary() { slip_other } else { -slip_other }; // SL-6
-        Slip {
-            primary,
-            secondary: -loaded,
-            primary_loss_nm: loss_other,
-            secondary_loss_nm: loss_load,
-            active_segments: k,
-            held,
-        }
+        Slip { primary, secondary: -loaded, primary_loss_nm: loss_other, secondary_loss_nm: loss_load, active_segments: k, held }
     } else {
         Slip {
             primary: loaded,

@@ -89,7 +89,9 @@ fn val_golden_points_closed_forms() {
     let mut worst: f64 = 0.0;
     let mut count = 0;
     for row in golden() {
-        if row.text("status") != "ok" || (row.num("wedge_half_angle_deg") - row.num("pulley_half_angle_deg")).abs() > 1e-9 && row.text("formulation") == "chapter_8" {
+        if row.text("status") != "ok"
+            || (row.num("wedge_half_angle_deg") - row.num("pulley_half_angle_deg")).abs() > 1e-9 && row.text("formulation") == "chapter_8"
+        {
             continue;
         }
         let belt = belt_of(&row);
@@ -136,7 +138,11 @@ fn val_golden_points_slip() {
         let at = BeltAtRatio::new(&belt, row.num("ratio"));
         let l = load(row.num("input_speed_rpm"), row.num("output_torque_nm"), row.num("secondary_pressure_bar"), row.num("band_friction"));
         let s = belt_state(&belt, &at, &l);
-        let own = if s.tension.compression_n > 0.0 { at.geometry.primary_radius_m * at.geometry.primary_wrap_rad } else { at.geometry.secondary_radius_m * at.geometry.secondary_wrap_rad };
+        let own = if s.tension.compression_n > 0.0 {
+            at.geometry.primary_radius_m * at.geometry.primary_wrap_rad
+        } else {
+            at.geometry.secondary_radius_m * at.geometry.secondary_wrap_rad
+        };
         // One segment more or less moves the idle arc by this share, and slip by as much.
         let idle = own / 1.46e-3 - row.num("active_segments");
         let tolerance = 2.0 / idle + 2.0 / row.num("active_segments") + 0.005;
@@ -145,10 +151,18 @@ fn val_golden_points_slip() {
         let parts = (row.num("gap_slip_m_s").abs() + row.num("idle_slip_m_s").abs()) / row.num("belt_speed_m_s");
         assert!(
             (s.slip_total - want).abs() <= tolerance * (want.abs() + parts) + 5e-5,
-            "case {} {}: slip {} instead of {want}", row.text("case"), row.text("formulation"), s.slip_total
+            "case {} {}: slip {} instead of {want}",
+            row.text("case"),
+            row.text("formulation"),
+            s.slip_total
         );
         let want_loss = row.num("slip_loss_primary_nm") + row.num("slip_loss_secondary_nm");
-        assert!((s.slip_nm - want_loss).abs() <= (tolerance + 0.02) * want_loss + 0.01, "case {}: loss {} instead of {want_loss}", row.text("case"), s.slip_nm);
+        assert!(
+            (s.slip_nm - want_loss).abs() <= (tolerance + 0.02) * want_loss + 0.01,
+            "case {}: loss {} instead of {want_loss}",
+            row.text("case"),
+            s.slip_nm
+        );
         sum2 += (s.slip_total - want).powi(2);
         count += 1.0;
     }
