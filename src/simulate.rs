@@ -196,13 +196,14 @@ struct Answer<'a> {
     heat: &'a HeatStep,
 }
 
-fn row(car: &Car, step: &crate::cycle::Step, around: &Surroundings, a: &Answer) -> (Row, Terms) {
+/// Ledger terms of a step, each from the model that owns it.
+fn terms(car: &Car, around: &Surroundings, a: &Answer) -> Terms {
     let (d, b, wheel) = (a.drive, a.burn, around.wheel);
     let node_heat: f64 = node_power(car, d, b).iter().sum();
     let losses: f64 = d.loss_w.iter().sum();
     let engine_heat = b.to_coolant_w + b.to_oil_w;
     let accessories = a.inertia.accessories_nm * d.engine_rad_s;
-    let terms = Terms {
+    Terms {
         fuel: b.fuel_w,
         wheels: wheel.power_w - d.deficit_w,
         brake: d.brake_w,
@@ -214,7 +215,12 @@ fn row(car: &Car, step: &crate::cycle::Step, around: &Surroundings, a: &Answer) 
         node_heat,
         stored: a.heat.stored_w,
         to_air: a.heat.to_air_w,
-    };
+    }
+}
+
+fn row(car: &Car, step: &crate::cycle::Step, around: &Surroundings, a: &Answer) -> (Row, Terms) {
+    let terms = terms(car, around, a);
+    let (d, b, wheel) = (a.drive, a.burn, around.wheel);
     let mut flags = d.flags;
     flags.set(Flags::FUEL_CUT, b.cut && d.engine_rad_s > 0.0);
     flags.set(Flags::OUTSIDE_VALIDITY, b.outside);
@@ -242,12 +248,12 @@ fn row(car: &Car, step: &crate::cycle::Step, around: &Surroundings, a: &Answer) 
         slip: d.slip,
         clamp_safety: d.clamp_safety,
         loss_w: d.loss_w,
-        accessories_w: accessories,
+        accessories_w: terms.accessories,
         brake_w: d.brake_w,
         kinetic_w: a.inertia.kinetic_w,
         fuel_kg_s: b.fuel_kg_s,
         fuel_power_w: b.fuel_w,
-        engine_heat_w: engine_heat,
+        engine_heat_w: terms.engine_heat,
         exhaust_w: b.exhaust_w,
         coolant_k: t[COOLANT],
         engine_oil_k: t[ENGINE_OIL],

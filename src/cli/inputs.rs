@@ -134,7 +134,7 @@ pub fn did_you_mean(value: &str, known: &[&str]) -> Option<String> {
 
 /// A cycle by name or path.
 pub fn cycle(option: &str, value: &str) -> Result<Cycle, Vec<Problem>> {
-    if let Some(constant) = cycle::constant_speed(value).filter(|_| !value.contains(['/', '\\'])) {
+    if let Some(constant) = cycle::constant_speed(value).filter(|_| !is_csv(value)) {
         return constant.map_err(|problem| vec![Problem { place: Place { file: option.to_owned(), ..problem.place }, ..problem }]);
     }
     if let Some(found) = cycle::embedded(value) {
@@ -152,6 +152,17 @@ pub fn cycle(option: &str, value: &str) -> Result<Cycle, Vec<Problem>> {
         format!("there is no cycle named {}", quoted(value)),
         format!("{question}`cvtcycle list cycles` shows all; a path needs a / or an ending"),
     )])
+}
+
+/// Whether a word is surely a file, though it may begin like the name of a constant speed.
+pub fn is_csv(word: &str) -> bool {
+    word.contains(['/', '\\']) || word.to_lowercase().ends_with(".csv")
+}
+
+/// The file that a file names, seen from the current directory: its own folder is where its paths begin.
+pub fn beside(file: &str, named: &str) -> String {
+    let folder = std::path::Path::new(file).parent().filter(|_| is_path(file) && is_path(named));
+    folder.map_or_else(|| named.to_owned(), |folder| folder.join(named).to_string_lossy().into_owned())
 }
 
 /// The bytes of a file that the user named.

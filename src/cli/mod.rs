@@ -4,14 +4,17 @@
 //! input. Exit codes: 0 fine; 1 ran, but a check failed; 2 bad input or output that cannot be written.
 
 mod answer;
-
+mod check;
 mod colour;
-
+mod explain;
 mod grid;
 mod inputs;
-
+mod list;
 mod number;
 mod run;
+mod shell;
+mod show;
+mod sniff;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -32,7 +35,7 @@ use colour::{Colour, Paint};
 )]
 struct Cli {
     /// When to colour the output; `auto` colours on a terminal and obeys NO_COLOR
-    #[arg(long, value_enum, global = true, value_name = "WHEN", default_value = "auto")]
+    #[arg(long, value_enum, global = true, value_name = "WHEN", default_value = "auto", display_order = 1000)]
     color: Colour,
     #[command(subcommand)]
     command: Command,
@@ -41,7 +44,21 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Drive a car and its baselines through a cycle: fuel, losses, temperatures
-    Run(run::Args),
+    Run(Box<run::Args>),
+    /// List what the program carries: cycles, vehicles, lubricants
+    List(list::Args),
+    /// Show every value of a vehicle or lubricant with its status and source, or a cycle
+    Show(show::Args),
+    /// Explain a key, a trace column or a flag: value in each file, unit, range, meaning
+    Explain(explain::Args),
+    /// Check vehicle, lubricant and cycle files without running them
+    Check(check::Args),
+    /// Print the book of assumptions: where every value comes from
+    Assumptions(shell::AssumptionsArgs),
+    /// Print a completion script for a shell
+    Completions(shell::CompletionsArgs),
+    /// Print the manual page, of the program or of one command
+    Man(shell::ManArgs),
 }
 
 /// What commands know of their surroundings.
@@ -49,6 +66,8 @@ enum Command {
 struct Context {
     /// Colours of standard output.
     paint: Paint,
+    /// When to colour.
+    colour: Colour,
 }
 
 /// Reads the arguments, runs the command, prints, and says how it ended.
@@ -58,7 +77,7 @@ pub fn main() -> ExitCode {
     let asked = Colour::from_words(&words);
     let cli = Cli::command().color(asked.for_clap()).try_get_matches_from(words).and_then(|matches| Cli::from_arg_matches(&matches));
     let (reply, colour) = match cli {
-        Ok(cli) => (cli.command.answer(Context { paint: cli.color.stdout() }), cli.color),
+        Ok(cli) => (cli.command.answer(Context { paint: cli.color.stdout(), colour: cli.color }), cli.color),
         Err(error) => (Ok(usage(&error, asked)), asked),
     };
     answer::finish(reply, colour)
@@ -68,6 +87,13 @@ impl Command {
     fn answer(self, context: Context) -> Reply {
         match self {
             Command::Run(args) => run::answer(&args, context),
+            Command::List(args) => list::answer(&args, context),
+            Command::Show(args) => show::answer(&args, context),
+            Command::Explain(args) => explain::answer(&args, context),
+            Command::Check(args) => check::answer(&args, context),
+            Command::Assumptions(args) => shell::assumptions(&args),
+            Command::Completions(args) => Ok(shell::completions(&args, Cli::command())),
+            Command::Man(args) => shell::man(&args, Cli::command()),
         }
     }
 }

@@ -14,7 +14,6 @@ impl Document {
     ///
     /// # Errors
     /// A text that is no assignment, or a path that leads through a value.
-    #[expect(clippy::result_large_err, reason = "rare, and all problems have one type")]
     pub fn set(&mut self, assignment: &str) -> Result<(), Problem> {
         let refuse = |key: &str, message: String, hint: &str| Problem {
             place: Place { file: format!("--set {assignment}"), ..Place::default() },

@@ -69,6 +69,11 @@ impl<'d> Reader<'d> {
         self.log.borrow_mut().problems.push(problem);
     }
 
+    /// Every key that was looked up so far, whatever is wrong with its value.
+    pub fn known(&self) -> Vec<KeyInfo> {
+        self.log.borrow().keys.clone()
+    }
+
     /// Ends the session with every key that was read, in the order of reading.
     ///
     /// # Errors

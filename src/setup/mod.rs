@@ -2,7 +2,10 @@
 //!
 //! A name without a path and without `.toml` is an embedded file; anything else is a path.
 
+pub mod assumptions;
+pub mod catalogue;
 mod embedded;
+pub mod equations;
 pub mod tables;
 
 pub use embedded::{embedded_lubricants, embedded_map, embedded_vehicles};
@@ -212,11 +215,7 @@ pub fn load(word: &str, option: &str, options: &Options) -> Result<Setup, Vec<Pr
     }
     let reader = Reader::new(&document);
     let root = reader.root();
-    let head = root.table("vehicle");
-    let title = head.text_or("title", &stem(word), "name for people");
-    let baselines = head.text_or("baselines", "", "names of the baseline vehicles, comma separated");
-    let fluid = head.text("transmission_oil", "name of the transmission oil");
-    let engine_oil = head.text("engine_oil", "name of the engine oil");
+    let Head { title, baselines, fluid, engine_oil } = head(&root, &stem(word));
     let mut fluid_keys = Vec::new();
     let mut read_fluid = |own: &str, asked: &Option<String>, option: &str, prefix: &str| {
         let word = asked.as_deref().unwrap_or(own);
@@ -255,6 +254,24 @@ pub fn load(word: &str, option: &str, options: &Options) -> Result<Setup, Vec<Pr
     }
     let baselines = baselines.split(',').map(|b| b.trim().to_owned()).filter(|b| !b.is_empty()).collect();
     Ok(Setup { name: stem(word), title, baselines, road_load, car, keys: keys.into_iter().chain(fluid_keys).collect() })
+}
+
+/// What the `[vehicle]` table says.
+struct Head {
+    title: String,
+    baselines: String,
+    fluid: String,
+    engine_oil: String,
+}
+
+fn head(root: &crate::config::Section, name: &str) -> Head {
+    let head = root.table("vehicle");
+    Head {
+        title: head.text_or("title", name, "name for people"),
+        baselines: head.text_or("baselines", "", "names of the baseline vehicles, comma separated"),
+        fluid: head.text("transmission_oil", "name of the transmission oil"),
+        engine_oil: head.text("engine_oil", "name of the engine oil"),
+    }
 }
 
 fn parts(

@@ -53,6 +53,16 @@ fn problem(file: &str, line: usize, key: &str, value: &str, allowed: &str, messa
     }
 }
 
+fn unknown_column(file: &str, name: &str, columns: &[Column]) -> Option<Problem> {
+    if columns.iter().any(|c| c.name == name) {
+        return None;
+    }
+    let close = near(name, columns.iter().map(|c| c.name));
+    let all: Vec<&str> = columns.iter().map(|c| c.name).collect();
+    let hint = if close.is_empty() { String::new() } else { format!("did you mean {}?", close.join(", ")) };
+    Some(problem(file, 1, name, name, &all.join(", "), format!("unknown column `{name}`"), &hint))
+}
+
 fn numbers(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Numbers, Vec<Problem>> {
     let text = decode(file, bytes)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
@@ -69,14 +79,7 @@ fn numbers(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Numbers, Vec<
             "save it with commas between columns and decimal points",
         )]);
     }
-    for name in &names {
-        if !columns.iter().any(|c| c.name == name) {
-            let close = near(name, columns.iter().map(|c| c.name));
-            let all: Vec<&str> = columns.iter().map(|c| c.name).collect();
-            let hint = if close.is_empty() { String::new() } else { format!("did you mean {}?", close.join(", ")) };
-            problems.push(problem(file, 1, name, name, &all.join(", "), format!("unknown column `{name}`"), &hint));
-        }
-    }
+    problems.extend(names.iter().filter_map(|name| unknown_column(file, name, columns)));
     let mut rows = Vec::new();
     for record in reader.records() {
         let Ok(record) = record else { continue };

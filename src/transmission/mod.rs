@@ -54,10 +54,10 @@ pub struct DriveState {
     pub throttle: f64,
     /// Belt slip, as a start for the solve.
     pub slip: f64,
-    /// Slope of the throttle's fixed point, as a start for its secant.
+    /// Slope of the pressure's fixed point, as a start for its secant.
     pub gain: f64,
-    /// Whether the engine's least torque fixed the output in the step before; decides only which condition is tried first.
-    pub overrun: bool,
+    /// Output torque over ratio of the step before, if the engine's least torque fixed it there, Nm; only a start for the solve.
+    pub overrun: Option<f64>,
     /// Secondary pressure, Pa.
     pub secondary_pa: f64,
     /// Whether the launch device has locked.

@@ -6,7 +6,7 @@ use cvtcycle::transmission::cvt::variator::Formulation;
 
 use super::Args;
 use crate::cli::answer::problem;
-use crate::cli::inputs::Problems;
+use crate::cli::inputs::{Problems, beside};
 
 /// A car under the name that it bears in this run.
 pub struct Car {
@@ -29,10 +29,12 @@ pub fn load(args: &Args, formulation: Formulation, problems: &mut Problems) -> V
             problems.take(setup::load_lubricant(word, option, &[], ""));
         }
     }
-    let own = setup.as_ref().map(|s| s.baselines.clone()).unwrap_or_default();
+    let own = setup.iter().flat_map(|s| &s.baselines).map(|name| beside(&args.vehicle, name)).collect();
     let names = baselines(args, own, problems);
     let mut cars = Vec::new();
-    let others = names.iter().map(|name| problems.take(one(name, "--baseline", &baseline, args)));
+    // Whoever named a baseline is to be cited for it.
+    let namer = if args.baseline.is_empty() { args.vehicle.as_str() } else { "--baseline" };
+    let others = names.iter().map(|name| problems.take(one(name, namer, &baseline, args)));
     let others: Vec<Option<Setup>> = others.collect();
     for setup in [setup].into_iter().chain(others).flatten() {
         cars.push(Car { name: unique(&setup.name, &cars), setup });

@@ -5,7 +5,7 @@ use cvtcycle::results::Component;
 use cvtcycle::results::summary::{Comparison, RunSummary, StartWord, Summary};
 
 use crate::cli::colour::Paint;
-use crate::cli::grid::Grid;
+use crate::cli::grid::{Grid, WIDTH};
 use crate::cli::number::{NONE, fixed, percent, plain, signed, tiny};
 
 /// Widths of the two leading columns, so that the tables stand under each other.
@@ -98,7 +98,9 @@ fn compared(summary: &Summary, comparison: &Comparison) -> String {
     let parts: Vec<String> =
         comparison.phases_percent.iter().filter(|(_, x)| x.is_some()).map(|(name, x)| format!("{name} {} %", signed(x, 1))).collect();
     if parts.len() > 1 {
-        line += &format!(" ({})", parts.join(", "));
+        let detail = format!("({})", parts.join(", "));
+        let fits = line.len() + detail.len() < usize::from(WIDTH);
+        line += &format!("{}{detail}", if fits { " " } else { "\n  " });
     }
     line + "\n"
 }

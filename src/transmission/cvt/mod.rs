@@ -6,7 +6,7 @@
 //! | CV-2 | T_flywheel = T_p + T_pump(w_e) + T_shaft(w_e), T_p = T_belt + T_drag | source: thesis 1.1 (layout: pump and shaft turn with the engine) |
 //! | CV-3 | T_p >= creep torque below idle speed, >= -share (drag + accessories + pump + shaft) above it; the brakes take the rest | derived: engine can absorb no more; share LC-3 |
 //! | CV-4 | T_flywheel + accessories <= full load; the rest is a deficit | derived |
-//! | CV-5 | unknowns throttle, slip, engine speed (and output torque where CV-3 or CV-4 bind) by fixed point with secant, bounded | derived |
+//! | CV-5 | unknowns pressure (through throttle), slip, engine speed (and output torque where CV-3 or CV-4 bind) by fixed point with secant, bounded | derived |
 //!
 //! The last iterate is accepted and every torque follows from it, so that the ledger closes whatever residual is left.
 
@@ -15,6 +15,8 @@ pub mod pump;
 pub mod spin;
 pub mod variator;
 mod load;
+mod answer;
+mod prepare;
 mod solve;
 
 pub use load::load;
@@ -122,7 +124,7 @@ impl Cvt {
             throttle: 0.1,
             slip: 0.0,
             gain: 0.0,
-            overrun: false,
+            overrun: None,
             secondary_pa: self.floor_pa,
             coupled: primary > idle,
             stood: secondary <= 0.0,

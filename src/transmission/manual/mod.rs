@@ -98,7 +98,7 @@ impl Manual {
             throttle: 0.0,
             slip: 0.0,
             gain: 0.0,
-            overrun: false,
+            overrun: None,
             secondary_pa: 0.0,
             coupled: input > idle,
             stood: true,
@@ -144,10 +144,8 @@ impl Manual {
                 self.engaged(around, state, gear, nu)
             }
             GearCommand::Neutral if around.wheel.wheel_rad_s <= 0.0 => self.neutral(around, state, nu),
-            GearCommand::Declutched(gear) | GearCommand::InGear(gear) | GearCommand::Change(gear) => {
-                self.declutched(around, state, gear, nu)
-            }
-            GearCommand::Neutral => self.declutched(around, state, state.gear, nu),
+            GearCommand::Declutched(gear) | GearCommand::InGear(gear) | GearCommand::Change(gear) => self.coasting(around, state, gear, nu),
+            GearCommand::Neutral => self.coasting(around, state, state.gear, nu),
         };
         drive.flags.set(Flags::OUTSIDE_VALIDITY, !VALID_K.contains(&around.heat.node_k[SUMP]));
         drive.flags.set(Flags::OVERSPEED, drive.engine_rad_s > around.engine.engine.highest_rad_s);
@@ -172,11 +170,15 @@ impl Manual {
     /// Losses of the unloaded box: the model's, or the map's at no torque, counted as bearing loss.
     fn unloaded(&self, around: &Surroundings, gear: u8, speed: f64, nu: f64) -> Spin {
         match &self.map {
-            Some(map) => {
-                Spin { seal: 0.0, bearing: map_loss(map, gear, speed, 0.0, around.heat.node_k[SUMP]).0, churning: 0.0 }
-            }
+            Some(map) => Spin { seal: 0.0, bearing: map_loss(map, gear, speed, 0.0, around.heat.node_k[SUMP]).0, churning: 0.0 },
             None => self.spin(speed, nu),
         }
+    }
+
+    /// Declutched, unless the car would then slow down more than it should: the driver lets the clutch slip in that gear or a lower one.
+    fn coasting(&self, around: &Surroundings, state: &DriveState, gear: u8, nu: f64) -> Drive {
+        let drive = self.declutched(around, state, gear, nu);
+        if drive.deficit_w > 0.0 { self.engaged(around, state, gear.max(1), nu) } else { drive }
     }
 
     fn neutral(&self, around: &Surroundings, state: &DriveState, nu: f64) -> Drive {
@@ -199,7 +201,6 @@ impl Manual {
             let output_nm = -spin.sum();
             self.lose_spin(&mut drive, &spin, input);
             drive.settle(around.wheel, output_nm * input);
-            drive.flags.set(Flags::MISSED_TRACE, drive.deficit_w > 0.0);
         }
         drive
     }

@@ -1,0 +1,151 @@
+//! From the solved point to the driveline's answer: powers, brake, flags, memory; and the step at standstill.
+
+use super::solve::{Bind, MOST_EVALUATIONS, Point, Step, TOLERANCE};
+use super::variator::{BeltAtRatio, BeltLoad, belt_state};
+use crate::lubricant::VALID_K;
+use crate::results::{Component, Flags};
+use crate::thermal::{BELT, SUMP};
+use crate::transmission::{Drive, DriveState};
+
+/// The car stands in gear: the clutch slips at creep torque, pump and shaft turn.
+pub(super) fn standstill(step: &Step, state: &mut DriveState) -> Drive {
+    let (cvt, engine) = (step.cvt, step.around.engine);
+    let idle = engine.idle_rad_s;
+    let creep = cvt.launch.creep_torque_nm(0.0, idle);
+    let pace = engine.engine.inertia_torque_nm / engine.engine.inertia_kg_m2 * step.around.dt_s;
+    let w = idle.clamp(state.engine_rad_s - pace, state.engine_rad_s + pace);
+    let mut throttle = state.throttle;
+    let (mut pa, mut pump_nm, mut shaft_nm, mut left, mut count) = (0.0, 0.0, 0.0, f64::INFINITY, 0);
+    let mut inside = true;
+    let mut flow_limited = false;
+    let mut oil_flow_m3_s = 0.0;
+    while left > TOLERANCE && count < MOST_EVALUATIONS {
+        let signals = step.signals(throttle, w);
+        pa = cvt.pressure_pa(&signals, &step.at, &BeltLoad { output_torque_nm: creep * step.at.geometry.ratio, ..step.load }, 0.0);
+        let pump = cvt.pump.state(w, pa, cvt.pump.steady_need_m3_s(pa, step.eta_sump), step.viscous_factor);
+        flow_limited = pump.flow_limited;
+        oil_flow_m3_s = pump.working_m3_s;
+        pump_nm = step.mapped(cvt.maps.pump.as_ref(), w, 0.0, pa, &mut inside).unwrap_or(pump.torque_nm);
+        shaft_nm = step.mapped(cvt.maps.input_shaft.as_ref(), w, 0.0, pa, &mut inside).unwrap_or_else(|| step.spin.shaft_nm(w));
+        let next = ((creep + pump_nm + shaft_nm + engine.accessories_nm(w)) / engine.full_load_nm(w)).clamp(0.0, 1.0);
+        left = (next - throttle).abs();
+        throttle = next;
+        count += 1;
+    }
+    let capacity = belt_state(
+        &cvt.belt,
+        &step.at,
+        &BeltLoad { output_torque_nm: creep * step.at.geometry.ratio, secondary_clamp_n: cvt.secondary_clamp_n(pa, 0.0), ..step.load },
+    )
+    .capacity_nm;
+    let mut drive = Drive {
+        engine_rad_s: w,
+        shaft_nm: creep + pump_nm + shaft_nm,
+        throttle,
+        belt_ratio: step.at.geometry.ratio,
+        primary_pa: primary_pa(step, pa),
+        secondary_pa: pa,
+        slip: 0.0,
+        clamp_safety: if creep > 0.0 { capacity / (creep * step.at.geometry.ratio) } else { f64::INFINITY },
+        oil_flow_m3_s,
+        residual: left,
+        iterations: count,
+        ..Drive::at_rest()
+    };
+    drive.lose(Component::LaunchClutch, creep * w); // LC-4
+    drive.lose(Component::Pump, pump_nm * w);
+    drive.lose(Component::InputShaft, shaft_nm * w);
+    drive.flags.set(Flags::CLUTCH_SLIPPING, true);
+    drive.flags.set(Flags::FLOW_LIMITED, flow_limited);
+    drive.flags.set(Flags::NOT_CONVERGED, left > TOLERANCE);
+    common_flags(step, &mut drive, inside);
+    remember(state, &drive, step.at, true);
+    state.coupled = false;
+    drive
+}
+
+fn primary_pa(step: &Step, pa: f64) -> f64 {
+    let cvt = step.cvt;
+    cvt.secondary_clamp_n(pa, step.secondary_rad_s) * step.at.thrust_ratio / cvt.primary_piston_m2
+}
+
+/// How the solve ended.
+pub(super) struct Outcome {
+    pub bind: Bind,
+    pub left: f64,
+    pub count: u16,
+    pub held: bool,
+}
+
+pub(super) fn finish(step: &Step, p: &Point, state: &mut DriveState, outcome: Outcome) -> Drive {
+    let g = &p.guess;
+    let (wp, we) = (p.primary_rad_s, g.engine_rad_s);
+    let idle = step.around.engine.idle_rad_s;
+    let mut drive = Drive {
+        engine_rad_s: we,
+        shaft_nm: p.flywheel_nm(),
+        throttle: p.next.throttle,
+        belt_ratio: step.at.geometry.ratio,
+        primary_pa: primary_pa(step, g.pressure_pa),
+        secondary_pa: g.pressure_pa,
+        slip: g.slip,
+        clamp_safety: p.belt.capacity_nm / p.secondary_nm.abs(),
+        oil_flow_m3_s: p.oil_flow_m3_s,
+        residual: outcome.left,
+        iterations: outcome.count,
+        ..Drive::at_rest()
+    };
+    match p.belt_map_nm {
+        Some(loss) => drive.lose(Component::BeltMap, loss * wp),
+        None => {
+            drive.lose(Component::BeltBand, p.belt.band_nm * wp);
+            drive.lose(Component::BeltFilm, p.belt.film_nm * wp);
+            drive.lose(Component::BeltSlip, p.belt.slip_nm * wp);
+            drive.lose(Component::BeltWedge, p.belt.wedge_nm * wp);
+            drive.lose(Component::BeltPenetration, p.belt.penetration_nm * wp);
+        }
+    }
+    drive.lose(Component::FinalDrive, (p.secondary_nm - g.output_nm) * step.secondary_rad_s);
+    drive.lose(Component::ClutchDrag, p.clutch_nm * wp);
+    drive.lose(Component::Pump, p.pump_nm * we);
+    drive.lose(Component::InputShaft, p.shaft_nm * we);
+    drive.lose(Component::LaunchClutch, p.primary_nm * (we - wp)); // LC-4
+    if outcome.bind == Bind::Demand {
+        drive.output_w = step.around.wheel.power_w;
+    } else {
+        drive.settle(step.around.wheel, g.output_nm * step.secondary_rad_s);
+    }
+    let flags = &mut drive.flags;
+    flags.set(Flags::MISSED_TRACE, outcome.bind == Bind::FullLoad);
+    flags.set(Flags::GROSS_SLIP, p.belt.gross_slip && p.belt_map_nm.is_none());
+    flags.set(Flags::LOW_CLAMP, p.belt.capacity_nm < p.secondary_nm.abs());
+    flags.set(Flags::FLOW_LIMITED, p.flow_limited || outcome.held);
+    flags.set(Flags::CLUTCH_SLIPPING, we > wp * (1.0 + 1e-9) && p.primary_nm > 0.0);
+    flags.set(Flags::CLUTCH_OPEN, outcome.bind == Bind::Least && wp < idle);
+    flags.set(Flags::OVERRUN, p.primary_nm < 0.0);
+    flags.set(Flags::NOT_CONVERGED, outcome.left > TOLERANCE);
+    flags.set(Flags::LAUNCH_NOT_IN_LOW, state.stood && step.at.geometry.ratio < 0.99 * step.cvt.ratio.low);
+    common_flags(step, &mut drive, p.inside_maps);
+    remember(state, &drive, step.at, false);
+    state.coupled = step.locked(wp) || we <= wp * (1.0 + 1e-4);
+    drive
+}
+
+fn common_flags(step: &Step, drive: &mut Drive, inside_maps: bool) {
+    let t = &step.around.heat.node_k;
+    let valid = VALID_K.contains(&t[SUMP]) && VALID_K.contains(&t[BELT]) && inside_maps;
+    drive.flags.set(Flags::OUTSIDE_VALIDITY, !valid);
+    let ratio = step.at.geometry.ratio;
+    let limits = &step.cvt.ratio;
+    drive.flags.set(Flags::RATIO_LIMIT, ratio <= limits.high * (1.0 + 1e-9) || ratio >= limits.low * (1.0 - 1e-9));
+    drive.flags.set(Flags::OVERSPEED, drive.engine_rad_s > step.around.engine.engine.highest_rad_s);
+}
+
+fn remember(state: &mut DriveState, drive: &Drive, at: BeltAtRatio, stood: bool) {
+    state.belt = Some(at);
+    state.engine_rad_s = drive.engine_rad_s;
+    state.throttle = drive.throttle;
+    state.slip = drive.slip;
+    state.secondary_pa = drive.secondary_pa;
+    state.stood = stood;
+}
