@@ -38,6 +38,12 @@ pub fn load(s: &Section, cvt: bool, oil: &Lubricant) -> Network {
         bell_housing_w_k: gearbox.number("bell_housing_w_k", w_k, "block to case through the bell housing (TH-1)"),
         spray_w_k: if cvt { gearbox.number("spray_w_k", w_k, "belt and pulleys to the sump by spray (TH-1)") } else { 0.0 },
         exchanger_w_k: gearbox.number_or("exchanger_w_k", w_k, 0.0, "coolant to transmission oil heat exchanger (TH-1)"),
+        exchanger_opens_k: gearbox.number_or(
+            "exchanger_opens_degc",
+            Bound::closed(-60.0, 120.0),
+            70.0,
+            "coolant temperature from which the exchanger's valve opens (TH-7)",
+        ),
         cooler: cooler(&s.table("cooler")),
         under_bonnet: s.number_or(
             "under_bonnet_rise",

@@ -7,6 +7,7 @@
 //! | TH-3 | cooler: G = m c_p (1 - exp(-(U_0 + U_v v)/(m c_p))), flow m from the pump | source: heat exchanger with one side unlimited; coefficients fitted |
 //! | TH-4 | air under the bonnet = ambient + r (T_coolant - T_amb) | ASSUMED |
 //! | TH-5 | step: (C/dt + K - dQ_r/dT) dT = P - K T + ..., linearly implicit | derived: unconditionally stable, conserves to rounding |
+//! | TH-7 | heat exchanger coolant to transmission oil: G open(T_c), open over 5 K above its valve's temperature | ASSUMED valve: without it the exchanger takes the heat that warms the engine |
 //! | TH-6 | with the engine off, radiator and all links that need a pump or splash keep 10 % | ASSUMED |
 //!
 //! Nodes: coolant and block; engine oil; transmission oil; transmission metal; belt and pulleys with the oil they spray (unused in a
@@ -16,6 +17,7 @@ mod load;
 
 pub use load::load;
 
+use crate::numeric::ramp;
 use nalgebra::{SMatrix, SVector};
 
 /// Number of nodes.
@@ -81,6 +83,8 @@ pub struct Network {
     pub spray_w_k: f64,
     /// Coolant to transmission oil heat exchanger, W/K.
     pub exchanger_w_k: f64,
+    /// Coolant temperature from which the heat exchanger's valve opens, over 5 K, K.
+    pub exchanger_opens_k: f64,
     /// Oil-to-air cooler.
     pub cooler: Option<Cooler>,
     /// Under-bonnet air: rise as a share of coolant over ambient.
@@ -203,7 +207,7 @@ impl Network {
             links: [
                 (COOLANT, ENGINE_OIL, stirred * self.coolant_oil_w_k),
                 (COOLANT, METAL, self.bell_housing_w_k),
-                (COOLANT, SUMP, stirred * self.exchanger_w_k),
+                (COOLANT, SUMP, stirred * self.exchanger_w_k * ramp(t[COOLANT], self.exchanger_opens_k, self.exchanger_opens_k + 5.0)),
                 (SUMP, METAL, stirred * self.oil_metal_w_k),
                 (SUMP, BELT, stirred * self.spray_w_k),
             ],

@@ -19,6 +19,7 @@ pub(crate) fn network() -> Network {
         bell_housing_w_k: 4.0,
         spray_w_k: 70.0,
         exchanger_w_k: 0.0,
+        exchanger_opens_k: 343.15,
         cooler: Some(Cooler { still_w_k: 3.0, per_speed_w_s_k_m: 2.0, flow_share: 0.5, highest_m3_s: 2e-4, bypass_below_k: 0.0 }),
         under_bonnet: 0.1,
     }
