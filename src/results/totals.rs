@@ -105,7 +105,7 @@ impl Totals {
             (self.worst_deficit_w, self.worst_deficit_at_s) = (row.deficit_w, row.time_s);
             self.worst_deficit_nm = row.deficit_w * row.wheel_torque_nm / row.wheel_power_w;
         }
-        if row.solve_residual > self.worst_residual {
+        if row.solve_residual.is_nan() || row.solve_residual > self.worst_residual {
             self.worst_residual = row.solve_residual;
         }
     }

@@ -69,9 +69,7 @@ fn thermostat_to(s: &Section) -> f64 {
 }
 
 fn cooler(s: &Section) -> Option<Cooler> {
-    if !s.boolean_or("fitted", false, "whether there is an oil-to-air cooler (TH-3)") {
-        return None;
-    }
+    let fitted = s.boolean_or("fitted", false, "whether there is an oil-to-air cooler (TH-3)");
     let w_k = Bound::closed(0.0, 2000.0);
     let cooler = Cooler {
         still_w_k: s.number_or("still_w_k", w_k, 3.0, "U A at standstill (TH-3)"),
@@ -85,5 +83,6 @@ fn cooler(s: &Section) -> Option<Cooler> {
             "sump temperature below which the cooler is bypassed (TH-3)",
         ),
     };
-    (!s.boolean_or("bypassed", false, "cooler always bypassed")).then_some(cooler)
+    let bypassed = s.boolean_or("bypassed", false, "cooler always bypassed");
+    (fitted && !bypassed).then_some(cooler)
 }

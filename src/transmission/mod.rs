@@ -58,6 +58,8 @@ pub struct DriveState {
     pub gain: f64,
     /// Output torque over ratio of the step before, if the engine's least torque fixed it there, Nm; only a start for the solve.
     pub overrun: Option<f64>,
+    /// CVT: factor of the clamp map at the ratio in force, 0 before it is known.
+    pub radius_factor: f64,
     /// Secondary pressure, Pa.
     pub secondary_pa: f64,
     /// Whether the launch device has locked.

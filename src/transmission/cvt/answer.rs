@@ -1,7 +1,7 @@
 //! From the solved point to the driveline's answer: powers, brake, flags, memory; and the step at standstill.
 
 use super::solve::{Bind, MOST_EVALUATIONS, Point, Step, TOLERANCE};
-use super::variator::{BeltAtRatio, BeltLoad, belt_state};
+use super::variator::{BeltLoad, belt_state};
 use crate::lubricant::VALID_K;
 use crate::results::{Component, Flags};
 use crate::thermal::{BELT, SUMP};
@@ -57,9 +57,9 @@ pub(super) fn standstill(step: &Step, state: &mut DriveState) -> Drive {
     drive.lose(Component::InputShaft, shaft_nm * w);
     drive.flags.set(Flags::CLUTCH_SLIPPING, true);
     drive.flags.set(Flags::FLOW_LIMITED, flow_limited);
-    drive.flags.set(Flags::NOT_CONVERGED, left > TOLERANCE);
+    drive.flags.set(Flags::NOT_CONVERGED, !converged(left));
     common_flags(step, &mut drive, inside);
-    remember(state, &drive, step.at, true);
+    remember(state, &drive, step, true);
     state.coupled = false;
     drive
 }
@@ -67,6 +67,11 @@ pub(super) fn standstill(step: &Step, state: &mut DriveState) -> Drive {
 fn primary_pa(step: &Step, pa: f64) -> f64 {
     let cvt = step.cvt;
     cvt.secondary_clamp_n(pa, step.secondary_rad_s) * step.at.thrust_ratio / cvt.primary_piston_m2
+}
+
+/// Whether a residual is within tolerance; what is not a number is not.
+fn converged(left: f64) -> bool {
+    left <= TOLERANCE
 }
 
 /// How the solve ended.
@@ -109,7 +114,8 @@ pub(super) fn finish(step: &Step, p: &Point, state: &mut DriveState, outcome: Ou
     drive.lose(Component::ClutchDrag, p.clutch_nm * wp);
     drive.lose(Component::Pump, p.pump_nm * we);
     drive.lose(Component::InputShaft, p.shaft_nm * we);
-    drive.lose(Component::LaunchClutch, p.primary_nm * (we - wp)); // LC-4
+    let slipping_nm = if p.primary_nm > 0.0 { p.primary_nm } else { 0.0 };
+    drive.lose(Component::LaunchClutch, slipping_nm * (we - wp)); // LC-4, CV-6
     if outcome.bind == Bind::Demand {
         drive.output_w = step.around.wheel.power_w;
     } else {
@@ -123,10 +129,10 @@ pub(super) fn finish(step: &Step, p: &Point, state: &mut DriveState, outcome: Ou
     flags.set(Flags::CLUTCH_SLIPPING, we > wp * (1.0 + 1e-9) && p.primary_nm > 0.0);
     flags.set(Flags::CLUTCH_OPEN, outcome.bind == Bind::Least && wp < idle);
     flags.set(Flags::OVERRUN, p.primary_nm < 0.0);
-    flags.set(Flags::NOT_CONVERGED, outcome.left > TOLERANCE);
+    flags.set(Flags::NOT_CONVERGED, !converged(outcome.left));
     flags.set(Flags::LAUNCH_NOT_IN_LOW, state.stood && step.at.geometry.ratio < 0.99 * step.cvt.ratio.low);
     common_flags(step, &mut drive, p.inside_maps);
-    remember(state, &drive, step.at, false);
+    remember(state, &drive, step, false);
     state.coupled = step.locked(wp) || we <= wp * (1.0 + 1e-4);
     drive
 }
@@ -141,8 +147,9 @@ fn common_flags(step: &Step, drive: &mut Drive, inside_maps: bool) {
     drive.flags.set(Flags::OVERSPEED, drive.engine_rad_s > step.around.engine.engine.highest_rad_s);
 }
 
-fn remember(state: &mut DriveState, drive: &Drive, at: BeltAtRatio, stood: bool) {
-    state.belt = Some(at);
+fn remember(state: &mut DriveState, drive: &Drive, step: &Step, stood: bool) {
+    state.belt = Some(step.at);
+    state.radius_factor = step.radius_factor;
     state.engine_rad_s = drive.engine_rad_s;
     state.throttle = drive.throttle;
     state.slip = drive.slip;

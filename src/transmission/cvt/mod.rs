@@ -6,6 +6,7 @@
 //! | CV-2 | T_flywheel = T_p + T_pump(w_e) + T_shaft(w_e), T_p = T_belt + T_drag | source: thesis 1.1 (layout: pump and shaft turn with the engine) |
 //! | CV-3 | T_p >= creep torque below idle speed, >= -share (drag + accessories + pump + shaft) above it; the brakes take the rest | derived: engine can absorb no more; share LC-3 |
 //! | CV-4 | T_flywheel + accessories <= full load; the rest is a deficit | derived |
+//! | CV-6 | launch clutch: T_engine = T_p, loss T_p (w_e - w_p) for T_p >= 0; in overrun T_engine w_e = T_p w_p, no loss | derived |
 //! | CV-5 | unknowns pressure (through throttle), slip, engine speed (and output torque where CV-3 or CV-4 bind) by fixed point with secant, bounded | derived |
 //!
 //! The last iterate is accepted and every torque follows from it, so that the ledger closes whatever residual is left.
@@ -87,12 +88,21 @@ pub struct Cvt {
     pub belt_heat_share: f64,
 }
 
+/// Steps of the slip-limited law's walk from the cap to its lowest pressure.
+const SLIP_STEPS: u32 = 32;
+
 impl Cvt {
     /// Clamping force of the secondary at a pressure, N (VA-3).
     #[must_use]
     #[inline]
     pub fn secondary_clamp_n(&self, pressure_pa: f64, secondary_rad_s: f64) -> f64 {
         pressure_pa * self.secondary_piston_m2 + self.spring_n + self.centrifugal_n_s2 * secondary_rad_s * secondary_rad_s
+    }
+
+    /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
+    #[must_use]
+    pub fn radius_factor(&self, at: &BeltAtRatio) -> f64 {
+        (self.radius_exponent * (self.low_radius_m / at.geometry.primary_radius_m).ln()).exp()
     }
 
     /// State at the beginning of a cycle: in low at rest, in the ratio that the variogram asks for when rolling.
@@ -125,6 +135,7 @@ impl Cvt {
             slip: 0.0,
             gain: 0.0,
             overrun: None,
+            radius_factor: 0.0,
             secondary_pa: self.floor_pa,
             coupled: primary > idle,
             stood: secondary <= 0.0,
@@ -168,13 +179,24 @@ impl Cvt {
             let force = self.secondary_clamp_n(pa, secondary_rad_s);
             belt_state(&self.belt, at, &BeltLoad { secondary_clamp_n: force, ..*load }).slip_total.abs() > limit
         };
-        let (mut low, mut high) = (if least_pa > self.floor_pa { least_pa } else { self.floor_pa }, self.cap_pa);
-        if low >= high || !slips(low) {
+        let low = if least_pa > self.floor_pa { least_pa } else { self.floor_pa };
+        if low >= self.cap_pa {
             return low;
         }
+        // Slip is not monotone where the loading branch changes: walk down from the cap to the first pressure that slips too much.
+        let at_step = |k: u32| self.cap_pa + (low - self.cap_pa) * f64::from(k) / f64::from(SLIP_STEPS);
+        let Some(k) = (0..=SLIP_STEPS).find(|&k| slips(at_step(k))) else { return low };
+        if k == 0 {
+            return self.cap_pa;
+        }
+        let (mut low, mut high) = (at_step(k), at_step(k - 1));
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
-            if slips(middle) { low = middle } else { high = middle }
+            if slips(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
         }
         high // PC-4
     }

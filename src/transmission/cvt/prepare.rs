@@ -87,7 +87,11 @@ pub(super) fn prepare<'a>(
             segment_friction: friction.segment,
             flank_friction: friction.flank,
         },
-        radius_factor: (cvt.radius_exponent * (cvt.low_radius_m / now.geometry.primary_radius_m).ln()).exp(),
+        radius_factor: if now.geometry.ratio.to_bits() == at.geometry.ratio.to_bits() && state.radius_factor > 0.0 {
+            state.radius_factor
+        } else {
+            cvt.radius_factor(&now)
+        },
         shift_flow_m3_s: shift_flow,
         engine_before: state.engine_rad_s,
         coupled: state.coupled,

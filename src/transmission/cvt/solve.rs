@@ -69,8 +69,14 @@ pub(super) struct Point {
 }
 
 impl Point {
+    /// Torque at the flywheel, Nm: what the clutch passes on, pump and shaft (CV-2, CV-6).
     pub(super) fn flywheel_nm(&self) -> f64 {
-        self.primary_nm + self.pump_nm + self.shaft_nm // CV-2
+        self.clutch_nm() + self.pump_nm + self.shaft_nm
+    }
+
+    /// Torque of the launch clutch at the engine, Nm.
+    fn clutch_nm(&self) -> f64 {
+        engine_side_nm(self.primary_nm, self.primary_rad_s, self.guess.engine_rad_s)
     }
 
     fn moved(&self) -> f64 {
@@ -81,6 +87,12 @@ impl Point {
         }
         most
     }
+}
+
+/// Clutch torque at the engine for a torque at the primary (CV-6): the same in drive; in overrun the power passes unchanged, since a
+/// clutch whose engine is still running down from a higher speed can neither give nor take energy.
+fn engine_side_nm(primary_nm: f64, primary_rad_s: f64, engine_rad_s: f64) -> f64 {
+    if primary_nm < 0.0 { primary_nm * primary_rad_s / engine_rad_s } else { primary_nm }
 }
 
 /// Which condition fixes the output torque.
@@ -96,18 +108,16 @@ pub(super) enum Bind {
 
 impl Step<'_> {
     pub(super) fn mapped(&self, map: Option<&LossMap>, speed: f64, torque: f64, pa: f64, inside: &mut bool) -> Option<f64> {
-        let point = MapPoint {
+        let map = map?;
+        let (loss, ok) = map.loss_nm(&MapPoint {
             ratio: self.at.geometry.ratio,
             input_speed_rad_s: speed,
             torque_nm: torque,
             pressure_pa: pa,
             oil_k: self.around.heat.node_k[SUMP],
-        };
-        map.map(|m| {
-            let (loss, ok) = m.loss_nm(&point);
-            *inside &= ok;
-            loss
-        })
+        });
+        *inside &= ok;
+        Some(loss)
     }
 
     fn evaluate(&self, g: &Guess) -> Point {
@@ -140,7 +150,7 @@ impl Step<'_> {
         let shaft_nm = self
             .mapped(maps.input_shaft.as_ref(), engine_rad_s, 0.0, pa, &mut inside_maps)
             .unwrap_or_else(|| self.spin.shaft_nm(engine_rad_s));
-        let flywheel = primary_nm + pump_nm + shaft_nm;
+        let flywheel = engine_side_nm(primary_nm, primary_rad_s, engine_rad_s) + pump_nm + shaft_nm;
         let slip = if belt_map_nm.is_some() { 0.0 } else { belt.slip_total };
         let next = self.next(g, flywheel, primary_nm, primary_rad_s, slip, &load);
         Point {
@@ -249,9 +259,14 @@ impl Step<'_> {
                     _ => plain,
                 };
                 before = Some((x, miss));
-                guess.output_nm = x - miss / slope; // CV-5
+                // The belt carries no more than its capacity, whatever the engine could take or give (VA-2).
+                let carried = 1.05 * point.belt.capacity_nm;
+                guess.output_nm = (x - miss / slope).clamp(-carried, carried); // CV-5
+                if (guess.output_nm - x).abs() <= 1e-9 * carried {
+                    work.left = point.moved();
+                }
             }
-            if work.left <= TOLERANCE || work.count >= work.most {
+            if work.left <= TOLERANCE || work.count >= work.most || work.left.is_nan() {
                 return point;
             }
         }

@@ -99,6 +99,7 @@ impl Manual {
             slip: 0.0,
             gain: 0.0,
             overrun: None,
+            radius_factor: 0.0,
             secondary_pa: 0.0,
             coupled: input > idle,
             stood: true,

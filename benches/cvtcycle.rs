@@ -1,0 +1,169 @@
+//! How long the parts and the whole take: `cargo bench`.
+//!
+//! Steps and cycles are those of shipped cars after a soak at -10 degC; `history` keeps every row.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark has no interface")]
+
+use cvtcycle::config::render;
+use cvtcycle::cycle::{Cycle, embedded, read_csv};
+use cvtcycle::lubricant::BandFriction;
+use cvtcycle::results::{Row, Terms};
+use cvtcycle::run::{Conditions, Start, drive};
+use cvtcycle::setup::{Options, Setup, load};
+use cvtcycle::simulate::{Car, Recorder, State, simulate};
+use cvtcycle::thermal::{Heat, HeatInput};
+use cvtcycle::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, belt_state};
+use cvtcycle::transmission::{DriveState, Surroundings, Transmission};
+use cvtcycle::vehicle::WheelDemand;
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+
+const CARS: [&str; 3] = ["rover_216_cvt", "rover_216_5mt", "mondeo_20_5mt"];
+const COLD_K: f64 = 263.15;
+
+fn main() {
+    divan::main();
+}
+
+fn setup(name: &str) -> Setup {
+    load(name, "--vehicle", &Options::default()).unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
+}
+
+fn cycle(name: &str) -> Cycle {
+    embedded(name).unwrap()
+}
+
+fn belt(car: &Car) -> &Belt {
+    match &car.transmission {
+        Transmission::Cvt(cvt) => &cvt.belt,
+        Transmission::Manual(_) => unreachable!("a CVT"),
+    }
+}
+
+fn load_at(torque_nm: f64) -> BeltLoad {
+    BeltLoad {
+        primary_speed_rad_s: 200.0,
+        output_torque_nm: torque_nm,
+        secondary_clamp_n: 20e5 * 0.009_719 + 750.0,
+        band: BandFriction { mu: 0.12, film_share: 0.1 },
+        eta_pa_s: 0.02,
+        film_thickness_m: 0.5e-6,
+        segment_friction: 0.125,
+        flank_friction: 0.13,
+    }
+}
+
+/// One evaluation of the belt at a prepared ratio: away from the change of loading branch, and at it.
+#[divan::bench(args = [40.0, 3.0, -30.0])]
+fn belt_evaluation(bencher: Bencher, torque_nm: f64) {
+    let car = setup("rover_216_cvt").car(COLD_K);
+    let at = BeltAtRatio::new(belt(&car), 0.7);
+    let load = load_at(torque_nm);
+    bencher.bench_local(|| belt_state(black_box(belt(&car)), black_box(&at), black_box(&load)));
+}
+
+#[divan::bench(args = [0.4137, 1.0, 2.4])]
+fn belt_geometry(bencher: Bencher, ratio: f64) {
+    let car = setup("rover_216_cvt").car(COLD_K);
+    bencher.bench_local(|| BeltAtRatio::new(black_box(belt(&car)), black_box(ratio)));
+}
+
+/// One implicit solve of a driveline at 60 km/h, away from its last answer.
+#[divan::bench(args = CARS)]
+fn driveline_step(bencher: Bencher, name: &str) {
+    let car = setup(name).car(COLD_K);
+    let heat = Heat::uniform(300.0);
+    let engine = car.engine.at(300.0, 300.0, &car.engine_oil, 1.0);
+    let demand = |power_w: f64| WheelDemand { speed_m_s: 16.7, wheel_rad_s: 59.0, power_w, ..WheelDemand::default() };
+    let wheels = [demand(6000.0), demand(7000.0)];
+    let around = |k: usize| Surroundings {
+        wheel: &wheels[k],
+        engine: &engine,
+        oil: &car.oil,
+        heat: &heat,
+        gear: None,
+        dt_s: 1.0,
+        engine_off: false,
+    };
+    let mut state: DriveState = car.transmission.start(&around(0));
+    let mut k = 0;
+    bencher.bench_local(|| {
+        k = 1 - k;
+        car.transmission.solve(black_box(&around(k)), &mut state)
+    });
+}
+
+#[divan::bench]
+fn thermal_advance(bencher: Bencher) {
+    let car = setup("rover_216_cvt").car(COLD_K);
+    let heat = Heat::uniform(320.0);
+    let input = HeatInput {
+        power_w: [3e3, 5e2, 5e2, 3e2, 7e2],
+        ambient_k: COLD_K,
+        speed_m_s: 15.0,
+        oil_flow_m3_s: 3e-4,
+        oil_volume_heat_j_m3k: 1.7e6,
+        dt_s: 1.0,
+        running: true,
+    };
+    bencher.bench_local(|| car.network.advance(black_box(&heat), black_box(&input)));
+}
+
+struct Nobody;
+
+impl Recorder for Nobody {
+    fn record(&mut self, row: &Row, _: &Terms) {
+        black_box(row.fuel_kg_s);
+    }
+}
+
+/// Steps of a whole drive, without any totals: time a step.
+#[divan::bench(args = CARS)]
+fn step_of_a_cycle(bencher: Bencher, name: &str) {
+    let car = setup(name).car(COLD_K);
+    let cycle = cycle("ece15_eudc");
+    let trace = cycle.trace_for(car.transmission.is_cvt());
+    bencher.counter(ItemsCount::new(trace.step_count(1.0))).bench_local(|| simulate(&car, trace, 1.0, State::at(COLD_K), &mut Nobody));
+}
+
+fn whole(bencher: Bencher, name: &str, cycle_name: &str, keep_rows: bool) {
+    let setup = setup(name);
+    let cycle = cycle(cycle_name);
+    let conditions = Conditions { ambient_k: COLD_K, start: Start::Soak, max_dt_s: 1.0, keep_rows };
+    let steps = cycle.trace_for(setup.transmission().is_cvt()).step_count(1.0);
+    bencher.counter(ItemsCount::new(steps)).bench_local(|| drive(&setup, black_box(&cycle), &conditions));
+}
+
+#[divan::bench(args = CARS)]
+fn cycle_without_history(bencher: Bencher, name: &str) {
+    whole(bencher, name, "ece15_eudc", false);
+}
+
+#[divan::bench(args = CARS)]
+fn cycle_with_history(bencher: Bencher, name: &str) {
+    whole(bencher, name, "ece15_eudc", true);
+}
+
+#[divan::bench(args = ["us06", "wltc_class3b", "ftp75"])]
+fn other_cycle_without_history(bencher: Bencher, name: &str) {
+    whole(bencher, "rover_216_cvt", name, false);
+}
+
+#[divan::bench(args = CARS)]
+fn load_vehicle(bencher: Bencher, name: &str) {
+    bencher.bench_local(|| setup(black_box(name)));
+}
+
+#[divan::bench(args = ["ece15_eudc", "wltc_class3b"])]
+fn parse_embedded_cycle(bencher: Bencher, name: &str) {
+    bencher.bench_local(|| cycle(black_box(name)));
+}
+
+#[divan::bench]
+fn parse_user_cycle(bencher: Bencher) {
+    let mut text = String::from("time_s,speed_kmh,grade_percent\n");
+    for i in 0..1800 {
+        text.push_str(&format!("{i},{:.2},{:.1}\n", 40.0 + 30.0 * f64::from(i).sin().abs().min(0.02 * f64::from(i)), 0.5));
+    }
+    let rows = text.lines().count() - 1;
+    bencher.counter(ItemsCount::new(rows)).bench_local(|| read_csv("user.csv", black_box(text.as_bytes())).map_err(|p| p.len()));
+}

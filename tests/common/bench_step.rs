@@ -1,0 +1,116 @@
+//! One step of a driveline, set up by hand: speeds, torques and temperatures as on a test bench, ratio held.
+
+use cvtcycle::cycle::GearCommand;
+use cvtcycle::setup::Setup;
+use cvtcycle::simulate::Car;
+use cvtcycle::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, METAL, SUMP};
+use cvtcycle::transmission::cvt::Cvt;
+use cvtcycle::transmission::cvt::variator::BeltAtRatio;
+use cvtcycle::transmission::{Drive, DriveState, Surroundings, Transmission};
+use cvtcycle::vehicle::WheelDemand;
+
+use super::ZERO;
+
+/// What the bench is set to.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// Belt ratio, held; gear number of a manual box.
+    pub ratio: f64,
+    /// Wheel speed, rad/s.
+    pub wheel_rad_s: f64,
+    /// Torque at the wheels, Nm.
+    pub wheel_nm: f64,
+    /// Transmission oil, degC.
+    pub sump_degc: f64,
+    /// Belt and spray, degC.
+    pub belt_degc: f64,
+    /// Coolant and engine oil, degC.
+    pub engine_degc: f64,
+    /// Whether the launch device had locked.
+    pub coupled: bool,
+}
+
+impl Default for Setting {
+    fn default() -> Self {
+        Setting { ratio: 1.0, wheel_rad_s: 30.0, wheel_nm: 0.0, sump_degc: 60.0, belt_degc: 70.0, engine_degc: 90.0, coupled: true }
+    }
+}
+
+/// A car on the bench: the ratio stays where it is put, the engine takes any speed at once.
+pub struct Bench {
+    pub car: Car,
+}
+
+impl Bench {
+    /// Puts a car on the bench.
+    pub fn new(setup: &Setup) -> Self {
+        let mut car = setup.car(293.15);
+        if let Transmission::Cvt(cvt) = &mut car.transmission {
+            (cvt.ratio.low, cvt.ratio.high) = (3.0, 0.3);
+            (cvt.ratio.up_per_s, cvt.ratio.down_per_s) = (0.0, 0.0);
+        }
+        Bench { car }
+    }
+
+    /// The CVT.
+    pub fn cvt(&self) -> &Cvt {
+        match &self.car.transmission {
+            Transmission::Cvt(cvt) => cvt,
+            Transmission::Manual(_) => panic!("not a CVT"),
+        }
+    }
+
+    /// Primary speed over wheel speed at a setting without slip; input speed of the box in a gear.
+    pub fn overall(&self, ratio: f64) -> f64 {
+        match &self.car.transmission {
+            Transmission::Cvt(cvt) => cvt.final_drive * ratio,
+            Transmission::Manual(manual) => manual.overall[ratio as usize - 1],
+        }
+    }
+
+    /// Solves one step from a fresh memory.
+    pub fn solve(&self, s: &Setting) -> Drive {
+        let mut node_k = [0.0; 5];
+        node_k[COOLANT] = s.engine_degc + ZERO;
+        node_k[ENGINE_OIL] = s.engine_degc + ZERO;
+        node_k[SUMP] = s.sump_degc + ZERO;
+        node_k[METAL] = s.sump_degc + ZERO;
+        node_k[BELT] = s.belt_degc + ZERO;
+        self.solve_at(s, &Heat { node_k })
+    }
+
+    /// Solves one step at given temperatures of the nodes.
+    pub fn solve_at(&self, s: &Setting, heat: &Heat) -> Drive {
+        let car = &self.car;
+        let engine = car.engine.at(heat.node_k[COOLANT], heat.node_k[ENGINE_OIL], &car.engine_oil, 1.0);
+        let wheel = WheelDemand {
+            speed_m_s: s.wheel_rad_s * car.road_load.wheel_radius_m,
+            wheel_rad_s: s.wheel_rad_s,
+            power_w: s.wheel_nm * s.wheel_rad_s,
+            ..WheelDemand::default()
+        };
+        let cvt = car.transmission.is_cvt();
+        let around = Surroundings {
+            wheel: &wheel,
+            engine: &engine,
+            oil: &car.oil,
+            heat,
+            gear: (!cvt).then_some(GearCommand::InGear(s.ratio as u8)),
+            dt_s: 100.0, // long enough for any change of engine speed
+            engine_off: false,
+        };
+        let mut state: DriveState = car.transmission.start(&around);
+        if let Transmission::Cvt(cvt) = &car.transmission {
+            state.belt = Some(BeltAtRatio::new(&cvt.belt, s.ratio));
+        } else {
+            state.gear = s.ratio as u8;
+        }
+        state.engine_rad_s = engine.idle_rad_s;
+        state.throttle = 0.1;
+        state.slip = 0.0;
+        state.secondary_pa = 10e5;
+        state.coupled = s.coupled;
+        state.stood = false;
+        car.transmission.solve(&around, &mut state)
+    }
+}

@@ -1,0 +1,97 @@
+//! What the model tests share: loading cars, driving cycles, and steps that are set up by hand.
+#![allow(dead_code, clippy::print_stdout, reason = "each test crate uses a part of it; tests print the numbers they found")]
+
+pub mod bench_step;
+
+use cvtcycle::config::render;
+use cvtcycle::cycle::{Cycle, constant_speed, embedded, read_csv};
+use cvtcycle::results::{Component, Row, Terms};
+use cvtcycle::run::{Conditions, Outcome, Start, drive, litres_per_100km};
+use cvtcycle::setup::{Options, Setup, load};
+use cvtcycle::simulate::Recorder;
+
+/// Shipped vehicles.
+pub const CARS: [&str; 3] = ["rover_216_cvt", "rover_216_5mt", "mondeo_20_5mt"];
+/// rpm to rad/s.
+pub const RPM: f64 = std::f64::consts::PI / 30.0;
+
+/// 0 degC in K.
+pub const ZERO: f64 = 273.15;
+
+/// A shipped vehicle with overrides, or the problems as the user would see them.
+pub fn try_car(name: &str, sets: &[String]) -> Result<Setup, String> {
+    let options = Options { set: sets.to_vec(), ..Options::default() };
+    load(name, "--vehicle", &options).map_err(|problems| render(&problems, false))
+}
+
+/// A shipped vehicle with overrides.
+pub fn car(name: &str, sets: &[&str]) -> Setup {
+    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+    try_car(name, &sets).unwrap_or_else(|problems| panic!("{name} {sets:?}: {problems}"))
+}
+
+/// An embedded or constant-speed cycle.
+pub fn cycle(name: &str) -> Cycle {
+    match constant_speed(name) {
+        Some(cycle) => cycle.expect("constant speed"),
+        None => embedded(name).unwrap_or_else(|| panic!("no cycle {name}")),
+    }
+}
+
+/// A hill: 8 % up from a standing start, over the top and 6 % down again, driven at up to 70 km/h.
+pub fn hill() -> Cycle {
+    let text = "time_s,speed_kmh,grade_percent\n0,0,0\n5,0,8\n20,40,8\n80,60,8\n110,70,8\n140,50,-6\n200,60,-6\n215,0,0\n225,0,0\n";
+    read_csv("hill.csv", text.as_bytes()).unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
+}
+
+/// Conditions of a run with a step of 1 s.
+pub fn at(ambient_degc: f64, start: Start) -> Conditions {
+    Conditions { ambient_k: ambient_degc + ZERO, start, max_dt_s: 1.0, keep_rows: false }
+}
+
+/// A run after a soak, rows kept.
+pub fn soak_rows(setup: &Setup, cycle: &Cycle, ambient_degc: f64) -> Outcome {
+    drive(setup, cycle, &Conditions { keep_rows: true, ..at(ambient_degc, Start::Soak) })
+}
+
+/// Fuel of a run, kg.
+pub fn fuel_kg(setup: &Setup, cycle: &Cycle, conditions: &Conditions) -> f64 {
+    drive(setup, cycle, conditions).totals.total().fuel_kg
+}
+
+/// L/100 km of the shipped petrol (745 kg/m3) over the phases of a group, or over all of them.
+pub fn consumption(outcome: &Outcome, cycle: &Cycle, group: Option<&str>) -> f64 {
+    let sum = match group {
+        Some(name) => {
+            let groups = cycle.phase_groups();
+            let (_, phases) = groups.iter().find(|g| g.0 == name).expect("phase group");
+            outcome.totals.over(phases)
+        }
+        None => outcome.totals.total(),
+    };
+    litres_per_100km(sum.fuel_kg, 745.0, sum.distance_m)
+}
+
+/// Keeps rows and ledger terms.
+#[derive(Default)]
+pub struct Keep {
+    pub rows: Vec<Row>,
+    pub terms: Vec<Terms>,
+}
+
+impl Recorder for Keep {
+    fn record(&mut self, row: &Row, terms: &Terms) {
+        self.rows.push(*row);
+        self.terms.push(*terms);
+    }
+}
+
+/// Names of components in the order of [`Component::ALL`].
+pub fn component_names() -> [&'static str; Component::COUNT] {
+    Component::ALL.map(Component::name)
+}
+
+/// The larger of two numbers; NaN wins, so that it cannot hide.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
