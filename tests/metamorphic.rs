@@ -206,6 +206,9 @@ fn no_effect(name: &str, key: &str) -> Option<&'static str> {
     if key == "transmission.cvt.belt.segment_thickness_mm" {
         return Some("with a real-valued count of segments the pitch cancels (SL-4): active arc = C_x / (force per length)");
     }
+    if key.starts_with("thermal.cooler.") && key != "thermal.cooler.fitted" && !name.ends_with("cvt") {
+        return Some("no cooler is fitted to the manual boxes");
+    }
     if key == "engine.rated_kw" && !name.ends_with("cvt") {
         return Some("the ratio controller's measure of power; a manual box has none");
     }

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | LC-1 | engine speed while slipping: idle up to the creep torque, above it rising to n_engage + sqrt(T/k) | source: thesis 1.1.2 (engages from about 1000 rpm, 1700 rpm plateau); form ASSUMED |
 //! | LC-2 | creep torque at standstill, falling linearly to zero as the input shaft reaches idle speed | ASSUMED |
-//! | LC-3 | in overrun the coupling lets go between the release speed and 1.1 idle speed | source: thesis 1.1.2 (order of the variogram); ramp ASSUMED |
+//! | LC-3 | in overrun the coupling lets go from 0.2 idle speed above the release speed down to 1.1 idle speed | source: thesis 1.1.2 (order of the variogram); ramp ASSUMED |
 //! | LC-5 | once coupled it stays locked; between 1.2 idle speed and idle speed it lets the engine slip again | derived: locked until the engine would be dragged below idle; width ASSUMED |
 //! | LC-4 | slip loss = T (w_engine - w_input) | derived: power balance |
 //!
@@ -79,7 +79,7 @@ impl Launch for FrictionClutch {
     fn overrun_share(&self, input_speed_rad_s: f64, idle_rad_s: f64) -> f64 {
         let from = 1.1 * idle_rad_s;
         let to = if self.release_rad_s > from { self.release_rad_s } else { from };
-        ramp(input_speed_rad_s, from, to + 0.1 * idle_rad_s) // LC-3
+        ramp(input_speed_rad_s, from, to + 0.2 * idle_rad_s) // LC-3
     }
 }
 

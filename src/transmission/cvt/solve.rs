@@ -18,6 +18,8 @@ pub(super) const TOLERANCE: f64 = 1e-7;
 const SECANT_FROM_PA: f64 = 200.0;
 /// Largest slope of the pressure's fixed point that the secant believes: above it the step would overshoot.
 const MOST_GAIN: f64 = 0.2;
+/// Evaluations after which the solve goes on without secants and in half steps: slower, and stable for steeper couplings.
+const DAMPED_FROM: u16 = 16;
 /// Kick-down ends where the route would reckon with a lower efficiency than this (RC-7).
 const LEAST_ROUTE_EFFICIENCY: f64 = 0.4;
 /// Largest number of evaluations.
@@ -49,6 +51,20 @@ pub(super) struct Guess {
     pub slip: f64,
     pub engine_rad_s: f64,
     pub pressure_pa: f64,
+}
+
+impl Guess {
+    /// The middle between two guesses.
+    fn halfway(&self, other: &Guess) -> Guess {
+        let mid = |a: f64, b: f64| 0.5 * (a + b);
+        Guess {
+            output_nm: mid(self.output_nm, other.output_nm),
+            throttle: self.throttle,
+            slip: mid(self.slip, other.slip),
+            engine_rad_s: mid(self.engine_rad_s, other.engine_rad_s),
+            pressure_pa: mid(self.pressure_pa, other.pressure_pa),
+        }
+    }
 }
 
 /// One evaluation: torques that follow from a guess, and the guess that follows from them.
@@ -255,16 +271,20 @@ impl Step<'_> {
                 let x = point.guess.output_nm;
                 let plain = 1.0 / self.at.geometry.ratio;
                 let slope = match before {
-                    Some((x0, m0)) if (x - x0).abs() > 1e-12 => ((miss - m0) / (x - x0)).clamp(0.5 * plain, 2.0 * plain),
+                    Some((x0, m0)) if (x - x0).abs() > 1e-12 && work.count <= DAMPED_FROM => ((miss - m0) / (x - x0)).clamp(0.5 * plain, 2.0 * plain),
                     _ => plain,
                 };
                 before = Some((x, miss));
                 // The belt carries no more than its capacity, whatever the engine could take or give (VA-2).
                 let carried = 1.05 * point.belt.capacity_nm;
+                let carried = if carried > first.output_nm.abs() { carried } else { first.output_nm.abs() };
                 guess.output_nm = (x - miss / slope).clamp(-carried, carried); // CV-5
                 if (guess.output_nm - x).abs() <= 1e-9 * carried {
                     work.left = point.moved();
                 }
+            }
+            if work.count > DAMPED_FROM {
+                guess = guess.halfway(&point.guess);
             }
             if work.left <= TOLERANCE || work.count >= work.most || work.left.is_nan() {
                 return point;
