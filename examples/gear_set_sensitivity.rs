@@ -1,6 +1,8 @@
 //! How much of the like-for-like comparison is the manual car's gear set and its driver: the CVT's penalty over plausible
 //! gear sets and shift speeds. Run with `cargo run --release --example gear_set_sensitivity`.
 
+#![allow(clippy::print_stdout, reason = "an example shows its result")]
+
 use cvtcycle::cycle::{Cycle, embedded};
 use cvtcycle::run::{Conditions, Start, drive, litres_per_100km};
 use cvtcycle::setup::{Options, load};

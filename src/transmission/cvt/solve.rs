@@ -271,7 +271,9 @@ impl Step<'_> {
                 let x = point.guess.output_nm;
                 let plain = 1.0 / self.at.geometry.ratio;
                 let slope = match before {
-                    Some((x0, m0)) if (x - x0).abs() > 1e-12 && work.count <= DAMPED_FROM => ((miss - m0) / (x - x0)).clamp(0.5 * plain, 2.0 * plain),
+                    Some((x0, m0)) if (x - x0).abs() > 1e-12 && work.count <= DAMPED_FROM => {
+                        ((miss - m0) / (x - x0)).clamp(0.5 * plain, 2.0 * plain)
+                    }
                     _ => plain,
                 };
                 before = Some((x, miss));
