@@ -52,6 +52,8 @@ pub struct DriveState {
     pub engine_rad_s: f64,
     /// Throttle, as a start for the solve.
     pub throttle: f64,
+    /// Flywheel torque above output torque over ratio, as a start for the solve, Nm.
+    pub loss_nm: f64,
     /// Belt slip, as a start for the solve.
     pub slip: f64,
     /// Slope of the pressure's fixed point, as a start for its secant.

@@ -133,6 +133,7 @@ pub(super) fn finish(step: &Step, p: &Point, state: &mut DriveState, outcome: Ou
     flags.set(Flags::LAUNCH_NOT_IN_LOW, state.stood && step.at.geometry.ratio < 0.99 * step.cvt.ratio.low);
     common_flags(step, &mut drive, p.inside_maps);
     remember(state, &drive, step, false);
+    state.loss_nm = drive.shaft_nm - g.output_nm / step.at.geometry.ratio;
     state.coupled = step.locked(wp) || we <= wp * (1.0 + 1e-4);
     drive
 }

@@ -132,6 +132,7 @@ impl Cvt {
             gear: 0,
             engine_rad_s: if primary > idle { primary } else { idle },
             throttle: 0.1,
+            loss_nm: 0.0,
             slip: 0.0,
             gain: 0.0,
             overrun: None,

@@ -17,7 +17,7 @@ pub(super) const TOLERANCE: f64 = 1e-7;
 /// Closer than this two pressures say nothing of the slope, slip and speed moving as well, Pa.
 const SECANT_FROM_PA: f64 = 200.0;
 /// Largest slope of the pressure's fixed point that the secant believes: above it the step would overshoot.
-const MOST_GAIN: f64 = 0.2;
+const MOST_GAIN: f64 = 0.06;
 /// Evaluations after which the solve goes on without secants and in half steps: slower, and stable for steeper couplings.
 const DAMPED_FROM: u16 = 16;
 /// Kick-down ends where the route would reckon with a lower efficiency than this (RC-7).
@@ -225,18 +225,21 @@ impl Step<'_> {
         engine.full_load_nm(w) - engine.accessories_nm(w) - p.pump_nm - p.shaft_nm
     }
 
-    /// Where the solve begins: the state of the step before, at the new ratio.
+    /// Where the solve begins: slip and losses of the step before, at the new ratio and demand.
     fn first_guess(&self, state: &DriveState) -> Guess {
         let primary = self.at.geometry.ratio * self.secondary_rad_s / (1.0 - state.slip);
         let engine_rad_s = if self.locked(primary) || primary > self.engine_before { primary } else { self.engine_before };
         let output_nm = self.around.wheel.power_w / self.secondary_rad_s;
-        let signals = self.signals(state.throttle, engine_rad_s);
+        let engine = self.around.engine;
+        let flywheel = output_nm / self.at.geometry.ratio + state.loss_nm;
+        let throttle = ((flywheel + engine.accessories_nm(engine_rad_s)) / engine.full_load_nm(engine_rad_s)).clamp(0.0, 1.0);
+        let signals = self.signals(throttle, engine_rad_s);
         let load = BeltLoad { output_torque_nm: output_nm, ..self.load };
         let pressure_pa = match &self.cvt.clamp {
             ClampLaw::SlipLimited { .. } => state.secondary_pa,
             _ => self.cvt.pressure_pa(&signals, &self.at, &load, self.secondary_rad_s),
         };
-        Guess { output_nm, throttle: state.throttle, slip: state.slip, engine_rad_s, pressure_pa }
+        Guess { output_nm, throttle, slip: state.slip, engine_rad_s, pressure_pa }
     }
 
     pub(super) fn signals(&self, throttle: f64, engine_rad_s: f64) -> ClampSignals {

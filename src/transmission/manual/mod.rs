@@ -96,6 +96,7 @@ impl Manual {
             gear,
             engine_rad_s: if input > idle { input } else { idle },
             throttle: 0.0,
+            loss_nm: 0.0,
             slip: 0.0,
             gain: 0.0,
             overrun: None,
