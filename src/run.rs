@@ -94,6 +94,7 @@ fn gear_schedule(car: &Car, trace: &Trace) -> &'static str {
     match &car.transmission {
         Transmission::Cvt(_) => "",
         Transmission::Manual(m) if trace.gears(m.overall.len()).is_some() => "gears prescribed by the cycle",
+        Transmission::Manual(_) if trace.has_gears() => "shift speeds of the vehicle file: the cycle's gear column does not fit this box",
         Transmission::Manual(_) => "shift speeds of the vehicle file",
     }
 }

@@ -118,7 +118,7 @@ impl<'r> Section<'r> {
         match (touched.as_slice(), present.as_slice()) {
             ([one], _) => self.taken(question, *one, "set"),
             ([first, second, ..], _) => self.clash(question, *first, *second),
-            ([], [one]) => self.taken(question, *one, if node.span.is_set() { "set" } else { "user" }),
+            ([], [one]) => self.taken(question, *one, if node.span.is_set() { "set" } else { "choice" }),
             ([], [first, second, ..]) => self.clash(question, *first, *second),
             ([], []) => self.default_choice(question),
         }

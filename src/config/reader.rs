@@ -19,7 +19,7 @@ pub struct KeyInfo {
     pub value: String,
     /// Value in SI units; none for what is no single number.
     pub si: Option<f64>,
-    /// Where it comes from: source, derived, fitted, assumed, user, set or default.
+    /// Where it comes from: source, derived, fitted, assumed, user, set or default; `choice` for a model chosen by its table.
     pub status: String,
     /// Reference for the value; empty where none is given.
     pub source: String,

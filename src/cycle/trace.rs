@@ -95,7 +95,9 @@ impl Trace {
         &mut self.gears
     }
 
-    pub(super) fn has_gears(&self) -> bool {
+    /// Whether the trace prescribes gears for some gearbox.
+    #[must_use]
+    pub fn has_gears(&self) -> bool {
         !self.gears.is_empty()
     }
 

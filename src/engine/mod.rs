@@ -156,6 +156,12 @@ impl Engine {
         speed_rad_s * self.stroke_m / std::f64::consts::PI
     }
 
+    /// Speed of the greatest full-load power, rad/s.
+    #[must_use]
+    pub fn peak_power_rad_s(&self) -> f64 {
+        self.speed_for_power().points().last().map_or(self.highest_rad_s, |p| p.1)
+    }
+
     /// Lowest speed, on a fine grid, at which full load gives a power; as a curve power W to speed rad/s.
     #[must_use]
     pub fn speed_for_power(&self) -> Curve {

@@ -124,10 +124,10 @@ use Scope::{Always, Cvt, Has, Manual};
 use Value::{Count, Number, Phase};
 
 columns! {
-    "time_s", "s", Always, "end of the step, from the start of the cycle", r => Number(r.time_s);
+    "time_s", "s", Always, "end of the step, from the start of the cycle; every other column is the mean over the step that ends here, temperatures are those at its end", r => Number(r.time_s);
     "dt_s", "s", Always, "length of the step", r => Number(r.dt_s);
     "phase", "", Always, "phase of the cycle", r => Phase(r.phase);
-    "speed_kmh", "km/h", Always, "vehicle speed", r => Number(kmh(r.speed_m_s));
+    "speed_kmh", "km/h", Always, "vehicle speed, mean over the step that ends at time_s", r => Number(kmh(r.speed_m_s));
     "accel_m_s2", "m/s2", Always, "vehicle acceleration", r => Number(r.accel_m_s2);
     "wheel_torque_nm", "Nm", Always, "demanded torque at the driven wheels", r => Number(r.wheel_torque_nm);
     "wheel_power_w", "W", Always, "demanded power at the driven wheels", r => Number(r.wheel_power_w);

@@ -104,6 +104,9 @@ pub struct RunSummary {
     pub mpg_us: Option<f64>,
     /// Carbon dioxide over the whole cycle.
     pub co2_g_per_km: Option<f64>,
+    /// FTP75 only: carbon dioxide of the weighted fuel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weighted_co2_g_per_km: Option<f64>,
     /// By group of phases.
     pub phases: Vec<PhaseSummary>,
     /// Demanded work at the wheels in driving.

@@ -78,10 +78,11 @@ fn fuel(summary: &Summary) -> String {
     add(&mut grid, runs, "total", "L/100 km", |run| fixed(run.fuel_l_per_100km, 2));
     if runs.iter().any(|run| run.weighted_fuel_l_per_100km.is_some()) {
         add(&mut grid, runs, "weighted 0.43 / 0.57", "L/100 km", |run| fixed(run.weighted_fuel_l_per_100km, 2));
+        add(&mut grid, runs, "", "CO2 g/km", |run| fixed(run.weighted_co2_g_per_km, 1));
     }
     add(&mut grid, runs, "", "mpg (UK)", |run| fixed(run.mpg_uk, 1));
     add(&mut grid, runs, "", "mpg (US)", |run| fixed(run.mpg_us, 1));
-    add(&mut grid, runs, "CO2", "g/km", |run| fixed(run.co2_g_per_km, 1));
+    add(&mut grid, runs, "CO2, total", "g/km", |run| fixed(run.co2_g_per_km, 1));
     add(&mut grid, runs, "driven distance", "km", |run| fixed(run.distance_km, 3));
     add(&mut grid, runs, "fuel at standstill", "% fuel", |run| percent(run.standstill_fuel_g, run.fuel_kg * 1e3, 1));
     grid.text_with_widths(&LEAD)

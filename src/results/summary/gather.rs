@@ -63,6 +63,7 @@ fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driven) 
         mpg_uk: mpg(MPG_UK),
         mpg_us: mpg(MPG_US),
         co2_g_per_km: fuel.co2_g_per_km,
+        weighted_co2_g_per_km: weighted.map(|l| l * engine.fuel_density_kg_m3 * engine.co2_kg_kg / 100.0),
         phases: phases(cycle, driven, engine),
         wheel_work_positive_kj: all.wheel_positive_j / 1e3,
         wheel_work_negative_kj: all.wheel_negative_j / 1e3,

@@ -18,14 +18,7 @@ pub fn load(s: &Section, files: &dyn Files, engine: &Engine, oil: &Lubricant, fo
     let ratio = ratio_control(&s.table("ratio"), engine);
     let belt = belt(&s.table("belt"), &v, formulation);
     let low = Geometry::new(ratio.low, belt.centre_distance_m, belt.length_m);
-    if !low.primary_radius_m.is_finite() || low.primary_radius_m < 0.005 {
-        s.table("ratio").complain(
-            "low",
-            "",
-            "the belt cannot reach this ratio",
-            "check belt length and centre distance against the ratio limits",
-        );
-    }
+    check_low(s, &ratio, &belt, &low);
     let clamp_table = s.table("pressure");
     let clamp = clamp_law(s);
     let bar = Bound::closed(0.0, 200.0);
@@ -76,6 +69,19 @@ pub fn load(s: &Section, files: &dyn Files, engine: &Engine, oil: &Lubricant, fo
     }
 }
 
+fn check_low(s: &Section, ratio: &RatioControl, belt: &Belt, low: &Geometry) {
+    let read = [ratio.low, belt.centre_distance_m, belt.length_m].iter().all(|x| x.is_finite());
+    let fits = low.primary_radius_m > 0.005;
+    if read && !fits {
+        s.table("ratio").complain(
+            "low",
+            "",
+            "the belt cannot reach this ratio",
+            "check belt length and centre distance against the ratio limits",
+        );
+    }
+}
+
 fn centrifugal(v: &Section, oil: &Lubricant) -> f64 {
     let compensated = v.boolean_or("compensated", true, "centrifugal oil head balanced (VA-3)");
     let length = Bound::closed(0.0, 300.0);
@@ -102,7 +108,7 @@ fn ratio_control(s: &Section, engine: &Engine) -> RatioControl {
             "rise of engine speed over the share of rated power above it (RC-1)",
         ),
         overrun_rad_s: s.number("overrun_rpm", rpm, "engine speed in overrun (RC-2)"),
-        highest_rad_s: engine.highest_rad_s,
+        highest_rad_s: engine.peak_power_rad_s(),
         route_efficiency: s.number_or(
             "route_efficiency",
             Bound::closed(0.3, 1.0),

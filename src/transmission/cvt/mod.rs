@@ -88,7 +88,7 @@ pub struct Cvt {
     pub belt_heat_share: f64,
 }
 
-/// Steps of the slip-limited law's walk from the cap to its lowest pressure.
+/// Steps of the slip-limited law's walk from its lowest pressure to the cap.
 const SLIP_STEPS: u32 = 32;
 
 impl Cvt {
@@ -176,30 +176,29 @@ impl Cvt {
     }
 
     fn slip_pressure_pa(&self, limit: f64, least_pa: f64, at: &BeltAtRatio, load: &BeltLoad, secondary_rad_s: f64) -> f64 {
-        let slips = |pa: f64| {
+        let slip = |pa: f64| {
             let force = self.secondary_clamp_n(pa, secondary_rad_s);
-            belt_state(&self.belt, at, &BeltLoad { secondary_clamp_n: force, ..*load }).slip_total.abs() > limit
+            belt_state(&self.belt, at, &BeltLoad { secondary_clamp_n: force, ..*load }).slip_total.abs()
         };
-        let low = if least_pa > self.floor_pa { least_pa } else { self.floor_pa };
-        if low >= self.cap_pa {
-            return low;
+        let floor = if least_pa > self.floor_pa { least_pa } else { self.floor_pa };
+        if floor >= self.cap_pa || slip(floor) <= limit {
+            return floor;
         }
-        // Slip is not monotone where the loading branch changes: walk down from the cap to the first pressure that slips too much.
-        let at_step = |k: u32| self.cap_pa + (low - self.cap_pa) * f64::from(k) / f64::from(SLIP_STEPS);
-        let Some(k) = (0..=SLIP_STEPS).find(|&k| slips(at_step(k))) else { return low };
-        if k == 0 {
-            return self.cap_pa;
-        }
-        let (mut low, mut high) = (at_step(k), at_step(k - 1));
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if slips(middle) {
-                low = middle;
-            } else {
-                high = middle;
+        // Slip falls with clamping force until the stretch of the bands outweighs the grip, then rises: walk up to the first
+        // pressure that meets the limit, or to the least slip where none does.
+        let step = (self.cap_pa - floor) / f64::from(SLIP_STEPS);
+        let at_step = |k: u32| floor + step * f64::from(k);
+        let mut best = (slip(floor), 0);
+        for k in 1..=SLIP_STEPS {
+            let now = slip(at_step(k));
+            if now <= limit {
+                return bisect(at_step(k - 1), at_step(k), |pa| slip(pa) > limit);
             }
+            best = if now < best.0 { (now, k) } else { best };
         }
-        high // PC-4
+        let (low, high) = (at_step(best.1.saturating_sub(1)), at_step(if best.1 < SLIP_STEPS { best.1 + 1 } else { SLIP_STEPS }));
+        let least = least_of(low, high, slip);
+        if slip(least) <= limit { bisect(low, least, |pa| slip(pa) > limit) } else { least } // PC-4
     }
 
     /// Solves one step (CV-1 to CV-5).
@@ -207,4 +206,31 @@ impl Cvt {
     pub fn solve(&self, around: &Surroundings, state: &mut DriveState) -> Drive {
         solve::solve(self, around, state)
     }
+}
+
+/// Where `above` changes from true at `low` to false at `high`.
+fn bisect(mut low: f64, mut high: f64, above: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if above(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// Place of the least value of a function with one valley between `low` and `high`, by golden section.
+fn least_of(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    for _ in 0..60 {
+        let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+        if f(a) < f(b) {
+            high = b;
+        } else {
+            low = a;
+        }
+    }
+    0.5 * (low + high)
 }

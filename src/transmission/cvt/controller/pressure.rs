@@ -5,7 +5,7 @@
 //! | PC-1 | `map`: p = f(n) (p0 + k u) (r_low/r_p)^a (1 + k_T (80 degC - T)), at most the cap | source: thesis 3.7 in words (rises with ratio, throttle, cold); fitted to 36-40 bar pulling away, 12 bar at 50 km/h |
 //! | PC-2 | f(n) from `slow_factor` at 1000 rpm to 1 at 2000 rpm | source: thesis 5.3.1 (pressure rises steeply there); fitted |
 //! | PC-3 | `torque_following`: F = S \|T\| cos th / (2 mu R_s), thrust ratio below 1 counted, between floor and cap | source: Coulomb limit VA-2 with safety factor S |
-//! | PC-4 | `slip_limited`: the lowest pressure between floor and cap at which belt slip stays below the limit | derived: slip falls with clamping force |
+//! | PC-4 | `slip_limited`: the lowest pressure between floor and cap at which belt slip stays below the limit; where none does, that of least slip | derived: slip falls with clamping force until the stretch of the bands (SL-1) outweighs the grip |
 //!
 //! The law is never raised silently: where it is below what the torque needs, the row is flagged `low_clamp`.
 

@@ -6,6 +6,7 @@
 //! | RC-2 | overrun target, reached linearly over 1 % of rated power | ASSUMED |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
 //! | RC-7 | where full load does not suffice, RC-3 is asked again with 10 % less efficiency each time, down to 40 % | derived: kick-down, within RC-4 and RC-5 |
+//! | RC-8 | target never above the speed of greatest power | source: thesis 1.1.2, maximum power route |
 //! | RC-4 | \|d ln I/dt\| <= rate min(1, n_p/n_ref), up and down rates apart; none at rest | source: thesis 2.4, 3.7 in words; values ASSUMED |
 //! | RC-6 | no up-shift before the launch clutch has locked | source: thesis 1.1.2, order A-B-C-D of the variogram |
 //! | RC-5 | and <= free pump flow / (A 2 tan th \|dR/d ln I\|) | derived: thesis 9.1 |
@@ -27,7 +28,7 @@ pub struct RatioControl {
     pub rise_rad_s: f64,
     /// Speed in overrun, rad/s.
     pub overrun_rad_s: f64,
-    /// Highest target speed, rad/s.
+    /// Highest target speed: that of the engine's greatest power, rad/s.
     pub highest_rad_s: f64,
     /// Wheel power over engine power that RC-3 reckons with.
     pub route_efficiency: f64,
