@@ -38,7 +38,7 @@ const LONG: &str = "clamp = { value = \"torque_following\", status = \"assumed\"
 #[test]
 fn a_choice_in_the_file() {
     check(&[
-        ("[clamp.map]\npressure_bar = 20\n", &[], "map", "user"),
+        ("[clamp.map]\npressure_bar = 20\n", &[], "map", "choice"),
         (WORD, &[], "torque_following", "user"),
         (LONG, &[], "torque_following", "assumed"),
         ("", &[], "torque_following", "default"),
