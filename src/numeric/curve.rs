@@ -75,22 +75,9 @@ impl Curve {
         self.y[piece] + self.slope[piece] * (x - self.x[piece])
     }
 
-    /// Whether `x` lies within the curve's points.
-    #[must_use]
-    pub fn covers(&self, x: f64) -> bool {
-        self.x[0] <= x && x <= self.x[self.x.len() - 1]
-    }
-
     /// The points (x, y).
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.x.iter().copied().zip(self.y.iter().copied())
-    }
-
-    /// Multiplies every y by `factor`.
-    #[must_use]
-    pub fn scaled(mut self, factor: f64) -> Self {
-        self.y.iter_mut().chain(&mut self.slope).for_each(|y| *y *= factor);
-        self
     }
 }
 
@@ -104,7 +91,6 @@ mod tests {
         for (x, y) in [(-1.0, 1.0), (0.0, 1.0), (1.0, 2.0), (2.0, 3.0), (3.0, 1.5), (4.0, 0.0), (9.0, 0.0)] {
             assert!((c.at(x) - y).abs() < 1e-15, "at {x}: {} instead of {y}", c.at(x));
         }
-        assert!(c.covers(4.0) && !c.covers(4.1));
     }
 
     #[test]

@@ -49,8 +49,6 @@ pub struct Totals {
     pub evaluations: u64,
     /// Rows.
     pub rows: u64,
-    /// Time in each gear, s; index 0 is neutral.
-    pub gear_s: [f64; 11],
 }
 
 impl Totals {
@@ -147,7 +145,6 @@ impl Recorder for Totals {
                 *s += row.dt_s;
             }
         }
-        self.gear_s[usize::from(row.gear).min(10)] += row.dt_s;
         self.evaluations += u64::from(row.iterations);
         self.rows += 1;
         self.extremes(row);

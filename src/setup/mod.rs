@@ -218,7 +218,9 @@ pub fn load(word: &str, option: &str, options: &Options) -> Result<Setup, Vec<Pr
     let Head { title, baselines, fluid, engine_oil } = head(&root, &stem(word));
     let mut fluid_keys = Vec::new();
     let mut read_fluid = |own: &str, asked: &Option<String>, option: &str, prefix: &str| {
-        let word = asked.as_deref().unwrap_or(own);
+        // A path in the vehicle file is relative to that file, one on the command line to the current folder.
+        let beside = if is_path(own) { disk.folder.join(own).to_string_lossy().into_owned() } else { own.to_owned() };
+        let word = asked.as_deref().unwrap_or(&beside);
         let option = if asked.is_some() { option } else { file.as_str() };
         match load_lubricant(word, option, &options.set, prefix) {
             Ok((oil, mut keys)) => {
