@@ -100,6 +100,7 @@ fn thermal_advance(bencher: Bencher) {
         power_w: [3e3, 5e2, 5e2, 3e2, 7e2],
         ambient_k: COLD_K,
         speed_m_s: 15.0,
+        pump_rad_s: 200.0,
         oil_flow_m3_s: 3e-4,
         oil_volume_heat_j_m3k: 1.7e6,
         dt_s: 1.0,

@@ -14,4 +14,5 @@ pub mod setup;
 pub mod simulate;
 pub mod run;
 pub mod results;
+pub mod rig;
 pub mod report;

@@ -155,6 +155,7 @@ fn advance(car: &Car, heat: &Heat, drive: &Drive, burn: &Burn, around: &Surround
             power_w,
             ambient_k: car.ambient_k,
             speed_m_s: around.wheel.speed_m_s,
+            pump_rad_s: drive.engine_rad_s,
             oil_flow_m3_s: drive.oil_flow_m3_s,
             oil_volume_heat_j_m3k,
             running: !around.engine_off,

@@ -318,6 +318,7 @@ fn heat_to_the_air_is_continuous() {
                     power_w: [3000.0, 500.0, 500.0, 300.0, 700.0],
                     ambient_k: ZERO,
                     speed_m_s: 15.0,
+                    pump_rad_s: 200.0,
                     oil_flow_m3_s: 3e-4,
                     oil_volume_heat_j_m3k: 1.7e6,
                     dt_s: 1e-6,

@@ -63,21 +63,22 @@ fn friction(s: &Section) -> Friction {
         band_rise_per_k: s.number_or(
             "band_rise_per_k",
             Bound::closed(0.0, 0.02),
-            0.004,
+            0.002,
             "rise of band friction with belt temperature (LU-4)",
         ),
         band_floor: s.number_or("band_floor", Bound::closed(0.1, 1.0), 0.7, "lower bound of the temperature factor (LU-4)"),
         band_ceiling: s.number_or("band_ceiling", Bound::closed(1.0, 2.0), 1.04, "upper bound of the temperature factor (LU-4)"),
         segment: s.number_or("segment", Bound::closed(0.02, 0.4), 0.125, "friction segment on pulley (SL-4, VA-2)"),
         flank: s.number_or("flank", mu, 0.13, "friction in wedging and penetration (WE-3, PE-1)"),
+        lift_off: lift.boolean_or("enabled", true, "whether the bands can ride on oil (LU-5)"),
         lift_reduction: lift.number_or(
             "reduction",
             Bound::closed(0.0, 0.95),
-            0.25,
+            0.2,
             "part of the boundary friction that a carrying film removes (LU-4)",
         ),
-        lift_n_m: lift.number_or("load_n_per_m", Bound::open_low(0.0, 10.0), 0.028, "eta dv at which the film carries half (LU-4)"),
-        lift_exponent: lift.number_or("exponent", Bound::closed(0.5, 8.0), 3.2, "sharpness of lift-off (LU-4)"),
+        lift_n_m: lift.number_or("load_n_per_m", Bound::open_low(0.0, 10.0), 0.0085, "eta dv at which the film carries half (LU-5)"),
+        lift_exponent: lift.number_or("exponent", Bound::closed(0.5, 8.0), 5.0, "sharpness of lift-off (LU-5)"),
         film_thickness_m: lift.number_or("film_thickness_um", Bound::closed(0.01, 100.0), 1.5, "thickness of the carrying film (FI-1)"),
     }
 }

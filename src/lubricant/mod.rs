@@ -5,7 +5,8 @@
 //! | LU-1 | ln ln(nu + 0.7) = a - b ln T, nu in mm2/s, T in K | source: ASTM D341 (Walther) |
 //! | LU-2 | rho = rho15 (1 - 0.00068 (T - 15 degC)) | source: physics of petroleum oils, ASSUMED coefficient |
 //! | LU-3 | cp = (1.685 + 0.0034 T_C) / sqrt(rho15 / 1000), kJ/kgK | source: petroleum oils, ASSUMED for all fluids |
-//! | LU-4 | mu_b = mu_85 clamp(1 + k (T - 85 degC), floor, ceiling) (1 - r z/(1+z)), z = (eta dv / N_lift)^p | fitted to thesis 5.5.2, 8.9 |
+//! | LU-4 | mu_b = mu_85 clamp(1 + k (T - 85 degC), floor, ceiling) (1 - r s) | k fitted to thesis 5.5.2, 8.9; bounds: Ichihashi in thesis 2.3 |
+//! | LU-5 | film share s = z/(1+z), z = (eta dv / N_lift)^p; 0 with the film switched off | r, N_lift, p fitted to thesis 5.5.2, 8.9 (form ASSUMED: mixed lubrication) |
 //!
 //! Symbols: nu kinematic viscosity, eta dynamic viscosity Pa s, dv sliding speed of the innermost band m/s.
 //! Valid from 1.5 mm2/s upwards and from -40 to 160 degC; outside, rows are flagged.
@@ -36,6 +37,8 @@ pub struct Friction {
     pub segment: f64,
     /// Friction in wedging and penetration.
     pub flank: f64,
+    /// Whether the bands can ride on oil at all (LU-5).
+    pub lift_off: bool,
     /// Part of the boundary friction that the film takes away when it carries fully.
     pub lift_reduction: f64,
     /// eta dv at which the film carries half, N/m.
@@ -63,8 +66,8 @@ impl Friction {
         let warm = 1.0 + self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0);
         let warm = warm.clamp(self.band_floor, self.band_ceiling);
         let load = eta_pa_s * sliding_m_s / self.lift_n_m;
-        let z = if load > 0.0 { (self.lift_exponent * load.ln()).exp() } else { 0.0 };
-        let film_share = if z.is_finite() { z / (1.0 + z) } else { 1.0 };
+        let z = if load > 0.0 && self.lift_off { (self.lift_exponent * load.ln()).exp() } else { 0.0 };
+        let film_share = if z.is_finite() { z / (1.0 + z) } else { 1.0 }; // LU-5
         BandFriction { mu: self.band * warm * (1.0 - self.lift_reduction * film_share), film_share } // LU-4
     }
 }

@@ -43,6 +43,7 @@ const SOURCES: &[(&str, &str)] = &[
     source!("thermal/mod.rs"),
     source!("simulate.rs"),
     source!("results/ledger.rs"),
+    source!("rig/bench.rs"),
 ];
 
 /// All equations.

@@ -36,7 +36,11 @@ pub fn load(s: &Section, cvt: bool, oil: &Lubricant) -> Network {
         case_air_w_k: gearbox.number("case_air_w_k", w_k, "case to air at standstill (TH-1)"),
         case_air_per_speed: gearbox.number("case_air_v07_w_k", w_k, "case to air, times v^0.7 in m/s (TH-1)"),
         bell_housing_w_k: gearbox.number("bell_housing_w_k", w_k, "block to case through the bell housing (TH-1)"),
-        spray_w_k: if cvt { gearbox.number("spray_w_k", w_k, "belt and pulleys to the sump by spray (TH-1)") } else { 0.0 },
+        spray_w_k: if cvt {
+            gearbox.number("spray_w_k", w_k, "belt and pulleys to the sump by spray, pump at 2500 rpm (TH-8)")
+        } else {
+            0.0
+        },
         exchanger_w_k: gearbox.number_or("exchanger_w_k", w_k, 0.0, "coolant to transmission oil heat exchanger (TH-1)"),
         exchanger_opens_k: gearbox.number_or(
             "exchanger_opens_degc",

@@ -8,6 +8,7 @@
 //! | TH-4 | air under the bonnet = ambient + r (T_coolant - T_amb) | ASSUMED |
 //! | TH-5 | step: (C/dt + K - dQ_r/dT) dT = P - K T + ..., linearly implicit | derived: unconditionally stable, conserves to rounding |
 //! | TH-7 | heat exchanger coolant to transmission oil: G open(T_c), open over 5 K above its valve's temperature | ASSUMED valve: without it the exchanger takes the heat that warms the engine |
+//! | TH-8 | spray: G = G_2500 n/2500 rpm, never below 10 % of G_2500 | ASSUMED: the pump's flow carries it; keeps the belt about 20 K above the sump at every speed (thesis 5.5.2) |
 //! | TH-6 | with the engine off, radiator and all links that need a pump or splash keep 10 % | ASSUMED |
 //!
 //! Nodes: coolant and block; engine oil; transmission oil; transmission metal; belt and pulleys with the oil they spray (unused in a
@@ -79,7 +80,7 @@ pub struct Network {
     pub case_air_per_speed: f64,
     /// Block to transmission metal through the bell housing, W/K.
     pub bell_housing_w_k: f64,
-    /// Belt to transmission oil by spray, W/K.
+    /// Belt to transmission oil by spray with the pump at 2500 rpm, W/K (TH-8).
     pub spray_w_k: f64,
     /// Coolant to transmission oil heat exchanger, W/K.
     pub exchanger_w_k: f64,
@@ -93,6 +94,9 @@ pub struct Network {
 
 /// Share of a conductance that is left with nothing turning (TH-6).
 const STILL: f64 = 0.1;
+
+/// Pump speed at which the spray's conductance is given, rad/s: the transients of thesis 5.3.2 ran at 2500 rpm.
+pub const SPRAY_REFERENCE_RAD_S: f64 = 2500.0 * std::f64::consts::PI / 30.0;
 
 /// Temperatures of the nodes, K.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,6 +122,8 @@ pub struct HeatInput {
     pub ambient_k: f64,
     /// Road speed, m/s.
     pub speed_m_s: f64,
+    /// Speed of the pump, rad/s.
+    pub pump_rad_s: f64,
     /// Oil flow that the pump gives, m3/s.
     pub oil_flow_m3_s: f64,
     /// Heat capacity flow of the oil per volume flow, J/(m3 K).
@@ -166,6 +172,14 @@ fn speed_power(v: f64) -> f64 {
 }
 
 impl Network {
+    /// Belt to transmission oil by spray at a pump speed, W/K (TH-8).
+    #[must_use]
+    #[inline]
+    pub fn spray_now_w_k(&self, pump_rad_s: f64) -> f64 {
+        let share = pump_rad_s / SPRAY_REFERENCE_RAD_S;
+        self.spray_w_k * if share > STILL { share } else { STILL } // TH-8
+    }
+
     fn radiator(&self, coolant_k: f64, input: &HeatInput) -> (f64, f64) {
         let full = self.radiator_w_k + self.radiator_per_speed * input.speed_m_s;
         let full = if input.running { full } else { STILL * full };
@@ -209,7 +223,7 @@ impl Network {
                 (COOLANT, METAL, self.bell_housing_w_k),
                 (COOLANT, SUMP, stirred * self.exchanger_w_k * ramp(t[COOLANT], self.exchanger_opens_k, self.exchanger_opens_k + 5.0)),
                 (SUMP, METAL, stirred * self.oil_metal_w_k),
-                (SUMP, BELT, stirred * self.spray_w_k),
+                (SUMP, BELT, self.spray_now_w_k(if input.running { input.pump_rad_s } else { 0.0 })),
             ],
             radiator: self.radiator(t[COOLANT], input),
             cooler_flow_w_k,

@@ -30,6 +30,7 @@ fn input(dt_s: f64) -> HeatInput {
         power_w: [8e3, 1.5e3, 700.0, 100.0, 500.0],
         ambient_k: 263.15,
         speed_m_s: 10.0,
+        pump_rad_s: SPRAY_REFERENCE_RAD_S,
         oil_flow_m3_s: 3e-4,
         oil_volume_heat_j_m3k: 1.67e6,
         running: true,

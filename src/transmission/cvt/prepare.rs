@@ -3,7 +3,7 @@
 use super::Cvt;
 use super::controller::RatioDemand;
 use super::solve::Step;
-use super::variator::{BeltAtRatio, BeltLoad, Formulation, sliding_speed_m_s};
+use super::variator::{BeltAtRatio, BeltLoad, sliding_speed_m_s};
 use crate::thermal::{BELT, SUMP};
 use crate::transmission::{DriveState, Surroundings};
 
@@ -65,8 +65,8 @@ pub(super) fn prepare<'a>(
     let (now, shift_flow, held) = shift(cvt, around, state, at, Route { eta_pa_s: eta_sump, efficiency });
     let secondary_rad_s = cvt.final_drive * around.wheel.wheel_rad_s;
     let eta_belt = around.oil.dynamic_pa_s(belt_k);
-    // The film is no part of the thesis's two readings: without sliding there is no lift-off and no shear (LU-4, FI-1).
-    let sliding = if cvt.belt.formulation == Formulation::Smooth {
+    // Without sliding there is no lift-off and no shear (LU-4, FI-1).
+    let sliding = if cvt.belt.formulation.has_film() {
         sliding_speed_m_s(&cvt.belt, now.geometry.ratio, now.geometry.ratio * secondary_rad_s)
     } else {
         0.0

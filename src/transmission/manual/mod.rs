@@ -226,6 +226,20 @@ impl Manual {
         (spin, mesh, true)
     }
 
+    /// Losses of the engaged box by component, Nm at the input shaft, for an output torque referred to the input (MB-1 to MB-4), and
+    /// whether a map, if there is one, holds the point.
+    #[must_use]
+    pub fn part_losses_nm(&self, gear: u8, input_rad_s: f64, output_nm: f64, nu_m2_s: f64, oil_k: f64) -> ([(Component, f64); 4], bool) {
+        let (spin, mesh, inside) = self.losses(gear, input_rad_s, output_nm, nu_m2_s, oil_k);
+        let parts = [
+            (Component::GearMesh, mesh),
+            (Component::Bearing, spin.bearing),
+            (Component::Churning, spin.churning),
+            (Component::Seal, spin.seal),
+        ];
+        (parts, inside)
+    }
+
     /// Output torque referred to the input for an input torque: the inverse of MB-1, by secant where a map is used.
     fn output_for(&self, gear: u8, input: f64, input_nm: f64, nu: f64, oil_k: f64) -> (f64, u16) {
         let mut x = input_nm;

@@ -30,6 +30,12 @@ impl Formulation {
         }
     }
 
+    /// Whether the bands may ride on oil: the film is no part of the thesis's two readings (LU-4, FI-1).
+    #[must_use]
+    pub fn has_film(self) -> bool {
+        self == Formulation::Smooth
+    }
+
     /// Band friction force scaled by the smaller wrap.
     #[must_use]
     pub fn scales_band_force(self) -> bool {
