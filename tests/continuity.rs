@@ -239,7 +239,8 @@ fn continuous_into_gross_slip() {
             bench.solve(&Setting { ratio, wheel_rad_s: rpm * RPM / overall, wheel_nm: input_nm * overall, ..Setting::default() })
         };
         slipped += (0..180).filter(|i| solve(f64::from(*i)).flags.contains(cvtcycle::results::Flags::GROSS_SLIP)).count();
-        check(&format!("weak clamp, torque at ratio {ratio}"), 0.1, -40.0, 180.0, &|t| values(&solve(t)), &mut jumps);
+        // Half the step of the other sweeps: slip runs into its bound within 0.1 Nm.
+        check(&format!("weak clamp, torque at ratio {ratio}"), 0.05, -40.0, 180.0, &|t| values(&solve(t)), &mut jumps);
     }
     assert!(slipped > 20, "gross slip was reached {slipped} times");
     report(&jumps);

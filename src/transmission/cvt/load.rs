@@ -131,7 +131,7 @@ fn belt(s: &Section, v: &Section, formulation: Formulation) -> Belt {
     let columns = [("ratio", Bound::closed(0.2, 5.0)), ("thrust_ratio", Bound::closed(0.2, 5.0))];
     let thrust = s.rows("thrust_ratio", &columns, "rows [belt ratio, F_p/F_s]; replaces the wrap ratio (TE-1)");
     let logs: Vec<Vec<f64>> = thrust.iter().map(|r| vec![r[0].ln(), r[1]]).collect();
-    Belt {
+    let belt = Belt {
         centre_distance_m: v.number("centre_distance_mm", Bound::closed(60.0, 400.0), "centre distance of the pulleys (GE-2)"),
         length_m,
         segment_thickness_m: s.number("segment_thickness_mm", Bound::closed(0.5, 5.0), "thickness of a segment (SL-4)"),
@@ -156,7 +156,16 @@ fn belt(s: &Section, v: &Section, formulation: Formulation) -> Belt {
         slip_bound: s.number_or("slip_bound_percent", Bound::closed(1.0, 50.0), 10.0, "bound of each pulley's slip (SL-9)"),
         thrust_ratio: (!logs.is_empty()).then(|| tables::curve(s, "thrust_ratio", &logs)),
         formulation,
+    };
+    if belt.stop_from_ratio > belt.stop_to_ratio {
+        v.complain(
+            "stop_to_ratio",
+            "below `stop_from_ratio`",
+            "the primary rests on its stop at the larger ratio",
+            "low lies above ratio 1; equal ratios make the stop a step",
+        );
     }
+    belt
 }
 
 fn pump(s: &Section) -> Pump {

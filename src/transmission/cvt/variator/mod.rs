@@ -6,7 +6,7 @@
 //! | VA-2 | T_cap = 2 mu_seg R_s min(F_p, F_s) / cos th | source: Coulomb limit on both pulleys; the thesis checks the primary only |
 //! | VA-3 | F_s = p A_s + spring + (1 - compensated) pi rho w2 (r_o4 - r_i4)/4 | source: App. C; centrifugal head from hydrostatics |
 //!
-//! Valid for clamping forces above zero; torque above VA-2 is flagged `gross_slip` and slip is bounded (SL-9).
+//! Valid for clamping forces from zero on; torque above VA-2 is flagged `gross_slip` and slip is bounded (SL-9).
 
 mod bands;
 mod deflection;
@@ -132,7 +132,7 @@ impl Prepared {
             strut_gap_m_n: g.strut_m / (belt.youngs_pa * belt.strut_area_m2),
             slide_m: bands::slide_m(belt, g),
             film_m4: bands::film_m4(belt, g),
-            stop: belt.formulation.primary_stop(ramp(g.ratio, belt.stop_to_ratio, belt.stop_from_ratio)), // WE-4
+            stop: belt.formulation.primary_stop(1.0 - ramp(g.ratio, belt.stop_from_ratio, belt.stop_to_ratio)), // WE-4
         }
     }
 }

@@ -10,7 +10,8 @@
 //! | SL-6 | idle slip = gap slip lambda_idle/lambda_act, other pulley by lambda_other/lambda_act | source: thesis eq. 65 to 70; signs per Formulation |
 //! | SL-7 | loss = sum \|v_slip F_T\| / w_in | source: thesis eq. 74 to 76 |
 //! | SL-8 | conventional at max(C_x, 0) and inverted at max(-C_x, 0) blended by (1 + tanh(C_x/C0))/2 | ASSUMED smoothing of the change of pulley at C_x = 0 |
-//! | SL-9 | each pulley's slip is held at +-`slip_bound` | ASSUMED: beyond it gross slip, flagged |
+//! | SL-9 | each pulley's slip is held at +-`slip_bound`, gap and idle slip in proportion | ASSUMED: beyond it gross slip, flagged |
+//! | SL-10 | lambda_idle is held above -0.95 | ASSUMED: an idle segment takes no more than its grip; else overload slips the wrong way |
 //!
 //! Slip is a fraction of belt speed, positive when the output turns slower than the geometric ratio says; independent of speed, so
 //! defined at standstill.
@@ -36,6 +37,9 @@ pub struct Slip {
 
 /// Grip never below this share of the friction limit (ASSUMED): keeps the active arc finite where the bands' pull alone takes it up.
 const LEAST_GRIP: f64 = 0.05;
+
+/// Grip never below this force, N (ASSUMED; nothing beside any real one): without clamping slip is at its bound and not 0/0.
+const NO_GRIP_N: f64 = 1e-6;
 
 /// Blend beyond which one branch alone counts: the other's weight is below 2e-8.
 const ALONE: f64 = 9.0;
@@ -83,15 +87,16 @@ fn branch(c: &Contact, load: usize) -> Slip {
     let idle = arc - active;
     let gap = (c.slack_m + e_segs) / (idle + 1e-9); // SL-5
     let lambda_idle = shoulder / c.grip_n[load];
+    let lambda_idle = if lambda_idle > LEAST_GRIP - 1.0 { lambda_idle } else { LEAST_GRIP - 1.0 }; // SL-10
     let idle_slip = gap * if inverted || f.signed_idle_slip() { lambda_idle } else { lambda_idle.abs() }; // SL-6
-    let loaded = gap + idle_slip;
-    let held = loaded > belt.slip_bound;
-    let loaded = if held { belt.slip_bound } else { loaded };
+    let free = gap + idle_slip;
+    let held = free > belt.slip_bound;
+    let (loaded, idle_slip) = if held { (belt.slip_bound, idle_slip * (belt.slip_bound / free)) } else { (free, idle_slip) }; // SL-9
     let r = c.at.geometry.primary_radius_m;
     let total_other = cx + sign * c.shoulder_n[other] * prepared.count[other];
     let lambda_other = total_other / (c.grip_n[other] * prepared.count[other]);
     let slip_other = clamp_abs(loaded * lambda_other, belt.slip_bound);
-    let idle_loss = if f.counts_idle_arc() && !held { idle_slip.abs() * shoulder.abs() * idle / pitch } else { 0.0 };
+    let idle_loss = if f.counts_idle_arc() { idle_slip.abs() * shoulder.abs() * idle / pitch } else { 0.0 };
     let loss_load = r * (loaded.abs() * c.grip_n[load] * active / pitch + idle_loss); // SL-7
     let loss_other = r * slip_other.abs() * total_other.abs(); // SL-7
     if inverted {
@@ -126,14 +131,15 @@ fn clamp_abs(x: f64, bound: f64) -> f64 {
 pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip {
     let prepared = &at.prepared;
     let compression_n = belt.formulation.compression_n(t.compression_n);
+    let grip = |clamp_n: f64, pulley: usize| {
+        let n = mu_segment * clamp_n * prepared.normal_per_clamp[pulley];
+        if n > NO_GRIP_N { n } else { NO_GRIP_N }
+    };
     let contact = Contact {
         belt,
         at,
         slack_m: t.primary_shoulder_n * prepared.band_gap_m_n + belt.initial_gap_m, // SL-1
-        grip_n: [
-            mu_segment * t.primary_clamp_n * prepared.normal_per_clamp[0],
-            mu_segment * t.secondary_clamp_n * prepared.normal_per_clamp[1],
-        ],
+        grip_n: [grip(t.primary_clamp_n, 0), grip(t.secondary_clamp_n, 1)],
         shoulder_n: [t.step_n * prepared.shoulder_per_step[0], t.step_n * prepared.shoulder_per_step[1]],
         compression_n,
     };

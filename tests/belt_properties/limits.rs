@@ -1,0 +1,139 @@
+//! What is left when a cause is taken away, and what depends on nothing but its own causes.
+
+use super::*;
+
+proptest! {
+    #![proptest_config(config(1500))]
+
+    /// Without band friction the bands lose nothing, tension makes no step and segments carry all of the torque (TE-3, TE-4, BT-3).
+    #[test]
+    fn no_band_friction_no_band_loss(f in any_formulation(), p in any_point()) {
+        let s = Point { mu_band: 0.0, ..p }.state(&thesis_belt(f));
+        prop_assert_eq!((s.band_nm, s.tension.step_n), (0.0, 0.0));
+        let radius = BeltAtRatio::new(&thesis_belt(f), p.ratio).geometry.secondary_radius_m;
+        prop_assert!((s.tension.compression_n * radius - p.torque_nm).abs() <= 1e-12 * p.torque_nm.abs());
+    }
+
+    /// The forces hold together as printed: T_2 - T_1 and C_x carry the torque (TE-4), friction on the shoulders makes the step of
+    /// tension (TE-3), clamping, speed and compression press on them (TE-2). Truth: the equations put back into each other.
+    #[test]
+    fn val_tension_solves_its_equations(f in any_formulation(), p in any_point()) {
+        let belt = thesis_belt(f);
+        let at = BeltAtRatio::new(&belt, p.ratio);
+        let (g, t) = (at.geometry, p.state(&belt).tension);
+        let s = -(p.ratio.ln() / belt.unity_width).tanh();
+        let v = p.rpm * RPM * g.primary_radius_m;
+        let pressed = |clamp_n: f64, wrap: f64| {
+            2.0 * clamp_n * belt.tan_wedge + wrap * (belt.mass_kg_m * v * v + t.compression_n.abs() / 2.0)
+        };
+        let primary_n = p.clamp_n * g.primary_wrap_rad / g.secondary_wrap_rad;
+        let small = 1e-11 * (t.primary_shoulder_n + t.secondary_shoulder_n + t.compression_n.abs());
+        prop_assert!((t.primary_shoulder_n - pressed(primary_n, g.primary_wrap_rad)).abs() <= small, "TE-2 {t:?}");
+        prop_assert!((t.secondary_shoulder_n - pressed(p.clamp_n, g.secondary_wrap_rad)).abs() <= small, "TE-2 {t:?}");
+        prop_assert!((t.step_n + s * p.mu_band * t.primary_shoulder_n).abs() <= small, "TE-3 {t:?}");
+        prop_assert!((t.compression_n + t.step_n - p.torque_nm / g.secondary_radius_m).abs() <= small, "TE-4 {t:?}");
+    }
+
+    /// Band loss is friction times sliding over all interfaces of both packs (BT-1, BT-2, thesis eq. 48, 49): n interfaces that press
+    /// less and less outwards, the first of which slides by the offset and the others by a band's thickness. BT-4 where it applies.
+    #[test]
+    fn val_band_loss_is_the_sum_over_interfaces(f in any_formulation(), p in any_point(), n in 1..=40u8) {
+        let belt = Belt { band_count: f64::from(n), ..thesis_belt(f) };
+        let (g, s) = (BeltAtRatio::new(&belt, p.ratio).geometry, p.state(&belt));
+        let sliding = |i: u8| (1.0 / p.ratio - 1.0).abs() / 2.0 * if i == 1 { belt.band_offset_m } else { belt.band_thickness_m };
+        let pack = |shoulder_n: f64, wrap: f64, other: f64| {
+            let factor = if f == Formulation::Chapter8 { 1.0 } else { (other / wrap).min(1.0) };
+            let over = (1..=n).map(|i| shoulder_n * (1.0 - f64::from(i - 1) / f64::from(n)) * sliding(i));
+            factor * p.mu_band * over.sum::<f64>()
+        };
+        let want = pack(s.tension.primary_shoulder_n, g.primary_wrap_rad, g.secondary_wrap_rad)
+            + pack(s.tension.secondary_shoulder_n, g.secondary_wrap_rad, g.primary_wrap_rad);
+        prop_assert!((s.band_nm - want).abs() <= 1e-12 * want, "{} instead of {want}", s.band_nm);
+    }
+
+    /// Rigid pulleys, frictionless flanks or no clamping: neither wedging nor penetration (WE-1, WE-3, PE-1).
+    #[test]
+    fn rigid_pulleys_do_not_wedge(f in any_formulation(), p in any_point()) {
+        let belt = thesis_belt(f);
+        let rigid = Belt { primary_compliance_per_n: 0.0, secondary_compliance_per_n: 0.0, ..belt.clone() };
+        for s in [p.state(&rigid), Point { mu_flank: 0.0, ..p }.state(&belt), Point { clamp_n: 0.0, ..p }.state(&belt)] {
+            prop_assert_eq!((s.wedge_nm, s.penetration_nm), (0.0, 0.0));
+        }
+    }
+
+    /// On its end stop the primary does not deflect: a stiffer one changes nothing (WE-4); AppendixC has no stop.
+    #[test]
+    fn on_its_stop_the_primary_is_rigid(ratio in 2.417..3.0f64, p in any_point()) {
+        let p = Point { ratio, clamp_n: p.clamp_n + 1.0, mu_flank: 0.13, ..p };
+        for f in ALL {
+            let belt = thesis_belt(f);
+            let (soft, stiff) = (p.state(&belt), p.state(&Belt { primary_compliance_per_n: 0.0, ..belt }));
+            prop_assert_eq!(soft.wedge_nm == stiff.wedge_nm && soft.penetration_nm == stiff.penetration_nm, f != Formulation::AppendixC);
+        }
+    }
+
+    /// Gaps come from elasticity alone when there is none at no load: slip falls as 1/E, and is nothing for a rigid belt that does
+    /// not slip grossly (SL-1, SL-2, SL-5).
+    #[test]
+    fn rigid_belt_does_not_slip(f in any_formulation(), p in any_point()) {
+        let p = Point { clamp_n: p.clamp_n + 1000.0, mu_segment: 0.125, ..p };
+        let belt = |gpa: f64| Belt { youngs_pa: gpa * 1e9, slip_bound: 1e9, ..thesis_belt(f) };
+        let (soft, stiff, rigid) = (p.state(&belt(206.0)), p.state(&belt(412.0)), p.state(&belt(1e30)));
+        prop_assume!(!soft.gross_slip);
+        prop_assert!((soft.slip_total - 2.0 * stiff.slip_total).abs() <= 1e-12 * (soft.slip.primary.abs() + soft.slip.secondary.abs()));
+        prop_assert!((soft.slip_nm - 2.0 * stiff.slip_nm).abs() <= 1e-12 * soft.slip_nm);
+        prop_assert!(rigid.slip_total.abs() <= 1e-15 * (1.0 + soft.slip_total.abs()), "{}", rigid.slip_total);
+        // A gap that is there at no load slips in a rigid belt too, by no less than gap over arc (here 0.25 m at the most).
+        let gapped = p.state(&Belt { initial_gap_m: 1e-3, ..belt(1e30) });
+        let conventional = f == Formulation::Smooth && gapped.tension.compression_n > 9.0 * 120.0;
+        prop_assert!(!conventional || gapped.slip.primary > 4e-3, "{:?}", gapped.slip);
+    }
+
+    /// The blend weighs the branches by (1 + tanh(C_x/C0))/2 and nothing else (SL-8): at one point, slip and its loss under three widths
+    /// C0 lie on one line over that weight, from the inverted branch alone to the conventional one alone.
+    #[test]
+    fn blend_weighs_the_branches_by_its_width(p in any_point(), (a, b, c) in (1.0..2000.0f64, 1.0..2000.0f64, 1.0..2000.0f64)) {
+        let belt = |blend_n: f64| Belt { blend_n, ..thesis_belt(Formulation::Smooth) };
+        let cx = p.state(&belt(1.0)).tension.compression_n;
+        let at = |blend_n: f64| {
+            let s = p.state(&belt(blend_n));
+            (0.5 * (1.0 + (cx / blend_n).tanh()), [s.slip.primary, s.slip.secondary, s.slip_nm])
+        };
+        let ((u, x), (v, y), (w, z)) = (at(a), at(b), at(c));
+        // The branches differ as long as neither is held, so that the width has a say where the weight has.
+        let free = p.clamp_n > 100.0 && x[0].abs() < 0.02 && y[0].abs() < 0.02;
+        prop_assert!(!free || (u - v).abs() < 1e-3 || x[0] != y[0], "{x:?} at {u} and at {v}");
+        for k in 0..3 {
+            let off = (y[k] - x[k]) * (w - u) - (z[k] - x[k]) * (v - u);
+            prop_assert!(off.abs() <= 1e-7 * (x[k].abs() + y[k].abs() + z[k].abs()), "{x:?} at {u}, {y:?} at {v}, {z:?} at {w}");
+        }
+    }
+
+    /// Neither oil nor flank friction takes part in tension or slip; no loss but the film's knows the film.
+    #[test]
+    fn causes_do_not_mix(f in any_formulation(), p in any_point()) {
+        let (belt, p) = (thesis_belt(f), Point { film_share: 0.5, ..p });
+        let (plain, dry) = (p.state(&belt), Point { film_share: 0.0, mu_flank: 0.2, ..p }.state(&belt));
+        prop_assert_eq!((plain.tension, plain.slip, plain.band_nm), (dry.tension, dry.slip, dry.band_nm));
+        prop_assert_eq!(dry.film_nm, 0.0);
+        // Wedge, penetration and film know neither torque nor band and segment friction; the film does not know clamping either.
+        let other = Point { torque_nm: -3.0 - p.torque_nm, mu_band: 0.05, mu_segment: 0.05, ..p }.state(&belt);
+        prop_assert_eq!((plain.wedge_nm, plain.penetration_nm, plain.film_nm), (other.wedge_nm, other.penetration_nm, other.film_nm));
+        prop_assert_eq!(plain.film_nm, Point { clamp_n: p.clamp_n + 5e3, ..p }.state(&belt).film_nm);
+        // Prescribed segment friction leaves the fluid's without effect, Smooth's own does not.
+        let sticky = Point { mu_segment: p.mu_segment + 0.05, ..p }.state(&belt);
+        prop_assert_eq!(sticky.capacity_nm == plain.capacity_nm, f != Formulation::Smooth || p.clamp_n * 0.05 < 1e-300);
+    }
+
+    /// The film's shear is proportional to its share and to speed (FI-1).
+    #[test]
+    fn film_is_linear_in_share_and_speed(p in any_point()) {
+        let belt = thesis_belt(Formulation::Smooth);
+        let p = Point { rpm: 1.0 + p.rpm, film_share: 0.2, ..p };
+        let plain = p.state(&belt).film_nm;
+        for twice in [Point { film_share: 0.4, ..p }, Point { rpm: 2.0 * p.rpm, ..p }] {
+            prop_assert!((twice.state(&belt).film_nm - 2.0 * plain).abs() <= 1e-13 * plain);
+        }
+        prop_assert_eq!(plain > 0.0, p.ratio != 1.0);
+    }
+}
