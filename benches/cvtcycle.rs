@@ -11,7 +11,7 @@ use cvtcycle::run::{Conditions, Start, drive};
 use cvtcycle::setup::{Options, Setup, load};
 use cvtcycle::simulate::{Car, Recorder, State, simulate};
 use cvtcycle::thermal::{Heat, HeatInput};
-use cvtcycle::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, belt_state};
+use cvtcycle::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, Formulation, belt_point, belt_state};
 use cvtcycle::transmission::{DriveState, Surroundings, Transmission};
 use cvtcycle::vehicle::WheelDemand;
 use divan::counter::ItemsCount;
@@ -59,6 +59,20 @@ fn belt_evaluation(bencher: Bencher, torque_nm: f64) {
     let at = BeltAtRatio::new(belt(&car), 0.7);
     let load = load_at(torque_nm);
     bencher.bench_local(|| belt_state(black_box(belt(&car)), black_box(&at), black_box(&load)));
+}
+
+/// Belt points with their geometry, as `belt` computes them, in each formulation: points a second.
+#[divan::bench(args = ["smooth", "appendix_c", "chapter_8"])]
+fn belt_points(bencher: Bencher, name: &str) {
+    let formulation = Formulation::NAMES.iter().find(|(known, _)| *known == name).unwrap().1;
+    let car = setup("rover_216_cvt").car(COLD_K);
+    let belt = Belt { formulation, ..belt(&car).clone() };
+    let points: Vec<(f64, BeltLoad)> = (0..100).map(|k| (0.425 + 0.02 * f64::from(k), load_at(-20.0 + f64::from(k)))).collect();
+    bencher.counter(ItemsCount::new(points.len())).bench_local(|| {
+        for (ratio, load) in &points {
+            black_box(belt_point(&belt, &BeltAtRatio::new(&belt, *ratio), load));
+        }
+    });
 }
 
 #[divan::bench(args = [0.4137, 1.0, 2.4])]

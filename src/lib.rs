@@ -15,4 +15,5 @@ pub mod simulate;
 pub mod run;
 pub mod results;
 pub mod rig;
+pub mod validate;
 pub mod report;

@@ -166,11 +166,17 @@ fn advance(car: &Car, heat: &Heat, drive: &Drive, burn: &Burn, around: &Surround
 
 /// Heat into each node, W (SI-3).
 fn node_power(car: &Car, drive: &Drive, burn: &Burn) -> [f64; NODES] {
+    let mut power = loss_heat_w(car, &drive.loss_w);
+    power[COOLANT] += burn.to_coolant_w;
+    power[ENGINE_OIL] += burn.to_oil_w;
+    power
+}
+
+/// Heat that the transmission's losses, W, put into each node, W (SI-3).
+pub(crate) fn loss_heat_w(car: &Car, loss_w: &[f64; Component::COUNT]) -> [f64; NODES] {
     let mut power = [0.0; NODES];
-    power[COOLANT] = burn.to_coolant_w;
-    power[ENGINE_OIL] = burn.to_oil_w;
     for component in Component::ALL {
-        let watts = drive.loss_w[component as usize];
+        let watts = loss_w[component as usize];
         match component {
             Component::BeltBand
             | Component::BeltFilm

@@ -3,14 +3,12 @@
 
 mod common;
 
-use common::bench_step::{Bench, Setting};
 use common::{RPM, ZERO, at, car, consumption, cycle, larger, soak_rows};
-use cvtcycle::numeric::Curve;
 use cvtcycle::results::{Component, Flags, Row};
+use cvtcycle::rig::{Bench, BenchAnswer, BenchPoint};
 use cvtcycle::run::{Start, drive};
 use cvtcycle::setup::Setup;
 use cvtcycle::thermal::{ENGINE_OIL, SUMP};
-use cvtcycle::transmission::Drive;
 
 fn kmh(row: &Row) -> f64 {
     row.speed_m_s * 3.6
@@ -209,82 +207,51 @@ fn val_ftp75_load() {
 
 // ---- The rig of chapters 4 and 5: no load, an electric motor in place of the engine, throttle closed.
 
-struct Rig {
-    bench: Bench,
-    spray_w_k: f64,
-    share: f64,
-}
-
-/// Torque losses at the input, Nm.
-struct RigPoint {
-    total: f64,
-    parts: [f64; Component::COUNT],
-    bar: f64,
-}
+struct Rig(Bench);
 
 impl Rig {
     fn new(setup: &Setup) -> Self {
-        let mut bench = Bench::new(setup);
-        bench.car.engine.full_load = Curve::constant(1e9); // the motor drives, the throttle stays closed
-        Rig { spray_w_k: bench.car.network.spray_w_k, share: bench.car.belt_heat_share, bench }
+        Rig(Bench::new(setup))
     }
 
-    fn solve(&self, ratio: f64, rpm: f64, sump_degc: f64) -> RigPoint {
-        let wheel_rad_s = rpm * RPM / self.bench.overall(ratio);
-        let mut belt_degc = sump_degc;
-        let mut d = Drive::at_rest();
-        for _ in 0..8 {
-            // Belt and spray in their steady state over a held sump.
-            d = self.bench.solve(&Setting { ratio, wheel_rad_s, sump_degc, belt_degc, ..Setting::default() });
-            let belt_w: f64 =
-                [Component::BeltBand, Component::BeltFilm, Component::BeltSlip, Component::BeltWedge, Component::BeltPenetration]
-                    .iter()
-                    .map(|c| d.loss_w[*c as usize])
-                    .sum();
-            belt_degc = sump_degc + self.share * belt_w / self.spray_w_k;
-        }
-        assert!(!d.flags.contains(Flags::NOT_CONVERGED) && d.loss_w[Component::LaunchClutch as usize].abs() < 1e-3);
-        let parts = d.loss_w.map(|w| w / d.engine_rad_s);
-        RigPoint { total: parts.iter().sum(), parts, bar: d.secondary_pa / 1e5 }
+    /// Belt and spray in their steady state over a held sump.
+    fn solve(&self, ratio: f64, rpm: f64, sump_degc: f64) -> BenchAnswer {
+        let point = BenchPoint { ratio, input_rad_s: rpm * RPM, sump_k: sump_degc + ZERO, ..BenchPoint::default() };
+        let answer = self.0.solve(&point);
+        assert!(!answer.flags.contains(Flags::NOT_CONVERGED), "{point:?}");
+        answer
     }
 }
 
 const TEMPERATURES: [f64; 4] = [25.0, 50.0, 75.0, 95.0];
 
-fn belt_part(p: &RigPoint) -> f64 {
-    [Component::BeltBand, Component::BeltFilm, Component::BeltSlip, Component::BeltWedge, Component::BeltPenetration]
-        .iter()
-        .map(|c| p.parts[*c as usize])
-        .sum()
-}
-
 /// 5.3.1: no-load totals in low ratio 8.5-13 Nm over 1000-4000 rpm, in high (0.5 on the rig) 9-13 Nm over 2000-4000 rpm, at 25, 50,
-/// 75 and 95 degC; bands widened by the 0.5 Nm of the torque transducer (5.2). The parts are those of 5.5.
+/// 75 and 95 degC: the ends of the ranges within 0.6 Nm (the transducer's 0.5 Nm of 5.2, and the reading). The parts are those of 5.5.
 #[test]
 fn val_rig_totals() {
     let rig = Rig::new(&car("rover_216_cvt", &[]));
-    let mut wrong = Vec::new();
-    for (ratio, from, low, high) in [(2.417, 1000, 8.0, 13.5), (0.5, 2000, 8.5, 13.5)] {
+    for (ratio, from, low, high) in [(2.417, 1000, 8.5, 13.0), (0.5, 2000, 9.0, 13.0)] {
+        let mut totals = Vec::new();
         for t in TEMPERATURES {
-            for rpm in (from..=4000).step_by(500) {
+            for rpm in (from..=4000).step_by(250) {
                 let p = rig.solve(ratio, f64::from(rpm), t);
                 println!(
                     "I {ratio} {t} degC {rpm} rpm: {:.2} Nm at {:.1} bar: pump {:.2} shaft {:.2} clutch {:.2} belt {:.2} final {:.2}",
-                    p.total,
-                    p.bar,
-                    p.parts[Component::Pump as usize],
-                    p.parts[Component::InputShaft as usize],
-                    p.parts[Component::ClutchDrag as usize],
-                    belt_part(&p),
-                    p.parts[Component::FinalDrive as usize]
+                    p.total_nm(),
+                    p.secondary_pa / 1e5,
+                    p.part_nm(Component::Pump),
+                    p.part_nm(Component::InputShaft),
+                    p.part_nm(Component::ClutchDrag),
+                    p.belt_nm(),
+                    p.part_nm(Component::FinalDrive)
                 );
-                if !(low..=high).contains(&p.total) {
-                    wrong.push(format!("I {ratio} {t} degC {rpm} rpm: {:.2} Nm outside {low}-{high}", p.total));
-                }
+                totals.push(p.total_nm());
             }
         }
+        let (least, most, _) = range(totals.into_iter());
+        println!("I {ratio}: {least:.2} to {most:.2} Nm, printed {low} to {high}");
+        assert!((least - low).abs() <= 0.6 && (most - high).abs() <= 0.6, "I {ratio}: {least:.2} to {most:.2} Nm");
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// 5.3.1: in low the torque rises quickly from 1000 to 2000 rpm and slowly after.
@@ -292,7 +259,7 @@ fn val_rig_totals() {
 fn val_rig_low_rises_then_flattens() {
     let rig = Rig::new(&car("rover_216_cvt", &[]));
     for t in TEMPERATURES {
-        let [a, b, c] = [1000.0, 2000.0, 4000.0].map(|n| rig.solve(2.417, n, t).total);
+        let [a, b, c] = [1000.0, 2000.0, 4000.0].map(|n| rig.solve(2.417, n, t).total_nm());
         let (first, second) = (b - a, 0.5 * (c - b));
         println!("{t} degC: {first:.2} Nm per 1000 rpm, then {second:.2}");
         assert!(first > 3.0 * second && first > 1.0, "{t} degC: {first} then {second}");
@@ -313,7 +280,7 @@ fn val_rig_split() {
             wrong.push(format!("{what}: {x:.2} Nm outside {low}-{high}"));
         }
     };
-    let part = |p: &RigPoint, c: Component| p.parts[c as usize];
+    let part = |p: &BenchAnswer, c: Component| p.part_nm(c);
     for t in TEMPERATURES {
         let cold = t < 30.0;
         for rpm in [1000.0, 2500.0, 4000.0] {
@@ -324,7 +291,7 @@ fn val_rig_split() {
             let drive = if cold { (0.65, 0.95) } else { (0.3, 0.7) };
             want(format!("final drive low {t} degC {rpm} rpm"), part(&p, Component::FinalDrive), drive.0, drive.1);
             if rpm > 1500.0 {
-                want(format!("belt low {t} degC {rpm} rpm"), belt_part(&p), 3.0, 5.2);
+                want(format!("belt low {t} degC {rpm} rpm"), p.belt_nm(), 3.0, 5.2);
             }
             println!("    pump low {t} degC {rpm} rpm: {:.2} Nm (about 3 printed)", part(&p, Component::Pump));
         }
@@ -332,7 +299,7 @@ fn val_rig_split() {
             let p = rig.solve(0.5, rpm, t);
             let drive = if cold { (2.0, 3.0) } else { (0.5, 1.5) };
             want(format!("final drive high {t} degC {rpm} rpm"), part(&p, Component::FinalDrive), drive.0, drive.1);
-            want(format!("belt high {t} degC {rpm} rpm"), belt_part(&p), 3.5, 8.5);
+            want(format!("belt high {t} degC {rpm} rpm"), p.belt_nm(), 3.5, 8.5);
             want(format!("pump high {t} degC {rpm} rpm"), part(&p, Component::Pump), 0.5, 2.5);
         }
     }
@@ -345,7 +312,7 @@ fn val_rig_belt_rises_with_temperature() {
     let rig = Rig::new(&car("rover_216_cvt", &[]));
     let mut wrong = Vec::new();
     for (ratio, rpm) in [(2.417, 2500.0), (0.5, 2500.0), (0.5, 4000.0)] {
-        let b = TEMPERATURES.map(|t| belt_part(&rig.solve(ratio, rpm, t)));
+        let b = TEMPERATURES.map(|t| rig.solve(ratio, rpm, t).belt_nm());
         println!("belt at {ratio} {rpm} rpm, 25/50/75/95 degC: {b:.2?} Nm");
         if !(b[0] < b[2] && b[2] <= b[3] * 1.02) {
             wrong.push(format!("{ratio} {rpm}: {b:.2?}"));
@@ -353,7 +320,7 @@ fn val_rig_belt_rises_with_temperature() {
     }
     // That it falls away at 50 degC and high speed in high ratio (8.9) is not reproduced: 0.91 of the loss at 75 degC at 2000 rpm,
     // 0.95 at 4000 rpm. Shown in docs/results.md as a known gap of the film's onset.
-    let at50 = |n: f64| belt_part(&rig.solve(0.5, n, 50.0)) / belt_part(&rig.solve(0.5, n, 75.0));
+    let at50 = |n: f64| rig.solve(0.5, n, 50.0).belt_nm() / rig.solve(0.5, n, 75.0).belt_nm();
     println!("belt at 0.5, 50 over 75 degC: {:.2} at 2000, {:.2} at 4000 rpm", at50(2000.0), at50(4000.0));
     if !(at50(2000.0) < 1.0 && at50(4000.0) < 1.0) {
         wrong.push("not lower at 50 than at 75 degC".into());
@@ -366,14 +333,14 @@ fn val_rig_belt_rises_with_temperature() {
 fn val_rig_below_25_degc() {
     let rig = Rig::new(&car("rover_216_cvt", &[]));
     for (ratio, rpm) in [(2.417, 2500.0), (0.5, 2500.0)] {
-        let points: Vec<RigPoint> = [-10.0, -5.0, 0.0, 5.0, 10.0, 25.0].iter().map(|t| rig.solve(ratio, rpm, *t)).collect();
-        let totals: Vec<f64> = points.iter().map(|p| p.total).collect();
+        let points: Vec<BenchAnswer> = [-10.0, -5.0, 0.0, 5.0, 10.0, 25.0].iter().map(|t| rig.solve(ratio, rpm, *t)).collect();
+        let totals: Vec<f64> = points.iter().map(BenchAnswer::total_nm).collect();
         println!(
             "I {ratio} {rpm} rpm, -10 -5 0 5 10 25 degC: {totals:.2?} Nm, of it final drive {:.2} at -10",
-            points[0].parts[Component::FinalDrive as usize]
+            points[0].part_nm(Component::FinalDrive)
         );
         for c in [Component::Pump, Component::InputShaft, Component::ClutchDrag, Component::FinalDrive] {
-            assert!(points.windows(2).all(|w| w[0].parts[c as usize] >= w[1].parts[c as usize] - 1e-9), "{} at {ratio}", c.name());
+            assert!(points.windows(2).all(|w| w[0].part_nm(c) >= w[1].part_nm(c) - 1e-9), "{} at {ratio}", c.name());
         }
         assert!(totals.iter().all(|t| *t < 35.0) && totals.windows(2).all(|w| w[0] > w[1]), "{totals:?}");
     }
@@ -385,9 +352,8 @@ fn val_rig_below_25_degc() {
 fn val_no_load_input_is_the_sum_of_the_losses() {
     let rig = Rig::new(&car("rover_216_cvt", &[]));
     for (ratio, rpm, t) in [(2.417, 1500.0, 25.0), (0.5, 3000.0, 75.0), (1.0, 2000.0, 50.0)] {
-        let wheel_rad_s = rpm * RPM / rig.bench.overall(ratio);
-        let d = rig.bench.solve(&Setting { ratio, wheel_rad_s, sump_degc: t, belt_degc: t, ..Setting::default() });
-        let sum: f64 = d.loss_w.iter().sum();
-        assert!((d.shaft_nm * d.engine_rad_s - sum).abs() < 1e-9 * sum, "{} and {sum} W", d.shaft_nm * d.engine_rad_s);
+        let p = rig.solve(ratio, rpm, t);
+        let sum: f64 = Component::ALL.iter().map(|c| p.part_nm(*c)).sum();
+        assert!((p.input_nm - sum).abs() < 1e-9 * sum && sum > 5.0, "{} and {sum} Nm", p.input_nm);
     }
 }

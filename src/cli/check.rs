@@ -42,6 +42,8 @@ fn check(file: &str) -> Result<Sort, Vec<Problem>> {
     let (sort, word) = sort_of(file, true)?;
     match sort {
         Sort::Cycle => drop(inputs::cycle("FILE", &word)?),
+        // Only embedded, and read by `rig`.
+        Sort::Rig => {}
         Sort::Lubricant => drop(setup::load_lubricant(&word, "FILE", &[], "")?),
         Sort::Vehicle => {
             let setup = setup::load(&word, "FILE", &Options::default())?;

@@ -41,6 +41,11 @@ pub fn lubricants() -> Vec<&'static str> {
     setup::embedded_lubricants().iter().map(|(name, _)| *name).collect()
 }
 
+/// Names of the embedded rigs.
+pub fn rigs() -> Vec<&'static str> {
+    setup::embedded_rigs().iter().map(|(name, _)| *name).collect()
+}
+
 /// Everything that goes wrong, gathered over all inputs.
 #[derive(Debug, Default)]
 pub struct Problems(Vec<Problem>);
@@ -56,6 +61,11 @@ impl Problems {
         if !self.0.contains(&problem) {
             self.0.push(problem);
         }
+    }
+
+    /// Whether none was noted.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 
     /// Nothing, or all problems.

@@ -4,17 +4,23 @@
 //! input. Exit codes: 0 fine; 1 ran, but a check failed; 2 bad input or output that cannot be written.
 
 mod answer;
+mod belt;
 mod check;
 mod colour;
 mod explain;
 mod grid;
 mod inputs;
 mod list;
+mod losses;
 mod number;
+mod ranges;
+mod rig;
 mod run;
 mod shell;
 mod show;
 mod sniff;
+mod stream;
+mod validate;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -45,6 +51,14 @@ struct Cli {
 enum Command {
     /// Drive a car and its baselines through a cycle: fuel, losses, temperatures
     Run(Box<run::Args>),
+    /// Hold every printed number of the thesis, and your own, against the program
+    Validate(Box<validate::Args>),
+    /// Run the thesis's test rigs, virtual
+    Rig(rig::Args),
+    /// Show what each part of a transmission loses, at one operating point or over a grid
+    Losses(Box<losses::Args>),
+    /// The belt model at many operating points: a table in, a table out
+    Belt(Box<belt::Args>),
     /// List what the program carries: cycles, vehicles, lubricants
     List(list::Args),
     /// Show every value of a vehicle or lubricant with its status and source, or a cycle
@@ -87,6 +101,10 @@ impl Command {
     fn answer(self, context: Context) -> Reply {
         match self {
             Command::Run(args) => run::answer(&args, context),
+            Command::Validate(args) => validate::answer(&args, context),
+            Command::Rig(args) => rig::answer(&args, context),
+            Command::Losses(args) => losses::answer(&args, context),
+            Command::Belt(args) => belt::answer(&args, context),
             Command::List(args) => list::answer(&args, context),
             Command::Show(args) => show::answer(&args, context),
             Command::Explain(args) => explain::answer(&args, context),

@@ -1,7 +1,7 @@
 //! `run`: a car and its baselines through one cycle.
 
 mod cars;
-mod files;
+pub mod files;
 mod text;
 
 use cvtcycle::config::Bound;
@@ -84,7 +84,7 @@ pub struct Args {
     quiet: bool,
 }
 
-fn formulations() -> Vec<&'static str> {
+pub fn formulations() -> Vec<&'static str> {
     Formulation::NAMES.iter().map(|(name, _)| *name).collect()
 }
 

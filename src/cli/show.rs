@@ -1,9 +1,10 @@
-//! `show`: every value of a vehicle or lubricant with its status and source, or what a cycle is made of.
+//! `show`: every value of a vehicle, lubricant or rig with its status and source, or what a cycle is made of.
 
 use clap::ValueEnum;
 use cvtcycle::config::KeyInfo;
 use cvtcycle::cycle::Cycle;
 use cvtcycle::setup::assumptions::value;
+use cvtcycle::setup::catalogue;
 use cvtcycle::setup::{self, Options};
 use serde::Serialize;
 
@@ -25,7 +26,7 @@ Examples:
   cvtcycle show dexron_iii
   cvtcycle show ece15_eudc")]
 pub struct Args {
-    /// A vehicle, lubricant or cycle: a name or a file
+    /// A vehicle, lubricant, rig or cycle: a name or a file
     #[arg(value_name = "NAME|FILE", value_parser = inputs::Offering(names), hide_possible_values = true)]
     name: String,
     /// Only values of this status; repeatable
@@ -54,7 +55,7 @@ pub enum Status {
 }
 
 fn names() -> Vec<&'static str> {
-    inputs::vehicles().into_iter().chain(inputs::lubricants()).chain(inputs::cycles()).collect()
+    inputs::vehicles().into_iter().chain(inputs::lubricants()).chain(inputs::rigs()).chain(inputs::cycles()).collect()
 }
 
 /// One key as JSON.
@@ -100,6 +101,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
             let (oil, keys) = setup::load_lubricant(&word, "NAME", &[], "")?;
             (oil.title, keys)
         }
+        Sort::Rig => rig(&word),
     };
     let wanted = |info: &KeyInfo| args.status.is_empty() || args.status.iter().any(|s| s.word() == info.status);
     let keys: Vec<KeyInfo> = keys.into_iter().filter(wanted).collect();
@@ -113,6 +115,12 @@ pub fn answer(args: &Args, context: Context) -> Reply {
         return Ok(Answer::text(head + "\nno value of this status\n"));
     }
     Ok(Answer::text(head + &tables(&keys, context) + &counts(&keys)))
+}
+
+/// Title and keys of an embedded rig.
+fn rig(word: &str) -> (String, Vec<KeyInfo>) {
+    let keys = catalogue::files().into_iter().find(|file| file.name == word).map(|file| file.keys).unwrap_or_default();
+    (keys.iter().find(|k| k.key == "rig.title").map(|k| k.value.clone()).unwrap_or_default(), keys)
 }
 
 impl Status {

@@ -4,7 +4,7 @@ use cvtcycle::config::{Problem, decode};
 use cvtcycle::cycle;
 use cvtcycle::setup::is_path;
 
-use super::inputs::{bad_value, bytes, did_you_mean, is_csv, lubricants, vehicles};
+use super::inputs::{bad_value, bytes, did_you_mean, is_csv, lubricants, rigs, vehicles};
 
 /// Sort of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +15,8 @@ pub enum Sort {
     Lubricant,
     /// A drive cycle.
     Cycle,
+    /// What a test rig is set to.
+    Rig,
 }
 
 /// Tables and keys that only a vehicle has at the top of its file.
@@ -29,6 +31,7 @@ impl Sort {
             Sort::Vehicle => "vehicle",
             Sort::Lubricant => "lubricant",
             Sort::Cycle => "cycle",
+            Sort::Rig => "rig",
         }
     }
 }
@@ -62,6 +65,8 @@ fn embedded(word: &str) -> Option<Sort> {
         Some(Sort::Vehicle)
     } else if lubricants().contains(&word) {
         Some(Sort::Lubricant)
+    } else if rigs().contains(&word) {
+        Some(Sort::Rig)
     } else if cycle::names().contains(&word) || word.starts_with("constant_") && !is_csv(word) {
         Some(Sort::Cycle)
     } else {
@@ -91,7 +96,7 @@ fn by_text(word: &str, text: &str) -> Result<Sort, Vec<Problem>> {
 }
 
 fn unknown(word: &str) -> Problem {
-    let known: Vec<&str> = vehicles().into_iter().chain(lubricants()).chain(cycle::names().iter().copied()).collect();
+    let known: Vec<&str> = vehicles().into_iter().chain(lubricants()).chain(rigs()).chain(cycle::names().iter().copied()).collect();
     let question = did_you_mean(word, &known).map(|q| q + " ").unwrap_or_default();
     bad_value(
         "NAME",

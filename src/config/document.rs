@@ -98,6 +98,8 @@ pub(super) struct Entry {
 pub struct Document {
     pub(super) sources: Vec<Source>,
     pub(super) root: Table,
+    /// Header of the table that the document stands for, where it is one item of a list ([`Document::take_tables`]).
+    pub(super) header: Option<Span>,
 }
 
 impl Document {
@@ -111,7 +113,25 @@ impl Document {
         if !errors.is_empty() {
             return Err(syntax::problems(&source, &errors));
         }
-        Ok(Document { sources: vec![source], root: convert_table(table.get_ref(), 0) })
+        Ok(Document { sources: vec![source], root: convert_table(table.get_ref(), 0), header: None })
+    }
+
+    /// Takes the tables of the list `key` (`[[key]]`) out, each as a document of its own with its places in this text. What is not a
+    /// list of tables stays, so that whoever reads the rest complains about it.
+    pub fn take_tables(&mut self, key: &str) -> Vec<Document> {
+        let is_table = |node: &Node| matches!(node.value, Value::Table(_));
+        let all = |entry: &Entry| matches!(&entry.node.value, Value::List(items) if items.iter().all(is_table));
+        if !self.root.entries.get(key).is_some_and(all) {
+            return Vec::new();
+        }
+        let Some(Entry { node: Node { value: Value::List(items), .. }, .. }) = self.root.entries.remove(key) else {
+            return Vec::new();
+        };
+        let document = |item: Node| match item.value {
+            Value::Table(root) => Some(Document { sources: self.sources.clone(), root, header: Some(item.span) }),
+            _ => None,
+        };
+        items.into_iter().filter_map(document).collect()
     }
 
     /// Where a span stands.

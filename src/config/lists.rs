@@ -39,6 +39,61 @@ impl Section<'_> {
         values.into_iter().map(|value| to_si(key, value)).collect()
     }
 
+    /// Numbers in SI units, written as one number, a list of numbers, or a range `"1000..4000:250"` with both ends; none if the key is
+    /// absent, NaN after a problem.
+    pub fn grid(&self, key: &str, allowed: Bound, doc: &str) -> Option<Vec<f64>> {
+        let range = format!("a number, a list or a range \"from..to:step\", each {}", allowed.in_unit(unit_of(key)));
+        let found = match self.open(key, &range, doc) {
+            Lookup::Found(found) => found,
+            Lookup::Absent => return None,
+            Lookup::Bad => return Some(vec![f64::NAN]),
+        };
+        let values: Vec<f64> = match &found.node.value {
+            Value::List(items) => items.iter().map(|item| self.check_number(key, key, item, allowed).unwrap_or(f64::NAN)).collect(),
+            Value::Text(text) => match range_values(text) {
+                Some(values) if values.iter().all(|x| allowed.contains(*x)) => values,
+                Some(_) => {
+                    self.out_of_range(key, found.node, &range);
+                    vec![f64::NAN]
+                }
+                None => {
+                    let message = format!("`{}`: `{text}` is no range", join(&self.path, key));
+                    self.report(&found.node.span, key, &range, message, "write \"1000..4000:250\"".to_string());
+                    vec![f64::NAN]
+                }
+            },
+            _ => vec![self.check_number(key, key, found.node, allowed).unwrap_or(f64::NAN)],
+        };
+        self.given(key, &found, format!("{values:?}"), None);
+        Some(values.into_iter().map(|value| to_si(key, value)).collect())
+    }
+
+    /// Texts of a list; empty if the key is absent.
+    pub fn texts(&self, key: &str, doc: &str) -> Vec<String> {
+        let found = match self.open(key, "a list of texts", doc) {
+            Lookup::Found(found) => found,
+            Lookup::Absent => {
+                self.defaulted(key, "[]".to_string(), None);
+                return Vec::new();
+            }
+            Lookup::Bad => return Vec::new(),
+        };
+        let Value::List(items) = &found.node.value else {
+            self.wrong_type(key, found.node, "a list of texts");
+            return Vec::new();
+        };
+        let text = |item: &Node| match &item.value {
+            Value::Text(text) => Some(text.clone()),
+            _ => {
+                self.wrong_type(key, item, "text");
+                None
+            }
+        };
+        let texts: Vec<String> = items.iter().filter_map(text).collect();
+        self.given(key, &found, format!("{texts:?}"), None);
+        texts
+    }
+
     /// A table of numbers written as a list of rows, in SI units by the suffixes of the column names.
     /// Empty if the key is absent; rows with a problem are left out.
     pub fn rows(&self, key: &str, columns: &[(&str, Bound)], doc: &str) -> Vec<Vec<f64>> {
@@ -82,6 +137,24 @@ impl Section<'_> {
             cells.iter().zip(columns).map(|(cell, (name, bound))| self.check_number(key, name, cell, *bound)).collect();
         checked.into_iter().collect()
     }
+}
+
+/// Most numbers of one range.
+const MOST_IN_RANGE: f64 = 10_000.0;
+
+/// `from..to:step` with both ends; a last step that falls short of `to` is kept short.
+fn range_values(text: &str) -> Option<Vec<f64>> {
+    let (from, rest) = text.split_once("..")?;
+    let (to, step) = rest.split_once(':')?;
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+    let (from, to, step) = (number(from)?, number(to)?, number(step)?);
+    let count = ((to - from) / step).floor();
+    if !(step > 0.0 && from <= to && count < MOST_IN_RANGE) {
+        return None;
+    }
+    let values: Vec<f64> = (0..=count as u32).map(|i| from + step * f64::from(i)).collect();
+    let whole = values.last().is_some_and(|last| (to - last).abs() <= 1e-9 * step);
+    Some(if whole { values } else { values.into_iter().chain([to]).collect() })
 }
 
 fn count_in_words(least: usize, most: usize) -> String {

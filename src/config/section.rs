@@ -23,7 +23,7 @@ pub struct Section<'r> {
 impl<'r> Section<'r> {
     pub(super) fn root(reader: &'r Reader<'r>) -> Self {
         let table = Some(&reader.document.root);
-        Section { reader, path: String::new(), table, header: None, muted: false }
+        Section { reader, path: String::new(), table, header: reader.document.header.clone(), muted: false }
     }
 
     /// Dotted path of the table; empty for the whole document.
@@ -39,6 +39,19 @@ impl<'r> Section<'r> {
     /// Whether the key is present, as a value or as a table.
     pub fn has(&self, key: &str) -> bool {
         self.table.is_some_and(|table| table.entries.contains_key(key))
+    }
+
+    /// Names of the entries of the table, in the order of the alphabet.
+    pub fn names(&self) -> Vec<&'r str> {
+        self.table.map(|table| table.entries.keys().map(String::as_str).collect()).unwrap_or_default()
+    }
+
+    /// Where the value of `key` stands; the header of the table, or the file, where it is absent.
+    pub fn place(&self, key: &str) -> super::problem::Place {
+        match self.table.and_then(|table| table.entries.get(key)) {
+            Some(entry) => self.reader.document.place(&entry.node.span),
+            None => self.absent(key, "", String::new(), String::new()).place,
+        }
     }
 
     /// The table `name` within this one. It may be absent: keys read from it are then missing.

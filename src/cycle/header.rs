@@ -103,13 +103,12 @@ impl Header {
 
     /// Reads the column names. `None` where the rest of the file cannot be understood without them.
     pub(super) fn read(line: Line<'_>, problems: &mut Problems<'_>) -> Option<Self> {
-        if !is_table(line, problems) {
+        if !problems.is_table(line) {
             return None;
         }
         let mut fields = Vec::new();
         if let Err(start) = split(line.text, &mut fields) {
-            let field = Field { text: &line.text[start..], start };
-            problems.value(line, field, "", || Complaint::new("this quote is not closed", "", ""));
+            problems.open_quote(line, start);
             return None;
         }
         if fields.iter().all(|field| field.text.parse::<f64>().is_ok()) {
@@ -159,19 +158,6 @@ impl Header {
                 .line(line, "gear_note", || Complaint::new("gear_note needs a column with the gears", "gear, gear_5mt or gear_6mt", hint));
         }
     }
-}
-
-fn is_table(line: Line<'_>, problems: &mut Problems<'_>) -> bool {
-    let count = |separator| line.text.matches(separator).count();
-    for (separator, name) in [(';', ";"), ('\t', "tabs")] {
-        if count(separator) > count(',') {
-            let message = format!("this file uses {name} - save it with commas");
-            let hint = "and with decimal points: 12.5 and not 12,5";
-            problems.line(line, "", || Complaint::new(message, "commas between the columns", hint));
-            return false;
-        }
-    }
-    true
 }
 
 fn unknown(name: &str) -> Complaint {

@@ -6,7 +6,7 @@
 //! | `gears` | the prescribed gear and clutch commands |
 //! | `embedded` | the regulations' cycles that the program carries |
 //! | `constant` | `constant_90` and its like |
-//! | `read` | a user's CSV to a checked cycle; `text`, `header`, `row`, `table` and `problems` are its parts |
+//! | `read` | a user's CSV to a checked cycle; `text`, `header`, `row`, `table` and `problems` are its parts, `text` and `problems` also those of other tables |
 //!
 //! Outside units (km/h, mph, percent) end in `read`; everything else is SI.
 
@@ -14,11 +14,11 @@ mod constant;
 mod embedded;
 mod gears;
 mod header;
-mod problems;
+pub mod problems;
 mod read;
 mod row;
 mod table;
-mod text;
+pub mod text;
 mod trace;
 
 pub use constant::constant_speed;

@@ -1,6 +1,6 @@
 //! Collecting the problems of a CSV file and saying where each stands.
 
-use super::text::Field;
+use super::text::{Field, split};
 use crate::config::{Place, Problem};
 
 /// More than these help nobody; the rest is counted.
@@ -11,68 +11,119 @@ const LONGEST_VALUE: usize = 60;
 
 /// One line of the file.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line<'t> {
+pub struct Line<'t> {
     /// Counted from 1.
-    pub(super) number: usize,
-    pub(super) text: &'t str,
+    pub number: usize,
+    /// Without its line end.
+    pub text: &'t str,
 }
 
 /// One value in its column, for reading and for complaining.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cell<'t> {
-    pub(super) line: Line<'t>,
-    pub(super) key: &'static str,
-    pub(super) field: Field<'t>,
+pub struct Cell<'t> {
+    /// Its line.
+    pub line: Line<'t>,
+    /// Its column.
+    pub key: &'static str,
+    /// Its value.
+    pub field: Field<'t>,
 }
 
 /// What is wrong, without the place.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Complaint {
-    pub(super) message: String,
-    pub(super) allowed: String,
-    pub(super) hint: String,
+pub struct Complaint {
+    /// What is wrong, one sentence.
+    pub message: String,
+    /// What would be accepted; empty where there is nothing to say.
+    pub allowed: String,
+    /// What to do about it; may be empty.
+    pub hint: String,
 }
 
 impl Complaint {
-    pub(super) fn new(message: impl Into<String>, allowed: impl Into<String>, hint: impl Into<String>) -> Self {
+    /// From its three texts.
+    #[must_use]
+    pub fn new(message: impl Into<String>, allowed: impl Into<String>, hint: impl Into<String>) -> Self {
         Self { message: message.into(), allowed: allowed.into(), hint: hint.into() }
     }
 }
 
 /// The problems found so far.
-pub(super) struct Problems<'f> {
+#[derive(Debug)]
+pub struct Problems<'f> {
     file: &'f str,
     list: Vec<Problem>,
     more: usize,
 }
 
 impl<'f> Problems<'f> {
-    pub(super) fn new(file: &'f str) -> Self {
+    /// None yet, of a file of that name.
+    #[must_use]
+    pub fn new(file: &'f str) -> Self {
         Self { file, list: Vec::new(), more: 0 }
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    /// Whether none was found.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
+    /// Whether the line of column names has commas between them, and no other separator.
+    pub fn is_table(&mut self, line: Line<'_>) -> bool {
+        let count = |separator| line.text.matches(separator).count();
+        for (separator, name) in [(';', ";"), ('\t', "tabs")] {
+            if count(separator) > count(',') {
+                let message = format!("this file uses {name} - save it with commas");
+                let hint = "and with decimal points: 12.5 and not 12,5";
+                self.line(line, "", || Complaint::new(message, "commas between the columns", hint));
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Splits a row into as many fields as there are column names; says what is wrong where that fails.
+    pub fn split<'t>(&mut self, line: Line<'t>, wanted: usize, fields: &mut Vec<Field<'t>>) -> bool {
+        if let Err(start) = split(line.text, fields) {
+            self.open_quote(line, start);
+            return false;
+        }
+        let found = fields.len();
+        if found != wanted {
+            self.line(line, "", || {
+                let hint = if found > wanted { "are there decimal commas? write 12.5 and not 12,5" } else { "" };
+                let message = format!("this row has {found} {}", if found == 1 { "value" } else { "values" });
+                Complaint::new(message, format!("{wanted}, as the line of column names has"), hint)
+            });
+        }
+        found == wanted
+    }
+
+    /// A quote at that byte of the line is not closed.
+    pub fn open_quote(&mut self, line: Line<'_>, start: usize) {
+        let field = Field { text: &line.text[start..], start };
+        self.value(line, field, "", || Complaint::new("this quote is not closed", "", ""));
+    }
+
     /// A problem of the whole file.
-    pub(super) fn file(&mut self, complaint: Complaint) {
+    pub fn file(&mut self, complaint: Complaint) {
         self.push("", |file| (Place { file: file.to_owned(), ..Place::default() }, String::new(), complaint));
     }
 
     /// A problem of a whole line; `key` is the column that is meant, if any.
-    pub(super) fn line(&mut self, line: Line<'_>, key: &str, complaint: impl FnOnce() -> Complaint) {
+    pub fn line(&mut self, line: Line<'_>, key: &str, complaint: impl FnOnce() -> Complaint) {
         let whole = Field { text: line.text, start: 0 };
         self.push(key, |file| (place(file, line, whole), String::new(), complaint()));
     }
 
     /// A problem of one value, `key` being its column.
-    pub(super) fn value(&mut self, line: Line<'_>, field: Field<'_>, key: &str, complaint: impl FnOnce() -> Complaint) {
+    pub fn value(&mut self, line: Line<'_>, field: Field<'_>, key: &str, complaint: impl FnOnce() -> Complaint) {
         self.push(key, |file| (place(file, line, field), shortened(field.text), complaint()));
     }
 
     /// A problem of one table cell.
-    pub(super) fn cell(&mut self, cell: &Cell<'_>, complaint: impl FnOnce() -> Complaint) {
+    pub fn cell(&mut self, cell: &Cell<'_>, complaint: impl FnOnce() -> Complaint) {
         self.value(cell.line, cell.field, cell.key, complaint);
     }
 
@@ -87,7 +138,8 @@ impl<'f> Problems<'f> {
     }
 
     /// All of them; beyond the first 50, one last entry says how many more there are.
-    pub(super) fn finish(mut self) -> Vec<Problem> {
+    #[must_use]
+    pub fn finish(mut self) -> Vec<Problem> {
         if self.more > 0 {
             let are = if self.more == 1 { "problem is" } else { "problems are" };
             self.list.push(Problem {

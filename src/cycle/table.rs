@@ -5,7 +5,7 @@ use std::mem::discriminant;
 use super::header::{Column, Header, SpeedUnit};
 use super::problems::{Cell, Complaint, Line, Problems};
 use super::row::{self, Row};
-use super::text::{Field, split};
+use super::text::Field;
 
 /// Tyres cannot do more; a higher value is a wrong unit or a lost sample.
 const HIGHEST_ACCEL_M_S2: f64 = 12.0;
@@ -52,7 +52,7 @@ impl<'a> Table<'a> {
             }
             count += 1;
             names = self.phases.len();
-            if !self.split(line, &mut fields) {
+            if !self.problems.split(line, self.header.columns.len(), &mut fields) {
                 self.before = Row::default();
                 continue;
             }
@@ -65,23 +65,6 @@ impl<'a> Table<'a> {
             let message = if count == 0 { "the file has column names and no rows" } else { "the file has one row only" };
             self.problems.file(Complaint::new(message, "at least two rows", ""));
         }
-    }
-
-    fn split<'t>(&mut self, line: Line<'t>, fields: &mut Vec<Field<'t>>) -> bool {
-        if let Err(start) = split(line.text, fields) {
-            let field = Field { text: &line.text[start..], start };
-            self.problems.value(line, field, "", || Complaint::new("this quote is not closed", "", ""));
-            return false;
-        }
-        let (found, wanted) = (fields.len(), self.header.columns.len());
-        if found != wanted {
-            self.problems.line(line, "", || {
-                let hint = if found > wanted { "are there decimal commas? write 12.5 and not 12,5" } else { "" };
-                let message = format!("this row has {found} {}", if found == 1 { "value" } else { "values" });
-                Complaint::new(message, format!("{wanted}, as the line of column names has"), hint)
-            });
-        }
-        found == wanted
     }
 
     fn add(&mut self, line: Line<'_>, fields: &[Field<'_>], mut row: Row) {

@@ -6,17 +6,18 @@ use super::problems::Complaint;
 
 /// A value of a line, without surrounding blanks and quotes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Field<'t> {
-    pub(super) text: &'t str,
+pub struct Field<'t> {
+    /// The value.
+    pub text: &'t str,
     /// Byte at which it begins in its line.
-    pub(super) start: usize,
+    pub start: usize,
 }
 
 /// The text of a file, without byte order mark.
 ///
 /// # Errors
 /// An empty or binary file, or one in another encoding than UTF-8.
-pub(super) fn decode(bytes: &[u8]) -> Result<&str, Complaint> {
+pub fn decode(bytes: &[u8]) -> Result<&str, Complaint> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         return Err(Complaint::new("the file is UTF-16 text", "UTF-8 text", "save it as CSV UTF-8"));
@@ -48,7 +49,7 @@ fn line_of(bytes: &[u8], at: usize) -> usize {
 ///
 /// # Errors
 /// The byte of a quote that is not closed, or after which something follows.
-pub(super) fn split<'t>(line: &'t str, fields: &mut Vec<Field<'t>>) -> Result<(), usize> {
+pub fn split<'t>(line: &'t str, fields: &mut Vec<Field<'t>>) -> Result<(), usize> {
     fields.clear();
     let mut at = 0;
     loop {

@@ -7,17 +7,27 @@ use crate::results::{Component, Row};
 
 mod axis;
 mod bars;
+pub mod chart;
 mod contour;
+mod curves;
 mod figure;
 mod iso;
 mod legend;
+mod lines;
+mod loss_map;
+mod loss_stack;
 mod losses;
 mod operating;
 mod panel;
+pub mod rig_transmission;
 mod style;
 mod traces;
 
 pub use bars::fuel_bars;
+pub use curves::{CurveFigure, CurvePanel, CurveSeries, curve_figure};
+pub use lines::{Line, LinePanel, LinePlot, line_plot};
+pub use loss_map::{MapFigure, map_figure};
+pub use loss_stack::{StackFigure, stack_figure};
 pub use losses::{LossBins, bin_losses, losses};
 pub use operating::operating_points;
 pub use traces::{driveline, pressure, temperatures};

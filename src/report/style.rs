@@ -58,16 +58,21 @@ const RAMP: [(f64, f64, f64); 7] = [
     (245.0, 230.0, 90.0),
 ];
 
+/// Colour of the ramp at a share of 0 to 1.
+pub(super) fn ramp(share: f64) -> String {
+    let place = share.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
+    let cell = (place.floor() as usize).min(RAMP.len() - 2);
+    let (a, b, t) = (RAMP[cell], RAMP[cell + 1], place - cell as f64);
+    let mix = |a: f64, b: f64| (a + (b - a) * t).round() as u8;
+    format!("#{:02x}{:02x}{:02x}", mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+}
+
 /// Defines the fill `index` of `count` under names that begin with `plot`; returns its paint.
 ///
 /// Lightness rises with the index; neighbours differ in their hatch too.
 pub(super) fn fill(figure: &mut Figure, plot: &str, index: usize, count: usize) -> String {
     let share = if count > 1 { index as f64 / (count - 1) as f64 } else { 0.4 };
-    let place = share.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
-    let cell = (place.floor() as usize).min(RAMP.len() - 2);
-    let (a, b, t) = (RAMP[cell], RAMP[cell + 1], place - cell as f64);
-    let mix = |a: f64, b: f64| (a + (b - a) * t).round() as u8;
-    let base = format!("#{:02x}{:02x}{:02x}", mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2));
+    let base = ramp(share);
     let ink = if share < 0.55 { "#ffffff" } else { "#000000" };
     let marks = match index % 5 {
         0 => return base,

@@ -101,15 +101,7 @@ impl OutputDir {
     }
 
     fn temporary(&self) -> io::Result<NamedTempFile> {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
-        // Temporary files are private by default; results are as readable as the user's umask says.
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        builder.tempfile_in(&self.path)
+        temporary_in(&self.path)
     }
 
     fn temporary_name(&self) -> io::Result<TempPath> {
@@ -214,6 +206,19 @@ impl Drop for Swap {
     }
 }
 
+/// A file under a temporary name in a directory.
+pub(super) fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
+    // Temporary files are private by default; results are as readable as the user's umask says.
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(directory)
+}
+
 /// Names in a directory, sorted, without what an interrupted run may have left half written.
 fn names_in(path: &Path) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
@@ -247,13 +252,13 @@ fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Prob
 }
 
 /// Makes the renames last through a power cut, where directories can be synced at all.
-fn sync_directory(path: &Path) {
+pub(super) fn sync_directory(path: &Path) {
     if let Ok(dir) = fs::File::open(path) {
         drop(dir.sync_all());
     }
 }
 
-fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
+pub(super) fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
     use io::ErrorKind::{NotADirectory, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
     let hint = match error.kind() {
         PermissionDenied | ReadOnlyFilesystem => "choose a directory in which you may write",
@@ -267,7 +272,7 @@ fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
     problem(path, &format!("{what}: {words}"), hint)
 }
 
-fn problem(path: &Path, message: &str, hint: &str) -> Problem {
+pub(super) fn problem(path: &Path, message: &str, hint: &str) -> Problem {
     Problem {
         place: Place { file: "--out".to_string(), ..Place::default() },
         key: "--out".to_string(),

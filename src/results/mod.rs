@@ -5,6 +5,7 @@ mod ledger;
 mod totals;
 pub mod columns;
 pub mod trace;
+pub mod file;
 pub mod files;
 pub mod summary;
 

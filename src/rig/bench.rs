@@ -16,7 +16,7 @@ use crate::setup::Setup;
 use crate::simulate::Car;
 use crate::transmission::Transmission;
 use crate::transmission::cvt::Cvt;
-use crate::transmission::cvt::variator::BeltState;
+use crate::transmission::cvt::variator::{BeltState, Formulation};
 use crate::transmission::manual::Manual;
 
 /// Which parts of a CVT are in the box.
@@ -125,13 +125,23 @@ impl BenchAnswer {
 #[derive(Clone, Debug)]
 pub struct Bench {
     car: Car,
+    printed: bool,
 }
 
 impl Bench {
     /// Puts a vehicle's transmission on the bench.
     #[must_use]
     pub fn new(setup: &Setup) -> Self {
-        Bench { car: setup.car(crate::vehicle::REFERENCE_K) }
+        Bench { car: setup.car(crate::vehicle::REFERENCE_K), printed: false }
+    }
+
+    /// The same with the belt as printed (PR-1 to PR-5) where the formulation is one of the thesis's two: whole active segments, no
+    /// blending, no bound of slip. Not defined at a ratio of exactly 1.
+    #[must_use]
+    pub fn as_printed(setup: &Setup) -> Self {
+        let bench = Bench::new(setup);
+        let printed = bench.cvt().is_some_and(|cvt| cvt.belt.formulation != Formulation::Smooth);
+        Bench { printed, ..bench }
     }
 
     /// The vehicle whose transmission is on the bench.
@@ -153,7 +163,7 @@ impl Bench {
     #[must_use]
     pub fn solve(&self, p: &BenchPoint) -> BenchAnswer {
         match &self.car.transmission {
-            Transmission::Cvt(cvt) => cvt_bench::solve(&self.car, cvt, p),
+            Transmission::Cvt(cvt) => cvt_bench::solve(&self.car, cvt, p, self.printed),
             Transmission::Manual(manual) => self.solve_manual(manual, p),
         }
     }

@@ -7,7 +7,8 @@ use crate::simulate::Car;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::cvt::controller::ClampSignals;
 use crate::transmission::cvt::spin::SpinNow;
-use crate::transmission::cvt::variator::{BeltAtRatio, BeltLoad, BeltState, belt_state, sliding_speed_m_s};
+use crate::transmission::cvt::variator::point::PointStatus;
+use crate::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, BeltState, Slip, belt_point, belt_state, sliding_speed_m_s};
 use crate::transmission::loss_map::{LossMap, MapPoint};
 
 /// Most passes of the fixed point; its contraction is below 0.2 in the shipped box, so far fewer are used.
@@ -42,6 +43,36 @@ impl Unknown {
     }
 }
 
+/// The belt in its printed form (PR-1 to PR-5) under the names of driving; slip and its losses are NaN where it has no active arc.
+fn printed_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
+    let segment_friction = belt.formulation.segment_friction(load.segment_friction);
+    let p = belt_point(belt, at, &BeltLoad { segment_friction, ..*load });
+    let sum = |pair: [f64; 2]| pair[0] + pair[1];
+    let [primary, secondary] = p.slip_m_s.map(|v| v / p.belt_speed_m_s);
+    BeltState {
+        input_torque_nm: p.input_torque_nm,
+        tension: p.tension,
+        slip: Slip {
+            primary,
+            secondary,
+            gap: p.gap_slip_m_s / p.belt_speed_m_s,
+            idle: p.idle_slip_m_s / p.belt_speed_m_s,
+            primary_loss_nm: p.slip_loss_nm[0],
+            secondary_loss_nm: p.slip_loss_nm[1],
+            active_segments: p.active_segments,
+            held: false,
+        },
+        slip_total: p.slip_total,
+        band_nm: sum(p.band_loss_nm),
+        film_nm: sum(p.film_loss_nm),
+        slip_nm: sum(p.slip_loss_nm),
+        wedge_nm: sum(p.wedge_loss_nm),
+        penetration_nm: sum(p.penetration_loss_nm),
+        capacity_nm: p.capacity_nm,
+        gross_slip: p.status != PointStatus::Ok,
+    }
+}
+
 /// What does not change during the fixed point.
 struct OnBench<'a> {
     car: &'a Car,
@@ -50,6 +81,7 @@ struct OnBench<'a> {
     at: BeltAtRatio,
     spin: SpinNow,
     eta_sump: f64,
+    printed: bool,
 }
 
 /// One pass with what the pass before left.
@@ -65,11 +97,12 @@ struct Pass {
 }
 
 /// Solves one operating point of a CVT.
-pub(super) fn solve(car: &Car, cvt: &Cvt, point: &BenchPoint) -> BenchAnswer {
+pub(super) fn solve(car: &Car, cvt: &Cvt, point: &BenchPoint, printed: bool) -> BenchAnswer {
     let this = OnBench {
         car,
         cvt,
         point,
+        printed,
         at: BeltAtRatio::new(&cvt.belt, point.ratio),
         spin: cvt.spin.at(car.oil.kinematic_m2_s(point.sump_k)),
         eta_sump: car.oil.dynamic_pa_s(point.sump_k),
@@ -133,11 +166,14 @@ impl OnBench<'_> {
     /// Belt losses, and the belt temperature that they keep up (RB-2).
     fn belt(&self, pass: &mut Pass, load: &BeltLoad, u: &Unknown) {
         let (cvt, p) = (self.cvt, self.point);
-        let state = belt_state(&cvt.belt, &self.at, load);
+        let mut tells = true;
+        let state = if self.printed { printed_state(&cvt.belt, &self.at, load) } else { belt_state(&cvt.belt, &self.at, load) };
         if let Some(loss) = self.mapped(cvt.maps.belt.as_ref(), load.output_torque_nm, u.pressure_pa, &mut pass.inside_maps) {
             pass.loss_nm[Component::BeltMap as usize] = loss;
         } else {
-            pass.next.slip = state.slip_total;
+            // Where a printed form has no meaning, it must not carry speeds and belt temperature away with it.
+            tells = !(self.printed && state.gross_slip);
+            pass.next.slip = if tells { state.slip_total } else { 0.0 };
             pass.loss_nm[Component::BeltBand as usize] = state.band_nm;
             pass.loss_nm[Component::BeltFilm as usize] = state.film_nm;
             pass.loss_nm[Component::BeltSlip as usize] = state.slip_nm;
@@ -147,7 +183,8 @@ impl OnBench<'_> {
         }
         if p.belt_k.is_none() {
             let belt_w = BELT_PARTS.iter().map(|c| pass.loss_nm[*c as usize]).sum::<f64>() * p.input_rad_s;
-            pass.next.belt_k = p.sump_k + self.car.belt_heat_share * belt_w / self.car.network.spray_now_w_k(p.input_rad_s); // RB-2
+            let rise_k = self.car.belt_heat_share * belt_w / self.car.network.spray_now_w_k(p.input_rad_s); // RB-2
+            pass.next.belt_k = p.sump_k + if tells { rise_k } else { 0.0 };
         }
     }
 

@@ -4,5 +4,11 @@
 
 mod bench;
 mod cvt_bench;
+mod limits;
+pub mod loss_table;
+pub mod losses;
+pub mod transmission;
+pub mod variator;
 
 pub use bench::{BELT_PARTS, Bench, BenchAnswer, BenchPoint, Parts};
+pub use limits::solvable_ratios;

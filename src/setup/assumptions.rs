@@ -21,7 +21,7 @@ const STATUSES: [(&str, &str); 4] = [
 pub fn book() -> String {
     let files = catalogue::files();
     let mut text = "# Book of assumptions\n\n\
-        Printed by `cvtcycle assumptions` from the vehicle files, the lubricant files and the heads of the model files; do not \
+        Printed by `cvtcycle assumptions` from the vehicle files, the lubricant files, the rig files and the heads of the model files; do not \
         edit it by hand.\n\n"
         .to_owned();
     // Writing into a String cannot fail.
@@ -51,7 +51,11 @@ fn counts(text: &mut String, files: &[File]) {
 
 fn of_file(text: &mut String, file: &File) {
     let title = file.keys.iter().find(|info| info.key.ends_with("title")).map_or("", |info| &info.value);
-    let kind = if file.kind == Kind::Vehicle { "Vehicle" } else { "Lubricant" };
+    let kind = match file.kind {
+        Kind::Vehicle => "Vehicle",
+        Kind::Lubricant => "Lubricant",
+        Kind::Rig => "Rig",
+    };
     let _ = writeln!(text, "\n## {kind} `{}`: {title}", file.name);
     for (status, _) in STATUSES {
         let keys: Vec<&KeyInfo> = file.keys.iter().filter(|info| info.status == status && !info.key.ends_with("title")).collect();

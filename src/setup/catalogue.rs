@@ -5,9 +5,10 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-use super::{Disk, Kind, embedded_lubricants, embedded_vehicles, parts};
+use super::{Disk, Kind, embedded_lubricants, embedded_rigs, embedded_vehicles, parts};
 use crate::config::{Document, KeyInfo, Reader};
 use crate::lubricant::{self, Lubricant};
+use crate::rig::transmission::Conditions;
 use crate::transmission::cvt::variator::Formulation;
 
 /// Prefix of the keys of the transmission oil, as in `--set lubricant.KEY=VALUE`.
@@ -20,7 +21,7 @@ pub const ENGINE_OIL: &str = "engine_oil.";
 pub struct File {
     /// Name without the ending.
     pub name: &'static str,
-    /// Vehicle or lubricant.
+    /// Vehicle, lubricant or rig.
     pub kind: Kind,
     /// Keys in the order of reading, without a prefix.
     pub keys: Vec<KeyInfo>,
@@ -34,15 +35,16 @@ impl File {
     }
 }
 
-/// All embedded files, vehicles first.
+/// All embedded files: vehicles, lubricants, rigs.
 #[must_use]
 pub fn files() -> Vec<File> {
     let vehicles = embedded_vehicles().iter().map(|(name, text)| (*name, *text, Kind::Vehicle));
     let lubricants = embedded_lubricants().iter().map(|(name, text)| (*name, *text, Kind::Lubricant));
-    vehicles.chain(lubricants).map(|(name, text, kind)| File { name, kind, keys: keys(name, text, kind, &[]) }).collect()
+    let rigs = embedded_rigs().iter().map(|(name, text)| (*name, *text, Kind::Rig));
+    vehicles.chain(lubricants).chain(rigs).map(|(name, text, kind)| File { name, kind, keys: keys(name, text, kind, &[]) }).collect()
 }
 
-/// Every key of any vehicle or lubricant, those of the transmission oil with [`OIL`]; without values.
+/// Every key of any vehicle, lubricant or rig, those of the transmission oil with [`OIL`]; without values.
 #[must_use]
 pub fn known_keys() -> Vec<KeyInfo> {
     let mut known: Vec<KeyInfo> = Vec::new();
@@ -91,6 +93,7 @@ fn keys(name: &str, text: &str, kind: Kind, sets: &[String]) -> Vec<KeyInfo> {
             drop(super::head(&root, name));
             drop(parts(&root, &Disk::default(), oil.clone(), oil, Formulation::default(), name.to_owned()));
         }
+        (Kind::Rig, _) => drop(Conditions::read(&reader.root())),
         (Kind::Vehicle, None) => {}
     }
     reader.known()
@@ -116,6 +119,7 @@ mod tests {
             "transmission.cvt.belt.band_offset_mm",
             "lubricant.kv40_mm2_s",
             "vehicle.transmission_oil",
+            "rig.pressure.second_box",
         ] {
             let info = keys.iter().find(|info| info.key == key);
             assert!(info.is_some_and(|info| !info.doc.is_empty()), "{key}");

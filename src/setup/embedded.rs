@@ -23,6 +23,12 @@ pub fn embedded_lubricants() -> &'static [(&'static str, &'static str)] {
     ]
 }
 
+/// Embedded conditions of the test rigs: name and TOML text.
+#[must_use]
+pub fn embedded_rigs() -> &'static [(&'static str, &'static str)] {
+    &[crate::rig::transmission::conditions::FILE]
+}
+
 /// Embedded measured maps by name.
 #[must_use]
 pub fn embedded_map(name: &str) -> Option<&'static str> {

@@ -34,6 +34,7 @@ const SOURCES: &[(&str, &str)] = &[
     source!("transmission/cvt/variator/bands.rs"),
     source!("transmission/cvt/variator/slip.rs"),
     source!("transmission/cvt/variator/deflection.rs"),
+    source!("transmission/cvt/variator/printed.rs"),
     source!("transmission/cvt/pump.rs"),
     source!("transmission/cvt/spin.rs"),
     source!("transmission/manual/mod.rs"),
@@ -44,6 +45,8 @@ const SOURCES: &[(&str, &str)] = &[
     source!("simulate.rs"),
     source!("results/ledger.rs"),
     source!("rig/bench.rs"),
+    source!("rig/transmission/transient.rs"),
+    source!("rig/transmission/strip_down.rs"),
 ];
 
 /// All equations.

@@ -8,7 +8,7 @@ mod embedded;
 pub mod equations;
 pub mod tables;
 
-pub use embedded::{embedded_lubricants, embedded_map, embedded_vehicles};
+pub use embedded::{embedded_lubricants, embedded_map, embedded_rigs, embedded_vehicles};
 
 use crate::config::{Bound, Document, KeyInfo, Place, Problem, Reader, decode, near};
 use crate::lubricant::{self, Lubricant};
@@ -101,6 +101,8 @@ pub enum Kind {
     Vehicle,
     /// A lubricant.
     Lubricant,
+    /// What a test rig is set to.
+    Rig,
 }
 
 impl Kind {
@@ -108,6 +110,7 @@ impl Kind {
         match self {
             Kind::Vehicle => embedded_vehicles(),
             Kind::Lubricant => embedded_lubricants(),
+            Kind::Rig => embedded_rigs(),
         }
     }
 
@@ -115,6 +118,7 @@ impl Kind {
         match self {
             Kind::Vehicle => "vehicle",
             Kind::Lubricant => "lubricant",
+            Kind::Rig => "rig",
         }
     }
 }

@@ -19,6 +19,12 @@ pub struct Written {
 }
 
 impl Written {
+    /// Gives all files of a directory their names.
+    pub fn commit(dir: OutputDir) -> Result<Self, Problem> {
+        let left_over = dir.left_over();
+        Ok(Written { paths: dir.commit()?, left_over })
+    }
+
     /// The files, one a line.
     pub fn text(&self) -> String {
         if self.paths.is_empty() {
@@ -61,8 +67,7 @@ pub fn write(mut dir: OutputDir, json: &str, summary: &Summary, cycle: &Cycle, d
         runs.push(plot);
     }
     put(&mut dir, "fuel_comparison.svg", &report::fuel_bars(&runs))?;
-    let left_over = dir.left_over();
-    Ok(Written { paths: dir.commit()?, left_over })
+    Written::commit(dir)
 }
 
 fn write_plots(dir: &mut OutputDir, run: &PlotRun) -> Result<(), Problem> {

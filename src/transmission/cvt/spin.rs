@@ -5,7 +5,7 @@
 //! | IS-1 | input shaft: T = c0 + c1 (nu/nu_80)^m n/1000 rpm | source: thesis 7.3, 5.5.5 in form; fitted to 1-2 Nm over 1000-4000 rpm |
 //! | CD-1 | reverse clutch: T = min(c (nu/nu_80)^m, cap) | source: thesis 7.6 in form; fitted to 5.5.3; cap: 5.5.3 "approximately 0.5 Nm" below 25 degC |
 //! | FD-1 | final drive at the secondary shaft: T = c exp(-n/n0) + c_v (nu/nu_80)^m | fitted to thesis 5.5.1; the fall with speed is measured and unexplained there |
-//! | FD-2 | mesh: \|T_sec - T_wheel/i - FD-1\| = (1 - eta) \|T\| in both directions of power | ASSUMED eta 0.98 for two helical meshes |
+//! | FD-2 | mesh: \|T_sec - T_wheel/i - FD-1\| = (1 - eta) \|T\| in both directions of power | ASSUMED eta, 0.98 to 0.985 for two helical meshes |
 //!
 //! nu_80 = 11 mm2/s is the viscosity at which the constants hold. Below 25 degC FD-1 is extrapolated: about 11 Nm at the input in
 //! overdrive at -10 degC, unmeasured.

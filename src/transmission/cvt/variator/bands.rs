@@ -6,6 +6,7 @@
 //! | BT-2 | normal force of interface i: Q (1 - (i-1)/n) | source: thesis 8.4.2 |
 //! | BT-3 | torque loss of a pulley, at the primary: f mu_b Q \|1/I - 1\|/2 (d + t (n-1)/2) | derived: closed sum of thesis eq. 48, 49 |
 //! | BT-4 | f = min wrap / own wrap (App. C) or 1 (eq. 49) | source: the two disagree, see Formulation |
+//! | BT-5 | travel on its neighbour in a belt revolution: d (L/2 (1/R_p + 1/R_s) - 2 pi) + x d L \|1/R_p - 1/R_s\|, t for d above band 1 | derived from thesis 8.3, App. C; x = 0 is the mean speed |
 //! | FI-1 | film shear, at the primary: share eta B (L_p + L_s) sum dv_i2 / (h w_in) | source: thesis eq. 52; share and h ASSUMED |
 //!
 //! Symbols: d offset of band 1 above the rocking edge m, t band thickness m, n bands, B width of both packs m, L contact arcs m, h film m.
@@ -39,6 +40,17 @@ pub fn film_m4(belt: &Belt, g: &Geometry) -> f64 {
     let spread = (1.0 / g.ratio - 1.0) / 2.0;
     let offsets = belt.band_offset_m * belt.band_offset_m + (belt.band_count - 1.0) * belt.band_thickness_m * belt.band_thickness_m;
     belt.band_width_m * arcs * spread * spread * offsets
+}
+
+/// Travel of the innermost band and of each other band on what lies below it, m per belt revolution (BT-5).
+///
+/// `speed_share` is the adopted band speed: its distance from the mean of the two required speeds over their difference, 0 for the
+/// mean, 0.5 for what the smaller pulley requires, -0.5 for the larger one's (thesis 8.3: within a few per cent of the mean).
+#[must_use]
+pub fn travel_m(belt: &Belt, g: &Geometry, speed_share: f64) -> [f64; 2] {
+    let (p, s) = (1.0 / g.primary_radius_m, 1.0 / g.secondary_radius_m);
+    let turns = belt.length_m / 2.0 * (p + s) - 2.0 * std::f64::consts::PI + speed_share * belt.length_m * (p - s).abs();
+    [belt.band_offset_m * turns, belt.band_thickness_m * turns] // BT-5
 }
 
 /// Sliding speed of the innermost band in each arc, m/s (BT-1).

@@ -41,7 +41,7 @@ pub fn deflection(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_flank: f64) -> 
     let delta_s = g.secondary_radius_m * t.secondary_clamp_n * belt.secondary_compliance_per_n; // WE-1
     let n_p = t.primary_clamp_n * prepared.normal_per_clamp[0];
     let n_s = t.secondary_clamp_n * prepared.normal_per_clamp[1];
-    let half_cot = 0.5 / f.wedge_tan(belt.tan_wedge);
+    let half_cot = prepared.wedge_half_cot;
     let per_pitch = mu_flank / belt.segment_thickness_m;
     let common = 0.5 * f.wedge_arcs() * per_pitch;
     let wedge_s_force = if f.own_wedge_force() { n_s } else { n_p };

@@ -60,6 +60,14 @@ impl Geometry {
         }
     }
 
+    /// Whether a belt of this length runs so: GE-3 holds, and each pulley carries at least one segment.
+    #[must_use]
+    pub fn is_real(&self, belt_length_m: f64, segment_thickness_m: f64) -> bool {
+        let arcs = [self.primary_radius_m * self.primary_wrap_rad, self.secondary_radius_m * self.secondary_wrap_rad];
+        let left = arcs[0] + arcs[1] + 2.0 * self.strut_m - belt_length_m; // GE-3
+        arcs.iter().all(|arc| *arc >= segment_thickness_m) && left.abs() <= 1e-9 * belt_length_m
+    }
+
     /// Change of the secondary radius with the logarithm of the ratio, m (derived from GE-3 at constant length).
     #[must_use]
     pub fn secondary_radius_slope_m(&self) -> f64 {

@@ -14,10 +14,14 @@ mod formulation;
 mod geometry;
 mod slip;
 mod tension;
+mod printed;
+pub mod point;
 
-pub use bands::{Film, sliding_speed_m_s};
+pub use bands::{BandLoss, Film, sliding_speed_m_s};
+pub use deflection::Deflection;
 pub use formulation::Formulation;
 pub use geometry::Geometry;
+pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::{Tension, TensionInput};
 
@@ -116,6 +120,8 @@ pub struct Prepared {
     pub film_m4: f64,
     /// Share of the primary's deflection left by its end stop (WE-4).
     pub stop: f64,
+    /// Half the cotangent of the angle in the wedge terms (WE-2).
+    pub wedge_half_cot: f64,
 }
 
 impl Prepared {
@@ -133,6 +139,7 @@ impl Prepared {
             slide_m: bands::slide_m(belt, g),
             film_m4: bands::film_m4(belt, g),
             stop: belt.formulation.primary_stop(1.0 - ramp(g.ratio, belt.stop_from_ratio, belt.stop_to_ratio)), // WE-4
+            wedge_half_cot: 0.5 / belt.formulation.wedge_tan(belt.tan_wedge),
         }
     }
 }
@@ -212,33 +219,59 @@ impl BeltState {
     }
 }
 
-/// Solves the belt at one operating point.
-#[must_use]
+/// Tension at one operating point for a direction of its step (TE-2 to TE-5).
 #[inline]
-pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
-    let g = &at.geometry;
-    let f = belt.formulation;
-    let v = load.primary_speed_rad_s * g.primary_radius_m;
-    let tension = Tension::new(
-        g,
+fn tension(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, direction: f64) -> Tension {
+    let v = load.primary_speed_rad_s * at.geometry.primary_radius_m;
+    Tension::new(
+        &at.geometry,
         &TensionInput {
             primary_clamp_n: load.secondary_clamp_n * at.thrust_ratio,
             secondary_clamp_n: load.secondary_clamp_n,
             output_torque_nm: load.output_torque_nm,
             mu_band: load.band.mu,
             centrifugal_n: belt.mass_kg_m * v * v,
-            direction: at.direction,
+            direction,
             tan_wedge: belt.tan_wedge,
         },
-    );
-    let mu_segment = f.segment_friction(load.segment_friction);
-    let slip = slip::slip(belt, at, &tension, mu_segment);
-    let bands = bands::band_loss(at, &tension, load.band.mu);
+    )
+}
+
+/// Torque capacity at the secondary, Nm (VA-2).
+#[inline]
+fn capacity_nm(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> f64 {
+    let weaker = if t.primary_clamp_n < t.secondary_clamp_n { t.primary_clamp_n } else { t.secondary_clamp_n };
+    2.0 * mu_segment * at.geometry.secondary_radius_m * weaker / belt.cos_wedge // VA-2
+}
+
+/// Everything that the equations give at one operating point, pulley by pulley.
+struct Parts {
+    tension: Tension,
+    slip: Slip,
+    bands: BandLoss,
+    film_nm: f64,
+    deflection: Deflection,
+    capacity_nm: f64,
+}
+
+#[inline]
+fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
+    let tension = tension(belt, at, load, at.direction);
+    let mu_segment = belt.formulation.segment_friction(load.segment_friction);
     let film = Film { share: load.band.film_share, eta_pa_s: load.eta_pa_s, thickness_m: load.film_thickness_m };
-    let film_nm = bands::film_loss_nm(at, &film, load.primary_speed_rad_s);
-    let deflection = deflection::deflection(belt, at, &tension, load.flank_friction);
-    let weaker = if tension.primary_clamp_n < tension.secondary_clamp_n { tension.primary_clamp_n } else { tension.secondary_clamp_n };
-    let capacity_nm = 2.0 * mu_segment * g.secondary_radius_m * weaker / belt.cos_wedge; // VA-2
+    Parts {
+        slip: slip::slip(belt, at, &tension, mu_segment),
+        bands: bands::band_loss(at, &tension, load.band.mu),
+        film_nm: bands::film_loss_nm(at, &film, load.primary_speed_rad_s),
+        deflection: deflection::deflection(belt, at, &tension, load.flank_friction),
+        capacity_nm: capacity_nm(belt, at, &tension, mu_segment),
+        tension,
+    }
+}
+
+#[inline]
+fn state(at: &BeltAtRatio, load: &BeltLoad, parts: &Parts) -> BeltState {
+    let Parts { tension, slip, bands, film_nm, deflection, capacity_nm } = *parts;
     let band_nm = bands.primary_nm + bands.secondary_nm;
     let slip_nm = slip.primary_loss_nm + slip.secondary_loss_nm;
     let wedge_nm = deflection.wedge_primary_nm + deflection.wedge_secondary_nm;
@@ -246,7 +279,7 @@ pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
     let slip_total = slip.primary + slip.secondary;
     let losses = band_nm + film_nm + slip_nm + wedge_nm + penetration_nm;
     BeltState {
-        input_torque_nm: load.output_torque_nm / g.ratio * (1.0 - slip_total) + losses, // VA-1
+        input_torque_nm: load.output_torque_nm / at.geometry.ratio * (1.0 - slip_total) + losses, // VA-1
         tension,
         slip,
         slip_total,
@@ -258,6 +291,13 @@ pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
         capacity_nm,
         gross_slip: slip.held || load.output_torque_nm.abs() > capacity_nm,
     }
+}
+
+/// Solves the belt at one operating point.
+#[must_use]
+#[inline]
+pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
+    state(at, load, &parts(belt, at, load))
 }
 
 #[cfg(test)]

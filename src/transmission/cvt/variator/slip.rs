@@ -25,6 +25,10 @@ pub struct Slip {
     pub primary: f64,
     /// Slip at the secondary over belt speed.
     pub secondary: f64,
+    /// Part of the loading pulley's slip that closes the gaps, over belt speed.
+    pub gap: f64,
+    /// Part of the loading pulley's slip that the band friction on its idle arc adds, over belt speed.
+    pub idle: f64,
     /// Torque loss at the primary, referred to the primary shaft, Nm.
     pub primary_loss_nm: f64,
     /// Torque loss at the secondary, referred to the primary shaft, Nm.
@@ -44,26 +48,55 @@ const NO_GRIP_N: f64 = 1e-6;
 /// Blend beyond which one branch alone counts: the other's weight is below 2e-8.
 const ALONE: f64 = 9.0;
 
+/// Compression at which the fitted contact area is largest, N (SL-3).
+pub(super) const LARGEST_AREA_N: f64 = 4492.0;
+
+/// Contact area between segments in an arc as printed, m2: falls again above [`LARGEST_AREA_N`] (SL-3 without holding).
+#[inline]
+pub(super) fn printed_area_m2(compression_n: f64) -> f64 {
+    let c = compression_n.abs();
+    1.74142e-6 + 1.56364e-9 * c - 1.74032e-13 * c * c // SL-3
+}
+
 /// Contact area between segments in an arc, m2 (SL-3).
 #[inline]
 fn arc_area_m2(compression_n: f64) -> f64 {
     let c = compression_n.abs();
-    let c = if c < 4492.0 { c } else { 4492.0 };
-    1.74142e-6 + 1.56364e-9 * c - 1.74032e-13 * c * c // SL-3
+    printed_area_m2(if c < LARGEST_AREA_N { c } else { LARGEST_AREA_N })
 }
 
 /// What the slip equations of both branches look at; pairs are primary, secondary.
 #[derive(Clone, Copy)]
-struct Contact<'a> {
-    belt: &'a Belt,
-    at: &'a BeltAtRatio,
+pub(super) struct Contact<'a> {
+    pub belt: &'a Belt,
+    pub at: &'a BeltAtRatio,
     /// Extension of the band pack and initial gap, m.
-    slack_m: f64,
+    pub slack_m: f64,
     /// Normal force on a segment times friction, N.
-    grip_n: [f64; 2],
+    pub grip_n: [f64; 2],
     /// Band friction on the shoulder of a segment, with the sign of dT, N.
-    shoulder_n: [f64; 2],
-    compression_n: f64,
+    pub shoulder_n: [f64; 2],
+    /// C_x as the formulation has the slip equations take it, N.
+    pub compression_n: f64,
+}
+
+impl<'a> Contact<'a> {
+    #[inline]
+    pub fn new(belt: &'a Belt, at: &'a BeltAtRatio, t: &Tension, mu_segment: f64) -> Self {
+        let prepared = &at.prepared;
+        let grip = |clamp_n: f64, pulley: usize| {
+            let n = mu_segment * clamp_n * prepared.normal_per_clamp[pulley];
+            if n > NO_GRIP_N { n } else { NO_GRIP_N }
+        };
+        Contact {
+            belt,
+            at,
+            slack_m: t.primary_shoulder_n * prepared.band_gap_m_n + belt.initial_gap_m, // SL-1
+            grip_n: [grip(t.primary_clamp_n, 0), grip(t.secondary_clamp_n, 1)],
+            shoulder_n: [t.step_n * prepared.shoulder_per_step[0], t.step_n * prepared.shoulder_per_step[1]],
+            compression_n: belt.formulation.compression_n(t.compression_n),
+        }
+    }
 }
 
 /// One loading branch: `load` is the pulley where segments are loaded (0 primary, 1 secondary).
@@ -91,7 +124,9 @@ fn branch(c: &Contact, load: usize) -> Slip {
     let idle_slip = gap * if inverted || f.signed_idle_slip() { lambda_idle } else { lambda_idle.abs() }; // SL-6
     let free = gap + idle_slip;
     let held = free > belt.slip_bound;
-    let (loaded, idle_slip) = if held { (belt.slip_bound, idle_slip * (belt.slip_bound / free)) } else { (free, idle_slip) }; // SL-9
+    let share = if held { belt.slip_bound / free } else { 1.0 };
+    let (gap, idle_slip) = (gap * share, idle_slip * share); // SL-9
+    let loaded = if held { belt.slip_bound } else { free };
     let r = c.at.geometry.primary_radius_m;
     let total_other = cx + sign * c.shoulder_n[other] * prepared.count[other];
     let lambda_other = total_other / (c.grip_n[other] * prepared.count[other]);
@@ -101,11 +136,22 @@ fn branch(c: &Contact, load: usize) -> Slip {
     let loss_other = r * slip_other.abs() * total_other.abs(); // SL-7
     if inverted {
         let primary = if f.flips_inverted_primary() { slip_other } else { -slip_other }; // SL-6
-        Slip { primary, secondary: -loaded, primary_loss_nm: loss_other, secondary_loss_nm: loss_load, active_segments: k, held }
+        Slip {
+            primary,
+            secondary: -loaded,
+            gap,
+            idle: idle_slip,
+            primary_loss_nm: loss_other,
+            secondary_loss_nm: loss_load,
+            active_segments: k,
+            held,
+        }
     } else {
         Slip {
             primary: loaded,
             secondary: slip_other.abs(),
+            gap,
+            idle: idle_slip,
             primary_loss_nm: loss_load,
             secondary_loss_nm: loss_other,
             active_segments: k,
@@ -129,21 +175,8 @@ fn clamp_abs(x: f64, bound: f64) -> f64 {
 #[must_use]
 #[inline]
 pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip {
-    let prepared = &at.prepared;
-    let compression_n = belt.formulation.compression_n(t.compression_n);
-    let grip = |clamp_n: f64, pulley: usize| {
-        let n = mu_segment * clamp_n * prepared.normal_per_clamp[pulley];
-        if n > NO_GRIP_N { n } else { NO_GRIP_N }
-    };
-    let contact = Contact {
-        belt,
-        at,
-        slack_m: t.primary_shoulder_n * prepared.band_gap_m_n + belt.initial_gap_m, // SL-1
-        grip_n: [grip(t.primary_clamp_n, 0), grip(t.secondary_clamp_n, 1)],
-        shoulder_n: [t.step_n * prepared.shoulder_per_step[0], t.step_n * prepared.shoulder_per_step[1]],
-        compression_n,
-    };
-    let x = compression_n / belt.blend_n;
+    let contact = Contact::new(belt, at, t, mu_segment);
+    let x = contact.compression_n / belt.blend_n;
     if x > ALONE {
         return branch(&contact, 0);
     }
@@ -157,6 +190,8 @@ pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip
     Slip {
         primary: mix(a.primary, b.primary),
         secondary: mix(a.secondary, b.secondary),
+        gap: mix(a.gap, b.gap),
+        idle: mix(a.idle, b.idle),
         primary_loss_nm: mix(a.primary_loss_nm, b.primary_loss_nm),
         secondary_loss_nm: mix(a.secondary_loss_nm, b.secondary_loss_nm),
         active_segments: if x >= 0.0 { a.active_segments } else { b.active_segments },

@@ -1,0 +1,92 @@
+//! The cars and fluids that the figures show.
+
+use cvtcycle::config::render;
+use cvtcycle::lubricant::{BandFriction, Lubricant, ZERO_DEGC_K};
+use cvtcycle::setup::{Options, Setup, load};
+use cvtcycle::transmission::Transmission;
+use cvtcycle::transmission::cvt::Cvt;
+use cvtcycle::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state};
+use cvtcycle::transmission::manual::Manual;
+
+/// rad/s in one rpm.
+pub const RPM: f64 = std::f64::consts::PI / 30.0;
+/// Low and high ratio of the thesis's rig.
+pub const LOW: f64 = 2.4169;
+pub const HIGH: f64 = 0.5;
+
+/// The reference cars.
+pub struct Reference {
+    pub cvt_car: Setup,
+    pub manual_car: Setup,
+}
+
+fn car(name: &str) -> Result<Setup, String> {
+    load(name, "--vehicle", &Options::default()).map_err(|problems| render(&problems, false))
+}
+
+/// State of the belt in a figure.
+#[derive(Clone, Copy)]
+pub struct At {
+    pub ratio: f64,
+    pub rpm: f64,
+    pub output_nm: f64,
+    pub bar: f64,
+}
+
+impl Reference {
+    /// Reads the cars.
+    pub fn load() -> Result<Self, String> {
+        Ok(Reference { cvt_car: car("rover_216_cvt")?, manual_car: car("rover_216_5mt")? })
+    }
+
+    /// The CVT of the reference car.
+    pub fn cvt(&self) -> &Cvt {
+        match self.cvt_car.transmission() {
+            Transmission::Cvt(cvt) => cvt,
+            Transmission::Manual(_) => unreachable!("the car has a CVT"),
+        }
+    }
+
+    /// The manual box of its sister.
+    pub fn manual(&self) -> &Manual {
+        match self.manual_car.transmission() {
+            Transmission::Manual(manual) => manual,
+            Transmission::Cvt(_) => unreachable!("the car has a manual box"),
+        }
+    }
+
+    /// Transmission oil of the reference car.
+    pub fn oil(&self) -> &Lubricant {
+        self.cvt_car.oils().0
+    }
+
+    /// The belt in a reading of the thesis.
+    pub fn belt(&self, formulation: Formulation) -> Belt {
+        Belt { formulation, ..self.cvt().belt.clone() }
+    }
+
+    /// The belt with boundary friction on the bands (no film), at 85 degC.
+    pub fn boundary(&self, belt: &Belt, at: At) -> BeltState {
+        self.with_friction(belt, at, BandFriction { mu: self.oil().friction.band, film_share: 0.0 }, 85.0)
+    }
+
+    /// The belt with a band friction and temperature.
+    pub fn with_friction(&self, belt: &Belt, at: At, band: BandFriction, belt_degc: f64) -> BeltState {
+        let friction = &self.oil().friction;
+        let cvt = self.cvt();
+        belt_state(
+            belt,
+            &BeltAtRatio::new(belt, at.ratio),
+            &BeltLoad {
+                primary_speed_rad_s: at.rpm * RPM,
+                output_torque_nm: at.output_nm,
+                secondary_clamp_n: cvt.secondary_clamp_n(at.bar * 1e5, at.rpm * RPM / at.ratio),
+                band,
+                eta_pa_s: self.oil().dynamic_pa_s(belt_degc + ZERO_DEGC_K),
+                film_thickness_m: friction.film_thickness_m,
+                segment_friction: friction.segment,
+                flank_friction: friction.flank,
+            },
+        )
+    }
+}

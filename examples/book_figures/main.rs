@@ -1,0 +1,33 @@
+//! Writes the figures and the generated tables of the book: `cargo run --release --example book_figures`.
+//!
+//! They are committed; `tests/book.rs` holds them against what the models give now.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example is a program")]
+
+mod content;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/book/src");
+    let files = match content::files(&folder) {
+        Ok(files) => files,
+        Err(why) => {
+            eprintln!("{why}");
+            return ExitCode::FAILURE;
+        }
+    };
+    for (name, text) in files {
+        let path = folder.join(&name);
+        let old = std::fs::read_to_string(&path).unwrap_or_default();
+        if old == text {
+            continue;
+        }
+        if let Err(why) = std::fs::write(&path, text) {
+            eprintln!("{}: {why}", path.display());
+            return ExitCode::FAILURE;
+        }
+        println!("{name}");
+    }
+    ExitCode::SUCCESS
+}

@@ -1,0 +1,33 @@
+//! Every printed number of the thesis, and of the user's own files, against this program.
+//!
+//! Rows are data: `validation/*.toml`, described in `docs/validation_format.md`. A file has named tolerances and sources at its head and
+//! then its rows; a row says what is printed, how it is computed (an expression over sources) and which verdict is recorded. The verdict
+//! follows from one rule ([`rule`]) for all rows; no row has code of its own.
+//!
+//! | file | what stands there |
+//! |---|---|
+//! | `expr` | the expressions: words, parsing, computing |
+//! | `source` | sources as read; `tables` turns them into tables of numbers |
+//! | `row` | files and rows as read |
+//! | `judge` | sources computed once, rows judged |
+//! | `rule` | computed against printed: the verdict |
+//! | `report`, `html` | JSON, CSV, Markdown, the HTML page |
+
+mod embedded;
+mod expr;
+mod html;
+mod judge;
+mod names;
+mod report;
+mod row;
+mod rule;
+mod source;
+mod tables;
+
+pub use embedded::{COMMON, embedded_rows};
+pub use expr::Computed;
+pub use html::{chapter_title, page};
+pub use judge::{Judged, Report, Subject, judge};
+pub use report::{Json, computed_text, csv, json, markdown, notes_line, unit_text};
+pub use row::{Cause, File, MECHANISMS, Row, Tolerance, read};
+pub use rule::{Printed, Verdict};

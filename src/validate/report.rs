@@ -1,0 +1,330 @@
+//! A report as JSON, CSV and Markdown.
+
+use serde::Serialize;
+
+use super::expr::{Computed, short};
+use super::judge::{Judged, Report};
+use super::rule::{Printed, Verdict};
+
+/// Version of the JSON object; a new number when a name goes or changes its meaning.
+const SCHEMA: u32 = 1;
+
+/// A report as one JSON object.
+#[derive(Clone, Debug, Serialize)]
+pub struct Json {
+    schema: u32,
+    program: &'static str,
+    vehicle: String,
+    set: Vec<String>,
+    counts: Counts,
+    moved: Vec<String>,
+    rows: Vec<JsonRow>,
+}
+
+/// Rows by verdict.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Counts {
+    /// Computed as printed.
+    pub agrees: usize,
+    /// As printed because a parameter was fitted to it.
+    pub fit: usize,
+    /// Otherwise.
+    pub differs: usize,
+    /// Not computed.
+    pub not_comparable: usize,
+}
+
+impl Counts {
+    /// Counts of some rows.
+    pub fn of<'a>(rows: impl Iterator<Item = &'a Judged> + Clone) -> Self {
+        let count = |verdict: Verdict| rows.clone().filter(|row| row.verdict == verdict).count();
+        Counts {
+            agrees: count(Verdict::Agrees),
+            fit: count(Verdict::Fit),
+            differs: count(Verdict::Differs),
+            not_comparable: count(Verdict::NotComparable),
+        }
+    }
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct JsonRow {
+    id: String,
+    file: String,
+    chapter: String,
+    mechanism: String,
+    kind: String,
+    what: String,
+    condition: String,
+    printed: String,
+    unit: String,
+    printed_low: Option<f64>,
+    printed_high: Option<f64>,
+    tolerance: Option<String>,
+    tolerance_below: Option<f64>,
+    tolerance_above: Option<f64>,
+    computed_low: Option<f64>,
+    computed_high: Option<f64>,
+    holds: Option<bool>,
+    computed: String,
+    verdict: &'static str,
+    recorded: Option<&'static str>,
+    moved: bool,
+    fitted_to: Vec<String>,
+    reason: String,
+    cause: Option<String>,
+    cause_low: Option<f64>,
+    cause_high: Option<f64>,
+    cause_unit: Option<String>,
+    remark: String,
+    compute: String,
+    gross_slip_left_out: usize,
+}
+
+/// A report as one JSON object.
+#[must_use]
+pub fn json(report: &Report) -> Json {
+    Json {
+        schema: SCHEMA,
+        program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")),
+        vehicle: report.subject.vehicle.clone(),
+        set: report.subject.set.clone(),
+        counts: Counts::of(report.rows.iter()),
+        moved: report.moved().map(|row| row.row.id.clone()).collect(),
+        rows: report.rows.iter().map(json_row).collect(),
+    }
+}
+
+fn json_row(judged: &Judged) -> JsonRow {
+    let row = &judged.row;
+    let (low, high) = judged.computed.as_ref().map_or((None, None), ends);
+    let (printed_low, printed_high) = match row.printed {
+        Some(Printed::Range(low, high)) => (finite(low), finite(high)),
+        _ => (None, None),
+    };
+    let (cause_low, cause_high) = judged.cause.as_ref().map_or((None, None), ends);
+    let has_tolerance = !row.tolerance.is_empty();
+    JsonRow {
+        id: row.id.clone(),
+        file: judged.file.clone(),
+        chapter: row.chapter.clone(),
+        mechanism: row.mechanism.clone(),
+        kind: row.kind.clone(),
+        what: row.what.clone(),
+        condition: row.condition.clone(),
+        printed: row.printed_text.clone(),
+        unit: row.unit.clone(),
+        printed_low,
+        printed_high,
+        tolerance: has_tolerance.then(|| row.tolerance.clone()),
+        tolerance_below: has_tolerance.then_some(row.tolerance_widths[0]),
+        tolerance_above: has_tolerance.then_some(row.tolerance_widths[1]),
+        computed_low: low,
+        computed_high: high,
+        holds: match judged.computed {
+            Some(Computed::Truth(holds, _)) => Some(holds),
+            _ => None,
+        },
+        computed: computed_text(judged),
+        verdict: judged.verdict.word(),
+        recorded: row.recorded.map(Verdict::word),
+        moved: judged.moved,
+        fitted_to: row.fitted_to.clone(),
+        reason: row.reason.clone(),
+        cause: row.cause.as_ref().map(|cause| cause.what.clone()),
+        cause_low,
+        cause_high,
+        cause_unit: row.cause.as_ref().map(|cause| cause.unit.clone()),
+        remark: row.remark.clone(),
+        compute: row.compute_text.clone(),
+        gross_slip_left_out: judged.left_out,
+    }
+}
+
+fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
+}
+
+fn ends(computed: &Computed) -> (Option<f64>, Option<f64>) {
+    match computed {
+        Computed::Number(x) => (Some(*x), Some(*x)),
+        Computed::Range(low, high) => (Some(*low), Some(*high)),
+        Computed::Truth(..) => (None, None),
+    }
+}
+
+/// A computed result for people, without its unit.
+#[must_use]
+pub fn text_of(computed: &Computed) -> String {
+    match computed {
+        Computed::Number(x) => short(*x),
+        Computed::Range(low, high) => format!("{} to {}", short(*low), short(*high)),
+        Computed::Truth(holds, behind) => format!("{}: {behind}", if *holds { "yes" } else { "no" }),
+    }
+}
+
+/// The computed result of a row for people; empty where there is none.
+#[must_use]
+pub fn computed_text(judged: &Judged) -> String {
+    judged.computed.as_ref().map(text_of).unwrap_or_default()
+}
+
+/// Number, unit and name of the cause; empty where there is none.
+#[must_use]
+pub fn cause_text(judged: &Judged) -> String {
+    let Some((cause, computed)) = judged.row.cause.as_ref().zip(judged.cause.as_ref()) else {
+        return String::new();
+    };
+    let unit = if cause.unit == "-" { String::new() } else { format!(" {}", cause.unit) };
+    format!("Cause: {} = {}{unit}", cause.what, text_of(computed))
+}
+
+/// Reason, cause, fitted parameters and remark of a row as sentences.
+#[must_use]
+pub fn notes(judged: &Judged) -> Vec<String> {
+    let row = &judged.row;
+    let mut notes = Vec::new();
+    if matches!(judged.verdict, Verdict::Differs | Verdict::NotComparable) {
+        notes.extend([row.reason.clone(), cause_text(judged)]);
+    }
+    if !row.fitted_to.is_empty() {
+        notes.push(format!("fitted to it: {}", row.fitted_to.join(", ")));
+    }
+    notes.push(row.remark.clone());
+    if judged.left_out > 0 {
+        notes.push(format!("{} points at gross slip left out", judged.left_out));
+    }
+    if judged.moved {
+        notes.push(format!("recorded: {}", row.recorded.map_or("", Verdict::word)));
+    }
+    notes.retain(|note| !note.trim().is_empty());
+    notes
+}
+
+/// Notes in one line.
+#[must_use]
+pub fn notes_line(judged: &Judged) -> String {
+    let mut line = String::new();
+    for note in notes(judged) {
+        if !line.is_empty() {
+            line.push_str(if line.ends_with('.') { " " } else { "; " });
+        }
+        line.push_str(&note);
+    }
+    line
+}
+
+/// Unit for people; nothing for plain numbers.
+#[must_use]
+pub fn unit_text(unit: &str) -> &str {
+    if unit == "-" { "" } else { unit }
+}
+
+const HEADER: [&str; 22] = [
+    "id",
+    "chapter",
+    "mechanism",
+    "kind",
+    "what",
+    "condition",
+    "printed",
+    "unit",
+    "printed_low",
+    "printed_high",
+    "tolerance",
+    "tolerance_below",
+    "tolerance_above",
+    "computed_low",
+    "computed_high",
+    "computed",
+    "verdict",
+    "recorded",
+    "fitted_to",
+    "reason",
+    "cause",
+    "remark",
+];
+
+/// A report as CSV, a line a row.
+#[must_use]
+pub fn csv(report: &Report) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let number = |x: Option<f64>| x.map(|x| x.to_string()).unwrap_or_default();
+    // Writing into memory cannot fail.
+    let _ = writer.write_record(HEADER);
+    for judged in &report.rows {
+        let row = json_row(judged);
+        let _ = writer.write_record([
+            row.id,
+            row.chapter,
+            row.mechanism,
+            row.kind,
+            row.what,
+            row.condition,
+            row.printed,
+            row.unit,
+            number(row.printed_low),
+            number(row.printed_high),
+            row.tolerance.unwrap_or_default(),
+            number(row.tolerance_below),
+            number(row.tolerance_above),
+            number(row.computed_low),
+            number(row.computed_high),
+            row.computed,
+            row.verdict.to_owned(),
+            row.recorded.unwrap_or_default().to_owned(),
+            row.fitted_to.join(" "),
+            row.reason,
+            cause_text(judged),
+            row.remark,
+        ]);
+    }
+    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+}
+
+/// A report as a Markdown table, without headings, for inclusion in a page.
+#[must_use]
+pub fn markdown(report: &Report) -> String {
+    if report.rows.is_empty() {
+        return "No rows.\n".to_owned();
+    }
+    let mut text = "| row | what | printed | computed | verdict |\n|---|---|---|---|---|\n".to_owned();
+    for judged in &report.rows {
+        let row = &judged.row;
+        let what = [row.what.as_str(), row.condition.as_str()].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
+        let unit = unit_text(&row.unit);
+        let computed = computed_text(judged);
+        let with_unit = |text: &str| if text.is_empty() || unit.is_empty() { text.to_owned() } else { format!("{text} {unit}") };
+        let computed = if matches!(judged.computed, Some(Computed::Truth(..))) { computed } else { with_unit(&computed) };
+        let cells = [&row.id, &what, &row.printed_text, &computed, judged.verdict.word()].map(cell);
+        text += &format!("| {} |\n", cells.join(" | "));
+    }
+    let with_notes: Vec<(&str, String)> =
+        report.rows.iter().map(|judged| (judged.row.id.as_str(), notes_line(judged))).filter(|(_, notes)| !notes.is_empty()).collect();
+    if !with_notes.is_empty() {
+        text.push('\n');
+        for (id, notes) in with_notes {
+            text += &format!("- **{}**: {}\n", cell(id), cell(&notes));
+        }
+    }
+    text
+}
+
+/// Text in a Markdown table: nothing that ends the cell or begins markup.
+fn cell(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '\n' | '\r' => out.push(' '),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '&' => out.push_str("&amp;"),
+            '|' | '*' | '_' | '`' | '[' | ']' | '\\' | '$' => {
+                out.push('\\');
+                out.push(c);
+            }
+            _ => out.push(c),
+        }
+    }
+    out
+}

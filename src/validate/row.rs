@@ -1,0 +1,379 @@
+//! Files of rows as read: tolerances and sources at the head, then `[[row]]` by `[[row]]`.
+
+use super::expr::{Expr, Fault, Gives, parse};
+use super::names::FileNames;
+use super::rule::{Printed, Verdict};
+use super::source::{self, Source};
+use crate::config::{Bound, Document, Place, Problem, Reader, Section, near};
+use crate::setup::catalogue;
+
+/// A named tolerance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Name.
+    pub name: String,
+    /// Width in the unit of the row.
+    pub absolute: f64,
+    /// Width as a share of the printed number, of each end of a range for itself.
+    pub relative: f64,
+    /// Unit of `absolute`; `-` for any.
+    pub unit: String,
+    /// Where the width comes from.
+    pub source: String,
+}
+
+/// A computed number that supports the reason of a row that differs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cause {
+    /// What it is.
+    pub what: String,
+    /// Its unit.
+    pub unit: String,
+    /// How it is computed.
+    pub compute: Expr,
+}
+
+/// One row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Identifier, such as `5.18a`.
+    pub id: String,
+    /// Where it stands.
+    pub place: Place,
+    /// Chapter.
+    pub chapter: String,
+    /// Page of the book.
+    pub mechanism: String,
+    /// What is compared.
+    pub what: String,
+    /// At which condition.
+    pub condition: String,
+    /// The printed text.
+    pub printed_text: String,
+    /// Unit of printed and computed numbers.
+    pub unit: String,
+    /// Kind of the statement: N number, O order or sign, C constant, L quoted from others, X record only.
+    pub kind: String,
+    /// Printed in numbers; none for what cannot be compared.
+    pub printed: Option<Printed>,
+    /// Name of the tolerance; empty for orders and signs.
+    pub tolerance: String,
+    /// Its widths below the lower and above the upper printed number, in the unit of the row.
+    pub tolerance_widths: [f64; 2],
+    /// Parameters that were fitted to this number.
+    pub fitted_to: Vec<String>,
+    /// Recorded verdict.
+    pub recorded: Option<Verdict>,
+    /// Why it differs or cannot be compared.
+    pub reason: String,
+    /// What else a reader should know.
+    pub remark: String,
+    /// Number behind the reason.
+    pub cause: Option<Cause>,
+    /// How it is computed, as written.
+    pub compute_text: String,
+    /// How it is computed.
+    pub compute: Option<Expr>,
+}
+
+/// A file of rows.
+#[derive(Clone, Debug)]
+pub struct File {
+    /// Name.
+    pub name: String,
+    /// Own tolerances, then those of the common file.
+    pub tolerances: Vec<Tolerance>,
+    /// Own sources, then those of the common file.
+    pub sources: Vec<Source>,
+    /// Rows in order.
+    pub rows: Vec<Row>,
+}
+
+/// Pages of the book that a row may belong to.
+pub const MECHANISMS: [&str; 26] = [
+    "introduction", "geometry", "tension", "bands", "film", "slip", "deflection", "formulations", "pump", "input_shaft", "reverse_clutch",
+    "final_drive", "launch", "ratio_control", "pressure", "manual", "lubricant", "engine", "road_load", "thermal", "maps", "ledgers",
+    "rigs", "vehicle", "hydraulics", "user",
+];
+
+const KINDS: [&str; 5] = ["N", "O", "C", "L", "X"];
+
+/// Reads files: name and text each. `common` comes first and lends its tolerances and sources.
+///
+/// # Errors
+/// All problems of all files.
+pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File>, Vec<Problem>> {
+    let keys: Vec<String> = catalogue::known_keys().into_iter().map(|info| info.key).collect();
+    let mut problems = Vec::new();
+    let lent = file(common.0, common.1, &Lent::default(), &keys, &mut problems);
+    let lent = Lent { tolerances: lent.tolerances, sources: lent.sources };
+    let read: Vec<File> = files.iter().map(|(name, text)| file(name, text, &lent, &keys, &mut problems)).collect();
+    let mut seen: Vec<&Row> = Vec::new();
+    for row in read.iter().flat_map(|file| &file.rows) {
+        if let Some(first) = seen.iter().find(|other| other.id == row.id && !row.id.is_empty()) {
+            let message = format!("the id `{}` was used before, in {} line {}", row.id, first.place.file, first.place.line);
+            problems.push(Problem { place: row.place.clone(), key: "id".into(), message, hint: "ids are unique".into(), ..Problem::default() });
+        }
+        seen.push(row);
+    }
+    if problems.is_empty() { Ok(read) } else { Err(problems) }
+}
+
+/// What the common file lends.
+#[derive(Default)]
+struct Lent {
+    tolerances: Vec<Tolerance>,
+    sources: Vec<Source>,
+}
+
+fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec<Problem>) -> File {
+    let mut read = File { name: name.to_owned(), tolerances: Vec::new(), sources: Vec::new(), rows: Vec::new() };
+    let mut document = match Document::parse(name, text) {
+        Ok(document) => document,
+        Err(mut p) => {
+            problems.append(&mut p);
+            return read;
+        }
+    };
+    let rows = document.take_tables("row");
+    let reader = Reader::new(&document);
+    let root = reader.root();
+    read.tolerances = tolerances(&root.table("tolerances"));
+    read.sources = source::read(&root.table("sources"), &lent.sources);
+    if let Err(mut p) = reader.finish() {
+        problems.append(&mut p);
+    }
+    read.tolerances.extend(lent.tolerances.iter().cloned());
+    read.sources.extend(lent.sources.iter().cloned());
+    let head = Head { tolerances: &read.tolerances, names: FileNames { sources: &read.sources, keys } };
+    for document in &rows {
+        let reader = Reader::new(document);
+        let row = head.row(&reader.root());
+        if let Err(found) = reader.finish() {
+            let of = if row.id.is_empty() { String::new() } else { format!("row {}: ", row.id) };
+            problems.extend(found.into_iter().map(|p| Problem { message: format!("{of}{}", p.message), ..p }));
+        }
+        read.rows.push(row);
+    }
+    read
+}
+
+fn tolerances(all: &Section) -> Vec<Tolerance> {
+    let width = Bound::closed(0.0, 1e9);
+    let one = |name: &str| {
+        let s = all.table(name);
+        let absolute = s.optional_number("width", width, "width on both sides, in the unit of the row");
+        let relative = s.optional_number("share", Bound::closed(0.0, 10.0), "width as a share of the printed number");
+        if absolute.is_some() == relative.is_some() {
+            s.complain("width", "width or share", &format!("tolerance `{name}` needs either `width` or `share`"), "give one of them");
+        }
+        Tolerance {
+            name: name.to_owned(),
+            absolute: absolute.unwrap_or(0.0),
+            relative: relative.unwrap_or(0.0),
+            unit: s.text_or("unit", "-", "unit of the width"),
+            source: s.text("from", "where the width comes from"),
+        }
+    };
+    all.names().into_iter().map(one).collect()
+}
+
+/// What the rows of a file may refer to.
+struct Head<'a> {
+    tolerances: &'a [Tolerance],
+    names: FileNames<'a>,
+}
+
+impl Head<'_> {
+    fn row(&self, s: &Section) -> Row {
+        let id = s.text("id", "identifier, unique over all files");
+        let chapter = s.text("chapter", "chapter of the thesis, or a word for the user's own rows");
+        let mechanism = mechanism(s);
+        let kind = s.word_or("kind", &KINDS, "N", "N number, O order or sign, C constant, L quoted from others, X record only").to_owned();
+        let compute_text = s.optional_text("compute", "how it is computed").unwrap_or_default();
+        let compute = self.expression(s, "compute", &compute_text);
+        let unit = s.text_or("unit", "-", "unit of printed and computed numbers");
+        let printed = printed(s, compute.as_ref());
+        let recorded = verdict(s);
+        let reason = s.text_or("reason", "", "why it differs or cannot be compared");
+        let (tolerance, tolerance_widths) = self.tolerance(s, printed, &unit);
+        let row = Row {
+            id,
+            place: s.place(if compute_text.is_empty() { "id" } else { "compute" }),
+            chapter,
+            mechanism,
+            what: s.text("what", "what is compared"),
+            condition: s.text_or("condition", "", "at which condition"),
+            printed_text: s.text("printed", "the printed text"),
+            unit,
+            kind,
+            printed,
+            tolerance,
+            tolerance_widths,
+            fitted_to: self.fitted(s),
+            recorded,
+            reason,
+            remark: s.text_or("remark", "", "what else a reader should know"),
+            cause: self.cause(s),
+            compute_text,
+            compute,
+        };
+        complete(s, &row);
+        row
+    }
+
+    /// Parses the expression at a key; its faults become problems with their place in the text.
+    fn expression(&self, s: &Section, key: &str, text: &str) -> Option<Expr> {
+        if text.trim().is_empty() {
+            return None;
+        }
+        match parse(text, &self.names) {
+            Ok(expr) => Some(expr),
+            Err(faults) => {
+                faults.into_iter().for_each(|fault| s.report_problem(within(s.place(key), key, text, fault)));
+                None
+            }
+        }
+    }
+
+    fn tolerance(&self, s: &Section, printed: Option<Printed>, unit: &str) -> (String, [f64; 2]) {
+        let name = s.optional_text("tolerance", "name of a tolerance at the head of the file");
+        let Some(Printed::Range(low, high)) = printed else {
+            if name.is_some() {
+                s.complain("tolerance", "", "an order or sign has no tolerance", "remove it");
+            }
+            return (String::new(), [0.0; 2]);
+        };
+        let known: Vec<&str> = self.tolerances.iter().map(|t| t.name.as_str()).collect();
+        let Some(name) = name else {
+            s.complain("tolerance", &known.join(", "), "missing key `tolerance`", "name a tolerance of the head of the file");
+            return (String::new(), [0.0; 2]);
+        };
+        let Some(found) = self.tolerances.iter().find(|t| t.name == name) else {
+            let close = near(&name, known.iter().copied());
+            let hint = if close.is_empty() { String::new() } else { format!("did you mean {}?", close.join(" or ")) };
+            s.complain("tolerance", &known.join(", "), &format!("there is no tolerance `{name}`"), &hint);
+            return (name, [0.0; 2]);
+        };
+        if found.unit != "-" && found.unit != unit {
+            let message = format!("tolerance `{name}` is in {}, the row in {unit}", found.unit);
+            s.complain("tolerance", "the same unit", &message, "use another tolerance");
+        }
+        let width = |end: f64| if end.is_finite() { found.absolute + found.relative * end.abs() } else { found.absolute };
+        (name, [width(low), width(high)])
+    }
+
+    fn fitted(&self, s: &Section) -> Vec<String> {
+        let keys = s.texts("fitted_to", "parameters that were fitted to this number");
+        for key in keys.iter().filter(|key| !self.names.keys.contains(key)) {
+            let close = near(key, self.names.keys.iter().map(String::as_str));
+            let hint = if close.is_empty() { String::new() } else { format!("did you mean {}?", close.join(" or ")) };
+            s.complain("fitted_to", "keys of a vehicle or lubricant", &format!("there is no parameter `{key}`"), &hint);
+        }
+        keys
+    }
+
+    fn cause(&self, s: &Section) -> Option<Cause> {
+        let table = s.table("cause");
+        if !table.exists() {
+            return None;
+        }
+        let text = table.text("compute", "how it is computed");
+        let cause = Cause {
+            what: table.text("what", "what the number is"),
+            unit: table.text_or("unit", "-", "its unit"),
+            compute: self.expression(&table, "compute", &text)?,
+        };
+        Some(cause)
+    }
+}
+
+fn mechanism(s: &Section) -> String {
+    s.word_or("mechanism", &MECHANISMS, "user", "page of the book").to_owned()
+}
+
+fn verdict(s: &Section) -> Option<Verdict> {
+    let word = s.optional_text("verdict", "recorded verdict")?;
+    let found = Verdict::from_word(&word);
+    if found.is_none() {
+        let close = near(&word, Verdict::WORDS.into_iter());
+        let hint = if close.is_empty() { String::new() } else { format!("did you mean `{}`?", close.join("` or `")) };
+        s.complain("verdict", &Verdict::WORDS.join(", "), &format!("there is no verdict `{word}`"), &hint);
+    }
+    found
+}
+
+fn printed(s: &Section, compute: Option<&Expr>) -> Option<Printed> {
+    let any = Bound::any();
+    let value = s.optional_number("value", any, "printed number");
+    let low = s.optional_number("low", any, "smallest printed number");
+    let high = s.optional_number("high", any, "largest printed number");
+    let expect = s.has("expect").then(|| s.boolean_or("expect", true, "whether the order or sign is printed as holding"));
+    if value.is_some() && (low.is_some() || high.is_some()) {
+        s.complain("value", "value, or low and high", "`value` beside `low` or `high`", "keep one of the forms");
+    }
+    if let (Some(low), Some(high)) = (low, high)
+        && low > high
+    {
+        s.complain("low", "at most `high`", "`low` is above `high`", "swap them");
+    }
+    let numbers = match (value, low, high) {
+        (Some(x), _, _) => Some(Printed::Range(x, x)),
+        (None, None, None) => None,
+        (None, low, high) => Some(Printed::Range(low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY))),
+    };
+    match (compute.map(Expr::gives), numbers) {
+        (Some(Gives::Truth), Some(_)) => {
+            s.complain("compute", "a number or a range", "`compute` gives yes or no, but a number is printed", "compute the number");
+            None
+        }
+        (Some(Gives::Truth), None) => Some(Printed::Truth(expect.unwrap_or(true))),
+        (Some(_), None) => {
+            s.complain("value", "value, or low and high", "`compute` gives a number, but none is printed", "add `value`, `low` or `high`");
+            None
+        }
+        (Some(_), numbers) => {
+            if expect.is_some() {
+                s.complain("expect", "", "`expect` belongs to an order or sign", "remove it");
+            }
+            numbers
+        }
+        (None, _) => None,
+    }
+}
+
+/// What a row needs besides its keys.
+fn complete(s: &Section, row: &Row) {
+    let bare = row.compute_text.trim().is_empty();
+    let compared = row.recorded != Some(Verdict::NotComparable);
+    if bare && compared {
+        let hint = "add an expression, or verdict = \"not comparable\" and a reason";
+        s.complain("compute", "an expression", "the row is not computed", hint);
+    }
+    if !bare && !compared {
+        s.complain("verdict", "agrees, fit, differs", "a computed row cannot be `not comparable`", "remove `compute` or the verdict");
+    }
+    let needs = matches!(row.recorded, Some(Verdict::Differs | Verdict::NotComparable));
+    if needs && row.reason.trim().is_empty() {
+        s.complain("reason", "a sentence", "the verdict needs a reason", "say in a sentence why");
+    }
+    if row.recorded == Some(Verdict::Differs) && !s.has("cause") {
+        let hint = "add a table `cause` with `what` and `compute`: a number that shows the reason";
+        s.complain("cause", "a table", "a row that differs needs its computed cause", hint);
+    }
+    if row.recorded == Some(Verdict::Fit) && row.fitted_to.is_empty() {
+        s.complain("fitted_to", "keys of parameters", "a fit names the parameters that were fitted to it", "");
+    }
+    if row.recorded == Some(Verdict::Agrees) && !row.fitted_to.is_empty() {
+        s.complain("verdict", "fit, differs", "a row to which a parameter was fitted never `agrees`", "record `fit`");
+    }
+}
+
+/// A fault in an expression as a problem at its place.
+fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
+    // The place is exact where the text stands on one line as it is.
+    let quoted: String = place.line_text.chars().skip(place.column.saturating_sub(1)).collect();
+    let plain = quoted.strip_prefix(['"', '\'']).is_some_and(|rest| rest.starts_with(text));
+    let place = if plain { Place { column: place.column + 1 + fault.at, width: fault.width, ..place } } else { place };
+    Problem { place, key: key.to_owned(), value: fault.word, allowed: String::new(), message: format!("`{key}`: {}", fault.message), hint: fault.hint }
+}

@@ -1,0 +1,92 @@
+//! One rule from computed and printed to a verdict.
+//!
+//! A number agrees within the printed range widened by the tolerance on both sides, a computed range if both of its ends do, an order or
+//! sign if it comes out as printed. What would agree is a fit if a parameter was fitted to it.
+
+use super::expr::Computed;
+
+/// What came out of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// Computed as printed, within the tolerance.
+    Agrees,
+    /// Computed as printed because a parameter was fitted to it.
+    Fit,
+    /// Computed otherwise.
+    Differs,
+    /// Not computed.
+    NotComparable,
+}
+
+impl Verdict {
+    /// All of them.
+    pub const ALL: [Verdict; 4] = [Verdict::Agrees, Verdict::Fit, Verdict::Differs, Verdict::NotComparable];
+
+    /// Words as in the files.
+    pub const WORDS: [&'static str; 4] = ["agrees", "fit", "differs", "not comparable"];
+
+    /// The word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        Self::WORDS[self as usize]
+    }
+
+    /// The verdict of a word.
+    #[must_use]
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|verdict| verdict.word() == word)
+    }
+}
+
+/// What is printed, in numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Printed {
+    /// From a smallest to a largest number; infinite where one side is open.
+    Range(f64, f64),
+    /// An order or sign, or its contrary.
+    Truth(bool),
+}
+
+/// The verdict of a computed row; `widths` of the tolerance below and above what is printed, in the row's unit.
+#[must_use]
+pub fn verdict(computed: &Computed, printed: Printed, widths: [f64; 2], fitted: bool) -> Verdict {
+    let agrees = match (computed, printed) {
+        (Computed::Truth(holds, _), Printed::Truth(wanted)) => *holds == wanted,
+        (Computed::Number(x), Printed::Range(low, high)) => within(*x, *x, low - widths[0], high + widths[1]),
+        (Computed::Range(from, to), Printed::Range(low, high)) => within(*from, *to, low - widths[0], high + widths[1]),
+        _ => false,
+    };
+    match (agrees, fitted) {
+        (true, false) => Verdict::Agrees,
+        (true, true) => Verdict::Fit,
+        (false, _) => Verdict::Differs,
+    }
+}
+
+/// The ends may lie on the limits but for rounding.
+fn within(from: f64, to: f64, low: f64, high: f64) -> bool {
+    let slack = |x: f64| 1e-12 * x.abs();
+    low - slack(low) <= from && to <= high + slack(high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_ranges_and_truths() {
+        let v = |computed: Computed, printed, fitted| verdict(&computed, printed, [0.5; 2], fitted);
+        let printed = Printed::Range(8.5, 13.0);
+        assert_eq!(v(Computed::Number(8.0), printed, false), Verdict::Agrees);
+        assert_eq!(v(Computed::Number(7.99), printed, false), Verdict::Differs);
+        assert_eq!(v(Computed::Range(8.2, 13.4), printed, false), Verdict::Agrees);
+        assert_eq!(v(Computed::Range(8.2, 13.6), printed, false), Verdict::Differs);
+        assert_eq!(v(Computed::Range(7.9, 13.0), printed, true), Verdict::Differs);
+        assert_eq!(v(Computed::Range(9.0, 13.0), printed, true), Verdict::Fit);
+        assert_eq!(v(Computed::Number(1e9), Printed::Range(3.0, f64::INFINITY), false), Verdict::Agrees);
+        assert_eq!(v(Computed::Number(f64::NAN), printed, false), Verdict::Differs);
+        assert_eq!(v(Computed::Truth(true, String::new()), Printed::Truth(true), true), Verdict::Fit);
+        assert_eq!(v(Computed::Truth(false, String::new()), Printed::Truth(true), false), Verdict::Differs);
+        assert_eq!(v(Computed::Truth(false, String::new()), Printed::Truth(false), false), Verdict::Agrees);
+    }
+}
