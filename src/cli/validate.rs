@@ -142,7 +142,13 @@ fn filters(args: &Args, files: &[File], problems: &mut Problems) {
     {
         let mut known: Vec<&str> = rows().map(|row| row.chapter.as_str()).collect();
         known.dedup();
-        problems.add(inputs::bad_value("--chapter", chapter, &known.join(", "), format!("no row belongs to chapter `{chapter}`"), String::new()));
+        problems.add(inputs::bad_value(
+            "--chapter",
+            chapter,
+            &known.join(", "),
+            format!("no row belongs to chapter `{chapter}`"),
+            String::new(),
+        ));
     }
     if let Some(name) = &args.mechanism
         && !MECHANISMS.iter().any(|known| known.eq_ignore_ascii_case(name))

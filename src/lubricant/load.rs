@@ -77,7 +77,7 @@ fn friction(s: &Section) -> Friction {
             0.2,
             "part of the boundary friction that a carrying film removes (LU-4)",
         ),
-        lift_n_m: lift.number_or("load_n_per_m", Bound::open_low(0.0, 10.0), 0.0085, "eta dv at which the film carries half (LU-5)"),
+        lift_n_m: lift.number_or("load_n_per_m", Bound::open_low(0.0, 10.0), 0.0075, "eta dv at which the film carries half (LU-5)"),
         lift_exponent: lift.number_or("exponent", Bound::closed(0.5, 8.0), 5.0, "sharpness of lift-off (LU-5)"),
         film_thickness_m: lift.number_or("film_thickness_um", Bound::closed(0.01, 100.0), 1.5, "thickness of the carrying film (FI-1)"),
     }

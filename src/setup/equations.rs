@@ -47,6 +47,7 @@ const SOURCES: &[(&str, &str)] = &[
     source!("rig/bench.rs"),
     source!("rig/transmission/transient.rs"),
     source!("rig/transmission/strip_down.rs"),
+    source!("rig/variator/mod.rs"),
 ];
 
 /// All equations.

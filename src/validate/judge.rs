@@ -10,6 +10,8 @@ use super::rule::{Verdict, verdict};
 use super::source::{Kind, Source};
 use super::tables::{self, Driven};
 use crate::config::{KeyInfo, Place, Problem};
+use crate::rig::transmission::Conditions;
+use crate::rig::transmission::conditions::PREFIX;
 use crate::setup::{Options, Setup, load};
 
 /// The vehicle that is validated: sources that name none are computed for it.
@@ -76,8 +78,12 @@ pub fn judge(files: &[File], subject: &Subject, wanted: impl Fn(&Row) -> bool) -
         problems.append(&mut p);
         return Err(problems);
     }
+    if let Err(found) = store.conditions(None) {
+        return Err(found);
+    }
     for source in files.iter().flat_map(|file| &file.sources) {
-        if let Err(found) = store.setup(Some(source)) {
+        let loaded = store.setup(Some(source)).and_then(|_| store.conditions(Some(source)));
+        if let Err(found) = loaded {
             for problem in found.iter() {
                 let place = if problem.place.line > 0 { problem.place.clone() } else { source.place.clone() };
                 let problem = Problem { place, message: format!("source `{}`: {}", source.name, problem.message), ..problem.clone() };
@@ -132,7 +138,7 @@ impl Store<'_> {
         Options {
             lubricant: lubricant.or_else(|| self.subject.lubricant.clone().filter(|_| own)),
             engine_oil: None,
-            set: subject_set.iter().chain(source_set).cloned().collect(),
+            set: subject_set.iter().chain(source_set).filter(|set| !set.starts_with(PREFIX)).cloned().collect(),
             formulation: source.map(|source| source.formulation).unwrap_or_default(),
         }
     }
@@ -147,6 +153,13 @@ impl Store<'_> {
         Ok(shared)
     }
 
+    /// What the transmission rig is set to, for a source.
+    fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>> {
+        let own = source.map(|source| source.set.as_slice()).unwrap_or_default();
+        let sets: Vec<String> = self.subject.set.iter().chain(own).cloned().collect();
+        Conditions::load(&sets)
+    }
+
     fn table(&self, source: &Source, totals: bool) -> Result<Rc<Table>, String> {
         let bare = Source { name: String::new(), place: Place::default(), ..source.clone() };
         once(&self.tables, format!("{totals} {bare:?}"), || self.compute(&bare, totals).map(Rc::new))
@@ -158,7 +171,8 @@ impl Store<'_> {
             return Err("its vehicle cannot be loaded".to_owned());
         };
         if source.kind != Kind::Run {
-            return tables::table(source, setup);
+            let (conditions, _) = self.conditions(Some(source)).map_err(|_| "the rig's conditions cannot be read".to_owned())?;
+            return tables::table(source, setup, &conditions);
         }
         // Phases of the same run share it.
         let whole = Source { phase: String::new(), ..source.clone() };
@@ -185,11 +199,17 @@ impl Tables for View<'_> {
 
     fn key(&self, source: Option<usize>, path: &str, item: Option<usize>) -> Result<f64, String> {
         let spec = source.and_then(|k| self.file.sources.get(k));
+        if path.starts_with(PREFIX) {
+            let (_, keys) = self.store.conditions(spec).map_err(|_| "the rig's conditions cannot be read".to_owned())?;
+            let info = keys.iter().find(|info| info.key == path).ok_or_else(|| format!("the rig has no `{path}`"))?;
+            return number_of(info, item).ok_or_else(|| format!("`{path}` is no number here: {}", info.value));
+        }
         let shared = self.store.setup(spec).map_err(|_| "the vehicle cannot be loaded".to_owned())?;
         let Ok(setup) = shared.as_ref() else {
             return Err("the vehicle cannot be loaded".to_owned());
         };
-        let info = setup.keys.iter().find(|info| info.key == path).ok_or_else(|| format!("the vehicle `{}` has no `{path}`", setup.name))?;
+        let info =
+            setup.keys.iter().find(|info| info.key == path).ok_or_else(|| format!("the vehicle `{}` has no `{path}`", setup.name))?;
         number_of(info, item).ok_or_else(|| format!("`{path}` is no number here: {}", info.value))
     }
 
@@ -223,7 +243,8 @@ impl View<'_> {
         self.left_out.set(0);
         let computed = row.compute.as_ref().map(|expr| compute(expr, self)).transpose().map_err(|why| problem("compute", why))?;
         let left_out = self.left_out.get();
-        let cause = row.cause.as_ref().map(|cause| compute(&cause.compute, self)).transpose().map_err(|why| problem("cause.compute", why))?;
+        let cause =
+            row.cause.as_ref().map(|cause| compute(&cause.compute, self)).transpose().map_err(|why| problem("cause.compute", why))?;
         let verdict = match (&computed, row.printed) {
             (Some(computed), Some(printed)) => verdict(computed, printed, row.tolerance_widths, !row.fitted_to.is_empty()),
             _ => Verdict::NotComparable,

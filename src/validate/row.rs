@@ -5,6 +5,7 @@ use super::names::FileNames;
 use super::rule::{Printed, Verdict};
 use super::source::{self, Source};
 use crate::config::{Bound, Document, Place, Problem, Reader, Section, near};
+use crate::rig::transmission::Conditions;
 use crate::setup::catalogue;
 
 /// A named tolerance.
@@ -91,9 +92,32 @@ pub struct File {
 
 /// Pages of the book that a row may belong to.
 pub const MECHANISMS: [&str; 26] = [
-    "introduction", "geometry", "tension", "bands", "film", "slip", "deflection", "formulations", "pump", "input_shaft", "reverse_clutch",
-    "final_drive", "launch", "ratio_control", "pressure", "manual", "lubricant", "engine", "road_load", "thermal", "maps", "ledgers",
-    "rigs", "vehicle", "hydraulics", "user",
+    "introduction",
+    "geometry",
+    "tension",
+    "bands",
+    "film",
+    "slip",
+    "deflection",
+    "formulations",
+    "pump",
+    "input_shaft",
+    "reverse_clutch",
+    "final_drive",
+    "launch",
+    "ratio_control",
+    "pressure",
+    "manual",
+    "lubricant",
+    "engine",
+    "road_load",
+    "thermal",
+    "maps",
+    "ledgers",
+    "rigs",
+    "vehicle",
+    "hydraulics",
+    "user",
 ];
 
 const KINDS: [&str; 5] = ["N", "O", "C", "L", "X"];
@@ -103,7 +127,8 @@ const KINDS: [&str; 5] = ["N", "O", "C", "L", "X"];
 /// # Errors
 /// All problems of all files.
 pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File>, Vec<Problem>> {
-    let keys: Vec<String> = catalogue::known_keys().into_iter().map(|info| info.key).collect();
+    let rig = Conditions::load(&[]).map(|(_, keys)| keys).unwrap_or_default();
+    let keys: Vec<String> = catalogue::known_keys().into_iter().chain(rig).map(|info| info.key).collect();
     let mut problems = Vec::new();
     let lent = file(common.0, common.1, &Lent::default(), &keys, &mut problems);
     let lent = Lent { tolerances: lent.tolerances, sources: lent.sources };
@@ -112,7 +137,13 @@ pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File
     for row in read.iter().flat_map(|file| &file.rows) {
         if let Some(first) = seen.iter().find(|other| other.id == row.id && !row.id.is_empty()) {
             let message = format!("the id `{}` was used before, in {} line {}", row.id, first.place.file, first.place.line);
-            problems.push(Problem { place: row.place.clone(), key: "id".into(), message, hint: "ids are unique".into(), ..Problem::default() });
+            problems.push(Problem {
+                place: row.place.clone(),
+                key: "id".into(),
+                message,
+                hint: "ids are unique".into(),
+                ..Problem::default()
+            });
         }
         seen.push(row);
     }
@@ -375,5 +406,12 @@ fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
     let quoted: String = place.line_text.chars().skip(place.column.saturating_sub(1)).collect();
     let plain = quoted.strip_prefix(['"', '\'']).is_some_and(|rest| rest.starts_with(text));
     let place = if plain { Place { column: place.column + 1 + fault.at, width: fault.width, ..place } } else { place };
-    Problem { place, key: key.to_owned(), value: fault.word, allowed: String::new(), message: format!("`{key}`: {}", fault.message), hint: fault.hint }
+    Problem {
+        place,
+        key: key.to_owned(),
+        value: fault.word,
+        allowed: String::new(),
+        message: format!("`{key}`: {}", fault.message),
+        hint: fault.hint,
+    }
 }

@@ -17,16 +17,25 @@ pub enum Kind {
     Run,
     /// A fluid over temperature.
     Fluid,
+    /// Warm-up and cooling on the transmission rig.
+    Transient,
+    /// The box taken apart on the transmission rig.
+    StripDown,
     /// A vehicle's values only.
     Vehicle,
 }
 
 impl Kind {
     /// Words for `source`.
-    pub const NAMES: [(&'static str, Kind); 5] =
-        [("bench", Kind::Bench), ("belt", Kind::Belt), ("run", Kind::Run), ("fluid", Kind::Fluid), ("vehicle", Kind::Vehicle)];
-
-    const WORDS: [&'static str; 5] = ["bench", "belt", "run", "fluid", "vehicle"];
+    const NAMES: [(&'static str, Kind); 7] = [
+        ("bench", Kind::Bench),
+        ("belt", Kind::Belt),
+        ("run", Kind::Run),
+        ("fluid", Kind::Fluid),
+        ("transient", Kind::Transient),
+        ("strip_down", Kind::StripDown),
+        ("vehicle", Kind::Vehicle),
+    ];
 }
 
 /// One source, checked.
@@ -99,6 +108,14 @@ const RUN: [Axis; 3] = [
     ("dt_s", Bound::closed(0.01, 10.0), false, "longest step; 1 s if absent"),
 ];
 
+const TRANSIENT: [Axis; 1] = [("ratio", Bound::closed(0.2, 5.0), true, "belt ratio I = R_sec / R_pri")];
+
+const STRIP_DOWN: [Axis; 3] = [
+    ("ratio", Bound::closed(0.2, 5.0), false, "belt ratio; the rig's own two if absent"),
+    ("speed_rpm", Bound::closed(1.0, 20_000.0), false, "input speed; the rig's own if absent"),
+    ("temp_degc", TEMP, false, "oil in the sump; the rig's own if absent"),
+];
+
 const FLUID: [Axis; 1] = [("temp_degc", TEMP, true, "temperature of the fluid")];
 
 /// Most points of a source.
@@ -110,6 +127,8 @@ fn axes(kind: Kind) -> &'static [Axis] {
         Kind::Belt => &BELT,
         Kind::Run => &RUN,
         Kind::Fluid => &FLUID,
+        Kind::Transient => &TRANSIENT,
+        Kind::StripDown => &STRIP_DOWN,
         Kind::Vehicle => &[],
     }
 }
@@ -139,7 +158,12 @@ pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
             for name in waiting {
                 let known: Vec<&str> = done.iter().chain(common).map(|source| source.name.as_str()).collect();
                 let hint = format!("known sources: {}", known.join(", "));
-                sources.table(name).complain("like", "the name of another source, not in a circle", "there is no such source to continue", &hint);
+                sources.table(name).complain(
+                    "like",
+                    "the name of another source, not in a circle",
+                    "there is no such source to continue",
+                    &hint,
+                );
                 done.push(one(&sources.table(name), name, None));
             }
             break;
@@ -183,7 +207,7 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
     match kind {
         Kind::Bench => bench(s, &mut source),
         Kind::Run => run(s, &mut source),
-        Kind::Belt | Kind::Fluid | Kind::Vehicle => {}
+        _ => {}
     }
     source
 }
@@ -194,10 +218,11 @@ fn kind(s: &Section, base: Option<&Source>) -> Kind {
     {
         return base.kind;
     }
+    let words = Kind::NAMES.map(|(name, _)| name);
     if !s.has("source") {
-        s.complain("source", &Kind::WORDS.join(", "), "the source does not say what it computes", "add `source = \"bench\"`");
+        s.complain("source", &words.join(", "), "the source does not say what it computes", "add `source = \"bench\"`");
     }
-    let word = s.word_or("source", &Kind::WORDS, "vehicle", "what the source computes");
+    let word = s.word_or("source", &words, "vehicle", "what the source computes");
     Kind::NAMES.iter().find(|(name, _)| *name == word).map_or(Kind::Vehicle, |(_, kind)| *kind)
 }
 

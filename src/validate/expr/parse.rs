@@ -86,9 +86,9 @@ struct Parser<'a> {
 pub fn parse(text: &str, names: &dyn Names) -> Result<Expr, Vec<Fault>> {
     let words = words(text).map_err(|fault| vec![fault])?;
     let mut parser = Parser { words, next: 0, names, scopes: Vec::new(), variables: Vec::new(), depth: 0, faults: Vec::new() };
-    let result = parser.any_of().and_then(|expr| {
-        if parser.peek() == &What::End { Ok(expr) } else { Err(parser.unexpected("an operator or the end")) }
-    });
+    let result = parser
+        .any_of()
+        .and_then(|expr| if parser.peek() == &What::End { Ok(expr) } else { Err(parser.unexpected("an operator or the end")) });
     match result {
         Ok(expr) if parser.faults.is_empty() => lone_ranges(&expr, true).map(|()| expr).map_err(|message| {
             vec![Fault {
@@ -217,7 +217,14 @@ impl Parser<'_> {
     }
 
     fn order(&mut self) -> Option<Order> {
-        let orders = [("<=", Order::AtMost), (">=", Order::AtLeast), ("==", Order::Equal), ("=", Order::Equal), ("<", Order::Less), (">", Order::More)];
+        let orders = [
+            ("<=", Order::AtMost),
+            (">=", Order::AtLeast),
+            ("==", Order::Equal),
+            ("=", Order::Equal),
+            ("<", Order::Less),
+            (">", Order::More),
+        ];
         orders.into_iter().find(|(sign, _)| self.take(sign)).map(|(_, order)| order)
     }
 

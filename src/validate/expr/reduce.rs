@@ -44,9 +44,7 @@ fn of_points(kind: Reduction, mut points: Vec<Point>, at: f64) -> Result<f64, St
     Ok(match kind {
         Reduction::Min => values().fold(f64::INFINITY, least),
         Reduction::Max => values().fold(f64::NEG_INFINITY, most),
-        Reduction::Range | Reduction::Spread => {
-            values().fold(f64::NEG_INFINITY, most) - values().fold(f64::INFINITY, least)
-        }
+        Reduction::Range | Reduction::Spread => values().fold(f64::NEG_INFINITY, most) - values().fold(f64::INFINITY, least),
         Reduction::Sum => points.iter().map(|p| p.value * p.weight).sum(),
         Reduction::Mean => points.iter().map(|p| p.value * p.weight).sum::<f64>() / weight,
         Reduction::First => points[0].value,
@@ -71,8 +69,7 @@ fn points(here: &mut Here, r: &Reduce, table: &Table) -> Result<Vec<Point>, Stri
     let mut left_out = 0;
     let rows = table.columns.first().map_or(0, Vec::len);
     for row in 0..rows {
-        let mut inner =
-            Here { tables: here.tables, row: Some((table, row)), variables: here.variables.clone(), noting: here.noting };
+        let mut inner = Here { tables: here.tables, row: Some((table, row)), variables: here.variables.clone(), noting: here.noting };
         if let Some(filter) = &r.filter
             && inner.eval(filter)? <= 0.5
         {

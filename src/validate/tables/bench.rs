@@ -51,7 +51,7 @@ const OTHERS: [&str; 20] = [
 ];
 
 /// Index of gross slip behind the named columns.
-const GROSS: usize = OTHERS.len() + Component::COUNT;
+pub const GROSS: usize = OTHERS.len() + Component::COUNT;
 
 /// Names of the columns.
 pub fn columns() -> Vec<&'static str> {
@@ -107,7 +107,8 @@ fn fits(bench: &Bench, ratios: &[f64]) -> Result<(), String> {
     }
 }
 
-fn row(p: &BenchPoint, a: &BenchAnswer) -> Vec<f64> {
+/// Numbers of a point: the columns, then gross slip.
+pub fn row(p: &BenchPoint, a: &BenchAnswer) -> Vec<f64> {
     let input_w = a.input_nm * p.input_rad_s;
     let output_w = p.output_nm * a.output_rad_s;
     let efficiency = if p.output_nm < 0.0 { input_w / output_w } else { output_w / input_w };

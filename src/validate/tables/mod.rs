@@ -3,10 +3,12 @@
 mod bench;
 mod belt;
 mod fluid;
+mod rig;
 mod run;
 
 use super::expr::Table;
 use super::source::{Kind, Source};
+use crate::rig::transmission::Conditions;
 use crate::setup::Setup;
 
 pub use run::{Driven, drive};
@@ -20,19 +22,23 @@ pub fn columns(kind: Kind, totals: bool) -> Vec<&'static str> {
         Kind::Run if totals => run::total_columns(),
         Kind::Run => run::columns(),
         Kind::Fluid => fluid::columns(),
+        Kind::Transient => rig::transient_columns(),
+        Kind::StripDown => rig::strip_down_columns(),
         Kind::Vehicle => Vec::new(),
     }
 }
 
-/// The table of a source that is no run.
+/// The table of a source that is no run; `conditions` are those of the transmission rig.
 ///
 /// # Errors
 /// A sentence: the vehicle or the point does not fit the source.
-pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
+pub fn table(source: &Source, setup: &Setup, conditions: &Conditions) -> Result<Table, String> {
     match source.kind {
         Kind::Bench => bench::table(source, setup),
         Kind::Belt => belt::table(source, setup),
         Kind::Fluid => Ok(fluid::table(source, setup)),
+        Kind::Transient => rig::transients(source, setup, conditions),
+        Kind::StripDown => rig::strip_downs(source, setup, conditions),
         Kind::Run | Kind::Vehicle => Err("this source has no rows".to_owned()),
     }
 }

@@ -127,14 +127,7 @@ pub fn trace(source: &Source, driven: &Driven) -> Table {
 
 fn row(r: &Row, rated_w: f64, launch: f64, since_s: f64) -> Vec<f64> {
     let coupled = !r.flags.contains(Flags::CLUTCH_SLIPPING) && !r.flags.contains(Flags::CLUTCH_OPEN);
-    let more = [
-        truth(r.speed_m_s > 0.0),
-        truth(coupled),
-        launch,
-        since_s,
-        r.wheel_power_w / rated_w,
-        r.loss_w.iter().sum::<f64>(),
-    ];
+    let more = [truth(r.speed_m_s > 0.0), truth(coupled), launch, since_s, r.wheel_power_w / rated_w, r.loss_w.iter().sum::<f64>()];
     let trace = COLUMNS.iter().map(|column| column.number(r));
     trace.chain(Flags::NAMES.iter().map(|(flag, _)| truth(r.flags.contains(*flag)))).chain(more).collect()
 }

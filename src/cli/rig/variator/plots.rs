@@ -4,7 +4,7 @@ use cvtcycle::report::{CurveFigure, CurvePanel, CurveSeries, curve_figure};
 use cvtcycle::rig::variator::{RigFlags, VariatorRow};
 
 use super::plan::{Curve, Plan};
-use super::text::test_name;
+use super::text::{same_test, test_name};
 
 const X: &str = "Torque at the secondary pulley [Nm]";
 /// Most tests of which pictures are drawn.
@@ -17,8 +17,7 @@ type Get = fn(&VariatorRow) -> f64;
 
 /// Pictures with their file names.
 pub fn plots(plan: &Plan, curves: &[Curve]) -> Vec<(&'static str, String)> {
-    let same = |a: &Curve, b: &Curve| test_name(a) == test_name(b);
-    let tests: Vec<&[Curve]> = curves.chunk_by(same).take(MOST_TESTS).collect();
+    let tests: Vec<&[Curve]> = curves.chunk_by(same_test).take(MOST_TESTS).collect();
     let lines = |title: &str, y: &str, get: Get, marked: bool| {
         let panels = tests.iter().map(|test| by_pressure(test, y, get, marked)).collect();
         curve_figure(&CurveFigure { title, subject: &subject(plan), x: X, panels })

@@ -10,9 +10,7 @@ use crate::cli::number::{fixed, percent, plain};
 /// A line a curve, and what the counters can resolve.
 pub fn tables(plan: &Plan, curves: &[Curve], paint: Paint) -> String {
     let mut text = format!("{}  variator alone, {}\n", paint.heading(&plan.setup.name), plan.formulation);
-    let mut list: Vec<&[Curve]> = curves.chunk_by(|a, b| same_test(a, b)).collect();
-    list.retain(|test| !test.is_empty());
-    for test in list {
+    for test in curves.chunk_by(same_test) {
         text += &one_test(test, paint);
     }
     text + "\nbreak: breakpoint, where the compression between segments changes sign; carried: what the clamping forces carry;\n\
@@ -21,9 +19,12 @@ pub fn tables(plan: &Plan, curves: &[Curve], paint: Paint) -> String {
 }
 
 /// Whether two curves differ in pressure only.
-fn same_test(a: &Curve, b: &Curve) -> bool {
-    let (a, b) = (&a.summary.held, &b.summary.held);
-    [a.ratio, a.input_rad_s, a.belt_k] == [b.ratio, b.input_rad_s, b.belt_k]
+pub fn same_test(a: &Curve, b: &Curve) -> bool {
+    let key = |curve: &Curve| {
+        let held = &curve.summary.held;
+        [held.ratio, held.input_rad_s, held.belt_k].map(f64::to_bits)
+    };
+    key(a) == key(b)
 }
 
 /// Ratio, speed and temperature of a test in words.

@@ -3,7 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | PC-1 | `map`: p = f(n) (p0 + k u) (r_low/r_p)^a (1 + k_T (80 degC - T)), at most the cap | source: thesis 3.7 in words (rises with ratio, throttle, cold); fitted to 36-40 bar pulling away, 12 bar at 50 km/h |
-//! | PC-2 | f(n) from `slow_factor` at 1000 rpm to 1 at 2000 rpm | source: thesis 5.3.1 (pressure rises steeply there); fitted |
+//! | PC-2 | f(n) from `slow_factor` at `slow_rpm` to 1 at `full_rpm`, above it less by `fall` per 1000 rpm, never below `slow_factor` | source: thesis 5.3.1 (steep rise to 2000 rpm, very gradual fall in high); fitted |
 //! | PC-3 | `torque_following`: F = S \|T\| cos th / (2 mu R_s), thrust ratio below 1 counted, between floor and cap | source: Coulomb limit VA-2 with safety factor S |
 //! | PC-4 | `slip_limited`: the lowest pressure between floor and cap at which belt slip stays below the limit; where none does, that of least slip | derived: slip falls with clamping force until the stretch of the bands (SL-1) outweighs the grip |
 //!
@@ -24,8 +24,10 @@ pub struct MapLaw {
     pub slow_factor: f64,
     /// Speed of the slow factor, rad/s.
     pub slow_rad_s: f64,
-    /// Speed from which the factor is 1, rad/s.
+    /// Speed at which the factor is 1, rad/s.
     pub full_rad_s: f64,
+    /// Fall of the factor with speed above it, s/rad.
+    pub fall_s: f64,
 }
 
 /// The clamp law in force.
@@ -69,7 +71,10 @@ impl MapLaw {
     #[must_use]
     #[inline]
     pub fn pressure_pa(&self, s: &ClampSignals) -> f64 {
-        let fast = self.slow_factor + (1.0 - self.slow_factor) * ramp(s.engine_rad_s, self.slow_rad_s, self.full_rad_s); // PC-2
+        let rise = self.slow_factor + (1.0 - self.slow_factor) * ramp(s.engine_rad_s, self.slow_rad_s, self.full_rad_s);
+        let over = s.engine_rad_s - self.full_rad_s;
+        let fallen = if over > 0.0 { rise - self.fall_s * over } else { rise };
+        let fast = if fallen > self.slow_factor || over <= 0.0 { fallen } else { self.slow_factor }; // PC-2
         fast * (self.base_pa + self.throttle_pa * s.throttle) * s.radius_factor * (1.0 + self.cold_per_k * (353.15 - s.oil_k)) // PC-1
     }
 }
@@ -87,6 +92,7 @@ mod tests {
             slow_factor: 0.68,
             slow_rad_s: 1000.0 * rpm,
             full_rad_s: 2000.0 * rpm,
+            fall_s: 0.009 / (1000.0 * rpm),
         }
     }
 
@@ -99,5 +105,7 @@ mod tests {
         assert!(law().pressure_pa(&ClampSignals { oil_k: 290.0, ..s }) > p);
         assert!(law().pressure_pa(&ClampSignals { engine_rad_s: 160.0, ..s }) > p);
         assert!(law().pressure_pa(&ClampSignals { radius_factor: 0.6, ..s }) > p);
+        let fast = |rad_s: f64| law().pressure_pa(&ClampSignals { engine_rad_s: rad_s, ..s });
+        assert!(fast(400.0) < fast(210.0) && fast(400.0) > 0.98 * fast(210.0));
     }
 }
