@@ -32,7 +32,7 @@ pub struct Args {
     /// Rows of one chapter only, such as 5 or C
     #[arg(long, value_name = "CHAPTER")]
     chapter: Option<String>,
-    /// Rows of one mechanism only, named as the page of the book
+    /// Rows of one mechanism only, named as the page of the book; `all` for every one
     #[arg(long, value_name = "NAME", value_parser = Offering(mechanisms), hide_possible_values = true)]
     mechanism: Option<String>,
     /// Compute for another vehicle; verdicts are shown against the recorded ones
@@ -71,12 +71,15 @@ enum Form {
 
 const FORMS: [(&str, Form); 4] = [("table", Form::Table), ("csv", Form::Csv), ("html", Form::Html), ("md", Form::Markdown)];
 
+/// Every mechanism.
+const ALL: &str = "all";
+
 fn formats() -> Vec<&'static str> {
     FORMS.iter().map(|(name, _)| *name).collect()
 }
 
 fn mechanisms() -> Vec<&'static str> {
-    MECHANISMS.to_vec()
+    MECHANISMS.into_iter().chain([ALL]).collect()
 }
 
 /// Runs the command.
@@ -131,7 +134,8 @@ fn texts(args: &Args) -> Result<Vec<(String, String)>, Vec<Problem>> {
 
 fn wanted(args: &Args, row: &Row) -> bool {
     let is = |asked: &Option<String>, own: &str| asked.as_ref().is_none_or(|asked| asked.eq_ignore_ascii_case(own));
-    is(&args.chapter, &row.chapter) && is(&args.mechanism, &row.mechanism)
+    let mechanism = args.mechanism.clone().filter(|name| name != ALL);
+    is(&args.chapter, &row.chapter) && is(&mechanism, &row.mechanism)
 }
 
 /// A chapter or mechanism that nothing has is a slip of the pen; a known mechanism without rows is not.
@@ -151,6 +155,7 @@ fn filters(args: &Args, files: &[File], problems: &mut Problems) {
         ));
     }
     if let Some(name) = &args.mechanism
+        && name != ALL
         && !MECHANISMS.iter().any(|known| known.eq_ignore_ascii_case(name))
     {
         let hint = inputs::did_you_mean(name, &MECHANISMS).unwrap_or_default();

@@ -8,15 +8,17 @@
 //! |---|---|
 //! | `expr` | the expressions: words, parsing, computing |
 //! | `source` | sources as read; `tables` turns them into tables of numbers |
-//! | `row` | files and rows as read |
+//! | `row`, `checks` | files and rows as read |
 //! | `judge` | sources computed once, rows judged |
 //! | `rule` | computed against printed: the verdict |
-//! | `report`, `html` | JSON, CSV, Markdown, the HTML page |
+//! | `report`, `markdown`, `html` | JSON, CSV, Markdown, the HTML page |
 
+mod checks;
 mod embedded;
 mod expr;
 mod html;
 mod judge;
+mod markdown;
 mod names;
 mod report;
 mod row;
@@ -24,10 +26,12 @@ mod rule;
 mod source;
 mod tables;
 
+pub use checks::MECHANISMS;
 pub use embedded::{COMMON, embedded_rows};
 pub use expr::Computed;
 pub use html::{chapter_title, page};
 pub use judge::{Judged, Report, Subject, judge};
-pub use report::{Json, computed_text, csv, json, markdown, notes_line, unit_text};
-pub use row::{Cause, File, MECHANISMS, Row, Tolerance, read};
+pub use markdown::markdown;
+pub use report::{Json, computed_text, csv, json, notes_line, unit_text};
+pub use row::{Cause, File, Row, Tolerance, read};
 pub use rule::{Printed, Verdict};

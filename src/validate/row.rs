@@ -1,6 +1,7 @@
 //! Files of rows as read: tolerances and sources at the head, then `[[row]]` by `[[row]]`.
 
-use super::expr::{Expr, Fault, Gives, parse};
+use super::checks::{KINDS, complete, mechanism, printed, verdict};
+use super::expr::{Expr, Fault, parse};
 use super::names::FileNames;
 use super::rule::{Printed, Verdict};
 use super::source::{self, Source};
@@ -89,38 +90,6 @@ pub struct File {
     /// Rows in order.
     pub rows: Vec<Row>,
 }
-
-/// Pages of the book that a row may belong to.
-pub const MECHANISMS: [&str; 26] = [
-    "introduction",
-    "geometry",
-    "tension",
-    "bands",
-    "film",
-    "slip",
-    "deflection",
-    "formulations",
-    "pump",
-    "input_shaft",
-    "reverse_clutch",
-    "final_drive",
-    "launch",
-    "ratio_control",
-    "pressure",
-    "manual",
-    "lubricant",
-    "engine",
-    "road_load",
-    "thermal",
-    "maps",
-    "ledgers",
-    "rigs",
-    "vehicle",
-    "hydraulics",
-    "user",
-];
-
-const KINDS: [&str; 5] = ["N", "O", "C", "L", "X"];
 
 /// Reads files: name and text each. `common` comes first and lends its tolerances and sources.
 ///
@@ -224,10 +193,11 @@ impl Head<'_> {
         let compute_text = s.optional_text("compute", "how it is computed").unwrap_or_default();
         let compute = self.expression(s, "compute", &compute_text);
         let unit = s.text_or("unit", "-", "unit of printed and computed numbers");
-        let printed = printed(s, compute.as_ref());
+        let broken = compute.is_none() && !compute_text.trim().is_empty();
+        let printed = printed(s, compute.as_ref(), broken);
         let recorded = verdict(s);
         let reason = s.text_or("reason", "", "why it differs or cannot be compared");
-        let (tolerance, tolerance_widths) = self.tolerance(s, printed, &unit);
+        let (tolerance, tolerance_widths) = self.tolerance(s, printed, &unit, broken);
         let row = Row {
             id,
             place: s.place(if compute_text.is_empty() { "id" } else { "compute" }),
@@ -267,10 +237,10 @@ impl Head<'_> {
         }
     }
 
-    fn tolerance(&self, s: &Section, printed: Option<Printed>, unit: &str) -> (String, [f64; 2]) {
+    fn tolerance(&self, s: &Section, printed: Option<Printed>, unit: &str, broken: bool) -> (String, [f64; 2]) {
         let name = s.optional_text("tolerance", "name of a tolerance at the head of the file");
         let Some(Printed::Range(low, high)) = printed else {
-            if name.is_some() {
+            if name.is_some() && !broken {
                 s.complain("tolerance", "", "an order or sign has no tolerance", "remove it");
             }
             return (String::new(), [0.0; 2]);
@@ -316,87 +286,6 @@ impl Head<'_> {
             compute: self.expression(&table, "compute", &text)?,
         };
         Some(cause)
-    }
-}
-
-fn mechanism(s: &Section) -> String {
-    s.word_or("mechanism", &MECHANISMS, "user", "page of the book").to_owned()
-}
-
-fn verdict(s: &Section) -> Option<Verdict> {
-    let word = s.optional_text("verdict", "recorded verdict")?;
-    let found = Verdict::from_word(&word);
-    if found.is_none() {
-        let close = near(&word, Verdict::WORDS.into_iter());
-        let hint = if close.is_empty() { String::new() } else { format!("did you mean `{}`?", close.join("` or `")) };
-        s.complain("verdict", &Verdict::WORDS.join(", "), &format!("there is no verdict `{word}`"), &hint);
-    }
-    found
-}
-
-fn printed(s: &Section, compute: Option<&Expr>) -> Option<Printed> {
-    let any = Bound::any();
-    let value = s.optional_number("value", any, "printed number");
-    let low = s.optional_number("low", any, "smallest printed number");
-    let high = s.optional_number("high", any, "largest printed number");
-    let expect = s.has("expect").then(|| s.boolean_or("expect", true, "whether the order or sign is printed as holding"));
-    if value.is_some() && (low.is_some() || high.is_some()) {
-        s.complain("value", "value, or low and high", "`value` beside `low` or `high`", "keep one of the forms");
-    }
-    if let (Some(low), Some(high)) = (low, high)
-        && low > high
-    {
-        s.complain("low", "at most `high`", "`low` is above `high`", "swap them");
-    }
-    let numbers = match (value, low, high) {
-        (Some(x), _, _) => Some(Printed::Range(x, x)),
-        (None, None, None) => None,
-        (None, low, high) => Some(Printed::Range(low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY))),
-    };
-    match (compute.map(Expr::gives), numbers) {
-        (Some(Gives::Truth), Some(_)) => {
-            s.complain("compute", "a number or a range", "`compute` gives yes or no, but a number is printed", "compute the number");
-            None
-        }
-        (Some(Gives::Truth), None) => Some(Printed::Truth(expect.unwrap_or(true))),
-        (Some(_), None) => {
-            s.complain("value", "value, or low and high", "`compute` gives a number, but none is printed", "add `value`, `low` or `high`");
-            None
-        }
-        (Some(_), numbers) => {
-            if expect.is_some() {
-                s.complain("expect", "", "`expect` belongs to an order or sign", "remove it");
-            }
-            numbers
-        }
-        (None, _) => None,
-    }
-}
-
-/// What a row needs besides its keys.
-fn complete(s: &Section, row: &Row) {
-    let bare = row.compute_text.trim().is_empty();
-    let compared = row.recorded != Some(Verdict::NotComparable);
-    if bare && compared {
-        let hint = "add an expression, or verdict = \"not comparable\" and a reason";
-        s.complain("compute", "an expression", "the row is not computed", hint);
-    }
-    if !bare && !compared {
-        s.complain("verdict", "agrees, fit, differs", "a computed row cannot be `not comparable`", "remove `compute` or the verdict");
-    }
-    let needs = matches!(row.recorded, Some(Verdict::Differs | Verdict::NotComparable));
-    if needs && row.reason.trim().is_empty() {
-        s.complain("reason", "a sentence", "the verdict needs a reason", "say in a sentence why");
-    }
-    if row.recorded == Some(Verdict::Differs) && !s.has("cause") {
-        let hint = "add a table `cause` with `what` and `compute`: a number that shows the reason";
-        s.complain("cause", "a table", "a row that differs needs its computed cause", hint);
-    }
-    if row.recorded == Some(Verdict::Fit) && row.fitted_to.is_empty() {
-        s.complain("fitted_to", "keys of parameters", "a fit names the parameters that were fitted to it", "");
-    }
-    if row.recorded == Some(Verdict::Agrees) && !row.fitted_to.is_empty() {
-        s.complain("verdict", "fit, differs", "a row to which a parameter was fitted never `agrees`", "record `fit`");
     }
 }
 

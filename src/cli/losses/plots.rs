@@ -22,8 +22,12 @@ pub fn plots(plan: &Plan) -> Vec<(String, String)> {
         ORDER.into_iter().filter(|axis| varied.contains(axis) && plan.grid.of(*axis).len() >= LEAST_ON_MAP && !gears(axis)).collect();
     let rows: Vec<LossRow> = plan.grid.rows(&plan.bench).collect();
     match (on_map.as_slice(), varied.is_empty()) {
-        ([x, y, ..], _) => maps(plan, &Layout::new(plan, &rows, *x, Some(*y))),
-        ([x], _) => vec![("losses_stacked.svg".to_owned(), stack(plan, &Layout::new(plan, &rows, *x, None)))],
+        ([x, rest @ ..], _) if !rest.is_empty() => {
+            // The axis with most values, so that few panels are needed; of equals the first.
+            let y = rest.iter().rev().max_by_key(|axis| plan.grid.of(**axis).len());
+            maps(plan, &Layout::new(plan, &rows, *x, y.copied()))
+        }
+        ([x, ..], _) => vec![("losses_stacked.svg".to_owned(), stack(plan, &Layout::new(plan, &rows, *x, None)))],
         ([], false) => {
             let x = ORDER.into_iter().filter(|axis| varied.contains(axis)).max_by_key(|axis| plan.grid.of(*axis).len());
             vec![("losses_stacked.svg".to_owned(), stack(plan, &Layout::new(plan, &rows, x.unwrap_or(Axis::Ratio), None)))]

@@ -7,7 +7,7 @@
 //! | FD-1 | final drive at the secondary shaft: T = c exp(-n/n0) + c_v (nu/nu_80)^m | fitted to thesis 5.5.1; the fall with speed is measured and unexplained there |
 //! | FD-2 | mesh: \|T_sec - T_wheel/i - FD-1\| = (1 - eta) \|T\| in both directions of power | ASSUMED eta, 0.98 to 0.985 for two helical meshes |
 //!
-//! nu_80 = 11 mm2/s is the viscosity at which the constants hold. Below 25 degC FD-1 is extrapolated: about 11 Nm at the input in
+//! nu_80 = 11 mm2/s is the viscosity at which the constants hold. Below 25 degC FD-1 is extrapolated: about 12 Nm at the input in
 //! overdrive at -10 degC, unmeasured.
 
 /// Kinematic viscosity to which the constants refer, m2/s.

@@ -3,10 +3,14 @@
 //! `docs/validation_format.md` is the user's description. A text is split into words ([`words`]), parsed against the names that exist
 //! ([`parse`]) and computed over tables ([`eval`]); nothing here knows what the sources are.
 
+mod calls;
 mod eval;
 mod parse;
 mod reduce;
 mod words;
+
+#[cfg(test)]
+mod tests;
 
 pub use eval::{Computed, Tables, compute, short};
 pub use parse::{Names, parse};

@@ -1,0 +1,196 @@
+//! The expressions over a table that is known by heart.
+
+use std::cell::Cell;
+use std::rc::Rc;
+
+use super::{Computed, Fault, Gives, Names, Table, Tables, compute, parse};
+
+struct Fixed {
+    left_out: Cell<usize>,
+}
+
+impl Names for Fixed {
+    fn sources(&self) -> Vec<&str> {
+        vec!["low", "trip"]
+    }
+
+    fn columns(&self, source: usize, totals: bool) -> Vec<&'static str> {
+        match (source, totals) {
+            (0, false) => vec!["x", "g", "y"],
+            (1, true) => vec!["fuel"],
+            _ => Vec::new(),
+        }
+    }
+
+    fn keys(&self) -> &[String] {
+        static KEYS: std::sync::OnceLock<Vec<String>> = std::sync::OnceLock::new();
+        KEYS.get_or_init(|| vec!["belt.offset_mm".to_owned()])
+    }
+}
+
+impl Tables for Fixed {
+    fn table(&self, source: usize, _: bool) -> Result<Rc<Table>, String> {
+        // Two groups of y = 2 x + g, and one row at gross slip.
+        let columns = vec![vec![1.0, 2.0, 4.0, 1.0, 2.0, 9.0], vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![2.0, 4.0, 8.0, 3.0, 5.0, 99.0]];
+        let gross = vec![false, false, false, false, false, true];
+        let trip = Table { columns: vec![vec![6.5]], weight: vec![1.0], gross: Vec::new() };
+        Ok(Rc::new(if source == 1 { trip } else { Table { columns, weight: vec![1.0, 1.0, 2.0, 1.0, 1.0, 1.0], gross } }))
+    }
+
+    fn key(&self, _: Option<usize>, _: &str, item: Option<usize>) -> Result<f64, String> {
+        Ok(item.map_or(3.0, |k| k as f64))
+    }
+
+    fn left_out(&self, rows: usize) {
+        self.left_out.set(self.left_out.get() + rows);
+    }
+}
+
+fn fixed() -> Fixed {
+    Fixed { left_out: Cell::default() }
+}
+
+fn of(text: &str) -> Result<Computed, String> {
+    let names = fixed();
+    let expr = parse(text, &names).map_err(|faults| format!("{faults:?}"))?;
+    compute(&expr, &names)
+}
+
+fn number(text: &str) -> f64 {
+    match of(text) {
+        Ok(Computed::Number(x)) => x,
+        other => panic!("{text}: {other:?}"),
+    }
+}
+
+fn truth(text: &str) -> bool {
+    match of(text) {
+        Ok(Computed::Truth(holds, _)) => holds,
+        other => panic!("{text}: {other:?}"),
+    }
+}
+
+#[test]
+fn arithmetic_and_its_order() {
+    for (text, want) in [
+        ("1 + 2 * 3", 7.0),
+        ("(1 + 2) * 3", 9.0),
+        ("2 ^ 3 * 2", 16.0),
+        ("-2 ^ 2", -4.0),
+        ("--3", 3.0),
+        ("10 - 4 - 3", 3.0),
+        ("1e3 / 4", 250.0),
+        ("max(1, min(5, 3), 2)", 3.0),
+        ("abs(-4) + sqrt(9) + tan(45)", 8.0),
+        ("key(belt.offset_mm) + key(low: belt.offset_mm, 2)", 5.0),
+    ] {
+        assert!((number(text) - want).abs() < 1e-12, "{text}: {}", number(text));
+    }
+}
+
+#[test]
+fn reductions_over_rows() {
+    for (text, want) in [
+        ("min(low: y)", 2.0),
+        ("max(low: y)", 8.0),
+        ("mean(low: y)", (2.0 + 4.0 + 16.0 + 3.0 + 5.0) / 6.0),
+        ("sum(low: 1)", 6.0),
+        ("spread(low: y where g == 1)", 2.0),
+        ("first(low: y)", 2.0),
+        ("last(low: y)", 5.0),
+        ("one(low: y where x == 4)", 8.0),
+        ("count(low: y > 3)", 3.0),
+        ("share(low: x == 4)", 2.0 / 6.0),
+        ("slope(low: y over x where g == 0)", 2.0),
+        ("r2(low: y over x where g == 0)", 1.0),
+        ("interp(low: y over x at 3 where g == 0)", 6.0),
+        ("cross(low: y over x at 6 where g == 0)", 3.0),
+        ("max(low: y - prev(y) where g == 0 and x > 1)", 4.0),
+        ("total(trip: 2 * fuel)", 13.0),
+        ("max(low: y where not g == 0)", 5.0),
+    ] {
+        assert!((number(text) - want).abs() < 1e-12, "{text}: {}", number(text));
+    }
+}
+
+#[test]
+fn truths_ranges_and_loops() {
+    assert!(truth("3 > 2 > 1") && !truth("3 > 1 > 2"));
+    assert!(truth("rising(low: y over x by g)") && !truth("falling(low: y over x by g)"));
+    assert!(!truth("rising(low: y over x)") || truth("not 1 > 2"));
+    assert!(truth("all(low: y >= 2)") && truth("any(low: y == 8)") && !truth("any(low: y == 99)"));
+    assert!(truth("each(t in 0, 1: min(low: y where g == t) >= 2)") && !truth("each(t in 0, 1: min(low: y where g == t) > 2)"));
+    assert_eq!(of("range(low: y)"), Ok(Computed::Range(2.0, 8.0)));
+    assert_eq!(of("span(t in 0, 1: min(low: y where g == t))"), Ok(Computed::Range(2.0, 3.0)));
+    assert_eq!(of("max(low: y) > 7"), Ok(Computed::Truth(true, "8 > 7".to_owned())));
+}
+
+#[test]
+fn rows_at_gross_slip_are_left_out_and_counted_once() {
+    let names = fixed();
+    let count = |text: &str| {
+        names.left_out.set(0);
+        drop(compute(&parse(text, &names).expect("parses"), &names));
+        names.left_out.get()
+    };
+    assert_eq!(count("max(low: y)"), 1);
+    assert_eq!(count("max(low: y where g == 0)"), 0);
+    assert_eq!(count("range(low: y)"), 1);
+    assert_eq!(count("all(low: y > 0)"), 1);
+}
+
+#[test]
+fn what_cannot_be_computed_says_why() {
+    for (text, why) in [
+        ("one(low: y)", "5 rows where one was expected"),
+        ("max(low: y where x > 5)", "no row is left"),
+        ("max(low: y where x > 8)", "gross slip"),
+        ("cross(low: y over x at 50 where g == 0)", "does not pass 50"),
+        ("interp(low: y over x at 7 where g == 0)", "outside"),
+        ("1 / 0", "not a finite number"),
+        ("slope(low: y over x where x == 4)", "two different places"),
+        ("ln(-1) > 0", "does not exist"),
+    ] {
+        let said = of(text).expect_err(text);
+        assert!(said.contains(why), "{text}: {said}");
+    }
+}
+
+fn faults(text: &str) -> Vec<Fault> {
+    parse(text, &fixed()).expect_err(text)
+}
+
+#[test]
+fn faults_have_their_place_and_a_hint() {
+    let unknown = faults("max(lwo: y) + max(low: z) + min(low: gg)");
+    let places: Vec<(usize, &str)> = unknown.iter().map(|f| (f.at, f.word.as_str())).collect();
+    assert_eq!(places, [(4, "lwo"), (23, "z"), (37, "gg")]);
+    assert!(unknown[0].hint.contains("`low`") && unknown[1].hint.contains("known here: x, g, y"), "{unknown:?}");
+    for (text, message) in [
+        ("max(low: y", "expected `)`"),
+        ("mean(low y)", "the name of a source"),
+        ("y", "outside of any source"),
+        ("maxx(low: y)", "not known"),
+        ("1 +", "expected a number"),
+        ("1 § 2", "no meaning"),
+        ("slope(low: y)", "another form"),
+        ("2 * range(low: y)", "stand alone"),
+        ("abs(1, 2)", "one argument"),
+        ("each(low: y)", "expected `in`"),
+        ("1 2", "an operator or the end"),
+        ("total(low: y)", "not known"),
+        ("key(belt.offst_mm)", "not known"),
+    ] {
+        let found = faults(text);
+        assert!(found.iter().any(|f| f.message.contains(message)), "{text}: {found:?}");
+    }
+    assert!(faults(&"(".repeat(5000))[0].message.contains("too deep"));
+    assert!(parse(&"-".repeat(5000), &fixed()).is_err());
+}
+
+#[test]
+fn a_total_gives_what_its_value_gives() {
+    let names = fixed();
+    assert_eq!(parse("total(trip: fuel)", &names).map(|e| e.gives()), Ok(Gives::Number));
+    assert_eq!(parse("total(trip: fuel) > 1", &names).map(|e| e.gives()), Ok(Gives::Truth));
+}
