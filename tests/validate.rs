@@ -181,6 +181,14 @@ fn users_rows_reach_every_source() {
     assert!(computed(3) > 0.0);
     assert!((computed(4) - 7.2).abs() < 1e-9, "the shipped fluid's KV100: {}", computed(4));
     assert!((computed(5) - 3.0).abs() < 1e-12);
+    // A vehicle file of the user's stands beside the rows.
+    let car = include_str!("../vehicles/rover_216_cvt.toml").replace("band_offset_mm = { value = 3.0", "band_offset_mm = { value = 2.0");
+    let of_car = row("own", &format!("{wide}\"key(mine: transmission.cvt.belt.band_offset_mm)\""));
+    let mine = Own::new(&format!("{SOURCES}\n[sources.mine]\nsource = \"vehicle\"\nvehicle = \"car.toml\"\n{of_car}"));
+    std::fs::write(mine.dir.path().join("car.toml"), car).unwrap();
+    let output = mine.run(&["--json"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
+    assert!((found["rows"][0]["computed_low"].as_f64().unwrap() - 2.0).abs() < 1e-12);
     let beside = cvtcycle(&["validate", "--json", "--rows", &own.path()]);
     let beside: Value = serde_json::from_slice(&beside.stdout).unwrap();
     assert!(beside["rows"].as_array().unwrap().len() > 100);

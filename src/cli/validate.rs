@@ -19,9 +19,10 @@ Examples:
   cvtcycle validate --set transmission.cvt.pump.displacement_cc_rev=12
   cvtcycle validate --format html > validation.html
 
-Verdicts: `agrees` (within what is printed and the tolerance), `fit` (the same, but a parameter was fitted to it), `differs` (with its
-reason), `not comparable`. Exit code 1: the verdict of a row is another one than recorded. The rows are TOML files, described in
-docs/validation_format.md; --rows adds your own measurements to them.")]
+Verdicts: `agrees` (within what is printed and the tolerance), `fit` (the same, but a parameter
+was fitted to it), `differs` (with its reason), `not comparable`. Exit code 1: the verdict of a row
+is another one than recorded. The rows are TOML files, described in docs/validation_format.md;
+--rows adds your own measurements to them.")]
 pub struct Args {
     /// Own rows beside the program's; repeatable
     #[arg(long, value_name = "FILE.toml")]

@@ -165,3 +165,38 @@ fn count_in_words(least: usize, most: usize) -> String {
         (least, most) => format!("{least} to {most} numbers"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Bound, Document, Reader};
+    use super::range_values;
+
+    #[test]
+    fn ranges_have_both_ends() {
+        assert_eq!(range_values("1..2:0.5"), Some(vec![1.0, 1.5, 2.0]));
+        assert_eq!(range_values(" 1 .. 2 : 0.4 "), Some(vec![1.0, 1.4, 1.8, 2.0]));
+        assert_eq!(range_values("3..3:1"), Some(vec![3.0]));
+        for bad in ["1..2", "2..1:1", "1..2:0", "1..2:-1", "0..1:1e-9", "a..2:1", "1..inf:1"] {
+            assert_eq!(range_values(bad), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn tables_of_a_list_are_documents_with_their_places() {
+        let mut document =
+            Document::parse("x.toml", "a = 1\n[[row]]\nspeed_rpm = \"0..60:30\"\n[[row]]\nspeed_rpm = [30, 9e9]\n").expect("TOML");
+        let rows = document.take_tables("row");
+        assert_eq!((rows.len(), document.take_tables("row").len(), document.take_tables("a").len()), (2, 0, 0));
+        let read = |k: usize| {
+            let reader = Reader::new(&rows[k]);
+            let values = reader.root().grid("speed_rpm", Bound::closed(0.0, 100.0), "speed");
+            reader.root().text("name", "name");
+            (values, reader.finish().expect_err("no name"))
+        };
+        let (values, problems) = read(0);
+        assert!(values.is_some_and(|v| v.len() == 3 && (v[2] - 2.0 * std::f64::consts::PI).abs() < 1e-12));
+        assert_eq!((problems.len(), problems[0].place.line, problems[0].place.line_text.as_str()), (1, 2, "[[row]]"));
+        let (_, problems) = read(1);
+        assert_eq!(problems.iter().map(|p| p.place.line).collect::<Vec<_>>(), [4, 5]);
+    }
+}

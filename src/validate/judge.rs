@@ -78,9 +78,7 @@ pub fn judge(files: &[File], subject: &Subject, wanted: impl Fn(&Row) -> bool) -
         problems.append(&mut p);
         return Err(problems);
     }
-    if let Err(found) = store.conditions(None) {
-        return Err(found);
-    }
+    store.conditions(None)?;
     for source in files.iter().flat_map(|file| &file.sources) {
         let loaded = store.setup(Some(source)).and_then(|_| store.conditions(Some(source)));
         if let Err(found) = loaded {

@@ -7,7 +7,7 @@ use super::rule::{Printed, Verdict};
 use super::source::{self, Source};
 use crate::config::{Bound, Document, Place, Problem, Reader, Section, near};
 use crate::rig::transmission::Conditions;
-use crate::setup::catalogue;
+use crate::setup::{catalogue, is_path};
 
 /// A named tolerance.
 #[derive(Clone, Debug, PartialEq)]
@@ -142,6 +142,14 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec
     read.sources = source::read(&root.table("sources"), &lent.sources);
     if let Err(mut p) = reader.finish() {
         problems.append(&mut p);
+    }
+    // A path in a file is relative to that file.
+    for named in read.sources.iter_mut().flat_map(|source| [&mut source.vehicle, &mut source.lubricant]).flatten() {
+        if is_path(named)
+            && let Some(folder) = std::path::Path::new(name).parent()
+        {
+            *named = folder.join(&*named).to_string_lossy().into_owned();
+        }
     }
     read.tolerances.extend(lent.tolerances.iter().cloned());
     read.sources.extend(lent.sources.iter().cloned());

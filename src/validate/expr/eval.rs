@@ -240,19 +240,21 @@ fn call(function: Function, list: &[f64]) -> f64 {
     }
 }
 
-/// A number with four significant figures.
+/// A number with four significant figures. What is below 1e-9 is rounding in every unit of the rows and shown as 0.
 #[must_use]
 pub fn short(x: f64) -> String {
     let size = x.abs();
     if !x.is_finite() {
         return "-".to_owned();
     }
-    if size > 0.0 && !(1e-3..1e6).contains(&size) {
+    if size < 1e-9 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e6).contains(&size) {
         return format!("{x:.3e}");
     }
     let whole = if size >= 1.0 { size.log10().floor() as i32 + 1 } else { 0 };
     let decimals = usize::try_from((4 - whole).clamp(0, 4)).unwrap_or(0);
     let text = format!("{x:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text.trim_start_matches(['-', '0', '.']).is_empty() { "0".to_owned() } else { text.to_owned() }
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
