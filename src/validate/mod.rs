@@ -2,7 +2,7 @@
 //!
 //! Rows are data: `validation/*.toml`, described in `docs/validation_format.md`. A file has named tolerances and sources at its head and
 //! then its rows; a row says what is printed, how it is computed (an expression over sources) and which verdict is recorded. The verdict
-//! follows from one rule ([`rule`]) for all rows; no row has code of its own.
+//! follows from one rule (module `rule`) for all rows; no row has code of its own.
 //!
 //! | file | what stands there |
 //! |---|---|
