@@ -182,6 +182,8 @@ fn tables() {
     let gears = good(&["--vehicle", "rover_216_5mt", "--torque", "50"]);
     assert_eq!(gears.lines().filter(|line| line.trim_start().starts_with(['1', '2', '3', '4', '5'])).count(), 5, "{gears}");
     assert_eq!(good(&["--quiet"]), "");
+    assert_eq!(good(&["--quiet", "--json"]), good(&["--json"]));
+    assert_eq!(good(&["--quiet", "--as-map", "pump"]), good(&["--as-map", "pump"]));
     assert!(good(&["--speed", "1000..2000:10"]).contains("1 more points"));
 }
 

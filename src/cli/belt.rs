@@ -32,9 +32,10 @@ Example, a point in low ratio as the thesis's own program has it:
 Columns read: ratio (I = R_sec / R_pri), input_speed_rpm, secondary_pressure_bar,
 output_torque_nm (at the secondary pulley); where given, in place of the vehicle's values:
 formulation, pulley_half_angle_deg, wedge_half_angle_deg, band_offset_mm, band_friction,
-segment_friction, band_count, primary_on_stop (1: no primary deflection, 0: full),
-belt_temp_degc. An empty cell counts as not given. `case` is passed through. All losses are
-torques at the primary shaft.
+segment_friction, band_count, primary_on_stop (1: no primary deflection, 0: full; not given:
+full in appendix_c, else falling to none towards the vehicle's lowest ratio), belt_temp_degc.
+An empty cell counts as not given. `case` is passed through. All losses are torques at the
+primary shaft.
 
 Without belt_temp_degc friction stands as at 85 degC and no film lifts the bands; with it, the
 fluid's law holds, and band_friction is its value at 85 degC. appendix_c and chapter_8 start

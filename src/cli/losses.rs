@@ -84,7 +84,7 @@ pub struct Args {
     /// Replace the files of an earlier run in the --out directory
     #[arg(long, requires = "out")]
     force: bool,
-    /// Print nothing but problems
+    /// Print no table and no notes; --json and --as-map still print
     #[arg(long, short)]
     quiet: bool,
 }
@@ -124,10 +124,10 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     };
     let rows = || plan.grid.rows(&plan.bench).map(counted);
     let mut stdout = String::new();
-    if args.quiet {
-        rows().for_each(drop);
-    } else if args.json {
+    if args.json {
         stream::to_stdout(|out| files::write_json(out, &plan, rows()))?;
+    } else if args.quiet {
+        rows().for_each(drop);
     } else if args.format == Format::Csv {
         stream::to_stdout(|out| files::write_csv(out, &plan.columns, rows()))?;
     } else {
@@ -145,9 +145,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
 fn map(args: &Args, plan: &Plan, part: MapPart, out: Option<cvtcycle::results::files::OutputDir>) -> Reply {
     let write = |out: &mut dyn io::Write| write_map(out, &plan.bench, part, &plan.grid);
     let Some(mut dir) = out else {
-        if !args.quiet {
-            stream::to_stdout(write)?;
-        }
+        stream::to_stdout(write)?;
         return Ok(Answer::default());
     };
     let written = files::write_map(&mut dir, plan, args.as_map.as_deref().unwrap_or_default(), write).and_then(|()| files::commit(dir));

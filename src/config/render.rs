@@ -8,6 +8,8 @@ use super::problem::{Place, Problem};
 
 /// Widest text that is shown without being cut.
 const WIDTH: usize = 120;
+/// A longer one is no name and would hide the message.
+const LONGEST_KEY: usize = 80;
 
 /// All problems with the lines they stand in, and their number on the last line. `colour` adds
 /// terminal colours. Empty without problems.
@@ -35,6 +37,9 @@ fn group(problem: &Problem) -> Group<'static> {
     let place = &problem.place;
     let has_line = place.line > 0 && !place.line_text.is_empty();
     let mut title = visible(&problem.message);
+    if let Some(key) = unsaid_key(problem) {
+        title = format!("{}: {title}", visible(key));
+    }
     if !has_line && !place.file.is_empty() {
         title = match place.line {
             0 => format!("{}: {title}", visible(&place.file)),
@@ -56,6 +61,13 @@ fn group(problem: &Problem) -> Group<'static> {
         group = group.element(Level::HELP.message(visible(&problem.hint)));
     }
     group
+}
+
+/// The key of a value in a file where the message leaves it open, as that of a table cell does: the line of column names is far away.
+fn unsaid_key(problem: &Problem) -> Option<&str> {
+    let key = problem.key.as_str();
+    let said = key.is_empty() || key.len() > LONGEST_KEY || problem.message.contains(key);
+    (problem.place.line > 0 && !said).then_some(key)
 }
 
 /// The bytes of the line that the caret underlines.
@@ -105,6 +117,17 @@ mod tests {
         assert!(text.contains("--set a=2: `belt.band_offset_mm` is out of range"), "{text}");
         assert!(text.contains("99.0; allowed: 0.5 to 10 mm"), "{text}");
         assert!(text.ends_with("2 problems in --set a=2, car.toml\n"), "{text}");
+    }
+
+    #[test]
+    fn a_cell_is_named_by_its_column() {
+        let cell = Problem { message: "this is not a number".into(), key: "speed_kmh".into(), ..problem() };
+        assert!(render(std::slice::from_ref(&cell), false).starts_with("error: speed_kmh: this is not a number\n"));
+        let far = Problem { place: Place { line_text: String::new(), ..cell.place.clone() }, ..cell.clone() };
+        assert!(render(&[far], false).starts_with("error: car.toml:7: speed_kmh: this is not a number\n"));
+        let long = Problem { key: "k".repeat(1000), ..cell };
+        assert!(render(&[long], false).starts_with("error: this is not a number\n"));
+        assert_eq!(render(&[problem()], false).matches("belt.band_offset_mm").count(), 1);
     }
 
     #[test]

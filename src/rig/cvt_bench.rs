@@ -7,6 +7,7 @@ use crate::simulate::Car;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::cvt::controller::ClampSignals;
 use crate::transmission::cvt::spin::SpinNow;
+use crate::transmission::cvt::variator::point::LIMIT_SLACK;
 use crate::transmission::cvt::variator::point::PointStatus;
 use crate::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, BeltState, Slip, belt_point, belt_state, sliding_speed_m_s};
 use crate::transmission::loss_map::{LossMap, MapPoint};
@@ -17,8 +18,6 @@ const MOST_PASSES: u32 = 120;
 const DAMPED_FROM: u32 = 30;
 /// It stops when slip and belt temperature (K) move less than this, and the pressure (Pa) 1e5 times as much.
 const STILL: f64 = 1e-10;
-/// A ratio may lie outside the vehicle's limits by this share before it is flagged: the printed 2.417 against the derived 2.4169.
-const LIMIT_SLACK: f64 = 1e-3;
 
 /// What the fixed point looks for.
 #[derive(Clone, Copy)]

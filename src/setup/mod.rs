@@ -5,6 +5,7 @@
 pub mod assumptions;
 pub mod catalogue;
 mod embedded;
+mod other_box;
 pub mod equations;
 pub mod tables;
 
@@ -182,12 +183,21 @@ fn stem(word: &str) -> String {
 pub fn load_lubricant(word: &str, option: &str, sets: &[String], prefix: &str) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
     let (file, text, _) = text_of(word, Kind::Lubricant, option)?;
     let mut document = Document::parse(&file, &text)?;
-    apply(&mut document, sets, |key| key.strip_prefix(prefix).map(str::to_owned))?;
+    let as_given = |problems: Vec<Problem>| problems.into_iter().map(|problem| whole_option(problem, prefix)).collect::<Vec<_>>();
+    apply(&mut document, sets, |key| key.strip_prefix(prefix).map(str::to_owned)).map_err(as_given)?;
     let reader = Reader::new(&document);
     let lubricant = lubricant::load(&reader.root(), &stem(word));
-    let keys = reader.finish()?;
+    let keys = reader.finish().map_err(as_given)?;
     let keys = keys.into_iter().map(|k| KeyInfo { key: format!("{prefix}{}", k.key), ..k }).collect();
     Ok((lubricant, keys))
+}
+
+/// A problem of an override of a fluid, with the option as the user wrote it: the fluid's own keys have no prefix.
+fn whole_option(mut problem: Problem, prefix: &str) -> Problem {
+    if let Some(assignment) = problem.place.file.strip_prefix("--set ") {
+        problem.place.file = format!("--set {prefix}{assignment}");
+    }
+    problem
 }
 
 /// Applies those overrides whose key `pick` accepts (and may rename).
@@ -214,6 +224,10 @@ pub fn load(word: &str, option: &str, options: &Options) -> Result<Setup, Vec<Pr
     let mut problems = Vec::new();
     let mut document = Document::parse(&file, &text)?;
     let own = |key: &str| (!FLUIDS.iter().any(|f| key.starts_with(f))).then(|| key.to_owned());
+    let strangers = other_box::strangers(&document, &options.set, &stem(word));
+    if !strangers.is_empty() {
+        return Err(strangers); // set all the same, they would call for a whole box
+    }
     if let Err(mut p) = apply(&mut document, &options.set, own) {
         problems.append(&mut p);
     }

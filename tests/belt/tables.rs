@@ -78,8 +78,8 @@ fn bad_tables_are_refused_with_their_place() {
         (four("0.5,2000,12"), vec!["this row has 3 values"]),
         (four("0.5,\"2000,12,10"), vec!["quote is not closed", "standard input:2:5"]),
         (row("0.5,\"2000,5\",12,10,,,"), vec!["write a decimal point", "standard input:3:6"]),
-        (row("0.5,-1,12,10,,,"), vec!["out of range", "0 to 100000 rpm", "standard input:3:5"]),
-        (row("0.5,2000,-12,x,,,"), vec!["0 to 10000 bar", "this is not a number", "standard input:3:14", "2 problems"]),
+        (row("0.5,-1,12,10,,,"), vec!["input_speed_rpm: this value is out of range", "0 to 100000 rpm", "standard input:3:5"]),
+        (row("0.5,2000,-12,x,,,"), vec!["0 to 10000 bar", "output_torque_nm: this is not a number", "standard input:3:14", "2 problems"]),
         (row("0.5,2000,NaN,inf,,,"), vec!["this is not a number", "this is not a finite number"]),
         (row("0.5,2000,,10,,,"), vec!["the value is missing", "standard input:3:10"]),
         (row("0.5,2000,12,10,apendix_c,,"), vec!["formulation is not known", "did you mean appendix_c"]),
@@ -104,6 +104,8 @@ fn bad_tables_are_refused_with_their_place() {
 
 #[test]
 fn bad_options_and_bad_rows_are_told_together() {
+    let said = refused(format!("{NAMES}\n0.5,2000,12,10\n").as_bytes(), &["--set", "lubricant.friction.lift_off.enable=false"]);
+    assert!(said.contains("--set lubricant.friction.lift_off.enable=false: unknown key"), "{said}");
     let bad = format!("{NAMES}\n0.5,2000,12,x\n");
     let said = refused(bad.as_bytes(), &["--formulation", "smoth", "--vehicle", "rover_216_ctv", "--band-speed", "7"]);
     for part in ["smoth", "rover_216_ctv", "--band-speed", "standard input:2:13", "4 problems"] {

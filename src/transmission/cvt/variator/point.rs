@@ -86,6 +86,9 @@ impl BeltPoint {
     }
 }
 
+/// A ratio may lie outside the vehicle's limits by this share before it is flagged: the printed 2.417 against the derived 2.4169.
+pub const LIMIT_SLACK: f64 = 1e-3;
+
 /// What limits a vehicle's variator, for the flags of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLimits {
@@ -120,7 +123,7 @@ impl PointFlags {
     pub fn new(point: &BeltPoint, load: &BeltLoad, pressure_pa: f64, belt_k: f64, limits: &PointLimits) -> Self {
         let ratio = point.geometry.ratio;
         let set = [
-            ratio < limits.ratio[0] * (1.0 - 1e-9) || ratio > limits.ratio[1] * (1.0 + 1e-9),
+            ratio < limits.ratio[0] * (1.0 - LIMIT_SLACK) || ratio > limits.ratio[1] * (1.0 + LIMIT_SLACK),
             load.output_torque_nm.abs() > point.capacity_nm,
             point.status == PointStatus::GrossSlip,
             point.status == PointStatus::NoActiveArc,
