@@ -78,6 +78,21 @@ fn the_shipped_rows_keep_their_recorded_verdicts() {
 }
 
 #[test]
+fn the_readme_counts_the_verdicts_of_today() {
+    let (_, all) = json(&["validate", "--json"]);
+    let rows = all["rows"].as_array().unwrap();
+    let of = |verdict: &str| rows.iter().filter(|row| row["verdict"] == verdict).count();
+    let readme = include_str!("../README.md").replace('\n', " ");
+    let readme = readme.split_whitespace().collect::<Vec<_>>().join(" ");
+    for words in [
+        format!("{} in all: {} agree, {} are fits", rows.len(), of("agrees"), of("fit")),
+        format!("{} differ, each with reason and computed cause, {} cannot be compared", of("differs"), of("not comparable")),
+    ] {
+        assert!(readme.contains(&words), "README.md should say: {words}");
+    }
+}
+
+#[test]
 fn another_parameter_moves_rows_and_fails() {
     for set in ["transmission.cvt.pump.displacement_cc_rev=11.7", "lubricant.friction.band=0.1"] {
         let output = cvtcycle(&["validate", "--json", "--set", set]);
