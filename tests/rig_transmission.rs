@@ -428,6 +428,18 @@ fn a_belt_that_does_not_fit_is_refused() {
 }
 
 /// A point outside the models' validity is computed and flagged, in the tables and in the files.
+/// Thesis 5.3.1 prints the range of 25 to 95 degC: colder points are no part of what stands beside it.
+#[test]
+fn val_printed_totals_are_held_against_their_own_temperatures() {
+    let here = |temps: &str| {
+        let (code, told, _) = run(&["--test", "steady", "--ratio", "low", "--temp", temps]);
+        assert_eq!(code, 0);
+        let line = told.lines().find(|line| line.starts_with("low")).unwrap().to_owned();
+        line.split("  ").filter(|cell| !cell.is_empty()).last().unwrap().trim().to_owned()
+    };
+    assert_eq!(here("-10,25,95"), here("25,95"));
+}
+
 #[test]
 fn points_outside_validity_are_flagged() {
     let arguments = ["--ratio", "0.35", "--speed", "2000", "--temp", "50", "--test"];

@@ -390,3 +390,24 @@ fn the_books_fragments_are_up_to_date() {
     stale.sort();
     assert!(stale.is_empty(), "out of date: {stale:?}");
 }
+
+/// One problem, not one for every key that a manual box does not have; own rows may look into it.
+#[test]
+fn the_programs_rows_need_a_cvt() {
+    let output = cvtcycle(&["validate", "--vehicle", "rover_216_5mt"]);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.contains("manual box") && told.contains("--only-rows") && told.contains("1 problem in --vehicle"), "{told}");
+    let own = Own::new(&row("own.1", "kind = \"O\"\ncompute = \"2 > 1\""));
+    assert_eq!(own.run(&["--vehicle", "rover_216_5mt"]).status.code(), Some(0));
+}
+
+/// The page says how wide "agrees" is: 3 to 4 within 0.5 on both sides, a share of each end for itself.
+#[test]
+fn the_page_shows_the_tolerance() {
+    let head = "[tolerances.a]\nwidth = 0.5\nfrom = \"x\"\n[tolerances.b]\nshare = 0.1\nfrom = \"x\"\n";
+    let one = row("own.1", "kind = \"N\"\nvalue = 3\ntolerance = \"a\"\ncompute = \"3\"");
+    let two = row("own.2", "kind = \"N\"\nlow = 2\nhigh = 4\ntolerance = \"b\"\ncompute = \"3\"");
+    let page = text(&Own::new(&format!("{head}{one}{two}")).run(&["--format", "html"]).stdout);
+    assert!(page.contains("(± 0.5)") && page.contains("(-0.2, +0.4)"), "{page}");
+}

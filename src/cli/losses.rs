@@ -84,7 +84,7 @@ pub struct Args {
     /// Replace the files of an earlier run in the --out directory
     #[arg(long, requires = "out")]
     force: bool,
-    /// Print no table and no notes; --json and --as-map still print
+    /// Print no table and no notes; --json, --format csv and --as-map still print
     #[arg(long, short)]
     quiet: bool,
 }
@@ -126,10 +126,10 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     let mut stdout = String::new();
     if args.json {
         stream::to_stdout(|out| files::write_json(out, &plan, rows()))?;
-    } else if args.quiet {
-        rows().for_each(drop);
     } else if args.format == Format::Csv {
         stream::to_stdout(|out| files::write_csv(out, &plan.columns, rows()))?;
+    } else if args.quiet {
+        rows().for_each(drop);
     } else {
         stdout = text::table(&plan, rows(), context.paint);
         stdout += &written.as_ref().map_or_else(String::new, files::Written::text);

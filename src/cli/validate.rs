@@ -4,6 +4,7 @@ mod text;
 
 use cvtcycle::config::{Problem, decode};
 use cvtcycle::results::files::OutputDir;
+use cvtcycle::setup;
 use cvtcycle::validate::{COMMON, File, MECHANISMS, Report, Row, Subject, csv, embedded_rows, json, judge, markdown, page, read};
 
 use super::Context;
@@ -57,7 +58,7 @@ pub struct Args {
     /// Replace the files of an earlier run in the --out directory
     #[arg(long, requires = "out")]
     force: bool,
-    /// Print nothing but problems and moved rows
+    /// Print no table, only problems and moved rows; --json and other forms still print
     #[arg(long, short)]
     quiet: bool,
 }
@@ -94,6 +95,9 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     }
     let out = args.out.as_ref().map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
     let out = out.and_then(|dir| problems.take(dir));
+    if !args.only_rows {
+        manual(args, &mut problems);
+    }
     problems.finish()?;
     let subject = Subject { vehicle: args.vehicle.clone(), lubricant: args.lubricant.clone(), set: args.set.clone() };
     let report = judge(&files, &subject, |row| wanted(args, row))?;
@@ -105,7 +109,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     let code = if moved.is_empty() { 0 } else { FAILED };
     let stdout = match form {
         _ if args.json => json_text(&json(&report))?,
-        _ if args.quiet => String::new(),
+        Form::Table if args.quiet => String::new(),
         Form::Table => text::tables(&report, context.paint) + &written,
         Form::Csv => csv(&report),
         Form::Html => html(&report).map_err(|problem| vec![problem])?,
@@ -114,6 +118,17 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     // The table shows them itself.
     let stderr = if form == Form::Table && !args.json && !args.quiet { String::new() } else { moved };
     Ok(Answer { stdout, stderr, code })
+}
+
+/// The program's own rows look into a CVT: with a manual box every one of their sources would be a problem.
+fn manual(args: &Args, problems: &mut Problems) {
+    // What is wrong with the vehicle itself is told with its overrides.
+    let vehicle = setup::load(&args.vehicle, "--vehicle", &setup::Options::default());
+    if vehicle.is_ok_and(|setup| !setup.transmission().is_cvt()) {
+        let hint = "`--only-rows` with `--rows FILE.toml` holds your own rows against it".to_owned();
+        let message = format!("`{}` has a manual box", args.vehicle);
+        problems.add(inputs::bad_value("--vehicle", &args.vehicle, "a vehicle with a CVT for the program's own rows", message, hint));
+    }
 }
 
 fn embedded_name(name: &str) -> String {

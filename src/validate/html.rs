@@ -2,6 +2,7 @@
 
 use askama::Template;
 
+use super::expr::short;
 use super::judge::{Judged, Report};
 use super::report::{Counts, computed_text, notes, unit_text};
 use super::rule::Verdict;
@@ -30,6 +31,7 @@ struct Line {
     what: String,
     condition: String,
     printed: String,
+    tolerance: String,
     computed: String,
     unit: String,
     verdict: &'static str,
@@ -85,6 +87,19 @@ pub fn chapter_title(name: &str) -> String {
     }
 }
 
+/// Widths on both sides of what is printed; empty where there are none, or next to none.
+fn tolerance(judged: &Judged) -> String {
+    let [below, above] = judged.row.tolerance_widths;
+    let widest = if below > above { below } else { above };
+    if judged.row.tolerance.is_empty() || widest < 1e-3 {
+        String::new()
+    } else if (below - above).abs() <= 1e-9 * widest {
+        format!("± {}", short(above))
+    } else {
+        format!("-{}, +{}", short(below), short(above))
+    }
+}
+
 fn line(judged: &Judged) -> Line {
     let row = &judged.row;
     let (verdict, class) = match judged.verdict {
@@ -98,6 +113,7 @@ fn line(judged: &Judged) -> Line {
         what: row.what.clone(),
         condition: row.condition.clone(),
         printed: row.printed_text.clone(),
+        tolerance: tolerance(judged),
         computed: computed_text(judged),
         unit: unit_text(&row.unit).to_owned(),
         verdict,

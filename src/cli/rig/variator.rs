@@ -42,7 +42,7 @@ pub struct Args {
     /// Torque at the secondary pulley, Nm [default: from 0 to past what the belt carries]
     #[arg(long, value_name = "NM", allow_hyphen_values = true)]
     torque: Option<String>,
-    /// Pulses a turn of the shafts' speed pick-ups, for the counting resolution; printed nowhere
+    /// Pulses a turn of the shafts' speed pick-ups, for the counting resolution; not printed for this rig (60 on the first one, 4.2.4)
     #[arg(long, value_name = "N", default_value = "60", allow_hyphen_values = true)]
     pulses: String,
     /// Transmission oil
@@ -66,7 +66,7 @@ pub struct Args {
     /// Replace the files of an earlier run in the --out directory
     #[arg(long, requires = "out")]
     force: bool,
-    /// Print nothing but problems
+    /// Print no table, only problems; --json and --format csv still print
     #[arg(long, short)]
     quiet: bool,
 }
@@ -96,7 +96,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     let mut stdout = String::new();
     if args.json {
         stream::to_stdout(|out| files::write_json(out, &plan, &curves))?;
-    } else if args.format == Format::Csv && !args.quiet {
+    } else if args.format == Format::Csv {
         stream::to_stdout(|out| files::write_points(out, &curves))?;
     } else if !args.quiet {
         stdout = text::tables(&plan, &curves, context.paint);

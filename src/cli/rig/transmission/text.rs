@@ -17,6 +17,8 @@ pub const MEETING_NM: f64 = 0.1;
 const SPLIT_RPM: f64 = 2500.0;
 /// Ratio, speeds in rpm, and totals in Nm that thesis 5.3.1 prints.
 const PRINTED: [(&str, f64, f64, f64, f64); 2] = [("low", 1000.0, 4000.0, 8.5, 13.0), ("high", 2000.0, 4000.0, 9.0, 13.0)];
+/// Bulk oil of these totals, degC.
+const PRINTED_DEGC: [f64; 2] = [25.0, 95.0];
 /// Ratio, bulk oil in degC and torque loss in Nm of the warm-up that thesis 5.3.2 prints; the first one at the start.
 const PRINTED_TRANSIENT: [(&str, Option<f64>, f64); 5] =
     [("low", None, 12.5), ("low", Some(80.0), 11.0), ("low", Some(100.0), 11.25), ("high", None, 11.0), ("high", Some(100.0), 9.25)];
@@ -90,6 +92,12 @@ fn split_rpm<'a>(sets: impl Iterator<Item = &'a BenchPoint>) -> f64 {
     sets.map(rpm).min_by(|a, b| (a - SPLIT_RPM).abs().total_cmp(&(b - SPLIT_RPM).abs())).unwrap_or(SPLIT_RPM)
 }
 
+/// Whether the printed totals hold for an oil temperature, but for rounding on its way to kelvin.
+fn printed_oil(degc: f64) -> bool {
+    let [low, high] = PRINTED_DEGC;
+    (low - 1e-6..=high + 1e-6).contains(&degc)
+}
+
 fn steady(job: &Job, points: &[SteadyPoint]) -> String {
     if points.is_empty() {
         return String::new();
@@ -102,7 +110,8 @@ fn steady(job: &Job, points: &[SteadyPoint]) -> String {
         let (loss, bar) = ranges(points, ratio);
         let speeds = Range::of(on().map(|p| rpm(&p.set)));
         let printed = PRINTED.iter().find(|p| p.0 == name).map(|(_, from, to, low, high)| {
-            let here = Range::of(on().filter(|p| (*from..=*to).contains(&rpm(&p.set))).map(|p| p.answer.total_nm()));
+            let tested = |p: &&SteadyPoint| (*from..=*to).contains(&rpm(&p.set)) && printed_oil(oil_degc(&p.set));
+            let here = Range::of(on().filter(tested).map(|p| p.answer.total_nm()));
             let text = |low: &f64, high: &f64| format!("{} to {}", plain(*low), plain(*high));
             [text(low, high), text(from, to), here.text(2)]
         });
@@ -207,7 +216,7 @@ fn transients(job: &Job, loops: &[Loop]) -> String {
     let mut text = grid.text();
     for l in loops {
         let name = job.conditions.ratio_name(l.ratio);
-        let place = |degc: &Option<f64>| degc.map_or_else(|| "at the start".to_owned(), |t| format!("at {} degC", plain(t)));
+        let place = |degc: &Option<f64>| degc.map_or_else(|| "Nm at the start".to_owned(), |t| format!("at {} degC", plain(t)));
         let printed: Vec<String> =
             PRINTED_TRANSIENT.iter().filter(|p| p.0 == name).map(|(_, degc, nm)| format!("{} {}", plain(*nm), place(degc))).collect();
         let widest = l.widest().map_or_else(|| NONE.to_owned(), |(gap, k)| format!("{} Nm at {:.0} degC", signed(gap, 2), k - ZERO_DEGC_K));
@@ -217,9 +226,9 @@ fn transients(job: &Job, loops: &[Loop]) -> String {
             fixed(times.high - times.low, 0)
         };
         text += &format!("{name}: warming {} min, cooling {} min\n", minutes(Branch::Warming), minutes(Branch::Cooling));
-        text += &format!("  cooling above warming by {widest} at most; they meet {meeting} (within {MEETING_NM} Nm)\n");
+        text += &format!("  cooling above warming by {widest} at most; below that they meet {meeting} (within {MEETING_NM} Nm)\n");
         if !printed.is_empty() {
-            text += &format!("  thesis 5.3.2: warming {} Nm; meeting near 40 degC\n", printed.join(", "));
+            text += &format!("  thesis 5.3.2: warming {}; meeting near 40 degC\n", printed.join(", "));
         }
     }
     text
