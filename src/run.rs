@@ -114,6 +114,7 @@ pub fn components(transmission: &Transmission) -> Vec<Component> {
             list.push(C::FinalDrive);
             list
         }
+        Transmission::Manual(manual) if manual.map.is_some() => vec![C::LaunchClutch, C::BoxMap],
         Transmission::Manual(_) => vec![C::LaunchClutch, C::GearMesh, C::Bearing, C::Churning, C::Seal],
     }
 }

@@ -57,7 +57,7 @@ fn a_belt_map_replaces_every_belt_part() {
     assert!(one.rows.iter().all(|r| r.slip.abs() < 1e-12));
 }
 
-/// Hand calculation: a box map of 3 Nm loses 3 Nm times the input speed in gear; its own parts are then the mesh alone.
+/// Hand calculation: a box map of 3 Nm loses 3 Nm times the input speed in gear; it stands for all of the box's parts, which are then not there.
 #[test]
 fn val_a_constant_box_map() {
     let csv = "gear,input_torque_nm,torque_loss_nm\n1,-100,3\n1,200,3\n5,-100,3\n5,200,3\n";
@@ -66,7 +66,8 @@ fn val_a_constant_box_map() {
     let mut count = 0;
     for r in locked {
         let want = 3.0 * r.engine_speed_rad_s;
-        let got = r.loss_w[Component::GearMesh as usize];
+        let got = r.loss_w[Component::BoxMap as usize];
+        assert!(r.loss_w[Component::GearMesh as usize].abs() < 1e-12 && r.loss_w[Component::Seal as usize].abs() < 1e-12);
         assert!((got - want).abs() <= 1e-6 * want, "{} s: {got} instead of {want}", r.time_s);
         count += 1;
     }

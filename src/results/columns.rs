@@ -156,6 +156,7 @@ columns! {
     "bearing_loss_w", "W", Has(Component::Bearing), "bearing loss of the manual box", r => loss!(r, Bearing);
     "churning_loss_w", "W", Has(Component::Churning), "churning loss of the manual box", r => loss!(r, Churning);
     "seal_loss_w", "W", Has(Component::Seal), "seal loss of the manual box", r => loss!(r, Seal);
+    "box_map_loss_w", "W", Has(Component::BoxMap), "loss of the whole manual box, from its measured map", r => loss!(r, BoxMap);
     "accessories_w", "W", Always, "power of the accessories", r => Number(r.accessories_w);
     "brake_w", "W", Always, "power into the wheel brakes", r => Number(r.brake_w);
     "kinetic_w", "W", Always, "change of the rotating kinetic energy of engine and transmission", r => Number(r.kinetic_w);

@@ -34,11 +34,13 @@ pub enum Component {
     Churning,
     /// Seals of the manual box.
     Seal,
+    /// Whole manual box, from the user's measured map.
+    BoxMap,
 }
 
 impl Component {
     /// Number of components.
-    pub const COUNT: usize = 15;
+    pub const COUNT: usize = 16;
     /// All components, in the order of the power flow.
     pub const ALL: [Component; Self::COUNT] = [
         Component::LaunchClutch,
@@ -56,6 +58,7 @@ impl Component {
         Component::Bearing,
         Component::Churning,
         Component::Seal,
+        Component::BoxMap,
     ];
 
     /// Name as in JSON keys and CSV columns.
@@ -77,6 +80,7 @@ impl Component {
             Component::Bearing => "bearing",
             Component::Churning => "churning",
             Component::Seal => "seal",
+            Component::BoxMap => "box_map",
         }
     }
 }

@@ -331,6 +331,7 @@ fn component_doc(component: Component) -> &'static str {
         Component::Bearing => "bearing loss of the manual box",
         Component::Churning => "churning loss of the manual box",
         Component::Seal => "seal loss of the manual box",
+        Component::BoxMap => "loss of the whole manual box from its measured map, torque at the input shaft",
     }
 }
 

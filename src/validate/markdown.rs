@@ -8,7 +8,7 @@ use super::report::{computed_text, notes_line, unit_text};
 #[must_use]
 pub fn markdown(report: &Report) -> String {
     if report.rows.is_empty() {
-        return "No rows.\n".to_owned();
+        return "The thesis prints no number that is held against this page.\n".to_owned();
     }
     let mut text = "| row | what | printed | computed | verdict |\n|---|---|---|---|---|\n".to_owned();
     for judged in &report.rows {

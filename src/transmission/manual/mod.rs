@@ -62,11 +62,17 @@ struct Spin {
     seal: f64,
     bearing: f64,
     churning: f64,
+    /// The whole box by its map, which then stands for the others.
+    map: f64,
 }
 
 impl Spin {
+    fn mapped(loss_nm: f64) -> Self {
+        Spin { seal: 0.0, bearing: 0.0, churning: 0.0, map: loss_nm }
+    }
+
     fn sum(&self) -> f64 {
-        self.seal + self.bearing + self.churning
+        self.seal + self.bearing + self.churning + self.map
     }
 }
 
@@ -82,6 +88,7 @@ impl Manual {
             seal: slow * self.seal_nm * (self.seal_exponent * log).exp(), // MB-2
             bearing: if n > 0.0 { self.bearing_nm * ((2.0 / 3.0) * (n.ln() + log)).exp() } else { 0.0 }, // MB-3
             churning: self.churning_nm * n * (self.churning_exponent * log).exp(), // MB-4
+            map: 0.0,
         }
     }
 
@@ -169,10 +176,10 @@ impl Manual {
         e.idle_rad_s.clamp(state.engine_rad_s - pace, state.engine_rad_s + pace)
     }
 
-    /// Losses of the unloaded box: the model's, or the map's at no torque, counted as bearing loss.
+    /// Losses of the unloaded box: the model's, or the map's at no torque.
     fn unloaded(&self, around: &Surroundings, gear: u8, speed: f64, nu: f64) -> Spin {
         match &self.map {
-            Some(map) => Spin { seal: 0.0, bearing: map_loss(map, gear, speed, 0.0, around.heat.node_k[SUMP]).0, churning: 0.0 },
+            Some(map) => Spin::mapped(map_loss(map, gear, speed, 0.0, around.heat.node_k[SUMP]).0),
             None => self.spin(speed, nu),
         }
     }
@@ -211,14 +218,14 @@ impl Manual {
         drive.lose(Component::Seal, spin.seal * speed);
         drive.lose(Component::Bearing, spin.bearing * speed);
         drive.lose(Component::Churning, spin.churning * speed);
+        drive.lose(Component::BoxMap, spin.map * speed);
     }
 
     /// Box loss torque at the input for an output torque referred to the input: (spin, mesh, inside map).
     fn losses(&self, gear: u8, input: f64, output_nm: f64, nu: f64, oil_k: f64) -> (Spin, f64, bool) {
         if let Some(map) = &self.map {
-            let none = Spin { seal: 0.0, bearing: 0.0, churning: 0.0 };
             let (loss, inside) = map_loss(map, gear, input, output_nm, oil_k);
-            return (none, loss, inside);
+            return (Spin::mapped(loss), 0.0, inside);
         }
         let spin = self.spin(input, nu);
         let eta = self.mesh_efficiency;
@@ -229,13 +236,14 @@ impl Manual {
     /// Losses of the engaged box by component, Nm at the input shaft, for an output torque referred to the input (MB-1 to MB-4), and
     /// whether a map, if there is one, holds the point.
     #[must_use]
-    pub fn part_losses_nm(&self, gear: u8, input_rad_s: f64, output_nm: f64, nu_m2_s: f64, oil_k: f64) -> ([(Component, f64); 4], bool) {
+    pub fn part_losses_nm(&self, gear: u8, input_rad_s: f64, output_nm: f64, nu_m2_s: f64, oil_k: f64) -> ([(Component, f64); 5], bool) {
         let (spin, mesh, inside) = self.losses(gear, input_rad_s, output_nm, nu_m2_s, oil_k);
         let parts = [
             (Component::GearMesh, mesh),
             (Component::Bearing, spin.bearing),
             (Component::Churning, spin.churning),
             (Component::Seal, spin.seal),
+            (Component::BoxMap, spin.map),
         ];
         (parts, inside)
     }

@@ -25,6 +25,7 @@ const COMPONENTS: [&str; Component::COUNT] = [
     "bearing_nm",
     "churning_nm",
     "seal_nm",
+    "box_map_nm",
 ];
 
 const OTHERS: [&str; 20] = [

@@ -59,6 +59,7 @@ const LOSSES: [&str; Component::COUNT] = [
     "bearing_kj",
     "churning_kj",
     "seal_kj",
+    "box_map_kj",
 ];
 
 /// Names of the columns of the trace.
