@@ -294,6 +294,16 @@ fn what_cannot_be_computed_is_a_problem_and_no_verdict() {
     );
 }
 
+/// A ratio that the box does not have is computed and told.
+#[test]
+fn points_outside_validity_are_told() {
+    let source = "[sources.b]\nsource = \"bench\"\nratio = [2.4, 2.9]\nspeed_rpm = 2000\ntemp_degc = 80\n";
+    let own = Own::new(&(source.to_owned() + &row("a", "low = 0\ncompute = \"mean(b: total_nm)\"\ntolerance = \"exact\"")));
+    let told: Value = serde_json::from_slice(&own.run(&["--json"]).stdout).unwrap();
+    assert_eq!(told["rows"][0]["outside_validity"], 1, "{told}");
+    assert!(text(&own.run(&[]).stdout).contains("1 points outside the validity"));
+}
+
 #[test]
 fn csv_json_and_html_have_the_same_rows() {
     let (_, all) = json(&["validate", "--chapter", "8", "--json"]);

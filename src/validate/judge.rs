@@ -42,6 +42,8 @@ pub struct Judged {
     pub cause: Option<Computed>,
     /// Points of its sources left out because the belt slips grossly there.
     pub left_out: usize,
+    /// Points that count though they lie outside the validity of a model.
+    pub outside: usize,
 }
 
 /// All rows.
@@ -96,7 +98,7 @@ pub fn judge(files: &[File], subject: &Subject, wanted: impl Fn(&Row) -> bool) -
     }
     let mut rows = Vec::new();
     for file in files {
-        let view = View { store: &store, file, left_out: Cell::default() };
+        let view = View { store: &store, file, left_out: Cell::default(), outside: Cell::default() };
         for row in file.rows.iter().filter(|row| wanted(row)) {
             match view.judged(row) {
                 Ok(judged) => rows.push(judged),
@@ -187,6 +189,7 @@ struct View<'a> {
     store: &'a Store<'a>,
     file: &'a File,
     left_out: Cell<usize>,
+    outside: Cell<usize>,
 }
 
 impl Tables for View<'_> {
@@ -214,6 +217,10 @@ impl Tables for View<'_> {
     fn left_out(&self, rows: usize) {
         self.left_out.set(self.left_out.get() + rows);
     }
+
+    fn outside(&self, rows: usize) {
+        self.outside.set(self.outside.get() + rows);
+    }
 }
 
 /// A key's number in its own unit, an item of a list, 1 and 0 for true and false.
@@ -239,8 +246,9 @@ impl View<'_> {
             ..Problem::default()
         };
         self.left_out.set(0);
+        self.outside.set(0);
         let computed = row.compute.as_ref().map(|expr| compute(expr, self)).transpose().map_err(|why| problem("compute", why))?;
-        let left_out = self.left_out.get();
+        let (left_out, outside) = (self.left_out.get(), self.outside.get());
         let cause =
             row.cause.as_ref().map(|cause| compute(&cause.compute, self)).transpose().map_err(|why| problem("cause.compute", why))?;
         let verdict = match (&computed, row.printed) {
@@ -248,6 +256,6 @@ impl View<'_> {
             _ => Verdict::NotComparable,
         };
         let moved = row.recorded.is_some_and(|recorded| recorded != verdict);
-        Ok(Judged { row: row.clone(), file: self.file.name.clone(), computed, verdict, moved, cause, left_out })
+        Ok(Judged { row: row.clone(), file: self.file.name.clone(), computed, verdict, moved, cause, left_out, outside })
     }
 }

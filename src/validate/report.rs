@@ -79,6 +79,7 @@ struct JsonRow {
     remark: String,
     compute: String,
     gross_slip_left_out: usize,
+    outside_validity: usize,
 }
 
 /// A report as one JSON object.
@@ -138,6 +139,7 @@ fn json_row(judged: &Judged) -> JsonRow {
         remark: row.remark.clone(),
         compute: row.compute_text.clone(),
         gross_slip_left_out: judged.left_out,
+        outside_validity: judged.outside,
     }
 }
 
@@ -193,6 +195,9 @@ pub fn notes(judged: &Judged) -> Vec<String> {
     notes.push(row.remark.clone());
     if judged.left_out > 0 {
         notes.push(format!("{} points at gross slip left out", judged.left_out));
+    }
+    if judged.outside > 0 {
+        notes.push(format!("{} points outside the validity of a model", judged.outside));
     }
     if judged.moved {
         notes.push(format!("recorded: {}", row.recorded.map_or("", Verdict::word)));

@@ -47,7 +47,7 @@ fn chapter(rows: &[&Judged]) -> String {
         ]);
     }
     let mut text = grid.indented().text();
-    let shown = rows.iter().filter(|judged| judged.verdict == Verdict::Differs || judged.moved || judged.left_out > 0);
+    let shown = rows.iter().filter(|judged| judged.verdict == Verdict::Differs || judged.moved || judged.left_out + judged.outside > 0);
     let mut list = Grid::new("ll");
     let mut some = false;
     for judged in shown {

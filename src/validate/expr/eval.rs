@@ -21,6 +21,9 @@ pub trait Tables {
 
     /// Takes note of rows of a source that would count but for gross slip.
     fn left_out(&self, rows: usize);
+
+    /// Takes note of rows that count though they lie outside the validity of a model.
+    fn outside(&self, rows: usize);
 }
 
 /// A computed result.

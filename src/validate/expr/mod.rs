@@ -39,6 +39,8 @@ pub struct Table {
     pub weight: Vec<f64>,
     /// Rows that no reduction looks at, because the belt slips grossly there; empty where there are none.
     pub gross: Vec<bool>,
+    /// Rows outside the validity of a model, which count and are told; empty where nothing says so.
+    pub outside: Vec<bool>,
 }
 
 /// Comparison of two numbers.

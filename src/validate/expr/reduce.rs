@@ -66,7 +66,7 @@ fn of_points(kind: Reduction, mut points: Vec<Point>, at: f64) -> Result<f64, St
 
 fn points(here: &mut Here, r: &Reduce, table: &Table) -> Result<Vec<Point>, String> {
     let mut found = Vec::new();
-    let mut left_out = 0;
+    let (mut left_out, mut outside) = (0, 0);
     let rows = table.columns.first().map_or(0, Vec::len);
     for row in 0..rows {
         let mut inner = Here { tables: here.tables, row: Some((table, row)), variables: here.variables.clone(), noting: here.noting };
@@ -79,6 +79,7 @@ fn points(here: &mut Here, r: &Reduce, table: &Table) -> Result<Vec<Point>, Stri
             left_out += 1;
             continue;
         }
+        outside += usize::from(table.outside.get(row) == Some(&true));
         let value = inner.eval(&r.value)?;
         let over = r.over.as_ref().map_or(Ok(0.0), |over| inner.eval(over))?;
         let group: Result<Vec<f64>, String> = r.by.iter().map(|by| inner.eval(by)).collect();
@@ -86,6 +87,7 @@ fn points(here: &mut Here, r: &Reduce, table: &Table) -> Result<Vec<Point>, Stri
     }
     if here.noting {
         here.tables.left_out(left_out);
+        here.tables.outside(outside);
     }
     Ok(found)
 }

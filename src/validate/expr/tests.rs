@@ -33,8 +33,12 @@ impl Tables for Fixed {
         // Two groups of y = 2 x + g, and one row at gross slip.
         let columns = vec![vec![1.0, 2.0, 4.0, 1.0, 2.0, 9.0], vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![2.0, 4.0, 8.0, 3.0, 5.0, 99.0]];
         let gross = vec![false, false, false, false, false, true];
-        let trip = Table { columns: vec![vec![6.5]], weight: vec![1.0], gross: Vec::new() };
-        Ok(Rc::new(if source == 1 { trip } else { Table { columns, weight: vec![1.0, 1.0, 2.0, 1.0, 1.0, 1.0], gross } }))
+        let trip = Table { columns: vec![vec![6.5]], weight: vec![1.0], ..Table::default() };
+        Ok(Rc::new(if source == 1 {
+            trip
+        } else {
+            Table { columns, weight: vec![1.0, 1.0, 2.0, 1.0, 1.0, 1.0], gross, outside: Vec::new() }
+        }))
     }
 
     fn key(&self, _: Option<usize>, _: &str, item: Option<usize>) -> Result<f64, String> {
@@ -44,6 +48,8 @@ impl Tables for Fixed {
     fn left_out(&self, rows: usize) {
         self.left_out.set(self.left_out.get() + rows);
     }
+
+    fn outside(&self, _: usize) {}
 }
 
 fn fixed() -> Fixed {

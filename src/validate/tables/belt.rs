@@ -1,6 +1,6 @@
 //! The belt alone as a table.
 
-use super::{Table, combinations, from_rows, rpm, truth};
+use super::{Marks, Table, combinations, from_rows, rpm, truth};
 use crate::lubricant::{BandFriction, Friction, Lubricant, ZERO_DEGC_K};
 use crate::setup::Setup;
 use crate::transmission::Transmission;
@@ -119,7 +119,7 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
         return Err("the printed forms are not defined at rest".to_owned());
     }
     let rows = combinations(&axes).into_iter().map(|x| (one.row(&x), 1.0));
-    Ok(from_rows(GROSS, rows, Some(GROSS)))
+    Ok(from_rows(GROSS, rows, Marks { gross: Some(GROSS), outside: None }))
 }
 
 fn or(x: f64, other: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! A transmission on the bench as a table.
 
-use super::{Table, combinations, from_rows, rpm, truth};
+use super::{Marks, Table, combinations, from_rows, rpm, truth};
 use crate::lubricant::ZERO_DEGC_K;
 use crate::results::{Component, Flags};
 use crate::rig::{Bench, BenchAnswer, BenchPoint, Parts};
@@ -28,7 +28,7 @@ const COMPONENTS: [&str; Component::COUNT] = [
     "box_map_nm",
 ];
 
-const OTHERS: [&str; 20] = [
+const OTHERS: [&str; 21] = [
     "ratio",
     "speed_rpm",
     "temp_degc",
@@ -49,8 +49,11 @@ const OTHERS: [&str; 20] = [
     "flow_l_min",
     "segment_compression_n",
     "flow_limited",
+    "outside_validity",
 ];
 
+/// Index of the mark of points outside validity.
+pub const OUTSIDE: usize = OTHERS.len() - 1;
 /// Index of gross slip behind the named columns.
 pub const GROSS: usize = OTHERS.len() + Component::COUNT;
 
@@ -93,7 +96,7 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
         };
         (row(&point, &bench.solve(&point)), 1.0)
     });
-    Ok(from_rows(GROSS, rows, Some(GROSS)))
+    Ok(from_rows(GROSS, rows, Marks { gross: Some(GROSS), outside: Some(OUTSIDE) }))
 }
 
 /// Whether the box has these ratios or gears.
@@ -134,6 +137,7 @@ pub fn row(p: &BenchPoint, a: &BenchAnswer) -> Vec<f64> {
         a.oil_flow_m3_s * 6e4,
         a.belt.map_or(f64::NAN, |belt| belt.tension.compression_n),
         truth(a.flags.contains(Flags::FLOW_LIMITED)),
+        truth(a.flags.contains(Flags::OUTSIDE_VALIDITY)),
     ];
     let gross = truth(a.flags.contains(Flags::GROSS_SLIP));
     head.into_iter().chain(a.loss_nm).chain([gross]).collect()

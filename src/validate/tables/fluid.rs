@@ -1,6 +1,6 @@
 //! A fluid over temperature as a table.
 
-use super::{Table, from_rows};
+use super::{Marks, Table, from_rows};
 use crate::lubricant::ZERO_DEGC_K;
 use crate::setup::Setup;
 use crate::validate::source::Source;
@@ -23,5 +23,5 @@ pub fn table(source: &Source, setup: &Setup) -> Table {
         ];
         (row, 1.0)
     });
-    from_rows(5, rows, None)
+    from_rows(5, rows, Marks::default())
 }

@@ -59,11 +59,21 @@ fn combinations(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
     })
 }
 
-/// A table from rows of equal length; where the number at `gross` is above 0 the belt slips grossly.
-fn from_rows(count: usize, rows: impl Iterator<Item = (Vec<f64>, f64)>, gross: Option<usize>) -> Table {
+/// Places in a row of the numbers that mark it where they are above 0.
+#[derive(Clone, Copy, Default)]
+struct Marks {
+    /// The belt slips grossly.
+    gross: Option<usize>,
+    /// Outside the validity of a model.
+    outside: Option<usize>,
+}
+
+/// A table from rows of equal length.
+fn from_rows(count: usize, rows: impl Iterator<Item = (Vec<f64>, f64)>, marks: Marks) -> Table {
     let mut table = Table { columns: vec![Vec::new(); count], ..Table::default() };
     for (row, weight) in rows {
-        table.gross.extend(gross.map(|k| row[k] > 0.5));
+        table.gross.extend(marks.gross.map(|k| row[k] > 0.5));
+        table.outside.extend(marks.outside.map(|k| row[k] > 0.5));
         for (column, x) in table.columns.iter_mut().zip(row) {
             column.push(x);
         }

@@ -1,7 +1,7 @@
 //! The transmission rig's transients and strip-down as tables.
 
 use super::bench::{self, row};
-use super::{Table, from_rows, rpm, truth};
+use super::{Marks, Table, from_rows, rpm, truth};
 use crate::lubricant::ZERO_DEGC_K;
 use crate::rig::transmission::{Branch, Conditions, Piece, Plan, strip_down, transient};
 use crate::rig::{Bench, BenchPoint};
@@ -64,7 +64,7 @@ pub fn transients(source: &Source, setup: &Setup, conditions: &Conditions) -> Re
         }
     }
     let count = TRANSIENT.len() + bench::GROSS;
-    Ok(from_rows(count, rows.into_iter(), Some(count)))
+    Ok(from_rows(count, rows.into_iter(), Marks { gross: Some(count), outside: Some(TRANSIENT.len() + bench::OUTSIDE) }))
 }
 
 /// The box taken apart, a row a point.
@@ -83,7 +83,7 @@ pub fn strip_downs(source: &Source, setup: &Setup, conditions: &Conditions) -> R
         let pieces = Piece::ALL.map(|piece| found.piece(piece)).map(|f| [f.corrected_nm, f.true_nm, f.interaction_nm()]);
         (head.into_iter().chain(pieces.into_iter().flatten()).collect(), 1.0)
     });
-    Ok(from_rows(STRIP_DOWN.len(), rows, None))
+    Ok(from_rows(STRIP_DOWN.len(), rows, Marks::default()))
 }
 
 fn cvt_only(bench: &Bench, ratios: &[f64]) -> Result<(), String> {

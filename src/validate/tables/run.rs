@@ -1,6 +1,6 @@
 //! A car through a cycle as a table: its trace, or its totals.
 
-use super::{Table, from_rows, truth};
+use super::{Marks, Table, from_rows, truth};
 use crate::cycle::Cycle;
 use crate::lubricant::ZERO_DEGC_K;
 use crate::results::columns::COLUMNS;
@@ -122,8 +122,9 @@ pub fn trace(source: &Source, driven: &Driven) -> Table {
             rows.push((row(r, driven.rated_w, launch, since), r.dt_s));
         }
     }
-    let gross = COLUMNS.len() + Flags::NAMES.iter().position(|(flag, _)| *flag == Flags::GROSS_SLIP).unwrap_or_default();
-    from_rows(columns().len(), rows.into_iter(), Some(gross))
+    let place = |flag: Flags| Flags::NAMES.iter().position(|(name, _)| *name == flag).map(|k| COLUMNS.len() + k);
+    let marks = Marks { gross: place(Flags::GROSS_SLIP), outside: place(Flags::OUTSIDE_VALIDITY) };
+    from_rows(columns().len(), rows.into_iter(), marks)
 }
 
 fn row(r: &Row, rated_w: f64, launch: f64, since_s: f64) -> Vec<f64> {
@@ -163,7 +164,7 @@ pub fn totals(source: &Source, driven: &Driven) -> Result<Table, String> {
         outcome.totals.seconds(Flags::MISSED_TRACE),
     ];
     let row: Vec<f64> = head.into_iter().chain(sum.loss_j.iter().map(|j| j / 1e3)).collect();
-    Ok(from_rows(row.len(), [(row, 1.0)].into_iter(), None))
+    Ok(from_rows(row.len(), [(row, 1.0)].into_iter(), Marks::default()))
 }
 
 #[cfg(test)]
