@@ -306,26 +306,32 @@ fn val_rig_split() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// 5.5.2: the belt loses less at 25 degC than at 75 and 95 degC in both ratios, and less at 50 than at 75 degC in high.
+/// 5.5.2, 8.9: the belt loses less at 25 degC than at 75 and 95 degC in both ratios, at every speed; at 50 degC it leaves the warmer
+/// tests at high speed in high ratio only. How far is in a figure that is lost: here by at least 7 points of the loss at 75 degC, where
+/// the other speeds and low ratio stay within 4. With the film switched off that shape is gone.
 #[test]
 fn val_rig_belt_rises_with_temperature() {
     let rig = Rig::new(&car("rover_216_cvt", &[]));
-    let mut wrong = Vec::new();
-    for (ratio, rpm) in [(2.417, 2500.0), (0.5, 2500.0), (0.5, 4000.0)] {
-        let b = TEMPERATURES.map(|t| rig.solve(ratio, rpm, t).belt_nm());
-        println!("belt at {ratio} {rpm} rpm, 25/50/75/95 degC: {b:.2?} Nm");
-        if !(b[0] < b[2] && b[2] <= b[3] * 1.02) {
-            wrong.push(format!("{ratio} {rpm}: {b:.2?}"));
+    let plain = Rig::new(&car("rover_216_cvt", &["lubricant.friction.lift_off.enabled=false"]));
+    let at50 = |rig: &Rig, ratio: f64, n: f64| rig.solve(ratio, n, 50.0).belt_nm() / rig.solve(ratio, n, 75.0).belt_nm();
+    let fall = |rig: &Rig, ratio: f64| at50(rig, ratio, 1000.0) - at50(rig, ratio, 4000.0);
+    for ratio in [2.417, 0.5] {
+        for rpm in [1000.0, 1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0] {
+            let b = TEMPERATURES.map(|t| rig.solve(ratio, rpm, t).belt_nm());
+            println!("belt at {ratio} {rpm} rpm, 25/50/75/95 degC: {b:.2?} Nm, 50 over 75: {:.3}", b[1] / b[2]);
+            assert!(b[0] < 0.95 * b[2] && b[0] < b[3] && b[2] <= b[3] * 1.02, "{ratio} {rpm}: {b:.2?}");
         }
     }
-    // That it falls away at 50 degC and high speed in high ratio (8.9) is not reproduced: 0.91 of the loss at 75 degC at 2000 rpm,
-    // 0.95 at 4000 rpm. Shown in docs/results.md as a known gap of the film's onset.
-    let at50 = |n: f64| rig.solve(0.5, n, 50.0).belt_nm() / rig.solve(0.5, n, 75.0).belt_nm();
-    println!("belt at 0.5, 50 over 75 degC: {:.2} at 2000, {:.2} at 4000 rpm", at50(2000.0), at50(4000.0));
-    if !(at50(2000.0) < 1.0 && at50(4000.0) < 1.0) {
-        wrong.push("not lower at 50 than at 75 degC".into());
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    println!(
+        "50 over 75 degC falls by {:.3} in high, {:.3} in low; without film {:.3}",
+        fall(&rig, 0.5),
+        fall(&rig, 2.417),
+        fall(&plain, 0.5)
+    );
+    assert!(fall(&rig, 0.5) > 0.07 && fall(&rig, 2.417) < 0.04 && fall(&plain, 0.5).abs() < 0.02);
+    assert!(at50(&rig, 0.5, 1000.0) - at50(&rig, 0.5, 2000.0) < 0.04);
+    let cold = |rig: &Rig| rig.solve(0.5, 4000.0, 25.0).belt.expect("a belt").tension.step_n.abs();
+    assert!(cold(&rig) < 0.9 * cold(&plain), "the tension step follows from the same friction");
 }
 
 /// 5.3.3: the tests from -5 to 10 degC "simply continued" the trends: every component but the belt grows as the oil cools, all bounded.

@@ -99,3 +99,12 @@ fn rests_at_ambient() {
     let s = n.advance(&Heat::uniform(263.15), &HeatInput { power_w: [0.0; NODES], ..input(1.0) });
     assert!(s.heat.node_k.iter().all(|t| (t - 263.15).abs() < 1e-12) && s.to_air_w.abs() < 1e-9);
 }
+
+/// TH-8 by hand: half the speed, half the conductance; at rest a tenth.
+#[test]
+fn val_spray_follows_the_pump() {
+    let n = network();
+    for (share, want) in [(2.0, 140.0), (1.0, 70.0), (0.5, 35.0), (0.0, 7.0)] {
+        assert!((n.spray_now_w_k(share * SPRAY_REFERENCE_RAD_S) - want).abs() < 1e-9, "{share}");
+    }
+}
