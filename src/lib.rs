@@ -15,5 +15,6 @@ pub mod simulate;
 pub mod run;
 pub mod results;
 pub mod rig;
+pub mod study;
 pub mod validate;
 pub mod report;

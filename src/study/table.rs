@@ -1,0 +1,93 @@
+//! Columns and rows of a study as they are kept in memory, by column: one part of a table at a time.
+
+use std::sync::Arc;
+
+/// What the cells of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Real numbers; one that is not finite means that there is no value.
+    Number,
+    /// Whole numbers.
+    Count,
+    /// Words; an empty one means that there is none.
+    Text,
+}
+
+/// Head of a column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Name, ending in its unit where it has one.
+    pub name: String,
+    /// Unit as people write it; empty for words and counts, `-` for plain ratios.
+    pub unit: String,
+    /// What it holds, one phrase.
+    pub doc: String,
+    /// What its cells are.
+    pub kind: Kind,
+}
+
+/// Cells of a column.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// See [`Kind::Number`].
+    Number(Vec<f64>),
+    /// See [`Kind::Count`].
+    Count(Vec<i64>),
+    /// See [`Kind::Text`].
+    Text(Vec<Arc<str>>),
+}
+
+impl Values {
+    /// An empty column of a kind with room for a number of cells.
+    #[must_use]
+    pub fn with_capacity(kind: Kind, cells: usize) -> Self {
+        match kind {
+            Kind::Number => Values::Number(Vec::with_capacity(cells)),
+            Kind::Count => Values::Count(Vec::with_capacity(cells)),
+            Kind::Text => Values::Text(Vec::with_capacity(cells)),
+        }
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Values::Number(v) => v.len(),
+            Values::Count(v) => v.len(),
+            Values::Text(v) => v.len(),
+        }
+    }
+
+    /// Whether there are no cells.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Some rows of a table: the cells of every column, all of one length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rows {
+    /// By column, in the order of the heads.
+    pub values: Vec<Values>,
+}
+
+impl Rows {
+    /// No rows yet, with room for a number of them.
+    #[must_use]
+    pub fn with_capacity(columns: &[Column], rows: usize) -> Self {
+        Rows { values: columns.iter().map(|column| Values::with_capacity(column.kind, rows)).collect() }
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.values.first().map_or(0, Values::len)
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
