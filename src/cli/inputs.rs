@@ -2,7 +2,8 @@
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use cvtcycle::config::{Bound, Place, Problem, near, unit_of};
-use cvtcycle::cycle::{self, Cycle};
+use cvtcycle::cycle;
+pub use cvtcycle::cycle::{bytes, find as cycle, is_csv};
 use cvtcycle::setup::{self, is_path};
 
 /// Takes any text, but lets completions offer the known names: unknown ones are reported with all other problems.
@@ -142,47 +143,8 @@ pub fn did_you_mean(value: &str, known: &[&str]) -> Option<String> {
     (!close.is_empty()).then(|| format!("did you mean {}?", close.join(" or ")))
 }
 
-/// A cycle by name or path.
-pub fn cycle(option: &str, value: &str) -> Result<Cycle, Vec<Problem>> {
-    if let Some(constant) = cycle::constant_speed(value).filter(|_| !is_csv(value)) {
-        return constant.map_err(|problem| vec![Problem { place: Place { file: option.to_owned(), ..problem.place }, ..problem }]);
-    }
-    if let Some(found) = cycle::embedded(value) {
-        return Ok(found);
-    }
-    if is_path(value) {
-        return cycle::read_csv(value, &bytes(option, value)?);
-    }
-    let known = cycle::names();
-    let question = did_you_mean(value, known).map(|q| q + " ").unwrap_or_default();
-    Err(vec![bad_value(
-        option,
-        value,
-        "a name of `cvtcycle list cycles`, constant_V with V in km/h, or the path of a CSV file",
-        format!("there is no cycle named {}", quoted(value)),
-        format!("{question}`cvtcycle list cycles` shows all; a path needs a / or an ending"),
-    )])
-}
-
-/// Whether a word is surely a file, though it may begin like the name of a constant speed.
-pub fn is_csv(word: &str) -> bool {
-    word.contains(['/', '\\']) || word.to_lowercase().ends_with(".csv")
-}
-
 /// The file that a file names, seen from the current directory: its own folder is where its paths begin.
 pub fn beside(file: &str, named: &str) -> String {
     let folder = std::path::Path::new(file).parent().filter(|_| is_path(file) && is_path(named));
     folder.map_or_else(|| named.to_owned(), |folder| folder.join(named).to_string_lossy().into_owned())
-}
-
-/// The bytes of a file that the user named.
-pub fn bytes(option: &str, path: &str) -> Result<Vec<u8>, Vec<Problem>> {
-    std::fs::read(path).map_err(|error| {
-        let hint = match error.kind() {
-            std::io::ErrorKind::NotFound => "check the path; it is taken from the current directory",
-            std::io::ErrorKind::IsADirectory => "name a file in that directory",
-            _ => "check the path and its permissions",
-        };
-        vec![bad_value(option, path, "a readable file", format!("cannot read `{path}`: {error}"), hint.to_owned())]
-    })
 }

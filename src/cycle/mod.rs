@@ -5,6 +5,7 @@
 //! | `trace` | intervals of linear speed, their division into steps |
 //! | `gears` | the prescribed gear and clutch commands |
 //! | `embedded` | the regulations' cycles that the program carries |
+//! | `find` | a cycle by name or path |
 //! | `constant` | `constant_90` and its like |
 //! | `read` | a user's CSV to a checked cycle; `text`, `header`, `row`, `table` and `problems` are its parts, `text` and `problems` also those of other tables |
 //!
@@ -12,6 +13,7 @@
 
 mod constant;
 mod embedded;
+mod find;
 mod gears;
 mod header;
 pub mod problems;
@@ -23,6 +25,7 @@ mod trace;
 
 pub use constant::constant_speed;
 pub use embedded::{embedded, names};
+pub use find::{bytes, find, is_csv};
 pub use gears::GearCommand;
 pub use read::read_csv;
 pub use trace::{Interval, Step, Trace};

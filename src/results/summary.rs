@@ -6,7 +6,7 @@
 mod gather;
 mod named;
 
-pub use gather::{name_of, summarise};
+pub use gather::{compare, name_of, run_summary, summarise};
 pub use named::Named;
 
 use serde::{Deserialize, Serialize};

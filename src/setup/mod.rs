@@ -88,6 +88,12 @@ impl Setup {
         &self.car.transmission
     }
 
+    /// The car's engine.
+    #[must_use]
+    pub fn engine(&self) -> &engine::Engine {
+        &self.car.engine
+    }
+
     /// Names of transmission and engine oil.
     #[must_use]
     pub fn oils(&self) -> (&Lubricant, &Lubricant) {

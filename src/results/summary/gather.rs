@@ -35,11 +35,12 @@ pub fn summarise(cycle: &Cycle, ambient_degc: f64, start: StartWord, settings: S
     }
 }
 
-fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driven) -> RunSummary {
+/// The numbers of one car. `role` is `subject` or `baseline`.
+#[must_use]
+pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driven) -> RunSummary {
     let Driven { name, setup, outcome } = *driven;
     let totals = &outcome.totals;
-    let car = setup.car(crate::vehicle::REFERENCE_K);
-    let (engine, cvt) = (&car.engine, setup.transmission().is_cvt());
+    let (engine, cvt) = (setup.engine(), setup.transmission().is_cvt());
     let (oil, engine_oil) = setup.oils();
     let all = totals.total();
     let fuel = PhaseFuel::of(&all, engine);
@@ -188,7 +189,9 @@ fn worst_deficit(cycle: &Cycle, driven: &Driven, cvt: bool) -> Option<Deficit> {
     Some(Deficit { power_w: totals.worst_deficit_w, wheel_torque_nm: finite(totals.worst_deficit_nm), at_s, phase: phase.to_lowercase() })
 }
 
-fn compare(subject: &RunSummary, baseline: &RunSummary) -> Comparison {
+/// The subject against one baseline.
+#[must_use]
+pub fn compare(subject: &RunSummary, baseline: &RunSummary) -> Comparison {
     let percent = |s: Option<f64>, b: Option<f64>| s.zip(b).and_then(|(s, b)| finite((s / b - 1.0) * 100.0));
     let phases = subject.phases.iter().zip(&baseline.phases);
     Comparison {
