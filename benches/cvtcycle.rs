@@ -8,6 +8,7 @@ use cvtcycle::cycle::{Cycle, embedded, read_csv};
 use cvtcycle::lubricant::BandFriction;
 use cvtcycle::results::{Row, Terms};
 use cvtcycle::run::{Conditions, Start, drive};
+use cvtcycle::setup::blueprint::Blueprint;
 use cvtcycle::setup::{Options, Setup, load};
 use cvtcycle::simulate::{Car, Recorder, State, simulate};
 use cvtcycle::thermal::{Heat, HeatInput};
@@ -181,4 +182,19 @@ fn parse_user_cycle(bencher: Bencher) {
     }
     let rows = text.lines().count() - 1;
     bencher.counter(ItemsCount::new(rows)).bench_local(|| read_csv("user.csv", black_box(text.as_bytes())).map_err(|p| p.len()));
+}
+
+/// A car with two changed numbers, from its parsed files, as each run of a study begins.
+#[divan::bench(args = CARS)]
+fn blueprint_build(bencher: Bencher, name: &str) {
+    let (blueprint, _) = Blueprint::load(name, "--vehicle", &Options::default()).unwrap_or_else(|p| panic!("{}", render(&p, false)));
+    let slots = ["road_load.mass_kg", "lubricant.kv40_mm2_s"].map(|key| blueprint.slot(key).unwrap());
+    let mut bench = blueprint.bench();
+    bencher.bench_local(|| {
+        bench.reset();
+        for slot in &slots {
+            bench.set(slot, black_box(slot.base() * 1.01));
+        }
+        bench.build().unwrap()
+    });
 }

@@ -49,10 +49,35 @@ impl Document {
         self.sources.push(Source { name, text: text.to_string(), has_lines: false });
         Ok(())
     }
+
+    /// Makes the tables around a key, as an assignment to it would, and leaves the key out: a reading then tells its default, and an
+    /// option to which it belongs is chosen.
+    ///
+    /// # Errors
+    /// A path that leads through a value.
+    pub fn reach(&mut self, key: &str) -> Result<(), Problem> {
+        self.set(&format!("{key}=0"))?;
+        let keys: Vec<&str> = key.split('.').map(str::trim).collect();
+        remove(&mut self.root, &keys);
+        Ok(())
+    }
+}
+
+/// Takes away what stands at a path; the tables around it stay.
+fn remove(table: &mut Table, keys: &[&str]) {
+    match keys {
+        [] => {}
+        [last] => drop(table.entries.remove(*last)),
+        [first, rest @ ..] => {
+            if let Some(Value::Table(inner)) = table.entries.get_mut(*first).map(|entry| &mut entry.node.value) {
+                remove(inner, rest);
+            }
+        }
+    }
 }
 
 /// Puts `node` at the path `keys`; fails with the depth at which a value stands in the way.
-fn insert(table: &mut Table, keys: &[&str], node: Node) -> Result<(), usize> {
+pub(super) fn insert<S: AsRef<str>>(table: &mut Table, keys: &[S], node: Node) -> Result<(), usize> {
     let Some((last, parents)) = keys.split_last() else {
         return Ok(());
     };
@@ -60,34 +85,38 @@ fn insert(table: &mut Table, keys: &[&str], node: Node) -> Result<(), usize> {
     for (depth, key) in parents.iter().enumerate() {
         let empty = Node { value: Value::Table(Table::default()), span: node.span.clone() };
         let entry = Entry { key: node.span.clone(), node: empty };
-        let entry = table.entries.entry((*key).to_string()).or_insert(entry);
+        let entry = table.entries.entry(key.as_ref().to_string()).or_insert(entry);
         make_room(&mut entry.node);
         match &mut entry.node.value {
             Value::Table(inner) if inner.wrapped().is_none() => table = inner,
             _ => return Err(depth),
         }
     }
-    if let Some(Entry { node: Node { value: Value::Table(options), .. }, .. }) = table.entries.get_mut(*last) {
+    if let Some(Entry { node: Node { value: Value::Table(options), .. }, .. }) = table.entries.get_mut(last.as_ref()) {
         // A word for a table names one of its options; what the file says about it stays.
         if matches!(node.value, Value::Text(_)) && options.wrapped().is_none() {
             options.choice = Some(Box::new(node));
             return Ok(());
         }
     }
-    table.entries.insert((*last).to_string(), Entry { key: node.span.clone(), node });
+    table.entries.insert(last.as_ref().to_string(), Entry { key: node.span.clone(), node });
     Ok(())
 }
 
 /// Turns a word, which may name an option, into a table that can hold that option's keys. The file's
 /// word gives way to the assigned key, an assigned word is kept.
-fn make_room(node: &mut Node) {
-    let is_word = match &node.value {
+pub(super) fn make_room(node: &mut Node) {
+    if is_word(node) {
+        let choice = node.span.is_set().then(|| Box::new(node.clone()));
+        node.value = Value::Table(Table { entries: BTreeMap::new(), choice });
+    }
+}
+
+/// Whether a word stands there, in either of the two forms of a value.
+pub(super) fn is_word(node: &Node) -> bool {
+    match &node.value {
         Value::Text(_) => true,
         Value::Table(table) => table.wrapped().is_some_and(|node| matches!(node.value, Value::Text(_))),
         _ => false,
-    };
-    if is_word {
-        let choice = node.span.is_set().then(|| Box::new(node.clone()));
-        node.value = Value::Table(Table { entries: BTreeMap::new(), choice });
     }
 }

@@ -3,7 +3,7 @@ use super::document::{Node, Table, Value};
 use super::near::{one_of, suggest};
 use super::reader::join;
 use super::section::Section;
-use super::value::{Found, Lookup};
+use super::value::{Found, Lazy, Lookup};
 
 /// How the choice came out.
 enum Choice<'r> {
@@ -35,8 +35,7 @@ impl<'r> Section<'r> {
             Value::Table(table) if table.wrapped().is_none() || options.contains(&"value") => Some(table),
             _ => None,
         });
-        let path = join(&self.path, name);
-        self.announce(&question, &path, doc, node.is_some() && table.is_none());
+        self.announce(&question, doc, node.is_some() && table.is_none());
         let choice = match (node, table) {
             (None, _) => self.default_choice(&question),
             (Some(node), None) => self.by_word(&question, node),
@@ -44,42 +43,48 @@ impl<'r> Section<'r> {
         };
         let (option, failed) = match choice {
             Choice::Given(option, found) => {
-                self.given(name, &found, option.to_string(), None);
+                self.given(name, &found, option, None);
                 (option, false)
             }
             Choice::Default(option) => {
-                self.defaulted(name, option.to_string(), None);
+                self.defaulted(name, &option, None);
                 (option, false)
             }
             Choice::Failed => (default.unwrap_or(options[0]), true),
         };
+        let mut section = self.below(name);
         let others = options.iter().filter(|other| failed || **other != option);
-        self.reader.log.borrow_mut().read.extend(others.map(|other| join(&path, other)));
-        let header = node.map(|node| node.span.clone()).or_else(|| self.header.clone());
-        let table = table.filter(|_| !failed);
-        let section = Section { path, table, header, muted: self.muted || failed, ..self.clone() };
+        self.reader.note(|log| log.read.extend(others.map(|other| join(&section.path, other))));
+        section.header = node.map(|node| node.span.clone()).or(section.header);
+        section.table = table.filter(|_| !failed);
+        section.muted |= failed;
         (option, section.table(option))
     }
 
     /// Makes the choice and its options known.
-    fn announce(&self, question: &Question<'_>, path: &str, doc: &str, is_word: bool) {
+    fn announce(&self, question: &Question<'_>, doc: &str, is_word: bool) {
+        if self.reader.is_silent() {
+            return;
+        }
         // Looked up in an empty table: the options' tables are no value, but the key is to be known.
         let empty = Section { table: None, ..self.clone() };
-        let _ = empty.open(question.name, &one_of(question.options), doc);
-        let mut log = self.reader.log.borrow_mut();
-        if !is_word {
-            log.read.remove(path);
-        }
-        log.choices.insert(path.to_string());
-        log.tables.insert(path.to_string());
-        log.tables.extend(question.options.iter().map(|option| join(path, option)));
+        let _ = empty.open(question.name, Lazy(|| one_of(question.options)), doc);
+        self.reader.note(|log| {
+            let path = join(&self.path, question.name);
+            if !is_word {
+                log.read.remove(&path);
+            }
+            log.choices.insert(path.clone());
+            log.tables.extend(question.options.iter().map(|option| join(&path, option)));
+            log.tables.insert(path);
+        });
     }
 
     fn default_choice(&self, question: &Question<'_>) -> Choice<'r> {
         if let Some(default) = question.default {
             return Choice::Default(default);
         }
-        self.missing(question.name, &one_of(question.options));
+        self.missing(question.name, Lazy(|| one_of(question.options)));
         Choice::Failed
     }
 
@@ -124,14 +129,13 @@ impl<'r> Section<'r> {
         }
     }
 
-    fn taken(&self, question: &Question<'_>, (option, node): (&'static str, &'r Node), status: &str) -> Choice<'r> {
+    fn taken(&self, question: &Question<'_>, (option, node): (&'static str, &'r Node), status: &'static str) -> Choice<'r> {
         if !matches!(node.value, Value::Table(_)) {
             self.wrong_type(&format!("{}.{option}", question.name), node, "a table");
             return Choice::Failed;
         }
         let source = if status == "set" { "command line" } else { "" };
-        let (status, source, note) = (status.to_string(), source.to_string(), String::new());
-        Choice::Given(option, Found { node, status, source, note })
+        Choice::Given(option, Found { node, status, source, note: "" })
     }
 
     /// Two options at once: the message stands at the later one and names the place of the other.

@@ -1,4 +1,5 @@
 //! Reading of lists and of tables of numbers.
+use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use super::bound::Bound;
@@ -6,32 +7,32 @@ use super::document::{Node, Value};
 use super::reader::join;
 use super::section::Section;
 use super::units::{to_si, unit_of};
-use super::value::Lookup;
+use super::value::{Lazy, Lookup};
 
 impl Section<'_> {
     /// A list of numbers in SI units. It is required unless `length` begins at 0. After a problem the
     /// numbers concerned are NaN, and the length is within `length` all the same.
     pub fn numbers(&self, key: &str, allowed: Bound, length: RangeInclusive<usize>, doc: &str) -> Vec<f64> {
         let (least, most) = (*length.start(), *length.end());
-        let count = count_in_words(least, most);
-        let range = format!("{count}, each {}", allowed.in_unit(unit_of(key)));
+        let range = Lazy(|| format!("{}, each {}", count_in_words(least, most), allowed.in_unit(unit_of(key))));
         let mut values = Vec::new();
         match self.open(key, &range, doc) {
             Lookup::Found(found) => {
                 if let Value::List(items) = &found.node.value {
                     values = items.iter().map(|item| self.check_number(key, key, item, allowed).unwrap_or(f64::NAN)).collect();
                     if length.contains(&values.len()) {
-                        self.given(key, &found, format!("{values:?}"), None);
+                        self.given(key, &found, format_args!("{values:?}"), None);
                     } else {
+                        let count = count_in_words(least, most);
                         let message = format!("`{}`: expected {count}, found {}", join(&self.path, key), values.len());
-                        self.report(&found.node.span, key, &range, message, String::new());
+                        self.report(&found.node.span, key, &range.to_string(), message, String::new());
                     }
                 } else {
                     self.wrong_type(key, found.node, "a list of numbers");
                 }
             }
             Lookup::Absent if least > 0 => self.missing(key, &range),
-            Lookup::Absent => self.defaulted(key, "[]".to_string(), None),
+            Lookup::Absent => self.defaulted(key, "[]", None),
             Lookup::Bad => {}
         }
         values.truncate(most);
@@ -42,7 +43,7 @@ impl Section<'_> {
     /// Numbers in SI units, written as one number, a list of numbers, or a range `"1000..4000:250"` with both ends; none if the key is
     /// absent, NaN after a problem.
     pub fn grid(&self, key: &str, allowed: Bound, doc: &str) -> Option<Vec<f64>> {
-        let range = format!("a number, a list or a range \"from..to:step\", each {}", allowed.in_unit(unit_of(key)));
+        let range = Lazy(|| format!("a number, a list or a range \"from..to:step\", each {}", allowed.in_unit(unit_of(key))));
         let found = match self.open(key, &range, doc) {
             Lookup::Found(found) => found,
             Lookup::Absent => return None,
@@ -53,18 +54,18 @@ impl Section<'_> {
             Value::Text(text) => match range_values(text) {
                 Some(values) if values.iter().all(|x| allowed.contains(*x)) => values,
                 Some(_) => {
-                    self.out_of_range(key, found.node, &range);
+                    self.out_of_range(key, found.node, &range.to_string());
                     vec![f64::NAN]
                 }
                 None => {
                     let message = format!("`{}`: `{text}` is no range", join(&self.path, key));
-                    self.report(&found.node.span, key, &range, message, "write \"1000..4000:250\"".to_string());
+                    self.report(&found.node.span, key, &range.to_string(), message, "write \"1000..4000:250\"".to_string());
                     vec![f64::NAN]
                 }
             },
             _ => vec![self.check_number(key, key, found.node, allowed).unwrap_or(f64::NAN)],
         };
-        self.given(key, &found, format!("{values:?}"), None);
+        self.given(key, &found, format_args!("{values:?}"), None);
         Some(values.into_iter().map(|value| to_si(key, value)).collect())
     }
 
@@ -73,7 +74,7 @@ impl Section<'_> {
         let found = match self.open(key, "a list of texts", doc) {
             Lookup::Found(found) => found,
             Lookup::Absent => {
-                self.defaulted(key, "[]".to_string(), None);
+                self.defaulted(key, "[]", None);
                 return Vec::new();
             }
             Lookup::Bad => return Vec::new(),
@@ -90,7 +91,7 @@ impl Section<'_> {
             }
         };
         let texts: Vec<String> = items.iter().filter_map(text).collect();
-        self.given(key, &found, format!("{texts:?}"), None);
+        self.given(key, &found, format_args!("{texts:?}"), None);
         texts
     }
 
@@ -98,14 +99,14 @@ impl Section<'_> {
     /// Empty if the key is absent; rows with a problem are left out.
     pub fn rows(&self, key: &str, columns: &[(&str, Bound)], doc: &str) -> Vec<Vec<f64>> {
         let describe = |(name, bound): &(&str, Bound)| format!("{name} {}", bound.in_unit(unit_of(name)));
-        let allowed = format!("rows of {}", columns.iter().map(describe).collect::<Vec<_>>().join(", "));
-        let units = columns.iter().map(|(name, _)| unit_of(name)).collect::<Vec<_>>().join(", ");
+        let allowed = Lazy(|| format!("rows of {}", columns.iter().map(describe).collect::<Vec<_>>().join(", ")));
+        let units = Lazy(|| columns.iter().map(|(name, _)| unit_of(name)).collect::<Vec<_>>().join(", "));
         let lookup = self.open(key, &allowed, doc);
         self.unit(key, &units);
         let found = match lookup {
             Lookup::Found(found) => found,
             Lookup::Absent => {
-                self.defaulted(key, "[]".to_string(), None);
+                self.defaulted(key, "[]", None);
                 return Vec::new();
             }
             Lookup::Bad => return Vec::new(),
@@ -114,14 +115,17 @@ impl Section<'_> {
             self.wrong_type(key, found.node, "a list of rows");
             return Vec::new();
         };
-        let rows: Vec<Vec<f64>> = items.iter().filter_map(|item| self.row(key, item, columns, &allowed)).collect();
-        self.given(key, &found, format!("{rows:?}"), None);
-        let convert = |row: Vec<f64>| columns.iter().zip(row).map(|((name, _), value)| to_si(name, value)).collect();
-        rows.into_iter().map(convert).collect()
+        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(items.len());
+        rows.extend(items.iter().filter_map(|item| self.row(key, item, columns, &allowed)));
+        self.given(key, &found, format_args!("{rows:?}"), None);
+        for row in &mut rows {
+            row.iter_mut().zip(columns).for_each(|(value, (name, _))| *value = to_si(name, *value));
+        }
+        rows
     }
 
     /// One row in the columns' own units.
-    fn row(&self, key: &str, node: &Node, columns: &[(&str, Bound)], allowed: &str) -> Option<Vec<f64>> {
+    fn row(&self, key: &str, node: &Node, columns: &[(&str, Bound)], allowed: &dyn Display) -> Option<Vec<f64>> {
         let Value::List(cells) = &node.value else {
             self.wrong_type(key, node, "a row of numbers in brackets");
             return None;
@@ -129,13 +133,18 @@ impl Section<'_> {
         if cells.len() != columns.len() {
             let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
             let message = format!("`{}`: expected {} numbers in a row, found {}", join(&self.path, key), columns.len(), cells.len());
-            self.report(&node.span, key, allowed, message, format!("write [{}]", names.join(", ")));
+            self.report(&node.span, key, &allowed.to_string(), message, format!("write [{}]", names.join(", ")));
             return None;
         }
         // All cells are looked at before the row is dropped, so that every problem is reported.
-        let checked: Vec<Option<f64>> =
-            cells.iter().zip(columns).map(|(cell, (name, bound))| self.check_number(key, name, cell, *bound)).collect();
-        checked.into_iter().collect()
+        let mut good = true;
+        let mut row = Vec::with_capacity(cells.len());
+        for (cell, (name, bound)) in cells.iter().zip(columns) {
+            let number = self.check_number(key, name, cell, *bound);
+            good &= number.is_some();
+            row.extend(number);
+        }
+        good.then_some(row)
     }
 }
 

@@ -7,6 +7,7 @@ mod assign;
 mod bound;
 mod choice;
 mod document;
+mod draft;
 mod lists;
 mod near;
 mod problem;
@@ -16,9 +17,11 @@ mod section;
 mod syntax;
 mod units;
 mod value;
+mod written;
 
 pub use bound::Bound;
 pub use document::Document;
+pub use draft::{Draft, KeyPath};
 pub use near::near;
 pub use problem::{Place, Problem};
 pub use reader::{KeyInfo, Reader};
@@ -26,6 +29,7 @@ pub use render::render;
 pub use section::Section;
 pub use syntax::decode;
 pub use units::{to_si, unit_of};
+pub use written::Written;
 
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,5 @@
 //! One pass over a document: what was read, what is known, what is wrong.
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, HashMap};
 
 use super::document::{Document, Entry, Span, Table, Value};
@@ -48,15 +48,51 @@ pub(super) struct Log {
 }
 
 /// One reading session. It collects all problems and what is known about every key that is read.
+///
+/// A silent session checks the same and writes no text: it knows how many problems there are and no words for them, and nothing about
+/// keys. Whoever reads a section need not know which kind it is: all texts are made inside [`Reader::note`] and [`Reader::fault`].
 pub struct Reader<'d> {
     pub(super) document: &'d Document,
-    pub(super) log: RefCell<Log>,
+    /// None in a silent session.
+    log: Option<RefCell<Log>>,
+    /// Problems so far.
+    faults: Cell<usize>,
 }
 
 impl<'d> Reader<'d> {
     /// Starts to read `document`.
     pub fn new(document: &'d Document) -> Self {
-        Reader { document, log: RefCell::default() }
+        Reader { document, log: Some(RefCell::default()), faults: Cell::new(0) }
+    }
+
+    /// Starts to read `document` silently: [`Reader::finish`] then gives no keys, and problems without words. Keys that are present but
+    /// not known are not looked for.
+    pub fn silent(document: &'d Document) -> Self {
+        Reader { document, log: None, faults: Cell::new(0) }
+    }
+
+    /// Whether nobody wants to know more than whether all is well.
+    pub(super) fn is_silent(&self) -> bool {
+        self.log.is_none()
+    }
+
+    /// Writes something down, unless the session is silent.
+    pub(super) fn note(&self, write: impl FnOnce(&mut Log)) {
+        if let Some(log) = &self.log {
+            write(&mut log.borrow_mut());
+        }
+    }
+
+    /// Counts a problem; `say` puts it into words, unless the session is silent.
+    pub(super) fn fault(&self, say: impl FnOnce() -> Problem) {
+        self.faults.set(self.faults.get() + 1);
+        self.note(|log| log.problems.push(say()));
+    }
+
+    /// Counts a missing key, apart from other problems.
+    pub(super) fn fault_of_missing(&self, say: impl FnOnce() -> Problem) {
+        self.faults.set(self.faults.get() + 1);
+        self.note(|log| log.missing.push(say()));
     }
 
     /// The table of the whole document.
@@ -66,21 +102,26 @@ impl<'d> Reader<'d> {
 
     /// Adds a problem found outside the reader.
     pub fn problem(&self, problem: Problem) {
-        self.log.borrow_mut().problems.push(problem);
+        self.fault(|| problem);
     }
 
     /// Every key that was looked up so far, whatever is wrong with its value.
     pub fn known(&self) -> Vec<KeyInfo> {
-        self.log.borrow().keys.clone()
+        self.log.as_ref().map(|log| log.borrow().keys.clone()).unwrap_or_default()
     }
 
     /// Ends the session with every key that was read, in the order of reading.
     ///
     /// # Errors
-    /// All problems, in the order of their places, including keys that are present but were never read.
+    /// All problems, in the order of their places, including keys that are present but were never read. After a silent session as many
+    /// empty problems as were counted.
     pub fn finish(self) -> Result<Vec<KeyInfo>, Vec<Problem>> {
         let document = self.document;
-        let mut log = self.log.into_inner();
+        let Some(log) = self.log else {
+            let faults = self.faults.get();
+            return if faults == 0 { Ok(Vec::new()) } else { Err(vec![Problem::default(); faults]) };
+        };
+        let mut log = log.into_inner();
         let mut unknown = Vec::new();
         unread(&log, &document.root, "", &mut unknown);
         for (path, entry) in unknown {

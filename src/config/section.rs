@@ -6,7 +6,7 @@ use super::document::{Node, Span, Table, Value};
 use super::near::{one_of, suggest};
 use super::reader::{Reader, join};
 use super::units::{to_si, unit_of};
-use super::value::Lookup;
+use super::value::{Lazy, Lookup};
 
 /// A table at a dotted path. It also stands for a table that is absent and so has no keys.
 #[derive(Clone)]
@@ -56,15 +56,18 @@ impl<'r> Section<'r> {
 
     /// The table `name` within this one. It may be absent: keys read from it are then missing.
     pub fn table(&self, name: &str) -> Section<'r> {
-        let path = join(&self.path, name);
-        self.reader.log.borrow_mut().tables.insert(path.clone());
-        let mut section = Section { path, table: None, ..self.clone() };
+        let mut section = self.below(name);
+        self.reader.note(|log| {
+            log.tables.insert(section.path.clone());
+        });
         match self.table.and_then(|table| table.entries.get(name)).map(|entry| &entry.node) {
             Some(Node { value: Value::Table(table), span }) => {
                 (section.table, section.header) = (Some(table), Some(span.clone()));
             }
             Some(node) => {
-                self.reader.log.borrow_mut().read.insert(section.path.clone());
+                self.reader.note(|log| {
+                    log.read.insert(section.path.clone());
+                });
                 self.wrong_type(name, node, "a table");
                 section.muted = true;
             }
@@ -73,11 +76,17 @@ impl<'r> Section<'r> {
         section
     }
 
+    /// The table `name` within this one, before it is known whether there is one. Silent readings know no paths.
+    pub(super) fn below(&self, name: &str) -> Section<'r> {
+        let path = if self.reader.is_silent() { String::new() } else { join(&self.path, name) };
+        Section { reader: self.reader, path, table: None, header: self.header.clone(), muted: self.muted }
+    }
+
     /// A required number, in SI units; NaN after a problem.
     pub fn number(&self, key: &str, allowed: Bound, doc: &str) -> f64 {
         self.read_number(key, allowed, doc).unwrap_or_else(|absent| {
             if absent {
-                self.missing(key, &allowed.in_unit(unit_of(key)));
+                self.missing(key, Lazy(|| allowed.in_unit(unit_of(key))));
             }
             f64::NAN
         })
@@ -91,7 +100,7 @@ impl<'r> Section<'r> {
                 return f64::NAN;
             }
             let si = to_si(key, default);
-            self.defaulted(key, default.to_string(), Some(si));
+            self.defaulted(key, default, Some(si));
             si
         })
     }
@@ -106,25 +115,25 @@ impl<'r> Section<'r> {
 
     /// An integer with a default; the default also after a problem. It is not converted to SI units.
     pub fn integer_or(&self, key: &str, allowed: RangeInclusive<i64>, default: i64, doc: &str) -> i64 {
-        let range = match (*allowed.start(), *allowed.end()) {
+        let range = Lazy(|| match (*allowed.start(), *allowed.end()) {
             (low, i64::MAX) => format!("integer of at least {low}"),
             (low, high) => format!("integer from {low} to {high}"),
-        };
+        });
         let found = match self.open(key, &range, doc) {
             Lookup::Found(found) => found,
             Lookup::Bad => return default,
             Lookup::Absent => {
-                self.defaulted(key, default.to_string(), Some(to_si(key, default as f64)));
+                self.defaulted(key, default, Some(to_si(key, default as f64)));
                 return default;
             }
         };
         match found.node.value {
             Value::Integer(value) if allowed.contains(&value) => {
-                self.given(key, &found, value.to_string(), Some(to_si(key, value as f64)));
+                self.given(key, &found, value, Some(to_si(key, value as f64)));
                 value
             }
             Value::Integer(_) => {
-                self.out_of_range(key, found.node, &range);
+                self.out_of_range(key, found.node, &range.to_string());
                 default
             }
             _ => {
@@ -139,12 +148,12 @@ impl<'r> Section<'r> {
         match self.open(key, "true or false", doc) {
             Lookup::Found(found) => {
                 if let Value::Boolean(value) = found.node.value {
-                    self.given(key, &found, value.to_string(), None);
+                    self.given(key, &found, value, None);
                     return value;
                 }
                 self.wrong_type(key, found.node, "true or false");
             }
-            Lookup::Absent => self.defaulted(key, default.to_string(), None),
+            Lookup::Absent => self.defaulted(key, default, None),
             Lookup::Bad => {}
         }
         default
@@ -166,7 +175,7 @@ impl<'r> Section<'r> {
             if !absent {
                 return String::new();
             }
-            self.defaulted(key, default.to_string(), None);
+            self.defaulted(key, default, None);
             default.to_string()
         })
     }
@@ -178,7 +187,7 @@ impl<'r> Section<'r> {
 
     /// One of `words`, with a default; the default also after a problem.
     pub fn word_or(&self, key: &str, words: &[&'static str], default: &'static str, doc: &str) -> &'static str {
-        let allowed = one_of(words);
+        let allowed = Lazy(|| one_of(words));
         match self.open(key, &allowed, doc) {
             Lookup::Found(found) => {
                 let Value::Text(text) = &found.node.value else {
@@ -186,14 +195,14 @@ impl<'r> Section<'r> {
                     return default;
                 };
                 if let Some(word) = words.iter().find(|word| *word == text) {
-                    self.given(key, &found, text.clone(), None);
+                    self.given(key, &found, text, None);
                     return word;
                 }
                 let hint = suggest(text, words);
                 let message = format!("`{}` is not known for `{}`", text, join(&self.path, key));
-                self.report(&found.node.span, key, &allowed, message, hint);
+                self.report(&found.node.span, key, &allowed.to_string(), message, hint);
             }
-            Lookup::Absent => self.defaulted(key, default.to_string(), None),
+            Lookup::Absent => self.defaulted(key, default, None),
             Lookup::Bad => {}
         }
         default
@@ -216,8 +225,8 @@ impl<'r> Section<'r> {
             Some(node) => {
                 return self.report(&node.span, key, allowed, message.to_string(), hint.to_string());
             }
-            None => self.absent(key, allowed, message.to_string(), hint.to_string()),
+            None => || self.absent(key, allowed, message.to_string(), hint.to_string()),
         };
-        self.reader.problem(problem);
+        self.reader.fault(problem);
     }
 }

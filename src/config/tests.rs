@@ -3,6 +3,7 @@ use super::*;
 
 mod assignments;
 mod choices;
+mod silent;
 
 fn document(text: &str) -> Document {
     Document::parse("car.toml", text).unwrap()

@@ -1,5 +1,6 @@
 //! Units by the suffix of a key. Numbers become SI here and nowhere else.
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// One unit: how keys end, how people write it, and the way to SI (`si = value * factor + offset`).
 struct Unit {
@@ -75,9 +76,21 @@ const UNITS: [Unit; 56] = [
     unit("_percent", "%", 0.01),
 ];
 
+/// The units by the last byte of their suffix, long suffixes first: every key that is read asks for its unit.
+static BY_LAST_BYTE: LazyLock<[Vec<&'static Unit>; 128]> = LazyLock::new(|| {
+    let mut units = std::array::from_fn(|_| Vec::new());
+    for unit in &UNITS {
+        let list: &mut Vec<&'static Unit> = &mut units[usize::from(unit.suffix.as_bytes()[unit.suffix.len() - 1])];
+        list.push(unit);
+        list.sort_by_key(|unit| std::cmp::Reverse(unit.suffix.len()));
+    }
+    units
+});
+
 /// The unit with the longest suffix that ends the key; none for dimensionless keys.
 fn find(key: &str) -> Option<&'static Unit> {
-    UNITS.iter().filter(|unit| key.ends_with(unit.suffix)).max_by_key(|unit| unit.suffix.len())
+    let last = *key.as_bytes().last()?;
+    BY_LAST_BYTE.get(usize::from(last))?.iter().find(|unit| key.ends_with(unit.suffix)).copied()
 }
 
 /// A value in the unit of the key, converted to SI (temperatures to kelvin).

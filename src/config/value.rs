@@ -1,6 +1,8 @@
 //! What the readings of all kinds of values have in common: look-up, origin, registration, complaints.
+use std::fmt::{self, Display};
+
 use super::bound::Bound;
-use super::document::{Node, Span, Value};
+use super::document::{Node, Span, Table, Value};
 use super::near::{near, one_of, question, suggest};
 use super::problem::{Place, Problem};
 use super::reader::{KeyInfo, join};
@@ -14,9 +16,18 @@ const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
 /// A value as found, with its origin.
 pub(super) struct Found<'r> {
     pub node: &'r Node,
-    pub status: String,
-    pub source: String,
-    pub note: String,
+    pub status: &'r str,
+    pub source: &'r str,
+    pub note: &'r str,
+}
+
+/// A text that is made when it is written; silent readings never do.
+pub(super) struct Lazy<F: Fn() -> String>(pub F);
+
+impl<F: Fn() -> String> Display for Lazy<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&(self.0)())
+    }
 }
 
 /// What stands at a key.
@@ -30,11 +41,11 @@ pub(super) enum Lookup<'r> {
 impl<'r> Section<'r> {
     /// The number in SI units; an error says whether the key is absent (else it is reported already).
     pub(super) fn read_number(&self, key: &str, allowed: Bound, doc: &str) -> Result<f64, bool> {
-        match self.open(key, &allowed.in_unit(unit_of(key)), doc) {
+        match self.open(key, Lazy(|| allowed.in_unit(unit_of(key))), doc) {
             Lookup::Found(found) => {
                 let value = self.check_number(key, key, found.node, allowed).ok_or(false)?;
                 let si = to_si(key, value);
-                self.given(key, &found, value.to_string(), Some(si));
+                self.given(key, &found, value, Some(si));
                 Ok(si)
             }
             Lookup::Absent => Err(true),
@@ -43,10 +54,10 @@ impl<'r> Section<'r> {
     }
 
     pub(super) fn read_text(&self, key: &str, allowed: &str, doc: &str) -> Result<String, bool> {
-        match self.open(key, allowed, doc) {
+        match self.open(key, &allowed, doc) {
             Lookup::Found(found) => match &found.node.value {
                 Value::Text(text) => {
-                    self.given(key, &found, text.clone(), None);
+                    self.given(key, &found, text, None);
                     Ok(text.clone())
                 }
                 _ => {
@@ -69,33 +80,32 @@ impl<'r> Section<'r> {
                 return None;
             }
         };
+        if allowed.contains(value) {
+            return Some(value);
+        }
         let range = allowed.in_unit(unit_of(quantity));
-        if !value.is_finite() {
+        if value.is_finite() {
+            self.out_of_range(key, node, &range);
+        } else {
             let message = format!("`{}` is not a finite number", join(&self.path, key));
             self.report(&node.span, key, &range, message, String::new());
-            return None;
         }
-        if !allowed.contains(value) {
-            self.out_of_range(key, node, &range);
-            return None;
-        }
-        Some(value)
+        None
     }
 
     /// Looks a key up, counts it as read and as known, and unwraps `{ value = …, status = … }`.
-    pub(super) fn open(&self, key: &str, allowed: &str, doc: &str) -> Lookup<'r> {
-        let path = join(&self.path, key);
-        let info = KeyInfo {
-            key: path.clone(),
-            unit: unit_of(key).to_string(),
-            allowed: allowed.to_string(),
-            doc: doc.to_string(),
-            ..KeyInfo::default()
-        };
-        let mut log = self.reader.log.borrow_mut();
-        log.register(info);
-        log.read.insert(path);
-        drop(log);
+    pub(super) fn open(&self, key: &str, allowed: impl Display, doc: &str) -> Lookup<'r> {
+        self.reader.note(|log| {
+            let path = join(&self.path, key);
+            log.register(KeyInfo {
+                key: path.clone(),
+                unit: unit_of(key).to_string(),
+                allowed: allowed.to_string(),
+                doc: doc.to_string(),
+                ..KeyInfo::default()
+            });
+            log.read.insert(path);
+        });
         let Some(entry) = self.table.and_then(|table| table.entries.get(key)) else {
             return Lookup::Absent;
         };
@@ -104,10 +114,8 @@ impl<'r> Section<'r> {
 
     /// The value with its origin, from either of its two forms.
     pub(super) fn unwrap(&self, key: &str, node: &'r Node) -> Lookup<'r> {
-        let status = if node.span.is_set() { "set" } else { "user" };
-        let source = if node.span.is_set() { "command line" } else { "" };
-        let (status, source, note) = (status.to_string(), source.to_string(), String::new());
-        let mut found = Found { node, status, source, note };
+        let (status, source) = if node.span.is_set() { ("set", "command line") } else { ("user", "") };
+        let mut found = Found { node, status, source, note: "" };
         let Value::Table(table) = &node.value else {
             return Lookup::Found(found);
         };
@@ -118,13 +126,21 @@ impl<'r> Section<'r> {
             return Lookup::Bad;
         };
         found.node = value;
+        if !self.reader.is_silent() {
+            self.origin(key, table, &mut found);
+        }
+        Lookup::Found(found)
+    }
+
+    /// Reads what stands beside the value.
+    fn origin(&self, key: &str, table: &'r Table, found: &mut Found<'r>) {
         for (name, entry) in table.entries.iter().filter(|(name, _)| *name != "value") {
             let text = match &entry.node.value {
-                Value::Text(text) => text.clone(),
-                _ => String::new(),
+                Value::Text(text) => text.as_str(),
+                _ => "",
             };
             match name.as_str() {
-                "status" => self.check_status(key, &entry.node, &text, &mut found.status),
+                "status" => self.check_status(key, &entry.node, text, &mut found.status),
                 "source" | "note" if !matches!(entry.node.value, Value::Text(_)) => {
                     self.wrong_type(key, &entry.node, "text");
                 }
@@ -137,47 +153,47 @@ impl<'r> Section<'r> {
                 }
             }
         }
-        Lookup::Found(found)
     }
 
-    fn check_status(&self, key: &str, node: &Node, text: &str, status: &mut String) {
+    fn check_status(&self, key: &str, node: &Node, text: &'r str, status: &mut &'r str) {
         if !STATUSES.contains(&text) {
             let names = near(text, STATUSES.into_iter());
             let message = format!("`{}` has no known status", join(&self.path, key));
             self.report(&node.span, key, &one_of(&STATUSES), message, question(&names));
-        } else if status != "set" {
-            *status = text.to_string();
+        } else if *status != "set" {
+            *status = text;
         }
     }
 
     /// Completes what is known about a key with the value that was given.
-    pub(super) fn given(&self, key: &str, found: &Found<'_>, value: String, si: Option<f64>) {
+    pub(super) fn given(&self, key: &str, found: &Found<'_>, value: impl Display, si: Option<f64>) {
         self.fill(key, |info| {
-            (info.value, info.si) = (value, si);
-            info.status.clone_from(&found.status);
-            info.source.clone_from(&found.source);
-            info.note.clone_from(&found.note);
+            (info.value, info.si) = (value.to_string(), si);
+            info.status = found.status.to_string();
+            info.source = found.source.to_string();
+            info.note = found.note.to_string();
         });
     }
 
     /// Completes what is known about a key with its default.
-    pub(super) fn defaulted(&self, key: &str, value: String, si: Option<f64>) {
+    pub(super) fn defaulted(&self, key: &str, value: impl Display, si: Option<f64>) {
         self.fill(key, |info| {
-            (info.value, info.si) = (value, si);
+            (info.value, info.si) = (value.to_string(), si);
             info.status = "default".to_string();
         });
     }
 
     /// Names the unit of a key whose name does not carry it.
-    pub(super) fn unit(&self, key: &str, unit: &str) {
+    pub(super) fn unit(&self, key: &str, unit: impl Display) {
         self.fill(key, |info| info.unit = unit.to_string());
     }
 
     fn fill(&self, key: &str, write: impl FnOnce(&mut KeyInfo)) {
-        let log = &mut *self.reader.log.borrow_mut();
-        if let Some(info) = log.index.get(&join(&self.path, key)).and_then(|at| log.keys.get_mut(*at)) {
-            write(info);
-        }
+        self.reader.note(|log| {
+            if let Some(info) = log.index.get(&join(&self.path, key)).and_then(|at| log.keys.get_mut(*at)) {
+                write(info);
+            }
+        });
     }
 
     pub(super) fn out_of_range(&self, key: &str, node: &Node, allowed: &str) {
@@ -201,13 +217,15 @@ impl<'r> Section<'r> {
     }
 
     /// Reports a required key that is absent.
-    pub(super) fn missing(&self, key: &str, allowed: &str) {
-        if !self.muted {
+    pub(super) fn missing(&self, key: &str, allowed: impl Display) {
+        if self.muted {
+            return;
+        }
+        self.reader.fault_of_missing(|| {
             let table = if self.path.is_empty() { "the top of the file".to_string() } else { format!("[{}]", self.path) };
             let message = format!("missing key `{}`", join(&self.path, key));
-            let problem = self.absent(key, allowed, message, format!("add `{key} = …` to {table}"));
-            self.reader.log.borrow_mut().missing.push(problem);
-        }
+            self.absent(key, &allowed.to_string(), message, format!("add `{key} = …` to {table}"))
+        });
     }
 
     pub(super) fn absent(&self, key: &str, allowed: &str, message: String, hint: String) -> Problem {
@@ -225,7 +243,7 @@ impl<'r> Section<'r> {
 
     pub(super) fn report(&self, span: &Span, key: &str, allowed: &str, message: String, hint: String) {
         let document = self.reader.document;
-        self.reader.problem(Problem {
+        self.reader.fault(|| Problem {
             place: document.place(span),
             key: join(&self.path, key),
             value: document.written(span).to_string(),

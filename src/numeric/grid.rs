@@ -1,5 +1,7 @@
 //! Multilinear interpolation on a full rectangular grid with up to five axes.
 
+use std::sync::Arc;
+
 /// Largest number of axes of a [`Grid`].
 pub const GRID_AXES: usize = 5;
 
@@ -9,7 +11,8 @@ pub const GRID_AXES: usize = 5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     axes: [Vec<f64>; GRID_AXES],
-    values: Vec<f64>,
+    /// Shared between copies: measured maps are long.
+    values: Arc<[f64]>,
 }
 
 impl Grid {
@@ -30,20 +33,16 @@ impl Grid {
         if size != rows.len() || size == 0 {
             return Err(format!("the {} rows do not fill the grid of {} combinations exactly once", rows.len(), size));
         }
-        let mut grid = Grid { axes, values: vec![f64::NAN; size] };
+        let mut values = vec![f64::NAN; size];
         for (x, value) in rows {
-            let index = grid.index_of(x);
-            if grid.values[index].is_nan() {
-                grid.values[index] = *value;
+            let index = index_of(&axes, x);
+            if values[index].is_nan() {
+                values[index] = *value;
             } else {
                 return Err(format!("the combination {x:?} stands twice, another is missing"));
             }
         }
-        Ok(grid)
-    }
-
-    fn index_of(&self, x: &[f64; GRID_AXES]) -> usize {
-        self.axes.iter().zip(x).fold(0, |index, (axis, &v)| index * axis.len() + axis.partition_point(|&a| a < v).min(axis.len() - 1))
+        Ok(Grid { axes, values: values.into() })
     }
 
     /// Value at `x` and whether `x` lies within the grid on every axis that has more than one value.
@@ -76,6 +75,11 @@ impl Grid {
         }
         (sum, inside)
     }
+}
+
+/// Index of the value at given coordinates of the axes.
+fn index_of(axes: &[Vec<f64>; GRID_AXES], x: &[f64; GRID_AXES]) -> usize {
+    axes.iter().zip(x).fold(0, |index, (axis, &v)| index * axis.len() + axis.partition_point(|&a| a < v).min(axis.len() - 1))
 }
 
 #[cfg(test)]

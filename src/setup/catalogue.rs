@@ -5,7 +5,8 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-use super::{Disk, Kind, embedded_lubricants, embedded_rigs, embedded_vehicles, parts};
+use super::inputs::{head, parts};
+use super::{Disk, Kind, embedded_lubricants, embedded_rigs, embedded_vehicles};
 use crate::config::{Document, KeyInfo, Reader};
 use crate::lubricant::{self, Lubricant};
 use crate::rig::transmission::Conditions;
@@ -90,8 +91,8 @@ fn keys(name: &str, text: &str, kind: Kind, sets: &[String]) -> Vec<KeyInfo> {
         (Kind::Lubricant, _) => drop(lubricant::load(&reader.root(), name)),
         (Kind::Vehicle, Some(oil)) => {
             let root = reader.root();
-            drop(super::head(&root, name));
-            drop(parts(&root, &Disk::default(), oil.clone(), oil, Formulation::default(), name.to_owned()));
+            drop(head(&root, name));
+            drop(parts(&root, &Disk::default(), [oil.clone(), oil], Formulation::default(), name.to_owned()));
         }
         (Kind::Rig, _) => drop(Conditions::read(&reader.root())),
         (Kind::Vehicle, None) => {}

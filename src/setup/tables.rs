@@ -1,5 +1,7 @@
 //! Tables that vehicle files name or hold: curves, viscosity, BSFC and loss maps.
 
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
 use super::{Files, embedded_map};
 use crate::config::{Place, Problem, Section, decode, near, to_si};
 use crate::engine::BsfcMap;
@@ -36,10 +38,14 @@ struct Column {
     high: f64,
 }
 
-/// A CSV of numbers with a header, read whole; all problems with line, column and value.
-struct Numbers {
+/// A CSV of numbers with a header, read whole, and the map that was made of it.
+#[derive(Debug)]
+pub struct Table {
     names: Vec<String>,
-    rows: Vec<(usize, Vec<f64>)>,
+    rows: Vec<Vec<f64>>,
+    loss: OnceLock<LossMap>,
+    /// With the bits of heating value and displacement, which are parts of its numbers.
+    bsfc: Mutex<Option<([u64; 2], BsfcMap)>>,
 }
 
 fn problem(file: &str, line: usize, key: &str, value: &str, allowed: &str, message: String, hint: &str) -> Problem {
@@ -63,7 +69,8 @@ fn unknown_column(file: &str, name: &str, columns: &[Column]) -> Option<Problem>
     Some(problem(file, 1, name, name, &all.join(", "), format!("unknown column `{name}`"), &hint))
 }
 
-fn numbers(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Numbers, Vec<Problem>> {
+/// All problems with line, column and value.
+fn numbers(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Table, Vec<Problem>> {
     let text = decode(file, bytes)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
     let mut problems = Vec::new();
@@ -112,7 +119,7 @@ fn numbers(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Numbers, Vec<
             }
             value
         });
-        rows.push((line, values.collect()));
+        rows.push(values.collect());
         if problems.len() > 50 {
             break;
         }
@@ -120,33 +127,39 @@ fn numbers(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Numbers, Vec<
     if rows.is_empty() && problems.is_empty() {
         problems.push(problem(file, 1, "", "", "a header and rows", "the file has no rows".into(), ""));
     }
-    if problems.is_empty() { Ok(Numbers { names, rows }) } else { Err(problems) }
+    if problems.is_empty() { Ok(Table { names, rows, loss: OnceLock::new(), bsfc: Mutex::default() }) } else { Err(problems) }
 }
 
-impl Numbers {
+impl Table {
     fn index(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|n| n == name)
     }
 }
 
-fn read(s: &Section, key: &str, file: &str, files: &dyn Files, columns: &[Column]) -> Option<Numbers> {
-    let bytes = match embedded_map(file) {
-        Some(text) => text.as_bytes().to_vec(),
-        None => match files.read(file) {
-            Ok(bytes) => bytes,
-            Err(why) => {
-                s.complain(key, "a readable CSV file", &format!("cannot read `{file}`: {why}"), "the path is relative to the vehicle file");
-                return None;
-            }
-        },
+fn read(s: &Section, key: &str, file: &str, files: &dyn Files, columns: &[Column]) -> Option<Arc<Table>> {
+    let mut make = || {
+        let read;
+        let bytes = match embedded_map(file) {
+            Some(text) => text.as_bytes(),
+            None => match files.read(file) {
+                Ok(bytes) => {
+                    read = bytes;
+                    read.as_slice()
+                }
+                Err(why) => {
+                    s.complain(
+                        key,
+                        "a readable CSV file",
+                        &format!("cannot read `{file}`: {why}"),
+                        "the path is relative to the vehicle file",
+                    );
+                    return None;
+                }
+            },
+        };
+        numbers(file, bytes, columns).map(Arc::new).map_err(|problems| problems.into_iter().for_each(|p| s.report_problem(p))).ok()
     };
-    match numbers(file, &bytes, columns) {
-        Ok(table) => Some(table),
-        Err(problems) => {
-            problems.into_iter().for_each(|p| s.report_problem(p));
-            None
-        }
-    }
+    files.table(columns[0].name, file, &mut make)
 }
 
 /// A BSFC map from CSV; none after a problem.
@@ -159,6 +172,11 @@ pub fn bsfc_map(s: &Section, file: &str, files: &dyn Files, heating_value_j_kg: 
         Column { name: "bsfc_g_kwh", low: 100.0, high: 3000.0 },
     ];
     let table = read(s, "file", file, files, &columns)?;
+    let scale = [heating_value_j_kg.to_bits(), displacement_m3.to_bits()];
+    let mut made = table.bsfc.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, map)) = made.as_ref().filter(|(of, _)| *of == scale) {
+        return Some(map.clone());
+    }
     let (speed, bsfc) = (table.index("speed_rpm"), table.index("bsfc_g_kwh"));
     let load = table.index("bmep_bar").map(|i| (i, 1e5));
     let per_torque = 4.0 * std::f64::consts::PI / displacement_m3;
@@ -172,9 +190,10 @@ pub fn bsfc_map(s: &Section, file: &str, files: &dyn Files, heating_value_j_kg: 
         );
         return None;
     };
-    let rows: Vec<(f64, f64, f64)> =
-        table.rows.iter().map(|(_, r)| (to_si("speed_rpm", r[speed]), r[load] * factor, r[bsfc] / 3.6e9)).collect();
-    BsfcMap::from_rows(&rows, heating_value_j_kg).map_err(|why| s.complain("file", "a full grid", &why, "")).ok()
+    let rows: Vec<(f64, f64, f64)> = table.rows.iter().map(|r| (to_si("speed_rpm", r[speed]), r[load] * factor, r[bsfc] / 3.6e9)).collect();
+    let map = BsfcMap::from_rows(&rows, heating_value_j_kg).map_err(|why| s.complain("file", "a full grid", &why, "")).ok()?;
+    *made = Some((scale, map.clone()));
+    Some(map)
 }
 
 /// A measured torque-loss map from CSV where `key` names one; `first` is the name of its first axis, `ratio` or `gear`.
@@ -191,6 +210,9 @@ pub fn loss_map(s: &Section, key: &str, doc: &str, files: &dyn Files, first: &'s
         Column { name: "torque_loss_nm", low: 0.0, high: 1000.0 },
     ];
     let table = read(s, key, &file, files, &columns)?;
+    if let Some(map) = table.loss.get() {
+        return Some(map.clone());
+    }
     let Some(loss) = table.index("torque_loss_nm") else {
         s.complain(key, "", "the map has no column torque_loss_nm", "losses are torques at the box's input shaft, Nm");
         return None;
@@ -199,7 +221,7 @@ pub fn loss_map(s: &Section, key: &str, doc: &str, files: &dyn Files, first: &'s
     let rows: Vec<([f64; GRID_AXES], f64)> = table
         .rows
         .iter()
-        .map(|(_, r)| {
+        .map(|r| {
             let mut x = [0.0; GRID_AXES];
             for (k, axis) in axes.iter().enumerate() {
                 x[k] = axis.map_or(0.0, |i| to_si(columns[k].name, r[i]));
@@ -207,8 +229,7 @@ pub fn loss_map(s: &Section, key: &str, doc: &str, files: &dyn Files, first: &'s
             (x, r[loss])
         })
         .collect();
-    Grid::from_rows(&rows)
-        .map(LossMap::new)
-        .map_err(|why| s.complain(key, "a full grid", &why, "every combination of the columns' values must stand once"))
-        .ok()
+    let why = "every combination of the columns' values must stand once";
+    let grid = Grid::from_rows(&rows).map_err(|wrong| s.complain(key, "a full grid", &wrong, why)).ok()?;
+    Some(table.loss.get_or_init(|| LossMap::new(grid)).clone())
 }

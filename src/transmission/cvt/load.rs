@@ -15,7 +15,10 @@ use crate::transmission::launch_load;
 #[must_use]
 pub fn load(s: &Section, files: &dyn Files, engine: &Engine, oil: &Lubricant, formulation: Formulation) -> Cvt {
     let v = s.table("variator");
-    let ratio = ratio_control(&s.table("ratio"), engine);
+    let full_load_route = engine.speed_for_power();
+    // The route ends at the greatest power.
+    let fastest_rad_s = full_load_route.points().last().map_or(engine.highest_rad_s, |p| p.1);
+    let ratio = ratio_control(&s.table("ratio"), fastest_rad_s);
     let belt = belt(&s.table("belt"), &v, formulation);
     let low = Geometry::new(ratio.low, belt.centre_distance_m, belt.length_m);
     check_low(s, &ratio, &belt, &low);
@@ -57,7 +60,7 @@ pub fn load(s: &Section, files: &dyn Files, engine: &Engine, oil: &Lubricant, fo
         cap_pa,
         low_radius_m: low.primary_radius_m,
         launch: launch_load::load(s, 5.0),
-        full_load_route: engine.speed_for_power(),
+        full_load_route,
         maps: maps(&s.table("maps"), files),
         belt_heat_share: s.number_or(
             "belt_heat_share",
@@ -93,7 +96,7 @@ fn centrifugal(v: &Section, oil: &Lubricant) -> f64 {
     std::f64::consts::PI * oil.density_kg_m3(353.15) * (outer.powi(4) - inner.powi(4)) / 4.0 // VA-3
 }
 
-fn ratio_control(s: &Section, engine: &Engine) -> RatioControl {
+fn ratio_control(s: &Section, highest_rad_s: f64) -> RatioControl {
     let ratio = Bound::closed(0.3, 3.3);
     let rpm = Bound::closed(500.0, 10_000.0);
     let rate = Bound::open_low(0.0, 20.0);
@@ -108,7 +111,7 @@ fn ratio_control(s: &Section, engine: &Engine) -> RatioControl {
             "rise of engine speed over the share of rated power above it (RC-1)",
         ),
         overrun_rad_s: s.number("overrun_rpm", rpm, "engine speed in overrun (RC-2)"),
-        highest_rad_s: engine.peak_power_rad_s(),
+        highest_rad_s,
         route_efficiency: s.number_or(
             "route_efficiency",
             Bound::closed(0.3, 1.0),
@@ -249,15 +252,17 @@ fn clamp_law(s: &Section) -> ClampLaw {
 }
 
 fn maps(s: &Section, files: &dyn Files) -> CvtMaps {
-    let one = |key: &str, what: &str| {
-        let doc = format!("CSV of measured torque loss at the primary that replaces the {what}");
-        tables::loss_map(s, key, &doc, files, "ratio")
-    };
+    macro_rules! doc {
+        ($what:literal) => {
+            concat!("CSV of measured torque loss at the primary that replaces the ", $what)
+        };
+    }
+    let one = |key: &str, doc: &str| tables::loss_map(s, key, doc, files, "ratio");
     CvtMaps {
-        belt: one("belt", "belt model"),
-        pump: one("pump", "pump model"),
-        input_shaft: one("input_shaft", "input shaft model"),
-        clutch_drag: one("clutch_drag", "reverse-clutch drag"),
-        final_drive: one("final_drive", "final drive model"),
+        belt: one("belt", doc!("belt model")),
+        pump: one("pump", doc!("pump model")),
+        input_shaft: one("input_shaft", doc!("input shaft model")),
+        clutch_drag: one("clutch_drag", doc!("reverse-clutch drag")),
+        final_drive: one("final_drive", doc!("final drive model")),
     }
 }

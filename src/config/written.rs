@@ -1,0 +1,88 @@
+//! Values as they are written: in the unit of their key and each with its place, for inputs in which another key decides what a value
+//! has to be.
+use super::bound::Bound;
+use super::document::{Node, Value};
+use super::problem::Place;
+use super::section::Section;
+use super::value::Lookup;
+
+/// A value as written. Its checks report at its own place.
+#[derive(Clone)]
+pub struct Written<'r> {
+    section: Section<'r>,
+    key: String,
+    node: &'r Node,
+}
+
+impl<'r> Section<'r> {
+    /// The value of `key` as written; none if it is absent or, reported already, no value at all.
+    pub fn written(&self, key: &str, allowed: &str, doc: &str) -> Option<Written<'r>> {
+        match self.open(key, allowed, doc) {
+            Lookup::Found(found) => {
+                self.given(key, &found, self.reader.document.written(&found.node.span).to_string(), None);
+                Some(Written { section: self.clone(), key: key.to_string(), node: found.node })
+            }
+            Lookup::Absent | Lookup::Bad => None,
+        }
+    }
+}
+
+impl<'r> Written<'r> {
+    /// The text of the file.
+    #[must_use]
+    pub fn text(&self) -> &'r str {
+        self.section.reader.document.written(&self.node.span)
+    }
+
+    /// Where it stands.
+    #[must_use]
+    pub fn place(&self) -> Place {
+        self.section.reader.document.place(&self.node.span)
+    }
+
+    /// Whether it is a number, finite or not.
+    #[must_use]
+    pub fn is_number(&self) -> bool {
+        matches!(self.node.value, Value::Integer(_) | Value::Float(_))
+    }
+
+    /// Whether it is a table.
+    #[must_use]
+    pub fn is_table(&self) -> bool {
+        matches!(self.node.value, Value::Table(_))
+    }
+
+    /// The text without its quotes, where it is one.
+    #[must_use]
+    pub fn word(&self) -> Option<&'r str> {
+        match &self.node.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// Its items, where it is a list.
+    #[must_use]
+    pub fn items(&self) -> Option<Vec<Written<'r>>> {
+        match &self.node.value {
+            Value::List(items) => Some(items.iter().map(|node| Written { node, ..self.clone() }).collect()),
+            _ => None,
+        }
+    }
+
+    /// The finite number that it is, within its range; otherwise none, and reported. `quantity` is a key that ends in the number's unit.
+    #[must_use]
+    pub fn number(&self, quantity: &str, allowed: Bound) -> Option<f64> {
+        self.section.check_number(&self.key, quantity, self.node, allowed)
+    }
+
+    /// Reports that it is of another kind than expected.
+    pub fn wrong_type(&self, expected: &str) {
+        self.section.wrong_type(&self.key, self.node, expected);
+    }
+
+    /// Reports it.
+    pub fn complain(&self, allowed: &str, message: &str, hint: &str) {
+        self.section.report(&self.node.span, &self.key, allowed, message.to_string(), hint.to_string());
+    }
+}

@@ -1,0 +1,39 @@
+//! Keeps the tables that a car's files name, so that building the car again neither reads nor parses them.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::tables::Table;
+use super::{Disk, Files};
+
+/// The tables of one file, by kind.
+type Kinds = BTreeMap<&'static str, Arc<Table>>;
+
+/// The disk, and the tables of its files that have been asked for.
+#[derive(Debug, Default)]
+pub(super) struct Shelf {
+    pub disk: Disk,
+    tables: Mutex<BTreeMap<String, Kinds>>,
+}
+
+impl Shelf {
+    pub fn new(disk: Disk) -> Self {
+        Shelf { disk, tables: Mutex::default() }
+    }
+}
+
+impl Files for Shelf {
+    fn read(&self, path: &str) -> Result<Vec<u8>, String> {
+        self.disk.read(path)
+    }
+
+    fn table(&self, kind: &'static str, file: &str, make: &mut dyn FnMut() -> Option<Arc<Table>>) -> Option<Arc<Table>> {
+        let mut tables = self.tables.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(table) = tables.get(file).and_then(|kinds| kinds.get(kind)) {
+            return Some(Arc::clone(table));
+        }
+        let table = make()?;
+        tables.entry(file.to_owned()).or_default().insert(kind, Arc::clone(&table));
+        Some(table)
+    }
+}
