@@ -1,9 +1,32 @@
 //! What a study is to do, read from a TOML file and checked.
+//!
+//! | file | what stands there |
+//! |---|---|
+//! | `read` | the head of a plan, and all its parts together |
+//! | `factor`, `values` | one `[[factor]]` and its list, range or distribution |
+//! | `options` | what the run options allow, as factors and at the head |
+//! | `design` | the design's own keys, and what concerns all factors at once |
+//! | `distribution` | equations of the distributions |
+//! | `embedded` | the plans that the program carries |
+
+mod design;
+mod distribution;
+mod embedded;
+mod factor;
+mod options;
+mod places;
+mod read;
+mod values;
+
+pub use embedded::embedded_plans;
+pub use places::Places;
 
 use std::sync::Arc;
 
-use crate::config::Place;
+use crate::config::{Place, Problem};
 use crate::transmission::cvt::variator::Formulation;
+
+use super::design::Level;
 
 /// A whole plan.
 #[derive(Clone, Debug)]
@@ -24,10 +47,12 @@ pub struct Plan {
     pub design: Design,
     /// What is kept of each run beside its summary.
     pub keep: Keep,
-    /// Columns of the summary that are analysed, in their order.
+    /// Columns of the summary that are analysed, in their order; the fuel columns if there are none.
     pub analyse: Vec<String>,
     /// Number of runs above which the user must agree.
     pub most_runs: u64,
+    /// Where the keys of `[study]` stand; `design` is the place of the design's table.
+    pub places: Places,
 }
 
 /// Cars and conditions of all runs; paths are relative to the plan's folder.
@@ -64,7 +89,8 @@ pub struct Factor {
     pub key: String,
     /// Short name for tables and plots; the key unless given.
     pub name: String,
-    /// Unit of its numbers: the key's, or `-` where they multiply; empty for words.
+    /// Unit of its numbers: the key's, `-` where they multiply, `K` where they are added to a temperature. Empty for words: either all
+    /// values of a factor are numbers and there is a unit, or all are words.
     pub unit: String,
     /// Whose value it is.
     pub cars: Cars,
@@ -72,15 +98,17 @@ pub struct Factor {
     pub acts: Acts,
     /// The values.
     pub values: FactorValues,
-    /// `source`, `derived`, `fitted` or `assumed`: how the values are known; empty if not said.
+    /// `source`, `derived`, `fitted` or `assumed`: how the values are known; empty if not said, which no distribution leaves.
     pub status: String,
     /// Reason or reference for them.
     pub source: String,
-    /// Where the factor stands in the plan.
+    /// Where its key stands in the plan.
     pub place: Place,
+    /// Where its values stand: `values` and its items, `range`, `distribution` and `distribution.low` or the like.
+    pub places: Places,
 }
 
-/// Factors that are no keys of a file.
+/// Factors that are no keys of a file. They are of all cars, but for the lubricant.
 pub const RUN_OPTIONS: [&str; 7] = ["ambient_degc", "start", "cycle", "lubricant", "engine_oil", "dt_s", "formulation"];
 
 /// The cars that a factor changes.
@@ -112,6 +140,16 @@ pub enum FactorValue {
     Number(f64),
     /// A word, or any other TOML value as written.
     Word(Arc<str>),
+}
+
+/// As a user would write it, words without quotes.
+impl std::fmt::Display for FactorValue {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            FactorValue::Number(x) => write!(f, "{x}"),
+            FactorValue::Word(word) => f.write_str(word),
+        }
+    }
 }
 
 /// The values that a factor takes.
@@ -167,6 +205,63 @@ pub enum Distribution {
         /// Geometric standard deviation: 68 % lie between median / g and median g.
         geometric_sd: f64,
     },
+}
+
+impl Plan {
+    /// Reads and checks a plan; `file` is the name under which problems cite it. Names of cars, fluids and cycles that the program carries
+    /// are checked; files that the plan names are not opened, and keys of cars and names of result columns are not known here.
+    ///
+    /// # Errors
+    /// All problems with their places.
+    pub fn read(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
+        read::plan(file, text)
+    }
+
+    /// The plan of a word given by the user, name or path as for a vehicle; `option` is what problems of the word itself cite.
+    ///
+    /// # Errors
+    /// Unknown name, unreadable file, or all problems of the plan.
+    pub fn open(word: &str, option: &str) -> Result<Plan, Vec<Problem>> {
+        let (file, text) = embedded::text_of(word, option)?;
+        Plan::read(&file, &text)
+    }
+
+    /// Least and largest number that a factor takes in this plan; none for words. Exact, but for distributions drawn more than 2^20
+    /// times ([`Design::share_span`]).
+    #[must_use]
+    pub fn span(&self, factor: usize) -> Option<(f64, f64)> {
+        let values = &self.factors.get(factor)?.values;
+        match values {
+            FactorValues::List(list) => {
+                let numbers = list.iter().filter_map(|value| match value {
+                    FactorValue::Number(x) => Some((*x, *x)),
+                    FactorValue::Word(_) => None,
+                });
+                numbers.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+            }
+            FactorValues::Distribution(distribution) => {
+                let (low, high) = self.design.share_span(&self.factors, factor);
+                Some((distribution.inverse_cdf(low), distribution.inverse_cdf(high)))
+            }
+        }
+    }
+}
+
+impl Factor {
+    /// Its value where a design puts it; none for the value of the car's own file.
+    #[must_use]
+    pub fn value(&self, level: Level) -> Option<FactorValue> {
+        match (&self.values, level) {
+            (_, Level::Base) => None,
+            (FactorValues::List(list), Level::Entry(entry)) => list.get(entry).cloned(),
+            (FactorValues::List(list), Level::Share(share)) => {
+                let entry = (share * list.len() as f64) as usize;
+                list.get(entry.min(list.len().saturating_sub(1))).cloned()
+            }
+            (FactorValues::Distribution(distribution), Level::Share(share)) => Some(FactorValue::Number(distribution.inverse_cdf(share))),
+            (FactorValues::Distribution(_), Level::Entry(_)) => None,
+        }
+    }
 }
 
 /// Which combinations of values are driven.
