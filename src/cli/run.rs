@@ -17,6 +17,7 @@ use super::Context;
 use super::answer::{Answer, FAILED, Reply, json_text};
 use super::inputs::{self, Offering, Problems};
 use cars::Car;
+use files::TraceFormat;
 
 /// Allowed length of a step, s.
 const STEP: Bound = Bound::closed(0.01, 10.0);
@@ -29,6 +30,7 @@ Examples:
   cvtcycle run --cycle ftp75 --baseline none --set transmission.cvt.pump.displacement_cc_rev=8
   cvtcycle run --cycle constant_120 --start 90 --json
   cvtcycle run --ambient -10 --out cold_run
+  cvtcycle run --out run2 --format parquet
 
 `cvtcycle list cycles`, `list vehicles` and `list lubricants` name what can be driven, `cvtcycle explain KEY` what can be set.")]
 pub struct Args {
@@ -73,15 +75,22 @@ pub struct Args {
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
-    /// Write summary.json, traces (CSV) and plots (SVG) into this directory
+    /// Write summary.json, traces and plots (SVG) into this directory
     #[arg(long, value_name = "DIR")]
     out: Option<std::path::PathBuf>,
+    /// Format of the traces: csv, parquet or both
+    #[arg(long, value_name = "NAME", default_value = "csv", requires = "out", value_parser = Offering(formats), hide_possible_values = true)]
+    format: String,
     /// Replace the files of an earlier run in the --out directory
     #[arg(long, requires = "out")]
     force: bool,
     /// Print nothing but problems
     #[arg(long, short)]
     quiet: bool,
+}
+
+fn formats() -> Vec<&'static str> {
+    TraceFormat::NAMES.iter().map(|(name, _)| *name).collect()
 }
 
 pub fn formulations() -> Vec<&'static str> {
@@ -96,6 +105,7 @@ struct Plan {
     start: (Start, StartWord),
     dt_s: f64,
     formulation: Formulation,
+    format: TraceFormat,
     out: Option<OutputDir>,
 }
 
@@ -117,7 +127,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     let summary = summarise(&plan.cycle, plan.ambient_degc, plan.start.1, settings, &driven);
     let json = json_text(&summary)?;
     let written = match plan.out {
-        Some(dir) => files::write(dir, &json, &summary, &plan.cycle, &driven).map_err(|problem| vec![problem])?,
+        Some(dir) => files::write(dir, plan.format, &json, &summary, &plan.cycle, &driven).map_err(|problem| vec![problem])?,
         None => files::Written::default(),
     };
     Ok(reply(args, context, &plan.cycle, &summary, json, &written))
@@ -143,12 +153,13 @@ fn plan(args: &Args) -> Result<Plan, Vec<cvtcycle::config::Problem>> {
     let ambient = problems.take(inputs::number("--ambient", &args.ambient, AMBIENT, "ambient_degc"));
     let start = problems.take(start(&args.start));
     let dt_s = problems.take(inputs::number("--dt", &args.dt, STEP, "dt_s"));
+    let format = problems.take(inputs::word("--format", &args.format, &TraceFormat::NAMES));
     let out = args.out.as_ref().map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
     let out = out.and_then(|dir| problems.take(dir));
     problems.finish()?;
-    match (cycle, ambient, start, dt_s, formulation) {
-        (Some(cycle), Some(ambient_degc), Some(start), Some(dt_s), Some(formulation)) => {
-            Ok(Plan { cycle, cars, ambient_degc, start, dt_s, formulation, out })
+    match (cycle, ambient, start, dt_s, formulation, format) {
+        (Some(cycle), Some(ambient_degc), Some(start), Some(dt_s), Some(formulation), Some(format)) => {
+            Ok(Plan { cycle, cars, ambient_degc, start, dt_s, formulation, format, out })
         }
         _ => unreachable!("what is missing has left a problem"),
     }

@@ -9,6 +9,8 @@ use crate::config::{Place, Problem};
 
 /// The file that marks a directory as one of an earlier run.
 const MARK: &str = "summary.json";
+/// The file that marks a directory as one of a study.
+const STUDY: &str = "study.json";
 /// Names of files that are still being written begin and end like this.
 const TEMPORARY: (&str, &str) = (".cvtcycle-", ".tmp");
 /// A directory's contents are listed up to this number of names.
@@ -35,14 +37,7 @@ impl OutputDir {
     /// A problem of `--out` that says what is in the way.
     pub fn create(path: impl AsRef<Path>, force: bool) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
-        if path.as_os_str().is_empty() {
-            let hint = "name a directory, for example --out run1";
-            return Err(problem(&path, "the name of the output directory is empty", hint));
-        }
-        if path.exists() && !path.is_dir() {
-            let message = format!("{} exists and is not a directory", path.display());
-            return Err(problem(&path, &message, "choose another name"));
-        }
+        check_directory(&path)?;
         let created = Created::new(&path).map_err(|error| failed(&path, &format!("cannot create directory {}", path.display()), &error))?;
         let earlier = names_in(&path).map_err(|error| failed(&path, &format!("cannot read directory {}", path.display()), &error))?;
         check_contents(&path, &earlier, force)?;
@@ -57,7 +52,7 @@ impl OutputDir {
     /// # Errors
     /// A problem of `--out` with the words of the operating system, or for a name that is not a
     /// plain file name or was used before in this run.
-    pub fn write(&mut self, name: &str, f: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Problem> {
+    pub fn write(&mut self, name: &str, f: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>) -> Result<(), Problem> {
         self.check_name(name)?;
         let written = self.temporary().and_then(|file| {
             // The bare file: the named one would add its temporary name to every error.
@@ -137,10 +132,11 @@ impl OutputDir {
 
 /// Directories that did not exist before, outermost first; removed on drop if they are empty.
 #[derive(Debug, Default)]
-struct Created(Vec<PathBuf>);
+pub(crate) struct Created(Vec<PathBuf>);
 
 impl Created {
-    fn new(path: &Path) -> io::Result<Self> {
+    /// Creates what is missing of a directory.
+    pub(crate) fn new(path: &Path) -> io::Result<Self> {
         let missing = |dir: &&Path| !dir.as_os_str().is_empty() && !dir.exists();
         let mut new: Vec<PathBuf> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         new.reverse();
@@ -150,7 +146,8 @@ impl Created {
         Ok(created)
     }
 
-    fn keep(&mut self) {
+    /// Lets them stay.
+    pub(crate) fn keep(&mut self) {
         self.0.clear();
     }
 }
@@ -206,8 +203,21 @@ impl Drop for Swap {
     }
 }
 
+/// Checks that a path can be that of a directory.
+pub(crate) fn check_directory(path: &Path) -> Result<(), Problem> {
+    if path.as_os_str().is_empty() {
+        let hint = "name a directory, for example --out run1";
+        return Err(problem(path, "the name of the output directory is empty", hint));
+    }
+    if path.exists() && !path.is_dir() {
+        let message = format!("{} exists and is not a directory", path.display());
+        return Err(problem(path, &message, "choose another name"));
+    }
+    Ok(())
+}
+
 /// A file under a temporary name in a directory.
-pub(super) fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
+pub(crate) fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
     // Temporary files are private by default; results are as readable as the user's umask says.
@@ -219,12 +229,17 @@ pub(super) fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(directory)
 }
 
+/// Whether a name is that of a file that was being written when a run was interrupted.
+pub(crate) fn is_temporary(name: &str) -> bool {
+    name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1)
+}
+
 /// Names in a directory, sorted, without what an interrupted run may have left half written.
-fn names_in(path: &Path) -> io::Result<Vec<String>> {
+pub(crate) fn names_in(path: &Path) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(path)? {
         let name = entry?.file_name().to_string_lossy().into_owned();
-        if !(name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1)) {
+        if !is_temporary(&name) {
             names.push(name);
         }
     }
@@ -233,14 +248,12 @@ fn names_in(path: &Path) -> io::Result<Vec<String>> {
 }
 
 fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Problem> {
-    let marked = names.iter().any(|name| name == MARK);
+    // The results of a study bear the mark of a run as well, and are not to be replaced by one.
+    let marked = names.iter().any(|name| name == MARK) && !names.iter().any(|name| name == STUDY);
     if names.is_empty() || (marked && force) {
         return Ok(());
     }
-    let mut list = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
-    if names.len() > LISTED {
-        list += &format!(" and {} more", names.len() - LISTED);
-    }
+    let list = list(names);
     let path_text = path.display();
     Err(if marked {
         let message = format!("{path_text} holds the files of an earlier run: {list}");
@@ -251,14 +264,20 @@ fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Prob
     })
 }
 
+/// The first names, and how many more there are.
+pub(crate) fn list(names: &[String]) -> String {
+    let list = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
+    if names.len() > LISTED { format!("{list} and {} more", names.len() - LISTED) } else { list }
+}
+
 /// Makes the renames last through a power cut, where directories can be synced at all.
-pub(super) fn sync_directory(path: &Path) {
+pub(crate) fn sync_directory(path: &Path) {
     if let Ok(dir) = fs::File::open(path) {
         drop(dir.sync_all());
     }
 }
 
-pub(super) fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
+pub(crate) fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
     use io::ErrorKind::{NotADirectory, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
     let hint = match error.kind() {
         PermissionDenied | ReadOnlyFilesystem => "choose a directory in which you may write",
@@ -272,7 +291,7 @@ pub(super) fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
     problem(path, &format!("{what}: {words}"), hint)
 }
 
-pub(super) fn problem(path: &Path, message: &str, hint: &str) -> Problem {
+pub(crate) fn problem(path: &Path, message: &str, hint: &str) -> Problem {
     Problem {
         place: Place { file: "--out".to_string(), ..Place::default() },
         key: "--out".to_string(),

@@ -14,17 +14,25 @@ use super::{Flags, Row};
 /// Whatever `out` reports.
 pub fn write_trace<W: Write>(out: W, columns: &[&Column], rows: &[Row], phases: &[String]) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(columns.iter().map(|column| column.name))?;
+    writer.write_record(columns.iter().map(|column| column.name)).map_err(csv_error)?;
     let mut text = String::new();
     for row in rows {
         for column in columns {
             text.clear();
             push_value(&mut text, (column.get)(row), phases);
-            writer.write_field(&text)?;
+            writer.write_field(&text).map_err(csv_error)?;
         }
-        writer.write_record(None::<&[u8]>)?;
+        writer.write_record(None::<&[u8]>).map_err(csv_error)?;
     }
     writer.flush()
+}
+
+/// The error of the operating system within one of CSV: it says whether the disk is full.
+pub(crate) fn csv_error(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
+    }
 }
 
 /// Appends a cell as it stands in the CSV file.

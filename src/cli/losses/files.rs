@@ -131,7 +131,7 @@ pub fn write_map(
     name: &str,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Problem> {
-    dir.write(&format!("map_{name}.csv"), write)?;
+    dir.write(&format!("map_{name}.csv"), |out| write(out))?;
     dir.write("summary.json", |out| {
         serde_json::to_writer_pretty(&mut *out, &head(plan))?;
         out.write_all(b"\n")

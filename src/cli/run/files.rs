@@ -10,6 +10,21 @@ use cvtcycle::results::files::OutputDir;
 use cvtcycle::results::summary::{Driven, RunSummary, Summary};
 use cvtcycle::results::trace::write_trace;
 use cvtcycle::run::{components, fuel_map};
+use cvtcycle::study::store::write_trace_parquet;
+
+/// Formats of the traces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TraceFormat {
+    Csv,
+    Parquet,
+    Both,
+}
+
+impl TraceFormat {
+    /// Words of the command line.
+    pub const NAMES: [(&'static str, TraceFormat); 3] =
+        [("csv", TraceFormat::Csv), ("parquet", TraceFormat::Parquet), ("both", TraceFormat::Both)];
+}
 
 /// What was written, and what an earlier run left beside it.
 #[derive(Debug, Default)]
@@ -44,7 +59,14 @@ impl Written {
 }
 
 /// Writes all files of the run under their names, or none.
-pub fn write(mut dir: OutputDir, json: &str, summary: &Summary, cycle: &Cycle, driven: &[Driven]) -> Result<Written, Problem> {
+pub fn write(
+    mut dir: OutputDir,
+    format: TraceFormat,
+    json: &str,
+    summary: &Summary,
+    cycle: &Cycle,
+    driven: &[Driven],
+) -> Result<Written, Problem> {
     dir.write("summary.json", |out| out.write_all(json.as_bytes()))?;
     let parts: Vec<_> = driven.iter().map(|car| components(car.setup.transmission())).collect();
     let mut runs = Vec::new();
@@ -53,7 +75,12 @@ pub fn write(mut dir: OutputDir, json: &str, summary: &Summary, cycle: &Cycle, d
         let rows = &car.outcome.rows;
         let columns = columns_for(cvt, parts);
         let phases = if cycle.phases.is_empty() { std::slice::from_ref(&cycle.name) } else { &cycle.phases };
-        dir.write(&format!("trace_{}.csv", car.name), |out| write_trace(out, &columns, rows, phases))?;
+        if format != TraceFormat::Parquet {
+            dir.write(&format!("trace_{}.csv", car.name), |out| write_trace(out, &columns, rows, phases))?;
+        }
+        if format != TraceFormat::Csv {
+            dir.write(&format!("trace_{}.parquet", car.name), |out| write_trace_parquet(out, &columns, rows, phases))?;
+        }
         let plot = PlotRun {
             name: car.name,
             cvt,

@@ -1,0 +1,170 @@
+//! Parquet files of this program, read by column.
+
+use std::collections::HashSet;
+use std::fs::File;
+use std::io::{self, Seek};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::{ByteArray, DataType};
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use serde_json::Value;
+
+use super::checksums::{Sum, sum_of};
+use super::file_problem;
+use super::parquet::{COLUMNS_KEY, io_error};
+use crate::config::Problem;
+use crate::study::table::{Column, Kind, Rows, Values};
+
+/// What helps with a damaged file.
+pub(super) const MEND: &str = "a study computes its damaged parts anew when it is continued with --resume";
+
+/// A Parquet file that this program has written and that is as it was.
+pub struct ParquetFile {
+    path: PathBuf,
+    file: SerializedFileReader<File>,
+    columns: Vec<Column>,
+}
+
+impl ParquetFile {
+    /// Opens a file after its checksum was found right.
+    ///
+    /// # Errors
+    /// A problem that names the file: it cannot be read, has other bytes than it had, or is no table of this program.
+    pub fn open(path: &Path, sum: &Sum) -> Result<Self, Problem> {
+        let file = File::open(path).map_err(|error| unreadable(path, &error))?;
+        if sum_of(&file).map_err(|error| unreadable(path, &error))? != *sum {
+            return Err(file_problem(path, "the file is damaged: its checksum is not that of what was written", MEND));
+        }
+        Self::open_known(path, file)
+    }
+
+    /// Opens a file whose bytes are known to be those that were written.
+    pub(super) fn open_known(path: &Path, mut file: File) -> Result<Self, Problem> {
+        file.rewind().map_err(|error| unreadable(path, &error))?;
+        let file = SerializedFileReader::new(file).map_err(|error| unreadable(path, &io_error(error)))?;
+        let columns = heads(&file).ok_or_else(|| file_problem(path, "the file is no table of this program", ""))?;
+        Ok(ParquetFile { path: path.to_path_buf(), file, columns })
+    }
+
+    /// Heads of its columns.
+    #[must_use]
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Number of its rows.
+    #[must_use]
+    pub fn rows(&self) -> u64 {
+        u64::try_from(self.file.metadata().file_metadata().num_rows()).unwrap_or(0)
+    }
+
+    /// Pairs of its metadata, in their order.
+    #[must_use]
+    pub fn metadata(&self) -> Vec<(String, String)> {
+        let pairs = self.file.metadata().file_metadata().key_value_metadata();
+        pairs.into_iter().flatten().map(|pair| (pair.key.clone(), pair.value.clone().unwrap_or_default())).collect()
+    }
+
+    /// All rows of some columns, in the order of the names.
+    ///
+    /// # Errors
+    /// A problem that names the file, for a column that it does not have or a file that cannot be read.
+    pub fn read(&self, names: &[&str]) -> Result<Rows, Problem> {
+        let mut values = Vec::with_capacity(names.len());
+        for name in names {
+            let found = self.columns.iter().position(|column| column.name == *name);
+            let index = found.ok_or_else(|| file_problem(&self.path, format!("the table has no column `{name}`"), ""))?;
+            values.push(self.column(index).map_err(|error| unreadable(&self.path, &io_error(error)))?);
+        }
+        Ok(Rows { values })
+    }
+
+    fn column(&self, index: usize) -> Result<Values, ParquetError> {
+        let total = usize::try_from(self.rows()).unwrap_or(0);
+        let mut values = Values::with_capacity(self.columns[index].kind, total);
+        let mut words = HashSet::new();
+        for group in 0..self.file.num_row_groups() {
+            let reader = self.file.get_row_group(group)?.get_column_reader(index)?;
+            match (&mut values, reader) {
+                (Values::Number(into), ColumnReader::DoubleColumnReader(reader)) => {
+                    each(reader, |x| into.push(x.copied().unwrap_or(f64::NAN)))?;
+                }
+                (Values::Count(into), ColumnReader::Int64ColumnReader(reader)) => each(reader, |n| into.extend(n))?,
+                (Values::Text(into), ColumnReader::ByteArrayColumnReader(reader)) => {
+                    let mut wrong = None;
+                    each(reader, |bytes| match word(bytes, &mut words) {
+                        Ok(word) => into.push(word),
+                        Err(error) => wrong = Some(error),
+                    })?;
+                    wrong.map_or(Ok(()), Err)?;
+                }
+                _ => return Err(ParquetError::General("a column is not of the kind that its head says".to_owned())),
+            }
+        }
+        if values.len() == total { Ok(values) } else { Err(ParquetError::General("a column is shorter than the table".to_owned())) }
+    }
+}
+
+/// Hands on every cell of a column in a row group, none where it is null.
+fn each<T: DataType>(mut reader: ColumnReaderImpl<T>, mut cell: impl FnMut(Option<&T::T>)) -> Result<(), ParquetError> {
+    /// Cells at a time.
+    const BATCH: usize = 8192;
+    let (mut there, mut values) = (Vec::new(), Vec::new());
+    loop {
+        there.clear();
+        values.clear();
+        let (records, ..) = reader.read_records(BATCH, Some(&mut there), None, &mut values)?;
+        if records == 0 {
+            return Ok(());
+        }
+        if there.is_empty() {
+            values.iter().for_each(|value| cell(Some(value)));
+            continue;
+        }
+        let mut next = values.iter();
+        for level in &there {
+            cell(if *level > 0 { next.next() } else { None });
+        }
+    }
+}
+
+/// A cell as a word; words that come again share their memory.
+fn word(bytes: Option<&ByteArray>, known: &mut HashSet<Arc<str>>) -> Result<Arc<str>, ParquetError> {
+    let text = bytes.map_or(Ok(""), ByteArray::as_utf8)?;
+    if let Some(word) = known.get(text) {
+        return Ok(word.clone());
+    }
+    let word: Arc<str> = Arc::from(text);
+    known.insert(word.clone());
+    Ok(word)
+}
+
+/// The heads in the metadata; none if there are none or they are not those of the file's columns.
+fn heads(file: &SerializedFileReader<File>) -> Option<Vec<Column>> {
+    let metadata = file.metadata().file_metadata();
+    let pair = metadata.key_value_metadata()?.iter().find(|pair| pair.key == COLUMNS_KEY)?;
+    let heads: Value = serde_json::from_str(pair.value.as_ref()?).ok()?;
+    let columns = heads.as_array()?.iter().map(head).collect::<Option<Vec<_>>>()?;
+    let schema = metadata.schema_descr().columns();
+    let same = schema.len() == columns.len() && schema.iter().zip(&columns).all(|(found, head)| found.name() == head.name);
+    same.then_some(columns)
+}
+
+fn head(head: &Value) -> Option<Column> {
+    let text = |key: &str| head.get(key)?.as_str().map(str::to_owned);
+    let kind = match text("kind")?.as_str() {
+        "number" => Kind::Number,
+        "count" => Kind::Count,
+        "text" => Kind::Text,
+        _ => return None,
+    };
+    Some(Column { name: text("name")?, unit: text("unit")?, doc: text("doc")?, kind })
+}
+
+pub(super) fn unreadable(path: &Path, error: &io::Error) -> Problem {
+    let hint = if error.kind() == io::ErrorKind::NotFound { MEND } else { "check the file and its permissions" };
+    file_problem(path, format!("cannot read the file: {error}"), hint)
+}

@@ -1,0 +1,161 @@
+//! Interrupted studies are finished to the same bytes.
+
+use std::fs;
+use std::path::Path;
+use std::thread;
+
+use cvtcycle::study::store::StudyDir;
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::{PLAN, files, manifest, results, whole, write_part};
+
+const PARTS: usize = 3;
+
+/// Something done to a file.
+type Spoil = fn(&Path);
+
+/// The files of a study in the order in which they appear.
+fn order() -> Vec<String> {
+    let part = |k: usize| {
+        let names = ["trace_N.parquet", "trace_N.csv", "runs_N.parquet", "runs_N.csv", "part_N.sha256"];
+        names.map(|name| format!("parts/{}", name.replace('N', &format!("{k:05}"))))
+    };
+    let before = [".lock", "study.json", "plan.toml"].map(str::to_owned);
+    let after = ["statistics.json", "tornado.svg", "summary.json", "results.sha256"].map(str::to_owned);
+    before.into_iter().chain((0..PARTS).flat_map(part)).chain(after).collect()
+}
+
+fn finish(path: &Path) -> Vec<usize> {
+    let dir = StudyDir::resume(path, &manifest(PARTS), PLAN).unwrap();
+    let missing = dir.missing();
+    missing.iter().for_each(|&part| write_part(&dir, part));
+    dir.finish(&results()).unwrap();
+    missing
+}
+
+/// Files appear one after the other, each whole: a killed process leaves the first few of them, and one half written.
+#[test]
+fn wherever_it_was_killed_a_study_is_finished_to_the_same_bytes() {
+    let reference = TempDir::new().unwrap();
+    whole(reference.path(), PARTS);
+    let all = files(reference.path());
+    let order = order();
+    assert_eq!(order.len(), all.len(), "{:?}", all.keys());
+    for there in 2..=order.len() {
+        let dir = TempDir::new().unwrap();
+        fs::create_dir(dir.path().join("parts")).unwrap();
+        for name in &order[..there] {
+            fs::write(dir.path().join(name), &all[name]).unwrap();
+        }
+        for folder in ["", "parts/"] {
+            fs::write(dir.path().join(format!("{folder}.cvtcycle-x7.tmp")), "half").unwrap();
+        }
+        let parts = (there.saturating_sub(3) / 5).min(PARTS);
+        assert_eq!(finish(dir.path()), (parts..PARTS).collect::<Vec<_>>(), "{there}");
+        assert_eq!(files(dir.path()), all, "{there}");
+    }
+}
+
+#[test]
+fn the_manifest_without_its_folder_is_a_study_too() {
+    let dir = TempDir::new().unwrap();
+    fs::write(dir.path().join("study.json"), manifest(PARTS)).unwrap();
+    assert_eq!(finish(dir.path()).len(), PARTS);
+}
+
+#[test]
+fn parts_in_any_order_and_from_several_threads_are_the_same() {
+    let (one, two) = (TempDir::new().unwrap(), TempDir::new().unwrap());
+    whole(one.path(), 4);
+    let dir = StudyDir::create(two.path(), &manifest(4), PLAN, false).unwrap();
+    thread::scope(|scope| {
+        let dir = &dir;
+        for part in [3, 0, 2, 1] {
+            scope.spawn(move || write_part(dir, part));
+        }
+    });
+    dir.finish(&results()).unwrap();
+    assert_eq!(files(one.path()), files(two.path()));
+}
+
+#[test]
+fn a_part_that_is_not_whole_is_computed_again() {
+    let spoil: [(&str, Spoil); 5] = [
+        ("part_00001.sha256", |path| fs::write(path, "").unwrap()),
+        ("runs_00001.parquet", |path| fs::remove_file(path).unwrap()),
+        ("trace_00001.csv", |path| fs::write(path, "run\n").unwrap()),
+        ("trace_00001.parquet", |path| {
+            let mut bytes = fs::read(path).unwrap();
+            bytes[40] ^= 1;
+            fs::write(path, bytes).unwrap();
+        }),
+        ("part_00001.sha256", |path| {
+            let text = fs::read_to_string(path).unwrap();
+            fs::write(path, text.lines().take(3).map(|line| format!("{line}\n")).collect::<String>()).unwrap();
+        }),
+    ];
+    for (name, spoil) in spoil {
+        let dir = TempDir::new().unwrap();
+        whole(dir.path(), PARTS);
+        let all = files(dir.path());
+        spoil(&dir.path().join("parts").join(name));
+        assert_eq!(finish(dir.path()), [1], "{name}");
+        assert_eq!(files(dir.path()), all, "{name}");
+    }
+}
+
+fn refused(path: &Path, change: impl Fn(&mut Value)) -> String {
+    let mut other: Value = serde_json::from_slice(&manifest(PARTS)).unwrap();
+    change(&mut other);
+    let problem = StudyDir::resume(path, other.to_string().as_bytes(), PLAN).unwrap_err();
+    format!("{} / {}", problem.message, problem.hint)
+}
+
+#[test]
+fn another_study_is_not_resumed_and_the_difference_is_named() {
+    let dir = TempDir::new().unwrap();
+    whole(dir.path(), PARTS);
+    let all = files(dir.path());
+    let said = refused(dir.path(), |m| m["program"] = "cvtcycle 9.9.9".into());
+    assert!(said.contains("`program` is \"cvtcycle 0.1.0\" there and \"cvtcycle 9.9.9\" now") && said.contains("--force"), "{said}");
+    assert!(!said.contains("more values"), "{said}");
+    let said = refused(dir.path(), |m| m["plan"] = "title = 2\n".into());
+    assert!(said.contains("`plan, line 1` is `title = 1` there and `title = 2` now"), "{said}");
+    let said = refused(dir.path(), |m| {
+        m["layout"]["csv"] = false.into();
+        m["seed"] = 8.into();
+        m["plan"] = "".into();
+    });
+    assert!(said.contains("`seed` is 7 there and 8 now (and 2 more values)"), "{said}");
+    // A plan that is another one is told by its line, not by what follows from it.
+    let mut other: Value = serde_json::from_slice(&manifest(PARTS)).unwrap();
+    other["plan_sha256"] = "abc".into();
+    let problem = StudyDir::resume(dir.path(), other.to_string().as_bytes(), b"title = \"test\"\nseed = 8\n").unwrap_err();
+    let line = "`plan.toml, line 2` is no such line there and `seed = 8` now (and one more value)";
+    assert!(problem.message.contains(line), "{}", problem.message);
+    let spaced = [manifest(PARTS), b"\n".to_vec()].concat();
+    let problem = StudyDir::resume(dir.path(), &spaced, PLAN).unwrap_err();
+    assert!(problem.message.contains("another form"), "{}", problem.message);
+    assert_eq!(files(dir.path()), all);
+    fs::write(dir.path().join("study.json"), b"{\"a\": ").unwrap();
+    assert!(refused(dir.path(), |_| {}).contains("damaged"));
+    let empty = TempDir::new().unwrap();
+    for path in [empty.path().to_path_buf(), empty.path().join("nowhere")] {
+        let said = refused(&path, |_| {});
+        assert!(said.contains("no study in") && said.contains("leave --resume out"), "{said}");
+    }
+    assert!(files(empty.path()).is_empty());
+}
+
+#[test]
+fn a_plan_that_was_lost_or_changed_is_put_back() {
+    let dir = TempDir::new().unwrap();
+    whole(dir.path(), PARTS);
+    for spoiled in [None, Some("title = \"mine\"\n")] {
+        let path = dir.path().join("plan.toml");
+        spoiled.map_or_else(|| fs::remove_file(&path), |text| fs::write(&path, text)).unwrap();
+        assert_eq!(finish(dir.path()), [0_usize; 0]);
+        assert_eq!(fs::read(&path).unwrap(), PLAN);
+    }
+}
