@@ -91,7 +91,7 @@ fn names_in(dir: &Path) -> Vec<String> {
     names
 }
 
-fn text(words: &'static str) -> impl FnOnce(&mut dyn Write) -> io::Result<()> {
+fn text(words: &'static str) -> impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()> {
     move |out| out.write_all(words.as_bytes())
 }
 

@@ -20,6 +20,7 @@ mod shell;
 mod show;
 mod sniff;
 mod stream;
+mod study;
 mod validate;
 
 use std::ffi::OsString;
@@ -51,6 +52,8 @@ struct Cli {
 enum Command {
     /// Drive a car and its baselines through a cycle: fuel, losses, temperatures
     Run(Box<run::Args>),
+    /// Many runs: ambient temperatures, sweeps, sampling, and what they say
+    Study(Box<study::Args>),
     /// Hold every printed number of the thesis, and your own, against the program
     Validate(Box<validate::Args>),
     /// Run the thesis's test rigs, virtual
@@ -101,6 +104,7 @@ impl Command {
     fn answer(self, context: Context) -> Reply {
         match self {
             Command::Run(args) => run::answer(&args, context),
+            Command::Study(args) => study::answer(&args, context),
             Command::Validate(args) => validate::answer(&args, context),
             Command::Rig(args) => rig::answer(&args, context),
             Command::Losses(args) => losses::answer(&args, context),

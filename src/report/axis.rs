@@ -66,8 +66,14 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 
 /// A number with as many decimals as a step between neighbours needs.
 pub(super) fn number(value: f64, step: f64) -> String {
+    if step < 1e-4 && value.abs() < 1e-9 * step {
+        return "0".to_owned();
+    }
     if value.abs() >= 1e7 || step < 1e-4 {
-        return format!("{value:.1e}");
+        // As many digits as tell neighbours apart.
+        let digits = (value.abs().log10() + 1e-9).floor() - (step.log10() + 1e-9).floor();
+        let digits = digits.clamp(1.0, 12.0) as usize;
+        return format!("{value:.digits$e}");
     }
     let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 5.0) as usize;
     let text = format!("{value:.decimals$}");
@@ -112,6 +118,10 @@ mod tests {
         assert_eq!(axis.label(-20.0), "\u{2212}20");
         let axis = Axis::round("I", [0.44, 2.31].into_iter(), 5);
         assert_eq!(axis.label(axis.ticks[0]), "0.0");
+        // Neighbours differ, however small the step is against the values.
+        let label = |value, step| number(value, step);
+        assert_eq!([label(7.0, 1e-5), label(7.000_01, 1e-5)], ["7.00000e0", "7.00001e0"]);
+        assert_eq!([label(0.0, 5e-8), label(7.5e-7, 5e-8), label(2e7, 1e7)], ["0", "7.5e-7", "2.0e7"]);
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! the plot, and all three are needed to tell series apart in print.
 use crate::results::{Component, Row};
 
+pub mod ambient;
 mod axis;
 mod bars;
 pub mod chart;
@@ -21,6 +22,7 @@ mod operating;
 mod panel;
 pub mod rig_transmission;
 mod style;
+pub mod study;
 mod traces;
 
 pub use bars::fuel_bars;

@@ -3,7 +3,45 @@
 //! A *point* of a design fixes the value of every factor. At a point the subject and all baselines drive, with the same draw: one *run*
 //! each, one row of the table each. What a point is follows from the plan, the seed and its index alone, so that points can be computed in
 //! any order, on any number of threads, and again after an interruption.
+//!
+//! | module | what stands there |
+//! |---|---|
+//! | `plan` | a TOML file to a plan: cars, factors, design |
+//! | `design` | from the index of a point to a level of each factor |
+//! | `prepare`, `cars`, `check` | a plan to a study: cars loaded once, every value tried |
+//! | `point` | one point: cars changed, driven, rows filled |
+//! | `execute` | parts of points on all cores, written while the next is computed |
+//! | `outputs` | the numbers of a row: one table of names, units, getters |
+//! | `table` | columns in memory |
+//! | `store`, `disk` | parts and results on disk, whole or absent; reading them again |
+//! | `manifest`, `outline` | what a study is, written and read |
+//! | `frame` | the table by car and point |
+//! | `statistics` | pure functions: description, Sobol indices, tornado, ranks |
+//! | `answer`, `ambient` | what the study says |
+//! | `export` | all rows as one file |
 
+pub mod ambient;
+pub mod answer;
+mod cars;
+mod check;
 pub mod design;
+pub mod disk;
+pub mod execute;
+pub mod export;
+pub mod frame;
+pub mod manifest;
+pub mod outline;
+pub mod outputs;
 pub mod plan;
+mod point;
+pub mod prepare;
+pub mod statistics;
+pub mod store;
 pub mod table;
+
+pub use answer::{Answer, answer};
+pub use cars::StudyCar;
+pub use execute::{End, Sink, Unwatched, Watcher};
+pub use frame::{Frame, TableSource};
+pub use outline::Outline;
+pub use prepare::Study;

@@ -1,0 +1,102 @@
+//! The answer of a study as pictures.
+
+use cvtcycle::config::Problem;
+use cvtcycle::report::study::{
+    ConvergencePlot, DistributionPlot, DistributionSeries, EffectFactor, EffectsPlot, RankPlot, Shown, SobolPlot, TornadoPlot,
+    convergence_plot, distribution_plot, effects_plot, rank_plot, sobol_plot, tornado_plot,
+};
+use cvtcycle::study::answer::OutputAnswer;
+use cvtcycle::study::outputs::{EXCESS, FUEL};
+use cvtcycle::study::{Answer, Frame, Outline};
+
+/// Every picture that the answer has something for: of the outputs that the plan names, or else of fuel and excess.
+pub fn all(answer: &Answer, frame: &Frame) -> Result<Vec<(String, String)>, Problem> {
+    let outline = frame.outline;
+    let mut list = Vec::new();
+    let pictured: Vec<&OutputAnswer> = answer.outputs.iter().filter(|output| is_pictured(&output.output, outline)).collect();
+    for (k, output) in pictured.iter().enumerate() {
+        let same: Vec<&&OutputAnswer> = pictured.iter().filter(|other| other.output == output.output).collect();
+        let first = pictured[..k].iter().all(|before| before.output != output.output);
+        if first && outline.plan.design.is_sampled() {
+            list.push((format!("distribution_{}.svg", output.output), distribution(frame, &same)?));
+        }
+        list.extend(
+            of_output(output, outline).into_iter().map(|(kind, svg)| (format!("{kind}_{}_{}.svg", output.output, output.car), svg)),
+        );
+    }
+    Ok(list)
+}
+
+fn is_pictured(output: &str, outline: &Outline) -> bool {
+    !outline.plan.analyse.is_empty() || [FUEL, EXCESS].contains(&output)
+}
+
+/// Name of an output as people say it.
+fn named(output: &OutputAnswer, outline: &Outline) -> String {
+    let subject = outline.cars.first().map_or("", String::as_str);
+    let words = output.output.trim_end_matches("_percent").trim_end_matches("_l_per_100km").replace('_', " ");
+    match output.output.as_str() {
+        FUEL => format!("fuel of {}", output.car),
+        EXCESS => format!("excess fuel of {subject} over {}", output.car),
+        _ => format!("{words}, {}", output.car),
+    }
+}
+
+fn distribution(frame: &Frame, outputs: &[&&OutputAnswer]) -> Result<String, Problem> {
+    let outline = frame.outline;
+    let mut values = Vec::new();
+    for output in outputs {
+        let car = outline.cars.iter().position(|car| *car == output.car).unwrap_or(0);
+        values.push(cvtcycle::study::answer::described_numbers(frame, &output.output, car)?);
+    }
+    let excess = outputs.first().is_some_and(|output| output.output.starts_with("subject_excess_"));
+    let names: Vec<String> =
+        outputs.iter().map(|output| if excess { format!("over {}", output.car) } else { output.car.clone() }).collect();
+    let series: Vec<DistributionSeries> = names.iter().zip(&values).map(|(name, values)| DistributionSeries { name, values }).collect();
+    let title = match outputs.first() {
+        Some(output) if output.output == FUEL => "fuel".to_owned(),
+        Some(output) if excess => {
+            format!("excess fuel of {}", outline.cars.first().map_or("", |_| outline.cars[0].as_str())) + tail(&output.output)
+        }
+        Some(output) => output.output.replace('_', " "),
+        None => String::new(),
+    };
+    let unit = outputs.first().map_or("", |output| output.unit.as_str());
+    let shown = Shown { output: &title, unit, subject: &outline.title };
+    Ok(distribution_plot(&DistributionPlot { shown, series: &series, differences: excess }))
+}
+
+/// The phase of an excess.
+fn tail(output: &str) -> &str {
+    output.strip_prefix("subject_excess_").and_then(|rest| rest.strip_suffix("_percent")).filter(|rest| *rest != "percent").unwrap_or("")
+}
+
+fn of_output(output: &OutputAnswer, outline: &Outline) -> Vec<(&'static str, String)> {
+    let name = named(output, outline);
+    let shown = Shown { output: &name, unit: &output.unit, subject: &outline.title };
+    let names: Vec<String> = outline.plan.factors.iter().map(|factor| factor.name.clone()).collect();
+    let mut list = Vec::new();
+    if let Some(indices) = output.sobol.last() {
+        list.push(("sobol", sobol_plot(&SobolPlot { shown, names: &names, indices })));
+        list.push(("convergence", convergence_plot(&ConvergencePlot { shown, names: &names, steps: &output.sobol })));
+    }
+    if let Some(tornado) = &output.tornado {
+        list.push(("tornado", tornado_plot(&TornadoPlot { shown, tornado })));
+    }
+    if let Some(rank) = &output.rank {
+        list.push(("ranks", rank_plot(&RankPlot { shown, names: &rank.factors, ranks: &rank.of })));
+    }
+    if !output.levels.is_empty() {
+        let factor = |(name, groups)| effect(name, groups, outline);
+        let factors: Vec<EffectFactor> = output.levels.iter().map(|(name, groups)| factor((name.as_str(), groups))).collect();
+        list.push(("effects", effects_plot(&EffectsPlot { shown, factors: &factors })));
+    }
+    list
+}
+
+/// A factor's levels: at their numbers, or side by side where they are words.
+fn effect<'a>(name: &'a str, groups: &'a cvtcycle::study::statistics::Groups, outline: &'a Outline) -> EffectFactor<'a> {
+    let unit = outline.plan.factors.iter().find(|factor| factor.name == name).map_or("", |factor| factor.unit.as_str());
+    let at: Option<Vec<f64>> = groups.groups.iter().map(|group| group.label.parse().ok()).collect();
+    EffectFactor { name, unit, at: at.unwrap_or_default(), groups }
+}

@@ -1,0 +1,81 @@
+//! What a study says, and the files that say it.
+
+use std::path::Path;
+
+use cvtcycle::config::Problem;
+use cvtcycle::report::ambient::{ambient_fuel, ambient_penalty, warm_up};
+use cvtcycle::study::ambient::{WarmUp, warm_ups};
+use cvtcycle::study::store;
+use cvtcycle::study::{Answer, Frame, Outline, answer};
+
+use super::csv_files;
+use crate::cli::answer::json_text;
+
+/// Answer and what its pictures need.
+pub struct Results {
+    /// The answer.
+    pub answer: Answer,
+    /// What the study is.
+    pub outline: Outline,
+    /// Parts that are there, and that there will be.
+    pub parts: (usize, usize),
+    warm_ups: Vec<WarmUp>,
+}
+
+impl Results {
+    /// From the parts in a directory.
+    pub fn of(outline: &Outline, found: &store::Study) -> Result<Self, Problem> {
+        let frame = Frame::new(outline, found)?;
+        let answer = answer(&frame)?;
+        let traced = found.layout().tables.iter().any(|table| table == cvtcycle::study::manifest::TRACES);
+        let warm_ups = match &answer.matrix {
+            Some(matrix) if traced => warm_ups(&frame, matrix).unwrap_or_default(),
+            _ => Vec::new(),
+        };
+        let status = found.status();
+        Ok(Results { answer, outline: outline.clone(), parts: (status.present, status.expected), warm_ups })
+    }
+
+    /// The answer as one JSON object.
+    pub fn json(&self) -> Result<String, Vec<Problem>> {
+        json_text(&self.answer)
+    }
+
+    /// Files of a finished study: numbers and pictures.
+    pub fn files(&self, found: &store::Study) -> Result<Vec<(String, Vec<u8>)>, Vec<Problem>> {
+        let mut files = vec![("statistics.json".to_owned(), self.json()?.into_bytes())];
+        files.extend(csv_files::all(&self.answer, &self.outline));
+        let pictures = Frame::new(&self.outline, found).and_then(|frame| self.pictures(&frame)).map_err(|problem| vec![problem])?;
+        files.extend(pictures.into_iter().map(|(name, svg)| (name, svg.into_bytes())));
+        Ok(files)
+    }
+
+    fn pictures(&self, frame: &Frame) -> Result<Vec<(String, String)>, Problem> {
+        let title = &self.outline.title;
+        // Of a matrix the pictures below say more.
+        let mut list = if self.answer.matrix.is_some() { Vec::new() } else { super::pictures::all(&self.answer, frame)? };
+        if let Some(matrix) = &self.answer.matrix {
+            list.push(("ambient_fuel.svg".to_owned(), ambient_fuel(matrix, title)));
+            list.extend(ambient_penalty(matrix, title).map(|svg| ("ambient_penalty.svg".to_owned(), svg)));
+            for (k, start) in matrix.starts.iter().enumerate().filter(|_| !self.warm_ups.is_empty()) {
+                let word: String = start.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect();
+                list.push((format!("warm_up_{word}.svg"), warm_up(matrix, &self.warm_ups, k, title)));
+            }
+        }
+        Ok(list)
+    }
+}
+
+/// The results of a study's directory, finished or partial.
+pub fn open(path: &Path) -> Result<Results, Problem> {
+    let found = store::Study::open(path)?;
+    let text = String::from_utf8_lossy(&found.plan()?).into_owned();
+    let file = path.join("plan.toml").display().to_string();
+    let outline = Outline::read(found.manifest(), &file, &text).map_err(|words| Problem {
+        place: cvtcycle::config::Place { file: path.join("study.json").display().to_string(), ..Default::default() },
+        message: format!("cannot read the study: {words}"),
+        hint: "read it with the program that wrote it, or run it again".into(),
+        ..Problem::default()
+    })?;
+    Results::of(&outline, &found)
+}

@@ -1,0 +1,148 @@
+//! Outputs described: moments, quantiles and shares with their intervals.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | DS-1 | mean = mean_0 + sum(x - mean_0) / n, mean_0 = sum(x) / n; sd^2 = (sum(d^2) - sum(d)^2 / n) / (n - 1), d = x - mean | source: two passes with correction, Chan, Golub and LeVeque 1983 |
+//! | DS-2 | interval of the mean: mean -+ t(n - 1) sd / sqrt(n) | source: Student 1908 |
+//! | DS-3 | quantile p = x_k + (h - k) (x_(k+1) - x_k), h = 1 + (n - 1) p, k = floor(h), x_1 <= x_2 <= ... | source: Hyndman and Fan 1996, type 7 |
+//!
+//! DS-2 and the intervals of quantiles and shares are made for independent draws. Points of a Latin hypercube or of a Sobol sequence fill
+//! the space more evenly: there the true error is smaller, and the intervals are too wide rather than too narrow. Of a Saltelli design only
+//! the rows of A and B may go in: the mixed rows repeat all values but one of A.
+
+use serde::Serialize;
+
+use super::intervals::{clopper_pearson, quantile_ranks, student_975};
+
+/// Probabilities of the quantiles of a summary.
+pub const QUANTILES: [f64; 7] = [0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975];
+
+/// An output in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Number of values.
+    pub n: usize,
+    /// Number of cells without a value.
+    pub missing: usize,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation of the population, from n - 1; NaN of fewer than two values.
+    pub sd: f64,
+    /// Least value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+    /// Quantiles at [`QUANTILES`].
+    pub quantiles: Vec<Quantile>,
+    /// Interval of the mean.
+    pub mean_interval95: Option<[f64; 2]>,
+}
+
+/// One quantile.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Quantile {
+    /// Probability of lying below it.
+    pub p: f64,
+    /// The quantile of the sample.
+    pub value: f64,
+    /// Interval of the quantile of the population, whatever the distribution: two values of the sample. `None` on a side on which the
+    /// sample does not reach far enough to tell.
+    pub interval95: [Option<f64>; 2],
+}
+
+impl Summary {
+    /// Describes a column.
+    #[must_use]
+    pub fn of(values: &[f64]) -> Self {
+        let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
+        let Moments { n, missing, mean, sd, min, max, mean_interval95 } = Moments::of(values.iter().copied());
+        sorted.sort_unstable_by(f64::total_cmp);
+        let quantile = |p: f64| {
+            let interval95 = quantile_ranks(n, p).map(|at| at.and_then(|i| sorted.get(i).copied()));
+            Quantile { p, value: quantile_of_sorted(&sorted, p), interval95 }
+        };
+        Summary { n, missing, mean, sd, min, max, quantiles: QUANTILES.map(quantile).to_vec(), mean_interval95 }
+    }
+
+    /// The quantile at one of [`QUANTILES`]; NaN at any other probability.
+    #[must_use]
+    pub fn quantile(&self, p: f64) -> f64 {
+        self.quantiles.iter().find(|q| (q.p - p).abs() < 1e-9).map_or(f64::NAN, |q| q.value)
+    }
+}
+
+/// What needs no order.
+pub(super) struct Moments {
+    pub n: usize,
+    pub missing: usize,
+    pub mean: f64,
+    pub sd: f64,
+    pub min: f64,
+    pub max: f64,
+    pub mean_interval95: Option<[f64; 2]>,
+}
+
+impl Moments {
+    /// Of all finite values.
+    pub fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
+        let finite = || values.clone().filter(|x| x.is_finite());
+        let n = finite().count();
+        let missing = values.clone().count() - n;
+        let count = n as f64;
+        let rough = finite().sum::<f64>() / count;
+        let mean = rough + finite().map(|x| x - rough).sum::<f64>() / count; // DS-1
+        let (sum, squares) = finite().map(|x| x - mean).fold((0.0, 0.0), |(s, q), d| (s + d, q + d * d));
+        let sd = if n < 2 { f64::NAN } else { ((squares - sum * sum / count).max(0.0) / (count - 1.0)).sqrt() }; // DS-1
+        let (min, max) = finite().fold((f64::NAN, f64::NAN), |(low, high), x| (x.min(low), x.max(high)));
+        let half = student_975(count - 1.0) * sd / count.sqrt(); // DS-2
+        Moments { n, missing, mean, sd, min, max, mean_interval95: half.is_finite().then_some([mean - half, mean + half]) }
+    }
+}
+
+/// Quantile of ascending finite values by DS-3; NaN of none.
+#[must_use]
+pub fn quantile_of_sorted(sorted: &[f64], p: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let h = last as f64 * p.clamp(0.0, 1.0); // DS-3, counted from 0
+    let k = (h.floor() as usize).min(last);
+    let (low, high) = (sorted[k], sorted[(k + 1).min(last)]);
+    low + (h - h.floor()) * (high - low) // DS-3
+}
+
+/// In how many of the cases something holds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Share {
+    /// Number of cases in which it holds.
+    pub k: usize,
+    /// Number of cases in which it can be told.
+    pub n: usize,
+    /// Number of cases in which it cannot, for there is no value.
+    pub missing: usize,
+    /// k / n; NaN of none.
+    pub share: f64,
+    /// Clopper and Pearson's interval of the probability.
+    pub interval95: [f64; 2],
+}
+
+impl Share {
+    /// The share of the values for which `holds`.
+    #[must_use]
+    pub fn of(values: &[f64], holds: impl Fn(f64) -> bool) -> Self {
+        let n = values.iter().filter(|x| x.is_finite()).count();
+        let k = values.iter().filter(|x| x.is_finite() && holds(**x)).count();
+        Share { k, n, missing: values.len() - n, share: k as f64 / n as f64, interval95: clopper_pearson(k, n) }
+    }
+
+    /// The share of the values above zero: of a difference, in how many pairs the first one has more. Equal ones are not more.
+    #[must_use]
+    pub fn above_zero(values: &[f64]) -> Self {
+        Self::of(values, |x| x > 0.0)
+    }
+}
+
+/// Differences of pairs, subject - baseline; NaN where one of the two is missing. The longer column's rest has no partner.
+#[must_use]
+pub fn difference(subject: &[f64], baseline: &[f64]) -> Vec<f64> {
+    let at = |column: &[f64], i: usize| column.get(i).copied().filter(|x| x.is_finite()).unwrap_or(f64::NAN);
+    (0..subject.len().max(baseline.len())).map(|i| at(subject, i) - at(baseline, i)).collect()
+}

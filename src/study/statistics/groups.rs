@@ -1,0 +1,73 @@
+//! Means of an output over the levels of a factor: of a factor that is words, and main effects of grids.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | GR-1 | eta^2 = sum over levels of n_l (mean_l - mean)^2 / sum of (y - mean)^2 | source: Pearson's correlation ratio |
+//!
+//! In a grid with all combinations the mean at a level averages over all other factors evenly: its course is the main effect, and eta^2 the
+//! part of the grid's variance that it explains. There the rows are no random draws: read the spread (sd, min, max), not the interval.
+
+use serde::Serialize;
+
+use super::describe::Moments;
+
+/// The output at one level.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Group {
+    /// The level.
+    pub label: String,
+    /// Number of values.
+    pub n: usize,
+    /// Number of rows without a value.
+    pub missing: usize,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation over everything else that varies.
+    pub sd: f64,
+    /// Least value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+    /// Interval of the mean, for independent rows.
+    pub mean_interval95: Option<[f64; 2]>,
+}
+
+/// The output at all levels of a factor.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Groups {
+    /// In the order in which the levels first appear.
+    pub groups: Vec<Group>,
+    /// Largest minus least mean; NaN without two means.
+    pub range: f64,
+    /// Share of the variance between the levels (GR-1), 0 to 1; NaN of a constant output.
+    pub eta_squared: f64,
+}
+
+/// Groups an output by the levels of a factor, row by row; a row without a level counts for none.
+#[must_use]
+pub fn group_means<S: AsRef<str>>(levels: &[S], output: &[f64]) -> Groups {
+    let mut names: Vec<&str> = Vec::new();
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for (level, y) in levels.iter().zip(output) {
+        let at = names.iter().position(|name| *name == level.as_ref()).unwrap_or_else(|| {
+            names.push(level.as_ref());
+            rows.push(Vec::new());
+            names.len() - 1
+        });
+        rows[at].push(*y);
+    }
+    let group = |(name, values): (&&str, &Vec<f64>)| {
+        let Moments { n, missing, mean, sd, min, max, mean_interval95 } = Moments::of(values.iter().copied());
+        Group { label: (*name).to_owned(), n, missing, mean, sd, min, max, mean_interval95 }
+    };
+    let groups: Vec<Group> = names.iter().zip(&rows).map(group).collect();
+    let all = Moments::of(rows.iter().flatten().copied());
+    let told = || groups.iter().filter(|g| g.n > 0);
+    let between: f64 = told().map(|g| g.n as f64 * (g.mean - all.mean).powi(2)).sum();
+    let within = all.sd.powi(2) * (all.n as f64 - 1.0);
+    // Of a constant only rounding is left of both.
+    let eta_squared = if all.max > all.min { (between / within).min(1.0) } else { f64::NAN }; // GR-1
+    let (low, high) = told().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), g| (g.mean.min(l), g.mean.max(h)));
+    let range = if told().count() > 1 { high - low } else { f64::NAN };
+    Groups { groups, range, eta_squared }
+}

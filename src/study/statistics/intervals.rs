@@ -1,0 +1,99 @@
+//! Quantiles of known distributions at which intervals end.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | IV-1 | P(\|T\| <= t) = 0.95 for Student's T of nu degrees of freedom; t = z + (z^3 + z) / (4 nu) + (5 z^5 + 16 z^3 + 3 z) / (96 nu^2) above nu = 1000 | source: Student 1908 (statrs); first terms of the expansion of Fisher and Cornish 1960 |
+//! | IV-2 | k of n: from the 0.025 quantile of Beta(k, n - k + 1) to the 0.975 quantile of Beta(k + 1, n - k) | source: Clopper and Pearson 1934 |
+//! | IV-3 | quantile p of n values: from the l-th to the u-th least, P(K < l) <= 0.025 and P(K >= u) <= 0.025 for K of Binomial(n, p) | source: order statistics, e.g. David and Nagaraja 2003, 7.1 |
+//!
+//! IV-1: statrs' inverse loses digits above some 10^5 degrees of freedom (1.83 in place of 1.96 at 10^7), hence the expansion, whose next
+//! term is 2.6 / nu^3. IV-2 and IV-3 hold at least 95 %, for any distribution of independent values.
+
+use statrs::distribution::{Beta, Binomial, ContinuousCDF, DiscreteCDF, StudentsT};
+
+/// Half of what an interval of 95 % leaves out.
+pub(super) const TAIL: f64 = 0.025;
+/// Quantile of the standard normal distribution at 0.975.
+pub(super) const NORMAL_975: f64 = 1.959_963_984_540_054;
+/// Degrees of freedom above which the expansion is used.
+const MANY: f64 = 1000.0;
+
+/// Quantile of Student's t at 0.975; NaN without a degree of freedom.
+pub(super) fn student_975(freedom: f64) -> f64 {
+    if freedom > MANY {
+        let z = NORMAL_975;
+        let first = (z.powi(3) + z) / (4.0 * freedom);
+        return z + first + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * freedom * freedom); // IV-1
+    }
+    StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |t| t.inverse_cdf(1.0 - TAIL)) // IV-1
+}
+
+/// Where the probability of `k` of `n` lies; 0 to 1 of nothing.
+pub(super) fn clopper_pearson(k: usize, n: usize) -> [f64; 2] {
+    let (k, rest) = (k as f64, n.saturating_sub(k) as f64);
+    let at = |a: f64, b: f64, p: f64, none: f64| Beta::new(a, b).map_or(none, |beta| beta.inverse_cdf(p));
+    // No Beta has a shape of 0: none or all of n leave the end open, at 0 or at 1.
+    [at(k, rest + 1.0, TAIL, 0.0), at(k + 1.0, rest, 1.0 - TAIL, 1.0)] // IV-2
+}
+
+/// Indices, from 0, of the two of `n` ordered values between which the quantile `p` lies; `None` where no value is far enough out.
+pub(super) fn quantile_ranks(n: usize, p: f64) -> [Option<usize>; 2] {
+    let Ok(below) = Binomial::new(p, n as u64) else { return [None; 2] };
+    // `inverse_cdf(q)` is the least x with P(K <= x) >= q: IV-3 asks for l = x at 0.025 and u = x + 1 at 0.975, counted from 1.
+    let (lower, upper) = (below.inverse_cdf(TAIL) as usize, below.inverse_cdf(1.0 - TAIL) as usize); // IV-3
+    [lower.checked_sub(1), (upper < n).then_some(upper)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn val_student_and_clopper_pearson_as_in_scipy() {
+        // scipy 1.17: stats.t.ppf(0.975, nu); stats.beta.ppf.
+        let t = [(1.0, 12.706_204_736_175), (10.0, 2.228_138_851_986), (1e3, 1.962_339_080_826), (1e4, 1.960_201_239_891)];
+        let far = [(1e5, 1.959_987_707_535), (1e7, 1.959_964_221_767)];
+        for (nu, truth) in t.into_iter().chain(far) {
+            assert!((student_975(nu) - truth).abs() < 2e-9, "{nu}: {}", student_975(nu));
+        }
+        assert!(student_975(0.0).is_nan());
+        // The two branches meet.
+        assert!((student_975(1000.0) - student_975(1_000.000_01)).abs() < 1e-8);
+        let shares = [
+            (3, 10, [0.066_739_511_178, 0.652_452_850_060]),
+            (93, 100, [0.861_080_271_544, 0.971_394_711_093]),
+            (5000, 10_000, [0.490_151_380_590, 0.509_848_619_410]),
+            (500_000, 1_000_000, [0.499_019_519_195, 0.500_980_480_805]),
+        ];
+        for (k, n, truth) in shares {
+            let ends = clopper_pearson(k, n);
+            assert!(ends.iter().zip(truth).all(|(a, b)| (a - b).abs() < 1e-10), "{k} of {n}: {ends:?}");
+        }
+        // By hand: none of n ends at 1 - 0.025^(1/n), all of n begins at 0.025^(1/n).
+        let end = 1.0 - TAIL.powf(0.1);
+        assert!(clopper_pearson(0, 10)[0].abs() < 1e-300 && (clopper_pearson(0, 10)[1] - end).abs() < 1e-9);
+        assert!((clopper_pearson(10, 10)[0] - (1.0 - end)).abs() < 1e-9 && (clopper_pearson(10, 10)[1] - 1.0).abs() < 1e-300);
+        let [low, high] = clopper_pearson(0, 0);
+        assert!(low.abs() < 1e-300 && (high - 1.0).abs() < 1e-300);
+    }
+
+    #[test]
+    fn ranks_leave_out_at_most_a_fortieth_on_each_side_and_no_less_than_needed() {
+        for n in [5_usize, 10, 37, 150, 1000] {
+            for p in [0.025, 0.25, 0.5, 0.95] {
+                let cdf = |below: usize| below.checked_sub(1).map_or(0.0, |k| Binomial::new(p, n as u64).unwrap().cdf(k as u64));
+                let [lower, upper] = quantile_ranks(n, p);
+                // l - 1 = index from 0.
+                let l = lower.map_or(0, |i| i + 1);
+                assert!(l == 0 || cdf(l) <= TAIL, "{n} {p}");
+                assert!(cdf(l + 1) > TAIL, "{n} {p}: the next one would do");
+                let u = upper.map_or(n + 1, |i| i + 1);
+                assert!(u > n || 1.0 - cdf(u) <= TAIL, "{n} {p}");
+                assert!(1.0 - cdf(u - 1) > TAIL, "{n} {p}: the one before would do");
+            }
+        }
+        // By hand: 2 (1/2)^5 = 1/16 > 0.05, so no two of 5 hold the median with 95 %; 2nd and 9th of 10 do.
+        assert_eq!(quantile_ranks(5, 0.5), [None, None]);
+        assert_eq!(quantile_ranks(10, 0.5), [Some(1), Some(8)]);
+    }
+}
