@@ -1,6 +1,6 @@
 //! How long the parts and the whole take: `cargo bench`.
 //!
-//! Steps and cycles are those of shipped cars after a soak at -10 degC; `history` keeps every row.
+//! Steps and cycles are those of shipped cars after a soak at -10 degC; `history` and `runs_per_second<true>` keep every row.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark has no interface")]
 
 use cvtcycle::config::render;
@@ -157,6 +157,14 @@ fn cycle_without_history(bencher: Bencher, name: &str) {
 #[divan::bench(args = CARS)]
 fn cycle_with_history(bencher: Bencher, name: &str) {
     whole(bencher, name, "ece15_eudc", true);
+}
+
+/// Whole runs of ECE15+EUDC, the car built anew for each as in a study: runs a second on one core (target of studies: 3 000).
+#[divan::bench(args = ["rover_216_cvt", "rover_216_5mt"], consts = [false, true])]
+fn runs_per_second<const ROWS: bool>(bencher: Bencher, name: &str) {
+    let (setup, cycle) = (setup(name), cycle("ece15_eudc"));
+    let conditions = Conditions { ambient_k: COLD_K, start: Start::Soak, max_dt_s: 1.0, keep_rows: ROWS };
+    bencher.counter(ItemsCount::new(1usize)).bench_local(|| drive(&setup, black_box(&cycle), &conditions));
 }
 
 #[divan::bench(args = ["us06", "wltc_class3b", "ftp75"])]

@@ -45,19 +45,16 @@ pub struct Outcome {
     pub gear_schedule: &'static str,
 }
 
-/// Keeps totals, and rows where capacity was reserved for them.
+/// Keeps totals and rows; for totals alone, [`Totals`] themselves listen, so that no row need exist.
 struct Keeper {
     totals: Totals,
     rows: Vec<Row>,
-    keep: bool,
 }
 
 impl Recorder for Keeper {
     fn record(&mut self, row: &Row, terms: &Terms) {
         self.totals.record(row, terms);
-        if self.keep {
-            self.rows.push(*row);
-        }
+        self.rows.push(*row);
     }
 }
 
@@ -81,13 +78,17 @@ pub fn drive(setup: &Setup, cycle: &Cycle, conditions: &Conditions) -> Outcome {
     };
     // A car at rest begins a new cycle in its own start state; only heat and rotating energy carry over.
     let start = State { drive: None, ..start };
-    let mut keeper = Keeper {
-        totals: Totals::new(cycle.phases.len()),
-        rows: Vec::with_capacity(if conditions.keep_rows { trace.step_count(conditions.max_dt_s) } else { 0 }),
-        keep: conditions.keep_rows,
+    let totals = Totals::new(cycle.phases.len());
+    let (end, totals, rows) = if conditions.keep_rows {
+        let mut keeper = Keeper { totals, rows: Vec::with_capacity(trace.step_count(conditions.max_dt_s)) };
+        let end = simulate(&car, trace, conditions.max_dt_s, start, &mut keeper);
+        (end, keeper.totals, keeper.rows)
+    } else {
+        let mut totals = totals;
+        let end = simulate(&car, trace, conditions.max_dt_s, start, &mut totals);
+        (end, totals, Vec::new())
     };
-    let end = simulate(&car, trace, conditions.max_dt_s, start, &mut keeper);
-    Outcome { totals: keeper.totals, rows: keeper.rows, end: end.heat, gear_schedule }
+    Outcome { totals, rows, end: end.heat, gear_schedule }
 }
 
 fn gear_schedule(car: &Car, trace: &Trace) -> &'static str {

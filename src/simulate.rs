@@ -10,6 +10,7 @@
 use crate::cycle::Trace;
 use crate::engine::{Burn, Engine};
 use crate::lubricant::Lubricant;
+use crate::numeric::held;
 use crate::results::{Component, Flags, Row, Terms};
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, HeatStep, METAL, NODES, Network, SUMP};
 use crate::transmission::{Drive, DriveState, Surroundings, Transmission};
@@ -66,17 +67,18 @@ pub trait Recorder {
 }
 
 /// Drives a trace from a state, gives every row to the recorder and returns the state at the end.
+///
+/// What a recorder does not look at is not computed: rows are built in place and seen through by the compiler.
 pub fn simulate(car: &Car, trace: &Trace, max_dt_s: f64, start: State, recorder: &mut impl Recorder) -> State {
-    let mut state = start;
+    let State { mut heat, mut drive, mut kinetic_j } = start;
     let gears = match &car.transmission {
         Transmission::Manual(manual) => trace.gears(manual.overall.len()),
         Transmission::Cvt(_) => None,
     };
-    for step in trace.steps(max_dt_s) {
+    let unlike = car.engine.unlike_reference(&car.engine_oil);
+    trace.steps(max_dt_s).for_each(|step| {
         let wheel = car.road_load.wheel(&step);
-        let t = &state.heat.node_k;
-        let engine = car.engine.at(t[COOLANT], t[ENGINE_OIL], &car.engine_oil, car.full_load_factor);
-        let heat = state.heat;
+        let engine = car.engine.at_temperatures(heat.node_k[COOLANT], heat.node_k[ENGINE_OIL], unlike, car.full_load_factor);
         let around = Surroundings {
             wheel: &wheel,
             engine: &engine,
@@ -86,23 +88,25 @@ pub fn simulate(car: &Car, trace: &Trace, max_dt_s: f64, start: State, recorder:
             dt_s: step.dt_s,
             engine_off: step.engine_off,
         };
-        let mut memory = state.drive.unwrap_or_else(|| car.transmission.start(&around));
-        if state.kinetic_j.is_nan() {
-            state.kinetic_j = 0.5 * car.engine.inertia_kg_m2 * memory.engine_rad_s * memory.engine_rad_s;
+        let memory = drive.get_or_insert_with(|| car.transmission.start(&around));
+        if kinetic_j.is_nan() {
+            kinetic_j = 0.5 * car.engine.inertia_kg_m2 * memory.engine_rad_s * memory.engine_rad_s;
         }
-        let mut drive = car.transmission.solve(&around, &mut memory);
-        let inertia = inertia(car, &around, &drive, state.kinetic_j, memory.coupled);
+        let mut drive = car.transmission.solve(&around, memory);
+        let inertia = inertia(car, &around, &drive, kinetic_j, memory.coupled);
         drive.brake_w += inertia.to_brake_w;
         let mut burn = engine.burn(drive.engine_rad_s, inertia.crank_nm);
         if step.engine_off {
             burn.to_coolant_w = -inertia.kinetic_w; // the engine runs out against its own friction
         }
-        let heat_step = advance(car, &heat, &drive, &burn, &around);
-        state = State { heat: heat_step.heat, drive: Some(memory), kinetic_j: state.kinetic_j + inertia.kinetic_w * step.dt_s };
-        let (row, terms) = row(car, &step, &around, &Answer { drive: &drive, inertia: &inertia, burn: &burn, heat: &heat_step });
+        let power_w = node_power(car, &drive, &burn);
+        let heat_step = advance(car, power_w, &drive, &around);
+        let (row, terms) = row(car, &step, &around, &Answer { drive: &drive, inertia: &inertia, burn: &burn, power_w, heat: &heat_step });
         recorder.record(&row, &terms);
-    }
-    state
+        heat = heat_step.heat;
+        kinetic_j += inertia.kinetic_w * step.dt_s;
+    });
+    State { heat, drive, kinetic_j }
 }
 
 /// Rotating energy and crank torque of a step.
@@ -114,6 +118,7 @@ struct Inertia {
     to_brake_w: f64,
 }
 
+#[inline]
 fn inertia(car: &Car, around: &Surroundings, drive: &Drive, kinetic_j: f64, coupled: bool) -> Inertia {
     let w = drive.engine_rad_s;
     if w <= 0.0 {
@@ -140,17 +145,16 @@ fn inertia(car: &Car, around: &Surroundings, drive: &Drive, kinetic_j: f64, coup
     } else {
         0.0
     };
-    let torque = wanted.clamp(least, most); // SI-2
+    let torque = held(wanted, least, most); // SI-2
     let over = if coupled && drive.brake_w > 0.0 && wanted < torque { torque - wanted } else { 0.0 };
     Inertia { crank_nm: steady + torque, accessories_nm, kinetic_w: (torque - over) * w, to_brake_w: over * w } // SI-1, SI-4
 }
 
-fn advance(car: &Car, heat: &Heat, drive: &Drive, burn: &Burn, around: &Surroundings) -> HeatStep {
-    let power_w = node_power(car, drive, burn);
-    let sump_k = heat.node_k[SUMP];
+fn advance(car: &Car, power_w: [f64; NODES], drive: &Drive, around: &Surroundings) -> HeatStep {
+    let sump_k = around.heat.node_k[SUMP];
     let oil_volume_heat_j_m3k = car.oil.density_kg_m3(sump_k) * car.oil.heat_capacity_j_kgk(sump_k);
     car.network.advance(
-        heat,
+        around.heat,
         &HeatInput {
             power_w,
             ambient_k: car.ambient_k,
@@ -165,6 +169,7 @@ fn advance(car: &Car, heat: &Heat, drive: &Drive, burn: &Burn, around: &Surround
 }
 
 /// Heat into each node, W (SI-3).
+#[inline]
 fn node_power(car: &Car, drive: &Drive, burn: &Burn) -> [f64; NODES] {
     let mut power = loss_heat_w(car, &drive.loss_w);
     power[COOLANT] += burn.to_coolant_w;
@@ -200,13 +205,16 @@ struct Answer<'a> {
     drive: &'a Drive,
     inertia: &'a Inertia,
     burn: &'a Burn,
+    /// Heat into each node, as the network received it.
+    power_w: [f64; NODES],
     heat: &'a HeatStep,
 }
 
 /// Ledger terms of a step, each from the model that owns it.
-fn terms(car: &Car, around: &Surroundings, a: &Answer) -> Terms {
+#[inline]
+fn terms(around: &Surroundings, a: &Answer) -> Terms {
     let (d, b, wheel) = (a.drive, a.burn, around.wheel);
-    let node_heat: f64 = node_power(car, d, b).iter().sum();
+    let node_heat: f64 = a.power_w.iter().sum();
     let losses: f64 = d.loss_w.iter().sum();
     let engine_heat = b.to_coolant_w + b.to_oil_w;
     let accessories = a.inertia.accessories_nm * d.engine_rad_s;
@@ -225,8 +233,9 @@ fn terms(car: &Car, around: &Surroundings, a: &Answer) -> Terms {
     }
 }
 
+#[inline(always)]
 fn row(car: &Car, step: &crate::cycle::Step, around: &Surroundings, a: &Answer) -> (Row, Terms) {
-    let terms = terms(car, around, a);
+    let terms = terms(around, a);
     let (d, b, wheel) = (a.drive, a.burn, around.wheel);
     let mut flags = d.flags;
     flags.set(Flags::FUEL_CUT, b.cut && d.engine_rad_s > 0.0);

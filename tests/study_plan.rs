@@ -103,6 +103,10 @@ fn limits_of_the_designs() {
         assert!(problems.len() == 1 && problems[0].allowed == format!("up to {most} factors"), "{problems:?}");
         assert_eq!(problems[0].place.line, 1);
     }
+    let most = |design: Design| design.sample_range().map(|range| (*range.start(), *range.end()));
+    assert_eq!(most(Design::Sobol { samples: 4, seed: 1 }), Some((2, 65_536)));
+    assert_eq!(most(Design::MonteCarlo { samples: 4, seed: 1 }), Some((2, 1_000_000_000)));
+    assert_eq!(most(Design::Grid), None);
     // 2^64 points
     let problems = bad(&many("grid", 32, 4));
     assert!(problems.len() == 1 && problems[0].message.contains("more points than can be counted"), "{problems:?}");
@@ -158,10 +162,7 @@ fn the_head_is_taken_as_written() {
     assert_eq!(plan.analyse, ["fuel_l_per_100km"]);
     assert_eq!(plan.design, Design::LatinHypercube { samples: 10, seed: i64::MAX as u64 });
     let line = |key: &str| plan.places.of(key).line;
-    assert_eq!(
-        [line("vehicle"), line("set"), line("design"), line("design.samples"), line("question")],
-        [4, 11, 18, 19, 3].map(|l| if l == 3 { 1 } else { l })
-    );
+    assert_eq!([line("vehicle"), line("set"), line("design"), line("design.samples"), line("not given")], [4, 11, 18, 19, 1]);
     assert_eq!((plan.places.nth("set", 1).line, plan.places.nth("set", 1).column), (11, 17));
     assert_eq!(good("[study]\nkeep = \"everything\"\ndesign = \"grid\"\n").keep, Keep::Everything);
 }
@@ -172,9 +173,7 @@ fn factors_are_taken_as_written() {
         "[study.design.one_at_a_time]\n[[factor]]\nkey = \"start\"\nvalues = [\"soak\", 60, 20.5]\n[[factor]]\nkey = \"transmission.cvt.pump\"\n\
          values = [\"fixed\", [1, 2], true]\n[[factor]]\nkey = \"a.oil_degc\"\nacts = \"offset\"\ncars = \"all\"\nvalues = [-1, 1]\nstatus = \"fitted\"\n\
          source = \"S\"\n[[factor]]\nkey = \"a.line_bar\"\nname = \"line\"\nacts = \"scale\"\ncars = \"baselines\"\nrange = { from = 0.8, to = 1.2, count = 5 }\n\
-         [[factor]]\nkey = \"a.line_bar\"\nrange = { from = 0, to = 0.35, step = 0.1 }\n[[factor]]\nkey = \"start\"\nname = \"again\"\nvalues = [1]\n"
-            .replace("[[factor]]\nkey = \"start\"\nname = \"again\"\nvalues = [1]\n", "[[factor]]\nkey = \"ambient_degc\"\nvalues = [1]\n")
-            .as_str(),
+         [[factor]]\nkey = \"a.line_bar\"\nrange = { from = 0, to = 0.35, step = 0.1 }\n[[factor]]\nkey = \"ambient_degc\"\nvalues = [1]\n",
     );
     let f = &plan.factors;
     assert_eq!((words(&f[0].values).join(" "), f[0].unit.as_str(), f[0].cars), ("soak 60 20.5".to_owned(), "", Cars::All));

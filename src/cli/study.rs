@@ -17,7 +17,8 @@ use super::Context;
 use super::answer::{Reply, problem};
 use super::inputs::Offering;
 use common::Common;
-use cvtcycle::study::plan::Plan;
+use cvtcycle::config::Problem;
+use cvtcycle::study::plan::{Design, Plan};
 
 /// Arguments of `study`.
 #[derive(Clone, Debug, clap::Args)]
@@ -88,11 +89,26 @@ fn plan(args: &PlanArgs, context: Context) -> Reply {
         return Err(vec![problem("PLAN", "no plan is named", &hint)]);
     };
     let mut plan = Plan::open(word, "PLAN")?;
-    if args.samples.is_some() || args.seed.is_some() {
-        plan.design = plan.design.with(args.samples, args.seed).ok_or_else(|| {
-            let hint = "--samples and --seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs";
-            vec![problem("--samples", "the plan's design has no samples", hint)]
-        })?;
-    }
+    plan.design = drawn(&plan.design, args)?;
     common::run(plan, &args.common, context)
+}
+
+/// The plan's design with the samples and the seed that the options ask for.
+fn drawn(design: &Design, args: &PlanArgs) -> Result<Design, Vec<Problem>> {
+    if args.samples.is_none() && args.seed.is_none() {
+        return Ok(*design);
+    }
+    let option = if args.samples.is_some() { "--samples" } else { "--seed" };
+    let (Some(range), Some(changed)) = (design.sample_range(), design.with(args.samples, args.seed)) else {
+        let hint = "--samples and --seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs";
+        return Err(vec![problem(option, "the plan's design draws nothing", hint)]);
+    };
+    match args.samples {
+        Some(samples) if !range.contains(&samples) => Err(vec![Problem {
+            value: samples.to_string(),
+            allowed: format!("{} to {}", range.start(), range.end()),
+            ..problem("--samples", &format!("{samples} samples are out of range for this design"), "")
+        }]),
+        _ => Ok(changed),
+    }
 }

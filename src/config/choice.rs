@@ -47,7 +47,7 @@ impl<'r> Section<'r> {
                 (option, false)
             }
             Choice::Default(option) => {
-                self.defaulted(name, &option, None);
+                self.defaulted(name, option, None);
                 (option, false)
             }
             Choice::Failed => (default.unwrap_or(options[0]), true),

@@ -54,7 +54,7 @@ impl<'r> Section<'r> {
     }
 
     pub(super) fn read_text(&self, key: &str, allowed: &str, doc: &str) -> Result<String, bool> {
-        match self.open(key, &allowed, doc) {
+        match self.open(key, allowed, doc) {
             Lookup::Found(found) => match &found.node.value {
                 Value::Text(text) => {
                     self.given(key, &found, text, None);

@@ -29,7 +29,11 @@ impl Interval {
     }
 
     // 1e-9: an interval that is a multiple of max_dt up to rounding is not cut once more
+    #[inline]
     fn parts(&self, max_dt_s: f64) -> usize {
+        if self.end_s - self.start_s <= max_dt_s {
+            return 1; // the usual case, without a division
+        }
         let parts = ((self.end_s - self.start_s) / max_dt_s - 1e-9).ceil();
         if max_dt_s > 0.0 && parts > 1.0 { parts as usize } else { 1 }
     }
@@ -44,7 +48,18 @@ impl Interval {
         (time_s, self.start_speed_m_s + share * (self.end_speed_m_s - self.start_speed_m_s))
     }
 
+    /// The whole interval as one step.
+    #[inline]
+    fn whole(&self, interval: usize) -> Step {
+        let Self { start_s, end_s, start_speed_m_s, end_speed_m_s, phase, grade, engine_off } = *self;
+        Step { time_s: end_s, dt_s: end_s - start_s, start_speed_m_s, end_speed_m_s, phase, grade, engine_off, interval }
+    }
+
+    #[inline]
     fn step(&self, interval: usize, index: usize, parts: usize) -> Step {
+        if parts == 1 {
+            return self.whole(interval);
+        }
         let (_, start_speed_m_s) = self.point(index, parts);
         let (time_s, end_speed_m_s) = self.point(index + 1, parts);
         let dt_s = (self.end_s - self.start_s) / parts as f64;

@@ -20,7 +20,7 @@ pub use fuel::{BsfcMap, FuelModel, FuelPoint, Willans};
 pub use load::load;
 
 use crate::lubricant::{Lubricant, Viscosity, ZERO_DEGC_K};
-use crate::numeric::Curve;
+use crate::numeric::{Curve, exp, held, ln};
 
 /// The checked engine.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,25 +112,35 @@ pub struct Burn {
 }
 
 impl Engine {
+    /// The oil in use, where its viscosity is not that of the reference oil: then EN-2 has its second factor.
+    #[must_use]
+    pub fn unlike_reference<'a>(&self, oil: &'a Lubricant) -> Option<&'a Lubricant> {
+        (oil.viscosity != self.reference_oil).then_some(oil)
+    }
+
     /// Prepares the engine for coolant and oil temperature, oil and ambient pressure ratio.
     #[must_use]
-    #[inline]
     pub fn at(&self, coolant_k: f64, oil_k: f64, oil: &Lubricant, pressure_factor: f64) -> EngineNow<'_> {
+        self.at_temperatures(coolant_k, oil_k, self.unlike_reference(oil), pressure_factor)
+    }
+
+    /// The same, with what [`Engine::unlike_reference`] says of the oil: it holds for a whole drive.
+    #[must_use]
+    #[inline]
+    pub fn at_temperatures(&self, coolant_k: f64, oil_k: f64, unlike: Option<&Lubricant>, pressure_factor: f64) -> EngineNow<'_> {
         let theta = 0.5 * (coolant_k + oil_k) / self.hot_k;
-        let theta = if theta < 1.0 { theta } else { 1.0 };
-        let viscous = if oil.viscosity == self.reference_oil {
-            1.0 // most runs: spares eight transcendental functions a step
-        } else {
+        let viscous = unlike.map_or(1.0, |oil| {
             let relative = oil.kinematic_m2_s(oil_k) / self.reference_oil.kinematic_m2_s(oil_k);
-            1.0 + self.viscous_share * ((self.viscous_exponent * relative.ln()).exp() - 1.0)
-        };
-        let cold = ((60.0 + ZERO_DEGC_K - coolant_k) / 70.0).clamp(0.0, 1.0);
+            1.0 + self.viscous_share * (exp(self.viscous_exponent * ln(relative)) - 1.0)
+        });
+        let thick = if theta < 1.0 { exp(-self.friction_exponent * ln(theta)) } else { 1.0 };
+        let cold = held((60.0 + ZERO_DEGC_K - coolant_k) / 70.0, 0.0, 1.0);
         let enrich = (60.0 + ZERO_DEGC_K - coolant_k) / 60.0;
         EngineNow {
             engine: self,
-            friction_factor: (-self.friction_exponent * theta.ln()).exp() * viscous, // EN-2
+            friction_factor: thick * viscous,                                                      // EN-2
             idle_rad_s: self.idle_hot_rad_s + (self.idle_cold_rad_s - self.idle_hot_rad_s) * cold, // EN-1
-            enrichment: 1.0 + if enrich > 0.0 { self.enrichment * enrich } else { 0.0 }, // EN-3
+            enrichment: 1.0 + if enrich > 0.0 { self.enrichment * enrich } else { 0.0 },           // EN-3
             full_load_factor: pressure_factor,
         }
     }
@@ -228,7 +238,7 @@ impl EngineNow<'_> {
         // With fuel cut, throttle losses add to friction: what is taken up is the drag itself.
         let friction = if point.fuel_pa > 0.0 { friction_pa * watts } else { -brake_pa * watts };
         let fast = (speed_rad_s - e.idle_hot_rad_s) / (e.highest_rad_s - e.idle_hot_rad_s);
-        let exhaust_share = e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * fast.clamp(0.0, 1.0);
+        let exhaust_share = e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * held(fast, 0.0, 1.0);
         let waste = burnt - indicated;
         let fuel_w = burnt * self.enrichment;
         Burn {

@@ -19,6 +19,8 @@ mod viscosity;
 pub use load::load;
 pub use viscosity::Viscosity;
 
+use crate::numeric::{exp, held, ln};
+
 /// 0 degC in K.
 pub const ZERO_DEGC_K: f64 = 273.15;
 
@@ -64,9 +66,9 @@ impl Friction {
     #[inline]
     pub fn band(&self, belt_k: f64, eta_pa_s: f64, sliding_m_s: f64) -> BandFriction {
         let warm = 1.0 + self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0);
-        let warm = warm.clamp(self.band_floor, self.band_ceiling);
+        let warm = held(warm, self.band_floor, self.band_ceiling);
         let load = eta_pa_s * sliding_m_s / self.lift_n_m;
-        let z = if load > 0.0 && self.lift_off { (self.lift_exponent * load.ln()).exp() } else { 0.0 };
+        let z = if load > 0.0 && self.lift_off { exp(self.lift_exponent * ln(load)) } else { 0.0 };
         let film_share = if z.is_finite() { z / (1.0 + z) } else { 1.0 }; // LU-5
         BandFriction { mu: self.band * warm * (1.0 - self.lift_reduction * film_share), film_share } // LU-4
     }

@@ -1,5 +1,7 @@
 //! Kinematic viscosity in the coordinates of ASTM D341 (LU-1): straight lines between points, the end lines continued.
 
+use crate::numeric::{exp, ln};
+
 /// ln ln(nu + 0.7) against ln T: one line from two points, or a polyline through a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Viscosity {
@@ -7,6 +9,8 @@ pub struct Viscosity {
     x: Vec<f64>,
     /// Value ln ln(nu + 0.7) of the points, nu in mm2/s.
     w: Vec<f64>,
+    /// Slope of the line that ends at each point; the first point has the second's.
+    slope: Vec<f64>,
 }
 
 impl Viscosity {
@@ -27,19 +31,21 @@ impl Viscosity {
         if points.windows(2).any(|p| p[0].1 <= p[1].1) {
             return Err("viscosity must fall as temperature rises".into());
         }
-        Ok(Viscosity { x: points.iter().map(|p| p.0.ln()).collect(), w: points.iter().map(|p| (p.1 * 1e6 + 0.7).ln().ln()).collect() })
+        let x: Vec<f64> = points.iter().map(|p| p.0.ln()).collect();
+        let w: Vec<f64> = points.iter().map(|p| (p.1 * 1e6 + 0.7).ln().ln()).collect();
+        let slope = (0..x.len()).map(|i| i.max(1)).map(|hi| (w[hi] - w[hi - 1]) / (x[hi] - x[hi - 1])).collect();
+        Ok(Viscosity { x, w, slope })
     }
 
     /// Kinematic viscosity at a temperature, m2/s.
     #[must_use]
     #[inline]
     pub fn kinematic_m2_s(&self, temp_k: f64) -> f64 {
-        let x = temp_k.ln();
+        let x = ln(temp_k);
         let last = self.x.len() - 1;
         let hi = if last == 1 { 1 } else { self.x.partition_point(|&p| p <= x).clamp(1, last) };
-        let slope = (self.w[hi] - self.w[hi - 1]) / (self.x[hi] - self.x[hi - 1]);
-        let w = self.w[hi] + slope * (x - self.x[hi]);
-        (w.exp().exp() - 0.7) * 1e-6 // LU-1
+        let w = self.w[hi] + self.slope[hi] * (x - self.x[hi]);
+        (exp(exp(w)) - 0.7) * 1e-6 // LU-1
     }
 }
 

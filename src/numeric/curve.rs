@@ -3,13 +3,23 @@
 /// A curve y(x) through points with strictly rising x; between them linear, outside them held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    /// Slope of the piece that begins at each point but the last.
-    slope: Vec<f64>,
+    /// The points, each with the piece that begins there; the last piece is flat and has no end.
+    pieces: Vec<Piece>,
     /// For equal cells of x: the piece in which the cell begins, so that a look-up needs no search.
     cell: Vec<u16>,
     cells_per_x: f64,
+    first: (f64, f64),
+    last: (f64, f64),
+}
+
+/// A point and the straight piece from it to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Piece {
+    x: f64,
+    y: f64,
+    slope: f64,
+    /// Where the next piece begins.
+    end: f64,
 }
 
 /// Cells of the look-up table.
@@ -37,15 +47,17 @@ impl Curve {
     }
 
     fn build(points: &[(f64, f64)]) -> Self {
-        let (first, last) = (points[0].0, points[points.len() - 1].0);
-        let cells_per_x = if last > first { CELLS as f64 / (last - first) } else { 0.0 };
+        let (first, last) = (points[0], points[points.len() - 1]);
+        let width = last.0 - first.0;
+        let cells_per_x = if width > 0.0 { CELLS as f64 / width } else { 0.0 };
+        let between = points.windows(2).map(|p| Piece { x: p[0].0, y: p[0].1, slope: (p[1].1 - p[0].1) / (p[1].0 - p[0].0), end: p[1].0 });
         let piece = |x: f64| points.partition_point(|p| p.0 <= x).clamp(1, points.len().max(2) - 1) - 1;
         Curve {
-            x: points.iter().map(|p| p.0).collect(),
-            y: points.iter().map(|p| p.1).collect(),
-            slope: points.windows(2).map(|p| (p[1].1 - p[0].1) / (p[1].0 - p[0].0)).collect(),
-            cell: (0..CELLS).map(|i| piece(first + i as f64 * (last - first) / CELLS as f64) as u16).collect(),
+            pieces: between.chain([Piece { x: last.0, y: last.1, slope: 0.0, end: f64::INFINITY }]).collect(),
+            cell: (0..CELLS).map(|i| piece(first.0 + i as f64 * width / CELLS as f64) as u16).collect(),
             cells_per_x,
+            first,
+            last,
         }
     }
 
@@ -57,27 +69,27 @@ impl Curve {
 
     /// Value at `x`; beyond the ends the end's value; NaN for NaN.
     #[must_use]
+    #[inline]
     pub fn at(&self, x: f64) -> f64 {
-        let last = self.x.len() - 1;
-        if x <= self.x[0] || last == 0 {
-            return self.y[0];
+        if x >= self.last.0 {
+            return self.last.1;
         }
-        if x >= self.x[last] {
-            return self.y[last];
+        let from_first = x - self.first.0;
+        if from_first > 0.0 {
+            let cell = (from_first * self.cells_per_x) as usize % CELLS;
+            let mut number = usize::from(self.cell[cell]);
+            while x >= self.pieces[number].end {
+                number += 1;
+            }
+            let piece = &self.pieces[number];
+            return piece.y + piece.slope * (x - piece.x);
         }
-        if x.is_nan() {
-            return f64::NAN;
-        }
-        let mut piece = usize::from(self.cell[((x - self.x[0]) * self.cells_per_x) as usize % CELLS]);
-        while x >= self.x[piece + 1] {
-            piece += 1;
-        }
-        self.y[piece] + self.slope[piece] * (x - self.x[piece])
+        if x.is_nan() { f64::NAN } else { self.first.1 }
     }
 
     /// The points (x, y).
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.x.iter().copied().zip(self.y.iter().copied())
+        self.pieces.iter().map(|p| (p.x, p.y))
     }
 }
 

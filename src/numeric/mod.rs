@@ -1,10 +1,25 @@
-//! Numerical tools without physics: interpolation and root bracketing.
+//! Numerical tools without physics: interpolation, ramps, elementary functions.
 
 mod curve;
+mod elementary;
 mod grid;
 
 pub use curve::Curve;
+pub use elementary::{exp, ln};
 pub use grid::{GRID_AXES, Grid};
+
+/// `x` held between `low` and `high`; NaN stays NaN. Unlike `f64::clamp` without a check of the bounds.
+#[must_use]
+#[inline]
+pub fn held(x: f64, low: f64, high: f64) -> f64 {
+    if x < low {
+        low
+    } else if x > high {
+        high
+    } else {
+        x
+    }
+}
 
 /// Linear ramp: 0 at or below `from`, 1 at or above `to`.
 ///
@@ -13,7 +28,7 @@ pub use grid::{GRID_AXES, Grid};
 #[inline]
 pub fn ramp(x: f64, from: f64, to: f64) -> f64 {
     let width = to - from;
-    if width.abs() > 0.0 { ((x - from) / width).clamp(0.0, 1.0) } else { f64::from(u8::from(x >= from)) }
+    if width.abs() > 0.0 { held((x - from) / width, 0.0, 1.0) } else { f64::from(u8::from(x >= from)) }
 }
 
 /// Smooth ramp with zero slope at both ends (3 u2 - 2 u3).

@@ -37,6 +37,7 @@ pub struct Terms {
 pub const TERM_NAMES: [&str; 11] =
     ["fuel", "wheels", "brake", "accessories", "losses", "kinetic", "engine_heat", "exhaust", "node_heat", "stored", "to_air"];
 
+#[inline]
 fn error(input: f64, output: f64, scale: f64) -> f64 {
     if scale > 0.0 { (input - output).abs() / scale } else { 0.0 } // LE-3
 }
@@ -44,6 +45,7 @@ fn error(input: f64, output: f64, scale: f64) -> f64 {
 impl Terms {
     /// Relative error of the power ledger (LE-1).
     #[must_use]
+    #[inline]
     pub fn power_error(&self) -> f64 {
         let (from, to) = if self.wheels < 0.0 { (-self.wheels, 0.0) } else { (0.0, self.wheels) };
         let out = to + self.brake + self.accessories + self.losses + self.kinetic + self.engine_heat + self.exhaust;
@@ -60,6 +62,7 @@ impl Terms {
 
     /// Relative error of the heat ledger (LE-2).
     #[must_use]
+    #[inline]
     pub fn heat_error(&self) -> f64 {
         let scale = self.node_heat.abs() + self.stored.abs() + self.to_air.abs();
         let balance = error(self.node_heat, self.stored + self.to_air, scale);
@@ -69,6 +72,7 @@ impl Terms {
 
     /// The terms in the order of [`TERM_NAMES`].
     #[must_use]
+    #[inline]
     pub fn as_array(&self) -> [f64; 11] {
         [
             self.fuel,
@@ -87,6 +91,7 @@ impl Terms {
 
     /// Terms from an array in the order of [`TERM_NAMES`].
     #[must_use]
+    #[inline]
     pub fn from_array(a: [f64; 11]) -> Self {
         Terms {
             fuel: a[0],
@@ -104,6 +109,7 @@ impl Terms {
     }
 
     /// Adds another row's terms, weighted by its length, J.
+    #[inline]
     pub fn add(&mut self, other: &Terms, dt_s: f64) {
         let mut sum = self.as_array();
         for (s, o) in sum.iter_mut().zip(other.as_array()) {

@@ -90,6 +90,7 @@ impl Totals {
         sum
     }
 
+    #[inline]
     fn extremes(&mut self, row: &Row) {
         let error = if row.power_ledger_error > row.heat_ledger_error { row.power_ledger_error } else { row.heat_ledger_error };
         // A ledger error that is not a number must not hide.
@@ -125,6 +126,7 @@ impl PhaseTotals {
 }
 
 impl Recorder for Totals {
+    #[inline]
     fn record(&mut self, row: &Row, terms: &Terms) {
         let index = usize::from(row.phase).min(self.phases.len() - 1);
         let p = &mut self.phases[index];
@@ -140,10 +142,13 @@ impl Recorder for Totals {
             *s += w * row.dt_s;
         }
         p.terms.add(terms, row.dt_s);
-        for (s, (flag, _)) in self.flag_s.iter_mut().zip(Flags::NAMES) {
-            if row.flags.contains(flag) {
-                *s += row.dt_s;
+        let mut left = row.flags.0;
+        while left != 0 {
+            let bit = left.trailing_zeros() as usize; // flags stand in the order of their bits
+            if let Some(seconds) = self.flag_s.get_mut(bit) {
+                *seconds += row.dt_s;
             }
+            left &= left - 1;
         }
         self.evaluations += u64::from(row.iterations);
         self.rows += 1;

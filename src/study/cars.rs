@@ -24,7 +24,7 @@ pub(super) enum Binding {
         stride: usize,
     },
     /// Ambient temperature, degC.
-    Ambient(Acts),
+    Ambient,
     /// Start.
     Start,
     /// Cycle.
@@ -38,6 +38,8 @@ pub(super) struct Variant {
     pub blueprint: Blueprint,
     /// By factor; none for factors that are no number of this car.
     pub slots: Vec<Option<Slot>>,
+    /// Keys of factors that this car does not know, with what is to be said of them.
+    pub unknown: Vec<(usize, Problem)>,
     /// The car with all numbers as its files have them.
     pub setup: Setup,
 }
@@ -117,25 +119,17 @@ impl StudyCar {
     fn make(&self, index: usize, factors: &[Factor]) -> Result<Variant, Vec<Problem>> {
         let options = self.options_of(index, factors);
         let (blueprint, setup) = Blueprint::load(&self.word, super::prepare::VEHICLE, &options)?;
-        let mut slots = Vec::with_capacity(factors.len());
-        let mut problems = Vec::new();
-        for (factor, binding) in factors.iter().zip(&self.bindings) {
-            let slot = matches!(binding, Binding::Number(_)).then(|| blueprint.slot(&factor.key));
-            slots.push(match slot {
-                Some(Err(problem)) => {
-                    problems.push(Problem {
-                        place: factor.place.clone(),
-                        key: factor.key.clone(),
-                        message: format!("{}: {}", self.name, problem.message),
-                        ..problem
-                    });
-                    None
-                }
-                Some(Ok(slot)) => Some(slot),
-                None => None,
-            });
+        let mut variant = Variant { blueprint, slots: Vec::with_capacity(factors.len()), unknown: Vec::new(), setup };
+        for (index, (factor, binding)) in factors.iter().zip(&self.bindings).enumerate() {
+            let found = matches!(binding, Binding::Number(_)).then(|| variant.blueprint.slot(&factor.key)).transpose();
+            variant.slots.push(found.unwrap_or_else(|problem| {
+                let place = factor.place.clone();
+                let message = format!("{}: {}", self.name, problem.message);
+                variant.unknown.push((index, Problem { place, key: factor.key.clone(), message, ..problem }));
+                None
+            }));
         }
-        if problems.is_empty() { Ok(Variant { blueprint, slots, setup }) } else { Err(problems) }
+        Ok(variant)
     }
 
     fn options_of(&self, index: usize, factors: &[Factor]) -> Options {
@@ -178,7 +172,7 @@ fn binding(factor: &Factor, subject: bool, stride: usize) -> Binding {
     };
     match factor.key.as_str() {
         _ if !reached => Binding::Not,
-        "ambient_degc" => Binding::Ambient(factor.acts),
+        "ambient_degc" => Binding::Ambient,
         "start" => Binding::Start,
         "cycle" => Binding::Cycle,
         "dt_s" => Binding::Step,

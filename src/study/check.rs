@@ -1,9 +1,8 @@
 //! Every value of a factor tried by itself, before anything starts.
 
-use super::cars::{Binding, StudyCar, words};
+use super::cars::{Binding, StudyCar, Variant, words};
 use super::plan::{Acts, Distribution, Factor, FactorValue, FactorValues, Plan};
 use crate::config::{Place, Problem};
-use crate::setup::AMBIENT;
 
 /// Notes the problems of a factor: a key that a car does not know, values that its files do not allow.
 pub(super) fn factor(plan: &Plan, index: usize, cars: &[StudyCar], problems: &mut Vec<Problem>) {
@@ -14,8 +13,7 @@ pub(super) fn factor(plan: &Plan, index: usize, cars: &[StudyCar], problems: &mu
         match car.bindings[index] {
             Binding::Number(acts) => numbers(plan, index, car, acts, problems),
             Binding::Words { stride } => variants(plan, index, car, stride, problems),
-            Binding::Ambient(acts) => ambient(plan, index, acts, problems),
-            Binding::Not | Binding::Start | Binding::Cycle | Binding::Step => {}
+            Binding::Not | Binding::Ambient | Binding::Start | Binding::Cycle | Binding::Step => {}
         }
     }
     if !reached && !cars.is_empty() {
@@ -37,19 +35,38 @@ fn numbers(plan: &Plan, index: usize, car: &StudyCar, acts: Acts, problems: &mut
     let factor = &plan.factors[index];
     // The car itself has been checked before.
     let Ok(variant) = car.variant(0, &plan.factors) else { return };
+    problems.extend(variant.unknown.iter().filter(|(unknown, _)| *unknown == index).map(|(_, problem)| problem.clone()));
     let Some(slot) = &variant.slots[index] else { return };
     let mut bench = variant.blueprint.bench();
     for (entry, number) in extremes(plan, index) {
         let value = resolved(acts, slot.base(), number);
         bench.reset();
         bench.set(slot, value);
-        if bench.build().is_ok() {
+        if bench.build().is_ok() || goes_with_another(plan, index, car, variant, value) {
             continue;
         }
         for problem in bench.problems() {
             problems.push(of_value(factor, entry, car, number, value, problem));
         }
     }
+}
+
+/// Whether a value that is not possible by itself is so with some value of another factor: then it is for the points to tell.
+fn goes_with_another(plan: &Plan, index: usize, car: &StudyCar, variant: &Variant, value: f64) -> bool {
+    let mut bench = variant.blueprint.bench();
+    let mut possible = |other: usize, number: f64| {
+        let (Some(slot), Some(beside), Binding::Number(acts)) = (&variant.slots[index], &variant.slots[other], car.bindings[other]) else {
+            return false;
+        };
+        bench.reset();
+        bench.set(slot, value);
+        bench.set(beside, resolved(acts, beside.base(), number));
+        bench.build().is_ok()
+    };
+    let others = (0..plan.factors.len()).filter(|other| *other != index);
+    others
+        .flat_map(|other| extremes(plan, other).into_iter().map(move |(_, number)| (other, number)))
+        .any(|(other, number)| possible(other, number))
 }
 
 fn of_value(factor: &Factor, entry: Option<usize>, car: &StudyCar, number: f64, value: f64, problem: Problem) -> Problem {
@@ -96,21 +113,7 @@ fn variants(plan: &Plan, index: usize, car: &StudyCar, stride: usize, problems: 
     }
 }
 
-fn ambient(plan: &Plan, index: usize, acts: Acts, problems: &mut Vec<Problem>) {
-    let factor = &plan.factors[index];
-    for (entry, number) in extremes(plan, index) {
-        let degc = resolved(acts, plan.base.ambient_degc, number);
-        if !AMBIENT.contains(degc) {
-            let problem = at(factor, entry, &format!("an ambient of {degc} degC is out of range"));
-            let problem = Problem { value: number.to_string(), allowed: AMBIENT.in_unit("°C"), ..problem };
-            if !problems.contains(&problem) {
-                problems.push(problem);
-            }
-        }
-    }
-}
-
-/// Every entry of a list; the least and largest value of a distribution that the design reaches.
+/// Every entry of a list; the ends of a distribution, or, where it has none, the least and largest value that the design reaches.
 fn extremes(plan: &Plan, index: usize) -> Vec<(Option<usize>, f64)> {
     match &plan.factors[index].values {
         FactorValues::List(list) => {
@@ -121,8 +124,9 @@ fn extremes(plan: &Plan, index: usize) -> Vec<(Option<usize>, f64)> {
             list.iter().enumerate().filter_map(number).collect()
         }
         FactorValues::Distribution(distribution) => {
-            let (low, high) = plan.design.share_span(&plan.factors, index);
-            let (low, high) = (distribution.inverse_cdf(low), distribution.inverse_cdf(high));
+            let (low, high) = distribution.support();
+            let tails = if low.is_finite() && high.is_finite() { None } else { Some(plan.design.share_span(&plan.factors, index)) };
+            let (low, high) = tails.map_or((low, high), |(low, high)| (distribution.inverse_cdf(low), distribution.inverse_cdf(high)));
             vec![(None, low), (None, high)]
         }
     }

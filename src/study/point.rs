@@ -133,6 +133,9 @@ impl Study {
             factors.push(self.resolve(f, car, value.as_ref(), slot.map(Slot::base)));
         }
         let variant = variant.map_err(|problems| reason(problems))?;
+        if let Some((_, problem)) = variant.unknown.first() {
+            return Err(reason(std::slice::from_ref(problem)));
+        }
         let bench = worker.benches.entry((k, index)).or_insert_with(|| variant.blueprint.bench());
         bench.reset();
         for ((slot, value), given) in variant.slots.iter().zip(factors.iter()).zip(values) {
@@ -154,7 +157,7 @@ impl Study {
         match car.bindings[f] {
             Binding::Not => None,
             Binding::Number(acts) => base.map(|base| number(acts, base)),
-            Binding::Ambient(acts) => Some(number(acts, self.plan.base.ambient_degc)),
+            Binding::Ambient => Some(number(Acts::Value, self.plan.base.ambient_degc)),
             Binding::Step => Some(number(Acts::Value, self.plan.base.dt_s)),
             Binding::Start | Binding::Cycle | Binding::Words { .. } => value.cloned().or_else(|| self.own_word(f, car)),
         }

@@ -11,15 +11,18 @@
 //! | TH-8 | spray: G = G_2500 n/2500 rpm, never below 10 % of G_2500 | ASSUMED: the pump's flow carries it; G_2500 fitted to a belt about 20 K above the sump (thesis 5.5.2) |
 //! | TH-6 | with the engine off, radiator and all links that need a pump or splash keep 10 % | ASSUMED |
 //!
+//! The linear system of TH-5 is solved by elimination (links.rs).
+//!
 //! Nodes: coolant and block; engine oil; transmission oil; transmission metal; belt and pulleys with the oil they spray (unused in a
 //! manual box). Soak is the same network with the engine off. Speeds m/s, heat flows W.
 
+mod links;
 mod load;
 
+use links::Links;
 pub use load::load;
 
-use crate::numeric::ramp;
-use nalgebra::{SMatrix, SVector};
+use crate::numeric::{exp, held, ln, ramp};
 
 /// Number of nodes.
 pub const NODES: usize = 5;
@@ -155,8 +158,8 @@ struct Now {
     air: [f64; NODES],
     /// Air temperature, per node, K.
     air_k: [f64; NODES],
-    /// Between nodes (i, j, G).
-    links: [(usize, usize, f64); 5],
+    /// Between nodes, W/K.
+    links: Links,
     /// Radiator heat now and its slope.
     radiator: (f64, f64),
     /// Heat capacity flow through the cooler, W/K.
@@ -168,7 +171,7 @@ struct Now {
 /// v^0.7, 0 at standstill.
 #[inline]
 fn speed_power(v: f64) -> f64 {
-    if v > 0.0 { (0.7 * v.ln()).exp() } else { 0.0 }
+    if v > 0.0 { exp(0.7 * ln(v)) } else { 0.0 }
 }
 
 impl Network {
@@ -184,7 +187,7 @@ impl Network {
         let full = self.radiator_w_k + self.radiator_per_speed * input.speed_m_s;
         let full = if input.running { full } else { STILL * full };
         let width = self.thermostat_to_k - self.thermostat_from_k;
-        let open = ((coolant_k - self.thermostat_from_k) / width).clamp(0.0, 1.0);
+        let open = held((coolant_k - self.thermostat_from_k) / width, 0.0, 1.0);
         let over = coolant_k - input.ambient_k;
         let slope = if open > 0.0 && open < 1.0 { full * (open + over / width) } else { full * open };
         (full * open * over, if slope > 0.0 { slope } else { 0.0 }) // TH-2
@@ -195,12 +198,12 @@ impl Network {
         let flow = c.flow_share * input.oil_flow_m3_s;
         let flow = if flow < c.highest_m3_s { flow } else { c.highest_m3_s };
         let carried = flow * input.oil_volume_heat_j_m3k;
-        let open = ((sump_k - c.bypass_below_k) / 2.0).clamp(0.0, 1.0);
+        let open = held((sump_k - c.bypass_below_k) / 2.0, 0.0, 1.0);
         if carried <= 0.0 || open <= 0.0 {
             return (carried, 0.0);
         }
         let u = c.still_w_k + c.per_speed_w_s_k_m * input.speed_m_s;
-        (carried, open * carried * (1.0 - (-u / carried).exp())) // TH-3
+        (carried, open * carried * (1.0 - exp(-u / carried))) // TH-3
     }
 
     fn now(&self, heat: &Heat, input: &HeatInput) -> Now {
@@ -218,13 +221,17 @@ impl Network {
                 0.0,
             ],
             air_k: [bonnet, bonnet, input.ambient_k, bonnet, input.ambient_k],
-            links: [
-                (COOLANT, ENGINE_OIL, stirred * self.coolant_oil_w_k),
-                (COOLANT, METAL, self.bell_housing_w_k),
-                (COOLANT, SUMP, stirred * self.exchanger_w_k * ramp(t[COOLANT], self.exchanger_opens_k, self.exchanger_opens_k + 5.0)),
-                (SUMP, METAL, stirred * self.oil_metal_w_k),
-                (SUMP, BELT, self.spray_now_w_k(if input.running { input.pump_rad_s } else { 0.0 })),
-            ],
+            links: Links {
+                coolant_oil: stirred * self.coolant_oil_w_k,
+                coolant_metal: self.bell_housing_w_k,
+                coolant_sump: if self.exchanger_w_k > 0.0 {
+                    stirred * self.exchanger_w_k * ramp(t[COOLANT], self.exchanger_opens_k, self.exchanger_opens_k + 5.0) // TH-7
+                } else {
+                    0.0
+                },
+                sump_metal: stirred * self.oil_metal_w_k,
+                sump_belt: self.spray_now_w_k(if input.running { input.pump_rad_s } else { 0.0 }),
+            },
             radiator: self.radiator(t[COOLANT], input),
             cooler_flow_w_k,
             cooler_w_k,
@@ -236,33 +243,25 @@ impl Network {
     pub fn advance(&self, heat: &Heat, input: &HeatInput) -> HeatStep {
         let now = self.now(heat, input);
         let t = &heat.node_k;
-        let mut matrix = SMatrix::<f64, NODES, NODES>::zeros();
-        let mut right = SVector::<f64, NODES>::zeros();
+        let per_s = 1.0 / input.dt_s;
+        let mut right = now.links.flows_w(t);
+        let mut own = [0.0; NODES];
         for i in 0..NODES {
-            matrix[(i, i)] = self.capacity_j_k[i] / input.dt_s + now.air[i];
-            right[i] = input.power_w[i] - now.air[i] * (t[i] - now.air_k[i]);
+            own[i] = self.capacity_j_k[i] * per_s + now.air[i];
+            right[i] += input.power_w[i] - now.air[i] * (t[i] - now.air_k[i]);
         }
-        matrix[(COOLANT, COOLANT)] += now.radiator.1;
+        own[COOLANT] += now.radiator.1;
         right[COOLANT] -= now.radiator.0;
-        for &(i, j, g) in &now.links {
-            matrix[(i, i)] += g;
-            matrix[(j, j)] += g;
-            matrix[(i, j)] -= g;
-            matrix[(j, i)] -= g;
-            right[i] += g * (t[j] - t[i]);
-            right[j] += g * (t[i] - t[j]);
-        }
         if self.capacity_j_k[BELT] <= 0.0 {
-            matrix[(BELT, BELT)] += 1.0; // unused node: keeps the matrix regular, changes nothing else
+            own[BELT] += 1.0; // unused node: keeps its pivot above zero, changes nothing else
             right[BELT] = 0.0;
         }
-        // Symmetric and diagonally dominant with positive diagonal, hence positive definite: Cholesky always exists.
-        let rise = matrix.cholesky().map_or_else(SVector::zeros, |c| c.solve(&right));
+        let rise = now.links.rise_k(&own, &right);
         let mut node_k = *t;
         let (mut stored_w, mut to_air_w) = (0.0, now.radiator.0 + now.radiator.1 * rise[COOLANT]);
         for i in 0..NODES {
             node_k[i] += rise[i];
-            stored_w += self.capacity_j_k[i] * rise[i] / input.dt_s;
+            stored_w += self.capacity_j_k[i] * rise[i] * per_s;
             to_air_w += now.air[i] * (node_k[i] - now.air_k[i]);
         }
         let (cooler_in_k, cooler_out_k) = self.cooler_ends(&now, node_k[SUMP], input.ambient_k);

@@ -10,14 +10,18 @@
 //!
 //! A wet or dry friction clutch slips from idle to lock-up. A torque converter will be another implementation of [`Launch`].
 
-use crate::numeric::ramp;
+use crate::numeric::{exp, ramp};
 
 /// Launch device as the driveline sees it; torques at the box's input shaft, Nm, speeds rad/s.
 pub trait Launch: std::fmt::Debug + Send + Sync {
     /// Engine speed that goes with a transmitted torque, never below idle nor below the input shaft (LC-1, LC-5).
     fn engine_speed_rad_s(&self, torque_nm: f64, input_speed_rad_s: f64, idle_rad_s: f64, coupled: bool) -> f64;
     /// Whether, once coupled, it holds engine and input shaft together without slip (LC-5).
-    fn holds(&self, input_speed_rad_s: f64, idle_rad_s: f64) -> bool;
+    fn holds(&self, input_speed_rad_s: f64, idle_rad_s: f64) -> bool {
+        input_speed_rad_s >= self.holds_from_rad_s(idle_rad_s)
+    }
+    /// Input speed from which it does, rad/s (LC-5).
+    fn holds_from_rad_s(&self, idle_rad_s: f64) -> f64;
     /// Torque that the idling engine passes on without being asked, Nm (LC-2).
     fn creep_torque_nm(&self, input_speed_rad_s: f64, idle_rad_s: f64) -> f64;
     /// Share of the engine's overrun torque that the coupling carries, 0..1 (LC-3).
@@ -56,7 +60,7 @@ impl Launch for FrictionClutch {
         if above > 0.0 {
             let lift = if self.engage_rad_s > idle_rad_s { self.engage_rad_s - idle_rad_s } else { 0.0 };
             speed +=
-                lift * (1.0 - (-above / CREEP_WIDTH_NM).exp()) + (above / self.gain_nm_s2 + ROUND_RAD_S * ROUND_RAD_S).sqrt() - ROUND_RAD_S; // LC-1
+                lift * (1.0 - exp(-above / CREEP_WIDTH_NM)) + (above / self.gain_nm_s2 + ROUND_RAD_S * ROUND_RAD_S).sqrt() - ROUND_RAD_S; // LC-1
         }
         if speed <= input_speed_rad_s {
             return input_speed_rad_s;
@@ -66,8 +70,8 @@ impl Launch for FrictionClutch {
     }
 
     #[inline]
-    fn holds(&self, input_speed_rad_s: f64, idle_rad_s: f64) -> bool {
-        input_speed_rad_s >= LOCKED_OVER_IDLE * idle_rad_s
+    fn holds_from_rad_s(&self, idle_rad_s: f64) -> f64 {
+        LOCKED_OVER_IDLE * idle_rad_s
     }
 
     #[inline]

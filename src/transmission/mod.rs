@@ -52,14 +52,12 @@ pub struct DriveState {
     pub engine_rad_s: f64,
     /// Throttle, as a start for the solve.
     pub throttle: f64,
-    /// Flywheel torque above output torque over ratio, as a start for the solve, Nm.
-    pub loss_nm: f64,
-    /// Belt slip, as a start for the solve.
-    pub slip: f64,
-    /// Slope of the pressure's fixed point, as a start for its secant.
-    pub gain: f64,
-    /// Output torque over ratio of the step before, if the engine's least torque fixed it there, Nm; only a start for the solve.
-    pub overrun: Option<f64>,
+    /// CVT: how losses and slip went on, as a start for the solve.
+    pub trend: cvt::Trend,
+    /// Slopes of the CVT's solve, as a start for it.
+    pub slopes: cvt::Slopes,
+    /// Whether the engine's least torque fixed the output torque; only a start for the solve.
+    pub overrun: bool,
     /// CVT: factor of the clamp map at the ratio in force, 0 before it is known.
     pub radius_factor: f64,
     /// Secondary pressure, Pa.

@@ -107,7 +107,6 @@ impl Bench {
         }
         state.engine_rad_s = engine.idle_rad_s;
         state.throttle = 0.1;
-        state.slip = 0.0;
         state.secondary_pa = 10e5;
         state.coupled = s.coupled;
         state.stood = false;

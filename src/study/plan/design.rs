@@ -7,7 +7,19 @@ use crate::study::design::{MOST_SOBOL_DIMENSIONS, MOST_SOBOL_SAMPLES};
 /// Designs.
 const DESIGNS: [&str; 6] = ["grid", "one_at_a_time", "latin_hypercube", "sobol", "monte_carlo", "saltelli"];
 /// Most samples of a design without a limit of its own.
-const MOST_SAMPLES: f64 = 1e9;
+const MOST_SAMPLES: u64 = 1_000_000_000;
+
+impl Design {
+    /// Numbers of samples that it may have; none for a design without samples.
+    #[must_use]
+    pub fn sample_range(&self) -> Option<std::ops::RangeInclusive<u64>> {
+        match self {
+            Design::Grid | Design::OneAtATime { .. } => None,
+            Design::LatinHypercube { .. } | Design::MonteCarlo { .. } => Some(2..=MOST_SAMPLES),
+            Design::Sobol { .. } | Design::Saltelli { .. } => Some(2..=MOST_SOBOL_SAMPLES),
+        }
+    }
+}
 
 /// Reads the design; meaningless if one of its problems was reported.
 pub(super) fn read(study: &Section, places: &mut Places) -> Design {
@@ -23,7 +35,7 @@ pub(super) fn read(study: &Section, places: &mut Places) -> Design {
         _ => {}
     }
     places.add_given(&d, "samples", "design.samples");
-    let count = d.number("samples", Bound::closed(2.0, MOST_SAMPLES), "number of samples");
+    let count = d.number("samples", Bound::closed(2.0, MOST_SAMPLES as f64), "number of samples");
     let samples = count as u64;
     if count.is_finite() && (samples as f64 - count).abs() > 0.0 {
         d.complain("samples", "a whole number", "`samples` is no whole number", "");

@@ -1,8 +1,10 @@
 //! From the solved point to the driveline's answer: powers, brake, flags, memory; and the step at standstill.
 
-use super::solve::{Bind, MOST_EVALUATIONS, Point, Step, TOLERANCE};
-use super::variator::{BeltLoad, belt_state};
+use super::evaluate::{Bind, Point, Step};
+use super::solve::{MOST_EVALUATIONS, TOLERANCE};
+use super::variator::{BeltLoad, belt_capacity_nm};
 use crate::lubricant::VALID_K;
+use crate::numeric::held;
 use crate::results::{Component, Flags};
 use crate::thermal::{BELT, SUMP};
 use crate::transmission::{Drive, DriveState};
@@ -12,8 +14,7 @@ pub(super) fn standstill(step: &Step, state: &mut DriveState) -> Drive {
     let (cvt, engine) = (step.cvt, step.around.engine);
     let idle = engine.idle_rad_s;
     let creep = cvt.launch.creep_torque_nm(0.0, idle);
-    let pace = engine.engine.inertia_torque_nm / engine.engine.inertia_kg_m2 * step.around.dt_s;
-    let w = idle.clamp(state.engine_rad_s - pace, state.engine_rad_s + pace);
+    let w = held(idle, state.engine_rad_s - step.pace_rad_s, state.engine_rad_s + step.pace_rad_s);
     let mut throttle = state.throttle;
     let (mut pa, mut pump_nm, mut shaft_nm, mut left, mut count) = (0.0, 0.0, 0.0, f64::INFINITY, 0);
     let mut inside = true;
@@ -22,22 +23,16 @@ pub(super) fn standstill(step: &Step, state: &mut DriveState) -> Drive {
     while left > TOLERANCE && count < MOST_EVALUATIONS {
         let signals = step.signals(throttle, w);
         pa = cvt.pressure_pa(&signals, &step.at, &BeltLoad { output_torque_nm: creep * step.at.geometry.ratio, ..step.load }, 0.0);
-        let pump = cvt.pump.state(w, pa, cvt.pump.steady_need_m3_s(pa, step.eta_sump), step.viscous_factor);
-        flow_limited = pump.flow_limited;
-        oil_flow_m3_s = pump.working_m3_s;
-        pump_nm = step.mapped(cvt.maps.pump.as_ref(), w, 0.0, pa, &mut inside).unwrap_or(pump.torque_nm);
-        shaft_nm = step.mapped(cvt.maps.input_shaft.as_ref(), w, 0.0, pa, &mut inside).unwrap_or_else(|| step.spin.shaft_nm(w));
-        let next = ((creep + pump_nm + shaft_nm + engine.accessories_nm(w)) / engine.full_load_nm(w)).clamp(0.0, 1.0);
+        let (pump, shaft) = step.pump_and_shaft(w, pa, &mut inside);
+        (pump_nm, shaft_nm) = (pump.torque_nm, shaft);
+        (flow_limited, oil_flow_m3_s) = (pump.flow_limited, pump.working_m3_s);
+        let next = held((creep + pump_nm + shaft_nm + engine.accessories_nm(w)) / engine.full_load_nm(w), 0.0, 1.0);
         left = (next - throttle).abs();
         throttle = next;
         count += 1;
     }
-    let capacity = belt_state(
-        &cvt.belt,
-        &step.at,
-        &BeltLoad { output_torque_nm: creep * step.at.geometry.ratio, secondary_clamp_n: cvt.secondary_clamp_n(pa, 0.0), ..step.load },
-    )
-    .capacity_nm;
+    let clamped = BeltLoad { secondary_clamp_n: cvt.secondary_clamp_n(pa, 0.0), ..step.load };
+    let capacity = belt_capacity_nm(&cvt.belt, &step.at, &clamped);
     let mut drive = Drive {
         engine_rad_s: w,
         shaft_nm: creep + pump_nm + shaft_nm,
@@ -60,6 +55,7 @@ pub(super) fn standstill(step: &Step, state: &mut DriveState) -> Drive {
     drive.flags.set(Flags::NOT_CONVERGED, !converged(left));
     common_flags(step, &mut drive, inside);
     remember(state, &drive, step, true);
+    state.trend.stand();
     state.coupled = false;
     drive
 }
@@ -79,7 +75,6 @@ pub(super) struct Outcome {
     pub bind: Bind,
     pub left: f64,
     pub count: u16,
-    pub held: bool,
 }
 
 pub(super) fn finish(step: &Step, p: &Point, state: &mut DriveState, outcome: Outcome) -> Drive {
@@ -88,8 +83,8 @@ pub(super) fn finish(step: &Step, p: &Point, state: &mut DriveState, outcome: Ou
     let idle = step.around.engine.idle_rad_s;
     let mut drive = Drive {
         engine_rad_s: we,
-        shaft_nm: p.flywheel_nm(),
-        throttle: p.next.throttle,
+        shaft_nm: p.flywheel_nm,
+        throttle: p.throttle,
         belt_ratio: step.at.geometry.ratio,
         primary_pa: primary_pa(step, g.pressure_pa),
         secondary_pa: g.pressure_pa,
@@ -125,16 +120,17 @@ pub(super) fn finish(step: &Step, p: &Point, state: &mut DriveState, outcome: Ou
     flags.set(Flags::MISSED_TRACE, outcome.bind == Bind::FullLoad);
     flags.set(Flags::GROSS_SLIP, p.belt.gross_slip && p.belt_map_nm.is_none());
     flags.set(Flags::LOW_CLAMP, p.belt.capacity_nm < p.secondary_nm.abs());
-    flags.set(Flags::FLOW_LIMITED, p.flow_limited || outcome.held);
+    flags.set(Flags::FLOW_LIMITED, p.flow_limited || step.shift_held);
     flags.set(Flags::CLUTCH_SLIPPING, we > wp * (1.0 + 1e-9) && p.primary_nm > 0.0);
     flags.set(Flags::CLUTCH_OPEN, outcome.bind == Bind::Least && wp < idle);
     flags.set(Flags::OVERRUN, p.primary_nm < 0.0);
     flags.set(Flags::NOT_CONVERGED, !converged(outcome.left));
     flags.set(Flags::LAUNCH_NOT_IN_LOW, state.stood && step.at.geometry.ratio < 0.99 * step.cvt.ratio.low);
     common_flags(step, &mut drive, p.inside_maps);
+    let loss_nm = drive.shaft_nm - g.output_nm / step.at.geometry.ratio;
+    state.trend.push(step.around.wheel.accel_m_s2, g.slip, loss_nm);
     remember(state, &drive, step, false);
-    state.loss_nm = drive.shaft_nm - g.output_nm / step.at.geometry.ratio;
-    state.coupled = step.locked(wp) || we <= wp * (1.0 + 1e-4);
+    state.coupled = p.locked || we <= wp * (1.0 + 1e-4);
     drive
 }
 
@@ -149,11 +145,12 @@ fn common_flags(step: &Step, drive: &mut Drive, inside_maps: bool) {
 }
 
 fn remember(state: &mut DriveState, drive: &Drive, step: &Step, stood: bool) {
-    state.belt = Some(step.at);
+    if step.shifted {
+        state.belt = Some(step.at);
+    }
     state.radius_factor = step.radius_factor;
     state.engine_rad_s = drive.engine_rad_s;
     state.throttle = drive.throttle;
-    state.slip = drive.slip;
     state.secondary_pa = drive.secondary_pa;
     state.stood = stood;
 }

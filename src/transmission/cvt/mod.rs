@@ -17,10 +17,13 @@ pub mod spin;
 pub mod variator;
 mod load;
 mod answer;
+mod evaluate;
 mod prepare;
+mod secant;
 mod solve;
 
 pub use load::load;
+pub use secant::{Slopes, Trend};
 
 use self::controller::{ClampLaw, ClampSignals, RatioControl};
 use self::pump::Pump;
@@ -29,7 +32,7 @@ use self::variator::{Belt, BeltAtRatio, BeltLoad, belt_state};
 use super::launch::Launch;
 use super::loss_map::LossMap;
 use super::{Drive, DriveState, Surroundings};
-use crate::numeric::Curve;
+use crate::numeric::{Curve, exp, ln};
 use std::sync::Arc;
 
 /// Measured maps in place of models.
@@ -45,6 +48,15 @@ pub struct CvtMaps {
     pub clutch_drag: Option<LossMap>,
     /// Final drive.
     pub final_drive: Option<LossMap>,
+}
+
+impl CvtMaps {
+    /// Whether there is one.
+    #[must_use]
+    #[inline]
+    pub fn any(&self) -> bool {
+        [&self.belt, &self.pump, &self.input_shaft, &self.clutch_drag, &self.final_drive].iter().any(|map| map.is_some())
+    }
 }
 
 /// The checked CVT.
@@ -102,7 +114,7 @@ impl Cvt {
     /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
     #[must_use]
     pub fn radius_factor(&self, at: &BeltAtRatio) -> f64 {
-        (self.radius_exponent * (self.low_radius_m / at.geometry.primary_radius_m).ln()).exp()
+        exp(self.radius_exponent * ln(self.low_radius_m / at.geometry.primary_radius_m))
     }
 
     /// State at the beginning of a cycle: in low at rest, in the ratio that the variogram asks for when rolling.
@@ -132,10 +144,9 @@ impl Cvt {
             gear: 0,
             engine_rad_s: if primary > idle { primary } else { idle },
             throttle: 0.1,
-            loss_nm: 0.0,
-            slip: 0.0,
-            gain: 0.0,
-            overrun: None,
+            trend: Trend::default(),
+            slopes: Slopes::unknown(),
+            overrun: false,
             radius_factor: 0.0,
             secondary_pa: self.floor_pa,
             coupled: primary > idle,
@@ -145,17 +156,11 @@ impl Cvt {
 
     /// Pressure that the clamp law asks for, Pa (PC-1 to PC-4), within floor and cap.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn pressure_pa(&self, signals: &ClampSignals, at: &BeltAtRatio, load: &BeltLoad, secondary_rad_s: f64) -> f64 {
         let wanted = match &self.clamp {
             ClampLaw::Map(map) => map.pressure_pa(signals),
-            ClampLaw::TorqueFollowing { safety, least_torque_nm } => {
-                self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s)
-            }
-            ClampLaw::SlipLimited { slip, safety, least_torque_nm } => {
-                let least = self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s);
-                self.slip_pressure_pa(*slip, least, at, load, secondary_rad_s)
-            }
+            law => self.belt_pressure_pa(law, at, load, secondary_rad_s),
         };
         if wanted > self.cap_pa {
             self.cap_pa
@@ -163,6 +168,21 @@ impl Cvt {
             wanted
         } else {
             self.floor_pa
+        }
+    }
+
+    /// Pressure of the laws that look at the belt (PC-3, PC-4).
+    #[inline(never)]
+    fn belt_pressure_pa(&self, law: &ClampLaw, at: &BeltAtRatio, load: &BeltLoad, secondary_rad_s: f64) -> f64 {
+        match law {
+            ClampLaw::Map(_) => f64::NAN, // looks at the engine only
+            ClampLaw::TorqueFollowing { safety, least_torque_nm } => {
+                self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s)
+            }
+            ClampLaw::SlipLimited { slip, safety, least_torque_nm } => {
+                let least = self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s);
+                self.slip_pressure_pa(*slip, least, at, load, secondary_rad_s)
+            }
         }
     }
 

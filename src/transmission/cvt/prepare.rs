@@ -2,18 +2,11 @@
 
 use super::Cvt;
 use super::controller::RatioDemand;
-use super::solve::Step;
+use super::evaluate::Step;
 use super::variator::{BeltAtRatio, BeltLoad, sliding_speed_m_s};
+use crate::numeric::ln;
 use crate::thermal::{BELT, SUMP};
 use crate::transmission::{DriveState, Surroundings};
-
-/// Shift flow and the limits that free pump flow sets to the shift rate, 1/s towards low and high (RC-5).
-fn flow_limits(cvt: &Cvt, at: &BeltAtRatio, state: &DriveState, eta: f64) -> (f64, f64) {
-    let free = cvt.pump.displacement_m3_rad * state.engine_rad_s - cvt.pump.steady_need_m3_s(state.secondary_pa, eta);
-    let free = if free > 0.0 { free } else { 0.0 };
-    let (down, up) = sheave_volumes_m3(cvt, at);
-    (free / down, free / up)
-}
 
 /// Oil volume for a unit of ln I: secondary cylinder towards low, primary cylinder towards high, m3 (PU-3).
 fn sheave_volumes_m3(cvt: &Cvt, at: &BeltAtRatio) -> (f64, f64) {
@@ -29,8 +22,18 @@ struct Route {
     efficiency: f64,
 }
 
-fn shift(cvt: &Cvt, around: &Surroundings, state: &DriveState, at: &BeltAtRatio, route: Route) -> (BeltAtRatio, f64, bool) {
-    let (flow_down_per_s, flow_up_per_s) = flow_limits(cvt, at, state, route.eta_pa_s);
+/// Outcome of the shift.
+struct Shift {
+    ratio: f64,
+    flow_m3_s: f64,
+    /// Whether pump flow held it back.
+    held: bool,
+}
+
+fn shift(cvt: &Cvt, around: &Surroundings, state: &DriveState, at: &BeltAtRatio, route: Route) -> Shift {
+    let (down_m3, up_m3) = sheave_volumes_m3(cvt, at);
+    let free = cvt.pump.displacement_m3_rad * state.engine_rad_s - cvt.pump.steady_need_m3_s(state.secondary_pa, route.eta_pa_s);
+    let free = if free > 0.0 { free } else { 0.0 };
     let before = at.geometry.ratio;
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive * around.wheel.wheel_rad_s,
@@ -38,68 +41,73 @@ fn shift(cvt: &Cvt, around: &Surroundings, state: &DriveState, at: &BeltAtRatio,
         rated_w: around.engine.engine.rated_w,
         full_load_rad_s: cvt.full_load_route.at(around.wheel.power_w / (route.efficiency * around.engine.full_load_factor)),
         ratio_before: before,
-        flow_down_per_s,
-        flow_up_per_s,
+        flow_down_per_s: free / down_m3, // RC-5
+        flow_up_per_s: free / up_m3,     // RC-5
         coupled: state.coupled,
         dt_s: around.dt_s,
     };
     let (ratio, held) = cvt.ratio.step(&demand);
-    let change = (ratio / before).ln();
-    let now = if change.abs() > 0.0 { BeltAtRatio::new(&cvt.belt, ratio) } else { *at };
-    let (down, up) = sheave_volumes_m3(cvt, at);
-    let flow = if change > 0.0 { down * change } else { -up * change } / around.dt_s;
-    (now, flow, held)
+    if ratio.to_bits() == before.to_bits() {
+        return Shift { ratio, flow_m3_s: 0.0, held };
+    }
+    let change = ln(ratio / before);
+    let volume = if change > 0.0 { down_m3 * change } else { -up_m3 * change };
+    Shift { ratio, flow_m3_s: volume / around.dt_s, held }
 }
 
-/// Prepares a step: shifts, and works out what the solve does not change; says whether pump flow held the shift back.
+/// Prepares a step: shifts, and works out what the solve does not change.
 pub(super) fn prepare<'a>(
     cvt: &'a Cvt,
     around: &'a Surroundings<'a>,
     state: &DriveState,
-    at: &BeltAtRatio,
+    before: &BeltAtRatio,
     efficiency: f64,
-) -> (Step<'a>, bool) {
+) -> Step<'a> {
     let (sump_k, belt_k) = (around.heat.node_k[SUMP], around.heat.node_k[BELT]);
     let nu = around.oil.kinematic_m2_s(sump_k);
     let eta_sump = nu * around.oil.density_kg_m3(sump_k);
-    let (now, shift_flow, held) = shift(cvt, around, state, at, Route { eta_pa_s: eta_sump, efficiency });
+    let Shift { ratio, flow_m3_s, held } = shift(cvt, around, state, before, Route { eta_pa_s: eta_sump, efficiency });
+    let shifted = ratio.to_bits() != before.geometry.ratio.to_bits();
+    let at = if shifted { BeltAtRatio::new(&cvt.belt, ratio) } else { *before };
     let secondary_rad_s = cvt.final_drive * around.wheel.wheel_rad_s;
-    let eta_belt = around.oil.dynamic_pa_s(belt_k);
-    // Without sliding there is no lift-off and no shear (LU-4, FI-1).
-    let sliding = if cvt.belt.formulation.has_film() {
-        sliding_speed_m_s(&cvt.belt, now.geometry.ratio, now.geometry.ratio * secondary_rad_s)
-    } else {
-        0.0
-    };
-    let friction = &around.oil.friction;
     let spin = cvt.spin.at(nu);
-    let step = Step {
+    let engine = around.engine.engine;
+    Step {
         cvt,
         around,
-        at: now,
+        shifted,
         secondary_rad_s,
         drive_nm: cvt.spin.drive_nm(&spin, secondary_rad_s),
         spin,
         viscous_factor: cvt.pump.viscous_factor(eta_sump),
         eta_sump,
-        load: BeltLoad {
-            primary_speed_rad_s: 0.0,
-            output_torque_nm: 0.0,
-            secondary_clamp_n: 0.0,
-            band: friction.band(belt_k, eta_belt, sliding),
-            eta_pa_s: eta_belt,
-            film_thickness_m: friction.film_thickness_m,
-            segment_friction: friction.segment,
-            flank_friction: friction.flank,
-        },
-        radius_factor: if now.geometry.ratio.to_bits() == at.geometry.ratio.to_bits() && state.radius_factor > 0.0 {
-            state.radius_factor
-        } else {
-            cvt.radius_factor(&now)
-        },
-        shift_flow_m3_s: shift_flow,
+        load: unloaded(cvt, around, belt_k, ratio * secondary_rad_s, ratio),
+        radius_factor: if shifted || state.radius_factor <= 0.0 { cvt.radius_factor(&at) } else { state.radius_factor },
+        at,
+        shift_flow_m3_s: flow_m3_s,
+        shift_held: held,
         engine_before: state.engine_rad_s,
+        pace_rad_s: engine.inertia_torque_nm / engine.inertia_kg_m2 * around.dt_s,
         coupled: state.coupled,
-    };
-    (step, held)
+        locked_from_rad_s: if state.coupled { cvt.launch.holds_from_rad_s(around.engine.idle_rad_s) } else { f64::INFINITY },
+        maps: cvt.maps.any().then_some(&cvt.maps),
+    }
+}
+
+/// What acts on the belt before speed, torque and clamping force are known: friction and film at its temperature.
+fn unloaded(cvt: &Cvt, around: &Surroundings, belt_k: f64, primary_rad_s: f64, ratio: f64) -> BeltLoad {
+    // Without sliding there is no lift-off and no shear (LU-4, FI-1), and viscosity does not matter.
+    let eta_pa_s = if primary_rad_s > 0.0 { around.oil.dynamic_pa_s(belt_k) } else { 0.0 };
+    let sliding = if cvt.belt.formulation.has_film() { sliding_speed_m_s(&cvt.belt, ratio, primary_rad_s) } else { 0.0 };
+    let friction = &around.oil.friction;
+    BeltLoad {
+        primary_speed_rad_s: 0.0,
+        output_torque_nm: 0.0,
+        secondary_clamp_n: 0.0,
+        band: friction.band(belt_k, eta_pa_s, sliding),
+        eta_pa_s,
+        film_thickness_m: friction.film_thickness_m,
+        segment_friction: friction.segment,
+        flank_friction: friction.flank,
+    }
 }

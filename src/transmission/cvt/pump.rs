@@ -9,7 +9,7 @@
 //!
 //! D displacement per radian m3/rad, p pump outlet pressure Pa, w rad/s. Valid for p >= 0, w >= 0.
 
-use crate::numeric::smooth_ramp;
+use crate::numeric::{exp, held, ln, smooth_ramp};
 
 /// How the displacement follows the need for flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,27 +74,32 @@ impl Pump {
     #[must_use]
     #[inline]
     pub fn steady_need_m3_s(&self, secondary_pa: f64, eta_pa_s: f64) -> f64 {
-        self.lubrication_m3_s + self.leakage_m3_s_pa * secondary_pa * ETA_REFERENCE_PA_S / eta_pa_s // PU-2
+        self.lubrication_m3_s + secondary_pa * (self.leakage_m3_s_pa * ETA_REFERENCE_PA_S / eta_pa_s) // PU-2
     }
 
     /// Factor (eta/eta_r)^m of PU-1.
     #[must_use]
     #[inline]
     pub fn viscous_factor(&self, eta_pa_s: f64) -> f64 {
-        (self.viscous_exponent * (eta_pa_s / ETA_REFERENCE_PA_S).ln()).exp()
+        exp(self.viscous_exponent * ln(eta_pa_s / ETA_REFERENCE_PA_S))
+    }
+
+    /// Share of the displacement that works against pressure (PU-4).
+    fn share(&self, need_m3_s: f64, flow_m3_s: f64) -> f64 {
+        let wanted = if flow_m3_s > 0.0 { need_m3_s / flow_m3_s } else { 1.0 };
+        match self.kind {
+            PumpKind::Fixed => 1.0,
+            PumpKind::DualCavity { share } => share + (1.0 - share) * smooth_ramp(wanted, 0.85 * share, share), // PU-4
+            PumpKind::Variable { least } => held(wanted, least, 1.0),                                           // PU-4
+        }
     }
 
     /// Torque and flow (PU-1, PU-4).
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn state(&self, speed_rad_s: f64, secondary_pa: f64, need_m3_s: f64, viscous_factor: f64) -> PumpState {
         let flow = self.displacement_m3_rad * speed_rad_s;
-        let wanted = if flow > 0.0 { need_m3_s / flow } else { 1.0 };
-        let share = match self.kind {
-            PumpKind::Fixed => 1.0,
-            PumpKind::DualCavity { share } => share + (1.0 - share) * smooth_ramp(wanted, 0.85 * share, share),
-            PumpKind::Variable { least } => wanted.clamp(least, 1.0),
-        };
+        let share = if self.kind == PumpKind::Fixed { 1.0 } else { self.share(need_m3_s, flow) };
         let pressure = share * (secondary_pa + self.line_drop_pa) + (1.0 - share) * self.residual_pa; // PU-4
         let torque = self.displacement_m3_rad * (1.0 + self.friction) * pressure
             + self.viscous * ETA_REFERENCE_PA_S * viscous_factor * speed_rad_s * self.displacement_m3_rad

@@ -10,6 +10,8 @@
 //! nu_80 = 11 mm2/s is the viscosity at which the constants hold. Below 25 degC FD-1 is extrapolated: about 12 Nm at the input in
 //! overdrive at -10 degC, unmeasured.
 
+use crate::numeric::{exp, ln};
+
 /// Kinematic viscosity to which the constants refer, m2/s.
 pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
 
@@ -55,13 +57,14 @@ impl Spin {
     #[must_use]
     #[inline]
     pub fn at(&self, nu_m2_s: f64) -> SpinNow {
-        let log = (nu_m2_s / NU_REFERENCE_M2_S).ln();
-        let clutch = self.clutch_nm * (self.clutch_exponent * log).exp();
+        let log = ln(nu_m2_s / NU_REFERENCE_M2_S);
+        let [shaft, clutch, drive] = [self.shaft_exponent, self.clutch_exponent, self.drive_exponent].map(|m| exp(m * log));
+        let clutch_nm = self.clutch_nm * clutch;
         SpinNow {
             shaft_constant_nm: self.shaft_constant_nm,
-            shaft_slope_nm_s: self.shaft_viscous_nm_s * (self.shaft_exponent * log).exp(),
-            clutch_nm: if clutch < self.clutch_cap_nm { clutch } else { self.clutch_cap_nm }, // CD-1
-            drive_viscous_nm: self.drive_viscous_nm * (self.drive_exponent * log).exp(),
+            shaft_slope_nm_s: self.shaft_viscous_nm_s * shaft,
+            clutch_nm: if clutch_nm < self.clutch_cap_nm { clutch_nm } else { self.clutch_cap_nm }, // CD-1
+            drive_viscous_nm: self.drive_viscous_nm * drive,
         }
     }
 
@@ -69,7 +72,7 @@ impl Spin {
     #[must_use]
     #[inline]
     pub fn drive_nm(&self, now: &SpinNow, secondary_rad_s: f64) -> f64 {
-        self.drive_boundary_nm * (-secondary_rad_s / self.drive_scale_rad_s).exp() + now.drive_viscous_nm // FD-1
+        self.drive_boundary_nm * exp(-secondary_rad_s / self.drive_scale_rad_s) + now.drive_viscous_nm // FD-1
     }
 
     /// Torque at the secondary shaft for a torque after the final drive, both at the secondary's speed, Nm (FD-2).
@@ -77,7 +80,7 @@ impl Spin {
     #[inline]
     pub fn secondary_torque_nm(&self, drive_nm: f64, output_nm: f64) -> f64 {
         let through = output_nm + drive_nm;
-        if through >= 0.0 { through / self.mesh_efficiency } else { through * self.mesh_efficiency } // FD-2
+        through * if through >= 0.0 { 1.0 / self.mesh_efficiency } else { self.mesh_efficiency } // FD-2
     }
 }
 

@@ -18,11 +18,13 @@ mod load;
 pub use gears::ShiftSpeeds;
 pub use load::load;
 
+use super::cvt::{Slopes, Trend};
 use super::launch::Launch;
 use super::loss_map::{LossMap, MapPoint};
 use super::{Drive, DriveState, Surroundings};
 use crate::cycle::GearCommand;
 use crate::lubricant::VALID_K;
+use crate::numeric::{exp, held, ln};
 use crate::results::{Component, Flags};
 use crate::thermal::SUMP;
 use std::sync::Arc;
@@ -81,13 +83,16 @@ const REFERENCE_RAD_S: f64 = 2000.0 * std::f64::consts::PI / 30.0;
 
 impl Manual {
     fn spin(&self, speed_rad_s: f64, nu_m2_s: f64) -> Spin {
-        let log = (nu_m2_s / self.reference_m2_s).ln();
         let n = speed_rad_s / REFERENCE_RAD_S;
-        let slow = if n > 0.0 { 1.0 } else { 0.0 };
+        if n <= 0.0 {
+            return Spin::mapped(0.0);
+        }
+        let log = ln(nu_m2_s / self.reference_m2_s);
+        let [seal, bearing, churning] = [self.seal_exponent * log, 2.0 / 3.0 * (ln(n) + log), self.churning_exponent * log].map(exp);
         Spin {
-            seal: slow * self.seal_nm * (self.seal_exponent * log).exp(), // MB-2
-            bearing: if n > 0.0 { self.bearing_nm * ((2.0 / 3.0) * (n.ln() + log)).exp() } else { 0.0 }, // MB-3
-            churning: self.churning_nm * n * (self.churning_exponent * log).exp(), // MB-4
+            seal: self.seal_nm * seal,                 // MB-2
+            bearing: self.bearing_nm * bearing,        // MB-3
+            churning: self.churning_nm * n * churning, // MB-4
             map: 0.0,
         }
     }
@@ -103,10 +108,9 @@ impl Manual {
             gear,
             engine_rad_s: if input > idle { input } else { idle },
             throttle: 0.0,
-            loss_nm: 0.0,
-            slip: 0.0,
-            gain: 0.0,
-            overrun: None,
+            trend: Trend::default(),
+            slopes: Slopes::unknown(),
+            overrun: false,
             radius_factor: 0.0,
             secondary_pa: 0.0,
             coupled: input > idle,
@@ -158,9 +162,8 @@ impl Manual {
         };
         drive.flags.set(Flags::OUTSIDE_VALIDITY, !VALID_K.contains(&around.heat.node_k[SUMP]));
         drive.flags.set(Flags::OVERSPEED, drive.engine_rad_s > around.engine.engine.highest_rad_s);
-        drive.throttle = ((drive.shaft_nm + around.engine.accessories_nm(drive.engine_rad_s))
-            / around.engine.full_load_nm(drive.engine_rad_s))
-        .clamp(0.0, 1.0);
+        let crank_nm = drive.shaft_nm + around.engine.accessories_nm(drive.engine_rad_s);
+        drive.throttle = held(crank_nm / around.engine.full_load_nm(drive.engine_rad_s), 0.0, 1.0);
         state.gear = if drive.gear > 0 { drive.gear } else { state.gear };
         state.engine_rad_s = drive.engine_rad_s;
         let turning = drive.gear > 0 && !drive.flags.contains(Flags::CLUTCH_OPEN);
@@ -173,7 +176,7 @@ impl Manual {
     fn free_engine_rad_s(around: &Surroundings, state: &DriveState) -> f64 {
         let e = around.engine;
         let pace = e.engine.inertia_torque_nm / e.engine.inertia_kg_m2 * around.dt_s;
-        e.idle_rad_s.clamp(state.engine_rad_s - pace, state.engine_rad_s + pace)
+        held(e.idle_rad_s, state.engine_rad_s - pace, state.engine_rad_s + pace)
     }
 
     /// Losses of the unloaded box: the model's, or the map's at no torque.
@@ -287,7 +290,7 @@ impl Manual {
         let speed = |torque: f64| {
             let wanted = self.launch.engine_speed_rad_s(torque, input, idle, state.coupled);
             let pace = engine.engine.inertia_torque_nm / engine.engine.inertia_kg_m2 * around.dt_s;
-            let limited = wanted.clamp(state.engine_rad_s - pace, state.engine_rad_s + pace);
+            let limited = held(wanted, state.engine_rad_s - pace, state.engine_rad_s + pace);
             if limited > input && wanted > input { limited } else { input }
         };
         let mut w = speed(input_nm);

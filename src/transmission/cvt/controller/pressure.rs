@@ -69,7 +69,7 @@ pub struct ClampSignals {
 impl MapLaw {
     /// Pressure before the cap, Pa (PC-1, PC-2).
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn pressure_pa(&self, s: &ClampSignals) -> f64 {
         let rise = self.slow_factor + (1.0 - self.slow_factor) * ramp(s.engine_rad_s, self.slow_rad_s, self.full_rad_s);
         let over = s.engine_rad_s - self.full_rad_s;

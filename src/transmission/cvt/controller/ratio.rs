@@ -13,6 +13,8 @@
 //!
 //! The power asked for is wheel power, so the ratio never chases its own losses.
 
+use crate::numeric::{exp, held, ln};
+
 /// The checked controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RatioControl {
@@ -68,7 +70,7 @@ impl RatioControl {
     #[must_use]
     pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
         let share = d.power_w / d.rated_w;
-        let drive = (share / 0.01).clamp(0.0, 1.0);
+        let drive = held(share / 0.01, 0.0, 1.0);
         let mut speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
         if share > self.gentle_share {
             speed += self.rise_rad_s * (share - self.gentle_share); // RC-1
@@ -82,19 +84,19 @@ impl RatioControl {
     /// Ratio after the step (RC-4, RC-5), and whether pump flow held it back.
     #[must_use]
     pub fn step(&self, d: &RatioDemand) -> (f64, bool) {
-        let wanted =
-            if d.secondary_rad_s > 0.0 { (self.target_rad_s(d) / d.secondary_rad_s).clamp(self.high, self.low) } else { d.ratio_before };
-        let wanted = if !d.coupled && wanted < d.ratio_before { d.ratio_before } else { wanted }; // RC-6
-        let primary = d.ratio_before * d.secondary_rad_s;
-        let pace = (primary / self.rate_speed_rad_s).clamp(0.0, 1.0);
+        let before = d.ratio_before;
+        let wanted = if d.secondary_rad_s > 0.0 { held(self.target_rad_s(d) / d.secondary_rad_s, self.high, self.low) } else { before };
+        let wanted = if !d.coupled && wanted < before { before } else { wanted }; // RC-6
+        let change = ln(wanted / before);
+        let pace = held(before * d.secondary_rad_s / self.rate_speed_rad_s, 0.0, 1.0);
         let (mut up, mut down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
-        let change = (wanted / d.ratio_before).ln();
-        let held = (change > 0.0 && d.flow_down_per_s < down && change > d.flow_down_per_s * d.dt_s)
+        let short_of_flow = (change > 0.0 && d.flow_down_per_s < down && change > d.flow_down_per_s * d.dt_s)
             || (change < 0.0 && d.flow_up_per_s < up && -change > d.flow_up_per_s * d.dt_s);
         up = if d.flow_up_per_s < up { d.flow_up_per_s } else { up };
         down = if d.flow_down_per_s < down { d.flow_down_per_s } else { down }; // RC-5
-        let ratio = d.ratio_before * change.clamp(-up * d.dt_s, down * d.dt_s).exp();
-        (ratio.clamp(self.high, self.low), held)
+        let (least, most) = (-up * d.dt_s, down * d.dt_s);
+        let ratio = if least <= change && change <= most { wanted } else { before * exp(held(change, least, most)) };
+        (held(ratio, self.high, self.low), short_of_flow)
     }
 }
 

@@ -74,7 +74,7 @@ pub fn band_loss(at: &BeltAtRatio, t: &Tension, mu_band: f64) -> BandLoss {
 #[must_use]
 #[inline]
 pub fn film_loss_nm(at: &BeltAtRatio, film: &Film, primary_speed_rad_s: f64) -> f64 {
-    film.share * film.eta_pa_s * at.prepared.film_m4 * primary_speed_rad_s.abs() / film.thickness_m // FI-1
+    film.share * film.eta_pa_s * at.prepared.film_m4 / film.thickness_m * primary_speed_rad_s.abs() // FI-1
 }
 
 /// State of the oil film between the bands.

@@ -34,7 +34,7 @@ fn wedge_area_m2(radius_m: f64, q: f64) -> f64 {
 
 /// Wedge and penetration losses (WE-1 to PE-1).
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn deflection(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_flank: f64) -> Deflection {
     let (f, g, prepared) = (belt.formulation, &at.geometry, &at.prepared);
     let delta_p = prepared.stop * g.primary_radius_m * t.primary_clamp_n * belt.primary_compliance_per_n; // WE-4
@@ -49,7 +49,7 @@ pub fn deflection(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_flank: f64) -> 
     let pen = 2.0 * per_pitch * g.primary_radius_m * depth;
     Deflection {
         wedge_primary_nm: common * n_p * wedge_area_m2(g.primary_radius_m, delta_p * half_cot), // WE-3
-        wedge_secondary_nm: common * wedge_s_force * wedge_area_m2(g.secondary_radius_m, delta_s * half_cot) / g.ratio, // WE-3
+        wedge_secondary_nm: common * wedge_s_force * wedge_area_m2(g.secondary_radius_m, delta_s * half_cot) * prepared.per_ratio, // WE-3
         penetration_primary_nm: pen * n_p * delta_p,                                            // PE-1
         penetration_secondary_nm: pen * n_s * delta_s,                                          // PE-1
     }

@@ -26,7 +26,7 @@ pub use slip::Slip;
 pub use tension::{Tension, TensionInput};
 
 use crate::lubricant::BandFriction;
-use crate::numeric::{Curve, ramp};
+use crate::numeric::{Curve, ln, ramp};
 
 /// The checked belt and pulleys.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,6 +122,10 @@ pub struct Prepared {
     pub stop: f64,
     /// Half the cotangent of the angle in the wedge terms (WE-2).
     pub wedge_half_cot: f64,
+    /// One over the belt ratio.
+    pub per_ratio: f64,
+    /// One over the segments in the wraps.
+    pub per_count: [f64; 2],
 }
 
 impl Prepared {
@@ -140,20 +144,26 @@ impl Prepared {
             film_m4: bands::film_m4(belt, g),
             stop: belt.formulation.primary_stop(1.0 - ramp(g.ratio, belt.stop_from_ratio, belt.stop_to_ratio)), // WE-4
             wedge_half_cot: 0.5 / belt.formulation.wedge_tan(belt.tan_wedge),
+            per_ratio: 1.0 / g.ratio,
+            per_count: arc_m.map(|a| pitch / a),
         }
     }
 }
+
+/// From here on tanh is 1 to the last bit.
+const FULL_STEP: f64 = 20.0;
 
 impl BeltAtRatio {
     /// Prepares a ratio.
     #[must_use]
     pub fn new(belt: &Belt, ratio: f64) -> Self {
         let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
-        let log = ratio.ln();
+        let log = ln(ratio);
+        let steep = log / belt.unity_width;
         BeltAtRatio {
             geometry,
             prepared: Prepared::new(belt, &geometry),
-            direction: -(log / belt.unity_width).tanh(), // TE-6
+            direction: if steep.abs() < FULL_STEP { -steep.tanh() } else { -steep.signum() }, // TE-6
             thrust_ratio: match &belt.thrust_ratio {
                 Some(curve) => curve.at(log),
                 None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
@@ -210,6 +220,36 @@ pub struct BeltState {
     pub gross_slip: bool,
 }
 
+/// What the driveline needs of the belt: losses as torques at the primary shaft, Nm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BeltLosses {
+    /// Boundary friction of the bands.
+    pub band_nm: f64,
+    /// Shear of the film.
+    pub film_nm: f64,
+    /// Sliding of segments on pulleys.
+    pub slip_nm: f64,
+    /// Wedging.
+    pub wedge_nm: f64,
+    /// Penetration.
+    pub penetration_nm: f64,
+    /// Total slip as a fraction.
+    pub slip_total: f64,
+    /// Torque capacity at the secondary, Nm (VA-2).
+    pub capacity_nm: f64,
+    /// Torque above capacity, or slip at its bound.
+    pub gross_slip: bool,
+}
+
+impl BeltLosses {
+    /// All belt losses, Nm at the primary shaft.
+    #[must_use]
+    #[inline]
+    pub fn sum_nm(&self) -> f64 {
+        self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
+    }
+}
+
 impl BeltState {
     /// All belt losses, Nm at the primary shaft.
     #[must_use]
@@ -220,7 +260,7 @@ impl BeltState {
 }
 
 /// Tension at one operating point for a direction of its step (TE-2 to TE-5).
-#[inline]
+#[inline(always)]
 fn tension(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, direction: f64) -> Tension {
     let v = load.primary_speed_rad_s * at.geometry.primary_radius_m;
     Tension::new(
@@ -241,7 +281,7 @@ fn tension(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, direction: f64) -> Te
 #[inline]
 fn capacity_nm(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> f64 {
     let weaker = if t.primary_clamp_n < t.secondary_clamp_n { t.primary_clamp_n } else { t.secondary_clamp_n };
-    2.0 * mu_segment * at.geometry.secondary_radius_m * weaker / belt.cos_wedge // VA-2
+    weaker * (2.0 * mu_segment * at.geometry.secondary_radius_m / belt.cos_wedge) // VA-2
 }
 
 /// Everything that the equations give at one operating point, pulley by pulley.
@@ -254,7 +294,7 @@ struct Parts {
     capacity_nm: f64,
 }
 
-#[inline]
+#[inline(always)]
 fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
     let tension = tension(belt, at, load, at.direction);
     let mu_segment = belt.formulation.segment_friction(load.segment_friction);
@@ -269,19 +309,28 @@ fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
     }
 }
 
-#[inline]
+#[inline(always)]
+fn losses(load: &BeltLoad, parts: &Parts) -> BeltLosses {
+    let Parts { slip, bands, film_nm, deflection, capacity_nm, .. } = parts;
+    BeltLosses {
+        band_nm: bands.primary_nm + bands.secondary_nm,
+        film_nm: *film_nm,
+        slip_nm: slip.primary_loss_nm + slip.secondary_loss_nm,
+        wedge_nm: deflection.wedge_primary_nm + deflection.wedge_secondary_nm,
+        penetration_nm: deflection.penetration_primary_nm + deflection.penetration_secondary_nm,
+        slip_total: slip.primary + slip.secondary,
+        capacity_nm: *capacity_nm,
+        gross_slip: slip.held || load.output_torque_nm.abs() > *capacity_nm,
+    }
+}
+
 fn state(at: &BeltAtRatio, load: &BeltLoad, parts: &Parts) -> BeltState {
-    let Parts { tension, slip, bands, film_nm, deflection, capacity_nm } = *parts;
-    let band_nm = bands.primary_nm + bands.secondary_nm;
-    let slip_nm = slip.primary_loss_nm + slip.secondary_loss_nm;
-    let wedge_nm = deflection.wedge_primary_nm + deflection.wedge_secondary_nm;
-    let penetration_nm = deflection.penetration_primary_nm + deflection.penetration_secondary_nm;
-    let slip_total = slip.primary + slip.secondary;
-    let losses = band_nm + film_nm + slip_nm + wedge_nm + penetration_nm;
+    let sums = losses(load, parts);
+    let BeltLosses { band_nm, film_nm, slip_nm, wedge_nm, penetration_nm, slip_total, capacity_nm, gross_slip } = sums;
     BeltState {
-        input_torque_nm: load.output_torque_nm / at.geometry.ratio * (1.0 - slip_total) + losses, // VA-1
-        tension,
-        slip,
+        input_torque_nm: load.output_torque_nm / at.geometry.ratio * (1.0 - slip_total) + sums.sum_nm(), // VA-1
+        tension: parts.tension,
+        slip: parts.slip,
         slip_total,
         band_nm,
         film_nm,
@@ -289,13 +338,25 @@ fn state(at: &BeltAtRatio, load: &BeltLoad, parts: &Parts) -> BeltState {
         wedge_nm,
         penetration_nm,
         capacity_nm,
-        gross_slip: slip.held || load.output_torque_nm.abs() > capacity_nm,
+        gross_slip,
     }
+}
+
+/// Slip, losses and capacity at one operating point: the sums of [`belt_state`] without its detail.
+#[must_use]
+#[inline(always)]
+pub fn belt_losses(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltLosses {
+    losses(load, &parts(belt, at, load))
+}
+
+/// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2).
+#[must_use]
+pub fn belt_capacity_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
+    belt_losses(belt, at, load).capacity_nm
 }
 
 /// Solves the belt at one operating point.
 #[must_use]
-#[inline]
 pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
     state(at, load, &parts(belt, at, load))
 }

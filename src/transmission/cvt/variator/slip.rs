@@ -17,6 +17,7 @@
 //! defined at standstill.
 
 use super::{Belt, BeltAtRatio, Tension};
+use crate::numeric::exp;
 
 /// Slip and its loss.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -99,12 +100,11 @@ impl<'a> Contact<'a> {
     }
 }
 
-/// One loading branch: `load` is the pulley where segments are loaded (0 primary, 1 secondary).
-#[inline]
-fn branch(c: &Contact, load: usize) -> Slip {
+/// One loading branch: `LOAD` is the pulley where segments are loaded (0 primary, 1 secondary).
+#[inline(always)]
+fn branch<const LOAD: usize>(c: &Contact) -> Slip {
     let (belt, prepared, f) = (c.belt, &c.at.prepared, c.belt.formulation);
-    let inverted = load == 1;
-    let other = 1 - load;
+    let (load, other, inverted) = (LOAD, 1 - LOAD, LOAD == 1);
     let sign = if inverted { -1.0 } else { 1.0 };
     let cx = sign * c.compression_n;
     let cx = if cx > 0.0 { cx } else { 0.0 };
@@ -129,10 +129,10 @@ fn branch(c: &Contact, load: usize) -> Slip {
     let loaded = if held { belt.slip_bound } else { free };
     let r = c.at.geometry.primary_radius_m;
     let total_other = cx + sign * c.shoulder_n[other] * prepared.count[other];
-    let lambda_other = total_other / (c.grip_n[other] * prepared.count[other]);
+    let lambda_other = total_other * prepared.per_count[other] / c.grip_n[other];
     let slip_other = clamp_abs(loaded * lambda_other, belt.slip_bound);
     let idle_loss = if f.counts_idle_arc() { idle_slip.abs() * shoulder.abs() * idle / pitch } else { 0.0 };
-    let loss_load = r * (loaded.abs() * c.grip_n[load] * active / pitch + idle_loss); // SL-7
+    let loss_load = r * (loaded.abs() * c.grip_n[load] * active * (1.0 / pitch) + idle_loss); // SL-7
     let loss_other = r * slip_other.abs() * total_other.abs(); // SL-7
     if inverted {
         let primary = if f.flips_inverted_primary() { slip_other } else { -slip_other }; // SL-6
@@ -173,19 +173,20 @@ fn clamp_abs(x: f64, bound: f64) -> f64 {
 
 /// Slip of both pulleys and its loss (SL-1 to SL-9).
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip {
     let contact = Contact::new(belt, at, t, mu_segment);
-    let x = contact.compression_n / belt.blend_n;
-    if x > ALONE {
-        return branch(&contact, 0);
-    }
-    if x < -ALONE {
-        return branch(&contact, 1);
-    }
-    let a = branch(&contact, 0);
-    let b = branch(&contact, 1);
-    let w = 1.0 / (1.0 + (-2.0 * x).exp()); // SL-8: (1 + tanh x)/2
+    let x = contact.compression_n * (1.0 / belt.blend_n);
+    let a = if x >= -ALONE { branch::<0>(&contact) } else { Slip::default() };
+    let b = if x <= ALONE { branch::<1>(&contact) } else { Slip::default() };
+    // SL-8: (1 + tanh x)/2
+    let w = if x > ALONE {
+        1.0
+    } else if x < -ALONE {
+        0.0
+    } else {
+        1.0 / (1.0 + exp(-2.0 * x))
+    };
     let mix = |p: f64, q: f64| w * p + (1.0 - w) * q;
     Slip {
         primary: mix(a.primary, b.primary),

@@ -53,13 +53,14 @@ pub struct TensionInput {
 impl Tension {
     /// Solves tension and compression (TE-2 to TE-5).
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn new(g: &Geometry, input: &TensionInput) -> Self {
         let (mu, s, bp) = (input.mu_band, input.direction, g.primary_wrap_rad);
         let a = 2.0 * input.primary_clamp_n * input.tan_wedge + bp * input.centrifugal_n;
-        let z = input.output_torque_nm / g.secondary_radius_m + s * mu * a;
+        let z = input.output_torque_nm * (1.0 / g.secondary_radius_m) + s * mu * a;
         let c = mu * bp / 2.0;
-        let cx = if z >= 0.0 { z / (1.0 - s * c) } else { z / (1.0 + s * c) }; // TE-5
+        // The divisors are known before the torque is: nothing waits for a division.
+        let cx = z * if z >= 0.0 { 1.0 / (1.0 - s * c) } else { 1.0 / (1.0 + s * c) }; // TE-5
         let q_p = a + cx.abs() * bp / 2.0; // TE-2
         Tension {
             primary_clamp_n: input.primary_clamp_n,
