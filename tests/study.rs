@@ -1,5 +1,10 @@
 //! Studies by the real program: the same bytes whatever happens on the way, nothing lost, honest exit codes.
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "helpers of tests; a test that is skipped says so")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    clippy::too_many_lines,
+    reason = "helpers and tables of tests; a test that is skipped says so"
+)]
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

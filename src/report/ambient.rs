@@ -84,7 +84,6 @@ pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<String> {
         same_y: true,
         legend: "baseline, start".into(),
         names: names(matrix, &over, 1),
-        ..Chart::default()
     }))
 }
 
@@ -125,7 +124,6 @@ pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> S
         same_y: true,
         legend: "ambient".into(),
         names: matrix.ambient_degc.iter().enumerate().map(|(k, degc)| (Look { index: k, dotted: false }, format!("{degc} degC"))).collect(),
-        ..Chart::default()
     })
 }
 

@@ -128,7 +128,7 @@ impl Study {
     }
 
     /// Drives the points of a part; nothing if the watcher has stopped it.
-    fn part<'s>(&'s self, part: u64, workers: &Mutex<Vec<Worker>>, watcher: &dyn Watcher) -> Option<(Rows, Option<Rows>)> {
+    fn part(&self, part: u64, workers: &Mutex<Vec<Worker>>, watcher: &dyn Watcher) -> Option<(Rows, Option<Rows>)> {
         let points = self.part_points(part);
         let chunks: Vec<Range<u64>> = points.clone().step_by(CHUNK as usize).map(|from| from..(from + CHUNK).min(points.end)).collect();
         let failed = AtomicU64::new(0);
@@ -167,11 +167,11 @@ impl Study {
 }
 
 /// A worker that is free, or a new one. A poisoned lock holds workers as good as any: each point sets all that it needs.
-fn take<'s>(workers: &Mutex<Vec<Worker>>) -> Worker {
+fn take(workers: &Mutex<Vec<Worker>>) -> Worker {
     let mut free = workers.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     free.pop().unwrap_or_default()
 }
 
-fn give_back<'s>(workers: &Mutex<Vec<Worker>>, worker: Worker) {
+fn give_back(workers: &Mutex<Vec<Worker>>, worker: Worker) {
     workers.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(worker);
 }

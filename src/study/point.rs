@@ -67,7 +67,7 @@ struct DrivenCar {
 
 impl Study {
     /// Drives a point.
-    pub(super) fn point<'s>(&'s self, point: u64, worker: &mut Worker) -> Vec<PointRun> {
+    pub(super) fn point(&self, point: u64, worker: &mut Worker) -> Vec<PointRun> {
         let mut levels = std::mem::take(&mut worker.levels);
         self.plan.design.levels(&self.plan.factors, point, &mut levels);
         let values: Vec<Option<FactorValue>> = self.plan.factors.iter().zip(&levels).map(|(factor, level)| factor.value(*level)).collect();
@@ -84,10 +84,10 @@ impl Study {
         runs
     }
 
-    fn car<'s>(
-        &'s self,
+    fn car(
+        &self,
         k: usize,
-        car: &'s StudyCar,
+        car: &StudyCar,
         values: &[Option<FactorValue>],
         worker: &mut Worker,
         subject: Option<&RunSummary>,
@@ -117,10 +117,10 @@ impl Study {
     }
 
     /// The car with the point's values; in `factors` what each factor has become in it.
-    fn build<'s>(
-        &'s self,
+    fn build(
+        &self,
         k: usize,
-        car: &'s StudyCar,
+        car: &StudyCar,
         values: &[Option<FactorValue>],
         worker: &mut Worker,
         factors: &mut Vec<Option<FactorValue>>,
@@ -132,7 +132,7 @@ impl Study {
             let slot = variant.as_ref().ok().and_then(|variant| variant.slots[f].as_ref());
             factors.push(self.resolve(f, car, value.as_ref(), slot.map(Slot::base)));
         }
-        let variant = variant.map_err(|problems| reason(problems))?;
+        let variant = variant.map_err(reason)?;
         if let Some((_, problem)) = variant.unknown.first() {
             return Err(reason(std::slice::from_ref(problem)));
         }
