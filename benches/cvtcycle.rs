@@ -3,7 +3,9 @@
 //! Steps and cycles are those of shipped cars after a soak at -10 degC; `history` and `runs_per_second<true>` keep every row.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark has no interface")]
 
-use cvtcycle::config::render;
+use std::collections::BTreeSet;
+
+use cvtcycle::config::{Problem, render};
 use cvtcycle::cycle::{Cycle, embedded, read_csv};
 use cvtcycle::lubricant::BandFriction;
 use cvtcycle::results::{Row, Terms};
@@ -11,6 +13,9 @@ use cvtcycle::run::{Conditions, Start, drive};
 use cvtcycle::setup::blueprint::Blueprint;
 use cvtcycle::setup::{Options, Setup, load};
 use cvtcycle::simulate::{Car, Recorder, State, simulate};
+use cvtcycle::study::plan::Plan;
+use cvtcycle::study::table::Rows;
+use cvtcycle::study::{Sink, Study, Unwatched};
 use cvtcycle::thermal::{Heat, HeatInput};
 use cvtcycle::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, Formulation, belt_point, belt_state};
 use cvtcycle::transmission::{DriveState, Surroundings, Transmission};
@@ -205,4 +210,36 @@ fn blueprint_build(bencher: Bencher, name: &str) {
         }
         bench.build().unwrap()
     });
+}
+
+/// Takes the parts of a study and drops them.
+struct Nowhere;
+
+impl Sink for Nowhere {
+    fn write(&self, _: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem> {
+        black_box((runs.len(), trace.map(Rows::len)));
+        Ok(())
+    }
+}
+
+/// A study of 512 points of the CVT alone over ECE15+EUDC, each with four changed numbers: runs a second, on one and two threads, without
+/// and with all columns of the traces.
+#[divan::bench(args = [(1, false), (2, false), (1, true), (2, true)], sample_count = 10)]
+fn study_runs(bencher: Bencher, (threads, traces): (usize, bool)) {
+    let keep = if traces { "everything" } else { "summary" };
+    let factor = |key: &str, low: f64, high: f64| {
+        format!("[[factor]]\nkey = \"{key}\"\nstatus = \"assumed\"\ndistribution.uniform = {{ low = {low}, high = {high} }}\n")
+    };
+    let text = format!(
+        "[study]\ntitle = \"bench\"\nbaselines = []\nambient_degc = -10\nkeep = \"{keep}\"\n[study.design.monte_carlo]\nsamples = 512\n"
+    ) + &factor("transmission.cvt.pump.displacement_cc_rev", 7.0, 11.0)
+        + &factor("transmission.cvt.belt.band_offset_mm", 2.0, 4.0)
+        + &factor("lubricant.kv40_mm2_s", 30.0, 40.0)
+        + &factor("road_load.mass_kg", 1000.0, 1250.0);
+    let plan = Plan::read("bench", &text).unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
+    let study = Study::prepare(plan).unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    bencher
+        .counter(ItemsCount::new(512_usize))
+        .bench_local(|| pool.install(|| study.execute(&BTreeSet::new(), &Nowhere, &Unwatched).map_err(|p| p.message)));
 }

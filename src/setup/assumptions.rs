@@ -29,6 +29,7 @@ pub fn book() -> String {
         let _ = writeln!(text, "- **{status}**: {words}");
     }
     text.push_str("- **default**: no file gives it; the program's own value\n\n");
+    text.push_str("How far the assumed and fitted values may be off, and what that does to the comparison: `docs/uncertainty.md`.\n\n");
     counts(&mut text, &files);
     for file in &files {
         of_file(&mut text, file);

@@ -69,6 +69,9 @@ pub fn rank_plot(plot: &RankPlot) -> String {
     draw(rows, &plot.shown, &Words { title, axis: "Coefficient [-]", kinds, key: 0, notes })
 }
 
+/// Most factors that are drawn; the strongest.
+const MOST_ROWS: usize = 30;
+
 /// What a picture says.
 struct Words<'a> {
     title: String,
@@ -82,15 +85,22 @@ struct Words<'a> {
 fn draw(mut rows: Vec<Row>, shown: &Shown, words: &Words) -> String {
     let size = |row: &Row| row.values[words.key].value.abs();
     rows.sort_by(|a, b| size(a).is_nan().cmp(&size(b).is_nan()).then(size(b).total_cmp(&size(a))));
+    let desc = describe(&rows, words);
+    let mut notes = words.notes.clone();
+    if rows.len() > MOST_ROWS + 1 {
+        let rest = rows.split_off(MOST_ROWS);
+        let largest = rest.first().map_or(0.0, &size);
+        notes.push(format!("{} more factors, each at most {}.", rest.len(), value(largest, 0.9)));
+    }
     let ends = rows.iter().flat_map(|row| &row.values).flat_map(|e| e.interval95.into_iter().flatten().chain([e.value, 0.0]));
     let frame = Frame {
         title: words.title.clone(),
         subject: shown.subject,
-        desc: describe(&rows, words),
+        desc,
         x: Axis::round(words.axis, ends, 8),
         names: rows.iter().map(|row| row.name).collect(),
         entries: words.kinds,
-        notes: words.notes.clone(),
+        notes,
     };
     let mut paints = Vec::new();
     let mut picture = Rows::new(frame, |figure| {
