@@ -128,24 +128,13 @@ fn inertia(car: &Car, around: &Surroundings, drive: &Drive, kinetic_j: f64, coup
     let accessories_nm = engine.accessories_nm(w);
     let steady = drive.shaft_nm + accessories_nm;
     let wanted = (0.5 * car.engine.inertia_kg_m2 * w * w - kinetic_j) / around.dt_s / w;
-    let least = -(steady + engine.drag_nm(w));
-    let most = engine.full_load_nm(w) - steady;
     let bound = car.engine.inertia_torque_nm;
-    let least = if least < -bound {
-        -bound
-    } else if least < 0.0 {
-        least
+    // Faster takes what is left below full load, slower what drag is left; never less than nothing, never more than the bound.
+    let torque = if wanted > 0.0 {
+        held(engine.full_load_nm(w) - steady, 0.0, if wanted < bound { wanted } else { bound }) // SI-2
     } else {
-        0.0
+        held(-(steady + engine.drag_nm(w)), if wanted > -bound { wanted } else { -bound }, 0.0) // SI-2
     };
-    let most = if most > bound {
-        bound
-    } else if most > 0.0 {
-        most
-    } else {
-        0.0
-    };
-    let torque = held(wanted, least, most); // SI-2
     let over = if coupled && drive.brake_w > 0.0 && wanted < torque { torque - wanted } else { 0.0 };
     Inertia { crank_nm: steady + torque, accessories_nm, kinetic_w: (torque - over) * w, to_brake_w: over * w } // SI-1, SI-4
 }

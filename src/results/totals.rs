@@ -90,7 +90,7 @@ impl Totals {
         sum
     }
 
-    #[inline]
+    #[inline(always)]
     fn extremes(&mut self, row: &Row) {
         let error = if row.power_ledger_error > row.heat_ledger_error { row.power_ledger_error } else { row.heat_ledger_error };
         // A ledger error that is not a number must not hide.
@@ -126,7 +126,8 @@ impl PhaseTotals {
 }
 
 impl Recorder for Totals {
-    #[inline]
+    // Within the loop, so that the parts of a row that no total looks at are never put together.
+    #[inline(always)]
     fn record(&mut self, row: &Row, terms: &Terms) {
         let index = usize::from(row.phase).min(self.phases.len() - 1);
         let p = &mut self.phases[index];

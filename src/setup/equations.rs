@@ -21,7 +21,7 @@ macro_rules! source {
     };
 }
 
-/// Model files in the order in which power and heat flow.
+/// Model files in the order in which power and heat flow, then the rigs and the studies.
 const SOURCES: &[(&str, &str)] = &[
     source!("vehicle/mod.rs"),
     source!("transmission/launch.rs"),
@@ -48,6 +48,15 @@ const SOURCES: &[(&str, &str)] = &[
     source!("rig/transmission/transient.rs"),
     source!("rig/transmission/strip_down.rs"),
     source!("rig/variator/mod.rs"),
+    source!("study/design/mod.rs"),
+    source!("study/design/draw.rs"),
+    source!("study/plan/distribution.rs"),
+    source!("study/statistics/describe.rs"),
+    source!("study/statistics/intervals.rs"),
+    source!("study/statistics/sobol.rs"),
+    source!("study/statistics/rank.rs"),
+    source!("study/statistics/groups.rs"),
+    source!("study/statistics/tornado.rs"),
 ];
 
 /// All equations.

@@ -56,6 +56,7 @@ fn shift(cvt: &Cvt, around: &Surroundings, state: &DriveState, at: &BeltAtRatio,
 }
 
 /// Prepares a step: shifts, and works out what the solve does not change.
+#[inline(never)]
 pub(super) fn prepare<'a>(
     cvt: &'a Cvt,
     around: &'a Surroundings<'a>,

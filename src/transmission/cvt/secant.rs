@@ -152,3 +152,25 @@ impl TorqueSecant {
         (next, (next - x).abs() <= 1e-9 * carried)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A quadratic series is met exactly once three steps were alike; after another acceleration only the last value counts.
+    #[test]
+    fn trend_follows_steps_alike_and_no_others() {
+        let slip = |k: f64| 0.01 + 1e-4 * k - 2e-6 * k * k;
+        let mut trend = Trend::default();
+        for k in 0..4 {
+            trend.push(0.5, slip(f64::from(k)), 2.0 * slip(f64::from(k)));
+        }
+        let (next_slip, next_nm) = trend.onward(0.5);
+        assert!((next_slip / slip(4.0) - 1.0).abs() < 1e-12 && (next_nm / slip(4.0) - 2.0).abs() < 1e-12);
+        assert!((trend.onward(0.6).0 / slip(3.0) - 1.0).abs() < 1e-15);
+        trend.push(0.6, 0.02, 1.0);
+        assert!((trend.onward(0.6).0 - 0.02).abs() < 1e-15, "one step alone has no trend");
+        trend.stand();
+        assert!(trend.slip().abs() < 1e-15 && (trend.loss_nm() - 1.0).abs() < 1e-15);
+    }
+}

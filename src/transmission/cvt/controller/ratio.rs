@@ -85,8 +85,14 @@ impl RatioControl {
     #[must_use]
     pub fn step(&self, d: &RatioDemand) -> (f64, bool) {
         let before = d.ratio_before;
-        let wanted = if d.secondary_rad_s > 0.0 { held(self.target_rad_s(d) / d.secondary_rad_s, self.high, self.low) } else { before };
+        if d.secondary_rad_s <= 0.0 {
+            return (before, false); // RC-4
+        }
+        let wanted = held(self.target_rad_s(d) / d.secondary_rad_s, self.high, self.low);
         let wanted = if !d.coupled && wanted < before { before } else { wanted }; // RC-6
+        if wanted.to_bits() == before.to_bits() {
+            return (before, false);
+        }
         let change = ln(wanted / before);
         let pace = held(before * d.secondary_rad_s / self.rate_speed_rad_s, 0.0, 1.0);
         let (mut up, mut down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
