@@ -50,7 +50,7 @@ pub(super) struct Log {
 /// One reading session. It collects all problems and what is known about every key that is read.
 ///
 /// A silent session checks the same and writes no text: it knows how many problems there are and no words for them, and nothing about
-/// keys. Whoever reads a section need not know which kind it is: all texts are made inside [`Reader::note`] and [`Reader::fault`].
+/// keys. Whoever reads a section need not know which kind it is: all texts are made inside `note` and `fault`.
 pub struct Reader<'d> {
     pub(super) document: &'d Document,
     /// None in a silent session.
