@@ -17,7 +17,7 @@ use super::table::Rows;
 use crate::config::Problem;
 
 /// Points that one thread takes at a time.
-const CHUNK: u64 = 8;
+const CHUNK: u64 = 2;
 /// Most points of a part, and the number of parts that a small study is divided into at least.
 const MOST_POINTS: u64 = 4096;
 const PARTS: u64 = 32;
