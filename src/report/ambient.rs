@@ -3,9 +3,11 @@
 use super::chart::{Chart, ChartPanel, Look, chart};
 use crate::study::ambient::{Matrix, WarmUp};
 
-/// Ambient temperatures, degC, and a number at each.
+/// Ambient temperatures, degC, and a number at each, from cold to warm in whatever order they were asked for.
 fn points(x: &[f64], y: &[f64]) -> Vec<(f64, f64)> {
-    x.iter().copied().zip(y.iter().copied()).filter(|(x, y)| x.is_finite() && y.is_finite()).collect()
+    let mut list: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+    list.sort_by(|a, b| a.0.total_cmp(&b.0));
+    list
 }
 
 /// Series of one panel: a look for each car, solid for the first start and dotted for the second.

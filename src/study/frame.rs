@@ -55,7 +55,7 @@ impl<'a> Frame<'a> {
         let mut status = vec![Status::Missing; frame.cells()];
         frame.each("status", |at, values| {
             if let Values::Text(words) = values {
-                for (cell, word) in status[at..].iter_mut().zip(words) {
+                for (cell, word) in status.iter_mut().skip(at).zip(words) {
                     *cell = match &*word {
                         "ok" => Status::Ok,
                         "failed" => Status::Failed,
@@ -134,6 +134,9 @@ impl<'a> Frame<'a> {
             let Values::Number(cells) = values else { return };
             for (k, x) in cells.into_iter().enumerate().skip(car).step_by(cars) {
                 let cell = at + k;
+                if cell >= self.status.len() {
+                    break; // more rows than the study has points
+                }
                 let subject = cell / cars * cars;
                 let good = self.status[cell] == Status::Ok && (!compares || self.status[subject] == Status::Ok);
                 if good || !only_ok {
@@ -155,7 +158,9 @@ impl<'a> Frame<'a> {
         self.each(name, |at, values| {
             if let Values::Text(cells) = values {
                 for (k, word) in cells.into_iter().enumerate().skip(car).step_by(cars) {
-                    words[(at + k) / cars] = word;
+                    if let Some(cell) = words.get_mut((at + k) / cars) {
+                        *cell = word;
+                    }
                 }
             }
         })?;

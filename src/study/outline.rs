@@ -60,6 +60,11 @@ impl Outline {
         let mut plan =
             Plan::read(file, plan).map_err(|problems| problems.iter().map(|p| p.message.clone()).collect::<Vec<_>>().join("; "))?;
         plan.design = design(&manifest["design"]).ok_or_else(|| missing("design"))?;
+        // The tables are as large as the plan says, so a damaged number here would ask for any amount of memory.
+        let (points, points_per_part) = (number("points")?, number("points_per_part")?);
+        if plan.design.points(&plan.factors) != Some(points) || !(1..=points.max(1)).contains(&points_per_part) {
+            return Err("its number of points is not that of its plan".to_owned());
+        }
         let strings =
             |value: &Value| value.as_array().map(|list| list.iter().filter_map(|v| v.as_str().map(str::to_owned)).collect::<Vec<_>>());
         let field = |value: &Value, key: &str| value[key].as_str().unwrap_or_default().to_owned();
@@ -74,8 +79,8 @@ impl Outline {
             phases: strings(&manifest["phases"]).ok_or_else(|| missing("phases"))?,
             analysed: analysed(&names, &columns),
             columns,
-            points: number("points")?,
-            points_per_part: number("points_per_part")?.max(1),
+            points,
+            points_per_part,
             plan,
         })
     }

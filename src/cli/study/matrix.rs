@@ -11,9 +11,9 @@ pub fn tables(matrix: &Matrix, paint: Paint) -> String {
     let mut text = String::new();
     for part in &matrix.fuel {
         let name = if part.name == "total" { "whole cycle" } else { &part.name };
-        text += &format!("\n{}\n", paint.heading(&format!("Fuel, {name}, L/100 km")));
+        text += &format!("\n{}\n", paint.heading(&format!("Fuel, {name}, L/100 km, and what the subject uses more, %")));
         let fuel = Block { heads: matrix.cars.clone(), numbers: &part.l_per_100km, decimals: 2, sign: false };
-        let over = matrix.cars.iter().skip(1).map(|car| format!("over {car}, %")).collect();
+        let over = matrix.cars.iter().skip(1).map(|car| format!("over {car}")).collect();
         let excess = Block { heads: over, numbers: &part.excess_percent, decimals: 1, sign: true };
         text += &table(matrix, &[fuel, excess]);
     }
