@@ -4,7 +4,7 @@ use super::axis::{Axis, number};
 use super::figure::{Figure, INK, Path, Rect};
 use super::legend::{Mark, legend};
 use super::panel::{BELOW, Panel};
-use super::style::fill;
+use super::style::component_fill;
 use super::traces::{PLOT_LEFT, PLOT_TOP, phases, time_axis};
 use crate::results::{Component, Row};
 
@@ -84,8 +84,7 @@ pub fn losses(run: &PlotRun) -> String {
     let stack = |watts: &[f64; Component::COUNT]| run.components.iter().map(|&c| watts[c as usize]).sum::<f64>();
     let y = Axis::round("Loss power [W]", bins.mean_w.iter().map(stack).chain([0.0]), 8);
     let panel = Panel::draw(&mut figure, rect, time_axis(run.rows), y, true);
-    let count = run.components.len();
-    let paints: Vec<String> = (0..count).map(|i| fill(&mut figure, "losses", i, count)).collect();
+    let paints: Vec<String> = run.components.iter().map(|&c| component_fill(&mut figure, "losses", c)).collect();
     let mut base = vec![0.0; bins.mean_w.len()];
     for (&component, paint) in run.components.iter().zip(&paints) {
         layer(&mut figure, &panel, &bins, component, &mut base, paint);

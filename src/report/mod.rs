@@ -20,6 +20,7 @@ mod loss_stack;
 mod losses;
 mod operating;
 mod panel;
+mod picture;
 pub mod rig_transmission;
 mod style;
 pub mod study;
@@ -32,6 +33,7 @@ pub use loss_map::{MapFigure, map_figure};
 pub use loss_stack::{StackFigure, stack_figure};
 pub use losses::{LossBins, bin_losses, losses};
 pub use operating::operating_points;
+pub use picture::{Picture, PictureTable, cell};
 pub use traces::{driveline, pressure, temperatures};
 
 /// What the plots need to know of a run.
