@@ -14,6 +14,8 @@ pub mod setup;
 pub mod simulate;
 pub mod run;
 pub mod results;
+pub mod sensitivity;
+pub mod provenance;
 pub mod rig;
 pub mod study;
 pub mod validate;

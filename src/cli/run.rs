@@ -2,12 +2,14 @@
 
 mod cars;
 pub mod files;
+mod record;
 mod text;
 
 use cvtcycle::config::Bound;
 use cvtcycle::cycle::Cycle;
 use cvtcycle::lubricant::ZERO_DEGC_K;
 use cvtcycle::results::files::OutputDir;
+use cvtcycle::results::record::FILE;
 use cvtcycle::results::summary::{Driven, Settings, StartWord, Summary, name_of, summarise};
 use cvtcycle::run::{Conditions, Outcome, Start, drive};
 use cvtcycle::setup::AMBIENT;
@@ -30,7 +32,7 @@ Examples:
   cvtcycle run --cycle ftp75 --baseline none --set transmission.cvt.pump.displacement_cc_rev=8
   cvtcycle run --cycle constant_120 --start 90 --json
   cvtcycle run --ambient -10 --out cold_run
-  cvtcycle run --out run2 --format parquet
+  cvtcycle run --out run2 --format parquet && cvtcycle report run2
 
 `cvtcycle list cycles`, `list vehicles` and `list lubricants` name what can be driven, `cvtcycle explain KEY` what can be set.")]
 pub struct Args {
@@ -75,12 +77,16 @@ pub struct Args {
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
-    /// Write summary.json, traces and plots (SVG) into this directory
+    /// Write summary.json, inputs.json, traces and plots (SVG) into this directory; `cvtcycle report DIR` makes a report of them
     #[arg(long, value_name = "DIR")]
     out: Option<std::path::PathBuf>,
     /// Format of the traces: csv, parquet or both
     #[arg(long, value_name = "NAME", default_value = "csv", requires = "out", value_parser = Offering(formats), hide_possible_values = true)]
     format: String,
+    /// How much each value of each car matters, written into inputs.json for the report: always, never, or auto (unless the
+    /// cycle has more than 20 000 steps)
+    #[arg(long, value_name = "WHEN", default_value = "auto", requires = "out", value_parser = Offering(record::when), hide_possible_values = true)]
+    sensitivity: String,
     /// Replace the files of an earlier run in the --out directory
     #[arg(long, requires = "out")]
     force: bool,
@@ -106,6 +112,7 @@ struct Plan {
     dt_s: f64,
     formulation: Formulation,
     format: TraceFormat,
+    sensitivity: record::When,
     out: Option<OutputDir>,
 }
 
@@ -127,7 +134,11 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     let summary = summarise(&plan.cycle, plan.ambient_degc, plan.start.1, settings, &driven);
     let json = json_text(&summary)?;
     let written = match plan.out {
-        Some(dir) => files::write(dir, plan.format, &json, &summary, &plan.cycle, &driven).map_err(|problem| vec![problem])?,
+        Some(mut dir) => {
+            let record = json_text(&record::record(&plan.cars, &plan.cycle, &conditions, plan.sensitivity)?)?;
+            dir.write(FILE, |out| out.write_all(record.as_bytes())).map_err(|problem| vec![problem])?;
+            files::write(dir, plan.format, &json, &summary, &plan.cycle, &driven).map_err(|problem| vec![problem])?
+        }
         None => files::Written::default(),
     };
     Ok(reply(args, context, &plan.cycle, &summary, json, &written))
@@ -154,12 +165,13 @@ fn plan(args: &Args) -> Result<Plan, Vec<cvtcycle::config::Problem>> {
     let start = problems.take(start(&args.start));
     let dt_s = problems.take(inputs::number("--dt", &args.dt, STEP, "dt_s"));
     let format = problems.take(inputs::word("--format", &args.format, &TraceFormat::NAMES));
+    let sensitivity = problems.take(inputs::word("--sensitivity", &args.sensitivity, &record::WHEN));
     let out = args.out.as_ref().map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
     let out = out.and_then(|dir| problems.take(dir));
     problems.finish()?;
-    match (cycle, ambient, start, dt_s, formulation, format) {
-        (Some(cycle), Some(ambient_degc), Some(start), Some(dt_s), Some(formulation), Some(format)) => {
-            Ok(Plan { cycle, cars, ambient_degc, start, dt_s, formulation, format, out })
+    match (cycle, ambient, start, dt_s, formulation, format.zip(sensitivity)) {
+        (Some(cycle), Some(ambient_degc), Some(start), Some(dt_s), Some(formulation), Some((format, sensitivity))) => {
+            Ok(Plan { cycle, cars, ambient_degc, start, dt_s, formulation, format, sensitivity, out })
         }
         _ => unreachable!("what is missing has left a problem"),
     }

@@ -7,8 +7,11 @@ pub mod columns;
 pub mod trace;
 pub mod file;
 pub mod files;
+pub mod history;
+pub mod record;
 pub mod summary;
 
+pub use history::History;
 pub use ledger::{TERM_NAMES, Terms};
 pub use row::{Component, Flags, Row};
 pub use totals::{PhaseTotals, Totals};

@@ -14,6 +14,10 @@ pub struct Car {
     pub name: String,
     /// Checked input.
     pub setup: Setup,
+    /// What the user, or the subject's file, calls it.
+    pub word: String,
+    /// What it was loaded with.
+    pub options: Options,
 }
 
 /// Loads all cars, subject first. Where one is bad, its problems are noted and the others are read all the same.
@@ -36,8 +40,12 @@ pub fn load(args: &Args, formulation: Formulation, problems: &mut Problems) -> V
     let namer = if args.baseline.is_empty() { args.vehicle.as_str() } else { "--baseline" };
     let others = names.iter().map(|name| problems.take(one(name, namer, &baseline, args)));
     let others: Vec<Option<Setup>> = others.collect();
-    for setup in [setup].into_iter().chain(others).flatten() {
-        cars.push(Car { name: unique(&setup.name, &cars), setup });
+    let words = [&args.vehicle].into_iter().chain(&names);
+    let options = [subject].into_iter().chain(std::iter::repeat(baseline));
+    for ((setup, word), options) in [setup].into_iter().chain(others).zip(words).zip(options) {
+        if let Some(setup) = setup {
+            cars.push(Car { name: unique(&setup.name, &cars), setup, word: word.clone(), options });
+        }
     }
     cars
 }

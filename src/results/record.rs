@@ -1,0 +1,170 @@
+//! What a run was made from: command, files with their hashes, every value with its status, and how much each of them matters.
+//!
+//! Written as `inputs.json` beside the summary, so that a report needs nothing but the directory.
+
+use serde::{Deserialize, Serialize};
+
+/// Version of the object; a new number when a name goes or changes its meaning.
+pub const SCHEMA: u32 = 1;
+/// Name of the file.
+pub const FILE: &str = "inputs.json";
+
+/// Everything that a run was made from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// Name and version of the program.
+    pub program: String,
+    /// The command line, quoted for a shell.
+    pub command: String,
+    /// The cycle.
+    pub cycle: CycleRecord,
+    /// The cars, the subject first.
+    pub cars: Vec<CarRecord>,
+    /// How much each value matters; none where it was not asked for.
+    pub sensitivity: Option<Sensitivity>,
+}
+
+/// A cycle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CycleRecord {
+    /// Name.
+    pub name: String,
+    /// Name for people.
+    pub title: String,
+    /// SHA-256 of the traces as they were read.
+    pub sha256: String,
+}
+
+/// A file: its name and SHA-256.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FileRecord {
+    /// Path, or `embedded:NAME.toml`.
+    pub file: String,
+    /// SHA-256 of its bytes.
+    pub sha256: String,
+}
+
+/// One car.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CarRecord {
+    /// Name, unique within the run.
+    pub name: String,
+    /// Vehicle file.
+    pub vehicle: FileRecord,
+    /// Transmission oil.
+    pub lubricant: FileRecord,
+    /// Engine oil.
+    pub engine_oil: FileRecord,
+    /// SHA-256 of the whole checked car, with what its files name in turn.
+    pub resolved_sha256: String,
+    /// The shipped vehicle that it is held against.
+    pub reference: String,
+    /// Values of that vehicle, and how many of them are the same here.
+    pub reference_values: (usize, usize),
+    /// What differs from it.
+    pub changes: Vec<Change>,
+    /// Every value.
+    pub values: Vec<ValueRecord>,
+    /// The engine's fuel map, hot.
+    pub fuel_map: FuelMapRecord,
+    /// Engine speed against road speed: gears of a manual box, or limits and targets of a ratio control.
+    pub speed_lines: Vec<SpeedLine>,
+}
+
+/// A value that is another one than in the shipped vehicle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Change {
+    /// Dotted key.
+    pub key: String,
+    /// Unit, `-` for none.
+    pub unit: String,
+    /// Value there; empty where the key is not read.
+    pub shipped: String,
+    /// Value here; empty where the key is not read.
+    pub here: String,
+}
+
+/// One value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ValueRecord {
+    /// Dotted key; `lubricant.` and `engine_oil.` for the fluids.
+    pub key: String,
+    /// Value in its unit.
+    pub value: String,
+    /// Unit, `-` for none.
+    pub unit: String,
+    /// `source`, `derived`, `fitted`, `assumed`, `user`, `set`, `default` or `choice`.
+    pub status: String,
+    /// Reference; may be empty.
+    pub source: String,
+    /// Meaning.
+    pub doc: String,
+}
+
+/// An engine's fuel map.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FuelMapRecord {
+    /// Engine speeds.
+    pub speed_rpm: Vec<f64>,
+    /// Torques at the flywheel.
+    pub torque_nm: Vec<f64>,
+    /// Brake specific fuel consumption by speed and torque; null above full load.
+    pub bsfc_g_kwh: Vec<Vec<Option<f64>>>,
+    /// Full-load torque at each speed.
+    pub full_load_nm: Vec<f64>,
+}
+
+/// Engine speed over road speed at some state of the transmission.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SpeedLine {
+    /// What it is.
+    pub name: String,
+    /// Road speed in km/h and engine speed in rpm.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// How much single values matter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sensitivity {
+    /// Change of each value, up and down, per cent of it.
+    pub step_percent: f64,
+    /// By car, value by value.
+    pub effects: Vec<Effect>,
+}
+
+/// What a change of one value of one car does to that car's fuel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Effect {
+    /// Car.
+    pub car: String,
+    /// Dotted key.
+    pub key: String,
+    /// Change of the fuel with the value lowered, per cent; null where the car cannot be so.
+    pub lowered_percent: Option<f64>,
+    /// Change of the fuel with the value raised, per cent.
+    pub raised_percent: Option<f64>,
+}
+
+impl Effect {
+    /// The larger of both changes in magnitude, per cent; NaN if there is none.
+    #[must_use]
+    pub fn size_percent(&self) -> f64 {
+        let both = [self.lowered_percent, self.raised_percent];
+        both.into_iter().flatten().map(f64::abs).fold(f64::NAN, |a, b| if a > b { a } else { b })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_size_of_an_effect_is_that_of_its_larger_side() {
+        let effect = |lowered_percent, raised_percent| Effect { car: String::new(), key: String::new(), lowered_percent, raised_percent };
+        assert!((effect(Some(-0.4), Some(0.3)).size_percent() - 0.4).abs() < 1e-15);
+        assert!((effect(None, Some(0.3)).size_percent() - 0.3).abs() < 1e-15);
+        assert!(effect(None, None).size_percent().is_nan());
+    }
+}
