@@ -20,3 +20,4 @@ pub mod rig;
 pub mod study;
 pub mod validate;
 pub mod report;
+pub mod review;

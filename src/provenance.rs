@@ -89,7 +89,11 @@ fn changes(shipped: &[KeyInfo], here: &[KeyInfo]) -> Vec<Change> {
     let mut list: Vec<(bool, Change)> = Vec::new();
     for info in here {
         let other = find(shipped, &info.key);
-        if !other.as_ref().is_some_and(|other| equal(other, info)) && !(other.is_none() && info.value.is_empty()) {
+        let same = match &other {
+            Some(other) => equal(other, info),
+            None => info.value.is_empty(),
+        };
+        if !same {
             list.push((info.status == "set", change(&info.key, other.as_ref(), Some(info))));
         }
     }

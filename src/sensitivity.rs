@@ -1,6 +1,6 @@
 //! How much each single value of a car matters for its fuel: every number changed by itself, up and down, and the cycle driven again.
 //!
-//! The step is one for all, so the answer says how steep the fuel is in a value, not how uncertain the value is: that is what a study with
+//! An efficiency is changed through its loss: 5 % of 0.98 would be two and a half times the loss. The step is one for all, so the answer says how steep the fuel is in a value, not how uncertain the value is: that is what a study with
 //! ranges of its own says (docs/uncertainty.md).
 
 use rayon::prelude::*;
@@ -46,9 +46,9 @@ pub fn sensitivity(cars: &[Named], cycle: &Cycle, conditions: &Conditions) -> Re
         let of_slot = |bench: &mut Bench, slot: &Slot| {
             let mut side = |sign: f64| {
                 bench.reset();
-                bench.set(slot, slot.base() * (1.0 + sign * STEP_PERCENT / 100.0));
-                let changed = fuel(&bench.build().ok()?, cycle, &conditions);
-                finite(100.0 * (changed? / base? - 1.0))
+                bench.set(slot, changed(slot.key(), slot.base(), sign));
+                let now = fuel(&bench.build().ok()?, cycle, &conditions);
+                finite(100.0 * (now? / base? - 1.0))
             };
             let (lowered_percent, raised_percent) = (side(-1.0), side(1.0));
             Effect { car: car.name.clone(), key: slot.key().to_owned(), lowered_percent, raised_percent }
@@ -57,6 +57,16 @@ pub fn sensitivity(cars: &[Named], cycle: &Cycle, conditions: &Conditions) -> Re
         effects.extend(found);
     }
     Ok(Sensitivity { step_percent: STEP_PERCENT, effects })
+}
+
+/// A value lowered (`sign` -1) or raised (+1) by the step; an efficiency through its loss.
+fn changed(key: &str, value: f64, sign: f64) -> f64 {
+    let step = STEP_PERCENT / 100.0;
+    if key.ends_with("efficiency") && (0.0..1.0).contains(&value) {
+        1.0 - (1.0 - value) * (1.0 - sign * step)
+    } else {
+        value * (1.0 + sign * step)
+    }
 }
 
 /// Fuel that stands for the car, L/100 km.
@@ -71,6 +81,14 @@ mod tests {
     use super::*;
     use crate::cycle::embedded;
     use crate::run::Start;
+
+    #[test]
+    fn an_efficiency_changes_by_its_loss() {
+        assert!((changed("a.mesh_efficiency", 0.98, -1.0) - 0.979).abs() < 1e-12);
+        assert!((changed("a.mesh_efficiency", 0.98, 1.0) - 0.981).abs() < 1e-12);
+        assert!((changed("a.mass_kg", 1000.0, -1.0) - 950.0).abs() < 1e-9);
+        assert!((changed("a.efficiency", 1.0, -1.0) - 0.95).abs() < 1e-12, "without a loss there is nothing else to change");
+    }
 
     /// Property: more of a loss costs fuel, less saves it, and the answer does not depend on the number of threads.
     #[test]

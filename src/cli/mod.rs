@@ -14,6 +14,7 @@ mod list;
 mod losses;
 mod number;
 mod ranges;
+mod report;
 mod rig;
 mod run;
 mod shell;
@@ -54,6 +55,8 @@ enum Command {
     Run(Box<run::Args>),
     /// Many runs: ambient temperatures, sweeps, sampling, and what they say
     Study(Box<study::Args>),
+    /// Make a design-review report of a run, a study, or two runs against each other: one HTML file, and its figures
+    Report(report::Args),
     /// Hold every printed number of the thesis, and your own, against the program
     Validate(Box<validate::Args>),
     /// Run the thesis's test rigs, virtual
@@ -105,6 +108,7 @@ impl Command {
         match self {
             Command::Run(args) => run::answer(&args, context),
             Command::Study(args) => study::answer(&args, context),
+            Command::Report(args) => report::answer(&args),
             Command::Validate(args) => validate::answer(&args, context),
             Command::Rig(args) => rig::answer(&args, context),
             Command::Losses(args) => losses::answer(&args, context),

@@ -5,7 +5,6 @@ mod common;
 mod csv_files;
 mod export;
 mod matrix;
-mod pictures;
 mod progress;
 mod results;
 mod show;

@@ -90,7 +90,7 @@ impl Cycle {
         }
         let mut groups: Vec<(String, Vec<u16>)> = Vec::new();
         for (phase, name) in (0_u16..).zip(&self.phases) {
-            let name = group_name(name);
+            let name = phase_group(name);
             match groups.iter_mut().find(|group| group.0 == name) {
                 Some(group) => group.1.push(phase),
                 None => groups.push((name, vec![phase])),
@@ -100,7 +100,9 @@ impl Cycle {
     }
 }
 
-fn group_name(phase: &str) -> String {
+/// The group to which a phase of that name belongs.
+#[must_use]
+pub fn phase_group(phase: &str) -> String {
     let lower = phase.to_lowercase();
     match lower.strip_prefix("ece15_") {
         Some("1" | "2" | "3" | "4") => "ece15".to_owned(),

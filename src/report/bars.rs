@@ -1,30 +1,33 @@
 //! Fuel of several runs side by side.
-use super::PlotRun;
 use super::axis::Axis;
 use super::figure::{Anchor, Figure, INK, Rect, fit, text_width};
-use super::legend::{ENTRY, Mark, height, legend};
+use super::legend::{Mark, below_height, legend_below};
 use super::panel::{LEFT, Panel};
 use super::style::fill;
+use super::{Picture, PictureTable, PlotRun, cell};
 
 const TOP: f64 = 58.0;
 const TALL: f64 = 340.0;
 const PLOT_LEFT: f64 = LEFT + 8.0;
-const STRIP: f64 = 250.0;
-const LABEL: f64 = 10.0;
+/// Widths of the plot: room for names, and no more than fits on a page.
+const WIDTHS: (f64, f64) = (480.0, 786.0);
+const LABEL: f64 = 11.0;
+/// Bars thinner than this have their values in the table alone.
+const UPRIGHT: f64 = 15.0;
 /// Width of a group's share that stays empty.
 const GAP: f64 = 0.28;
 
 /// Fuel in L/100 km by phase group and in total, one bar per vehicle.
 #[must_use]
-pub fn fuel_bars(runs: &[PlotRun]) -> String {
+pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
     let groups = groups(runs);
     let bars = (groups.len() * runs.len()).max(1) as f64;
-    // Wide enough for the values over the bars, as long as that stays a picture and not a scroll.
-    let plot = (bars * 36.0 / (1.0 - GAP)).clamp(420.0, 1300.0);
+    // Wide enough for the values over the bars, as long as the page is.
+    let plot = (bars * 40.0 / (1.0 - GAP)).clamp(WIDTHS.0, WIDTHS.1);
     let (right, bottom) = (PLOT_LEFT + plot, TOP + TALL);
     let names: Vec<String> = runs.iter().map(|run| run.name.to_string()).collect();
-    let strip_end = TOP + ENTRY + height(&names, STRIP - 8.0) + 8.0;
-    let size = (right + 16.0 + STRIP, (bottom + 40.0).max(strip_end));
+    let below = below_height(names.iter().map(String::as_str), plot, "Vehicle");
+    let size = (right + 20.0, bottom + 40.0 + below);
     let subject = match runs {
         [run] => run.name.to_string(),
         _ => format!("{} vehicles", runs.len()),
@@ -37,23 +40,27 @@ pub fn fuel_bars(runs: &[PlotRun]) -> String {
     x.ticks.clear();
     let panel = Panel::draw(&mut figure, rect, x, y, false);
     let paints: Vec<String> = (0..runs.len()).map(|i| fill(&mut figure, "fuel", i, runs.len())).collect();
-    draw_groups(&mut figure, &panel, runs, &groups, &paints);
+    let table = draw_groups(&mut figure, &panel, runs, &groups, &paints);
     if groups.is_empty() {
         panel.empty(&mut figure);
     }
     panel.outline(&mut figure);
     let entries: Vec<_> = paints.into_iter().map(Mark::Fill).zip(names).collect();
-    legend(&mut figure, (right + 16.0, TOP), STRIP - 8.0, "Vehicle", &entries);
-    figure.finish()
+    legend_below(&mut figure, (PLOT_LEFT, bottom + 34.0), plot, "Vehicle", &entries);
+    Picture { svg: figure.finish(), table }
 }
 
-fn draw_groups(figure: &mut Figure, panel: &Panel, runs: &[PlotRun], groups: &[String], paints: &[String]) {
+/// Draws the bars of all groups; returns their values.
+fn draw_groups(figure: &mut Figure, panel: &Panel, runs: &[PlotRun], groups: &[String], paints: &[String]) -> PictureTable {
+    let mut table = PictureTable::new(&[("Part of the cycle", ""), ("Vehicle", ""), ("Fuel", "L/100 km")]);
     let width = (1.0 - GAP) / runs.len().max(1) as f64;
     for (g, group) in groups.iter().enumerate() {
         for (i, (run, paint)) in runs.iter().zip(paints).enumerate() {
             let from = g as f64 + 0.5 * GAP + i as f64 * width;
-            if let Some(value) = value_of(run, group) {
-                bar(figure, panel, (from, from + width), value, paint);
+            let value = value_of(run, group);
+            let row = table.push(vec![group.clone(), run.name.to_owned(), cell(value.unwrap_or(f64::NAN), 0.01)]);
+            if let Some(value) = value {
+                bar(figure, panel, (from, from + width), value, (paint, row));
             }
         }
         let middle = panel.px(g as f64 + 0.5);
@@ -63,6 +70,7 @@ fn draw_groups(figure: &mut Figure, panel: &Panel, runs: &[PlotRun], groups: &[S
         let at = (middle, panel.rect.bottom + 20.0);
         figure.text(at, 12.0, Anchor::Middle, weight, INK, &name);
     }
+    table
 }
 
 /// From zero, with room for the values over the highest bar.
@@ -72,16 +80,16 @@ fn axis(runs: &[PlotRun]) -> Axis {
     Axis::round("Fuel [L/100 km]", [0.0, 1.12 * highest].into_iter(), 8)
 }
 
-fn bar(figure: &mut Figure, panel: &Panel, (from, to): (f64, f64), value: f64, paint: &str) {
+fn bar(figure: &mut Figure, panel: &Panel, (from, to): (f64, f64), value: f64, (paint, row): (&str, usize)) {
     let (left, right, top) = (panel.px(from), panel.px(to), panel.py(value));
     let rect = Rect { left, right, top, bottom: panel.rect.bottom };
-    let attributes = format!("class=\"bar\" fill=\"{paint}\" stroke=\"{INK}\" stroke-width=\"3\"");
+    let attributes = format!("class=\"bar\" data-row=\"{row}\" fill=\"{paint}\" stroke=\"{INK}\" stroke-width=\"3\"");
     figure.rect(rect, &attributes);
     let text = format!("{value:.2}");
     let middle = 0.5 * (left + right);
-    if text_width(&text, LABEL) < right - left + 2.0 {
+    if text_width(&text, LABEL) < right - left {
         figure.text((middle, top - 4.0), LABEL, Anchor::Middle, "", INK, &text);
-    } else {
+    } else if right - left >= UPRIGHT {
         // Upright where the bars are thinner than their values are wide.
         let (x, y) = (super::figure::units(middle + 3.5), super::figure::units(top - 4.0));
         let turn = format!("transform=\"rotate(-90 {x} {y})\"");

@@ -48,8 +48,8 @@ pub struct CurveSeries {
 
 const TOP: f64 = 58.0;
 const ABOVE: f64 = 26.0;
-const WIDE: f64 = 600.0;
-const STRIP: f64 = 200.0;
+const WIDE: f64 = 594.0;
+const STRIP: f64 = 196.0;
 const ZERO: Stroke = Stroke { colour: "#000000", width: 0.8, dash: &[] };
 const CIRCLE: &str = "fill=\"#ffffff\" stroke=\"#000000\" stroke-width=\"6\"";
 

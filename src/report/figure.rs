@@ -24,6 +24,7 @@ pub(super) struct Rect {
 pub(super) enum Anchor {
     Start,
     Middle,
+    End,
 }
 
 /// A picture in the making. Lengths are in pixels.
@@ -82,6 +83,7 @@ impl Figure {
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
+            Anchor::End => "end",
         };
         let (x, y, size) = (units(at.0), units(at.1), units(size));
         let text = escape(text);

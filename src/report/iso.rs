@@ -2,24 +2,27 @@
 use super::FuelMap;
 use super::axis::{number, range};
 use super::contour::Grid;
-use super::figure::{Anchor, Figure, Path, Rect, text_width};
+use super::figure::{Anchor, Figure, INK, Path, Rect, text_width};
 use super::operating::{ISO, RECT, RPM};
 use super::panel::Panel;
+use super::style::Stroke;
 
 /// kg/J in g/kWh.
 const G_KWH: f64 = 3.6e9;
 
-/// Centre and radius, pixels.
-pub(super) type Circle = ((f64, f64), f64);
+/// Size of the labels, pixels.
+const TEXT: f64 = 11.0;
+/// Under a line, so that it is seen on every colour.
+const HALO: Stroke = Stroke { colour: "#ffffff", width: 2.6, dash: &[] };
 
 /// Draws the lines of equal consumption; returns where their labels go: apart from each other and
-/// clear of the circles `taken` where that can be had.
+/// clear of the places `taken` where that can be had.
 pub(super) fn iso_lines(
     figure: &mut Figure,
     panel: &Panel,
     map: &FuelMap,
     full_load: &[(f64, f64)],
-    taken: &[Circle],
+    taken: &[Rect],
 ) -> Vec<(f64, f64, String)> {
     let rpm: Vec<f64> = map.speed_rad_s.iter().map(|w| w * RPM).collect();
     let values = carried_on(map);
@@ -31,6 +34,7 @@ pub(super) fn iso_lines(
         let text = number(level, 1.0);
         let mut longest: Vec<(f64, f64)> = Vec::new();
         for line in grid.lines(level) {
+            panel.line_any(figure, &line, HALO);
             panel.line_any(figure, &line, ISO);
             let pixels: Vec<_> = line.iter().filter(|p| below(full_load, **p)).map(|p| (panel.px(p.0), panel.py(p.1))).collect();
             if pixels.len() > longest.len() {
@@ -45,10 +49,10 @@ pub(super) fn iso_lines(
 }
 
 /// The place on a line for its label.
-fn label_place(line: &[(f64, f64)], labels: &[(f64, f64, String)], taken: &[Circle]) -> Option<(f64, f64)> {
+fn label_place(line: &[(f64, f64)], labels: &[(f64, f64, String)], taken: &[Rect]) -> Option<(f64, f64)> {
     let inside = |x: f64, y: f64| x > RECT.left + 16.0 && x < RECT.right - 16.0 && y > RECT.top + 8.0 && y < RECT.bottom - 8.0;
     let apart = |x: f64, y: f64| labels.iter().all(|(u, v, _)| (x - u).abs() > 34.0 || (y - v).abs() > 15.0);
-    let clear = |x: f64, y: f64| taken.iter().all(|((u, v), r)| (x - u).abs() > 12.0 + r || (y - v).abs() > 7.0 + r);
+    let clear = |x: f64, y: f64| taken.iter().all(|r| x + 14.0 < r.left || x - 14.0 > r.right || y + 8.0 < r.top || y - 8.0 > r.bottom);
     // From the middle of the line outwards.
     let places: Vec<(f64, f64)> = [50, 60, 40, 70, 30, 80, 20, 90, 10, 65, 35, 75, 25]
         .iter()
@@ -58,13 +62,13 @@ fn label_place(line: &[(f64, f64)], labels: &[(f64, f64, String)], taken: &[Circ
     places.iter().find(|&&(x, y)| clear(x, y)).or(places.first()).copied()
 }
 
-/// Labels on white, so that they can be read on lines and circles.
+/// Labels on white, so that they can be read on lines and cells.
 pub(super) fn label(figure: &mut Figure, labels: Vec<(f64, f64, String)>) {
     for (x, y, text) in labels {
-        let half = 0.5 * text_width(&text, 10.0) + 1.0;
-        let rect = Rect { left: x - half, right: x + half, top: y - 6.0, bottom: y + 6.0 };
+        let half = 0.5 * text_width(&text, TEXT) + 1.0;
+        let rect = Rect { left: x - half, right: x + half, top: y - 7.0, bottom: y + 7.0 };
         figure.rect(rect, "fill=\"#ffffff\" fill-opacity=\"0.85\"");
-        figure.text((x, y + 3.6), 10.0, Anchor::Middle, "class=\"iso\"", "#555555", &text);
+        figure.text((x, y + 4.0), TEXT, Anchor::Middle, "class=\"iso\"", INK, &text);
     }
 }
 

@@ -1,5 +1,5 @@
-//! Legends, in a strip beside the plot where no data can be.
-use super::figure::{Anchor, Figure, INK, Rect, UNITS, escape, units, wrap};
+//! Legends, in a strip beside the plot or below it, where no data can be.
+use super::figure::{Anchor, Figure, INK, Rect, UNITS, escape, fit, text_width, units, wrap};
 use super::style::Stroke;
 
 /// What a legend shows beside a name.
@@ -37,6 +37,47 @@ pub(super) fn legend(figure: &mut Figure, at: (f64, f64), width: f64, heading: &
     }
     figure.close();
     top
+}
+
+/// Room between the columns of a legend below the plot, pixels.
+const GUTTER: f64 = 22.0;
+
+/// Columns of a legend below the plot, their width in pixels, and entries in each.
+fn columns<'n>(names: impl Iterator<Item = &'n str>, width: f64) -> (usize, f64, usize) {
+    let (mut count, mut widest) = (0_usize, 0.0_f64);
+    for name in names {
+        count += 1;
+        widest = widest.max(text_width(name, SIZE));
+    }
+    let wide = (MARK_WIDTH + 8.0 + widest).min(width);
+    let columns = ((width + GUTTER) / (wide + GUTTER)).floor().max(1.0) as usize;
+    (columns, wide, count.div_ceil(columns))
+}
+
+/// Height of [`legend_below`], pixels.
+pub(super) fn below_height<'n>(names: impl Iterator<Item = &'n str>, width: f64, heading: &str) -> f64 {
+    let (.., rows) = columns(names, width);
+    (rows + usize::from(!heading.is_empty())) as f64 * ENTRY
+}
+
+/// Draws a legend below a plot, its upper left corner at `at`: under each other in as many columns as the width holds.
+pub(super) fn legend_below(figure: &mut Figure, at: (f64, f64), width: f64, heading: &str, entries: &[(Mark, String)]) {
+    let (left, mut top) = at;
+    figure.open("legend");
+    if !heading.is_empty() {
+        figure.text((left, top + 12.0), SIZE, Anchor::Start, "font-weight=\"bold\"", INK, heading);
+        top += ENTRY;
+    }
+    let (_, wide, rows) = columns(entries.iter().map(|(_, name)| name.as_str()), width);
+    for (k, (mark, name)) in entries.iter().enumerate() {
+        let x = left + (k / rows) as f64 * (wide + GUTTER);
+        let middle = top + ((k % rows) as f64 + 0.5) * ENTRY;
+        draw_mark(figure, mark, (x + MARK_WIDTH / 2.0, middle));
+        // Half a pixel more, lest rounding cuts the widest name.
+        let room = wide - MARK_WIDTH - 7.5;
+        write(figure, (x + MARK_WIDTH + 8.0, middle + 4.0), name, &[fit(name, SIZE, room)]);
+    }
+    figure.close();
 }
 
 impl Mark {

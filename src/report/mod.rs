@@ -3,7 +3,7 @@
 //! Plotters draws the frames: grid, ticks and axis titles. The data themselves are written as SVG
 //! paths here, for plotters has neither dash patterns in one path nor hatches nor legends beside
 //! the plot, and all three are needed to tell series apart in print.
-use crate::results::{Component, Row};
+use crate::results::History;
 
 pub mod ambient;
 mod axis;
@@ -11,24 +11,25 @@ mod bars;
 pub mod chart;
 mod contour;
 mod curves;
+mod density;
 mod figure;
 mod iso;
 mod legend;
-mod lines;
 mod loss_map;
 mod loss_stack;
 mod losses;
 mod operating;
 mod panel;
 mod picture;
+pub mod review_figures;
 pub mod rig_transmission;
 mod style;
 pub mod study;
+mod timeline;
 mod traces;
 
 pub use bars::fuel_bars;
 pub use curves::{CurveFigure, CurvePanel, CurveSeries, curve_figure};
-pub use lines::{Line, LinePanel, LinePlot, line_plot};
 pub use loss_map::{MapFigure, map_figure};
 pub use loss_stack::{StackFigure, stack_figure};
 pub use losses::{LossBins, bin_losses, losses};
@@ -41,14 +42,8 @@ pub use traces::{driveline, pressure, temperatures};
 pub struct PlotRun<'a> {
     /// Name of the vehicle.
     pub name: &'a str,
-    /// Whether it has a CVT; otherwise a manual box.
-    pub cvt: bool,
     /// Its trace.
-    pub rows: &'a [Row],
-    /// The components that it has.
-    pub components: &'a [Component],
-    /// Names of the cycle's phases.
-    pub phases: &'a [String],
+    pub history: &'a History,
     /// Its engine, for the operating points.
     pub fuel_map: Option<FuelMap>,
     /// Fuel in L/100 km of each phase group and of the `total`, in the order of the plot.

@@ -24,13 +24,23 @@ pub(super) struct Panel {
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
+    /// Whether the first column of the picture's table is the horizontal axis.
+    of_table: bool,
 }
 
 impl Panel {
     /// Draws grid, ticks and titles. The horizontal ticks and title are left out of a panel that
     /// shares them with the one below.
     pub fn draw(figure: &mut Figure, rect: Rect, x: Axis, y: Axis, with_x: bool) -> Self {
-        let panel = Panel { rect, x, y };
+        Self::drawn(figure, Panel { rect, x, y, of_table: false }, with_x)
+    }
+
+    /// The same, of a picture whose table has the horizontal axis as its first column: the frame tells its ends.
+    pub fn over_table(figure: &mut Figure, rect: Rect, x: Axis, y: Axis, with_x: bool) -> Self {
+        Self::drawn(figure, Panel { rect, x, y, of_table: true }, with_x)
+    }
+
+    fn drawn(figure: &mut Figure, panel: Self, with_x: bool) -> Self {
         let mut svg = String::new();
         // Writing SVG into a String has no way to fail; the data would still show without a frame.
         if panel.frame(&mut svg, figure.size(), with_x).is_ok() {
@@ -46,7 +56,8 @@ impl Panel {
 
     /// The border of the plot, again, for areas and lines cover the half of the axis lines.
     pub fn outline(&self, figure: &mut Figure) {
-        let attributes = format!("class=\"plot\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"3\"");
+        let ends = if self.of_table { format!(" data-x0=\"{:?}\" data-x1=\"{:?}\"", self.x.low, self.x.high) } else { String::new() };
+        let attributes = format!("class=\"plot\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"3\"{ends}");
         figure.rect(self.rect, &attributes);
     }
 
@@ -60,7 +71,8 @@ impl Panel {
         let mut builder = ChartBuilder::on(&area);
         builder.y_label_area_size(units(LEFT) as i32).x_label_area_size(below);
         let mut chart = builder.build_cartesian_2d(Scale(&self.x), Scale(&self.y))?;
-        let text = |size: f64| ("sans-serif", size * UNITS * FONT);
+        // Plotters takes whole sizes and drops the rest.
+        let text = |size: f64| ("sans-serif", (size * UNITS * FONT).ceil());
         let mut mesh = chart.configure_mesh();
         mesh.max_light_lines(0)
             .bold_line_style(ShapeStyle::from(&RGBColor(222, 222, 222)).stroke_width(2))

@@ -1,11 +1,12 @@
 //! The plots of every kind of run.
-use cvtcycle::report::{FuelMap, PlotRun, driveline, fuel_bars, losses, operating_points, pressure, temperatures};
-use cvtcycle::results::{Component, Row};
+use cvtcycle::report::{FuelMap, Picture, PlotRun, driveline, fuel_bars, losses, operating_points, pressure, temperatures};
+use cvtcycle::results::columns::columns_for;
+use cvtcycle::results::{Component, History, Row};
 
-use super::{phases, rows, run};
+use super::{history, phases, rows, run};
 
 /// All plots of a run, with their names.
-pub fn all(run: &PlotRun) -> Vec<(&'static str, String)> {
+pub fn all(run: &PlotRun) -> Vec<(&'static str, Picture)> {
     vec![
         ("driveline", driveline(run)),
         ("pressure", pressure(run)),
@@ -17,7 +18,7 @@ pub fn all(run: &PlotRun) -> Vec<(&'static str, String)> {
 }
 
 /// Every kind of run, ordinary and not, with its plots.
-pub fn every_plot() -> Vec<(String, String)> {
+pub fn every_plot() -> Vec<(String, Picture)> {
     let phases = phases();
     let odd = "A <very> long & \"quoted\" name ]]> with \u{1} and \u{1f697} that goes on and on, \
                far beyond the right-hand edge of whatever picture it could be asked to head";
@@ -46,20 +47,25 @@ pub fn every_plot() -> Vec<(String, String)> {
     ];
     let mut plots = Vec::new();
     for (name, cvt, rows) in &cases {
-        let mut run = run(name, *cvt, rows, &phases);
-        plots.extend(all(&run).into_iter().map(|(plot, svg)| (format!("{name}: {plot}"), svg)));
-        run.fuel_map = None;
-        run.group_fuel = vec![("<odd> & so on".into(), f64::NAN), ("total".into(), 0.0)];
-        run.components = &[];
-        plots.extend(all(&run).into_iter().map(|(plot, svg)| (format!("{name} bare: {plot}"), svg)));
+        let full = history(*cvt, rows, &phases);
+        let plain = run(name, &full);
+        plots.extend(all(&plain).into_iter().map(|(plot, picture)| (format!("{name}: {plot}"), picture)));
+        let bare = History::of(rows, &columns_for(*cvt, &[]), &[]);
+        let group_fuel = vec![("<odd> & so on".into(), f64::NAN), ("total".into(), 0.0)];
+        let bare = PlotRun { history: &bare, fuel_map: None, group_fuel, ..plain };
+        plots.extend(all(&bare).into_iter().map(|(plot, picture)| (format!("{name} bare: {plot}"), picture)));
     }
-    let (a, b) = (&cases[0].2, &cases[1].2);
-    let runs = [run("cvt", true, a, &phases), run("manual", false, b, &phases), run(odd, true, a, &phases)];
+    let (a, b) = (history(true, &cases[0].2, &phases), history(false, &cases[1].2, &phases));
+    let runs = [run("cvt", &a), run("manual", &b), run(odd, &a)];
     plots.push(("three runs".into(), fuel_bars(&runs)));
     plots.push(("no runs".into(), fuel_bars(&[])));
+    let names: Vec<String> = (0..40).map(|k| format!("car {k}")).collect();
+    let many: Vec<PlotRun> = names.iter().map(|name| run(name, &a)).collect();
+    plots.push(("twelve runs".into(), fuel_bars(&many[..12])));
+    plots.push(("forty runs".into(), fuel_bars(&many)));
+    plots.push(("no steps at all".into(), driveline(&run("", &History::default()))));
     let broken = FuelMap { speed_rad_s: vec![100.0, 200.0], torque_nm: vec![1.0], bsfc_kg_j: vec![vec![]], full_load_nm: vec![f64::NAN] };
-    let mut odd_map = run("odd map", true, a, &phases);
-    odd_map.fuel_map = Some(broken);
+    let odd_map = PlotRun { fuel_map: Some(broken), ..run("odd map", &a) };
     plots.push(("odd map".into(), operating_points(&odd_map)));
     plots
 }

@@ -1,6 +1,7 @@
 //! Made-up runs.
 use cvtcycle::report::{FuelMap, PlotRun};
-use cvtcycle::results::{Component, Flags, Row};
+use cvtcycle::results::columns::columns_for;
+use cvtcycle::results::{Component, Flags, History, Row};
 
 pub mod every;
 
@@ -134,17 +135,13 @@ pub fn phases() -> Vec<String> {
     ["ECE 1", "ECE 2", "ECE 3", "ECE 4", "EUDC"].map(String::from).to_vec()
 }
 
-pub fn run<'a>(name: &'a str, cvt: bool, rows: &'a [Row], phases: &'a [String]) -> PlotRun<'a> {
+pub fn history(cvt: bool, rows: &[Row], phases: &[String]) -> History {
     let components: &[Component] = if cvt { &CVT } else { &MANUAL };
-    let more = if cvt { 0.4 } else { 0.0 };
+    History::of(rows, &columns_for(cvt, components), phases)
+}
+
+pub fn run<'a>(name: &'a str, history: &'a History) -> PlotRun<'a> {
+    let more = if history.is_cvt() { 0.4 } else { 0.0 };
     let group_fuel = [("ECE 15", 8.9 + more), ("EUDC", 6.1), ("total", 7.12 + more / 2.0)];
-    PlotRun {
-        name,
-        cvt,
-        rows,
-        components,
-        phases,
-        fuel_map: Some(fuel_map()),
-        group_fuel: group_fuel.map(|(group, fuel)| (group.to_string(), fuel)).to_vec(),
-    }
+    PlotRun { name, history, fuel_map: Some(fuel_map()), group_fuel: group_fuel.map(|(group, fuel)| (group.to_string(), fuel)).to_vec() }
 }

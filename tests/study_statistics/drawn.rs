@@ -1,5 +1,6 @@
 //! Pictures of made-up statistics: few and many factors, long names, tiny and negative values, nothing at all.
 
+use cvtcycle::report::Picture;
 use cvtcycle::report::study::{
     ConvergencePlot, DistributionPlot, DistributionSeries, EffectFactor, EffectsPlot, RankPlot, Shown, SobolPlot, TornadoPlot,
     convergence_plot, distribution_plot, effects_plot, rank_plot, sobol_plot, tornado_plot,
@@ -64,7 +65,7 @@ fn design(factors: usize, samples: usize, scale: f64) -> Vec<Vec<f64>> {
     columns
 }
 
-fn sobol(factors: usize, samples: usize, scale: f64) -> Vec<(String, String)> {
+fn sobol(factors: usize, samples: usize, scale: f64) -> Vec<(String, Picture)> {
     let columns = design(factors, samples, scale);
     let blocks = Blocks { a: &columns[0], b: &columns[1], ab: columns[2..].iter().map(Vec::as_slice).collect() };
     let (names, quick) = (names(factors), Bootstrap { resamples: 100, seed: 1 });
@@ -75,7 +76,7 @@ fn sobol(factors: usize, samples: usize, scale: f64) -> Vec<(String, String)> {
     ]
 }
 
-fn ranks(factors: usize, scale: f64) -> (String, String) {
+fn ranks(factors: usize, scale: f64) -> (String, Picture) {
     let columns: Vec<Vec<f64>> = (0..factors).map(|i| draws(i as u64, 200)).collect();
     let output: Vec<f64> = (0..200)
         .map(|r| scale * (0..factors).map(|i| weight(i) * (columns[i][r] - 0.2 * columns[i][(r + 7) % 200])).sum::<f64>())
@@ -85,7 +86,7 @@ fn ranks(factors: usize, scale: f64) -> (String, String) {
     (format!("ranks {factors}"), rank_plot(&plot))
 }
 
-fn bars(factors: usize, scale: f64) -> (String, String) {
+fn bars(factors: usize, scale: f64) -> (String, Picture) {
     let entry = |i: usize| match i % 4 {
         0 => vec![("0.08".to_owned(), 7.0 - weight(i)), ("0.12".to_owned(), 7.0 + 0.8 * weight(i))],
         1 => vec![("soak".to_owned(), 7.0 - weight(i)), ("half warm".to_owned(), 7.0 - 0.5 * weight(i))],
@@ -99,7 +100,7 @@ fn bars(factors: usize, scale: f64) -> (String, String) {
     (format!("tornado {factors}"), tornado_plot(&plot))
 }
 
-fn effects(factors: usize, scale: f64) -> (String, String) {
+fn effects(factors: usize, scale: f64) -> (String, Picture) {
     let labels = |i: usize| -> Vec<String> {
         match i % 4 {
             0 => [-10.0, 0.0, 25.0, 40.0].map(|x: f64| (x * scale).to_string()).to_vec(),
@@ -130,7 +131,7 @@ pub fn sample(seed: u64, count: usize, centre: f64, width: f64) -> Vec<f64> {
     draws(seed, count).iter().zip(draws(seed + 50, count)).map(|(u, v)| centre + width * (u + v * v - 0.9)).collect()
 }
 
-fn distributions(scale: f64) -> Vec<(String, String)> {
+fn distributions(scale: f64) -> Vec<(String, Picture)> {
     let (subject, first, second) =
         (sample(1, 4000, 7.4 * scale, 0.8 * scale), sample(2, 4000, 6.9 * scale, 0.5 * scale), sample(3, 20, 7.1 * scale, scale));
     let one: Vec<f64> = subject.iter().zip(&first).map(|(a, b)| a - b).collect();
@@ -148,7 +149,7 @@ fn distributions(scale: f64) -> Vec<(String, String)> {
 }
 
 /// Statistics without numbers, of one number, of constants.
-fn odd() -> Vec<(String, String)> {
+fn odd() -> Vec<(String, Picture)> {
     let shown = Shown::default();
     let gap = [f64::NAN; 4];
     let cases: [(&str, Vec<&[f64]>); 6] = [
@@ -191,7 +192,7 @@ fn odd() -> Vec<(String, String)> {
 }
 
 /// All of them, with names.
-pub fn every_plot() -> Vec<(String, String)> {
+pub fn every_plot() -> Vec<(String, Picture)> {
     let mut plots = odd();
     for scale in [1.0, -1.0, 1e-7] {
         let mut of_scale = distributions(scale);

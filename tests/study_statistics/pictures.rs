@@ -1,6 +1,7 @@
 //! Pictures are sound, readable and true.
 
 use super::drawn::{every_plot, names, sample};
+use cvtcycle::report::Picture;
 use cvtcycle::report::study::{
     DistributionPlot, DistributionSeries, Shown, SobolPlot, TornadoPlot, distribution_plot, sobol_plot, tornado_plot,
 };
@@ -55,9 +56,10 @@ fn text_box(node: Node) -> [f64; 4] {
 fn every_picture_is_sound_and_its_texts_fit_and_stay_apart() {
     let plots = every_plot();
     assert!(plots.len() > 70);
-    for (name, svg) in plots {
+    for (name, picture) in plots {
+        let svg = &picture.svg;
         assert!(svg.len() < 400_000, "{name}: {} bytes", svg.len());
-        let document = Document::parse(&svg).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let document = Document::parse(svg).unwrap_or_else(|e| panic!("{name}: {e}"));
         let root = document.root_element();
         let (width, height) = (4.0 * number(root, "width"), 4.0 * number(root, "height"));
         assert_eq!(root.attribute("viewBox"), Some(format!("0 0 {width} {height}").as_str()), "{name}");
@@ -74,6 +76,10 @@ fn every_picture_is_sound_and_its_texts_fit_and_stay_apart() {
             let said = text.text().unwrap_or("");
             assert!(!said.contains("NaN") && !said.contains("inf "), "{name}: {said}");
         }
+        // At A4 a figure of 880 px has texts of 6.6 points.
+        assert!(width <= 4.0 * 880.0 && height <= 4.0 * 1250.0, "{name}: {width} x {height}");
+        let size = |t: &Node| t.attribute("font-size").unwrap_or("").trim_end_matches("px").parse::<f64>().unwrap();
+        assert!(texts.iter().all(|t| size(t) >= 44.0), "{name}: small text");
         let boxes: Vec<([f64; 4], &str)> =
             texts.iter().map(|t| (text_box(*t), t.text().unwrap_or("").trim())).filter(|(_, text)| !text.is_empty()).collect();
         for (i, (a, text)) in boxes.iter().enumerate() {
@@ -87,31 +93,66 @@ fn every_picture_is_sound_and_its_texts_fit_and_stay_apart() {
 }
 
 #[test]
-fn legends_lie_beside_the_data() {
+fn legends_lie_below_the_data() {
     let mut entries = 0;
-    for (name, svg) in every_plot() {
-        let document = Document::parse(&svg).unwrap();
-        let right = class(&document, "plot").map(|plot| number(plot, "x") + number(plot, "width")).fold(0.0, f64::max);
-        assert!(right > 0.0, "{name}");
+    for (name, picture) in every_plot() {
+        let document = Document::parse(&picture.svg).unwrap();
+        let bottom = class(&document, "plot").map(|plot| number(plot, "y") + number(plot, "height")).fold(0.0, f64::max);
+        assert!(bottom > 0.0, "{name}");
         for node in class(&document, "legend").flat_map(|legend| legend.descendants()) {
-            let Some(x) = ["x", "x1"].map(|key| number(node, key)).into_iter().find(|x| x.is_finite()) else { continue };
+            let Some(y) = ["y", "y1"].map(|key| number(node, key)).into_iter().find(|y| y.is_finite()) else { continue };
             entries += 1;
-            assert!(x > right, "{name}");
+            assert!(y > bottom, "{name}");
         }
     }
     assert!(entries > 200);
 }
 
 #[test]
-fn what_is_cut_is_still_in_the_file() {
-    for (name, svg) in every_plot().into_iter().filter(|(name, _)| name.contains(" 30 ")) {
+fn every_mark_has_its_row_and_every_row_all_its_cells() {
+    let mut marks = 0;
+    for (name, Picture { svg, table }) in every_plot() {
+        assert!(!table.columns.is_empty() && table.rows.iter().all(|row| row.len() == table.columns.len()), "{name}");
+        let said = |cell: &String| !cell.contains("NaN") && !cell.contains("inf");
+        assert!(table.rows.iter().flatten().all(said) && table.columns.iter().all(|(column, _)| !column.is_empty()), "{name}");
         let document = Document::parse(&svg).unwrap();
+        let over_table = document.descendants().any(|n| n.has_attribute("data-x0"));
+        for node in document.descendants().filter(|n| ["bar", "mark", "interval"].iter().any(|c| n.attribute("class") == Some(c))) {
+            marks += 1;
+            match node.attribute("data-row").map(|row| row.parse::<usize>().unwrap()) {
+                Some(row) => assert!(row < table.rows.len(), "{name}: {row}"),
+                None => assert!(over_table, "{name}: a mark without its row"),
+            }
+        }
+    }
+    assert!(marks > 2000);
+}
+
+#[test]
+fn what_is_cut_is_still_in_the_file() {
+    for (name, picture) in every_plot().into_iter().filter(|(name, _)| name.contains(" 30 ")) {
+        let document = Document::parse(&picture.svg).unwrap();
         let titles: Vec<&str> = document.descendants().filter(|n| n.tag_name().name() == "title").filter_map(|n| n.text()).collect();
         let shown: Vec<&str> = document.descendants().filter(|n| n.tag_name().name() == "text").filter_map(|n| n.text()).collect();
-        // Convergence is drawn of the seven factors with the largest total index, here the first ones or so.
-        let least = if name.starts_with("conv") { 4 } else { 30 };
-        for full in names(least) {
-            assert!(titles.contains(&full.as_str()) || shown.iter().any(|text| text.trim() == full), "{name} lacks {full}");
+        // Convergence is drawn of the seven factors with the largest total index, effects of the twelve largest: here the first ones or so.
+        let least = if name.starts_with("conv") {
+            4
+        } else if name.starts_with("effects") {
+            8
+        } else {
+            30
+        };
+        for (k, full) in names(30).into_iter().enumerate() {
+            assert!(picture.table.rows.iter().flatten().any(|cell| *cell == full), "{name}: {full} is not in the table");
+            // A factor with one level has no effect, and is drawn after all others.
+            if k >= least || name.starts_with("effects") && k % 4 == 3 {
+                continue;
+            }
+            assert!(
+                titles.iter().any(|title| title.starts_with(&full))
+                    || shown.iter().any(|text| text.trim() == full || text.trim() == format!("{full} [\u{b0}C]")),
+                "{name} lacks {full}"
+            );
         }
         assert!(shown.iter().any(|text| text.contains('\u{2026}') && text.starts_with("trans")), "{name}");
     }
@@ -133,8 +174,8 @@ fn bars_are_as_long_as_their_indices_and_sorted() {
         resamples: 1000,
     };
     let names = ["a".to_owned(), "b".to_owned(), "c".to_owned()];
-    let svg = sobol_plot(&SobolPlot { shown: Shown { output: "Fuel", ..Shown::default() }, names: &names, indices: &indices });
-    let document = Document::parse(&svg).unwrap();
+    let picture = sobol_plot(&SobolPlot { shown: Shown { output: "Fuel", ..Shown::default() }, names: &names, indices: &indices });
+    let document = Document::parse(&picture.svg).unwrap();
     let rows: Vec<&str> = class(&document, "row").filter_map(|n| n.text()).collect();
     assert_eq!(rows, ["b", "a", "c"]);
     let widths: Vec<f64> = class(&document, "bar").map(|bar| number(bar, "width")).collect();
@@ -152,7 +193,12 @@ fn bars_are_as_long_as_their_indices_and_sorted() {
     }
     assert_eq!(spans.len(), 6);
     let said: Vec<&str> = document.descendants().filter(|n| n.tag_name().name() == "text").filter_map(|n| n.text()).collect();
-    assert!(said.join(" ").contains("0.560 (0.510 to 0.610)") && said.contains(&"512 samples; 2 left out, for a"), "{said:?}");
+    assert!(
+        said.join(" ").contains("0.560 (0.510 to 0.610)") && said.join(" ").contains("512 samples; 2 left out, for a value"),
+        "{said:?}"
+    );
+    let cells: Vec<&str> = picture.table.rows[1].iter().map(String::as_str).collect();
+    assert_eq!(cells, ["a", "0.100", "0.080", "0.120", "0.200", "0.170", "0.230"]);
 }
 
 #[test]
@@ -163,7 +209,7 @@ fn a_tornado_says_where_low_and_high_lead() {
     };
     let found = tornado(7.0, &[input("falling", 7.2, 6.9), input("rising", 6.5, 7.4), input("one side", 7.1, 7.05)]);
     let shown = Shown { output: "Fuel", unit: "L/100 km", subject: "a study" };
-    let svg = tornado_plot(&TornadoPlot { shown, tornado: &found });
+    let Picture { svg, table } = tornado_plot(&TornadoPlot { shown, tornado: &found });
     let document = Document::parse(&svg).unwrap();
     let rows: Vec<&str> = class(&document, "row").filter_map(|n| n.text()).collect();
     assert_eq!(rows, ["rising", "falling", "one side"]);
@@ -177,6 +223,10 @@ fn a_tornado_says_where_low_and_high_lead() {
     assert!(heights[4] < heights[5] && (heights[2] - heights[3]).abs() < 1.0, "ends on one side lie below each other");
     assert!(svg.contains("Base: 7.00 L/100 km") || svg.contains("Base: 7.000 L/100 km"), "{svg}");
     assert!(svg.contains("Change against the base [L/100 km]"));
+    let cells: Vec<&str> = table.rows[0].iter().map(String::as_str).collect();
+    assert_eq!(cells, ["rising", "0.1", "\u{2212}0.500", "0.3", "0.400", "0.900"]);
+    let last = table.columns.last().unwrap();
+    assert_eq!((last.0.as_str(), last.1), ("Swing", "L/100 km"));
 }
 
 /// What a histogram holds, in percent, and the width of its first bin: the area under its outline, whose steps are relative, h along and v
@@ -209,7 +259,7 @@ fn area(document: &Document) -> f64 {
     area / percent / x
 }
 
-fn lone(values: &[f64]) -> String {
+fn lone(values: &[f64]) -> Picture {
     let series = [DistributionSeries { name: "cvt - manual", values }];
     let shown = Shown { output: "Fuel, total", unit: "L/100 km", subject: "a study" };
     distribution_plot(&DistributionPlot { shown, series: &series, differences: true })
@@ -220,9 +270,11 @@ fn a_histogram_holds_every_value_once() {
     // Tens of equally many values, the largest on the last edge; zero is on the axis and no value at it. Bins are 1 wide, one
     // below zero and 10 above.
     let steps: Vec<f64> = (0..1000).map(|i| f64::from(i % 10) + 1.0).collect();
-    let svg = lone(&steps);
-    let total = 11.0 * area(&Document::parse(&svg).unwrap());
+    let picture = lone(&steps);
+    let total = 11.0 * area(&Document::parse(&picture.svg).unwrap());
     assert!((total - 100.0).abs() < 1.5, "{total} %");
+    let in_bin: f64 = picture.table.rows.iter().map(|row| row[3].parse::<f64>().unwrap()).sum();
+    assert!((in_bin - 100.0).abs() < 0.6 && picture.table.rows.len() == 11 && picture.table.rows[10][4] == "100.0", "{in_bin} %");
 }
 
 #[test]
@@ -231,7 +283,7 @@ fn the_share_above_zero_is_written_and_zero_marked() {
     let above = values.iter().filter(|x| **x > 0.0).count();
     let mut gaps = values.clone();
     gaps.push(f64::NAN);
-    let svg = lone(&gaps);
+    let svg = lone(&gaps).svg;
     assert!(svg.contains(&format!("Above zero in {above} of 777 pairs")) && svg.contains("1 missing"));
     assert!(svg.contains("Difference: Fuel, total [L/100 km]"));
     let document = Document::parse(&svg).unwrap();

@@ -1,9 +1,8 @@
 //! Figures of the belt.
 
 use super::reference::{At, HIGH, LOW, RPM, Reference};
-use super::{axes, plot, sweep};
+use super::{Line, LinePanel, axes, plot, sweep};
 use cvtcycle::lubricant::{BandFriction, ZERO_DEGC_K};
-use cvtcycle::report::{Line, LinePanel};
 use cvtcycle::transmission::cvt::variator::{Belt, BeltState, Formulation, Geometry, sliding_speed_m_s};
 
 const TORQUE: &str = "Output torque at the secondary [Nm]";

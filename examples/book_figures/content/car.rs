@@ -1,11 +1,10 @@
 //! Figures of fluid, engine, road load, warm-up and measured maps.
 
 use super::reference::{RPM, Reference};
-use super::{axes, plot, sweep};
+use super::{Line, LinePanel, axes, plot, sweep};
 use cvtcycle::cycle;
 use cvtcycle::lubricant::ZERO_DEGC_K;
 use cvtcycle::numeric::Grid;
-use cvtcycle::report::{Line, LinePanel};
 use cvtcycle::run::{Conditions, Start, drive};
 use cvtcycle::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 use cvtcycle::transmission::loss_map::{LossMap, MapPoint};

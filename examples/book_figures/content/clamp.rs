@@ -1,8 +1,7 @@
 //! Figures of the two controllers.
 
 use super::reference::{RPM, Reference};
-use super::{axes, plot, sweep};
-use cvtcycle::report::{Line, LinePanel};
+use super::{Line, axes, plot, sweep};
 use cvtcycle::transmission::cvt::controller::{ClampLaw, ClampSignals, RatioDemand};
 use cvtcycle::transmission::cvt::variator::{BeltAtRatio, Formulation};
 
@@ -86,12 +85,11 @@ fn clamp_map(r: &Reference) -> String {
     let over_speed: Vec<Line> =
         throttles.iter().map(|&u| sweep(&format!("throttle {:.0} %", 100.0 * u), 800.0, 4000.0, 200, |n| bar(1.5, n, u, 80.0))).collect();
     let y = "Secondary pressure [bar]";
-    let panel = |heading: &str, x: &str, lines| LinePanel { ..axes(heading, x, y, lines) };
     plot(
         "Clamp map of the Rover",
         "PC-1 and PC-2 between floor and cap, oil at 80 degC",
         "Secondary pressure against belt ratio and against engine speed at four throttle openings.",
         "",
-        vec![panel("2500 rpm", "Belt ratio I [-]", over_ratio), panel("I = 1.5", "Engine speed [rpm]", over_speed)],
+        vec![axes("2500 rpm", "Belt ratio I [-]", y, over_ratio), axes("I = 1.5", "Engine speed [rpm]", y, over_speed)],
     )
 }

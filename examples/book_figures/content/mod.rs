@@ -8,7 +8,7 @@ mod parts;
 mod reference;
 pub mod tables;
 
-use cvtcycle::report::{Line, LinePanel, LinePlot};
+use cvtcycle::report::chart::{Chart, ChartPanel, Look, Points, chart};
 use std::path::Path;
 
 /// A page of the book.
@@ -80,13 +80,55 @@ fn sweep(name: &str, low: f64, high: f64, count: u32, f: impl Fn(f64) -> f64) ->
     Line { name: name.to_owned(), points: (0..=count).map(|i| (at(i), f(at(i)))).collect() }
 }
 
+/// Points under a name; lines of the same name look the same in every pair of axes.
+#[derive(Clone)]
+struct Line {
+    name: String,
+    points: Points,
+}
+
+/// One pair of axes.
+struct LinePanel {
+    heading: String,
+    x: &'static str,
+    y: &'static str,
+    /// Values that the vertical axis takes in beside those of the lines.
+    with_y: Vec<f64>,
+    lines: Vec<Line>,
+}
+
 /// One pair of axes with its titles; its vertical axis takes in zero.
-fn axes(heading: &str, x: &str, y: &str, lines: Vec<Line>) -> LinePanel {
-    LinePanel { heading: heading.to_owned(), x: x.to_owned(), y: y.to_owned(), with_y: vec![0.0], lines }
+fn axes(heading: &str, x: &'static str, y: &'static str, lines: Vec<Line>) -> LinePanel {
+    LinePanel { heading: heading.to_owned(), x, y, with_y: vec![0.0], lines }
 }
 
 /// A named plot.
 fn plot(title: &str, subject: &str, desc: &str, legend: &str, panels: Vec<LinePanel>) -> String {
+    let mut names: Vec<String> = Vec::new();
+    for line in panels.iter().flat_map(|panel| &panel.lines).filter(|line| !line.name.is_empty()) {
+        if !names.contains(&line.name) {
+            names.push(line.name.clone());
+        }
+    }
+    let look = |name: &str| Look { index: names.iter().position(|other| other == name).unwrap_or(0), dotted: false };
+    let panel = |of: LinePanel| ChartPanel {
+        heading: of.heading,
+        x_title: of.x,
+        y_title: of.y,
+        with_y: of.with_y,
+        series: of.lines.into_iter().map(|line| (look(&line.name), line.points)).collect(),
+        stacked: false,
+    };
     let text = |s: &str| s.to_owned();
-    cvtcycle::report::line_plot(&LinePlot { title: text(title), subject: text(subject), desc: text(desc), legend: text(legend), panels })
+    let picture = chart(&Chart {
+        title: text(title),
+        subject: text(subject),
+        description: text(desc),
+        panels: panels.into_iter().map(panel).collect(),
+        own_x: true,
+        legend: text(legend),
+        names: names.iter().map(|name| (look(name), name.clone())).collect(),
+        ..Chart::default()
+    });
+    picture.svg
 }

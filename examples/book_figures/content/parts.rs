@@ -1,9 +1,8 @@
 //! Figures of pump, shafts, final drive, launch clutch and manual box.
 
 use super::reference::{RPM, Reference};
-use super::{axes, plot, sweep};
+use super::{Line, LinePanel, axes, plot, sweep};
 use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::report::{Line, LinePanel};
 use cvtcycle::results::Component;
 use cvtcycle::transmission::cvt::pump::{Pump, PumpKind};
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use cvtcycle::config::Problem;
 use cvtcycle::cycle::Cycle;
 use cvtcycle::report::{self, PlotRun};
+use cvtcycle::results::History;
 use cvtcycle::results::columns::columns_for;
 use cvtcycle::results::files::OutputDir;
 use cvtcycle::results::summary::{Driven, RunSummary, Summary};
@@ -68,44 +69,35 @@ pub fn write(
     driven: &[Driven],
 ) -> Result<Written, Problem> {
     dir.write("summary.json", |out| out.write_all(json.as_bytes()))?;
-    let parts: Vec<_> = driven.iter().map(|car| components(car.setup.transmission())).collect();
+    let phases = if cycle.phases.is_empty() { std::slice::from_ref(&cycle.name) } else { &cycle.phases };
+    let columns = |car: &Driven| columns_for(car.setup.transmission().is_cvt(), &components(car.setup.transmission()));
+    let histories: Vec<History> = driven.iter().map(|car| History::of(&car.outcome.rows, &columns(car), phases)).collect();
     let mut runs = Vec::new();
-    for ((car, run), parts) in driven.iter().zip(&summary.runs).zip(&parts) {
-        let cvt = car.setup.transmission().is_cvt();
-        let rows = &car.outcome.rows;
-        let columns = columns_for(cvt, parts);
-        let phases = if cycle.phases.is_empty() { std::slice::from_ref(&cycle.name) } else { &cycle.phases };
+    for ((car, run), history) in driven.iter().zip(&summary.runs).zip(&histories) {
+        let (rows, columns) = (&car.outcome.rows, columns(car));
         if format != TraceFormat::Parquet {
             dir.write(&format!("trace_{}.csv", car.name), |out| write_trace(out, &columns, rows, phases))?;
         }
         if format != TraceFormat::Csv {
             dir.write(&format!("trace_{}.parquet", car.name), |out| write_trace_parquet(out, &columns, rows, phases))?;
         }
-        let plot = PlotRun {
-            name: car.name,
-            cvt,
-            rows,
-            components: parts,
-            phases,
-            fuel_map: Some(fuel_map(car.setup)),
-            group_fuel: group_fuel(run),
-        };
+        let plot = PlotRun { name: car.name, history, fuel_map: Some(fuel_map(car.setup)), group_fuel: group_fuel(run) };
         write_plots(&mut dir, &plot)?;
         runs.push(plot);
     }
-    put(&mut dir, "fuel_comparison.svg", &report::fuel_bars(&runs))?;
+    put(&mut dir, "fuel_comparison.svg", &report::fuel_bars(&runs).svg)?;
     Written::commit(dir)
 }
 
 fn write_plots(dir: &mut OutputDir, run: &PlotRun) -> Result<(), Problem> {
     let mut plots = vec![("driveline", report::driveline(run))];
-    if run.cvt {
+    if run.history.is_cvt() {
         plots.push(("pressure", report::pressure(run)));
     }
     plots.push(("temperatures", report::temperatures(run)));
     plots.push(("losses", report::losses(run)));
     plots.push(("operating_points", report::operating_points(run)));
-    plots.into_iter().try_for_each(|(kind, svg)| put(dir, &format!("{kind}_{}.svg", run.name), &svg))
+    plots.into_iter().try_for_each(|(kind, picture)| put(dir, &format!("{kind}_{}.svg", run.name), &picture.svg))
 }
 
 fn put(dir: &mut OutputDir, name: &str, text: &str) -> Result<(), Problem> {

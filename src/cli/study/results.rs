@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use cvtcycle::config::Problem;
-use cvtcycle::report::ambient::{ambient_fuel, ambient_penalty, warm_up};
+use cvtcycle::review::study_pictures::study_pictures;
 use cvtcycle::study::ambient::{WarmUp, warm_ups};
 use cvtcycle::study::store;
 use cvtcycle::study::{Answer, Frame, Outline, answer};
@@ -45,24 +45,10 @@ impl Results {
     pub fn files(&self, found: &store::Study) -> Result<Vec<(String, Vec<u8>)>, Vec<Problem>> {
         let mut files = vec![("statistics.json".to_owned(), self.json()?.into_bytes())];
         files.extend(csv_files::all(&self.answer, &self.outline));
-        let pictures = Frame::new(&self.outline, found).and_then(|frame| self.pictures(&frame)).map_err(|problem| vec![problem])?;
-        files.extend(pictures.into_iter().map(|(name, svg)| (name, svg.into_bytes())));
+        let pictures = Frame::new(&self.outline, found).and_then(|frame| study_pictures(&self.answer, &frame, &self.warm_ups));
+        let pictures = pictures.map_err(|problem| vec![problem])?;
+        files.extend(pictures.into_iter().map(|(name, picture)| (format!("{name}.svg"), picture.svg.into_bytes())));
         Ok(files)
-    }
-
-    fn pictures(&self, frame: &Frame) -> Result<Vec<(String, String)>, Problem> {
-        let title = &self.outline.title;
-        // Of a matrix the pictures below say more.
-        let mut list = if self.answer.matrix.is_some() { Vec::new() } else { super::pictures::all(&self.answer, frame)? };
-        if let Some(matrix) = &self.answer.matrix {
-            list.push(("ambient_fuel.svg".to_owned(), ambient_fuel(matrix, title)));
-            list.extend(ambient_penalty(matrix, title).map(|svg| ("ambient_penalty.svg".to_owned(), svg)));
-            for (k, start) in matrix.starts.iter().enumerate().filter(|_| !self.warm_ups.is_empty()) {
-                let word: String = start.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect();
-                list.push((format!("warm_up_{word}.svg"), warm_up(matrix, &self.warm_ups, k, title)));
-            }
-        }
-        Ok(list)
     }
 }
 

@@ -2,13 +2,12 @@
 
 use super::tables::{clean, oil_degc, rpm};
 use crate::lubricant::ZERO_DEGC_K;
-use crate::report::chart::{Chart, ChartPanel, Look, chart};
+use crate::report::chart::{Chart, ChartPanel, Look, Points, chart};
 use crate::rig::BenchPoint;
 use crate::rig::transmission::{Branch, Conditions, Loop, Piece, Stage, SteadyPoint, StripDown, TwoBoxes};
 
 /// File name and SVG text.
 pub type Picture = (String, String);
-type Points = Vec<(f64, f64)>;
 
 const SPEED: &str = "Input speed [rpm]";
 const LOSS: &str = "Torque loss [Nm]";
@@ -71,8 +70,8 @@ fn by_temperature<T>(rows: &[T], set: fn(&T) -> &BenchPoint, ratio: f64, y: impl
     distinct(rows, |r| oil_degc(set(r))).into_iter().enumerate().map(|(k, t)| (line(k), line_at(t))).collect()
 }
 
-fn panel(heading: &str, y_title: &str, series: Vec<(Look, Points)>) -> ChartPanel {
-    ChartPanel { heading: heading.to_owned(), y_title: y_title.to_owned(), series, ..ChartPanel::default() }
+fn panel(heading: &str, y_title: &'static str, series: Vec<(Look, Points)>) -> ChartPanel {
+    ChartPanel { heading: heading.to_owned(), y_title, series, ..ChartPanel::default() }
 }
 
 fn words(what: &str, names: &[(Look, String)]) -> String {
@@ -85,21 +84,21 @@ fn against_speed(
     rows: &[SteadyPoint],
     subject: &Subject,
     ratio: f64,
-    (file, title, y_title): (&str, &str, &str),
+    (file, title, y_title): (&str, &str, &'static str),
     y: fn(&SteadyPoint) -> f64,
 ) -> Picture {
     let names = degrees(&distinct(rows, |r| oil_degc(&r.set)));
-    let svg = chart(&Chart {
+    let picture = chart(&Chart {
         title: title.to_owned(),
         subject: subject.of(ratio, ""),
         description: words(&format!("{title} against input speed, a line for each temperature of the bulk oil"), &names),
-        x_title: SPEED.to_owned(),
+        x_title: SPEED,
         panels: vec![panel("", y_title, by_temperature(rows, |r| &r.set, ratio, y))],
         legend: "Bulk oil".to_owned(),
         names,
         ..Chart::default()
     });
-    (subject.file(file, ratio), svg)
+    (subject.file(file, ratio), picture.svg)
 }
 
 /// Torque loss and secondary pressure against speed, a line a temperature (Figs 5-1 to 5-4).
@@ -128,20 +127,21 @@ pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
         };
         let panels =
             distinct(rows, |r| oil_degc(&r.set)).into_iter().map(|t| panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, lines(t))).collect();
-        let svg = chart(&Chart {
+        let picture = chart(&Chart {
             title: "Torque loss under load".to_owned(),
             subject: subject.of(ratio, ""),
             description: words(
                 "Torque loss against input speed, a panel for each temperature, a line for each torque at the output shaft",
                 &names,
             ),
-            x_title: SPEED.to_owned(),
+            x_title: SPEED,
             panels,
             same_y: true,
             legend: "Output torque".to_owned(),
             names: names.clone(),
+            ..Chart::default()
         });
-        (subject.file("loaded_loss", ratio), svg)
+        (subject.file("loaded_loss", ratio), picture.svg)
     };
     distinct(rows, |r| r.set.ratio).into_iter().map(of_ratio).collect()
 }
@@ -156,11 +156,11 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
             l.moments.iter().filter(|m| m.branch == branch).map(|m| (m.sump_k - ZERO_DEGC_K, y(m))).collect::<Points>()
         };
         let both = |y| vec![(line(1), on(Branch::Warming, y)), (line(2), on(Branch::Cooling, y))];
-        let svg = chart(&Chart {
+        let picture = chart(&Chart {
             title: "Temperature transient without load".to_owned(),
             subject: subject.of(l.ratio, &format!(", {speed} rpm")),
             description: words("Torque loss, and below it belt temperature, against bulk oil temperature", &names),
-            x_title: "Bulk oil [\u{b0}C]".to_owned(),
+            x_title: "Bulk oil [\u{b0}C]",
             panels: vec![
                 panel("Complete box", LOSS, both(|m| m.answer.total_nm())),
                 panel("Belt alone", LOSS, both(|m| m.answer.belt_nm())),
@@ -169,7 +169,7 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
             names: names.clone(),
             ..Chart::default()
         });
-        (subject.file("transient", l.ratio), svg)
+        (subject.file("transient", l.ratio), picture.svg)
     };
     loops.iter().map(picture).collect()
 }
@@ -185,17 +185,17 @@ pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
         };
         let lines = |t: f64| vec![(line(0), on(t, |r| r.first.answer.total_nm())), (line(1), on(t, |r| r.second.answer.total_nm()))];
         let temps = distinct(rows, |r| oil_degc(&r.first.set));
-        let svg = chart(&Chart {
+        let picture = chart(&Chart {
             title: "Torque loss of two boxes without load".to_owned(),
             subject: subject.of(ratio, &format!(", pressure of the second {} of the first", subject.conditions.pressure.second_box)),
             description: words("Torque loss against input speed, a panel for each temperature of the bulk oil", &names),
-            x_title: SPEED.to_owned(),
+            x_title: SPEED,
             panels: temps.into_iter().map(|t| panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, lines(t))).collect(),
             same_y: true,
             names: names.clone(),
             ..Chart::default()
         });
-        (subject.file("second_box", ratio), svg)
+        (subject.file("second_box", ratio), picture.svg)
     };
     distinct(rows, |r| r.first.set.ratio).into_iter().map(picture).collect()
 }
@@ -249,12 +249,13 @@ fn stages(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
             "Torque loss and secondary pressure against input speed after each part removed, a line for each temperature",
             &names,
         ),
-        x_title: SPEED.to_owned(),
+        x_title: SPEED,
         panels,
         legend: "Bulk oil".to_owned(),
         names,
         ..Chart::default()
     })
+    .svg
 }
 
 fn contributions(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
@@ -270,12 +271,14 @@ fn contributions(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
         title: "Contributions to the torque loss, from the strip-down".to_owned(),
         subject: subject.of(ratio, ", corrected for pressure"),
         description: words("Losses found by the strip-down, stacked, against input speed, a panel for each temperature", &names),
-        x_title: SPEED.to_owned(),
+        x_title: SPEED,
         panels: temps.into_iter().map(of).collect(),
         same_y: true,
         legend: "From the strip-down".to_owned(),
         names,
+        ..Chart::default()
     })
+    .svg
 }
 
 fn components(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
@@ -288,15 +291,16 @@ fn components(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
         lines.extend(own.into_iter().map(|(look, points)| (Look { dotted: true, ..look }, points)));
         lines
     };
-    let of = |piece: Piece| ChartPanel { from_zero: true, ..panel(piece_words(piece), LOSS, lines(piece)) };
+    let of = |piece: Piece| ChartPanel { with_y: vec![0.0], ..panel(piece_words(piece), LOSS, lines(piece)) };
     chart(&Chart {
         title: "Components from the strip-down, beside those of the model".to_owned(),
         subject: subject.of(ratio, ", corrected for pressure"),
         description: words("Loss of each component against input speed; dotted: its own loss in the complete box", &names),
-        x_title: SPEED.to_owned(),
+        x_title: SPEED,
         panels: Piece::ALL.into_iter().map(of).collect(),
         legend: "Bulk oil".to_owned(),
         names,
         ..Chart::default()
     })
+    .svg
 }

@@ -2,10 +2,11 @@
 
 use super::super::axis::Axis;
 use super::super::legend::Mark;
+use super::super::picture::{Picture, PictureTable, cell};
 use super::super::style::fill;
-use super::Shown;
-use super::rows::{Frame, Rows};
+use super::rows::{Frame, MOST_ROWS, Rows};
 use super::text::value;
+use super::{Shown, interval_cells};
 use crate::study::statistics::{Estimate, RankSensitivity, SobolIndices};
 
 /// Sobol indices of an output.
@@ -38,7 +39,7 @@ struct Row<'a> {
 
 /// Draws first-order and total Sobol indices with their intervals, the largest total index first.
 #[must_use]
-pub fn sobol_plot(plot: &SobolPlot) -> String {
+pub fn sobol_plot(plot: &SobolPlot) -> Picture {
     let of = plot.indices;
     let rows = plot.names.iter().zip(&of.factors).map(|(name, f)| Row { name, values: [f.first, f.total] }).collect();
     let mut notes = vec![format!("{} samples{}", of.samples, left_out(of.missing))];
@@ -50,12 +51,12 @@ pub fn sobol_plot(plot: &SobolPlot) -> String {
     }
     let title = format!("Sobol indices: {}", plot.shown.output);
     let kinds = ["First order: alone", "Total: also with others"];
-    draw(rows, &plot.shown, &Words { title, axis: "Share of the variance [-]", kinds, key: 1, notes })
+    draw(rows, &plot.shown, &Words { title, axis: "Share of the variance [-]", kinds, short: ["First order", "Total"], key: 1, notes })
 }
 
 /// Draws rank correlations and rank regression coefficients with their intervals, the strongest correlation first.
 #[must_use]
-pub fn rank_plot(plot: &RankPlot) -> String {
+pub fn rank_plot(plot: &RankPlot) -> Picture {
     let of = plot.ranks;
     let rows = plot.names.iter().zip(&of.factors).map(|(name, f)| Row { name, values: [f.spearman, f.regression] }).collect();
     let mut notes = vec![format!("{} rows{}", of.n, left_out(of.missing))];
@@ -66,31 +67,30 @@ pub fn rank_plot(plot: &RankPlot) -> String {
     notes.push("Whiskers: intervals of 95 %".to_owned());
     let title = format!("Rank sensitivity: {}", plot.shown.output);
     let kinds = ["Rank correlation", "Rank regression coefficient"];
-    draw(rows, &plot.shown, &Words { title, axis: "Coefficient [-]", kinds, key: 0, notes })
+    draw(rows, &plot.shown, &Words { title, axis: "Coefficient [-]", kinds, short: ["Correlation", "Regression"], key: 0, notes })
 }
-
-/// Most factors that are drawn; the strongest.
-const MOST_ROWS: usize = 30;
 
 /// What a picture says.
 struct Words<'a> {
     title: String,
     axis: &'a str,
     kinds: [&'a str; 2],
+    /// The same for columns.
+    short: [&'a str; 2],
     /// Which of the two measures sorts.
     key: usize,
     notes: Vec<String>,
 }
 
-fn draw(mut rows: Vec<Row>, shown: &Shown, words: &Words) -> String {
+fn draw(mut rows: Vec<Row>, shown: &Shown, words: &Words) -> Picture {
     let size = |row: &Row| row.values[words.key].value.abs();
     rows.sort_by(|a, b| size(a).is_nan().cmp(&size(b).is_nan()).then(size(b).total_cmp(&size(a))));
-    let desc = describe(&rows, words);
+    let (desc, table) = (describe(&rows, words), table(&rows, words));
     let mut notes = words.notes.clone();
     if rows.len() > MOST_ROWS + 1 {
         let rest = rows.split_off(MOST_ROWS);
         let largest = rest.first().map_or(0.0, &size);
-        notes.push(format!("{} more factors, each at most {}.", rest.len(), value(largest, 0.9)));
+        notes.push(format!("{} more factors in the table, each at most {}.", rest.len(), value(largest, 0.9)));
     }
     let ends = rows.iter().flat_map(|row| &row.values).flat_map(|e| e.interval95.into_iter().flatten().chain([e.value, 0.0]));
     let frame = Frame {
@@ -110,14 +110,31 @@ fn draw(mut rows: Vec<Row>, shown: &Shown, words: &Words) -> String {
     for (k, row) in rows.iter().enumerate() {
         let middle = picture.middle(k);
         for ((estimate, paint), top) in row.values.iter().zip(&paints).zip([middle - 10.0, middle]) {
-            picture.bar((0.0, estimate.value), (top, top + 10.0), paint);
+            picture.bar(k, (0.0, estimate.value), (top, top + 10.0), paint);
             if let Some(interval) = estimate.interval95 {
-                picture.whisker(interval, top + 5.0);
+                picture.whisker(k, interval, top + 5.0);
             }
         }
     }
     picture.mark(0.0);
-    picture.finish()
+    picture.finish(table)
+}
+
+fn table(rows: &[Row], words: &Words) -> PictureTable {
+    let mut columns = vec![("Factor".to_owned(), "")];
+    for kind in words.short {
+        columns.extend([kind.to_owned(), format!("{kind}: 95 % from"), format!("{kind}: to")].map(|name| (name, "")));
+    }
+    let mut table = PictureTable { columns, note: words.notes.join(" "), ..PictureTable::default() };
+    for row in rows {
+        let mut cells = vec![row.name.to_owned()];
+        for estimate in &row.values {
+            cells.push(cell(estimate.value, 1e-3));
+            cells.extend(interval_cells(estimate.interval95, 1e-3));
+        }
+        table.push(cells);
+    }
+    table
 }
 
 fn left_out(missing: usize) -> String {

@@ -1,12 +1,13 @@
 //! Sobol indices against the number of samples: whether they have settled.
 
 use super::super::axis::Axis;
-use super::super::figure::{Anchor, Figure, INK, Path, QUIET, Rect};
+use super::super::figure::{Anchor, Figure, INK, Path, QUIET, Rect, UNITS, units};
 use super::super::legend::Mark;
 use super::super::panel::{BELOW, LEFT, Panel};
+use super::super::picture::{Picture, PictureTable, cell};
 use super::super::style::{STROKES, Stroke};
-use super::Shown;
-use super::text::{entries, entries_height, notes, notes_height, value};
+use super::text::{foot, foot_height, value};
+use super::{RIGHT, Shown, WIDTH, interval_cells};
 use crate::study::statistics::{Estimate, SobolIndices};
 
 /// Indices at growing numbers of samples.
@@ -22,9 +23,9 @@ pub struct ConvergencePlot<'a> {
 
 const TOP: f64 = 58.0;
 const TALL: f64 = 230.0;
-const WIDE: f64 = 520.0;
 const GAP: f64 = 20.0;
-const STRIP: f64 = 250.0;
+/// Bands of at least the last number of samples over 2 to this power lie in the plot in full.
+const SEEN: f64 = 2.5;
 const ZERO: Stroke = Stroke { colour: "#000000", width: 0.8, dash: &[] };
 
 type Pick = fn(&SobolIndices, usize) -> Option<Estimate>;
@@ -32,32 +33,48 @@ type Pick = fn(&SobolIndices, usize) -> Option<Estimate>;
 /// Draws first-order indices over total ones against the number of samples, with their intervals as bands. Of more than seven factors
 /// those with the seven largest total indices.
 #[must_use]
-pub fn convergence_plot(plot: &ConvergencePlot) -> String {
+pub fn convergence_plot(plot: &ConvergencePlot) -> Picture {
     let chosen = chosen(plot);
-    let mut told = vec!["Bands: intervals of 95 %".to_owned()];
+    let mut told = vec!["Bands: intervals of 95 %. Those of few samples may leave the plot; the table has them.".to_owned()];
     if chosen.len() < plot.names.len() {
         told.push(format!("{} of {} factors, those with the largest total indices.", chosen.len(), plot.names.len()));
     }
     let left = LEFT + 8.0;
-    let place = |k: f64| Rect { left, right: left + WIDE, top: TOP + k * (TALL + GAP), bottom: TOP + k * (TALL + GAP) + TALL };
+    let place = |k: f64| Rect { left, right: RIGHT, top: TOP + k * (TALL + GAP), bottom: TOP + k * (TALL + GAP) + TALL };
     let (upper, lower) = (place(0.0), place(1.0));
-    let beside = (upper.right + 18.0, STRIP - 8.0);
-    let legend_end = TOP + entries_height(chosen.len()) + 10.0;
-    let tall = (lower.bottom + BELOW + 6.0).max(legend_end + notes_height(&told, beside.1) + 6.0);
+    let below = (left, lower.bottom + BELOW + 8.0);
+    let tall = below.1 + foot_height(chosen.iter().map(|&i| plot.names[i].as_str()), RIGHT - left, &told);
     let title = format!("Convergence of Sobol indices: {}", plot.shown.output);
-    let mut figure = Figure::new((beside.0 + STRIP, tall), left, &title, plot.shown.subject, &describe(plot, &chosen));
+    let mut figure = Figure::new((WIDTH, tall), left, &title, plot.shown.subject, &describe(plot, &chosen));
     draw(&mut figure, plot, &chosen, upper, ("First-order index [-]", |s, i| s.factors.get(i).map(|f| f.first)));
     let panel = draw(&mut figure, plot, &chosen, lower, ("Total index [-]", |s, i| s.factors.get(i).map(|f| f.total)));
     for step in plot.steps {
         let at = (panel.px(place_of(step)), lower.bottom + 17.0);
         figure.text(at, 11.0, Anchor::Middle, "", INK, &step.samples.to_string());
     }
-    let below = (0.5 * (lower.left + lower.right), lower.bottom + 36.0);
-    figure.text(below, 12.0, Anchor::Middle, "", INK, "Samples N [-]");
+    let under = (0.5 * (lower.left + lower.right), lower.bottom + 36.0);
+    figure.text(under, 12.0, Anchor::Middle, "", INK, "Samples [-]");
     let lines = chosen.iter().enumerate().map(|(k, &i)| (Mark::Line(STROKES[k]), plot.names[i].as_str())).collect();
-    entries(&mut figure, (beside.0, TOP), beside.1, lines);
-    notes(&mut figure, (beside.0, legend_end), beside.1, &told);
-    figure.finish()
+    foot(&mut figure, below, RIGHT - left, lines, &told);
+    Picture { svg: figure.finish(), table: table(plot) }
+}
+
+/// A row for each number of samples and factor, in this order.
+fn table(plot: &ConvergencePlot) -> PictureTable {
+    let names = ["Samples", "Factor", "First order", "First order: 95 % from", "First order: to", "Total", "Total: 95 % from", "Total: to"];
+    let mut table = PictureTable::new(&names.map(|name| (name, "")));
+    for step in plot.steps {
+        for (i, name) in plot.names.iter().enumerate() {
+            let mut cells = vec![step.samples.to_string(), name.clone()];
+            for estimate in step.factors.get(i).map(|f| [f.first, f.total]).into_iter().flatten() {
+                cells.push(cell(estimate.value, 1e-3));
+                cells.extend(interval_cells(estimate.interval95, 1e-3));
+            }
+            cells.resize(names.len(), String::new());
+            table.push(cells);
+        }
+    }
+    table
 }
 
 /// Where a step stands: doublings are equally far apart.
@@ -76,20 +93,33 @@ fn chosen(plot: &ConvergencePlot) -> Vec<usize> {
 
 fn draw(figure: &mut Figure, plot: &ConvergencePlot, chosen: &[usize], rect: Rect, (title, pick): (&str, Pick)) -> Panel {
     let estimates = |i: usize| plot.steps.iter().filter_map(move |s| pick(s, i).map(|e| (place_of(s), e)));
-    let ends = chosen.iter().flat_map(|&i| estimates(i)).flat_map(|(_, e)| e.interval95.into_iter().flatten().chain([e.value, 0.0]));
-    let y = Axis::round(title, ends, 6);
     let places: Vec<f64> = plot.steps.iter().map(place_of).collect();
     let (first, last) = (places.first().copied().unwrap_or(0.0), places.last().copied().unwrap_or(1.0));
+    // The bands of few samples are so wide that nothing else would be seen: they may leave the plot.
+    let seen = |x: f64, e: Estimate| e.interval95.filter(|_| x > last - SEEN).into_iter().flatten().chain([e.value, 0.0]);
+    let y = Axis::round(title, chosen.iter().flat_map(|&i| estimates(i)).flat_map(|(x, e)| seen(x, e)), 6);
     let mut x = Axis::exact("", first - 0.25, last + 0.25, 6);
     x.ticks = places;
     let panel = Panel::draw(figure, rect, x, y, false);
+    let (left, top) = (units(rect.left), units(rect.top));
+    let (wide, tall) = (units(rect.right) - left, units(rect.bottom) - top);
+    figure
+        .define(&format!("<clipPath id=\"within-{top}\"><rect x=\"{left}\" y=\"{top}\" width=\"{wide}\" height=\"{tall}\"/></clipPath>\n"));
+    figure.raw(&format!("<g clip-path=\"url(#within-{top})\">"));
     for (k, &i) in chosen.iter().enumerate().rev() {
         let bounds: Vec<(f64, [f64; 2])> = estimates(i).filter_map(|(x, e)| e.interval95.map(|ends| (x, ends))).collect();
         band(figure, &panel, &bounds, STROKES[k].colour);
     }
+    figure.close();
     panel.line(figure, &[(panel.x.low, 0.0), (panel.x.high, 0.0)], ZERO);
     for (k, &i) in chosen.iter().enumerate().rev() {
         panel.line(figure, &estimates(i).map(|(x, e)| (x, e.value)).collect::<Vec<_>>(), STROKES[k]);
+        for (at, step) in plot.steps.iter().enumerate() {
+            let Some(estimate) = pick(step, i).filter(|e| e.value.is_finite()) else { continue };
+            let (cx, cy, r) = (units(panel.px(place_of(step))), units(panel.py(estimate.value)), 2.8 * UNITS);
+            let (row, colour) = (at * plot.names.len() + i, STROKES[k].colour);
+            figure.raw(&format!("<circle class=\"mark\" data-row=\"{row}\" cx=\"{cx}\" cy=\"{cy}\" r=\"{r:.1}\" fill=\"{colour}\"/>"));
+        }
     }
     if plot.steps.is_empty() || chosen.is_empty() {
         let at = (0.5 * (rect.left + rect.right), 0.5 * (rect.top + rect.bottom));

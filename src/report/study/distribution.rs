@@ -4,9 +4,10 @@ use super::super::axis::{Axis, range, round_step};
 use super::super::figure::{Anchor, Figure, INK, Path, Rect, UNITS, units};
 use super::super::legend::Mark;
 use super::super::panel::{BELOW, LEFT, Panel};
+use super::super::picture::{Picture, PictureTable, cell};
 use super::super::style::{STROKES, Stroke};
-use super::Shown;
-use super::text::{entries, entries_height, lines, middle, notes, notes_height, percent, value};
+use super::text::{foot, foot_height, lines, middle, percent, value};
+use super::{RIGHT, Shown, WIDTH, capital};
 use crate::study::statistics::{Share, Summary, quantile_of_sorted};
 
 /// Values of an output and what they are of.
@@ -38,14 +39,16 @@ struct Drawn<'a> {
 }
 
 const TOP: f64 = 58.0;
-const WIDE: f64 = 560.0;
+const PLOT_LEFT: f64 = LEFT + 8.0;
+const WIDE: f64 = RIGHT - PLOT_LEFT;
 const TALL: f64 = 230.0;
 const GAP: f64 = 16.0;
-const STRIP: f64 = 260.0;
 /// Most steps of a cumulative curve: more could not be seen.
 const STEPS: usize = 1500;
 /// Bins at most.
 const BINS: f64 = 100.0;
+/// Rounding up after a division by this lands on the nearest round number.
+const NEAREST: f64 = 1.6;
 /// Quantiles with a mark.
 const MARKED: [f64; 3] = [0.05, 0.5, 0.95];
 /// Dashed, so that it stays apart from the frame.
@@ -54,38 +57,55 @@ const GUIDE: Stroke = Stroke { colour: "#555555", width: 0.9, dash: &[3.0, 3.0] 
 
 /// Draws histogram and cumulative curve of each series over one axis, with the 5, 50 and 95 % quantiles marked.
 #[must_use]
-pub fn distribution_plot(plot: &DistributionPlot) -> String {
+pub fn distribution_plot(plot: &DistributionPlot) -> Picture {
     let series: Vec<Drawn> = plot.series.iter().take(STROKES.len()).map(prepare).collect();
     let edges = edges(&series, plot.differences);
+    let shares: Vec<Vec<f64>> = series.iter().map(|s| shares(s, &edges)).collect();
     let told = told(plot, &series);
     let mut marks: Vec<(Mark, &str)> = series.iter().enumerate().map(|(k, s)| (Mark::Line(STROKES[k]), s.name)).collect();
     if plot.differences {
         marks.push((Mark::Line(ZERO), "No difference"));
     }
-    let left = LEFT + 8.0;
     let headline = headline(plot, &series);
     let head = lines(&headline, 12.0, WIDE);
     let top = TOP + if head.is_empty() { 0.0 } else { 16.0 * head.len() as f64 + 6.0 };
-    let upper = Rect { left, right: left + WIDE, top, bottom: top + TALL };
+    let upper = Rect { left: PLOT_LEFT, right: RIGHT, top, bottom: top + TALL };
     let lower = Rect { top: upper.bottom + GAP, bottom: upper.bottom + GAP + TALL, ..upper };
-    let beside = (upper.right + 18.0, STRIP - 8.0);
-    let legend_end = top + entries_height(marks.len()) + 10.0;
-    let tall = (lower.bottom + BELOW + 6.0).max(legend_end + notes_height(&told, beside.1) + 6.0);
+    let below = (PLOT_LEFT, lower.bottom + BELOW + 8.0);
+    let names: Vec<&str> = marks.iter().map(|(_, name)| *name).collect();
+    let tall = below.1 + foot_height(names.into_iter(), WIDE, &told);
     let what = if plot.differences { "Distribution of the difference" } else { "Distribution" };
     let title = format!("{what}: {}", plot.shown.output);
     let desc = format!("Histogram over cumulative curve, quantiles of 5, 50 and 95 % marked. {headline} {}", told.join(" "))
         .replace('\u{a0}', " ");
-    let mut figure = Figure::new((beside.0 + STRIP, tall), left, &title, plot.shown.subject, &desc);
+    let mut figure = Figure::new((WIDTH, tall), PLOT_LEFT, &title, plot.shown.subject, &desc);
     for (k, line) in head.iter().enumerate() {
-        figure.text((left, TOP + 6.0 + 16.0 * k as f64), 12.0, Anchor::Start, "font-weight=\"bold\"", INK, line);
+        figure.text((PLOT_LEFT, TOP + 6.0 + 16.0 * k as f64), 12.0, Anchor::Start, "font-weight=\"bold\"", INK, line);
     }
-    let output = if plot.differences { format!("Difference: {}", plot.shown.output) } else { plot.shown.output.to_owned() };
+    let output = if plot.differences { format!("Difference: {}", plot.shown.output) } else { capital(plot.shown.output) };
     let x = || Axis::exact(&plot.shown.axis(&middle(&output, 12.0, WIDE - 90.0)), edges[0], edges[edges.len() - 1], 9);
-    histogram(&mut figure, upper, x(), &series, &edges);
+    histogram(&mut figure, (upper, x()), &series, &shares, &edges);
     cumulative(&mut figure, lower, x(), &series);
-    entries(&mut figure, (beside.0, top), beside.1, marks);
-    notes(&mut figure, (beside.0, legend_end), beside.1, &told);
-    figure.finish()
+    foot(&mut figure, below, WIDE, marks, &told);
+    Picture { svg: figure.finish(), table: table(plot, &output, &series, &edges, &shares, &told) }
+}
+
+/// A row for each bin, its middle first.
+fn table(plot: &DistributionPlot, output: &str, series: &[Drawn], edges: &[f64], shares: &[Vec<f64>], told: &[String]) -> PictureTable {
+    let mut columns = vec![plot.shown.column(format!("{output}, middle")), plot.shown.column("From"), plot.shown.column("To")];
+    for s in series {
+        columns.extend([(format!("{}: runs in the bin", s.name), "%"), (format!("{}: runs up to its end", s.name), "%")]);
+    }
+    let mut table = PictureTable { columns, note: told.join(" ").replace('\u{a0}', " "), ..PictureTable::default() };
+    for (k, pair) in edges.windows(2).enumerate() {
+        let step = pair[1] - pair[0];
+        let mut cells = vec![cell(0.5 * (pair[0] + pair[1]), 0.1 * step), cell(pair[0], step), cell(pair[1], step)];
+        for shares in shares {
+            cells.extend([cell(shares[k], 0.1), cell(shares[..=k].iter().sum(), 0.1)]);
+        }
+        table.push(cells);
+    }
+    table
 }
 
 fn prepare<'a>(series: &DistributionSeries<'a>) -> Drawn<'a> {
@@ -101,7 +121,11 @@ fn edges(series: &[Drawn], with_zero: bool) -> Vec<f64> {
     let advised = |s: &Drawn| 2.0 * (s.summary.quantile(0.75) - s.summary.quantile(0.25)) / (s.summary.n as f64).cbrt();
     let advised = series.iter().map(advised).filter(|width| *width > 0.0).fold(f64::INFINITY, f64::min);
     let (span, size) = (high - low, low.abs().max(high.abs()));
-    let step = if span > 1e-9 * size { round_step(advised.min(span / 4.0).max(span / BINS)) } else { round_step((0.02 * size).max(1e-12)) };
+    let step = if span > 1e-9 * size {
+        round_step((advised.min(span / 4.0) / NEAREST).max(span / BINS))
+    } else {
+        round_step((0.02 * size).max(1e-12))
+    };
     // A bin beyond zero where nothing else lies there, lest the line of no difference hides in the frame.
     let apart = |end: f64| if with_zero && end.abs() < 1e-9 * step { 1.0 } else { 0.0 };
     let (first, last) = ((low / step + 1e-9).floor() - apart(low), (high / step - 1e-9).ceil() + apart(high));
@@ -110,18 +134,19 @@ fn edges(series: &[Drawn], with_zero: bool) -> Vec<f64> {
     (0..=count).map(|i| (first + i as f64) * step).collect()
 }
 
-fn histogram(figure: &mut Figure, rect: Rect, x: Axis, series: &[Drawn], edges: &[f64]) {
-    let share = |s: &Drawn| -> Vec<f64> {
-        let below = |edge: f64| s.sorted.partition_point(|x| *x < edge);
-        let last = edges.len() - 2;
-        // The outer bins take in what lies on the outer edges, or beside them by rounding.
-        let upto = |k: usize| if k > last { s.sorted.len() } else { below(edges[k]) };
-        let count = |k: usize| upto(k + 1) - if k == 0 { 0 } else { upto(k) };
-        (0..=last).map(|k| 100.0 * count(k) as f64 / s.sorted.len().max(1) as f64).collect()
-    };
-    let shares: Vec<Vec<f64>> = series.iter().map(share).collect();
+/// How much of a series lies in each bin, %.
+fn shares(series: &Drawn, edges: &[f64]) -> Vec<f64> {
+    let sorted = &series.sorted;
+    let last = edges.len() - 2;
+    // The outer bins take in what lies on the outer edges, or beside them by rounding.
+    let upto = |k: usize| if k > last { sorted.len() } else { sorted.partition_point(|x| *x < edges[k]) };
+    let count = |k: usize| upto(k + 1) - if k == 0 { 0 } else { upto(k) };
+    (0..=last).map(|k| 100.0 * count(k) as f64 / sorted.len().max(1) as f64).collect()
+}
+
+fn histogram(figure: &mut Figure, (rect, x): (Rect, Axis), series: &[Drawn], shares: &[Vec<f64>], edges: &[f64]) {
     let y = Axis::round("Runs in a bin [%]", shares.iter().flatten().copied().chain([0.0]), 6);
-    let panel = Panel::draw(figure, rect, x, y, false);
+    let panel = Panel::over_table(figure, rect, x, y, false);
     for (k, shares) in shares.iter().enumerate().rev() {
         if series[k].sorted.is_empty() {
             continue;
@@ -147,7 +172,7 @@ fn histogram(figure: &mut Figure, rect: Rect, x: Axis, series: &[Drawn], edges: 
 }
 
 fn cumulative(figure: &mut Figure, rect: Rect, x: Axis, series: &[Drawn]) {
-    let panel = Panel::draw(figure, rect, x, Axis::exact("Runs at or below [%]", 0.0, 104.0, 6), true);
+    let panel = Panel::over_table(figure, rect, x, Axis::exact("Runs at or below [%]", 0.0, 104.0, 6), true);
     for p in MARKED {
         panel.line(figure, &[(panel.x.low, 100.0 * p), (panel.x.high, 100.0 * p)], GUIDE);
     }

@@ -80,35 +80,64 @@ fn ends_at(figure: &mut Figure, at: (f64, f64), size: f64, attributes: &str, tex
     ));
 }
 
-/// Draws a legend whose names are cut in their middle; returns where it ends.
-pub(super) fn entries(figure: &mut Figure, (left, mut top): (f64, f64), width: f64, entries: Vec<(Mark, &str)>) -> f64 {
-    for (mark, name) in entries {
-        // Beside the mark, and a little narrower, lest the legend breaks the line.
-        let short = middle(name, SIZE, width - 42.0);
+/// Widest name of a legend, room between its columns, and that of a mark beside the name, pixels.
+const NAME: f64 = 420.0;
+const GUTTER: f64 = 24.0;
+const MARK: f64 = 40.0;
+
+/// Columns of a legend and their width: as many as fit.
+fn columns<'n>(names: impl Iterator<Item = &'n str>, width: f64) -> (usize, f64) {
+    let room = NAME.min(width - MARK);
+    let widest = names.map(|name| text_width(&middle(name, SIZE, room), SIZE)).fold(0.0, f64::max);
+    // A little wider than the text, lest the legend breaks the line.
+    let wide = MARK + widest + 2.0;
+    (((width + GUTTER) / (wide + GUTTER)).floor().max(1.0) as usize, wide)
+}
+
+/// Draws a legend in columns, line by line; names are cut in their middle.
+fn entries(figure: &mut Figure, (left, top): (f64, f64), width: f64, entries: Vec<(Mark, &str)>) {
+    let (columns, wide) = columns(entries.iter().map(|(_, name)| *name), width);
+    for (k, (mark, name)) in entries.into_iter().enumerate() {
+        let at = (left + (k % columns) as f64 * (wide + GUTTER), top + ENTRY * (k / columns) as f64);
+        let short = middle(name, SIZE, NAME.min(width - MARK));
         let cut = short != name;
         if cut {
             figure.raw(&format!("<g><title>{}</title>", escape(name)));
         }
-        top = legend(figure, (left, top), width, "", &[(mark, short)]);
+        legend(figure, at, wide, "", &[(mark, short)]);
         if cut {
             figure.close();
         }
     }
-    top
 }
 
-/// Height of such a legend, pixels.
-pub(super) fn entries_height(count: usize) -> f64 {
-    ENTRY * count as f64
+/// Draws a legend and below it notes, both below the plots.
+pub(super) fn foot(figure: &mut Figure, (left, top): (f64, f64), width: f64, marks: Vec<(Mark, &str)>, told: &[String]) {
+    let below = top + entries_height(marks.iter().map(|(_, name)| *name), width);
+    entries(figure, (left, top), width, marks);
+    notes(figure, (left, below), width, told);
+}
+
+/// Height of such a foot, pixels.
+pub(super) fn foot_height<'n>(names: impl Iterator<Item = &'n str> + Clone, width: f64, told: &[String]) -> f64 {
+    entries_height(names, width) + notes_height(told, width) + 6.0
+}
+
+fn entries_height<'n>(names: impl Iterator<Item = &'n str> + Clone, width: f64) -> f64 {
+    let (columns, _) = columns(names.clone(), width);
+    match names.count() {
+        0 => 0.0,
+        count => ENTRY * count.div_ceil(columns) as f64 + 6.0,
+    }
 }
 
 /// Height of notes of a width, pixels.
-pub(super) fn notes_height(notes: &[String], width: f64) -> f64 {
+fn notes_height(notes: &[String], width: f64) -> f64 {
     notes.iter().map(|note| LINE * lines(note, SIZE, width).len() as f64 + 5.0).sum()
 }
 
 /// Writes notes below each other from a corner; each begins a little apart from the one before.
-pub(super) fn notes(figure: &mut Figure, (left, mut top): (f64, f64), width: f64, notes: &[String]) {
+fn notes(figure: &mut Figure, (left, mut top): (f64, f64), width: f64, notes: &[String]) {
     for note in notes {
         for line in lines(note, SIZE, width) {
             figure.text((left, top + 11.0), SIZE, Anchor::Start, "", QUIET, &line);

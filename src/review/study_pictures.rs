@@ -1,16 +1,41 @@
 //! The answer of a study as pictures.
 
-use cvtcycle::config::Problem;
-use cvtcycle::report::study::{
+use crate::config::Problem;
+use crate::report::Picture;
+use crate::report::ambient::{ambient_fuel, ambient_penalty, warm_up};
+use crate::report::study::{
     ConvergencePlot, DistributionPlot, DistributionSeries, EffectFactor, EffectsPlot, RankPlot, Shown, SobolPlot, TornadoPlot,
     convergence_plot, distribution_plot, effects_plot, rank_plot, sobol_plot, tornado_plot,
 };
-use cvtcycle::study::answer::OutputAnswer;
-use cvtcycle::study::outputs::{EXCESS, FUEL};
-use cvtcycle::study::{Answer, Frame, Outline};
+use crate::study::ambient::{Matrix, WarmUp};
+use crate::study::answer::{OutputAnswer, described_numbers};
+use crate::study::outputs::{EXCESS, FUEL};
+use crate::study::statistics::Groups;
+use crate::study::{Answer, Frame, Outline};
 
-/// Every picture that the answer has something for: of the outputs that the plan names, or else of fuel and excess.
-pub fn all(answer: &Answer, frame: &Frame) -> Result<Vec<(String, String)>, Problem> {
+/// Every picture that the answer has something for, each under a name that can be a file's: of a matrix of ambient temperatures fuel,
+/// excess and, where traces were kept, warm-up; else of the outputs that the plan names, or of fuel and excess.
+///
+/// # Errors
+/// A part of the study that cannot be read.
+pub fn study_pictures(answer: &Answer, frame: &Frame, warm_ups: &[WarmUp]) -> Result<Vec<(String, Picture)>, Problem> {
+    match &answer.matrix {
+        Some(matrix) => Ok(of_matrix(matrix, warm_ups, &frame.outline.title)),
+        None => of_outputs(answer, frame),
+    }
+}
+
+fn of_matrix(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, Picture)> {
+    let mut list = vec![("ambient_fuel".to_owned(), ambient_fuel(matrix, title))];
+    list.extend(ambient_penalty(matrix, title).map(|picture| ("ambient_penalty".to_owned(), picture)));
+    for (k, start) in matrix.starts.iter().enumerate().filter(|_| !warm_ups.is_empty()) {
+        let word: String = start.chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect();
+        list.push((format!("warm_up_{word}"), warm_up(matrix, warm_ups, k, title)));
+    }
+    list
+}
+
+fn of_outputs(answer: &Answer, frame: &Frame) -> Result<Vec<(String, Picture)>, Problem> {
     let outline = frame.outline;
     let mut list = Vec::new();
     let pictured: Vec<&OutputAnswer> = answer.outputs.iter().filter(|output| is_pictured(&output.output, outline)).collect();
@@ -18,10 +43,10 @@ pub fn all(answer: &Answer, frame: &Frame) -> Result<Vec<(String, String)>, Prob
         let same: Vec<&&OutputAnswer> = pictured.iter().filter(|other| other.output == output.output).collect();
         let first = pictured[..k].iter().all(|before| before.output != output.output);
         if first && outline.plan.design.is_sampled() {
-            list.push((format!("distribution_{}.svg", output.output), distribution(frame, &same)?));
+            list.push((format!("distribution_{}", output.output), distribution(frame, &same)?));
         }
         list.extend(
-            of_output(output, outline).into_iter().map(|(kind, svg)| (format!("{kind}_{}_{}.svg", output.output, output.car), svg)),
+            of_output(output, outline).into_iter().map(|(kind, picture)| (format!("{kind}_{}_{}", output.output, output.car), picture)),
         );
     }
     Ok(list)
@@ -42,12 +67,12 @@ fn named(output: &OutputAnswer, outline: &Outline) -> String {
     }
 }
 
-fn distribution(frame: &Frame, outputs: &[&&OutputAnswer]) -> Result<String, Problem> {
+fn distribution(frame: &Frame, outputs: &[&&OutputAnswer]) -> Result<Picture, Problem> {
     let outline = frame.outline;
     let mut values = Vec::new();
     for output in outputs {
         let car = outline.cars.iter().position(|car| *car == output.car).unwrap_or(0);
-        values.push(cvtcycle::study::answer::described_numbers(frame, &output.output, car)?);
+        values.push(described_numbers(frame, &output.output, car)?);
     }
     let excess = outputs.first().is_some_and(|output| output.output.starts_with("subject_excess_"));
     let names: Vec<String> =
@@ -55,9 +80,7 @@ fn distribution(frame: &Frame, outputs: &[&&OutputAnswer]) -> Result<String, Pro
     let series: Vec<DistributionSeries> = names.iter().zip(&values).map(|(name, values)| DistributionSeries { name, values }).collect();
     let title = match outputs.first() {
         Some(output) if output.output == FUEL => "fuel".to_owned(),
-        Some(output) if excess => {
-            format!("excess fuel of {}", outline.cars.first().map_or("", |_| outline.cars[0].as_str())) + tail(&output.output)
-        }
+        Some(output) if excess => format!("excess fuel of {}", outline.cars.first().map_or("", String::as_str)) + &tail(&output.output),
         Some(output) => output.output.replace('_', " "),
         None => String::new(),
     };
@@ -66,12 +89,13 @@ fn distribution(frame: &Frame, outputs: &[&&OutputAnswer]) -> Result<String, Pro
     Ok(distribution_plot(&DistributionPlot { shown, series: &series, differences: excess }))
 }
 
-/// The phase of an excess.
-fn tail(output: &str) -> &str {
-    output.strip_prefix("subject_excess_").and_then(|rest| rest.strip_suffix("_percent")).filter(|rest| *rest != "percent").unwrap_or("")
+/// The phase of an excess, if it is of one.
+fn tail(output: &str) -> String {
+    let phase = output.strip_prefix("subject_excess_").and_then(|rest| rest.strip_suffix("_percent"));
+    phase.map_or_else(String::new, |phase| format!(" in {}", phase.replace('_', " ")))
 }
 
-fn of_output(output: &OutputAnswer, outline: &Outline) -> Vec<(&'static str, String)> {
+fn of_output(output: &OutputAnswer, outline: &Outline) -> Vec<(&'static str, Picture)> {
     let name = named(output, outline);
     let shown = Shown { output: &name, unit: &output.unit, subject: &outline.title };
     let names: Vec<String> = outline.plan.factors.iter().map(|factor| factor.name.clone()).collect();
@@ -95,7 +119,7 @@ fn of_output(output: &OutputAnswer, outline: &Outline) -> Vec<(&'static str, Str
 }
 
 /// A factor's levels: at their numbers, or side by side where they are words.
-fn effect<'a>(name: &'a str, groups: &'a cvtcycle::study::statistics::Groups, outline: &'a Outline) -> EffectFactor<'a> {
+fn effect<'a>(name: &'a str, groups: &'a Groups, outline: &'a Outline) -> EffectFactor<'a> {
     let unit = outline.plan.factors.iter().find(|factor| factor.name == name).map_or("", |factor| factor.unit.as_str());
     let at: Option<Vec<f64>> = groups.groups.iter().map(|group| group.label.parse().ok()).collect();
     EffectFactor { name, unit, at: at.unwrap_or_default(), groups }

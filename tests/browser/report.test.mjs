@@ -1,0 +1,211 @@
+// The report in a real browser. Usage: node --test report.test.mjs, with REPORTS=a.html:b.html and CHROMIUM=/path/to/chromium.
+// Truth: what a reader sees - sizes and boxes as laid out, requests as sent, pages as printed, rules of accessibility as axe-core has them.
+import assert from "node:assert/strict";
+import { readFileSync, mkdirSync } from "node:fs";
+import { createRequire } from "node:module";
+import { basename } from "node:path";
+import { pathToFileURL } from "node:url";
+import { after, before, describe, test } from "node:test";
+import { chromium } from "playwright-core";
+import { getDocument } from "pdfjs-dist/legacy/build/pdf.mjs";
+
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const reports = (process.env.REPORTS ?? "").split(":").filter(Boolean);
+const shots = process.env.SHOTS;
+const switches = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+const desktop = { width: 1280, height: 900 };
+// A4 less the margins of the style sheet, in CSS pixels.
+const paper = { width: Math.round((210 - 26) / 25.4 * 96), height: Math.round((297 - 30) / 25.4 * 96) };
+
+assert.ok(reports.length > 0, "REPORTS names no report");
+let browser;
+before(async () => { browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: switches }); });
+after(async () => { await browser?.close(); });
+
+async function open(file, options = {}) {
+  const context = await browser.newContext({ viewport: desktop, bypassCSP: true, ...options });
+  const page = await context.newPage();
+  const heard = { console: [], requests: [] };
+  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) heard.console.push(message.text()); });
+  page.on("pageerror", (error) => heard.console.push(String(error)));
+  page.on("request", (request) => { if (!request.url().startsWith("data:")) heard.requests.push(request.url()); });
+  await page.goto(pathToFileURL(file).href);
+  return { context, page, heard };
+}
+
+// Texts of every drawing that overlap another text of it or leave the drawing.
+const badTexts = () => {
+  const bad = [];
+  for (const figure of document.querySelectorAll("figure.figure")) {
+    const svg = figure.querySelector(".drawing svg");
+    const frame = svg.getBoundingClientRect();
+    const scale = frame.width / svg.viewBox.baseVal.width;
+    // The box of a text has the height of its font's line; half of the letters' height on either side is air.
+    const boxes = [...svg.querySelectorAll("text")].filter((text) => text.textContent.trim()).map((text) => {
+      const box = text.getBoundingClientRect();
+      const upright = box.height > box.width && text.textContent.length > 1;
+      const air = { x: upright ? box.width * 0.2 : 0.5, y: upright ? 0.5 : box.height * 0.2 };
+      return { words: text.textContent, left: box.left + air.x, right: box.right - air.x, top: box.top + air.y, bottom: box.bottom - air.y };
+    });
+    for (const [k, one] of boxes.entries()) {
+      if (one.left < frame.left - 1 || one.right > frame.right + 1 || one.top < frame.top - 1 || one.bottom > frame.bottom + 1) {
+        bad.push(`${figure.id}: "${one.words}" leaves the drawing`);
+      }
+      for (const other of boxes.slice(k + 1)) {
+        const wide = Math.min(one.right, other.right) - Math.max(one.left, other.left);
+        const tall = Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top);
+        if (wide > 0.5 && tall > 0.5) bad.push(`${figure.id}: "${one.words}" on "${other.words}"`);
+      }
+    }
+    if (!(scale > 0)) bad.push(`${figure.id}: no size`);
+  }
+  return bad;
+};
+
+for (const file of reports) {
+  describe(basename(file), () => {
+    test("loads without a word on the console and asks for nothing but itself", async () => {
+      const { context, heard } = await open(file, { bypassCSP: false });
+      assert.deepEqual(heard.console, []);
+      assert.deepEqual(heard.requests, [pathToFileURL(file).href]);
+      await context.close();
+    });
+
+    test("figures have a size, and no text lies on another or outside", async () => {
+      for (const options of [{}, { viewport: { width: 390, height: 844 }, isMobile: true }, { viewport: paper }]) {
+        const { context, page } = await open(file, options);
+        const sizes = await page.$$eval(".drawing svg", (all) => all.map((svg) => { const box = svg.getBoundingClientRect(); return Math.min(box.width, box.height); }));
+        assert.ok(sizes.length > 0 && sizes.every((size) => size > 60), `${sizes}`);
+        assert.deepEqual(await page.evaluate(badTexts), []);
+        const over = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+        assert.ok(over <= 0, `the page is ${over} px too wide at ${JSON.stringify(options)}`);
+        if (shots) {
+          mkdirSync(shots, { recursive: true });
+          await page.screenshot({ path: `${shots}/${basename(file, ".html")}_${page.viewportSize().width}.png`, fullPage: true });
+        }
+        await context.close();
+      }
+    });
+
+    test("text on A4 is large enough to read", async () => {
+      const { context, page } = await open(file, { viewport: paper });
+      await page.emulateMedia({ media: "print" });
+      // 6 pt are 8 px; what is smaller cannot be read on paper.
+      const small = await page.$$eval(".drawing svg", (all) => all.flatMap((svg) => {
+        const scale = svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
+        return [...svg.querySelectorAll("text")].map((text) => [parseFloat(getComputedStyle(text).fontSize) * scale, text.textContent]).filter(([size]) => size < 8);
+      }));
+      assert.deepEqual(small.slice(0, 5), []);
+      await context.close();
+    });
+
+    test("tables are one click away, with as many cells as heads", async () => {
+      const { context, page } = await open(file);
+      for (const figure of await page.$$("figure.figure")) {
+        const summary = await figure.$("details.data > summary");
+        const table = await figure.$("details.data table");
+        assert.equal(await table.isVisible(), false);
+        await summary.click();
+        assert.equal(await table.isVisible(), true);
+        const shape = await table.evaluate((t) => ({ heads: t.tHead.rows[0].cells.length, cells: [...t.tBodies[0].rows].map((row) => row.cells.length) }));
+        assert.ok(shape.cells.length > 0 && shape.cells.every((n) => n === shape.heads), JSON.stringify(shape).slice(0, 200));
+        await summary.click();
+      }
+      await context.close();
+    });
+
+    test("pointing at a figure shows its numbers, by mouse and by keyboard", async () => {
+      const { context, page } = await open(file);
+      const tip = page.locator(".tip");
+      for (const figure of await page.$$("figure.figure")) {
+        const id = await figure.getAttribute("id");
+        const target = await figure.evaluate((f) => {
+          f.scrollIntoView({ block: "center", behavior: "instant" });
+          const panel = f.querySelector("rect.plot[data-x0]");
+          const mark = [...f.querySelectorAll("svg [data-row]")].sort((a, b) => { const s = (e) => { const r = e.getBoundingClientRect(); return r.width * r.height; }; return s(b) - s(a); })[0];
+          const box = (panel ?? mark)?.getBoundingClientRect();
+          return box && { x: box.left + box.width / 2, y: box.top + box.height / 2, panel: Boolean(panel) };
+        });
+        assert.ok(target, `${id}: nothing to point at`);
+        await page.mouse.move(target.x, target.y);
+        // A mark may be a line or hollow in its middle; the keyboard reaches every row all the same.
+        if (target.panel) assert.ok(await tip.isVisible(), `${id}: no numbers under the pointer`);
+        await page.mouse.move(1, 1);
+        await figure.$eval(".drawing", (d) => d.focus({ preventScroll: true }));
+        await page.keyboard.press("ArrowRight");
+        assert.ok(await tip.isVisible(), `${id}: no numbers by keyboard`);
+        assert.match(await tip.innerText(), /\S+/);
+        const row = await figure.$eval("details.data tbody tr", (tr) => [...tr.cells].map((c) => c.textContent).filter(Boolean));
+        const said = await tip.innerText();
+        assert.ok(row.every((cell) => said.includes(cell)), `${id}: ${said} / ${row}`);
+        await page.keyboard.press("Escape");
+        assert.equal(await tip.isVisible(), false);
+      }
+      await context.close();
+    });
+
+    test("the page can be light and dark", async () => {
+      const { context, page } = await open(file, { colorScheme: "light" });
+      const lightness = () => page.evaluate(() => {
+        const sum = (colour) => colour.match(/[\d.]+/g).slice(0, 3).reduce((s, x) => s + Number(x), 0);
+        const text = document.querySelector(".drawing svg text");
+        return { page: sum(getComputedStyle(document.body).backgroundColor), text: sum(getComputedStyle(text).fill) };
+      });
+      const light = await lightness();
+      await page.click("button.theme");
+      const dark = await lightness();
+      assert.ok(light.page > 600 && dark.page < 150, JSON.stringify({ light, dark }));
+      assert.ok(light.text < 300 && dark.text > 450, "the drawings follow");
+      if (shots) await page.screenshot({ path: `${shots}/${basename(file, ".html")}_dark.png`, fullPage: true });
+      await page.click("button.theme");
+      assert.deepEqual(await lightness(), light);
+      await context.close();
+    });
+
+    test("everything is there without scripts", async () => {
+      const { context, page } = await open(file, { javaScriptEnabled: false });
+      assert.ok(await page.locator(".drawing svg").first().isVisible());
+      assert.equal(await page.locator("button.theme").isVisible(), false);
+      await page.locator("figure details.data > summary").first().click();
+      assert.ok(await page.locator("figure details.data table").first().isVisible());
+      await context.close();
+    });
+
+    test("no figure is broken across printed pages", async () => {
+      const { context, page } = await open(file);
+      // A mark at the upper and at the lower end of each figure, to be found again in the printed pages.
+      const count = await page.evaluate(() => {
+        const figures = [...document.querySelectorAll("figure.figure")];
+        figures.forEach((figure, k) => {
+          const mark = (word) => { const p = document.createElement("div"); p.textContent = word; p.style.cssText = "font-size:6px;line-height:6px"; return p; };
+          figure.prepend(mark(`upper${k}end`));
+          figure.querySelector("figcaption").after(mark(`lower${k}end`));
+        });
+        return figures.length;
+      });
+      const bytes = await page.pdf({ preferCSSPageSize: true, printBackground: true });
+      await context.close();
+      const pdf = await getDocument({ data: new Uint8Array(bytes), verbosity: 0 }).promise;
+      const found = new Map();
+      for (let k = 1; k <= pdf.numPages; k += 1) {
+        const words = (await (await pdf.getPage(k)).getTextContent()).items.map((item) => item.str).join("");
+        for (const [mark] of words.matchAll(/(upper|lower)\d+end/g)) found.set(mark, k);
+      }
+      for (let k = 0; k < count; k += 1) {
+        assert.ok(found.has(`upper${k}end`), `figure ${k + 1} is not printed`);
+        assert.equal(found.get(`upper${k}end`), found.get(`lower${k}end`), `figure ${k + 1} is broken`);
+      }
+    });
+
+    test("axe-core finds nothing serious", async () => {
+      for (const colorScheme of ["light", "dark"]) {
+        const { context, page } = await open(file, { colorScheme });
+        await page.evaluate(axe);
+        const violations = await page.evaluate(async () => (await globalThis.axe.run(document, { resultTypes: ["violations"] })).violations
+          .filter((v) => ["serious", "critical"].includes(v.impact)).map((v) => `${v.id}: ${v.nodes.length} x ${v.nodes[0].html.slice(0, 120)}`));
+        assert.deepEqual(violations, [], colorScheme);
+        await context.close();
+      }
+    });
+  });
+}
