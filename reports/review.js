@@ -29,9 +29,11 @@
     const panels = [...svg.querySelectorAll("rect.plot[data-x0]")].map((rect) => ({
       left: rect.x.baseVal.value, top: rect.y.baseVal.value, wide: rect.width.baseVal.value, tall: rect.height.baseVal.value,
       from: Number(rect.dataset.x0), to: Number(rect.dataset.x1), rect,
+      columns: rect.closest("[data-columns]")?.dataset.columns.split(" ").map(Number),
     }));
     let xs = null;
     let shown = -1;
+    let said = null;
     const lines = [];
 
     const clear = () => {
@@ -45,13 +47,15 @@
       tip.style.left = `${Math.max(4, x + 14 + box.width > innerWidth ? x - 14 - box.width : x + 14)}px`;
       tip.style.top = `${Math.max(4, Math.min(innerHeight - box.height - 4, y + 10))}px`;
     };
-    const show = (index, x, y) => {
-      if (index !== shown) {
+    // Of a picture of many panels, what the one under the pointer shows.
+    const show = (index, x, y, columns) => {
+      if (index !== shown || columns !== said) {
         clear();
         shown = index;
+        said = columns;
         const body = document.createElement("table");
         [...rows[index].cells].forEach((cell, k) => {
-          if (!cell.textContent) return;
+          if (!cell.textContent || (columns && k > 0 && !columns.includes(k))) return;
           const row = body.insertRow();
           const name = document.createElement("th");
           name.textContent = heads[k][0];
@@ -92,7 +96,7 @@
       const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix.inverse());
       const panel = panels.find((p) => at.x >= p.left && at.x <= p.left + p.wide && at.y >= p.top && at.y <= p.top + p.tall);
       const index = panel ? nearest(panel.from + (at.x - panel.left) / panel.wide * (panel.to - panel.from)) : -1;
-      if (index >= 0) show(index, event.clientX, event.clientY); else clear();
+      if (index >= 0) show(index, event.clientX, event.clientY, panel.columns); else clear();
     });
     drawing.addEventListener("pointerleave", clear);
     drawing.addEventListener("blur", clear);

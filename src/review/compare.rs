@@ -94,15 +94,14 @@ fn answer(a: &RunFound, b: &RunFound, pairs: &[Pair], names: &[String; 2]) -> Se
         let change = fuel(b.run) - fuel(a.run);
         let percent = 100.0 * change / fuel(a.run);
         section.blocks.push(Block::Lead(format!(
-            "The subject of {} uses {}, {} {} than that of {} ({}): {} or {}.",
+            "The subject of {} uses {}: {} or {} {} than that of {} ({}).",
             names[1],
             Quantity::Fuel.text(fuel(b.run)),
             Quantity::FuelShare.text(change.abs()),
+            Quantity::Effect.text(percent.abs()),
             if change < 0.0 { "less" } else { "more" },
             names[0],
-            Quantity::Fuel.text(fuel(a.run)),
-            Quantity::FuelShare.signed(change),
-            Quantity::Effect.signed(percent)
+            Quantity::Fuel.text(fuel(a.run))
         )));
         let (km_a, km_b) = (a.run.distance_km, b.run.distance_km);
         if ((km_b - km_a) / km_a).abs() > DISTANCE {
@@ -140,11 +139,15 @@ fn largest(a: &Car, b: &Car) -> String {
         .collect();
     let transmission = b.run.transmission_loss_kj() - a.run.transmission_loss_kj();
     let fuel = b.run.fuel_energy_kj - a.run.fuel_energy_kj;
-    let mut text = format!("The transmission loses {}", Quantity::Energy.signed(transmission));
+    let mut text = format!(
+        "Its transmission loses {} {}",
+        Quantity::Energy.text(transmission.abs()),
+        if transmission < 0.0 { "less" } else { "more" }
+    );
     if !told.is_empty() {
-        text += &format!(", most of it by {}", told.join(", "));
+        text += &format!(" ({})", told.join(", "));
     }
-    text += &format!("; the fuel's energy changes by {}", Quantity::Energy.signed(fuel));
+    text += &format!("; its fuel's energy differs by {}", Quantity::Energy.signed(fuel));
     if transmission.abs() > 0.05 {
         text += &format!(", {} for each kJ of transmission loss", Quantity::Energy.text(fuel / transmission));
     }
@@ -188,7 +191,12 @@ fn fuel_table(pairs: &[Pair], names: &[String; 2]) -> Table {
 fn conditions(a: &RunFound, b: &RunFound, pairs: &[Pair], names: &[String; 2]) -> Section {
     let mut section = Section::new("conditions", "Conditions, and what differs");
     let mut table = Table::of_words("Conditions", &["", &names[0], &names[1]]);
-    let mut row = |name: &str, of: &dyn Fn(&RunFound) -> String| table.row([name.to_owned(), of(a), of(b)]);
+    let mut row = |name: &str, of: &dyn Fn(&RunFound) -> String| {
+        let (a, b) = (of(a), of(b));
+        if !(a.is_empty() && b.is_empty()) {
+            table.row([name.to_owned(), a, b]);
+        }
+    };
     let subject =
         |found: &RunFound, of: fn(&RunSummary) -> &String| found.summary.runs.first().map_or(String::new(), |run| of(run).clone());
     row("Cycle", &|found| cycle_title(&found.summary, found.record.as_ref()));

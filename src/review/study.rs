@@ -112,17 +112,25 @@ fn matrix_answers(matrix: &Matrix) -> Vec<String> {
 /// # Errors
 /// A part that cannot be read.
 pub fn section(study: &StudyFound) -> Result<Section, Problem> {
+    let mut section = details(study)?;
+    let mut blocks = Vec::new();
+    if !study.answer.question.is_empty() {
+        blocks.push(Block::Text(study.answer.question.clone()));
+    }
+    blocks.extend(unfinished(study).map(|text| Block::Alert(format!("{text}; what follows is theirs."))));
+    blocks.push(Block::Text(extent(study)));
+    blocks.extend(answers(study).into_iter().map(Block::Text));
+    section.blocks.splice(0..0, blocks);
+    Ok(section)
+}
+
+/// Tables and pictures of a study.
+fn details(study: &StudyFound) -> Result<Section, Problem> {
     let answer = &study.answer;
     let mut section = match &answer.matrix {
         Some(_) => Section::new("ambient", "Ambient temperatures"),
         None => Section::new("uncertainty", &answer.title),
     };
-    if !answer.question.is_empty() {
-        section.text(answer.question.clone());
-    }
-    section.blocks.extend(unfinished(study).map(|text| Block::Alert(format!("{text}; what follows is theirs."))));
-    section.text(extent(study));
-    section.blocks.extend(answers(study).into_iter().map(Block::Text));
     if let Some(matrix) = &answer.matrix {
         tables(&mut section, matrix);
     } else {
@@ -202,10 +210,16 @@ fn outputs(study: &StudyFound) -> Table {
     for output in &study.answer.outputs {
         let s = &output.summary;
         let digits = |x: f64| if x.is_finite() { format!("{x:.3}").replace('-', "\u{2212}") } else { NONE.to_owned() };
-        let name = format!("{}, {} [{}]", words(&output.output), output.car, output.unit);
+        let name = format!("{}, {} [{}]", output_name(&output.output), output.car, output.unit);
         table.row([name, s.n.to_string(), digits(s.mean), digits(s.sd), digits(s.quantile(0.05)), digits(s.quantile(0.95))]);
     }
     table
+}
+
+/// An output without its unit, which stands beside it.
+fn output_name(column: &str) -> String {
+    let units = ["_l_per_100km", "_percent", "_g_per_km", "_kj", "_km", "_kg", "_degc", "_s"];
+    words(units.iter().find_map(|unit| column.strip_suffix(unit)).unwrap_or(column))
 }
 
 fn factors(study: &StudyFound) -> Table {
@@ -239,7 +253,11 @@ pub fn document(study: &StudyFound) -> Result<Document, Problem> {
     first.blocks.extend(unfinished(study).map(|text| Block::Alert(format!("{text}; what follows is what they say."))));
     first.blocks.extend(answers(study).into_iter().map(Block::Text));
     first.text(extent(study));
-    let sections = vec![first, conditions(study), section(study)?, reproduce(study)];
+    let mut details = details(study)?;
+    if answer.matrix.is_none() {
+        details.title = "Outputs and factors".to_owned();
+    }
+    let sections = vec![first, conditions(study), details, reproduce(study)];
     Ok(Document {
         title: answer.title.clone(),
         subtitle: format!("study of {}", study.outline.cars.join(", ")),
@@ -255,6 +273,7 @@ fn text_of(value: &Value) -> String {
         Value::Null => NONE.to_owned(),
         Value::Array(list) if list.is_empty() => NONE.to_owned(),
         Value::Array(list) => list.iter().map(text_of).collect::<Vec<_>>().join(", "),
+        Value::Number(x) => x.as_f64().map_or_else(|| x.to_string(), |x| format!("{x}").replace('-', "\u{2212}")),
         other => other.to_string(),
     }
 }

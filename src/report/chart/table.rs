@@ -4,8 +4,9 @@ use super::super::axis::{range, round_step};
 use super::super::picture::{PictureTable, cell};
 use super::{Chart, ChartPanel};
 
-/// Rows at most.
+/// Rows at most, and cells: a table of many columns has fewer rows.
 const MOST_ROWS: usize = 600;
+const MOST_CELLS: usize = 8000;
 
 /// A chart's table, and for each panel the columns that it draws, separated by blanks.
 ///
@@ -61,7 +62,8 @@ fn rows(table: &mut PictureTable, place: usize, panels: &[(&ChartPanel, usize)])
             }
         }
     }
-    let every = cells.len().div_ceil(MOST_ROWS).max(1);
+    let most = (MOST_CELLS / width.max(1)).clamp(1, MOST_ROWS);
+    let every = cells.len().div_ceil(most).max(1);
     table.rows.extend(cells.into_iter().step_by(every));
     every
 }
