@@ -255,7 +255,7 @@ fn files_appear_together_and_are_not_overwritten() {
     let words = ["run", "--cycle", "ece15", "--baseline", "rover_216_5mt", "--out", "cold"];
     let output = run_in(dir.path(), &words);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let names = "summary.json fuel_comparison.svg trace_rover_216_cvt.csv driveline_rover_216_cvt.svg pressure_rover_216_cvt.svg \
+    let names = "summary.json inputs.json fuel_comparison.svg trace_rover_216_cvt.csv driveline_rover_216_cvt.svg pressure_rover_216_cvt.svg \
         temperatures_rover_216_cvt.svg losses_rover_216_cvt.svg operating_points_rover_216_cvt.svg trace_rover_216_5mt.csv \
         driveline_rover_216_5mt.svg temperatures_rover_216_5mt.svg losses_rover_216_5mt.svg operating_points_rover_216_5mt.svg";
     let out = dir.path().join("cold");
@@ -446,7 +446,7 @@ fn packagers_get_completions_and_manual_pages() {
 fn the_examples_of_the_help_work() {
     let dir = tempfile::tempdir().unwrap();
     let mut count = 0;
-    for command in ["", "run", "list", "show", "explain", "check", "assumptions", "completions", "man"] {
+    for command in ["", "run", "report", "list", "show", "explain", "check", "assumptions", "completions", "man"] {
         let words: Vec<&str> = [command, "--help"].into_iter().filter(|word| !word.is_empty()).collect();
         let help = stdout(&run(&words));
         let lines = help.lines().filter_map(|line| {

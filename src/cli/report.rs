@@ -12,10 +12,12 @@ use super::inputs::{self, Offering};
 #[derive(Clone, Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
-  cvtcycle run --ambient -10 --out cold && cvtcycle report cold
-  cvtcycle report cold --cover cover.toml --out review.html
-  cvtcycle report offset_3mm offset_2mm --out offset.html
-  cvtcycle study ambient --out matrix && cvtcycle report cold --with matrix --force
+  cvtcycle run --ambient -10 --out cold
+  cvtcycle report cold
+  cvtcycle run --ambient -10 --set transmission.cvt.belt.band_offset_mm=2 --out offset_2mm
+  cvtcycle report cold offset_2mm --out offset.html
+  cvtcycle study ambient --out matrix
+  cvtcycle report cold --with matrix --force
 
 The page loads nothing and needs no script; with one, pointing at a figure shows its numbers. Studies and the answer of
 `validate --out` in folders of DIR are taken into its report. Exit code 1: the report is there, but something was missing for

@@ -32,7 +32,7 @@ Examples:
   cvtcycle run --cycle ftp75 --baseline none --set transmission.cvt.pump.displacement_cc_rev=8
   cvtcycle run --cycle constant_120 --start 90 --json
   cvtcycle run --ambient -10 --out cold_run
-  cvtcycle run --out run2 --format parquet && cvtcycle report run2
+  cvtcycle run --out run2 --format parquet
 
 `cvtcycle list cycles`, `list vehicles` and `list lubricants` name what can be driven, `cvtcycle explain KEY` what can be set.")]
 pub struct Args {

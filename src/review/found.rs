@@ -82,6 +82,14 @@ impl StudyFound {
                 "read it with the program that wrote it, or run it again",
             )
         })?;
+        Self::of(outline, store)
+    }
+
+    /// Answers from the parts that are there.
+    ///
+    /// # Errors
+    /// A part that cannot be read.
+    pub fn of(outline: Outline, store: store::Study) -> Result<Self, Problem> {
         let frame = Frame::new(&outline, &store)?;
         let answer = answer(&frame)?;
         let traced = store.layout().tables.iter().any(|table| table == TRACES);
@@ -89,8 +97,8 @@ impl StudyFound {
             Some(matrix) if traced => warm_ups(&frame, matrix).unwrap_or_default(),
             _ => Vec::new(),
         };
-        let manifest = store.manifest().clone();
-        Ok(StudyFound { path: path.to_path_buf(), outline, manifest, store, answer, warm_ups })
+        let (path, manifest) = (store.path().to_path_buf(), store.manifest().clone());
+        Ok(StudyFound { path, outline, manifest, store, answer, warm_ups })
     }
 
     /// Its table.
@@ -248,7 +256,7 @@ fn typed<T: serde::de::DeserializeOwned>(path: &Path, value: Value, known: u32) 
     }
 }
 
-fn problem(path: &Path, message: &str, hint: &str) -> Problem {
+pub(super) fn problem(path: &Path, message: &str, hint: &str) -> Problem {
     let place = Place { file: path.display().to_string(), ..Place::default() };
     Problem { place, message: message.to_owned(), hint: hint.to_owned(), ..Problem::default() }
 }

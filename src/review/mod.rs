@@ -40,21 +40,21 @@ use found::{Found, find};
 /// All problems of all inputs.
 pub fn report(dirs: &[PathBuf], with: &[PathBuf], cover: Option<&str>) -> Result<Document, Vec<Problem>> {
     let cover = cover.map(Cover::read).transpose();
-    let found: Vec<Result<Found, Vec<Problem>>> = dirs.iter().map(|dir| find(dir, with)).collect();
+    let looked: Vec<Result<Found, Vec<Problem>>> = dirs.iter().map(|dir| find(dir, with)).collect();
     let mut problems: Vec<Problem> = cover.as_ref().err().cloned().unwrap_or_default();
-    problems.extend(found.iter().filter_map(|found| found.as_ref().err()).flatten().cloned());
+    problems.extend(looked.iter().filter_map(|found| found.as_ref().err()).flatten().cloned());
     if !problems.is_empty() {
         return Err(problems);
     }
-    let found: Vec<Found> = found.into_iter().flatten().collect();
+    let pair: Vec<Found> = looked.into_iter().flatten().collect();
     let one = |problem: Problem| vec![problem];
-    let mut document = match &found[..] {
+    let mut document = match &pair[..] {
         [Found::Run(run)] => run::document(run).map_err(one)?,
         [Found::Study(study)] => study::document(study).map_err(one)?,
         [Found::Run(a), Found::Run(b)] => compare::document(a, b)?,
         _ => {
             let hint = "two directories are compared if both are runs; a study stands beside a run by --with";
-            return Err(vec![crate::results::files::problem(&dirs[dirs.len() - 1], "this is no pair of runs", hint)]);
+            return Err(vec![found::problem(&dirs[dirs.len() - 1], "this is no pair of runs", hint)]);
         }
     };
     if let Ok(Some(cover)) = cover {

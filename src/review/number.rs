@@ -7,7 +7,7 @@ const MINUS: char = '\u{2212}';
 /// Where there is no number.
 pub const NONE: &str = "\u{2013}";
 
-/// Energies from here on, kJ, are told in whole kJ, thousands apart.
+/// Energies from here on, kJ, are told in whole kJ.
 const GROUPED: f64 = 999.95;
 
 /// A kind of quantity.
@@ -103,12 +103,12 @@ impl Quantity {
     }
 }
 
-/// A whole number with its thousands set apart by thin spaces.
+/// A whole number; of five digits and more with its thousands set apart by thin spaces.
 fn grouped(x: f64) -> String {
     let digits = format!("{:.0}", x.abs());
     let mut text = if x < 0.0 { "-".to_owned() } else { String::new() };
     for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+        if digits.len() > 4 && k > 0 && (digits.len() - k).is_multiple_of(3) {
             text.push('\u{202f}');
         }
         text.push(digit);
@@ -181,7 +181,7 @@ mod tests {
         assert_eq!(Quantity::Percent.bare(-11.93), "\u{2212}11.9");
         assert_eq!(Quantity::Energy.text(27199.1), "27\u{202f}199\u{a0}kJ");
         assert_eq!(Quantity::Energy.bare_signed(-1234567.0), "\u{2212}1\u{202f}234\u{202f}567");
-        assert_eq!((Quantity::Energy.bare(999.96), Quantity::Energy.bare(999.94)), ("1\u{202f}000".into(), "999.9".into()));
+        assert_eq!((Quantity::Energy.bare(999.96), Quantity::Energy.bare(999.94)), ("1000".into(), "999.9".into()));
         assert_eq!((phase("ece15"), phase("eudc"), phase("cold_transient")), ("ECE15".into(), "EUDC".into(), "cold transient".into()));
         assert_eq!(Quantity::Fuel.text(None), NONE);
         assert_eq!(Quantity::Fuel.text(f64::NAN), NONE);

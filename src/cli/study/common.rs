@@ -3,16 +3,17 @@
 use std::path::PathBuf;
 
 use cvtcycle::config::Problem;
+use cvtcycle::review::found::StudyFound;
 use cvtcycle::study::disk::DirSink;
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::StudyDir;
 use cvtcycle::study::{End, Outline, Study};
 
 use super::progress::{INTERRUPTED, Progress, listen};
-use super::results::{self, Results};
+use super::results;
 use super::text;
 use crate::cli::Context;
-use crate::cli::answer::{Answer, FAILED, Reply, problem};
+use crate::cli::answer::{Answer, FAILED, Reply, json_text, problem};
 
 /// Options of every study that runs.
 #[derive(Clone, Debug, clap::Args)]
@@ -111,10 +112,10 @@ fn execute(study: &Study, dir: &StudyDir, common: &Common) -> Result<End, Vec<Pr
 fn finish(study: &Study, dir: &StudyDir, common: &Common, context: Context) -> Reply {
     let outline = Outline::of(study);
     let found = dir.study().map_err(|problem| vec![problem])?;
-    let results = Results::of(&outline, &found).map_err(|problem| vec![problem])?;
-    let mut reply = reply(&results, common.json, common.quiet, context)?;
+    let study = StudyFound::of(outline, found).map_err(|problem| vec![problem])?;
+    let mut reply = reply(&study, common.json, common.quiet, context)?;
     if common.out.is_some() {
-        let written = dir.finish(&results.files(&found)?).map_err(|problem| vec![problem])?;
+        let written = dir.finish(&results::files(&study)?).map_err(|problem| vec![problem])?;
         if !common.json && !common.quiet {
             reply.stdout += &text::written(dir.path(), &written);
         }
@@ -123,15 +124,15 @@ fn finish(study: &Study, dir: &StudyDir, common: &Common, context: Context) -> R
 }
 
 /// What a study that has run says, and whether all its runs were fine.
-pub fn reply(results: &Results, json: bool, quiet: bool, context: Context) -> Reply {
-    let failed = results.answer.runs.failed + results.answer.runs.not_run > 0;
+pub fn reply(study: &StudyFound, json: bool, quiet: bool, context: Context) -> Reply {
+    let failed = study.answer.runs.failed + study.answer.runs.not_run > 0;
     let code = if failed { FAILED } else { 0 };
-    let told = if failed { text::failures(&results.answer) } else { String::new() };
+    let told = if failed { text::failures(&study.answer) } else { String::new() };
     if json || quiet {
-        let stdout = if json { results.json()? } else { String::new() };
+        let stdout = if json { json_text(&study.answer)? } else { String::new() };
         return Ok(Answer { stdout, stderr: told, code });
     }
-    Ok(Answer { stdout: text::answer(results, context.paint), stderr: told, code })
+    Ok(Answer { stdout: text::answer(study, context.paint), stderr: told, code })
 }
 
 fn stopped(study: &Study, dir: &StudyDir, common: &Common) -> Answer {
@@ -142,5 +143,3 @@ fn stopped(study: &Study, dir: &StudyDir, common: &Common) -> Answer {
     };
     Answer { stderr: format!("cvtcycle: stopped: {kept}\n"), code: INTERRUPTED, ..Answer::default() }
 }
-
-pub use results::open;

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::common::{open, reply};
+use cvtcycle::review::found::StudyFound;
+
+use super::common::reply;
 use crate::cli::Context;
 use crate::cli::answer::Reply;
 
@@ -25,6 +27,6 @@ pub struct Args {
 
 /// Runs the command.
 pub fn answer(args: &Args, context: Context) -> Reply {
-    let results = open(&args.dir).map_err(|problem| vec![problem])?;
-    reply(&results, args.json, args.quiet, context)
+    let study = StudyFound::open(&args.dir).map_err(|problem| vec![problem])?;
+    reply(&study, args.json, args.quiet, context)
 }

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use cvtcycle::review::found::StudyFound;
 use cvtcycle::study::answer::{Comparison, OutputAnswer};
 use cvtcycle::study::{Answer, Outline};
 
 use super::matrix;
-use super::results::Results;
 use crate::cli::colour::Paint;
 use crate::cli::grid::Grid;
 use crate::cli::number::{fixed, signed};
@@ -15,9 +15,9 @@ use crate::cli::number::{fixed, signed};
 const TOLD: usize = 10;
 
 /// Everything that a person wants to see of a study.
-pub fn answer(results: &Results, paint: Paint) -> String {
-    let (answer, outline) = (&results.answer, &results.outline);
-    let mut text = head(results, paint);
+pub fn answer(study: &StudyFound, paint: Paint) -> String {
+    let (answer, outline) = (&study.answer, &study.outline);
+    let mut text = head(study, paint);
     if let Some(matrix) = &answer.matrix {
         return text + &matrix::tables(matrix, paint);
     }
@@ -31,8 +31,8 @@ pub fn answer(results: &Results, paint: Paint) -> String {
     text + &factors(answer, outline, paint)
 }
 
-fn head(results: &Results, paint: Paint) -> String {
-    let (answer, outline) = (&results.answer, &results.outline);
+fn head(study: &StudyFound, paint: Paint) -> String {
+    let (answer, outline) = (&study.answer, &study.outline);
     let mut text = format!("{}\n", paint.heading(&answer.title));
     if !answer.question.is_empty() {
         text += &format!("{}\n", answer.question);
@@ -41,8 +41,8 @@ fn head(results: &Results, paint: Paint) -> String {
     let design = design(outline);
     let count = outline.points * outline.cars.len() as u64;
     text += &format!("{design}; {} points, {count} runs of {}\n", answer.points, outline.cars.join(", "));
-    if results.parts.0 < results.parts.1 {
-        let (there, all) = results.parts;
+    let (there, all) = study.parts();
+    if there < all {
         text +=
             &format!("not finished: {there} of {all} parts, {} of {} points; what follows is theirs\n", answer.points_done, answer.points);
     }

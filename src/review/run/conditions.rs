@@ -3,7 +3,7 @@
 use super::super::document::{Block, Section, Table};
 use super::super::found::RunFound;
 use super::super::number::{NONE, Quantity, degc};
-use super::{Car, conditions_line, cycle_title};
+use super::{Car, cycle_title, start_line};
 use crate::results::record::{CarRecord, Change};
 
 /// Changes shown before the rest is folded away.
@@ -16,7 +16,7 @@ pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
     let mut facts = vec![
         ("Cycle".to_owned(), format!("{} ({})", cycle_title(summary, found.record.as_ref()), summary.cycle)),
         ("Ambient".to_owned(), degc(summary.ambient_degc)),
-        ("Start".to_owned(), conditions_line(summary)),
+        ("Start".to_owned(), start_line(summary)),
         ("Longest step".to_owned(), format!("{} s", settings.dt_s)),
         ("Belt model".to_owned(), settings.formulation.clone()),
     ];

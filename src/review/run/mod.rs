@@ -105,13 +105,18 @@ pub fn cycle_title(summary: &Summary, record: Option<&Record>) -> String {
     record.map(|r| r.cycle.title.clone()).filter(|title| !title.is_empty()).unwrap_or_else(|| words(&summary.cycle))
 }
 
-/// Ambient and start in words.
+/// The start in words.
 #[must_use]
-pub fn conditions_line(summary: &Summary) -> String {
-    let start = match &summary.start {
+pub fn start_line(summary: &Summary) -> String {
+    match &summary.start {
         StartWord::Word(word) if word == "warm" => "after the same cycle from a soak".to_owned(),
         StartWord::Word(_) => "from a soak".to_owned(),
         StartWord::Degc(start) => format!("all nodes at {} at the start", degc(*start)),
-    };
-    format!("ambient {}, {start}", degc(summary.ambient_degc))
+    }
+}
+
+/// Ambient and start in words.
+#[must_use]
+pub fn conditions_line(summary: &Summary) -> String {
+    format!("ambient {}, {}", degc(summary.ambient_degc), start_line(summary))
 }
