@@ -45,16 +45,27 @@ pub struct Outcome {
     pub gear_schedule: &'static str,
 }
 
-/// Keeps totals and rows; for totals alone, [`Totals`] themselves listen, so that no row need exist.
-struct Keeper {
+/// Takes rows, some at a time and in order.
+pub type Give<'g> = dyn FnMut(&[Row]) + 'g;
+
+/// Rows that are given away at a time: few enough to stay in the processor's cache.
+const LOT: usize = 32;
+
+/// Keeps totals and gives rows away in lots; for totals alone, [`Totals`] themselves listen, so that no row need exist.
+struct Lots<'g> {
     totals: Totals,
-    rows: Vec<Row>,
+    lot: Vec<Row>,
+    give: &'g mut Give<'g>,
 }
 
-impl Recorder for Keeper {
+impl Recorder for Lots<'_> {
     fn record(&mut self, row: &Row, terms: &Terms) {
         self.totals.record(row, terms);
-        self.rows.push(*row);
+        self.lot.push(*row);
+        if self.lot.len() == LOT {
+            (self.give)(&self.lot);
+            self.lot.clear();
+        }
     }
 }
 
@@ -68,6 +79,18 @@ impl Recorder for Nobody {
 /// Drives a car through a cycle.
 #[must_use]
 pub fn drive(setup: &Setup, cycle: &Cycle, conditions: &Conditions) -> Outcome {
+    if !conditions.keep_rows {
+        return drive_into(setup, cycle, conditions, None);
+    }
+    let steps = cycle.trace_for(setup.transmission().is_cvt()).step_count(conditions.max_dt_s);
+    let mut rows = Vec::with_capacity(steps);
+    let outcome = drive_into(setup, cycle, conditions, Some(&mut |lot| rows.extend_from_slice(lot)));
+    Outcome { rows, ..outcome }
+}
+
+/// The same, but rows go to `give`, some at a time and in order, whatever `keep_rows` says, and none into the outcome.
+#[must_use]
+pub fn drive_into(setup: &Setup, cycle: &Cycle, conditions: &Conditions, give: Option<&mut Give>) -> Outcome {
     let car = setup.car(conditions.ambient_k);
     let trace = cycle.trace_for(car.transmission.is_cvt());
     let gear_schedule = gear_schedule(&car, trace);
@@ -78,17 +101,18 @@ pub fn drive(setup: &Setup, cycle: &Cycle, conditions: &Conditions) -> Outcome {
     };
     // A car at rest begins a new cycle in its own start state; only heat and rotating energy carry over.
     let start = State { drive: None, ..start };
-    let totals = Totals::new(cycle.phases.len());
-    let (end, totals, rows) = if conditions.keep_rows {
-        let mut keeper = Keeper { totals, rows: Vec::with_capacity(trace.step_count(conditions.max_dt_s)) };
-        let end = simulate(&car, trace, conditions.max_dt_s, start, &mut keeper);
-        (end, keeper.totals, keeper.rows)
-    } else {
-        let mut totals = totals;
-        let end = simulate(&car, trace, conditions.max_dt_s, start, &mut totals);
-        (end, totals, Vec::new())
+    let mut totals = Totals::new(cycle.phases.len());
+    let end = match give {
+        Some(give) => {
+            let mut lots = Lots { totals, lot: Vec::with_capacity(LOT), give };
+            let end = simulate(&car, trace, conditions.max_dt_s, start, &mut lots);
+            (lots.give)(&lots.lot);
+            totals = lots.totals;
+            end
+        }
+        None => simulate(&car, trace, conditions.max_dt_s, start, &mut totals),
     };
-    Outcome { totals, rows, end: end.heat, gear_schedule }
+    Outcome { totals, rows: Vec::new(), end: end.heat, gear_schedule }
 }
 
 fn gear_schedule(car: &Car, trace: &Trace) -> &'static str {

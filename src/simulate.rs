@@ -76,7 +76,7 @@ pub fn simulate(car: &Car, trace: &Trace, max_dt_s: f64, start: State, recorder:
         Transmission::Cvt(_) => None,
     };
     let unlike = car.engine.unlike_reference(&car.engine_oil);
-    trace.steps(max_dt_s).for_each(|step| {
+    trace.for_each_step(max_dt_s, |step| {
         let wheel = car.road_load.wheel(&step);
         let engine = car.engine.at_temperatures(heat.node_k[COOLANT], heat.node_k[ENGINE_OIL], unlike, car.full_load_factor);
         let around = Surroundings {
@@ -90,17 +90,17 @@ pub fn simulate(car: &Car, trace: &Trace, max_dt_s: f64, start: State, recorder:
         };
         let memory = drive.get_or_insert_with(|| car.transmission.start(&around));
         if kinetic_j.is_nan() {
-            kinetic_j = 0.5 * car.engine.inertia_kg_m2 * memory.engine_rad_s * memory.engine_rad_s;
+            kinetic_j = 0.5 * car.engine.inertia_kg_m2 * memory.past.engine_rad_s * memory.past.engine_rad_s;
         }
         let mut drive = car.transmission.solve(&around, memory);
-        let inertia = inertia(car, &around, &drive, kinetic_j, memory.coupled);
+        let inertia = inertia(car, &around, &drive, kinetic_j, memory.past.coupled);
         drive.brake_w += inertia.to_brake_w;
         let mut burn = engine.burn(drive.engine_rad_s, inertia.crank_nm);
         if step.engine_off {
             burn.to_coolant_w = -inertia.kinetic_w; // the engine runs out against its own friction
         }
         let power_w = node_power(car, &drive, &burn);
-        let heat_step = advance(car, power_w, &drive, &around);
+        let heat_step = advance(car, power_w, &drive, (&around, step.motion.speed_power_07));
         let (row, terms) = row(car, &step, &around, &Answer { drive: &drive, inertia: &inertia, burn: &burn, power_w, heat: &heat_step });
         recorder.record(&row, &terms);
         heat = heat_step.heat;
@@ -118,7 +118,7 @@ struct Inertia {
     to_brake_w: f64,
 }
 
-#[inline]
+#[inline(always)]
 fn inertia(car: &Car, around: &Surroundings, drive: &Drive, kinetic_j: f64, coupled: bool) -> Inertia {
     let w = drive.engine_rad_s;
     if w <= 0.0 {
@@ -139,10 +139,11 @@ fn inertia(car: &Car, around: &Surroundings, drive: &Drive, kinetic_j: f64, coup
     Inertia { crank_nm: steady + torque, accessories_nm, kinetic_w: (torque - over) * w, to_brake_w: over * w } // SI-1, SI-4
 }
 
-fn advance(car: &Car, power_w: [f64; NODES], drive: &Drive, around: &Surroundings) -> HeatStep {
+#[inline(always)]
+fn advance(car: &Car, power_w: [f64; NODES], drive: &Drive, (around, speed_power_07): (&Surroundings, f64)) -> HeatStep {
     let sump_k = around.heat.node_k[SUMP];
     let oil_volume_heat_j_m3k = car.oil.density_kg_m3(sump_k) * car.oil.heat_capacity_j_kgk(sump_k);
-    car.network.advance(
+    car.network.advance_in_wind(
         around.heat,
         &HeatInput {
             power_w,
@@ -154,11 +155,12 @@ fn advance(car: &Car, power_w: [f64; NODES], drive: &Drive, around: &Surrounding
             running: !around.engine_off,
             dt_s: around.dt_s,
         },
+        speed_power_07,
     )
 }
 
 /// Heat into each node, W (SI-3).
-#[inline]
+#[inline(always)]
 fn node_power(car: &Car, drive: &Drive, burn: &Burn) -> [f64; NODES] {
     let mut power = loss_heat_w(car, &drive.loss_w);
     power[COOLANT] += burn.to_coolant_w;
@@ -167,25 +169,28 @@ fn node_power(car: &Car, drive: &Drive, burn: &Burn) -> [f64; NODES] {
 }
 
 /// Heat that the transmission's losses, W, put into each node, W (SI-3).
+#[inline]
 pub(crate) fn loss_heat_w(car: &Car, loss_w: &[f64; Component::COUNT]) -> [f64; NODES] {
-    let mut power = [0.0; NODES];
+    // First the sums of what goes the same way.
+    let (mut belt, mut metal, mut clutch, mut sump) = (0.0, 0.0, 0.0, 0.0);
     for component in Component::ALL {
-        let watts = loss_w[component as usize];
-        match component {
+        *match component {
             Component::BeltBand
             | Component::BeltFilm
             | Component::BeltSlip
             | Component::BeltWedge
             | Component::BeltPenetration
-            | Component::BeltMap => {
-                power[BELT] += car.belt_heat_share * watts;
-                power[SUMP] += (1.0 - car.belt_heat_share) * watts;
-            }
-            Component::InputShaft | Component::Bearing | Component::Seal => power[METAL] += watts,
-            Component::LaunchClutch if !car.transmission.is_cvt() => power[COOLANT] += watts,
-            _ => power[SUMP] += watts,
-        }
+            | Component::BeltMap => &mut belt,
+            Component::InputShaft | Component::Bearing | Component::Seal => &mut metal,
+            Component::LaunchClutch => &mut clutch,
+            _ => &mut sump,
+        } += loss_w[component as usize];
     }
+    let mut power = [0.0; NODES];
+    power[BELT] = car.belt_heat_share * belt;
+    power[METAL] = metal;
+    power[SUMP] = sump + (1.0 - car.belt_heat_share) * belt;
+    power[if car.transmission.is_cvt() { SUMP } else { COOLANT }] += clutch;
     power
 }
 

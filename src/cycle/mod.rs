@@ -28,7 +28,7 @@ pub use embedded::{embedded, names};
 pub use find::{bytes, find, is_csv};
 pub use gears::GearCommand;
 pub use read::read_csv;
-pub use trace::{Interval, Step, Trace};
+pub use trace::{Interval, Motion, Step, Trace};
 
 /// How the fuel of the phases is put together to the cycle's one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

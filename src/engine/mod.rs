@@ -126,7 +126,7 @@ impl Engine {
 
     /// The same, with what [`Engine::unlike_reference`] says of the oil: it holds for a whole drive.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn at_temperatures(&self, coolant_k: f64, oil_k: f64, unlike: Option<&Lubricant>, pressure_factor: f64) -> EngineNow<'_> {
         let theta = 0.5 * (coolant_k + oil_k) / self.hot_k;
         let viscous = unlike.map_or(1.0, |oil| {
@@ -223,7 +223,7 @@ impl EngineNow<'_> {
 
     /// Fuel and heat at a speed and crankshaft torque (with accessories and inertia), Nm.
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn burn(&self, speed_rad_s: f64, torque_nm: f64) -> Burn {
         let e = self.engine;
         if speed_rad_s <= 0.0 {

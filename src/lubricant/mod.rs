@@ -65,10 +65,23 @@ impl Friction {
     #[must_use]
     #[inline]
     pub fn band(&self, belt_k: f64, eta_pa_s: f64, sliding_m_s: f64) -> BandFriction {
+        let load = self.film_load(eta_pa_s, sliding_m_s);
+        self.band_on_film(belt_k, if load > 0.0 { exp(self.lift_exponent * ln(load)) } else { 0.0 })
+    }
+
+    /// eta dv / `N_lift` of LU-5; 0 where nothing slides or the film is switched off.
+    #[must_use]
+    #[inline]
+    pub fn film_load(&self, eta_pa_s: f64, sliding_m_s: f64) -> f64 {
+        if self.lift_off { eta_pa_s * sliding_m_s / self.lift_n_m } else { 0.0 }
+    }
+
+    /// Band friction at belt temperature with the power z of the film's load known (LU-4, LU-5).
+    #[must_use]
+    #[inline]
+    pub fn band_on_film(&self, belt_k: f64, z: f64) -> BandFriction {
         let warm = 1.0 + self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0);
         let warm = held(warm, self.band_floor, self.band_ceiling);
-        let load = eta_pa_s * sliding_m_s / self.lift_n_m;
-        let z = if load > 0.0 && self.lift_off { exp(self.lift_exponent * ln(load)) } else { 0.0 };
         let film_share = if z.is_finite() { z / (1.0 + z) } else { 1.0 }; // LU-5
         BandFriction { mu: self.band * warm * (1.0 - self.lift_reduction * film_share), film_share } // LU-4
     }

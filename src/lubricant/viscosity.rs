@@ -1,6 +1,6 @@
 //! Kinematic viscosity in the coordinates of ASTM D341 (LU-1): straight lines between points, the end lines continued.
 
-use crate::numeric::{exp, ln};
+use crate::numeric::{exp_each, ln_each};
 
 /// ln ln(nu + 0.7) against ln T: one line from two points, or a polyline through a table.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,11 +41,23 @@ impl Viscosity {
     #[must_use]
     #[inline]
     pub fn kinematic_m2_s(&self, temp_k: f64) -> f64 {
-        let x = ln(temp_k);
+        self.kinematic_each_m2_s([temp_k])[0]
+    }
+
+    /// Kinematic viscosity at several temperatures together, m2/s.
+    #[must_use]
+    #[inline]
+    pub fn kinematic_each_m2_s<const N: usize>(&self, temp_k: [f64; N]) -> [f64; N] {
+        let w = ln_each(temp_k).map(|x| self.line(x));
+        exp_each(exp_each(w)).map(|nu| (nu - 0.7) * 1e-6) // LU-1
+    }
+
+    /// ln ln(nu + 0.7) at ln T.
+    #[inline(always)]
+    fn line(&self, x: f64) -> f64 {
         let last = self.x.len() - 1;
         let hi = if last == 1 { 1 } else { self.x.partition_point(|&p| p <= x).clamp(1, last) };
-        let w = self.w[hi] + self.slope[hi] * (x - self.x[hi]);
-        (exp(exp(w)) - 0.7) * 1e-6 // LU-1
+        self.w[hi] + self.slope[hi] * (x - self.x[hi])
     }
 }
 

@@ -22,8 +22,10 @@ struct Piece {
     end: f64,
 }
 
-/// Cells of the look-up table.
+/// Cells of the look-up table, a power of two.
 const CELLS: usize = 128;
+/// Adding this rounds to a whole number, which then stands in the lowest bits: 1.5 2^52.
+const ROUND: f64 = 6_755_399_441_055_744.0;
 
 impl Curve {
     /// A curve through `points` (x, y).
@@ -76,7 +78,8 @@ impl Curve {
         }
         let from_first = x - self.first.0;
         if from_first > 0.0 {
-            let cell = (from_first * self.cells_per_x) as usize % CELLS;
+            // The whole number at or below, or one less at an edge: a cast would ask for every number that cannot be here.
+            let cell = (from_first * self.cells_per_x - 0.5 + ROUND).to_bits() as usize % CELLS;
             let mut number = usize::from(self.cell[cell]);
             while x >= self.pieces[number].end {
                 number += 1;

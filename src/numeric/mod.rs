@@ -5,20 +5,16 @@ mod elementary;
 mod grid;
 
 pub use curve::Curve;
-pub use elementary::{exp, ln};
+pub use elementary::{exp, exp_each, ln, ln_each};
 pub use grid::{GRID_AXES, Grid};
 
 /// `x` held between `low` and `high`; NaN stays NaN. Unlike `f64::clamp` without a check of the bounds.
 #[must_use]
 #[inline]
 pub fn held(x: f64, low: f64, high: f64) -> f64 {
-    if x < low {
-        low
-    } else if x > high {
-        high
-    } else {
-        x
-    }
+    // In this order both are single instructions, and NaN passes.
+    let x = if low > x { low } else { x };
+    if high < x { high } else { x }
 }
 
 /// Linear ramp: 0 at or below `from`, 1 at or above `to`.
@@ -37,4 +33,11 @@ pub fn ramp(x: f64, from: f64, to: f64) -> f64 {
 pub fn smooth_ramp(x: f64, from: f64, to: f64) -> f64 {
     let u = ramp(x, from, to);
     u * u * (3.0 - 2.0 * u)
+}
+
+/// The same of two sides, as an array: the compiler then works on both at once where it can.
+#[must_use]
+#[inline(always)]
+pub fn pair(f: impl Fn(usize) -> f64) -> [f64; 2] {
+    [f(0), f(1)]
 }

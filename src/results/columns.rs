@@ -20,6 +20,18 @@ pub enum Value {
     Flags(Flags),
 }
 
+impl Value {
+    #[inline]
+    fn number(self) -> f64 {
+        match self {
+            Value::Number(x) => x,
+            Value::Count(n) => f64::from(n),
+            Value::Phase(n) => f64::from(n),
+            Value::Text(_) | Value::Flags(_) => f64::NAN,
+        }
+    }
+}
+
 /// The runs in whose trace a column stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
@@ -46,18 +58,15 @@ pub struct Column {
     pub scope: Scope,
     /// Its cell in a row.
     pub get: fn(&Row) -> Value,
+    /// Appends the numbers of some rows, each as [`Column::number`] has it: one call for many cells.
+    pub numbers: fn(&[Row], &mut Vec<f64>),
 }
 
 impl Column {
     /// The number in a row; NaN where the cell is none.
     #[must_use]
     pub fn number(&self, row: &Row) -> f64 {
-        match (self.get)(row) {
-            Value::Number(x) => x,
-            Value::Count(n) => f64::from(n),
-            Value::Phase(n) => f64::from(n),
-            Value::Text(_) | Value::Flags(_) => f64::NAN,
-        }
+        (self.get)(row).number()
     }
 }
 
@@ -110,6 +119,7 @@ macro_rules! columns {
             doc: $doc,
             scope: $scope,
             get: |$row: &Row| $value,
+            numbers: |rows: &[Row], into: &mut Vec<f64>| into.extend(rows.iter().map(|$row: &Row| $value.number())),
         }),*];
     };
 }
@@ -202,6 +212,18 @@ mod tests {
             let sum: f64 = Component::ALL.iter().map(|&c| loss_column(c).map_or(f64::NAN, |column| column.number(&row))).sum();
             let own = loss_column(component).map_or(f64::NAN, |column| column.number(&row));
             assert!((own - 7.5).abs() < 1e-15 && (sum - 7.5).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn many_numbers_are_those_of_single_rows() {
+        let row = |k: u8| Row { time_s: f64::from(k), phase: u16::from(k), gear: k, slip: f64::NAN, loss_w: [0.5; 16], ..Row::default() };
+        let rows: Vec<Row> = (0..5).map(row).collect();
+        for column in COLUMNS {
+            let mut numbers = vec![7.0];
+            (column.numbers)(&rows, &mut numbers);
+            let single = rows.iter().map(|row| column.number(row).to_bits());
+            assert!(numbers.iter().map(|x| x.to_bits()).eq([7.0_f64.to_bits()].into_iter().chain(single)), "{}", column.name);
         }
     }
 

@@ -38,8 +38,8 @@ pub const TERM_NAMES: [&str; 11] =
     ["fuel", "wheels", "brake", "accessories", "losses", "kinetic", "engine_heat", "exhaust", "node_heat", "stored", "to_air"];
 
 #[inline]
-fn error(input: f64, output: f64, scale: f64) -> f64 {
-    if scale > 0.0 { (input - output).abs() / scale } else { 0.0 } // LE-3
+fn error(difference: f64, scale: f64) -> f64 {
+    if scale > 0.0 { difference / scale } else { 0.0 } // LE-3
 }
 
 impl Terms {
@@ -57,7 +57,7 @@ impl Terms {
             + self.kinetic.abs()
             + self.engine_heat.abs()
             + self.exhaust.abs();
-        error(self.fuel + from, out, scale)
+        error((self.fuel + from - out).abs(), scale)
     }
 
     /// Relative error of the heat ledger (LE-2).
@@ -65,9 +65,9 @@ impl Terms {
     #[inline]
     pub fn heat_error(&self) -> f64 {
         let scale = self.node_heat.abs() + self.stored.abs() + self.to_air.abs();
-        let balance = error(self.node_heat, self.stored + self.to_air, scale);
-        let handed = error(self.losses + self.engine_heat, self.node_heat, scale);
-        if handed > balance { handed } else { balance }
+        let balance = (self.node_heat - (self.stored + self.to_air)).abs();
+        let handed = (self.losses + self.engine_heat - self.node_heat).abs();
+        error(if handed > balance { handed } else { balance }, scale)
     }
 
     /// The terms in the order of [`TERM_NAMES`].

@@ -145,9 +145,7 @@ impl Flags {
 
     /// Sets the bits of `flag` when `on`.
     pub fn set(&mut self, flag: Flags, on: bool) {
-        if on {
-            self.0 |= flag.0;
-        }
+        self.0 |= if on { flag.0 } else { 0 };
     }
 }
 

@@ -233,7 +233,7 @@ impl OnBench<'_> {
             oil_k: p.sump_k,
             radius_factor: self.cvt.radius_factor(&self.at),
         };
-        p.pressure_pa.unwrap_or_else(|| p.pressure_factor * self.cvt.pressure_pa(&signals, &self.at, load, secondary_rad_s))
+        p.pressure_pa.unwrap_or_else(|| p.pressure_factor * self.cvt.pressure_pa(&signals, &self.at, || *load, secondary_rad_s))
     }
 
     fn answer(&self, u: &Unknown, pass: &Pass, converged: bool) -> BenchAnswer {

@@ -10,6 +10,7 @@
 //! | `design` | from the index of a point to a level of each factor |
 //! | `prepare`, `cars`, `check` | a plan to a study: cars loaded once, every value tried |
 //! | `point` | one point: cars changed, driven, rows filled |
+//! | `traces` | rows of runs to columns, as they are driven |
 //! | `execute` | parts of points on all cores, written while the next is computed |
 //! | `outputs` | the numbers of a row: one table of names, units, getters |
 //! | `table` | columns in memory |
@@ -38,6 +39,7 @@ pub mod prepare;
 pub mod statistics;
 pub mod store;
 pub mod table;
+mod traces;
 
 pub use answer::{Answer, answer};
 pub use cars::StudyCar;

@@ -9,12 +9,11 @@ use super::design::Level;
 use super::plan::{Acts, FactorValue};
 use super::prepare::Study;
 use super::table::{Rows, Values};
+use super::traces::Traces;
 use crate::config::Problem;
 use crate::lubricant::ZERO_DEGC_K;
-use crate::results::columns::Value;
 use crate::results::summary::{Driven, RunSummary, Settings, compare, name_of, run_summary};
-use crate::results::trace;
-use crate::run::{Conditions, Outcome, Start, drive};
+use crate::run::{Conditions, Outcome, Start, drive_into};
 use crate::setup::Setup;
 use crate::setup::blueprint::{Bench, Slot};
 
@@ -55,8 +54,6 @@ pub(super) struct PointRun {
     status: Status,
     factors: Vec<Option<FactorValue>>,
     numbers: Vec<f64>,
-    trace: Vec<crate::results::Row>,
-    cycle: usize,
 }
 
 /// A car driven, before its numbers are put together.
@@ -66,8 +63,8 @@ struct DrivenCar {
 }
 
 impl Study {
-    /// Drives a point.
-    pub(super) fn point(&self, point: u64, worker: &mut Worker) -> Vec<PointRun> {
+    /// Drives a point; the rows of its runs go into `traces`, if they are kept.
+    pub(super) fn point(&self, point: u64, worker: &mut Worker, mut traces: Option<&mut Traces>) -> Vec<PointRun> {
         let mut levels = std::mem::take(&mut worker.levels);
         self.plan.design.levels(&self.plan.factors, point, &mut levels);
         let values: Vec<Option<FactorValue>> = self.plan.factors.iter().zip(&levels).map(|(factor, level)| factor.value(*level)).collect();
@@ -75,7 +72,10 @@ impl Study {
         let mut subject: Option<RunSummary> = None;
         let mut runs = Vec::with_capacity(self.cars.len());
         for (k, car) in self.cars.iter().enumerate() {
-            let (run, summary) = self.car(k, car, &values, worker, subject.as_ref());
+            if let Some(traces) = &mut traces {
+                traces.begin(point, car);
+            }
+            let (run, summary) = self.car((k, car), &values, worker, subject.as_ref(), traces.as_deref_mut());
             if k == 0 {
                 subject = summary;
             }
@@ -86,18 +86,22 @@ impl Study {
 
     fn car(
         &self,
-        k: usize,
-        car: &StudyCar,
+        (k, car): (usize, &StudyCar),
         values: &[Option<FactorValue>],
         worker: &mut Worker,
         subject: Option<&RunSummary>,
+        traces: Option<&mut Traces>,
     ) -> (PointRun, Option<RunSummary>) {
         let cycle = self.cycle_of(car, values);
-        let mut run = PointRun { status: Status::Ok, factors: Vec::new(), numbers: Vec::new(), trace: Vec::new(), cycle };
+        let mut run = PointRun { status: Status::Ok, factors: Vec::new(), numbers: Vec::new() };
         let driven = match self.build(k, car, values, worker, &mut run.factors) {
             Ok(setup) => {
                 let conditions = self.conditions(car, values);
-                let outcome = drive(&setup, &self.cycles[cycle], &conditions);
+                let cycle = &self.cycles[cycle];
+                let outcome = match traces {
+                    Some(traces) => drive_into(&setup, cycle, &conditions, Some(&mut |rows| traces.push(cycle, rows))),
+                    None => drive_into(&setup, cycle, &conditions, None),
+                };
                 DrivenCar { setup, outcome }
             }
             Err(reason) => {
@@ -112,7 +116,6 @@ impl Study {
         run.status = status(&summary);
         let excess = subject.map(|subject| compare(subject, &summary));
         run.numbers = self.outputs.iter().map(|output| output.number(&summary, excess.as_ref())).collect();
-        run.trace = driven.outcome.rows;
         (run, Some(summary))
     }
 
@@ -210,7 +213,7 @@ impl Study {
             ambient_k: number("ambient_degc", base.ambient_degc) + ZERO_DEGC_K,
             start,
             max_dt_s: number("dt_s", base.dt_s),
-            keep_rows: !self.traces.is_empty(),
+            keep_rows: false,
         }
     }
 
@@ -314,49 +317,4 @@ impl<'s> Filler<'s> {
             }
         }
     }
-
-    /// Appends the traces of a point.
-    pub fn push_traces(&self, point: u64, runs: &[PointRun], rows: &mut Rows) {
-        for (car, run) in self.study.cars.iter().zip(runs) {
-            let cycle = &self.study.cycles[run.cycle];
-            let phases = if cycle.phases.is_empty() { std::slice::from_ref(&cycle.name) } else { &cycle.phases };
-            let mut columns = rows.values.iter_mut();
-            if let Some(Values::Count(cells)) = columns.next() {
-                cells.resize(cells.len() + run.trace.len(), i64::try_from(point).unwrap_or(i64::MAX));
-            }
-            if let Some(Values::Text(cells)) = columns.next() {
-                cells.resize(cells.len() + run.trace.len(), car.name.clone());
-            }
-            let mut texts: Vec<(Value, Arc<str>)> = Vec::new();
-            for (column, cells) in self.study.traces.iter().zip(columns) {
-                texts.clear();
-                for row in &run.trace {
-                    match cells {
-                        Values::Number(cells) => cells.push(column.number(row)),
-                        Values::Count(cells) => cells.push(count((column.get)(row))),
-                        Values::Text(cells) => cells.push(shared((column.get)(row), phases, &mut texts)),
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn count(value: Value) -> i64 {
-    match value {
-        Value::Count(n) => i64::from(n),
-        _ => 0,
-    }
-}
-
-/// The text of a cell; the same value in the same column shares it.
-fn shared(value: Value, phases: &[String], known: &mut Vec<(Value, Arc<str>)>) -> Arc<str> {
-    if let Some((_, text)) = known.iter().find(|(other, _)| *other == value) {
-        return text.clone();
-    }
-    let mut text = String::new();
-    trace::push_value(&mut text, value, phases);
-    let text: Arc<str> = text.into();
-    known.push((value, text.clone()));
-    text
 }

@@ -63,6 +63,16 @@ impl Values {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+
+    /// Moves the cells of another column of the same kind behind its own.
+    fn append(&mut self, other: &mut Values) {
+        match (self, other) {
+            (Values::Number(into), Values::Number(cells)) => into.append(cells),
+            (Values::Count(into), Values::Count(cells)) => into.append(cells),
+            (Values::Text(into), Values::Text(cells)) => into.append(cells),
+            _ => debug_assert!(false, "columns of two kinds"),
+        }
+    }
 }
 
 /// Some rows of a table: the cells of every column, all of one length.
@@ -77,6 +87,24 @@ impl Rows {
     #[must_use]
     pub fn with_capacity(columns: &[Column], rows: usize) -> Self {
         Rows { values: columns.iter().map(|column| Values::with_capacity(column.kind, rows)).collect() }
+    }
+
+    /// Drops all rows and keeps the room.
+    pub fn clear(&mut self) {
+        for values in &mut self.values {
+            match values {
+                Values::Number(cells) => cells.clear(),
+                Values::Count(cells) => cells.clear(),
+                Values::Text(cells) => cells.clear(),
+            }
+        }
+    }
+
+    /// Moves the rows of a table with the same columns behind its own.
+    pub fn append(&mut self, mut other: Rows) {
+        for (into, cells) in self.values.iter_mut().zip(&mut other.values) {
+            into.append(cells);
+        }
     }
 
     /// Number of rows.

@@ -16,7 +16,7 @@ pub(super) struct Links {
 
 impl Links {
     /// Heat that flows into each node from the others, W.
-    #[inline]
+    #[inline(always)]
     pub fn flows_w(&self, t: &[f64; NODES]) -> [f64; NODES] {
         let into_oil = self.coolant_oil * (t[COOLANT] - t[ENGINE_OIL]);
         let into_belt = self.sump_belt * (t[SUMP] - t[BELT]);
@@ -33,7 +33,7 @@ impl Links {
     }
 
     /// Rise of the nodes: solves (own + links) rise = right, `own` the diagonal without links (TH-5).
-    #[inline]
+    #[inline(always)]
     pub fn rise_k(&self, own: &[f64; NODES], right: &[f64; NODES]) -> [f64; NODES] {
         let (oil, metal, exchanger) = (self.coolant_oil, self.coolant_metal, self.coolant_sump);
         // Leaves: what is left of the link after the leaf's own capacity and air.

@@ -154,22 +154,44 @@ pub struct HeatStep {
 
 /// Conductances of one step.
 struct Now {
-    /// To air, per node, W/K.
-    air: [f64; NODES],
-    /// Air temperature, per node, K.
-    air_k: [f64; NODES],
+    /// Block, engine oil pan and transmission case to the air under the bonnet, W/K.
+    block_air_w_k: f64,
+    pan_air_w_k: f64,
+    case_air_w_k: f64,
+    /// Air under the bonnet, K.
+    bonnet_k: f64,
     /// Between nodes, W/K.
     links: Links,
     /// Radiator heat now and its slope.
     radiator: (f64, f64),
     /// Heat capacity flow through the cooler, W/K.
     cooler_flow_w_k: f64,
-    /// Cooler conductance, W/K.
+    /// Cooler conductance, transmission oil to ambient air, W/K.
     cooler_w_k: f64,
 }
 
+impl Now {
+    /// Conductance of each node to its air, W/K; the radiator's slope is kept apart.
+    #[inline]
+    fn air_w_k(&self) -> [f64; NODES] {
+        [self.block_air_w_k, self.pan_air_w_k, self.cooler_w_k, self.case_air_w_k, 0.0]
+    }
+
+    /// Heat from each node to its air at the beginning of the step, W, that of the radiator included.
+    #[inline]
+    fn air_w(&self, t: &[f64; NODES], ambient_k: f64) -> [f64; NODES] {
+        let bonnet = |node: usize, w_k: f64| w_k * (t[node] - self.bonnet_k);
+        [
+            bonnet(COOLANT, self.block_air_w_k) + self.radiator.0,
+            bonnet(ENGINE_OIL, self.pan_air_w_k),
+            self.cooler_w_k * (t[SUMP] - ambient_k),
+            bonnet(METAL, self.case_air_w_k),
+            0.0,
+        ]
+    }
+}
+
 /// v^0.7, 0 at standstill.
-#[inline]
 fn speed_power(v: f64) -> f64 {
     if v > 0.0 { exp(0.7 * ln(v)) } else { 0.0 }
 }
@@ -183,6 +205,7 @@ impl Network {
         self.spray_w_k * if share > STILL { share } else { STILL } // TH-8
     }
 
+    #[inline(always)]
     fn radiator(&self, coolant_k: f64, input: &HeatInput) -> (f64, f64) {
         let full = self.radiator_w_k + self.radiator_per_speed * input.speed_m_s;
         let full = if input.running { full } else { STILL * full };
@@ -193,6 +216,7 @@ impl Network {
         (full * open * over, if slope > 0.0 { slope } else { 0.0 }) // TH-2
     }
 
+    #[inline(always)]
     fn cooler(&self, sump_k: f64, input: &HeatInput) -> (f64, f64) {
         let Some(c) = &self.cooler else { return (0.0, 0.0) };
         let flow = c.flow_share * input.oil_flow_m3_s;
@@ -206,21 +230,17 @@ impl Network {
         (carried, open * carried * (1.0 - exp(-u / carried))) // TH-3
     }
 
-    fn now(&self, heat: &Heat, input: &HeatInput) -> Now {
+    #[inline(always)]
+    fn now(&self, heat: &Heat, input: &HeatInput, speed_power_07: f64) -> Now {
         let t = &heat.node_k;
         let v = input.speed_m_s;
-        let bonnet = input.ambient_k + self.under_bonnet * (t[COOLANT] - input.ambient_k); // TH-4
         let (cooler_flow_w_k, cooler_w_k) = self.cooler(t[SUMP], input);
         let stirred = if input.running { 1.0 } else { STILL };
         Now {
-            air: [
-                self.block_air_w_k + self.block_air_per_speed * v,
-                self.pan_air_w_k + self.pan_air_per_speed * v,
-                cooler_w_k,
-                self.case_air_w_k + self.case_air_per_speed * speed_power(v),
-                0.0,
-            ],
-            air_k: [bonnet, bonnet, input.ambient_k, bonnet, input.ambient_k],
+            block_air_w_k: self.block_air_w_k + self.block_air_per_speed * v,
+            pan_air_w_k: self.pan_air_w_k + self.pan_air_per_speed * v,
+            case_air_w_k: self.case_air_w_k + self.case_air_per_speed * speed_power_07,
+            bonnet_k: input.ambient_k + self.under_bonnet * (t[COOLANT] - input.ambient_k), // TH-4
             links: Links {
                 coolant_oil: stirred * self.coolant_oil_w_k,
                 coolant_metal: self.bell_housing_w_k,
@@ -241,33 +261,43 @@ impl Network {
     /// Advances the nodes by one step (TH-5).
     #[must_use]
     pub fn advance(&self, heat: &Heat, input: &HeatInput) -> HeatStep {
-        let now = self.now(heat, input);
+        self.advance_in_wind(heat, input, speed_power(input.speed_m_s))
+    }
+
+    /// The same, with the road speed to the power of 0.7, which a trace knows.
+    #[must_use]
+    #[inline(always)]
+    pub fn advance_in_wind(&self, heat: &Heat, input: &HeatInput, speed_power_07: f64) -> HeatStep {
+        let now = self.now(heat, input, speed_power_07);
         let t = &heat.node_k;
         let per_s = 1.0 / input.dt_s;
+        let capacity_w_k = self.capacity_j_k.map(|capacity| capacity * per_s);
+        let air_w_k = now.air_w_k();
+        let air_w = now.air_w(t, input.ambient_k);
         let mut right = now.links.flows_w(t);
-        let mut own = [0.0; NODES];
+        let mut own = capacity_w_k;
         for i in 0..NODES {
-            own[i] = self.capacity_j_k[i] * per_s + now.air[i];
-            right[i] += input.power_w[i] - now.air[i] * (t[i] - now.air_k[i]);
+            own[i] += air_w_k[i];
+            right[i] += input.power_w[i] - air_w[i];
         }
         own[COOLANT] += now.radiator.1;
-        right[COOLANT] -= now.radiator.0;
         if self.capacity_j_k[BELT] <= 0.0 {
             own[BELT] += 1.0; // unused node: keeps its pivot above zero, changes nothing else
             right[BELT] = 0.0;
         }
         let rise = now.links.rise_k(&own, &right);
         let mut node_k = *t;
-        let (mut stored_w, mut to_air_w) = (0.0, now.radiator.0 + now.radiator.1 * rise[COOLANT]);
+        let (mut stored_w, mut to_air_w) = (0.0, now.radiator.1 * rise[COOLANT]);
         for i in 0..NODES {
             node_k[i] += rise[i];
-            stored_w += self.capacity_j_k[i] * rise[i] * per_s;
-            to_air_w += now.air[i] * (node_k[i] - now.air_k[i]);
+            stored_w += capacity_w_k[i] * rise[i];
+            to_air_w += air_w[i] + air_w_k[i] * rise[i];
         }
         let (cooler_in_k, cooler_out_k) = self.cooler_ends(&now, node_k[SUMP], input.ambient_k);
         HeatStep { heat: Heat { node_k }, stored_w, to_air_w, cooler_in_k, cooler_out_k }
     }
 
+    #[inline]
     fn cooler_ends(&self, now: &Now, sump_k: f64, ambient_k: f64) -> (f64, f64) {
         if self.cooler.is_none() {
             return (f64::NAN, f64::NAN);

@@ -46,6 +46,13 @@ pub struct Surroundings<'a> {
 pub struct DriveState {
     /// CVT: the belt at the ratio in force.
     pub belt: Option<cvt::variator::BeltAtRatio>,
+    /// Everything else; apart, so that a step can change it while it looks at the belt.
+    pub past: Past,
+}
+
+/// What the driveline remembers of the step before.
+#[derive(Clone, Copy, Debug)]
+pub struct Past {
     /// Manual box: gear engaged.
     pub gear: u8,
     /// Engine speed, rad/s.
@@ -58,8 +65,6 @@ pub struct DriveState {
     pub slopes: cvt::Slopes,
     /// Whether the engine's least torque fixed the output torque; only a start for the solve.
     pub overrun: bool,
-    /// CVT: factor of the clamp map at the ratio in force, 0 before it is known.
-    pub radius_factor: f64,
     /// Secondary pressure, Pa.
     pub secondary_pa: f64,
     /// Whether the launch device has locked.
@@ -156,7 +161,7 @@ impl Transmission {
     pub fn start(&self, around: &Surroundings) -> DriveState {
         match self {
             Transmission::Cvt(cvt) => cvt.start(around),
-            Transmission::Manual(manual) => manual.start(around),
+            Transmission::Manual(manual) => DriveState { belt: None, past: manual.start(around) },
         }
     }
 
@@ -165,7 +170,7 @@ impl Transmission {
     pub fn solve(&self, around: &Surroundings, state: &mut DriveState) -> Drive {
         match self {
             Transmission::Cvt(cvt) => cvt.solve(around, state),
-            Transmission::Manual(manual) => manual.solve(around, state),
+            Transmission::Manual(manual) => manual.solve(around, &mut state.past),
         }
     }
 

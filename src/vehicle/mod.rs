@@ -14,7 +14,7 @@ mod load;
 
 pub use load::{RoadLoadInput, load};
 
-use crate::cycle::Step;
+use crate::cycle::{Motion, Step};
 
 /// Gravity, m/s2.
 pub const GRAVITY_M_S2: f64 = 9.80665;
@@ -98,13 +98,10 @@ impl RoadLoad {
         self
     }
 
-    /// Work over a stretch from `v0` to `v1` in `dt`, with a constant part of force `c`, J.
+    /// Mean power of a motion with a constant part of force `c`, W.
     #[inline]
-    fn work_j(&self, c: f64, v0: f64, v1: f64, dt: f64) -> f64 {
-        let v_1 = 0.5 * (v0 + v1);
-        let v_2 = (v0 * v0 + v0 * v1 + v1 * v1) / 3.0;
-        let v_3 = (v0 + v1) * (v0 * v0 + v1 * v1) / 4.0;
-        (c * v_1 + self.f1_n_per_m_s * v_2 + self.f2_n_per_m_s2 * v_3) * dt // RL-5
+    fn power_w(&self, c: f64, motion: &Motion) -> f64 {
+        c * motion.speed_m_s + self.f1_n_per_m_s * motion.square_m2_s2 + self.f2_n_per_m_s2 * motion.cube_m3_s3 // RL-5
     }
 
     /// Speed at which the force is zero, m/s; NaN if there is none.
@@ -116,38 +113,44 @@ impl RoadLoad {
 
     /// What a step demands of the wheels (RL-1, RL-5).
     #[must_use]
-    #[inline]
+    #[inline(always)]
     pub fn wheel(&self, step: &Step) -> WheelDemand {
-        let (v0, v1, dt) = (step.start_speed_m_s, step.end_speed_m_s, step.dt_s);
-        let speed = 0.5 * (v0 + v1);
-        if speed <= 0.0 {
+        let motion = &step.motion;
+        if motion.speed_m_s <= 0.0 {
             return WheelDemand::default();
         }
-        let accel = (v1 - v0) / dt;
-        let mut c = self.f0_n + self.inertia_kg * accel;
+        let mut c = self.f0_n + self.inertia_kg * motion.accel_m_s2;
         if step.grade.abs() > 0.0 {
             c += self.mass_kg * GRAVITY_M_S2 * step.grade / (1.0 + step.grade * step.grade).sqrt(); // RL-1
         }
-        let whole = self.work_j(c, v0, v1, dt);
-        let zero = self.zero_force_speed(c);
-        let (low, high) = if v0 < v1 { (v0, v1) } else { (v1, v0) };
-        let (positive_j, negative_j) = if zero > low && zero < high {
-            let first = self.work_j(c, v0, zero, (zero - v0) / accel);
-            let second = whole - first;
-            if first > second { (first, second) } else { (second, first) }
-        } else if whole >= 0.0 {
-            (whole, 0.0)
-        } else {
-            (0.0, whole)
-        };
+        let power_w = self.power_w(c, motion);
+        let (positive_j, negative_j) = self.split_j(c, step, power_w * step.dt_s);
         WheelDemand {
-            speed_m_s: speed,
-            accel_m_s2: accel,
-            wheel_rad_s: speed / self.wheel_radius_m,
-            power_w: whole / dt,
+            speed_m_s: motion.speed_m_s,
+            accel_m_s2: motion.accel_m_s2,
+            wheel_rad_s: motion.speed_m_s / self.wheel_radius_m,
+            power_w,
             positive_j,
             negative_j,
         }
+    }
+
+    /// Work in the drive parts and in the braking parts of a step, of its whole work, J (RL-5).
+    #[inline]
+    fn split_j(&self, c: f64, step: &Step, whole_j: f64) -> (f64, f64) {
+        let (v0, v1) = (step.start_speed_m_s, step.end_speed_m_s);
+        // With no part of the force negative there is nothing to split: most steps need no root.
+        if c < 0.0 || self.f1_n_per_m_s < 0.0 {
+            let zero = self.zero_force_speed(c);
+            let (low, high) = if v0 < v1 { (v0, v1) } else { (v1, v0) };
+            if zero > low && zero < high {
+                let first_s = (zero - v0) / step.motion.accel_m_s2;
+                let first = self.power_w(c, &Motion::between(v0, zero, first_s)) * first_s;
+                let second = whole_j - first;
+                return if first > second { (first, second) } else { (second, first) };
+            }
+        }
+        if whole_j >= 0.0 { (whole_j, 0.0) } else { (0.0, whole_j) }
     }
 }
 

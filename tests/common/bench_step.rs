@@ -103,13 +103,13 @@ impl Bench {
         if let Transmission::Cvt(cvt) = &car.transmission {
             state.belt = Some(BeltAtRatio::new(&cvt.belt, s.ratio));
         } else {
-            state.gear = s.ratio as u8;
+            state.past.gear = s.ratio as u8;
         }
-        state.engine_rad_s = engine.idle_rad_s;
-        state.throttle = 0.1;
-        state.secondary_pa = 10e5;
-        state.coupled = s.coupled;
-        state.stood = false;
+        state.past.engine_rad_s = engine.idle_rad_s;
+        state.past.throttle = 0.1;
+        state.past.secondary_pa = 10e5;
+        state.past.coupled = s.coupled;
+        state.past.stood = false;
         car.transmission.solve(&around, &mut state)
     }
 }

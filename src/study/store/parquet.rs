@@ -1,6 +1,7 @@
 //! Tables as Parquet: the same table gives the same bytes.
 
 use std::collections::{HashMap, HashSet};
+use std::hash::{BuildHasherDefault, Hasher};
 use std::io::{self, Write};
 use std::sync::Arc;
 
@@ -22,6 +23,8 @@ pub const COLUMNS_KEY: &str = "cvtcycle.columns";
 const CREATED_BY: &str = concat!("cvtcycle ", env!("CARGO_PKG_VERSION"));
 /// A dictionary is kept where values are repeated at least so often on average.
 const REPEATED: usize = 4;
+/// Values of a column, from its first one, that this is judged by.
+const LOOKED_AT: usize = 8192;
 
 /// A Parquet table that is written piece by piece, a row group each.
 ///
@@ -131,21 +134,42 @@ fn kind_word(kind: Kind) -> &'static str {
 
 /// Whether values come again often enough for a dictionary to be shorter and quicker.
 fn dictionary_helps(values: &Values) -> bool {
-    let most = values.len() / REPEATED;
+    let looked_at = values.len().min(LOOKED_AT);
+    let most = looked_at / REPEATED;
     match values {
-        Values::Number(numbers) => few(numbers.iter().map(|x| x.to_bits()), most),
-        Values::Count(counts) => few(counts.iter().map(|n| n.cast_unsigned()), most),
+        Values::Number(numbers) => few(numbers[..looked_at].iter().map(|x| x.to_bits()), most),
+        Values::Count(counts) => few(counts[..looked_at].iter().map(|n| n.cast_unsigned()), most),
         Values::Text(_) => true,
     }
 }
 
 /// Whether there are no more different ones than `most`.
 fn few(mut bits: impl Iterator<Item = u64>, most: usize) -> bool {
-    let mut seen = HashSet::new();
+    let mut seen: HashSet<u64, BuildHasherDefault<Mixed>> = HashSet::default();
     bits.all(|bits| {
         seen.insert(bits);
         seen.len() <= most
     })
+}
+
+/// A hash of 64 bits that costs a multiplication; the numbers are our own, so nobody can choose them to collide.
+#[derive(Default)]
+struct Mixed(u64);
+
+impl Hasher for Mixed {
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_u64(u64::from(*byte)));
+    }
+
+    fn write_u64(&mut self, bits: u64) {
+        // The upper half of the product depends on all bits: round numbers end in many zeros.
+        let product = u128::from(self.0 ^ bits) * 0x9e37_79b9_7f4a_7c15;
+        self.0 = (product >> 64) as u64 ^ product as u64;
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
 }
 
 fn write_group<W: Write + Send>(file: &mut SerializedFileWriter<W>, rows: &Rows) -> Result<(), ParquetError> {
@@ -164,8 +188,10 @@ fn write_column(column: &mut SerializedColumnWriter, values: &Values) -> Result<
     match values {
         Values::Number(numbers) => {
             let there: Vec<i16> = numbers.iter().map(|x| i16::from(x.is_finite())).collect();
-            // Adding zero takes the sign from minus zero and changes nothing else.
-            let numbers: Vec<f64> = numbers.iter().filter(|x| x.is_finite()).map(|x| x + 0.0).collect();
+            // Adding zero takes the sign from minus zero and changes nothing else. Where every number is there, none is looked at alone.
+            let all = there.iter().all(|there| *there > 0);
+            let plain = numbers.iter().map(|x| x + 0.0);
+            let numbers: Vec<f64> = if all { plain.collect() } else { plain.filter(|x| x.is_finite()).collect() };
             column.typed::<DoubleType>().write_batch(&numbers, Some(&there), None)?;
         }
         Values::Count(counts) => {
@@ -175,7 +201,13 @@ fn write_column(column: &mut SerializedColumnWriter, values: &Values) -> Result<
             let there: Vec<i16> = words.iter().map(|word| i16::from(!word.is_empty())).collect();
             let mut known: HashMap<&str, ByteArray> = HashMap::new();
             let mut bytes = |word| known.entry(word).or_insert_with(|| ByteArray::from(word)).clone();
-            let words: Vec<ByteArray> = words.iter().filter(|word| !word.is_empty()).map(|word| bytes(&**word)).collect();
+            let mut last: Option<(&Arc<str>, ByteArray)> = None;
+            // Most words are the one before, often the very same.
+            let mut next = |word| match &last {
+                Some((before, bytes)) if Arc::ptr_eq(before, word) => bytes.clone(),
+                _ => last.insert((word, bytes(&**word))).1.clone(),
+            };
+            let words: Vec<ByteArray> = words.iter().filter(|word| !word.is_empty()).map(&mut next).collect();
             column.typed::<ByteArrayType>().write_batch(&words, Some(&there), None)?;
         }
     }

@@ -7,22 +7,23 @@ use crate::lubricant::VALID_K;
 use crate::numeric::held;
 use crate::results::{Component, Flags};
 use crate::thermal::{BELT, SUMP};
-use crate::transmission::{Drive, DriveState};
+use crate::transmission::{Drive, Past};
 
 /// The car stands in gear: the clutch slips at creep torque, pump and shaft turn.
-pub(super) fn standstill(step: &Step, state: &mut DriveState) -> Drive {
+pub(super) fn standstill(step: &Step, past: &mut Past) -> Drive {
     let (cvt, engine) = (step.cvt, step.around.engine);
     let idle = engine.idle_rad_s;
     let creep = cvt.launch.creep_torque_nm(0.0, idle);
-    let w = held(idle, state.engine_rad_s - step.pace_rad_s, state.engine_rad_s + step.pace_rad_s);
-    let mut throttle = state.throttle;
+    let w = held(idle, past.engine_rad_s - step.pace_rad_s, past.engine_rad_s + step.pace_rad_s);
+    let mut throttle = past.throttle;
     let (mut pa, mut pump_nm, mut shaft_nm, mut left, mut count) = (0.0, 0.0, 0.0, f64::INFINITY, 0);
     let mut inside = true;
     let mut flow_limited = false;
     let mut oil_flow_m3_s = 0.0;
     while left > TOLERANCE && count < MOST_EVALUATIONS {
         let signals = step.signals(throttle, w);
-        pa = cvt.pressure_pa(&signals, &step.at, &BeltLoad { output_torque_nm: creep * step.at.geometry.ratio, ..step.load }, 0.0);
+        let load = || BeltLoad { output_torque_nm: creep * step.at.geometry.ratio, ..step.load };
+        pa = cvt.pressure_pa(&signals, step.at, load, 0.0);
         let (pump, shaft) = step.pump_and_shaft(w, pa, &mut inside);
         (pump_nm, shaft_nm) = (pump.torque_nm, shaft);
         (flow_limited, oil_flow_m3_s) = (pump.flow_limited, pump.working_m3_s);
@@ -32,7 +33,7 @@ pub(super) fn standstill(step: &Step, state: &mut DriveState) -> Drive {
         count += 1;
     }
     let clamped = BeltLoad { secondary_clamp_n: cvt.secondary_clamp_n(pa, 0.0), ..step.load };
-    let capacity = belt_capacity_nm(&cvt.belt, &step.at, &clamped);
+    let capacity = belt_capacity_nm(&cvt.belt, step.at, &clamped);
     let mut drive = Drive {
         engine_rad_s: w,
         shaft_nm: creep + pump_nm + shaft_nm,
@@ -54,9 +55,9 @@ pub(super) fn standstill(step: &Step, state: &mut DriveState) -> Drive {
     drive.flags.set(Flags::FLOW_LIMITED, flow_limited);
     drive.flags.set(Flags::NOT_CONVERGED, !converged(left));
     common_flags(step, &mut drive, inside);
-    remember(state, &drive, step, true);
-    state.trend.stand();
-    state.coupled = false;
+    remember(past, &drive, true);
+    past.trend.stand();
+    past.coupled = false;
     drive
 }
 
@@ -77,7 +78,7 @@ pub(super) struct Outcome {
     pub count: u16,
 }
 
-pub(super) fn finish(step: &Step, p: &Point, state: &mut DriveState, outcome: Outcome) -> Drive {
+pub(super) fn finish(step: &Step, p: &Point, past: &mut Past, outcome: Outcome) -> Drive {
     let g = &p.guess;
     let (wp, we) = (p.primary_rad_s, g.engine_rad_s);
     let idle = step.around.engine.idle_rad_s;
@@ -125,12 +126,12 @@ pub(super) fn finish(step: &Step, p: &Point, state: &mut DriveState, outcome: Ou
     flags.set(Flags::CLUTCH_OPEN, outcome.bind == Bind::Least && wp < idle);
     flags.set(Flags::OVERRUN, p.primary_nm < 0.0);
     flags.set(Flags::NOT_CONVERGED, !converged(outcome.left));
-    flags.set(Flags::LAUNCH_NOT_IN_LOW, state.stood && step.at.geometry.ratio < 0.99 * step.cvt.ratio.low);
+    flags.set(Flags::LAUNCH_NOT_IN_LOW, past.stood && step.at.geometry.ratio < 0.99 * step.cvt.ratio.low);
     common_flags(step, &mut drive, p.inside_maps);
     let loss_nm = drive.shaft_nm - g.output_nm / step.at.geometry.ratio;
-    state.trend.push(step.around.wheel.accel_m_s2, g.slip, loss_nm);
-    remember(state, &drive, step, false);
-    state.coupled = p.locked || we <= wp * (1.0 + 1e-4);
+    past.trend.push(step.around.wheel.accel_m_s2, g.slip, loss_nm);
+    remember(past, &drive, false);
+    past.coupled = p.locked || we <= wp * (1.0 + 1e-4);
     drive
 }
 
@@ -144,13 +145,9 @@ fn common_flags(step: &Step, drive: &mut Drive, inside_maps: bool) {
     drive.flags.set(Flags::OVERSPEED, drive.engine_rad_s > step.around.engine.engine.highest_rad_s);
 }
 
-fn remember(state: &mut DriveState, drive: &Drive, step: &Step, stood: bool) {
-    if step.shifted {
-        state.belt = Some(step.at);
-    }
-    state.radius_factor = step.radius_factor;
-    state.engine_rad_s = drive.engine_rad_s;
-    state.throttle = drive.throttle;
-    state.secondary_pa = drive.secondary_pa;
-    state.stood = stood;
+fn remember(past: &mut Past, drive: &Drive, stood: bool) {
+    past.engine_rad_s = drive.engine_rad_s;
+    past.throttle = drive.throttle;
+    past.secondary_pa = drive.secondary_pa;
+    past.stood = stood;
 }

@@ -1,7 +1,8 @@
 //! One evaluation of the driveline: torques that follow from a guess of the unknowns, and what follows from those torques.
 //!
 //! An evaluation takes slip in at once: the belt is worked out at the speed of a guessed slip, which it feels through centrifugal
-//! force only, and everything behind it at the speed of the slip that comes out.
+//! force only, and everything behind it at the speed of the slip that comes out. At the wheels' demand it takes in the engine's speed
+//! at once too.
 
 use super::controller::ClampSignals;
 use super::pump::PumpState;
@@ -17,14 +18,12 @@ use crate::transmission::loss_map::{LossMap, MapPoint};
 pub(super) struct Step<'a> {
     pub cvt: &'a Cvt,
     pub around: &'a Surroundings<'a>,
-    pub at: BeltAtRatio,
-    /// Whether the ratio is another one than in the step before.
-    pub shifted: bool,
+    pub at: &'a BeltAtRatio,
     pub secondary_rad_s: f64,
     pub spin: SpinNow,
     pub drive_nm: f64,
     pub viscous_factor: f64,
-    pub eta_sump: f64,
+    pub leakage_m3_s_pa: f64,
     pub load: BeltLoad,
     pub radius_factor: f64,
     pub shift_flow_m3_s: f64,
@@ -155,7 +154,7 @@ impl Step<'_> {
     #[inline(always)]
     pub(super) fn pump_and_shaft(&self, engine_rad_s: f64, pa: f64, inside: &mut bool) -> (PumpState, f64) {
         let pump = &self.cvt.pump;
-        let need = pump.steady_need_m3_s(pa, self.eta_sump) + self.shift_flow_m3_s;
+        let need = pump.need_m3_s(pa, self.leakage_m3_s_pa) + self.shift_flow_m3_s;
         let mut state = pump.state(engine_rad_s, pa, need, self.viscous_factor);
         let mut shaft_nm = self.spin.shaft_nm(engine_rad_s);
         if let Some(maps) = self.maps {
@@ -201,20 +200,28 @@ impl Step<'_> {
         let belt_rad_s = self.primary_rad_s(g.slip);
         let PartTorques { secondary: secondary_nm, clutch: clutch_nm, belt_map: belt_map_nm, mut inside_maps } =
             self.part_torques(g, belt_rad_s);
-        let load = BeltLoad {
+        let load = || BeltLoad {
             primary_speed_rad_s: belt_rad_s,
             output_torque_nm: secondary_nm,
             secondary_clamp_n: cvt.secondary_clamp_n(pa, self.secondary_rad_s),
             ..self.load
         };
-        let belt = belt_losses(&cvt.belt, &self.at, &load);
+        let belt = belt_losses(&cvt.belt, self.at, &load());
         let (slip, belt_nm) = belt_map_nm.map_or((belt.slip_total, belt.sum_nm()), |loss| (0.0, loss));
         let primary_rad_s = self.primary_rad_s(slip);
         let locked = self.locked(primary_rad_s);
-        // Never slower than the primary, and the same while locked, so that the clutch cannot give energy back.
-        let engine_rad_s = if g.engine_rad_s > primary_rad_s && !locked { g.engine_rad_s } else { primary_rad_s };
         // VA-1 with the slip in force, so that the power balance holds for this iterate exactly.
-        let primary_nm = secondary_nm * (self.secondary_rad_s / primary_rad_s) + belt_nm + clutch_nm;
+        let primary_nm = secondary_nm * ((1.0 - slip) * self.at.prepared.per_ratio) + belt_nm + clutch_nm;
+        // Never slower than the primary, and the same while locked, so that the clutch cannot give energy back.
+        let engine_rad_s = if locked {
+            primary_rad_s
+        } else if bind == Bind::Demand {
+            self.free_engine_rad_s(primary_nm, primary_rad_s) // at once: nothing before it feels the engine's speed
+        } else if g.engine_rad_s > primary_rad_s {
+            g.engine_rad_s
+        } else {
+            primary_rad_s
+        };
         let (pump, shaft_nm) = self.pump_and_shaft(engine_rad_s, pa, &mut inside_maps);
         let spin_nm = pump.torque_nm + shaft_nm;
         let flywheel_nm = |primary_nm: f64| engine_side_nm(primary_nm, primary_rad_s, engine_rad_s) + spin_nm; // CV-2, CV-6
@@ -223,7 +230,7 @@ impl Step<'_> {
             Bind::Least => self.least_primary_nm(primary_rad_s, engine_rad_s, spin_nm),
             Bind::FullLoad => self.most_primary_nm(engine_rad_s, spin_nm),
         };
-        let next_engine_rad_s = if locked { primary_rad_s } else { self.free_engine_rad_s(asked_nm, primary_rad_s) };
+        let next_engine_rad_s = if locked || bind == Bind::Demand { engine_rad_s } else { self.free_engine_rad_s(asked_nm, primary_rad_s) };
         let crank_nm = flywheel_nm(asked_nm) + engine.accessories_nm(next_engine_rad_s);
         let full_load_nm = engine.full_load_nm(next_engine_rad_s);
         let throttle = held(crank_nm / full_load_nm, 0.0, 1.0);
@@ -232,7 +239,7 @@ impl Step<'_> {
             guess: Guess { engine_rad_s, slip, ..*g },
             slip_guessed: g.slip,
             next_engine_rad_s,
-            next_pressure_pa: cvt.pressure_pa(&signals, &self.at, &load, self.secondary_rad_s),
+            next_pressure_pa: cvt.pressure_pa(&signals, self.at, load, self.secondary_rad_s),
             throttle,
             full_load_nm,
             secondary_nm,

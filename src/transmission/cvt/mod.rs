@@ -31,7 +31,7 @@ use self::spin::Spin;
 use self::variator::{Belt, BeltAtRatio, BeltLoad, belt_state};
 use super::launch::Launch;
 use super::loss_map::LossMap;
-use super::{Drive, DriveState, Surroundings};
+use super::{Drive, DriveState, Past, Surroundings};
 use crate::numeric::{Curve, exp, ln};
 use std::sync::Arc;
 
@@ -139,28 +139,27 @@ impl Cvt {
         };
         let idle = around.engine.idle_rad_s;
         let primary = ratio * secondary;
-        DriveState {
-            belt: Some(BeltAtRatio::new(&self.belt, ratio)),
+        let past = Past {
             gear: 0,
             engine_rad_s: if primary > idle { primary } else { idle },
             throttle: 0.1,
             trend: Trend::default(),
-            slopes: Slopes::unknown(),
+            slopes: Slopes::default(),
             overrun: false,
-            radius_factor: 0.0,
             secondary_pa: self.floor_pa,
             coupled: primary > idle,
             stood: secondary <= 0.0,
-        }
+        };
+        DriveState { belt: Some(BeltAtRatio::new(&self.belt, ratio)), past }
     }
 
-    /// Pressure that the clamp law asks for, Pa (PC-1 to PC-4), within floor and cap.
+    /// Pressure that the clamp law asks for, Pa (PC-1 to PC-4), within floor and cap; `load` is asked by the laws that look at the belt.
     #[must_use]
     #[inline(always)]
-    pub fn pressure_pa(&self, signals: &ClampSignals, at: &BeltAtRatio, load: &BeltLoad, secondary_rad_s: f64) -> f64 {
+    pub fn pressure_pa(&self, signals: &ClampSignals, at: &BeltAtRatio, load: impl FnOnce() -> BeltLoad, secondary_rad_s: f64) -> f64 {
         let wanted = match &self.clamp {
             ClampLaw::Map(map) => map.pressure_pa(signals),
-            law => self.belt_pressure_pa(law, at, load, secondary_rad_s),
+            law => self.belt_pressure_pa(law, at, &load(), secondary_rad_s),
         };
         if wanted > self.cap_pa {
             self.cap_pa
@@ -224,7 +223,10 @@ impl Cvt {
     /// Solves one step (CV-1 to CV-5).
     #[must_use]
     pub fn solve(&self, around: &Surroundings, state: &mut DriveState) -> Drive {
-        solve::solve(self, around, state)
+        match &mut state.belt {
+            Some(belt) => solve::solve(self, around, belt, &mut state.past),
+            None => Drive::at_rest(),
+        }
     }
 }
 

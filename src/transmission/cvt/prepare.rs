@@ -3,22 +3,24 @@
 use super::Cvt;
 use super::controller::RatioDemand;
 use super::evaluate::Step;
-use super::variator::{BeltAtRatio, BeltLoad, sliding_speed_m_s};
-use crate::numeric::ln;
+use super::pump::ETA_REFERENCE_PA_S;
+use super::spin::{NU_REFERENCE_M2_S, SpinNow};
+use super::variator::{BeltAtRatio, BeltLoad, Geometry, sliding_speed_m_s};
+use crate::numeric::{exp_each, ln_each};
 use crate::thermal::{BELT, SUMP};
-use crate::transmission::{DriveState, Surroundings};
+use crate::transmission::{Past, Surroundings};
 
 /// Oil volume for a unit of ln I: secondary cylinder towards low, primary cylinder towards high, m3 (PU-3).
-fn sheave_volumes_m3(cvt: &Cvt, at: &BeltAtRatio) -> (f64, f64) {
-    let slope = at.geometry.secondary_radius_slope_m();
-    let primary = (at.geometry.secondary_radius_m - slope) / at.geometry.ratio;
+fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
+    let slope = g.secondary_radius_slope_m();
+    let primary = (g.secondary_radius_m - slope) / g.ratio;
     let travel = 2.0 * cvt.belt.tan_wedge;
     (cvt.secondary_piston_m2 * travel * slope, cvt.primary_piston_m2 * travel * primary)
 }
 
-/// What the shift reckons with: viscosity for the pump's flow, efficiency for the full-load route.
+/// What the shift reckons with: leakage for the pump's free flow, efficiency for the full-load route.
 struct Route {
-    eta_pa_s: f64,
+    leakage_m3_s_pa: f64,
     efficiency: f64,
 }
 
@@ -30,85 +32,127 @@ struct Shift {
     held: bool,
 }
 
-fn shift(cvt: &Cvt, around: &Surroundings, state: &DriveState, at: &BeltAtRatio, route: Route) -> Shift {
-    let (down_m3, up_m3) = sheave_volumes_m3(cvt, at);
-    let free = cvt.pump.displacement_m3_rad * state.engine_rad_s - cvt.pump.steady_need_m3_s(state.secondary_pa, route.eta_pa_s);
+fn shift(cvt: &Cvt, around: &Surroundings, past: &Past, before: &Geometry, route: Route) -> Shift {
+    if around.wheel.wheel_rad_s <= 0.0 {
+        return Shift { ratio: before.ratio, flow_m3_s: 0.0, held: false }; // RC-4
+    }
+    let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
+    let free = cvt.pump.displacement_m3_rad * past.engine_rad_s - cvt.pump.need_m3_s(past.secondary_pa, route.leakage_m3_s_pa);
     let free = if free > 0.0 { free } else { 0.0 };
-    let before = at.geometry.ratio;
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive * around.wheel.wheel_rad_s,
         power_w: around.wheel.power_w,
         rated_w: around.engine.engine.rated_w,
         full_load_rad_s: cvt.full_load_route.at(around.wheel.power_w / (route.efficiency * around.engine.full_load_factor)),
-        ratio_before: before,
+        ratio_before: before.ratio,
         flow_down_per_s: free / down_m3, // RC-5
         flow_up_per_s: free / up_m3,     // RC-5
-        coupled: state.coupled,
+        coupled: past.coupled,
         dt_s: around.dt_s,
     };
-    let (ratio, held) = cvt.ratio.step(&demand);
-    if ratio.to_bits() == before.to_bits() {
-        return Shift { ratio, flow_m3_s: 0.0, held };
-    }
-    let change = ln(ratio / before);
+    let (ratio, change, held) = cvt.ratio.step(&demand);
     let volume = if change > 0.0 { down_m3 * change } else { -up_m3 * change };
     Shift { ratio, flow_m3_s: volume / around.dt_s, held }
 }
 
-/// Prepares a step: shifts, and works out what the solve does not change.
+/// Powers and exponentials of a step.
+struct Powers {
+    spin: SpinNow,
+    drive_nm: f64,
+    viscous_factor: f64,
+    radius_factor: f64,
+    /// The film's z (LU-5).
+    film: f64,
+}
+
+/// What they are powers of.
+struct Bases {
+    nu_m2_s: f64,
+    eta_pa_s: f64,
+    film_load: f64,
+    secondary_rad_s: f64,
+}
+
+impl Powers {
+    /// All of a step together: four logarithms, then seven exponentials.
+    #[inline(always)]
+    fn new(cvt: &Cvt, at: &BeltAtRatio, lift_exponent: f64, b: &Bases) -> Self {
+        let films = b.film_load > 0.0;
+        let [spin, pump, film, radius] = ln_each([
+            b.nu_m2_s / NU_REFERENCE_M2_S,
+            b.eta_pa_s / ETA_REFERENCE_PA_S,
+            if films { b.film_load } else { 1.0 },
+            cvt.low_radius_m / at.geometry.primary_radius_m,
+        ]);
+        let [shaft, clutch, drive] = cvt.spin.exponents(spin);
+        let [shaft, clutch, drive, fall, viscous_factor, radius_factor, film] = exp_each([
+            shaft,
+            clutch,
+            drive,
+            cvt.spin.drive_fall_exponent(b.secondary_rad_s),
+            cvt.pump.viscous_exponent * pump,
+            cvt.radius_exponent * radius,
+            lift_exponent * film,
+        ]);
+        let spin = cvt.spin.with_powers([shaft, clutch, drive]);
+        let drive_nm = cvt.spin.drive_with_fall_nm(&spin, fall);
+        Powers { spin, drive_nm, viscous_factor, radius_factor, film: if films { film } else { 0.0 } }
+    }
+}
+
+/// Prepares a step: shifts from the geometry `before` it, brings the belt to the new ratio, and works out what the solve does not change.
 #[inline(never)]
 pub(super) fn prepare<'a>(
     cvt: &'a Cvt,
     around: &'a Surroundings<'a>,
-    state: &DriveState,
-    before: &BeltAtRatio,
+    past: &Past,
+    before: &Geometry,
+    belt: &'a mut BeltAtRatio,
     efficiency: f64,
 ) -> Step<'a> {
+    let (oil, friction) = (around.oil, &around.oil.friction);
     let (sump_k, belt_k) = (around.heat.node_k[SUMP], around.heat.node_k[BELT]);
-    let nu = around.oil.kinematic_m2_s(sump_k);
-    let eta_sump = nu * around.oil.density_kg_m3(sump_k);
-    let Shift { ratio, flow_m3_s, held } = shift(cvt, around, state, before, Route { eta_pa_s: eta_sump, efficiency });
-    let shifted = ratio.to_bits() != before.geometry.ratio.to_bits();
-    let at = if shifted { BeltAtRatio::new(&cvt.belt, ratio) } else { *before };
+    let locked_from_rad_s = if past.coupled { cvt.launch.holds_from_rad_s(around.engine.idle_rad_s) } else { f64::INFINITY };
+    let [nu_sump, nu_belt] = oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]);
+    let eta_sump = nu_sump * oil.density_kg_m3(sump_k);
+    let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
+    let leakage_m3_s_pa = cvt.pump.leakage_now_m3_s_pa(eta_sump);
+    let Shift { ratio, flow_m3_s, held } = shift(cvt, around, past, before, Route { leakage_m3_s_pa, efficiency });
+    if ratio.to_bits() != belt.geometry.ratio.to_bits() {
+        *belt = BeltAtRatio::new(&cvt.belt, ratio);
+    }
+    let at = &*belt;
     let secondary_rad_s = cvt.final_drive * around.wheel.wheel_rad_s;
-    let spin = cvt.spin.at(nu);
+    let sliding = if cvt.belt.formulation.has_film() { sliding_speed_m_s(&cvt.belt, ratio, ratio * secondary_rad_s) } else { 0.0 };
+    let bases = Bases { nu_m2_s: nu_sump, eta_pa_s: eta_sump, film_load: friction.film_load(eta_belt, sliding), secondary_rad_s };
+    let powers = Powers::new(cvt, at, friction.lift_exponent, &bases);
     let engine = around.engine.engine;
     Step {
         cvt,
         around,
-        shifted,
         secondary_rad_s,
-        drive_nm: cvt.spin.drive_nm(&spin, secondary_rad_s),
-        spin,
-        viscous_factor: cvt.pump.viscous_factor(eta_sump),
-        eta_sump,
-        load: unloaded(cvt, around, belt_k, ratio * secondary_rad_s, ratio),
-        radius_factor: if shifted || state.radius_factor <= 0.0 { cvt.radius_factor(&at) } else { state.radius_factor },
+        drive_nm: powers.drive_nm,
+        spin: powers.spin,
+        viscous_factor: powers.viscous_factor,
+        leakage_m3_s_pa,
+        load: BeltLoad {
+            primary_speed_rad_s: 0.0,
+            output_torque_nm: 0.0,
+            secondary_clamp_n: 0.0,
+            band: friction.band_on_film(belt_k, powers.film),
+            eta_pa_s: eta_belt,
+            film_thickness_m: friction.film_thickness_m,
+            segment_friction: friction.segment,
+            flank_friction: friction.flank,
+        },
+        radius_factor: powers.radius_factor,
         at,
         shift_flow_m3_s: flow_m3_s,
         shift_held: held,
-        engine_before: state.engine_rad_s,
+        engine_before: past.engine_rad_s,
         pace_rad_s: engine.inertia_torque_nm / engine.inertia_kg_m2 * around.dt_s,
-        coupled: state.coupled,
-        locked_from_rad_s: if state.coupled { cvt.launch.holds_from_rad_s(around.engine.idle_rad_s) } else { f64::INFINITY },
+        coupled: past.coupled,
+        locked_from_rad_s,
         maps: cvt.maps.any().then_some(&cvt.maps),
-    }
-}
-
-/// What acts on the belt before speed, torque and clamping force are known: friction and film at its temperature.
-fn unloaded(cvt: &Cvt, around: &Surroundings, belt_k: f64, primary_rad_s: f64, ratio: f64) -> BeltLoad {
-    // Without sliding there is no lift-off and no shear (LU-4, FI-1), and viscosity does not matter.
-    let eta_pa_s = if primary_rad_s > 0.0 { around.oil.dynamic_pa_s(belt_k) } else { 0.0 };
-    let sliding = if cvt.belt.formulation.has_film() { sliding_speed_m_s(&cvt.belt, ratio, primary_rad_s) } else { 0.0 };
-    let friction = &around.oil.friction;
-    BeltLoad {
-        primary_speed_rad_s: 0.0,
-        output_torque_nm: 0.0,
-        secondary_clamp_n: 0.0,
-        band: friction.band(belt_k, eta_pa_s, sliding),
-        eta_pa_s,
-        film_thickness_m: friction.film_thickness_m,
-        segment_friction: friction.segment,
-        flank_friction: friction.flank,
     }
 }

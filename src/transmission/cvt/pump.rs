@@ -74,7 +74,21 @@ impl Pump {
     #[must_use]
     #[inline]
     pub fn steady_need_m3_s(&self, secondary_pa: f64, eta_pa_s: f64) -> f64 {
-        self.lubrication_m3_s + secondary_pa * (self.leakage_m3_s_pa * ETA_REFERENCE_PA_S / eta_pa_s) // PU-2
+        self.need_m3_s(secondary_pa, self.leakage_now_m3_s_pa(eta_pa_s))
+    }
+
+    /// Leakage per pressure at a viscosity, m3/(s Pa) (PU-2).
+    #[must_use]
+    #[inline]
+    pub fn leakage_now_m3_s_pa(&self, eta_pa_s: f64) -> f64 {
+        self.leakage_m3_s_pa * ETA_REFERENCE_PA_S / eta_pa_s
+    }
+
+    /// Flow that is needed without shifting with the leakage known, m3/s (PU-2).
+    #[must_use]
+    #[inline]
+    pub fn need_m3_s(&self, secondary_pa: f64, leakage_m3_s_pa: f64) -> f64 {
+        self.lubrication_m3_s + secondary_pa * leakage_m3_s_pa // PU-2
     }
 
     /// Factor (eta/eta_r)^m of PU-1.

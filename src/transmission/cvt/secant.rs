@@ -5,14 +5,16 @@ use crate::numeric::held;
 
 /// Closer than this two pressures say nothing of a slope, Pa.
 const SECANT_FROM_PA: f64 = 200.0;
+/// Closer than this two output torques say nothing of a slope, Nm: what pressure and slip still move is larger.
+const SECANT_FROM_NM: f64 = 0.02;
 /// Largest slope of the pressure's fixed point that is believed: above it the step would overshoot.
 const MOST_GAIN: f64 = 0.06;
 
 /// Largest relative change of slip per relative change of pressure that is believed.
 const MOST_SLIP_GAIN: f64 = 2.0;
 
-/// Accelerations closer than this are the same, m/s2.
-const ALIKE_M_S2: f64 = 1e-9;
+/// Accelerations closer than this are the same, m/s2: traces round their speeds.
+const ALIKE_M_S2: f64 = 1e-3;
 
 /// Slopes at the last evaluations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,16 +70,6 @@ impl Trend {
         (self.slip.onward(alike), self.loss.onward(alike))
     }
 
-    /// Loss torque of the step before, Nm.
-    pub(super) fn loss_nm(&self) -> f64 {
-        self.loss.value
-    }
-
-    /// Slip of the step before.
-    pub(super) fn slip(&self) -> f64 {
-        self.slip.value
-    }
-
     /// Takes a step at standstill: nothing slips, and what follows is not like it.
     pub(super) fn stand(&mut self) {
         *self = Trend { loss: Series { value: self.loss.value, ..Series::default() }, ..Trend::default() };
@@ -93,13 +85,14 @@ impl Trend {
     }
 }
 
-impl Slopes {
+impl Default for Slopes {
     /// Before anything is known: pressure acts on nothing, torque passes without loss.
-    #[must_use]
-    pub fn unknown() -> Self {
+    fn default() -> Self {
         Slopes { pressure: 0.0, slip_per_pa: 0.0, torque: 1.0 }
     }
+}
 
+impl Slopes {
     /// Takes the slopes between two evaluations, the earlier one given by its guess and the pressure that followed from it.
     #[inline]
     pub(super) fn learn(&mut self, before: &Guess, before_next_pa: f64, now: &Point) {
@@ -140,7 +133,7 @@ impl TorqueSecant {
     pub fn next_nm(&mut self, now: &Point, slopes: &mut Slopes, plain: bool) -> (f64, bool) {
         let (x, miss_nm) = (now.guess.output_nm, now.miss_nm);
         if let Some((x0, miss0)) = self.last
-            && (x - x0).abs() > 1e-12
+            && (x - x0).abs() > SECANT_FROM_NM
         {
             slopes.torque = held((miss_nm - miss0) / (x - x0) * self.ratio, 0.5, 2.0);
         }
@@ -171,6 +164,7 @@ mod tests {
         trend.push(0.6, 0.02, 1.0);
         assert!((trend.onward(0.6).0 - 0.02).abs() < 1e-15, "one step alone has no trend");
         trend.stand();
-        assert!(trend.slip().abs() < 1e-15 && (trend.loss_nm() - 1.0).abs() < 1e-15);
+        let (slip, loss_nm) = trend.onward(0.6);
+        assert!(slip.abs() < 1e-15 && (loss_nm - 1.0).abs() < 1e-15);
     }
 }

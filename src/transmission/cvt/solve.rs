@@ -9,10 +9,10 @@ use super::controller::ClampLaw;
 use super::evaluate::{Bind, Guess, Point, Step};
 use super::prepare::prepare;
 use super::secant::{Slopes, TorqueSecant};
-use super::variator::BeltLoad;
+use super::variator::{BeltAtRatio, BeltLoad};
 use crate::numeric::held;
 use crate::results::Flags;
-use crate::transmission::{Drive, DriveState, Surroundings};
+use crate::transmission::{Drive, Past, Surroundings};
 
 /// The solve stops when slip and, relatively, pressure and engine speed move less than this.
 pub(super) const TOLERANCE: f64 = 1e-7;
@@ -45,18 +45,18 @@ impl Step<'_> {
     }
 
     /// Where the solve begins: slip and losses of the step before, at the new ratio and demand.
-    fn first_guess(&self, state: &DriveState) -> Guess {
-        let (slip, loss_nm) = state.trend.onward(self.around.wheel.accel_m_s2);
+    fn first_guess(&self, past: &Past) -> Guess {
+        let (slip, loss_nm) = past.trend.onward(self.around.wheel.accel_m_s2);
         let engine_rad_s = self.first_engine_rad_s(slip);
         let output_nm = self.around.wheel.power_w / self.secondary_rad_s;
         let engine = self.around.engine;
         let flywheel = output_nm / self.at.geometry.ratio + loss_nm;
         let throttle = held((flywheel + engine.accessories_nm(engine_rad_s)) / engine.full_load_nm(engine_rad_s), 0.0, 1.0);
         let signals = self.signals(throttle, engine_rad_s);
-        let load = BeltLoad { output_torque_nm: output_nm, ..self.load };
+        let load = || BeltLoad { output_torque_nm: output_nm, ..self.load };
         let pressure_pa = match &self.cvt.clamp {
-            ClampLaw::SlipLimited { .. } => state.secondary_pa,
-            _ => self.cvt.pressure_pa(&signals, &self.at, &load, self.secondary_rad_s),
+            ClampLaw::SlipLimited { .. } => past.secondary_pa,
+            _ => self.cvt.pressure_pa(&signals, self.at, load, self.secondary_rad_s),
         };
         Guess { output_nm, slip, engine_rad_s, pressure_pa }
     }
@@ -66,12 +66,13 @@ impl Step<'_> {
         if self.locked(primary) || primary > self.engine_before { primary } else { self.engine_before }
     }
 
-    /// Output torque at which the engine's least torque is likely to bind: its drag with the losses of the step before, Nm.
-    fn likely_overrun_nm(&self, state: &DriveState) -> f64 {
+    /// Output torque at which the engine's least torque is likely to bind: its drag with the losses that are expected, Nm.
+    fn likely_overrun_nm(&self, past: &Past) -> f64 {
         let engine = self.around.engine;
-        let w = self.first_engine_rad_s(state.trend.slip());
+        let (slip, loss_nm) = past.trend.onward(self.around.wheel.accel_m_s2);
+        let w = self.first_engine_rad_s(slip);
         let share = self.cvt.launch.overrun_share(w, engine.idle_rad_s);
-        -self.at.geometry.ratio * (share * (engine.drag_nm(w) + engine.accessories_nm(w)) + state.trend.loss_nm())
+        -self.at.geometry.ratio * (share * (engine.drag_nm(w) + engine.accessories_nm(w)) + loss_nm)
     }
 
     /// Solves with the output torque bound by `bind`, from a first guess; the answer stands in `work.point`. A run at the demanded
@@ -120,11 +121,11 @@ impl Step<'_> {
     /// Finds which condition fixes the output torque, and solves with it. The engine's least torque binds exactly when it leaves more
     /// at the output than the wheels demand, full load when it leaves less; so what binds may be tried before it is certain: in
     /// overrun from the step before, else from a run at the demand that leaves early. `None`: full load binds, and is not wanted yet.
-    fn bound(&self, state: &DriveState, full_load_wanted: bool, work: &mut Work) -> Option<Bind> {
-        let guess = self.first_guess(state);
+    fn bound(&self, past: &Past, full_load_wanted: bool, work: &mut Work) -> Option<Bind> {
+        let guess = self.first_guess(past);
         let demand_nm = guess.output_nm;
-        if state.overrun && self.around.wheel.power_w < 0.0 {
-            let near = Guess { output_nm: self.likely_overrun_nm(state), ..guess };
+        if past.overrun && self.around.wheel.power_w < 0.0 {
+            let near = Guess { output_nm: self.likely_overrun_nm(past), ..guess };
             self.run(&near, Bind::Least, false, work);
             if work.point.guess.output_nm > demand_nm {
                 return Some(Bind::Least);
@@ -152,6 +153,7 @@ impl Step<'_> {
 }
 
 /// Effort and success of the solve.
+#[derive(Default)]
 struct Work {
     /// The last evaluation.
     point: Point,
@@ -161,36 +163,36 @@ struct Work {
 }
 
 /// The engine stands still.
-fn engine_off(around: &Surroundings, ratio: f64, state: &mut DriveState) -> Drive {
-    state.engine_rad_s = around.engine.idle_rad_s; // the starter brings it back there
-    state.stood = true;
-    state.coupled = false;
+fn engine_off(around: &Surroundings, ratio: f64, past: &mut Past) -> Drive {
+    past.engine_rad_s = around.engine.idle_rad_s; // the starter brings it back there
+    past.stood = true;
+    past.coupled = false;
     let mut rest =
         Drive { belt_ratio: ratio, secondary_pa: 0.0, primary_pa: 0.0, slip: 0.0, clamp_safety: f64::INFINITY, ..Drive::at_rest() };
     rest.flags.set(Flags::ENGINE_OFF, true);
     rest
 }
 
-/// Solves one step of the CVT.
-pub(super) fn solve(cvt: &Cvt, around: &Surroundings, state: &mut DriveState) -> Drive {
-    let Some(ratio) = state.belt.as_ref().map(|at| at.geometry.ratio) else { return Drive::at_rest() };
+/// Solves one step of the CVT; `belt` is the one at the ratio in force, and follows it.
+pub(super) fn solve(cvt: &Cvt, around: &Surroundings, belt: &mut BeltAtRatio, past: &mut Past) -> Drive {
+    let before = belt.geometry;
     if around.engine_off {
-        return engine_off(around, ratio, state);
+        return engine_off(around, before.ratio, past);
     }
-    let mut work = Work { point: Point::default(), count: 0, left: 0.0, slopes: state.slopes };
+    let mut work = Work::default();
     let mut efficiency = cvt.ratio.route_efficiency;
+    work.slopes = past.slopes;
     loop {
-        let Some(before) = &state.belt else { return Drive::at_rest() };
-        let step = prepare(cvt, around, state, before, efficiency);
+        let step = prepare(cvt, around, past, &before, belt, efficiency);
         if step.secondary_rad_s <= 0.0 {
-            return standstill(&step, state);
+            return standstill(&step, past);
         }
         efficiency *= 0.9;
-        let Some(bind) = step.bound(state, efficiency <= LEAST_ROUTE_EFFICIENCY, &mut work) else {
+        let Some(bind) = step.bound(past, efficiency <= LEAST_ROUTE_EFFICIENCY, &mut work) else {
             continue; // kick-down: losses are larger than RC-3 reckoned with, ask for more speed (RC-7)
         };
-        state.slopes = work.slopes;
-        state.overrun = bind == Bind::Least;
-        return finish(&step, &work.point, state, Outcome { bind, left: work.left, count: work.count });
+        past.slopes = work.slopes;
+        past.overrun = bind == Bind::Least;
+        return finish(&step, &work.point, past, Outcome { bind, left: work.left, count: work.count });
     }
 }

@@ -10,7 +10,7 @@
 //! nu_80 = 11 mm2/s is the viscosity at which the constants hold. Below 25 degC FD-1 is extrapolated: about 12 Nm at the input in
 //! overdrive at -10 degC, unmeasured.
 
-use crate::numeric::{exp, ln};
+use crate::numeric::{exp, exp_each, ln};
 
 /// Kinematic viscosity to which the constants refer, m2/s.
 pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
@@ -53,12 +53,24 @@ pub struct SpinNow {
 }
 
 impl Spin {
-    /// Evaluates the powers of viscosity once for a step.
+    /// The constants at a viscosity.
     #[must_use]
     #[inline]
     pub fn at(&self, nu_m2_s: f64) -> SpinNow {
-        let log = ln(nu_m2_s / NU_REFERENCE_M2_S);
-        let [shaft, clutch, drive] = [self.shaft_exponent, self.clutch_exponent, self.drive_exponent].map(|m| exp(m * log));
+        self.with_powers(exp_each(self.exponents(ln(nu_m2_s / NU_REFERENCE_M2_S))))
+    }
+
+    /// Logarithms of the powers of viscosity in IS-1, CD-1 and FD-1, from ln(nu/nu_80).
+    #[must_use]
+    #[inline]
+    pub fn exponents(&self, log_nu: f64) -> [f64; 3] {
+        [self.shaft_exponent * log_nu, self.clutch_exponent * log_nu, self.drive_exponent * log_nu]
+    }
+
+    /// The constants with the powers of viscosity known.
+    #[must_use]
+    #[inline]
+    pub fn with_powers(&self, [shaft, clutch, drive]: [f64; 3]) -> SpinNow {
         let clutch_nm = self.clutch_nm * clutch;
         SpinNow {
             shaft_constant_nm: self.shaft_constant_nm,
@@ -72,7 +84,21 @@ impl Spin {
     #[must_use]
     #[inline]
     pub fn drive_nm(&self, now: &SpinNow, secondary_rad_s: f64) -> f64 {
-        self.drive_boundary_nm * exp(-secondary_rad_s / self.drive_scale_rad_s) + now.drive_viscous_nm // FD-1
+        self.drive_with_fall_nm(now, exp(self.drive_fall_exponent(secondary_rad_s)))
+    }
+
+    /// -n/n0 of FD-1.
+    #[must_use]
+    #[inline]
+    pub fn drive_fall_exponent(&self, secondary_rad_s: f64) -> f64 {
+        -secondary_rad_s / self.drive_scale_rad_s
+    }
+
+    /// The same torque, Nm, with exp(-n/n0) known (FD-1).
+    #[must_use]
+    #[inline]
+    pub fn drive_with_fall_nm(&self, now: &SpinNow, fall: f64) -> f64 {
+        self.drive_boundary_nm * fall + now.drive_viscous_nm // FD-1
     }
 
     /// Torque at the secondary shaft for a torque after the final drive, both at the secondary's speed, Nm (FD-2).

@@ -21,7 +21,7 @@ pub use load::load;
 use super::cvt::{Slopes, Trend};
 use super::launch::Launch;
 use super::loss_map::{LossMap, MapPoint};
-use super::{Drive, DriveState, Surroundings};
+use super::{Drive, Past, Surroundings};
 use crate::cycle::GearCommand;
 use crate::lubricant::VALID_K;
 use crate::numeric::{exp, held, ln};
@@ -99,19 +99,17 @@ impl Manual {
 
     /// State at the beginning of a cycle.
     #[must_use]
-    pub fn start(&self, around: &Surroundings) -> DriveState {
+    pub fn start(&self, around: &Surroundings) -> Past {
         let gear = if around.wheel.wheel_rad_s > 0.0 { self.shifts.for_speed(around.wheel.speed_m_s, 1, self.overall.len()) } else { 0 };
         let input = if gear > 0 { self.overall[usize::from(gear) - 1] * around.wheel.wheel_rad_s } else { 0.0 };
         let idle = around.engine.idle_rad_s;
-        DriveState {
-            belt: None,
+        Past {
             gear,
             engine_rad_s: if input > idle { input } else { idle },
             throttle: 0.0,
             trend: Trend::default(),
-            slopes: Slopes::unknown(),
+            slopes: Slopes::default(),
             overrun: false,
-            radius_factor: 0.0,
             secondary_pa: 0.0,
             coupled: input > idle,
             stood: true,
@@ -119,7 +117,7 @@ impl Manual {
     }
 
     /// Command in force: the cycle's, else from the shift speeds (MB-5).
-    fn command(&self, around: &Surroundings, state: &DriveState) -> GearCommand {
+    fn command(&self, around: &Surroundings, state: &Past) -> GearCommand {
         let count = self.overall.len();
         match around.gear {
             Some(GearCommand::Change(g)) => GearCommand::InGear(g),
@@ -141,7 +139,7 @@ impl Manual {
 
     /// Solves one step.
     #[must_use]
-    pub fn solve(&self, around: &Surroundings, state: &mut DriveState) -> Drive {
+    pub fn solve(&self, around: &Surroundings, state: &mut Past) -> Drive {
         if around.engine_off {
             state.engine_rad_s = around.engine.idle_rad_s; // the starter brings it back there
             state.stood = true;
@@ -173,7 +171,7 @@ impl Manual {
     }
 
     /// Engine speed that the free engine reaches within the step, rad/s.
-    fn free_engine_rad_s(around: &Surroundings, state: &DriveState) -> f64 {
+    fn free_engine_rad_s(around: &Surroundings, state: &Past) -> f64 {
         let e = around.engine;
         let pace = e.engine.inertia_torque_nm / e.engine.inertia_kg_m2 * around.dt_s;
         held(e.idle_rad_s, state.engine_rad_s - pace, state.engine_rad_s + pace)
@@ -188,12 +186,12 @@ impl Manual {
     }
 
     /// Declutched, unless the car would then slow down more than it should: the driver lets the clutch slip in that gear or a lower one.
-    fn coasting(&self, around: &Surroundings, state: &DriveState, gear: u8, nu: f64) -> Drive {
+    fn coasting(&self, around: &Surroundings, state: &Past, gear: u8, nu: f64) -> Drive {
         let drive = self.declutched(around, state, gear, nu);
         if drive.deficit_w > 0.0 { self.engaged(around, state, gear.max(1), nu) } else { drive }
     }
 
-    fn neutral(&self, around: &Surroundings, state: &DriveState, nu: f64) -> Drive {
+    fn neutral(&self, around: &Surroundings, state: &Past, nu: f64) -> Drive {
         let w = Self::free_engine_rad_s(around, state);
         let spin = self.unloaded(around, 1, w, nu);
         let share = self.neutral_share;
@@ -203,7 +201,7 @@ impl Manual {
     }
 
     /// Clutch open, the wheels turn the box in `gear` (0: its highest), the engine idles.
-    fn declutched(&self, around: &Surroundings, state: &DriveState, gear: u8, nu: f64) -> Drive {
+    fn declutched(&self, around: &Surroundings, state: &Past, gear: u8, nu: f64) -> Drive {
         let gear = if gear == 0 { self.overall.len() as u8 } else { gear };
         let input = self.overall[usize::from(gear) - 1] * around.wheel.wheel_rad_s;
         let spin = self.unloaded(around, gear, input, nu);
@@ -224,23 +222,18 @@ impl Manual {
         drive.lose(Component::BoxMap, spin.map * speed);
     }
 
-    /// Box loss torque at the input for an output torque referred to the input: (spin, mesh, inside map).
-    fn losses(&self, gear: u8, input: f64, output_nm: f64, nu: f64, oil_k: f64) -> (Spin, f64, bool) {
-        if let Some(map) = &self.map {
-            let (loss, inside) = map_loss(map, gear, input, output_nm, oil_k);
-            return (Spin::mapped(loss), 0.0, inside);
-        }
-        let spin = self.spin(input, nu);
-        let eta = self.mesh_efficiency;
-        let mesh = if output_nm >= 0.0 { output_nm * (1.0 / eta - 1.0) } else { output_nm * (eta - 1.0) }; // MB-1
-        (spin, mesh, true)
+    /// The engaged box at a speed and an oil temperature.
+    #[inline]
+    fn turning(&self, gear: u8, input_rad_s: f64, nu_m2_s: f64, oil_k: f64) -> Turning<'_> {
+        let spin = if self.map.is_some() { Spin::mapped(0.0) } else { self.spin(input_rad_s, nu_m2_s) };
+        Turning { manual: self, gear, input_rad_s, oil_k, spin }
     }
 
     /// Losses of the engaged box by component, Nm at the input shaft, for an output torque referred to the input (MB-1 to MB-4), and
     /// whether a map, if there is one, holds the point.
     #[must_use]
     pub fn part_losses_nm(&self, gear: u8, input_rad_s: f64, output_nm: f64, nu_m2_s: f64, oil_k: f64) -> ([(Component, f64); 5], bool) {
-        let (spin, mesh, inside) = self.losses(gear, input_rad_s, output_nm, nu_m2_s, oil_k);
+        let (spin, mesh, inside) = self.turning(gear, input_rad_s, nu_m2_s, oil_k).losses(output_nm);
         let parts = [
             (Component::GearMesh, mesh),
             (Component::Bearing, spin.bearing),
@@ -251,23 +244,7 @@ impl Manual {
         (parts, inside)
     }
 
-    /// Output torque referred to the input for an input torque: the inverse of MB-1, by secant where a map is used.
-    fn output_for(&self, gear: u8, input: f64, input_nm: f64, nu: f64, oil_k: f64) -> (f64, u16) {
-        let mut x = input_nm;
-        let mut count = 0;
-        while count < 60 {
-            let (spin, mesh, _) = self.losses(gear, input, x, nu, oil_k);
-            let miss = x + spin.sum() + mesh - input_nm;
-            count += 1;
-            if miss.abs() <= 1e-10 * (1.0 + input_nm.abs()) {
-                break;
-            }
-            x -= miss;
-        }
-        (x, count)
-    }
-
-    fn engaged(&self, around: &Surroundings, state: &DriveState, gear: u8, nu: f64) -> Drive {
+    fn engaged(&self, around: &Surroundings, state: &Past, gear: u8, nu: f64) -> Drive {
         let mut gear = gear;
         loop {
             let drive = self.in_gear(around, state, gear, nu);
@@ -279,13 +256,14 @@ impl Manual {
         }
     }
 
-    fn in_gear(&self, around: &Surroundings, state: &DriveState, gear: u8, nu: f64) -> Drive {
+    fn in_gear(&self, around: &Surroundings, state: &Past, gear: u8, nu: f64) -> Drive {
         let (engine, wheel) = (around.engine, around.wheel);
         let oil_k = around.heat.node_k[SUMP];
         let input = self.overall[usize::from(gear) - 1] * wheel.wheel_rad_s;
         let idle = engine.idle_rad_s;
         let mut output_nm = wheel.power_w / input;
-        let (mut spin, mut mesh, mut inside) = self.losses(gear, input, output_nm, nu, oil_k);
+        let turning = self.turning(gear, input, nu, oil_k);
+        let (mut spin, mut mesh, mut inside) = turning.losses(output_nm);
         let mut input_nm = output_nm + spin.sum() + mesh; // MB-1
         let speed = |torque: f64| {
             let wanted = self.launch.engine_speed_rad_s(torque, input, idle, state.coupled);
@@ -310,8 +288,8 @@ impl Manual {
         let mut drive = Drive { gear, iterations: 1, ..Drive::at_rest() };
         if let Some(torque) = bound {
             drive.flags.set(Flags::MISSED_TRACE, input_nm > most);
-            (output_nm, drive.iterations) = self.output_for(gear, input, torque, nu, oil_k);
-            (spin, mesh, inside) = self.losses(gear, input, output_nm, nu, oil_k);
+            (output_nm, drive.iterations) = turning.output_for(torque);
+            (spin, mesh, inside) = turning.losses(output_nm);
             input_nm = output_nm + spin.sum() + mesh;
             drive.residual = (input_nm - torque).abs() / engine.full_load_nm(w);
             w = if torque > least { w } else { speed(torque) };
@@ -331,6 +309,45 @@ impl Manual {
         drive.flags.set(Flags::OUTSIDE_VALIDITY, !inside);
         drive.flags.set(Flags::NOT_CONVERGED, drive.residual > 1e-8);
         drive
+    }
+}
+
+/// The engaged box at a speed and an oil temperature: what does not depend on torque is known.
+struct Turning<'a> {
+    manual: &'a Manual,
+    gear: u8,
+    input_rad_s: f64,
+    oil_k: f64,
+    /// Nothing where a map holds the losses.
+    spin: Spin,
+}
+
+impl Turning<'_> {
+    /// Box loss torque at the input for an output torque referred to the input: (spin, mesh, inside map).
+    fn losses(&self, output_nm: f64) -> (Spin, f64, bool) {
+        if let Some(map) = &self.manual.map {
+            let (loss, inside) = map_loss(map, self.gear, self.input_rad_s, output_nm, self.oil_k);
+            return (Spin::mapped(loss), 0.0, inside);
+        }
+        let eta = self.manual.mesh_efficiency;
+        let mesh = if output_nm >= 0.0 { output_nm * (1.0 / eta - 1.0) } else { output_nm * (eta - 1.0) }; // MB-1
+        (self.spin, mesh, true)
+    }
+
+    /// Output torque referred to the input for an input torque: the inverse of MB-1, by secant where a map is used.
+    fn output_for(&self, input_nm: f64) -> (f64, u16) {
+        let mut x = input_nm;
+        let mut count = 0;
+        while count < 60 {
+            let (spin, mesh, _) = self.losses(x);
+            let miss = x + spin.sum() + mesh - input_nm;
+            count += 1;
+            if miss.abs() <= 1e-10 * (1.0 + input_nm.abs()) {
+                break;
+            }
+            x -= miss;
+        }
+        (x, count)
     }
 }
 
@@ -381,8 +398,9 @@ mod tests {
     fn output_is_the_inverse_of_input() {
         let m = manual();
         for torque in [-20.0, -2.0, 0.0, 3.0, 80.0] {
-            let (x, _) = m.output_for(3, 200.0, torque, 30e-6, 320.0);
-            let (spin, mesh, _) = m.losses(3, 200.0, x, 30e-6, 320.0);
+            let turning = m.turning(3, 200.0, 30e-6, 320.0);
+            let (x, _) = turning.output_for(torque);
+            let (spin, mesh, _) = turning.losses(x);
             assert!((x + spin.sum() + mesh - torque).abs() < 1e-8 && mesh >= 0.0);
         }
     }

@@ -81,17 +81,17 @@ impl RatioControl {
         if speed < self.highest_rad_s { speed } else { self.highest_rad_s }
     }
 
-    /// Ratio after the step (RC-4, RC-5), and whether pump flow held it back.
+    /// Ratio after the step and its change in ln I (RC-4, RC-5), and whether pump flow held it back.
     #[must_use]
-    pub fn step(&self, d: &RatioDemand) -> (f64, bool) {
+    pub fn step(&self, d: &RatioDemand) -> (f64, f64, bool) {
         let before = d.ratio_before;
         if d.secondary_rad_s <= 0.0 {
-            return (before, false); // RC-4
+            return (before, 0.0, false); // RC-4
         }
         let wanted = held(self.target_rad_s(d) / d.secondary_rad_s, self.high, self.low);
         let wanted = if !d.coupled && wanted < before { before } else { wanted }; // RC-6
         if wanted.to_bits() == before.to_bits() {
-            return (before, false);
+            return (before, 0.0, false);
         }
         let change = ln(wanted / before);
         let pace = held(before * d.secondary_rad_s / self.rate_speed_rad_s, 0.0, 1.0);
@@ -101,8 +101,11 @@ impl RatioControl {
         up = if d.flow_up_per_s < up { d.flow_up_per_s } else { up };
         down = if d.flow_down_per_s < down { d.flow_down_per_s } else { down }; // RC-5
         let (least, most) = (-up * d.dt_s, down * d.dt_s);
-        let ratio = if least <= change && change <= most { wanted } else { before * exp(held(change, least, most)) };
-        (held(ratio, self.high, self.low), short_of_flow)
+        if least <= change && change <= most {
+            return (wanted, change, short_of_flow);
+        }
+        let change = held(change, least, most);
+        (held(before * exp(change), self.high, self.low), change, short_of_flow)
     }
 }
 
@@ -156,8 +159,8 @@ mod tests {
     fn shift_rate_is_limited_and_says_when_flow_does_it() {
         let c = control();
         let fast = c.step(&demand(400.0, 5e3, 1.0));
-        assert!(((1.0 / fast.0).ln() - 0.35).abs() < 1e-9 && !fast.1);
+        assert!(((1.0 / fast.0).ln() - 0.35).abs() < 1e-9 && !fast.2);
         let slow = c.step(&RatioDemand { flow_up_per_s: 0.1, ..demand(400.0, 5e3, 1.0) });
-        assert!(((1.0 / slow.0).ln() - 0.1).abs() < 1e-9 && slow.1);
+        assert!(((1.0 / slow.0).ln() - 0.1).abs() < 1e-9 && (slow.1 + 0.1).abs() < 1e-12 && slow.2);
     }
 }

@@ -10,7 +10,8 @@
 //!
 //! N is the resultant normal force on a segment (both flanks), t the segment thickness. Always positive; zero at zero clamping force.
 
-use super::{Belt, BeltAtRatio, Tension};
+use super::{Belt, BeltAtRatio, Geometry, Tension};
+use crate::numeric::pair;
 
 /// Wedge and penetration losses of both pulleys, at the primary shaft, Nm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,32 +26,47 @@ pub struct Deflection {
     pub penetration_secondary_nm: f64,
 }
 
-/// chord times sliding speed over shaft speed for a radial overlap q, m2 (WE-2).
-#[inline]
-fn wedge_area_m2(radius_m: f64, q: f64) -> f64 {
-    // sqrt(q (2R+q)) sqrt(2 (R+q) q) = q sqrt((2R+q) 2 (R+q))
-    q * ((2.0 * radius_m + q) * 2.0 * (radius_m + q)).sqrt()
+/// Arcs over twice the segment thickness, referred to the primary shaft, 1/m; primary, secondary (WE-3).
+#[must_use]
+pub fn wedge_per_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
+    let arcs = 0.5 * belt.formulation.wedge_arcs() / belt.segment_thickness_m;
+    [arcs, arcs / g.ratio]
+}
+
+/// 2 `R_p` / t, times depth over deflection (PE-1).
+#[must_use]
+pub fn penetration(belt: &Belt, g: &Geometry) -> f64 {
+    let depth = if belt.formulation.radial_penetration() { 0.5 / belt.tan_wedge } else { 1.0 };
+    2.0 * g.primary_radius_m * depth / belt.segment_thickness_m
 }
 
 /// Wedge and penetration losses (WE-1 to PE-1).
 #[must_use]
-#[inline(always)]
+#[inline]
 pub fn deflection(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_flank: f64) -> Deflection {
-    let (f, g, prepared) = (belt.formulation, &at.geometry, &at.prepared);
-    let delta_p = prepared.stop * g.primary_radius_m * t.primary_clamp_n * belt.primary_compliance_per_n; // WE-4
-    let delta_s = g.secondary_radius_m * t.secondary_clamp_n * belt.secondary_compliance_per_n; // WE-1
-    let n_p = t.primary_clamp_n * prepared.normal_per_clamp[0];
-    let n_s = t.secondary_clamp_n * prepared.normal_per_clamp[1];
-    let half_cot = prepared.wedge_half_cot;
-    let per_pitch = mu_flank / belt.segment_thickness_m;
-    let common = 0.5 * f.wedge_arcs() * per_pitch;
-    let wedge_s_force = if f.own_wedge_force() { n_s } else { n_p };
-    let depth = if f.radial_penetration() { 0.5 / belt.tan_wedge } else { 1.0 };
-    let pen = 2.0 * per_pitch * g.primary_radius_m * depth;
+    clamped(belt, at, t.primary_clamp_n, t.secondary_clamp_n, mu_flank)
+}
+
+/// The same from the clamping forces, N, both pulleys side by side.
+#[inline(never)]
+fn clamped(belt: &Belt, at: &BeltAtRatio, primary_n: f64, secondary_n: f64, mu_flank: f64) -> Deflection {
+    let (g, prepared) = (&at.geometry, &at.prepared);
+    let radius_m = [g.primary_radius_m, g.secondary_radius_m];
+    let clamp_n = [primary_n, secondary_n];
+    let friction_n = pair(|i| mu_flank * clamp_n[i] * prepared.normal_per_clamp[i]);
+    let compliance_per_n = [prepared.stop * belt.primary_compliance_per_n, belt.secondary_compliance_per_n]; // WE-4
+    let delta_m = pair(|i| clamp_n[i] * (radius_m[i] * compliance_per_n[i])); // WE-1
+    let chord_m2 = pair(|i| {
+        let (r, q) = (radius_m[i], delta_m[i] * prepared.wedge_half_cot);
+        q * ((r + r + q) * (r + r + q + q)).sqrt() // WE-2: sqrt(q (2R+q)) sqrt(2 (R+q) q)
+    });
+    let wedge_n = if belt.formulation.own_wedge_force() { friction_n } else { [friction_n[0]; 2] };
+    let wedge_nm = pair(|i| prepared.wedge_per_m[i] * wedge_n[i] * chord_m2[i]); // WE-3
+    let penetration_nm = pair(|i| prepared.penetration * friction_n[i] * delta_m[i]); // PE-1
     Deflection {
-        wedge_primary_nm: common * n_p * wedge_area_m2(g.primary_radius_m, delta_p * half_cot), // WE-3
-        wedge_secondary_nm: common * wedge_s_force * wedge_area_m2(g.secondary_radius_m, delta_s * half_cot) * prepared.per_ratio, // WE-3
-        penetration_primary_nm: pen * n_p * delta_p,                                            // PE-1
-        penetration_secondary_nm: pen * n_s * delta_s,                                          // PE-1
+        wedge_primary_nm: wedge_nm[0],
+        wedge_secondary_nm: wedge_nm[1],
+        penetration_primary_nm: penetration_nm[0],
+        penetration_secondary_nm: penetration_nm[1],
     }
 }

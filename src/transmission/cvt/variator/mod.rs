@@ -122,10 +122,20 @@ pub struct Prepared {
     pub stop: f64,
     /// Half the cotangent of the angle in the wedge terms (WE-2).
     pub wedge_half_cot: f64,
-    /// One over the belt ratio.
-    pub per_ratio: f64,
+    /// Arcs over twice the segment thickness, referred to the primary shaft, 1/m (WE-3).
+    pub wedge_per_m: [f64; 2],
+    /// Penetration torque per friction force and deflection (PE-1).
+    pub penetration: f64,
     /// One over the segments in the wraps.
     pub per_count: [f64; 2],
+    /// One over the belt ratio.
+    pub per_ratio: f64,
+    /// One over the secondary radius, 1/m.
+    pub per_secondary_m: f64,
+    /// Torque capacity per clamping force and segment friction, m (VA-2).
+    pub capacity_m: f64,
+    /// One over the width of the blend between the loading branches, 1/N.
+    pub per_blend_n: f64,
 }
 
 impl Prepared {
@@ -144,8 +154,13 @@ impl Prepared {
             film_m4: bands::film_m4(belt, g),
             stop: belt.formulation.primary_stop(1.0 - ramp(g.ratio, belt.stop_from_ratio, belt.stop_to_ratio)), // WE-4
             wedge_half_cot: 0.5 / belt.formulation.wedge_tan(belt.tan_wedge),
-            per_ratio: 1.0 / g.ratio,
+            wedge_per_m: deflection::wedge_per_m(belt, g),
+            penetration: deflection::penetration(belt, g),
             per_count: arc_m.map(|a| pitch / a),
+            per_ratio: 1.0 / g.ratio,
+            per_secondary_m: 1.0 / g.secondary_radius_m,
+            capacity_m: 2.0 * g.secondary_radius_m / belt.cos_wedge,
+            per_blend_n: 1.0 / belt.blend_n,
         }
     }
 }
@@ -273,15 +288,16 @@ fn tension(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, direction: f64) -> Te
             centrifugal_n: belt.mass_kg_m * v * v,
             direction,
             tan_wedge: belt.tan_wedge,
+            per_secondary_m: at.prepared.per_secondary_m,
         },
     )
 }
 
 /// Torque capacity at the secondary, Nm (VA-2).
 #[inline]
-fn capacity_nm(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> f64 {
+fn capacity_nm(at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> f64 {
     let weaker = if t.primary_clamp_n < t.secondary_clamp_n { t.primary_clamp_n } else { t.secondary_clamp_n };
-    weaker * (2.0 * mu_segment * at.geometry.secondary_radius_m / belt.cos_wedge) // VA-2
+    weaker * mu_segment * at.prepared.capacity_m // VA-2
 }
 
 /// Everything that the equations give at one operating point, pulley by pulley.
@@ -304,7 +320,7 @@ fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
         bands: bands::band_loss(at, &tension, load.band.mu),
         film_nm: bands::film_loss_nm(at, &film, load.primary_speed_rad_s),
         deflection: deflection::deflection(belt, at, &tension, load.flank_friction),
-        capacity_nm: capacity_nm(belt, at, &tension, mu_segment),
+        capacity_nm: capacity_nm(at, &tension, mu_segment),
         tension,
     }
 }

@@ -187,7 +187,7 @@ fn printed_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoint {
     let bands = band_loss(at, &tension, load.band.mu);
     let deflection = deflection(belt, at, &tension, printed::FLANK_FRICTION); // PR-5
     let bare = without_slip(belt, at, load, (&tension, &bands, &deflection));
-    let bare = BeltPoint { capacity_nm: capacity_nm(belt, at, &tension, load.segment_friction), ..bare };
+    let bare = BeltPoint { capacity_nm: capacity_nm(at, &tension, load.segment_friction), ..bare };
     let Some(slip) = printed::slip(&Contact::new(belt, at, &tension, load.segment_friction)) else {
         return bare;
     };

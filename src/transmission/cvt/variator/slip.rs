@@ -17,7 +17,7 @@
 //! defined at standstill.
 
 use super::{Belt, BeltAtRatio, Tension};
-use crate::numeric::exp;
+use crate::numeric::{exp, held, pair};
 
 /// Slip and its loss.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -52,17 +52,17 @@ const ALONE: f64 = 9.0;
 /// Compression at which the fitted contact area is largest, N (SL-3).
 pub(super) const LARGEST_AREA_N: f64 = 4492.0;
 
-/// Contact area between segments in an arc as printed, m2: falls again above [`LARGEST_AREA_N`] (SL-3 without holding).
+/// Contact area between segments in an arc for a compression \|C_x\| as printed, m2: falls again above [`LARGEST_AREA_N`] (SL-3 without holding).
 #[inline]
 pub(super) fn printed_area_m2(compression_n: f64) -> f64 {
-    let c = compression_n.abs();
+    let c = compression_n;
     1.74142e-6 + 1.56364e-9 * c - 1.74032e-13 * c * c // SL-3
 }
 
-/// Contact area between segments in an arc, m2 (SL-3).
+/// Contact area between segments in an arc for a compression \|C_x\|, m2 (SL-3).
 #[inline]
 fn arc_area_m2(compression_n: f64) -> f64 {
-    let c = compression_n.abs();
+    let c = compression_n;
     printed_area_m2(if c < LARGEST_AREA_N { c } else { LARGEST_AREA_N })
 }
 
@@ -100,74 +100,65 @@ impl<'a> Contact<'a> {
     }
 }
 
-/// One loading branch: `LOAD` is the pulley where segments are loaded (0 primary, 1 secondary).
-#[inline(always)]
-fn branch<const LOAD: usize>(c: &Contact) -> Slip {
-    let (belt, prepared, f) = (c.belt, &c.at.prepared, c.belt.formulation);
-    let (load, other, inverted) = (LOAD, 1 - LOAD, LOAD == 1);
-    let sign = if inverted { -1.0 } else { 1.0 };
-    let cx = sign * c.compression_n;
-    let cx = if cx > 0.0 { cx } else { 0.0 };
-    let pitch = belt.segment_thickness_m;
-    let shoulder = sign * c.shoulder_n[load];
-    let grip = c.grip_n[load] - shoulder;
-    let floor = LEAST_GRIP * c.grip_n[load];
-    let grip = if grip > floor { grip } else { floor };
-    let k = cx / grip; // SL-4
-    let arc = prepared.arc_m[load];
-    let active = if k * pitch < arc { k * pitch } else { arc };
-    let e_segs = cx * (prepared.strut_gap_m_n + 0.5 * (active + prepared.arc_m[other]) / (belt.youngs_pa * arc_area_m2(cx))); // SL-2
-    let idle = arc - active;
-    let gap = (c.slack_m + e_segs) / (idle + 1e-9); // SL-5
-    let lambda_idle = shoulder / c.grip_n[load];
-    let lambda_idle = if lambda_idle > LEAST_GRIP - 1.0 { lambda_idle } else { LEAST_GRIP - 1.0 }; // SL-10
-    let idle_slip = gap * if inverted || f.signed_idle_slip() { lambda_idle } else { lambda_idle.abs() }; // SL-6
-    let free = gap + idle_slip;
-    let held = free > belt.slip_bound;
-    let share = if held { belt.slip_bound / free } else { 1.0 };
-    let (gap, idle_slip) = (gap * share, idle_slip * share); // SL-9
-    let loaded = if held { belt.slip_bound } else { free };
-    let r = c.at.geometry.primary_radius_m;
-    let total_other = cx + sign * c.shoulder_n[other] * prepared.count[other];
-    let lambda_other = total_other * prepared.per_count[other] / c.grip_n[other];
-    let slip_other = clamp_abs(loaded * lambda_other, belt.slip_bound);
-    let idle_loss = if f.counts_idle_arc() { idle_slip.abs() * shoulder.abs() * idle / pitch } else { 0.0 };
-    let loss_load = r * (loaded.abs() * c.grip_n[load] * active * (1.0 / pitch) + idle_loss); // SL-7
-    let loss_other = r * slip_other.abs() * total_other.abs(); // SL-7
-    if inverted {
-        let primary = if f.flips_inverted_primary() { slip_other } else { -slip_other }; // SL-6
-        Slip {
-            primary,
-            secondary: -loaded,
-            gap,
-            idle: idle_slip,
-            primary_loss_nm: loss_other,
-            secondary_loss_nm: loss_load,
-            active_segments: k,
-            held,
-        }
-    } else {
-        Slip {
-            primary: loaded,
-            secondary: slip_other.abs(),
-            gap,
-            idle: idle_slip,
-            primary_loss_nm: loss_load,
-            secondary_loss_nm: loss_other,
-            active_segments: k,
-            held,
-        }
-    }
+/// Both loading branches side by side: conventional (segments loaded in the primary), inverted (in the secondary).
+struct Branches {
+    /// Slip of the loaded pulley, not below zero, and of the other one.
+    loaded: [f64; 2],
+    other: [f64; 2],
+    /// Slip of the loaded pulley before its bound (SL-9), and the part of it that closes the gaps.
+    free: [f64; 2],
+    gap: [f64; 2],
+    loss_loaded_nm: [f64; 2],
+    loss_other_nm: [f64; 2],
+    active_segments: [f64; 2],
 }
 
-#[inline]
-fn clamp_abs(x: f64, bound: f64) -> f64 {
-    if x > bound {
-        bound
-    } else if x < -bound {
-        -bound
-    } else {
-        x
+/// Works out both branches (SL-2 to SL-7, SL-9, SL-10). One of them carries no compression; processors do two at once for one.
+#[inline(never)]
+fn branches(c: &Contact) -> Branches {
+    let (belt, prepared, f) = (c.belt, &c.at.prepared, c.belt.formulation);
+    let swapped = |of: [f64; 2]| [of[1], of[0]];
+    let (pitch, arc, arc_other) = (belt.segment_thickness_m, prepared.arc_m, swapped(prepared.arc_m));
+    let cx = [c.compression_n, -c.compression_n].map(|x| if x > 0.0 { x } else { 0.0 });
+    let shoulder = [c.shoulder_n[0], -c.shoulder_n[1]];
+    let grip = pair(|i| {
+        let (grip, floor) = (c.grip_n[i] - shoulder[i], LEAST_GRIP * c.grip_n[i]);
+        if grip > floor { grip } else { floor }
+    });
+    let k = pair(|i| cx[i] / grip[i]); // SL-4
+    let segments = pair(|i| if k[i] < prepared.count[i] { k[i] } else { prepared.count[i] });
+    let active = segments.map(|n| n * pitch);
+    let arcs = pair(|i| 0.5 * (active[i] + arc_other[i]) / (belt.youngs_pa * arc_area_m2(cx[i])));
+    let e_segs = pair(|i| cx[i] * (prepared.strut_gap_m_n + arcs[i])); // SL-2
+    let idle_arc = pair(|i| arc[i] - active[i]);
+    let gap = pair(|i| (c.slack_m + e_segs[i]) / (idle_arc[i] + 1e-9)); // SL-5
+    let per_grip = c.grip_n.map(|n| 1.0 / n);
+    let lambda = pair(|i| {
+        let lambda = shoulder[i] * per_grip[i];
+        if lambda > LEAST_GRIP - 1.0 { lambda } else { LEAST_GRIP - 1.0 } // SL-10
+    });
+    // Conventional loading takes the magnitude: the larger of the number and its opposite.
+    let turned = [if f.signed_idle_slip() { 1.0 } else { -1.0 }, 1.0];
+    let idle = pair(|i| gap[i] * if turned[i] * lambda[i] > lambda[i] { turned[i] * lambda[i] } else { lambda[i] }); // SL-6
+    let free = pair(|i| gap[i] + idle[i]); // not below zero (SL-10)
+    let loaded = pair(|i| if belt.slip_bound < free[i] { belt.slip_bound } else { free[i] }); // SL-9
+    let total_other = swapped([cx[1] - c.shoulder_n[0] * prepared.count[0], cx[0] + c.shoulder_n[1] * prepared.count[1]]);
+    let per_other = swapped(pair(|i| prepared.per_count[i] * per_grip[i]));
+    let other = pair(|i| held(loaded[i] * (total_other[i] * per_other[i]), -belt.slip_bound, belt.slip_bound)); // SL-9
+    let r = c.at.geometry.primary_radius_m;
+    let mut loaded_n = pair(|i| loaded[i] * c.grip_n[i] * segments[i]);
+    if f.counts_idle_arc() {
+        let share = pair(|i| if loaded[i] < free[i] { loaded[i] / free[i] } else { 1.0 });
+        loaded_n = pair(|i| loaded_n[i] + (idle[i] * share[i] * shoulder[i]).abs() * (idle_arc[i] / pitch));
+    }
+    Branches {
+        loaded,
+        other,
+        free,
+        gap,
+        loss_loaded_nm: pair(|i| r * loaded_n[i]),                      // SL-7
+        loss_other_nm: pair(|i| r * (other[i] * total_other[i]).abs()), // SL-7
+        active_segments: k,
     }
 }
 
@@ -176,9 +167,8 @@ fn clamp_abs(x: f64, bound: f64) -> f64 {
 #[inline(always)]
 pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip {
     let contact = Contact::new(belt, at, t, mu_segment);
-    let x = contact.compression_n * (1.0 / belt.blend_n);
-    let a = if x >= -ALONE { branch::<0>(&contact) } else { Slip::default() };
-    let b = if x <= ALONE { branch::<1>(&contact) } else { Slip::default() };
+    let b = branches(&contact);
+    let x = contact.compression_n * at.prepared.per_blend_n;
     // SL-8: (1 + tanh x)/2
     let w = if x > ALONE {
         1.0
@@ -187,15 +177,18 @@ pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip
     } else {
         1.0 / (1.0 + exp(-2.0 * x))
     };
-    let mix = |p: f64, q: f64| w * p + (1.0 - w) * q;
+    let mix = |conventional: f64, inverted: f64| w * conventional + (1.0 - w) * inverted;
+    let other = if belt.formulation.flips_inverted_primary() { b.other[1] } else { -b.other[1] }; // SL-6
+    let branch = usize::from(x < 0.0);
+    let gap = pair(|i| if b.free[i] > b.loaded[i] { b.gap[i] * (b.loaded[i] / b.free[i]) } else { b.gap[i] }); // SL-9
     Slip {
-        primary: mix(a.primary, b.primary),
-        secondary: mix(a.secondary, b.secondary),
-        gap: mix(a.gap, b.gap),
-        idle: mix(a.idle, b.idle),
-        primary_loss_nm: mix(a.primary_loss_nm, b.primary_loss_nm),
-        secondary_loss_nm: mix(a.secondary_loss_nm, b.secondary_loss_nm),
-        active_segments: if x >= 0.0 { a.active_segments } else { b.active_segments },
-        held: if x >= 0.0 { a.held } else { b.held },
+        primary: mix(b.loaded[0], other),
+        secondary: mix(b.other[0].abs(), -b.loaded[1]),
+        gap: mix(gap[0], gap[1]),
+        idle: mix(b.loaded[0] - gap[0], b.loaded[1] - gap[1]),
+        primary_loss_nm: mix(b.loss_loaded_nm[0], b.loss_other_nm[1]),
+        secondary_loss_nm: mix(b.loss_other_nm[0], b.loss_loaded_nm[1]),
+        active_segments: b.active_segments[branch],
+        held: b.free[branch] > b.loaded[branch],
     }
 }
