@@ -18,8 +18,12 @@ const RPM: f64 = 30.0 / PI;
 /// Speed up to which lines of the variogram are drawn, km/h.
 const FASTEST_KMH: f64 = 200.0;
 /// Shares of rated power for which targets of a ratio control are told, with their names.
-const TARGETS: [(f64, &str); 4] =
-    [(-0.05, "target in overrun"), (0.10, "target, 10 % power"), (0.30, "target, 30 % power"), (0.60, "target, 60 % power")];
+const TARGETS: [(f64, &str); 4] = [
+    (-0.05, "target in overrun"),
+    (0.10, "target, 10 % of rated power"),
+    (0.30, "target, 30 % of rated power"),
+    (0.60, "target, 60 % of rated power"),
+];
 
 /// A cycle's name and hash.
 #[must_use]

@@ -1,11 +1,11 @@
 //! How much each single value of a car matters for its fuel: every number changed by itself, up and down, and the cycle driven again.
 //!
-//! An efficiency is changed through its loss: 5 % of 0.98 would be two and a half times the loss. The step is one for all, so the answer says how steep the fuel is in a value, not how uncertain the value is: that is what a study with
+//! An efficiency is changed through its loss: 5 % of 0.98 would be two and a half times the loss. A temperature in degC is changed by 5 K. The step is one for all, so the answer says how steep the fuel is in a value, not how uncertain the value is: that is what a study with
 //! ranges of its own says (docs/uncertainty.md).
 
 use rayon::prelude::*;
 
-use crate::config::Problem;
+use crate::config::{Problem, unit_of};
 use crate::cycle::Cycle;
 use crate::results::record::{Effect, Sensitivity};
 use crate::results::summary::Driven;
@@ -16,6 +16,9 @@ use crate::setup::{Options, Setup};
 
 /// Change of a value, per cent of it.
 pub const STEP_PERCENT: f64 = 5.0;
+
+/// Change of a temperature, K.
+const STEP_K: f64 = 5.0;
 
 /// A car as its words on the command line name it.
 #[derive(Clone, Debug)]
@@ -62,6 +65,9 @@ pub fn sensitivity(cars: &[Named], cycle: &Cycle, conditions: &Conditions) -> Re
 /// A value lowered (`sign` -1) or raised (+1) by the step; an efficiency through its loss.
 fn changed(key: &str, value: f64, sign: f64) -> f64 {
     let step = STEP_PERCENT / 100.0;
+    if unit_of(key) == "\u{b0}C" {
+        return value + sign * STEP_K;
+    }
     if key.ends_with("efficiency") && (0.0..1.0).contains(&value) {
         1.0 - (1.0 - value) * (1.0 - sign * step)
     } else {
@@ -86,6 +92,7 @@ mod tests {
     fn an_efficiency_changes_by_its_loss() {
         assert!((changed("a.mesh_efficiency", 0.98, -1.0) - 0.979).abs() < 1e-12);
         assert!((changed("a.mesh_efficiency", 0.98, 1.0) - 0.981).abs() < 1e-12);
+        assert!((changed("a.opens_degc", 80.0, -1.0) - 75.0).abs() < 1e-12);
         assert!((changed("a.mass_kg", 1000.0, -1.0) - 950.0).abs() < 1e-9);
         assert!((changed("a.efficiency", 1.0, -1.0) - 0.95).abs() < 1e-12, "without a loss there is nothing else to change");
     }

@@ -35,9 +35,9 @@ pub struct Args {
     /// Name of the report [default: report.html in the (first) directory]; figures go to the folder NAME_figures beside it
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Form of the report: html or md
-    #[arg(long, value_name = "FORM", default_value = "html", value_parser = Offering(forms), hide_possible_values = true)]
-    format: String,
+    /// Form of the report: html or md [default: by the ending of --out, else html]
+    #[arg(long, value_name = "FORM", value_parser = Offering(forms), hide_possible_values = true)]
+    format: Option<String>,
     /// Replace an earlier report
     #[arg(long)]
     force: bool,
@@ -56,10 +56,14 @@ fn forms() -> Vec<&'static str> {
 /// Runs the command.
 pub fn answer(args: &Args) -> Reply {
     let mut problems = inputs::Problems::default();
-    let form = problems.take(inputs::word("--format", &args.format, &Form::NAMES)).unwrap_or(Form::Html);
+    let by_ending = || args.out.as_deref().and_then(Form::of).unwrap_or(Form::Html);
+    let form = match &args.format {
+        Some(word) => problems.take(inputs::word("--format", word, &Form::NAMES)).unwrap_or(Form::Html),
+        None => by_ending(),
+    };
     let file = match (&args.out, args.dirs.first()) {
         (Some(file), _) => file.clone(),
-        (None, Some(dir)) => dir.join(format!("report.{}", form.ending())),
+        (None, Some(dir)) => dir.join(format!("report.{}", form.endings()[0])),
         (None, None) => PathBuf::new(),
     };
     let document = problems.take(report(&args.dirs, &args.with, args.cover.as_deref()));

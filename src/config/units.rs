@@ -17,7 +17,7 @@ const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Unit {
 /// rad/s in one rpm.
 const RPM: f64 = PI / 30.0;
 
-const UNITS: [Unit; 56] = [
+const UNITS: [Unit; 57] = [
     unit("_m", "m", 1.0),
     unit("_mm", "mm", 1e-3),
     unit("_um", "µm", 1e-6),
@@ -73,6 +73,7 @@ const UNITS: [Unit; 56] = [
     unit("_nm_s", "N m s", 1.0),
     unit("_nm_per_rpm", "N m/rpm", 1.0 / RPM),
     unit("_nm_per_rpm2", "N m/rpm²", 1.0 / (RPM * RPM)),
+    unit("_per_1000_rpm", "1/1000 rpm", 1.0 / (1000.0 * RPM)),
     unit("_percent", "%", 0.01),
 ];
 
@@ -113,7 +114,8 @@ mod tests {
     use super::*;
 
     /// Key, value, SI value worked out by hand, unit as shown.
-    const EXPECTED: [(&str, f64, f64, &str); 60] = [
+    const EXPECTED: [(&str, f64, f64, &str); 61] = [
+        ("fall_per_1000_rpm", 0.2, 0.001_909_859_317_102_744, "1/1000 rpm"),
         ("film_thickness_um", 0.5, 5e-7, "µm"),
         ("lift_n_per_m", 0.028, 0.028, "N/m"),
         ("ram_w_k_per_m_s", 40.0, 40.0, "W/K per m/s"),

@@ -89,6 +89,9 @@ fn pairs<'a>(a: &[Car<'a>], b: &[Car<'a>]) -> Vec<Pair<'a>> {
 
 fn answer(a: &RunFound, b: &RunFound, pairs: &[Pair], names: &[String; 2]) -> Section {
     let mut section = Section::new("answer", "Answer");
+    // What a kJ of loss costs can be told of one car under one set of conditions only.
+    let same_conditions = (a.summary.ambient_degc - b.summary.ambient_degc).abs() < 1e-9 && a.summary.start == b.summary.start;
+    let alike = same_conditions && pairs.first().is_some_and(|pair| pair.a.run.vehicle == pair.b.run.vehicle);
     let fuel = |run: &RunSummary| run.headline_fuel().unwrap_or(f64::NAN);
     if let Some(Pair { a, b }) = pairs.first() {
         let change = fuel(b.run) - fuel(a.run);
@@ -111,7 +114,7 @@ fn answer(a: &RunFound, b: &RunFound, pairs: &[Pair], names: &[String; 2]) -> Se
                 Quantity::Distance.text(km_b)
             )));
         }
-        section.text(largest(a, b));
+        section.text(largest(a, b, alike));
     }
     for (found, name) in [(a, &names[0]), (b, &names[1])] {
         for run in found.summary.runs.iter().filter(|run| !run.failed_checks.is_empty()) {
@@ -127,7 +130,7 @@ fn answer(a: &RunFound, b: &RunFound, pairs: &[Pair], names: &[String; 2]) -> Se
 }
 
 /// The components that moved most.
-fn largest(a: &Car, b: &Car) -> String {
+fn largest(a: &Car, b: &Car, alike: bool) -> String {
     let kj = |car: &Car, c: Component| car.run.loss_kj.get(c.name()).unwrap_or(0.0);
     let mut moved: Vec<(Component, f64)> = Component::ALL.iter().map(|c| (*c, kj(b, *c) - kj(a, *c))).collect();
     moved.sort_by(|x, y| y.1.abs().total_cmp(&x.1.abs()));
@@ -148,7 +151,7 @@ fn largest(a: &Car, b: &Car) -> String {
         text += &format!(" ({})", told.join(", "));
     }
     text += &format!("; its fuel's energy differs by {}", Quantity::Energy.signed(fuel));
-    if transmission.abs() > 0.05 {
+    if alike && transmission.abs() > 0.05 {
         text += &format!(", {} for each kJ of transmission loss", Quantity::Energy.text(fuel / transmission));
     }
     text + "."

@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::config::{Place, Problem};
 use crate::results::history::History;
 use crate::results::record::{self, Record};
-use crate::results::summary::{SCHEMA, Summary};
+use crate::results::summary::{RunSummary, SCHEMA, Summary};
 use crate::study::ambient::{WarmUp, warm_ups};
 use crate::study::manifest::TRACES;
 use crate::study::store::{self, is_study, read_trace_parquet};
@@ -145,8 +145,12 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<Found, Vec<Problem>> {
     let mut beside: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
     beside.sort();
     let mut problems = Vec::new();
-    for (dir, asked) in beside.iter().map(|dir| (dir, false)).chain(extra.iter().map(|dir| (dir, true))) {
-        problems.extend(add(&mut found, dir, asked).err());
+    let mut seen = std::collections::BTreeSet::new();
+    for (dir, asked) in extra.iter().map(|dir| (dir, true)).chain(beside.iter().map(|dir| (dir, false))) {
+        // One study may be named twice, and stand beside the run as well.
+        if seen.insert(dir.canonicalize().unwrap_or_else(|_| dir.clone())) {
+            problems.extend(add(&mut found, dir, asked).err());
+        }
     }
     if problems.is_empty() { Ok(Found::Run(Box::new(found))) } else { Err(problems) }
 }
@@ -188,11 +192,14 @@ fn run(path: &Path, file: &Path, value: Value) -> Result<RunFound, Vec<Problem>>
     if summary.runs.is_empty() {
         return Err(vec![problem(file, "the summary names no car", "run it again")]);
     }
-    let mut problems = Vec::new();
+    let mut problems: Vec<Problem> = summary.runs.iter().filter_map(|run| consistent(file, run).err()).collect();
     let mut histories = Vec::new();
     for run in &summary.runs {
         match history(path, &run.vehicle) {
-            Ok(Some(history)) => histories.push(Some(history)),
+            Ok(Some(history)) => {
+                problems.extend(belongs(path, run, &history).err());
+                histories.push(Some(history));
+            }
             Ok(None) => {
                 missing.push(format!(
                     "the trace of {} is not there (trace_{}.csv): its figures over time are left out",
@@ -207,6 +214,46 @@ fn run(path: &Path, file: &Path, value: Value) -> Result<RunFound, Vec<Problem>>
         return Err(problems);
     }
     Ok(RunFound { path: path.to_path_buf(), summary, record, histories, studies: Vec::new(), validation: None, missing })
+}
+
+/// Relative difference that rounding in sums over a whole trace may leave.
+const ROUNDING: f64 = 1e-6;
+
+fn near(a: f64, b: f64, scale: f64) -> bool {
+    (a - b).abs() <= ROUNDING * scale.abs() + 1e-9
+}
+
+/// Whether the numbers of a car agree with each other: fuel with distance, and the terms of the ledger with the fuel.
+fn consistent(file: &Path, run: &RunSummary) -> Result<(), Problem> {
+    let ledger = |name: &str| run.ledger_kj.get(name).unwrap_or(0.0);
+    let terms: f64 = ["wheels", "brake", "losses", "accessories", "kinetic", "engine_heat", "exhaust"].into_iter().map(ledger).sum();
+    let fuel = run.fuel_l_per_100km.is_none_or(|fuel| near(fuel * run.distance_km / 100.0, run.fuel_l, run.fuel_l));
+    // A run whose ledger did not close has said so itself.
+    let open = run.failed_checks.iter().any(|check| check == "ledger_error");
+    if fuel
+        && (open || (near(terms, run.fuel_energy_kj, run.fuel_energy_kj) && near(ledger("fuel"), run.fuel_energy_kj, run.fuel_energy_kj)))
+    {
+        return Ok(());
+    }
+    let message = format!("the numbers of {} do not agree with each other: fuel, distance and the terms of its energy ledger", run.vehicle);
+    Err(problem(file, &message, "the file has been changed; run it again"))
+}
+
+/// Whether a trace is that of the summary: as long, with the same fuel and the same losses.
+fn belongs(path: &Path, run: &RunSummary, history: &History) -> Result<(), Problem> {
+    let sum = |name: &str| history.column(name).iter().zip(history.dt_s()).map(|(x, dt)| x * dt).filter(|x| x.is_finite()).sum::<f64>();
+    let losses: f64 = history.components().iter().map(|c| sum(&format!("{}_loss_w", c.name()))).sum::<f64>() / 1e3;
+    let told = [
+        ("time", "s", history.dt_s().iter().sum::<f64>(), run.duration_s),
+        ("fuel", "g", sum("fuel_g_s"), run.fuel_kg * 1e3),
+        ("losses of the transmission", "kJ", losses, run.transmission_loss_kj()),
+    ];
+    let Some((what, unit, here, there)) = told.into_iter().find(|(_, _, here, there)| !near(*here, *there, *there)) else { return Ok(()) };
+    let message = format!(
+        "the trace of {} is not that of the summary: {what} of {here:.3} {unit} in the trace, {there:.3} {unit} in summary.json",
+        run.vehicle
+    );
+    Err(problem(&path.join(format!("trace_{}.*", run.vehicle)), &message, "the file has been cut or belongs to another run; run it again"))
 }
 
 /// The trace of a car, from whichever file there is.

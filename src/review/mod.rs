@@ -46,6 +46,11 @@ pub fn report(dirs: &[PathBuf], with: &[PathBuf], cover: Option<&str>) -> Result
     if !problems.is_empty() {
         return Err(problems);
     }
+    if let ([_, other], [first, ..]) = (dirs, with) {
+        let hint = "leave it out, or make the report of one run";
+        let message = format!("a study stands beside one run, not beside {} and another one", other.display());
+        return Err(vec![found::problem(first, &message, hint)]);
+    }
     let pair: Vec<Found> = looked.into_iter().flatten().collect();
     let one = |problem: Problem| vec![problem];
     let mut document = match &pair[..] {

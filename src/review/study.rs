@@ -8,17 +8,59 @@ use super::number::{NONE, Quantity, degc, phase, words};
 use super::run::unfinished;
 use super::study_pictures::study_pictures;
 use crate::config::Problem;
+use crate::results::summary::{StartWord, Summary};
 use crate::study::ambient::Matrix;
 use crate::study::answer::{Comparison, OutputAnswer};
 use crate::study::outputs::EXCESS;
+use crate::study::plan::Design;
 
 /// Factors told in words.
 const TOLD: usize = 3;
+
+/// In what a study is another case than a run; none if it is the same.
+///
+/// Ambient and start count only where no factor sets them.
+#[must_use]
+pub fn other_case(study: &StudyFound, run: &Summary) -> Option<String> {
+    let (manifest, base) = (&study.manifest, &study.manifest["base"]);
+    let free = |key: &str| study.outline.plan.factors.iter().all(|factor| factor.key != key);
+    let mut list = Vec::new();
+    let cycles: Vec<&str> = manifest["cycles"].as_array().into_iter().flatten().filter_map(|cycle| cycle["name"].as_str()).collect();
+    if !cycles.contains(&run.cycle.as_str()) {
+        list.push(format!("cycle {} instead of {}", cycles.join(", "), run.cycle));
+    }
+    let subject = run.runs.first().map_or("", |run| run.vehicle.as_str());
+    let own = study.outline.cars.first().map_or("", String::as_str);
+    if own != subject {
+        list.push(format!("subject {own} instead of {subject}"));
+    }
+    if let Some(ambient) = base["ambient_degc"].as_f64().filter(|_| free("ambient_degc"))
+        && (ambient - run.ambient_degc).abs() > 1e-9
+    {
+        list.push(format!("ambient {} instead of {}", degc(ambient), degc(run.ambient_degc)));
+    }
+    let start = match &run.start {
+        StartWord::Word(word) => word.clone(),
+        StartWord::Degc(degc) => degc.to_string(),
+    };
+    if free("start") && base["start"].as_str().is_some_and(|own| own != start) {
+        list.push(format!("start {} instead of {start}", text_of(&base["start"])));
+    }
+    let set =
+        |value: &Value| -> Vec<String> { value.as_array().into_iter().flatten().filter_map(Value::as_str).map(str::to_owned).collect() };
+    if set(&base["set"]) != run.settings.set || set(&base["set_all"]) != run.settings.set_all {
+        list.push("other values set".to_owned());
+    }
+    (!list.is_empty()).then(|| list.join(", "))
+}
 
 /// The answer of a study in sentences.
 #[must_use]
 pub fn answers(study: &StudyFound) -> Vec<String> {
     let answer = &study.answer;
+    if answer.points_done == 0 {
+        return Vec::new();
+    }
     if let Some(matrix) = &answer.matrix {
         return matrix_answers(matrix);
     }
@@ -49,14 +91,14 @@ fn compared(study: &StudyFound, of: &Comparison) -> String {
     let percent = |share: f64| Quantity::Percent.bare(100.0 * share);
     let [low, high] = worse.interval95;
     format!(
-        "{head} in {} of {} pairs, {} % (95 % interval {} to {} %). The excess is {} on average with a standard deviation of {}; 90 % of the pairs lie between {} and {}.",
+        "{head} in {} of {} pairs, {} % (95 % interval {} to {} %). The excess is {} on average with a standard deviation of {} points; 90 % of the pairs lie between {} and {}.",
         worse.k,
         worse.n,
         percent(worse.share),
         percent(low),
         percent(high),
         signed(excess.mean),
-        Quantity::Percent.text(excess.sd),
+        Quantity::Percent.bare(excess.sd),
         signed(excess.quantile(0.05)),
         signed(excess.quantile(0.95))
     )
@@ -131,6 +173,11 @@ fn details(study: &StudyFound) -> Result<Section, Problem> {
         Some(_) => Section::new("ambient", "Ambient temperatures"),
         None => Section::new("uncertainty", &answer.title),
     };
+    if answer.points_done == 0 {
+        section.text("No part of the study is there yet.");
+        section.blocks.push(Block::Folded(factors(study)));
+        return Ok(section);
+    }
     if let Some(matrix) = &answer.matrix {
         tables(&mut section, matrix);
     } else {
@@ -205,13 +252,17 @@ fn tables(section: &mut Section, matrix: &Matrix) {
 }
 
 fn outputs(study: &StudyFound) -> Table {
-    let columns = ["runs", "mean", "standard deviation", "5 %", "95 %"].map(|name| (name.to_owned(), String::new()));
+    // Of one factor at a time the base would count many times in everything but the extremes.
+    let one_by_one = matches!(study.outline.plan.design, Design::OneAtATime { .. });
+    let names: &[&str] = if one_by_one { &["runs", "least", "most"] } else { &["runs", "mean", "standard deviation", "5 %", "95 %"] };
+    let columns = names.iter().map(|name| ((*name).to_owned(), String::new()));
     let mut table = Table::of_numbers("Outputs", "Output", columns);
     for output in &study.answer.outputs {
         let s = &output.summary;
         let digits = |x: f64| if x.is_finite() { format!("{x:.3}").replace('-', "\u{2212}") } else { NONE.to_owned() };
         let name = format!("{}, {} [{}]", output_name(&output.output), output.car, output.unit);
-        table.row([name, s.n.to_string(), digits(s.mean), digits(s.sd), digits(s.quantile(0.05)), digits(s.quantile(0.95))]);
+        let numbers = if one_by_one { vec![s.min, s.max] } else { vec![s.mean, s.sd, s.quantile(0.05), s.quantile(0.95)] };
+        table.row([name, s.n.to_string()].into_iter().chain(numbers.into_iter().map(digits)));
     }
     table
 }
@@ -310,7 +361,7 @@ fn reproduce(study: &StudyFound) -> Section {
     let design = &manifest["design"];
     let mut facts = vec![
         ("Program of the study".to_owned(), text_of(&manifest["program"])),
-        ("Plan".to_owned(), "plan.toml in the directory of the study; `cvtcycle study plan.toml` runs it again".to_owned()),
+        ("Plan".to_owned(), "plan.toml in the directory of the study, run again by: cvtcycle study plan.toml".to_owned()),
         ("Plan, SHA-256".to_owned(), text_of(&manifest["plan_sha256"])),
         ("Design".to_owned(), words(&text_of(&design["kind"]))),
     ];

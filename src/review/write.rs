@@ -22,15 +22,36 @@ impl Form {
     /// Words of the command line.
     pub const NAMES: [(&'static str, Form); 2] = [("html", Form::Html), ("md", Form::Markdown)];
 
-    /// Ending of its file.
+    /// Endings of its file, the usual one first.
     #[must_use]
-    pub fn ending(self) -> &'static str {
+    pub fn endings(self) -> &'static [&'static str] {
         match self {
-            Form::Html => "html",
-            Form::Markdown => "md",
+            Form::Html => &["html", "htm"],
+            Form::Markdown => &["md", "markdown"],
         }
     }
+
+    /// The form that a file's ending stands for.
+    #[must_use]
+    pub fn of(file: &Path) -> Option<Form> {
+        [Form::Html, Form::Markdown].into_iter().find(|form| form.endings().contains(&ending(file).as_str()))
+    }
 }
+
+fn ending(file: &Path) -> String {
+    file.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// Whether a file is a report that this program has written.
+fn is_report(file: &Path) -> bool {
+    let text = fs::read(file).unwrap_or_default();
+    let (head, tail) = (&text[..text.len().min(2000)], &text[text.len().saturating_sub(200)..]);
+    String::from_utf8_lossy(head).contains(GENERATOR) || String::from_utf8_lossy(tail).contains(MADE_BY)
+}
+
+/// By these words a page and a Markdown text are known as reports.
+const GENERATOR: &str = "name=\"generator\" content=\"cvtcycle ";
+const MADE_BY: &str = "Made by cvtcycle ";
 
 /// Where a report goes, checked before anything is computed.
 #[derive(Debug)]
@@ -66,8 +87,23 @@ impl Target {
         }
         let figures = parent.join(&folder);
         let target = Target { file: file.to_path_buf(), figures, folder, form };
-        if !force && file.exists() {
-            return Err(problem(file, &format!("{} is there already", file.display()), "choose another name, or replace it with --force"));
+        if !form.endings().contains(&ending(file).as_str()) {
+            let message = format!("{} has not the ending of its form", file.display());
+            let hint = format!("end its name in .{}, or choose the other --format", form.endings().join(" or ."));
+            return Err(problem(file, &message, &hint));
+        }
+        if let Ok(there) = fs::symlink_metadata(file) {
+            if !force {
+                return Err(problem(
+                    file,
+                    &format!("{} is there already", file.display()),
+                    "choose another name, or replace it with --force",
+                ));
+            }
+            // What somebody else has written, or a device, is not replaced by any word.
+            if !there.is_file() || !is_report(file) {
+                return Err(problem(file, &format!("{} is no report of this program", file.display()), "choose another name"));
+            }
         }
         target.check_figures()?;
         // Better to learn now than after the work that nothing can be written here.
@@ -96,7 +132,7 @@ impl Target {
     pub fn write(&self, document: &Document) -> Result<Vec<PathBuf>, Problem> {
         let text = match self.form {
             Form::Html => html(document),
-            Form::Markdown => markdown(document, &self.folder),
+            Form::Markdown => markdown(document, &self.folder.replace(' ', "%20")),
         };
         let text = text.map_err(|why| problem(&self.file, &format!("cannot fill in the template: {why}"), ""))?;
         self.put(document, &text).map_err(|error| failed(&self.file, &format!("cannot write {}", self.file.display()), &error))

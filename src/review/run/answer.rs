@@ -1,7 +1,7 @@
 //! Half a page that answers the question.
 
 use super::super::document::{Block, Section, Table};
-use super::super::found::RunFound;
+use super::super::found::{RunFound, StudyFound};
 use super::super::number::{Quantity, percent, phase, words};
 use super::super::{study, validation};
 use super::{Car, conditions_line, cycle_title, energy};
@@ -19,6 +19,12 @@ pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
     }
     section.table(fuel(summary));
     for beside in &found.studies {
+        // A study of another case says nothing about this run; its section says what it is.
+        if let Some(why) = study::other_case(beside, summary) {
+            section.blocks.push(Block::Alert(format!("The study \u{201c}{}\u{201d} is of another case: {why}.", beside.answer.title)));
+            continue;
+        }
+        section.blocks.extend(super::unfinished(beside).map(|text| Block::Alert(format!("{text}; what it says here is of these."))));
         section.blocks.extend(study::answers(beside).into_iter().map(Block::Text));
     }
     section.text(where_it_went(cars));
@@ -104,7 +110,8 @@ fn fuel(summary: &Summary) -> Table {
     if runs.len() > 1 {
         add("Subject against this car", Quantity::Percent, true, &|k| of(k).and_then(|c| c.fuel_percent));
     }
-    add("Carbon dioxide", Quantity::Co2, false, &|k| runs[k].weighted_co2_g_per_km.or(runs[k].co2_g_per_km));
+    let co2 = if weighted { "Carbon dioxide, weighted" } else { "Carbon dioxide" };
+    add(co2, Quantity::Co2, false, &|k| runs[k].weighted_co2_g_per_km.or(runs[k].co2_g_per_km));
     add("Driven distance", Quantity::Distance, false, &|k| Some(runs[k].distance_km));
     table.note = "Positive differences: the subject uses more.".to_owned();
     table
@@ -181,8 +188,13 @@ fn doubts(found: &RunFound, cars: &[Car]) -> Vec<String> {
         ));
     }
     list.extend(super::values::doubt(found, cars));
-    if found.studies.iter().all(|study| study.answer.comparisons.is_empty() || study.answer.matrix.is_some()) {
-        list.push("No study of uncertainty stands beside this run: the difference has no interval.".to_owned());
+    let tells = |study: &&StudyFound| {
+        let sampled = study.outline.plan.design.is_sampled() && !study.answer.comparisons.is_empty();
+        sampled && study.answer.points_done > 0 && study::other_case(study, &found.summary).is_none()
+    };
+    match found.studies.iter().find(tells) {
+        None => list.push("No study of uncertainty of this case stands beside this run: the difference has no interval.".to_owned()),
+        Some(study) => list.extend(super::unfinished(study).map(|text| format!("Its interval is preliminary: {text}."))),
     }
     list.extend(found.validation.as_ref().map(validation::doubt));
     let worst = cars.iter().filter_map(|car| car.run.min_clamp_safety.map(|safety| (car, safety)));

@@ -12,7 +12,7 @@ pub const TERMS: [(&str, &str); 7] = [
     ("losses", "transmission"),
     ("accessories", "accessories"),
     ("kinetic", "rotating parts"),
-    ("engine_heat", "heat of the engine"),
+    ("engine_heat", "heat to the engine"),
     ("exhaust", "exhaust"),
 ];
 
@@ -57,7 +57,7 @@ pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
 pub(super) fn section(cars: &[Car]) -> Section {
     let mut section = Section::new("energy", "Energy from fuel to wheel");
     section.text(
-        "Widths are in proportion to energy over the whole cycle, by the ledger of the run: fuel = exhaust + heat of the engine + accessories \
+        "Widths are in proportion to energy over the whole cycle, by the ledger of the run: fuel = exhaust + heat to the engine + accessories \
          + rotating parts + transmission + brakes + rolling and air. What the wheels gave back in overrun is set off against what they took.",
     );
     section.table(balance(cars));

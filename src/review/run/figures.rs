@@ -76,7 +76,7 @@ fn losses_section(all: &[Car]) -> Section {
         );
         let caption = format!(
             "Mean loss power of {name} while it moved, against the temperature of its oil. Oil and phase of the cycle change together, so \
-             this is no clean sweep of temperature: `cvtcycle losses` draws one."
+             this is no clean sweep of temperature; the command cvtcycle losses draws one."
         );
         section.figure(format!("loss_by_temperature_{name}"), caption, loss_by_temperature(&loss_trace(car, history)));
     }
@@ -166,7 +166,9 @@ fn drive(all: &[Car]) -> Section {
         section.blocks.push(Block::Heading(car.run.title.clone()));
         section.figure(format!("driveline_{name}"), format!("Speed, ratio, engine speed and throttle of {name}."), driveline(&run));
         if run.history.is_cvt() {
-            let caption = format!("Pulley pressures, belt slip and clamping safety of {name}.");
+            let caption = format!(
+                "Pulley pressures, belt slip and clamping safety of {name}; safety is drawn up to four times its least value, for at low torque it has no end."
+            );
             section.figure(format!("pressure_{name}"), caption, pressure(&run));
         }
         let lines = car.record.map(|record| record.speed_lines.clone()).unwrap_or_default();

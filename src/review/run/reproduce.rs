@@ -53,6 +53,6 @@ fn flags(cars: &[Car]) -> Table {
             table.row([words(name)].into_iter().chain(cars.iter().map(|car| Quantity::Seconds.bare(of(car)))));
         }
     }
-    table.note = "Flags without any time are left out. `cvtcycle explain FLAG` says what each means.".to_owned();
+    table.note = "Flags without any time are left out. The command cvtcycle explain FLAG says what each means.".to_owned();
     table
 }

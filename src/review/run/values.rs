@@ -18,6 +18,11 @@ fn is_doubtful(value: &ValueRecord) -> bool {
     ["assumed", "fitted", "default"].contains(&value.status.as_str())
 }
 
+/// Whether there is a value at all: neither a choice of a model nor an optional key that nobody has set.
+fn is_given(value: &ValueRecord) -> bool {
+    value.status != "choice" && !value.value.is_empty()
+}
+
 pub(super) fn section(found: &RunFound, cars: &[Car]) -> Option<Section> {
     let record = found.record.as_ref()?;
     let mut section = Section::new("values", "Assumptions, and how much each matters");
@@ -26,11 +31,11 @@ pub(super) fn section(found: &RunFound, cars: &[Car]) -> Option<Section> {
         Some(sensitivity) => {
             section.text(format!(
                 "Each number was changed by itself by {} down and up, and the cycle driven again: the effect is the change of that car's fuel. \
-                 An efficiency was changed through its loss. The step is the same for all; how uncertain each value is, is another question (docs/uncertainty.md).",
+                 An efficiency was changed through its loss, a temperature by 5\u{a0}K; a dash stands where the value cannot be so. The step is the same for all; how uncertain each value is, is another question (docs/uncertainty.md).",
                 percent_text(sensitivity.step_percent)
             ));
         }
-        None => section.text("How much each value matters was not computed for this run: `cvtcycle run --sensitivity always` asks for it."),
+        None => section.text("How much each value matters was not computed for this run: cvtcycle run --sensitivity always asks for it."),
     }
     for car in cars {
         if let Some(record) = car.record {
@@ -47,7 +52,7 @@ fn percent_text(x: f64) -> String {
 fn count(record: &Record) -> String {
     let one = |car: &CarRecord| {
         let mut by_status: BTreeMap<&str, usize> = BTreeMap::new();
-        for value in car.values.iter().filter(|value| value.status != "choice") {
+        for value in car.values.iter().filter(|value| is_given(value)) {
             *by_status.entry(&value.status).or_default() += 1;
         }
         let list: Vec<String> = by_status.iter().map(|(status, n)| format!("{n} {status}")).collect();
@@ -75,7 +80,7 @@ fn of_car(section: &mut Section, car: &CarRecord, sensitivity: Option<&Sensitivi
         let caption = format!("{} more of {}", rest.len(), car.name);
         section.blocks.push(Block::Folded(table(&caption, rest, sensitivity)));
     }
-    let sourced: Vec<_> = car.values.iter().filter(|value| !is_doubtful(value) && value.status != "choice").collect();
+    let sourced: Vec<_> = car.values.iter().filter(|value| !is_doubtful(value) && is_given(value)).collect();
     let effect = |value: &ValueRecord| sensitivity?.effects.iter().find(|effect| effect.car == car.name && effect.key == value.key);
     let mut sourced: Vec<_> = sourced.into_iter().map(|value| (value, effect(value))).collect();
     let size = |effect: &Option<&Effect>| effect.map_or(-1.0, Effect::size_percent);
@@ -121,7 +126,10 @@ fn short(text: &str) -> String {
 /// What the values leave open, in one line.
 pub(super) fn doubt(found: &RunFound, cars: &[Car]) -> Option<String> {
     let (record, subject) = (found.record.as_ref()?, cars.first()?.record?);
-    let numbers = subject.values.iter().filter(|value| value.status != "choice").count();
+    let numbers = subject.values.iter().filter(|value| is_given(value)).count();
+    if numbers == 0 {
+        return None;
+    }
     let doubtful = subject.values.iter().filter(|value| is_doubtful(value)).count();
     let mut text = format!("{doubtful} of the {numbers} values of {} are assumed, fitted or defaults", subject.name);
     let sensitivity = record.sensitivity.as_ref();

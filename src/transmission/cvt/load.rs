@@ -245,8 +245,7 @@ fn clamp_law(s: &Section) -> ClampLaw {
             slow_factor: c.number("slow_factor", Bound::closed(0.05, 1.5), "factor at the slow speed (PC-2)"),
             slow_rad_s: c.number("slow_rpm", rpm, "slow speed (PC-2)"),
             full_rad_s: c.number("full_rpm", rpm, "speed at which the factor is 1 (PC-2)"),
-            fall_s: c.number_or("fall_per_1000_rpm", Bound::closed(0.0, 0.2), 0.0, "fall of the factor per 1000 rpm above full_rpm (PC-2)")
-                / (1000.0 * std::f64::consts::PI / 30.0),
+            fall_s: c.number_or("fall_per_1000_rpm", Bound::closed(0.0, 0.2), 0.0, "fall of the factor per 1000 rpm above full_rpm (PC-2)"),
         }),
     }
 }
