@@ -253,7 +253,8 @@ fn belongs(path: &Path, run: &RunSummary, history: &History) -> Result<(), Probl
         "the trace of {} is not that of the summary: {what} of {here:.3} {unit} in the trace, {there:.3} {unit} in summary.json",
         run.vehicle
     );
-    Err(problem(&path.join(format!("trace_{}.*", run.vehicle)), &message, "the file has been cut or belongs to another run; run it again"))
+    let file = ["csv", "parquet"].map(|ending| path.join(format!("trace_{}.{ending}", run.vehicle))).into_iter().find(|file| file.exists());
+    Err(problem(&file.unwrap_or_else(|| path.to_path_buf()), &message, "the file has been cut or belongs to another run; run it again"))
 }
 
 /// The trace of a car, from whichever file there is.
