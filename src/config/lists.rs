@@ -59,7 +59,11 @@ impl Section<'_> {
                 }
                 None => {
                     let message = format!("`{}`: `{text}` is no range", join(&self.path, key));
-                    self.report(&found.node.span, key, &range.to_string(), message, "write \"1000..4000:250\"".to_string());
+                    let hint = match text.split_once("..") {
+                        Some((from, to)) if !to.contains(':') => format!("add the step, as in \"{from}..{to}:5\""),
+                        _ => "the end lies above the beginning and the step above 0, as in \"1000..4000:250\"".to_string(),
+                    };
+                    self.report(&found.node.span, key, &range.to_string(), message, hint);
                     vec![f64::NAN]
                 }
             },
@@ -98,8 +102,7 @@ impl Section<'_> {
     /// A table of numbers written as a list of rows, in SI units by the suffixes of the column names.
     /// Empty if the key is absent; rows with a problem are left out.
     pub fn rows(&self, key: &str, columns: &[(&str, Bound)], doc: &str) -> Vec<Vec<f64>> {
-        let describe = |(name, bound): &(&str, Bound)| format!("{name} {}", bound.in_unit(unit_of(name)));
-        let allowed = Lazy(|| format!("rows of {}", columns.iter().map(describe).collect::<Vec<_>>().join(", ")));
+        let allowed = Lazy(|| rows_of(columns));
         let units = Lazy(|| columns.iter().map(|(name, _)| unit_of(name)).collect::<Vec<_>>().join(", "));
         let lookup = self.open(key, &allowed, doc);
         self.unit(key, &units);
@@ -122,6 +125,23 @@ impl Section<'_> {
             row.iter_mut().zip(columns).for_each(|(value, (name, _))| *value = to_si(name, *value));
         }
         rows
+    }
+
+    /// A table of numbers as [`Section::rows`]; none after a problem with any of its rows.
+    pub fn sound_rows(&self, key: &str, columns: &[(&str, Bound)], doc: &str) -> Option<Vec<Vec<f64>>> {
+        let before = self.reader.faults();
+        let rows = self.rows(key, columns, doc);
+        (self.reader.faults() == before).then_some(rows)
+    }
+
+    /// A table of numbers that has to be there, as [`Section::rows`]; none after a problem with any of its rows.
+    pub fn required_rows(&self, key: &str, columns: &[(&str, Bound)], doc: &str) -> Option<Vec<Vec<f64>>> {
+        let rows = self.sound_rows(key, columns, doc)?;
+        if !self.has(key) {
+            self.missing(key, Lazy(|| rows_of(columns)));
+            return None;
+        }
+        Some(rows)
     }
 
     /// One row in the columns' own units.
@@ -164,6 +184,12 @@ fn range_values(text: &str) -> Option<Vec<f64>> {
     let values: Vec<f64> = (0..=count as u32).map(|i| from + step * f64::from(i)).collect();
     let whole = values.last().is_some_and(|last| (to - last).abs() <= 1e-9 * step);
     Some(if whole { values } else { values.into_iter().chain([to]).collect() })
+}
+
+/// What the rows of a table hold, in words.
+fn rows_of(columns: &[(&str, Bound)]) -> String {
+    let describe = |(name, bound): &(&str, Bound)| format!("{name} {}", bound.in_unit(unit_of(name)));
+    format!("rows of {}", columns.iter().map(describe).collect::<Vec<_>>().join(", "))
 }
 
 fn count_in_words(least: usize, most: usize) -> String {

@@ -31,6 +31,9 @@ pub struct KeyInfo {
     pub doc: String,
 }
 
+/// Likeness above which a name in another table may be what was meant: short names of all tables are like each other.
+const ELSEWHERE: f64 = 0.75;
+
 #[derive(Default)]
 pub(super) struct Log {
     pub problems: Vec<Problem>,
@@ -87,6 +90,11 @@ impl<'d> Reader<'d> {
     pub(super) fn fault(&self, say: impl FnOnce() -> Problem) {
         self.faults.set(self.faults.get() + 1);
         self.note(|log| log.problems.push(say()));
+    }
+
+    /// Problems so far.
+    pub(super) fn faults(&self) -> usize {
+        self.faults.get()
     }
 
     /// Counts a missing key, apart from other problems.
@@ -215,7 +223,7 @@ impl Log {
         let mut rated: Vec<(f64, f64, &str)> = self
             .known()
             .map(|known| (likeness(last(known), last(&lower)), likeness(known, &lower), known))
-            .filter(|(own, _, known)| plausible(*own) && *known != path)
+            .filter(|(own, _, known)| plausible(*own) && *known != path && (parent(known) == parent(path) || *own > ELSEWHERE))
             .collect();
         rated.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
         rated.into_iter().take(3).map(|(_, _, known)| known).collect()

@@ -25,7 +25,7 @@ pub fn decode(file: &str, bytes: &[u8]) -> Result<String, Vec<Problem>> {
         return Err(binary());
     }
     if text.trim().is_empty() {
-        return Err(problem("file is empty", ""));
+        return Err(problem("file is empty", "was it saved? lines are `key = value` below a `[table]`"));
     }
     Ok(text.to_string())
 }
@@ -54,7 +54,7 @@ fn syntax_problem(source: &Source, span: Range<usize>, parser: &str) -> Problem 
     let (slip, hint) = match slip(line) {
         Some((range, hint)) => (Some(start + range.start..start + range.end), hint),
         None if parser.contains("duplicate key") => (None, "remove one of the two entries".to_string()),
-        None => (None, String::new()),
+        None => (None, "a line is `key = value` or a `[table]`; text stands in quotes, every bracket is closed".to_string()),
     };
     let message = match &slip {
         Some(_) => "not a valid value".to_string(),

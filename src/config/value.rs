@@ -38,6 +38,19 @@ pub(super) enum Lookup<'r> {
     Found(Found<'r>),
 }
 
+/// What to write instead of a number that stands in quotes.
+fn text_hint(text: &str) -> String {
+    if let Some((_, point)) = decimal_comma(text).filter(|(length, _)| *length == text.len()) {
+        format!("write {point} with a decimal point and without quotes")
+    } else if let Some((figure, unit)) = number_with_unit(text) {
+        number_hint(figure, unit)
+    } else if text.trim().parse::<f64>().is_ok() {
+        format!("write {} without quotes", text.trim())
+    } else {
+        String::new()
+    }
+}
+
 impl<'r> Section<'r> {
     /// The number in SI units; an error says whether the key is absent (else it is reported already).
     pub(super) fn read_number(&self, key: &str, allowed: Bound, doc: &str) -> Result<f64, bool> {
@@ -142,7 +155,7 @@ impl<'r> Section<'r> {
             match name.as_str() {
                 "status" => self.check_status(key, &entry.node, text, &mut found.status),
                 "source" | "note" if !matches!(entry.node.value, Value::Text(_)) => {
-                    self.wrong_type(key, &entry.node, "text");
+                    self.wrong_type(&format!("{key}.{name}"), &entry.node, "text");
                 }
                 "source" => found.source = text,
                 "note" => found.note = text,
@@ -202,18 +215,36 @@ impl<'r> Section<'r> {
     }
 
     pub(super) fn wrong_type(&self, key: &str, node: &Node, expected: &str) {
-        let mut hint = String::new();
-        if let (Value::Text(text), true) = (&node.value, expected.contains("number") || expected.contains("integer")) {
-            if let Some((_, point)) = decimal_comma(text).filter(|(length, _)| *length == text.len()) {
-                hint = format!("write {point} with a decimal point and without quotes");
-            } else if let Some((figure, unit)) = number_with_unit(text) {
-                hint = number_hint(figure, unit);
-            } else if text.trim().parse::<f64>().is_ok() {
-                hint = format!("write {} without quotes", text.trim());
+        let hint = self.type_hint(key, node, expected);
+        let message = format!("`{}`: expected {expected}, found {}", self.dotted(key), node.value.kind());
+        // The range that the key was registered with, where the message does not say it already.
+        let mut allowed = String::new();
+        self.reader.note(|log| {
+            let info = log.index.get(&join(&self.path, key)).and_then(|at| log.keys.get(*at));
+            allowed = info.map(|info| info.allowed.clone()).filter(|range| *range != expected).unwrap_or_default();
+        });
+        self.report(&node.span, key, &allowed, message, hint);
+    }
+
+    /// Path of a key of this table, or of one in a table within it.
+    fn dotted(&self, key: &str) -> String {
+        key.split('.').fold(self.path.clone(), |path, name| join(&path, name))
+    }
+
+    /// What to write instead of a value of another kind.
+    fn type_hint(&self, key: &str, node: &Node, expected: &str) -> String {
+        let written = self.reader.document.written(&node.span);
+        match &node.value {
+            Value::Text(text) if expected.contains("number") || expected.contains("integer") => text_hint(text),
+            Value::Text(_) if expected == "true or false" => format!("write `{key} = true` or `{key} = false`, without quotes"),
+            Value::Table(_) | Value::List(_) if expected == "text" => "write one text in quotes".to_string(),
+            _ if expected == "text" => format!("write it in quotes: \"{written}\""),
+            _ if expected == "a table" => format!("write [{}] with its keys on the lines below", self.dotted(key)),
+            Value::Text(_) | Value::Integer(_) | Value::Float(_) if expected.starts_with("a list of") && !expected.contains("rows") => {
+                format!("write `{key} = [{written}]`")
             }
+            _ => String::new(),
         }
-        let message = format!("`{}`: expected {expected}, found {}", join(&self.path, key), node.value.kind());
-        self.report(&node.span, key, "", message, hint);
     }
 
     /// Reports a required key that is absent.
@@ -245,7 +276,7 @@ impl<'r> Section<'r> {
         let document = self.reader.document;
         self.reader.fault(|| Problem {
             place: document.place(span),
-            key: join(&self.path, key),
+            key: self.dotted(key),
             value: document.written(span).to_string(),
             allowed: allowed.to_string(),
             message,

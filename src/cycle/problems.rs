@@ -92,7 +92,11 @@ impl<'f> Problems<'f> {
         let found = fields.len();
         if found != wanted {
             self.line(line, "", || {
-                let hint = if found > wanted { "are there decimal commas? write 12.5 and not 12,5" } else { "" };
+                let hint = if found > wanted {
+                    "are there decimal commas? write 12.5 and not 12,5"
+                } else {
+                    "an empty value keeps its comma; was the file cut off?"
+                };
                 let message = format!("this row has {found} {}", if found == 1 { "value" } else { "values" });
                 Complaint::new(message, format!("{wanted}, as the line of column names has"), hint)
             });
@@ -103,7 +107,7 @@ impl<'f> Problems<'f> {
     /// A quote at that byte of the line is not closed.
     pub fn open_quote(&mut self, line: Line<'_>, start: usize) {
         let field = Field { text: &line.text[start..], start };
-        self.value(line, field, "", || Complaint::new("this quote is not closed", "", ""));
+        self.value(line, field, "", || Complaint::new("this quote is not closed", "", "close it behind the value, or remove it"));
     }
 
     /// A problem of the whole file.

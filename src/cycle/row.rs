@@ -74,7 +74,7 @@ fn number(cell: &Cell<'_>, allowed: &str, problems: &mut Problems<'_>) -> Option
     let (message, hint) = match text.parse::<f64>() {
         Ok(value) if value.is_finite() => return Some(value),
         Ok(value) if value.is_nan() => ("this is not a number", "fill the gap or remove the row"),
-        Ok(_) => ("this is not a finite number", ""),
+        Ok(_) => ("this is not a finite number", "fill the gap or remove the row"),
         Err(_) if text.is_empty() => ("the value is missing", "fill the gap or remove the row"),
         Err(_) if text.contains(',') => ("this is not a number", "write a decimal point: 12.5 and not 12,5"),
         Err(_) => ("this is not a number", "write the bare number; the unit is in the column's name"),
@@ -127,7 +127,7 @@ fn gear(cell: &Cell<'_>, highest: u8, problems: &mut Problems<'_>) -> u8 {
     if let Some(value) = value {
         return value as u8;
     }
-    let hint = if text.is_empty() { "write 0 where no gear is engaged" } else { "" };
+    let hint = "write the number alone, and 0 where no gear is engaged";
     problems.cell(cell, || Complaint::new("this is no gear", format!("a whole number from 0 to {highest}; 0: no gear engaged"), hint));
     0
 }
@@ -139,7 +139,7 @@ fn note(cell: &Cell<'_>, highest: u8, problems: &mut Problems<'_>) -> Note {
         None => {}
     }
     let allowed = format!("PM (neutral), K1 to K{highest} (clutch disengaged in that gear), GC (gear change), the gear again or nothing");
-    problems.cell(cell, || Complaint::new("this note is not known", allowed, ""));
+    problems.cell(cell, || Complaint::new("this note is not known", allowed, "leave the cell empty where the gear column says all"));
     Note::Blank
 }
 
@@ -152,7 +152,8 @@ fn grade(cell: &Cell<'_>, divisor: f64, problems: &mut Problems<'_>) -> f64 {
     if value.abs() <= limit {
         return value / divisor;
     }
-    let hint = if divisor > 1.0 { "" } else { "is the column in percent? then name it grade_percent" };
+    let hint =
+        if divisor > 1.0 { "is the column in per mille or in degrees?" } else { "is the column in percent? then name it grade_percent" };
     problems.cell(cell, || Complaint::new("the road is too steep", allowed, hint));
     0.0
 }
@@ -162,7 +163,13 @@ fn engine_off(cell: &Cell<'_>, problems: &mut Problems<'_>) -> bool {
         "1" => true,
         "0" => false,
         _ => {
-            problems.cell(cell, || Complaint::new("this is neither 0 nor 1", "0 (engine on) or 1 (engine off)", ""));
+            problems.cell(cell, || {
+                Complaint::new(
+                    "this is neither 0 nor 1",
+                    "0 (engine on) or 1 (engine off)",
+                    "write 1 only where the driver stops the engine",
+                )
+            });
             false
         }
     }

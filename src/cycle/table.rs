@@ -63,7 +63,7 @@ impl<'a> Table<'a> {
         self.phases.truncate(names);
         if count < 2 {
             let message = if count == 0 { "the file has column names and no rows" } else { "the file has one row only" };
-            self.problems.file(Complaint::new(message, "at least two rows", ""));
+            self.problems.file(Complaint::new(message, "at least two rows", "a row holds until the next one: add one for the end"));
         }
     }
 

@@ -57,8 +57,8 @@ pub fn load(s: &Section, files: &dyn Files) -> Engine {
 
 fn full_load(s: &Section) -> Curve {
     let columns = [("speed_rpm", Bound::closed(0.0, 15_000.0)), ("torque_nm", Bound::open_low(0.0, 2000.0))];
-    let points = s.rows("full_load", &columns, "full-load line: rows [speed rpm, torque Nm], at sea level");
-    tables::curve(s, "full_load", &points)
+    let points = s.required_rows("full_load", &columns, "full-load line: rows [speed rpm, torque Nm], at sea level");
+    points.map_or_else(|| Curve::constant(1.0), |points| tables::curve(s, "full_load", &points))
 }
 
 fn reference_oil(s: &Section) -> Viscosity {

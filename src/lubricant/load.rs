@@ -17,8 +17,13 @@ pub fn load(root: &Section, name: &str) -> Lubricant {
 
 fn viscosity(root: &Section) -> Viscosity {
     let columns = [("temp_degc", Bound::closed(-60.0, 200.0)), ("kinematic_mm2_s", Bound::closed(1.0, 1e7))];
-    let table =
-        root.rows("viscosity_table", &columns, "rows [temperature degC, kinematic viscosity mm2/s]; replaces kv40 and kv100 (LU-1)");
+    let doc = "rows [temperature degC, kinematic viscosity mm2/s]; replaces kv40 and kv100 (LU-1)";
+    let Some(table) = root.sound_rows("viscosity_table", &columns, doc) else {
+        for key in ["kv40_mm2_s", "kv100_mm2_s"] {
+            let _ = root.optional_number(key, Bound::closed(1.5, 5000.0), "kinematic viscosity (LU-1)");
+        }
+        return placeholder();
+    };
     let points: Vec<(f64, f64)> = if table.is_empty() {
         let allowed = Bound::closed(1.5, 5000.0);
         let kv40 = root.number("kv40_mm2_s", allowed, "kinematic viscosity at 40 degC (LU-1)");
@@ -33,7 +38,7 @@ fn viscosity(root: &Section) -> Viscosity {
                 let _ = root.optional_number(key, Bound::closed(1.5, 5000.0), "kinematic viscosity (LU-1)");
                 root.complain(
                     key,
-                    "",
+                    "viscosity_table, or kv40_mm2_s and kv100_mm2_s",
                     "both a viscosity table and this value are given",
                     "keep one of them: the table replaces kv40 and kv100",
                 );
@@ -44,7 +49,12 @@ fn viscosity(root: &Section) -> Viscosity {
     Viscosity::new(&points).unwrap_or_else(|why| {
         let key = if table.is_empty() { "kv40_mm2_s" } else { "viscosity_table" };
         if points.iter().all(|p| p.0.is_finite() && p.1.is_finite()) {
-            root.complain(key, "", &why, "check the order of the points and their unit, mm2/s (cSt)");
+            root.complain(
+                key,
+                "viscosities that fall as temperature rises",
+                &why,
+                "check the order of the points and their unit, mm2/s (cSt)",
+            );
         }
         placeholder()
     })

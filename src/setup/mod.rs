@@ -7,6 +7,7 @@ pub mod catalogue;
 pub mod blueprint;
 mod embedded;
 mod inputs;
+mod map_csv;
 mod other_box;
 mod shelf;
 pub mod equations;

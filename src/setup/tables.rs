@@ -2,8 +2,9 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use super::map_csv::{self, Column, Form};
 use super::{Files, embedded_map};
-use crate::config::{Place, Problem, Section, decode, near, to_si};
+use crate::config::{Section, to_si};
 use crate::engine::BsfcMap;
 use crate::lubricant::Viscosity;
 use crate::numeric::{Curve, GRID_AXES, Grid};
@@ -14,7 +15,12 @@ use crate::transmission::loss_map::LossMap;
 pub fn curve(s: &Section, key: &str, rows: &[Vec<f64>]) -> Curve {
     let points: Vec<(f64, f64)> = rows.iter().map(|r| (r[0], r[1])).collect();
     Curve::new(&points).unwrap_or_else(|why| {
-        s.complain(key, "rows [x, y] with rising x", &why, "");
+        s.complain(
+            key,
+            "rows [x, y] with rising x",
+            &why,
+            "give at least one row; sort them by their first number and remove doubled ones",
+        );
         Curve::constant(1.0)
     })
 }
@@ -25,118 +31,33 @@ pub fn viscosity(s: &Section, key: &str, kv40: f64, kv100: f64) -> Viscosity {
     let points = [(313.15, kv40), (373.15, kv100)];
     Viscosity::new(&points).unwrap_or_else(|why| {
         if kv40.is_finite() && kv100.is_finite() {
-            s.complain(key, "", &why, "check the two values and their unit, mm2/s (cSt)");
+            s.complain(key, "falling as the oil warms", &why, "check the two values and their unit, mm2/s (cSt)");
         }
         Viscosity::new(&[(313.15, 36e-6), (373.15, 7.2e-6)]).unwrap_or_else(|_| unreachable!("constant points"))
     })
 }
 
-/// One column of a CSV table: name, and range in its own unit.
-struct Column {
-    name: &'static str,
-    low: f64,
-    high: f64,
-}
-
 /// A CSV of numbers with a header, read whole, and the map that was made of it.
 #[derive(Debug)]
 pub struct Table {
-    names: Vec<String>,
+    names: Vec<&'static str>,
     rows: Vec<Vec<f64>>,
     loss: OnceLock<LossMap>,
     /// With the bits of heating value and displacement, which are parts of its numbers.
     bsfc: Mutex<Option<([u64; 2], BsfcMap)>>,
 }
 
-fn problem(file: &str, line: usize, key: &str, value: &str, allowed: &str, message: String, hint: &str) -> Problem {
-    Problem {
-        place: Place { file: file.to_owned(), line, ..Place::default() },
-        key: key.to_owned(),
-        value: value.to_owned(),
-        allowed: allowed.to_owned(),
-        message,
-        hint: hint.to_owned(),
-    }
-}
-
-fn unknown_column(file: &str, name: &str, columns: &[Column]) -> Option<Problem> {
-    if columns.iter().any(|c| c.name == name) {
-        return None;
-    }
-    let close = near(name, columns.iter().map(|c| c.name));
-    let all: Vec<&str> = columns.iter().map(|c| c.name).collect();
-    let hint = if close.is_empty() { String::new() } else { format!("did you mean {}?", close.join(", ")) };
-    Some(problem(file, 1, name, name, &all.join(", "), format!("unknown column `{name}`"), &hint))
-}
-
-/// All problems with line, column and value.
-fn numbers(file: &str, bytes: &[u8], columns: &[Column]) -> Result<Table, Vec<Problem>> {
-    let text = decode(file, bytes)?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_reader(text.as_bytes());
-    let mut problems = Vec::new();
-    let names: Vec<String> = reader.headers().map(|h| h.iter().map(str::to_owned).collect()).unwrap_or_default();
-    if names.len() == 1 && names[0].contains(';') {
-        return Err(vec![problem(
-            file,
-            1,
-            "",
-            &names[0],
-            "",
-            "the file uses `;` between columns".into(),
-            "save it with commas between columns and decimal points",
-        )]);
-    }
-    problems.extend(names.iter().filter_map(|name| unknown_column(file, name, columns)));
-    let mut rows = Vec::new();
-    for record in reader.records() {
-        let Ok(record) = record else { continue };
-        let line = record.position().map_or(0, |p| p.line() as usize);
-        if record.len() != names.len() {
-            problems.push(problem(
-                file,
-                line,
-                "",
-                "",
-                &format!("{} fields", names.len()),
-                format!("the row has {} fields", record.len()),
-                "",
-            ));
-            continue;
-        }
-        let values = names.iter().zip(record.iter()).map(|(name, cell)| {
-            let value: f64 = cell.parse().unwrap_or(f64::NAN);
-            let range = columns.iter().find(|c| c.name == name).map_or((f64::MIN, f64::MAX), |c| (c.low, c.high));
-            if !(range.0 <= value && value <= range.1) {
-                problems.push(problem(
-                    file,
-                    line,
-                    name,
-                    cell,
-                    &format!("a number from {} to {}", range.0, range.1),
-                    format!("`{cell}` in column {name}"),
-                    "",
-                ));
-            }
-            value
-        });
-        rows.push(values.collect());
-        if problems.len() > 50 {
-            break;
-        }
-    }
-    if rows.is_empty() && problems.is_empty() {
-        problems.push(problem(file, 1, "", "", "a header and rows", "the file has no rows".into(), ""));
-    }
-    if problems.is_empty() { Ok(Table { names, rows, loss: OnceLock::new(), bsfc: Mutex::default() }) } else { Err(problems) }
-}
-
 impl Table {
     fn index(&self, name: &str) -> Option<usize> {
-        self.names.iter().position(|n| n == name)
+        self.names.iter().position(|n| *n == name)
     }
 }
 
-fn read(s: &Section, key: &str, file: &str, files: &dyn Files, columns: &[Column]) -> Option<Arc<Table>> {
+fn read(s: &Section, key: &str, file: &str, files: &dyn Files, form: &Form) -> Option<Arc<Table>> {
+    if file.trim().is_empty() {
+        s.complain(key, "a CSV file", "the name of the map is empty", "name its file, or remove the key");
+        return None;
+    }
     let mut make = || {
         let read;
         let bytes = match embedded_map(file) {
@@ -157,10 +78,19 @@ fn read(s: &Section, key: &str, file: &str, files: &dyn Files, columns: &[Column
                 }
             },
         };
-        numbers(file, bytes, columns).map(Arc::new).map_err(|problems| problems.into_iter().for_each(|p| s.report_problem(p))).ok()
+        match map_csv::read(file, bytes, form) {
+            Ok(map) => Some(Arc::new(Table { names: map.names, rows: map.rows, loss: OnceLock::new(), bsfc: Mutex::default() })),
+            Err(problems) => {
+                problems.into_iter().for_each(|problem| s.report_problem(problem));
+                None
+            }
+        }
     };
-    files.table(columns[0].name, file, &mut make)
+    files.table(form.columns[0].name, file, &mut make)
 }
+
+/// What helps with a BSFC map that does not hang together.
+const GRID: &str = "give at least two speeds and two loads; more torque needs more fuel";
 
 /// A BSFC map from CSV; none after a problem.
 #[must_use]
@@ -171,7 +101,11 @@ pub fn bsfc_map(s: &Section, file: &str, files: &dyn Files, heating_value_j_kg: 
         Column { name: "torque_nm", low: 0.1, high: 5000.0 },
         Column { name: "bsfc_g_kwh", low: 100.0, high: 3000.0 },
     ];
-    let table = read(s, "file", file, files, &columns)?;
+    if file.is_empty() && s.optional_text("file", "").is_none() {
+        return None; // missing, or no text: reported
+    }
+    let required: [&[&str]; 3] = [&["speed_rpm"], &["bmep_bar", "torque_nm"], &["bsfc_g_kwh"]];
+    let table = read(s, "file", file, files, &Form { columns: &columns, required: &required })?;
     let scale = [heating_value_j_kg.to_bits(), displacement_m3.to_bits()];
     let mut made = table.bsfc.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, map)) = made.as_ref().filter(|(of, _)| *of == scale) {
@@ -181,17 +115,11 @@ pub fn bsfc_map(s: &Section, file: &str, files: &dyn Files, heating_value_j_kg: 
     let load = table.index("bmep_bar").map(|i| (i, 1e5));
     let per_torque = 4.0 * std::f64::consts::PI / displacement_m3;
     let load = load.or_else(|| table.index("torque_nm").map(|i| (i, per_torque)));
-    let (Some(speed), Some(bsfc), Some((load, factor))) = (speed, bsfc, load) else {
-        s.complain(
-            "file",
-            "speed_rpm, bmep_bar or torque_nm, bsfc_g_kwh",
-            "a column is missing in the BSFC map",
-            "name the columns with their units",
-        );
-        return None;
-    };
+    let (Some(speed), Some(bsfc), Some((load, factor))) = (speed, bsfc, load) else { return None };
     let rows: Vec<(f64, f64, f64)> = table.rows.iter().map(|r| (to_si("speed_rpm", r[speed]), r[load] * factor, r[bsfc] / 3.6e9)).collect();
-    let map = BsfcMap::from_rows(&rows, heating_value_j_kg).map_err(|why| s.complain("file", "a full grid", &why, "")).ok()?;
+    let map = BsfcMap::from_rows(&rows, heating_value_j_kg)
+        .map_err(|why| s.complain("file", "a map of fuel over speed and load", &why, GRID))
+        .ok()?;
     *made = Some((scale, map.clone()));
     Some(map)
 }
@@ -209,14 +137,11 @@ pub fn loss_map(s: &Section, key: &str, doc: &str, files: &dyn Files, first: &'s
         Column { name: "oil_temp_degc", low: -60.0, high: 200.0 },
         Column { name: "torque_loss_nm", low: 0.0, high: 1000.0 },
     ];
-    let table = read(s, key, &file, files, &columns)?;
+    let table = read(s, key, &file, files, &Form { columns: &columns, required: &[&["torque_loss_nm"]] })?;
     if let Some(map) = table.loss.get() {
         return Some(map.clone());
     }
-    let Some(loss) = table.index("torque_loss_nm") else {
-        s.complain(key, "", "the map has no column torque_loss_nm", "losses are torques at the box's input shaft, Nm");
-        return None;
-    };
+    let loss = table.index("torque_loss_nm")?;
     let axes: Vec<Option<usize>> = columns[..GRID_AXES].iter().map(|c| table.index(c.name)).collect();
     let rows: Vec<([f64; GRID_AXES], f64)> = table
         .rows

@@ -10,6 +10,8 @@ use crate::transmission::cvt::variator::Formulation;
 
 /// Largest number of combinations of words of a car: each keeps its documents in memory.
 pub const MOST_VARIANTS: usize = 4096;
+/// What a hint for the command line goes on with.
+const ABOUT_SET: &str = "; --set reaches";
 
 /// How a factor acts on one car.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +127,12 @@ impl StudyCar {
             variant.slots.push(found.unwrap_or_else(|problem| {
                 let place = factor.place.clone();
                 let message = format!("{}: {}", self.name, problem.message);
-                variant.unknown.push((index, Problem { place, key: factor.key.clone(), message, ..problem }));
+                // A plan has its own word for whose value it is.
+                let hint = match problem.hint.split_once(ABOUT_SET) {
+                    Some((hint, _)) => format!("{hint}; `cars = \"baselines\"` varies the baselines alone"),
+                    None => problem.hint.clone(),
+                };
+                variant.unknown.push((index, Problem { place, key: factor.key.clone(), message, hint, ..problem }));
                 None
             }));
         }

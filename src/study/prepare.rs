@@ -208,12 +208,14 @@ fn cycles(plan: &Plan, folder: &Path, problems: &mut Vec<Problem>) -> Vec<Cycle>
         match cycle::find("cycle", &beside(folder, &word)) {
             Ok(cycle) => list.push(cycle),
             Err(found) => {
-                let place = factor.filter(|_| k > 0).map(|factor| factor.place.clone());
-                problems.extend(found.into_iter().map(|problem| match &place {
-                    Some(place) if problem.place.line == 0 => Problem { place: place.clone(), ..problem },
-                    None if problem.place.line == 0 => {
-                        Problem { place: of_plan(plan, "cycle", "", "").place, key: "cycle".into(), ..problem }
+                let place = factor.filter(|_| k > 0).map(|factor| factor.places.nth("values", k - 1).clone());
+                let place = place.unwrap_or_else(|| of_plan(plan, "cycle", "", "").place);
+                // What is wrong within a file stands there, with a line or without.
+                problems.extend(found.into_iter().map(|problem| match problem.place.file.as_str() {
+                    "cycle" if is_path(&word) => {
+                        Problem { place: place.clone(), hint: "a path in a plan begins at the plan's folder".into(), ..problem }
                     }
+                    "cycle" => Problem { place: place.clone(), ..problem },
                     _ => problem,
                 }));
             }

@@ -40,8 +40,10 @@ pub struct Cause {
 pub struct Row {
     /// Identifier, such as `5.18a`.
     pub id: String,
-    /// Where it stands.
+    /// Where it stands: its expression, or its identifier.
     pub place: Place,
+    /// Where its identifier stands.
+    pub id_place: Place,
     /// Chapter.
     pub chapter: String,
     /// Page of the book.
@@ -105,10 +107,11 @@ pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File
     let mut seen: Vec<&Row> = Vec::new();
     for row in read.iter().flat_map(|file| &file.rows) {
         if let Some(first) = seen.iter().find(|other| other.id == row.id && !row.id.is_empty()) {
-            let message = format!("the id `{}` was used before, in {} line {}", row.id, first.place.file, first.place.line);
+            let message = format!("the id `{}` was used before, in {} line {}", row.id, first.id_place.file, first.id_place.line);
             problems.push(Problem {
-                place: row.place.clone(),
+                place: row.id_place.clone(),
                 key: "id".into(),
+                value: row.id.clone(),
                 message,
                 hint: "ids are unique".into(),
                 ..Problem::default()
@@ -140,8 +143,9 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec
     let root = reader.root();
     read.tolerances = tolerances(&root.table("tolerances"));
     read.sources = source::read(&root.table("sources"), &lent.sources);
-    if let Err(mut p) = reader.finish() {
-        problems.append(&mut p);
+    if let Err(found) = reader.finish() {
+        let hint = |p: &Problem| if p.key == "row" { "rows are written as [[row]]".to_owned() } else { p.hint.clone() };
+        problems.extend(found.into_iter().map(|p| Problem { hint: hint(&p), ..p }));
     }
     // A path in a file is relative to that file.
     for named in read.sources.iter_mut().flat_map(|source| [&mut source.vehicle, &mut source.lubricant]).flatten() {
@@ -172,7 +176,7 @@ fn tolerances(all: &Section) -> Vec<Tolerance> {
         let s = all.table(name);
         let absolute = s.optional_number("width", width, "width on both sides, in the unit of the row");
         let relative = s.optional_number("share", Bound::closed(0.0, 10.0), "width as a share of the printed number");
-        if absolute.is_some() == relative.is_some() {
+        if s.exists() && absolute.is_some() == relative.is_some() {
             s.complain("width", "width or share", &format!("tolerance `{name}` needs either `width` or `share`"), "give one of them");
         }
         Tolerance {
@@ -208,6 +212,7 @@ impl Head<'_> {
         let (tolerance, tolerance_widths) = self.tolerance(s, printed, &unit, broken);
         let row = Row {
             id,
+            id_place: s.place("id"),
             place: s.place(if compute_text.is_empty() { "id" } else { "compute" }),
             chapter,
             mechanism,
@@ -297,6 +302,9 @@ impl Head<'_> {
     }
 }
 
+/// What helps where an expression cannot be read.
+const GRAMMAR: &str = "docs/validation_format.md shows what an expression may hold";
+
 /// A fault in an expression as a problem at its place.
 fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
     // The place is exact where the text stands on one line as it is.
@@ -309,6 +317,6 @@ fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
         value: fault.word,
         allowed: String::new(),
         message: format!("`{key}`: {}", fault.message),
-        hint: fault.hint,
+        hint: if fault.hint.is_empty() { GRAMMAR.to_owned() } else { fault.hint },
     }
 }

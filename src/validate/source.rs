@@ -1,7 +1,7 @@
 //! Sources: what the rows look at, read from `[sources.NAME]`.
 
-use crate::config::{Bound, Place, Section};
-use crate::cycle::{Cycle, constant_speed, embedded, read_csv};
+use crate::config::{Bound, Place, Section, near, unit_of};
+use crate::cycle::{Cycle, constant_speed, embedded, names, read_csv};
 use crate::lubricant::ZERO_DEGC_K;
 use crate::setup::AMBIENT;
 use crate::transmission::cvt::variator::Formulation;
@@ -164,7 +164,8 @@ pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
                     "there is no such source to continue",
                     &hint,
                 );
-                done.push(one(&sources.table(name), name, None));
+                pass_over(&sources.table(name));
+                done.push(empty(name, Kind::Vehicle));
             }
             break;
         }
@@ -172,8 +173,18 @@ pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
     done
 }
 
+/// Counts all keys of a source as read, where it is not known what they mean.
+fn pass_over(s: &Section) {
+    for key in s.names() {
+        let _ = s.written(key, "", "");
+    }
+}
+
 fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
-    let kind = kind(s, base.as_ref());
+    let Some(kind) = kind(s, base.as_ref()) else {
+        pass_over(s);
+        return empty(name, Kind::Vehicle);
+    };
     let old = base.unwrap_or_else(|| empty(name, kind));
     let formulations: Vec<&'static str> = Formulation::NAMES.iter().map(|(name, _)| *name).collect();
     let formulation = if s.has("formulation") {
@@ -197,7 +208,7 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
         let Some(slot) = source.axes.iter_mut().find(|(name, _)| name == key) else { continue };
         slot.1 = given.or_else(|| slot.1.take());
         if *needed && slot.1.as_ref().is_none_or(Vec::is_empty) {
-            s.complain(key, &bound.to_string(), &format!("source `{name}` has no `{key}`"), "give a number, a list or a range");
+            s.complain(key, &bound.in_unit(unit_of(key)), &format!("source `{name}` has no `{key}`"), "give a number, a list or a range");
         }
     }
     let count = source.axes.iter().map(|(_, list)| list.as_ref().map_or(1, Vec::len)).fold(1_usize, usize::saturating_mul);
@@ -212,18 +223,20 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
     source
 }
 
-fn kind(s: &Section, base: Option<&Source>) -> Kind {
-    if let Some(base) = base
-        && !s.has("source")
-    {
-        return base.kind;
-    }
-    let words = Kind::NAMES.map(|(name, _)| name);
+/// What a source computes; none, and reported, if it does not say so.
+fn kind(s: &Section, base: Option<&Source>) -> Option<Kind> {
     if !s.has("source") {
-        s.complain("source", &words.join(", "), "the source does not say what it computes", "add `source = \"bench\"`");
+        if let Some(base) = base {
+            return Some(base.kind);
+        }
+        if s.exists() {
+            let words = Kind::NAMES.map(|(name, _)| name);
+            s.complain("source", &words.join(", "), "the source does not say what it computes", "add, for example, `source = \"bench\"`");
+        }
+        return None;
     }
-    let word = s.word_or("source", &words, "vehicle", "what the source computes");
-    Kind::NAMES.iter().find(|(name, _)| *name == word).map_or(Kind::Vehicle, |(_, kind)| *kind)
+    let word = s.word_or("source", &Kind::NAMES.map(|(name, _)| name), "", "what the source computes");
+    Kind::NAMES.iter().find(|(name, _)| *name == word).map(|(_, kind)| *kind)
 }
 
 fn empty(name: &str, kind: Kind) -> Source {
@@ -272,7 +285,19 @@ fn run(s: &Section, source: &mut Source) {
         source.phase = s.text_or("phase", "", "group of phases that counts");
     }
     match cycle(source) {
-        Err(why) => s.complain(if s.has("points") { "points" } else { "cycle" }, "see `cvtcycle list cycles`", &why, ""),
+        Err(why) if !source.points.is_empty() => {
+            let hint = "times rise by up to 3600 s, speeds are 0 to 300 km/h and change by up to 12 m/s2";
+            s.complain("points", "rows [time s, speed km/h] of a cycle", &why, hint);
+        }
+        Err(why) => {
+            let close = near(&source.cycle, names().iter().copied());
+            let hint = if close.is_empty() {
+                "`cvtcycle list cycles` shows all".to_owned()
+            } else {
+                format!("did you mean {}?", close.join(" or "))
+            };
+            s.complain("cycle", "the name of an embedded cycle, or constant_V with V in km/h, above 0 and up to 300", &why, &hint);
+        }
         Ok(cycle) => {
             let groups: Vec<String> = cycle.phase_groups().into_iter().map(|(name, _)| name).collect();
             if !source.phase.is_empty() && !groups.contains(&source.phase) {

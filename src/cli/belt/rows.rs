@@ -75,8 +75,9 @@ fn number(place: usize, cell: &Cell<'_>, problems: &mut Problems<'_>) -> Option<
     problems.cell(cell, || {
         let (message, hint) = match parsed {
             Ok(value) if value.is_nan() => ("this is not a number", "fill the gap or remove the row"),
-            Ok(value) if value.is_infinite() => ("this is not a finite number", ""),
-            Ok(value) if column.allowed.contains(value) => ("this is not a whole number", ""),
+            Ok(value) if value.is_infinite() => ("this is not a finite number", "fill the gap or remove the row"),
+            Ok(value) if column.allowed.contains(value) => ("this is not a whole number", "write it without decimals"),
+            Ok(_) if column.unit.is_empty() => ("this value is out of range", ""),
             Ok(_) => ("this value is out of range", "the unit is in the column's name"),
             Err(_) if text.is_empty() => ("the value is missing", "fill the gap or remove the row"),
             Err(_) if text.contains(',') => ("this is not a number", "write a decimal point: 12.5 and not 12,5"),

@@ -79,7 +79,9 @@ fn header<'t>(line: Line<'t>, problems: &mut Problems) -> Option<Header<'t>> {
         return None;
     }
     for own in missing(&columns) {
-        problems.line(line, own.name, || Complaint::new(format!("the column {} is missing", own.name), own.doc, AGAIN));
+        problems.line(line, own.name, || {
+            Complaint::new(format!("the column {} is missing", own.name), format!("with {}: {}", own.name, own.doc), AGAIN)
+        });
     }
     let numbers: Vec<&str> = columns.iter().filter(|column| is_number(column)).map(|column| column.name).collect();
     let mut uses = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::super::document::{Block, Section, Table};
 use super::super::found::RunFound;
-use super::super::number::{NONE, Quantity, degc};
+use super::super::number::{NONE, Quantity, degc, words};
 use super::{Car, cycle_title, start_line};
 use crate::results::record::{CarRecord, Change};
 
@@ -27,6 +27,7 @@ pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
     }
     section.blocks.push(Block::Facts(facts));
     section.table(table(cars));
+    section.blocks.push(Block::Facts(cars.iter().filter_map(|car| controller(car.record?)).collect()));
     for car in cars {
         if let Some(record) = car.record {
             changes(&mut section, car, record);
@@ -52,6 +53,19 @@ fn table(cars: &[Car]) -> Table {
         ]);
     }
     table
+}
+
+/// The controller of a CVT: its clamp law and what sets its ratio.
+fn controller(record: &CarRecord) -> Option<(String, String)> {
+    const RATIO: &str = "transmission.cvt.ratio.";
+    let law = record.values.iter().find(|value| value.key == "transmission.cvt.clamp")?;
+    let told = record.values.iter().filter_map(|value| {
+        let name = words(value.key.strip_prefix(RATIO)?.trim_end_matches("_rpm").trim_end_matches("_per_s"));
+        let unit = if value.unit == "-" { String::new() } else { format!("\u{a0}{}", value.unit) };
+        Some(format!("{name} {}{unit}", value.value))
+    });
+    let list = told.collect::<Vec<_>>().join(", ");
+    Some((format!("Controller of {}", record.name), format!("clamp law {}; ratio: {list}", words(&law.value))))
 }
 
 fn changes(section: &mut Section, car: &Car, record: &CarRecord) {

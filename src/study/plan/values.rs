@@ -159,7 +159,7 @@ fn range(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
         }
     };
     if numbers.windows(2).any(|pair| pair[0] >= pair[1]) {
-        table.complain("to", "", "the values lie too near to each other to be told apart", "");
+        table.complain("to", "", "the values lie too near to each other to be told apart", "widen the range, or take fewer values");
         return None;
     }
     numbers.iter().all(|x| x.is_finite()).then(|| numbers.into_iter().map(FactorValue::Number).collect())

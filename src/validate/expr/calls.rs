@@ -154,12 +154,12 @@ impl Parser<'_> {
         }
         let (over, at) = kind.needs();
         if parts.over.is_some() != over || parts.at.is_some() != at {
-            let form = match (over, at) {
-                (true, true) => "VALUE over COLUMN at NUMBER",
-                (true, false) => "VALUE over COLUMN",
-                _ => "VALUE, without `over` and `at`",
+            let (form, without) = match (over, at) {
+                (true, true) => ("VALUE over COLUMN at NUMBER", ""),
+                (true, false) => ("VALUE over COLUMN", ", without `at`"),
+                _ => ("VALUE", ", without `over` and `at`"),
             };
-            return Err(Fault { hint: format!("write {}(SOURCE: {form})", kind.name()), ..self.unexpected("another form") });
+            return Err(Fault { hint: format!("write {}(SOURCE: {form}){without}", kind.name()), ..self.unexpected("another form") });
         }
         Ok(Expr::Reduce(Box::new(parts)))
     }

@@ -1,0 +1,211 @@
+//! How each kind of bad file is read, and what is then told.
+//!
+//! A bad vehicle and a bad rig file hold only what is wrong, as dotted keys: what they leave out is put below it, from the shipped file that
+//! their first line names (`# on NAME`), so that the lines of the bad file keep their numbers.
+
+use cvtcycle::config::{Document, KeyInfo, Problem, Reader, render};
+use cvtcycle::cycle;
+use cvtcycle::results::History;
+use cvtcycle::review::cover::Cover;
+use cvtcycle::rig::transmission::Conditions;
+use cvtcycle::setup::{self, Options};
+use cvtcycle::study::Study;
+use cvtcycle::study::plan::Plan;
+use cvtcycle::validate;
+
+/// Folders of the corpus.
+pub const KINDS: [&str; 10] = ["vehicle", "lubricant", "rig", "plan", "rows", "cover", "cycle", "map", "points", "trace"];
+
+/// What the program says about a bad file; nothing if it takes it.
+pub fn told(kind: &str, case: &str) -> String {
+    let bytes = std::fs::read(case).unwrap();
+    let name = case.rsplit('/').next().unwrap();
+    if kind == "points" {
+        return points(case);
+    }
+    let problems = match kind {
+        "vehicle" => return vehicle(case, &String::from_utf8(bytes).unwrap()),
+        "rig" => rig(case, &String::from_utf8(bytes).unwrap()),
+        "lubricant" => setup::load_lubricant(case, "--lubricant", &[], "").err(),
+        "plan" => Plan::open(case, "PLAN").and_then(Study::prepare).err(),
+        "rows" => rows(case, &bytes),
+        "cover" => Cover::read(case).err(),
+        "cycle" => cycle::read_csv(case, &bytes).err(),
+        "map" => map(case, name),
+        "trace" => History::read_csv(case, &bytes).err(),
+        _ => unreachable!("{kind}"),
+    };
+    render(&problems.unwrap_or_default(), false)
+}
+
+fn rows(case: &str, bytes: &[u8]) -> Option<Vec<Problem>> {
+    let text = match cvtcycle::config::decode(case, bytes) {
+        Ok(text) => text,
+        Err(problems) => return Some(problems),
+    };
+    validate::read(("embedded:common.toml", validate::COMMON.1), &[(case.to_owned(), text)]).err()
+}
+
+fn points(case: &str) -> String {
+    let output = assert_cmd::Command::cargo_bin("cvtcycle").unwrap().args(["belt", "--points", case]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{case}: {}", String::from_utf8_lossy(&output.stdout));
+    assert!(output.stdout.is_empty(), "{case}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// The first word of a map's name says what it is put in place of.
+fn map(case: &str, name: &str) -> Option<Vec<Problem>> {
+    let (vehicle, key) = match name.split('_').next() {
+        Some("bsfc") => ("rover_216_cvt", "engine.model.bsfc_map.file"),
+        Some("box") => ("rover_216_5mt", "transmission.manual.maps.box"),
+        _ => ("rover_216_cvt", "transmission.cvt.maps.belt"),
+    };
+    setup::load(vehicle, "--vehicle", &Options { set: vec![format!("{key}={case}")], ..Options::default() }).err()
+}
+
+fn vehicle(case: &str, text: &str) -> String {
+    let base = setup::load(base(text), "--vehicle", &Options::default()).unwrap_or_else(|problems| panic!("{problems:?}"));
+    let own = base.keys.iter().filter(|info| !info.key.starts_with("lubricant.") && !info.key.starts_with("engine_oil."));
+    // A folder of its own: what the file names is looked for beside it.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("car.toml");
+    std::fs::write(&path, completed(text, own)).unwrap();
+    let path = path.to_str().unwrap();
+    let problems = setup::load(path, "--vehicle", &Options::default()).err().unwrap_or_default();
+    within(case, text, &problems);
+    render(&problems, false).replace(path, case)
+}
+
+fn rig(case: &str, text: &str) -> Option<Vec<Problem>> {
+    let (_, keys) = Conditions::load(&[]).unwrap();
+    let document = match Document::parse(case, &completed(text, keys.iter())) {
+        Ok(document) => document,
+        Err(problems) => return Some(problems),
+    };
+    let reader = Reader::new(&document);
+    let _ = Conditions::read(&reader.root());
+    let problems = reader.finish().err().unwrap_or_default();
+    within(case, text, &problems);
+    Some(problems)
+}
+
+/// What is told stands in the bad file itself: the shipped file below it has its own reasons to change.
+fn within(case: &str, text: &str, problems: &[Problem]) {
+    let beyond: Vec<&Problem> = problems.iter().filter(|problem| problem.place.line > text.lines().count()).collect();
+    assert!(beyond.is_empty(), "{case}: write these lines into the bad file, too: {beyond:#?}");
+}
+
+fn base(text: &str) -> &str {
+    text.lines().next().and_then(|line| line.strip_prefix("# on ")).unwrap_or("rover_216_cvt")
+}
+
+/// The bad lines, and below them all keys that they do not touch.
+fn completed<'k>(text: &str, keys: impl Iterator<Item = &'k KeyInfo>) -> String {
+    let given: Vec<&str> = text.lines().filter_map(|line| line.trim_start_matches("#without ").split(['=', ' ']).next()).collect();
+    let under = |key: &str, table: &str| !table.is_empty() && key.starts_with(&format!("{table}."));
+    let touched = |key: &str| given.iter().any(|own| key == *own || under(key, own) || under(own, key));
+    let keys: Vec<&KeyInfo> = keys.filter(|info| !touched(&info.key)).collect();
+    let chosen = |info: &KeyInfo| keys.iter().any(|other| other.key.starts_with(&format!("{}.{}.", info.key, info.value)));
+    let mut whole = text.to_owned();
+    for info in &keys {
+        if !info.value.is_empty() && !chosen(info) {
+            whole += &format!("{} = {}\n", info.key, written(info));
+        }
+    }
+    whole
+}
+
+/// A value as it stands in a file.
+pub fn written(info: &KeyInfo) -> String {
+    let is_text = info.allowed == "text" || info.allowed.starts_with("one of ");
+    if is_text { format!("{:?}", info.value) } else { info.value.clone() }
+}
+
+/// Bad files that are too large to be kept, or that hold every column of a trace: name and what is told.
+pub fn made(kind: &str) -> Vec<(String, String)> {
+    match kind {
+        "trace" => traces(),
+        "plan" => {
+            let plan = |design: &str, factors: usize, values: &str| {
+                let factor = |k: usize| format!("[[factor]]\nkey = \"a.b{k}\"\nvalues = {values}\n");
+                format!("[study.design.{design}\n{}", (0..factors).map(factor).collect::<String>())
+            };
+            let told = |name: &str, text: String| (format!("made_{name}"), told_by(Plan::read(name, &text).err()));
+            vec![
+                told("too_many_factors.toml", plan("sobol]\nsamples = 4", 257, "[0, 1]")),
+                told("too_many_points.toml", plan("grid]", 32, "[0, 1, 2, 3]")),
+            ]
+        }
+        "cycle" => {
+            let text: String =
+                std::iter::once("time_s,speed_kmh\n".to_owned()).chain((0..=2_000_000).map(|k| format!("{k},0\n"))).collect();
+            vec![made_file("too_many_rows.csv", text.as_bytes(), |path, bytes| told_by(cycle::read_csv(path, bytes).err()))]
+        }
+        "points" => {
+            let text = format!("ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm\n{}", "1".repeat(1 << 21));
+            vec![made_file("long_line.csv", text.as_bytes(), |path, _| points(path))]
+        }
+        "cover" => {
+            let text = b"logo = \"logo.png\"\n";
+            vec![made_file("large_logo.toml", text, |path, _| {
+                std::fs::write(path.replace("large_logo.toml", "logo.png"), vec![0; 500_001]).unwrap();
+                told_by(Cover::read(path).err())
+            })]
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn told_by(problems: Option<Vec<Problem>>) -> String {
+    render(&problems.unwrap_or_default(), false)
+}
+
+/// Writes a file into a folder of its own, reads it, and leaves the folder out of what is told.
+fn made_file(name: &str, bytes: &[u8], read: impl Fn(&str, &[u8]) -> String) -> (String, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::write(&path, bytes).unwrap();
+    let text = read(&path, bytes);
+    (format!("made_{name}"), text.replace(&format!("{}/", folder.path().to_str().unwrap()), ""))
+}
+
+/// Traces that are wrong in one way each; their columns are those that the program writes.
+fn traces() -> Vec<(String, String)> {
+    use cvtcycle::results::columns::{COLUMNS, Scope};
+    let names: Vec<&str> = COLUMNS.iter().filter(|column| column.scope != Scope::Cvt).map(|column| column.name).collect();
+    let row = |time: &str, dt: &str, flags: &str, other: &str| {
+        let cell = |name: &&str| match *name {
+            "time_s" => time.to_owned(),
+            "dt_s" => dt.to_owned(),
+            "flags" => flags.to_owned(),
+            "phase" => "all".to_owned(),
+            _ => other.to_owned(),
+        };
+        names.iter().map(cell).collect::<Vec<_>>().join(",")
+    };
+    let head = names.join(",");
+    let one = |name: &str, lines: &[String]| {
+        let text = lines.join("\n") + "\n";
+        let path = format!("made_{name}.csv");
+        (path.clone(), told_by(History::read_csv(&path, text.as_bytes()).err()))
+    };
+    let good = row("1", "1", "", "0");
+    vec![
+        one("good_but_twice", &[format!("{head},time_s"), format!("{good},1")]),
+        one("no_rows", std::slice::from_ref(&head)),
+        one("missing_column", &[head.replace("dt_s,", ""), good.replacen("1,", "", 1)]),
+        one("time_falls", &[head.clone(), good.clone(), row("0.5", "1", "", "0")]),
+        one("no_length", &[head.clone(), row("1", "0", "", "0")]),
+        one("empty_time", &[head.clone(), row("", "1", "", "0")]),
+        one("bad_number", &[head.clone(), row("1", "fast", "", "0")]),
+        one("unknown_flag", &[head.clone(), row("1", "1", "hurry", "0"), row("2", "1", "overrun|", "0")]),
+        one("short_row", &[head, "1,2,3".to_owned()]),
+    ]
+}
+
+/// Every bad plan of the plan reader's own test, with the whole text: name and text.
+pub fn plans_of_the_reader() -> impl Iterator<Item = (String, String)> {
+    let plans = include_str!("../plans/bad.txt").split("====\n").skip(1);
+    let text: String = plans.map(|plan| render(&Plan::read("bad.txt", plan).err().unwrap_or_default(), false) + "\n").collect();
+    std::iter::once(("all_of_bad.txt".to_owned(), text))
+}
