@@ -19,5 +19,6 @@ pub mod provenance;
 pub mod rig;
 pub mod study;
 pub mod validate;
+pub mod calibrate;
 pub mod report;
 pub mod review;

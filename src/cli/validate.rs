@@ -17,6 +17,7 @@ use super::inputs::{self, Offering, Problems};
 Examples:
   cvtcycle validate
   cvtcycle validate --chapter 5 --mechanism pump
+  cvtcycle validate --held-out
   cvtcycle validate --set transmission.cvt.pump.displacement_cc_rev=12
   cvtcycle validate --format html > validation.html
 
@@ -37,6 +38,9 @@ pub struct Args {
     /// Rows of one mechanism only, named as the page of the book; `all` for every one
     #[arg(long, value_name = "NAME", value_parser = Offering(mechanisms), hide_possible_values = true)]
     mechanism: Option<String>,
+    /// Only rows that test the program: no parameter was fitted to them, and they are no constants
+    #[arg(long)]
+    held_out: bool,
     /// Compute for another vehicle; verdicts are shown against the recorded ones
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Offering(inputs::vehicles), hide_possible_values = true)]
     vehicle: String,
@@ -151,7 +155,7 @@ fn texts(args: &Args) -> Result<Vec<(String, String)>, Vec<Problem>> {
 fn wanted(args: &Args, row: &Row) -> bool {
     let is = |asked: &Option<String>, own: &str| asked.as_ref().is_none_or(|asked| asked.eq_ignore_ascii_case(own));
     let mechanism = args.mechanism.clone().filter(|name| name != ALL);
-    is(&args.chapter, &row.chapter) && is(&mechanism, &row.mechanism)
+    is(&args.chapter, &row.chapter) && is(&mechanism, &row.mechanism) && (!args.held_out || row.is_held_out())
 }
 
 /// A chapter or mechanism that nothing has is a slip of the pen; a known mechanism without rows is not.

@@ -1,6 +1,6 @@
 //! Collecting the problems of a CSV file and saying where each stands.
 
-use super::text::{Field, split};
+use super::text::{Field, decode, split};
 use crate::config::{Place, Problem};
 
 /// More than these help nobody; the rest is counted.
@@ -61,6 +61,19 @@ impl<'f> Problems<'f> {
     #[must_use]
     pub fn new(file: &'f str) -> Self {
         Self { file, list: Vec::new(), more: 0 }
+    }
+
+    /// The lines of a file that have something on them; none, and said so, where the bytes are no text.
+    pub fn lines<'t>(&mut self, bytes: &'t [u8]) -> Option<impl Iterator<Item = Line<'t>> + use<'t>> {
+        match decode(bytes) {
+            Ok(text) => {
+                Some((1..).zip(text.lines()).map(|(number, text)| Line { number, text }).filter(|line| !line.text.trim().is_empty()))
+            }
+            Err(complaint) => {
+                self.file(complaint);
+                None
+            }
+        }
     }
 
     /// Whether none was found.

@@ -4,10 +4,9 @@ use std::path::Path;
 
 use super::gears::{GearColumns, GearCommand, commands};
 use super::header::{Column, Header};
-use super::problems::{Line, Problems};
+use super::problems::Problems;
 use super::row::Row;
 use super::table::Table;
-use super::text::decode;
 use super::{Cycle, Interval, Trace, Weighting};
 use crate::config::Problem;
 
@@ -31,14 +30,9 @@ pub fn read_csv(file: &str, bytes: &[u8]) -> Result<Cycle, Vec<Problem>> {
 /// The trace alone. Phases known already keep their index, new ones are added.
 pub(super) fn read_trace(file: &str, bytes: &[u8], phases: &mut Vec<String>) -> Result<Trace, Vec<Problem>> {
     let mut problems = Problems::new(file);
-    let text = match decode(bytes) {
-        Ok(text) => text,
-        Err(complaint) => {
-            problems.file(complaint);
-            return Err(problems.finish());
-        }
+    let Some(mut lines) = problems.lines(bytes) else {
+        return Err(problems.finish());
     };
-    let mut lines = (1..).zip(text.lines()).map(|(number, text)| Line { number, text }).filter(|line| !line.text.trim().is_empty());
     let header = lines.next().and_then(|line| Header::read(line, &mut problems));
     let Some(header) = header else {
         return Err(problems.finish());

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::config::{Problem, near};
 use crate::cycle::problems::{Complaint, Line, Problems};
-use crate::cycle::text::{Field, decode, split};
+use crate::cycle::text::{Field, split};
 
 /// One column: name, and range in its own unit.
 pub(super) struct Column {
@@ -46,14 +46,9 @@ pub(super) struct Read {
 /// All problems with line, column and value; after 50 the rest is counted in one last entry.
 pub(super) fn read(file: &str, bytes: &[u8], form: &Form) -> Result<Read, Vec<Problem>> {
     let mut problems = Problems::new(file);
-    let text = match decode(bytes) {
-        Ok(text) => text,
-        Err(complaint) => {
-            problems.file(complaint);
-            return Err(problems.finish());
-        }
+    let Some(mut lines) = problems.lines(bytes) else {
+        return Err(problems.finish());
     };
-    let mut lines = (1..).zip(text.lines()).map(|(number, text)| Line { number, text }).filter(|line| !line.text.trim().is_empty());
     let Some(columns) = lines.next().and_then(|line| header(line, form, &mut problems)) else {
         return Err(problems.finish());
     };

@@ -9,29 +9,32 @@
 //! | `expr` | the expressions: words, parsing, computing |
 //! | `source` | sources as read; `tables` turns them into tables of numbers |
 //! | `row`, `checks` | files and rows as read |
-//! | `judge` | sources computed once, rows judged |
+//! | `store` | sources computed once, as expressions see them |
+//! | `judge` | rows judged |
 //! | `rule` | computed against printed: the verdict |
 //! | `report`, `markdown`, `html` | JSON, CSV, Markdown, the HTML page |
 
 mod checks;
 mod embedded;
-mod expr;
+pub(crate) mod expr;
 mod html;
 mod judge;
 mod markdown;
-mod names;
+pub(crate) mod names;
 mod report;
 mod row;
 mod rule;
-mod source;
-mod tables;
+pub(crate) mod source;
+pub(crate) mod store;
+pub(crate) mod tables;
 
 pub use checks::MECHANISMS;
 pub use embedded::{COMMON, embedded_rows};
 pub use expr::Computed;
 pub use html::{chapter_title, page};
-pub use judge::{Judged, Report, Subject, judge};
+pub use judge::{HeldOut, Judged, Report, Subject, judge};
 pub use markdown::markdown;
 pub use report::{Json, computed_text, csv, json, notes_line, unit_text};
+pub(crate) use row::within;
 pub use row::{Cause, File, Row, Tolerance, read};
 pub use rule::{Printed, Verdict};

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::expr::{Computed, short};
-use super::judge::{Judged, Report};
+use super::judge::{HeldOut, Judged, Report};
 use super::rule::{Printed, Verdict};
 
 /// Version of the JSON object; a new number when a name goes or changes its meaning.
@@ -17,6 +17,7 @@ pub struct Json {
     vehicle: String,
     set: Vec<String>,
     counts: Counts,
+    held_out: HeldOut,
     moved: Vec<String>,
     rows: Vec<JsonRow>,
 }
@@ -71,6 +72,8 @@ struct JsonRow {
     recorded: Option<&'static str>,
     moved: bool,
     fitted_to: Vec<String>,
+    held_out: bool,
+    off_by_tolerances: Option<f64>,
     reason: String,
     cause: Option<String>,
     cause_low: Option<f64>,
@@ -91,6 +94,7 @@ pub fn json(report: &Report) -> Json {
         vehicle: report.subject.vehicle.clone(),
         set: report.subject.set.clone(),
         counts: Counts::of(report.rows.iter()),
+        held_out: report.held_out(),
         moved: report.moved().map(|row| row.row.id.clone()).collect(),
         rows: report.rows.iter().map(json_row).collect(),
     }
@@ -131,6 +135,8 @@ fn json_row(judged: &Judged) -> JsonRow {
         recorded: row.recorded.map(Verdict::word),
         moved: judged.moved,
         fitted_to: row.fitted_to.clone(),
+        held_out: row.is_held_out(),
+        off_by_tolerances: judged.off(),
         reason: row.reason.clone(),
         cause: row.cause.as_ref().map(|cause| cause.what.clone()),
         cause_low,

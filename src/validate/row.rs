@@ -80,6 +80,14 @@ pub struct Row {
     pub compute: Option<Expr>,
 }
 
+impl Row {
+    /// Whether the row tests the program: computed, no parameter was fitted to it, and no constant that the program was given.
+    #[must_use]
+    pub fn is_held_out(&self) -> bool {
+        self.compute.is_some() && self.fitted_to.is_empty() && self.kind != "C"
+    }
+}
+
 /// A file of rows.
 #[derive(Clone, Debug)]
 pub struct File {
@@ -306,7 +314,7 @@ impl Head<'_> {
 const GRAMMAR: &str = "docs/validation_format.md shows what an expression may hold";
 
 /// A fault in an expression as a problem at its place.
-fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
+pub fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
     // The place is exact where the text stands on one line as it is.
     let quoted: String = place.line_text.chars().skip(place.column.saturating_sub(1)).collect();
     let plain = quoted.strip_prefix(['"', '\'']).is_some_and(|rest| rest.starts_with(text));

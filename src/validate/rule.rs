@@ -63,6 +63,22 @@ pub fn verdict(computed: &Computed, printed: Printed, widths: [f64; 2], fitted: 
     }
 }
 
+/// How far a computed number lies outside the printed range, in widths of the tolerance on that side: 0 within what is printed, up to 1 where it
+/// agrees; of a range its worse end. None for orders and signs, and where the tolerance has no width.
+#[must_use]
+pub fn off(computed: &Computed, printed: Printed, widths: [f64; 2]) -> Option<f64> {
+    let Printed::Range(low, high) = printed else { return None };
+    let one = |x: f64| {
+        let (beyond, width) = if x < low { (low - x, widths[0]) } else { (x - high, widths[1]) };
+        if beyond <= 0.0 { Some(0.0) } else { (width > 0.0).then(|| beyond / width) }
+    };
+    match computed {
+        Computed::Number(x) => one(*x),
+        Computed::Range(from, to) => Some(one(*from)?.max(one(*to)?)),
+        Computed::Truth(..) => None,
+    }
+}
+
 /// The ends may lie on the limits but for rounding.
 fn within(from: f64, to: f64, low: f64, high: f64) -> bool {
     let slack = |x: f64| 1e-12 * x.abs();
@@ -72,6 +88,17 @@ fn within(from: f64, to: f64, low: f64, high: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// By hand: 8.5 to 13 with 0.5 on both sides.
+    #[test]
+    fn distance_in_widths() {
+        let off = |computed: Computed| off(&computed, Printed::Range(8.5, 13.0), [0.5, 0.5]);
+        assert_eq!(off(Computed::Number(10.0)), Some(0.0));
+        assert_eq!(off(Computed::Number(8.25)), Some(0.5));
+        assert_eq!(off(Computed::Number(14.0)), Some(2.0));
+        assert_eq!(off(Computed::Range(8.0, 13.25)), Some(1.0));
+        assert_eq!(off(Computed::Truth(true, String::new())), None);
+    }
 
     #[test]
     fn numbers_ranges_and_truths() {

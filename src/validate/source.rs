@@ -70,7 +70,7 @@ pub struct Source {
 }
 
 /// Axes of each kind: key, range, whether it must be given, meaning.
-type Axis = (&'static str, Bound, bool, &'static str);
+pub type Axis = (&'static str, Bound, bool, &'static str);
 
 const SPEED: Bound = Bound::closed(0.0, 20_000.0);
 const TEMP: Bound = Bound::closed(-40.0, 160.0);
@@ -78,7 +78,8 @@ const TORQUE: Bound = Bound::closed(-5_000.0, 5_000.0);
 const PRESSURE: Bound = Bound::closed(0.0, 100.0);
 const FRICTION: Bound = Bound::closed(0.0, 0.5);
 
-const BENCH: [Axis; 9] = [
+/// Settings of the bench.
+pub const BENCH: [Axis; 9] = [
     ("ratio", Bound::closed(0.2, 20.0), true, "belt ratio I = R_sec / R_pri, or the number of a gear"),
     ("speed_rpm", Bound::closed(1.0, 20_000.0), true, "speed of the input shaft"),
     ("temp_degc", TEMP, true, "oil in the sump"),
@@ -239,7 +240,8 @@ fn kind(s: &Section, base: Option<&Source>) -> Option<Kind> {
     Kind::NAMES.iter().find(|(name, _)| *name == word).map(|(_, kind)| *kind)
 }
 
-fn empty(name: &str, kind: Kind) -> Source {
+/// A source of a kind with nothing set.
+pub fn empty(name: &str, kind: Kind) -> Source {
     Source {
         name: name.to_owned(),
         place: Place::default(),

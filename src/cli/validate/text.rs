@@ -20,6 +20,7 @@ pub fn tables(report: &Report, paint: Paint) -> String {
         text += &format!("\n{}\n{}", paint.heading(&chapter_title(name)), chapter(&rows));
     }
     text += &format!("\n{}\n{}", paint.heading("Rows by verdict"), counts(report));
+    text += &format!("\n{}\n{}", paint.heading("Held out: rows that no calibration uses, constants aside"), held_out(report));
     let moved = moved(report);
     if moved.is_empty() { text } else { text + &paint.bad(moved.trim_end()) + "\n" }
 }
@@ -70,6 +71,19 @@ fn counts(report: &Report) -> String {
         grid.row([verdict.word().to_owned(), report.count(verdict).to_string()]);
     }
     grid.row(["in all".to_owned(), report.rows.len().to_string()]);
+    grid.indented().text()
+}
+
+fn held_out(report: &Report) -> String {
+    let found = report.held_out();
+    let mut grid = Grid::new("lr");
+    grid.row(["rows".to_owned(), found.rows.to_string()]);
+    grid.row(["agree".to_owned(), found.agree.to_string()]);
+    grid.row(["numbers among them".to_owned(), found.numbers.to_string()]);
+    grid.row(["numbers that agree".to_owned(), found.numbers_agree.to_string()]);
+    if let Some(median) = found.median_off {
+        grid.row(["median distance from what is printed, in tolerances".to_owned(), format!("{median:.2}")]);
+    }
     grid.indented().text()
 }
 

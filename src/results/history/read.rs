@@ -3,7 +3,7 @@
 use super::{History, flags_of, is_number, known, missing};
 use crate::config::Problem;
 use crate::cycle::problems::{Complaint, Line, Problems};
-use crate::cycle::text::{Field, decode, split};
+use crate::cycle::text::{Field, split};
 use crate::results::Flags;
 use crate::results::columns::column;
 
@@ -43,14 +43,9 @@ impl History {
     /// After 50 the rest is counted in one last entry.
     pub fn read_csv(file_name: &str, bytes: &[u8]) -> Result<Self, Vec<Problem>> {
         let mut problems = Problems::new(file_name);
-        let text = match decode(bytes) {
-            Ok(text) => text,
-            Err(complaint) => {
-                problems.file(complaint);
-                return Err(problems.finish());
-            }
+        let Some(mut lines) = problems.lines(bytes) else {
+            return Err(problems.finish());
         };
-        let mut lines = (1..).zip(text.lines()).map(|(number, text)| Line { number, text }).filter(|line| !line.text.trim().is_empty());
         let Some(header) = lines.next().and_then(|line| header(line, &mut problems)) else {
             return Err(problems.finish());
         };

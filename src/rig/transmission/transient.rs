@@ -86,6 +86,8 @@ pub struct Loop {
     pub energy: LoopEnergy,
     /// Whether both branches reached their ends.
     pub complete: bool,
+    /// Whether the sump only warms while warming and only cools while cooling.
+    monotone: bool,
 }
 
 impl Loop {
@@ -98,11 +100,19 @@ impl Loop {
     /// Anything on a branch at a sump temperature.
     #[must_use]
     pub fn at(&self, branch: Branch, sump_k: f64, of: impl Fn(&Moment) -> f64) -> Option<f64> {
-        let on: Vec<&Moment> = self.moments.iter().filter(|m| m.branch == branch).collect();
-        on.windows(2).find_map(|w| {
+        let cooling = self.moments.partition_point(|m| m.branch == Branch::Warming);
+        let on = if branch == Branch::Warming { &self.moments[..cooling] } else { &self.moments[cooling..] };
+        // Where the sump goes one way only, the first pair around the temperature is found by bisection.
+        let from = if self.monotone {
+            let rising = branch == Branch::Warming;
+            on.partition_point(|m| if rising { m.sump_k < sump_k } else { m.sump_k > sump_k }).saturating_sub(1)
+        } else {
+            0
+        };
+        on[from..].windows(2).find_map(|w| {
             let (a, b) = (w[0].sump_k, w[1].sump_k);
             let share = (sump_k - a) / (b - a);
-            (0.0..=1.0).contains(&share).then(|| of(w[0]) + share * (of(w[1]) - of(w[0])))
+            (0.0..=1.0).contains(&share).then(|| of(&w[0]) + share * (of(&w[1]) - of(&w[0])))
         })
     }
 
@@ -174,7 +184,7 @@ pub fn transient(bench: &Bench, conditions: &Conditions, ratio: f64) -> Loop {
     let mut running = Running { bench, conditions, network: on_the_rig(&bench.car().network), ratio, heat, time_s: 0.0 };
     // The engine's nodes stay at room temperature: nothing leads to them.
     (running.heat.node_k[COOLANT], running.heat.node_k[ENGINE_OIL]) = (conditions.room_k, conditions.room_k);
-    let mut result = Loop { ratio, moments: Vec::new(), energy: LoopEnergy::default(), complete: true };
+    let mut result = Loop { ratio, moments: Vec::new(), energy: LoopEnergy::default(), complete: true, monotone: true };
     for (branch, until_k) in [(Branch::Warming, test.end_k), (Branch::Cooling, test.start_k)] {
         let began = running.time_s;
         loop {
@@ -186,6 +196,8 @@ pub fn transient(bench: &Bench, conditions: &Conditions, ratio: f64) -> Loop {
                 break;
             }
             running.step(&moment, &mut result.energy);
+            let (before, after) = (moment.sump_k, running.heat.node_k[SUMP]);
+            result.monotone &= if branch == Branch::Warming { before < after } else { before > after };
         }
     }
     result

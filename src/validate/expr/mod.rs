@@ -214,4 +214,29 @@ impl Expr {
             _ => Gives::Number,
         }
     }
+
+    /// Adds the sources that the expression looks at; none stands for the subject.
+    pub fn sources(&self, found: &mut Vec<Option<usize>>) {
+        let all = |list: &[Expr], found: &mut Vec<Option<usize>>| list.iter().for_each(|part| part.sources(found));
+        match self {
+            Expr::Number(_) | Expr::Column(_) | Expr::Variable(_) => {}
+            Expr::Previous(inner) | Expr::Negate(inner) | Expr::Not(inner) => inner.sources(found),
+            Expr::Binary(_, a, b) => {
+                a.sources(found);
+                b.sources(found);
+            }
+            Expr::Compare(list, _) | Expr::And(list) | Expr::Or(list) | Expr::Call(_, list) => all(list, found),
+            Expr::Reduce(r) => {
+                found.push(Some(r.source));
+                r.value.sources(found);
+                [&r.over, &r.at, &r.filter].into_iter().flatten().for_each(|part| part.sources(found));
+                all(&r.by, found);
+            }
+            Expr::Loop(_, list, body) => {
+                all(list, found);
+                body.sources(found);
+            }
+            Expr::Key(source, ..) => found.push(*source),
+        }
+    }
 }

@@ -65,8 +65,7 @@ pub fn columns() -> Vec<&'static str> {
 /// Solves all points.
 pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
     let bench = Bench::new(setup);
-    let has = |part: &str| !source.without.iter().any(|other| other == part);
-    let parts = Parts { final_drive: has("final_drive"), belt: has("belt"), reverse_clutch: has("reverse_clutch"), pump: has("pump") };
+    let parts = parts(source);
     let ratios = source.axis("ratio", 1.0);
     fits(&bench, &ratios)?;
     let nan = || vec![f64::NAN];
@@ -82,21 +81,39 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
         source.axis("speed_rpm", f64::NAN),
     ];
     let given = |x: f64| (!x.is_nan()).then_some(x);
-    let rows = combinations(&axes).into_iter().map(|x| {
-        let point = BenchPoint {
-            ratio: x[0],
-            output_nm: x[1],
-            throttle: x[2],
-            pressure_pa: given(x[3]),
-            pressure_factor: x[4],
-            belt_k: given(x[5]).or(given(x[6] + x[7])),
-            sump_k: x[7],
-            input_rad_s: x[8],
-            parts,
-        };
-        (row(&point, &bench.solve(&point)), 1.0)
+    let points = combinations(&axes).into_iter().map(|x| BenchPoint {
+        ratio: x[0],
+        output_nm: x[1],
+        throttle: x[2],
+        pressure_pa: given(x[3]),
+        pressure_factor: x[4],
+        belt_k: given(x[5]).or(given(x[6] + x[7])),
+        sump_k: x[7],
+        input_rad_s: x[8],
+        parts,
     });
-    Ok(from_rows(GROSS, rows, Marks { gross: Some(GROSS), outside: Some(OUTSIDE) }))
+    Ok(solved(&bench, points))
+}
+
+/// Parts in the box.
+pub fn parts(source: &Source) -> Parts {
+    let has = |part: &str| !source.without.iter().any(|other| other == part);
+    Parts { final_drive: has("final_drive"), belt: has("belt"), reverse_clutch: has("reverse_clutch"), pump: has("pump") }
+}
+
+/// Solves points that were not made from axes.
+///
+/// # Errors
+/// A sentence: a ratio or gear that the box does not have.
+pub fn of_points(points: &[BenchPoint], setup: &Setup) -> Result<Table, String> {
+    let bench = Bench::new(setup);
+    fits(&bench, &points.iter().map(|point| point.ratio).collect::<Vec<f64>>())?;
+    Ok(solved(&bench, points.iter().copied()))
+}
+
+fn solved(bench: &Bench, points: impl Iterator<Item = BenchPoint>) -> Table {
+    let rows = points.map(|point| (row(&point, &bench.solve(&point)), 1.0));
+    from_rows(GROSS, rows, Marks { gross: Some(GROSS), outside: Some(OUTSIDE) })
 }
 
 /// Whether the box has these ratios or gears.

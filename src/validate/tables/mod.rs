@@ -1,6 +1,6 @@
 //! Sources to tables of numbers in engineer's units.
 
-mod bench;
+pub mod bench;
 mod belt;
 mod fluid;
 mod rig;

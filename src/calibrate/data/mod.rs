@@ -1,0 +1,50 @@
+//! Measured CSV files to numbers, with the place of each.
+//!
+//! | file | columns |
+//! |---|---|
+//! | `points` | settings of the bench, then measured columns of it |
+//! | `trace` | `time_s`, then measured columns of the trace |
+//! | `scalars` | `quantity`, `value`, `sd`, `phase` |
+//!
+//! Every column's unit is in its name. A measured column may have its standard deviation beside it, in `sd_COLUMN`; an empty cell was not
+//! measured.
+
+pub(super) mod points;
+pub(super) mod scalars;
+pub(super) mod sheet;
+pub(super) mod trace;
+
+use crate::config::{Place, Problem, near};
+use crate::cycle::problems::Complaint;
+
+/// Reads a file that a plan names, relative to the plan.
+///
+/// # Errors
+/// The operating system's words, at the place in the plan.
+pub(super) fn bytes_of(path: &str, place: &Place, key: &str) -> Result<Vec<u8>, Vec<Problem>> {
+    std::fs::read(path).map_err(|error| {
+        let message = format!("cannot read `{path}`: {error}");
+        let hint = "a path is relative to the folder of the plan";
+        let value = path.to_owned();
+        let place = place.clone();
+        vec![Problem { place, key: key.to_owned(), value, allowed: "a readable CSV file".into(), message, hint: hint.into() }]
+    })
+}
+
+/// A column that nobody knows.
+pub(super) fn unknown(name: &str, known: &[&str], what: &str) -> Complaint {
+    if name.trim().is_empty() {
+        return Complaint::new("this column has no name", what, "remove the comma or name the column");
+    }
+    let close = near(name, known.iter().copied());
+    // What is meant may be there with its unit.
+    let unit: Vec<&str> = known.iter().copied().filter(|full| full.strip_prefix(name).is_some_and(|rest| rest.starts_with('_'))).collect();
+    if let [full] = unit.as_slice() {
+        return Complaint::new("this column has no unit", format!("`{full}`"), format!("if it is in that unit, name it {full}"));
+    }
+    if !unit.is_empty() {
+        return Complaint::new("this column has no unit", unit.join(", "), "name it by its unit");
+    }
+    let hint = if close.is_empty() { "remove it or rename it".to_owned() } else { format!("did you mean {}?", close.join(" or ")) };
+    Complaint::new("there is no such column", what, hint)
+}

@@ -1,0 +1,90 @@
+//! A CSV file of points on the bench: settings, and what was measured there.
+
+use super::sheet::{self, Column, Sheet};
+use super::unknown;
+use crate::config::{Bound, Problem, to_si};
+use crate::cycle::problems::Complaint;
+use crate::rig::{BenchPoint, Parts};
+use crate::validate::source::BENCH;
+use crate::validate::tables::bench;
+
+/// Prefix of the column of standard deviations.
+pub(crate) const SD: &str = "sd_";
+
+/// Columns of the bench that can be measured.
+fn measurable() -> Vec<&'static str> {
+    bench::columns().into_iter().filter(|name| !BENCH.iter().any(|(key, ..)| key == name)).collect()
+}
+
+/// Reads points.
+///
+/// # Errors
+/// All problems of the file.
+pub(crate) fn read(file: &str, bytes: &[u8]) -> Result<Sheet, Vec<Problem>> {
+    let measurable = measurable();
+    let settings: Vec<&str> = BENCH.iter().map(|(key, ..)| *key).collect();
+    let known = |name: &str| {
+        let column = |range, may_be_empty| Ok(Column { name: name.to_owned(), range: Some(range), may_be_empty });
+        if let Some((_, range, required, _)) = BENCH.iter().find(|(key, ..)| *key == name) {
+            return column(*range, !*required);
+        }
+        let (range, measured) = match name.strip_prefix(SD) {
+            Some(rest) => (Bound::positive(), rest),
+            None => (Bound::any(), name),
+        };
+        if measurable.contains(&measured) {
+            return column(range, true);
+        }
+        let all: Vec<&str> = settings.iter().chain(&measurable).copied().collect();
+        Err(unknown(measured, &all, "settings and columns of the bench: docs/calibration.md lists them"))
+    };
+    let required: Vec<&str> = BENCH.iter().filter(|(_, _, required, _)| *required).map(|(key, ..)| *key).collect();
+    let sheet = sheet::read(file, bytes, &known, &required)?;
+    let whole =
+        |key: &str, message: String, hint: &str| vec![sheet.problem(0, sheet.find(key).unwrap_or(0), Complaint::new(message, "", hint))];
+    if !sheet.columns.iter().any(|column| measurable.contains(&column.name.as_str())) {
+        let message = "no column was measured: all are settings of the bench".to_owned();
+        return Err(whole("", message, "add, for example, total_nm: the torque loss at the input shaft"));
+    }
+    for column in &sheet.columns {
+        if let Some(of) = column.name.strip_prefix(SD)
+            && sheet.find(of).is_none()
+        {
+            return Err(whole(&column.name, format!("{} stands without a column {of}", column.name), "add the measured column"));
+        }
+    }
+    Ok(sheet)
+}
+
+/// Names of the measured columns of a sheet, and their indices.
+pub(crate) fn measured(sheet: &Sheet) -> Vec<(usize, &str)> {
+    let measurable = measurable();
+    let named = sheet.columns.iter().enumerate().map(|(k, column)| (k, column.name.as_str()));
+    named.filter(|(_, name)| measurable.contains(name)).collect()
+}
+
+/// The setting of the bench of each row.
+pub(crate) fn points(sheet: &Sheet, parts: Parts) -> Vec<BenchPoint> {
+    let column = |key: &str| sheet.find(key);
+    let keys =
+        ["ratio", "speed_rpm", "temp_degc", "torque_nm", "throttle", "pressure_bar", "pressure_factor", "belt_degc", "belt_above_sump_k"];
+    let columns = keys.map(column);
+    (0..sheet.rows.len())
+        .map(|row| {
+            let given = |k: usize| sheet.number(row, columns[k]).map(|x| to_si(keys[k], x));
+            let default = BenchPoint::default();
+            let sump_k = given(2).unwrap_or(default.sump_k);
+            BenchPoint {
+                ratio: given(0).unwrap_or(default.ratio),
+                input_rad_s: given(1).unwrap_or(default.input_rad_s),
+                sump_k,
+                output_nm: given(3).unwrap_or(0.0),
+                throttle: given(4).unwrap_or(0.0),
+                pressure_pa: given(5),
+                pressure_factor: given(6).unwrap_or(1.0),
+                belt_k: given(7).or(given(8).map(|above| sump_k + above)),
+                parts,
+            }
+        })
+        .collect()
+}

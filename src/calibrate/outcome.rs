@@ -1,0 +1,196 @@
+//! Everything that a calibration found, ready for tables, files and pictures.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | CO-1 | root mean square of residuals over their standard deviations, of a group, of a fold, of all | convention |
+
+use serde::Serialize;
+
+/// Version of the form of `calibration.json`.
+pub const SCHEMA: u32 = 1;
+
+/// A fitted parameter.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Dotted key; `common error of GROUP` for an error that a group has in common.
+    pub name: String,
+    /// Whether it is a key of the files.
+    pub is_key: bool,
+    /// Unit.
+    pub unit: String,
+    /// Value of the files.
+    pub file_value: f64,
+    /// Fitted value.
+    pub value: f64,
+    /// Standard error; none where nothing tells the parameter.
+    pub standard_error: Option<f64>,
+    /// Bounds.
+    pub low: f64,
+    /// Bounds.
+    pub high: f64,
+    /// Mean and standard deviation of what was known before.
+    pub prior: Option<[f64; 2]>,
+    /// Status of the prior.
+    pub prior_status: String,
+    /// Reason for bounds and prior.
+    pub source: String,
+    /// Variance after over variance before: near 1 where the data say nothing.
+    pub prior_share: Option<f64>,
+    /// `low` or `high` where the value lies at a bound.
+    pub at_bound: Option<&'static str>,
+    /// Whether it moves no observation.
+    pub is_dead: bool,
+}
+
+/// One observation, before and after.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Residual {
+    /// Name of its group.
+    pub group: String,
+    /// Name of its fold.
+    pub fold: String,
+    /// Identifier of a row, or column and place in a file.
+    pub label: String,
+    /// What it is.
+    pub what: String,
+    /// Measured column; empty for expressions.
+    pub column: String,
+    /// Time of a trace's value, s.
+    pub time_s: Option<f64>,
+    /// Unit.
+    pub unit: String,
+    /// Measured number, or the lower end of a range; none where it is open.
+    pub low: Option<f64>,
+    /// The same number, or the upper end of a range.
+    pub high: Option<f64>,
+    /// Standard deviation as given.
+    pub sd: f64,
+    /// Standard deviation that counts in the fit.
+    pub weight_sd: f64,
+    /// Computed with the values of the files.
+    pub before: Option<f64>,
+    /// Computed with the fitted values.
+    pub after: f64,
+    /// Predicted by a fit without its fold.
+    pub left_out: Option<f64>,
+    /// Distance from what was measured over `weight_sd`, with the values of the files, without a common error.
+    pub before_sd: Option<f64>,
+    /// The same with the fitted values, a common error included.
+    pub after_sd: f64,
+    /// The same of the prediction without its fold.
+    pub left_out_sd: Option<f64>,
+    /// Points behind it outside the validity of a model, or left out because of gross slip.
+    pub doubtful: usize,
+}
+
+/// A fold that was left out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fold {
+    /// Name.
+    pub name: String,
+    /// Observations in it.
+    pub observations: usize,
+    /// Root mean square of its residuals with all data fitted, in standard deviations (CO-1).
+    pub fitted_rms_sd: f64,
+    /// The same when predicted; none where the fit without it failed.
+    pub predicted_rms_sd: Option<f64>,
+    /// How the fit without it ended.
+    pub end: String,
+}
+
+/// One start of the search.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Start {
+    /// Values at its beginning, in the order of the parameters.
+    pub from: Vec<f64>,
+    /// Values at its end.
+    pub to: Vec<f64>,
+    /// Sum of squares; none where the model gave no answer.
+    pub cost: Option<f64>,
+    /// How it ended.
+    pub end: String,
+    /// Evaluations of the model.
+    pub evaluations: usize,
+}
+
+/// A direction in the space of the parameters, and how well the data alone know it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Direction {
+    /// Singular value of the scaled Jacobian; 0 for what no datum sees.
+    pub singular_value: f64,
+    /// Weight of each parameter.
+    pub weights: Vec<f64>,
+}
+
+/// A finished calibration.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Outcome {
+    /// Version of this form.
+    pub schema: u32,
+    /// Program and version.
+    pub program: String,
+    /// Name for people.
+    pub title: String,
+    /// Plan as cited.
+    pub plan: String,
+    /// SHA-256 of the plan's text.
+    pub plan_sha256: String,
+    /// Data files and their SHA-256.
+    pub files: Vec<[String; 2]>,
+    /// Vehicle as the plan names it.
+    pub vehicle: String,
+    /// How the best start ended.
+    pub end: String,
+    /// Whether it converged.
+    pub converged: bool,
+    /// Sum of squares of the residuals of data and priors with the file's values; none where the model has no answer there.
+    pub cost_before: Option<f64>,
+    /// The same after the fit.
+    pub cost_after: f64,
+    /// Sum of squares of the data alone after the fit.
+    pub chi2: f64,
+    /// Data and priors less parameters.
+    pub degrees_of_freedom: usize,
+    /// Probability of a larger sum of squares by chance; none without degrees of freedom.
+    pub chi2_probability: Option<f64>,
+    /// Parameters.
+    pub parameters: Vec<Parameter>,
+    /// Observations.
+    pub residuals: Vec<Residual>,
+    /// Correlation of the parameters, row by row; none where a parameter is not known.
+    pub correlation: Vec<Vec<Option<f64>>>,
+    /// Covariance of the parameters in their units, row by row.
+    pub covariance: Vec<Vec<Option<f64>>>,
+    /// Directions, least known first.
+    pub directions: Vec<Direction>,
+    /// What the data alone do not identify, in words.
+    pub not_identified: Vec<String>,
+    /// Folds.
+    pub folds: Vec<Fold>,
+    /// Starts.
+    pub starts: Vec<Start>,
+    /// Evaluations of the model in all starts.
+    pub evaluations: usize,
+    /// What a reader must not overlook, one sentence each: not converged, at a bound, outside validity, scatter beyond the deviations.
+    pub warnings: Vec<String>,
+}
+
+impl Outcome {
+    /// Root mean square of all residuals in standard deviations: with the files' values, fitted, predicted fold by fold (CO-1).
+    #[must_use]
+    pub fn rms_sd(&self) -> [Option<f64>; 3] {
+        let rms = |list: Vec<Option<f64>>| rms(list.into_iter().collect::<Option<Vec<f64>>>()?.into_iter());
+        [
+            rms(self.residuals.iter().map(|r| r.before_sd).collect()),
+            rms(self.residuals.iter().map(|r| Some(r.after_sd)).collect()),
+            rms(self.residuals.iter().map(|r| r.left_out_sd).collect()),
+        ]
+    }
+}
+
+/// Root mean square; none of nothing.
+#[must_use]
+pub fn rms(list: impl Iterator<Item = f64>) -> Option<f64> {
+    let (count, sum) = list.fold((0_u32, 0.0), |(n, sum), x| (n + 1, sum + x * x));
+    (count > 0).then(|| (sum / f64::from(count)).sqrt()) // CO-1
+}

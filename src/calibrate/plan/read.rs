@@ -1,0 +1,241 @@
+//! The head of a plan, and all its parts together.
+
+use super::group::{self, Around, Found};
+use super::{Plan, Search, What, parameter, problem};
+use crate::calibrate::embedded_calibrations;
+use crate::config::{Bound, Document, Place, Problem, Reader, Section, decode, near};
+use crate::rig::transmission::Conditions;
+use crate::setup::{catalogue, is_path};
+use crate::validate::source::{self, Source};
+use crate::validate::{COMMON, embedded_rows};
+
+/// Most starts.
+const MOST_STARTS: i64 = 1000;
+
+/// Reads the plan that a word of the user means: an embedded name, or the path of a TOML file.
+///
+/// # Errors
+/// Unknown name, unreadable path, and all problems of the file and of the data that it names.
+pub fn load(word: &str, option: &str) -> Result<Plan, Vec<Problem>> {
+    let wrong = |allowed: String, message: String, hint: String| {
+        let place = Place { file: option.to_owned(), ..Place::default() };
+        vec![Problem { place, key: option.to_owned(), value: word.to_owned(), allowed, message, hint }]
+    };
+    if is_path(word) {
+        let bytes = std::fs::read(word).map_err(|error| {
+            wrong("a readable file".into(), format!("cannot read `{word}`: {error}"), "check the path and its permissions".into())
+        })?;
+        return read(word, &decode(word, &bytes)?);
+    }
+    if let Some((name, text)) = embedded_calibrations().iter().find(|(name, _)| *name == word) {
+        return read(&format!("embedded:{name}.toml"), text);
+    }
+    let names: Vec<&str> = embedded_calibrations().iter().map(|(name, _)| *name).collect();
+    let close = near(word, names.iter().copied());
+    let question = if close.is_empty() { String::new() } else { format!("did you mean {}? ", close.join(" or ")) };
+    Err(wrong(
+        format!("{}, or the path of a TOML file", names.join(", ")),
+        format!("there is no calibration named `{word}`"),
+        format!("{question}a path needs a / or an ending"),
+    ))
+}
+
+/// Reads a plan and the data files that it names; `file` is the plan's own name or path.
+///
+/// # Errors
+/// All problems of all of them.
+pub fn read(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
+    let mut document = Document::parse(file, text)?;
+    let (parameters, data) = (document.take_tables("parameter"), document.take_tables("data"));
+    let rows = crate::validate::read(COMMON, &embedded_rows().iter().map(|(n, t)| ((*n).to_owned(), (*t).to_owned())).collect::<Vec<_>>())?;
+    let reader = Reader::new(&document);
+    let root = reader.root();
+    let head = root.table("calibration");
+    let common = crate::validate::read(COMMON, &[(String::new(), String::new())])?.pop().map(|file| file.sources).unwrap_or_default();
+    let mut sources = source::read(&root.table("sources"), &common);
+    sources.extend(common);
+    let mut plan = head_of(&head, file, text);
+    let mut problems: Vec<Problem> = reader.finish().err().unwrap_or_default().into_iter().map(fitting).collect();
+    for document in &parameters {
+        match parameter::read(document) {
+            Ok(free) => plan.parameters.push(free),
+            Err(mut found) => problems.append(&mut found),
+        }
+    }
+    relative(&mut sources, file);
+    let rig = Conditions::load(&[]).map(|(_, keys)| keys).unwrap_or_default();
+    let keys: Vec<String> = catalogue::known_keys().into_iter().chain(rig).map(|info| info.key).collect();
+    let around = Around { sources: &sources, keys: &keys, rows: &rows, file };
+    plan.views.push(sources.clone());
+    for document in &data {
+        match group::read(document, &around) {
+            Ok(found) => join(&mut plan, found),
+            Err(mut found) => problems.append(&mut found),
+        }
+    }
+    let sound = problems.is_empty();
+    problems.append(&mut clashes(&plan, [parameters.len(), data.len()], sound));
+    if problems.is_empty() { Ok(plan) } else { Err(problems) }
+}
+
+/// A path in a plan is relative to that plan.
+fn relative(sources: &mut [Source], file: &str) {
+    let Some(folder) = std::path::Path::new(file).parent() else { return };
+    for named in sources.iter_mut().flat_map(|source| [&mut source.vehicle, &mut source.lubricant]).flatten() {
+        if is_path(named) {
+            *named = folder.join(&*named).to_string_lossy().into_owned();
+        }
+    }
+}
+
+fn head_of(s: &Section, file: &str, text: &str) -> Plan {
+    let integer = |key: &str, range, default, doc: &str| s.integer_or(key, range, default, doc);
+    let search = Search {
+        starts: usize::try_from(integer("starts", 1..=MOST_STARTS, 4, "number of starts; the first one is at the values of the files"))
+            .unwrap_or(1),
+        seed: integer("seed", 0..=i64::MAX, 1, "seed of the other starts").unsigned_abs(),
+        most_evaluations: usize::try_from(integer("most_evaluations", 1..=1_000_000, 5000, "most evaluations of a start")).unwrap_or(1),
+        tolerance: s.number_or("tolerance", Bound::closed(1e-14, 1e-2), 1e-8, "relative change at which a start ends"),
+        leave_out: s.boolean_or("leave_out", true, "whether each fold is predicted by a fit to the others"),
+    };
+    let vehicle = s.text_or("vehicle", "rover_216_cvt", "vehicle whose values are fitted");
+    let within = |word: String| {
+        let folder = std::path::Path::new(file).parent().filter(|_| is_path(&word));
+        folder.map_or_else(|| word.clone(), |folder| folder.join(&word).to_string_lossy().into_owned())
+    };
+    Plan {
+        file: file.to_owned(),
+        text: text.to_owned(),
+        title: s.text_or("title", &stem(file), "name for people"),
+        vehicle: within(vehicle),
+        lubricant: s.optional_text("lubricant", "transmission oil in place of the vehicle's").map(within),
+        engine_oil: s.optional_text("engine_oil", "engine oil in place of the vehicle's").map(within),
+        set: s.texts("set", "overrides KEY=VALUE, held during the fit"),
+        search,
+        parameters: Vec::new(),
+        groups: Vec::new(),
+        folds: Vec::new(),
+        observations: Vec::new(),
+        views: Vec::new(),
+        benches: Vec::new(),
+        runs: Vec::new(),
+        rows: Vec::new(),
+        files: Vec::new(),
+        place: s.place(""),
+    }
+}
+
+fn stem(file: &str) -> String {
+    let name = file.strip_prefix("embedded:").unwrap_or(file);
+    std::path::Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// A problem without hints that fit vehicle files only.
+fn fitting(problem: Problem) -> Problem {
+    let hint = match problem.key.as_str() {
+        "parameter" => "parameters are written as [[parameter]]".to_owned(),
+        "data" => "data are written as [[data]]".to_owned(),
+        _ => problem.hint.split_once(", or choose with --set").map_or(problem.hint.clone(), |(hint, _)| hint.to_owned()),
+    };
+    Problem { hint, ..problem }
+}
+
+/// Adds a group to the plan, counting on what is there.
+fn join(plan: &mut Plan, found: Found) {
+    let (views, benches, runs) = (plan.views.len(), plan.benches.len(), plan.runs.len());
+    // The plan's own list of sources is the first one.
+    let mut places = Vec::new();
+    for view in found.views {
+        match view {
+            None => places.push(0),
+            Some(sources) => {
+                let known = plan.views[views..].iter().position(|other| same(other, &sources)).map(|k| views + k);
+                places.push(known.unwrap_or(plan.views.len()));
+                if known.is_none() {
+                    plan.views.push(sources);
+                }
+            }
+        }
+    }
+    let group = plan.groups.len();
+    for (mut observation, fold) in found.observations.into_iter().zip(found.folds) {
+        observation.group = group;
+        observation.fold = plan.folds.iter().position(|name| *name == fold).unwrap_or_else(|| {
+            plan.folds.push(fold);
+            plan.folds.len() - 1
+        });
+        match &mut observation.what_computed {
+            What::Expression { view, .. } => *view = places[*view],
+            What::Point { bench, .. } => *bench += benches,
+            What::Trace { run, .. } | What::Total { run, .. } => *run += runs,
+        }
+        plan.observations.push(observation);
+    }
+    plan.groups.extend(found.group);
+    plan.benches.extend(found.made.benches);
+    plan.runs.extend(found.made.runs);
+    plan.rows.extend(found.rows);
+    plan.files.extend(found.made.files);
+}
+
+/// Whether two lists of sources are those of the same file.
+fn same(a: &[Source], b: &[Source]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.name == b.name && a.place == b.place)
+}
+
+/// What is wrong between the parts, `[parameters, groups]` being how many were written.
+fn clashes(plan: &Plan, [parameters, groups]: [usize; 2], sound: bool) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    if parameters == 0 {
+        problems.push(problem(
+            &plan.place,
+            "parameter",
+            "at least one [[parameter]]",
+            "nothing is free".into(),
+            "add a [[parameter]] with key, low and high",
+        ));
+    }
+    if groups == 0 {
+        problems.push(problem(
+            &plan.place,
+            "data",
+            "at least one [[data]]",
+            "there are no data".into(),
+            "add a [[data]] with what was measured",
+        ));
+    }
+    for (k, free) in plan.parameters.iter().enumerate() {
+        if let Some(first) = plan.parameters[..k].iter().find(|other| other.key == free.key) {
+            let message = format!("`{}` is free twice, first in line {}", free.key, first.place.line);
+            problems.push(problem(&free.place, "key", "", message, "remove one"));
+        }
+    }
+    for (k, group) in plan.groups.iter().enumerate() {
+        if let Some(first) = plan.groups[..k].iter().find(|other| other.name == group.name) {
+            let message = format!("the name `{}` was used before, by the data in line {}", group.name, first.place.line);
+            problems.push(problem(&group.place, "name", "", message, "names are unique"));
+        }
+    }
+    for (k, id) in plan.rows.iter().enumerate() {
+        if plan.rows[..k].contains(id) {
+            problems.push(problem(&plan.place, "rows", "", format!("row {id} is used by two groups"), "a number counts once"));
+        }
+    }
+    // Too few data to say anything, with all that is known beside them.
+    let known = plan.observations.len() + plan.parameters.iter().filter(|free| free.prior.is_some()).count();
+    if sound && groups > 0 && known < parameters {
+        let message = format!(
+            "{} measured numbers and {} priors for {parameters} parameters",
+            plan.observations.len(),
+            known - plan.observations.len()
+        );
+        problems.push(problem(
+            &plan.place,
+            "data",
+            &format!("at least {parameters}"),
+            message,
+            "hold some parameters, add data, or give priors",
+        ));
+    }
+    problems
+}

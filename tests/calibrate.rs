@@ -1,0 +1,337 @@
+//! Calibrations: truth put in comes out within its intervals, what cannot be told is called so, and the shipped values are what the shipped
+//! plans give.
+
+use std::collections::BTreeSet;
+
+use cvtcycle::calibrate::model::Model;
+use cvtcycle::calibrate::outcome::Outcome;
+use cvtcycle::calibrate::plan::{Measured, Plan, load, read};
+use cvtcycle::calibrate::solve::{Residuals, Unwatched};
+use cvtcycle::calibrate::{calibrate, embedded_calibrations, fitted};
+use cvtcycle::setup::{self, Options};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use statrs::distribution::{ContinuousCDF, Normal};
+
+/// A plan over a data file that lies beside it.
+fn plan_with(folder: &tempfile::TempDir, data: &str, text: &str) -> Plan {
+    std::fs::write(folder.path().join("data.csv"), data).expect("written");
+    let file = folder.path().join("plan.toml");
+    read(&file.to_string_lossy(), text).unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)))
+}
+
+/// Puts what the program computes at `truth` in the place of what was measured, with errors of the plan's own standard deviations.
+fn measure(plan: &mut Plan, truth: &[f64], seed: u64) {
+    let computed = Model::new(plan).expect("a sound plan").answer(truth).expect("an answer").computed;
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
+    let normal = Normal::standard();
+    for (observation, computed) in plan.observations.iter_mut().zip(computed) {
+        let u: f64 = random.random_range(1e-9..1.0 - 1e-9);
+        observation.measured = Measured::Value(computed + observation.sd * normal.inverse_cdf(u));
+    }
+}
+
+fn solved(plan: &Plan) -> Outcome {
+    calibrate(plan, &Unwatched).unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)))
+}
+
+/// Spin loss at two ratios, three pressures, two temperatures, four speeds.
+fn spin_points() -> String {
+    let mut text = "ratio,speed_rpm,temp_degc,pressure_bar,total_nm\n".to_owned();
+    for ratio in [2.0, 0.5] {
+        for temp in [25, 75] {
+            for (speed, bar) in [(1000, 10), (2000, 25), (3000, 35), (4000, 18)] {
+                text += &format!("{ratio},{speed},{temp},{bar},0\n");
+            }
+        }
+    }
+    text
+}
+
+const SPIN_PLAN: &str = r#"
+[calibration]
+starts = 1
+leave_out = false
+
+[[parameter]]
+key = "transmission.cvt.pump.displacement_cc_rev"
+low = 3
+high = 20
+
+[[parameter]]
+key = "transmission.cvt.input_shaft.constant_nm"
+low = 0
+high = 4
+
+[[parameter]]
+key = "transmission.cvt.final_drive.viscous_nm"
+low = 0
+high = 2
+
+[[data]]
+name = "spin loss"
+from = "made by the program"
+points = "data.csv"
+sd = 0.1
+"#;
+
+/// Property: of the intervals of one and of 1.96 standard errors, as many hold the truth as should, parameter by parameter. 3.3 standard
+/// deviations of the binomial on either side: one false alarm in some 170 sets of six numbers; the seeds are fixed.
+#[test]
+fn intervals_hold_the_truth_as_often_as_they_say() {
+    const SEEDS: u64 = 160;
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut plan = plan_with(&folder, &spin_points(), SPIN_PLAN);
+    let truth = [8.2, 1.15, 0.36];
+    let mut inside = [[0_u32; 2]; 3];
+    for seed in 0..SEEDS {
+        measure(&mut plan, &truth, seed);
+        let outcome = solved(&plan);
+        assert!(outcome.converged, "seed {seed}: {:?}", outcome.warnings);
+        for (k, p) in outcome.parameters.iter().enumerate() {
+            let off = (p.value - truth[k]).abs() / p.standard_error.expect("a standard error");
+            inside[k][0] += u32::from(off < 1.0);
+            inside[k][1] += u32::from(off < 1.96);
+        }
+    }
+    for (k, counts) in inside.iter().enumerate() {
+        for (count, share) in counts.iter().zip([0.6827, 0.95]) {
+            let n = SEEDS as f64;
+            let wide = 3.3 * (n * share * (1.0 - share)).sqrt();
+            assert!((f64::from(*count) - n * share).abs() < wide, "parameter {k}: {count} of {SEEDS} where {share} was promised");
+        }
+    }
+}
+
+/// Property: without noise the truth itself comes out, wherever the search begins.
+#[test]
+fn truth_without_noise_is_found_from_every_start() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut plan = plan_with(&folder, &spin_points(), SPIN_PLAN);
+    plan.search.starts = 5;
+    let truth = [12.0, 2.0, 0.9];
+    let computed = Model::new(&plan).expect("sound").answer(&truth).expect("an answer").computed;
+    plan.observations.iter_mut().zip(computed).for_each(|(o, x)| o.measured = Measured::Value(x));
+    let outcome = solved(&plan);
+    for (p, truth) in outcome.parameters.iter().zip(truth) {
+        assert!((p.value / truth - 1.0).abs() < 1e-5, "{}: {} in place of {truth}", p.name, p.value);
+    }
+    assert!(outcome.starts.iter().all(|start| start.cost.is_some_and(|cost| cost < 1e-6)), "{:?}", outcome.starts);
+}
+
+/// A warm-up trace and two totals of the same run.
+#[test]
+fn a_warm_up_trace_tells_its_heat_capacity() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let rows: String = (1..=39).map(|k| format!("{},0\n", 30 * k)).collect();
+    std::fs::write(folder.path().join("scalars.csv"), "quantity,value,sd,phase\nend_sump_degc,0,0.5,\nfuel_l_per_100km,0,0.05,ece15\n")
+        .expect("written");
+    let text = r#"
+[calibration]
+starts = 1
+
+[sources.cold]
+source = "run"
+ambient_degc = -10
+
+[[parameter]]
+key = "thermal.transmission.metal_kj_k"
+low = 8
+high = 60
+
+[[parameter]]
+key = "thermal.transmission.case_air_w_k"
+low = 1
+high = 60
+
+[[data]]
+name = "trace"
+from = "made by the program"
+trace = "data.csv"
+source = "cold"
+sd_by_column = { transmission_sump_degc = 0.3 }
+
+[[data]]
+name = "totals"
+from = "made by the program"
+scalars = "scalars.csv"
+source = "cold"
+"#;
+    let mut plan = plan_with(&folder, &format!("time_s,transmission_sump_degc\n{rows}"), text);
+    assert_eq!(plan.observations.len(), 41);
+    // Every 30 s is as often as values are independent: 39 values over 1140 s count as 39.
+    assert!((plan.observations[0].weight_sd / 0.3 - 1.0).abs() < 1e-12);
+    let truth = [30.0, 16.0];
+    let mut misses = Vec::new();
+    for seed in 0..6 {
+        measure(&mut plan, &truth, seed);
+        let outcome = solved(&plan);
+        assert!(outcome.converged);
+        for (p, truth) in outcome.parameters.iter().zip(truth) {
+            misses.push((p.value - truth) / p.standard_error.expect("a standard error"));
+        }
+        let fold = outcome.folds.iter().find(|fold| fold.name == "totals").expect("a fold");
+        assert!(fold.predicted_rms_sd.expect("predicted") < 4.0, "{fold:?}");
+    }
+    // Twelve deviations, two by two independent: their root mean square is 1 within 3 standard deviations of 1/sqrt(24).
+    let rms = (misses.iter().map(|x| x * x).sum::<f64>() / misses.len() as f64).sqrt();
+    assert!((0.4..1.65).contains(&rms), "{misses:?}");
+}
+
+/// Values four times as dense in time do not say four times as much (CM-2).
+#[test]
+fn a_denser_trace_says_no_more() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "[sources.cold]\nsource = \"run\"\n[[parameter]]\nkey = \"thermal.transmission.metal_kj_k\"\nlow = 8\nhigh = 60\n\
+                [[data]]\nfrom = \"made up\"\ntrace = \"data.csv\"\nsource = \"cold\"\nsd = 0.3\n";
+    let weight = |step: u32| {
+        let rows: String = (0..=1160 / step).map(|k| format!("{},20\n", step * k)).collect();
+        let plan = plan_with(&folder, &format!("time_s,transmission_sump_degc\n{rows}"), text);
+        plan.observations.iter().map(|o| o.weight_sd.powi(-2)).sum::<f64>()
+    };
+    let (sparse, dense) = (weight(40), weight(5));
+    assert!((dense / sparse - 1.0).abs() < 0.4, "{sparse} and {dense}");
+}
+
+/// Outside truth: pump torque is displacement times pressure (PU-1), so at one speed, with the clamp law's pressure and without what else
+/// depends on it, only their product can be told.
+#[test]
+fn pump_displacement_and_pressure_are_told_as_a_product() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let data: String = [2.4, 2.0, 1.6, 1.2].iter().map(|ratio| format!("{ratio},3000,80,0\n")).collect();
+    let text = r#"
+[calibration]
+starts = 1
+set = ["transmission.cvt.pump.viscous_coefficient=0", "transmission.cvt.pressure.cap_bar=200"]
+
+[[parameter]]
+key = "transmission.cvt.pump.displacement_cc_rev"
+low = 3
+high = 20
+
+[[parameter]]
+key = "transmission.cvt.clamp.map.base_bar"
+low = 10
+high = 60
+
+[[data]]
+from = "made by the program"
+points = "data.csv"
+sd = 0.05
+without = ["belt", "final_drive", "reverse_clutch"]
+"#;
+    let mut plan = plan_with(&folder, &format!("ratio,speed_rpm,temp_degc,pump_nm\n{data}"), text);
+    measure(&mut plan, &[9.0, 36.5], 1);
+    let outcome = solved(&plan);
+    let said = outcome.not_identified.join(" ");
+    assert!(said.contains("displacement_cc_rev") && said.contains("base_bar") && said.contains("product"), "{said}");
+    let product: f64 = outcome.parameters.iter().map(|p| p.value).product();
+    assert!((product / (9.0 * 36.5) - 1.0).abs() < 0.05, "{product}");
+}
+
+/// A parameter that moves nothing is named, and the outcome is no success.
+#[test]
+fn a_parameter_without_effect_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = SPIN_PLAN.to_owned() + "\n[[parameter]]\nkey = \"thermal.engine.block_kj_k\"\nlow = 10\nhigh = 60\n";
+    let mut plan = plan_with(&folder, &spin_points(), &text);
+    measure(&mut plan, &[9.0, 1.0, 0.3, 28.0], 3);
+    let outcome = solved(&plan);
+    assert!(outcome.parameters[3].is_dead && outcome.parameters[3].standard_error.is_none());
+    assert!(outcome.warnings.iter().any(|w| w.contains("block_kj_k moves no datum")), "{:?}", outcome.warnings);
+}
+
+/// Property: an error that all data have in common is found as such, and widens what hangs on their level.
+#[test]
+fn a_common_error_is_told_apart() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = SPIN_PLAN.replace("sd = 0.1", "sd = 0.1\ncommon_sd = 0.5");
+    let mut plain = plan_with(&folder, &spin_points(), SPIN_PLAN);
+    let mut plan = plan_with(&folder, &spin_points(), &text);
+    measure(&mut plain, &[9.0, 1.0, 0.3], 5);
+    measure(&mut plan, &[9.0, 1.0, 0.3, 0.0], 5);
+    let (narrow, wide) = (solved(&plain), solved(&plan));
+    assert_eq!(wide.parameters.len(), 4);
+    let error = |outcome: &Outcome, k: usize| outcome.parameters[k].standard_error.expect("known");
+    // The constant of the input shaft is the level of all: its error takes in the common one.
+    assert!(error(&wide, 1) > 0.45 && error(&narrow, 1) < 0.2, "{} {}", error(&narrow, 1), error(&wide, 1));
+    assert!((error(&wide, 0) / error(&narrow, 0) - 1.0).abs() < 0.2);
+}
+
+/// The fitted files are read again as what was fitted: they compute the numbers of the outcome.
+#[test]
+fn fitted_files_hold_what_was_fitted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = SPIN_PLAN.to_owned()
+        + "\n[[parameter]]\nkey = \"lubricant.friction.band\"\nlow = 0.1\nhigh = 0.15\nprior = { mean = 0.13, sd = 0.005 }\nstatus = \"assumed\"\n";
+    let mut plan = plan_with(&folder, &spin_points(), &text);
+    measure(&mut plan, &[8.0, 1.2, 0.4, 0.127], 8);
+    let outcome = solved(&plan);
+    let files = fitted::files(&plan, &outcome, "2026-01-31").expect("written");
+    assert_eq!(
+        files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+        ["rover_216_cvt_fitted.toml", "cvtf_ezl799_class_fitted.toml"]
+    );
+    for (name, text) in &files {
+        std::fs::write(folder.path().join(name), text).expect("written");
+    }
+    let path = folder.path().join("rover_216_cvt_fitted.toml");
+    let car = setup::load(&path.to_string_lossy(), "--vehicle", &Options::default())
+        .unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)));
+    let info = |key: &str| car.keys.iter().find(|info| info.key == key).expect("a key");
+    for p in &outcome.parameters {
+        let found = info(&p.name);
+        let value: f64 = found.value.parse().expect("a number");
+        assert!((value / p.value - 1.0).abs() < 1e-6, "{}: {value} in place of {}", p.name, p.value);
+        assert_eq!(found.status, "fitted");
+        assert!(found.source.contains("plan.toml on 2026-01-31; standard error"), "{}", found.source);
+    }
+    let again = Plan { vehicle: path.to_string_lossy().into_owned(), ..plan };
+    let model = Model::new(&again).expect("sound");
+    let cost: f64 = model.at(&model.file_values()).expect("an answer").iter().map(|r| r * r).sum();
+    assert!((cost / outcome.chi2 - 1.0).abs() < 1e-4, "{cost} in place of {}", outcome.chi2);
+}
+
+/// Every fitted value of the Rover and of its fluid is what a shipped plan finds, to a tenth of its standard error: the files have them rounded
+/// to three or four digits. The plans hold what the others fit at the shipped values.
+#[test]
+fn shipped_plans_give_the_shipped_values() {
+    let mut free = BTreeSet::new();
+    for (name, _) in embedded_calibrations() {
+        let mut plan = load(name, "PLAN").unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)));
+        (plan.search.starts, plan.search.leave_out) = (1, false);
+        let outcome = solved(&plan);
+        assert!(outcome.converged, "{name}: {:?}", outcome.warnings);
+        for p in &outcome.parameters {
+            let error = p.standard_error.expect("a standard error");
+            assert!(
+                (p.value - p.file_value).abs() < 0.1 * error,
+                "{name}: {} is {} in the file, {} +- {error} fitted",
+                p.name,
+                p.file_value,
+                p.value
+            );
+            free.insert(p.name.clone());
+        }
+    }
+    let car = setup::load("rover_216_cvt", "--vehicle", &Options::default()).expect("the shipped car");
+    let fitted: BTreeSet<String> =
+        car.keys.iter().filter(|k| k.status == "fitted" && !k.key.starts_with("engine_oil.")).map(|k| k.key.clone()).collect();
+    assert_eq!(fitted, free, "fitted values of the file, and keys that the plans free");
+}
+
+/// A row that a shipped plan uses names the parameters that were fitted to it, and only keys that are free in a plan or given by a source.
+#[test]
+fn rows_and_plans_agree_on_what_was_fitted() {
+    let texts: Vec<(String, String)> =
+        cvtcycle::validate::embedded_rows().iter().map(|(n, t)| ((*n).to_owned(), (*t).to_owned())).collect();
+    let files = cvtcycle::validate::read(cvtcycle::validate::COMMON, &texts).expect("the shipped rows");
+    for (name, _) in embedded_calibrations() {
+        let plan = load(name, "PLAN").expect("a shipped plan");
+        for id in &plan.rows {
+            let row = files.iter().flat_map(|file| &file.rows).find(|row| row.id == *id).expect("a row");
+            assert!(!row.fitted_to.is_empty(), "{name} uses row {id}, which says that nothing was fitted to it");
+            assert!(row.fitted_to.iter().any(|key| plan.parameters.iter().any(|free| free.key == *key)), "{name}: row {id}");
+        }
+    }
+}
