@@ -90,7 +90,8 @@ pub fn simulate(car: &Car, trace: &Trace, max_dt_s: f64, start: State, recorder:
         };
         let memory = drive.get_or_insert_with(|| car.transmission.start(&around));
         if kinetic_j.is_nan() {
-            kinetic_j = 0.5 * car.engine.inertia_kg_m2 * memory.past.engine_rad_s * memory.past.engine_rad_s;
+            let begun = 0.5 * car.engine.inertia_kg_m2 * memory.past.engine_rad_s * memory.past.engine_rad_s;
+            kinetic_j = if step.engine_off { 0.0 } else { begun };
         }
         let mut drive = car.transmission.solve(&around, memory);
         let inertia = inertia(car, &around, &drive, kinetic_j, memory.past.coupled);
@@ -99,12 +100,14 @@ pub fn simulate(car: &Car, trace: &Trace, max_dt_s: f64, start: State, recorder:
         if step.engine_off {
             burn.to_coolant_w = -inertia.kinetic_w; // the engine runs out against its own friction
         }
+        let drive_stands = drive.engine_rad_s <= 0.0;
         let power_w = node_power(car, &drive, &burn);
         let heat_step = advance(car, power_w, &drive, (&around, step.motion.speed_power_07));
         let (row, terms) = row(car, &step, &around, &Answer { drive: &drive, inertia: &inertia, burn: &burn, power_w, heat: &heat_step });
         recorder.record(&row, &terms);
         heat = heat_step.heat;
-        kinetic_j += inertia.kinetic_w * step.dt_s;
+        // What stands has none, not even a rest of rounding.
+        kinetic_j = if drive_stands { 0.0 } else { kinetic_j + inertia.kinetic_w * step.dt_s };
     });
     State { heat, drive, kinetic_j }
 }

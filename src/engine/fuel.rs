@@ -9,9 +9,15 @@
 //! | BM-3 | cold: BMEP raised by friction above hot friction | derived: as WI-1 treats temperature |
 //!
 //! f fuel mean effective pressure, p brake mean effective pressure, both bar inside WI-1; cm mean piston speed m/s; Theta friction factor.
-//! Valid while WI-1 has a root, p up to about 14 bar; beyond it the turning point is held and the row flagged.
+//! Valid while WI-1 has a root, p up to about 14 bar; beyond it the turning point is held and the row flagged. B is held between 0.05 and 1,
+//! and fuel of a map at no less than the indicated work, so that no engine makes work of nothing: the row is flagged too. The reader refuses a
+//! line that would leave these bounds below the engine's highest speed.
 
 const BAR: f64 = 1e5;
+/// Efficiency B that a line may have.
+pub(super) const EFFICIENCY: std::ops::RangeInclusive<f64> = 0.05..=1.0;
+
+use crate::numeric::held;
 
 /// Coefficients of the extended Willans line, per displacement, in bar and m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,22 +93,33 @@ impl FuelModel {
             FuelModel::Map(m) => {
                 let hot = self.hot_friction_pa(piston_m_s);
                 let (fuel_pa, inside) = m.at_speed(speed_rad_s, need - hot, hot); // BM-3
-                FuelPoint { fuel_pa, indicated_pa: need, outside: !inside }
+                let possible = fuel_pa >= need;
+                // Below the map both go to zero together, up to rounding.
+                let outside = !inside || fuel_pa < need * (1.0 - 1e-6) - 1e-3;
+                FuelPoint { fuel_pa: if possible { fuel_pa } else { need }, indicated_pa: need, outside }
             }
         }
     }
 }
 
 impl Willans {
+    /// Indicated efficiency at no load, B.
+    #[inline]
+    pub(super) fn efficiency(&self, piston_m_s: f64) -> f64 {
+        self.a + (self.b + self.c * piston_m_s) * piston_m_s
+    }
+
     #[inline]
     fn fuel(&self, piston_m_s: f64, need_pa: f64) -> FuelPoint {
-        let b = self.a + (self.b + self.c * piston_m_s) * piston_m_s;
+        let line = self.efficiency(piston_m_s);
+        let b = held(line, *EFFICIENCY.start(), *EFFICIENCY.end());
         let need = need_pa / BAR;
         let disc = b * b + 4.0 * self.a2 * need;
-        let outside = disc < 0.0;
-        let f = 2.0 * need / (b + if outside { 0.0 } else { disc.sqrt() }); // WI-1
+        let turned = disc < 0.0;
+        let f = 2.0 * need / (b + if turned { 0.0 } else { disc.sqrt() }); // WI-1
         let indicated = (b + self.a2 * f) * f; // WI-2
-        FuelPoint { fuel_pa: f * BAR, indicated_pa: if outside { need_pa } else { indicated * BAR }, outside }
+        let outside = turned || !EFFICIENCY.contains(&line);
+        FuelPoint { fuel_pa: f * BAR, indicated_pa: if turned { need_pa } else { indicated * BAR }, outside }
     }
 }
 

@@ -1,9 +1,10 @@
 //! Reads the `[engine]` table of a vehicle file.
 
+use super::fuel::EFFICIENCY;
 use super::{BsfcMap, Engine, FuelModel, Willans};
 use crate::config::{Bound, Section};
 use crate::lubricant::Viscosity;
-use crate::numeric::Curve;
+use crate::numeric::{Curve, held};
 use crate::setup::Files;
 use crate::setup::tables;
 
@@ -17,7 +18,8 @@ pub fn load(s: &Section, files: &dyn Files) -> Engine {
     let fuel = s.table("fuel");
     let heat = s.table("heat");
     let displacement_m3 = s.number("displacement_cc", Bound::closed(200.0, 10_000.0), "swept volume");
-    Engine {
+    let line;
+    let engine = Engine {
         displacement_m3,
         stroke_m: s.number("stroke_mm", Bound::closed(40.0, 150.0), "piston stroke"),
         rated_w: s.number("rated_kw", Bound::closed(5.0, 600.0), "rated power; the ratio controller's measure of power"),
@@ -51,7 +53,27 @@ pub fn load(s: &Section, files: &dyn Files) -> Engine {
         heating_value_j_kg: fuel.number("heating_value_mj_kg", Bound::closed(20.0, 60.0), "lower heating value"),
         fuel_density_kg_m3: fuel.number("density_kg_m3", Bound::closed(500.0, 1000.0), "density of the fuel"),
         co2_kg_kg: fuel.number("co2_per_fuel", Bound::closed(0.0, 4.0), "CO2 per mass of fuel"),
-        fuel: fuel_model(s, files, displacement_m3),
+        fuel: {
+            let (model, table) = fuel_model(s, files, displacement_m3);
+            line = table;
+            model
+        },
+    };
+    check_efficiency(&line, &engine);
+    engine
+}
+
+/// The line's efficiency at no load, at every speed of the engine: what leaves the bounds would make fuel of work, or work of nothing.
+fn check_efficiency(willans: &Section, engine: &Engine) {
+    let FuelModel::Willans(line) = &engine.fuel else { return };
+    let fastest = engine.piston_m_s(engine.highest_rad_s);
+    let bend = if line.c.abs() > 0.0 { held(-0.5 * line.b / line.c, 0.0, fastest) } else { 0.0 };
+    // What could not be read is no number, and has its own complaint.
+    let outside = |speed: &f64| line.efficiency(*speed) < *EFFICIENCY.start() || line.efficiency(*speed) > *EFFICIENCY.end();
+    if let Some(speed) = [0.0, bend, fastest].into_iter().find(outside) {
+        let what = format!("the engine's efficiency a + b v + c v² is {:.2} at a piston speed v of {speed:.1} m/s", line.efficiency(speed));
+        let allowed = format!("{} to {} from rest to highest_rpm", EFFICIENCY.start(), EFFICIENCY.end());
+        willans.complain("a", &allowed, &what, "the three belong together: change a, b or c, or lower highest_rpm");
     }
 }
 
@@ -68,7 +90,8 @@ fn reference_oil(s: &Section) -> Viscosity {
     tables::viscosity(s, "reference_kv40_mm2_s", kv40, kv100)
 }
 
-fn fuel_model(s: &Section, files: &dyn Files, displacement_m3: f64) -> FuelModel {
+/// The fuel model, and the table that it stands in.
+fn fuel_model<'r>(s: &Section<'r>, files: &dyn Files, displacement_m3: f64) -> (FuelModel, Section<'r>) {
     let (kind, w) =
         s.choose("model", &["willans", "bsfc_map"], Some("willans"), "fuel model: extended Willans line, or a BSFC map from CSV");
     let d = DEFAULT;
@@ -77,19 +100,21 @@ fn fuel_model(s: &Section, files: &dyn Files, displacement_m3: f64) -> FuelModel
     if kind == "bsfc_map" {
         let file = w.text("file", "CSV with speed_rpm, bmep_bar or torque_nm, bsfc_g_kwh on a full grid (BM-1)");
         let lhv = s.table("fuel").number("heating_value_mj_kg", Bound::closed(20.0, 60.0), "lower heating value");
-        return match tables::bsfc_map(&w, &file, files, lhv, displacement_m3) {
+        let model = match tables::bsfc_map(&w, &file, files, lhv, displacement_m3) {
             Some(map) => FuelModel::Map(BsfcMap { friction: (l, l2), ..map }),
             None => FuelModel::Willans(d),
         };
+        return (model, w);
     }
-    FuelModel::Willans(Willans {
+    let line = Willans {
         a: w.number_or("a", Bound::closed(0.2, 0.7), d.a, "indicated efficiency at zero speed and load (WI-1)"),
         b: w.number_or("b", Bound::closed(-0.02, 0.05), d.b, "its rise with piston speed, s/m (WI-1)"),
         c: w.number_or("c", Bound::closed(-0.01, 0.001), d.c, "its bend with piston speed, s2/m2 (WI-1)"),
         a2: w.number_or("a2", Bound::closed(-0.02, 0.0), d.a2, "fall of efficiency with load, 1/bar (WI-1)"),
         l,
         l2,
-    })
+    };
+    (FuelModel::Willans(line), w)
 }
 
 /// Spark ignition, natural aspiration (CO2MPAS default set).

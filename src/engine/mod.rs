@@ -22,6 +22,10 @@ pub use load::load;
 use crate::lubricant::{Lubricant, Viscosity, ZERO_DEGC_K};
 use crate::numeric::{Curve, exp, held, ln};
 
+/// Share of full load above which an engine is asked for what it cannot give, beyond what a solve leaves: one that cannot turn its own pump
+/// and accessories in the cold. Such rows are flagged outside validity.
+pub const FULL: f64 = 1.0 + 1e-5;
+
 /// The checked engine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Engine {

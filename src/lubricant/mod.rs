@@ -24,6 +24,9 @@ use crate::numeric::{exp, held, ln};
 /// 0 degC in K.
 pub const ZERO_DEGC_K: f64 = 273.15;
 
+/// Least share of the density at 15 degC; reached at some 1000 degC.
+const LEAST_DENSITY: f64 = 0.3;
+
 /// Friction that a fluid lends to the belt's contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
@@ -117,7 +120,9 @@ impl Lubricant {
     #[must_use]
     #[inline]
     pub fn density_kg_m3(&self, temp_k: f64) -> f64 {
-        self.density15_kg_m3 * (1.0 - 0.000_68 * (temp_k - ZERO_DEGC_K - 15.0)) // LU-2
+        let share = 1.0 - 0.000_68 * (temp_k - ZERO_DEGC_K - 15.0);
+        // Far beyond its validity the line would reach zero, and there is no oil of negative mass.
+        self.density15_kg_m3 * if share < LEAST_DENSITY { LEAST_DENSITY } else { share } // LU-2
     }
 
     /// Dynamic viscosity, Pa s.

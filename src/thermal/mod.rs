@@ -9,6 +9,7 @@
 //! | TH-5 | step: (C/dt + K - dQ_r/dT) dT = P - K T + ..., linearly implicit | derived: unconditionally stable, conserves to rounding |
 //! | TH-7 | heat exchanger coolant to transmission oil: G open(T_c), open over 5 K above its valve's temperature | ASSUMED valve: without it the exchanger takes the heat that warms the engine |
 //! | TH-8 | spray: G = G_2500 n/2500 rpm, never below 10 % of G_2500 | ASSUMED: the pump's flow carries it; G_2500 fitted to a belt about 20 K above the sump (thesis 5.5.2) |
+//! | TH-9 | heat through the radiator flows out of a coolant that is warmer than the air, and into a colder one: a step in which TH-5 would turn it round is made with the radiator shut | derived: second law |
 //! | TH-6 | with the engine off, radiator and all links that need a pump or splash keep 10 % | ASSUMED |
 //!
 //! The linear system of TH-5 is solved by elimination (links.rs).
@@ -212,8 +213,9 @@ impl Network {
         let width = self.thermostat_to_k - self.thermostat_from_k;
         let open = held((coolant_k - self.thermostat_from_k) / width, 0.0, 1.0);
         let over = coolant_k - input.ambient_k;
-        let slope = if open > 0.0 && open < 1.0 { full * (open + over / width) } else { full * open };
-        (full * open * over, if slope > 0.0 { slope } else { 0.0 }) // TH-2
+        // A coolant that is colder than the air warms towards it: with the opening held, the step ends between the two (TH-9).
+        let slope = if open > 0.0 && open < 1.0 && over > 0.0 { full * (open + over / width) } else { full * open };
+        (full * open * over, slope) // TH-2
     }
 
     #[inline(always)]
@@ -268,24 +270,17 @@ impl Network {
     #[must_use]
     #[inline(always)]
     pub fn advance_in_wind(&self, heat: &Heat, input: &HeatInput, speed_power_07: f64) -> HeatStep {
-        let now = self.now(heat, input, speed_power_07);
+        let mut now = self.now(heat, input, speed_power_07);
         let t = &heat.node_k;
         let per_s = 1.0 / input.dt_s;
         let capacity_w_k = self.capacity_j_k.map(|capacity| capacity * per_s);
-        let air_w_k = now.air_w_k();
-        let air_w = now.air_w(t, input.ambient_k);
-        let mut right = now.links.flows_w(t);
-        let mut own = capacity_w_k;
-        for i in 0..NODES {
-            own[i] += air_w_k[i];
-            right[i] += input.power_w[i] - air_w[i];
+        let mut rise = self.rise_k(&now, t, input, &capacity_w_k);
+        // Only beyond the end of the thermostat's ramp can both be: the step was too long for its slope.
+        if now.radiator.0 + now.radiator.1 * rise[COOLANT] < 0.0 && t[COOLANT] + rise[COOLANT] > input.ambient_k {
+            now.radiator = (0.0, 0.0); // TH-9
+            rise = self.rise_shut_k(&now, t, input, &capacity_w_k);
         }
-        own[COOLANT] += now.radiator.1;
-        if self.capacity_j_k[BELT] <= 0.0 {
-            own[BELT] += 1.0; // unused node: keeps its pivot above zero, changes nothing else
-            right[BELT] = 0.0;
-        }
-        let rise = now.links.rise_k(&own, &right);
+        let (air_w_k, air_w) = (now.air_w_k(), now.air_w(t, input.ambient_k));
         let mut node_k = *t;
         let (mut stored_w, mut to_air_w) = (0.0, now.radiator.1 * rise[COOLANT]);
         for i in 0..NODES {
@@ -295,6 +290,31 @@ impl Network {
         }
         let (cooler_in_k, cooler_out_k) = self.cooler_ends(&now, node_k[SUMP], input.ambient_k);
         HeatStep { heat: Heat { node_k }, stored_w, to_air_w, cooler_in_k, cooler_out_k }
+    }
+
+    /// Rise of the nodes within the step, K (TH-5).
+    #[inline(always)]
+    fn rise_k(&self, now: &Now, t: &[f64; NODES], input: &HeatInput, capacity_w_k: &[f64; NODES]) -> [f64; NODES] {
+        let (air_w_k, air_w) = (now.air_w_k(), now.air_w(t, input.ambient_k));
+        let mut right = now.links.flows_w(t);
+        let mut own = *capacity_w_k;
+        for i in 0..NODES {
+            own[i] += air_w_k[i];
+            right[i] += input.power_w[i] - air_w[i];
+        }
+        own[COOLANT] += now.radiator.1;
+        if self.capacity_j_k[BELT] <= 0.0 {
+            own[BELT] += 1.0; // unused node: keeps its pivot above zero, changes nothing else
+            right[BELT] = 0.0;
+        }
+        now.links.rise_k(&own, &right)
+    }
+
+    /// The same for the rare step in which the thermostat shuts (TH-9), kept out of the way of the others.
+    #[cold]
+    #[inline(never)]
+    fn rise_shut_k(&self, now: &Now, t: &[f64; NODES], input: &HeatInput, capacity_w_k: &[f64; NODES]) -> [f64; NODES] {
+        self.rise_k(now, t, input, capacity_w_k)
     }
 
     #[inline]

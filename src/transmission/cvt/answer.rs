@@ -3,6 +3,7 @@
 use super::evaluate::{Bind, Point, Step};
 use super::solve::{MOST_EVALUATIONS, TOLERANCE};
 use super::variator::{BeltLoad, belt_capacity_nm};
+use crate::engine::FULL;
 use crate::lubricant::VALID_K;
 use crate::numeric::held;
 use crate::results::{Component, Flags};
@@ -16,7 +17,7 @@ pub(super) fn standstill(step: &Step, past: &mut Past) -> Drive {
     let creep = cvt.launch.creep_torque_nm(0.0, idle);
     let w = held(idle, past.engine_rad_s - step.pace_rad_s, past.engine_rad_s + step.pace_rad_s);
     let mut throttle = past.throttle;
-    let (mut pa, mut pump_nm, mut shaft_nm, mut left, mut count) = (0.0, 0.0, 0.0, f64::INFINITY, 0);
+    let (mut pa, mut pump_nm, mut shaft_nm, mut share, mut left, mut count) = (0.0, 0.0, 0.0, 0.0, f64::INFINITY, 0);
     let mut inside = true;
     let mut flow_limited = false;
     let mut oil_flow_m3_s = 0.0;
@@ -27,7 +28,8 @@ pub(super) fn standstill(step: &Step, past: &mut Past) -> Drive {
         let (pump, shaft) = step.pump_and_shaft(w, pa, &mut inside);
         (pump_nm, shaft_nm) = (pump.torque_nm, shaft);
         (flow_limited, oil_flow_m3_s) = (pump.flow_limited, pump.working_m3_s);
-        let next = held((creep + pump_nm + shaft_nm + engine.accessories_nm(w)) / engine.full_load_nm(w), 0.0, 1.0);
+        share = (creep + pump_nm + shaft_nm + engine.accessories_nm(w)) / engine.full_load_nm(w);
+        let next = held(share, 0.0, 1.0);
         left = (next - throttle).abs();
         throttle = next;
         count += 1;
@@ -54,7 +56,7 @@ pub(super) fn standstill(step: &Step, past: &mut Past) -> Drive {
     drive.flags.set(Flags::CLUTCH_SLIPPING, true);
     drive.flags.set(Flags::FLOW_LIMITED, flow_limited);
     drive.flags.set(Flags::NOT_CONVERGED, !converged(left));
-    common_flags(step, &mut drive, inside);
+    common_flags(step, &mut drive, inside && share <= FULL);
     remember(past, &drive, true);
     past.trend.stand();
     past.coupled = false;
@@ -127,7 +129,8 @@ pub(super) fn finish(step: &Step, p: &Point, past: &mut Past, outcome: Outcome) 
     flags.set(Flags::OVERRUN, p.primary_nm < 0.0);
     flags.set(Flags::NOT_CONVERGED, !converged(outcome.left));
     flags.set(Flags::LAUNCH_NOT_IN_LOW, past.stood && step.at.geometry.ratio < 0.99 * step.cvt.ratio.low);
-    common_flags(step, &mut drive, p.inside_maps);
+    let share = (p.flywheel_nm + step.around.engine.accessories_nm(we)) / p.full_load_nm;
+    common_flags(step, &mut drive, p.inside_maps && share <= FULL);
     let loss_nm = drive.shaft_nm - g.output_nm / step.at.geometry.ratio;
     past.trend.push(step.around.wheel.accel_m_s2, g.slip, loss_nm);
     remember(past, &drive, false);
