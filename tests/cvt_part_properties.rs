@@ -7,8 +7,9 @@ mod common;
 
 use common::{at, car, cycle, try_car};
 use cvtcycle::run::{Start, drive};
-use cvtcycle::transmission::cvt::pump::{Pump, PumpKind};
+use cvtcycle::transmission::cvt::pump::{Pump, PumpKind, PumpNow};
 use cvtcycle::transmission::cvt::spin::{NU_REFERENCE_M2_S, Spin};
+use cvtcycle::transmission::film_heating::FilmHeating;
 use cvtcycle::transmission::launch::{FrictionClutch, Launch};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -49,9 +50,19 @@ fn any_kind() -> impl Strategy<Value = PumpKind> {
     ]
 }
 
+/// Heating of films from none to strong.
+fn any_heating() -> impl Strategy<Value = FilmHeating> {
+    prop_oneof![1 => Just(FilmHeating::NONE), 3 => (10.0..1e4f64).prop_map(|w| FilmHeating::halving_at_w(Some(w)))]
+}
+
 fn any_pump() -> impl Strategy<Value = Pump> {
-    (any_kind(), 2e-6..40e-6f64, 0.0..0.3f64, 0.0..1e5f64, 0.0..2.0f64, 0.0..5e5f64).prop_map(|(kind, cc, friction, viscous, t_c, drop)| {
+    let inlet = prop_oneof![1 => Just(0.0), 3 => 1e6..1e9f64];
+    let heat = (any_heating(), inlet);
+    (any_kind(), 2e-6..40e-6f64, 0.0..0.3f64, 0.0..1e5f64, 0.0..2.0f64, 0.0..5e5f64, heat).prop_map(|all| {
+        let (kind, cc, friction, viscous, t_c, drop, (heating, inlet_pa_s_m3)) = all;
         Pump {
+            heating,
+            inlet_pa_s_m3,
             kind,
             displacement_m3_rad: cc / std::f64::consts::TAU,
             friction,
@@ -66,6 +77,11 @@ fn any_pump() -> impl Strategy<Value = Pump> {
     })
 }
 
+/// The pump's oil at a viscous factor; the inlet's drop follows it, as both follow the viscosity.
+fn oil(pump: &Pump, factor: f64) -> PumpNow {
+    pump.with_factor(0.01 * factor, factor)
+}
+
 /// Speed rad/s, pressure Pa, need m3/s, viscous factor.
 fn any_duty() -> impl Strategy<Value = (f64, f64, f64, f64)> {
     (prop_oneof![1 => Just(0.0), 9 => 0.0..700.0f64], 0.0..60e5f64, prop_oneof![1 => Just(0.0), 9 => 0.0..1e-3f64], 0.1..200.0f64)
@@ -78,12 +94,15 @@ proptest! {
     /// works covers the need unless the flow is said to fall short (PU-1, PU-4).
     #[test]
     fn pump_takes_at_least_hydraulic_power_and_covers_the_need(pump in any_pump(), (w, p, need, factor) in any_duty()) {
-        let s = pump.state(w, p, need, factor);
+        let now = oil(&pump, factor);
+        let s = pump.state(&now, w, p, need);
+        let drawn = now.drawn_m3_s(s.flow_m3_s);
+        prop_assert!(drawn <= s.flow_m3_s && (now.per_inlet_m3_s == 0.0 || drawn * now.per_inlet_m3_s <= 1.0 + 1e-12));
         prop_assert!(s.torque_nm.is_finite() && s.torque_nm >= 0.0 && s.flow_m3_s >= 0.0);
         let hydraulic = s.working_m3_s * (p + pump.line_drop_pa);
         prop_assert!(s.torque_nm * w >= hydraulic * (1.0 - 1e-12), "{} W for {hydraulic} W", s.torque_nm * w);
         prop_assert!(s.working_m3_s <= s.flow_m3_s * (1.0 + 1e-12));
-        prop_assert_eq!(s.flow_limited, need > s.flow_m3_s);
+        prop_assert_eq!(s.flow_limited, need > drawn);
         prop_assert!(s.flow_limited || s.working_m3_s >= need * (1.0 - 1e-12), "{} of {need} m3/s", s.working_m3_s);
     }
 
@@ -91,26 +110,28 @@ proptest! {
     /// displacement nor more than all of it.
     #[test]
     fn pump_torque_rises_with_each_cause(pump in any_pump(), (w, p, need, factor) in any_duty(), (a, b) in pair(0.0, 1.0)) {
-        let torque = |p: f64, need: f64, factor: f64| pump.state(w, p, need, factor).torque_nm;
+        let torque = |p: f64, need: f64, factor: f64| pump.state(&oil(&pump, factor), w, p, need).torque_nm;
         prop_assert!(b - a < 1e-6 || torque(60e5 * a, need, factor) < torque(60e5 * b, need, factor));
         let drags = pump.viscous > 1.0 && w > 1.0 && b > a + 1e-3;
         prop_assert!(torque(p, need, 200.0 * a) <= torque(p, need, 200.0 * b));
         prop_assert!(!drags || torque(p, need, 200.0 * a) < torque(p, need, 200.0 * b));
         let p = p + pump.residual_pa;
         prop_assert!(torque(p, 1e-3 * a, factor) <= torque(p, 1e-3 * b, factor) * (1.0 + 1e-12));
-        let all = Pump { kind: PumpKind::Fixed, ..pump }.state(w, p, need, factor);
+        let now = oil(&pump, factor);
+        let all = Pump { kind: PumpKind::Fixed, ..pump }.state(&now, w, p, need);
         prop_assert!(torque(p, need, factor) <= all.torque_nm * (1.0 + 1e-12));
-        prop_assert_eq!(all.working_m3_s, all.flow_m3_s);
+        prop_assert_eq!(all.working_m3_s, now.drawn_m3_s(all.flow_m3_s));
     }
 
     /// Twice the displacement at half the speed for the same need: twice the pressure and Coulomb torque at the same flow, while the
     /// viscous torque, which is proportional to speed and displacement, stays (PU-1).
     #[test]
     fn pump_rescales_with_displacement(pump in any_pump(), (w, p, need, factor) in any_duty()) {
-        let pump = Pump { constant_nm: 0.0, ..pump };
+        let pump = Pump { constant_nm: 0.0, heating: FilmHeating::NONE, ..pump };
         let twice = Pump { displacement_m3_rad: 2.0 * pump.displacement_m3_rad, ..pump };
-        let viscous = pump.state(w, p, need, factor).torque_nm - pump.state(w, p, need, 0.0).torque_nm;
-        let (small, large) = (pump.state(w, p, need, factor), twice.state(0.5 * w, p, need, factor));
+        let now = oil(&pump, factor);
+        let viscous = pump.state(&now, w, p, need).torque_nm - pump.state(&PumpNow { viscous_factor: 0.0, ..now }, w, p, need).torque_nm;
+        let (small, large) = (pump.state(&now, w, p, need), twice.state(&now, 0.5 * w, p, need));
         prop_assert!((large.torque_nm - (2.0 * small.torque_nm - viscous)).abs() <= 1e-9 * (small.torque_nm + 1.0));
         prop_assert!((large.working_m3_s - small.working_m3_s).abs() <= 1e-12 * small.flow_m3_s);
     }
@@ -126,6 +147,8 @@ fn pump_is_continuous_in_speed_and_need() {
             friction: 0.1,
             viscous: 14_750.0,
             viscous_exponent: 0.9,
+            heating: FilmHeating::halving_at_w(Some(600.0)),
+            inlet_pa_s_m3: 2e7,
             constant_nm: 0.0,
             line_drop_pa: 0.0,
             residual_pa: 1e5,
@@ -133,11 +156,12 @@ fn pump_is_continuous_in_speed_and_need() {
             leakage_m3_s_pa: 1.7e-11,
         };
         for factor in [0.5, 20.0] {
-            let jump = largest_jump(0.0, 600.0, &|w| pump.state(w, 20e5, 1e-4, factor).torque_nm);
+            let now = oil(&pump, factor);
+            let jump = largest_jump(0.0, 600.0, &|w| pump.state(&now, w, 20e5, 1e-4).torque_nm);
             assert!(jump < 1e-6, "{kind:?}: torque jumps by {jump} Nm over speed");
-            let jump = largest_jump(0.0, 1e-3, &|need| pump.state(200.0, 20e5, need, factor).torque_nm);
+            let jump = largest_jump(0.0, 1e-3, &|need| pump.state(&now, 200.0, 20e5, need).torque_nm);
             assert!(jump < 1e-6, "{kind:?}: torque jumps by {jump} Nm over need");
-            let jump = largest_jump(0.0, 600.0, &|w| 1e6 * pump.state(w, 20e5, 1e-4, factor).working_m3_s);
+            let jump = largest_jump(0.0, 600.0, &|w| 1e6 * pump.state(&now, w, 20e5, 1e-4).working_m3_s);
             assert!(jump < 1e-6, "{kind:?}: flow jumps by {jump} cm3/s");
         }
     }
@@ -147,8 +171,12 @@ fn pump_is_continuous_in_speed_and_need() {
 
 fn any_spin() -> impl Strategy<Value = Spin> {
     let exponents = (0.0..1.5f64, 0.0..1.5f64, 0.0..1.5f64);
-    (exponents, 0.0..3.0f64, 0.0..1e-3f64, 0.0..1.0f64, 0.0..3.0f64, 0.8..=1.0f64).prop_map(|(m, constant, slope, clutch, drive, eta)| {
+    let heating = (any_heating(), any_heating());
+    (exponents, 0.0..3.0f64, 0.0..1e-3f64, 0.0..1.0f64, 0.0..3.0f64, 0.8..=1.0f64, heating).prop_map(|all| {
+        let (m, constant, slope, clutch, drive, eta, heating) = all;
         Spin {
+            shaft_heating: heating.0,
+            drive_heating: heating.1,
             shaft_constant_nm: constant,
             shaft_viscous_nm_s: slope,
             shaft_exponent: m.0,
@@ -176,9 +204,15 @@ proptest! {
             prop_assert!(x.is_finite() && *x >= 0.0 && y >= x * (1.0 - 1e-12), "{x} then {y}");
         }
         prop_assert!(thick.clutch_nm <= spin.clutch_cap_nm);
-        // At the reference viscosity the constants hold as they stand, whatever the exponents.
-        let now = spin.at(NU_REFERENCE_M2_S);
+        // At the reference viscosity and without heating the constants hold as they stand, whatever the exponents; heating takes away
+        // from the viscous part only.
+        let plain = Spin { shaft_heating: FilmHeating::NONE, drive_heating: FilmHeating::NONE, ..spin };
+        let now = plain.at(NU_REFERENCE_M2_S);
         prop_assert!((now.shaft_nm(w) - spin.shaft_constant_nm - spin.shaft_viscous_nm_s * w).abs() < 1e-12);
+        for (heated, unheated) in drags(&thick).iter().zip([plain.at(b).shaft_nm(w), plain.at(b).clutch_nm, plain.drive_nm(&plain.at(b), w)]) {
+            prop_assert!(*heated <= unheated && unheated.is_finite());
+        }
+        prop_assert!(thick.shaft_nm(w) >= spin.shaft_constant_nm);
         prop_assert!((spin.drive_nm(&now, 0.0) - spin.drive_boundary_nm - spin.drive_viscous_nm).abs() < 1e-12);
     }
 

@@ -131,7 +131,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set beside it, why).
-const NEEDS: [(&str, &[&str], &str); 18] = [
+const NEEDS: [(&str, &[&str], &str); 19] = [
     ("variator.piston_outer_mm", &["transmission.cvt.variator.compensated=false"], "centrifugal head, only where it is not balanced"),
     ("variator.piston_inner_mm", &["transmission.cvt.variator.compensated=false"], "centrifugal head, only where it is not balanced"),
     ("road_load.rolling_per_k", &["road_load.surface=road"], "a dynamometer's coefficients are fixed"),
@@ -159,6 +159,11 @@ const NEEDS: [(&str, &[&str], &str); 18] = [
         "pump.lubrication_l_min",
         &["transmission.cvt.pump.kind=variable"],
         "a fixed pump gives all its flow: shifts are limited only near idle",
+    ),
+    (
+        "pump.inlet_bar_per_l_min",
+        &["transmission.cvt.pump.inlet_bar_per_l_min=0.004"],
+        "bounds the flow of oil thicker than in these runs; a fixed pump needs little of its flow",
     ),
     ("pump.leakage_l_min_per_bar", &["transmission.cvt.pump.kind=variable"], "as the lubrication flow"),
     ("friction.band_floor", &["lubricant.friction.band_rise_per_k=0.01"], "bounds the fall of friction with cold, reached below 10 degC"),
@@ -423,6 +428,7 @@ fn twice_the_car_burns_twice_the_fuel() {
         "engine.accessory_nm",
         "transmission.manual.seal.torque_nm",
         "transmission.manual.bearing.torque_nm",
+        "transmission.manual.bearing.film_heating_w",
         "transmission.manual.churning.torque_nm",
         "transmission.manual.launch.friction_clutch.gain_nm_per_rpm2",
         "thermal.engine.block_kj_k",

@@ -17,13 +17,14 @@ const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Unit {
 /// rad/s in one rpm.
 const RPM: f64 = PI / 30.0;
 
-const UNITS: [Unit; 57] = [
+const UNITS: [Unit; 58] = [
     unit("_m", "m", 1.0),
     unit("_mm", "mm", 1e-3),
     unit("_um", "µm", 1e-6),
     unit("_n_per_m", "N/m", 1.0),
     unit("_w_k_per_m_s", "W/K per m/s", 1.0),
     unit("_l_min_per_bar", "l/min per bar", 1e-3 / 60.0 / 1e5),
+    unit("_bar_per_l_min", "bar per l/min", 1e5 * 60.0 / 1e-3),
     unit("_m2", "m²", 1.0),
     unit("_cm2", "cm²", 1e-4),
     unit("_mm2", "mm²", 1e-6),
@@ -114,12 +115,13 @@ mod tests {
     use super::*;
 
     /// Key, value, SI value worked out by hand, unit as shown.
-    const EXPECTED: [(&str, f64, f64, &str); 61] = [
+    const EXPECTED: [(&str, f64, f64, &str); 62] = [
         ("fall_per_1000_rpm", 0.2, 0.001_909_859_317_102_744, "1/1000 rpm"),
         ("film_thickness_um", 0.5, 5e-7, "µm"),
         ("lift_n_per_m", 0.028, 0.028, "N/m"),
         ("ram_w_k_per_m_s", 40.0, 40.0, "W/K per m/s"),
         ("leakage_l_min_per_bar", 6.0, 1e-9, "l/min per bar"),
+        ("inlet_bar_per_l_min", 0.01, 6e7, "bar per l/min"),
         ("ratio", 2.4, 2.4, "-"),
         ("gears", 5.0, 5.0, "-"),
         ("diameter_m", 0.6, 0.6, "m"),

@@ -6,6 +6,7 @@ use crate::results::{Component, Flags};
 use crate::simulate::Car;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::cvt::controller::ClampSignals;
+use crate::transmission::cvt::pump::PumpNow;
 use crate::transmission::cvt::spin::SpinNow;
 use crate::transmission::cvt::variator::point::LIMIT_SLACK;
 use crate::transmission::cvt::variator::point::PointStatus;
@@ -79,6 +80,7 @@ struct OnBench<'a> {
     point: &'a BenchPoint,
     at: BeltAtRatio,
     spin: SpinNow,
+    pump: PumpNow,
     eta_sump: f64,
     printed: bool,
 }
@@ -97,6 +99,7 @@ struct Pass {
 
 /// Solves one operating point of a CVT.
 pub(super) fn solve(car: &Car, cvt: &Cvt, point: &BenchPoint, printed: bool) -> BenchAnswer {
+    let eta_sump = car.oil.dynamic_pa_s(point.sump_k);
     let this = OnBench {
         car,
         cvt,
@@ -104,7 +107,8 @@ pub(super) fn solve(car: &Car, cvt: &Cvt, point: &BenchPoint, printed: bool) -> 
         printed,
         at: BeltAtRatio::new(&cvt.belt, point.ratio),
         spin: cvt.spin.at(car.oil.kinematic_m2_s(point.sump_k)),
-        eta_sump: car.oil.dynamic_pa_s(point.sump_k),
+        pump: cvt.pump.at(eta_sump),
+        eta_sump,
     };
     let mut unknown =
         Unknown { slip: 0.0, belt_k: point.belt_k.unwrap_or(point.sump_k), pressure_pa: point.pressure_pa.unwrap_or(cvt.floor_pa) };
@@ -197,7 +201,7 @@ impl OnBench<'_> {
         }
         if p.parts.pump {
             let need = cvt.pump.steady_need_m3_s(u.pressure_pa, self.eta_sump);
-            let pump = cvt.pump.state(w, u.pressure_pa, need, cvt.pump.viscous_factor(self.eta_sump));
+            let pump = cvt.pump.state(&self.pump, w, u.pressure_pa, need);
             let mapped = self.mapped(maps.pump.as_ref(), 0.0, u.pressure_pa, &mut pass.inside_maps);
             pass.loss_nm[Component::Pump as usize] = mapped.unwrap_or(pump.torque_nm);
             pass.oil_flow_m3_s = pump.working_m3_s;

@@ -25,6 +25,7 @@ macro_rules! source {
 const SOURCES: &[(&str, &str)] = &[
     source!("vehicle/mod.rs"),
     source!("transmission/launch.rs"),
+    source!("transmission/film_heating.rs"),
     source!("transmission/cvt/mod.rs"),
     source!("transmission/cvt/controller/ratio.rs"),
     source!("transmission/cvt/controller/pressure.rs"),

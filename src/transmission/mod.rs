@@ -1,6 +1,7 @@
 //! From the wheels to the engine's flywheel: what the loop sees of a transmission.
 
 pub mod cvt;
+pub mod film_heating;
 pub mod launch;
 mod launch_load;
 pub mod loss_map;

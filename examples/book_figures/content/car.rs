@@ -129,7 +129,7 @@ fn warm_up(r: &Reference) -> Result<String, String> {
 fn maps(r: &Reference) -> Result<String, String> {
     let pump = r.cvt().pump;
     let eta = r.oil().dynamic_pa_s(80.0 + ZERO_DEGC_K);
-    let model = |bar: f64| pump.state(2000.0 * RPM, bar * 1e5, 0.0, pump.viscous_factor(eta)).torque_nm * (1.0 + 0.15 * (0.2 * bar).sin());
+    let model = |bar: f64| pump.state(&pump.at(eta), 2000.0 * RPM, bar * 1e5, 0.0).torque_nm * (1.0 + 0.15 * (0.2 * bar).sin());
     let points = [8.0, 14.0, 22.0, 32.0];
     let rows: Vec<_> = points.iter().map(|&bar| ([0.0, 0.0, 0.0, bar * 1e5, 0.0], model(bar))).collect();
     let map = LossMap::new(Grid::from_rows(&rows)?);

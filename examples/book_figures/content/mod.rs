@@ -3,6 +3,7 @@
 mod belt;
 mod car;
 mod clamp;
+mod cold;
 mod drawn;
 mod parts;
 mod reference;
@@ -70,6 +71,7 @@ pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
     {
         files.push((format!("img/{name}.svg"), svg));
     }
+    files.push(("generated/cold_losses.md".to_owned(), cold::table()?));
     files.extend(tables::files(source)?);
     Ok(files)
 }

@@ -33,7 +33,7 @@ fn nu(r: &Reference, degc: f64) -> f64 {
 fn pump(r: &Reference) -> String {
     let torque = |pump: &Pump, rpm: f64, bar: f64, degc: f64| {
         let (pa, eta) = (bar * 1e5, eta(r, degc));
-        pump.state(rpm * RPM, pa, pump.steady_need_m3_s(pa, eta), pump.viscous_factor(eta)).torque_nm
+        pump.state(&pump.at(eta), rpm * RPM, pa, pump.steady_need_m3_s(pa, eta)).torque_nm
     };
     let fixed = r.cvt().pump;
     let states = [(1000.0, 80.0), (3000.0, 80.0), (1000.0, 25.0), (3000.0, 25.0)];
@@ -58,7 +58,7 @@ fn flow(r: &Reference) -> String {
     let pa = 20e5;
     let state = |kind: PumpKind, rpm: f64| {
         let pump = Pump { kind, ..r.cvt().pump };
-        pump.state(rpm * RPM, pa, pump.steady_need_m3_s(pa, eta), pump.viscous_factor(eta))
+        pump.state(&pump.at(eta), rpm * RPM, pa, pump.steady_need_m3_s(pa, eta))
     };
     let over = |part: &dyn Fn(PumpKind, f64) -> f64| -> Vec<Line> {
         kinds.iter().map(|&(name, kind)| sweep(name, 500.0, 4000.0, 140, |n| part(kind, n))).collect()

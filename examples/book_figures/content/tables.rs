@@ -54,7 +54,7 @@ pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
 /// Every label with its page, in the order of the book.
 fn index(source: &Path) -> Result<String, String> {
     let mut text = MADE_FROM_HEADS.to_owned() + "\n| label | page | statement in the code | status |\n|---|---|---|---|\n";
-    for stem in PAGES.iter().map(|page| page.stem).chain(["rigs", "studies"]) {
+    for stem in PAGES.iter().map(|page| page.stem).chain(["cold", "rigs", "studies"]) {
         let path = source.join(format!("{stem}.md"));
         let page = std::fs::read_to_string(&path).map_err(|why| format!("{}: {why}", path.display()))?;
         let title = page.lines().next().unwrap_or_default().trim_start_matches("# ");

@@ -5,7 +5,7 @@
 //! at once too.
 
 use super::controller::ClampSignals;
-use super::pump::PumpState;
+use super::pump::{PumpNow, PumpState};
 use super::spin::SpinNow;
 use super::variator::{BeltAtRatio, BeltLoad, BeltLosses, belt_losses};
 use super::{Cvt, CvtMaps};
@@ -22,7 +22,7 @@ pub(super) struct Step<'a> {
     pub secondary_rad_s: f64,
     pub spin: SpinNow,
     pub drive_nm: f64,
-    pub viscous_factor: f64,
+    pub pump: PumpNow,
     pub leakage_m3_s_pa: f64,
     pub load: BeltLoad,
     pub radius_factor: f64,
@@ -155,7 +155,7 @@ impl Step<'_> {
     pub(super) fn pump_and_shaft(&self, engine_rad_s: f64, pa: f64, inside: &mut bool) -> (PumpState, f64) {
         let pump = &self.cvt.pump;
         let need = pump.need_m3_s(pa, self.leakage_m3_s_pa) + self.shift_flow_m3_s;
-        let mut state = pump.state(engine_rad_s, pa, need, self.viscous_factor);
+        let mut state = pump.state(&self.pump, engine_rad_s, pa, need);
         let mut shaft_nm = self.spin.shaft_nm(engine_rad_s);
         if let Some(maps) = self.maps {
             state.torque_nm = self.mapped(maps.pump.as_ref(), engine_rad_s, 0.0, pa, inside).unwrap_or(state.torque_nm);

@@ -9,7 +9,7 @@ use crate::config::{Bound, Section};
 use crate::engine::Engine;
 use crate::lubricant::Lubricant;
 use crate::setup::{Files, tables};
-use crate::transmission::launch_load;
+use crate::transmission::{film_heating, launch_load};
 
 /// Reads a checked CVT; problems go to the reader.
 #[must_use]
@@ -21,7 +21,7 @@ pub fn load(s: &Section, files: &dyn Files, engine: &Engine, oil: &Lubricant, fo
     let ratio = ratio_control(&s.table("ratio"), fastest_rad_s);
     let belt = belt(&s.table("belt"), &v, formulation);
     let low = Geometry::new(ratio.low, belt.centre_distance_m, belt.length_m);
-    check_low(s, &ratio, &belt, &low);
+    check_reach(s, &ratio, &belt, &low);
     let clamp_table = s.table("pressure");
     let clamp = clamp_law(s);
     let bar = Bound::closed(0.0, 200.0);
@@ -72,12 +72,18 @@ pub fn load(s: &Section, files: &dyn Files, engine: &Engine, oil: &Lubricant, fo
     }
 }
 
-fn check_low(s: &Section, ratio: &RatioControl, belt: &Belt, low: &Geometry) {
-    let read = [ratio.low, belt.centre_distance_m, belt.length_m].iter().all(|x| x.is_finite());
-    let fits = low.primary_radius_m > 0.005;
-    if read && !fits {
+/// The belt runs at both ends of the ratio, and the pulleys do not run into each other.
+fn check_reach(s: &Section, ratio: &RatioControl, belt: &Belt, low: &Geometry) {
+    let read = [ratio.low, ratio.high, belt.centre_distance_m, belt.length_m].iter().all(|x| x.is_finite());
+    let high = Geometry::new(ratio.high, belt.centre_distance_m, belt.length_m);
+    let fits = |g: &Geometry| {
+        let (primary, secondary) = (g.primary_radius_m, g.secondary_radius_m);
+        primary > 0.005 && secondary > 0.005 && primary + secondary <= belt.centre_distance_m && g.strut_m > 0.0
+    };
+    let ends = [("low", fits(low)), ("high", fits(&high))];
+    if let Some((end, _)) = ends.iter().find(|(_, fits)| read && !fits) {
         s.table("ratio").complain(
-            "low",
+            end,
             "",
             "the belt cannot reach this ratio",
             "check belt length and centre distance against the ratio limits",
@@ -92,6 +98,14 @@ fn centrifugal(v: &Section, oil: &Lubricant) -> f64 {
     let inner = v.number_or("piston_inner_mm", length, 30.0, "inner radius of the secondary's oil chamber (VA-3)");
     if compensated {
         return 0.0;
+    }
+    if outer < inner {
+        v.complain(
+            "piston_inner_mm",
+            "at most piston_outer_mm",
+            "the oil chamber's inner radius is above its outer one",
+            "give both as radii, the smaller one here",
+        );
     }
     std::f64::consts::PI * oil.density_kg_m3(353.15) * (outer.powi(4) - inner.powi(4)) / 4.0 // VA-3
 }
@@ -190,6 +204,17 @@ fn pump(s: &Section) -> Pump {
         friction: p.number_or("friction_coefficient", Bound::closed(0.0, 1.0), 0.0, "Coulomb coefficient C_f (PU-1)"),
         viscous: p.number("viscous_coefficient", Bound::closed(0.0, 1e6), "viscous coefficient C_v (PU-1)"),
         viscous_exponent: p.number("viscous_exponent", Bound::closed(0.0, 1.5), "exponent of viscosity (PU-1)"),
+        heating: film_heating::load(
+            &p,
+            "viscous dissipation at which the heat of the gaps halves the viscous torque; absent: no heating (PU-1, FH-1)",
+        ),
+        inlet_pa_s_m3: p
+            .optional_number(
+                "inlet_bar_per_l_min",
+                Bound::closed(0.0, 1.0),
+                "drop in strainer and suction line at 10 mPa s; absent: none (PU-5)",
+            )
+            .unwrap_or(0.0),
         constant_nm: p.number_or("constant_nm", Bound::closed(0.0, 10.0), 0.0, "constant torque T_c (PU-1)"),
         line_drop_pa: p.number_or("line_drop_bar", bar, 0.0, "pressure drop between pump and secondary (PU-1)"),
         residual_pa: p.number_or("residual_bar", bar, 1.0, "pressure against which idle displacement turns (PU-4)"),
@@ -206,6 +231,10 @@ fn spin(s: &Section) -> Spin {
         shaft_constant_nm: shaft.number("constant_nm", nm, "torque at rest (IS-1)"),
         shaft_viscous_nm_s: shaft.number("viscous_nm_per_rpm", Bound::closed(0.0, 0.01), "slope at 11 mm2/s (IS-1)"),
         shaft_exponent: shaft.number("viscous_exponent", exponent, "exponent of viscosity (IS-1)"),
+        shaft_heating: film_heating::load(
+            &shaft,
+            "viscous dissipation at which the heat of the films halves it; absent: no heating (IS-1, FH-1)",
+        ),
         clutch_nm: clutch.number("drag_nm", nm, "drag at 11 mm2/s (CD-1)"),
         clutch_exponent: clutch.number("viscous_exponent", exponent, "exponent of viscosity (CD-1)"),
         clutch_cap_nm: clutch.number("cap_nm", nm, "largest drag (CD-1)"),
@@ -213,6 +242,10 @@ fn spin(s: &Section) -> Spin {
         drive_scale_rad_s: drive.number("boundary_rpm", Bound::closed(10.0, 20_000.0), "its speed scale (FD-1)"),
         drive_viscous_nm: drive.number("viscous_nm", nm, "viscous part at 11 mm2/s (FD-1)"),
         drive_exponent: drive.number("viscous_exponent", exponent, "exponent of viscosity (FD-1)"),
+        drive_heating: film_heating::load(
+            &drive,
+            "viscous dissipation at which the heat of the films halves it; absent: no heating (FD-1, FH-1)",
+        ),
         mesh_efficiency: drive.number("mesh_efficiency", Bound::closed(0.8, 1.0), "efficiency of the meshes (FD-2)"),
     }
 }

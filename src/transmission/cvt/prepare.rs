@@ -3,7 +3,7 @@
 use super::Cvt;
 use super::controller::RatioDemand;
 use super::evaluate::Step;
-use super::pump::ETA_REFERENCE_PA_S;
+use super::pump::{ETA_REFERENCE_PA_S, PumpNow};
 use super::spin::{NU_REFERENCE_M2_S, SpinNow};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry, sliding_speed_m_s};
 use crate::numeric::{exp_each, ln_each};
@@ -18,9 +18,10 @@ fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
     (cvt.secondary_piston_m2 * travel * slope, cvt.primary_piston_m2 * travel * primary)
 }
 
-/// What the shift reckons with: leakage for the pump's free flow, efficiency for the full-load route.
+/// What the shift reckons with: leakage and inlet for the pump's free flow, efficiency for the full-load route.
 struct Route {
     leakage_m3_s_pa: f64,
+    pump: PumpNow,
     efficiency: f64,
 }
 
@@ -37,7 +38,8 @@ fn shift(cvt: &Cvt, around: &Surroundings, past: &Past, before: &Geometry, route
         return Shift { ratio: before.ratio, flow_m3_s: 0.0, held: false }; // RC-4
     }
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
-    let free = cvt.pump.displacement_m3_rad * past.engine_rad_s - cvt.pump.need_m3_s(past.secondary_pa, route.leakage_m3_s_pa);
+    let drawn = route.pump.drawn_m3_s(cvt.pump.displacement_m3_rad * past.engine_rad_s);
+    let free = drawn - cvt.pump.need_m3_s(past.secondary_pa, route.leakage_m3_s_pa);
     let free = if free > 0.0 { free } else { 0.0 };
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive * around.wheel.wheel_rad_s,
@@ -95,7 +97,7 @@ impl Powers {
             lift_exponent * film,
         ]);
         let spin = cvt.spin.with_powers([shaft, clutch, drive]);
-        let drive_nm = cvt.spin.drive_with_fall_nm(&spin, fall);
+        let drive_nm = cvt.spin.drive_with_fall_nm(&spin, b.secondary_rad_s, fall);
         Powers { spin, drive_nm, viscous_factor, radius_factor, film: if films { film } else { 0.0 } }
     }
 }
@@ -117,7 +119,8 @@ pub(super) fn prepare<'a>(
     let eta_sump = nu_sump * oil.density_kg_m3(sump_k);
     let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
     let leakage_m3_s_pa = cvt.pump.leakage_now_m3_s_pa(eta_sump);
-    let Shift { ratio, flow_m3_s, held } = shift(cvt, around, past, before, Route { leakage_m3_s_pa, efficiency });
+    let inlet = cvt.pump.with_factor(eta_sump, 1.0);
+    let Shift { ratio, flow_m3_s, held } = shift(cvt, around, past, before, Route { leakage_m3_s_pa, pump: inlet, efficiency });
     if ratio.to_bits() != belt.geometry.ratio.to_bits() {
         *belt = BeltAtRatio::new(&cvt.belt, ratio);
     }
@@ -133,7 +136,7 @@ pub(super) fn prepare<'a>(
         secondary_rad_s,
         drive_nm: powers.drive_nm,
         spin: powers.spin,
-        viscous_factor: powers.viscous_factor,
+        pump: PumpNow { viscous_factor: powers.viscous_factor, ..inlet },
         leakage_m3_s_pa,
         load: BeltLoad {
             primary_speed_rad_s: 0.0,

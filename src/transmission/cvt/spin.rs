@@ -2,15 +2,16 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | IS-1 | input shaft: T = c0 + c1 (nu/nu_80)^m n/1000 rpm | source: thesis 7.3, 5.5.5 in form; fitted to 1-2 Nm over 1000-4000 rpm |
+//! | IS-1 | input shaft: T = c0 + c1 (nu/nu_80)^m n/1000 rpm, the second term by FH-1 | source: thesis 7.3, 5.5.5 in form; fitted to 1-2 Nm over 1000-4000 rpm |
 //! | CD-1 | reverse clutch: T = min(c (nu/nu_80)^m, cap) | source: thesis 7.6 in form; fitted to 5.5.3; cap: 5.5.3 "approximately 0.5 Nm" below 25 degC |
-//! | FD-1 | final drive at the secondary shaft: T = c exp(-n/n0) + c_v (nu/nu_80)^m | fitted to thesis 5.5.1; the fall with speed is measured and unexplained there |
+//! | FD-1 | final drive at the secondary shaft: T = c exp(-n/n0) + c_v (nu/nu_80)^m, the second term by FH-1 | fitted to thesis 5.5.1; the fall with speed is measured and unexplained there |
 //! | FD-2 | mesh: \|T_sec - T_wheel/i - FD-1\| = (1 - eta) \|T\| in both directions of power | ASSUMED eta, 0.98 to 0.985 for two helical meshes |
 //!
-//! nu_80 = 11 mm2/s is the viscosity at which the constants hold. Below 25 degC FD-1 is extrapolated: about 12 Nm at the input in
-//! overdrive at -10 degC, unmeasured.
+//! nu_80 = 11 mm2/s is the viscosity at which the constants hold, without the heating of the films. Below 25 degC all three are
+//! extrapolated; the cap bounds CD-1, the heating of their films (FH-1) the viscous terms of IS-1 and FD-1. Unmeasured there.
 
 use crate::numeric::{exp, exp_each, ln};
+use crate::transmission::film_heating::FilmHeating;
 
 /// Kinematic viscosity to which the constants refer, m2/s.
 pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
@@ -24,6 +25,8 @@ pub struct Spin {
     pub shaft_viscous_nm_s: f64,
     /// IS-1 exponent.
     pub shaft_exponent: f64,
+    /// Heating of the input shaft's films (FH-1).
+    pub shaft_heating: FilmHeating,
     /// CD-1 torque at reference viscosity, Nm.
     pub clutch_nm: f64,
     /// CD-1 exponent.
@@ -38,6 +41,8 @@ pub struct Spin {
     pub drive_viscous_nm: f64,
     /// FD-1 exponent.
     pub drive_exponent: f64,
+    /// Heating of the final drive's films (FH-1).
+    pub drive_heating: FilmHeating,
     /// FD-2 mesh efficiency.
     pub mesh_efficiency: f64,
 }
@@ -47,6 +52,7 @@ pub struct Spin {
 pub struct SpinNow {
     shaft_constant_nm: f64,
     shaft_slope_nm_s: f64,
+    shaft_heating: FilmHeating,
     /// Reverse clutch drag, Nm.
     pub clutch_nm: f64,
     drive_viscous_nm: f64,
@@ -75,6 +81,7 @@ impl Spin {
         SpinNow {
             shaft_constant_nm: self.shaft_constant_nm,
             shaft_slope_nm_s: self.shaft_viscous_nm_s * shaft,
+            shaft_heating: self.shaft_heating,
             clutch_nm: if clutch_nm < self.clutch_cap_nm { clutch_nm } else { self.clutch_cap_nm }, // CD-1
             drive_viscous_nm: self.drive_viscous_nm * drive,
         }
@@ -84,7 +91,7 @@ impl Spin {
     #[must_use]
     #[inline]
     pub fn drive_nm(&self, now: &SpinNow, secondary_rad_s: f64) -> f64 {
-        self.drive_with_fall_nm(now, exp(self.drive_fall_exponent(secondary_rad_s)))
+        self.drive_with_fall_nm(now, secondary_rad_s, exp(self.drive_fall_exponent(secondary_rad_s)))
     }
 
     /// -n/n0 of FD-1.
@@ -97,8 +104,8 @@ impl Spin {
     /// The same torque, Nm, with exp(-n/n0) known (FD-1).
     #[must_use]
     #[inline]
-    pub fn drive_with_fall_nm(&self, now: &SpinNow, fall: f64) -> f64 {
-        self.drive_boundary_nm * fall + now.drive_viscous_nm // FD-1
+    pub fn drive_with_fall_nm(&self, now: &SpinNow, secondary_rad_s: f64, fall: f64) -> f64 {
+        self.drive_boundary_nm * fall + self.drive_heating.torque_nm(now.drive_viscous_nm, secondary_rad_s) // FD-1
     }
 
     /// Torque at the secondary shaft for a torque after the final drive, both at the secondary's speed, Nm (FD-2).
@@ -115,7 +122,7 @@ impl SpinNow {
     #[must_use]
     #[inline]
     pub fn shaft_nm(&self, speed_rad_s: f64) -> f64 {
-        self.shaft_constant_nm + self.shaft_slope_nm_s * speed_rad_s // IS-1
+        self.shaft_constant_nm + self.shaft_heating.torque_nm(self.shaft_slope_nm_s * speed_rad_s, speed_rad_s) // IS-1
     }
 }
 
@@ -129,6 +136,7 @@ mod tests {
             shaft_constant_nm: 0.97,
             shaft_viscous_nm_s: 0.07 / (1000.0 * rpm),
             shaft_exponent: 0.75,
+            shaft_heating: FilmHeating::NONE,
             clutch_nm: 0.25,
             clutch_exponent: 0.55,
             clutch_cap_nm: 0.5,
@@ -136,6 +144,7 @@ mod tests {
             drive_scale_rad_s: 2000.0 * rpm,
             drive_viscous_nm: 0.29,
             drive_exponent: 0.72,
+            drive_heating: FilmHeating::NONE,
             mesh_efficiency: 0.98,
         }
     }

@@ -3,7 +3,7 @@
 use super::{Manual, ShiftSpeeds};
 use crate::config::{Bound, Section};
 use crate::setup::{Files, tables};
-use crate::transmission::launch_load;
+use crate::transmission::{film_heating, launch_load};
 
 /// Reads a checked manual box; problems go to the reader.
 #[must_use]
@@ -27,6 +27,10 @@ pub fn load(s: &Section, files: &dyn Files) -> Manual {
         seal_nm: seal.number("torque_nm", nm, "at reference viscosity (MB-2)"),
         seal_exponent: seal.number("viscous_exponent", exponent, "exponent of viscosity (MB-2)"),
         bearing_nm: bearing.number("torque_nm", nm, "at 2000 rpm and reference viscosity (MB-3)"),
+        bearing_heating: film_heating::load(
+            &bearing,
+            "dissipation at which the heat of the films halves the torque; absent: no heating (MB-3, FH-1)",
+        ),
         churning_nm: churning.number("torque_nm", nm, "at 2000 rpm and reference viscosity (MB-4)"),
         churning_exponent: churning.number("viscous_exponent", exponent, "exponent of viscosity (MB-4)"),
         reference_m2_s: s.number("reference_mm2_s", Bound::closed(1.5, 1000.0), "viscosity at which the torques hold (MB-2)"),

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | MB-1 | input torque = T_wheel/i / eta + T_seal + T_bearing + T_churning in drive, x eta in overrun | eta ASSUMED 0.985 for two meshes (gear and final drive) |
 //! | MB-2 | seals: c (nu/nu_r)^m | split of the CO2MPAS hot loss ASSUMED |
-//! | MB-3 | bearings: c (n/2000 nu/nu_r)^(2/3) | source: SKF / Palmgren load-independent form; size from the split |
+//! | MB-3 | bearings: c (n/2000 nu/nu_r)^(2/3), by FH-1 | source: SKF / Palmgren load-independent form; size from the split |
 //! | MB-4 | churning: c n/2000 (nu/nu_r)^m | form ASSUMED; size from the split |
 //! | MB-5 | gears: the cycle's, else shift speeds with hysteresis; a lower gear where the one in force lacks torque | prescribed gears source: UN R83; rest derived |
 //!
@@ -19,10 +19,12 @@ pub use gears::ShiftSpeeds;
 pub use load::load;
 
 use super::cvt::{Slopes, Trend};
+use super::film_heating::FilmHeating;
 use super::launch::Launch;
 use super::loss_map::{LossMap, MapPoint};
 use super::{Drive, Past, Surroundings};
 use crate::cycle::GearCommand;
+use crate::engine::FULL;
 use crate::lubricant::VALID_K;
 use crate::numeric::{exp, held, ln};
 use crate::results::{Component, Flags};
@@ -42,6 +44,8 @@ pub struct Manual {
     pub seal_exponent: f64,
     /// Bearing torque at 2000 rpm and reference viscosity, Nm.
     pub bearing_nm: f64,
+    /// Heating of the bearings' films (FH-1).
+    pub bearing_heating: FilmHeating,
     /// Churning torque at 2000 rpm and reference viscosity, Nm.
     pub churning_nm: f64,
     /// Churning exponent.
@@ -90,9 +94,9 @@ impl Manual {
         let log = ln(nu_m2_s / self.reference_m2_s);
         let [seal, bearing, churning] = [self.seal_exponent * log, 2.0 / 3.0 * (ln(n) + log), self.churning_exponent * log].map(exp);
         Spin {
-            seal: self.seal_nm * seal,                 // MB-2
-            bearing: self.bearing_nm * bearing,        // MB-3
-            churning: self.churning_nm * n * churning, // MB-4
+            seal: self.seal_nm * seal,                                                       // MB-2
+            bearing: self.bearing_heating.torque_nm(self.bearing_nm * bearing, speed_rad_s), // MB-3
+            churning: self.churning_nm * n * churning,                                       // MB-4
             map: 0.0,
         }
     }
@@ -158,10 +162,11 @@ impl Manual {
             GearCommand::Declutched(gear) | GearCommand::InGear(gear) | GearCommand::Change(gear) => self.coasting(around, state, gear, nu),
             GearCommand::Neutral => self.coasting(around, state, state.gear, nu),
         };
-        drive.flags.set(Flags::OUTSIDE_VALIDITY, !VALID_K.contains(&around.heat.node_k[SUMP]));
         drive.flags.set(Flags::OVERSPEED, drive.engine_rad_s > around.engine.engine.highest_rad_s);
         let crank_nm = drive.shaft_nm + around.engine.accessories_nm(drive.engine_rad_s);
-        drive.throttle = held(crank_nm / around.engine.full_load_nm(drive.engine_rad_s), 0.0, 1.0);
+        let share = crank_nm / around.engine.full_load_nm(drive.engine_rad_s);
+        drive.throttle = held(share, 0.0, 1.0);
+        drive.flags.set(Flags::OUTSIDE_VALIDITY, !VALID_K.contains(&around.heat.node_k[SUMP]) || share > FULL);
         state.gear = if drive.gear > 0 { drive.gear } else { state.gear };
         state.engine_rad_s = drive.engine_rad_s;
         let turning = drive.gear > 0 && !drive.flags.contains(Flags::CLUTCH_OPEN);
@@ -373,6 +378,7 @@ mod tests {
             seal_nm: 0.78,
             seal_exponent: 0.15,
             bearing_nm: 0.12,
+            bearing_heating: FilmHeating::NONE,
             churning_nm: 0.84,
             churning_exponent: 0.2,
             reference_m2_s: 12.9e-6,
