@@ -412,6 +412,20 @@ fn check_reports_every_file() {
 }
 
 #[test]
+fn check_knows_the_plan_of_a_calibration() {
+    let good = run(&["check", "rover_216_warm_up", "rover_216_cvt"]);
+    assert_eq!(
+        (good.status.code(), stdout(&good).as_str()),
+        (Some(0), "ok  rover_216_warm_up (calibration)\nok  rover_216_cvt (vehicle)\n")
+    );
+    // By its other tables, though the first is misspelt and a vehicle is named below it.
+    let bad = run(&["check", "tests/diagnostics/calibration/head_misspelt.toml"]);
+    assert_eq!((bad.status.code(), stdout(&bad).as_str()), (Some(2), ""));
+    assert!(stderr(&bad).contains("did you mean [calibration]?"), "{}", stderr(&bad));
+    assert!(refused(&["show", "rover_216_warm_up"]).contains("the plan of a calibration"));
+}
+
+#[test]
 fn a_users_own_files_can_be_run() {
     let dir = tempfile::tempdir().unwrap();
     let car = Path::new(env!("CARGO_MANIFEST_DIR")).join("vehicles/rover_216_5mt.toml");

@@ -1,26 +1,29 @@
 //! Numbers for the parameters to computed observations: the cars are built anew, rigs and cycles run anew.
 //!
-//! | label | statement | status |
+//! | label | statement | known from |
 //! |---|---|---|
 //! | CM-1 | residual = (computed + common error of its group - measured) / sd; 0 within a measured range | convention |
 //! | CM-2 | sd of a trace's values: sd sqrt(n / (duration / t_i + 1)), n values, t_i time after which two are independent | derived: as many values count as are independent |
 
+mod candidate;
+
 use std::cell::RefCell;
 use std::collections::HashMap;
-use std::rc::Rc;
 use std::sync::{Mutex, PoisonError};
 
-use super::plan::{Free, Observation, Plan, What, problem};
+use candidate::Candidate;
+
+use super::plan::{Free, Observation, Plan, What, at_item, problem};
 use super::solve::{Parameter, Prior, Residuals};
-use crate::config::{KeyInfo, Problem, to_si};
+use crate::config::{KeyInfo, Place, Problem};
 use crate::rig::transmission::Conditions;
 use crate::rig::transmission::conditions::PREFIX;
 use crate::setup::blueprint::{Bench, Blueprint, Slot};
 use crate::setup::{Options, Setup, load};
-use crate::validate::expr::{Computed, Table, compute};
 use crate::validate::source::Source;
-use crate::validate::store::{Cars, Store, View, once};
-use crate::validate::tables;
+
+/// What the readers say of an assignment, which in a plan is no option.
+const AS_OPTION: &str = "write --set table.key=VALUE";
 
 /// Width of the range of a common error, in its standard deviations.
 const COMMON_WIDTH: f64 = 8.0;
@@ -73,13 +76,13 @@ impl<'p> Model<'p> {
             common: Vec::new(),
             pool: Mutex::default(),
         };
-        model.car(None)?;
-        let mut problems = model.free();
+        let mut problems: Vec<Problem> = model.car(None).err().unwrap_or_default().into_iter().map(|p| in_plan(plan, p)).collect();
+        problems.append(&mut model.free());
+        problems.extend(Conditions::load(&plan.set).err().unwrap_or_default().into_iter().map(|p| in_plan(plan, p)));
         for source in used(plan) {
-            if let Err(mut found) = model.of_source(source) {
-                found.retain(|problem| !problems.contains(problem));
-                problems.append(&mut found);
-            }
+            let mut found = model.of_source(source, &problems);
+            found.retain(|problem| !problems.contains(problem));
+            problems.append(&mut found);
         }
         if !problems.is_empty() {
             return Err(problems);
@@ -154,31 +157,41 @@ impl<'p> Model<'p> {
             return Ok(());
         }
         let (blueprint, setup) = Blueprint::load(&self.plan.vehicle, "calibration.vehicle", &options)?;
-        let mut problems = Vec::new();
+        let mut problems: Vec<Problem> = Vec::new();
         let mut slots = Vec::new();
         for free in &self.plan.parameters {
             match blueprint.slot(&free.key) {
                 Ok(slot) => slots.push(slot),
                 Err(found) => {
                     let allowed = "the key of a single number of the vehicle or of its fluids";
+                    // The words of others are of options.
+                    let hint = match found.hint.contains("--set") {
+                        true => format!("`cvtcycle show {}` prints its keys; words and lists are held, in `set`", self.plan.vehicle),
+                        false => found.hint.clone(),
+                    };
+                    let found = Problem { hint, ..found };
                     let told = Problem { place: free.place.clone(), key: "key".into(), value: free.key.clone(), ..found };
                     problems.push(if told.allowed.is_empty() { Problem { allowed: allowed.into(), ..told } } else { told });
                 }
             }
         }
-        if !problems.is_empty() {
-            return Err(problems);
-        }
+        // With what could be found more can be checked; nothing is computed with a plan of which this is not all.
         self.by_options.insert(name, self.kinds.len());
         self.kinds.push(Kind { blueprint, slots, keys: setup.keys });
-        Ok(())
+        if problems.is_empty() { Ok(()) } else { Err(problems) }
     }
 
-    fn of_source(&mut self, source: &Source) -> Result<(), Vec<Problem>> {
+    /// Loads what a source needs; gives its problems, but those of the plan's own car, `known` already, only once.
+    fn of_source(&mut self, source: &Source, known: &[Problem]) -> Vec<Problem> {
         let at = |found: Problem| {
             let place = if found.place.line > 0 { found.place.clone() } else { source.place.clone() };
-            Problem { place, message: format!("source `{}`: {}", source.name, found.message), ..found }
+            let key = match found.key.as_str() {
+                "--lubricant" => "lubricant".to_owned(),
+                _ => found.key.clone(),
+            };
+            Problem { message: format!("source `{}`: {}", source.name, found.message), ..assigned(Problem { key, ..found }, place) }
         };
+        let is_new = |found: &Problem| !known.iter().any(|old| old.message == found.message && old.value == found.value);
         let mut problems: Vec<Problem> = Vec::new();
         if source.vehicle.is_none() {
             problems.extend(self.held(&source.set, &source.place).into_iter().map(at));
@@ -189,51 +202,55 @@ impl<'p> Model<'p> {
                 problems.push(problem(&source.place, "lubricant", "", message, "fit the two fluids in plans of their own"));
             }
         }
-        if let Err(found) = self.car(Some(source)) {
-            problems.extend(found.into_iter().map(at));
+        // Without the plan's own car there is none with a source's changes either.
+        if (source.vehicle.is_some() || !self.kinds.is_empty())
+            && let Err(found) = self.car(Some(source))
+        {
+            problems.extend(found.into_iter().filter(is_new).map(at));
         }
         let sets: Vec<String> = self.plan.set.iter().chain(&source.set).cloned().collect();
         match Conditions::load(&sets) {
             Ok(found) => {
                 self.conditions.insert(sets.join("\n"), found);
             }
-            Err(found) => problems.extend(found.into_iter().map(at)),
+            Err(found) => problems.extend(found.into_iter().filter(is_new).map(at)),
         }
-        if problems.is_empty() { Ok(()) } else { Err(problems) }
+        problems
     }
 
     /// Assignments that hold what is to be fitted.
-    fn held(&self, sets: &[String], place: &crate::config::Place) -> Vec<Problem> {
+    fn held(&self, sets: &[String], place: &Place) -> Vec<Problem> {
         let holds = |free: &&Free| sets.iter().any(|set| set.split_once('=').is_some_and(|(key, _)| key.trim() == free.key));
-        let told = |free: &Free| problem(place, "set", "", format!("`{}` is set and free", free.key), "remove one of them");
+        let hint = "what is set is held: remove it from `set`, or remove its [[parameter]]";
+        let told = |free: &Free| problem(&at_item(place.clone(), &free.key), "set", "", format!("`{}` is set and free", free.key), hint);
         self.plan.parameters.iter().filter(holds).map(told).collect()
     }
 
     /// Checks the plan's parameters against the car and makes those of the fit.
     fn free(&mut self) -> Vec<Problem> {
-        let mut problems = self.held(&self.plan.set, &self.plan.place);
-        let mut bench = self.kinds[0].blueprint.bench();
-        for (free, slot) in self.plan.parameters.iter().zip(&self.kinds[0].slots) {
-            for (word, value) in [("low", free.low), ("high", free.high)] {
+        let mut problems = self.held(&self.plan.set, &self.plan.places[3]);
+        let Some(kind) = self.kinds.first() else { return problems };
+        let mut bench = kind.blueprint.bench();
+        for free in &self.plan.parameters {
+            // One that is not found was told already.
+            let Some(slot) = kind.slots.iter().find(|slot| slot.key() == free.key.trim()) else { continue };
+            for (word, value, place) in [("low", free.low, &free.bounds[0]), ("high", free.high, &free.bounds[1])] {
                 bench.reset();
                 bench.set(slot, value);
                 if bench.build().is_err() {
                     let first = bench.problems().into_iter().next().unwrap_or_default();
-                    let message = format!("parameter {}: `{word}` = {value} is refused: {}", free.key, first.message);
+                    let message = format!("parameter {}: the car is refused at `{word}`: {}", free.key, first.message);
                     let allowed = if first.allowed.is_empty() { slot.allowed().to_owned() } else { first.allowed };
-                    problems.push(problem(
-                        &free.place,
-                        word,
-                        &allowed,
-                        message,
-                        "bounds are in the unit of the key; keep them where the model holds",
-                    ));
+                    // It may call for another key that goes with it.
+                    let own = first.key.is_empty() || slot.key().ends_with(&first.key) || first.hint.is_empty();
+                    let hint = if own { "bounds are in the unit of the key; the search may go to both" } else { &first.hint };
+                    problems.push(Problem { value: value.to_string(), ..problem(place, word, &allowed, message, hint) });
                 }
             }
             let start = free.start.unwrap_or(slot.base());
             if start.is_nan() {
                 let message = format!("parameter {}: the file has no value to start from", free.key);
-                problems.push(problem(&free.place, "start", "a number", message, "add `start`"));
+                problems.push(problem(&free.place, "start", "a number", message, "add `start`, in the unit of the key"));
             } else if !(free.low..=free.high).contains(&start) {
                 let message = format!("parameter {}: the file's value {start} is outside the bounds", free.key);
                 problems.push(problem(
@@ -285,6 +302,26 @@ impl Residuals for Model<'_> {
     }
 }
 
+/// A problem of the plan's own car at its place in the plan, where it stands in no file.
+fn in_plan(plan: &Plan, found: Problem) -> Problem {
+    let [vehicle, lubricant, engine_oil, set] = &plan.places;
+    let (place, key) = match found.place.file.as_str() {
+        "calibration.vehicle" => (vehicle, "vehicle"),
+        "--lubricant" => (lubricant, "lubricant"),
+        "--engine-oil" => (engine_oil, "engine_oil"),
+        file if file.starts_with("--set") => (set, "set"),
+        _ => return found,
+    };
+    assigned(Problem { key: key.to_owned(), ..found }, place.clone())
+}
+
+/// A problem moved to a place in the plan: there to the assignment of a list that is meant, where it stands in that line.
+fn assigned(found: Problem, place: Place) -> Problem {
+    let assignment = found.place.file.strip_prefix("--set ").unwrap_or_default();
+    let hint = found.hint.replace(AS_OPTION, "write \"table.key=VALUE\"");
+    Problem { place: at_item(place, assignment), hint, ..found }
+}
+
 /// All sources that observations look at.
 fn used(plan: &Plan) -> Vec<&Source> {
     let mut found: Vec<&Source> = plan.benches.iter().map(|bench| &bench.source).chain(&plan.runs).collect();
@@ -302,125 +339,4 @@ fn used(plan: &Plan) -> Vec<&Source> {
         new
     });
     found
-}
-
-/// The cars with one set of values.
-struct Candidate<'m> {
-    model: &'m Model<'m>,
-    values: &'m [f64],
-    benches: RefCell<Vec<Bench>>,
-    built: RefCell<HashMap<usize, Result<Rc<Setup>, String>>>,
-}
-
-impl Candidate<'_> {
-    fn answer(&self) -> Result<Answer, String> {
-        let plan = self.model.plan;
-        let store = Store::new(self);
-        let views: Vec<View> = plan.views.iter().map(|sources| View::new(&store, sources)).collect();
-        let benches: RefCell<HashMap<usize, Rc<Table>>> = RefCell::default();
-        let times = tables::columns(crate::validate::source::Kind::Run, false);
-        let transient_times = tables::columns(crate::validate::source::Kind::Transient, false);
-        let time = times.iter().position(|name| *name == "time_s").unwrap_or(0);
-        let transient_time = transient_times.iter().position(|name| *name == "time_s").unwrap_or(0);
-        let mut answer = Answer { computed: Vec::new(), doubtful: Vec::new() };
-        for observation in &plan.observations {
-            let (computed, doubtful) = match &observation.what_computed {
-                What::Expression { view, expr } => {
-                    let view = &views[*view];
-                    view.begin();
-                    match compute(expr, view).map_err(|why| format!("{}: {why}", observation.label))? {
-                        Computed::Number(x) => (x, view.noted().0 + view.noted().1),
-                        _ => (f64::NAN, 0),
-                    }
-                }
-                What::Point { bench, row, column } => {
-                    let table = match benches.borrow().get(bench) {
-                        Some(table) => Rc::clone(table),
-                        None => Rc::new(self.bench(*bench)?),
-                    };
-                    benches.borrow_mut().insert(*bench, Rc::clone(&table));
-                    let flag = |list: &[bool]| usize::from(list.get(*row).copied().unwrap_or(false));
-                    (table.columns[*column][*row], flag(&table.gross) + flag(&table.outside))
-                }
-                What::Trace { run, column, time_s } => {
-                    let source = &plan.runs[*run];
-                    let table = store.table(source, false)?;
-                    let time = if source.kind == crate::validate::source::Kind::Run { time } else { transient_time };
-                    between(&table, [time, *column], *time_s)
-                }
-                What::Total { run, column } => (store.table(&plan.runs[*run], true)?.columns[*column][0], 0),
-            };
-            if !computed.is_finite() {
-                return Err(format!("{}: the model has no number there", observation.label));
-            }
-            answer.computed.push(computed);
-            answer.doubtful.push(doubtful);
-        }
-        Ok(answer)
-    }
-
-    fn bench(&self, index: usize) -> Result<Table, String> {
-        let bench = &self.model.plan.benches[index];
-        let setup = self.setup(Some(&bench.source)).map_err(|problems| first(&problems))?;
-        tables::bench::of_points(&bench.points, &setup)
-    }
-
-    fn build(&self, kind: usize) -> Result<Rc<Setup>, String> {
-        let own = &self.model.kinds[kind];
-        let mut benches = self.benches.borrow_mut();
-        let bench = &mut benches[kind];
-        bench.reset();
-        for (slot, value) in own.slots.iter().zip(self.values) {
-            bench.set(slot, *value);
-        }
-        let mut setup = match bench.build() {
-            Ok(setup) => setup,
-            Err(_) => return Err(first(&bench.problems())),
-        };
-        setup.keys.clone_from(&own.keys);
-        for (slot, value) in own.slots.iter().zip(self.values) {
-            if let Some(info) = setup.keys.iter_mut().find(|info| info.key == slot.key()) {
-                (info.value, info.si) = (value.to_string(), Some(to_si(&info.key, *value)));
-            }
-        }
-        Ok(Rc::new(setup))
-    }
-}
-
-fn first(problems: &[Problem]) -> String {
-    problems.first().map_or_else(|| "the car is refused".to_owned(), |problem| problem.message.clone())
-}
-
-/// A column at a time, straight between the rows; its first or last value outside of them.
-fn between(table: &Table, [time, column]: [usize; 2], time_s: f64) -> (f64, usize) {
-    let (times, values) = (&table.columns[time], &table.columns[column]);
-    let Some(last) = times.len().checked_sub(1) else { return (f64::NAN, 0) };
-    let after = times.partition_point(|t| *t < time_s).min(last);
-    let flag = |list: &[bool]| usize::from(list.get(after).copied().unwrap_or(false));
-    let doubtful = flag(&table.gross) + flag(&table.outside);
-    let before = after.saturating_sub(1);
-    let width = times[after] - times[before];
-    let share = if width > 0.0 { ((time_s - times[before]) / width).clamp(0.0, 1.0) } else { 1.0 };
-    (values[before] + share * (values[after] - values[before]), doubtful)
-}
-
-impl Cars for Candidate<'_> {
-    fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Vec<Problem>> {
-        let name = self.model.name_of(source);
-        if let Some(setup) = self.model.fixed.get(&name) {
-            return Ok(Rc::new(setup.clone()));
-        }
-        let kind = self.model.by_options.get(&name).copied().unwrap_or(0);
-        let built = once(&self.built, kind, || self.build(kind));
-        built.map_err(|message| vec![Problem { message, ..Problem::default() }])
-    }
-
-    fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>> {
-        let own = source.map(|source| source.set.as_slice()).unwrap_or_default();
-        let sets: Vec<String> = self.model.plan.set.iter().chain(own).cloned().collect();
-        match self.model.conditions.get(&sets.join("\n")) {
-            Some(found) => Ok(found.clone()),
-            None => Conditions::load(&sets),
-        }
-    }
 }

@@ -1,6 +1,6 @@
 //! Everything that a calibration found, ready for tables, files and pictures.
 //!
-//! | label | statement | status |
+//! | label | statement | known from |
 //! |---|---|---|
 //! | CO-1 | root mean square of residuals over their standard deviations, of a group, of a fold, of all | convention |
 

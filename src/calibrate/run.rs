@@ -25,9 +25,13 @@ pub fn calibrate(plan: &Plan, watcher: &dyn Watcher) -> Result<Outcome, Vec<Prob
     let options =
         Options { starts: search.starts, seed: search.seed, most_evaluations: search.most_evaluations, tolerance: search.tolerance };
     let fit = solve::fit(&model, model.parameters(), &options, watcher).map_err(|failure| {
-        let hint = "the first start is at the values of the files: does `cvtcycle validate` or `run` answer there?";
-        let all = failure.reasons.iter().map(|reason| problem(&plan.place, "", "", format!("the model has no answer: {reason}"), hint));
-        all.collect::<Vec<Problem>>()
+        let hint = "leave out data where the model has no number; the first start is at the values of the files";
+        // Each cause once: the starts and their many values say no more.
+        let whys = failure.starts.iter().filter_map(|start| start.failure.clone());
+        let mut whys: Vec<String> = if failure.starts.is_empty() { failure.reasons } else { whys.collect() };
+        whys.sort();
+        whys.dedup();
+        whys.into_iter().map(|why| problem(&plan.place, "", "", format!("the model has no answer: {why}"), hint)).collect::<Vec<Problem>>()
     })?;
     let folds = if search.leave_out && plan.folds.len() > 1 && fit.end != End::Stopped {
         let groups: Vec<usize> = plan.observations.iter().map(|observation| observation.fold).collect();

@@ -1,5 +1,6 @@
 //! `check`: inputs without a run.
 
+use cvtcycle::calibrate::open;
 use cvtcycle::config::{Problem, render};
 use cvtcycle::setup::{self, Kind, Options};
 
@@ -16,7 +17,7 @@ Example: cvtcycle check rover_216_cvt
 Prints `ok` for every file without problems, and all problems of the others with place, value, allowed range and a hint;
 then the exit code is 2.")]
 pub struct Args {
-    /// Vehicle (TOML), lubricant (TOML) or cycle (CSV) files; what a file is shows in its contents
+    /// Vehicle, lubricant or calibration (TOML), or cycle (CSV) files; what a file is shows in its contents
     #[arg(value_name = "FILE", required = true)]
     files: Vec<String>,
     /// Print one JSON object instead of text
@@ -44,6 +45,7 @@ fn check(file: &str) -> Result<Sort, Vec<Problem>> {
         Sort::Cycle => drop(inputs::cycle("FILE", &word)?),
         // Only embedded, and read by `rig`.
         Sort::Rig => {}
+        Sort::Calibration => drop(open(&word, "FILE")?),
         Sort::Lubricant => drop(setup::load_lubricant(&word, "FILE", &[], "")?),
         Sort::Vehicle => {
             let setup = setup::load(&word, "FILE", &Options::default())?;

@@ -5,6 +5,7 @@
 
 mod answer;
 mod belt;
+mod calibrate;
 mod check;
 mod colour;
 mod explain;
@@ -27,9 +28,11 @@ mod validate;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use answer::{Answer, Reply};
+use answer::{Answer, Reply, problem};
+use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use colour::{Colour, Paint};
+use cvtcycle::config::Problem;
 
 /// Drive-cycle losses and fuel of cars with a pushing-belt CVT, cold and warm, from component physics.
 #[derive(Debug, Parser)]
@@ -59,6 +62,8 @@ enum Command {
     Report(report::Args),
     /// Hold every printed number of the thesis, and your own, against the program
     Validate(Box<validate::Args>),
+    /// Fit parameters to measurements, and say what the fit is worth
+    Calibrate(Box<calibrate::Args>),
     /// Run the thesis's test rigs, virtual
     Rig(rig::Args),
     /// Show what each part of a transmission loses, at one operating point or over a grid
@@ -95,9 +100,11 @@ pub fn main() -> ExitCode {
     let words: Vec<OsString> = std::env::args_os().collect();
     // Looked for before clap reads the words, since its own messages are to follow it as well.
     let asked = Colour::from_words(&words);
+    let unreadable = words.iter().find(|word| word.to_str().is_none()).cloned();
     let cli = Cli::command().color(asked.for_clap()).try_get_matches_from(words).and_then(|matches| Cli::from_arg_matches(&matches));
     let (reply, colour) = match cli {
         Ok(cli) => (cli.command.answer(Context { paint: cli.color.stdout(), colour: cli.color }), cli.color),
+        Err(error) if error.kind() == ErrorKind::InvalidUtf8 => (Err(vec![no_text(unreadable)]), asked),
         Err(error) => (Ok(usage(&error, asked)), asked),
     };
     answer::finish(reply, colour)
@@ -110,6 +117,7 @@ impl Command {
             Command::Study(args) => study::answer(&args, context),
             Command::Report(args) => report::answer(&args),
             Command::Validate(args) => validate::answer(&args, context),
+            Command::Calibrate(args) => calibrate::answer(&args, context),
             Command::Rig(args) => rig::answer(&args, context),
             Command::Losses(args) => losses::answer(&args, context),
             Command::Belt(args) => belt::answer(&args, context),
@@ -122,6 +130,13 @@ impl Command {
             Command::Man(args) => shell::man(&args, Cli::command()),
         }
     }
+}
+
+/// Names of files to read, and values, are texts; only directories and files to write may have any name that the system allows.
+fn no_text(word: Option<OsString>) -> Problem {
+    let value = word.unwrap_or_default().to_string_lossy().into_owned();
+    let hint = "rename the file, or name it by a link; --out takes any name";
+    Problem { value: value.clone(), ..problem("command line", &format!("`{value}` is not UTF-8"), hint) }
 }
 
 /// Help, version and clap's complaints, through our own writer: a closed pipe or a full disk is handled there.

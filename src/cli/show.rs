@@ -102,6 +102,11 @@ pub fn answer(args: &Args, context: Context) -> Reply {
             (oil.title, keys)
         }
         Sort::Rig => rig(&word),
+        Sort::Calibration => {
+            let message = format!("`{word}` is the plan of a calibration, which holds no values of a car");
+            let hint = "name the vehicle that it fits; `cvtcycle check` reads a plan".to_owned();
+            return Err(vec![inputs::bad_value("NAME", &word, "a vehicle, lubricant, cycle or rig", message, hint)]);
+        }
     };
     let wanted = |info: &KeyInfo| args.status.is_empty() || args.status.iter().any(|s| s.word() == info.status);
     let keys: Vec<KeyInfo> = keys.into_iter().filter(wanted).collect();

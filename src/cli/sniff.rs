@@ -1,5 +1,6 @@
-//! What a name or a file is: vehicle, lubricant or cycle.
+//! What a name or a file is: vehicle, lubricant, cycle, rig or calibration.
 
+use cvtcycle::calibrate::embedded_calibrations;
 use cvtcycle::config::{Problem, decode};
 use cvtcycle::cycle;
 use cvtcycle::setup::is_path;
@@ -17,12 +18,17 @@ pub enum Sort {
     Cycle,
     /// What a test rig is set to.
     Rig,
+    /// Plan of a calibration.
+    Calibration,
 }
 
 /// Tables and keys that only a vehicle has at the top of its file.
 const VEHICLE: [&str; 5] = ["vehicle", "road_load", "engine", "transmission", "thermal"];
 /// Tables and keys that only a lubricant has at the top of its file.
 const LUBRICANT: [&str; 5] = ["kv40_mm2_s", "kv100_mm2_s", "viscosity_table", "density15_kg_m3", "friction"];
+
+/// Beginnings of headers that only the plan of a calibration has; their ends may be misspelt.
+const CALIBRATION: [&str; 3] = ["[calibra", "[[parameter", "[[data"];
 
 impl Sort {
     /// The word for it.
@@ -32,6 +38,7 @@ impl Sort {
             Sort::Lubricant => "lubricant",
             Sort::Cycle => "cycle",
             Sort::Rig => "rig",
+            Sort::Calibration => "calibration",
         }
     }
 }
@@ -39,7 +46,7 @@ impl Sort {
 /// The sort of an embedded name or of a file, and the word under which the library finds it.
 ///
 /// # Errors
-/// Unknown name, unreadable file, or a file that is none of the three.
+/// Unknown name, unreadable file, or a file that is none of them.
 pub fn sort_of(word: &str, must_be_file: bool) -> Result<(Sort, String), Vec<Problem>> {
     let exists = std::path::Path::new(word).exists();
     if !must_be_file || !exists {
@@ -67,6 +74,8 @@ fn embedded(word: &str) -> Option<Sort> {
         Some(Sort::Lubricant)
     } else if rigs().contains(&word) {
         Some(Sort::Rig)
+    } else if embedded_calibrations().iter().any(|(name, _)| *name == word) {
+        Some(Sort::Calibration)
     } else if cycle::names().contains(&word) || word.starts_with("constant_") && !is_csv(word) {
         Some(Sort::Cycle)
     } else {
@@ -76,6 +85,10 @@ fn embedded(word: &str) -> Option<Sort> {
 
 /// By the names at the beginnings of lines; the text may be full of mistakes otherwise.
 fn by_text(word: &str, text: &str) -> Result<Sort, Vec<Problem>> {
+    // A plan names a vehicle, too; what only it has is looked for everywhere.
+    if text.lines().any(|line| CALIBRATION.iter().any(|header| line.trim_start().starts_with(header))) {
+        return Ok(Sort::Calibration);
+    }
     let mut firsts = text.lines().map(|line| {
         let line = line.trim_start().trim_start_matches('[').trim_start();
         line.split(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default()
@@ -90,13 +103,16 @@ fn by_text(word: &str, text: &str) -> Result<Sort, Vec<Problem>> {
         }
     });
     found.ok_or_else(|| {
-        let hint = format!("a vehicle has [{}], a lubricant {}, a cycle time_s", VEHICLE.join("], ["), LUBRICANT[0]);
-        vec![bad_value(word, "", "", "neither a vehicle, nor a lubricant, nor a cycle".to_owned(), hint)]
+        let tables = VEHICLE.join("], [");
+        let hint = format!("a vehicle has [{tables}], a lubricant {}, a cycle time_s, a calibration [calibration]", LUBRICANT[0]);
+        vec![bad_value(word, "", "", "neither a vehicle, nor a lubricant, nor a cycle, nor a calibration".to_owned(), hint)]
     })
 }
 
 fn unknown(word: &str) -> Problem {
-    let known: Vec<&str> = vehicles().into_iter().chain(lubricants()).chain(rigs()).chain(cycle::names().iter().copied()).collect();
+    let calibrations = embedded_calibrations().iter().map(|(name, _)| *name);
+    let inputs = vehicles().into_iter().chain(lubricants()).chain(rigs()).chain(calibrations);
+    let known: Vec<&str> = inputs.chain(cycle::names().iter().copied()).collect();
     let question = did_you_mean(word, &known).map(|q| q + " ").unwrap_or_default();
     bad_value(
         "NAME",

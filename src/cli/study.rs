@@ -2,10 +2,10 @@
 
 mod ambient;
 mod common;
-mod csv_files;
+pub(super) mod csv_files;
 mod export;
 mod matrix;
-mod progress;
+pub(super) mod progress;
 mod results;
 mod show;
 mod text;

@@ -144,6 +144,15 @@ impl<'f> Problems<'f> {
         self.value(cell.line, cell.field, cell.key, complaint);
     }
 
+    /// Adds one that is made already.
+    pub fn add(&mut self, problem: Problem) {
+        if self.list.len() >= SHOWN {
+            self.more += 1;
+            return;
+        }
+        self.list.push(problem);
+    }
+
     // built only while it will be shown, so that a file of a million bad rows costs nothing
     fn push(&mut self, key: &str, build: impl FnOnce(&str) -> (Place, String, Complaint)) {
         if self.list.len() >= SHOWN {

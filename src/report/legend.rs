@@ -1,6 +1,7 @@
 //! Legends, in a strip beside the plot or below it, where no data can be.
 use super::figure::{Anchor, Figure, INK, Rect, UNITS, escape, fit, text_width, units, wrap};
 use super::style::Stroke;
+use super::symbol::Symbol;
 
 /// What a legend shows beside a name.
 pub(super) enum Mark {
@@ -10,11 +11,15 @@ pub(super) enum Mark {
     Fill(String),
     /// A circle of that radius in pixels, with SVG paint attributes.
     Circle(f64, String),
+    /// The mark of a point, filled or open.
+    Point(Symbol, bool),
 }
 
 /// Height of an entry with a small mark, pixels.
 pub(super) const ENTRY: f64 = 19.0;
 const MARK_WIDTH: f64 = 30.0;
+/// Radius of the mark of a point, pixels.
+const POINT: f64 = 4.4;
 const SIZE: f64 = 11.0;
 const LINE: f64 = 13.0;
 
@@ -108,6 +113,8 @@ fn draw_mark(figure: &mut Figure, mark: &Mark, (x, y): (f64, f64)) {
             let (x, y, r) = (units(x), units(y), radius * UNITS);
             figure.raw(&format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r:.1}\" {attributes}/>"));
         }
+        Mark::Point(symbol, true) => symbol.filled(figure, (x, y), POINT, ""),
+        Mark::Point(symbol, false) => symbol.open(figure, (x, y), POINT, ""),
     }
 }
 

@@ -8,6 +8,7 @@ use crate::results::History;
 pub mod ambient;
 mod axis;
 mod bars;
+pub mod calibration;
 pub mod chart;
 mod contour;
 mod curves;
@@ -25,6 +26,7 @@ pub mod review_figures;
 pub mod rig_transmission;
 mod style;
 pub mod study;
+mod symbol;
 mod timeline;
 mod traces;
 

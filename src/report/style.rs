@@ -68,7 +68,8 @@ pub(super) fn ramp(share: f64) -> String {
     between(&RAMP, share)
 }
 
-fn between(anchors: &[(f64, f64, f64)], share: f64) -> String {
+/// Colour between anchors at a share of 0 to 1.
+pub(super) fn between(anchors: &[(f64, f64, f64)], share: f64) -> String {
     let place = share.clamp(0.0, 1.0) * (anchors.len() - 1) as f64;
     let cell = (place.floor() as usize).min(anchors.len() - 2);
     let (a, b, t) = (anchors[cell], anchors[cell + 1], place - cell as f64);

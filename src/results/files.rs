@@ -7,8 +7,8 @@ use tempfile::{NamedTempFile, TempPath};
 
 use crate::config::{Place, Problem};
 
-/// The file that marks a directory as one of an earlier run.
-const MARK: &str = "summary.json";
+/// The files that mark a directory as one of an earlier run or calibration.
+const MARKS: [&str; 2] = ["summary.json", "calibration.json"];
 /// The file that marks a directory as one of a study.
 const STUDY: &str = "study.json";
 /// Names of files that are still being written begin and end like this.
@@ -83,7 +83,7 @@ impl OutputDir {
         let paths: Vec<PathBuf> = self.written.iter().map(|(name, _)| self.path.join(name)).collect();
         let mut written = std::mem::take(&mut self.written);
         // The mark comes last, so that it never stands for a run of which files are missing.
-        written.sort_by_key(|(name, _)| name == MARK);
+        written.sort_by_key(|(name, _)| is_mark(name));
         let mut swap = Swap::default();
         for (name, temporary) in written {
             let done = self.temporary_name().and_then(|spare| swap.put(temporary, self.path.join(&name), spare));
@@ -121,11 +121,8 @@ impl OutputDir {
     }
 
     fn cannot_write(&self, name: &str, error: &io::Error) -> Problem {
-        let target = if name == MARK || name.contains('.') {
-            self.path.join(name).display().to_string()
-        } else {
-            format!("{name} in {}", self.path.display())
-        };
+        let target =
+            if name.contains('.') { self.path.join(name).display().to_string() } else { format!("{name} in {}", self.path.display()) };
         failed(&self.path, &format!("cannot write {target}"), error)
     }
 }
@@ -247,9 +244,13 @@ pub(crate) fn names_in(path: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
+fn is_mark(name: &str) -> bool {
+    MARKS.contains(&name)
+}
+
 fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Problem> {
     // The results of a study bear the mark of a run as well, and are not to be replaced by one.
-    let marked = names.iter().any(|name| name == MARK) && !names.iter().any(|name| name == STUDY);
+    let marked = names.iter().any(|name| is_mark(name)) && !names.iter().any(|name| name == STUDY);
     if names.is_empty() || (marked && force) {
         return Ok(());
     }

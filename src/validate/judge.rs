@@ -47,7 +47,7 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// How far it is off, in widths of its tolerance ([`off`]).
+    /// How far it is off, in widths of its tolerance.
     #[must_use]
     pub fn off(&self) -> Option<f64> {
         off(self.computed.as_ref()?, self.row.printed?, self.row.tolerance_widths)
@@ -155,10 +155,13 @@ pub fn judge(files: &[File], subject: &Subject, wanted: impl Fn(&Row) -> bool) -
     if problems.is_empty() { Ok(Report { subject: subject.clone(), rows }) } else { Err(problems) }
 }
 
+/// A car, or what is wrong with its files.
+type Loaded = Result<Rc<Setup>, Vec<Problem>>;
+
 /// Cars from their files, each read once.
 struct FromFiles<'a> {
     subject: &'a Subject,
-    setups: RefCell<HashMap<String, Rc<Result<Rc<Setup>, Vec<Problem>>>>>,
+    setups: RefCell<HashMap<String, Loaded>>,
 }
 
 impl FromFiles<'_> {
@@ -181,7 +184,7 @@ impl Cars for FromFiles<'_> {
         let vehicle = source.and_then(|source| source.vehicle.as_deref()).unwrap_or(&self.subject.vehicle);
         let options = self.options(source);
         let key = format!("{vehicle} {options:?}");
-        once(&self.setups, key, || Rc::new(load(vehicle, "vehicle", &options).map(Rc::new))).as_ref().clone()
+        once(&self.setups, key, || load(vehicle, "vehicle", &options).map(Rc::new))
     }
 
     fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>> {

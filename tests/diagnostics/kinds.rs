@@ -3,6 +3,7 @@
 //! A bad vehicle and a bad rig file hold only what is wrong, as dotted keys: what they leave out is put below it, from the shipped file that
 //! their first line names (`# on NAME`), so that the lines of the bad file keep their numbers.
 
+use cvtcycle::calibrate;
 use cvtcycle::config::{Document, KeyInfo, Problem, Reader, render};
 use cvtcycle::cycle;
 use cvtcycle::results::History;
@@ -13,8 +14,25 @@ use cvtcycle::study::Study;
 use cvtcycle::study::plan::Plan;
 use cvtcycle::validate;
 
+use super::calibration;
+
 /// Folders of the corpus.
-pub const KINDS: [&str; 10] = ["vehicle", "lubricant", "rig", "plan", "rows", "cover", "cycle", "map", "points", "trace"];
+pub const KINDS: [&str; 14] = [
+    "vehicle",
+    "lubricant",
+    "rig",
+    "plan",
+    "rows",
+    "cover",
+    "cycle",
+    "map",
+    "points",
+    "trace",
+    "calibration",
+    "calibration_points",
+    "calibration_trace",
+    "calibration_scalars",
+];
 
 /// What the program says about a bad file; nothing if it takes it.
 pub fn told(kind: &str, case: &str) -> String {
@@ -23,7 +41,12 @@ pub fn told(kind: &str, case: &str) -> String {
     if kind == "points" {
         return points(case);
     }
+    if name.starts_with("ran_") {
+        return calibration::ran(case);
+    }
     let problems = match kind {
+        "calibration" => calibrate::open(case, "PLAN").err(),
+        "calibration_points" | "calibration_trace" | "calibration_scalars" => calibration::data(kind, case),
         "vehicle" => return vehicle(case, &String::from_utf8(bytes).unwrap()),
         "rig" => rig(case, &String::from_utf8(bytes).unwrap()),
         "lubricant" => setup::load_lubricant(case, "--lubricant", &[], "").err(),
@@ -141,6 +164,7 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
                 std::iter::once("time_s,speed_kmh\n".to_owned()).chain((0..=2_000_000).map(|k| format!("{k},0\n"))).collect();
             vec![made_file("too_many_rows.csv", text.as_bytes(), |path, bytes| told_by(cycle::read_csv(path, bytes).err()))]
         }
+        _ if kind.starts_with("calibration") => calibration::made(kind),
         "points" => {
             let text = format!("ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm\n{}", "1".repeat(1 << 21));
             vec![made_file("long_line.csv", text.as_bytes(), |path, _| points(path))]
@@ -156,12 +180,12 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
     }
 }
 
-fn told_by(problems: Option<Vec<Problem>>) -> String {
+pub fn told_by(problems: Option<Vec<Problem>>) -> String {
     render(&problems.unwrap_or_default(), false)
 }
 
 /// Writes a file into a folder of its own, reads it, and leaves the folder out of what is told.
-fn made_file(name: &str, bytes: &[u8], read: impl Fn(&str, &[u8]) -> String) -> (String, String) {
+pub fn made_file(name: &str, bytes: &[u8], read: impl Fn(&str, &[u8]) -> String) -> (String, String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name).to_str().unwrap().to_owned();
     std::fs::write(&path, bytes).unwrap();

@@ -24,7 +24,7 @@ use crate::cycle::problems::Complaint;
 pub(super) fn bytes_of(path: &str, place: &Place, key: &str) -> Result<Vec<u8>, Vec<Problem>> {
     std::fs::read(path).map_err(|error| {
         let message = format!("cannot read `{path}`: {error}");
-        let hint = "a path is relative to the folder of the plan";
+        let hint = "check the name; a path is relative to the folder of the plan";
         let value = path.to_owned();
         let place = place.clone();
         vec![Problem { place, key: key.to_owned(), value, allowed: "a readable CSV file".into(), message, hint: hint.into() }]

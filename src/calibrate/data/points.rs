@@ -1,9 +1,8 @@
 //! A CSV file of points on the bench: settings, and what was measured there.
 
-use super::sheet::{self, Column, Sheet};
+use super::sheet::{self, Column, Rules, Sheet};
 use super::unknown;
 use crate::config::{Bound, Problem, to_si};
-use crate::cycle::problems::Complaint;
 use crate::rig::{BenchPoint, Parts};
 use crate::validate::source::BENCH;
 use crate::validate::tables::bench;
@@ -16,11 +15,8 @@ fn measurable() -> Vec<&'static str> {
     bench::columns().into_iter().filter(|name| !BENCH.iter().any(|(key, ..)| key == name)).collect()
 }
 
-/// Reads points.
-///
-/// # Errors
-/// All problems of the file.
-pub(crate) fn read(file: &str, bytes: &[u8]) -> Result<Sheet, Vec<Problem>> {
+/// Reads points as far as they can be understood, and all problems of the file.
+pub(crate) fn read(file: &str, bytes: &[u8]) -> (Option<Sheet>, Vec<Problem>) {
     let measurable = measurable();
     let settings: Vec<&str> = BENCH.iter().map(|(key, ..)| *key).collect();
     let known = |name: &str| {
@@ -39,21 +35,11 @@ pub(crate) fn read(file: &str, bytes: &[u8]) -> Result<Sheet, Vec<Problem>> {
         Err(unknown(measured, &all, "settings and columns of the bench: docs/calibration.md lists them"))
     };
     let required: Vec<&str> = BENCH.iter().filter(|(_, _, required, _)| *required).map(|(key, ..)| *key).collect();
-    let sheet = sheet::read(file, bytes, &known, &required)?;
-    let whole =
-        |key: &str, message: String, hint: &str| vec![sheet.problem(0, sheet.find(key).unwrap_or(0), Complaint::new(message, "", hint))];
-    if !sheet.columns.iter().any(|column| measurable.contains(&column.name.as_str())) {
-        let message = "no column was measured: all are settings of the bench".to_owned();
-        return Err(whole("", message, "add, for example, total_nm: the torque loss at the input shaft"));
-    }
-    for column in &sheet.columns {
-        if let Some(of) = column.name.strip_prefix(SD)
-            && sheet.find(of).is_none()
-        {
-            return Err(whole(&column.name, format!("{} stands without a column {of}", column.name), "add the measured column"));
-        }
-    }
-    Ok(sheet)
+    let measured = |name: &str| measurable.contains(&name);
+    let example = "total_nm: the torque loss at the input shaft";
+    let rules = Rules { known: &known, required: &required, is_measured: Some(&measured), example };
+    let (sheet, problems) = sheet::read(file, bytes, &rules);
+    (sheet, problems.finish())
 }
 
 /// Names of the measured columns of a sheet, and their indices.

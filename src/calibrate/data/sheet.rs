@@ -1,13 +1,14 @@
 //! A CSV file of numbers and words in known columns.
 
-use crate::config::{Bound, Place, Problem};
+use super::points::SD;
+use crate::config::{Bound, Place, Problem, unit_of};
 use crate::cycle::problems::{Complaint, Line, Problems};
 use crate::cycle::text::{Field, split};
 
 /// What a column may hold.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Column {
-    /// Name.
+    /// Name; empty for a column that nobody knows.
     pub name: String,
     /// Range of numbers, in the unit of the name; none for words.
     pub range: Option<Bound>,
@@ -24,6 +25,8 @@ pub(crate) enum Cell {
     Word(String),
     /// Nothing.
     Empty,
+    /// Something that was complained of.
+    Bad,
 }
 
 /// One row.
@@ -62,6 +65,12 @@ impl Sheet {
         }
     }
 
+    /// Whether a cell was complained of.
+    pub fn is_bad(&self, row: usize, column: Option<usize>) -> bool {
+        let cell = column.and_then(|k| self.rows.get(row)?.cells.get(k));
+        matches!(cell, Some((Cell::Bad, ..)))
+    }
+
     /// The word of a cell; empty where there is none.
     pub fn word(&self, row: usize, column: Option<usize>) -> &str {
         match column.and_then(|k| self.rows.get(row).and_then(|row| row.cells.get(k))) {
@@ -90,36 +99,38 @@ impl Sheet {
     }
 }
 
+/// What a sort of file has to look like.
+pub(crate) struct Rules<'r> {
+    /// What a column of a name may hold.
+    pub known: &'r dyn Fn(&str) -> Result<Column, Complaint>,
+    /// Columns that have to be there.
+    pub required: &'r [&'r str],
+    /// Which columns are measured; none where rows say what was measured.
+    pub is_measured: Option<&'r dyn Fn(&str) -> bool>,
+    /// One of these columns.
+    pub example: &'static str,
+}
+
 /// Longest line of which the text is kept for carets.
 const LONGEST_KEPT: usize = 300;
 
-/// Reads a file; `known` says what a column of a name may hold, `required` which have to be there.
-///
-/// # Errors
-/// All problems with line, column and value; after 50 the rest is counted in one last entry.
-pub(crate) fn read(
-    file: &str,
-    bytes: &[u8],
-    known: &dyn Fn(&str) -> Result<Column, Complaint>,
-    required: &[&str],
-) -> Result<Sheet, Vec<Problem>> {
+/// Reads a file and all its problems, with line, column and value; after 50 the rest is counted. What can be understood of a bad file is
+/// given, so that more can be said of it; no sheet where that is nothing.
+pub(crate) fn read<'f>(file: &'f str, bytes: &[u8], rules: &Rules) -> (Option<Sheet>, Problems<'f>) {
     let mut problems = Problems::new(file);
-    let Some(mut lines) = problems.lines(bytes) else {
-        return Err(problems.finish());
-    };
-    let Some(columns) = lines.next().and_then(|line| header(line, known, required, &mut problems)) else {
-        if problems.is_empty() {
-            problems.file(Complaint::new("the file is empty", "a line of column names, then rows", "was it cut off?"));
-        }
-        return Err(problems.finish());
-    };
+    if std::str::from_utf8(bytes).is_ok_and(|text| text.trim_start_matches('\u{feff}').trim().is_empty()) {
+        problems.file(Complaint::new("the file is empty", "a line of column names, then a row for every measurement", "was it cut off?"));
+        return (None, problems);
+    }
+    let Some(mut lines) = problems.lines(bytes) else { return (None, problems) };
+    let Some(columns) = lines.next().and_then(|line| header(line, rules, &mut problems)) else { return (None, problems) };
     let mut rows = Vec::new();
     let mut fields = Vec::new();
     for line in lines {
         if problems.split(line, columns.len(), &mut fields) {
             let cells = fields.iter().zip(&columns).map(|(field, column)| match column {
                 Some(column) => (cell(line, *field, column, &mut problems), start(line, *field), field.text.chars().count().max(1)),
-                None => (Cell::Empty, 1, 1),
+                None => (Cell::Bad, 1, 1),
             });
             let text = if line.text.len() <= LONGEST_KEPT { line.text.to_owned() } else { String::new() };
             rows.push(Row { line: line.number, text, cells: cells.collect() });
@@ -128,10 +139,8 @@ pub(crate) fn read(
     if rows.is_empty() && problems.is_empty() {
         problems.file(Complaint::new("the file has column names and no rows", "a row for every measurement", "add the rows"));
     }
-    if !problems.is_empty() {
-        return Err(problems.finish());
-    }
-    Ok(Sheet { file: file.to_owned(), columns: columns.into_iter().flatten().collect(), rows })
+    let columns = columns.into_iter().map(Option::unwrap_or_default).collect();
+    (Some(Sheet { file: file.to_owned(), columns, rows }), problems)
 }
 
 fn start(line: Line, field: Field) -> usize {
@@ -139,12 +148,7 @@ fn start(line: Line, field: Field) -> usize {
 }
 
 /// The columns; none where the lines below cannot be understood, none in place of a column that nobody knows.
-fn header(
-    line: Line,
-    known: &dyn Fn(&str) -> Result<Column, Complaint>,
-    required: &[&str],
-    problems: &mut Problems,
-) -> Option<Vec<Option<Column>>> {
+fn header(line: Line, rules: &Rules, problems: &mut Problems) -> Option<Vec<Option<Column>>> {
     if !problems.is_table(line) {
         return None;
     }
@@ -154,8 +158,8 @@ fn header(
         return None;
     }
     let mut columns: Vec<Option<Column>> = Vec::new();
-    for field in fields {
-        let found = known(field.text);
+    for field in &fields {
+        let (field, found) = (*field, (rules.known)(field.text));
         match &found {
             Err(complaint) => problems.value(line, field, field.text, || complaint.clone()),
             Ok(_) if columns.iter().flatten().any(|column| column.name == field.text) => problems.value(line, field, field.text, || {
@@ -165,11 +169,25 @@ fn header(
         }
         columns.push(found.ok());
     }
-    for name in required {
-        // A name that is not known may be the misspelt one.
-        if columns.iter().all(|column| column.as_ref().is_some_and(|column| column.name != *name)) {
+    // A name that is not known may be the misspelt one.
+    let none = |is: &dyn Fn(&str) -> bool| columns.iter().all(|column| column.as_ref().is_some_and(|column| !is(&column.name)));
+    for name in rules.required {
+        if none(&|column| column == *name) {
             let message = format!("a column {name} is missing");
             problems.line(line, name, || Complaint::new(message, "", "add it; the unit is in the name"));
+        }
+    }
+    if let Some(is_measured) = rules.is_measured {
+        if none(is_measured) {
+            let hint = format!("add what was measured, for example {}", rules.example);
+            problems.line(line, "", || Complaint::new("no column was measured", "", hint));
+        }
+        for (field, column) in fields.iter().zip(&columns) {
+            let of = column.as_ref().and_then(|column| column.name.strip_prefix(SD));
+            if let Some(of) = of.filter(|of| none(&|column| column == *of)) {
+                let message = format!("this column stands without a column {of}");
+                problems.value(line, *field, field.text, || Complaint::new(message, "", format!("add the measured {of}, or remove it")));
+            }
         }
     }
     Some(columns)
@@ -184,17 +202,18 @@ fn cell(line: Line, field: Field, column: &Column, problems: &mut Problems) -> C
             problems
                 .value(line, field, &column.name, || Complaint::new("the value is missing", "a word", "fill the gap or remove the row"));
         }
-        return Cell::Word(field.text.to_owned());
+        return if field.text.is_empty() { Cell::Bad } else { Cell::Word(field.text.to_owned()) };
     };
     let (message, hint) = match field.text.parse::<f64>() {
         // turns -0 into 0
         Ok(x) if range.contains(x) => return Cell::Number(x + 0.0),
         Ok(x) if x.is_finite() => ("this value is out of range", "the unit is in the column's name"),
-        Ok(_) => ("this is not a finite number", "leave the cell empty where nothing was measured"),
+        Ok(_) if column.may_be_empty => ("this is not a finite number", "leave the cell empty where nothing was measured"),
+        Ok(_) => ("this is not a finite number", "remove the row where nothing was measured"),
         Err(_) if field.text.is_empty() => ("the value is missing", "fill the gap or remove the row"),
         Err(_) if field.text.contains(',') => ("this is not a number", "write a decimal point: 12.5 and not 12,5"),
         Err(_) => ("this is not a number", "write the bare number; the unit is in the column's name"),
     };
-    problems.value(line, field, &column.name, || Complaint::new(message, range.to_string(), hint));
-    Cell::Empty
+    problems.value(line, field, &column.name, || Complaint::new(message, range.in_unit(unit_of(&column.name)), hint));
+    Cell::Bad
 }

@@ -1,7 +1,7 @@
 //! A CSV file of measured traces: `time_s` and columns of the computed trace by their names.
 
 use super::points::SD;
-use super::sheet::{self, Column, Sheet};
+use super::sheet::{self, Column, Rules, Sheet};
 use super::unknown;
 use crate::config::{Bound, Problem};
 use crate::cycle::problems::Complaint;
@@ -9,11 +9,12 @@ use crate::cycle::problems::Complaint;
 /// Name of the column of times.
 pub(crate) const TIME: &str = "time_s";
 
-/// Reads a trace of which the columns `known` can be computed.
-///
-/// # Errors
-/// All problems of the file; times that do not rise.
-pub(crate) fn read(file: &str, bytes: &[u8], computed: &[&'static str]) -> Result<Sheet, Vec<Problem>> {
+/// So many columns can be told one by one.
+const FEW: usize = 40;
+
+/// Reads a trace, of which the columns `computed` can be computed, as far as it can be understood, and all problems of the file: also times
+/// that do not rise.
+pub(crate) fn read(file: &str, bytes: &[u8], computed: &[&'static str]) -> (Option<Sheet>, Vec<Problem>) {
     let known = |name: &str| {
         let column = |range, may_be_empty| Ok(Column { name: name.to_owned(), range: Some(range), may_be_empty });
         if name == TIME {
@@ -27,38 +28,41 @@ pub(crate) fn read(file: &str, bytes: &[u8], computed: &[&'static str]) -> Resul
             return column(range, true);
         }
         let columns: Vec<&str> = computed.iter().copied().filter(|name| name.contains('_')).collect();
-        Err(unknown(measured, &columns, "time_s and columns of the trace: `cvtcycle explain COLUMN`"))
+        let few = columns.len() <= FEW;
+        let what = if few { columns.join(", ") } else { "time_s and columns of the trace: `cvtcycle explain COLUMN`".to_owned() };
+        Err(unknown(measured, &columns, &what))
     };
-    let sheet = sheet::read(file, bytes, &known, &[TIME])?;
-    let time = sheet.find(TIME).unwrap_or(0);
-    let mut problems = Vec::new();
-    for row in 1..sheet.rows.len() {
-        let (before, now) = (sheet.number(row - 1, Some(time)), sheet.number(row, Some(time)));
-        if before >= now {
-            let allowed = format!("above {}", before.unwrap_or_default());
-            problems.push(sheet.problem(
-                row,
-                time,
-                Complaint::new("the time does not rise", allowed, "sort the rows, remove repeated ones"),
-            ));
+    let rules = Rules { known: &known, required: &[TIME], is_measured: Some(&is_measured), example: "transmission_sump_degc" };
+    let (sheet, mut problems) = sheet::read(file, bytes, &rules);
+    if let Some(sheet) = &sheet
+        && let Some(time) = sheet.find(TIME)
+    {
+        let given: Vec<(usize, f64)> = (0..sheet.rows.len()).filter_map(|row| Some((row, sheet.number(row, Some(time))?))).collect();
+        let falls: Vec<&[(usize, f64)]> = given.windows(2).filter(|pair| pair[0].1 >= pair[1].1).collect();
+        if let Some([(_, before), (row, _)]) = falls.first() {
+            let message = format!("the time does not rise{}", and_more(falls.len()));
+            let complaint = Complaint::new(message, format!("above {before} s"), "sort the rows, remove repeated ones");
+            problems.add(sheet.problem(*row, time, complaint));
         }
     }
-    if measured(&sheet).is_empty() {
-        problems.push(sheet.problem(0, time, Complaint::new("no column was measured", "", "add, for example, transmission_sump_degc")));
+    (sheet, problems.finish())
+}
+
+/// Words for the rows beyond the first one of which the same is to be said.
+pub(crate) fn and_more(rows: usize) -> String {
+    match rows {
+        0 | 1 => String::new(),
+        2 => ", nor is it right in 1 more row".to_owned(),
+        _ => format!(", nor is it right in {} more rows", rows - 1),
     }
-    for (k, column) in sheet.columns.iter().enumerate() {
-        if let Some(of) = column.name.strip_prefix(SD)
-            && sheet.find(of).is_none()
-        {
-            let message = format!("{} stands without a column {of}", column.name);
-            problems.push(sheet.problem(0, k, Complaint::new(message, "", "add the measured column")));
-        }
-    }
-    if problems.is_empty() { Ok(sheet) } else { Err(problems) }
+}
+
+fn is_measured(name: &str) -> bool {
+    !name.is_empty() && name != TIME && !name.starts_with(SD)
 }
 
 /// Names of the measured columns of a sheet, and their indices.
 pub(crate) fn measured(sheet: &Sheet) -> Vec<(usize, &str)> {
     let named = sheet.columns.iter().enumerate().map(|(k, column)| (k, column.name.as_str()));
-    named.filter(|(_, name)| *name != TIME && !name.starts_with(SD)).collect()
+    named.filter(|(_, name)| is_measured(name)).collect()
 }

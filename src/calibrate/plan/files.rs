@@ -28,6 +28,8 @@ pub(super) struct Made {
 pub(super) fn read(s: &Section, way: &str, around: &Around, found: &mut Found) {
     let word = s.text(way, "CSV file, relative to the plan");
     if word.is_empty() {
+        // What else stands here is not looked at.
+        s.names().into_iter().for_each(|key| drop(s.written(key, "", "")));
         return;
     }
     let folder = std::path::Path::new(around.file).parent().unwrap_or(std::path::Path::new(""));
@@ -35,10 +37,14 @@ pub(super) fn read(s: &Section, way: &str, around: &Around, found: &mut Found) {
     let bytes = match bytes_of(&path, &s.place(way), way) {
         Ok(bytes) => bytes,
         Err(problems) => {
-            // Keys that would be read are no strangers.
-            source_of(s, way, around);
-            let _ = (sds(s), s.texts("set", ""), s.has("without"));
-            return report(s, problems);
+            report(s, problems);
+            // The keys are read all the same: they may be wrong, too, and are no strangers.
+            match way {
+                "points" => drop((sds(s), bench_of(s), fold_by(s))),
+                "trace" => drop((sds(s), apart_s(s), source_of(s, way, around))),
+                _ => drop(source_of(s, way, around)),
+            }
+            return;
         }
     };
     found.made.files.push((path.clone(), format!("{:x}", HexOf(Sha256::digest(&bytes).as_slice()))));
@@ -88,15 +94,20 @@ impl Deviations {
 
     /// Reports columns without one, and names of the plan that no column has.
     fn check(&self, s: &Section, sheet: &Sheet, measured: &[(usize, &str)]) {
+        // A column that nobody knows, told already, may be the one that is meant.
+        let strange = sheet.columns.iter().any(|column| column.name.is_empty());
         for (name, _) in &self.given {
-            if !name.is_empty() && !measured.iter().any(|(_, column)| column == name) {
+            if !strange && !name.is_empty() && !measured.iter().any(|(_, column)| column == name) {
                 let close = near(name, measured.iter().map(|(_, column)| *column));
                 let hint = if close.is_empty() { "remove it".to_owned() } else { format!("did you mean {}?", close.join(" or ")) };
                 s.table("sd_by_column").complain(name, "measured columns of the file", &format!("the file measures no `{name}`"), &hint);
             }
         }
         for (k, name) in measured {
-            let without = (0..sheet.rows.len()).find(|row| sheet.number(*row, Some(*k)).is_some() && self.of(sheet, *row, name).is_none());
+            let beside = sheet.find(&format!("{SD}{name}"));
+            let lacks =
+                |row: &usize| sheet.number(*row, Some(*k)).is_some() && !sheet.is_bad(*row, beside) && self.of(sheet, *row, name).is_none();
+            let without = (0..sheet.rows.len()).find(lacks);
             if let Some(row) = without {
                 let message = format!("{name} has no standard deviation here");
                 let hint = format!("add a column {SD}{name}, or `sd` to the [[data]] of the plan");
@@ -106,8 +117,8 @@ impl Deviations {
     }
 }
 
-fn of_points(s: &Section, path: &str, bytes: &[u8], found: &mut Found) {
-    let deviations = Deviations { given: sds(s) };
+/// What stands on the bench.
+fn bench_of(s: &Section) -> Source {
     let mut own = source::empty("points", Kind::Bench);
     own.place = s.place("points");
     own.lubricant = s.optional_text("lubricant", "transmission oil in place of the vehicle's");
@@ -116,17 +127,25 @@ fn of_points(s: &Section, path: &str, bytes: &[u8], found: &mut Found) {
     for part in own.without.iter().filter(|part| !PARTS.contains(&part.as_str())) {
         s.complain("without", &PARTS.join(", "), &format!("there is no part `{part}`"), "");
     }
-    let fold_by = s.optional_text("fold_by", "column whose values divide the points into folds");
-    let sheet = match points::read(path, bytes) {
-        Ok(sheet) => sheet,
-        Err(problems) => return report(s, problems),
-    };
+    own
+}
+
+fn fold_by(s: &Section) -> Option<String> {
+    s.optional_text("fold_by", "column whose values divide the points into folds")
+}
+
+fn of_points(s: &Section, path: &str, bytes: &[u8], found: &mut Found) {
+    let deviations = Deviations { given: sds(s) };
+    let (own, fold_by) = (bench_of(s), fold_by(s));
+    let (sheet, problems) = points::read(path, bytes);
+    report(s, problems);
+    let Some(sheet) = sheet else { return };
     let measured = points::measured(&sheet);
     deviations.check(s, &sheet, &measured);
     let fold_column = fold_by.as_deref().map(|name| (name, sheet.find(name)));
     if let Some((name, None)) = fold_column {
-        let columns: Vec<&str> = sheet.columns.iter().map(|column| column.name.as_str()).collect();
-        s.complain("fold_by", &columns.join(", "), &format!("the file has no column `{name}`"), "");
+        let columns: Vec<&str> = sheet.columns.iter().map(|column| column.name.as_str()).filter(|name| !name.is_empty()).collect();
+        s.complain("fold_by", &columns.join(", "), &format!("the file has no column `{name}`"), "name one of the file's columns");
     }
     let names = tables::bench::columns();
     for row in 0..sheet.rows.len() {
@@ -177,36 +196,38 @@ fn source_of(s: &Section, way: &str, around: &Around) -> Option<Source> {
         };
         s.complain("source", &all.join(", "), &format!("there is no such source `{name}` for a {way} file"), &hint);
     }
+    if let Some(source) = source.filter(|source| source.kind == Kind::Transient)
+        && let Some(count) = source.axis_or_none("ratio").map(|list| list.len()).filter(|count| *count > 1)
+    {
+        let message = format!("source `{name}` is {count} tests, one at each ratio");
+        s.complain("source", "a source of one test", &message, "write a source with one `ratio`, continuing it with `like`");
+        return None;
+    }
     source.cloned()
 }
 
 fn of_trace(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found: &mut Found) {
     let deviations = Deviations { given: sds(s) };
-    let apart_s = s.number_or(
-        "independent_every_s",
-        Bound::closed(0.0, 1e5),
-        INDEPENDENT_S,
-        "time after which two values of a trace are independent",
-    );
-    let Some(source) = source_of(s, "trace", around) else { return };
-    let names = tables::columns(source.kind, false);
-    let sheet = match trace::read(path, bytes, &names) {
-        Ok(sheet) => sheet,
-        Err(problems) => return report(s, problems),
-    };
+    let apart_s = apart_s(s);
+    let source = source_of(s, "trace", around);
+    // Without a source a column of any is as good as known.
+    let kinds = source.as_ref().map_or(vec![Kind::Run, Kind::Transient], |source| vec![source.kind]);
+    let names: Vec<&'static str> = kinds.into_iter().flat_map(|kind| tables::columns(kind, false)).collect();
+    let (sheet, problems) = trace::read(path, bytes, &names);
+    report(s, problems);
+    let Some(sheet) = sheet else { return };
     let measured = trace::measured(&sheet);
     deviations.check(s, &sheet, &measured);
     let time = sheet.find(trace::TIME);
     let at = |row: usize| sheet.number(row, time).unwrap_or(f64::NAN);
-    let duration_s = at(sheet.rows.len() - 1) - at(0);
+    let duration_s = at(sheet.rows.len().saturating_sub(1)) - at(0);
+    let Some(source) = source else { return };
     if let Some(end_s) = end_of(&source) {
-        for row in (0..sheet.rows.len()).filter(|row| at(*row) > end_s) {
-            let message = "this time is beyond the end of the cycle";
-            s.report_problem(sheet.problem(
-                row,
-                time.unwrap_or(0),
-                Complaint::new(message, format!("up to {end_s} s"), "cut the trace, or name another cycle"),
-            ));
+        let late: Vec<usize> = (0..sheet.rows.len()).filter(|row| at(*row) > end_s).collect();
+        if let Some(first) = late.first() {
+            let message = format!("this time is beyond the end of the cycle{}", trace::and_more(late.len()));
+            let hint = "cut the trace, or name the cycle that was driven";
+            s.report_problem(sheet.problem(*first, time.unwrap_or(0), Complaint::new(message, format!("up to {end_s} s"), hint)));
         }
     }
     for (k, name) in &measured {
@@ -233,6 +254,11 @@ fn of_trace(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found: &
     found.made.runs.push(source);
 }
 
+fn apart_s(s: &Section) -> f64 {
+    let doc = "time after which two values of a trace are independent";
+    s.number_or("independent_every_s", Bound::closed(0.0, 1e5), INDEPENDENT_S, doc)
+}
+
 /// End of a run's cycle, s.
 fn end_of(source: &Source) -> Option<f64> {
     if source.kind != Kind::Run {
@@ -243,14 +269,13 @@ fn end_of(source: &Source) -> Option<f64> {
 }
 
 fn of_scalars(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found: &mut Found) {
-    let Some(source) = source_of(s, "scalars", around) else { return };
-    let names = tables::columns(source.kind, true);
-    let phases: Vec<String> =
-        source::cycle(&source).map(|cycle| cycle.phase_groups().into_iter().map(|(name, _)| name).collect()).unwrap_or_default();
-    let sheet = match scalars::read(path, bytes, &names, &phases) {
-        Ok(sheet) => sheet,
-        Err(problems) => return report(s, problems),
-    };
+    let source = source_of(s, "scalars", around);
+    let names = tables::columns(Kind::Run, true);
+    let cycle = source.as_ref().and_then(|source| source::cycle(source).ok());
+    let phases = cycle.map(|cycle| cycle.phase_groups().into_iter().map(|(name, _)| name).collect::<Vec<String>>());
+    let (sheet, problems) = scalars::read(path, bytes, &names, phases.as_deref());
+    report(s, problems);
+    let (Some(source), Some(sheet)) = (source, sheet) else { return };
     let find = |name: &str| sheet.find(name);
     for row in 0..sheet.rows.len() {
         let (quantity, phase) = (sheet.word(row, find("quantity")).to_owned(), sheet.word(row, find("phase")).to_owned());

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::files::{self, Made};
-use super::{Group, Measured, Observation, What};
+use super::{Group, Measured, Observation, What, at_item, problem};
 use crate::config::{Bound, Document, Place, Problem, Reader, Section, near};
 use crate::validate::expr::{Expr, Gives, parse};
 use crate::validate::names::FileNames;
@@ -55,13 +55,31 @@ pub(super) fn read(document: &Document, around: &Around) -> Result<Found, Vec<Pr
         ["rows"] => rows(&s, around, &mut found),
         ["compute"] => statement(&s, around, &mut found),
         [way] => files::read(&s, way, around, &mut found),
-        [] => s.complain("", &WAYS.join(", "), "the group has no data", "give `rows`, `compute`, `points`, `trace` or `scalars`"),
-        [.., last] => s.complain(last, "one of them", &format!("{} stand together", ways.join(" and ")), "make a [[data]] of each"),
+        [] => {
+            let hint = "give `rows`, `compute`, `points`, `trace` or `scalars`";
+            s.report_problem(problem(&s.place("rows"), "", &WAYS.join(", "), "the group has no data".to_owned(), hint));
+        }
+        [.., last] => {
+            s.complain(last, "one of them", &format!("{} stand together", ways.join(" and ")), "write a [[data]] for each");
+            // Which keys belong to it is not known.
+            s.names().into_iter().for_each(|key| drop(s.written(key, "", "")));
+        }
     }
     if found.folds.is_empty() {
         found.folds = vec![fold; found.observations.len()];
     }
+    let place = s.place(ways.first().copied().unwrap_or_default());
     match reader.finish() {
+        Ok(_) if found.observations.is_empty() => {
+            let hint = match ways[0] {
+                "rows" => "name at least one row; `cvtcycle validate` lists them",
+                "compute" => "write an expression over the sources; docs/validation_format.md",
+                _ => "name a CSV file, relative to the plan, and fill the cells of what was measured",
+            };
+            let message = "there is no measured number in it".to_owned();
+            let nothing = problem(&place, ways[0], "at least one measured number", message, hint);
+            Err(vec![told(nothing, &name, around.file)])
+        }
         Ok(_) => Ok(found),
         Err(problems) => Err(problems.into_iter().map(|p| told(p, &name, around.file)).collect()),
     }
@@ -84,11 +102,24 @@ fn told(problem: Problem, name: &str, plan: &str) -> Problem {
 fn sd_of(s: &Section) -> impl Fn(f64) -> f64 {
     let absolute = s.optional_number("sd", Bound::positive(), "standard deviation, in the unit of the data");
     let share = s.optional_number("sd_share", Bound::positive(), "standard deviation as a share of the measured number");
-    if absolute.is_some() == share.is_some() {
-        let message = if share.is_some() { "`sd` beside `sd_share`" } else { "the data have no standard deviation" };
-        s.complain("sd", "`sd` or `sd_share`", message, "how far may a repeated measurement be off? give that as `sd`");
+    match (absolute, share) {
+        (Some(_), Some(_)) => s.complain("sd_share", "`sd` or `sd_share`", "`sd` beside `sd_share`", "keep one of them"),
+        (None, None) => {
+            let hint = "how far may a repeated measurement be off? give that as `sd`";
+            s.complain("sd", "`sd` or `sd_share`", "the data have no standard deviation", hint);
+        }
+        _ => {}
     }
     move |x: f64| absolute.or(share.map(|share| share * x.abs())).unwrap_or(f64::NAN)
+}
+
+/// Reports a share of a number of 0, which leaves no standard deviation.
+fn share_of_nothing(s: &Section, what: &str, size: f64) {
+    // Just 0: a small number has a small deviation, as was asked for.
+    if s.has("sd_share") && size.abs() < f64::MIN_POSITIVE {
+        let message = format!("{what} is 0, or a range about 0: no share of it is a standard deviation");
+        s.complain("sd_share", "for numbers other than 0", &message, "give `sd` in the unit of the data");
+    }
 }
 
 /// Printed numbers of the program's own validation rows.
@@ -97,7 +128,11 @@ fn rows(s: &Section, around: &Around, found: &mut Found) {
     let sd = sd_of(s);
     let all = || around.rows.iter().flat_map(|file| file.rows.iter().map(move |row| (file, row)));
     for id in ids {
-        let complain = |message: String, hint: &str| s.complain("rows", "rows that compute a number", &message, hint);
+        let place = at_item(s.place("rows"), &format!("{id:?}"));
+        let complain = |message: String, hint: &str| {
+            let value = format!("{id:?}");
+            s.report_problem(Problem { value, ..problem(&place, "rows", "rows that compute a number", message, hint) });
+        };
         let Some((file, row)) = all().find(|(_, row)| row.id == id) else {
             let close = near(&id, all().map(|(_, row)| row.id.as_str()));
             let hint = if close.is_empty() {
@@ -132,9 +167,10 @@ fn rows(s: &Section, around: &Around, found: &mut Found) {
         } else {
             high
         };
+        share_of_nothing(s, &format!("row {id}"), size);
         found.views.push(Some(file.sources.clone()));
         let view = found.views.len() - 1;
-        let about = About { label: id.clone(), what: row.what.clone(), unit: row.unit.clone(), place: s.place("rows") };
+        let about = About { label: id.clone(), what: row.what.clone(), unit: row.unit.clone(), place };
         found.observations.push(observation(about, measured, sd(size), What::Expression { view, expr: Arc::new(expr.clone()) }));
         found.rows.push(id);
     }
@@ -158,7 +194,7 @@ pub(super) fn observation(about: About, measured: Measured, sd: f64, what_comput
 fn statement(s: &Section, around: &Around, found: &mut Found) {
     let text = s.text("compute", "expression over the sources; docs/validation_format.md");
     let unit = s.text_or("unit", "-", "unit of measured and computed numbers");
-    let what = s.text_or("what", "", "what it is");
+    let meaning = s.text_or("what", "", "what it is");
     let any = Bound::any();
     let value = s.optional_number("value", any, "measured number");
     let (low, high) = (s.optional_number("low", any, "least measured number"), s.optional_number("high", any, "largest measured number"));
@@ -192,6 +228,7 @@ fn statement(s: &Section, around: &Around, found: &mut Found) {
         }
     };
     let sd = sd_of(s)(size);
+    share_of_nothing(s, "the number", size);
     let Some(expr) = expression(s, &text, around) else { return };
     if expr.gives() != Gives::Number {
         let hint = "write a range as `min(...)` and `max(...)`, an order as a difference with `low = 0`";
@@ -200,7 +237,7 @@ fn statement(s: &Section, around: &Around, found: &mut Found) {
     }
     found.views.push(None);
     let label = s.text_or("name", "", "name of the group");
-    let about = About { label, what, unit, place: s.place("compute") };
+    let about = About { label, what: meaning, unit, place: s.place("compute") };
     found.observations.push(observation(about, measured, sd, What::Expression { view: 0, expr: Arc::new(expr) }));
 }
 

@@ -19,7 +19,7 @@ use crate::rig::BenchPoint;
 use crate::validate::expr::Expr;
 use crate::validate::source::Source;
 
-pub use read::{load, read};
+pub use read::{gather, load, read};
 
 /// How the search is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +55,8 @@ pub struct Free {
     pub source: String,
     /// Where its key stands.
     pub place: Place,
+    /// Where its bounds stand.
+    pub bounds: [Place; 2],
 }
 
 /// A group of data: one `[[data]]`.
@@ -205,6 +207,17 @@ pub struct Plan {
     pub files: Vec<(String, String)>,
     /// Place of the head.
     pub place: Place,
+    /// Where vehicle, transmission oil, engine oil and overrides stand; the head's where they are not given.
+    pub places: [Place; 4],
+}
+
+/// A place narrowed to a text in its line, such as an item of a list; unchanged where that stands elsewhere.
+pub(crate) fn at_item(mut place: Place, text: &str) -> Place {
+    if let Some(at) = place.line_text.find(text).filter(|_| !text.is_empty()) {
+        place.column = place.line_text[..at].chars().count() + 1;
+        place.width = text.chars().count();
+    }
+    place
 }
 
 /// A problem of a plan at a place.

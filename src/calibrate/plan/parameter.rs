@@ -31,7 +31,7 @@ pub(super) fn read(document: &Document) -> Result<Free, Vec<Problem>> {
     let start = s.optional_number("start", any, "first value; that of the file if absent");
     let inside = |x: f64| low <= x && x <= high;
     if start.is_some_and(|x| !inside(x) && low < high && x.is_finite()) {
-        s.complain("start", &format!("{low} to {high}"), "`start` is outside the bounds", "");
+        s.complain("start", &format!("{low} to {high}"), "`start` is outside the bounds", "move it, or widen the bounds");
     }
     let prior = prior(&s);
     let status = s.word_or("status", &STATUSES.map(|word| word), "assumed", "how the prior is known").to_owned();
@@ -40,7 +40,8 @@ pub(super) fn read(document: &Document) -> Result<Free, Vec<Problem>> {
     }
     let source = s.text_or("source", "", "reason or reference for bounds and prior");
     let status = if prior.is_some() { status } else { String::new() };
-    let free = Free { low, high, start, prior, status, source, place: s.place("key"), key };
+    let free =
+        Free { low, high, start, prior, status, source, place: s.place("key"), bounds: ["low", "high"].map(|key| s.place(key)), key };
     reader.finish().map(|_| free.clone()).map_err(|problems| {
         let of = if free.key.is_empty() { String::new() } else { format!("parameter {}: ", free.key) };
         let hint = |p: &Problem| p.hint.replace("the top of the file", "its [[parameter]]");

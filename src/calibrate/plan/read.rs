@@ -17,6 +17,18 @@ const MOST_STARTS: i64 = 1000;
 /// # Errors
 /// Unknown name, unreadable path, and all problems of the file and of the data that it names.
 pub fn load(word: &str, option: &str) -> Result<Plan, Vec<Problem>> {
+    sound(gather(word, option)?)
+}
+
+fn sound((plan, problems): (Plan, Vec<Problem>)) -> Result<Plan, Vec<Problem>> {
+    if problems.is_empty() { Ok(plan) } else { Err(problems) }
+}
+
+/// As [`load`], but what can be understood of a bad plan is given beside its problems, so that more can be said of it.
+///
+/// # Errors
+/// What leaves nothing to be understood: an unknown name, an unreadable path, a text that is no TOML.
+pub fn gather(word: &str, option: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> {
     let wrong = |allowed: String, message: String, hint: String| {
         let place = Place { file: option.to_owned(), ..Place::default() };
         vec![Problem { place, key: option.to_owned(), value: word.to_owned(), allowed, message, hint }]
@@ -25,10 +37,10 @@ pub fn load(word: &str, option: &str) -> Result<Plan, Vec<Problem>> {
         let bytes = std::fs::read(word).map_err(|error| {
             wrong("a readable file".into(), format!("cannot read `{word}`: {error}"), "check the path and its permissions".into())
         })?;
-        return read(word, &decode(word, &bytes)?);
+        return partly(word, &decode(word, &bytes)?);
     }
     if let Some((name, text)) = embedded_calibrations().iter().find(|(name, _)| *name == word) {
-        return read(&format!("embedded:{name}.toml"), text);
+        return partly(&format!("embedded:{name}.toml"), text);
     }
     let names: Vec<&str> = embedded_calibrations().iter().map(|(name, _)| *name).collect();
     let close = near(word, names.iter().copied());
@@ -45,6 +57,10 @@ pub fn load(word: &str, option: &str) -> Result<Plan, Vec<Problem>> {
 /// # Errors
 /// All problems of all of them.
 pub fn read(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
+    sound(partly(file, text)?)
+}
+
+fn partly(file: &str, text: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> {
     let mut document = Document::parse(file, text)?;
     let (parameters, data) = (document.take_tables("parameter"), document.take_tables("data"));
     let rows = crate::validate::read(COMMON, &embedded_rows().iter().map(|(n, t)| ((*n).to_owned(), (*t).to_owned())).collect::<Vec<_>>())?;
@@ -55,7 +71,16 @@ pub fn read(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
     let mut sources = source::read(&root.table("sources"), &common);
     sources.extend(common);
     let mut plan = head_of(&head, file, text);
+    let exists = head.exists();
     let mut problems: Vec<Problem> = reader.finish().err().unwrap_or_default().into_iter().map(fitting).collect();
+    let hinted = |problems: &[Problem], word: &str| problems.iter().any(|problem| problem.hint.contains(word));
+    if !exists && !hinted(&problems, "[calibration]") {
+        let hint = "add [calibration] with the vehicle that is fitted";
+        problems.push(problem(&plan.place, "calibration", "a table", "the plan has no [calibration]".to_owned(), hint));
+    }
+    // What is written in another way is there all the same.
+    let parameters_written = parameters.len().max(usize::from(hinted(&problems, "[[parameter]]")));
+    let data_written = data.len().max(usize::from(hinted(&problems, "[[data]]")));
     for document in &parameters {
         match parameter::read(document) {
             Ok(free) => plan.parameters.push(free),
@@ -70,12 +95,17 @@ pub fn read(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
     for document in &data {
         match group::read(document, &around) {
             Ok(found) => join(&mut plan, found),
-            Err(mut found) => problems.append(&mut found),
+            // Two groups may name the same bad file.
+            Err(found) => found.into_iter().for_each(|problem| {
+                if !problems.contains(&problem) {
+                    problems.push(problem);
+                }
+            }),
         }
     }
     let sound = problems.is_empty();
-    problems.append(&mut clashes(&plan, [parameters.len(), data.len()], sound));
-    if problems.is_empty() { Ok(plan) } else { Err(problems) }
+    problems.append(&mut clashes(&plan, [parameters_written, data_written], sound));
+    Ok((plan, problems))
 }
 
 /// A path in a plan is relative to that plan.
@@ -122,6 +152,7 @@ fn head_of(s: &Section, file: &str, text: &str) -> Plan {
         rows: Vec::new(),
         files: Vec::new(),
         place: s.place(""),
+        places: ["vehicle", "lubricant", "engine_oil", "set"].map(|key| s.place(key)),
     }
 }
 
@@ -132,10 +163,14 @@ fn stem(file: &str) -> String {
 
 /// A problem without hints that fit vehicle files only.
 fn fitting(problem: Problem) -> Problem {
-    let hint = match problem.key.as_str() {
-        "parameter" => "parameters are written as [[parameter]]".to_owned(),
-        "data" => "data are written as [[data]]".to_owned(),
-        _ => problem.hint.split_once(", or choose with --set").map_or(problem.hint.clone(), |(hint, _)| hint.to_owned()),
+    const TABLES: [(&str, &str); 4] =
+        [("calibration", "[calibration]"), ("sources", "[sources.NAME]"), ("parameter", "[[parameter]]"), ("data", "[[data]]")];
+    let meant = near(&problem.key, TABLES.iter().map(|(key, _)| *key)).first().copied().unwrap_or(problem.key.as_str());
+    let table = TABLES.iter().find(|(key, _)| *key == meant && problem.message.starts_with("unknown"));
+    let hint = match table {
+        Some((key, header)) if *key == problem.key => format!("it is written as {header}"),
+        Some((_, header)) => format!("did you mean {header}?"),
+        None => problem.hint.split_once(", or choose with --set").map_or(problem.hint.clone(), |(hint, _)| hint.to_owned()),
     };
     Problem { hint, ..problem }
 }
@@ -213,26 +248,29 @@ fn clashes(plan: &Plan, [parameters, groups]: [usize; 2], sound: bool) -> Vec<Pr
     for (k, group) in plan.groups.iter().enumerate() {
         if let Some(first) = plan.groups[..k].iter().find(|other| other.name == group.name) {
             let message = format!("the name `{}` was used before, by the data in line {}", group.name, first.place.line);
-            problems.push(problem(&group.place, "name", "", message, "names are unique"));
+            problems.push(problem(&group.place, "name", "", message, "give each [[data]] a `name` of its own"));
         }
     }
     for (k, id) in plan.rows.iter().enumerate() {
         if plan.rows[..k].contains(id) {
-            problems.push(problem(&plan.place, "rows", "", format!("row {id} is used by two groups"), "a number counts once"));
+            // Observations of rows bear their identifiers.
+            let place = plan.observations.iter().rfind(|o| o.label == *id).map_or(&plan.place, |o| &o.place);
+            let hint = "a number counts once: remove it from one of them";
+            problems.push(problem(place, "rows", "", format!("row {id} is used by two groups"), hint));
         }
     }
     // Too few data to say anything, with all that is known beside them.
     let known = plan.observations.len() + plan.parameters.iter().filter(|free| free.prior.is_some()).count();
     if sound && groups > 0 && known < parameters {
         let message = format!(
-            "{} measured numbers and {} priors for {parameters} parameters",
+            "too few data: measured numbers {}, priors {}, parameters {parameters}",
             plan.observations.len(),
             known - plan.observations.len()
         );
         problems.push(problem(
             &plan.place,
             "data",
-            &format!("at least {parameters}"),
+            &format!("at least {parameters} measured numbers and priors together"),
             message,
             "hold some parameters, add data, or give priors",
         ));

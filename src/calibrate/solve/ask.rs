@@ -1,6 +1,6 @@
 //! The model, asked: evaluations are counted, answers checked, and a stop is obeyed.
 //!
-//! | label | statement | status |
+//! | label | statement | known from |
 //! |---|---|---|
 //! | CA-1 | an answer with another number of residuals, or a residual that is not finite, is no answer | ASSUMED |
 

@@ -1,6 +1,6 @@
 //! Bounds by transformation: a variable without bounds in place of each parameter.
 //!
-//! | label | statement | status |
+//! | label | statement | known from |
 //! |---|---|---|
 //! | CA-2 | x = low + (high - low) sin^2(u / 2); u = 2 asin(sqrt((x - low) / (high - low))) | source: sine transformation of MINUIT (James and Roos 1975, doi 10.1016/0010-4655(75)90039-9), shifted |
 //! | CA-3 | dx/du = (high - low) sin(u) / 2 | derived from CA-2 |

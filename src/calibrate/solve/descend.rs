@@ -1,6 +1,6 @@
 //! One start: down, to a bound or off it, down again.
 //!
-//! | label | statement | status |
+//! | label | statement | known from |
 //! |---|---|---|
 //! | CA-8 | after a descent: a value within 1e-3 of its range of a bound towards which the cost falls goes onto it if the cost does not rise; one within 1e-6 of a bound away from which it falls is moved inside by 0.01 of the range; then down again, at most 4 times | ASSUMED |
 //!

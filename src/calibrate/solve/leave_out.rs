@@ -1,6 +1,6 @@
 //! Fitted without a group of observations, compared with it: what a prediction is worth.
 //!
-//! | label | statement | status |
+//! | label | statement | known from |
 //! |---|---|---|
 //! | CA-19 | fold g: the fit to all residuals but those of group g, from the solution of all; then the residuals of group g at its values | source: cross-validation, Stone 1974 |
 

@@ -1,6 +1,6 @@
 //! Values, the model's answer there, and its cost.
 //!
-//! | label | statement | status |
+//! | label | statement | known from |
 //! |---|---|---|
 //! | CA-7 | cost = sum of r^2 + sum of ((x - mean) / sd)^2 over the parameters with a prior | derived: -2 log of the posterior density but for a constant |
 

@@ -1,6 +1,6 @@
 //! Derivatives of the residuals by differences, columns in parallel.
 //!
-//! | label | statement | status |
+//! | label | statement | known from |
 //! |---|---|---|
 //! | CA-5 | dr/dx = ((r1 - r0) d2 / d1 - (r2 - r0) d1 / d2) / (d2 - d1), r1 and r2 at x + d1, x + d2; offsets -h, h; where a bound or a failure is in the way h, 2 h or -h, -2 h; then the same with h / 10 | derived: slope of the parabola through three points |
 //! | CA-6 | h = 1e-3 S, S the least of high - low, 4 sd of the prior and, where the bounds have one sign, max(\|x\|, (high - low) / 100) | ASSUMED: with noise of 1e-9 of the residuals' scale, (3e-9)^(1/3) is best for central differences |

@@ -1,6 +1,6 @@
 //! Where the starts of a fit are.
 //!
-//! | label | statement | status |
+//! | label | statement | known from |
 //! |---|---|---|
 //! | CA-9 | the first start as given; of the n others each parameter takes one value from each n-th part of its region, in an order drawn for it; region: the bounds, or mean -+ 2 sd of the prior as far as it lies inside them | source: McKay, Beckman and Conover 1979, doi 10.2307/1268522; the region ASSUMED |
 

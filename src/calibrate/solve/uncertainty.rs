@@ -1,6 +1,6 @@
 //! What a fit is worth.
 //!
-//! | label | statement | status |
+//! | label | statement | known from |
 //! |---|---|---|
 //! | CA-10 | W = rows J diag(range) of the data and range / sd of the priors; W = U s V'; C = diag(range) V s^-2 V' diag(range) | source: linear Gaussian posterior, e.g. Tarantola 2005; standard deviations of the data are absolute, so C is not scaled by CA-13 |
 //! | CA-11 | a direction v is unknown where \|W v\| is at most 0.1, or where the data's part of it is at most 1e-6 of their largest singular value and the priors' part at most 0.1; a parameter with more than 1e-3 of itself in unknown directions has no variance | ASSUMED: a standard deviation of 10 ranges says nothing; 1e-6 is the error of CA-5 |

@@ -1,12 +1,12 @@
 //! What the data alone do not identify, in words.
 //!
-//! | label | statement | status |
+//! | label | statement | known from |
 //! |---|---|---|
 //! | CA-16 | columns scaled to relative changes: x dr/dx; where start or x is 0, by the range | ASSUMED |
 //! | CA-17 | W = U s V'; a direction v is unknown where s is at most 1e-6 of the largest, or where its standard deviation 1 / s changes a parameter by more than its value (if scaled by it) or its range | ASSUMED |
 //! | CA-18 | P = sum of v v' over unknown directions; parameters with P_kk > 0.05^2 that P_kl links (above 0.01) belong together; c of them with rank c - 1 of P leave one known combination w, the eigenvector of P of least eigenvalue: the product of x_k^w_k | derived: W w is the only change that the data see |
 //!
-//! | CA-20 | in a group of more than two, a pair whose columns of W have a cosine of 0.98 or more in size acts alike: w = their lengths, with the sign of the cosine | derived: seen by the data is only \|a\| dx_a/x_a +- \|b\| dx_b/x_b |
+//! | CA-20 | in a group that trades against each other, a pair whose columns of W have a cosine of 0.995 or more in size acts alike: w = their lengths, with the sign of the cosine | derived: seen by the data is only \|a\| dx_a/x_a +- \|b\| dx_b/x_b |
 //!
 //! A single unknown direction v = (1, -1) leaves w = (1, 1), a product; (1, 1) leaves (1, -1), a ratio. All is local: said of the solution, in the
 //! linear approximation there.
@@ -21,7 +21,7 @@ const LEAST_WEIGHT: f64 = 0.05;
 /// Least link between two (CA-18).
 const LEAST_LINK: f64 = 0.01;
 /// Least cosine of two that act alike (CA-20).
-const ALIKE: f64 = 0.98;
+const ALIKE: f64 = 0.995;
 /// Exponents this near to a whole one count as one.
 const WHOLE: f64 = 0.03;
 
@@ -66,8 +66,9 @@ pub fn words(fit: &Fit, parameters: &[Parameter]) -> Vec<String> {
             let names: Vec<&str> = group.iter().map(|&i| parameters[looked_at[i]].name.as_str()).collect();
             combined(&names, &block(&unknown.projector, &group), group.iter().all(|&i| relative[looked_at[i]]))
         };
+        let trades = sentence.contains("trade against");
         said.push((looked_at[group[0]], sentence));
-        if group.len() > 2 {
+        if group.len() > 2 && trades {
             let members: Vec<usize> = group.iter().map(|&i| looked_at[i]).filter(|&k| relative[k]).collect();
             said.extend(alike(fit, parameters, &members, &scales).into_iter().map(|sentence| (looked_at[group[0]], sentence)));
         }

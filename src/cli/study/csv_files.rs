@@ -4,20 +4,22 @@ use cvtcycle::study::statistics::{Estimate, QUANTILES};
 use cvtcycle::study::{Answer, Outline};
 
 /// A file in the making.
-struct Table {
+pub struct Table {
     writer: csv::Writer<Vec<u8>>,
     rows: usize,
 }
 
 impl Table {
-    fn new(heads: &[&str]) -> Self {
+    /// With its column names.
+    pub fn new(heads: &[&str]) -> Self {
         let mut table = Table { writer: csv::Writer::from_writer(Vec::new()), rows: 0 };
         table.row(heads.iter().map(|head| (*head).to_owned()).collect());
         table.rows = 0;
         table
     }
 
-    fn row(&mut self, cells: Vec<String>) {
+    /// Adds a row.
+    pub fn row(&mut self, cells: Vec<String>) {
         // Into memory, and with as many cells as heads: it cannot fail.
         let written = self.writer.write_record(cells);
         debug_assert!(written.is_ok());
@@ -25,14 +27,14 @@ impl Table {
     }
 
     /// The file, if it has rows.
-    fn file(self, name: &str) -> Option<(String, Vec<u8>)> {
+    pub fn file(self, name: &str) -> Option<(String, Vec<u8>)> {
         let rows = self.rows;
         self.writer.into_inner().ok().filter(|_| rows > 0).map(|bytes| (name.to_owned(), bytes))
     }
 }
 
 /// Shortest text that reads back to the same number; empty for none.
-fn number(x: f64) -> String {
+pub fn number(x: f64) -> String {
     if x.is_finite() { format!("{}", x + 0.0) } else { String::new() }
 }
 

@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 /// Between two lines where there is no terminal.
 const EVERY: Duration = Duration::from_secs(10);
 
-/// Set by Ctrl-C or a request to end.
+/// Set by Ctrl-C. A request to end (SIGTERM) ends the process at once, as a kill does: whole parts stay, and --resume goes on.
 static STOP: AtomicBool = AtomicBool::new(false);
 /// Exit code of a process that ends by Ctrl-C, as shells have it.
 pub const INTERRUPTED: u8 = 130;
@@ -93,11 +93,16 @@ impl Watcher for Progress {
     }
 
     fn stopped(&self) -> bool {
-        STOP.load(Ordering::Relaxed)
+        stop_asked()
     }
 }
 
-/// Listens for Ctrl-C and requests to end: the first stops the study at the next run, the second ends the process.
+/// Whether somebody asked to stop.
+pub fn stop_asked() -> bool {
+    STOP.load(Ordering::Relaxed)
+}
+
+/// Listens for Ctrl-C: the first stops the study at the next run, the second ends the process.
 pub fn listen() {
     // Only a second handler of this process could fail; the study then ends with the process, which loses nothing either.
     drop(ctrlc::set_handler(|| {

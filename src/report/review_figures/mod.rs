@@ -14,7 +14,7 @@ mod sankey;
 mod sankey_labels;
 mod temperature_bars;
 #[cfg(test)]
-mod tidy;
+pub(super) mod tidy;
 mod variogram;
 
 pub use difference::{Difference, DifferenceTerm, difference_bars};

@@ -3,7 +3,7 @@ use crate::report::Picture;
 use crate::report::figure::{UNITS, text_width};
 
 /// A number of a table cell.
-pub(super) fn numbers(text: &str) -> f64 {
+pub(in crate::report) fn numbers(text: &str) -> f64 {
     text.replace('\u{2212}', "-").parse().unwrap_or(f64::NAN)
 }
 
@@ -14,7 +14,7 @@ struct Box {
 }
 
 /// No broken number, no text over another or outside, no width beyond A4, every marked row in the table and every row as long as its head.
-pub(super) fn check(picture: &Picture) {
+pub(in crate::report) fn check(picture: &Picture) {
     let svg = &picture.svg;
     let doc = roxmltree::Document::parse(svg).expect("well-formed");
     let size = |name: &str| doc.root_element().attribute(name).and_then(|x| x.parse::<f64>().ok()).expect("a size");

@@ -8,7 +8,7 @@ mod convergence;
 mod distribution;
 mod effects;
 mod rows;
-mod text;
+pub(super) mod text;
 mod tornado;
 
 pub use bars::{RankPlot, SobolPlot, rank_plot, sobol_plot};
@@ -55,7 +55,7 @@ impl Shown<'_> {
     }
 }
 
-fn sign(unit: &str) -> &str {
+pub(super) fn sign(unit: &str) -> &str {
     if unit == "degC" { "\u{b0}C" } else { unit }
 }
 

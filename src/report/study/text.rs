@@ -5,12 +5,12 @@ use super::super::figure::{Anchor, Figure, INK, QUIET, escape, text_width, units
 use super::super::legend::{ENTRY, Mark, legend};
 
 /// Size of notes and of names beside rows, pixels.
-pub(super) const SIZE: f64 = 11.0;
+pub(in crate::report) const SIZE: f64 = 11.0;
 /// Height of a line of notes, pixels.
 const LINE: f64 = 15.0;
 
 /// The text, or its beginning and end around an ellipsis.
-pub(super) fn middle(text: &str, size: f64, width: f64) -> String {
+pub(in crate::report) fn middle(text: &str, size: f64, width: f64) -> String {
     if text_width(text, size) <= width {
         return text.to_owned();
     }
@@ -25,7 +25,7 @@ pub(super) fn middle(text: &str, size: f64, width: f64) -> String {
 }
 
 /// The text in as many lines as it takes, broken between words; a word that is too long is cut in its middle.
-pub(super) fn lines(text: &str, size: f64, width: f64) -> Vec<String> {
+pub(in crate::report) fn lines(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     // Not at spaces that bind.
     for word in text.split(' ').filter(|word| !word.is_empty()) {
@@ -43,7 +43,7 @@ pub(super) fn lines(text: &str, size: f64, width: f64) -> Vec<String> {
 
 /// Where a name goes.
 #[derive(Clone, Copy)]
-pub(super) enum Side {
+pub(in crate::report) enum Side {
     /// It begins at its place.
     Right,
     /// It ends there.
@@ -53,7 +53,7 @@ pub(super) enum Side {
 }
 
 /// Writes a name cut to a width; what was cut away shows under the pointer.
-pub(super) fn name(figure: &mut Figure, at: (f64, f64), side: Side, (size, width): (f64, f64), attributes: &str, text: &str) {
+pub(in crate::report) fn name(figure: &mut Figure, at: (f64, f64), side: Side, (size, width): (f64, f64), attributes: &str, text: &str) {
     let short = middle(text, size, width);
     let cut = short != text;
     if cut {
@@ -112,14 +112,14 @@ fn entries(figure: &mut Figure, (left, top): (f64, f64), width: f64, entries: Ve
 }
 
 /// Draws a legend and below it notes, both below the plots.
-pub(super) fn foot(figure: &mut Figure, (left, top): (f64, f64), width: f64, marks: Vec<(Mark, &str)>, told: &[String]) {
+pub(in crate::report) fn foot(figure: &mut Figure, (left, top): (f64, f64), width: f64, marks: Vec<(Mark, &str)>, told: &[String]) {
     let below = top + entries_height(marks.iter().map(|(_, name)| *name), width);
     entries(figure, (left, top), width, marks);
     notes(figure, (left, below), width, told);
 }
 
 /// Height of such a foot, pixels.
-pub(super) fn foot_height<'n>(names: impl Iterator<Item = &'n str> + Clone, width: f64, told: &[String]) -> f64 {
+pub(in crate::report) fn foot_height<'n>(names: impl Iterator<Item = &'n str> + Clone, width: f64, told: &[String]) -> f64 {
     entries_height(names, width) + notes_height(told, width) + 6.0
 }
 
@@ -148,7 +148,7 @@ fn notes(figure: &mut Figure, (left, mut top): (f64, f64), width: f64, notes: &[
 }
 
 /// A value with the digits that a spread of that size leaves meaningful.
-pub(super) fn value(x: f64, spread: f64) -> String {
+pub(in crate::report) fn value(x: f64, spread: f64) -> String {
     if !x.is_finite() {
         return "not known".to_owned();
     }
@@ -157,7 +157,7 @@ pub(super) fn value(x: f64, spread: f64) -> String {
 }
 
 /// A share of 0 to 1 in percent, with a decimal; more where it is close to an end.
-pub(super) fn percent(share: f64) -> String {
+pub(in crate::report) fn percent(share: f64) -> String {
     let off = share.min(1.0 - share);
     if share.is_finite() && off > 0.0 && off < 0.001 { format!("{:.3}", 100.0 * share) } else { format!("{:.1}", 100.0 * share) }
 }
