@@ -93,7 +93,7 @@ const UP: [&str; 5] = ["../../up", "/tmp/cvtcycle_up", "..", "a/../../../up", "C
 fn names_in_files_lead_nowhere() {
     for up in UP {
         let dir = tempfile::tempdir().unwrap();
-        let work = dir.path().join("deep/work");
+        let work = dir.path().join("deep/inner");
         fs::create_dir_all(&work).unwrap();
         let quoted = up.replace('\\', "\\\\");
         let car = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/vehicles/rover_216_cvt.toml")).unwrap();
@@ -117,7 +117,7 @@ fn names_in_files_lead_nowhere() {
             // A name may be refused, but not followed.
             assert!([Some(0), Some(2)].contains(&output.status.code()), "{line} with {up}: {}", stderr(&output));
         }
-        let out = Path::new("deep/work/out");
+        let out = Path::new("deep/inner/out");
         let new: Vec<_> = tree(dir.path()).into_keys().filter(|path| !before.contains_key(path) && !path.starts_with(out)).collect();
         assert!(new.is_empty(), "{up}: {new:?}");
         assert!(!Path::new("/tmp/cvtcycle_up").exists());
