@@ -18,8 +18,8 @@ use cvtcycle::results::files::OutputDir;
 use super::Context;
 use super::answer::{Answer, FAILED, Reply, json_text, problem};
 use super::inputs::{Offering, Problems};
+use super::run::files::Written;
 use super::study::progress::{listen, stop_asked};
-use files::Written;
 use progress::Progress;
 
 /// Arguments of `calibrate`.

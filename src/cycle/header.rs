@@ -3,7 +3,7 @@
 use std::mem::discriminant;
 
 use super::problems::{Complaint, Line, Problems};
-use super::text::{Field, split};
+use super::text::Field;
 
 /// Unit of the speed column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,14 +103,7 @@ impl Header {
 
     /// Reads the column names. `None` where the rest of the file cannot be understood without them.
     pub(super) fn read(line: Line<'_>, problems: &mut Problems<'_>) -> Option<Self> {
-        if !problems.is_table(line) {
-            return None;
-        }
-        let mut fields = Vec::new();
-        if let Err(start) = split(line.text, &mut fields) {
-            problems.open_quote(line, start);
-            return None;
-        }
+        let fields = problems.names(line)?;
         if fields.iter().all(|field| field.text.parse::<f64>().is_ok()) {
             let hint = "put the names above the numbers, for example time_s,speed_kmh";
             problems.line(line, "", || Complaint::new("the first line has numbers and no column names", "", hint));

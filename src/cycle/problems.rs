@@ -96,6 +96,21 @@ impl<'f> Problems<'f> {
         true
     }
 
+    /// The column names of the first line; none, and said so, where the lines below it cannot be understood.
+    pub fn names<'t>(&mut self, line: Line<'t>) -> Option<Vec<Field<'t>>> {
+        if !self.is_table(line) {
+            return None;
+        }
+        let mut fields = Vec::new();
+        match split(line.text, &mut fields) {
+            Ok(()) => Some(fields),
+            Err(start) => {
+                self.open_quote(line, start);
+                None
+            }
+        }
+    }
+
     /// Splits a row into as many fields as there are column names; says what is wrong where that fails.
     pub fn split<'t>(&mut self, line: Line<'t>, wanted: usize, fields: &mut Vec<Field<'t>>) -> bool {
         if let Err(start) = split(line.text, fields) {

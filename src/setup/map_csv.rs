@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::config::{Problem, near};
 use crate::cycle::problems::{Complaint, Line, Problems};
-use crate::cycle::text::{Field, split};
+use crate::cycle::text::Field;
 
 /// One column: name, and range in its own unit.
 pub(super) struct Column {
@@ -78,14 +78,7 @@ pub(super) fn read(file: &str, bytes: &[u8], form: &Form) -> Result<Read, Vec<Pr
 
 /// The columns of the file; none where the lines below them cannot be understood.
 fn header<'f>(line: Line, form: &Form<'f>, problems: &mut Problems) -> Option<Vec<Option<&'f Column>>> {
-    if !problems.is_table(line) {
-        return None;
-    }
-    let mut fields = Vec::new();
-    if let Err(start) = split(line.text, &mut fields) {
-        problems.open_quote(line, start);
-        return None;
-    }
+    let fields = problems.names(line)?;
     let mut columns: Vec<Option<&Column>> = Vec::new();
     for field in fields {
         let known = form.columns.iter().find(|column| column.name == field.text);

@@ -3,7 +3,7 @@
 use super::points::SD;
 use crate::config::{Bound, Place, Problem, unit_of};
 use crate::cycle::problems::{Complaint, Line, Problems};
-use crate::cycle::text::{Field, split};
+use crate::cycle::text::Field;
 
 /// What a column may hold.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -149,14 +149,7 @@ fn start(line: Line, field: Field) -> usize {
 
 /// The columns; none where the lines below cannot be understood, none in place of a column that nobody knows.
 fn header(line: Line, rules: &Rules, problems: &mut Problems) -> Option<Vec<Option<Column>>> {
-    if !problems.is_table(line) {
-        return None;
-    }
-    let mut fields = Vec::new();
-    if let Err(start) = split(line.text, &mut fields) {
-        problems.open_quote(line, start);
-        return None;
-    }
+    let fields = problems.names(line)?;
     let mut columns: Vec<Option<Column>> = Vec::new();
     for field in &fields {
         let (field, found) = (*field, (rules.known)(field.text));

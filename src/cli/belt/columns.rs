@@ -2,7 +2,7 @@
 
 use cvtcycle::config::{Bound, near};
 use cvtcycle::cycle::problems::{Complaint, Line, Problems};
-use cvtcycle::cycle::text::{Field, split};
+use cvtcycle::cycle::text::Field;
 use cvtcycle::transmission::cvt::variator::BeltPoint;
 
 /// A number that a row gives.
@@ -158,14 +158,7 @@ impl Header {
             problems.file(Complaint::new(message, "lines that end with LF or CR LF", "save it with the line ends of today"));
             return None;
         }
-        if !problems.is_table(line) {
-            return None;
-        }
-        let mut fields = Vec::new();
-        if let Err(start) = split(line.text, &mut fields) {
-            problems.open_quote(line, start);
-            return None;
-        }
+        let fields = problems.names(line)?;
         if fields.iter().all(|field| field.text.parse::<f64>().is_ok()) {
             let hint = "put the names above the numbers: ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm";
             problems.line(line, "", || Complaint::new("the first line has numbers and no column names", "", hint));

@@ -1,7 +1,5 @@
 //! The files of a calibration.
 
-use std::path::PathBuf;
-
 use cvtcycle::calibrate::fitted;
 use cvtcycle::calibrate::outcome::{Outcome, Parameter, Residual};
 use cvtcycle::calibrate::plan::Plan;
@@ -10,33 +8,8 @@ use cvtcycle::report::calibration::calibration_pictures;
 use cvtcycle::results::files::OutputDir;
 
 use crate::cli::answer::json_text;
+use crate::cli::run::files::Written;
 use crate::cli::study::csv_files::{Table, number};
-
-/// What was written, and what an earlier run left beside it.
-#[derive(Debug, Default)]
-pub struct Written {
-    paths: Vec<PathBuf>,
-    left_over: Vec<String>,
-}
-
-impl Written {
-    /// The files, one a line; empty where nothing was written.
-    pub fn text(&self) -> String {
-        if self.paths.is_empty() {
-            return String::new();
-        }
-        let lines: Vec<String> = self.paths.iter().map(|path| format!("  {}\n", path.display())).collect();
-        format!("\nFiles written\n{}", lines.concat())
-    }
-
-    /// A word about files of an earlier run that this one has not replaced.
-    pub fn left_over_text(&self) -> String {
-        if self.left_over.is_empty() {
-            return String::new();
-        }
-        format!("cvtcycle: left from an earlier run and not replaced: {}\n", self.left_over.join(", "))
-    }
-}
 
 /// Writes all files under their names, or none.
 ///
@@ -46,8 +19,7 @@ pub fn write(mut dir: OutputDir, plan: &Plan, outcome: &Outcome, date: &str) -> 
     for (name, bytes) in all(plan, outcome, date)? {
         dir.write(&name, |out| out.write_all(&bytes)).map_err(|problem| vec![problem])?;
     }
-    let left_over = dir.left_over();
-    Ok(Written { paths: dir.commit().map_err(|problem| vec![problem])?, left_over })
+    Written::commit(dir).map_err(|problem| vec![problem])
 }
 
 /// Names and contents: the fitted files first.

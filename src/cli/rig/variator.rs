@@ -10,6 +10,7 @@ use cvtcycle::transmission::cvt::variator::Formulation;
 use crate::cli::Context;
 use crate::cli::answer::{Answer, Reply};
 use crate::cli::inputs::{self, Offering};
+use crate::cli::run::files::Written;
 use crate::cli::stream;
 
 /// Arguments of `rig variator`.
@@ -100,8 +101,8 @@ pub fn answer(args: &Args, context: Context) -> Reply {
         stream::to_stdout(|out| files::write_points(out, &curves))?;
     } else if !args.quiet {
         stdout = text::tables(&plan, &curves, context.paint);
-        stdout += &written.as_ref().map_or_else(String::new, files::Written::text);
+        stdout += &written.as_ref().map_or_else(String::new, Written::text);
     }
-    let stderr = written.as_ref().map_or_else(String::new, files::Written::left_over_text);
+    let stderr = written.as_ref().map_or_else(String::new, Written::left_over_text);
     Ok(Answer { stdout, stderr, code: 0 })
 }

@@ -3,7 +3,7 @@
 use super::{History, flags_of, is_number, known, missing};
 use crate::config::Problem;
 use crate::cycle::problems::{Complaint, Line, Problems};
-use crate::cycle::text::{Field, split};
+use crate::cycle::text::Field;
 use crate::results::Flags;
 use crate::results::columns::column;
 
@@ -59,14 +59,7 @@ impl History {
 
 /// Reads the names of the columns; none where the lines below them could not be understood.
 fn header<'t>(line: Line<'t>, problems: &mut Problems) -> Option<Header<'t>> {
-    if !problems.is_table(line) {
-        return None;
-    }
-    let mut fields = Vec::new();
-    if let Err(start) = split(line.text, &mut fields) {
-        problems.open_quote(line, start);
-        return None;
-    }
+    let fields = problems.names(line)?;
     let columns = known(fields.iter().map(|field| field.text));
     if columns.is_empty() {
         problems

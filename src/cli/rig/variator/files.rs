@@ -1,7 +1,6 @@
 //! Curves and points as CSV and JSON, and the files of a run.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
 
 use cvtcycle::config::Problem;
 use cvtcycle::results::columns::Value;
@@ -11,32 +10,10 @@ use cvtcycle::rig::variator::{COLUMNS, VariatorRow, VariatorValue, curve_numbers
 
 use super::plan::{Curve, Plan};
 use super::plots;
+use crate::cli::run::files::Written;
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
-
-/// What was written, and what an earlier run left beside it.
-#[derive(Debug, Default)]
-pub struct Written {
-    paths: Vec<PathBuf>,
-    left_over: Vec<String>,
-}
-
-impl Written {
-    /// The files, one a line.
-    pub fn text(&self) -> String {
-        let lines: Vec<String> = self.paths.iter().map(|path| format!("  {}\n", path.display())).collect();
-        format!("\nFiles written\n{}", lines.concat())
-    }
-
-    /// A word about files of an earlier run that this one has not replaced.
-    pub fn left_over_text(&self) -> String {
-        if self.left_over.is_empty() {
-            return String::new();
-        }
-        format!("cvtcycle: left from an earlier run and not replaced: {}\n", self.left_over.join(", "))
-    }
-}
 
 fn push(line: &mut String, x: f64) {
     push_value(line, Value::Number(x), &[]);
@@ -141,6 +118,5 @@ pub fn write(mut dir: OutputDir, plan: &Plan, curves: &[Curve]) -> Result<Writte
     for (name, svg) in plots::plots(plan, curves) {
         dir.write(name, |out| out.write_all(svg.as_bytes()))?;
     }
-    let left_over = dir.left_over();
-    Ok(Written { paths: dir.commit()?, left_over })
+    Written::commit(dir)
 }
