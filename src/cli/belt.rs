@@ -1,11 +1,6 @@
 //! `belt`: the belt model at many operating points, row by row.
 
-mod columns;
-mod lines;
-mod model;
-mod rows;
 mod sink;
-mod table;
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
@@ -13,6 +8,7 @@ use std::path::PathBuf;
 
 use cvtcycle::config::{Bound, Problem};
 use cvtcycle::results::file::OutputFile;
+use cvtcycle::rig::points::{self, Counts, Done, Job, Model};
 use cvtcycle::setup::{self, Options, Setup};
 use cvtcycle::transmission::cvt::variator::Formulation;
 use serde_json::{Map, Value, json};
@@ -20,8 +16,7 @@ use serde_json::{Map, Value, json};
 use super::Context;
 use super::answer::{Answer, Reply};
 use super::inputs::{self, Offering, Problems};
-use model::Model;
-use table::{Counts, Done, Job};
+use sink::Offer;
 
 /// Arguments of `belt`.
 #[derive(Clone, Debug, clap::Args)]
@@ -95,13 +90,13 @@ pub fn answer(args: &Args, _: Context) -> Reply {
     let file = if args.points == "-" { "standard input" } else { args.points.as_str() };
     let out = asked.out.as_ref().map(|out| out.path().display().to_string());
     let reader = problems.take(open(&args.points));
+    let mut offer = Offer::new(asked.out.take(), args.json);
     let done = reader.and_then(|reader| {
-        let job = Job { model: asked.model.take(), formulation: asked.formulation, out: asked.out.take(), json: args.json };
-        problems.take(table::read(file, reader, job))
+        let job = Job { model: asked.model.take(), formulation: asked.formulation, rows: &mut offer };
+        problems.take(points::read(file, reader, job))
     });
-    let done = done.flatten();
     problems.finish()?;
-    let Some(Done { counts, sink, ignored }) = done else {
+    let (Some(Done { counts, ignored }), Some(sink)) = (done, offer.sink) else {
         unreachable!("what is missing has left a problem");
     };
     sink.finish(&head(&asked, &counts))?;

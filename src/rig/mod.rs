@@ -7,6 +7,7 @@ mod cvt_bench;
 mod limits;
 pub mod loss_table;
 pub mod losses;
+pub mod points;
 pub mod transmission;
 pub mod variator;
 

@@ -1,5 +1,6 @@
 //! The documents of a car, and one reading of them.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use super::shelf::Shelf;
@@ -49,8 +50,18 @@ impl Inputs {
     /// Problems that leave nothing to read: no such vehicle, no TOML, overrides of a box that the vehicle does not have.
     pub fn gather(word: &str, option: &str, options: &Options) -> Result<Self, Vec<Problem>> {
         let (file, text, disk) = text_of(word, Kind::Vehicle, option)?;
-        let mut document = Document::parse(&file, &text)?;
-        let strangers = other_box::strangers(&document, &options.set, &stem(word));
+        Inputs::of_text(&file, &text, Box::new(disk), options)
+    }
+
+    /// As [`Inputs::gather`], for the text of a vehicle; `file` is its name or path, `files` where the maps are that it names.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn of_text(file: &str, text: &str, files: Box<dyn Files>, options: &Options) -> Result<Self, Vec<Problem>> {
+        let mut document = Document::parse(file, text)?;
+        let name = stem(file.strip_prefix("embedded:").unwrap_or(file));
+        let folder = Path::new(file).parent().unwrap_or(Path::new(""));
+        let strangers = other_box::strangers(&document, &options.set, &name);
         if !strangers.is_empty() {
             return Err(strangers); // set all the same, they would call for a whole box
         }
@@ -62,8 +73,8 @@ impl Inputs {
         let mut fluids = [Input::default(), Input::default()];
         for (k, (own, asked, option)) in asked.into_iter().enumerate() {
             // A path in the vehicle file is relative to that file, one on the command line to the current folder.
-            let beside = if is_path(&own) { disk.folder.join(&own).to_string_lossy().into_owned() } else { own };
-            let option = if asked.is_some() { option } else { file.as_str() };
+            let beside = if is_path(&own) { folder.join(&own).to_string_lossy().into_owned() } else { own };
+            let option = if asked.is_some() { option } else { file };
             words[k] = asked.clone().unwrap_or(beside);
             fluids[k] = match fluid_document(&words[k], option, &options.set, FLUIDS[k]) {
                 Ok(document) => Input { document: Some(document), problems: Vec::new() },
@@ -72,8 +83,7 @@ impl Inputs {
         }
         let [oil, engine_oil] = fluids;
         let vehicle = Input { document: Some(document), problems };
-        let frame =
-            Frame { name: stem(word), fluids: words.map(|word| stem(&word)), files: Shelf::new(disk), formulation: options.formulation };
+        let frame = Frame { name, fluids: words.map(|word| stem(&word)), files: Shelf::new(files), formulation: options.formulation };
         Ok(Inputs { frame: Arc::new(frame), files: [vehicle, oil, engine_oil] })
     }
 

@@ -17,7 +17,7 @@ pub use embedded::{embedded_lubricants, embedded_map, embedded_rigs, embedded_ve
 
 use std::sync::Arc;
 
-use crate::config::{Bound, KeyInfo, Place, Problem, Reader, decode, near};
+use crate::config::{Bound, Document, KeyInfo, Place, Problem, Reader, decode, near};
 use crate::engine;
 use crate::lubricant::{self, Lubricant};
 use crate::simulate::Car;
@@ -26,7 +26,7 @@ use crate::transmission::cvt::variator::Formulation;
 use crate::vehicle::RoadLoadInput;
 
 /// Reads files that an input names; the only way in which loading touches the disk.
-pub trait Files {
+pub trait Files: std::fmt::Debug + Send + Sync {
     /// Bytes of a file.
     ///
     /// # Errors
@@ -204,8 +204,11 @@ fn stem(word: &str) -> String {
 /// # Errors
 /// All problems of the file and of the overrides that go to it.
 pub fn load_lubricant(word: &str, option: &str, sets: &[String], prefix: &str) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
-    let document = inputs::fluid_document(word, option, sets, prefix)?;
-    let reader = Reader::new(&document);
+    read_document(&inputs::fluid_document(word, option, sets, prefix)?, word, prefix)
+}
+
+fn read_document(document: &Document, word: &str, prefix: &str) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
+    let reader = Reader::new(document);
     let lubricant = lubricant::load(&reader.root(), &stem(word));
     Ok((lubricant, inputs::fluid_keys(reader, prefix)?))
 }
@@ -216,6 +219,23 @@ pub fn load_lubricant(word: &str, option: &str, sets: &[String], prefix: &str) -
 /// All problems of the vehicle file, of its fluids and of the overrides.
 pub fn load(word: &str, option: &str, options: &Options) -> Result<Setup, Vec<Problem>> {
     inputs::Inputs::gather(word, option, options)?.read()
+}
+
+/// As [`load`], for a vehicle's text that need not be on disk. `file` is its name or path, which problems cite and from which paths of
+/// fluids are taken; the maps that the text names come from `files`.
+///
+/// # Errors
+/// As there.
+pub fn read(file: &str, text: &str, files: Box<dyn Files>, options: &Options) -> Result<Setup, Vec<Problem>> {
+    inputs::Inputs::of_text(file, text, files, options)?.read()
+}
+
+/// As [`load_lubricant`], for a fluid's text that need not be on disk.
+///
+/// # Errors
+/// As there.
+pub fn read_lubricant(file: &str, text: &str) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
+    read_document(&Document::parse(file, text)?, file, "")
 }
 
 /// Range of ambient temperatures, degC (test cell of the thesis widened).

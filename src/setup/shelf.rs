@@ -3,28 +3,28 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::Files;
 use super::tables::Table;
-use super::{Disk, Files};
 
 /// The tables of one file, by kind.
 type Kinds = BTreeMap<&'static str, Arc<Table>>;
 
-/// The disk, and the tables of its files that have been asked for.
-#[derive(Debug, Default)]
+/// Where files come from, and the tables of them that have been asked for.
+#[derive(Debug)]
 pub(super) struct Shelf {
-    pub disk: Disk,
+    files: Box<dyn Files>,
     tables: Mutex<BTreeMap<String, Kinds>>,
 }
 
 impl Shelf {
-    pub fn new(disk: Disk) -> Self {
-        Shelf { disk, tables: Mutex::default() }
+    pub fn new(files: Box<dyn Files>) -> Self {
+        Shelf { files, tables: Mutex::default() }
     }
 }
 
 impl Files for Shelf {
     fn read(&self, path: &str) -> Result<Vec<u8>, String> {
-        self.disk.read(path)
+        self.files.read(path)
     }
 
     fn table(&self, kind: &'static str, file: &str, make: &mut dyn FnMut() -> Option<Arc<Table>>) -> Option<Arc<Table>> {

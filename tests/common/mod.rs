@@ -2,6 +2,7 @@
 #![allow(dead_code, clippy::print_stdout, reason = "each test crate uses a part of it; tests print the numbers they found")]
 
 pub mod bench_step;
+pub mod range;
 
 use cvtcycle::config::render;
 use cvtcycle::cycle::{Cycle, constant_speed, embedded, read_csv};

@@ -50,10 +50,10 @@ const PASSED_ON: [&str; 4] = ["src/numeric/curve.rs", "src/numeric/grid.rs", "sr
 
 /// Sentences without a bad file: file, beginning of the sentence and reason.
 const EXCUSED: [(&str, &str, &str); EXCUSED_COUNT] = [
-    ("src/cli/belt/lines.rs", "cannot read on: ", "needs a failing disk"),
-    ("src/cli/belt/lines.rs", "check the file and its disk", "needs a failing disk"),
-    ("src/cli/belt/model.rs", "this belt does not fit", "of the vehicle, which is refused before"),
-    ("src/cli/belt/model.rs", "check length_m of the belt", "of the vehicle, which is refused before"),
+    ("src/rig/points/lines.rs", "cannot read on: ", "needs a failing disk"),
+    ("src/rig/points/lines.rs", "check the file and its disk", "needs a failing disk"),
+    ("src/rig/points/model.rs", "this belt does not fit", "of the vehicle, which is refused before"),
+    ("src/rig/points/model.rs", "check length_m of the belt", "of the vehicle, which is refused before"),
     ("src/config/reader.rs", "`{path}` is a table, not a value", "overrides only: src/config/tests.rs"),
     ("src/engine/load.rs", "a combination of speed and load stands twice", "setup/map_csv.rs says it before, with the line"),
     ("src/lubricant/viscosity.rs", "viscosity must be above", "the ranges of the keys lie above it"),

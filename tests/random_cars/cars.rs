@@ -10,6 +10,7 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 
 use crate::common::CARS;
+use crate::common::range::range;
 
 /// Groups of changes that were offered to the reader, and those that it accepted.
 static OFFERED: AtomicUsize = AtomicUsize::new(0);
@@ -147,18 +148,6 @@ fn moved<'k>(info: &'k KeyInfo, change: &Change) -> Option<(&'k str, f64)> {
     };
     let number = if info.allowed.starts_with("integer") { number.round() } else { number };
     Some((&info.key, number.clamp(low, high)))
-}
-
-/// Ends of what a key allows, from its words.
-fn range(allowed: &str) -> Option<(f64, f64)> {
-    let words: Vec<&str> = allowed.split(' ').collect();
-    let number = |at: usize| words.get(at).and_then(|word| word.parse::<f64>().ok());
-    match words.as_slice() {
-        ["integer", "from", ..] => Some((number(2)?, number(4)?)),
-        ["above", ..] => Some((number(1)?.max(1e-3 * number(4)?), number(4)?)),
-        [_, "to", ..] => Some((number(0)?, number(2)?)),
-        _ => None,
-    }
 }
 
 /// How many groups of changes the reader was offered and accepted, so far and over all tests.

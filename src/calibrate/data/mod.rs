@@ -16,6 +16,37 @@ pub(super) mod trace;
 
 use crate::config::{Place, Problem, near};
 use crate::cycle::problems::Complaint;
+use crate::validate::source::Kind;
+use crate::validate::tables;
+
+/// Forms of a measured file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Points of a bench.
+    Points,
+    /// A trace over time.
+    Trace,
+    /// Single numbers of a run.
+    Scalars,
+}
+
+impl Form {
+    /// All of them.
+    pub const ALL: [Form; 3] = [Form::Points, Form::Trace, Form::Scalars];
+}
+
+/// Reads a measured file by itself, without the plan that says what it is of; the number of its rows.
+///
+/// # Errors
+/// All problems of the file.
+pub fn check(form: Form, file: &str, bytes: &[u8]) -> Result<usize, Vec<Problem>> {
+    let (sheet, problems) = match form {
+        Form::Points => points::read(file, bytes),
+        Form::Trace => trace::read(file, bytes, &tables::columns(Kind::Run, false)),
+        Form::Scalars => scalars::read(file, bytes, &tables::columns(Kind::Run, true), None),
+    };
+    if problems.is_empty() { Ok(sheet.map_or(0, |sheet| sheet.rows.len())) } else { Err(problems) }
+}
 
 /// Reads a file that a plan names, relative to the plan.
 ///

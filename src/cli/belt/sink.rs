@@ -5,10 +5,9 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 
 use cvtcycle::config::Problem;
 use cvtcycle::results::file::OutputFile;
+use cvtcycle::rig::points::{CASE, FLAGS, FORMULATION, NUMBERS, OUTPUTS, STATUS, Solved, Take, name, output_names};
 use tempfile::{SpooledTempFile, spooled_tempfile};
 
-use super::columns::{CASE, FLAGS, FORMULATION, NUMBERS, OUTPUTS, STATUS, output_names};
-use super::model::{Solved, name};
 use crate::cli::answer::problem;
 use crate::cli::stream;
 
@@ -35,6 +34,33 @@ impl Place {
     }
 }
 
+/// Where rows may go, once there are some.
+#[derive(Debug)]
+pub struct Offer {
+    file: Option<OutputFile>,
+    json: bool,
+    /// None as long as there is no good line of names.
+    pub sink: Option<Sink>,
+}
+
+impl Offer {
+    /// CSV to the file if there is one, else to standard output unless `json` goes there.
+    pub fn new(file: Option<OutputFile>, json: bool) -> Self {
+        Offer { file, json, sink: None }
+    }
+}
+
+impl Take for Offer {
+    fn begin(&mut self, with_case: bool) -> Result<(), Vec<Problem>> {
+        self.sink = Some(Sink::new(self.file.take(), self.json, with_case)?);
+        Ok(())
+    }
+
+    fn put(&mut self, case: &str, row: &Solved) -> Result<(), Vec<Problem>> {
+        self.sink.as_mut().map_or(Ok(()), |sink| sink.put(case, row))
+    }
+}
+
 /// The outputs of a run over points.
 #[derive(Debug)]
 pub struct Sink {
@@ -46,8 +72,7 @@ pub struct Sink {
 }
 
 impl Sink {
-    /// CSV to the file if there is one, else to standard output unless `json` goes there.
-    pub fn new(file: Option<OutputFile>, json: bool, with_case: bool) -> Result<Self, Vec<Problem>> {
+    fn new(file: Option<OutputFile>, json: bool, with_case: bool) -> Result<Self, Vec<Problem>> {
         let csv = file.map(|file| Place::File(Box::new(file)));
         let csv = if csv.is_none() && !json { Some(Place::spool()) } else { csv };
         let mut sink = Sink { csv, json: json.then(Place::spool), with_case, rows: 0, line: String::new() };

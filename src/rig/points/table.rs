@@ -1,35 +1,48 @@
-//! A table of points from its lines to the sink.
+//! A table of points from its lines to whoever takes the rows.
 
 use std::io::BufRead;
 
-use cvtcycle::config::Problem;
-use cvtcycle::cycle::problems::{Cell, Complaint, Line, Problems};
-use cvtcycle::results::file::OutputFile;
-use cvtcycle::transmission::cvt::variator::Formulation;
-use cvtcycle::transmission::cvt::variator::point::{PointFlags, PointStatus};
+use crate::config::Problem;
+use crate::cycle::problems::{Cell, Complaint, Line, Problems};
+use crate::transmission::cvt::variator::Formulation;
+use crate::transmission::cvt::variator::point::{PointFlags, PointStatus};
 
 use super::columns::{Column, Header, NUMBERS};
 use super::lines::{Broken, Lines};
 use super::model::{Model, Solved};
 use super::rows;
-use super::sink::Sink;
+
+/// Takes computed rows in the order of the table. What it cannot do ends the reading.
+pub trait Take {
+    /// The line of names is good, rows follow; whether they have a `case`.
+    ///
+    /// # Errors
+    /// Why no row can be taken.
+    fn begin(&mut self, with_case: bool) -> Result<(), Vec<Problem>>;
+
+    /// A row and its `case` as it stood in the input, quotes within doubled; empty where there is none. Rows that come before a bad one
+    /// are given too: whoever keeps them drops them when the table turns out bad.
+    ///
+    /// # Errors
+    /// Why the row cannot be taken.
+    fn put(&mut self, case: &str, row: &Solved) -> Result<(), Vec<Problem>>;
+}
 
 /// What is to be done with the points.
-#[derive(Debug)]
-pub struct Job {
+pub struct Job<'t> {
     /// None where the options are bad: rows are then checked and not computed.
     pub model: Option<Model>,
     /// Formulation of rows that name none.
     pub formulation: Formulation,
-    pub out: Option<OutputFile>,
-    pub json: bool,
+    /// Who takes the rows.
+    pub rows: &'t mut dyn Take,
 }
 
 /// What came of a table.
 #[derive(Debug)]
 pub struct Done {
+    /// Points by status and flag.
     pub counts: Counts,
-    pub sink: Sink,
     /// Columns of the input that were not read.
     pub ignored: Vec<&'static str>,
 }
@@ -37,6 +50,7 @@ pub struct Done {
 /// Points by status and by flag.
 #[derive(Debug, Default)]
 pub struct Counts {
+    /// Rows of the table.
     pub points: u64,
     status: [u64; PointStatus::ALL.len()],
     flags: [u64; PointFlags::NAMES.len()],
@@ -52,15 +66,18 @@ impl Counts {
         }
     }
 
+    /// Name of every status with its number of points.
     pub fn by_status(&self) -> impl Iterator<Item = (&'static str, u64)> {
         PointStatus::ALL.into_iter().map(PointStatus::name).zip(self.status)
     }
 
+    /// Name of every flag with its number of points.
     pub fn by_flag(&self) -> impl Iterator<Item = (&'static str, u64)> {
         PointFlags::NAMES.into_iter().map(|(name, _)| name).zip(self.flags)
     }
 
     /// The counts in words, after the name of the file that holds the rows.
+    #[must_use]
     pub fn text(&self, out: &str) -> String {
         let some = |counts: &mut dyn Iterator<Item = (&'static str, u64)>| {
             let words: Vec<String> = counts.filter(|(_, count)| *count > 0).map(|(name, count)| format!("{count} {name}")).collect();
@@ -73,22 +90,24 @@ impl Counts {
 }
 
 /// A table on its way.
-struct Table<'f> {
+struct Table<'f, 't> {
     found: Problems<'f>,
-    job: Job,
-    sink: Option<Sink>,
+    job: Job<'t>,
     counts: Counts,
 }
 
-/// Reads all rows of the table called `file` and puts them into a sink, which is still to be finished. None where there is no model.
-pub fn read(file: &str, reader: impl BufRead, job: Job) -> Result<Option<Done>, Vec<Problem>> {
-    let mut table = Table { found: Problems::new(file), job, sink: None, counts: Counts::default() };
+/// Reads the table called `file`, one line at a time, and gives away its rows.
+///
+/// # Errors
+/// All problems of the table, or why a row could not be taken.
+pub fn read(file: &str, reader: impl BufRead, job: Job<'_>) -> Result<Done, Vec<Problem>> {
+    let mut table = Table { found: Problems::new(file), job, counts: Counts::default() };
     let ignored = table.read(Lines::new(reader))?;
-    let Table { found, sink, counts, .. } = table;
-    if found.is_empty() { Ok(sink.map(|sink| Done { counts, sink, ignored })) } else { Err(found.finish()) }
+    let Table { found, counts, .. } = table;
+    if found.is_empty() { Ok(Done { counts, ignored }) } else { Err(found.finish()) }
 }
 
-impl Table<'_> {
+impl Table<'_, '_> {
     /// Goes through the lines; gives the columns of the input that are computed and not read.
     fn read(&mut self, mut lines: Lines<impl BufRead>) -> Result<Vec<&'static str>, Vec<Problem>> {
         let header = match lines.next() {
@@ -106,7 +125,7 @@ impl Table<'_> {
             return Ok(Vec::new());
         };
         if self.job.model.is_some() && self.found.is_empty() {
-            self.sink = Some(Sink::new(self.job.out.take(), self.job.json, header.has(Column::Case))?);
+            self.job.rows.begin(header.has(Column::Case))?;
         }
         while let Some(line) = lines.next() {
             self.counts.points += 1;
@@ -156,7 +175,7 @@ impl Table<'_> {
             // What will not be written need not be formatted.
             Ok(row) if self.found.is_empty() => {
                 self.counts.add(&row);
-                self.sink.as_mut().map_or(Ok(()), |sink| sink.put(given.case, &row))?;
+                self.job.rows.put(given.case, &row)?;
             }
             Ok(_) => {}
         }

@@ -1,9 +1,9 @@
 //! One row of belt points: its values, each checked for itself.
 
-use cvtcycle::config::near;
-use cvtcycle::cycle::problems::{Cell, Complaint, Line, Problems};
-use cvtcycle::cycle::text::Field;
-use cvtcycle::transmission::cvt::variator::Formulation;
+use crate::config::near;
+use crate::cycle::problems::{Cell, Complaint, Line, Problems};
+use crate::cycle::text::Field;
+use crate::transmission::cvt::variator::Formulation;
 
 use super::columns::{Column, FORMULATION, Header, NUMBERS, ON_STOP, REQUIRED};
 

@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, Read};
 
-use cvtcycle::cycle::problems::{Complaint, Line};
+use crate::cycle::problems::{Complaint, Line};
 
 /// Longer is no row of a table.
 const LONGEST_LINE: u64 = 1 << 20;

@@ -1,9 +1,9 @@
 //! The columns of belt points: what is read, what is computed, and the line of their names.
 
-use cvtcycle::config::{Bound, near};
-use cvtcycle::cycle::problems::{Complaint, Line, Problems};
-use cvtcycle::cycle::text::Field;
-use cvtcycle::transmission::cvt::variator::BeltPoint;
+use crate::config::{Bound, near};
+use crate::cycle::problems::{Complaint, Line, Problems};
+use crate::cycle::text::Field;
+use crate::transmission::cvt::variator::BeltPoint;
 
 /// A number that a row gives.
 #[derive(Debug)]
@@ -53,9 +53,13 @@ pub const NUMBERS: [Number; 12] = [
     Number::new("belt_temp_degc", Bound::closed(-60.0, 200.0), "degC"),
 ];
 
+/// Name of the column that is passed through.
 pub const CASE: &str = "case";
+/// Name of the column of the belt model's reading.
 pub const FORMULATION: &str = "formulation";
+/// Name of the column that says how a point was solved.
 pub const STATUS: &str = "status";
+/// Name of the column of what a point departs from.
 pub const FLAGS: &str = "flags";
 
 /// A computed column: name, and value in the unit of the name.

@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use cvtcycle::cycle::problems::Complaint;
-use cvtcycle::lubricant::{BandFriction, Lubricant, ZERO_DEGC_K};
-use cvtcycle::setup::Setup;
-use cvtcycle::transmission::Transmission;
-use cvtcycle::transmission::cvt::Cvt;
-use cvtcycle::transmission::cvt::variator::point::{PointFlags, PointLimits};
-use cvtcycle::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, BeltPoint, Formulation, Geometry, belt_point, sliding_speed_m_s};
+use crate::cycle::problems::Complaint;
+use crate::lubricant::{BandFriction, Lubricant, ZERO_DEGC_K};
+use crate::setup::Setup;
+use crate::transmission::Transmission;
+use crate::transmission::cvt::Cvt;
+use crate::transmission::cvt::variator::point::{PointFlags, PointLimits};
+use crate::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, BeltPoint, Formulation, Geometry, belt_point, sliding_speed_m_s};
 
 use super::columns::{
     BAND_COUNT, BAND_FRICTION, BAND_OFFSET, BELT_TEMP, NUMBERS, ON_STOP, PRESSURE, PULLEY_ANGLE, RATIO, SEGMENT_FRICTION, SPEED, TORQUE,
@@ -29,15 +29,18 @@ const DEFINED: &str = "the formulation smooth is defined there";
 /// A computed point with the values that it was computed from.
 #[derive(Clone, Copy, Debug)]
 pub struct Solved {
+    /// Answer of the belt model.
     pub point: BeltPoint,
+    /// What it departs from.
     pub flags: PointFlags,
+    /// The reading in force.
     pub formulation: Formulation,
     /// In the order of [`NUMBERS`]; NaN where none is in force.
     pub numbers: [f64; NUMBERS.len()],
 }
 
 /// The belt of a vehicle in each formulation; a row's values are written into it, every one anew for each row.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Model {
     cvt: Cvt,
     oil: Lubricant,
@@ -153,7 +156,7 @@ fn friction(oil: &Lubricant, belt: &Belt, ratio: f64, speed_rad_s: f64, numbers:
     } else {
         // The printed forms know no film: without sliding there is no lift-off, the rise with temperature stays (LU-4).
         let sliding = if has_film { sliding_speed_m_s(belt, ratio, speed_rad_s) } else { 0.0 };
-        cvtcycle::lubricant::Friction { band: numbers[BAND_FRICTION], ..*fluid }.band(belt_k, eta_pa_s, sliding)
+        crate::lubricant::Friction { band: numbers[BAND_FRICTION], ..*fluid }.band(belt_k, eta_pa_s, sliding)
     };
     BeltLoad {
         primary_speed_rad_s: speed_rad_s,

@@ -1,0 +1,13 @@
+//! Operating points of the belt in a table, row by row: what `cvtcycle belt` reads and computes.
+//!
+//! A table may have any length: one line is in memory at a time.
+
+mod columns;
+mod lines;
+mod model;
+mod rows;
+mod table;
+
+pub use columns::{CASE, FLAGS, FORMULATION, NUMBERS, OUTPUTS, STATUS, output_names};
+pub use model::{Model, Solved, name};
+pub use table::{Counts, Done, Job, Take, read};
