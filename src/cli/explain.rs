@@ -55,13 +55,13 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     let known = catalogue::known_keys();
     let files = catalogue::files();
     let meanings = Meanings {
-        keys: matching(word, &known).into_iter().map(|known| found(known, &files)).collect(),
+        keys: matching(word, known).into_iter().map(|known| found(known, &files)).collect(),
         column: column(word),
         flag: flags::meaning(word),
         equation: by_label(word),
     };
     if meanings.keys.is_empty() && meanings.column.is_none() && meanings.flag.is_none() && meanings.equation.is_none() {
-        return Err(vec![unknown(word, &known)]);
+        return Err(vec![unknown(word, known)]);
     }
     if args.json { Answer::json(&as_json(word, &meanings)) } else { Ok(Answer::text(text::of(&meanings, context.paint))) }
 }

@@ -1,7 +1,7 @@
 //! What a name or a file is: vehicle, lubricant, cycle, rig or calibration.
 
 use cvtcycle::calibrate::embedded_calibrations;
-use cvtcycle::config::{Problem, decode};
+use cvtcycle::config::{Problem, bounded, decode};
 use cvtcycle::cycle;
 use cvtcycle::setup::is_path;
 
@@ -57,13 +57,12 @@ pub fn sort_of(word: &str, must_be_file: bool) -> Result<(Sort, String), Vec<Pro
             return Err(vec![unknown(word)]);
         }
     }
-    let content = bytes("FILE", word)?;
     // The library takes a bare word for an embedded name.
     let path = if is_path(word) { word.to_owned() } else { format!("./{word}") };
     let extension = std::path::Path::new(word).extension().map(|e| e.to_string_lossy().to_lowercase());
     match extension.as_deref() {
-        Some("csv" | "tsv" | "txt") => Ok((Sort::Cycle, path)),
-        _ => Ok((by_text(word, &decode(word, &content)?)?, path)),
+        Some("csv" | "tsv" | "txt") => bytes("FILE", word, bounded::TABLE).map(|_| (Sort::Cycle, path)),
+        _ => Ok((by_text(word, &decode(word, &bytes("FILE", word, bounded::TOML)?)?)?, path)),
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod text;
 
-use cvtcycle::config::{Problem, decode};
+use cvtcycle::config::{Problem, bounded, decode};
 use cvtcycle::results::files::OutputDir;
 use cvtcycle::setup;
 use cvtcycle::validate::{COMMON, File, MECHANISMS, Report, Row, Subject, csv, embedded_rows, json, judge, markdown, page, read};
@@ -145,7 +145,7 @@ fn texts(args: &Args) -> Result<Vec<(String, String)>, Vec<Problem>> {
     let embedded = embedded_rows().iter().filter(|_| !args.only_rows);
     let mut texts: Vec<(String, String)> = embedded.map(|(name, text)| (embedded_name(name), (*text).to_owned())).collect();
     for path in &args.rows {
-        let text = inputs::bytes("--rows", path).and_then(|bytes| decode(path, &bytes));
+        let text = inputs::bytes("--rows", path, bounded::TOML).and_then(|bytes| decode(path, &bytes));
         texts.extend(problems.take(text).map(|text| (path.clone(), text)));
     }
     problems.finish()?;

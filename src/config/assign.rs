@@ -1,10 +1,12 @@
 //! Assignments from the command line, put into the document before it is read.
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use toml::de::DeValue;
 
-use super::document::{Document, Entry, Node, Source, Span, Table, Value, convert};
+use super::document::{Document, Entry, Node, Span, Table, Value, convert};
 use super::problem::{Place, Problem};
+use super::source::Source;
 
 /// Tables that an assignment may nest; more than any input has, few enough to recurse over.
 const DEEPEST: usize = 32;
@@ -46,7 +48,7 @@ impl Document {
             refuse(path, message, &format!("set `{value}` itself"))
         })?;
         let name = format!("--set {assignment}");
-        self.sources.push(Source { name, text: text.to_string(), has_lines: false });
+        self.sources.push(Arc::new(Source::new(&name, text, false)));
         Ok(())
     }
 

@@ -1,20 +1,15 @@
 //! A parsed text in which every value knows its place, and the assignments from the command line.
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use toml::de::{DeInteger, DeTable, DeValue};
 
 use super::problem::{Place, Problem};
+use super::shape::{self, Excess};
+use super::source::{Source, shortened};
 use super::syntax;
-
-/// One input: the file, or one assignment.
-#[derive(Clone, Debug)]
-pub(super) struct Source {
-    pub name: String,
-    pub text: String,
-    /// Whether the text has lines that a user could look up.
-    pub has_lines: bool,
-}
 
 /// A stretch of one source, in bytes.
 #[derive(Clone, Debug)]
@@ -96,7 +91,7 @@ pub(super) struct Entry {
 /// A parsed input with the place of every value.
 #[derive(Clone, Debug)]
 pub struct Document {
-    pub(super) sources: Vec<Source>,
+    pub(super) sources: Vec<Arc<Source>>,
     pub(super) root: Table,
     /// Header of the table that the document stands for, where it is one item of a list ([`Document::take_tables`]).
     pub(super) header: Option<Span>,
@@ -106,14 +101,23 @@ impl Document {
     /// Parses `text`; `file` is the name to show in messages.
     ///
     /// # Errors
-    /// All places where the text is not valid TOML, at most one per line.
+    /// All places where the text is not valid TOML, at most one per line; beyond some number the rest is counted. One problem where the
+    /// text has more tables or is nested deeper than any input could be.
     pub fn parse(file: &str, text: &str) -> Result<Document, Vec<Problem>> {
+        let source = Source::new(file, text, true);
+        if let Some(excess) = shape::excess(text) {
+            return Err(vec![too_much(&source, excess)]);
+        }
         let (table, errors) = DeTable::parse_recoverable(text);
-        let source = Source { name: file.to_string(), text: text.to_string(), has_lines: true };
         if !errors.is_empty() {
             return Err(syntax::problems(&source, &errors));
         }
-        Ok(Document { sources: vec![source], root: convert_table(table.get_ref(), 0), header: None })
+        let levels = Levels { source: 0, too_deep: Cell::new(None) };
+        let root = levels.table(table.get_ref(), 0);
+        match levels.too_deep.take() {
+            Some(at) => Err(vec![nested(&source, at)]),
+            None => Ok(Document { sources: vec![Arc::new(source)], root, header: None }),
+        }
     }
 
     /// Takes the tables of the list `key` (`[[key]]`) out, each as a document of its own with its places in this text. What is not a
@@ -143,58 +147,76 @@ impl Document {
     pub(super) fn written(&self, span: &Span) -> &str {
         self.sources[span.source].text.get(span.range.clone()).unwrap_or_default()
     }
-}
 
-impl Source {
-    /// The place of a stretch of the text.
-    pub fn place(&self, range: Range<usize>) -> Place {
-        let file = self.name.clone();
-        if !self.has_lines {
-            return Place { file, ..Place::default() };
-        }
-        let start = self.clamp(range.start);
-        let line_start = self.line_start(start);
-        let line_text = self.line_at(start);
-        let end = self.clamp(range.end).clamp(start, line_start.max(start).max(line_start + line_text.len()));
-        Place {
-            file,
-            line: self.text[..line_start].matches('\n').count() + 1,
-            column: self.text[line_start..start].chars().count() + 1,
-            line_text: line_text.to_string(),
-            width: self.text[start..end].chars().count().max(1),
-        }
-    }
-
-    /// Start of the line in which a byte stands.
-    pub fn line_start(&self, at: usize) -> usize {
-        self.text[..self.clamp(at)].rfind('\n').map_or(0, |newline| newline + 1)
-    }
-
-    /// The line in which a byte stands, without its end.
-    pub fn line_at(&self, at: usize) -> &str {
-        self.text[self.line_start(at)..].lines().next().unwrap_or_default()
-    }
-
-    /// The nearest earlier start of a character. The end of the text counts as the end of its last
-    /// line with content, since nothing can be shown on the empty line after it.
-    pub fn clamp(&self, at: usize) -> usize {
-        let mut at = if at >= self.text.len() { self.text.trim_end().len() } else { at };
-        while !self.text.is_char_boundary(at) {
-            at -= 1;
-        }
-        at
+    /// The text of a span as it is repeated in a problem: cut where it is long.
+    pub(super) fn shown(&self, span: &Span) -> String {
+        shortened(self.written(span))
     }
 }
 
+fn too_much(source: &Source, excess: Excess) -> Problem {
+    let hint = "is this the file that was meant? measured values belong into a CSV file that it names";
+    let (at, allowed, message, hint) = match excess {
+        Excess::Tables(at) => (at, format!("up to {} tables", shape::MOST_TABLES), "the file has too many tables", hint),
+        Excess::Keys(at) => (at, format!("up to {} keys", shape::MOST_KEYS), "the file has too many keys", hint),
+        Excess::Names(at) => {
+            let hint = "a dotted key is `table.table.key`; text stands in quotes";
+            (at, format!("up to {} names", shape::MOST_NAMES), "this key has too many names", hint)
+        }
+    };
+    Problem { place: source.place(at..at + 1), allowed, message: message.to_string(), hint: hint.to_string(), ..Problem::default() }
+}
+
+fn nested(source: &Source, at: usize) -> Problem {
+    Problem {
+        place: source.place(at..at + 1),
+        allowed: format!("up to {} levels", shape::MOST_LEVELS),
+        message: "tables and lists are nested too deep here".to_string(),
+        hint: "is a bracket too many open?".to_string(),
+        ..Problem::default()
+    }
+}
+
+/// The value of an assignment; what is nested too deep is left out, which a command line hardly can be.
 pub(super) fn convert(value: &DeValue<'_>, source: usize) -> Value {
-    match value {
-        DeValue::String(text) => Value::Text(text.to_string()),
-        DeValue::Integer(integer) => convert_integer(integer),
-        DeValue::Float(float) => Value::Float(float.as_str().parse().unwrap_or(f64::NAN)),
-        DeValue::Boolean(boolean) => Value::Boolean(*boolean),
-        DeValue::Datetime(_) => Value::Date,
-        DeValue::Array(items) => Value::List(items.iter().map(|item| convert_node(item, source)).collect()),
-        DeValue::Table(table) => Value::Table(convert_table(table, source)),
+    Levels { source, too_deep: Cell::new(None) }.value(value, 0)
+}
+
+/// The parser's values to those that are kept, down to the deepest level.
+struct Levels {
+    source: usize,
+    /// The first byte below it.
+    too_deep: Cell<Option<usize>>,
+}
+
+impl Levels {
+    fn value(&self, value: &DeValue<'_>, level: usize) -> Value {
+        match value {
+            DeValue::String(text) => Value::Text(text.to_string()),
+            DeValue::Integer(integer) => convert_integer(integer),
+            DeValue::Float(float) => Value::Float(float.as_str().parse().unwrap_or(f64::NAN)),
+            DeValue::Boolean(boolean) => Value::Boolean(*boolean),
+            DeValue::Datetime(_) => Value::Date,
+            DeValue::Array(items) => Value::List(items.iter().map(|item| self.node(item, level)).collect()),
+            DeValue::Table(table) => Value::Table(self.table(table, level)),
+        }
+    }
+
+    fn node(&self, value: &toml::Spanned<DeValue<'_>>, level: usize) -> Node {
+        let range = value.span();
+        if level >= shape::MOST_LEVELS {
+            self.too_deep.set(self.too_deep.get().or(Some(range.start)));
+            return Node { value: Value::Date, span: Span { source: self.source, range } };
+        }
+        Node { value: self.value(value.get_ref(), level + 1), span: Span { source: self.source, range } }
+    }
+
+    fn table(&self, table: &DeTable<'_>, level: usize) -> Table {
+        let entries = table.iter().map(|(key, value)| {
+            let entry = Entry { key: Span { source: self.source, range: key.span() }, node: self.node(value, level) };
+            (key.get_ref().to_string(), entry)
+        });
+        Table { entries: entries.collect(), choice: None }
     }
 }
 
@@ -203,16 +225,4 @@ fn convert_integer(integer: &DeInteger<'_>) -> Value {
         Ok(value) => Value::Integer(value),
         Err(_) => Value::Float(integer.as_str().parse().unwrap_or(f64::INFINITY)),
     }
-}
-
-fn convert_node(value: &toml::Spanned<DeValue<'_>>, source: usize) -> Node {
-    Node { value: convert(value.get_ref(), source), span: Span { source, range: value.span() } }
-}
-
-fn convert_table(table: &DeTable<'_>, source: usize) -> Table {
-    let entries = table.iter().map(|(key, value)| {
-        let entry = Entry { key: Span { source, range: key.span() }, node: convert_node(value, source) };
-        (key.get_ref().to_string(), entry)
-    });
-    Table { entries: entries.collect(), choice: None }
 }

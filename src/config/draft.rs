@@ -2,7 +2,8 @@
 use std::sync::Arc;
 
 use super::assign::{insert, is_word};
-use super::document::{Document, Entry, Node, Source, Span, Table, Value};
+use super::document::{Document, Entry, Node, Span, Table, Value};
+use super::source::Source;
 
 /// Dotted key, taken apart.
 pub type KeyPath = Arc<[Box<str>]>;
@@ -31,7 +32,7 @@ impl Draft {
     /// A draft of a document, without any change.
     pub fn new(document: &Document) -> Self {
         let source = document.sources.len();
-        let without_text = Source { name: String::new(), text: String::new(), has_lines: false };
+        let without_text = Arc::new(Source::new("", "", false));
         let document = Document { sources: vec![without_text; source + 1], root: bare(&document.root), header: document.header.clone() };
         Draft { document, source, changes: Vec::new() }
     }

@@ -5,6 +5,7 @@
 //! the page of assumptions cannot drift from what the program really reads.
 mod assign;
 mod bound;
+pub mod bounded;
 mod choice;
 mod document;
 mod draft;
@@ -14,6 +15,8 @@ mod problem;
 mod reader;
 mod render;
 mod section;
+mod shape;
+mod source;
 mod syntax;
 mod units;
 mod value;
@@ -23,7 +26,7 @@ pub use bound::Bound;
 pub use document::Document;
 pub use draft::{Draft, KeyPath};
 pub use near::near;
-pub use problem::{Place, Problem};
+pub use problem::{Place, Problem, append};
 pub use reader::{KeyInfo, Reader};
 pub use render::render;
 pub use section::Section;

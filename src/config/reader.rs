@@ -31,6 +31,9 @@ pub struct KeyInfo {
     pub doc: String,
 }
 
+/// Problems of one document that are put into words; the rest is counted.
+const MOST_SHOWN: usize = 500;
+
 /// Likeness above which a name in another table may be what was meant: short names of all tables are like each other.
 const ELSEWHERE: f64 = 0.75;
 
@@ -39,6 +42,8 @@ pub(super) struct Log {
     pub problems: Vec<Problem>,
     /// Missing keys, apart because a mistyped key explains them.
     pub missing: Vec<Problem>,
+    /// Problems beyond those that are shown.
+    pub more: usize,
     pub keys: Vec<KeyInfo>,
     /// Index of `keys` by their dotted path.
     pub index: HashMap<String, usize>,
@@ -86,10 +91,16 @@ impl<'d> Reader<'d> {
         }
     }
 
-    /// Counts a problem; `say` puts it into words, unless the session is silent.
+    /// Counts a problem; `say` puts it into words, unless the session is silent or has many already.
     pub(super) fn fault(&self, say: impl FnOnce() -> Problem) {
         self.faults.set(self.faults.get() + 1);
-        self.note(|log| log.problems.push(say()));
+        self.note(|log| {
+            if log.has_room() {
+                log.problems.push(say());
+            } else {
+                log.more += 1;
+            }
+        });
     }
 
     /// Problems so far.
@@ -100,7 +111,13 @@ impl<'d> Reader<'d> {
     /// Counts a missing key, apart from other problems.
     pub(super) fn fault_of_missing(&self, say: impl FnOnce() -> Problem) {
         self.faults.set(self.faults.get() + 1);
-        self.note(|log| log.missing.push(say()));
+        self.note(|log| {
+            if log.has_room() {
+                log.missing.push(say());
+            } else {
+                log.more += 1;
+            }
+        });
     }
 
     /// The table of the whole document.
@@ -121,8 +138,8 @@ impl<'d> Reader<'d> {
     /// Ends the session with every key that was read, in the order of reading.
     ///
     /// # Errors
-    /// All problems, in the order of their places, including keys that are present but were never read. After a silent session as many
-    /// empty problems as were counted.
+    /// All problems, in the order of their places, including keys that are present but were never read; of a great many the last entry tells
+    /// how many more there are. After a silent session as many empty problems as were counted.
     pub fn finish(self) -> Result<Vec<KeyInfo>, Vec<Problem>> {
         let document = self.document;
         let Some(log) = self.log else {
@@ -133,6 +150,10 @@ impl<'d> Reader<'d> {
         let mut unknown = Vec::new();
         unread(&log, &document.root, "", &mut unknown);
         for (path, entry) in unknown {
+            if !log.has_room() {
+                log.more += 1;
+                continue;
+            }
             let (problem, meant) = log.unknown(document, &path, entry);
             // A mistyped option explains the missing choice around it, too.
             let explained = |key: &str| meant.as_deref().is_some_and(|meant| key == meant || key == parent(meant));
@@ -154,11 +175,19 @@ impl<'d> Reader<'d> {
                 problems.push(problem);
             }
         }
+        if log.more > 0 {
+            problems.push(Problem::more(&document.sources[0].name, log.more));
+        }
         Err(problems)
     }
 }
 
 impl Log {
+    /// Whether another problem is to be put into words.
+    fn has_room(&self) -> bool {
+        self.problems.len() + self.missing.len() < MOST_SHOWN
+    }
+
     /// Adds a key; the first reading counts if it is read twice.
     pub fn register(&mut self, info: KeyInfo) {
         if !self.index.contains_key(&info.key) {
@@ -174,13 +203,13 @@ impl Log {
         let mut problem = Problem {
             place: document.place(span),
             key: path.to_string(),
-            value: if is_table { String::new() } else { document.written(&entry.node.span).to_string() },
+            value: if is_table { String::new() } else { document.shown(&entry.node.span) },
             message: format!("unknown {} `{path}`", if is_table { "table" } else { "key" }),
             ..Problem::default()
         };
         if self.tables.contains(path) {
             if let Value::Table(Table { choice: Some(word), .. }) = &entry.node.value {
-                (problem.place, problem.value) = (document.place(&word.span), document.written(&word.span).to_string());
+                (problem.place, problem.value) = (document.place(&word.span), document.shown(&word.span));
             }
             problem.message = format!("`{path}` is a table, not a value");
             return (problem, None);

@@ -10,6 +10,8 @@ use super::problem::{Place, Problem};
 const WIDTH: usize = 120;
 /// A longer one is no name and would hide the message.
 const LONGEST_KEY: usize = 80;
+/// A longer text repeats something of the input that nobody can read.
+const LONGEST_TEXT: usize = 2000;
 
 /// All problems with the lines they stand in, and their number on the last line. `colour` adds
 /// terminal colours. Empty without problems.
@@ -26,7 +28,7 @@ pub fn render(problems: &[Problem], colour: bool) -> String {
     }
     let files: BTreeSet<&str> = problems.iter().map(|problem| problem.place.file.as_str()).collect();
     let files: Vec<String> = files.into_iter().filter(|file| !file.is_empty()).map(visible).collect();
-    let number = problems.len();
+    let number: usize = problems.iter().map(|problem| problem.not_shown().unwrap_or(1)).sum();
     let noun = if number == 1 { "problem" } else { "problems" };
     let place = if files.is_empty() { String::new() } else { format!(" in {}", files.join(", ")) };
     text.push_str(&format!("{number} {noun}{place}\n"));
@@ -78,9 +80,14 @@ fn underlined(place: &Place) -> std::ops::Range<usize> {
     byte(first)..byte(first.saturating_add(place.width.max(1)))
 }
 
-/// Input is repeated without its control characters, which could rewrite the terminal.
+/// Input is repeated without its control characters, which could rewrite the terminal, and not without end.
 fn visible(text: impl AsRef<str>) -> String {
-    text.as_ref().chars().map(|c| if c.is_control() { '\u{FFFD}' } else { c }).collect()
+    let text = text.as_ref();
+    let mut shown: String = text.chars().take(LONGEST_TEXT).map(|c| if c.is_control() { '\u{FFFD}' } else { c }).collect();
+    if text.chars().nth(LONGEST_TEXT).is_some() {
+        shown.push_str("...");
+    }
+    shown
 }
 
 #[cfg(test)]
@@ -128,6 +135,14 @@ mod tests {
         let long = Problem { key: "k".repeat(1000), ..cell };
         assert!(render(&[long], false).starts_with("error: this is not a number\n"));
         assert_eq!(render(&[problem()], false).matches("belt.band_offset_mm").count(), 1);
+    }
+
+    #[test]
+    fn long_texts_are_cut_and_all_problems_are_counted() {
+        let long = Problem { message: "ä".repeat(1 << 20), ..problem() };
+        let text = render(&[long, Problem::more("car.toml", 41)], false);
+        assert!(text.contains(&format!("{}...\n", "ä".repeat(LONGEST_TEXT))) && text.len() < 2 * LONGEST_TEXT + 1000);
+        assert!(text.ends_with("\n42 problems in car.toml\n"), "{}", &text[text.len() - 100..]);
     }
 
     #[test]

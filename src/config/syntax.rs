@@ -1,8 +1,8 @@
 //! Problems that are found before any key is read: bytes that are no text, text that is no TOML.
 use std::ops::Range;
 
-use super::document::Source;
 use super::problem::{Place, Problem};
+use super::source::{Source, shortened};
 
 /// Bytes of a line up to which slips are looked for: nobody writes longer lines by hand, and the search
 /// takes time with the square of the length.
@@ -30,6 +30,9 @@ pub fn decode(file: &str, bytes: &[u8]) -> Result<String, Vec<Problem>> {
     Ok(text.to_string())
 }
 
+/// Lines of which the errors are shown; the rest is counted.
+const MOST_SHOWN: usize = 100;
+
 /// The parser's errors as problems, one per line: what follows the first error of a line is
 /// mostly its consequence.
 pub(super) fn problems(source: &Source, errors: &[toml::de::Error]) -> Vec<Problem> {
@@ -37,13 +40,21 @@ pub(super) fn problems(source: &Source, errors: &[toml::de::Error]) -> Vec<Probl
         errors.iter().map(|error| (error.span().unwrap_or(source.text.len()..source.text.len()), error.message())).collect();
     ordered.sort_by_key(|(span, _)| span.start);
     let mut found = Vec::new();
+    let mut more = 0;
     let mut line_end = None;
     for (span, parser) in ordered {
         let start = source.clamp(span.start);
         if line_end.is_none_or(|end| start > end) {
             line_end = Some(source.text[start..].find('\n').map_or(source.text.len(), |length| start + length));
-            found.push(syntax_problem(source, span, parser));
+            if found.len() < MOST_SHOWN {
+                found.push(syntax_problem(source, span, parser));
+            } else {
+                more += 1;
+            }
         }
+    }
+    if more > 0 {
+        found.push(Problem::more(&source.name, more));
     }
     found
 }
@@ -53,6 +64,7 @@ fn syntax_problem(source: &Source, span: Range<usize>, parser: &str) -> Problem 
     let line = source.line_at(span.start);
     let (slip, hint) = match slip(line) {
         Some((range, hint)) => (Some(start + range.start..start + range.end), hint),
+        None if parser.contains("recurs") => (None, "no input is nested as deep: is a bracket too many open?".to_string()),
         None if parser.contains("duplicate key") => (None, "remove one of the two entries".to_string()),
         None => (None, "a line is `key = value` or a `[table]`; text stands in quotes, every bracket is closed".to_string()),
     };
@@ -62,7 +74,7 @@ fn syntax_problem(source: &Source, span: Range<usize>, parser: &str) -> Problem 
     };
     let span = slip.unwrap_or(span);
     Problem {
-        value: source.text.get(span.clone()).unwrap_or_default().to_string(),
+        value: shortened(source.text.get(span.clone()).unwrap_or_default()),
         place: source.place(span),
         message,
         hint,

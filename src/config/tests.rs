@@ -198,9 +198,48 @@ fn columns_after_other_letters_count_characters() {
 
 #[test]
 fn the_end_of_the_text_is_shown_on_its_last_line() {
-    let (name, text) = ("car.toml".to_string(), "a = 1\nb = [1\n\n\n".to_string());
-    let source = document::Source { name, text, has_lines: true };
+    let source = source::Source::new("car.toml", "a = 1\nb = [1\n\n\n", true);
     let place = source.place(15..15);
     assert_eq!((place.line, place.column, place.width), (2, 7, 1));
     assert_eq!(place.line_text, "b = [1");
+}
+
+/// All problems of a reading, and how many they stand for.
+fn counted(document: &Document) -> (usize, usize) {
+    let reader = Reader::new(document);
+    let root = reader.root();
+    root.number("mass_kg", Bound::positive(), "mass");
+    root.numbers("list_mm", OFFSET, 0..=usize::MAX, "numbers");
+    let problems = reader.finish().unwrap_err();
+    (problems.len(), problems.iter().map(|problem| problem.not_shown().unwrap_or(1)).sum())
+}
+
+#[test]
+fn of_a_great_many_problems_the_rest_is_counted() {
+    let keys: String = (0..10_000).map(|k| format!("k{k} = 1\n")).collect();
+    assert_eq!(counted(&document(&keys)), (501, 10_001));
+    let list = format!("mass_kg = 1\nlist_mm = [{}]\n", "99,".repeat(10_000));
+    assert_eq!(counted(&document(&list)), (501, 10_000));
+    let twice = "a = 1\n".repeat(1000);
+    let problems = Document::parse("car.toml", &twice).unwrap_err();
+    assert_eq!((problems.len(), problems.last().and_then(Problem::not_shown)), (101, Some(899)));
+}
+
+#[test]
+fn long_lines_and_values_are_not_repeated() {
+    let long = format!("mass_kg = 1\n{}\nx = \"{}\" # {}\n", "# \u{e9}".repeat(300), "\u{e9}".repeat(300), "y".repeat(600));
+    let written = document(&long);
+    let reader = Reader::new(&written);
+    reader.root().number("mass_kg", Bound::positive(), "mass");
+    let problem = only(reader.finish());
+    assert_eq!((problem.place.line, problem.place.column, problem.place.line_text.as_str()), (3, 1, ""));
+    assert_eq!(problem.value, format!("\"{}...", "\u{e9}".repeat(199)));
+    // Line ends of every kind, the last line without one.
+    for text in ["a = 1\r\nb = 2\r\n\r\nc = 3", "a = 1\nb = 2\n\nc = 3\n"] {
+        let document = document(text);
+        let reader = Reader::new(&document);
+        let places: Vec<(usize, String)> =
+            reader.finish().unwrap_err().into_iter().map(|problem| (problem.place.line, problem.place.line_text)).collect();
+        assert_eq!(places, [(1, "a = 1".to_string()), (2, "b = 2".to_string()), (4, "c = 3".to_string())]);
+    }
 }

@@ -277,7 +277,7 @@ impl<'r> Section<'r> {
         self.reader.fault(|| Problem {
             place: document.place(span),
             key: self.dotted(key),
-            value: document.written(span).to_string(),
+            value: document.shown(span),
             allowed: allowed.to_string(),
             message,
             hint,

@@ -2,6 +2,8 @@
 //!
 //! Only the one that is asked for is parsed.
 
+use std::sync::OnceLock;
+
 use super::gears::GearCommand;
 use super::read::read_trace;
 use super::{Cycle, Interval, Trace, Weighting};
@@ -114,9 +116,16 @@ pub fn names() -> &'static [&'static str] {
 
 /// The cycle of this name, `None` if the program carries none. For the ECE cycles an automatic drives the table without
 /// gear-change plateaux; a name that ends in `_auto` gives every car that table. FTP75 has its engine off in `hot_soak`.
+///
+/// A table is parsed when its name is first asked for.
 #[must_use]
 pub fn embedded(name: &str) -> Option<Cycle> {
-    let entry = entry(name)?;
+    static PARSED: [OnceLock<Option<Cycle>>; ENTRIES.len()] = [const { OnceLock::new() }; ENTRIES.len()];
+    let place = NAMES.iter().position(|known| *known == name)?;
+    PARSED[place].get_or_init(|| parsed(&ENTRIES[place])).clone()
+}
+
+fn parsed(entry: &Entry) -> Option<Cycle> {
     let mut phases = Vec::new();
     let mut manual = table(entry, &mut phases)?;
     let automatic = match entry.automatic {

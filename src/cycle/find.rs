@@ -1,6 +1,7 @@
 //! A cycle by its name, or a file of the user.
 
 use super::{Cycle, constant_speed, embedded, names, read_csv};
+use crate::config::bounded::{self, Limit};
 use crate::config::{Place, Problem, near};
 use crate::setup::is_path;
 
@@ -16,7 +17,7 @@ pub fn find(option: &str, value: &str) -> Result<Cycle, Vec<Problem>> {
         return Ok(found);
     }
     if is_path(value) {
-        return read_csv(value, &bytes(option, value)?);
+        return read_csv(value, &bytes(option, value, bounded::TABLE)?);
     }
     let close = near(value, names().iter().copied());
     let question = if close.is_empty() { String::new() } else { format!("did you mean {}? ", close.join(" or ")) };
@@ -40,9 +41,9 @@ pub fn is_csv(word: &str) -> bool {
 /// The bytes of a file that the user named.
 ///
 /// # Errors
-/// A problem of `option` with the words of the operating system.
-pub fn bytes(option: &str, path: &str) -> Result<Vec<u8>, Vec<Problem>> {
-    std::fs::read(path).map_err(|error| {
+/// A problem of `option`: the words of the operating system, or more bytes than the limit.
+pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Vec<Problem>> {
+    bounded::read(path, limit).map_err(|error| {
         let hint = match error.kind() {
             std::io::ErrorKind::NotFound => "check the path; it is taken from the current directory",
             std::io::ErrorKind::IsADirectory => "name a file in that directory",
@@ -52,9 +53,9 @@ pub fn bytes(option: &str, path: &str) -> Result<Vec<u8>, Vec<Problem>> {
             place: place(option),
             key: option.to_owned(),
             value: path.to_owned(),
-            allowed: "a readable file".to_owned(),
+            allowed: error.allowed("a readable file"),
             message: format!("cannot read `{path}`: {error}"),
-            hint: hint.to_owned(),
+            hint: error.hint(hint).to_owned(),
         }]
     })
 }

@@ -5,8 +5,12 @@ use crate::config::{Place, Problem};
 
 /// More than these help nobody; the rest is counted.
 const SHOWN: usize = 50;
-// a longer line is no table row and would only fill the screen
-const LONGEST_LINE: usize = 500;
+/// A longer line is no row of a table, but another file.
+const LONGEST_LINE: usize = 1 << 20;
+/// No table has as many columns; each unknown one is compared with all known ones.
+const MOST_COLUMNS: usize = 1000;
+// a longer line would only fill the screen
+const LONGEST_SHOWN: usize = 500;
 const LONGEST_VALUE: usize = 60;
 
 /// One line of the file.
@@ -63,9 +67,9 @@ impl<'f> Problems<'f> {
         Self { file, list: Vec::new(), more: 0 }
     }
 
-    /// The lines of a file that have something on them; none, and said so, where the bytes are no text.
+    /// The lines of a file that have something on them; none, and said so, where the bytes are no text or a line is too long for a table.
     pub fn lines<'t>(&mut self, bytes: &'t [u8]) -> Option<impl Iterator<Item = Line<'t>> + use<'t>> {
-        match decode(bytes) {
+        match decode(bytes).and_then(no_long_line) {
             Ok(text) => {
                 Some((1..).zip(text.lines()).map(|(number, text)| Line { number, text }).filter(|line| !line.text.trim().is_empty()))
             }
@@ -103,6 +107,12 @@ impl<'f> Problems<'f> {
         }
         let mut fields = Vec::new();
         match split(line.text, &mut fields) {
+            Ok(()) if fields.len() > MOST_COLUMNS => {
+                let message = format!("this line has {} column names", fields.len());
+                let hint = "keep the columns that are needed, with a row for every point";
+                self.line(line, "", || Complaint::new(message, format!("up to {MOST_COLUMNS}"), hint));
+                None
+            }
             Ok(()) => Some(fields),
             Err(start) => {
                 self.open_quote(line, start);
@@ -182,21 +192,25 @@ impl<'f> Problems<'f> {
     #[must_use]
     pub fn finish(mut self) -> Vec<Problem> {
         if self.more > 0 {
-            let are = if self.more == 1 { "problem is" } else { "problems are" };
-            self.list.push(Problem {
-                place: Place { file: self.file.to_owned(), ..Place::default() },
-                message: format!("{} more {are} not shown", self.more),
-                hint: "mend the ones above first; they often have one cause".to_owned(),
-                ..Problem::default()
-            });
+            self.list.push(Problem::more(self.file, self.more));
         }
         self.list
     }
 }
 
+fn no_long_line(text: &str) -> Result<&str, Complaint> {
+    match text.split('\n').position(|line| line.len() >= LONGEST_LINE) {
+        Some(before) => {
+            let message = format!("line {} is too long for a row of a table", before + 1);
+            Err(Complaint::new(message, format!("up to {LONGEST_LINE} bytes"), "is this a CSV file?"))
+        }
+        None => Ok(text),
+    }
+}
+
 fn place(file: &str, line: Line<'_>, field: Field<'_>) -> Place {
     let before = line.text.get(..field.start).unwrap_or_default();
-    let shown = line.text.len() <= LONGEST_LINE;
+    let shown = line.text.len() <= LONGEST_SHOWN;
     Place {
         file: file.to_owned(),
         line: line.number,
@@ -233,6 +247,23 @@ mod tests {
         problems.value(Line { number: 1, text: &text }, Field { text: &text, start: 0 }, "k", Complaint::default);
         let problem = &problems.finish()[0];
         assert_eq!((problem.place.line_text.as_str(), problem.value.chars().count()), ("", 63));
+    }
+
+    #[test]
+    fn a_long_line_and_many_columns_are_refused() {
+        for (length, taken) in [(LONGEST_LINE - 1, true), (LONGEST_LINE, false)] {
+            let text = format!("a,b\n{}\n1,2\n", "1".repeat(length));
+            let mut problems = Problems::new("f.csv");
+            assert_eq!(problems.lines(text.as_bytes()).map(Iterator::count), taken.then_some(3));
+            let list = problems.finish();
+            assert_eq!(list.first().map(|p| p.message.as_str()), (!taken).then_some("line 2 is too long for a row of a table"));
+        }
+        for (columns, taken) in [(MOST_COLUMNS, true), (MOST_COLUMNS + 1, false)] {
+            let text = vec!["a"; columns].join(",");
+            let mut problems = Problems::new("f.csv");
+            assert_eq!(problems.names(Line { number: 1, text: &text }).is_some(), taken);
+            assert_eq!(problems.is_empty(), taken);
+        }
     }
 
     #[test]

@@ -4,10 +4,17 @@
 
 mod read;
 
-pub(crate) use read::{AGAIN, FLAGS};
+pub(crate) use read::{AGAIN, FLAGS, too_many_phases};
 
 use super::columns::{COLUMNS, Column, Scope, Value, column, loss_column};
 use super::{Component, Flags, Row};
+
+/// Most steps of a trace that is read: as many as a cycle may have rows, 23 days at 1 s. Some 500 bytes of memory each.
+pub(crate) const MOST_STEPS: usize = 2_000_000;
+/// Most phases, as of a cycle.
+const MOST_PHASES: usize = 200;
+/// What helps with a trace that is too long.
+pub(crate) const SHORTER: &str = "run it again with a larger --dt, or a part of the cycle";
 
 /// The steps of one car through one cycle, by column.
 #[derive(Clone, Debug, Default)]

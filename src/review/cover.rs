@@ -19,6 +19,7 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 
 use super::document::{Block, Document};
+use crate::config::bounded::{self, Refused};
 use crate::config::{Document as Toml, Problem, Reader, decode};
 
 /// Sections that a report may have, in their order.
@@ -37,8 +38,6 @@ pub const SECTIONS: [&str; 13] = [
     "validation",
     "reproducibility",
 ];
-/// Largest logo, bytes.
-const LARGEST_LOGO: usize = 500_000;
 
 /// What stands on the cover, and remarks on sections.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -61,7 +60,7 @@ impl Cover {
     /// # Errors
     /// All problems of the file, with line and hint, and of the logo.
     pub fn read(path: &str) -> Result<Self, Vec<Problem>> {
-        let bytes = crate::cycle::bytes("--cover", path)?;
+        let bytes = crate::cycle::bytes("--cover", path, bounded::TOML)?;
         let text = decode(path, &bytes)?;
         let toml = Toml::parse(path, &text)?;
         let reader = Reader::new(&toml);
@@ -112,11 +111,10 @@ impl Cover {
 /// A logo as a data URI, or what is wrong with it and what helps.
 fn logo_data(cover: &str, name: &str) -> Result<String, (String, String)> {
     let path = Path::new(cover).parent().unwrap_or(Path::new("")).join(name);
-    let size = std::fs::metadata(&path).map_err(|error| unreadable(&path, &error))?.len();
-    if size > LARGEST_LOGO as u64 {
-        return Err((format!("the logo has {size} bytes"), "make it smaller: it is copied into the report".to_owned()));
-    }
-    let bytes = std::fs::read(&path).map_err(|error| unreadable(&path, &error))?;
+    let bytes = bounded::read_file(&path, bounded::LOGO).map_err(|error| match error {
+        Refused::TooLarge(Some(size), limit) => (format!("the logo has {size} bytes"), limit.hint.to_owned()),
+        _ => unreadable(&path, &error),
+    })?;
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(1000)]).to_lowercase();
     let kind = match () {
         () if bytes.starts_with(b"\x89PNG\r\n\x1a\n") => "image/png",
@@ -127,8 +125,9 @@ fn logo_data(cover: &str, name: &str) -> Result<String, (String, String)> {
     Ok(format!("data:{kind};base64,{}", BASE64_STANDARD.encode(&bytes)))
 }
 
-fn unreadable(path: &Path, error: &std::io::Error) -> (String, String) {
-    (format!("cannot read {}: {error}", path.display()), "the path is taken from the folder of this file".to_owned())
+fn unreadable(path: &Path, error: &Refused) -> (String, String) {
+    let hint = error.hint("the path is taken from the folder of this file");
+    (format!("cannot read {}: {error}", path.display()), hint.to_owned())
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use crate::config::bounded::{self, Refused};
 use crate::config::{Place, Problem};
 use crate::results::history::History;
 use crate::results::record::{self, Record};
@@ -18,8 +19,6 @@ use crate::study::{Answer, Frame, Outline, answer};
 const SUMMARY: &str = "summary.json";
 /// The manifest of a study.
 const STUDY: &str = "study.json";
-/// No file of JSON of this program comes near this size, bytes.
-const LARGEST: u64 = 64 << 20;
 
 /// What a directory holds.
 #[derive(Debug)]
@@ -123,7 +122,7 @@ impl StudyFound {
 /// # Errors
 /// All problems: no such directory, nothing of this program in it, a newer schema, damaged files.
 pub fn find(path: &Path, extra: &[PathBuf]) -> Result<Found, Vec<Problem>> {
-    let entries = fs::read_dir(path).map_err(|error| vec![unreadable(path, &error)])?;
+    let entries = fs::read_dir(path).map_err(|error| vec![unreadable(path, &error.into())])?;
     if is_study(path) {
         return StudyFound::open(path).map(|study| Found::Study(Box::new(study))).map_err(|problem| vec![problem]);
     }
@@ -266,7 +265,7 @@ fn history(path: &Path, vehicle: &str) -> Result<Option<History>, Vec<Problem>> 
     }
     let csv = path.join(format!("trace_{vehicle}.csv"));
     if csv.exists() {
-        let bytes = fs::read(&csv).map_err(|error| vec![unreadable(&csv, &error)])?;
+        let bytes = bounded::read_file(&csv, bounded::TRACE).map_err(|error| vec![unreadable(&csv, &error)])?;
         return History::read_csv(&csv.display().to_string(), &bytes).map(Some);
     }
     let parquet = path.join(format!("trace_{vehicle}.parquet"));
@@ -274,11 +273,7 @@ fn history(path: &Path, vehicle: &str) -> Result<Option<History>, Vec<Problem>> 
 }
 
 fn json(path: &Path) -> Result<Value, Problem> {
-    let size = fs::metadata(path).map_err(|error| unreadable(path, &error))?.len();
-    if size > LARGEST {
-        return Err(problem(path, &format!("the file has {size} bytes, which no file of this program has"), "run it again"));
-    }
-    let bytes = fs::read(path).map_err(|error| unreadable(path, &error))?;
+    let bytes = bounded::read_file(path, bounded::RECORD).map_err(|error| unreadable(path, &error))?;
     serde_json::from_slice(&bytes).map_err(|error| {
         let place = Place { file: path.display().to_string(), line: error.line(), column: error.column(), ..Place::default() };
         Problem {
@@ -309,11 +304,12 @@ pub(super) fn problem(path: &Path, message: &str, hint: &str) -> Problem {
     Problem { place, message: message.to_owned(), hint: hint.to_owned(), ..Problem::default() }
 }
 
-fn unreadable(path: &Path, error: &std::io::Error) -> Problem {
+fn unreadable(path: &Path, error: &Refused) -> Problem {
     let hint = match error.kind() {
         std::io::ErrorKind::NotFound => "check the path; it is taken from the current directory",
         std::io::ErrorKind::NotADirectory => "name the directory, not a file in it",
         _ => "check the path and its permissions",
     };
-    problem(path, &format!("cannot read {}: {error}", path.display()), hint)
+    let allowed = error.allowed("");
+    Problem { allowed, ..problem(path, &format!("cannot read {}: {error}", path.display()), error.hint(hint)) }
 }

@@ -1,7 +1,7 @@
 //! The files of a report: the document, and its figures in a folder beside it. All of them appear, or none.
 
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use super::document::Document;
@@ -44,14 +44,24 @@ fn ending(file: &Path) -> String {
 
 /// Whether a file is a report that this program has written.
 fn is_report(file: &Path) -> bool {
-    let text = fs::read(file).unwrap_or_default();
-    let (head, tail) = (&text[..text.len().min(2000)], &text[text.len().saturating_sub(200)..]);
-    String::from_utf8_lossy(head).contains(GENERATOR) || String::from_utf8_lossy(tail).contains(MADE_BY)
+    let ends = || -> io::Result<(Vec<u8>, Vec<u8>)> {
+        let mut file = fs::File::open(file)?;
+        let (mut head, mut tail) = (Vec::new(), Vec::new());
+        Read::by_ref(&mut file).take(HEAD).read_to_end(&mut head)?;
+        file.seek(SeekFrom::Start(file.metadata()?.len().saturating_sub(TAIL)))?;
+        file.take(TAIL).read_to_end(&mut tail)?;
+        Ok((head, tail))
+    };
+    let (head, tail) = ends().unwrap_or_default();
+    String::from_utf8_lossy(&head).contains(GENERATOR) || String::from_utf8_lossy(&tail).contains(MADE_BY)
 }
 
 /// By these words a page and a Markdown text are known as reports.
 const GENERATOR: &str = "name=\"generator\" content=\"cvtcycle ";
 const MADE_BY: &str = "Made by cvtcycle ";
+/// Bytes at the beginning and at the end of a file in which these words are looked for.
+const HEAD: u64 = 2000;
+const TAIL: u64 = 200;
 
 /// Where a report goes, checked before anything is computed.
 #[derive(Debug)]

@@ -4,6 +4,7 @@
 //! these leave unchosen.
 
 use std::collections::{BTreeSet, VecDeque};
+use std::sync::OnceLock;
 
 use super::inputs::{head, parts};
 use super::{Disk, Kind, embedded_lubricants, embedded_rigs, embedded_vehicles};
@@ -45,9 +46,22 @@ pub fn files() -> Vec<File> {
     vehicles.chain(lubricants).chain(rigs).map(|(name, text, kind)| File { name, kind, keys: keys(name, text, kind, &[]) }).collect()
 }
 
-/// Every key of any vehicle, lubricant or rig, those of the transmission oil with [`OIL`]; without values.
+/// Every key of any vehicle, lubricant or rig, those of the transmission oil with [`OIL`]; without values. They are the same in every
+/// call, and gathered in the first one.
 #[must_use]
-pub fn known_keys() -> Vec<KeyInfo> {
+pub fn known_keys() -> &'static [KeyInfo] {
+    static KNOWN: OnceLock<Vec<KeyInfo>> = OnceLock::new();
+    KNOWN.get_or_init(gathered)
+}
+
+/// Names of [`known_keys`].
+#[must_use]
+pub fn known_names() -> &'static [String] {
+    static NAMES: OnceLock<Vec<String>> = OnceLock::new();
+    NAMES.get_or_init(|| known_keys().iter().map(|info| info.key.clone()).collect())
+}
+
+fn gathered() -> Vec<KeyInfo> {
     let mut known: Vec<KeyInfo> = Vec::new();
     let mut seen = BTreeSet::new();
     for file in files() {

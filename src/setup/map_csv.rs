@@ -26,6 +26,9 @@ impl Form<'_> {
     }
 }
 
+/// Most rows: as many points as `losses` writes.
+const MOST_ROWS: usize = 1_000_000;
+
 /// A row with its line.
 struct Row<'t> {
     line: Line<'t>,
@@ -56,6 +59,11 @@ pub(super) fn read(file: &str, bytes: &[u8], form: &Form) -> Result<Read, Vec<Pr
     let mut fields = Vec::new();
     let mut count = 0;
     for line in lines {
+        if count == MOST_ROWS {
+            let hint = "a coarser grid will do: between its points a map is interpolated";
+            problems.line(line, "", || Complaint::new("the map has too many rows", format!("up to {MOST_ROWS} rows"), hint));
+            break;
+        }
         count += 1;
         if problems.split(line, columns.len(), &mut fields) {
             let values =

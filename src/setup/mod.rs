@@ -17,6 +17,7 @@ pub use embedded::{embedded_lubricants, embedded_map, embedded_rigs, embedded_ve
 
 use std::sync::Arc;
 
+use crate::config::bounded::{self, Refused};
 use crate::config::{Bound, Document, KeyInfo, Place, Problem, Reader, decode, near};
 use crate::engine;
 use crate::lubricant::{self, Lubricant};
@@ -30,8 +31,16 @@ pub trait Files: std::fmt::Debug + Send + Sync {
     /// Bytes of a file.
     ///
     /// # Errors
-    /// The operating system's words.
+    /// The operating system's words, or more bytes than a table may have.
     fn read(&self, path: &str) -> Result<Vec<u8>, String>;
+
+    /// As [`Files::read`], with what is allowed and what helps where that is known.
+    ///
+    /// # Errors
+    /// As there.
+    fn fetch(&self, path: &str) -> Result<Vec<u8>, Refused> {
+        self.read(path).map_err(|why| Refused::Unreadable(std::io::Error::other(why)))
+    }
 
     /// What `make` makes of a file of a kind. Whoever reads the same car again and again keeps it and calls `make` once only.
     fn table(&self, _kind: &'static str, _file: &str, make: &mut dyn FnMut() -> Option<Arc<tables::Table>>) -> Option<Arc<tables::Table>> {
@@ -48,7 +57,11 @@ pub struct Disk {
 
 impl Files for Disk {
     fn read(&self, path: &str) -> Result<Vec<u8>, String> {
-        std::fs::read(self.folder.join(path)).map_err(|e| e.to_string())
+        self.fetch(path).map_err(|refused| refused.to_string())
+    }
+
+    fn fetch(&self, path: &str) -> Result<Vec<u8>, Refused> {
+        bounded::read_file(self.folder.join(path), bounded::TABLE)
     }
 }
 
@@ -165,7 +178,10 @@ pub fn text_of(word: &str, kind: Kind, option: &str) -> Result<(String, String, 
         return Err(vec![unknown_name(word, kind, option)]);
     }
     let path = std::path::Path::new(word);
-    let bytes = std::fs::read(path).map_err(|e| vec![unreadable(word, option, &e.to_string())])?;
+    // What no option names stands in a file, whose author may be a stranger.
+    let by_user = option.starts_with("--") || option == "FILE";
+    let read = if by_user { bounded::read(path, bounded::TOML) } else { bounded::read_file(path, bounded::TOML) };
+    let bytes = read.map_err(|error| vec![unreadable(word, option, &error)])?;
     let folder = path.parent().map(std::path::Path::to_path_buf).unwrap_or_default();
     Ok((word.to_owned(), decode(word, &bytes)?, Disk { folder }))
 }
@@ -184,14 +200,14 @@ fn unknown_name(word: &str, kind: Kind, option: &str) -> Problem {
     }
 }
 
-fn unreadable(word: &str, option: &str, why: &str) -> Problem {
+fn unreadable(word: &str, option: &str, why: &Refused) -> Problem {
     Problem {
         place: Place { file: option.to_owned(), ..Place::default() },
         key: option.to_owned(),
         value: word.to_owned(),
-        allowed: "a readable file".into(),
+        allowed: why.allowed("a readable file"),
         message: format!("cannot read `{word}`: {why}"),
-        hint: "check the path and its permissions".into(),
+        hint: why.hint("check the path and its permissions").into(),
     }
 }
 

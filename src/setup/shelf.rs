@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::Files;
 use super::tables::Table;
+use crate::config::bounded::Refused;
 
 /// The tables of one file, by kind.
 type Kinds = BTreeMap<&'static str, Arc<Table>>;
@@ -25,6 +26,10 @@ impl Shelf {
 impl Files for Shelf {
     fn read(&self, path: &str) -> Result<Vec<u8>, String> {
         self.files.read(path)
+    }
+
+    fn fetch(&self, path: &str) -> Result<Vec<u8>, Refused> {
+        self.files.fetch(path)
     }
 
     fn table(&self, kind: &'static str, file: &str, make: &mut dyn FnMut() -> Option<Arc<Table>>) -> Option<Arc<Table>> {

@@ -62,7 +62,7 @@ fn read(s: &Section, key: &str, file: &str, files: &dyn Files, form: &Form) -> O
         let read;
         let bytes = match embedded_map(file) {
             Some(text) => text.as_bytes(),
-            None => match files.read(file) {
+            None => match files.fetch(file) {
                 Ok(bytes) => {
                     read = bytes;
                     read.as_slice()
@@ -70,9 +70,9 @@ fn read(s: &Section, key: &str, file: &str, files: &dyn Files, form: &Form) -> O
                 Err(why) => {
                     s.complain(
                         key,
-                        "a readable CSV file",
+                        &why.allowed("a readable CSV file"),
                         &format!("cannot read `{file}`: {why}"),
-                        "the path is relative to the vehicle file",
+                        why.hint("the path is relative to the vehicle file"),
                     );
                     return None;
                 }

@@ -1,12 +1,13 @@
 //! Files of rows as read: tolerances and sources at the head, then `[[row]]` by `[[row]]`.
 
+use std::collections::HashMap;
+
 use super::checks::{KINDS, complete, mechanism, printed, verdict};
 use super::expr::{Expr, Fault, parse};
 use super::names::FileNames;
 use super::rule::{Printed, Verdict};
 use super::source::{self, Source};
-use crate::config::{Bound, Document, Place, Problem, Reader, Section, near};
-use crate::rig::transmission::Conditions;
+use crate::config::{Bound, Document, Place, Problem, Reader, Section, append, near};
 use crate::setup::{catalogue, is_path};
 
 /// A named tolerance.
@@ -106,26 +107,20 @@ pub struct File {
 /// # Errors
 /// All problems of all files.
 pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File>, Vec<Problem>> {
-    let rig = Conditions::load(&[]).map(|(_, keys)| keys).unwrap_or_default();
-    let keys: Vec<String> = catalogue::known_keys().into_iter().chain(rig).map(|info| info.key).collect();
+    let keys = catalogue::known_names();
     let mut problems = Vec::new();
-    let lent = file(common.0, common.1, &Lent::default(), &keys, &mut problems);
+    let lent = file(common.0, common.1, &Lent::default(), keys, &mut problems);
     let lent = Lent { tolerances: lent.tolerances, sources: lent.sources };
-    let read: Vec<File> = files.iter().map(|(name, text)| file(name, text, &lent, &keys, &mut problems)).collect();
-    let mut seen: Vec<&Row> = Vec::new();
-    for row in read.iter().flat_map(|file| &file.rows) {
-        if let Some(first) = seen.iter().find(|other| other.id == row.id && !row.id.is_empty()) {
+    let read: Vec<File> = files.iter().map(|(name, text)| file(name, text, &lent, keys, &mut problems)).collect();
+    let mut seen: HashMap<&str, &Row> = HashMap::new();
+    for row in read.iter().flat_map(|file| &file.rows).filter(|row| !row.id.is_empty()) {
+        let first = *seen.entry(&row.id).or_insert(row);
+        if !std::ptr::eq(first, row) {
             let message = format!("the id `{}` was used before, in {} line {}", row.id, first.id_place.file, first.id_place.line);
-            problems.push(Problem {
-                place: row.id_place.clone(),
-                key: "id".into(),
-                value: row.id.clone(),
-                message,
-                hint: "ids are unique".into(),
-                ..Problem::default()
-            });
+            let (place, value) = (row.id_place.clone(), row.id.clone());
+            let twice = Problem { place, key: "id".into(), value, message, hint: "ids are unique".into(), ..Problem::default() };
+            append(&mut problems, vec![twice]);
         }
-        seen.push(row);
     }
     if problems.is_empty() { Ok(read) } else { Err(problems) }
 }
@@ -141,8 +136,8 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec
     let mut read = File { name: name.to_owned(), tolerances: Vec::new(), sources: Vec::new(), rows: Vec::new() };
     let mut document = match Document::parse(name, text) {
         Ok(document) => document,
-        Err(mut p) => {
-            problems.append(&mut p);
+        Err(found) => {
+            append(problems, found);
             return read;
         }
     };
@@ -153,7 +148,7 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec
     read.sources = source::read(&root.table("sources"), &lent.sources);
     if let Err(found) = reader.finish() {
         let hint = |p: &Problem| if p.key == "row" { "rows are written as [[row]]".to_owned() } else { p.hint.clone() };
-        problems.extend(found.into_iter().map(|p| Problem { hint: hint(&p), ..p }));
+        append(problems, found.into_iter().map(|p| Problem { hint: hint(&p), ..p }).collect());
     }
     // A path in a file is relative to that file.
     for named in read.sources.iter_mut().flat_map(|source| [&mut source.vehicle, &mut source.lubricant]).flatten() {
@@ -171,7 +166,8 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec
         let row = head.row(&reader.root());
         if let Err(found) = reader.finish() {
             let of = if row.id.is_empty() { String::new() } else { format!("row {}: ", row.id) };
-            problems.extend(found.into_iter().map(|p| Problem { message: format!("{of}{}", p.message), ..p }));
+            let named = |p: Problem| if p.not_shown().is_some() { p } else { Problem { message: format!("{of}{}", p.message), ..p } };
+            append(problems, found.into_iter().map(named).collect());
         }
         read.rows.push(row);
     }

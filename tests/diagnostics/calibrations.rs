@@ -57,6 +57,10 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
     ];
     let open = |path: &str, _: &[u8]| told_by(data(kind, path));
     let mut all: Vec<(String, String)> = files.into_iter().map(|(name, bytes)| made_file(name, bytes, open)).collect();
+    if kind == "calibration_points" {
+        let text = format!("ratio,speed_rpm,temp_degc,total_nm\n{}", "1,2000,80,5\n".repeat(125_001));
+        all.push(made_file("too_many_values.csv", text.as_bytes(), open));
+    }
     if kind == "calibration_trace" {
         let text: String = (0..200).rev().map(|k| format!("{k},20,0.5\n")).collect();
         let text = format!("time_s,transmission_sump_degc,sd_transmission_sump_degc\n{text}");

@@ -162,7 +162,26 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
         "cycle" => {
             let text: String =
                 std::iter::once("time_s,speed_kmh\n".to_owned()).chain((0..=2_000_000).map(|k| format!("{k},0\n"))).collect();
-            vec![made_file("too_many_rows.csv", text.as_bytes(), |path, bytes| told_by(cycle::read_csv(path, bytes).err()))]
+            let read = |path: &str, bytes: &[u8]| told_by(cycle::read_csv(path, bytes).err());
+            let columns = format!("time_s,speed_kmh{}\n0,0\n", ",".repeat(999));
+            let line = format!("time_s,speed_kmh\n0,0\n1,{}\n", "1".repeat(1 << 20));
+            vec![
+                made_file("too_many_rows.csv", text.as_bytes(), read),
+                made_file("too_many_columns.csv", columns.as_bytes(), read),
+                made_file("long_line.csv", line.as_bytes(), read),
+            ]
+        }
+        "lubricant" => {
+            let read = |path: &str, _: &[u8]| told_by(setup::load_lubricant(path, "--lubricant", &[], "").err());
+            vec![
+                made_file("too_many_tables.toml", "[a]\n".repeat(20_001).as_bytes(), read),
+                made_file("too_many_keys.toml", "a = 1\n".repeat(100_001).as_bytes(), read),
+                made_file("too_large.toml", &[b'#'; (1 << 20) + 1], read),
+            ]
+        }
+        "map" => {
+            let text = format!("ratio,torque_loss_nm\n{}", "1,1\n".repeat(1_000_001));
+            vec![made_file("belt_too_many_rows.csv", text.as_bytes(), |path, _| told_by(map(path, "belt_")))]
         }
         _ if kind.starts_with("calibration") => calibration::made(kind),
         "points" => {
@@ -223,8 +242,15 @@ fn traces() -> Vec<(String, String)> {
         one("empty_time", &[head.clone(), row("", "1", "", "0")]),
         one("bad_number", &[head.clone(), row("1", "fast", "", "0")]),
         one("unknown_flag", &[head.clone(), row("1", "1", "hurry", "0"), row("2", "1", "overrun|", "0")]),
-        one("short_row", &[head, "1,2,3".to_owned()]),
+        one("short_row", &[head.clone(), "1,2,3".to_owned()]),
+        one("too_many_phases", &many_phases(head, &good)),
     ]
+}
+
+/// A trace with a phase for every step.
+fn many_phases(head: String, row: &str) -> Vec<String> {
+    let row = |k: usize| row.replacen("1,", &format!("{k},"), 1).replacen(",all", &format!(",phase {k}"), 1);
+    std::iter::once(head).chain((1..=201).map(row)).collect()
 }
 
 /// Every bad plan of the plan reader's own test, with the whole text: name and text.

@@ -14,7 +14,7 @@ pub(super) mod scalars;
 pub(super) mod sheet;
 pub(super) mod trace;
 
-use crate::config::{Place, Problem, near};
+use crate::config::{Place, Problem, bounded, near};
 use crate::cycle::problems::Complaint;
 use crate::validate::source::Kind;
 use crate::validate::tables;
@@ -51,14 +51,15 @@ pub fn check(form: Form, file: &str, bytes: &[u8]) -> Result<usize, Vec<Problem>
 /// Reads a file that a plan names, relative to the plan.
 ///
 /// # Errors
-/// The operating system's words, at the place in the plan.
+/// The operating system's words, or more bytes than a table may have, at the place in the plan.
 pub(super) fn bytes_of(path: &str, place: &Place, key: &str) -> Result<Vec<u8>, Vec<Problem>> {
-    std::fs::read(path).map_err(|error| {
+    bounded::read_file(path, bounded::TABLE).map_err(|error| {
         let message = format!("cannot read `{path}`: {error}");
-        let hint = "check the name; a path is relative to the folder of the plan";
+        let hint = error.hint("check the name; a path is relative to the folder of the plan");
         let value = path.to_owned();
         let place = place.clone();
-        vec![Problem { place, key: key.to_owned(), value, allowed: "a readable CSV file".into(), message, hint: hint.into() }]
+        let allowed = error.allowed("a readable CSV file");
+        vec![Problem { place, key: key.to_owned(), value, allowed, message, hint: hint.into() }]
     })
 }
 

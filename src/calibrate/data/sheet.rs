@@ -111,6 +111,9 @@ pub(crate) struct Rules<'r> {
     pub example: &'static str,
 }
 
+/// Most values of a file, rows times columns: each is kept with its place.
+const MOST_VALUES: usize = 500_000;
+
 /// Longest line of which the text is kept for carets.
 const LONGEST_KEPT: usize = 300;
 
@@ -126,7 +129,16 @@ pub(crate) fn read<'f>(file: &'f str, bytes: &[u8], rules: &Rules) -> (Option<Sh
     let Some(columns) = lines.next().and_then(|line| header(line, rules, &mut problems)) else { return (None, problems) };
     let mut rows = Vec::new();
     let mut fields = Vec::new();
+    let mut values = 0;
     for line in lines {
+        values += columns.len();
+        if values > MOST_VALUES {
+            let hint = "leave out columns that are not needed, or rows: values that are close in time say the same";
+            problems.line(line, "", || {
+                Complaint::new("the file has too many values", format!("up to {MOST_VALUES}, rows times columns"), hint)
+            });
+            break;
+        }
         if problems.split(line, columns.len(), &mut fields) {
             let cells = fields.iter().zip(&columns).map(|(field, column)| match column {
                 Some(column) => (cell(line, *field, column, &mut problems), start(line, *field), field.text.chars().count().max(1)),

@@ -1,13 +1,14 @@
 //! The head of a plan, and all its parts together.
 
+use std::sync::OnceLock;
+
 use super::group::{self, Around, Found};
 use super::{Plan, Search, What, parameter, problem};
 use crate::calibrate::embedded_calibrations;
-use crate::config::{Bound, Document, Place, Problem, Reader, Section, decode, near};
-use crate::rig::transmission::Conditions;
+use crate::config::{Bound, Document, Place, Problem, Reader, Section, append, bounded, decode, near};
 use crate::setup::{catalogue, is_path};
 use crate::validate::source::{self, Source};
-use crate::validate::{COMMON, embedded_rows};
+use crate::validate::{COMMON, File, embedded_rows};
 
 /// Most starts.
 const MOST_STARTS: i64 = 1000;
@@ -34,8 +35,9 @@ pub fn gather(word: &str, option: &str) -> Result<(Plan, Vec<Problem>), Vec<Prob
         vec![Problem { place, key: option.to_owned(), value: word.to_owned(), allowed, message, hint }]
     };
     if is_path(word) {
-        let bytes = std::fs::read(word).map_err(|error| {
-            wrong("a readable file".into(), format!("cannot read `{word}`: {error}"), "check the path and its permissions".into())
+        let bytes = bounded::read(word, bounded::TOML).map_err(|error| {
+            let hint = error.hint("check the path and its permissions");
+            wrong(error.allowed("a readable file"), format!("cannot read `{word}`: {error}"), hint.into())
         })?;
         return partly(word, &decode(word, &bytes)?);
     }
@@ -63,13 +65,13 @@ pub fn read(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
 fn partly(file: &str, text: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> {
     let mut document = Document::parse(file, text)?;
     let (parameters, data) = (document.take_tables("parameter"), document.take_tables("data"));
-    let rows = crate::validate::read(COMMON, &embedded_rows().iter().map(|(n, t)| ((*n).to_owned(), (*t).to_owned())).collect::<Vec<_>>())?;
+    let rows = shipped_rows().as_ref().map_err(Clone::clone)?;
     let reader = Reader::new(&document);
     let root = reader.root();
     let head = root.table("calibration");
-    let common = crate::validate::read(COMMON, &[(String::new(), String::new())])?.pop().map(|file| file.sources).unwrap_or_default();
-    let mut sources = source::read(&root.table("sources"), &common);
-    sources.extend(common);
+    let common = common_sources().as_ref().map_err(Clone::clone)?;
+    let mut sources = source::read(&root.table("sources"), common);
+    sources.extend(common.iter().cloned());
     let mut plan = head_of(&head, file, text);
     let exists = head.exists();
     let mut problems: Vec<Problem> = reader.finish().err().unwrap_or_default().into_iter().map(fitting).collect();
@@ -84,28 +86,41 @@ fn partly(file: &str, text: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> 
     for document in &parameters {
         match parameter::read(document) {
             Ok(free) => plan.parameters.push(free),
-            Err(mut found) => problems.append(&mut found),
+            Err(found) => append(&mut problems, found),
         }
     }
     relative(&mut sources, file);
-    let rig = Conditions::load(&[]).map(|(_, keys)| keys).unwrap_or_default();
-    let keys: Vec<String> = catalogue::known_keys().into_iter().chain(rig).map(|info| info.key).collect();
-    let around = Around { sources: &sources, keys: &keys, rows: &rows, file };
+    let around = Around { sources: &sources, keys: catalogue::known_names(), rows, file };
     plan.views.push(sources.clone());
     for document in &data {
         match group::read(document, &around) {
             Ok(found) => join(&mut plan, found),
             // Two groups may name the same bad file.
-            Err(found) => found.into_iter().for_each(|problem| {
-                if !problems.contains(&problem) {
-                    problems.push(problem);
-                }
-            }),
+            Err(mut found) => {
+                found.retain(|problem| !problems.contains(problem));
+                append(&mut problems, found);
+            }
         }
     }
     let sound = problems.is_empty();
-    problems.append(&mut clashes(&plan, [parameters_written, data_written], sound));
+    append(&mut problems, clashes(&plan, [parameters_written, data_written], sound));
     Ok((plan, problems))
+}
+
+/// The rows that the program carries: the same for every plan, read once.
+fn shipped_rows() -> &'static Result<Vec<File>, Vec<Problem>> {
+    static ROWS: OnceLock<Result<Vec<File>, Vec<Problem>>> = OnceLock::new();
+    let texts = || embedded_rows().iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect::<Vec<_>>();
+    ROWS.get_or_init(|| crate::validate::read(COMMON, &texts()))
+}
+
+/// The sources that every plan may use.
+fn common_sources() -> &'static Result<Vec<Source>, Vec<Problem>> {
+    static COMMON_SOURCES: OnceLock<Result<Vec<Source>, Vec<Problem>>> = OnceLock::new();
+    COMMON_SOURCES.get_or_init(|| {
+        let files = crate::validate::read(COMMON, &[(String::new(), String::new())])?;
+        Ok(files.into_iter().next_back().map(|file| file.sources).unwrap_or_default())
+    })
 }
 
 /// A path in a plan is relative to that plan.

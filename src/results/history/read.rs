@@ -1,6 +1,6 @@
 //! A `trace_*.csv` of this program back to a history.
 
-use super::{History, flags_of, is_number, known, missing};
+use super::{History, MOST_PHASES, MOST_STEPS, SHORTER, flags_of, is_number, known, missing};
 use crate::config::Problem;
 use crate::cycle::problems::{Complaint, Line, Problems};
 use crate::cycle::text::Field;
@@ -97,6 +97,10 @@ fn rows<'t>(header: &Header, lines: impl Iterator<Item = Line<'t>>, problems: &m
     let mut before_s = f64::NAN;
     let mut numbers = vec![f64::NAN; header.numbers];
     for line in lines {
+        if history.len() == MOST_STEPS {
+            problems.line(line, "", || Complaint::new("the trace has too many steps", format!("up to {MOST_STEPS}"), SHORTER));
+            break;
+        }
         if !problems.split(line, header.names.len(), &mut fields) {
             before_s = f64::NAN;
             continue;
@@ -124,8 +128,18 @@ fn rows<'t>(header: &Header, lines: impl Iterator<Item = Line<'t>>, problems: &m
             column.push(*number);
         }
         history.step(&phase, flags);
+        if let Some(complaint) = too_many_phases(&history) {
+            problems.line(line, "phase", || complaint);
+            break;
+        }
     }
     history
+}
+
+/// What is wrong where nearly every step has a phase of its own.
+pub(crate) fn too_many_phases(history: &History) -> Option<Complaint> {
+    let message = "there are too many phases";
+    (history.phases().len() > MOST_PHASES).then(|| Complaint::new(message, format!("up to {MOST_PHASES} different names"), AGAIN))
 }
 
 /// What a number has to be.

@@ -1,7 +1,7 @@
 //! Plans that the program carries, and those that the user names by their path.
 
 use super::options::did_you_mean;
-use crate::config::{Place, Problem, decode};
+use crate::config::{Place, Problem, bounded, decode};
 use crate::setup::is_path;
 
 /// Embedded plans: name and TOML text.
@@ -24,8 +24,9 @@ pub(super) fn text_of(word: &str, option: &str) -> Result<(String, String), Vec<
         vec![Problem { place, key: option.to_owned(), value: word.to_owned(), allowed, message, hint }]
     };
     if is_path(word) {
-        let bytes = std::fs::read(word).map_err(|error| {
-            problem("a readable file".into(), format!("cannot read `{word}`: {error}"), "check the path and its permissions".into())
+        let bytes = bounded::read(word, bounded::TOML).map_err(|error| {
+            let hint = error.hint("check the path and its permissions");
+            problem(error.allowed("a readable file"), format!("cannot read `{word}`: {error}"), hint.into())
         })?;
         return Ok((word.to_owned(), decode(word, &bytes)?));
     }

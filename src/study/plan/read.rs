@@ -1,7 +1,7 @@
 //! The head of a plan, and all its parts together.
 
 use super::{Base, FactorValue, Keep, Places, Plan, design, factor, options};
-use crate::config::{Document, Problem, Reader, Section, Written};
+use crate::config::{Document, Problem, Reader, Section, Written, append};
 use crate::results::columns::COLUMNS;
 use crate::transmission::cvt::variator::Formulation;
 
@@ -17,12 +17,12 @@ pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
     for table in &tables {
         match factor::read(table) {
             Ok(factor) => plan.factors.push(factor),
-            Err(mut found) => problems.append(&mut found),
+            Err(found) => append(&mut problems, found),
         }
     }
-    problems.append(&mut design::clashes(&plan.factors));
+    append(&mut problems, design::clashes(&plan.factors));
     if design_is_read && !has_other_factors(&problems) {
-        problems.append(&mut design::limits(&plan.design, tables.len(), &plan.factors, &plan.places));
+        append(&mut problems, design::limits(&plan.design, tables.len(), &plan.factors, &plan.places));
     }
     if problems.is_empty() {
         problems = design::reach(&plan);
@@ -30,7 +30,7 @@ pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
     if problems.is_empty() {
         return Ok(plan);
     }
-    problems.sort_by_key(|problem| (problem.place.line, problem.place.column));
+    problems.sort_by_key(|problem| (problem.not_shown().is_some(), problem.place.line, problem.place.column));
     Err(problems)
 }
 

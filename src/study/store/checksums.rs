@@ -1,17 +1,16 @@
 //! Checksums of files, as lists in the format of `sha256sum`.
 
 use std::fmt::Write as _;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
+use crate::config::bounded;
+
 /// SHA-256 of a file's bytes.
 pub type Sum = [u8; 32];
-
-/// Longest list that is read: a damaged one is not to fill the memory.
-const LONGEST_LIST: u64 = 1 << 20;
 
 /// SHA-256 of some bytes.
 #[must_use]
@@ -96,8 +95,7 @@ impl Checksums {
 
     /// The list in a file; none if there is no such file, or it is damaged.
     pub fn read(path: &Path) -> Option<Self> {
-        let short = fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() <= LONGEST_LIST);
-        if short { Self::parse(&fs::read(path).ok()?) } else { None }
+        Self::parse(&bounded::read_file(path, bounded::CHECKSUMS).ok()?)
     }
 
     /// The checksum of a file.

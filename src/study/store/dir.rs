@@ -17,6 +17,7 @@ use super::names::{self, LOCK, MANIFEST, PARTS, PLAN, RESULTS, SUMMARY};
 use super::parquet::write_parquet;
 use super::read::{Study, is_whole, marked_parts};
 use crate::config::Problem;
+use crate::config::bounded::{self, Refused};
 use crate::results::files::{Created, check_directory, failed, list, names_in, problem, sync_directory, temporary_in};
 use crate::study::table::{Column, Rows};
 
@@ -80,7 +81,7 @@ impl StudyDir {
     pub fn resume(path: impl AsRef<Path>, manifest: &[u8], plan: &[u8]) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         let layout = layout_of(&path, manifest)?;
-        let stored = || fs::read(path.join(MANIFEST)).map_err(|error| no_study(&path, &error));
+        let stored = || bounded::read_file(path.join(MANIFEST), bounded::RECORD).map_err(|error| no_study(&path, error));
         // Looked for before the lock, which would leave its file in a directory of something else.
         stored()?;
         let lock = lock(&path)?;
@@ -89,7 +90,7 @@ impl StudyDir {
             return Err(other_settings(&path, (&stored, manifest), plan));
         }
         let dir = StudyDir { path, layout, whole: Mutex::default(), _lock: lock };
-        let same_plan = fs::read(dir.path.join(PLAN)).is_ok_and(|text| text == plan);
+        let same_plan = bounded::read_file(dir.path.join(PLAN), bounded::TOML).is_ok_and(|text| text == plan);
         let parts = names::parts_folder(&dir.path);
         let prepared = fs::create_dir_all(&parts).and_then(|()| remove_temporary(&dir.path)).and_then(|()| remove_temporary(&parts));
         let prepared = prepared.and_then(|()| if same_plan { Ok(()) } else { dir.put_bytes(PLAN, plan).map(drop) });
@@ -258,7 +259,7 @@ fn check_contents(path: &Path, force: bool) -> Result<bool, Problem> {
     })
 }
 
-fn no_study(path: &Path, error: &io::Error) -> Problem {
+fn no_study(path: &Path, error: Refused) -> Problem {
     if error.kind() == ErrorKind::NotFound || error.kind() == ErrorKind::NotADirectory {
         return problem(
             path,
@@ -266,7 +267,11 @@ fn no_study(path: &Path, error: &io::Error) -> Problem {
             "leave --resume out to begin it, or check the path",
         );
     }
-    failed(path, &format!("cannot read {MANIFEST} in {}", path.display()), error)
+    let message = format!("cannot read {MANIFEST} in {}", path.display());
+    match error {
+        Refused::Unreadable(error) => failed(path, &message, &error),
+        refused => Problem { allowed: refused.allowed(""), ..problem(path, &format!("{message}: {refused}"), refused.hint("")) },
+    }
 }
 
 fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Problem {
@@ -277,7 +282,7 @@ fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Pr
     };
     let mut found = differences(&stored, &now);
     // The line of the plan says more than what follows from it.
-    if let Some(stored) = fs::read(path.join(PLAN)).ok().filter(|stored| stored != plan) {
+    if let Some(stored) = bounded::read_file(path.join(PLAN), bounded::TOML).ok().filter(|stored| stored != plan) {
         found.insert(0, lines(PLAN, &String::from_utf8_lossy(&stored), &String::from_utf8_lossy(plan)));
     }
     let Some(first) = found.first() else {

@@ -1,18 +1,15 @@
 //! A `trace_*.parquet` of this program back to a history.
 
-use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
 use super::parquet_read::{ParquetFile, unreadable};
 use super::{Values, file_problem};
-use crate::config::Problem;
+use crate::config::{Problem, bounded};
+use crate::cycle::problems::Complaint;
 use crate::results::Flags;
 use crate::results::columns::Column;
-use crate::results::history::{AGAIN, FLAGS, History, flags_of, is_number, known, missing};
-
-/// Steps beyond which no trace goes: the longest cycle, a million seconds, in steps of a tenth of one. A damaged file may name any number.
-const MOST_STEPS: u64 = 10_000_000;
+use crate::results::history::{AGAIN, FLAGS, History, MOST_STEPS, SHORTER, flags_of, is_number, known, missing, too_many_phases};
 
 /// Reads a trace that this program has written as Parquet. Columns that it does not know, as of a newer version, are passed over.
 ///
@@ -23,7 +20,7 @@ const MOST_STEPS: u64 = 10_000_000;
 /// unknown, time does not rise, there are no rows. Of each column the first bad row is named.
 pub fn read_trace_parquet(path: &Path) -> Result<History, Vec<Problem>> {
     let hinted = |problem: Problem| vec![Problem { hint: AGAIN.to_owned(), ..problem }];
-    let file = File::open(path).map_err(|error| hinted(unreadable(path, &error)))?;
+    let file = bounded::open_file(path).map_err(|error| hinted(unreadable(path, &error)))?;
     let file = ParquetFile::open_known(path, file).map_err(hinted)?;
     let columns = known(file.columns().iter().map(|head| head.name.as_str()));
     if columns.is_empty() {
@@ -35,8 +32,9 @@ pub fn read_trace_parquet(path: &Path) -> Result<History, Vec<Problem>> {
     if file.rows() == 0 {
         problems.push(file_problem(path, "the file has no rows", AGAIN));
     }
-    if file.rows() > MOST_STEPS {
-        return Err(vec![file_problem(path, format!("the file says that it has {} rows: it is damaged", file.rows()), AGAIN)]);
+    if file.rows() > MOST_STEPS as u64 {
+        let message = format!("the file says that it has {} rows", file.rows());
+        return Err(vec![Problem { allowed: format!("up to {MOST_STEPS}"), ..file_problem(path, message, SHORTER) }]);
     }
     if !problems.is_empty() {
         return Err(problems);
@@ -68,6 +66,10 @@ fn steps(path: &Path, history: &mut History, phases: &[Arc<str>], flags: &[Arc<s
             Flags::default()
         });
         history.step(phase, found);
+        if let Some(Complaint { message, allowed, hint }) = too_many_phases(history) {
+            problems.push(Problem { key: "phase".to_owned(), allowed, ..file_problem(path, message, &hint) });
+            return;
+        }
     }
     problems.extend(unknown.map(|(row, word)| bad(path, "flags", word, &format!("unknown flag in row {}", row + 1), FLAGS)));
 }

@@ -1,7 +1,7 @@
 //! A study that is read, whether it is finished, interrupted or being written.
 
 use std::collections::HashSet;
-use std::fs::{self, File};
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -13,7 +13,7 @@ use super::file_problem;
 use super::layout::Layout;
 use super::names::{self, MANIFEST, PLAN, RESULTS};
 use super::parquet_read::{MEND, ParquetFile, unreadable};
-use crate::config::Problem;
+use crate::config::{Problem, bounded};
 use crate::study::table::{Column, Rows, Values};
 
 /// How far a study has come.
@@ -54,7 +54,7 @@ impl Study {
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         let file = path.join(MANIFEST);
-        let bytes = fs::read(&file).map_err(|error| match error.kind() {
+        let bytes = bounded::read_file(&file, bounded::RECORD).map_err(|error| match error.kind() {
             io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
                 let message = format!("there is no study in {}: it has no {MANIFEST}", path.display());
                 file_problem(&path, message, "name the directory that was given to --out of `cvtcycle study`")
@@ -64,7 +64,7 @@ impl Study {
         let parsed = serde_json::from_slice::<Value>(&bytes).ok();
         let known = parsed.and_then(|manifest| Layout::of(&manifest).map(|layout| (manifest, layout)));
         let (manifest, layout) = known.ok_or_else(|| file_problem(&file, "the manifest of the study is damaged", ""))?;
-        let mut present = marked_parts(&path, &layout).map_err(|error| unreadable(&names::parts_folder(&path), &error))?;
+        let mut present = marked_parts(&path, &layout).map_err(|error| unreadable(&names::parts_folder(&path), &error.into()))?;
         present.sort_unstable();
         Ok(Study { path, manifest, layout, present, known: Mutex::default() })
     }
@@ -93,7 +93,7 @@ impl Study {
     /// A problem that names the file.
     pub fn plan(&self) -> Result<Vec<u8>, Problem> {
         let file = self.path.join(PLAN);
-        fs::read(&file).map_err(|error| unreadable(&file, &error))
+        bounded::read_file(&file, bounded::TOML).map_err(|error| unreadable(&file, &error))
     }
 
     /// The parts that are there, in their order.
@@ -121,13 +121,13 @@ impl Study {
             let message = format!("the study has no table `{table}`, only {}", self.layout.tables.join(", "));
             return Err(file_problem(&self.path, message, ""));
         }
-        let file = File::open(&path).map_err(|error| unreadable(&path, &error))?;
+        let file = bounded::open_file(&path).map_err(|error| unreadable(&path, &error))?;
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if !known.contains(&name) {
             let list = Checksums::read(&folder.join(names::part_mark(index)));
             let right = list.as_ref().and_then(|list| list.get(&name));
             let right = right.ok_or_else(|| file_problem(&path, "the list of checksums of this part is damaged", MEND))?;
-            if sum_of(&file).map_err(|error| unreadable(&path, &error))? != *right {
+            if sum_of(&file).map_err(|error| unreadable(&path, &error.into()))? != *right {
                 return Err(file_problem(&path, "the file is damaged: its checksum is not that of what was written", MEND));
             }
             known.insert(name);
@@ -205,7 +205,7 @@ pub(super) fn is_whole(study: &Path, layout: &Layout, index: usize) -> bool {
     let folder = names::parts_folder(study);
     let Some(list) = Checksums::read(&folder.join(names::part_mark(index))) else { return false };
     let as_written = |name: &String| {
-        let sum = File::open(folder.join(name)).and_then(|file| sum_of(&file)).ok();
+        let sum = bounded::open_file(folder.join(name)).ok().and_then(|file| sum_of(&file).ok());
         sum.is_some() && sum.as_ref() == list.get(name)
     };
     layout.files(index).iter().all(as_written)

@@ -1,0 +1,207 @@
+//! Files read whole, and of no file more than its kind may have.
+//!
+//! | kind | bytes | why so many |
+//! |---|---|---|
+//! | [`TOML`] | 1 MiB | the largest shipped file has 57 kB; its values are kept with their places, some hundred bytes each |
+//! | [`TABLE`] | 64 MiB | a cycle of a week at 10 Hz, or a map of a million points |
+//! | [`TRACE`] | 512 MiB | a trace of a million steps, as `run --out` writes it, with all columns |
+//! | [`RECORD`] | 64 MiB | JSON of the program; the manifest of a study with a plan of 1 MiB stays below |
+//! | [`CHECKSUMS`] | 1 MiB | ten thousand files |
+//! | [`LOGO`] | 500 kB | it is copied into the report |
+//!
+//! A file's size is asked for, so that a large one is refused without being read, but not trusted: pipes and devices have none, and a file
+//! may grow while it is read.
+
+use std::fmt;
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::Path;
+
+/// How large a file of a kind may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limit {
+    /// Most bytes.
+    pub bytes: u64,
+    /// What helps where a file has more.
+    pub hint: &'static str,
+}
+
+const MIB: u64 = 1 << 20;
+const DAMAGED: &str = "no file that this program writes is as large: it is damaged, or another file";
+
+/// A TOML file of the user: vehicle, lubricant, plan, rows, cover.
+pub const TOML: Limit = Limit { bytes: MIB, hint: "is this the file that was meant? measured values belong into a CSV file that it names" };
+/// A CSV table of the user: cycle, map, measured data.
+pub const TABLE: Limit =
+    Limit { bytes: 64 * MIB, hint: "is this the file that was meant? otherwise thin it out: fewer rows, fewer decimals" };
+/// A trace of a run as CSV.
+pub const TRACE: Limit = Limit { bytes: 512 * MIB, hint: "run it again with a larger --dt, or with --format parquet" };
+/// JSON of the program: summary, inputs, manifest.
+pub const RECORD: Limit = Limit { bytes: 64 * MIB, hint: DAMAGED };
+/// A list of checksums.
+pub const CHECKSUMS: Limit = Limit { bytes: MIB, hint: DAMAGED };
+/// A logo.
+pub const LOGO: Limit = Limit { bytes: 500_000, hint: "make it smaller: it is copied into the report" };
+
+impl Limit {
+    /// What is allowed, in words.
+    #[must_use]
+    pub fn allowed(&self) -> String {
+        format!("up to {}", self.size())
+    }
+
+    fn size(&self) -> String {
+        match self.bytes {
+            bytes if bytes.is_multiple_of(MIB) => format!("{} MiB", bytes / MIB),
+            bytes => format!("{} kB", bytes / 1000),
+        }
+    }
+}
+
+/// Why a file was not read.
+#[derive(Debug)]
+pub enum Refused {
+    /// The operating system's words.
+    Unreadable(io::Error),
+    /// It has more bytes than allowed; so many, where that is known.
+    TooLarge(Option<u64>, Limit),
+    /// A pipe or a device where only a file can be meant.
+    NoFile,
+}
+
+impl Refused {
+    /// What would be accepted: the limit where the file is too large, else `usual`.
+    #[must_use]
+    pub fn allowed(&self, usual: &str) -> String {
+        match self {
+            Refused::TooLarge(_, limit) => limit.allowed(),
+            Refused::Unreadable(_) | Refused::NoFile => usual.to_owned(),
+        }
+    }
+
+    /// What helps: less of it where the file is too large, else `usual`.
+    #[must_use]
+    pub fn hint<'h>(&self, usual: &'h str) -> &'h str {
+        match self {
+            Refused::TooLarge(_, limit) => limit.hint,
+            Refused::NoFile => "name a file",
+            Refused::Unreadable(_) => usual,
+        }
+    }
+
+    /// Kind of the operating system's error.
+    #[must_use]
+    pub fn kind(&self) -> io::ErrorKind {
+        match self {
+            Refused::Unreadable(error) => error.kind(),
+            Refused::TooLarge(..) => io::ErrorKind::FileTooLarge,
+            Refused::NoFile => io::ErrorKind::Unsupported,
+        }
+    }
+}
+
+impl fmt::Display for Refused {
+    /// What is the matter, to stand behind "cannot read NAME: ".
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Refused::Unreadable(error) => error.fmt(f),
+            Refused::TooLarge(Some(bytes), _) => write!(f, "it has {bytes} bytes"),
+            Refused::TooLarge(None, limit) => write!(f, "it has more than {}", limit.size()),
+            Refused::NoFile => f.write_str("it is a pipe or a device and no file"),
+        }
+    }
+}
+
+impl From<io::Error> for Refused {
+    fn from(error: io::Error) -> Self {
+        Refused::Unreadable(error)
+    }
+}
+
+/// The bytes of what the user has named, which may be a pipe.
+///
+/// # Errors
+/// It cannot be read, or has more bytes than its limit.
+pub fn read(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, Refused> {
+    let file = File::open(path)?;
+    let found = file.metadata()?;
+    let size = if found.is_file() { found.len() } else { 0 };
+    if size > limit.bytes {
+        return Err(Refused::TooLarge(Some(size), limit));
+    }
+    // One byte more than allowed tells a file that goes on from one that ends there.
+    let mut bytes = Vec::with_capacity(usize::try_from(size + 1).unwrap_or(0));
+    let read = file.take(limit.bytes + 1).read_to_end(&mut bytes)?;
+    if read as u64 > limit.bytes { Err(Refused::TooLarge(None, limit)) } else { Ok(bytes) }
+}
+
+/// The bytes of a file that another file names, or that the program has written: whoever made that file may be a stranger, and a pipe
+/// without a writer would be waited for without end.
+///
+/// # Errors
+/// As [`read`], and for what is no file.
+pub fn read_file(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, Refused> {
+    is_file(path.as_ref())?;
+    read(path, limit)
+}
+
+/// Opens a file that another file names, or that the program has written, to be read in parts.
+///
+/// # Errors
+/// It cannot be opened, or is a pipe or a device.
+pub fn open_file(path: impl AsRef<Path>) -> Result<File, Refused> {
+    is_file(path.as_ref())?;
+    Ok(File::open(path)?)
+}
+
+fn is_file(path: &Path) -> Result<(), Refused> {
+    let found = fs::metadata(path)?;
+    // A directory has its own words from the operating system.
+    if found.is_file() || found.is_dir() { Ok(()) } else { Err(Refused::NoFile) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SMALL: Limit = Limit { bytes: 1000, hint: "less" };
+
+    #[test]
+    fn a_file_at_its_limit_is_read_and_one_byte_more_is_not() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("f");
+        for (length, is_read) in [(0, true), (999, true), (1000, true), (1001, false), (5000, false)] {
+            std::fs::write(&path, vec![b'x'; length]).expect("written");
+            for read in [read(&path, SMALL), read_file(&path, SMALL)] {
+                match read {
+                    Ok(bytes) => assert!(is_read && bytes.len() == length, "{length}"),
+                    Err(refused) => {
+                        assert!(!is_read, "{length}: {refused}");
+                        assert_eq!(refused.to_string(), format!("it has {length} bytes"));
+                        assert_eq!((refused.allowed("x"), refused.hint("x")), ("up to 1 kB".to_owned(), "less"));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_read_keeps_its_words() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let missing = read_file(dir.path().join("no"), SMALL).expect_err("not there");
+        assert_eq!((missing.kind(), missing.allowed("a"), missing.hint("b")), (io::ErrorKind::NotFound, "a".to_owned(), "b"));
+        let folder = read_file(dir.path(), SMALL).expect_err("a folder");
+        assert!(matches!(folder, Refused::Unreadable(_)), "{folder}");
+        assert_eq!([TOML, TABLE, TRACE, LOGO].map(|limit| limit.size()), ["1 MiB", "64 MiB", "512 MiB", "500 kB"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_has_no_size_and_is_read_up_to_the_limit() {
+        let endless = read("/dev/zero", SMALL).expect_err("endless");
+        assert_eq!(endless.to_string(), "it has more than 1 kB");
+        assert_eq!(endless.allowed("x"), "up to 1 kB");
+        assert!(matches!(read_file("/dev/zero", SMALL), Err(Refused::NoFile)));
+        assert_eq!(read("/dev/null", SMALL).expect("nothing"), b"");
+    }
+}
