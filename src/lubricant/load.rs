@@ -65,19 +65,27 @@ fn placeholder() -> Viscosity {
     Viscosity::new(&[(313.15, 36e-6), (373.15, 7.2e-6)]).unwrap_or_else(|_| unreachable!("constant points"))
 }
 
+/// Largest friction of the bands, rise with temperature included: at 0.53 they would block themselves in the larger wrap (TE-5).
+const MOST_BAND_FRICTION: f64 = 0.5;
+
 fn friction(s: &Section) -> Friction {
     let mu = Bound::closed(0.0, 0.4);
     let lift = s.table("lift_off");
+    let band = s.number_or("band", mu, 0.13, "band boundary friction at 85 degC (LU-4)");
+    let band_rise_per_k =
+        s.number_or("band_rise_per_k", Bound::closed(0.0, 0.02), 0.002, "rise of band friction with belt temperature (LU-4)");
+    let band_floor = s.number_or("band_floor", Bound::closed(0.1, 1.0), 0.7, "lower bound of the temperature factor (LU-4)");
+    let band_ceiling = s.number_or("band_ceiling", Bound::closed(1.0, 2.0), 1.04, "upper bound of the temperature factor (LU-4)");
+    if band * band_ceiling > MOST_BAND_FRICTION {
+        let allowed = format!("band times band_ceiling up to {MOST_BAND_FRICTION}");
+        let message = format!("when hot, band friction could be {:.3}: the bands would block themselves (TE-5)", band * band_ceiling);
+        s.complain("band_ceiling", &allowed, &message, "lower it or `band`");
+    }
     Friction {
-        band: s.number_or("band", mu, 0.13, "band boundary friction at 85 degC (LU-4)"),
-        band_rise_per_k: s.number_or(
-            "band_rise_per_k",
-            Bound::closed(0.0, 0.02),
-            0.002,
-            "rise of band friction with belt temperature (LU-4)",
-        ),
-        band_floor: s.number_or("band_floor", Bound::closed(0.1, 1.0), 0.7, "lower bound of the temperature factor (LU-4)"),
-        band_ceiling: s.number_or("band_ceiling", Bound::closed(1.0, 2.0), 1.04, "upper bound of the temperature factor (LU-4)"),
+        band,
+        band_rise_per_k,
+        band_floor,
+        band_ceiling,
         segment: s.number_or("segment", Bound::closed(0.02, 0.4), 0.125, "friction segment on pulley (SL-4, VA-2)"),
         flank: s.number_or("flank", mu, 0.13, "friction in wedging and penetration (WE-3, PE-1)"),
         lift_off: lift.boolean_or("enabled", true, "whether the bands can ride on oil (LU-5)"),

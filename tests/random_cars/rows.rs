@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use cvtcycle::cycle::Step;
 use cvtcycle::results::{Component, Flags, Row, Terms};
+use cvtcycle::run::{Conditions, Start, drive};
 use cvtcycle::simulate::{Car, State, simulate};
 use cvtcycle::thermal::{COOLANT, ENGINE_OIL, Heat, METAL, NODES, SUMP};
 use cvtcycle::vehicle::RoadLoad;
@@ -204,4 +205,34 @@ fn every_row_of_likely_cars() {
 #[test]
 fn every_row_of_unlikely_cars() {
     every_row(0.3, 500);
+}
+
+/// Found by the fuzzer: slip that jumps from bound to bound was carried on in a line to more than 1, and no speed belonged to it. A drive far
+/// beyond what the belt carries has numbers in every row all the same.
+#[test]
+fn slip_that_jumps_is_not_carried_on_beyond_what_a_belt_can_have() {
+    let sets = [
+        "transmission.cvt.variator.primary_stiffness_n=100000",
+        "lubricant.friction.band=0.4",
+        "transmission.cvt.belt.mass_kg=10",
+        "road_load.payload_kg=3423.3756247597075",
+        "transmission.cvt.belt.initial_gap_mm=68.47256302538055",
+        "transmission.cvt.clamp=slip_limited",
+    ];
+    let car = crate::common::car("rover_216_cvt", &sets);
+    let rows = [
+        (0.0, 70.980_392_156_862_75, -0.015_623_712_520_027_463),
+        (30.138_358_639_333_216, 0.0, 0.0),
+        (58.763_906_505_538_52, 135.629_205_767_910_26, 0.094_509_803_921_568_63),
+        (87.293_735_424_975_38, 0.0, 0.070_312_046_997_787_45),
+        (112.590_563_567_997_3, 136.156_862_745_098_04, 0.0),
+        (112.894_521_264_603_06, 127.921_568_627_450_98, 0.082_696_269_169_146_27),
+        (114.884_452_778_522_43, 127.921_568_627_450_98, 0.0),
+    ];
+    let rows = rows.map(|(time_s, kmh, grade)| crate::traces::Point { time_s, kmh, grade, engine_off: false });
+    let cycle = crate::traces::Rows(rows.to_vec()).cycle();
+    let conditions = Conditions { ambient_k: ZERO - 40.0, start: Start::Warm, max_dt_s: 0.5, keep_rows: true };
+    for row in drive(&car, &cycle, &conditions).rows {
+        assert!(row.engine_speed_rad_s.is_finite() && row.fuel_kg_s.is_finite() && row.sump_k.is_finite(), "{row:?}");
+    }
 }

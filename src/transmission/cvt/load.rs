@@ -170,7 +170,8 @@ fn belt(s: &Section, v: &Section, formulation: Formulation) -> Belt {
         stop_to_ratio: v.number("stop_to_ratio", Bound::closed(0.3, 5.0), "ratio at which it rests on it (WE-4)"),
         unity_width: s.number_or("unity_width", Bound::closed(1e-4, 0.2), 0.015, "smoothing of the tension step at I = 1, in ln I (TE-6)"),
         blend_n: s.number_or("blend_n", Bound::closed(1.0, 2000.0), 120.0, "blend between loading branches at C_x = 0 (SL-8)"),
-        slip_bound: s.number_or("slip_bound_percent", Bound::closed(1.0, 50.0), 10.0, "bound of each pulley's slip (SL-9)"),
+        // Both pulleys together must leave the belt some grip: at 100 % the engine's speed would have no bound.
+        slip_bound: s.number_or("slip_bound_percent", Bound::closed(1.0, 40.0), 10.0, "bound of each pulley's slip (SL-9)"),
         thrust_ratio: (!logs.is_empty()).then(|| tables::curve(s, "thrust_ratio", &logs)),
         formulation,
     };

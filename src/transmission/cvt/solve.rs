@@ -44,9 +44,21 @@ impl Step<'_> {
         }
     }
 
+    /// Slip and loss torque in Nm that go on as in the steps before.
+    fn onward(&self, past: &Past) -> (f64, f64) {
+        let (slip, loss_nm) = past.trend.onward(self.around.wheel.accel_m_s2);
+        (self.possible(slip), loss_nm)
+    }
+
+    /// The nearest slip that the belt can have: a line through slips leads anywhere, and at a slip of 1 no speed belongs to it (CV-1).
+    fn possible(&self, slip: f64) -> f64 {
+        let most = 2.0 * self.cvt.belt.slip_bound;
+        held(slip, -most, most)
+    }
+
     /// Where the solve begins: slip and losses of the step before, at the new ratio and demand.
     fn first_guess(&self, past: &Past) -> Guess {
-        let (slip, loss_nm) = past.trend.onward(self.around.wheel.accel_m_s2);
+        let (slip, loss_nm) = self.onward(past);
         let engine_rad_s = self.first_engine_rad_s(slip);
         let output_nm = self.around.wheel.power_w / self.secondary_rad_s;
         let engine = self.around.engine;
@@ -69,7 +81,7 @@ impl Step<'_> {
     /// Output torque at which the engine's least torque is likely to bind: its drag with the losses that are expected, Nm.
     fn likely_overrun_nm(&self, past: &Past) -> f64 {
         let engine = self.around.engine;
-        let (slip, loss_nm) = past.trend.onward(self.around.wheel.accel_m_s2);
+        let (slip, loss_nm) = self.onward(past);
         let w = self.first_engine_rad_s(slip);
         let share = self.cvt.launch.overrun_share(w, engine.idle_rad_s);
         -self.at.geometry.ratio * (share * (engine.drag_nm(w) + engine.accessories_nm(w)) + loss_nm)
@@ -106,9 +118,10 @@ impl Step<'_> {
             }
             last = Some((point.guess, point.next_pressure_pa));
             let pressure_pa = held(work.slopes.pressure_pa(point), self.cvt.floor_pa, self.cvt.cap_pa); // CV-5
+            let slip = point.guess.slip + work.slopes.slip_per_pa * (pressure_pa - point.guess.pressure_pa);
             guess = Guess {
                 output_nm: next_nm,
-                slip: point.guess.slip + work.slopes.slip_per_pa * (pressure_pa - point.guess.pressure_pa), // CV-5
+                slip: self.possible(slip), // CV-5
                 engine_rad_s: point.next_engine_rad_s,
                 pressure_pa,
             };

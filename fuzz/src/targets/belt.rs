@@ -1,0 +1,123 @@
+//! The belt model.
+
+use std::fmt::Write as _;
+
+use cvtcycle::lubricant::{BandFriction, ZERO_DEGC_K};
+use cvtcycle::rig::points::NUMBERS;
+use cvtcycle::setup::{self, Options};
+use cvtcycle::transmission::Transmission;
+use cvtcycle::transmission::cvt::variator::point::belt_point;
+use cvtcycle::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, Formulation, belt_capacity_nm, belt_losses, belt_state};
+
+use super::csv::table_of_points;
+use super::range::range;
+use super::{Bytes, within_memory};
+
+pub fn belt(data: &[u8]) {
+    let mut bytes = Bytes(data);
+    let way = bytes.byte();
+    let formulation = Formulation::NAMES[usize::from(way >> 1) % Formulation::NAMES.len()].1;
+    if way % 2 == 0 {
+        within_memory(data.len(), || any_numbers(Bytes(&data[data.len().min(1)..]), formulation));
+    } else {
+        numbers_in_range(bytes, formulation);
+    }
+}
+
+/// The belt and the load of the shipped car.
+fn shipped() -> (Belt, BeltLoad) {
+    let setup = setup::load("rover_216_cvt", "--vehicle", &Options::default()).unwrap_or_else(|_| panic!("the shipped car"));
+    let Transmission::Cvt(cvt) = setup.transmission() else { panic!("a car with a belt") };
+    let (oil, _) = setup.oils();
+    let belt_k = ZERO_DEGC_K + 85.0;
+    let load = BeltLoad {
+        primary_speed_rad_s: 200.0,
+        output_torque_nm: 60.0,
+        secondary_clamp_n: 20_000.0,
+        band: BandFriction { mu: oil.friction.band, film_share: 0.3 },
+        eta_pa_s: oil.dynamic_pa_s(belt_k),
+        film_thickness_m: oil.friction.film_thickness_m,
+        segment_friction: oil.friction.segment,
+        flank_friction: oil.friction.flank,
+    };
+    (cvt.belt.clone(), load)
+}
+
+/// A number in place of a shipped one: the same, a multiple of either sign, or any finite one.
+fn moved(value: &mut f64, bytes: &mut Bytes) {
+    match bytes.byte() % 4 {
+        0 => {}
+        1 => *value *= (f64::from(bytes.byte()) - 128.0) / 32.0,
+        2 => *value *= (f64::from(bytes.byte()) - 128.0).exp2(),
+        _ => *value = Some(bytes.number()).filter(|x| x.is_finite()).unwrap_or(f64::MAX),
+    }
+}
+
+/// Whatever the numbers are, the model gives an answer.
+fn any_numbers(mut bytes: Bytes, formulation: Formulation) {
+    thread_local!(static SHIPPED: (Belt, BeltLoad) = shipped());
+    let (mut belt, mut load) = SHIPPED.with(Clone::clone);
+    belt.formulation = formulation;
+    let mut ratio = 1.7;
+    let numbers = [
+        &mut ratio,
+        &mut load.primary_speed_rad_s,
+        &mut load.output_torque_nm,
+        &mut load.secondary_clamp_n,
+        &mut load.band.mu,
+        &mut load.band.film_share,
+        &mut load.eta_pa_s,
+        &mut load.film_thickness_m,
+        &mut load.segment_friction,
+        &mut load.flank_friction,
+        &mut belt.centre_distance_m,
+        &mut belt.length_m,
+        &mut belt.segment_thickness_m,
+        &mut belt.cos_wedge,
+        &mut belt.tan_wedge,
+        &mut belt.band_count,
+        &mut belt.band_thickness_m,
+        &mut belt.band_width_m,
+        &mut belt.band_offset_m,
+        &mut belt.mass_kg_m,
+        &mut belt.youngs_pa,
+        &mut belt.strut_area_m2,
+        &mut belt.initial_gap_m,
+        &mut belt.primary_compliance_per_n,
+        &mut belt.secondary_compliance_per_n,
+        &mut belt.stop_from_ratio,
+        &mut belt.stop_to_ratio,
+        &mut belt.unity_width,
+        &mut belt.blend_n,
+        &mut belt.slip_bound,
+    ];
+    for number in numbers {
+        moved(number, &mut bytes);
+    }
+    let at = BeltAtRatio::new(&belt, ratio);
+    let point = belt_point(&belt, &at, &load);
+    let share = bytes.share() * 2.0 - 1.0;
+    let answers = (point.with_band_speed(&belt, share), belt_state(&belt, &at, &load), belt_losses(&belt, &at, &load));
+    let capacity_nm = belt_capacity_nm(&belt, &at, &load);
+    std::hint::black_box((answers, capacity_nm));
+}
+
+/// Numbers within what a table of points allows: losses are then losses, and finite.
+fn numbers_in_range(mut bytes: Bytes, formulation: Formulation) {
+    let mut names = String::new();
+    let mut row = String::new();
+    for number in &NUMBERS {
+        let Some((low, high)) = range(&number.allowed.to_string()) else { continue };
+        let share = bytes.share();
+        let value = low + share * (high - low);
+        let value = if number.whole { value.round() } else { value };
+        let comma = if names.is_empty() { "" } else { "," };
+        let _ = write!(names, "{comma}{}", number.name);
+        let _ = write!(row, "{comma}");
+        // A number that is not given stands at the vehicle's own.
+        if number.name.starts_with("output_torque") || comma.is_empty() || !bytes.one_in(4) {
+            let _ = write!(row, "{value:?}");
+        }
+    }
+    table_of_points(format!("{names}\n{row}\n").as_bytes(), formulation);
+}

@@ -1,0 +1,131 @@
+//! CSV files.
+
+use std::sync::{Arc, OnceLock};
+
+use cvtcycle::calibrate::data::{self, Form};
+use cvtcycle::config::{Problem, render};
+use cvtcycle::cycle::read_csv;
+use cvtcycle::results::History;
+use cvtcycle::rig::points::{self, Job, Model, Solved, Take};
+use cvtcycle::setup::{self, Files, Options, embedded_vehicles};
+use cvtcycle::transmission::cvt::variator::Formulation;
+use cvtcycle::transmission::cvt::variator::point::PointStatus;
+
+use super::within_memory;
+
+/// A refusal has at least one problem, and its words can be made.
+fn told<T>(answer: Result<T, Vec<Problem>>) -> Option<T> {
+    answer
+        .map_err(|problems| {
+            assert!(!problems.is_empty(), "refused without a word");
+            assert!(!render(&problems, false).is_empty());
+        })
+        .ok()
+}
+
+pub fn cycle(data: &[u8]) {
+    within_memory(data.len(), || {
+        let Some(cycle) = told(read_csv("fuzz.csv", data)) else { return };
+        for automatic in [false, true] {
+            let trace = cycle.trace_for(automatic);
+            let (duration_s, distance_m) = (trace.duration_s(), trace.distance_m());
+            assert!(duration_s.is_finite() && duration_s > 0.0, "a cycle of {duration_s} s");
+            assert!(distance_m.is_finite() && distance_m >= 0.0, "a cycle of {distance_m} m");
+        }
+    });
+}
+
+/// A file in memory: whatever map a vehicle names, it gets this one.
+#[derive(Debug)]
+struct Only(Arc<[u8]>);
+
+impl Files for Only {
+    fn read(&self, _: &str) -> Result<Vec<u8>, String> {
+        Ok(self.0.to_vec())
+    }
+}
+
+/// A BSFC map or a map of losses, by the first byte.
+pub fn map(data: &[u8]) {
+    const USERS: [(usize, &str); 4] = [
+        (0, "engine.model.bsfc_map.file=fuzz.csv"),
+        (0, "transmission.cvt.maps.belt=fuzz.csv"),
+        (0, "transmission.cvt.maps.pump=fuzz.csv"),
+        (1, "transmission.manual.maps.box=fuzz.csv"),
+    ];
+    static CARS: OnceLock<[&'static str; 2]> = OnceLock::new();
+    let Some((which, rest)) = data.split_first() else { return };
+    let cars = CARS.get_or_init(|| {
+        ["rover_216_cvt", "rover_216_5mt"].map(|name| {
+            let found = embedded_vehicles().iter().find(|(known, _)| *known == name);
+            found.unwrap_or_else(|| panic!("no {name}")).1
+        })
+    });
+    let (car, set) = USERS[usize::from(*which) % USERS.len()];
+    let options = Options { set: vec![set.to_owned()], ..Options::default() };
+    let bytes: Arc<[u8]> = rest.into();
+    within_memory(rest.len(), || told(setup::read("fuzz.toml", cars[car], Box::new(Only(Arc::clone(&bytes))), &options)));
+}
+
+/// Looks at every row that a table of belt points gives.
+struct Look(bool);
+
+impl Take for Look {
+    fn begin(&mut self, _: bool) -> Result<(), Vec<Problem>> {
+        self.0 = true;
+        Ok(())
+    }
+
+    fn put(&mut self, _: &str, row: &Solved) -> Result<(), Vec<Problem>> {
+        assert!(self.0, "a row before the line of names");
+        let losses = [
+            row.point.band_loss_nm,
+            row.point.film_loss_nm,
+            row.point.slip_loss_nm,
+            row.point.wedge_loss_nm,
+            row.point.penetration_loss_nm,
+        ];
+        if row.formulation == Formulation::Smooth {
+            for loss in losses.into_iter().flatten() {
+                assert!(loss >= 0.0 && loss.is_finite(), "a loss of {loss} Nm in {row:?}");
+            }
+            let sum: f64 = losses.into_iter().flatten().sum();
+            assert!((row.point.loss_nm - sum).abs() <= 1e-9 * (1.0 + sum), "parts add up to {sum} Nm in {row:?}");
+        } else if row.point.status == PointStatus::Ok {
+            assert!(row.point.loss_nm.is_finite(), "a loss of {} Nm in {row:?}", row.point.loss_nm);
+        }
+        Ok(())
+    }
+}
+
+/// The belt of the shipped car.
+fn belt_model() -> Model {
+    let setup = setup::load("rover_216_cvt", "--vehicle", &Options::default()).unwrap_or_else(|_| panic!("the shipped car"));
+    Model::new(&setup, 0.0).unwrap_or_else(|| panic!("a car with a belt"))
+}
+
+/// Runs a table of belt points, each line of which may be a point.
+pub fn table_of_points(text: &[u8], formulation: Formulation) {
+    thread_local!(static MODEL: Model = belt_model());
+    let mut model = Some(MODEL.with(Model::clone));
+    within_memory(text.len(), || {
+        let mut look = Look(false);
+        let job = Job { model: model.take(), formulation, rows: &mut look };
+        told(points::read("fuzz.csv", text, job))
+    });
+}
+
+pub fn points(data: &[u8]) {
+    let Some((which, rest)) = data.split_first() else { return };
+    table_of_points(rest, Formulation::NAMES[usize::from(*which) % Formulation::NAMES.len()].1);
+}
+
+pub fn measured(data: &[u8]) {
+    let Some((which, rest)) = data.split_first() else { return };
+    let form = Form::ALL[usize::from(*which) % Form::ALL.len()];
+    within_memory(rest.len(), || told(data::check(form, "fuzz.csv", rest)));
+}
+
+pub fn history(data: &[u8]) {
+    within_memory(data.len(), || told(History::read_csv("history.csv", data)));
+}

@@ -1,0 +1,171 @@
+//! Whole short runs of valid cars.
+
+use std::cell::RefCell;
+use std::fmt::Write as _;
+use std::sync::OnceLock;
+
+use cvtcycle::config::KeyInfo;
+use cvtcycle::cycle::{Cycle, read_csv};
+use cvtcycle::results::{Component, Row, Terms};
+use cvtcycle::run::{Conditions, Start, drive};
+use cvtcycle::setup::blueprint::{Bench, Blueprint, Slot};
+use cvtcycle::setup::{Options, Setup};
+use cvtcycle::simulate::{Recorder, State, simulate};
+
+use super::range::range;
+use super::{Bytes, within_memory};
+
+/// Cars, and the words that make other parts of them: fuel model, clamping, pump, thrust ratio, cooler, fluids.
+const CARS: [(&str, &[&str]); 10] = [
+    ("rover_216_cvt", &[]),
+    ("rover_216_cvt", &["transmission.cvt.clamp=map", "engine.model.bsfc_map.file=si_1900_bsfc"]),
+    ("rover_216_cvt", &["transmission.cvt.clamp=torque_following", "transmission.cvt.pump.kind=dual_cavity"]),
+    ("rover_216_cvt", &["transmission.cvt.clamp=slip_limited", "transmission.cvt.pump.kind=variable"]),
+    ("rover_216_cvt", &["transmission.cvt.belt.thrust_ratio=[[0.4, 1.2], [1, 1.1], [2.5, 0.9]]", "thermal.cooler.bypassed=true"]),
+    ("rover_216_cvt", &["transmission.cvt.variator.compensated=false", "thermal.transmission.exchanger_w_k=120"]),
+    ("rover_216_cvt", &["vehicle.transmission_oil=dexron_iii", "thermal.cooler.bypass_below_degc=20"]),
+    ("rover_216_5mt", &[]),
+    ("rover_216_5mt", &["engine.model.bsfc_map.file=si_1900_bsfc", "road_load.surface=road"]),
+    ("mondeo_20_5mt", &[]),
+];
+
+/// Most numbers of a car that are moved.
+const MOST: usize = 40;
+
+/// Legs of a cycle.
+const LEGS: usize = 8;
+
+struct Car {
+    bench: Bench,
+    slots: Vec<(Slot, f64, f64, f64, bool)>,
+}
+
+fn car((name, words): (&str, &[&str])) -> Car {
+    let options = Options { set: words.iter().map(|word| (*word).to_owned()).collect(), ..Options::default() };
+    let loaded = Blueprint::load(name, "--vehicle", &options);
+    let (blueprint, base) = loaded.unwrap_or_else(|problems| panic!("{name} {words:?}: {}", problems[0].message));
+    let slot = |info: &KeyInfo| {
+        info.si?;
+        let (low, high) = range(&info.allowed)?;
+        let base: f64 = info.value.parse().ok()?;
+        let slot = blueprint.slot(&info.key).ok()?;
+        Some((slot, low, high, base, info.allowed.starts_with("integer")))
+    };
+    let slots = base.keys.iter().filter_map(slot).collect();
+    Car { bench: blueprint.bench(), slots }
+}
+
+/// Whether cars and cycles are printed, for whoever looks into an input: `CVTCYCLE_FUZZ_TELL=1`.
+fn tells() -> bool {
+    static TELLS: OnceLock<bool> = OnceLock::new();
+    *TELLS.get_or_init(|| std::env::var_os("CVTCYCLE_FUZZ_TELL").is_some())
+}
+
+/// The car with its numbers moved; the first half of the changes, or of that half, where all of them make no possible car.
+fn setup(car: &mut Car, bytes: &mut Bytes) -> Option<Setup> {
+    let mut changes = Vec::new();
+    for _ in 0..usize::from(bytes.byte()) % (MOST + 1) {
+        let place = usize::from(bytes.short()) % car.slots.len();
+        let (_, low, high, base, whole) = &car.slots[place];
+        let (way, toward) = (bytes.byte(), 2.0 * bytes.share() - 1.0);
+        let end = if toward < 0.0 { low } else { high };
+        let number = match way % 4 {
+            0 => *end,
+            1 => base + toward * toward * (end - base),
+            _ => base * (0.4 * toward).exp(),
+        };
+        let number = if *whole { number.round() } else { number };
+        changes.push((place, number.clamp(*low, *high)));
+    }
+    loop {
+        car.bench.reset();
+        for (place, number) in &changes {
+            car.bench.set(&car.slots[*place].0, *number);
+        }
+        match car.bench.build() {
+            Ok(setup) => {
+                if tells() {
+                    changes.iter().for_each(|(place, number)| eprintln!("--set {}={number:?}", car.slots[*place].0.key()));
+                }
+                return Some(setup);
+            }
+            Err(_) if changes.is_empty() => return None,
+            Err(_) => changes.truncate(changes.len() / 2),
+        }
+    }
+}
+
+fn cycle(bytes: &mut Bytes) -> Option<Cycle> {
+    let mut text = String::from("time_s,speed_kmh,grade,engine_off\n");
+    let (mut time_s, mut kmh) = (0.0, if bytes.one_in(4) { 100.0 * bytes.share() } else { 0.0 });
+    for _ in 0..=usize::from(bytes.byte()) % LEGS {
+        let grade = if bytes.one_in(4) { 0.2 * bytes.share() - 0.1 } else { 0.0 };
+        let next = if bytes.one_in(4) { 0.0 } else { 140.0 * bytes.share() };
+        let engine_off = u8::from(kmh <= 0.0 && next <= 0.0 && bytes.one_in(2));
+        let _ = writeln!(text, "{time_s},{kmh},{grade},{engine_off}");
+        time_s += 0.25 + 12.0 * bytes.share() * bytes.share();
+        kmh = next;
+    }
+    let _ = writeln!(text, "{},{kmh},0,0", time_s + 1.0);
+    if tells() {
+        eprintln!("{text}");
+    }
+    // Hard braking or acceleration may be refused.
+    read_csv("fuzz.csv", text.as_bytes()).ok()
+}
+
+/// Looks at every row.
+struct Look;
+
+impl Recorder for Look {
+    fn record(&mut self, row: &Row, terms: &Terms) {
+        assert!(terms.power_error() <= 1e-9 && terms.heat_error() <= 1e-9, "ledgers {terms:?} in {row:?}");
+        for component in Component::ALL {
+            let loss = row.loss_w[component as usize];
+            assert!(loss >= 0.0 && loss.is_finite(), "{} loses {loss} W in {row:?}", component.name());
+        }
+        for x in [row.fuel_kg_s, row.brake_w, row.deficit_w, row.exhaust_w, row.engine_heat_w, row.engine_speed_rad_s, row.throttle] {
+            assert!(x >= 0.0 && x.is_finite(), "{x} in {row:?}");
+        }
+        for k in [row.coolant_k, row.engine_oil_k, row.sump_k] {
+            // How hot is the car's own affair: an engine may make any heat.
+            assert!(k >= 200.0 && k.is_finite(), "{k} K in {row:?}");
+        }
+    }
+}
+
+pub fn drive_car(data: &[u8]) {
+    thread_local!(static MADE: RefCell<[Option<Car>; CARS.len()]> = const { RefCell::new([const { None }; CARS.len()]) });
+    let mut bytes = Bytes(data);
+    let which = usize::from(bytes.byte()) % CARS.len();
+    let conditions = Conditions {
+        ambient_k: 233.15 + 100.0 * bytes.share(),
+        start: match bytes.byte() % 4 {
+            0 => Start::Warm,
+            1 => Start::At(233.15 + 170.0 * bytes.share()),
+            _ => Start::Soak,
+        },
+        max_dt_s: bytes.of(&[1.0, 1.0, 0.5, 5.0]),
+        keep_rows: true,
+    };
+    if tells() {
+        eprintln!("{:?}\n{conditions:?}", CARS[which]);
+    }
+    MADE.with_borrow_mut(|made| {
+        let car = made[which].get_or_insert_with(|| car(CARS[which]));
+        within_memory(data.len(), || {
+            let mut bytes = Bytes(bytes.0);
+            let Some(cycle) = cycle(&mut bytes) else { return };
+            let Some(setup) = setup(car, &mut bytes) else { return };
+            let trace = cycle.trace_for(setup.transmission().is_cvt());
+            let start_k = if let Start::At(temp_k) = conditions.start { temp_k } else { conditions.ambient_k };
+            simulate(&setup.car(conditions.ambient_k), trace, conditions.max_dt_s, State::at(start_k), &mut Look);
+            // The way of the command, with its start and its sums.
+            if matches!(conditions.start, Start::Warm) {
+                let outcome = drive(&setup, &cycle, &conditions);
+                let fuel_kg: f64 = outcome.rows.iter().map(|row| row.fuel_kg_s * row.dt_s).sum();
+                assert!(fuel_kg.is_finite() && fuel_kg >= 0.0, "{fuel_kg} kg of fuel");
+            }
+        });
+    });
+}

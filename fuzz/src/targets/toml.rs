@@ -1,0 +1,73 @@
+//! TOML files and overrides.
+
+use std::sync::OnceLock;
+
+use cvtcycle::calibrate::{embedded_calibrations, plan as calibration};
+use cvtcycle::config::{Problem, decode, render};
+use cvtcycle::setup::{self, Disk, Options, embedded_lubricants, embedded_vehicles};
+use cvtcycle::study::plan::{Plan, embedded_plans};
+
+use super::{edits, within_memory};
+
+/// A text of at most so many bytes is edited eight times as often as a longer one, which takes as much longer to read.
+const SHORT: usize = 4000;
+
+type Texts = OnceLock<Vec<&'static str>>;
+
+fn texts(cell: &'static Texts, shipped: &'static [(&'static str, &'static str)]) -> &'static [&'static str] {
+    let times = |text: &str| if text.len() <= SHORT { 8 } else { 1 };
+    cell.get_or_init(|| shipped.iter().flat_map(|(_, text)| std::iter::repeat_n(*text, times(text))).collect())
+}
+
+/// What a reader of a text does with bytes; every refusal is put into words as a user would see it.
+fn read<T>(bytes: &[u8], reader: impl Fn(&str) -> Result<T, Vec<Problem>>) {
+    within_memory(bytes.len(), || {
+        let refused = match decode("fuzz.toml", bytes) {
+            Ok(text) => reader(&text).err(),
+            Err(problems) => Some(problems),
+        };
+        told(refused);
+    });
+}
+
+/// A refusal has at least one problem, and its words can be made.
+fn told(refused: Option<Vec<Problem>>) {
+    if let Some(problems) = refused {
+        assert!(!problems.is_empty(), "refused without a word");
+        assert!(!render(&problems, false).is_empty());
+    }
+}
+
+pub fn vehicle(data: &[u8]) {
+    static SHIPPED: Texts = OnceLock::new();
+    let text = edits::text(data, texts(&SHIPPED, embedded_vehicles()));
+    read(&text, |text| setup::read("fuzz.toml", text, Box::new(Disk::default()), &Options::default()));
+}
+
+pub fn lubricant(data: &[u8]) {
+    static SHIPPED: Texts = OnceLock::new();
+    let text = edits::text(data, texts(&SHIPPED, embedded_lubricants()));
+    read(&text, |text| setup::read_lubricant("fuzz.toml", text));
+}
+
+pub fn study_plan(data: &[u8]) {
+    static SHIPPED: Texts = OnceLock::new();
+    let text = edits::text(data, texts(&SHIPPED, embedded_plans()));
+    read(&text, |text| Plan::read("fuzz.toml", text));
+}
+
+pub fn calibration_plan(data: &[u8]) {
+    static SHIPPED: Texts = OnceLock::new();
+    let text = edits::text(data, texts(&SHIPPED, embedded_calibrations()));
+    read(&text, |text| calibration::read("fuzz.toml", text));
+}
+
+/// Overrides of a shipped car: the first byte chooses it.
+pub fn overrides(data: &[u8]) {
+    let Some((which, rest)) = data.split_first() else { return };
+    let vehicles = embedded_vehicles();
+    let (name, _) = vehicles[usize::from(*which) % vehicles.len()];
+    let Ok(text) = std::str::from_utf8(rest) else { return };
+    let options = Options { set: text.lines().map(str::to_owned).collect(), ..Options::default() };
+    within_memory(rest.len(), || told(setup::load(name, "--vehicle", &options).err()));
+}
