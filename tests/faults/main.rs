@@ -13,13 +13,15 @@ mod names;
 mod places;
 mod signals;
 mod streams;
+#[path = "../common/tree.rs"]
+mod tree;
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use tempfile::TempDir;
+use tree::{same, tree};
 
 const CYCLE: &str = "time_s,speed_kmh,phase\n0,0,town\n4,0,town\n14,32,town\n24,32,town\n34,0,road\n60,60,road\n";
 const PLAN: &str = "[study]\ntitle = \"t\"\nbaselines = [\"rover_216_5mt\"]\ncycle = \"minute.csv\"\nkeep = [\"time_s\", \"gear\"]\n\
@@ -86,31 +88,6 @@ fn made() -> TempDir {
     ends(dir.path(), "run --cycle minute.csv --sensitivity never --quiet --out made_run", 0);
     ends(dir.path(), "study plan.toml --quiet --out made_study", 0);
     dir
-}
-
-/// Every file below a directory with its bytes.
-fn tree(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    fn walk(root: &Path, dir: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) {
-        for entry in fs::read_dir(dir).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                walk(root, &path, files);
-            } else {
-                files.insert(path.strip_prefix(root).unwrap().to_owned(), fs::read(&path).unwrap());
-            }
-        }
-    }
-    let mut files = BTreeMap::new();
-    walk(dir, dir, &mut files);
-    files
-}
-
-fn same(a: &Path, b: &Path) {
-    let (a, b) = (tree(a), tree(b));
-    assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
-    for (name, bytes) in &a {
-        assert!(*bytes == b[name], "{} differs", name.display());
-    }
 }
 
 /// Runs a script with its own mounts in a folder; false where that is not allowed.
