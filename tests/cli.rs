@@ -396,12 +396,21 @@ fn check_reports_every_file() {
     write("binary.toml", &[0, 159, 146, 150]);
     write("other.toml", b"[package]\nname = 'x'\n");
     write("thin.toml", b"kv40_mm2_s = -3\nkv100_mm2_s = 7.2\ndensity15_kg_m3 = 865\n");
-    let files = ["semicolons.csv", "back.csv", "empty.toml", "binary.toml", "other.toml", "thin.toml", "none.toml"];
+    let files = ["semicolons.csv", "back.csv", "empty.toml", "binary.toml", "other.toml", "thin.toml", "none.toml", "."];
     let bad = run_in(dir.path(), &[&["check", "car.toml"], &files[..]].concat());
     assert_eq!((bad.status.code(), stdout(&bad).as_str()), (Some(2), "ok  car.toml (vehicle)\n"));
     let told = stderr(&bad);
-    let parts =
-        ["semicolons.csv:1", "back.csv:4", "back.csv:5", "empty", "binary file", "neither", "1.5 to 5000 mm²/s", "cannot read `none.toml`"];
+    let parts = [
+        "semicolons.csv:1",
+        "back.csv:4",
+        "back.csv:5",
+        "empty",
+        "binary file",
+        "neither",
+        "1.5 to 5000 mm²/s",
+        "cannot read `none.toml`",
+        "name a file in that directory",
+    ];
     for part in parts {
         assert!(told.contains(part), "{part} is not in\n{told}");
     }
@@ -423,6 +432,38 @@ fn check_knows_the_plan_of_a_calibration() {
     assert_eq!((bad.status.code(), stdout(&bad).as_str()), (Some(2), ""));
     assert!(stderr(&bad).contains("did you mean [calibration]?"), "{}", stderr(&bad));
     assert!(refused(&["show", "rover_216_warm_up"]).contains("the plan of a calibration"));
+}
+
+#[test]
+fn check_knows_the_plan_of_a_study() {
+    let good = run(&["check", "plans/uncertainty_rover.toml", "pump_and_offset"]);
+    assert_eq!(
+        (good.status.code(), stdout(&good).as_str()),
+        (Some(0), "ok  plans/uncertainty_rover.toml (study)\nok  pump_and_offset (study)\n")
+    );
+    // The first by its other tables, though a vehicle is named; a key that no car has shows only where the cars are read.
+    let dir = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string("plans/pump_and_offset.toml").unwrap();
+    fs::write(dir.path().join("head.toml"), text.replace("[study]", "[stdy]")).unwrap();
+    fs::write(dir.path().join("key.toml"), text.replace("belt.band_offset_mm", "belt.band_ofset_mm")).unwrap();
+    for (file, told) in [("head.toml", "did you mean `study`?"), ("key.toml", "did you mean")] {
+        let bad = run_in(dir.path(), &["check", file]);
+        assert_eq!((bad.status.code(), stdout(&bad).as_str()), (Some(2), ""));
+        assert!(stderr(&bad).contains(told), "{told} is not in\n{}", stderr(&bad));
+    }
+    assert!(refused(&["show", "pump_and_offset"]).contains("the plan of a study"));
+}
+
+#[test]
+fn check_tells_what_cannot_be_read_before_what_is_not_known() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("deep.toml"), format!("a = {}1{}\n", "[".repeat(500), "]".repeat(500))).unwrap();
+    fs::write(dir.path().join("open.toml"), "x = [1, 2\ny = \"\n").unwrap();
+    let bad = run_in(dir.path(), &["check", "deep.toml", "open.toml"]);
+    assert_eq!(bad.status.code(), Some(2));
+    for part in ["deep.toml:1", "nested", "open.toml:"] {
+        assert!(stderr(&bad).contains(part), "{part} is not in\n{}", stderr(&bad));
+    }
 }
 
 #[test]

@@ -10,6 +10,7 @@ use assert_cmd::Command;
 use common::bench_step::{Bench as StepBench, Setting};
 use common::{RPM, ZERO, car};
 use cvtcycle::config::render;
+use cvtcycle::results::columns::Value as Cell;
 use cvtcycle::results::{Component, Flags};
 use cvtcycle::rig::loss_table::{MapPart, write_map};
 use cvtcycle::rig::losses::{Axis, LossGrid, columns};
@@ -260,6 +261,55 @@ fn output_directory() {
     good(&["--out", a_text, "--force", "--quiet"]);
     good(&["--speed", "1000..4000:500", "--out", b_text]);
     assert_eq!(files(&b), ["losses.csv", "losses_stacked.svg", "summary.json"]);
+}
+
+/// Whatever is varied stands below the picture and in its column.
+#[test]
+fn every_axis_can_be_drawn() {
+    let axes = [
+        ("--ratio", "0.5,1.2", "Belt ratio", "belt_ratio"),
+        ("--temp", "20,80", "Oil in the sump [°C]", "transmission_sump_degc"),
+        ("--belt-temp", "20,80", "Belt and spray [°C]", "belt_spray_degc"),
+        ("--throttle", "0.2,0.4", "Throttle", "throttle"),
+        ("--pressure", "10,20", "Secondary pressure [bar]", "secondary_pressure_bar"),
+        ("--torque", "20,60", "Torque at the output shaft [Nm]", "output_torque_nm"),
+        ("--speed", "1000,2000", "Input speed [rpm]", "input_speed_rpm"),
+        ("--gear", "2,5", "Gear", "gear"),
+    ];
+    for (option, values, title, column) in axes {
+        let folder = tempfile::tempdir().unwrap();
+        let vehicle = if option == "--gear" { "rover_216_5mt" } else { "rover_216_cvt" };
+        good(&["--vehicle", vehicle, option, values, "--out", folder.path().to_str().unwrap(), "--quiet"]);
+        let svg = std::fs::read_to_string(folder.path().join("losses_stacked.svg")).unwrap();
+        let svg = roxmltree::Document::parse(&svg).unwrap();
+        assert!(svg.descendants().any(|n| n.text().is_some_and(|text| text.trim() == title)), "{title}");
+        let mut table = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(folder.path().join("losses.csv")).unwrap();
+        let at = table.headers().unwrap().iter().position(|name| name == column).unwrap_or_else(|| panic!("no {column}"));
+        let cells: Vec<f64> = table.records().map(|row| row.unwrap()[at].parse().unwrap()).collect();
+        let asked: Vec<f64> = values.split(',').map(|value| value.parse().unwrap()).collect();
+        assert_eq!(cells, asked, "{column}");
+    }
+}
+
+/// A bench with a belt map has one column for it, and no status of a belt model that is not asked.
+#[test]
+fn a_map_has_its_column() {
+    let csv = b"ratio,oil_temp_degc,torque_loss_nm\n0.4,0,6\n0.4,90,6\n2.5,0,6\n2.5,90,6\n";
+    let setup = with_map("rover_216_cvt", csv, "transmission.cvt.maps.belt");
+    let mut grid = LossGrid::default();
+    for (axis, value) in [(Axis::Ratio, 1.0), (Axis::Sump, 50.0), (Axis::Speed, 2000.0)] {
+        grid.values[axis as usize] = vec![value];
+    }
+    let columns = columns(setup.transmission());
+    let row = grid.rows(&Bench::new(&setup)).next().unwrap();
+    let told = |name: &str| {
+        let column = columns.iter().find(|column| column.name == name).unwrap_or_else(|| panic!("no {name}"));
+        (column.doc, column.value(&row))
+    };
+    let (doc, loss) = told("belt_map_loss_nm");
+    assert!(doc.contains("measured map") && matches!(loss, Cell::Number(nm) if (nm - 6.0).abs() < 1e-9), "{loss:?}");
+    assert!(matches!(told("belt_status").1, Cell::Text("")));
+    assert!(columns.iter().all(|column| column.name != "belt_slip_loss_nm"));
 }
 
 /// A setup whose vehicle file lies in a folder with a map beside it.

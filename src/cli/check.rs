@@ -3,6 +3,8 @@
 use cvtcycle::calibrate::open;
 use cvtcycle::config::{Problem, render};
 use cvtcycle::setup::{self, Kind, Options};
+use cvtcycle::study::Study;
+use cvtcycle::study::plan::Plan;
 
 use super::Context;
 use super::answer::{Answer, BAD_INPUT, Reply, json_text};
@@ -17,7 +19,7 @@ Example: cvtcycle check rover_216_cvt
 Prints `ok` for every file without problems, and all problems of the others with place, value, allowed range and a hint;
 then the exit code is 2.")]
 pub struct Args {
-    /// Vehicle, lubricant or calibration (TOML), or cycle (CSV) files; what a file is shows in its contents
+    /// Vehicle, lubricant, calibration or study (TOML), or cycle (CSV) files; what a file is shows in its contents
     #[arg(value_name = "FILE", required = true)]
     files: Vec<String>,
     /// Print one JSON object instead of text
@@ -46,6 +48,7 @@ fn check(file: &str) -> Result<Sort, Vec<Problem>> {
         // Only embedded, and read by `rig`.
         Sort::Rig => {}
         Sort::Calibration => drop(open(&word, "FILE")?),
+        Sort::Study => drop(Study::prepare(Plan::open(&word, "FILE")?)?),
         Sort::Lubricant => drop(setup::load_lubricant(&word, "FILE", &[], "")?),
         Sort::Vehicle => {
             let setup = setup::load(&word, "FILE", &Options::default())?;

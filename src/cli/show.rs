@@ -1,7 +1,7 @@
 //! `show`: every value of a vehicle, lubricant or rig with its status and source, or what a cycle is made of.
 
 use clap::ValueEnum;
-use cvtcycle::config::KeyInfo;
+use cvtcycle::config::{KeyInfo, Problem};
 use cvtcycle::cycle::Cycle;
 use cvtcycle::setup::assumptions::value;
 use cvtcycle::setup::catalogue;
@@ -102,11 +102,8 @@ pub fn answer(args: &Args, context: Context) -> Reply {
             (oil.title, keys)
         }
         Sort::Rig => rig(&word),
-        Sort::Calibration => {
-            let message = format!("`{word}` is the plan of a calibration, which holds no values of a car");
-            let hint = "name the vehicle that it fits; `cvtcycle check` reads a plan".to_owned();
-            return Err(vec![inputs::bad_value("NAME", &word, "a vehicle, lubricant, cycle or rig", message, hint)]);
-        }
+        Sort::Calibration => return Err(plan(&word, "a calibration", "name the vehicle that it fits")),
+        Sort::Study => return Err(plan(&word, "a study", "name the vehicle that it varies")),
     };
     let wanted = |info: &KeyInfo| args.status.is_empty() || args.status.iter().any(|s| s.word() == info.status);
     let keys: Vec<KeyInfo> = keys.into_iter().filter(wanted).collect();
@@ -120,6 +117,13 @@ pub fn answer(args: &Args, context: Context) -> Reply {
         return Ok(Answer::text(head + "\nno value of this status\n"));
     }
     Ok(Answer::text(head + &tables(&keys, context) + &counts(&keys)))
+}
+
+/// A plan, which has nothing to show.
+fn plan(word: &str, of: &str, instead: &str) -> Vec<Problem> {
+    let message = format!("`{word}` is the plan of {of}, which holds no values of a car");
+    let hint = format!("{instead}; `cvtcycle check` reads a plan");
+    vec![inputs::bad_value("NAME", word, "a vehicle, lubricant, cycle or rig", message, hint)]
 }
 
 /// Title and keys of an embedded rig.

@@ -1,9 +1,10 @@
-//! What a name or a file is: vehicle, lubricant, cycle, rig or calibration.
+//! What a name or a file is: vehicle, lubricant, cycle, rig, calibration or study.
 
 use cvtcycle::calibrate::embedded_calibrations;
-use cvtcycle::config::{Problem, bounded, decode};
+use cvtcycle::config::{Document, Problem, bounded, decode};
 use cvtcycle::cycle;
 use cvtcycle::setup::is_path;
+use cvtcycle::study::plan::embedded_plans;
 
 use super::inputs::{bad_value, bytes, did_you_mean, is_csv, lubricants, rigs, vehicles};
 
@@ -20,6 +21,8 @@ pub enum Sort {
     Rig,
     /// Plan of a calibration.
     Calibration,
+    /// Plan of a study.
+    Study,
 }
 
 /// Tables and keys that only a vehicle has at the top of its file.
@@ -29,6 +32,8 @@ const LUBRICANT: [&str; 5] = ["kv40_mm2_s", "kv100_mm2_s", "viscosity_table", "d
 
 /// Beginnings of headers that only the plan of a calibration has; their ends may be misspelt.
 const CALIBRATION: [&str; 3] = ["[calibra", "[[parameter", "[[data"];
+/// Likewise of the plan of a study.
+const STUDY: [&str; 2] = ["[study", "[[factor"];
 
 impl Sort {
     /// The word for it.
@@ -39,6 +44,7 @@ impl Sort {
             Sort::Cycle => "cycle",
             Sort::Rig => "rig",
             Sort::Calibration => "calibration",
+            Sort::Study => "study",
         }
     }
 }
@@ -75,6 +81,8 @@ fn embedded(word: &str) -> Option<Sort> {
         Some(Sort::Rig)
     } else if embedded_calibrations().iter().any(|(name, _)| *name == word) {
         Some(Sort::Calibration)
+    } else if embedded_plans().iter().any(|(name, _)| *name == word) {
+        Some(Sort::Study)
     } else if cycle::names().contains(&word) || word.starts_with("constant_") && !is_csv(word) {
         Some(Sort::Cycle)
     } else {
@@ -85,8 +93,12 @@ fn embedded(word: &str) -> Option<Sort> {
 /// By the names at the beginnings of lines; the text may be full of mistakes otherwise.
 fn by_text(word: &str, text: &str) -> Result<Sort, Vec<Problem>> {
     // A plan names a vehicle, too; what only it has is looked for everywhere.
-    if text.lines().any(|line| CALIBRATION.iter().any(|header| line.trim_start().starts_with(header))) {
+    let any = |headers: &[&str]| text.lines().any(|line| headers.iter().any(|header| line.trim_start().starts_with(header)));
+    if any(&CALIBRATION) {
         return Ok(Sort::Calibration);
+    }
+    if any(&STUDY) {
+        return Ok(Sort::Study);
     }
     let mut firsts = text.lines().map(|line| {
         let line = line.trim_start().trim_start_matches('[').trim_start();
@@ -101,16 +113,22 @@ fn by_text(word: &str, text: &str) -> Result<Sort, Vec<Problem>> {
             first.starts_with("time_").then_some(Sort::Cycle)
         }
     });
-    found.ok_or_else(|| {
-        let tables = VEHICLE.join("], [");
-        let hint = format!("a vehicle has [{tables}], a lubricant {}, a cycle time_s, a calibration [calibration]", LUBRICANT[0]);
-        vec![bad_value(word, "", "", "neither a vehicle, nor a lubricant, nor a cycle, nor a calibration".to_owned(), hint)]
-    })
+    if let Some(sort) = found {
+        return Ok(sort);
+    }
+    // What nobody could read is told before what nobody knows.
+    if std::path::Path::new(word).extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+        Document::parse(word, text)?;
+    }
+    let tables = VEHICLE.join("], [");
+    let hint =
+        format!("a vehicle has [{tables}], a lubricant {}, a cycle time_s, a calibration [calibration], a study [study]", LUBRICANT[0]);
+    Err(vec![bad_value(word, "", "", "neither a vehicle, nor a lubricant, nor a cycle, nor a calibration, nor a study".to_owned(), hint)])
 }
 
 fn unknown(word: &str) -> Problem {
-    let calibrations = embedded_calibrations().iter().map(|(name, _)| *name);
-    let inputs = vehicles().into_iter().chain(lubricants()).chain(rigs()).chain(calibrations);
+    let plans = embedded_calibrations().iter().chain(embedded_plans()).map(|(name, _)| *name);
+    let inputs = vehicles().into_iter().chain(lubricants()).chain(rigs()).chain(plans);
     let known: Vec<&str> = inputs.chain(cycle::names().iter().copied()).collect();
     let question = did_you_mean(word, &known).map(|q| q + " ").unwrap_or_default();
     bad_value(

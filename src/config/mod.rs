@@ -26,6 +26,7 @@ pub use bound::Bound;
 pub use document::Document;
 pub use draft::{Draft, KeyPath};
 pub use near::near;
+pub(crate) use problem::readable;
 pub use problem::{Place, Problem, append};
 pub use reader::{KeyInfo, Reader};
 pub use render::render;

@@ -32,6 +32,11 @@ pub struct Problem {
     pub hint: String,
 }
 
+/// A number for a sentence: so many decimals, and with a power of ten where the figures before the point would be no help.
+pub(crate) fn readable(x: f64, decimals: usize) -> String {
+    if x.abs() < 1e6 { format!("{x:.decimals$}") } else { format!("{x:.1e}") }
+}
+
 /// The end of the sentence that counts what is not shown, for one and for several.
 const NOT_SHOWN: [&str; 2] = [" more problem is not shown", " more problems are not shown"];
 

@@ -4,6 +4,7 @@ use super::gears::Note;
 use super::header::{Column, Header, SpeedUnit};
 use super::problems::{Cell, Complaint, Line, Problems};
 use super::text::Field;
+use crate::config::readable;
 
 /// Faster is no road car; a higher number is nearly always a wrong unit.
 const HIGHEST_KMH: f64 = 300.0;
@@ -94,7 +95,7 @@ fn speed(cell: &Cell<'_>, unit: SpeedUnit, problems: &mut Problems<'_>) -> Optio
         let (message, hint) = if value < 0.0 {
             ("the speed is negative".to_owned(), "set a sensor's small negative values to 0; reversing cannot be driven".to_owned())
         } else {
-            (format!("{kmh:.1} km/h is too fast"), format!("is the column in another unit than {} says?", cell.key))
+            (format!("{} km/h is too fast", readable(kmh, 1)), format!("is the column in another unit than {} says?", cell.key))
         };
         Complaint::new(message, "0 to 300 km/h", hint)
     });

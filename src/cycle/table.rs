@@ -6,6 +6,7 @@ use super::header::{Column, Header, SpeedUnit};
 use super::problems::{Cell, Complaint, Line, Problems};
 use super::row::{self, Row};
 use super::text::Field;
+use crate::config::readable;
 
 /// Tyres cannot do more; a higher value is a wrong unit or a lost sample.
 const HIGHEST_ACCEL_M_S2: f64 = 12.0;
@@ -119,7 +120,7 @@ impl<'a> Table<'a> {
                 _ => "is the column in km/h? then name it speed_kmh",
             };
             self.problems.cell(cell, || {
-                let message = format!("the speed jumps: {accel_m_s2:.1} m/s2 from the row above");
+                let message = format!("the speed jumps: {} m/s2 from the row above", readable(accel_m_s2, 1));
                 Complaint::new(message, "-12 to 12 m/s2", hint)
             });
         }

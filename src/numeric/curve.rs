@@ -113,5 +113,7 @@ mod tests {
         assert!(Curve::new(&[(0.0, 1.0), (0.0, 3.0)]).is_err());
         assert!(Curve::new(&[(0.0, f64::NAN)]).is_err());
         assert!(Curve::new(&[]).is_err());
+        let rising = |count: u32| (0..count).map(|k| (f64::from(k), 1.0)).collect::<Vec<_>>();
+        assert!(Curve::new(&rising(65_535)).is_ok() && Curve::new(&rising(65_536)).is_err());
     }
 }

@@ -38,21 +38,6 @@ impl Axis {
     /// All axes, outermost first.
     pub const ALL: [Axis; Self::COUNT] = [Axis::Ratio, Axis::Sump, Axis::Belt, Axis::Throttle, Axis::Pressure, Axis::Torque, Axis::Speed];
 
-    /// Column that holds it.
-    #[must_use]
-    pub fn column(self, cvt: bool) -> &'static str {
-        match self {
-            Axis::Ratio if cvt => "belt_ratio",
-            Axis::Ratio => "gear",
-            Axis::Sump => "transmission_sump_degc",
-            Axis::Belt => "belt_spray_degc",
-            Axis::Throttle => "throttle",
-            Axis::Pressure => "secondary_pressure_bar",
-            Axis::Torque => "output_torque_nm",
-            Axis::Speed => "input_speed_rpm",
-        }
-    }
-
     /// Title of a plot's axis.
     #[must_use]
     pub fn title(self, cvt: bool) -> &'static str {

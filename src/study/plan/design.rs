@@ -1,7 +1,7 @@
 //! The design of a plan, and what concerns all its factors at once.
 
 use super::{Cars, Design, Factor, FactorValues, Places, Plan, options};
-use crate::config::{Bound, Problem, Section, unit_of};
+use crate::config::{Bound, Problem, Section, readable, unit_of};
 use crate::study::design::{MOST_SOBOL_DIMENSIONS, MOST_SOBOL_SAMPLES};
 
 /// Designs.
@@ -128,7 +128,7 @@ pub(super) fn reach(plan: &Plan) -> Vec<Problem> {
             continue;
         };
         if !(bound.contains(low) && bound.contains(high)) {
-            let message = format!("factor {}: the draws go from {low:.4} to {high:.4}", factor.key);
+            let message = format!("factor {}: the draws go from {} to {}", factor.key, readable(low, 4), readable(high, 4));
             let allowed = bound.in_unit(unit_of(options::quantity(&factor.key)));
             let hint = "use truncated_normal, uniform or triangular".to_owned();
             let place = factor.places.of("distribution").clone();
