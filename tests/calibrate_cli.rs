@@ -68,6 +68,52 @@ fn without_folds_nothing_is_predicted_and_starts_and_seed_are_obeyed() {
     assert_ne!(printed["starts"][1]["from"], other["starts"][1]["from"]);
 }
 
+/// What the plan sets stands in the fitted files, and files beside the vehicle are found from wherever they lie: the bench loses with the
+/// fitted car what it loses with the plan's own car, overrides and fitted values.
+#[test]
+fn fitted_files_hold_what_the_plan_sets() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    let example = example();
+    fs::copy(example.with_file_name("spin_loss.csv"), at("spin_loss.csv")).unwrap();
+    let map = "[transmission.cvt.maps]\nclutch_drag = \"drag.csv\"\n";
+    let car = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("vehicles/rover_216_cvt.toml")).unwrap();
+    fs::write(at("car.toml"), car + "\n" + map).unwrap();
+    fs::write(at("drag.csv"), "input_speed_rpm,torque_loss_nm\n0,0.2\n7000,1.2\n").unwrap();
+    fs::write(at("shaft.csv"), "input_speed_rpm,torque_loss_nm\n0,0.3\n7000,0.8\n").unwrap();
+    let sets = ["road_load.mass_kg=1210", "lubricant.density15_kg_m3=870", "transmission.cvt.maps.input_shaft=shaft.csv"];
+    let head = format!("vehicle = \"car.toml\"\nset = {sets:?}");
+    let plan = fs::read_to_string(example).unwrap().replace("vehicle = \"rover_216_cvt\"", &head);
+    fs::write(at("plan.toml"), plan).unwrap();
+    let out = at("elsewhere/fitted");
+    fs::create_dir(at("elsewhere")).unwrap();
+    let run = cvtcycle().arg(at("plan.toml")).args(["--json", "--no-folds", "--starts", "1", "--out"]).arg(&out).assert().success();
+    let printed: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    let fitted = fs::read_to_string(out.join("car_fitted.toml")).unwrap();
+    assert!(fitted.contains("value = 1210") && fitted.contains("set by"), "{fitted}");
+    let losses = |vehicle: PathBuf, sets: &[String]| {
+        let mut command = Command::cargo_bin("cvtcycle").unwrap();
+        command
+            .current_dir(at("elsewhere"))
+            .args(["losses", "--json", "--speed", "1000,3000", "--temp", "-10,80", "--vehicle"])
+            .arg(vehicle);
+        sets.iter().for_each(|set| drop(command.args(["--set", set])));
+        let answer: Value = serde_json::from_slice(&command.assert().success().get_output().stdout).unwrap();
+        answer["points"].clone()
+    };
+    let parameters = printed["parameters"].as_array().unwrap().iter();
+    let values = parameters.map(|p| format!("{}={}", p["name"].as_str().unwrap(), p["value"]));
+    let own = losses(at("car.toml"), &sets.map(str::to_owned).into_iter().chain(values).collect::<Vec<_>>());
+    let again = losses(out.join("car_fitted.toml"), &[]);
+    assert_eq!(own.as_array().unwrap().len(), 4);
+    for (own, again) in own.as_array().unwrap().iter().zip(again.as_array().unwrap()) {
+        for (name, value) in own.as_object().unwrap().iter().filter(|(_, value)| value.is_number()) {
+            let (own, again) = (number(value), number(&again[name]));
+            assert!((own - again).abs() <= 1e-5 * own.abs(), "{name}: {own}, fitted {again}");
+        }
+    }
+}
+
 #[test]
 fn a_parameter_that_moves_nothing_ends_with_code_1_and_everything_is_written() {
     let dir = tempfile::tempdir().unwrap();

@@ -6,6 +6,8 @@
     reason = "helpers and tables of tests; a test that is skipped says so"
 )]
 
+#[path = "study/answers.rs"]
+mod answers;
 #[path = "common/tree.rs"]
 mod tree;
 
@@ -215,6 +217,10 @@ values = [2.2, 2.417]
     let total: u64 = ["ok", "failed", "not_run"].iter().map(|k| answer["runs"][k].as_u64().unwrap()).sum();
     assert_eq!(total, 24);
     assert!(stderr(&output).contains("missed_trace"), "{}", stderr(&output));
+    let failed = answer["runs"]["failed"].as_u64().unwrap();
+    let words = String::from_utf8(ends(dir.path(), &["study", "show", "out"], 1).stdout).unwrap();
+    let told = format!("{} runs have no good numbers ({failed} failed a check, 3 could not be run) and are left out below", failed + 3);
+    assert!(words.contains(&told), "{told} is not in {words}");
     ends(dir.path(), &["study", "export", "out", "--out", "runs.csv"], 0);
     let mut reader = csv::Reader::from_path(dir.path().join("runs.csv")).unwrap();
     let heads: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();

@@ -49,7 +49,7 @@ pub fn files(plan: &Plan, outcome: &Outcome, date: &str) -> Result<Vec<(String, 
         let (_, text, _) = text_of(&word, Kind::Lubricant, "calibration.lubricant")?;
         let mut fluid = parsed(plan, &text)?;
         for set in sets {
-            assign(&mut fluid, set, plan);
+            assign(&mut fluid, set, plan, &disk.folder);
         }
         for p in own {
             let path: Vec<&str> = p.name[prefix.len()..].split('.').collect();
@@ -60,7 +60,7 @@ pub fn files(plan: &Plan, outcome: &Outcome, date: &str) -> Result<Vec<(String, 
         written.push((file, fluid.to_string()));
     }
     for set in plan.set.iter().filter(|set| !FLUIDS.iter().any(|(prefix, _)| set.starts_with(prefix)) && !set.starts_with("rig.")) {
-        assign(&mut vehicle, set, plan);
+        assign(&mut vehicle, set, plan, &disk.folder);
     }
     for p in outcome.parameters.iter().filter(|p| p.is_key && !FLUIDS.iter().any(|(prefix, _)| p.name.starts_with(prefix))) {
         put(&mut vehicle, &p.name.split('.').collect::<Vec<&str>>(), number(p.value), "fitted", &source(p));
@@ -102,10 +102,12 @@ fn text_at(document: &DocumentMut, path: &[&str]) -> String {
     inner.as_str().unwrap_or_default().to_owned()
 }
 
-/// Writes what the plan sets by `KEY=VALUE`.
-fn assign(document: &mut DocumentMut, set: &str, plan: &Plan) {
+/// Writes what the plan sets by `KEY=VALUE`; a file that it names lies beside the vehicle file.
+fn assign(document: &mut DocumentMut, set: &str, plan: &Plan, folder: &Path) {
     let Some((key, text)) = set.split_once('=') else { return };
-    let value = text.trim().parse::<Value>().unwrap_or_else(|_| Value::from(text.trim()));
+    let mut item = Item::Value(text.trim().parse::<Value>().unwrap_or_else(|_| Value::from(text.trim())));
+    beside(&mut item, folder);
+    let Ok(value) = item.into_value() else { return };
     let path: Vec<&str> = key.trim().split('.').map(str::trim).collect();
     put(document, &path, value, "assumed", &format!("set by {}", plan.file));
 }
