@@ -310,6 +310,11 @@ fn a_map_has_its_column() {
     assert!(doc.contains("measured map") && matches!(loss, Cell::Number(nm) if (nm - 6.0).abs() < 1e-9), "{loss:?}");
     assert!(matches!(told("belt_status").1, Cell::Text("")));
     assert!(columns.iter().all(|column| column.name != "belt_slip_loss_nm"));
+    let csv = b"gear,input_torque_nm,torque_loss_nm\n1,-100,3\n1,200,3\n5,-100,3\n5,200,3\n";
+    let manual = with_map("rover_216_5mt", csv, "transmission.manual.maps.box");
+    let parts: Vec<_> = cvtcycle::rig::losses::columns(manual.transmission());
+    let parts: Vec<_> = parts.iter().filter(|column| column.name.ends_with("_loss_nm") && column.name != "total_loss_nm").collect();
+    assert!(parts.len() == 1 && parts[0].name == "box_map_loss_nm" && parts[0].doc.contains("measured map"), "{parts:?}");
 }
 
 /// A setup whose vehicle file lies in a folder with a map beside it.
