@@ -97,7 +97,9 @@ fn fitted_files_hold_what_the_plan_sets() {
             .current_dir(at("elsewhere"))
             .args(["losses", "--json", "--speed", "1000,3000", "--temp", "-10,80", "--vehicle"])
             .arg(vehicle);
-        sets.iter().for_each(|set| drop(command.args(["--set", set])));
+        for set in sets {
+            command.args(["--set", set]);
+        }
         let answer: Value = serde_json::from_slice(&command.assert().success().get_output().stdout).unwrap();
         answer["points"].clone()
     };
