@@ -14,6 +14,7 @@ mod tree;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -23,8 +24,26 @@ use tree::{same, tree};
 /// A cycle of a minute, so that a run takes little time.
 const CYCLE: &str =
     "time_s,speed_kmh,phase\n0,0,town\n4,0,town\n14,32,town\n24,32,town\n34,0,town\n36,0,road\n50,70,road\n56,70,road\n60,60,road\n";
+/// A factor of the CVT alone, and one of all cars.
+const FACTORS: &str = r#"
+[[factor]]
+key = "transmission.cvt.pump.displacement_cc_rev"
+name = "pump"
+status = "assumed"
+distribution.uniform = { low = 7, high = 11 }
+
+[[factor]]
+key = "engine.electrical_w"
+name = "current"
+cars = "all"
+acts = "scale"
+status = "assumed"
+distribution.triangular = { low = 0.5, mode = 1.0, high = 2.0 }
+"#;
 /// 5000 Monte Carlo points of two cars: 32 parts.
-const PLAN: &str = r#"
+static PLAN: LazyLock<String> = LazyLock::new(|| {
+    format!(
+        r#"
 [study]
 title = "kill me"
 vehicle = "rover_216_cvt"
@@ -35,24 +54,13 @@ ambient_degc = -10
 [study.design.monte_carlo]
 samples = 5000
 seed = 7
-
-[[factor]]
-key = "transmission.cvt.pump.displacement_cc_rev"
-name = "pump"
-status = "assumed"
-distribution.uniform = { low = 7, high = 11 }
-
-[[factor]]
-key = "engine.electrical_w"
-cars = "all"
-acts = "scale"
-status = "assumed"
-distribution.triangular = { low = 0.5, mode = 1.0, high = 2.0 }
-
+{FACTORS}
 [[factor]]
 key = "lubricant"
 values = ["dexron_ii", "cvtf_ezl799_class"]
-"#;
+"#
+    )
+});
 
 fn folder(plan: &str) -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
@@ -101,7 +109,7 @@ fn wait_for_parts(child: &mut Child, dir: &Path, count: usize) {
 /// the bytes of one that nobody disturbed; and one thread gives the bytes of three.
 #[test]
 fn killed_at_many_moments_it_ends_with_the_same_bytes() {
-    let dir = folder(PLAN);
+    let dir = folder(&PLAN);
     ends(dir.path(), &["study", "plan.toml", "--out", "whole", "--quiet", "--threads", "1"], 0);
     let mut kills = 0_usize;
     let mut first = true;
@@ -136,7 +144,7 @@ fn killed_at_many_moments_it_ends_with_the_same_bytes() {
 /// Ctrl-C: code 130, whole parts kept and nothing half written, and the rest can be done later.
 #[test]
 fn ctrl_c_stops_with_whole_parts() {
-    let dir = folder(PLAN);
+    let dir = folder(&PLAN);
     let out = dir.path().join("out");
     let mut child =
         program(dir.path(), &["study", "plan.toml", "--out", "out"]).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
@@ -158,7 +166,7 @@ fn ctrl_c_stops_with_whole_parts() {
 /// bytes of an undisturbed study.
 #[test]
 fn a_full_disk_loses_nothing() {
-    let dir = folder(PLAN);
+    let dir = folder(&PLAN);
     let bin = assert_cmd::cargo::cargo_bin("cvtcycle");
     let script = format!(
         "mkdir small && mount -t tmpfs -o size=640k none small || exit 77\n\
@@ -358,7 +366,7 @@ fn resume_wants_the_same_study() {
 /// The matrix of the thesis: 30 runs whose numbers are those of `run`, with its pictures.
 #[test]
 fn the_ambient_matrix() {
-    let dir = folder(PLAN);
+    let dir = folder(&PLAN);
     let matrix = json(&ends(dir.path(), &["study", "ambient", "--json", "--out", "out"], 0));
     assert_eq!(matrix["runs"]["ok"], 30);
     let fuel = &matrix["matrix"]["fuel"][0];

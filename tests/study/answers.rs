@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use super::{ends, folder, stderr};
+use super::{FACTORS, ends, folder, stderr};
 
 const HEAD: &str = r#"
 [study]
@@ -16,21 +16,7 @@ cycle = "minute.csv"
 ambient_degc = -10
 analyse = ["headline_fuel_l_per_100km", "subject_excess_percent"]
 "#;
-const FACTORS: &str = r#"
-[[factor]]
-key = "transmission.cvt.pump.displacement_cc_rev"
-name = "pump"
-status = "assumed"
-distribution.uniform = { low = 7, high = 11 }
-
-[[factor]]
-key = "engine.electrical_w"
-name = "current"
-cars = "all"
-acts = "scale"
-status = "assumed"
-distribution.triangular = { low = 0.5, mode = 1.0, high = 2.0 }
-
+const START: &str = r#"
 [[factor]]
 key = "start"
 values = ["soak", "warm"]
@@ -39,7 +25,7 @@ const FUEL: &str = "headline_fuel_l_per_100km";
 const CVT: &str = "rover_216_cvt";
 
 fn plan(design: &str) -> String {
-    format!("{HEAD}\n{design}\n{FACTORS}")
+    format!("{HEAD}\n{design}\n{FACTORS}{START}")
 }
 
 /// Rows of a CSV file by the names of their columns, units cut off.
