@@ -300,20 +300,20 @@ fn a_map_has_its_column() {
     for (axis, value) in [(Axis::Ratio, 1.0), (Axis::Sump, 50.0), (Axis::Speed, 2000.0)] {
         grid.values[axis as usize] = vec![value];
     }
-    let columns = columns(setup.transmission());
+    let of_cvt = columns(setup.transmission());
     let row = grid.rows(&Bench::new(&setup)).next().unwrap();
     let told = |name: &str| {
-        let column = columns.iter().find(|column| column.name == name).unwrap_or_else(|| panic!("no {name}"));
+        let column = of_cvt.iter().find(|column| column.name == name).unwrap_or_else(|| panic!("no {name}"));
         (column.doc, column.value(&row))
     };
     let (doc, loss) = told("belt_map_loss_nm");
     assert!(doc.contains("measured map") && matches!(loss, Cell::Number(nm) if (nm - 6.0).abs() < 1e-9), "{loss:?}");
     assert!(matches!(told("belt_status").1, Cell::Text("")));
-    assert!(columns.iter().all(|column| column.name != "belt_slip_loss_nm"));
+    assert!(of_cvt.iter().all(|column| column.name != "belt_slip_loss_nm"));
     let csv = b"gear,input_torque_nm,torque_loss_nm\n1,-100,3\n1,200,3\n5,-100,3\n5,200,3\n";
     let manual = with_map("rover_216_5mt", csv, "transmission.manual.maps.box");
-    let parts: Vec<_> = cvtcycle::rig::losses::columns(manual.transmission());
-    let parts: Vec<_> = parts.iter().filter(|column| column.name.ends_with("_loss_nm") && column.name != "total_loss_nm").collect();
+    let of_manual = columns(manual.transmission());
+    let parts: Vec<_> = of_manual.iter().filter(|column| column.name.ends_with("_loss_nm") && column.name != "total_loss_nm").collect();
     assert!(parts.len() == 1 && parts[0].name == "box_map_loss_nm" && parts[0].doc.contains("measured map"), "{parts:?}");
 }
 

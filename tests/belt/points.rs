@@ -185,6 +185,17 @@ fn smooth_is_defined_at_ratio_1_and_at_rest_and_the_printed_forms_are_not() {
     }
 }
 
+/// The fluid's own friction, for which the table has no column: the row as a whole is marked.
+#[test]
+fn friction_that_no_column_gives_is_complained_of_at_its_row() {
+    let sets = ["--set", "lubricant.friction.band=0.4", "--set", "lubricant.friction.band_ceiling=1.25"];
+    let rows = "0.5,500,20,30,200\n0.05,500,20,30,200\n";
+    let said = refused(format!("{NAMES},belt_temp_degc\n{rows}").as_bytes(), &sets);
+    for part in ["band_friction: the bands would block themselves (TE-5)", "standard input:3:1", "^^^^^^^^^^^^^^^^^^", "1 problem in"] {
+        assert!(said.contains(part), "{part} is not in {said}");
+    }
+}
+
 /// Travel of Table 8-1's belt with the mean speed (closed form), and where the printed 16 mm would need the band to run.
 #[test]
 fn val_band_speed_moves_the_travel_only() {

@@ -11,7 +11,6 @@ use crate::{ends, folder, made, program, same, tree, words};
 
 const TERM: i32 = 15;
 const INT: i32 = 2;
-
 const HUP: i32 = 1;
 
 /// Whether a signal is ignored by whoever started the tests, and so by the children: SIGHUP under `nohup`, SIGINT in the background of a script.
