@@ -1,7 +1,11 @@
 //! How long the parts and the whole take: `cargo bench`.
 //!
 //! Steps and cycles are those of shipped cars after a soak at -10 degC; `history` and `runs_per_second<true>` keep every row.
-#![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark has no interface")]
+#![allow(
+    clippy::unwrap_used,
+    missing_docs,
+    reason = "a benchmark has no interface"
+)]
 
 use std::collections::BTreeSet;
 
@@ -17,7 +21,9 @@ use cvtcycle::study::plan::Plan;
 use cvtcycle::study::table::Rows;
 use cvtcycle::study::{Sink, Study, Unwatched};
 use cvtcycle::thermal::{Heat, HeatInput};
-use cvtcycle::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, Formulation, belt_point, belt_state};
+use cvtcycle::transmission::cvt::variator::{
+    Belt, BeltAtRatio, BeltLoad, Formulation, belt_point, belt_state,
+};
 use cvtcycle::transmission::{DriveState, Surroundings, Transmission};
 use cvtcycle::vehicle::WheelDemand;
 use divan::counter::ItemsCount;
@@ -31,7 +37,8 @@ fn main() {
 }
 
 fn setup(name: &str) -> Setup {
-    load(name, "--vehicle", &Options::default()).unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
+    load(name, "--vehicle", &Options::default())
+        .unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
 }
 
 fn cycle(name: &str) -> Cycle {
@@ -50,7 +57,10 @@ fn load_at(torque_nm: f64) -> BeltLoad {
         primary_speed_rad_s: 200.0,
         output_torque_nm: torque_nm,
         secondary_clamp_n: 20e5 * 0.009_719 + 750.0,
-        band: BandFriction { mu: 0.12, film_share: 0.1 },
+        band: BandFriction {
+            mu: 0.12,
+            film_share: 0.1,
+        },
         eta_pa_s: 0.02,
         film_thickness_m: 0.5e-6,
         segment_friction: 0.125,
@@ -70,15 +80,26 @@ fn belt_evaluation(bencher: Bencher, torque_nm: f64) {
 /// Belt points with their geometry, as `belt` computes them, in each formulation: points a second.
 #[divan::bench(args = ["smooth", "appendix_c", "chapter_8"])]
 fn belt_points(bencher: Bencher, name: &str) {
-    let formulation = Formulation::NAMES.iter().find(|(known, _)| *known == name).unwrap().1;
+    let formulation = Formulation::NAMES
+        .iter()
+        .find(|(known, _)| *known == name)
+        .unwrap()
+        .1;
     let car = setup("rover_216_cvt").car(COLD_K);
-    let belt = Belt { formulation, ..belt(&car).clone() };
-    let points: Vec<(f64, BeltLoad)> = (0..100).map(|k| (0.425 + 0.02 * f64::from(k), load_at(-20.0 + f64::from(k)))).collect();
-    bencher.counter(ItemsCount::new(points.len())).bench_local(|| {
-        for (ratio, load) in &points {
-            black_box(belt_point(&belt, &BeltAtRatio::new(&belt, *ratio), load));
-        }
-    });
+    let belt = Belt {
+        formulation,
+        ..belt(&car).clone()
+    };
+    let points: Vec<(f64, BeltLoad)> = (0..100)
+        .map(|k| (0.425 + 0.02 * f64::from(k), load_at(-20.0 + f64::from(k))))
+        .collect();
+    bencher
+        .counter(ItemsCount::new(points.len()))
+        .bench_local(|| {
+            for (ratio, load) in &points {
+                black_box(belt_point(&belt, &BeltAtRatio::new(&belt, *ratio), load));
+            }
+        });
 }
 
 #[divan::bench(args = [0.4137, 1.0, 2.4])]
@@ -93,7 +114,12 @@ fn driveline_step(bencher: Bencher, name: &str) {
     let car = setup(name).car(COLD_K);
     let heat = Heat::uniform(300.0);
     let engine = car.engine.at(300.0, 300.0, &car.engine_oil, 1.0);
-    let demand = |power_w: f64| WheelDemand { speed_m_s: 16.7, wheel_rad_s: 59.0, power_w, ..WheelDemand::default() };
+    let demand = |power_w: f64| WheelDemand {
+        speed_m_s: 16.7,
+        wheel_rad_s: 59.0,
+        power_w,
+        ..WheelDemand::default()
+    };
     let wheels = [demand(6000.0), demand(7000.0)];
     let around = |k: usize| Surroundings {
         wheel: &wheels[k],
@@ -143,15 +169,26 @@ fn step_of_a_cycle(bencher: Bencher, name: &str) {
     let car = setup(name).car(COLD_K);
     let cycle = cycle("ece15_eudc");
     let trace = cycle.trace_for(car.transmission.is_cvt());
-    bencher.counter(ItemsCount::new(trace.step_count(1.0))).bench_local(|| simulate(&car, trace, 1.0, State::at(COLD_K), &mut Nobody));
+    bencher
+        .counter(ItemsCount::new(trace.step_count(1.0)))
+        .bench_local(|| simulate(&car, trace, 1.0, State::at(COLD_K), &mut Nobody));
 }
 
 fn whole(bencher: Bencher, name: &str, cycle_name: &str, keep_rows: bool) {
     let setup = setup(name);
     let cycle = cycle(cycle_name);
-    let conditions = Conditions { ambient_k: COLD_K, start: Start::Soak, max_dt_s: 1.0, keep_rows };
-    let steps = cycle.trace_for(setup.transmission().is_cvt()).step_count(1.0);
-    bencher.counter(ItemsCount::new(steps)).bench_local(|| drive(&setup, black_box(&cycle), &conditions));
+    let conditions = Conditions {
+        ambient_k: COLD_K,
+        start: Start::Soak,
+        max_dt_s: 1.0,
+        keep_rows,
+    };
+    let steps = cycle
+        .trace_for(setup.transmission().is_cvt())
+        .step_count(1.0);
+    bencher
+        .counter(ItemsCount::new(steps))
+        .bench_local(|| drive(&setup, black_box(&cycle), &conditions));
 }
 
 #[divan::bench(args = CARS)]
@@ -168,8 +205,15 @@ fn cycle_with_history(bencher: Bencher, name: &str) {
 #[divan::bench(args = ["rover_216_cvt", "rover_216_5mt"], consts = [false, true])]
 fn runs_per_second<const ROWS: bool>(bencher: Bencher, name: &str) {
     let (setup, cycle) = (setup(name), cycle("ece15_eudc"));
-    let conditions = Conditions { ambient_k: COLD_K, start: Start::Soak, max_dt_s: 1.0, keep_rows: ROWS };
-    bencher.counter(ItemsCount::new(1usize)).bench_local(|| drive(&setup, black_box(&cycle), &conditions));
+    let conditions = Conditions {
+        ambient_k: COLD_K,
+        start: Start::Soak,
+        max_dt_s: 1.0,
+        keep_rows: ROWS,
+    };
+    bencher
+        .counter(ItemsCount::new(1usize))
+        .bench_local(|| drive(&setup, black_box(&cycle), &conditions));
 }
 
 #[divan::bench(args = ["us06", "wltc_class3b", "ftp75"])]
@@ -191,17 +235,25 @@ fn parse_embedded_cycle(bencher: Bencher, name: &str) {
 fn parse_user_cycle(bencher: Bencher) {
     let mut text = String::from("time_s,speed_kmh,grade_percent\n");
     for i in 0..1800 {
-        text.push_str(&format!("{i},{:.2},{:.1}\n", 40.0 + 30.0 * f64::from(i).sin().abs().min(0.02 * f64::from(i)), 0.5));
+        text.push_str(&format!(
+            "{i},{:.2},{:.1}\n",
+            40.0 + 30.0 * f64::from(i).sin().abs().min(0.02 * f64::from(i)),
+            0.5
+        ));
     }
     let rows = text.lines().count() - 1;
-    bencher.counter(ItemsCount::new(rows)).bench_local(|| read_csv("user.csv", black_box(text.as_bytes())).map_err(|p| p.len()));
+    bencher
+        .counter(ItemsCount::new(rows))
+        .bench_local(|| read_csv("user.csv", black_box(text.as_bytes())).map_err(|p| p.len()));
 }
 
 /// A car with two changed numbers, from its parsed files, as each run of a study begins.
 #[divan::bench(args = CARS)]
 fn blueprint_build(bencher: Bencher, name: &str) {
-    let (blueprint, _) = Blueprint::load(name, "--vehicle", &Options::default()).unwrap_or_else(|p| panic!("{}", render(&p, false)));
-    let slots = ["road_load.mass_kg", "lubricant.kv40_mm2_s"].map(|key| blueprint.slot(key).unwrap());
+    let (blueprint, _) = Blueprint::load(name, "--vehicle", &Options::default())
+        .unwrap_or_else(|p| panic!("{}", render(&p, false)));
+    let slots =
+        ["road_load.mass_kg", "lubricant.kv40_mm2_s"].map(|key| blueprint.slot(key).unwrap());
     let mut bench = blueprint.bench();
     bencher.bench_local(|| {
         bench.reset();
@@ -228,7 +280,9 @@ impl Sink for Nowhere {
 fn study_runs(bencher: Bencher, (threads, traces): (usize, bool)) {
     let keep = if traces { "everything" } else { "summary" };
     let factor = |key: &str, low: f64, high: f64| {
-        format!("[[factor]]\nkey = \"{key}\"\nstatus = \"assumed\"\ndistribution.uniform = {{ low = {low}, high = {high} }}\n")
+        format!(
+            "[[factor]]\nkey = \"{key}\"\nstatus = \"assumed\"\ndistribution.uniform = {{ low = {low}, high = {high} }}\n"
+        )
     };
     let text = format!(
         "[study]\ntitle = \"bench\"\nbaselines = []\nambient_degc = -10\nkeep = \"{keep}\"\n[study.design.monte_carlo]\nsamples = 512\n"
@@ -236,10 +290,19 @@ fn study_runs(bencher: Bencher, (threads, traces): (usize, bool)) {
         + &factor("transmission.cvt.belt.band_offset_mm", 2.0, 4.0)
         + &factor("lubricant.kv40_mm2_s", 30.0, 40.0)
         + &factor("road_load.mass_kg", 1000.0, 1250.0);
-    let plan = Plan::read("bench", &text).unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
-    let study = Study::prepare(plan).unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    bencher
-        .counter(ItemsCount::new(512_usize))
-        .bench_local(|| pool.install(|| study.execute(&BTreeSet::new(), &Nowhere, &Unwatched).map_err(|p| p.message)));
+    let plan = Plan::read("bench", &text)
+        .unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
+    let study =
+        Study::prepare(plan).unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
+    bencher.counter(ItemsCount::new(512_usize)).bench_local(|| {
+        pool.install(|| {
+            study
+                .execute(&BTreeSet::new(), &Nowhere, &Unwatched)
+                .map_err(|p| p.message)
+        })
+    });
 }

@@ -21,8 +21,21 @@ const SHIFTS: [(&str, &str, &str); 3] = [
 ];
 
 fn fuel(vehicle: &str, set: Vec<String>, cycle: &Cycle) -> f64 {
-    let setup = load(vehicle, "--vehicle", &Options { set, ..Options::default() }).expect("shipped vehicle");
-    let conditions = Conditions { ambient_k: 298.15, start: Start::Soak, max_dt_s: 1.0, keep_rows: false };
+    let setup = load(
+        vehicle,
+        "--vehicle",
+        &Options {
+            set,
+            ..Options::default()
+        },
+    )
+    .expect("shipped vehicle");
+    let conditions = Conditions {
+        ambient_k: 298.15,
+        start: Start::Soak,
+        max_dt_s: 1.0,
+        keep_rows: false,
+    };
     let total = drive(&setup, cycle, &conditions).totals.total();
     litres_per_100km(total.fuel_kg, 745.0, total.distance_m)
 }
@@ -37,7 +50,11 @@ fn main() {
         let cycle = embedded(cycle).expect("embedded");
         let cvt = fuel("rover_216_cvt", vec![], &cycle);
         println!("{} ({note})", cycle.name);
-        let schedules = if cycle.name == "ece15_eudc" { &SHIFTS[1..2] } else { &SHIFTS[..] };
+        let schedules = if cycle.name == "ece15_eudc" {
+            &SHIFTS[1..2]
+        } else {
+            &SHIFTS[..]
+        };
         for (gears, ratios) in GEAR_SETS {
             let row: Vec<String> = schedules
                 .iter()

@@ -2,7 +2,11 @@
 //!
 //! `cargo run --release --example own_lubricant -- my_fluid.toml` takes a file; without it a thinner fluid is made up from
 //! the embedded one.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example is a program")]
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "an example is a program"
+)]
 
 use cvtcycle::config::{Problem, render};
 use cvtcycle::cycle;
@@ -24,27 +28,70 @@ fn main() {
 }
 
 fn compare(file: Option<String>) -> Result<Summary, Vec<Problem>> {
-    let thinner = vec!["lubricant.kv40_mm2_s=26".to_owned(), "lubricant.kv100_mm2_s=5.8".to_owned()];
+    let thinner = vec![
+        "lubricant.kv40_mm2_s=26".to_owned(),
+        "lubricant.kv100_mm2_s=5.8".to_owned(),
+    ];
     let set = if file.is_some() { Vec::new() } else { thinner };
-    let own = load("rover_216_cvt", "--vehicle", &Options { lubricant: file, set, ..Options::default() })?;
+    let own = load(
+        "rover_216_cvt",
+        "--vehicle",
+        &Options {
+            lubricant: file,
+            set,
+            ..Options::default()
+        },
+    )?;
     let usual = load("rover_216_cvt", "--vehicle", &Options::default())?;
     let cycle = cycle::embedded("ece15_eudc").ok_or_else(Vec::new)?;
     let ambient_k = AMBIENT_DEGC + ZERO_DEGC_K;
-    let conditions = Conditions { ambient_k, start: Start::Soak, max_dt_s: 1.0, keep_rows: false };
-    let outcomes = [drive(&own, &cycle, &conditions), drive(&usual, &cycle, &conditions)];
-    let driven = [
-        Driven { name: "own fluid", setup: &own, outcome: &outcomes[0] },
-        Driven { name: "usual fluid", setup: &usual, outcome: &outcomes[1] },
+    let conditions = Conditions {
+        ambient_k,
+        start: Start::Soak,
+        max_dt_s: 1.0,
+        keep_rows: false,
+    };
+    let outcomes = [
+        drive(&own, &cycle, &conditions),
+        drive(&usual, &cycle, &conditions),
     ];
-    let settings = Settings { dt_s: conditions.max_dt_s, ..Settings::default() };
-    Ok(summarise(&cycle, AMBIENT_DEGC, StartWord::Word("soak".to_owned()), settings, &driven))
+    let driven = [
+        Driven {
+            name: "own fluid",
+            setup: &own,
+            outcome: &outcomes[0],
+        },
+        Driven {
+            name: "usual fluid",
+            setup: &usual,
+            outcome: &outcomes[1],
+        },
+    ];
+    let settings = Settings {
+        dt_s: conditions.max_dt_s,
+        ..Settings::default()
+    };
+    Ok(summarise(
+        &cycle,
+        AMBIENT_DEGC,
+        StartWord::Word("soak".to_owned()),
+        settings,
+        &driven,
+    ))
 }
 
 fn print(summary: &Summary) {
     let (own, usual) = (&summary.runs[0], &summary.runs[1]);
-    println!("kJ over {} at {AMBIENT_DEGC} degC      {:>12} {:>12}", summary.cycle, own.vehicle, usual.vehicle);
+    println!(
+        "kJ over {} at {AMBIENT_DEGC} degC      {:>12} {:>12}",
+        summary.cycle, own.vehicle, usual.vehicle
+    );
     for (name, kj) in own.loss_kj.iter() {
-        println!("{name:34} {:12.1} {:12.1}", kj.unwrap_or(f64::NAN), usual.loss_kj.get(name).unwrap_or(f64::NAN));
+        println!(
+            "{name:34} {:12.1} {:12.1}",
+            kj.unwrap_or(f64::NAN),
+            usual.loss_kj.get(name).unwrap_or(f64::NAN)
+        );
     }
     if let Some(percent) = summary.comparison[0].fuel_percent {
         println!("fuel: {percent:+.2} %");

@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 
 use crate::config::{KeyInfo, Problem, unit_of};
 use crate::cycle::Cycle;
-use crate::results::record::{CarRecord, Change, CycleRecord, FileRecord, FuelMapRecord, SpeedLine, ValueRecord};
+use crate::results::record::{
+    CarRecord, Change, CycleRecord, FileRecord, FuelMapRecord, SpeedLine, ValueRecord,
+};
 use crate::results::summary::finite;
 use crate::run::fuel_map;
 use crate::setup::{Kind, Options, Setup, embedded_vehicles, is_path, load, text_of};
@@ -28,25 +30,48 @@ const TARGETS: [(f64, &str); 4] = [
 /// A cycle's name and hash.
 #[must_use]
 pub fn cycle_record(cycle: &Cycle) -> CycleRecord {
-    CycleRecord { name: cycle.name.clone(), title: cycle.title.clone(), sha256: hash(format!("{cycle:?}").as_bytes()) }
+    CycleRecord {
+        name: cycle.name.clone(),
+        title: cycle.title.clone(),
+        sha256: hash(format!("{cycle:?}").as_bytes()),
+    }
 }
 
 /// What is known of a car. `name` is its name within the run, `word` what the user calls it.
 ///
 /// # Errors
 /// Problems of files, none where the car has just been loaded from them.
-pub fn car_record(name: &str, word: &str, options: &Options, setup: &Setup) -> Result<CarRecord, Vec<Problem>> {
+pub fn car_record(
+    name: &str,
+    word: &str,
+    options: &Options,
+    setup: &Setup,
+) -> Result<CarRecord, Vec<Problem>> {
     let (file, text, disk) = text_of(word, Kind::Vehicle, "--vehicle")?;
     let fluid = |asked: &Option<String>, key: &str| {
-        let own = setup.keys.iter().find(|info| info.key == key).map_or("", |info| info.value.as_str());
-        let beside = if is_path(own) { disk.folder.join(own).to_string_lossy().into_owned() } else { own.to_owned() };
+        let own = setup
+            .keys
+            .iter()
+            .find(|info| info.key == key)
+            .map_or("", |info| info.value.as_str());
+        let beside = if is_path(own) {
+            disk.folder.join(own).to_string_lossy().into_owned()
+        } else {
+            own.to_owned()
+        };
         let (file, text, _) = text_of(asked.as_ref().unwrap_or(&beside), Kind::Lubricant, key)?;
-        Ok::<_, Vec<Problem>>(FileRecord { file, sha256: hash(text.as_bytes()) })
+        Ok::<_, Vec<Problem>>(FileRecord {
+            file,
+            sha256: hash(text.as_bytes()),
+        })
     };
     let reference = reference(setup, word, options)?;
     Ok(CarRecord {
         name: name.to_owned(),
-        vehicle: FileRecord { file, sha256: hash(text.as_bytes()) },
+        vehicle: FileRecord {
+            file,
+            sha256: hash(text.as_bytes()),
+        },
         lubricant: fluid(&options.lubricant, "vehicle.transmission_oil")?,
         engine_oil: fluid(&options.engine_oil, "vehicle.engine_oil")?,
         resolved_sha256: hash(format!("{:?}", setup.car(REFERENCE_K)).as_bytes()),
@@ -67,14 +92,32 @@ struct Reference {
 
 /// A shipped vehicle is held against itself, a file of the user against the shipped one with which it shares most values.
 fn reference(setup: &Setup, word: &str, options: &Options) -> Result<Reference, Vec<Problem>> {
-    let plain = Options { formulation: options.formulation, ..Options::default() };
-    let names = embedded_vehicles().iter().map(|(name, _)| *name).filter(|name| is_path(word) || *name == word);
+    let plain = Options {
+        formulation: options.formulation,
+        ..Options::default()
+    };
+    let names = embedded_vehicles()
+        .iter()
+        .map(|(name, _)| *name)
+        .filter(|name| is_path(word) || *name == word);
     let mut best: Option<Reference> = None;
     for name in names {
         let shipped = load(name, "--vehicle", &plain)?;
-        let same = setup.keys.iter().filter(|info| shipped.keys.iter().any(|other| other.key == info.key && equal(other, info))).count();
+        let same = setup
+            .keys
+            .iter()
+            .filter(|info| {
+                shipped
+                    .keys
+                    .iter()
+                    .any(|other| other.key == info.key && equal(other, info))
+            })
+            .count();
         if best.as_ref().is_none_or(|best| same > best.same) {
-            best = Some(Reference { setup: shipped, same });
+            best = Some(Reference {
+                setup: shipped,
+                same,
+            });
         }
     }
     best.ok_or_else(Vec::new)
@@ -98,10 +141,15 @@ fn changes(shipped: &[KeyInfo], here: &[KeyInfo]) -> Vec<Change> {
             None => info.value.is_empty(),
         };
         if !same {
-            list.push((info.status == "set", change(&info.key, other.as_ref(), Some(info))));
+            list.push((
+                info.status == "set",
+                change(&info.key, other.as_ref(), Some(info)),
+            ));
         }
     }
-    let gone = shipped.iter().filter(|info| !info.value.is_empty() && find(here, &info.key).is_none());
+    let gone = shipped
+        .iter()
+        .filter(|info| !info.value.is_empty() && find(here, &info.key).is_none());
     list.extend(gone.map(|info| (false, change(&info.key, Some(info), None))));
     list.sort_by_key(|(set, _)| !set);
     list.into_iter().map(|(_, change)| change).collect()
@@ -109,12 +157,24 @@ fn changes(shipped: &[KeyInfo], here: &[KeyInfo]) -> Vec<Change> {
 
 fn change(key: &str, shipped: Option<&KeyInfo>, here: Option<&KeyInfo>) -> Change {
     let text = |info: Option<&KeyInfo>| info.map_or(String::new(), |info| info.value.clone());
-    Change { key: key.to_owned(), unit: unit_of(key).to_owned(), shipped: text(shipped), here: text(here) }
+    Change {
+        key: key.to_owned(),
+        unit: unit_of(key).to_owned(),
+        shipped: text(shipped),
+        here: text(here),
+    }
 }
 
 fn value(info: &KeyInfo) -> ValueRecord {
     let info = info.clone();
-    ValueRecord { key: info.key, value: info.value, unit: info.unit, status: info.status, source: info.source, doc: info.doc }
+    ValueRecord {
+        key: info.key,
+        value: info.value,
+        unit: info.unit,
+        status: info.status,
+        source: info.source,
+        doc: info.doc,
+    }
 }
 
 fn fuel_map_record(setup: &Setup) -> FuelMapRecord {
@@ -124,7 +184,11 @@ fn fuel_map_record(setup: &Setup) -> FuelMapRecord {
     FuelMapRecord {
         speed_rpm: map.speed_rad_s.iter().map(|w| w * RPM).collect(),
         torque_nm: map.torque_nm,
-        bsfc_g_kwh: map.bsfc_kg_j.iter().map(|row| row.iter().map(|b| finite(b * G_KWH)).collect()).collect(),
+        bsfc_g_kwh: map
+            .bsfc_kg_j
+            .iter()
+            .map(|row| row.iter().map(|b| finite(b * G_KWH)).collect())
+            .collect(),
         full_load_nm: map.full_load_nm,
     }
 }
@@ -137,19 +201,39 @@ fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
     let slope = |overall: f64| overall / 3.6 / radius_m * RPM;
     let straight = |name: String, overall: f64| {
         let fastest = (highest_rpm / slope(overall)).min(FASTEST_KMH);
-        SpeedLine { name, points: vec![(0.0, 0.0), (fastest, fastest * slope(overall))] }
+        SpeedLine {
+            name,
+            points: vec![(0.0, 0.0), (fastest, fastest * slope(overall))],
+        }
     };
     match setup.transmission() {
-        Transmission::Manual(manual) => manual.overall.iter().enumerate().map(|(k, r)| straight(format!("gear {}", k + 1), *r)).collect(),
+        Transmission::Manual(manual) => manual
+            .overall
+            .iter()
+            .enumerate()
+            .map(|(k, r)| straight(format!("gear {}", k + 1), *r))
+            .collect(),
         Transmission::Cvt(cvt) => {
-            let (low, high) = (cvt.final_drive * cvt.ratio.low, cvt.final_drive * cvt.ratio.high);
-            let limits = [straight("lowest ratio".to_owned(), low), straight("highest ratio".to_owned(), high)];
+            let (low, high) = (
+                cvt.final_drive * cvt.ratio.low,
+                cvt.final_drive * cvt.ratio.high,
+            );
+            let limits = [
+                straight("lowest ratio".to_owned(), low),
+                straight("highest ratio".to_owned(), high),
+            ];
             let target = |(share, name): &(f64, &str)| {
                 let rpm = target_rad_s(cvt, setup.engine().rated_w, *share) * RPM;
                 let (from, to) = (rpm / slope(low), (rpm / slope(high)).min(FASTEST_KMH));
-                SpeedLine { name: (*name).to_owned(), points: vec![(from, rpm), (to, rpm)] }
+                SpeedLine {
+                    name: (*name).to_owned(),
+                    points: vec![(from, rpm), (to, rpm)],
+                }
             };
-            limits.into_iter().chain(TARGETS.iter().map(target)).collect()
+            limits
+                .into_iter()
+                .chain(TARGETS.iter().map(target))
+                .collect()
         }
     }
 }
@@ -160,7 +244,9 @@ fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
         secondary_rad_s: 0.0,
         power_w: share * rated_w,
         rated_w,
-        full_load_rad_s: cvt.full_load_route.at(share * rated_w / cvt.ratio.route_efficiency),
+        full_load_rad_s: cvt
+            .full_load_route
+            .at(share * rated_w / cvt.ratio.route_efficiency),
         ratio_before: 1.0,
         flow_down_per_s: f64::INFINITY,
         flow_up_per_s: f64::INFINITY,
@@ -175,7 +261,11 @@ mod tests {
 
     fn record_of(word: &str, set: &[&str], lubricant: Option<&str>) -> CarRecord {
         let set = set.iter().map(|s| (*s).to_owned()).collect();
-        let options = Options { set, lubricant: lubricant.map(str::to_owned), ..Options::default() };
+        let options = Options {
+            set,
+            lubricant: lubricant.map(str::to_owned),
+            ..Options::default()
+        };
         let setup = load(word, "--vehicle", &options).unwrap_or_else(|p| unreachable!("{p:?}"));
         car_record("car", word, &options, &setup).unwrap_or_else(|p| unreachable!("{p:?}"))
     }
@@ -184,7 +274,10 @@ mod tests {
     fn a_shipped_car_differs_from_itself_in_nothing() {
         for (name, text) in embedded_vehicles() {
             let record = record_of(name, &[], None);
-            assert_eq!((record.reference.as_str(), record.changes.len()), (*name, 0));
+            assert_eq!(
+                (record.reference.as_str(), record.changes.len()),
+                (*name, 0)
+            );
             assert_eq!(record.reference_values.0, record.reference_values.1);
             assert_eq!(record.vehicle.sha256, hash(text.as_bytes()));
         }
@@ -193,11 +286,29 @@ mod tests {
     #[test]
     fn what_was_set_is_told_first_and_another_oil_in_full() {
         let key = "transmission.cvt.belt.band_offset_mm";
-        let record = record_of("rover_216_cvt", &[&format!("{key}=3.25"), "lubricant.density15_kg_m3=900"], Some("dexron_ii"));
-        assert_eq!((record.changes[0].key.as_str(), record.changes[0].here.as_str(), record.changes[0].unit.as_str()), (key, "3.25", "mm"));
+        let record = record_of(
+            "rover_216_cvt",
+            &[&format!("{key}=3.25"), "lubricant.density15_kg_m3=900"],
+            Some("dexron_ii"),
+        );
+        assert_eq!(
+            (
+                record.changes[0].key.as_str(),
+                record.changes[0].here.as_str(),
+                record.changes[0].unit.as_str()
+            ),
+            (key, "3.25", "mm")
+        );
         assert!(!record.changes[0].shipped.is_empty());
         assert_eq!(record.changes[1].key, "lubricant.density15_kg_m3");
-        assert!(record.changes.iter().any(|c| c.key.starts_with("lubricant.") && c.key.contains("kv")), "{:?}", record.changes);
+        assert!(
+            record
+                .changes
+                .iter()
+                .any(|c| c.key.starts_with("lubricant.") && c.key.contains("kv")),
+            "{:?}",
+            record.changes
+        );
         assert!(record.lubricant.file.contains("dexron_ii"));
     }
 
@@ -206,10 +317,19 @@ mod tests {
     fn lines_of_the_variogram_are_those_of_the_ratios() {
         let record = record_of("rover_216_cvt", &[], None);
         let lines = &record.speed_lines;
-        assert_eq!((lines[0].name.as_str(), lines[1].name.as_str(), lines.len()), ("lowest ratio", "highest ratio", 6));
+        assert_eq!(
+            (lines[0].name.as_str(), lines[1].name.as_str(), lines.len()),
+            ("lowest ratio", "highest ratio", 6)
+        );
         let number = |end: &str| {
-            let value = record.values.iter().find(|v| v.key.ends_with(end)).map(|v| v.value.parse::<f64>());
-            value.unwrap_or_else(|| unreachable!("{end}")).unwrap_or_else(|e| unreachable!("{e}"))
+            let value = record
+                .values
+                .iter()
+                .find(|v| v.key.ends_with(end))
+                .map(|v| v.value.parse::<f64>());
+            value
+                .unwrap_or_else(|| unreachable!("{end}"))
+                .unwrap_or_else(|e| unreachable!("{e}"))
         };
         let slope = |line: &SpeedLine| line.points[1].1 / line.points[1].0;
         let span = number(".ratio.low") / number(".ratio.high");

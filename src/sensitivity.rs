@@ -38,14 +38,27 @@ pub struct Named {
 ///
 /// # Errors
 /// Problems of the cars' files, none where the cars have just been loaded.
-pub fn sensitivity(cars: &[Named], cycle: &Cycle, conditions: &Conditions) -> Result<Sensitivity, Vec<Problem>> {
-    let conditions = Conditions { keep_rows: false, ..*conditions };
+pub fn sensitivity(
+    cars: &[Named],
+    cycle: &Cycle,
+    conditions: &Conditions,
+) -> Result<Sensitivity, Vec<Problem>> {
+    let conditions = Conditions {
+        keep_rows: false,
+        ..*conditions
+    };
     let mut effects = Vec::new();
     for car in cars {
         let (blueprint, setup) = Blueprint::load(&car.word, "--vehicle", &car.options)?;
         let base = fuel(&setup, cycle, &conditions);
-        let keys = setup.keys.iter().filter(|info| info.si.is_some() && info.status != "choice");
-        let slots: Vec<Slot> = keys.filter_map(|info| blueprint.slot(&info.key).ok()).filter(|slot| slot.base().abs() > 0.0).collect();
+        let keys = setup
+            .keys
+            .iter()
+            .filter(|info| info.si.is_some() && info.status != "choice");
+        let slots: Vec<Slot> = keys
+            .filter_map(|info| blueprint.slot(&info.key).ok())
+            .filter(|slot| slot.base().abs() > 0.0)
+            .collect();
         let of_slot = |bench: &mut Bench, slot: &Slot| {
             let mut side = |sign: f64| {
                 bench.reset();
@@ -54,12 +67,23 @@ pub fn sensitivity(cars: &[Named], cycle: &Cycle, conditions: &Conditions) -> Re
                 finite(100.0 * (now? / base? - 1.0))
             };
             let (lowered_percent, raised_percent) = (side(-1.0), side(1.0));
-            Effect { car: car.name.clone(), key: slot.key().to_owned(), lowered_percent, raised_percent }
+            Effect {
+                car: car.name.clone(),
+                key: slot.key().to_owned(),
+                lowered_percent,
+                raised_percent,
+            }
         };
-        let found: Vec<Effect> = slots.par_iter().map_init(|| blueprint.bench(), of_slot).collect();
+        let found: Vec<Effect> = slots
+            .par_iter()
+            .map_init(|| blueprint.bench(), of_slot)
+            .collect();
         effects.extend(found);
     }
-    Ok(Sensitivity { step_percent: STEP_PERCENT, effects })
+    Ok(Sensitivity {
+        step_percent: STEP_PERCENT,
+        effects,
+    })
 }
 
 /// A value lowered (`sign` -1) or raised (+1) by the step; an efficiency through its loss.
@@ -78,7 +102,11 @@ fn changed(key: &str, value: f64, sign: f64) -> f64 {
 /// Fuel that stands for the car, L/100 km.
 fn fuel(setup: &Setup, cycle: &Cycle, conditions: &Conditions) -> Option<f64> {
     let outcome = drive(setup, cycle, conditions);
-    let driven = Driven { name: &setup.name, setup, outcome: &outcome };
+    let driven = Driven {
+        name: &setup.name,
+        setup,
+        outcome: &outcome,
+    };
     run_summary(cycle, "subject", &Settings::default(), &driven).headline_fuel()
 }
 
@@ -94,25 +122,49 @@ mod tests {
         assert!((changed("a.mesh_efficiency", 0.98, 1.0) - 0.981).abs() < 1e-12);
         assert!((changed("a.opens_degc", 80.0, -1.0) - 75.0).abs() < 1e-12);
         assert!((changed("a.mass_kg", 1000.0, -1.0) - 950.0).abs() < 1e-9);
-        assert!((changed("a.efficiency", 1.0, -1.0) - 0.95).abs() < 1e-12, "without a loss there is nothing else to change");
+        assert!(
+            (changed("a.efficiency", 1.0, -1.0) - 0.95).abs() < 1e-12,
+            "without a loss there is nothing else to change"
+        );
     }
 
     /// Property: more of a loss costs fuel, less saves it, and the answer does not depend on the number of threads.
     #[test]
     fn a_larger_pump_costs_fuel_whatever_the_number_of_threads() {
-        let cars = [Named { name: "car".into(), word: "rover_216_cvt".into(), options: Options::default() }];
+        let cars = [Named {
+            name: "car".into(),
+            word: "rover_216_cvt".into(),
+            options: Options::default(),
+        }];
         let cycle = embedded("ece15").unwrap_or_else(|| unreachable!("shipped"));
-        let conditions = Conditions { ambient_k: 263.15, start: Start::Soak, max_dt_s: 1.0, keep_rows: true };
+        let conditions = Conditions {
+            ambient_k: 263.15,
+            start: Start::Soak,
+            max_dt_s: 1.0,
+            keep_rows: true,
+        };
         let on = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap_or_else(|e| unreachable!("{e}"));
-            pool.install(|| sensitivity(&cars, &cycle, &conditions)).unwrap_or_else(|p| unreachable!("{p:?}"))
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap_or_else(|e| unreachable!("{e}"));
+            pool.install(|| sensitivity(&cars, &cycle, &conditions))
+                .unwrap_or_else(|p| unreachable!("{p:?}"))
         };
         let (one, three) = (on(1), on(3));
         assert_eq!(one, three);
-        let pump = one.effects.iter().find(|e| e.key == "transmission.cvt.pump.displacement_cc_rev");
+        let pump = one
+            .effects
+            .iter()
+            .find(|e| e.key == "transmission.cvt.pump.displacement_cc_rev");
         let pump = pump.unwrap_or_else(|| unreachable!("the pump's size is a number"));
-        let (Some(less), Some(more)) = (pump.lowered_percent, pump.raised_percent) else { unreachable!("both sides are cars") };
-        assert!(less < 0.0 && more > 0.0 && (less + more).abs() < 0.5 * more, "{less} {more}");
+        let (Some(less), Some(more)) = (pump.lowered_percent, pump.raised_percent) else {
+            unreachable!("both sides are cars")
+        };
+        assert!(
+            less < 0.0 && more > 0.0 && (less + more).abs() < 0.5 * more,
+            "{less} {more}"
+        );
         // The unchanged car is at zero: a value that nothing in this cycle looks at moves nothing.
         assert!(one.effects.iter().any(|e| e.size_percent() < 1e-12));
     }

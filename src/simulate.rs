@@ -12,7 +12,9 @@ use crate::engine::{Burn, Engine};
 use crate::lubricant::Lubricant;
 use crate::numeric::held;
 use crate::results::{Component, Flags, Row, Terms};
-use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, HeatStep, METAL, NODES, Network, SUMP};
+use crate::thermal::{
+    BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, HeatStep, METAL, NODES, Network, SUMP,
+};
 use crate::transmission::{Drive, DriveState, Surroundings, Transmission};
 use crate::vehicle::RoadLoad;
 
@@ -56,7 +58,11 @@ impl State {
     /// Everything at one temperature, engine at idle.
     #[must_use]
     pub fn at(temp_k: f64) -> Self {
-        State { heat: Heat::uniform(temp_k), drive: None, kinetic_j: f64::NAN }
+        State {
+            heat: Heat::uniform(temp_k),
+            drive: None,
+            kinetic_j: f64::NAN,
+        }
     }
 }
 
@@ -69,8 +75,18 @@ pub trait Recorder {
 /// Drives a trace from a state, gives every row to the recorder and returns the state at the end.
 ///
 /// What a recorder does not look at is not computed: rows are built in place and seen through by the compiler.
-pub fn simulate(car: &Car, trace: &Trace, max_dt_s: f64, start: State, recorder: &mut impl Recorder) -> State {
-    let State { mut heat, mut drive, mut kinetic_j } = start;
+pub fn simulate(
+    car: &Car,
+    trace: &Trace,
+    max_dt_s: f64,
+    start: State,
+    recorder: &mut impl Recorder,
+) -> State {
+    let State {
+        mut heat,
+        mut drive,
+        mut kinetic_j,
+    } = start;
     let gears = match &car.transmission {
         Transmission::Manual(manual) => trace.gears(manual.overall.len()),
         Transmission::Cvt(_) => None,
@@ -78,7 +94,12 @@ pub fn simulate(car: &Car, trace: &Trace, max_dt_s: f64, start: State, recorder:
     let unlike = car.engine.unlike_reference(&car.engine_oil);
     trace.for_each_step(max_dt_s, |step| {
         let wheel = car.road_load.wheel(&step);
-        let engine = car.engine.at_temperatures(heat.node_k[COOLANT], heat.node_k[ENGINE_OIL], unlike, car.full_load_factor);
+        let engine = car.engine.at_temperatures(
+            heat.node_k[COOLANT],
+            heat.node_k[ENGINE_OIL],
+            unlike,
+            car.full_load_factor,
+        );
         let around = Surroundings {
             wheel: &wheel,
             engine: &engine,
@@ -90,7 +111,10 @@ pub fn simulate(car: &Car, trace: &Trace, max_dt_s: f64, start: State, recorder:
         };
         let memory = drive.get_or_insert_with(|| car.transmission.start(&around));
         if kinetic_j.is_nan() {
-            let begun = 0.5 * car.engine.inertia_kg_m2 * memory.past.engine_rad_s * memory.past.engine_rad_s;
+            let begun = 0.5
+                * car.engine.inertia_kg_m2
+                * memory.past.engine_rad_s
+                * memory.past.engine_rad_s;
             kinetic_j = if step.engine_off { 0.0 } else { begun };
         }
         let mut drive = car.transmission.solve(&around, memory);
@@ -103,13 +127,32 @@ pub fn simulate(car: &Car, trace: &Trace, max_dt_s: f64, start: State, recorder:
         let drive_stands = drive.engine_rad_s <= 0.0;
         let power_w = node_power(car, &drive, &burn);
         let heat_step = advance(car, power_w, &drive, (&around, step.motion.speed_power_07));
-        let (row, terms) = row(car, &step, &around, &Answer { drive: &drive, inertia: &inertia, burn: &burn, power_w, heat: &heat_step });
+        let (row, terms) = row(
+            car,
+            &step,
+            &around,
+            &Answer {
+                drive: &drive,
+                inertia: &inertia,
+                burn: &burn,
+                power_w,
+                heat: &heat_step,
+            },
+        );
         recorder.record(&row, &terms);
         heat = heat_step.heat;
         // What stands has none, not even a rest of rounding.
-        kinetic_j = if drive_stands { 0.0 } else { kinetic_j + inertia.kinetic_w * step.dt_s };
+        kinetic_j = if drive_stands {
+            0.0
+        } else {
+            kinetic_j + inertia.kinetic_w * step.dt_s
+        };
     });
-    State { heat, drive, kinetic_j }
+    State {
+        heat,
+        drive,
+        kinetic_j,
+    }
 }
 
 /// Rotating energy and crank torque of a step.
@@ -122,10 +165,21 @@ struct Inertia {
 }
 
 #[inline(always)]
-fn inertia(car: &Car, around: &Surroundings, drive: &Drive, kinetic_j: f64, coupled: bool) -> Inertia {
+fn inertia(
+    car: &Car,
+    around: &Surroundings,
+    drive: &Drive,
+    kinetic_j: f64,
+    coupled: bool,
+) -> Inertia {
     let w = drive.engine_rad_s;
     if w <= 0.0 {
-        return Inertia { crank_nm: 0.0, accessories_nm: 0.0, kinetic_w: -kinetic_j / around.dt_s, to_brake_w: 0.0 };
+        return Inertia {
+            crank_nm: 0.0,
+            accessories_nm: 0.0,
+            kinetic_w: -kinetic_j / around.dt_s,
+            to_brake_w: 0.0,
+        };
     }
     let engine = around.engine;
     let accessories_nm = engine.accessories_nm(w);
@@ -134,16 +188,38 @@ fn inertia(car: &Car, around: &Surroundings, drive: &Drive, kinetic_j: f64, coup
     let bound = car.engine.inertia_torque_nm;
     // Faster takes what is left below full load, slower what drag is left; never less than nothing, never more than the bound.
     let torque = if wanted > 0.0 {
-        held(engine.full_load_nm(w) - steady, 0.0, if wanted < bound { wanted } else { bound }) // SI-2
+        held(
+            engine.full_load_nm(w) - steady,
+            0.0,
+            if wanted < bound { wanted } else { bound },
+        ) // SI-2
     } else {
-        held(-(steady + engine.drag_nm(w)), if wanted > -bound { wanted } else { -bound }, 0.0) // SI-2
+        held(
+            -(steady + engine.drag_nm(w)),
+            if wanted > -bound { wanted } else { -bound },
+            0.0,
+        ) // SI-2
     };
-    let over = if coupled && drive.brake_w > 0.0 && wanted < torque { torque - wanted } else { 0.0 };
-    Inertia { crank_nm: steady + torque, accessories_nm, kinetic_w: (torque - over) * w, to_brake_w: over * w } // SI-1, SI-4
+    let over = if coupled && drive.brake_w > 0.0 && wanted < torque {
+        torque - wanted
+    } else {
+        0.0
+    };
+    Inertia {
+        crank_nm: steady + torque,
+        accessories_nm,
+        kinetic_w: (torque - over) * w,
+        to_brake_w: over * w,
+    } // SI-1, SI-4
 }
 
 #[inline(always)]
-fn advance(car: &Car, power_w: [f64; NODES], drive: &Drive, (around, speed_power_07): (&Surroundings, f64)) -> HeatStep {
+fn advance(
+    car: &Car,
+    power_w: [f64; NODES],
+    drive: &Drive,
+    (around, speed_power_07): (&Surroundings, f64),
+) -> HeatStep {
     let sump_k = around.heat.node_k[SUMP];
     let oil_volume_heat_j_m3k = car.oil.density_kg_m3(sump_k) * car.oil.heat_capacity_j_kgk(sump_k);
     car.network.advance_in_wind(
@@ -193,7 +269,11 @@ pub(crate) fn loss_heat_w(car: &Car, loss_w: &[f64; Component::COUNT]) -> [f64; 
     power[BELT] = car.belt_heat_share * belt;
     power[METAL] = metal;
     power[SUMP] = sump + (1.0 - car.belt_heat_share) * belt;
-    power[if car.transmission.is_cvt() { SUMP } else { COOLANT }] += clutch;
+    power[if car.transmission.is_cvt() {
+        SUMP
+    } else {
+        COOLANT
+    }] += clutch;
     power
 }
 
@@ -245,7 +325,11 @@ fn row(car: &Car, step: &crate::cycle::Step, around: &Surroundings, a: &Answer) 
         speed_m_s: wheel.speed_m_s,
         accel_m_s2: wheel.accel_m_s2,
         distance_m: wheel.speed_m_s * step.dt_s,
-        wheel_torque_nm: if wheel.wheel_rad_s > 0.0 { wheel.power_w / wheel.wheel_rad_s } else { 0.0 },
+        wheel_torque_nm: if wheel.wheel_rad_s > 0.0 {
+            wheel.power_w / wheel.wheel_rad_s
+        } else {
+            0.0
+        },
         wheel_power_w: wheel.power_w,
         wheel_work_positive_j: wheel.positive_j,
         wheel_work_negative_j: wheel.negative_j,
@@ -255,7 +339,11 @@ fn row(car: &Car, step: &crate::cycle::Step, around: &Surroundings, a: &Answer) 
         throttle: d.throttle,
         gear: d.gear,
         belt_ratio: d.belt_ratio,
-        overall_ratio: if wheel.wheel_rad_s > 0.0 { d.engine_rad_s / wheel.wheel_rad_s } else { f64::NAN },
+        overall_ratio: if wheel.wheel_rad_s > 0.0 {
+            d.engine_rad_s / wheel.wheel_rad_s
+        } else {
+            f64::NAN
+        },
         primary_pressure_pa: d.primary_pa,
         secondary_pressure_pa: d.secondary_pa,
         slip: d.slip,
@@ -272,7 +360,11 @@ fn row(car: &Car, step: &crate::cycle::Step, around: &Surroundings, a: &Answer) 
         engine_oil_k: t[ENGINE_OIL],
         sump_k: t[SUMP],
         metal_k: t[METAL],
-        belt_spray_k: if car.transmission.is_cvt() { t[BELT] } else { f64::NAN },
+        belt_spray_k: if car.transmission.is_cvt() {
+            t[BELT]
+        } else {
+            f64::NAN
+        },
         cooler_in_k: a.heat.cooler_in_k,
         cooler_out_k: a.heat.cooler_out_k,
         stored_w: a.heat.stored_w,

@@ -28,7 +28,10 @@ fn no_allocation_between_the_first_step_and_the_last() {
             let c = cycle(cycle_name);
             let sim = setup.car(ZERO - 10.0);
             let trace = c.trace_for(sim.transmission.is_cvt());
-            let mut keep = Reserved { rows: Vec::with_capacity(trace.step_count(1.0)), totals: Totals::new(c.phases.len()) };
+            let mut keep = Reserved {
+                rows: Vec::with_capacity(trace.step_count(1.0)),
+                totals: Totals::new(c.phases.len()),
+            };
             let counted = allocation_counter::measure(|| {
                 simulate(&sim, trace, 1.0, State::at(ZERO - 10.0), &mut keep);
             });
@@ -37,5 +40,7 @@ fn no_allocation_between_the_first_step_and_the_last() {
         }
     }
     // The counter counts.
-    assert!(allocation_counter::measure(|| drop(std::hint::black_box(vec![1u8; 100]))).count_total > 0);
+    assert!(
+        allocation_counter::measure(|| drop(std::hint::black_box(vec![1u8; 100]))).count_total > 0
+    );
 }

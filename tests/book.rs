@@ -25,34 +25,48 @@ fn folder() -> PathBuf {
 }
 
 fn text_of(name: &str) -> String {
-    read_to_string(folder().join(name)).unwrap_or_else(|why| panic!("docs/book/src/{name}: {why}")).replace("\r\n", "\n")
+    read_to_string(folder().join(name))
+        .unwrap_or_else(|why| panic!("docs/book/src/{name}: {why}"))
+        .replace("\r\n", "\n")
 }
 
 /// Names of the files that lie in a folder of the book.
 fn listed(below: &str, ending: &str) -> BTreeSet<String> {
-    let entries = std::fs::read_dir(folder().join(below)).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let entries = std::fs::read_dir(folder().join(below))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap());
     entries.filter(|name| name.ends_with(ending)).collect()
 }
 
 /// Pages by name, without the summary.
 fn pages() -> BTreeMap<String, String> {
-    let names = listed("", ".md").into_iter().filter(|name| name != "SUMMARY.md");
+    let names = listed("", ".md")
+        .into_iter()
+        .filter(|name| name != "SUMMARY.md");
     names.map(|name| (name.clone(), text_of(&name))).collect()
 }
 
 /// Targets of `](target)` in a text.
 fn targets(text: &str) -> impl Iterator<Item = &str> {
-    text.match_indices("](").filter_map(|(at, _)| text[at + 2..].split_once(')').map(|(target, _)| target))
+    text.match_indices("](")
+        .filter_map(|(at, _)| text[at + 2..].split_once(')').map(|(target, _)| target))
 }
 
 /// Files that a text includes.
 fn includes(text: &str) -> impl Iterator<Item = &str> {
-    text.match_indices("{{#include ").filter_map(|(at, mark)| text[at + mark.len()..].split_once("}}").map(|(name, _)| name))
+    text.match_indices("{{#include ").filter_map(|(at, mark)| {
+        text[at + mark.len()..]
+            .split_once("}}")
+            .map(|(name, _)| name)
+    })
 }
 
 /// Words of a status that the book repeats, in their order.
 fn words(status: &str) -> Vec<&'static str> {
-    ["source", "derived", "fitted", "ASSUMED", "contract"].into_iter().filter(|word| status.contains(word)).collect()
+    ["source", "derived", "fitted", "ASSUMED", "contract"]
+        .into_iter()
+        .filter(|word| status.contains(word))
+        .collect()
 }
 
 #[test]
@@ -93,10 +107,15 @@ fn status_words_are_those_of_the_code() {
     let mut wrong = Vec::new();
     for (name, text) in pages() {
         for l in labelled(&text) {
-            let Some(e) = by_label(&l.label) else { continue };
+            let Some(e) = by_label(&l.label) else {
+                continue;
+            };
             let expected = words(e.status).join(", ");
             if l.status != expected {
-                wrong.push(format!("{name}: {} has ({}), the code ({expected}): {}", l.label, l.status, e.status));
+                wrong.push(format!(
+                    "{name}: {} has ({}), the code ({expected}): {}",
+                    l.label, l.status, e.status
+                ));
             }
         }
     }
@@ -106,21 +125,44 @@ fn status_words_are_those_of_the_code() {
 #[test]
 fn figures_and_tables_are_what_the_program_gives() {
     let made = files(&folder()).unwrap();
-    let stale: Vec<&str> = made.iter().filter(|(name, text)| text_of(name) != *text).map(|(name, _)| name.as_str()).collect();
-    assert!(stale.is_empty(), "out of date: {}\nwrite them: {WRITE}", stale.join(", "));
+    let stale: Vec<&str> = made
+        .iter()
+        .filter(|(name, text)| text_of(name) != *text)
+        .map(|(name, _)| name.as_str())
+        .collect();
+    assert!(
+        stale.is_empty(),
+        "out of date: {}\nwrite them: {WRITE}",
+        stale.join(", ")
+    );
     let names: BTreeSet<&str> = made.iter().map(|(name, _)| name.as_str()).collect();
-    for name in listed("generated", ".md").iter().filter(|name| !name.starts_with("validation_")) {
-        assert!(names.contains(format!("generated/{name}").as_str()), "nothing writes generated/{name} any more");
+    for name in listed("generated", ".md")
+        .iter()
+        .filter(|name| !name.starts_with("validation_"))
+    {
+        assert!(
+            names.contains(format!("generated/{name}").as_str()),
+            "nothing writes generated/{name} any more"
+        );
     }
 }
 
 /// Anchors of a page: labels and headings, as mdBook makes them.
 fn anchors(text: &str) -> BTreeSet<String> {
-    let headings = text.lines().filter(|line| line.starts_with('#')).map(|line| {
-        let title = line.trim_start_matches('#').trim().to_lowercase();
-        title.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_')).collect::<String>().replace(' ', "-")
-    });
-    headings.chain(labelled(text).into_iter().map(|l| l.label)).collect()
+    let headings = text
+        .lines()
+        .filter(|line| line.starts_with('#'))
+        .map(|line| {
+            let title = line.trim_start_matches('#').trim().to_lowercase();
+            title
+                .chars()
+                .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'))
+                .collect::<String>()
+                .replace(' ', "-")
+        });
+    headings
+        .chain(labelled(text).into_iter().map(|l| l.label))
+        .collect()
 }
 
 #[test]
@@ -134,7 +176,11 @@ fn links_pictures_and_includes_lead_somewhere() {
             let file = if file.is_empty() { name } else { file };
             if !folder().join(file).is_file() {
                 wrong.push(format!("{name}: {target} does not exist"));
-            } else if !anchor.is_empty() && !pages.get(file).is_some_and(|text| anchors(text).contains(anchor)) {
+            } else if !anchor.is_empty()
+                && !pages
+                    .get(file)
+                    .is_some_and(|text| anchors(text).contains(anchor))
+            {
                 wrong.push(format!("{name}: {file} has no {anchor}"));
             }
             pictures.extend(file.strip_prefix("img/").map(str::to_owned));
@@ -147,15 +193,28 @@ fn links_pictures_and_includes_lead_somewhere() {
         wrong.push(format!("img/{unused} stands on no page"));
     }
     let included: BTreeSet<&str> = pages.values().flat_map(|text| includes(text)).collect();
-    for lost in listed("generated", ".md").iter().filter(|name| !included.contains(format!("generated/{name}").as_str())) {
+    for lost in listed("generated", ".md")
+        .iter()
+        .filter(|name| !included.contains(format!("generated/{name}").as_str()))
+    {
         wrong.push(format!("generated/{lost} is included by no page"));
     }
     let summary = text_of("SUMMARY.md");
     let linked: BTreeSet<&str> = targets(&summary).collect();
-    for name in pages.keys().filter(|name| !linked.contains(name.as_str()) && !included.contains(name.as_str())) {
-        wrong.push(format!("{name} is neither in SUMMARY.md nor included by a page"));
+    for name in pages
+        .keys()
+        .filter(|name| !linked.contains(name.as_str()) && !included.contains(name.as_str()))
+    {
+        wrong.push(format!(
+            "{name} is neither in SUMMARY.md nor included by a page"
+        ));
     }
-    wrong.extend(linked.iter().filter(|name| !pages.contains_key(**name)).map(|name| format!("SUMMARY.md: {name} does not exist")));
+    wrong.extend(
+        linked
+            .iter()
+            .filter(|name| !pages.contains_key(**name))
+            .map(|name| format!("SUMMARY.md: {name} does not exist")),
+    );
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
@@ -164,19 +223,40 @@ fn every_mechanism_has_its_parts() {
     for page in &PAGES {
         let (stem, text) = (page.stem, text_of(&format!("{}.md", page.stem)));
         assert!(text.contains("](img/"), "{stem}: no figure");
-        let headings =
-            ["## Thesis and its program", "## Known gaps", "## Where each equation is from", "## Values of the ", "## Validation"];
-        let rule = if stem == "formulations" { "## What differs" } else { "## Validity" };
-        for heading in headings.iter().filter(|h| stem != "formulations" || !h.ends_with("program") && !h.ends_with("gaps")).chain([&rule])
+        let headings = [
+            "## Thesis and its program",
+            "## Known gaps",
+            "## Where each equation is from",
+            "## Values of the ",
+            "## Validation",
+        ];
+        let rule = if stem == "formulations" {
+            "## What differs"
+        } else {
+            "## Validity"
+        };
+        for heading in headings
+            .iter()
+            .filter(|h| stem != "formulations" || !h.ends_with("program") && !h.ends_with("gaps"))
+            .chain([&rule])
         {
-            assert!(text.contains(&format!("\n{heading}")), "{stem}: no {heading}");
+            assert!(
+                text.contains(&format!("\n{heading}")),
+                "{stem}: no {heading}"
+            );
         }
         let included: Vec<&str> = includes(&text).collect();
         for kind in ["labels", "values", "validation"] {
             let file = format!("generated/{kind}_{stem}.md");
-            assert!(included.contains(&file.as_str()), "{stem}: does not include {file}");
+            assert!(
+                included.contains(&file.as_str()),
+                "{stem}: does not include {file}"
+            );
         }
-        assert!(text.contains(&format!("<!-- validation:{stem} -->")), "{stem}: no place for its validation rows");
+        assert!(
+            text.contains(&format!("<!-- validation:{stem} -->")),
+            "{stem}: no place for its validation rows"
+        );
     }
 }
 
@@ -185,11 +265,27 @@ fn every_value_of_the_car_stands_on_a_page() {
     let mut shown: BTreeSet<String> = BTreeSet::new();
     for page in &PAGES {
         let text = text_of(&format!("{}.md", page.stem));
-        shown.extend(keys(page, &labelled(&text)).unwrap().into_iter().map(|info| info.key));
+        shown.extend(
+            keys(page, &labelled(&text))
+                .unwrap()
+                .into_iter()
+                .map(|info| info.key),
+        );
     }
-    let setup = cvtcycle::setup::load("rover_216_cvt", "--vehicle", &cvtcycle::setup::Options::default()).unwrap();
-    let all = setup.keys.iter().filter(|info| !info.key.starts_with("engine_oil.friction"));
-    let lost: Vec<&str> = all.filter(|info| !shown.contains(&info.key)).map(|info| info.key.as_str()).collect();
+    let setup = cvtcycle::setup::load(
+        "rover_216_cvt",
+        "--vehicle",
+        &cvtcycle::setup::Options::default(),
+    )
+    .unwrap();
+    let all = setup
+        .keys
+        .iter()
+        .filter(|info| !info.key.starts_with("engine_oil.friction"));
+    let lost: Vec<&str> = all
+        .filter(|info| !shown.contains(&info.key))
+        .map(|info| info.key.as_str())
+        .collect();
     assert!(lost.is_empty(), "on no page: {}", lost.join(", "));
 }
 
@@ -197,18 +293,38 @@ fn every_value_of_the_car_stands_on_a_page() {
 fn every_equation_becomes_sound_mathml() {
     let mut count = 0;
     for (name, text) in pages() {
-        let page = latex::page(&text).unwrap_or_else(|problems| panic!("{name}: {}", problems.join("\n")));
+        let page =
+            latex::page(&text).unwrap_or_else(|problems| panic!("{name}: {}", problems.join("\n")));
         for (at, _) in page.match_indices("<math") {
             let math = &page[at..at + page[at..].find("</math>").unwrap() + 7];
-            let document = roxmltree::Document::parse(math).unwrap_or_else(|why| panic!("{name}: {why}: {math}"));
-            assert!(document.descendants().all(|node| !node.has_tag_name("merror")), "{name}: {math}");
+            let document = roxmltree::Document::parse(math)
+                .unwrap_or_else(|why| panic!("{name}: {why}: {math}"));
+            assert!(
+                document
+                    .descendants()
+                    .all(|node| !node.has_tag_name("merror")),
+                "{name}: {math}"
+            );
             // What Markdown would take for its own must not stand bare.
-            let bare = |c: char| document.descendants().filter_map(|n| n.text()).any(|t| t.contains(c)) && math.contains(&format!(">{c}"));
-            assert!(!['*', '_', '|', '`'].into_iter().any(bare), "{name}: {math}");
+            let bare = |c: char| {
+                document
+                    .descendants()
+                    .filter_map(|n| n.text())
+                    .any(|t| t.contains(c))
+                    && math.contains(&format!(">{c}"))
+            };
+            assert!(
+                !['*', '_', '|', '`'].into_iter().any(bare),
+                "{name}: {math}"
+            );
             count += 1;
         }
         for label in labelled(&text) {
-            assert!(page.contains(&format!("<a id=\"{}\"></a>**", label.label)), "{name}: {}", label.label);
+            assert!(
+                page.contains(&format!("<a id=\"{}\"></a>**", label.label)),
+                "{name}: {}",
+                label.label
+            );
         }
     }
     assert!(count > 400, "{count}");
@@ -220,10 +336,21 @@ fn val_latex_turns_into_the_elements_of_mathml() {
     let page =
         latex::page("a $\\frac{\\alpha_p}{\\sqrt{x}}$, `$code$` and\n\n$$ \\begin{cases} 1 & I < 1 \\\\ 2 & I > 1 \\end{cases} $$\n")
             .unwrap();
-    for part in ["<mfrac>", "<msqrt>", "<msub><mi>α</mi><mi>p</mi></msub>", "<mtable", "<mo>&lt;</mo>", "`$code$`", "display=\"block\""] {
+    for part in [
+        "<mfrac>",
+        "<msqrt>",
+        "<msub><mi>α</mi><mi>p</mi></msub>",
+        "<mtable",
+        "<mo>&lt;</mo>",
+        "`$code$`",
+        "display=\"block\"",
+    ] {
         assert!(page.contains(part), "{part} in {page}");
     }
-    assert!(latex::page("a $\\frac{1}{2$ b").is_err(), "a brace is missing");
+    assert!(
+        latex::page("a $\\frac{1}{2$ b").is_err(),
+        "a brace is missing"
+    );
     assert!(latex::page("a $x b").is_err(), "no end");
 }
 
@@ -231,12 +358,17 @@ fn val_latex_turns_into_the_elements_of_mathml() {
 fn pictures_are_sound_and_say_what_they_show() {
     for name in listed("img", ".svg") {
         let svg = text_of(&format!("img/{name}"));
-        let document = roxmltree::Document::parse(&svg).unwrap_or_else(|why| panic!("{name}: {why}"));
+        let document =
+            roxmltree::Document::parse(&svg).unwrap_or_else(|why| panic!("{name}: {why}"));
         let root = document.root_element();
         assert_eq!(root.attribute("role"), Some("img"), "{name}");
         for tag in ["title", "desc"] {
             let node = root.children().find(|node| node.tag_name().name() == tag);
-            assert!(node.and_then(|node| node.text()).is_some_and(|text| text.len() > 10), "{name}: {tag}");
+            assert!(
+                node.and_then(|node| node.text())
+                    .is_some_and(|text| text.len() > 10),
+                "{name}: {tag}"
+            );
         }
         assert!(!svg.contains("NaN") && !svg.contains("href"), "{name}");
     }

@@ -17,12 +17,17 @@ use statrs::distribution::{ContinuousCDF, Normal};
 fn plan_with(folder: &tempfile::TempDir, data: &str, text: &str) -> Plan {
     std::fs::write(folder.path().join("data.csv"), data).expect("written");
     let file = folder.path().join("plan.toml");
-    read(&file.to_string_lossy(), text).unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)))
+    read(&file.to_string_lossy(), text)
+        .unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)))
 }
 
 /// Puts what the program computes at `truth` in the place of what was measured, with errors of the plan's own standard deviations.
 fn measure(plan: &mut Plan, truth: &[f64], seed: u64) {
-    let computed = Model::new(plan).expect("a sound plan").answer(truth).expect("an answer").computed;
+    let computed = Model::new(plan)
+        .expect("a sound plan")
+        .answer(truth)
+        .expect("an answer")
+        .computed;
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let normal = Normal::standard();
     for (observation, computed) in plan.observations.iter_mut().zip(computed) {
@@ -32,7 +37,8 @@ fn measure(plan: &mut Plan, truth: &[f64], seed: u64) {
 }
 
 fn solved(plan: &Plan) -> Outcome {
-    calibrate(plan, &Unwatched).unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)))
+    calibrate(plan, &Unwatched)
+        .unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)))
 }
 
 /// Spin loss at two ratios, three pressures, two temperatures, four speeds.
@@ -98,7 +104,10 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
         for (count, share) in counts.iter().zip([0.6827, 0.95]) {
             let n = SEEDS as f64;
             let wide = 3.3 * (n * share * (1.0 - share)).sqrt();
-            assert!((f64::from(*count) - n * share).abs() < wide, "parameter {k}: {count} of {SEEDS} where {share} was promised");
+            assert!(
+                (f64::from(*count) - n * share).abs() < wide,
+                "parameter {k}: {count} of {SEEDS} where {share} was promised"
+            );
         }
     }
 }
@@ -110,13 +119,32 @@ fn truth_without_noise_is_found_from_every_start() {
     let mut plan = plan_with(&folder, &spin_points(), SPIN_PLAN);
     plan.search.starts = 5;
     let truth = [12.0, 2.0, 0.9];
-    let computed = Model::new(&plan).expect("sound").answer(&truth).expect("an answer").computed;
-    plan.observations.iter_mut().zip(computed).for_each(|(o, x)| o.measured = Measured::Value(x));
+    let computed = Model::new(&plan)
+        .expect("sound")
+        .answer(&truth)
+        .expect("an answer")
+        .computed;
+    plan.observations
+        .iter_mut()
+        .zip(computed)
+        .for_each(|(o, x)| o.measured = Measured::Value(x));
     let outcome = solved(&plan);
     for (p, truth) in outcome.parameters.iter().zip(truth) {
-        assert!((p.value / truth - 1.0).abs() < 1e-5, "{}: {} in place of {truth}", p.name, p.value);
+        assert!(
+            (p.value / truth - 1.0).abs() < 1e-5,
+            "{}: {} in place of {truth}",
+            p.name,
+            p.value
+        );
     }
-    assert!(outcome.starts.iter().all(|start| start.cost.is_some_and(|cost| cost < 1e-6)), "{:?}", outcome.starts);
+    assert!(
+        outcome
+            .starts
+            .iter()
+            .all(|start| start.cost.is_some_and(|cost| cost < 1e-6)),
+        "{:?}",
+        outcome.starts
+    );
 }
 
 /// A warm-up trace and two totals of the same run.
@@ -124,8 +152,11 @@ fn truth_without_noise_is_found_from_every_start() {
 fn a_warm_up_trace_tells_its_heat_capacity() {
     let folder = tempfile::tempdir().expect("a folder");
     let rows: String = (1..=39).map(|k| format!("{},0\n", 30 * k)).collect();
-    std::fs::write(folder.path().join("scalars.csv"), "quantity,value,sd,phase\nend_sump_degc,0,0.5,\nfuel_l_per_100km,0,0.05,ece15\n")
-        .expect("written");
+    std::fs::write(
+        folder.path().join("scalars.csv"),
+        "quantity,value,sd,phase\nend_sump_degc,0,0.5,\nfuel_l_per_100km,0,0.05,ece15\n",
+    )
+    .expect("written");
     let text = r#"
 [calibration]
 starts = 1
@@ -157,7 +188,11 @@ from = "made by the program"
 scalars = "scalars.csv"
 source = "cold"
 "#;
-    let mut plan = plan_with(&folder, &format!("time_s,transmission_sump_degc\n{rows}"), text);
+    let mut plan = plan_with(
+        &folder,
+        &format!("time_s,transmission_sump_degc\n{rows}"),
+        text,
+    );
     assert_eq!(plan.observations.len(), 41);
     // Every 30 s is as often as values are independent: 39 values over 1140 s count as 39.
     assert!((plan.observations[0].weight_sd / 0.3 - 1.0).abs() < 1e-12);
@@ -170,7 +205,11 @@ source = "cold"
         for (p, truth) in outcome.parameters.iter().zip(truth) {
             misses.push((p.value - truth) / p.standard_error.expect("a standard error"));
         }
-        let fold = outcome.folds.iter().find(|fold| fold.name == "totals").expect("a fold");
+        let fold = outcome
+            .folds
+            .iter()
+            .find(|fold| fold.name == "totals")
+            .expect("a fold");
         assert!(fold.predicted_rms_sd.expect("predicted") < 4.0, "{fold:?}");
     }
     // Twelve deviations, two by two independent: their root mean square is 1 within 3 standard deviations of 1/sqrt(24).
@@ -185,9 +224,18 @@ fn a_denser_trace_says_no_more() {
     let text = "[calibration]\n[sources.cold]\nsource = \"run\"\n[[parameter]]\nkey = \"thermal.transmission.metal_kj_k\"\nlow = 8\nhigh = 60\n\
                 [[data]]\nfrom = \"made up\"\ntrace = \"data.csv\"\nsource = \"cold\"\nsd = 0.3\n";
     let weight = |step: u32| {
-        let rows: String = (0..=1160 / step).map(|k| format!("{},20\n", step * k)).collect();
-        let plan = plan_with(&folder, &format!("time_s,transmission_sump_degc\n{rows}"), text);
-        plan.observations.iter().map(|o| o.weight_sd.powi(-2)).sum::<f64>()
+        let rows: String = (0..=1160 / step)
+            .map(|k| format!("{},20\n", step * k))
+            .collect();
+        let plan = plan_with(
+            &folder,
+            &format!("time_s,transmission_sump_degc\n{rows}"),
+            text,
+        );
+        plan.observations
+            .iter()
+            .map(|o| o.weight_sd.powi(-2))
+            .sum::<f64>()
     };
     let (sparse, dense) = (weight(40), weight(5));
     assert!((dense / sparse - 1.0).abs() < 0.4, "{sparse} and {dense}");
@@ -198,7 +246,10 @@ fn a_denser_trace_says_no_more() {
 #[test]
 fn pump_displacement_and_pressure_are_told_as_a_product() {
     let folder = tempfile::tempdir().expect("a folder");
-    let data: String = [2.4, 2.0, 1.6, 1.2].iter().map(|ratio| format!("{ratio},3000,80,0\n")).collect();
+    let data: String = [2.4, 2.0, 1.6, 1.2]
+        .iter()
+        .map(|ratio| format!("{ratio},3000,80,0\n"))
+        .collect();
     let text = r#"
 [calibration]
 starts = 1
@@ -220,11 +271,20 @@ points = "data.csv"
 sd = 0.05
 without = ["belt", "final_drive", "reverse_clutch"]
 "#;
-    let mut plan = plan_with(&folder, &format!("ratio,speed_rpm,temp_degc,pump_nm\n{data}"), text);
+    let mut plan = plan_with(
+        &folder,
+        &format!("ratio,speed_rpm,temp_degc,pump_nm\n{data}"),
+        text,
+    );
     measure(&mut plan, &[9.0, 36.5], 1);
     let outcome = solved(&plan);
     let said = outcome.not_identified.join(" ");
-    assert!(said.contains("displacement_cc_rev") && said.contains("base_bar") && said.contains("product"), "{said}");
+    assert!(
+        said.contains("displacement_cc_rev")
+            && said.contains("base_bar")
+            && said.contains("product"),
+        "{said}"
+    );
     let product: f64 = outcome.parameters.iter().map(|p| p.value).product();
     assert!((product / (9.0 * 36.5) - 1.0).abs() < 0.05, "{product}");
 }
@@ -233,12 +293,20 @@ without = ["belt", "final_drive", "reverse_clutch"]
 #[test]
 fn a_parameter_without_effect_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
-    let text = SPIN_PLAN.to_owned() + "\n[[parameter]]\nkey = \"thermal.engine.block_kj_k\"\nlow = 10\nhigh = 60\n";
+    let text = SPIN_PLAN.to_owned()
+        + "\n[[parameter]]\nkey = \"thermal.engine.block_kj_k\"\nlow = 10\nhigh = 60\n";
     let mut plan = plan_with(&folder, &spin_points(), &text);
     measure(&mut plan, &[9.0, 1.0, 0.3, 28.0], 3);
     let outcome = solved(&plan);
     assert!(outcome.parameters[3].is_dead && outcome.parameters[3].standard_error.is_none());
-    assert!(outcome.warnings.iter().any(|w| w.contains("block_kj_k moves no datum")), "{:?}", outcome.warnings);
+    assert!(
+        outcome
+            .warnings
+            .iter()
+            .any(|w| w.contains("block_kj_k moves no datum")),
+        "{:?}",
+        outcome.warnings
+    );
 }
 
 /// Property: an error that all data have in common is found as such, and widens what hangs on their level.
@@ -254,7 +322,12 @@ fn a_common_error_is_told_apart() {
     assert_eq!(wide.parameters.len(), 4);
     let error = |outcome: &Outcome, k: usize| outcome.parameters[k].standard_error.expect("known");
     // The constant of the input shaft is the level of all: its error takes in the common one.
-    assert!(error(&wide, 1) > 0.45 && error(&narrow, 1) < 0.2, "{} {}", error(&narrow, 1), error(&wide, 1));
+    assert!(
+        error(&wide, 1) > 0.45 && error(&narrow, 1) < 0.2,
+        "{} {}",
+        error(&narrow, 1),
+        error(&wide, 1)
+    );
     assert!((error(&wide, 0) / error(&narrow, 0) - 1.0).abs() < 0.2);
 }
 
@@ -269,7 +342,10 @@ fn fitted_files_hold_what_was_fitted() {
     let outcome = solved(&plan);
     let files = fitted::files(&plan, &outcome, "2026-01-31").expect("written");
     assert_eq!(
-        files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+        files
+            .iter()
+            .map(|(name, _)| name.as_str())
+            .collect::<Vec<_>>(),
         ["rover_216_cvt_fitted.toml", "cvtf_ezl799_class_fitted.toml"]
     );
     for (name, text) in &files {
@@ -282,14 +358,37 @@ fn fitted_files_hold_what_was_fitted() {
     for p in &outcome.parameters {
         let found = info(&p.name);
         let value: f64 = found.value.parse().expect("a number");
-        assert!((value / p.value - 1.0).abs() < 1e-6, "{}: {value} in place of {}", p.name, p.value);
+        assert!(
+            (value / p.value - 1.0).abs() < 1e-6,
+            "{}: {value} in place of {}",
+            p.name,
+            p.value
+        );
         assert_eq!(found.status, "fitted");
-        assert!(found.source.contains("plan.toml on 2026-01-31; standard error"), "{}", found.source);
+        assert!(
+            found
+                .source
+                .contains("plan.toml on 2026-01-31; standard error"),
+            "{}",
+            found.source
+        );
     }
-    let again = Plan { vehicle: path.to_string_lossy().into_owned(), ..plan };
+    let again = Plan {
+        vehicle: path.to_string_lossy().into_owned(),
+        ..plan
+    };
     let model = Model::new(&again).expect("sound");
-    let cost: f64 = model.at(&model.file_values()).expect("an answer").iter().map(|r| r * r).sum();
-    assert!((cost / outcome.chi2 - 1.0).abs() < 1e-4, "{cost} in place of {}", outcome.chi2);
+    let cost: f64 = model
+        .at(&model.file_values())
+        .expect("an answer")
+        .iter()
+        .map(|r| r * r)
+        .sum();
+    assert!(
+        (cost / outcome.chi2 - 1.0).abs() < 1e-4,
+        "{cost} in place of {}",
+        outcome.chi2
+    );
 }
 
 /// Every fitted value of the Rover and of its fluid is what a shipped plan finds, to a quarter of its standard error: the files have them rounded, and
@@ -298,7 +397,8 @@ fn fitted_files_hold_what_was_fitted() {
 fn shipped_plans_give_the_shipped_values() {
     let mut free = BTreeSet::new();
     for (name, _) in embedded_calibrations() {
-        let mut plan = load(name, "PLAN").unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)));
+        let mut plan = load(name, "PLAN")
+            .unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)));
         plan.search.leave_out = false;
         let outcome = solved(&plan);
         assert!(outcome.converged, "{name}: {:?}", outcome.warnings);
@@ -314,24 +414,47 @@ fn shipped_plans_give_the_shipped_values() {
             free.insert(p.name.clone());
         }
     }
-    let car = setup::load("rover_216_cvt", "--vehicle", &Options::default()).expect("the shipped car");
-    let fitted: BTreeSet<String> =
-        car.keys.iter().filter(|k| k.status == "fitted" && !k.key.starts_with("engine_oil.")).map(|k| k.key.clone()).collect();
-    assert_eq!(fitted, free, "fitted values of the file, and keys that the plans free");
+    let car =
+        setup::load("rover_216_cvt", "--vehicle", &Options::default()).expect("the shipped car");
+    let fitted: BTreeSet<String> = car
+        .keys
+        .iter()
+        .filter(|k| k.status == "fitted" && !k.key.starts_with("engine_oil."))
+        .map(|k| k.key.clone())
+        .collect();
+    assert_eq!(
+        fitted, free,
+        "fitted values of the file, and keys that the plans free"
+    );
 }
 
 /// A row that a shipped plan uses names the parameters that were fitted to it, and only keys that are free in a plan or given by a source.
 #[test]
 fn rows_and_plans_agree_on_what_was_fitted() {
-    let texts: Vec<(String, String)> =
-        cvtcycle::validate::embedded_rows().iter().map(|(n, t)| ((*n).to_owned(), (*t).to_owned())).collect();
-    let files = cvtcycle::validate::read(cvtcycle::validate::COMMON, &texts).expect("the shipped rows");
+    let texts: Vec<(String, String)> = cvtcycle::validate::embedded_rows()
+        .iter()
+        .map(|(n, t)| ((*n).to_owned(), (*t).to_owned()))
+        .collect();
+    let files =
+        cvtcycle::validate::read(cvtcycle::validate::COMMON, &texts).expect("the shipped rows");
     for (name, _) in embedded_calibrations() {
         let plan = load(name, "PLAN").expect("a shipped plan");
         for id in &plan.rows {
-            let row = files.iter().flat_map(|file| &file.rows).find(|row| row.id == *id).expect("a row");
-            assert!(!row.fitted_to.is_empty(), "{name} uses row {id}, which says that nothing was fitted to it");
-            assert!(row.fitted_to.iter().any(|key| plan.parameters.iter().any(|free| free.key == *key)), "{name}: row {id}");
+            let row = files
+                .iter()
+                .flat_map(|file| &file.rows)
+                .find(|row| row.id == *id)
+                .expect("a row");
+            assert!(
+                !row.fitted_to.is_empty(),
+                "{name} uses row {id}, which says that nothing was fitted to it"
+            );
+            assert!(
+                row.fitted_to
+                    .iter()
+                    .any(|key| plan.parameters.iter().any(|free| free.key == *key)),
+                "{name}: row {id}"
+            );
         }
     }
 }

@@ -2,7 +2,11 @@
 //!
 //! Truth: viscosities from published limits of the grades; the power laws written out again for files without the new keys; limits and
 //! signs of the equations.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests say what they found")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "tests say what they found"
+)]
 
 mod common;
 
@@ -23,7 +27,9 @@ const MANUAL: &str = "rover_216_5mt";
 const KEYS: [&str; 2] = ["film_heating_w", "inlet_bar_per_l_min"];
 
 fn fluid(name: &str) -> Lubricant {
-    load_lubricant(name, "--lubricant", &[], "--set").unwrap_or_else(|problems| panic!("{}", render(&problems, false))).0
+    load_lubricant(name, "--lubricant", &[], "--set")
+        .unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
+        .0
 }
 
 /// Viscosity of a shipped fluid by its D341 line, mPa s.
@@ -33,13 +39,24 @@ fn mpa_s(name: &str, degc: f64) -> f64 {
 
 /// A shipped car as a file of the time before the new keys.
 fn old_file(name: &str) -> Setup {
-    let text = embedded_vehicles().iter().find(|(shipped, _)| *shipped == name).unwrap().1;
-    let kept: Vec<&str> = text.lines().filter(|line| !KEYS.iter().any(|key| line.starts_with(key))).collect();
-    assert!(kept.len() < text.lines().count(), "{name} has none of the keys");
+    let text = embedded_vehicles()
+        .iter()
+        .find(|(shipped, _)| *shipped == name)
+        .unwrap()
+        .1;
+    let kept: Vec<&str> = text
+        .lines()
+        .filter(|line| !KEYS.iter().any(|key| line.starts_with(key)))
+        .collect();
+    assert!(
+        kept.len() < text.lines().count(),
+        "{name} has none of the keys"
+    );
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("old.toml");
     std::fs::write(&path, kept.join("\n")).unwrap();
-    load(path.to_str().unwrap(), "--vehicle", &Options::default()).unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
+    load(path.to_str().unwrap(), "--vehicle", &Options::default())
+        .unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
 }
 
 fn cvt(setup: &Setup) -> &Cvt {
@@ -60,16 +77,28 @@ fn val_d341_lines_against_published_limits_in_the_cold() {
         ("engine_10w40", -30.0, 60_000.0),
         ("engine_5w30", -35.0, 60_000.0),
     ];
-    for (name, degc, limit) in low_shear.into_iter().chain([("gear_75w80", -40.0, 150_000.0), ("cvtf_ezl799_class", -40.0, 20_000.0)]) {
+    for (name, degc, limit) in low_shear.into_iter().chain([
+        ("gear_75w80", -40.0, 150_000.0),
+        ("cvtf_ezl799_class", -40.0, 20_000.0),
+    ]) {
         let found = mpa_s(name, degc);
         println!("{name} at {degc} degC: {found:.0} mPa s, at most {limit:.0}");
         // Not a tenth of the limit either: fluids of these grades come within a factor of ten of it.
-        assert!(found < limit && found > 0.1 * limit, "{name} at {degc} degC: {found:.0} mPa s, limit {limit:.0}");
+        assert!(
+            found < limit && found > 0.1 * limit,
+            "{name} at {degc} degC: {found:.0} mPa s, limit {limit:.0}"
+        );
     }
-    for (name, degc, limit, over) in [("engine_10w40", -25.0, 7000.0, 1.16), ("engine_5w30", -30.0, 6600.0, 1.10)] {
+    for (name, degc, limit, over) in [
+        ("engine_10w40", -25.0, 7000.0, 1.16),
+        ("engine_5w30", -30.0, 6600.0, 1.10),
+    ] {
         let ratio = mpa_s(name, degc) / limit;
         println!("{name} at {degc} degC: {ratio:.3} of the limit for cranking");
-        assert!((ratio - over).abs() < 0.01, "{name} at {degc} degC: {ratio:.3} of the limit");
+        assert!(
+            (ratio - over).abs() < 0.01,
+            "{name} at {degc} degC: {ratio:.3} of the limit"
+        );
     }
     // An oil sold as 10W would be sold as 5W if it met that grade's limit.
     assert!(mpa_s("engine_10w40", -30.0) > 6600.0);
@@ -82,35 +111,78 @@ fn val_files_without_the_keys_keep_the_power_laws() {
     let setup = old_file(CVT);
     let (cvt, oil) = (cvt(&setup), setup.oils().0);
     for degc in [-40.0, -10.0, 25.0, 90.0] {
-        let (nu, eta) = (oil.kinematic_m2_s(degc + ZERO), oil.dynamic_pa_s(degc + ZERO));
+        let (nu, eta) = (
+            oil.kinematic_m2_s(degc + ZERO),
+            oil.dynamic_pa_s(degc + ZERO),
+        );
         let power = |m: f64, x: f64| cvtcycle::numeric::exp(m * cvtcycle::numeric::ln(x));
         for w in [0.0, 100.0, 400.0] {
             let (s, now) = (&cvt.spin, cvt.spin.at(nu));
-            let shaft = s.shaft_constant_nm + s.shaft_viscous_nm_s * power(s.shaft_exponent, nu / 11e-6) * w;
+            let shaft = s.shaft_constant_nm
+                + s.shaft_viscous_nm_s * power(s.shaft_exponent, nu / 11e-6) * w;
             assert_eq!(now.shaft_nm(w).to_bits(), shaft.to_bits(), "{degc} degC");
             let fall = cvtcycle::numeric::exp(-w / s.drive_scale_rad_s);
-            let final_drive = s.drive_boundary_nm * fall + s.drive_viscous_nm * power(s.drive_exponent, nu / 11e-6);
-            assert_eq!(s.drive_nm(&now, w).to_bits(), final_drive.to_bits(), "{degc} degC");
+            let final_drive = s.drive_boundary_nm * fall
+                + s.drive_viscous_nm * power(s.drive_exponent, nu / 11e-6);
+            assert_eq!(
+                s.drive_nm(&now, w).to_bits(),
+                final_drive.to_bits(),
+                "{degc} degC"
+            );
             let p = &cvt.pump;
             let state = p.state(&p.at(eta), w, 20e5, 1e-4);
-            let viscous = p.viscous * 0.010 * power(p.viscous_exponent, eta / 0.010) * w * p.displacement_m3_rad;
-            let torque = p.displacement_m3_rad * (1.0 + p.friction) * (20e5 + p.line_drop_pa) + viscous + p.constant_nm;
+            let viscous = p.viscous
+                * 0.010
+                * power(p.viscous_exponent, eta / 0.010)
+                * w
+                * p.displacement_m3_rad;
+            let torque = p.displacement_m3_rad * (1.0 + p.friction) * (20e5 + p.line_drop_pa)
+                + viscous
+                + p.constant_nm;
             assert_eq!(state.torque_nm.to_bits(), torque.to_bits(), "{degc} degC");
-            assert_eq!(state.working_m3_s.to_bits(), (p.displacement_m3_rad * w).to_bits());
+            assert_eq!(
+                state.working_m3_s.to_bits(),
+                (p.displacement_m3_rad * w).to_bits()
+            );
             assert_eq!(state.flow_limited, p.displacement_m3_rad * w < 1e-4);
         }
     }
     // Heating that never comes is no heating, in a whole run and in both boxes.
-    let never = ["transmission.cvt.final_drive", "transmission.cvt.input_shaft", "transmission.cvt.pump"];
-    let mut never: Vec<String> = never.iter().map(|table| format!("{table}.film_heating_w=1e9")).collect();
+    let never = [
+        "transmission.cvt.final_drive",
+        "transmission.cvt.input_shaft",
+        "transmission.cvt.pump",
+    ];
+    let mut never: Vec<String> = never
+        .iter()
+        .map(|table| format!("{table}.film_heating_w=1e9"))
+        .collect();
     never.push("transmission.cvt.pump.inlet_bar_per_l_min=0".into());
     let c = cycle("ece15");
-    for (name, sets) in [(CVT, never), (MANUAL, vec!["transmission.manual.bearing.film_heating_w=1e9".into()])] {
+    for (name, sets) in [
+        (CVT, never),
+        (
+            MANUAL,
+            vec!["transmission.manual.bearing.film_heating_w=1e9".into()],
+        ),
+    ] {
         let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
-        let fuel = |setup: &Setup| drive(setup, &c, &at(-30.0, Start::Soak)).totals.total().fuel_kg;
-        let (old, never, shipped) = (fuel(&old_file(name)), fuel(&car(name, &sets)), fuel(&car(name, &[])));
+        let fuel = |setup: &Setup| {
+            drive(setup, &c, &at(-30.0, Start::Soak))
+                .totals
+                .total()
+                .fuel_kg
+        };
+        let (old, never, shipped) = (
+            fuel(&old_file(name)),
+            fuel(&car(name, &sets)),
+            fuel(&car(name, &[])),
+        );
         assert!((never / old - 1.0).abs() < 1e-5, "{name}: {old} {never}");
-        assert!(shipped < old, "{name}: heating does nothing, {old} {shipped}");
+        assert!(
+            shipped < old,
+            "{name}: heating does nothing, {old} {shipped}"
+        );
     }
 }
 
@@ -132,7 +204,11 @@ const IN_THE_SUMP: [Component; 7] = [
 /// Colder oil never costs less, in drive and in overrun, and nothing is negative: every part that turns in the sump's oil.
 #[test]
 fn colder_oil_never_lowers_a_loss() {
-    for (name, ratios) in [(CVT, [2.4, 0.45]), (MANUAL, [1.0, 5.0]), ("mondeo_20_5mt", [2.0, 4.0])] {
+    for (name, ratios) in [
+        (CVT, [2.4, 0.45]),
+        (MANUAL, [1.0, 5.0]),
+        ("mondeo_20_5mt", [2.0, 4.0]),
+    ] {
         let setup = car(name, &[]);
         for ratio in ratios {
             for (rpm, output_nm) in [(800.0, 0.0), (2000.0, 150.0), (3500.0, -40.0)] {
@@ -159,8 +235,17 @@ fn colder_oil_never_lowers_a_loss() {
                     }
                     last = now;
                 }
-                let parts = if name == CVT { &IN_THE_SUMP[..4] } else { &IN_THE_SUMP[4..] };
-                assert!(parts.iter().all(|part| last[IN_THE_SUMP.iter().position(|p| p == part).unwrap()] > 0.0), "{name}: {last:?}");
+                let parts = if name == CVT {
+                    &IN_THE_SUMP[..4]
+                } else {
+                    &IN_THE_SUMP[4..]
+                };
+                assert!(
+                    parts.iter().all(|part| last
+                        [IN_THE_SUMP.iter().position(|p| p == part).unwrap()]
+                        > 0.0),
+                    "{name}: {last:?}"
+                );
             }
         }
     }
@@ -170,12 +255,22 @@ fn colder_oil_never_lowers_a_loss() {
 #[test]
 fn what_is_extrapolated_grows_between_root_and_power() {
     let (shipped, old) = (car(CVT, &[]), old_file(CVT));
-    let point = |degc: f64| BenchPoint { ratio: 0.45, sump_k: degc + ZERO, belt_k: Some(293.15), ..BenchPoint::default() };
+    let point = |degc: f64| BenchPoint {
+        ratio: 0.45,
+        sump_k: degc + ZERO,
+        belt_k: Some(293.15),
+        ..BenchPoint::default()
+    };
     for part in [Component::FinalDrive, Component::InputShaft] {
-        let growth = |setup: &Setup| solve(setup, point(-40.0)).part_nm(part) / solve(setup, point(25.0)).part_nm(part);
+        let growth = |setup: &Setup| {
+            solve(setup, point(-40.0)).part_nm(part) / solve(setup, point(25.0)).part_nm(part)
+        };
         let (bounded, power) = (growth(&shipped), growth(&old));
         println!("{part:?}: {bounded:.1} instead of {power:.1} times from 25 to -40 degC");
-        assert!(bounded < 0.5 * power && bounded > 0.5 * power.sqrt(), "{part:?}: {bounded} {power}");
+        assert!(
+            bounded < 0.5 * power && bounded > 0.5 * power.sqrt(),
+            "{part:?}: {bounded} {power}"
+        );
     }
 }
 
@@ -183,21 +278,44 @@ fn what_is_extrapolated_grows_between_root_and_power() {
 #[test]
 fn losses_in_the_cold_are_continuous() {
     for (name, ratio) in [(CVT, 0.45), (CVT, 2.4), (MANUAL, 5.0)] {
-        let setup = car(name, &["transmission.cvt.pump.inlet_bar_per_l_min=0.002"][..usize::from(name == CVT)]);
+        let setup = car(
+            name,
+            &["transmission.cvt.pump.inlet_bar_per_l_min=0.002"][..usize::from(name == CVT)],
+        );
         let largest = |n: u32, over_speed: bool| {
             let at = |i: u32| f64::from(i) / f64::from(n);
             let total = |i: u32| {
-                let (degc, rpm) = if over_speed { (-25.0, 1.0 + 3999.0 * at(i)) } else { (-40.0 + 65.0 * at(i), 2000.0) };
-                let point =
-                    BenchPoint { ratio, input_rad_s: rpm * RPM, sump_k: degc + ZERO, pressure_pa: Some(20e5), ..BenchPoint::default() };
-                let answer = solve(&setup, BenchPoint { belt_k: Some(280.0), ..point });
+                let (degc, rpm) = if over_speed {
+                    (-25.0, 1.0 + 3999.0 * at(i))
+                } else {
+                    (-40.0 + 65.0 * at(i), 2000.0)
+                };
+                let point = BenchPoint {
+                    ratio,
+                    input_rad_s: rpm * RPM,
+                    sump_k: degc + ZERO,
+                    pressure_pa: Some(20e5),
+                    ..BenchPoint::default()
+                };
+                let answer = solve(
+                    &setup,
+                    BenchPoint {
+                        belt_k: Some(280.0),
+                        ..point
+                    },
+                );
                 answer.total_nm() + 1e3 * answer.oil_flow_m3_s
             };
-            (0..n).map(|i| (total(i + 1) - total(i)).abs()).fold(0.0, larger)
+            (0..n)
+                .map(|i| (total(i + 1) - total(i)).abs())
+                .fold(0.0, larger)
         };
         for over_speed in [false, true] {
             let (coarse, fine) = (largest(400, over_speed), largest(800, over_speed));
-            assert!(fine < 0.6 * coarse, "{name}, ratio {ratio}, over speed {over_speed}: {coarse} {fine}");
+            assert!(
+                fine < 0.6 * coarse,
+                "{name}, ratio {ratio}, over speed {over_speed}: {coarse} {fine}"
+            );
         }
     }
 }
@@ -206,13 +324,23 @@ fn losses_in_the_cold_are_continuous() {
 #[test]
 fn a_starved_pump_is_told_and_its_ledgers_close() {
     let run = |bar: f64, c: &Cycle| {
-        let setup = car(CVT, &[&format!("transmission.cvt.pump.inlet_bar_per_l_min={bar}")]);
+        let setup = car(
+            CVT,
+            &[&format!("transmission.cvt.pump.inlet_bar_per_l_min={bar}")],
+        );
         drive(&setup, c, &at(-40.0, Start::Soak)).totals
     };
     let c = cycle("ece15");
     let (free, starved) = (run(0.0, &c), run(0.003, &c));
-    assert_eq!(free.seconds(Flags::FLOW_LIMITED).to_bits(), 0.0_f64.to_bits());
-    assert!(starved.seconds(Flags::FLOW_LIMITED) > 60.0, "{} s", starved.seconds(Flags::FLOW_LIMITED));
+    assert_eq!(
+        free.seconds(Flags::FLOW_LIMITED).to_bits(),
+        0.0_f64.to_bits()
+    );
+    assert!(
+        starved.seconds(Flags::FLOW_LIMITED) > 60.0,
+        "{} s",
+        starved.seconds(Flags::FLOW_LIMITED)
+    );
     assert!(starved.ledger_error < 1e-9 && starved.total().fuel_kg.is_finite());
 }
 
@@ -222,7 +350,15 @@ fn nothing_is_negative_at_forty_below() {
     for name in CARS {
         let totals = drive(&car(name, &[]), &cycle("udds"), &at(-40.0, Start::Soak)).totals;
         let total = totals.total();
-        assert!(total.loss_j.iter().all(|loss| *loss >= 0.0) && totals.ledger_error < 1e-9, "{name}: {:?}", total.loss_j);
-        assert_eq!(totals.seconds(Flags::NOT_CONVERGED).to_bits(), 0.0_f64.to_bits(), "{name}");
+        assert!(
+            total.loss_j.iter().all(|loss| *loss >= 0.0) && totals.ledger_error < 1e-9,
+            "{name}: {:?}",
+            total.loss_j
+        );
+        assert_eq!(
+            totals.seconds(Flags::NOT_CONVERGED).to_bits(),
+            0.0_f64.to_bits(),
+            "{name}"
+        );
     }
 }

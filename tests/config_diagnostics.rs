@@ -13,7 +13,11 @@ fn read(document: &Document) -> Result<Vec<KeyInfo>, Vec<Problem>> {
     let root = reader.root();
     let belt = root.table("belt");
     if belt.exists() {
-        belt.number("band_offset_mm", Bound::closed(0.5, 10.0), "Distance of the bands");
+        belt.number(
+            "band_offset_mm",
+            Bound::closed(0.5, 10.0),
+            "Distance of the bands",
+        );
         belt.number_or("pitch_mm", Bound::positive(), 9.6, "Pitch");
         belt.optional_number("width_mm", Bound::positive(), "Width");
         belt.integer_or("bands", 1..=2, 2, "Number of bands");
@@ -36,7 +40,10 @@ fn read(document: &Document) -> Result<Vec<KeyInfo>, Vec<Problem>> {
     if lists.exists() {
         lists.numbers("ratios", Bound::positive(), 2..=4, "Ratios");
         lists.numbers("radii_mm", Bound::positive(), 0..=usize::MAX, "Radii");
-        let columns = [("temperature_degc", Bound::any()), ("viscosity_mm2_s", Bound::positive())];
+        let columns = [
+            ("temperature_degc", Bound::any()),
+            ("viscosity_mm2_s", Bound::positive()),
+        ];
         lists.rows("points", &columns, "Viscosity");
     }
     let default = (!root.has("clamp")).then_some("torque_following");
@@ -70,7 +77,9 @@ fn expectations(text: &str) -> Vec<Expected> {
     for (index, line) in text.lines().enumerate() {
         let Some(part) = line.trim_start().strip_prefix("#~ ") else {
             let from = all.len() - open;
-            all[from..].iter_mut().for_each(|expected| expected.line = index + 1);
+            all[from..]
+                .iter_mut()
+                .for_each(|expected| expected.line = index + 1);
             open = 0;
             continue;
         };
@@ -78,7 +87,10 @@ fn expectations(text: &str) -> Vec<Expected> {
             (Some(("hint", hint)), Some(last)) => last.hint = hint.to_string(),
             (Some(("allowed", allowed)), Some(last)) => last.allowed = allowed.to_string(),
             _ => {
-                all.push(Expected { message: part.to_string(), ..Expected::default() });
+                all.push(Expected {
+                    message: part.to_string(),
+                    ..Expected::default()
+                });
                 open += 1;
             }
         }
@@ -99,7 +111,12 @@ fn differences(expected: &[Expected], found: &[Problem]) -> String {
         };
         match rest.iter().position(fits) {
             Some(at) => drop(rest.remove(at)),
-            None => text += &format!("not found: line {} {} / {}\n", wanted.line, wanted.message, wanted.hint),
+            None => {
+                text += &format!(
+                    "not found: line {} {} / {}\n",
+                    wanted.line, wanted.message, wanted.hint
+                )
+            }
         }
     }
     for problem in rest {
@@ -140,10 +157,17 @@ fn check_places(text: &str, found: &[Problem]) {
         let place = &problem.place;
         let line = text.lines().nth(place.line - 1).unwrap_or("beyond the end");
         assert_eq!(place.line_text, line);
-        assert!(place.column - 1 + place.width <= line.chars().count().max(place.column), "{problem:?}");
+        assert!(
+            place.column - 1 + place.width <= line.chars().count().max(place.column),
+            "{problem:?}"
+        );
         let header = format!("{}:{}:{}", place.file, place.line, place.column);
         assert!(shown.contains(&header), "{header} is not in\n{shown}");
-        assert!(shown.contains(&problem.hint), "{} is not in\n{shown}", problem.hint);
+        assert!(
+            shown.contains(&problem.hint),
+            "{} is not in\n{shown}",
+            problem.hint
+        );
     }
 }
 
@@ -154,8 +178,14 @@ fn a_vehicle_without_mistakes_is_read() {
     let mut document = Document::parse("good.toml", text).unwrap();
     document.set("clamp.map.pressure_bar=20").unwrap();
     let keys = read(&document).unwrap();
-    assert!(keys.iter().all(|info| !info.unit.is_empty() && !info.allowed.is_empty() && !info.doc.is_empty()));
-    assert!(keys.iter().any(|info| info.key == "vehicle.mass_kg" && info.si == Some(1200.0)));
+    assert!(
+        keys.iter()
+            .all(|info| !info.unit.is_empty() && !info.allowed.is_empty() && !info.doc.is_empty())
+    );
+    assert!(
+        keys.iter()
+            .any(|info| info.key == "vehicle.mass_kg" && info.si == Some(1200.0))
+    );
 }
 
 /// Pieces of the language and of the vehicle above, so that many texts get past the parser.
@@ -213,11 +243,35 @@ fn piece() -> impl Strategy<Value = String> {
 }
 
 fn line() -> impl Strategy<Value = String> {
-    let keys =
-        ["belt", "belt.band_offset_mm", "vehicle.mass_kg", "vehicle.name", "clamp", "clamp.map", "lists.points", "x", "clamp.map.value"];
-    let values =
-        ["3", "nan", "\"map\"", "\"é\"", "[]", "[[]]", "{}", "{ value = 3 }", "{ value = {} }", "{ map = {} }", "1979-05-27", "2,4"];
-    (proptest::sample::select(keys.to_vec()), proptest::sample::select(values.to_vec()))
+    let keys = [
+        "belt",
+        "belt.band_offset_mm",
+        "vehicle.mass_kg",
+        "vehicle.name",
+        "clamp",
+        "clamp.map",
+        "lists.points",
+        "x",
+        "clamp.map.value",
+    ];
+    let values = [
+        "3",
+        "nan",
+        "\"map\"",
+        "\"é\"",
+        "[]",
+        "[[]]",
+        "{}",
+        "{ value = 3 }",
+        "{ value = {} }",
+        "{ map = {} }",
+        "1979-05-27",
+        "2,4",
+    ];
+    (
+        proptest::sample::select(keys.to_vec()),
+        proptest::sample::select(values.to_vec()),
+    )
         .prop_map(|(key, value)| format!("{key} = {value}\n"))
 }
 

@@ -1,6 +1,11 @@
 //! Continuity: every loss, the pressure, the engine speed and the slip change a little when an input changes a little, across
 //! every change of regime. Property: the largest difference between neighbours nearly halves when the step is halved.
-#![allow(clippy::unwrap_used, clippy::too_many_lines, clippy::print_stdout, reason = "tests say what they found")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::too_many_lines,
+    clippy::print_stdout,
+    reason = "tests say what they found"
+)]
 
 mod common;
 
@@ -11,7 +16,17 @@ use cvtcycle::thermal::{COOLANT, Heat, HeatInput, SUMP};
 use cvtcycle::transmission::{Drive, Transmission};
 
 /// What must be continuous: losses W, engine speed rad/s, flywheel torque Nm, throttle, pressure bar, slip, output W, brake W, deficit W.
-const EXTRA: [&str; 9] = ["engine_speed", "flywheel_torque", "throttle", "pressure", "slip", "output", "brake", "deficit", NOT_CONVERGED];
+const EXTRA: [&str; 9] = [
+    "engine_speed",
+    "flywheel_torque",
+    "throttle",
+    "pressure",
+    "slip",
+    "output",
+    "brake",
+    "deficit",
+    NOT_CONVERGED,
+];
 /// 1 where the solve gave up.
 const NOT_CONVERGED: &str = "not_converged";
 const COUNT: usize = Component::COUNT + EXTRA.len();
@@ -37,11 +52,20 @@ fn values(d: &Drive) -> [f64; COUNT] {
 
 /// Differences below these come from the rest that the solve leaves, in the unit of the value.
 fn noise(k: usize, scale: f64) -> f64 {
-    if k < Component::COUNT { 2e-2 + 1e-7 * scale } else { 1e-5 + 2e-6 * scale }
+    if k < Component::COUNT {
+        2e-2 + 1e-7 * scale
+    } else {
+        1e-5 + 2e-6 * scale
+    }
 }
 
 /// Largest difference between neighbours of each value, where it lies, and the largest value.
-fn largest(step: f64, from: f64, to: f64, f: &dyn Fn(f64) -> [f64; COUNT]) -> [(f64, f64, f64); COUNT] {
+fn largest(
+    step: f64,
+    from: f64,
+    to: f64,
+    f: &dyn Fn(f64) -> [f64; COUNT],
+) -> [(f64, f64, f64); COUNT] {
     let n = ((to - from) / step).round() as usize;
     let mut worst = [(0.0f64, f64::NAN, 0.0f64); COUNT];
     let mut last = f(from);
@@ -61,17 +85,30 @@ fn largest(step: f64, from: f64, to: f64, f: &dyn Fn(f64) -> [f64; COUNT]) -> [(
 }
 
 /// Compares the largest differences of a step and of half of it; a jump keeps its size.
-fn check(label: &str, step: f64, from: f64, to: f64, f: &dyn Fn(f64) -> [f64; COUNT], jumps: &mut Vec<String>) {
+fn check(
+    label: &str,
+    step: f64,
+    from: f64,
+    to: f64,
+    f: &dyn Fn(f64) -> [f64; COUNT],
+    jumps: &mut Vec<String>,
+) {
     let (a, b) = (largest(step, from, to, f), largest(0.5 * step, from, to, f));
     let names = component_names();
     for k in 0..COUNT {
-        let name = if k < Component::COUNT { names[k] } else { EXTRA[k - Component::COUNT] };
+        let name = if k < Component::COUNT {
+            names[k]
+        } else {
+            EXTRA[k - Component::COUNT]
+        };
         if name == NOT_CONVERGED && b[k].2 > 0.0 {
             jumps.push(format!("{label}: the solve gives up, near {:.5}", b[k].1));
         } else if b[k].0.is_nan() || b[k].0 > 0.6 * a[k].0 + noise(k, a[k].2) {
             // Under the following clamp laws stretches are narrower than the step: steep, not a jump, if the next halving shrinks them.
             let following = FOLLOWING.iter().any(|(name, _)| label.starts_with(name));
-            if following && largest(0.25 * step, from, to, f)[k].0 <= 0.6 * b[k].0 + noise(k, a[k].2) {
+            if following
+                && largest(0.25 * step, from, to, f)[k].0 <= 0.6 * b[k].0 + noise(k, a[k].2)
+            {
                 continue;
             }
             jumps.push(format!(
@@ -83,7 +120,12 @@ fn check(label: &str, step: f64, from: f64, to: f64, f: &dyn Fn(f64) -> [f64; CO
 }
 
 fn report(jumps: &[String]) {
-    assert!(jumps.is_empty(), "{} jumps:\n{}", jumps.len(), jumps.join("\n"));
+    assert!(
+        jumps.is_empty(),
+        "{} jumps:\n{}",
+        jumps.len(),
+        jumps.join("\n")
+    );
 }
 
 /// CVTs with the Rover's clamp law, and with the parts whose control changes regime.
@@ -91,39 +133,87 @@ const SHIPPED: [(&str, &[&str]); 4] = [
     ("map", &[]),
     ("dual_cavity", &["transmission.cvt.pump.kind=dual_cavity"]),
     ("variable", &["transmission.cvt.pump.kind=variable"]),
-    ("uncompensated", &["transmission.cvt.variator.compensated=false"]),
+    (
+        "uncompensated",
+        &["transmission.cvt.variator.compensated=false"],
+    ),
 ];
 
 /// CVTs whose clamp follows the torque, so that pressure takes part in every change of regime.
-const FOLLOWING: [(&str, &[&str]); 2] =
-    [("torque_following", &["transmission.cvt.clamp=torque_following"]), ("slip_limited", &["transmission.cvt.clamp=slip_limited"])];
+const FOLLOWING: [(&str, &[&str]); 2] = [
+    (
+        "torque_following",
+        &["transmission.cvt.clamp=torque_following"],
+    ),
+    ("slip_limited", &["transmission.cvt.clamp=slip_limited"]),
+];
 
 fn benches(variants: &[(&'static str, &[&str])]) -> Vec<(&'static str, Bench)> {
-    variants.iter().map(|(name, sets)| (*name, Bench::new(&car("rover_216_cvt", sets)))).collect()
+    variants
+        .iter()
+        .map(|(name, sets)| (*name, Bench::new(&car("rover_216_cvt", sets))))
+        .collect()
 }
 
 fn sweep_ratio(name: &str, bench: &Bench, jumps: &mut Vec<String>) {
-    for (rpm, input_nm) in [(2000.0, -12.0), (2000.0, 0.0), (2000.0, 40.0), (2000.0, 100.0), (4000.0, 60.0)] {
+    for (rpm, input_nm) in [
+        (2000.0, -12.0),
+        (2000.0, 0.0),
+        (2000.0, 40.0),
+        (2000.0, 100.0),
+        (4000.0, 60.0),
+    ] {
         let f = |ratio: f64| {
             let wheel_rad_s = rpm * RPM / bench.overall(ratio);
             let wheel_nm = input_nm * bench.overall(ratio);
-            values(&bench.solve(&Setting { ratio, wheel_rad_s, wheel_nm, ..Setting::default() }))
+            values(&bench.solve(&Setting {
+                ratio,
+                wheel_rad_s,
+                wheel_nm,
+                ..Setting::default()
+            }))
         };
-        check(&format!("{name}, ratio at {rpm} rpm {input_nm} Nm"), 1e-3, 0.42, 2.45, &f, jumps);
+        check(
+            &format!("{name}, ratio at {rpm} rpm {input_nm} Nm"),
+            1e-3,
+            0.42,
+            2.45,
+            &f,
+            jumps,
+        );
     }
 }
 
 fn sweep_torque(name: &str, bench: &Bench, jumps: &mut Vec<String>) {
-    for (ratio, rpm) in
-        [(2.4169, 1500.0), (2.35, 3000.0), (1.0, 2000.0), (1.004, 2000.0), (0.7, 1100.0), (0.4137, 2500.0), (0.4137, 1000.0)]
-    {
+    for (ratio, rpm) in [
+        (2.4169, 1500.0),
+        (2.35, 3000.0),
+        (1.0, 2000.0),
+        (1.004, 2000.0),
+        (0.7, 1100.0),
+        (0.4137, 2500.0),
+        (0.4137, 1000.0),
+    ] {
         for coupled in [true, false] {
             let overall = bench.overall(ratio);
             let f = |input_nm: f64| {
                 let wheel_rad_s = rpm * RPM / overall;
-                values(&bench.solve(&Setting { ratio, wheel_rad_s, wheel_nm: input_nm * overall, coupled, ..Setting::default() }))
+                values(&bench.solve(&Setting {
+                    ratio,
+                    wheel_rad_s,
+                    wheel_nm: input_nm * overall,
+                    coupled,
+                    ..Setting::default()
+                }))
             };
-            check(&format!("{name}, torque at ratio {ratio} {rpm} rpm coupled {coupled}"), 0.1, -60.0, 180.0, &f, jumps);
+            check(
+                &format!("{name}, torque at ratio {ratio} {rpm} rpm coupled {coupled}"),
+                0.1,
+                -60.0,
+                180.0,
+                &f,
+                jumps,
+            );
         }
     }
 }
@@ -132,7 +222,9 @@ fn sweep_speed(name: &str, bench: &Bench, torques_nm: &[f64], jumps: &mut Vec<St
     for ratio in [2.4169, 1.2, 0.4137] {
         let overall = bench.overall(ratio);
         for &input_nm in torques_nm {
-            for (coupled, engine_degc) in [(true, -10.0), (true, 90.0), (false, -10.0), (false, 90.0)] {
+            for (coupled, engine_degc) in
+                [(true, -10.0), (true, 90.0), (false, -10.0), (false, 90.0)]
+            {
                 let f = |rpm: f64| {
                     let s = Setting {
                         ratio,
@@ -144,7 +236,9 @@ fn sweep_speed(name: &str, bench: &Bench, torques_nm: &[f64], jumps: &mut Vec<St
                     };
                     values(&bench.solve(&s))
                 };
-                let label = format!("{name}, speed at ratio {ratio} {input_nm} Nm coupled {coupled} engine {engine_degc} degC");
+                let label = format!(
+                    "{name}, speed at ratio {ratio} {input_nm} Nm coupled {coupled} engine {engine_degc} degC"
+                );
                 check(&label, 1.0, 0.5, 3500.0, &f, jumps);
             }
         }
@@ -152,7 +246,12 @@ fn sweep_speed(name: &str, bench: &Bench, torques_nm: &[f64], jumps: &mut Vec<St
 }
 
 fn sweep_temperature(name: &str, bench: &Bench, jumps: &mut Vec<String>) {
-    for (ratio, rpm, input_nm) in [(2.4169, 1500.0, 20.0), (0.4137, 2500.0, 20.0), (0.4137, 3900.0, -10.0), (1.5, 950.0, 10.0)] {
+    for (ratio, rpm, input_nm) in [
+        (2.4169, 1500.0, 20.0),
+        (0.4137, 2500.0, 20.0),
+        (0.4137, 3900.0, -10.0),
+        (1.5, 950.0, 10.0),
+    ] {
         for coupled in [true, false] {
             let overall = bench.overall(ratio);
             let f = |t: f64| {
@@ -167,7 +266,16 @@ fn sweep_temperature(name: &str, bench: &Bench, jumps: &mut Vec<String>) {
                 };
                 values(&bench.solve(&s))
             };
-            check(&format!("{name}, temperature at ratio {ratio} {rpm} rpm {input_nm} Nm coupled {coupled}"), 0.1, -30.0, 120.0, &f, jumps);
+            check(
+                &format!(
+                    "{name}, temperature at ratio {ratio} {rpm} rpm {input_nm} Nm coupled {coupled}"
+                ),
+                0.1,
+                -30.0,
+                120.0,
+                &f,
+                jumps,
+            );
         }
     }
 }
@@ -195,7 +303,14 @@ fn continuous_in_torque() {
 /// Speed from standstill through engagement, idle speed, release and lock-up, pulling and braking, coming from either side.
 #[test]
 fn continuous_in_speed() {
-    over(&SHIPPED, |name, bench, jumps| sweep_speed(name, bench, &[-30.0, -6.0, 0.0, 3.0, 25.0, 90.0, 160.0], jumps));
+    over(&SHIPPED, |name, bench, jumps| {
+        sweep_speed(
+            name,
+            bench,
+            &[-30.0, -6.0, 0.0, 3.0, 25.0, 90.0, 160.0],
+            jumps,
+        )
+    });
 }
 
 /// Temperature of oil, belt and engine from -30 to 120 degC, across idle raise, enrichment's end, band floor and film lift-off.
@@ -222,25 +337,53 @@ fn following_clamps_are_continuous_in_torque() {
 /// The same over speed.
 #[test]
 fn following_clamps_are_continuous_in_speed() {
-    over(&FOLLOWING, |name, bench, jumps| sweep_speed(name, bench, &[-30.0, -6.0, 25.0, 90.0], jumps));
+    over(&FOLLOWING, |name, bench, jumps| {
+        sweep_speed(name, bench, &[-30.0, -6.0, 25.0, 90.0], jumps)
+    });
 }
 
 /// Torque up to the belt's capacity and into gross slip, with a clamp that is far too weak.
 #[test]
 fn continuous_into_gross_slip() {
     let mut jumps = Vec::new();
-    let sets =
-        ["transmission.cvt.clamp.map.base_bar=6", "transmission.cvt.clamp.map.throttle_bar=0", "transmission.cvt.pressure.floor_bar=1"];
+    let sets = [
+        "transmission.cvt.clamp.map.base_bar=6",
+        "transmission.cvt.clamp.map.throttle_bar=0",
+        "transmission.cvt.pressure.floor_bar=1",
+    ];
     let bench = Bench::new(&car("rover_216_cvt", &sets));
     let mut slipped = 0;
-    for (ratio, rpm) in [(2.4169, 2000.0), (1.3, 2000.0), (0.9, 2500.0), (0.4137, 3000.0)] {
+    for (ratio, rpm) in [
+        (2.4169, 2000.0),
+        (1.3, 2000.0),
+        (0.9, 2500.0),
+        (0.4137, 3000.0),
+    ] {
         let overall = bench.overall(ratio);
         let solve = |input_nm: f64| {
-            bench.solve(&Setting { ratio, wheel_rad_s: rpm * RPM / overall, wheel_nm: input_nm * overall, ..Setting::default() })
+            bench.solve(&Setting {
+                ratio,
+                wheel_rad_s: rpm * RPM / overall,
+                wheel_nm: input_nm * overall,
+                ..Setting::default()
+            })
         };
-        slipped += (0..180).filter(|i| solve(f64::from(*i)).flags.contains(cvtcycle::results::Flags::GROSS_SLIP)).count();
+        slipped += (0..180)
+            .filter(|i| {
+                solve(f64::from(*i))
+                    .flags
+                    .contains(cvtcycle::results::Flags::GROSS_SLIP)
+            })
+            .count();
         // Half the step of the other sweeps: slip runs into its bound within 0.1 Nm.
-        check(&format!("weak clamp, torque at ratio {ratio}"), 0.05, -40.0, 180.0, &|t| values(&solve(t)), &mut jumps);
+        check(
+            &format!("weak clamp, torque at ratio {ratio}"),
+            0.05,
+            -40.0,
+            180.0,
+            &|t| values(&solve(t)),
+            &mut jumps,
+        );
     }
     assert!(slipped > 20, "gross slip was reached {slipped} times");
     report(&jumps);
@@ -249,18 +392,42 @@ fn continuous_into_gross_slip() {
 /// Rolling infinitely slowly without torque is standing: what a standing car loses is the limit of what a creeping one loses.
 #[test]
 fn standstill_is_the_limit_of_creeping() {
-    for (name, bench) in &benches(&SHIPPED).into_iter().chain(benches(&FOLLOWING)).collect::<Vec<_>>() {
+    for (name, bench) in &benches(&SHIPPED)
+        .into_iter()
+        .chain(benches(&FOLLOWING))
+        .collect::<Vec<_>>()
+    {
         let ratio = 2.4169;
-        let stands = values(&bench.solve(&Setting { ratio, wheel_rad_s: 0.0, coupled: false, ..Setting::default() }));
-        let creeps = values(&bench.solve(&Setting { ratio, wheel_rad_s: 1e-7, wheel_nm: -1.0, coupled: false, ..Setting::default() }));
+        let stands = values(&bench.solve(&Setting {
+            ratio,
+            wheel_rad_s: 0.0,
+            coupled: false,
+            ..Setting::default()
+        }));
+        let creeps = values(&bench.solve(&Setting {
+            ratio,
+            wheel_rad_s: 1e-7,
+            wheel_nm: -1.0,
+            coupled: false,
+            ..Setting::default()
+        }));
         let names = component_names();
         for k in 0..COUNT {
-            let label = if k < Component::COUNT { names[k] } else { EXTRA[k - Component::COUNT] };
+            let label = if k < Component::COUNT {
+                names[k]
+            } else {
+                EXTRA[k - Component::COUNT]
+            };
             if label == "slip" {
                 continue; // a standing belt is said not to slip
             }
             let scale = stands[k].abs() + creeps[k].abs();
-            assert!((stands[k] - creeps[k]).abs() < 1e-4 * scale + 1e-4, "{name} {label}: {} standing, {} creeping", stands[k], creeps[k]);
+            assert!(
+                (stands[k] - creeps[k]).abs() < 1e-4 * scale + 1e-4,
+                "{name} {label}: {} standing, {} creeping",
+                stands[k],
+                creeps[k]
+            );
         }
     }
 }
@@ -290,14 +457,35 @@ fn manual_box_is_continuous() {
             };
             for rpm in [700.0, 1100.0, 2500.0] {
                 let f = |nm: f64| values(&bench.solve(&setting(rpm, nm, 60.0)));
-                check(&format!("manual, torque in gear {number} at {rpm} rpm coupled {coupled}"), 0.1, -60.0, 180.0, &f, &mut jumps);
+                check(
+                    &format!("manual, torque in gear {number} at {rpm} rpm coupled {coupled}"),
+                    0.1,
+                    -60.0,
+                    180.0,
+                    &f,
+                    &mut jumps,
+                );
             }
             for nm in [-30.0, -1.0, 0.0, 25.0, 160.0] {
                 let f = |rpm: f64| values(&bench.solve(&setting(rpm, nm, 60.0)));
-                check(&format!("manual, speed in gear {number} at {nm} Nm coupled {coupled}"), 1.0, 0.5, 3500.0, &f, &mut jumps);
+                check(
+                    &format!("manual, speed in gear {number} at {nm} Nm coupled {coupled}"),
+                    1.0,
+                    0.5,
+                    3500.0,
+                    &f,
+                    &mut jumps,
+                );
             }
             let f = |t: f64| values(&bench.solve(&setting(1800.0, 30.0, t)));
-            check(&format!("manual, temperature in gear {number} coupled {coupled}"), 0.1, -30.0, 120.0, &f, &mut jumps);
+            check(
+                &format!("manual, temperature in gear {number} coupled {coupled}"),
+                0.1,
+                -30.0,
+                120.0,
+                &f,
+                &mut jumps,
+            );
         }
     }
     report(&jumps);
@@ -308,7 +496,13 @@ fn manual_box_is_continuous() {
 #[test]
 fn heat_to_the_air_is_continuous() {
     let mut jumps = Vec::new();
-    for (name, sets) in [("always open", &[][..]), ("bypass below 60 degC", &["thermal.cooler.bypass_below_degc=60"][..])] {
+    for (name, sets) in [
+        ("always open", &[][..]),
+        (
+            "bypass below 60 degC",
+            &["thermal.cooler.bypass_below_degc=60"][..],
+        ),
+    ] {
         let setup = car("rover_216_cvt", sets);
         let sim = setup.car(ZERO);
         for node in [COOLANT, SUMP] {
@@ -332,7 +526,14 @@ fn heat_to_the_air_is_continuous() {
                 v[2..7].copy_from_slice(&s.heat.node_k);
                 v
             };
-            check(&format!("{name}, node {node} (first two values: to air, stored)"), 0.1, -30.0, 120.0, &f, &mut jumps);
+            check(
+                &format!("{name}, node {node} (first two values: to air, stored)"),
+                0.1,
+                -30.0,
+                120.0,
+                &f,
+                &mut jumps,
+            );
         }
     }
     report(&jumps);

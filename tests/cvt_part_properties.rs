@@ -1,7 +1,11 @@
 //! Properties of the CVT's other parts, each by itself: pump, shaft, clutch drag, final drive, launch clutch.
 //!
 //! Truth comes from conservation (hydraulic and shaft power), from algebra on the labelled equations and from limits.
-#![allow(missing_docs, clippy::float_cmp, reason = "some equalities hold to the last bit")]
+#![allow(
+    missing_docs,
+    clippy::float_cmp,
+    reason = "some equalities hold to the last bit"
+)]
 
 mod common;
 
@@ -17,7 +21,11 @@ use proptest::test_runner::RngSeed;
 const RPM: f64 = std::f64::consts::PI / 30.0;
 
 fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2001), ..ProptestConfig::with_cases(cases) }
+    ProptestConfig {
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(2001),
+        ..ProptestConfig::with_cases(cases)
+    }
 }
 
 /// Size of the largest jump of `f` between neighbours after halving each pair towards its larger difference.
@@ -29,7 +37,11 @@ fn largest_jump(from: f64, to: f64, f: &dyn Fn(f64) -> f64) -> f64 {
         for _ in 0..40 {
             let middle = 0.5 * (a.0 + b.0);
             let middle = (middle, f(middle));
-            if (middle.1 - a.1).abs() > (b.1 - middle.1).abs() { b = middle } else { a = middle }
+            if (middle.1 - a.1).abs() > (b.1 - middle.1).abs() {
+                b = middle
+            } else {
+                a = middle
+            }
         }
         (b.1 - a.1).abs()
     };
@@ -58,23 +70,32 @@ fn any_heating() -> impl Strategy<Value = FilmHeating> {
 fn any_pump() -> impl Strategy<Value = Pump> {
     let inlet = prop_oneof![1 => Just(0.0), 3 => 1e6..1e9f64];
     let heat = (any_heating(), inlet);
-    (any_kind(), 2e-6..40e-6f64, 0.0..0.3f64, 0.0..1e5f64, 0.0..2.0f64, 0.0..5e5f64, heat).prop_map(|all| {
-        let (kind, cc, friction, viscous, t_c, drop, (heating, inlet_pa_s_m3)) = all;
-        Pump {
-            heating,
-            inlet_pa_s_m3,
-            kind,
-            displacement_m3_rad: cc / std::f64::consts::TAU,
-            friction,
-            viscous,
-            viscous_exponent: 0.9,
-            constant_nm: t_c,
-            line_drop_pa: drop,
-            residual_pa: 1e5,
-            lubrication_m3_s: 5e-5,
-            leakage_m3_s_pa: 1.7e-11,
-        }
-    })
+    (
+        any_kind(),
+        2e-6..40e-6f64,
+        0.0..0.3f64,
+        0.0..1e5f64,
+        0.0..2.0f64,
+        0.0..5e5f64,
+        heat,
+    )
+        .prop_map(|all| {
+            let (kind, cc, friction, viscous, t_c, drop, (heating, inlet_pa_s_m3)) = all;
+            Pump {
+                heating,
+                inlet_pa_s_m3,
+                kind,
+                displacement_m3_rad: cc / std::f64::consts::TAU,
+                friction,
+                viscous,
+                viscous_exponent: 0.9,
+                constant_nm: t_c,
+                line_drop_pa: drop,
+                residual_pa: 1e5,
+                lubrication_m3_s: 5e-5,
+                leakage_m3_s_pa: 1.7e-11,
+            }
+        })
 }
 
 /// The pump's oil at a viscous factor; the inlet's drop follows it, as both follow the viscosity.
@@ -84,7 +105,12 @@ fn oil(pump: &Pump, factor: f64) -> PumpNow {
 
 /// Speed rad/s, pressure Pa, need m3/s, viscous factor.
 fn any_duty() -> impl Strategy<Value = (f64, f64, f64, f64)> {
-    (prop_oneof![1 => Just(0.0), 9 => 0.0..700.0f64], 0.0..60e5f64, prop_oneof![1 => Just(0.0), 9 => 0.0..1e-3f64], 0.1..200.0f64)
+    (
+        prop_oneof![1 => Just(0.0), 9 => 0.0..700.0f64],
+        0.0..60e5f64,
+        prop_oneof![1 => Just(0.0), 9 => 0.0..1e-3f64],
+        0.1..200.0f64,
+    )
 }
 
 proptest! {
@@ -140,7 +166,11 @@ proptest! {
 /// From standstill, through the speed where the flow first covers the need, to where the smaller displacement does.
 #[test]
 fn pump_is_continuous_in_speed_and_need() {
-    for kind in [PumpKind::Fixed, PumpKind::DualCavity { share: 0.5 }, PumpKind::Variable { least: 0.2 }] {
+    for kind in [
+        PumpKind::Fixed,
+        PumpKind::DualCavity { share: 0.5 },
+        PumpKind::Variable { least: 0.2 },
+    ] {
         let pump = Pump {
             kind,
             displacement_m3_rad: 9.8e-6 / std::f64::consts::TAU,
@@ -158,10 +188,17 @@ fn pump_is_continuous_in_speed_and_need() {
         for factor in [0.5, 20.0] {
             let now = oil(&pump, factor);
             let jump = largest_jump(0.0, 600.0, &|w| pump.state(&now, w, 20e5, 1e-4).torque_nm);
-            assert!(jump < 1e-6, "{kind:?}: torque jumps by {jump} Nm over speed");
-            let jump = largest_jump(0.0, 1e-3, &|need| pump.state(&now, 200.0, 20e5, need).torque_nm);
+            assert!(
+                jump < 1e-6,
+                "{kind:?}: torque jumps by {jump} Nm over speed"
+            );
+            let jump = largest_jump(0.0, 1e-3, &|need| {
+                pump.state(&now, 200.0, 20e5, need).torque_nm
+            });
             assert!(jump < 1e-6, "{kind:?}: torque jumps by {jump} Nm over need");
-            let jump = largest_jump(0.0, 600.0, &|w| 1e6 * pump.state(&now, w, 20e5, 1e-4).working_m3_s);
+            let jump = largest_jump(0.0, 600.0, &|w| {
+                1e6 * pump.state(&now, w, 20e5, 1e-4).working_m3_s
+            });
             assert!(jump < 1e-6, "{kind:?}: flow jumps by {jump} cm3/s");
         }
     }
@@ -172,24 +209,33 @@ fn pump_is_continuous_in_speed_and_need() {
 fn any_spin() -> impl Strategy<Value = Spin> {
     let exponents = (0.0..1.5f64, 0.0..1.5f64, 0.0..1.5f64);
     let heating = (any_heating(), any_heating());
-    (exponents, 0.0..3.0f64, 0.0..1e-3f64, 0.0..1.0f64, 0.0..3.0f64, 0.8..=1.0f64, heating).prop_map(|all| {
-        let (m, constant, slope, clutch, drive, eta, heating) = all;
-        Spin {
-            shaft_heating: heating.0,
-            drive_heating: heating.1,
-            shaft_constant_nm: constant,
-            shaft_viscous_nm_s: slope,
-            shaft_exponent: m.0,
-            clutch_nm: clutch,
-            clutch_exponent: m.1,
-            clutch_cap_nm: 0.5,
-            drive_boundary_nm: drive,
-            drive_scale_rad_s: 2000.0 * RPM,
-            drive_viscous_nm: 0.29,
-            drive_exponent: m.2,
-            mesh_efficiency: eta,
-        }
-    })
+    (
+        exponents,
+        0.0..3.0f64,
+        0.0..1e-3f64,
+        0.0..1.0f64,
+        0.0..3.0f64,
+        0.8..=1.0f64,
+        heating,
+    )
+        .prop_map(|all| {
+            let (m, constant, slope, clutch, drive, eta, heating) = all;
+            Spin {
+                shaft_heating: heating.0,
+                drive_heating: heating.1,
+                shaft_constant_nm: constant,
+                shaft_viscous_nm_s: slope,
+                shaft_exponent: m.0,
+                clutch_nm: clutch,
+                clutch_exponent: m.1,
+                clutch_cap_nm: 0.5,
+                drive_boundary_nm: drive,
+                drive_scale_rad_s: 2000.0 * RPM,
+                drive_viscous_nm: 0.29,
+                drive_exponent: m.2,
+                mesh_efficiency: eta,
+            }
+        })
 }
 
 proptest! {
@@ -242,12 +288,18 @@ proptest! {
 // ---------------------------------------------------------------- launch clutch
 
 fn any_clutch() -> impl Strategy<Value = FrictionClutch> {
-    (500.0..2500.0f64, 1e-6..1e-3f64, 0.0..20.0f64, 0.0..2000.0f64).prop_map(|(engage, gain, creep_nm, release)| FrictionClutch {
-        engage_rad_s: engage * RPM,
-        gain_nm_s2: gain / RPM / RPM,
-        creep_nm,
-        release_rad_s: release * RPM,
-    })
+    (
+        500.0..2500.0f64,
+        1e-6..1e-3f64,
+        0.0..20.0f64,
+        0.0..2000.0f64,
+    )
+        .prop_map(|(engage, gain, creep_nm, release)| FrictionClutch {
+            engage_rad_s: engage * RPM,
+            gain_nm_s2: gain / RPM / RPM,
+            creep_nm,
+            release_rad_s: release * RPM,
+        })
 }
 
 proptest! {
@@ -296,14 +348,22 @@ proptest! {
 // ---------------------------------------------------------------- end stop of the primary, from the input file on
 
 fn stop(from: f64, to: f64) -> [String; 2] {
-    [format!("transmission.cvt.variator.stop_from_ratio={from}"), format!("transmission.cvt.variator.stop_to_ratio={to}")]
+    [
+        format!("transmission.cvt.variator.stop_from_ratio={from}"),
+        format!("transmission.cvt.variator.stop_to_ratio={to}"),
+    ]
 }
 
 /// A stop that is met before it begins is said to be wrong, and not read the other way round.
 #[test]
 fn an_end_stop_the_wrong_way_round_is_a_problem() {
-    let said = try_car("rover_216_cvt", &stop(2.4, 2.3)).err().unwrap_or_default();
-    assert!(said.contains("stop_to_ratio") && said.contains("1 problem"), "{said}");
+    let said = try_car("rover_216_cvt", &stop(2.4, 2.3))
+        .err()
+        .unwrap_or_default();
+    assert!(
+        said.contains("stop_to_ratio") && said.contains("1 problem"),
+        "{said}"
+    );
 }
 
 /// A stop without a ramp, at the very ratio at which the car pulls away, still drives, and moves fuel by less than 0.5 %.
@@ -311,8 +371,18 @@ fn an_end_stop_the_wrong_way_round_is_a_problem() {
 fn an_end_stop_without_a_ramp_drives() {
     let fuel = |sets: &[String]| {
         let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
-        drive(&car("rover_216_cvt", &sets), &cycle("ece15_eudc"), &at(20.0, Start::Soak)).totals.total().fuel_kg
+        drive(
+            &car("rover_216_cvt", &sets),
+            &cycle("ece15_eudc"),
+            &at(20.0, Start::Soak),
+        )
+        .totals
+        .total()
+        .fuel_kg
     };
     let (ramp, step) = (fuel(&[]), fuel(&stop(2.4169, 2.4169)));
-    assert!((step / ramp - 1.0).abs() < 5e-3, "{ramp} kg with the ramp, {step} kg without");
+    assert!(
+        (step / ramp - 1.0).abs() < 5e-3,
+        "{ramp} kg with the ramp, {step} kg without"
+    );
 }

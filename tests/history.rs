@@ -25,9 +25,14 @@ struct Bits {
 fn bits(history: &History) -> Bits {
     let numbers = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect();
     Bits {
-        columns: history.columns().map(|(column, of)| (column.name, numbers(of))).collect(),
+        columns: history
+            .columns()
+            .map(|(column, of)| (column.name, numbers(of)))
+            .collect(),
         phases: history.phases().to_vec(),
-        steps: (0..history.len()).map(|i| (history.phase(i), history.flags(i))).collect(),
+        steps: (0..history.len())
+            .map(|i| (history.phase(i), history.flags(i)))
+            .collect(),
     }
 }
 
@@ -41,7 +46,11 @@ fn csv(rows: &[Row], cvt: bool, parts: &[Component], phases: &[String]) -> Vec<u
 fn driven(name: &str, cycle: &Cycle) -> (Vec<Row>, bool, Vec<Component>) {
     let setup = car(name, &[]);
     let rows = soak_rows(&setup, cycle, 20.0).rows;
-    (rows, setup.transmission().is_cvt(), components(setup.transmission()))
+    (
+        rows,
+        setup.transmission().is_cvt(),
+        components(setup.transmission()),
+    )
 }
 
 #[test]
@@ -52,24 +61,46 @@ fn what_is_written_is_read_bit_by_bit() {
         for cycle in [cycle("ece15_eudc"), cycle("ftp75"), common::hill()] {
             let (rows, cvt, parts) = driven(name, &cycle);
             let odd = ["a \"quoted\", odd name".to_owned()];
-            let phases = if cycle.phases.is_empty() { &odd[..] } else { &cycle.phases };
+            let phases = if cycle.phases.is_empty() {
+                &odd[..]
+            } else {
+                &cycle.phases
+            };
             let columns = columns_for(cvt, &parts);
             let history = History::of(&rows, &columns, phases);
-            assert_eq!((history.len(), history.is_cvt(), history.components()), (rows.len(), cvt, parts.clone()));
+            assert_eq!(
+                (history.len(), history.is_cvt(), history.components()),
+                (rows.len(), cvt, parts.clone())
+            );
             let read = History::read_csv("trace.csv", &csv(&rows, cvt, &parts, phases)).unwrap();
             assert_eq!(bits(&read), bits(&history), "{name}");
             write_trace_parquet(fs::File::create(&path).unwrap(), &columns, &rows, phases).unwrap();
-            assert_eq!(bits(&read_trace_parquet(&path).unwrap()), bits(&history), "{name}");
+            assert_eq!(
+                bits(&read_trace_parquet(&path).unwrap()),
+                bits(&history),
+                "{name}"
+            );
             // The rows themselves are the truth.
             for (i, row) in rows.iter().enumerate() {
-                assert_eq!(history.phases()[history.phase(i)], phases[usize::from(row.phase)]);
+                assert_eq!(
+                    history.phases()[history.phase(i)],
+                    phases[usize::from(row.phase)]
+                );
                 assert_eq!(history.flags(i), row.flags);
                 for column in &columns {
                     match (column.get)(row) {
-                        Value::Number(x) if x.is_finite() => assert_eq!(history.column(column.name)[i].to_bits(), (x + 0.0).to_bits()),
+                        Value::Number(x) if x.is_finite() => assert_eq!(
+                            history.column(column.name)[i].to_bits(),
+                            (x + 0.0).to_bits()
+                        ),
                         Value::Number(_) => assert!(history.column(column.name)[i].is_nan()),
-                        Value::Count(n) => assert_eq!(history.column(column.name)[i].to_bits(), f64::from(n).to_bits()),
-                        _ => assert!(!history.has(column.name) && history.column(column.name).is_empty()),
+                        Value::Count(n) => assert_eq!(
+                            history.column(column.name)[i].to_bits(),
+                            f64::from(n).to_bits()
+                        ),
+                        _ => assert!(
+                            !history.has(column.name) && history.column(column.name).is_empty()
+                        ),
                     }
                 }
             }
@@ -86,7 +117,9 @@ fn lines() -> Vec<String> {
 }
 
 fn problems(lines: &[String]) -> Vec<Problem> {
-    History::read_csv("trace_x.csv", lines.join("\n").as_bytes()).map(|_| ()).unwrap_err()
+    History::read_csv("trace_x.csv", lines.join("\n").as_bytes())
+        .map(|_| ())
+        .unwrap_err()
 }
 
 /// Replaces the cell of a column in a line, counted from 1 as editors do.
@@ -110,7 +143,17 @@ fn everything_that_is_wrong_is_told_at_once_with_its_place() {
     replace(&mut bad, 10, "time_s", "");
     bad[11].push_str(",7");
     let found = problems(&bad);
-    let places: Vec<_> = found.iter().map(|p| (p.place.file.as_str(), p.place.line, p.key.as_str(), p.value.as_str())).collect();
+    let places: Vec<_> = found
+        .iter()
+        .map(|p| {
+            (
+                p.place.file.as_str(),
+                p.place.line,
+                p.key.as_str(),
+                p.value.as_str(),
+            )
+        })
+        .collect();
     let file = "trace_x.csv";
     assert_eq!(
         places,
@@ -125,10 +168,25 @@ fn everything_that_is_wrong_is_told_at_once_with_its_place() {
             (file, 12, "", ""),
         ]
     );
-    assert!(found.iter().all(|p| !p.message.is_empty() && p.place.column > 0));
-    assert!(found[2].message.contains("`flying`") && found[2].hint.contains("fuel_cut") && found[3].allowed.contains("above 4"));
+    assert!(
+        found
+            .iter()
+            .all(|p| !p.message.is_empty() && p.place.column > 0)
+    );
+    assert!(
+        found[2].message.contains("`flying`")
+            && found[2].hint.contains("fuel_cut")
+            && found[3].allowed.contains("above 4")
+    );
     // The column counts characters: the bad value stands there.
-    assert_eq!(bad[2].chars().skip(found[1].place.column - 1).take(4).collect::<String>(), "12;5");
+    assert_eq!(
+        bad[2]
+            .chars()
+            .skip(found[1].place.column - 1)
+            .take(4)
+            .collect::<String>(),
+        "12;5"
+    );
 }
 
 #[test]
@@ -158,18 +216,33 @@ fn every_column_that_a_trace_must_have_is_missed() {
         // A car may lack any one of the components.
         match History::read_csv("t.csv", text.as_bytes()) {
             Ok(history) => assert!(name.ends_with("_loss_w") && !history.has(name), "{name}"),
-            Err(found) => assert!(found.len() == 1 && found[0].key == *name && found[0].message.contains("missing"), "{name}: {found:?}"),
+            Err(found) => assert!(
+                found.len() == 1 && found[0].key == *name && found[0].message.contains("missing"),
+                "{name}: {found:?}"
+            ),
         }
     }
-    let twice: Vec<String> = good.iter().map(|line| format!("{line},{}", line.split(',').next().unwrap())).collect();
-    assert!(problems(&twice)[0].message.contains("time_s is there twice"));
+    let twice: Vec<String> = good
+        .iter()
+        .map(|line| format!("{line},{}", line.split(',').next().unwrap()))
+        .collect();
+    assert!(
+        problems(&twice)[0]
+            .message
+            .contains("time_s is there twice")
+    );
 }
 
 #[test]
 fn columns_of_a_newer_version_are_passed_over() {
     let good = lines();
-    let more: Vec<String> = good.iter().enumerate().map(|(i, line)| format!("{line},{}", if i == 0 { "mood" } else { "fine" })).collect();
-    let read = |lines: &[String]| History::read_csv("t.csv", lines.join("\r\n").as_bytes()).unwrap();
+    let more: Vec<String> = good
+        .iter()
+        .enumerate()
+        .map(|(i, line)| format!("{line},{}", if i == 0 { "mood" } else { "fine" }))
+        .collect();
+    let read =
+        |lines: &[String]| History::read_csv("t.csv", lines.join("\r\n").as_bytes()).unwrap();
     assert_eq!(bits(&read(&more)), bits(&read(&good)));
 }
 
@@ -183,10 +256,16 @@ fn what_is_no_trace_is_refused_in_one_line() {
         (b"time_s,\"dt_s\n1,2\n", "not closed"),
     ] {
         let found = History::read_csv("t.csv", bytes).map(|_| ()).unwrap_err();
-        assert!(found.len() == 1 && found[0].message.contains(word), "{found:?}");
+        assert!(
+            found.len() == 1 && found[0].message.contains(word),
+            "{found:?}"
+        );
     }
     let found = problems(&lines()[..1]);
-    assert!(found.len() == 1 && found[0].message.contains("no rows"), "{found:?}");
+    assert!(
+        found.len() == 1 && found[0].message.contains("no rows"),
+        "{found:?}"
+    );
 }
 
 #[test]
@@ -198,14 +277,32 @@ fn a_bad_parquet_trace_is_told_too() {
     fs::write(&path, "time_s,dt_s").unwrap();
     assert_eq!(told().len(), 1);
     let columns = columns_for(true, &[]);
-    let write = |columns: &[_], rows: &[Row]| write_trace_parquet(fs::File::create(&path).unwrap(), columns, rows, &[]).unwrap();
+    let write = |columns: &[_], rows: &[Row]| {
+        write_trace_parquet(fs::File::create(&path).unwrap(), columns, rows, &[]).unwrap()
+    };
     write(&columns, &[]);
     assert!(told()[0].message.contains("no rows"), "{:?}", told());
-    let step = |time_s: f64, dt_s: f64| Row { time_s, dt_s, ..Row::default() };
+    let step = |time_s: f64, dt_s: f64| Row {
+        time_s,
+        dt_s,
+        ..Row::default()
+    };
     write(&columns, &[step(1.0, 1.0), step(3.0, 1.0), step(2.0, -1.0)]);
-    let keys: Vec<String> = told().into_iter().map(|p| format!("{} {}", p.key, p.message)).collect();
-    assert_eq!(keys, ["time_s the time does not rise in row 3", "dt_s the length of the step is not positive in row 3"]);
-    let few: Vec<_> = COLUMNS.iter().filter(|column| column.name == "time_s").collect();
+    let keys: Vec<String> = told()
+        .into_iter()
+        .map(|p| format!("{} {}", p.key, p.message))
+        .collect();
+    assert_eq!(
+        keys,
+        [
+            "time_s the time does not rise in row 3",
+            "dt_s the length of the step is not positive in row 3"
+        ]
+    );
+    let few: Vec<_> = COLUMNS
+        .iter()
+        .filter(|column| column.name == "time_s")
+        .collect();
     write(&few, &[step(1.0, 1.0)]);
     assert!(told().len() > 20 && told().iter().all(|p| p.message.contains("missing")));
     write(&columns, &[step(1.0, 1.0), step(2.0, 1.0)]);

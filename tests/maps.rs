@@ -11,14 +11,26 @@ use cvtcycle::setup::{Options, Setup, load};
 fn car(vehicle: &str, csv: &str, set: &str) -> Result<Setup, String> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("car.toml");
-    std::fs::copy(format!("{}/vehicles/{vehicle}.toml", env!("CARGO_MANIFEST_DIR")), &file).unwrap();
+    std::fs::copy(
+        format!("{}/vehicles/{vehicle}.toml", env!("CARGO_MANIFEST_DIR")),
+        &file,
+    )
+    .unwrap();
     std::fs::write(folder.path().join("map.csv"), csv).unwrap();
-    let options = Options { set: vec![format!("{set}=map.csv")], ..Options::default() };
+    let options = Options {
+        set: vec![format!("{set}=map.csv")],
+        ..Options::default()
+    };
     load(file.to_str().unwrap(), "--vehicle", &options).map_err(|p| render(&p, false))
 }
 
 fn driven(setup: &Setup) -> Outcome {
-    let conditions = Conditions { ambient_k: 298.15, start: Start::Soak, max_dt_s: 1.0, keep_rows: true };
+    let conditions = Conditions {
+        ambient_k: 298.15,
+        start: Start::Soak,
+        max_dt_s: 1.0,
+        keep_rows: true,
+    };
     drive(setup, &embedded("ece15").unwrap(), &conditions)
 }
 
@@ -30,7 +42,11 @@ fn val_a_constant_pump_map() {
     for r in &o.rows {
         let want = 2.0 * r.engine_speed_rad_s;
         let got = r.loss_w[Component::Pump as usize];
-        assert!((got - want).abs() <= 1e-9 * want, "{} s: {got} instead of {want}", r.time_s);
+        assert!(
+            (got - want).abs() <= 1e-9 * want,
+            "{} s: {got} instead of {want}",
+            r.time_s
+        );
     }
     assert!(o.totals.ledger_error < 1e-9);
 }
@@ -40,17 +56,31 @@ fn val_a_constant_pump_map() {
 fn a_belt_map_replaces_every_belt_part() {
     let csv = |scale: f64| {
         let mut text = String::from("ratio,oil_temp_degc,torque_loss_nm\n");
-        for (ratio, temp, loss) in [(0.4, 0.0, 6.0), (0.4, 90.0, 5.0), (2.5, 0.0, 4.0), (2.5, 90.0, 3.0)] {
+        for (ratio, temp, loss) in [
+            (0.4, 0.0, 6.0),
+            (0.4, 90.0, 5.0),
+            (2.5, 0.0, 4.0),
+            (2.5, 90.0, 3.0),
+        ] {
             text += &format!("{ratio},{temp},{}\n", loss * scale);
         }
         text
     };
     let key = "transmission.cvt.maps.belt";
-    let (one, two) = (driven(&car("rover_216_cvt", &csv(1.0), key).unwrap()), driven(&car("rover_216_cvt", &csv(2.0), key).unwrap()));
+    let (one, two) = (
+        driven(&car("rover_216_cvt", &csv(1.0), key).unwrap()),
+        driven(&car("rover_216_cvt", &csv(2.0), key).unwrap()),
+    );
     let (a, b) = (one.totals.total(), two.totals.total());
     let listed = components(car("rover_216_cvt", &csv(1.0), key).unwrap().transmission());
     assert!(listed.contains(&Component::BeltMap));
-    for part in [Component::BeltBand, Component::BeltFilm, Component::BeltSlip, Component::BeltWedge, Component::BeltPenetration] {
+    for part in [
+        Component::BeltBand,
+        Component::BeltFilm,
+        Component::BeltSlip,
+        Component::BeltWedge,
+        Component::BeltPenetration,
+    ] {
         assert!(a.loss_j[part as usize].abs() < 1e-12 && !listed.contains(&part));
     }
     let doubled = b.loss_j[Component::BeltMap as usize] / a.loss_j[Component::BeltMap as usize];
@@ -64,13 +94,23 @@ fn a_belt_map_replaces_every_belt_part() {
 fn val_a_constant_box_map() {
     let csv = "gear,input_torque_nm,torque_loss_nm\n1,-100,3\n1,200,3\n5,-100,3\n5,200,3\n";
     let o = driven(&car("rover_216_5mt", csv, "transmission.manual.maps.box").unwrap());
-    let locked = o.rows.iter().filter(|r| r.gear > 0 && r.speed_m_s > 5.0 && r.flags.0 & 0b1100_0000 == 0);
+    let locked = o
+        .rows
+        .iter()
+        .filter(|r| r.gear > 0 && r.speed_m_s > 5.0 && r.flags.0 & 0b1100_0000 == 0);
     let mut count = 0;
     for r in locked {
         let want = 3.0 * r.engine_speed_rad_s;
         let got = r.loss_w[Component::BoxMap as usize];
-        assert!(r.loss_w[Component::GearMesh as usize].abs() < 1e-12 && r.loss_w[Component::Seal as usize].abs() < 1e-12);
-        assert!((got - want).abs() <= 1e-6 * want, "{} s: {got} instead of {want}", r.time_s);
+        assert!(
+            r.loss_w[Component::GearMesh as usize].abs() < 1e-12
+                && r.loss_w[Component::Seal as usize].abs() < 1e-12
+        );
+        assert!(
+            (got - want).abs() <= 1e-6 * want,
+            "{} s: {got} instead of {want}",
+            r.time_s
+        );
         count += 1;
     }
     assert!(count > 50 && o.totals.ledger_error < 1e-9, "{count} rows");
@@ -79,9 +119,24 @@ fn val_a_constant_box_map() {
 /// A map with a hole, a text cell and an unknown column is refused with places.
 #[test]
 fn bad_maps_are_refused() {
-    let hole =
-        car("rover_216_cvt", "ratio,input_speed_rpm,torque_loss_nm\n0.4,0,1\n2.4,5000,1\n", "transmission.cvt.maps.pump").unwrap_err();
-    assert!(hole.contains("there is no row for ratio 0.4, input_speed_rpm 5000"), "{hole}");
-    let text = car("rover_216_cvt", "input_sped_rpm,torque_loss_nm\n0,nan\n", "transmission.cvt.maps.pump").unwrap_err();
-    assert!(text.contains("input_speed_rpm") && text.contains("nan"), "{text}");
+    let hole = car(
+        "rover_216_cvt",
+        "ratio,input_speed_rpm,torque_loss_nm\n0.4,0,1\n2.4,5000,1\n",
+        "transmission.cvt.maps.pump",
+    )
+    .unwrap_err();
+    assert!(
+        hole.contains("there is no row for ratio 0.4, input_speed_rpm 5000"),
+        "{hole}"
+    );
+    let text = car(
+        "rover_216_cvt",
+        "input_sped_rpm,torque_loss_nm\n0,nan\n",
+        "transmission.cvt.maps.pump",
+    )
+    .unwrap_err();
+    assert!(
+        text.contains("input_speed_rpm") && text.contains("nan"),
+        "{text}"
+    );
 }

@@ -1,5 +1,10 @@
 //! Properties of whole runs: what must change when an input changes, and what must not.
-#![allow(clippy::unwrap_used, clippy::too_many_lines, clippy::print_stdout, reason = "tests say what they found")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::too_many_lines,
+    clippy::print_stdout,
+    reason = "tests say what they found"
+)]
 
 mod common;
 
@@ -16,11 +21,27 @@ fn halving_the_step_converges() {
     for name in CARS {
         let setup = car(name, &[]);
         let c = cycle("ece15_eudc");
-        let run = |dt: f64| drive(&setup, &c, &Conditions { max_dt_s: dt, ..at(-10.0, Start::Soak) });
+        let run = |dt: f64| {
+            drive(
+                &setup,
+                &c,
+                &Conditions {
+                    max_dt_s: dt,
+                    ..at(-10.0, Start::Soak)
+                },
+            )
+        };
         let steps = [1.0, 0.5, 0.25, 0.125, 0.0625];
-        let fuel: Vec<f64> = steps.iter().map(|&dt| run(dt).totals.total().fuel_kg).collect();
+        let fuel: Vec<f64> = steps
+            .iter()
+            .map(|&dt| run(dt).totals.total().fuel_kg)
+            .collect();
         let finest = run(0.01);
-        assert!(finest.totals.ledger_error <= 1e-9, "{name}: ledger {:e} at 0.01 s", finest.totals.ledger_error);
+        assert!(
+            finest.totals.ledger_error <= 1e-9,
+            "{name}: ledger {:e} at 0.01 s",
+            finest.totals.ledger_error
+        );
         let end = finest.totals.total().fuel_kg;
         let errors: Vec<f64> = fuel.iter().map(|f| 100.0 * (f / end - 1.0)).collect();
         println!(
@@ -31,7 +52,10 @@ fn halving_the_step_converges() {
         for (dt, error) in steps.iter().zip(&errors) {
             assert!(error.abs() < 0.2 * dt + 0.015, "{name}: {errors:?}");
         }
-        assert!(errors[4].abs() < 0.5 * errors[..3].iter().fold(0.0, |a, e| larger(e.abs(), a)), "{name}: {errors:?}");
+        assert!(
+            errors[4].abs() < 0.5 * errors[..3].iter().fold(0.0, |a, e| larger(e.abs(), a)),
+            "{name}: {errors:?}"
+        );
     }
 }
 
@@ -43,8 +67,18 @@ fn same_input_same_numbers() {
         let c = cycle("udds");
         let conditions = at(-10.0, Start::Soak);
         let a = drive(&setup, &c, &conditions);
-        let b = drive(&setup, &c, &Conditions { keep_rows: true, ..conditions });
-        assert_eq!(a.totals.total().fuel_kg.to_bits(), b.totals.total().fuel_kg.to_bits());
+        let b = drive(
+            &setup,
+            &c,
+            &Conditions {
+                keep_rows: true,
+                ..conditions
+            },
+        );
+        assert_eq!(
+            a.totals.total().fuel_kg.to_bits(),
+            b.totals.total().fuel_kg.to_bits()
+        );
         assert_eq!(a.end, b.end);
         assert!(!b.rows.is_empty() && a.rows.is_empty());
     }
@@ -52,7 +86,14 @@ fn same_input_same_numbers() {
 
 /// Everything that a run shows, as numbers: sums, end temperatures, means of the trace.
 fn outputs(setup: &Setup, cycle: &Cycle, start_degc: f64) -> Vec<f64> {
-    let o = drive(setup, cycle, &Conditions { keep_rows: true, ..at(start_degc, Start::Soak) });
+    let o = drive(
+        setup,
+        cycle,
+        &Conditions {
+            keep_rows: true,
+            ..at(start_degc, Start::Soak)
+        },
+    );
     let t = o.totals.total();
     let engine = setup.car(ZERO).engine;
     let mut out = vec![
@@ -89,8 +130,16 @@ fn moved(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).fold(0.0, |most, (x, y)| {
         let scale = x.abs() + y.abs();
-        let d = if scale > 0.0 { (x - y).abs() / scale } else { 0.0 };
-        if x.is_finite() && y.is_finite() { larger(d, most) } else { most }
+        let d = if scale > 0.0 {
+            (x - y).abs() / scale
+        } else {
+            0.0
+        };
+        if x.is_finite() && y.is_finite() {
+            larger(d, most)
+        } else {
+            most
+        }
     })
 }
 
@@ -102,18 +151,40 @@ fn moves(info: &KeyInfo) -> Vec<String> {
         return vec![set((v != "true").to_string())];
     }
     if let Ok(x) = v.parse::<f64>() {
-        if info.allowed.contains("whole") || info.allowed.contains("integer") || info.key.ends_with("band_count") {
-            return vec![set(format!("{}", x as i64 + 1)), set(format!("{}", x as i64 - 1))];
+        if info.allowed.contains("whole")
+            || info.allowed.contains("integer")
+            || info.key.ends_with("band_count")
+        {
+            return vec![
+                set(format!("{}", x as i64 + 1)),
+                set(format!("{}", x as i64 - 1)),
+            ];
         }
         if x == 0.0 {
-            return [0.05, 0.5, 5.0, 50.0, 1.0].iter().map(|d| set(format!("{d:?}"))).collect();
+            return [0.05, 0.5, 5.0, 50.0, 1.0]
+                .iter()
+                .map(|d| set(format!("{d:?}")))
+                .collect();
         }
-        return [1.03, 0.97, 1.005, 0.995].iter().map(|f| set(format!("{:?}", x * f))).collect();
+        return [1.03, 0.97, 1.005, 0.995]
+            .iter()
+            .map(|f| set(format!("{:?}", x * f)))
+            .collect();
     }
     if v.starts_with("[[") {
         // Rows of pairs: move the second column.
         let rows: Vec<Vec<f64>> = serde_json::from_str(v).unwrap_or_default();
-        return [1.03, 0.97].iter().map(|f| set(format!("{:?}", rows.iter().map(|r| vec![r[0], r[1] * f]).collect::<Vec<_>>()))).collect();
+        return [1.03, 0.97]
+            .iter()
+            .map(|f| {
+                set(format!(
+                    "{:?}",
+                    rows.iter()
+                        .map(|r| vec![r[0], r[1] * f])
+                        .collect::<Vec<_>>()
+                ))
+            })
+            .collect();
     }
     if v.starts_with('[') {
         let list: Vec<f64> = serde_json::from_str(v).unwrap_or_default();
@@ -132,11 +203,31 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 
 /// Keys that need another key before they can matter: (end of the key, what is set beside it, why).
 const NEEDS: [(&str, &[&str], &str); 19] = [
-    ("variator.piston_outer_mm", &["transmission.cvt.variator.compensated=false"], "centrifugal head, only where it is not balanced"),
-    ("variator.piston_inner_mm", &["transmission.cvt.variator.compensated=false"], "centrifugal head, only where it is not balanced"),
-    ("road_load.rolling_per_k", &["road_load.surface=road"], "a dynamometer's coefficients are fixed"),
-    ("pump.residual_bar", &["transmission.cvt.pump.kind=variable"], "only where displacement can idle"),
-    ("engine.inertia_torque_nm", &["engine.inertia_torque_nm=10"], "bounds the torque of inertia; never reached at steps of 1 s"),
+    (
+        "variator.piston_outer_mm",
+        &["transmission.cvt.variator.compensated=false"],
+        "centrifugal head, only where it is not balanced",
+    ),
+    (
+        "variator.piston_inner_mm",
+        &["transmission.cvt.variator.compensated=false"],
+        "centrifugal head, only where it is not balanced",
+    ),
+    (
+        "road_load.rolling_per_k",
+        &["road_load.surface=road"],
+        "a dynamometer's coefficients are fixed",
+    ),
+    (
+        "pump.residual_bar",
+        &["transmission.cvt.pump.kind=variable"],
+        "only where displacement can idle",
+    ),
+    (
+        "engine.inertia_torque_nm",
+        &["engine.inertia_torque_nm=10"],
+        "bounds the torque of inertia; never reached at steps of 1 s",
+    ),
     (
         "engine.friction.viscous_share",
         &["engine_oil.kv40_mm2_s=60", "engine_oil.kv100_mm2_s=10"],
@@ -147,14 +238,30 @@ const NEEDS: [(&str, &[&str], &str); 19] = [
         &["engine_oil.kv40_mm2_s=60", "engine_oil.kv100_mm2_s=10"],
         "with the reference oil it cancels, by design (EN-2)",
     ),
-    ("ratio.down_per_s", &["transmission.cvt.ratio.down_per_s=0.4"], "the shipped rate suffices for the stops of these cycles"),
-    ("ratio.rate_speed_rpm", &["transmission.cvt.ratio.rate_speed_rpm=2500"], "the shipped rates are full from 1000 rpm"),
+    (
+        "ratio.down_per_s",
+        &["transmission.cvt.ratio.down_per_s=0.4"],
+        "the shipped rate suffices for the stops of these cycles",
+    ),
+    (
+        "ratio.rate_speed_rpm",
+        &["transmission.cvt.ratio.rate_speed_rpm=2500"],
+        "the shipped rates are full from 1000 rpm",
+    ),
     (
         "belt.slip_bound_percent",
-        &["transmission.cvt.clamp.map.base_bar=5", "transmission.cvt.clamp.map.throttle_bar=0", "transmission.cvt.pressure.floor_bar=4"],
+        &[
+            "transmission.cvt.clamp.map.base_bar=5",
+            "transmission.cvt.clamp.map.throttle_bar=0",
+            "transmission.cvt.pressure.floor_bar=4",
+        ],
         "bounds gross slip, which needs a clamp that is too weak",
     ),
-    ("pressure.floor_bar", &["transmission.cvt.clamp.map.base_bar=12"], "the Rover's map stays above its floor"),
+    (
+        "pressure.floor_bar",
+        &["transmission.cvt.clamp.map.base_bar=12"],
+        "the Rover's map stays above its floor",
+    ),
     (
         "pump.lubrication_l_min",
         &["transmission.cvt.pump.kind=variable"],
@@ -165,20 +272,50 @@ const NEEDS: [(&str, &[&str], &str); 19] = [
         &["transmission.cvt.pump.inlet_bar_per_l_min=0.004"],
         "bounds the flow of oil thicker than in these runs; a fixed pump needs little of its flow",
     ),
-    ("pump.leakage_l_min_per_bar", &["transmission.cvt.pump.kind=variable"], "as the lubrication flow"),
-    ("friction.band_floor", &["lubricant.friction.band_rise_per_k=0.01"], "bounds the fall of friction with cold, reached below 10 degC"),
-    ("engine.highest_rpm", &["engine.highest_rpm=3000"], "bounds engine speed; the cycles stay below it"),
-    ("transmission.exchanger_opens_degc", &["thermal.transmission.exchanger_w_k=150"], "the shipped cars have no exchanger"),
-    ("cooler.bypass_below_degc", &["thermal.cooler.bypass_below_degc=20"], "the shipped cooler is always open"),
-    ("cooler.highest_l_min", &["thermal.cooler.highest_l_min=5"], "bounds the flow at speed"),
+    (
+        "pump.leakage_l_min_per_bar",
+        &["transmission.cvt.pump.kind=variable"],
+        "as the lubrication flow",
+    ),
+    (
+        "friction.band_floor",
+        &["lubricant.friction.band_rise_per_k=0.01"],
+        "bounds the fall of friction with cold, reached below 10 degC",
+    ),
+    (
+        "engine.highest_rpm",
+        &["engine.highest_rpm=3000"],
+        "bounds engine speed; the cycles stay below it",
+    ),
+    (
+        "transmission.exchanger_opens_degc",
+        &["thermal.transmission.exchanger_w_k=150"],
+        "the shipped cars have no exchanger",
+    ),
+    (
+        "cooler.bypass_below_degc",
+        &["thermal.cooler.bypass_below_degc=20"],
+        "the shipped cooler is always open",
+    ),
+    (
+        "cooler.highest_l_min",
+        &["thermal.cooler.highest_l_min=5"],
+        "bounds the flow at speed",
+    ),
 ];
 
 /// Keys that name things or have no physics: (end of the key, why).
 const WORDS: [(&str, &str); 7] = [
     ("vehicle.title", "a name for people"),
     ("vehicle.baselines", "names"),
-    ("vehicle.transmission_oil", "a name; the fluids' own keys are tested"),
-    ("vehicle.engine_oil", "a name; the fluids' own keys are tested"),
+    (
+        "vehicle.transmission_oil",
+        "a name; the fluids' own keys are tested",
+    ),
+    (
+        "vehicle.engine_oil",
+        "a name; the fluids' own keys are tested",
+    ),
     ("title", "a name for people"),
     ("road_load.form", "which table; its keys are tested"),
     ("transmission", "which table; its keys are tested"),
@@ -194,13 +331,22 @@ struct Scenario {
 
 fn scenarios() -> Vec<Scenario> {
     let s = |cycle: Cycle, ambient: f64| Scenario { cycle, ambient };
-    vec![s(cycle("ece15_eudc"), -10.0), s(cycle("us06"), 0.0), s(hill(), 25.0), s(cycle("ftp75"), 25.0), s(cycle("constant_120"), 40.0)]
+    vec![
+        s(cycle("ece15_eudc"), -10.0),
+        s(cycle("us06"), 0.0),
+        s(hill(), 25.0),
+        s(cycle("ftp75"), 25.0),
+        s(cycle("constant_120"), 40.0),
+    ]
 }
 
 /// Whether a key is without effect in this car, and why that is right.
 fn no_effect(name: &str, key: &str) -> Option<&'static str> {
     let fluid = key.strip_prefix("engine_oil.").is_some();
-    if key.contains(".friction.") || key.starts_with("lubricant.friction") || key.starts_with("engine_oil.friction") {
+    if key.contains(".friction.")
+        || key.starts_with("lubricant.friction")
+        || key.starts_with("engine_oil.friction")
+    {
         if fluid {
             return Some("friction of belt contacts means nothing in an engine");
         }
@@ -209,9 +355,14 @@ fn no_effect(name: &str, key: &str) -> Option<&'static str> {
         }
     }
     if key == "transmission.cvt.belt.segment_thickness_mm" {
-        return Some("with a real-valued count of segments the pitch cancels (SL-4): active arc = C_x / (force per length)");
+        return Some(
+            "with a real-valued count of segments the pitch cancels (SL-4): active arc = C_x / (force per length)",
+        );
     }
-    if key.starts_with("thermal.cooler.") && key != "thermal.cooler.fitted" && !name.ends_with("cvt") {
+    if key.starts_with("thermal.cooler.")
+        && key != "thermal.cooler.fitted"
+        && !name.ends_with("cvt")
+    {
         return Some("no cooler is fitted to the manual boxes");
     }
     if key == "engine.rated_kw" && !name.ends_with("cvt") {
@@ -233,12 +384,24 @@ fn no_input_is_dead() {
         let plain = car(name, &[]);
         let mut seen = 0;
         for info in &plain.keys {
-            if WORDS.iter().any(|(key, _)| info.key == *key || (info.key.ends_with(".title"))) {
+            if WORDS
+                .iter()
+                .any(|(key, _)| info.key == *key || (info.key.ends_with(".title")))
+            {
                 continue;
             }
-            let needs = NEEDS.iter().find(|(end, _, _)| info.key.ends_with(end)).map_or(&[][..], |n| n.1);
-            let beside: Vec<String> = needs.iter().filter(|n| !n.starts_with(&format!("{}=", info.key))).map(|n| (*n).to_owned()).collect();
-            let own: Option<&&str> = needs.iter().find(|n| n.starts_with(&format!("{}=", info.key)));
+            let needs = NEEDS
+                .iter()
+                .find(|(end, _, _)| info.key.ends_with(end))
+                .map_or(&[][..], |n| n.1);
+            let beside: Vec<String> = needs
+                .iter()
+                .filter(|n| !n.starts_with(&format!("{}=", info.key)))
+                .map(|n| (*n).to_owned())
+                .collect();
+            let own: Option<&&str> = needs
+                .iter()
+                .find(|n| n.starts_with(&format!("{}=", info.key)));
             let mut start: Vec<String> = beside.clone();
             start.extend(own.map(|o| (*o).to_owned()));
             let base = match try_car(name, &start) {
@@ -248,7 +411,12 @@ fn no_input_is_dead() {
                     continue;
                 }
             };
-            let own_value = base.keys.iter().find(|k| k.key == info.key).cloned().unwrap_or_else(|| info.clone());
+            let own_value = base
+                .keys
+                .iter()
+                .find(|k| k.key == info.key)
+                .cloned()
+                .unwrap_or_else(|| info.clone());
             let candidates = moves(&own_value);
             if candidates.is_empty() {
                 println!("not moved: {name} {} = {:?}", info.key, info.value);
@@ -270,7 +438,10 @@ fn no_input_is_dead() {
                 };
                 accepted += 1;
                 for run in &runs {
-                    let d = moved(&outputs(&base, &run.cycle, run.ambient), &outputs(&other, &run.cycle, run.ambient));
+                    let d = moved(
+                        &outputs(&base, &run.cycle, run.ambient),
+                        &outputs(&other, &run.cycle, run.ambient),
+                    );
                     best = larger(d, best);
                     if best > MOVED {
                         break 'search;
@@ -282,7 +453,10 @@ fn no_input_is_dead() {
             }
             match no_effect(name, &info.key) {
                 Some(_) if best <= MOVED => {}
-                Some(why) => dead.push(format!("{name} {}: expected no effect ({why}), but it moves outputs by {best:e}", info.key)),
+                Some(why) => dead.push(format!(
+                    "{name} {}: expected no effect ({why}), but it moves outputs by {best:e}",
+                    info.key
+                )),
                 None if best <= MOVED => dead.push(format!(
                     "{name} {} = {}: {accepted} of {} moves accepted, no output moves{}",
                     info.key,
@@ -308,7 +482,9 @@ fn colder_is_never_cheaper_after_a_soak() {
         for cycle_name in ["ece15_eudc", "ftp75", "us06"] {
             let c = cycle(cycle_name);
             for start in [Start::Soak, Start::Warm] {
-                let fuel: Vec<f64> = (-4..=8).map(|i| fuel_kg(&setup, &c, &at(5.0 * f64::from(i), start))).collect();
+                let fuel: Vec<f64> = (-4..=8)
+                    .map(|i| fuel_kg(&setup, &c, &at(5.0 * f64::from(i), start)))
+                    .collect();
                 let shown: Vec<f64> = fuel.iter().map(|f| 1000.0 * f).collect();
                 println!("{name} {cycle_name} {start:?}: fuel g from -20 to 40 degC: {shown:.1?}");
                 if start == Start::Soak {
@@ -332,8 +508,19 @@ fn colder_is_never_cheaper_after_a_soak() {
 
 /// Settings that take away a component's loss: (component, car, settings).
 const ZERO_LOSS: [(&str, &str, &[&str]); 11] = [
-    ("input_shaft", "rover_216_cvt", &["transmission.cvt.input_shaft.constant_nm=0", "transmission.cvt.input_shaft.viscous_nm_per_rpm=0"]),
-    ("clutch_drag", "rover_216_cvt", &["transmission.cvt.reverse_clutch.drag_nm=0"]),
+    (
+        "input_shaft",
+        "rover_216_cvt",
+        &[
+            "transmission.cvt.input_shaft.constant_nm=0",
+            "transmission.cvt.input_shaft.viscous_nm_per_rpm=0",
+        ],
+    ),
+    (
+        "clutch_drag",
+        "rover_216_cvt",
+        &["transmission.cvt.reverse_clutch.drag_nm=0"],
+    ),
     (
         "final_drive",
         "rover_216_cvt",
@@ -344,13 +531,41 @@ const ZERO_LOSS: [(&str, &str, &[&str]); 11] = [
         ],
     ),
     ("belt_band", "rover_216_cvt", &["lubricant.friction.band=0"]),
-    ("belt_film", "rover_216_cvt", &["lubricant.friction.lift_off.load_n_per_m=10"]),
-    ("belt_wedge", "rover_216_cvt", &["lubricant.friction.flank=0"]),
-    ("belt_penetration", "rover_216_cvt", &["lubricant.friction.flank=0"]),
-    ("gear_mesh", "rover_216_5mt", &["transmission.manual.mesh.efficiency=1"]),
-    ("bearing", "rover_216_5mt", &["transmission.manual.bearing.torque_nm=0"]),
-    ("churning", "rover_216_5mt", &["transmission.manual.churning.torque_nm=0"]),
-    ("seal", "rover_216_5mt", &["transmission.manual.seal.torque_nm=0"]),
+    (
+        "belt_film",
+        "rover_216_cvt",
+        &["lubricant.friction.lift_off.load_n_per_m=10"],
+    ),
+    (
+        "belt_wedge",
+        "rover_216_cvt",
+        &["lubricant.friction.flank=0"],
+    ),
+    (
+        "belt_penetration",
+        "rover_216_cvt",
+        &["lubricant.friction.flank=0"],
+    ),
+    (
+        "gear_mesh",
+        "rover_216_5mt",
+        &["transmission.manual.mesh.efficiency=1"],
+    ),
+    (
+        "bearing",
+        "rover_216_5mt",
+        &["transmission.manual.bearing.torque_nm=0"],
+    ),
+    (
+        "churning",
+        "rover_216_5mt",
+        &["transmission.manual.churning.torque_nm=0"],
+    ),
+    (
+        "seal",
+        "rover_216_5mt",
+        &["transmission.manual.seal.torque_nm=0"],
+    ),
 ];
 
 /// Property: a component whose parameters are zero loses nothing, and only its loss vanishes. What has no zero is made small:
@@ -360,26 +575,61 @@ fn zero_parameters_give_zero_loss() {
     let c = cycle("ece15_eudc");
     for (component, name, sets) in ZERO_LOSS {
         // A box as heavy as it may be keeps its temperature, whatever it loses: the components meet in torque and pressure only.
-        let mut heavy =
-            vec!["thermal.transmission.oil_l=30", "thermal.transmission.metal_kj_k=1000", "thermal.transmission.oil_metal_w_k=5000"];
+        let mut heavy = vec![
+            "thermal.transmission.oil_l=30",
+            "thermal.transmission.metal_kj_k=1000",
+            "thermal.transmission.oil_metal_w_k=5000",
+        ];
         if name.ends_with("cvt") {
-            heavy.extend(["thermal.transmission.belt_kj_k=1000", "thermal.transmission.spray_w_k=5000"]);
+            heavy.extend([
+                "thermal.transmission.belt_kj_k=1000",
+                "thermal.transmission.spray_w_k=5000",
+            ]);
         }
-        let plain = drive(&car(name, &heavy), &c, &at(-10.0, Start::Soak)).totals.total();
+        let plain = drive(&car(name, &heavy), &c, &at(-10.0, Start::Soak))
+            .totals
+            .total();
         heavy.extend(sets);
-        let without = drive(&car(name, &heavy), &c, &at(-10.0, Start::Soak)).totals.total();
-        let k = Component::ALL.iter().position(|k| k.name() == component).unwrap();
-        println!("{component}: {:.1} kJ -> {:.3e} kJ", plain.loss_j[k] / 1e3, without.loss_j[k] / 1e3);
+        let without = drive(&car(name, &heavy), &c, &at(-10.0, Start::Soak))
+            .totals
+            .total();
+        let k = Component::ALL
+            .iter()
+            .position(|k| k.name() == component)
+            .unwrap();
+        println!(
+            "{component}: {:.1} kJ -> {:.3e} kJ",
+            plain.loss_j[k] / 1e3,
+            without.loss_j[k] / 1e3
+        );
         assert!(plain.loss_j[k] > 1.0, "{component} had no loss to lose");
-        let bound = if component == "belt_film" { 1e-3 * plain.loss_j[k] } else { 1e-9 };
-        assert!(without.loss_j[k].abs() <= bound, "{component}: {} J left", without.loss_j[k]);
-        assert!(without.fuel_kg < plain.fuel_kg || component == "belt_film", "{component}: fuel does not fall"); // without film, boundary friction stays whole
-        for other in
-            Component::ALL.iter().filter(|o| **o as usize != k && !(component.starts_with("belt_") && o.name().starts_with("belt_")))
-        {
-            let (a, b) = (plain.loss_j[*other as usize], without.loss_j[*other as usize]);
+        let bound = if component == "belt_film" {
+            1e-3 * plain.loss_j[k]
+        } else {
+            1e-9
+        };
+        assert!(
+            without.loss_j[k].abs() <= bound,
+            "{component}: {} J left",
+            without.loss_j[k]
+        );
+        assert!(
+            without.fuel_kg < plain.fuel_kg || component == "belt_film",
+            "{component}: fuel does not fall"
+        ); // without film, boundary friction stays whole
+        for other in Component::ALL.iter().filter(|o| {
+            **o as usize != k && !(component.starts_with("belt_") && o.name().starts_with("belt_"))
+        }) {
+            let (a, b) = (
+                plain.loss_j[*other as usize],
+                without.loss_j[*other as usize],
+            );
             // Only through torque, pressure and temperature; launch speed follows torque, the film's share is steep in temperature.
-            let share = if *other == Component::LaunchClutch { 0.15 } else { 0.10 };
+            let share = if *other == Component::LaunchClutch {
+                0.15
+            } else {
+                0.10
+            };
             assert!(
                 (a - b).abs() <= share * a.abs() + 3e-3 * plain.loss_j.iter().sum::<f64>(),
                 "{component} taken away moves {}: {a} -> {b} J",
@@ -388,7 +638,11 @@ fn zero_parameters_give_zero_loss() {
         }
     }
     // All at once: what remains is the launch clutch, the pump at 0.5 cc/rev and the slip of a stiff belt.
-    let mut all: Vec<&str> = ZERO_LOSS.iter().filter(|z| z.1 == "rover_216_cvt").flat_map(|z| z.2.iter().copied()).collect();
+    let mut all: Vec<&str> = ZERO_LOSS
+        .iter()
+        .filter(|z| z.1 == "rover_216_cvt")
+        .flat_map(|z| z.2.iter().copied())
+        .collect();
     all.extend([
         "transmission.cvt.belt.youngs_gpa=500",
         "transmission.cvt.belt.strut_area_mm2=200",
@@ -398,7 +652,9 @@ fn zero_parameters_give_zero_loss() {
         "transmission.cvt.pump.leakage_l_min_per_bar=0",
         "transmission.cvt.launch.friction_clutch.creep_nm=0",
     ]);
-    let t = drive(&car("rover_216_cvt", &all), &c, &at(25.0, Start::Soak)).totals.total();
+    let t = drive(&car("rover_216_cvt", &all), &c, &at(25.0, Start::Soak))
+        .totals
+        .total();
     let rest: Vec<String> = Component::ALL
         .iter()
         .filter(|k| t.loss_j[**k as usize] > 0.0)
@@ -448,12 +704,28 @@ fn twice_the_car_burns_twice_the_fuel() {
         "thermal.transmission.bell_housing_w_k",
     ];
     for key in doubled {
-        let info = plain.keys.iter().find(|k| k.key == key).unwrap_or_else(|| panic!("no key {key}"));
-        sets.push(format!("{key}={:?}", 2.0 * info.value.parse::<f64>().unwrap()));
+        let info = plain
+            .keys
+            .iter()
+            .find(|k| k.key == key)
+            .unwrap_or_else(|| panic!("no key {key}"));
+        sets.push(format!(
+            "{key}={:?}",
+            2.0 * info.value.parse::<f64>().unwrap()
+        ));
     }
-    let line = plain.keys.iter().find(|k| k.key == "engine.full_load").unwrap();
+    let line = plain
+        .keys
+        .iter()
+        .find(|k| k.key == "engine.full_load")
+        .unwrap();
     let rows: Vec<Vec<f64>> = serde_json::from_str(&line.value).unwrap();
-    sets.push(format!("engine.full_load={:?}", rows.iter().map(|r| vec![r[0], 2.0 * r[1]]).collect::<Vec<_>>()));
+    sets.push(format!(
+        "engine.full_load={:?}",
+        rows.iter()
+            .map(|r| vec![r[0], 2.0 * r[1]])
+            .collect::<Vec<_>>()
+    ));
     let twice = try_car("rover_216_5mt", &sets).unwrap();
     for cycle_name in ["ece15_eudc", "us06"] {
         let c = cycle(cycle_name);
@@ -462,9 +734,17 @@ fn twice_the_car_burns_twice_the_fuel() {
         let (fa, fb) = (a.totals.total().fuel_kg, b.totals.total().fuel_kg);
         println!("{cycle_name}: {:.6} times the fuel", fb / fa);
         // The launch clutch's rounding torque (LC-1) and the radiator do not change this; the width of creeping does, a little.
-        assert!((fb / fa - 2.0).abs() < 2e-3, "{cycle_name}: {fa} and {fb} kg");
+        assert!(
+            (fb / fa - 2.0).abs() < 2e-3,
+            "{cycle_name}: {fa} and {fb} kg"
+        );
         for k in 0..4 {
-            assert!((a.end.node_k[k] - b.end.node_k[k]).abs() < 0.2, "{cycle_name}: {:?} and {:?}", a.end, b.end);
+            assert!(
+                (a.end.node_k[k] - b.end.node_k[k]).abs() < 0.2,
+                "{cycle_name}: {:?} and {:?}",
+                a.end,
+                b.end
+            );
         }
     }
 }
@@ -476,10 +756,20 @@ fn improvements_save_fuel() {
     let c = cycle("ece15_eudc");
     let plain = drive(&car("rover_216_cvt", &[]), &c, &at(-10.0, Start::Soak));
     for size in [25, 50, 100, 150, 300] {
-        let o = drive(&car("rover_216_cvt", &[&format!("thermal.transmission.exchanger_w_k={size}")]), &c, &at(-10.0, Start::Soak));
+        let o = drive(
+            &car(
+                "rover_216_cvt",
+                &[&format!("thermal.transmission.exchanger_w_k={size}")],
+            ),
+            &c,
+            &at(-10.0, Start::Soak),
+        );
         let change = 100.0 * (consumption(&o, &c, None) / consumption(&plain, &c, None) - 1.0);
         let t = o.end.node_k.map(|k| k - ZERO);
-        println!("exchanger {size} W/K: {change:+.2} % fuel, coolant {:.0}, engine oil {:.0}, sump {:.0} degC", t[0], t[1], t[2]);
+        println!(
+            "exchanger {size} W/K: {change:+.2} % fuel, coolant {:.0}, engine oil {:.0}, sump {:.0} degC",
+            t[0], t[1], t[2]
+        );
     }
     for set in [
         "transmission.cvt.pump.displacement_cc_rev=7",
@@ -495,7 +785,11 @@ fn improvements_save_fuel() {
     ] {
         let o = drive(&car("rover_216_cvt", &[set]), &c, &at(-10.0, Start::Soak));
         let change = 100.0 * (consumption(&o, &c, None) / consumption(&plain, &c, None) - 1.0);
-        println!("{set}: {change:+.2} % fuel, sump {:.1} degC, ledger {:e}", o.end.node_k[2] - ZERO, o.totals.ledger_error);
+        println!(
+            "{set}: {change:+.2} % fuel, sump {:.1} degC, ledger {:e}",
+            o.end.node_k[2] - ZERO,
+            o.totals.ledger_error
+        );
         assert!(change < 0.0, "{set}: {change:+.3} %");
         assert!(
             o.totals.ledger_error < 1e-9 && o.totals.worst_residual < 1e-7,

@@ -1,5 +1,9 @@
 //! Trace files and output directories.
-#![allow(clippy::unwrap_used, clippy::too_many_lines, reason = "helpers and tables of tests")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::too_many_lines,
+    reason = "helpers and tables of tests"
+)]
 use std::f64::consts::PI;
 use std::fs;
 use std::io::{self, Write};
@@ -30,7 +34,10 @@ fn a_trace_reads_back_to_the_same_numbers() {
         for (record, row) in records.iter().zip(&rows) {
             for (field, column) in record.iter().zip(&columns) {
                 match (column.get)(row) {
-                    Value::Number(x) if x.is_finite() => assert!(field.parse::<f64>().unwrap().total_cmp(&(x + 0.0)).is_eq(), "{field}"),
+                    Value::Number(x) if x.is_finite() => assert!(
+                        field.parse::<f64>().unwrap().total_cmp(&(x + 0.0)).is_eq(),
+                        "{field}"
+                    ),
                     Value::Number(_) => assert_eq!(field, ""),
                     Value::Count(n) => assert_eq!(field, n.to_string()),
                     Value::Phase(_) => assert_eq!(field, "ECE 1"),
@@ -45,7 +52,13 @@ fn a_trace_reads_back_to_the_same_numbers() {
 
 #[test]
 fn columns_are_those_of_the_car_in_the_agreed_order() {
-    let names = |cvt, components: &[Component]| columns_for(cvt, components).iter().map(|c| c.name).collect::<Vec<_>>().join(", ");
+    let names = |cvt, components: &[Component]| {
+        columns_for(cvt, components)
+            .iter()
+            .map(|c| c.name)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
     assert_eq!(
         names(true, &CVT),
         "time_s, dt_s, phase, speed_kmh, accel_m_s2, wheel_torque_nm, wheel_power_w, \
@@ -60,7 +73,9 @@ fn columns_are_those_of_the_car_in_the_agreed_order() {
          heat_ledger_error, solve_residual, iterations, flags"
     );
     let manual = names(false, &MANUAL);
-    assert!(manual.contains("throttle, gear, overall_ratio, launch_clutch_loss_w, gear_mesh_loss_w"));
+    assert!(
+        manual.contains("throttle, gear, overall_ratio, launch_clutch_loss_w, gear_mesh_loss_w")
+    );
     assert!(!manual.contains("belt") && !manual.contains("pressure") && !manual.contains("pump"));
     let row = Row {
         speed_m_s: 10.0,
@@ -80,13 +95,19 @@ fn columns_are_those_of_the_car_in_the_agreed_order() {
         ("coolant_degc", 90.0),
     ];
     for (name, value) in wanted {
-        assert!((column(name).unwrap().number(&row) - value).abs() < 1e-9, "{name}");
+        assert!(
+            (column(name).unwrap().number(&row) - value).abs() < 1e-9,
+            "{name}"
+        );
     }
     assert_eq!(COLUMNS.len(), 39 + Component::COUNT);
 }
 
 fn names_in(dir: &Path) -> Vec<String> {
-    let mut names: Vec<_> = fs::read_dir(dir).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<_> = fs::read_dir(dir)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect();
     names.sort();
     names
 }
@@ -102,7 +123,11 @@ fn files_appear_together_at_the_end() {
     let mut dir = OutputDir::create(&path, false).unwrap();
     dir.write("summary.json", text("{}")).unwrap();
     dir.write("trace.csv", text("a,b")).unwrap();
-    assert!(!names_in(&path).iter().any(|name| !name.starts_with(".cvtcycle-")));
+    assert!(
+        !names_in(&path)
+            .iter()
+            .any(|name| !name.starts_with(".cvtcycle-"))
+    );
     let paths = dir.commit().unwrap();
     assert_eq!(paths, [path.join("summary.json"), path.join("trace.csv")]);
     assert_eq!(names_in(&path), ["summary.json", "trace.csv"]);
@@ -128,7 +153,10 @@ fn a_failure_leaves_nothing_behind() {
         Err(io::Error::from(io::ErrorKind::StorageFull))
     });
     let problem = full.unwrap_err();
-    assert!(problem.key == "--out" && problem.message.contains("summary.json"), "{problem:?}");
+    assert!(
+        problem.key == "--out" && problem.message.contains("summary.json"),
+        "{problem:?}"
+    );
     assert!(problem.hint.contains("space"));
     drop(dir);
     assert_eq!(names_in(home.path()), Vec::<String>::new());
@@ -141,11 +169,17 @@ fn a_full_disk_is_reported_in_the_words_of_the_system() {
     let mut dir = OutputDir::create(home.path().join("run"), false).unwrap();
     let full = dir.write("trace.csv", |out| {
         out.write_all(b"some")?;
-        fs::OpenOptions::new().write(true).open("/dev/full")?.write_all(b"more")
+        fs::OpenOptions::new()
+            .write(true)
+            .open("/dev/full")?
+            .write_all(b"more")
     });
     let problem = full.unwrap_err();
     assert!(!problem.message.contains(".cvtcycle-"), "{problem:?}");
-    assert!(problem.message.contains("No space left on device"), "{problem:?}");
+    assert!(
+        problem.message.contains("No space left on device"),
+        "{problem:?}"
+    );
     assert!(problem.message.contains("trace.csv") && problem.hint.contains("free some space"));
     drop(dir);
     assert!(names_in(home.path()).is_empty());
@@ -161,7 +195,12 @@ fn other_peoples_files_are_never_touched() {
     }
     assert_eq!(names_in(home.path()), ["thesis.tex"]);
     let file = home.path().join("thesis.tex");
-    assert!(OutputDir::create(&file, true).unwrap_err().message.contains("not a directory"));
+    assert!(
+        OutputDir::create(&file, true)
+            .unwrap_err()
+            .message
+            .contains("not a directory")
+    );
     assert!(OutputDir::create(file.join("deeper"), true).is_err());
     assert!(OutputDir::create("", true).is_err());
     assert_eq!(names_in(home.path()), ["thesis.tex"]);
@@ -174,16 +213,28 @@ fn an_earlier_run_is_replaced_only_when_asked() {
         fs::write(home.path().join(name), "old").unwrap();
     }
     let problem = OutputDir::create(home.path(), false).unwrap_err();
-    assert!(problem.message.contains("old.svg, summary.json, trace.csv"), "{problem:?}");
+    assert!(
+        problem.message.contains("old.svg, summary.json, trace.csv"),
+        "{problem:?}"
+    );
     assert!(problem.hint.contains("--force") && problem.hint.contains("another name"));
     let mut dir = OutputDir::create(home.path(), true).unwrap();
     dir.write("summary.json", text("new")).unwrap();
     dir.write("trace.csv", text("new")).unwrap();
     assert_eq!(dir.left_over(), ["old.svg"]);
-    assert_eq!(fs::read_to_string(home.path().join("trace.csv")).unwrap(), "old");
+    assert_eq!(
+        fs::read_to_string(home.path().join("trace.csv")).unwrap(),
+        "old"
+    );
     dir.commit().unwrap();
-    assert_eq!(names_in(home.path()), ["old.svg", "summary.json", "trace.csv"]);
-    assert_eq!(fs::read_to_string(home.path().join("trace.csv")).unwrap(), "new");
+    assert_eq!(
+        names_in(home.path()),
+        ["old.svg", "summary.json", "trace.csv"]
+    );
+    assert_eq!(
+        fs::read_to_string(home.path().join("trace.csv")).unwrap(),
+        "new"
+    );
 }
 
 #[test]
@@ -198,7 +249,10 @@ fn a_failing_commit_puts_the_earlier_run_back() {
     }
     let problem = dir.commit().unwrap_err();
     assert!(problem.message.contains("plot.svg"), "{problem:?}");
-    assert_eq!(names_in(home.path()), ["plot.svg", "summary.json", "trace.csv"]);
+    assert_eq!(
+        names_in(home.path()),
+        ["plot.svg", "summary.json", "trace.csv"]
+    );
     for name in ["summary.json", "trace.csv"] {
         assert_eq!(fs::read_to_string(home.path().join(name)).unwrap(), "old");
     }
@@ -212,5 +266,10 @@ fn names_that_would_leave_the_directory_or_clash_are_refused() {
         assert!(dir.write(name, text("")).is_err(), "{name}");
     }
     dir.write("Car.svg", text("")).unwrap();
-    assert!(dir.write("car.svg", text("")).unwrap_err().message.contains("two files"));
+    assert!(
+        dir.write("car.svg", text(""))
+            .unwrap_err()
+            .message
+            .contains("two files")
+    );
 }

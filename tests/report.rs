@@ -22,13 +22,23 @@ impl Place {
     }
 
     fn cvtcycle(&self, words: &[&str]) -> Output {
-        Command::cargo_bin("cvtcycle").unwrap().current_dir(self.path()).args(words).output().unwrap()
+        Command::cargo_bin("cvtcycle")
+            .unwrap()
+            .current_dir(self.path())
+            .args(words)
+            .output()
+            .unwrap()
     }
 
     /// Runs, and is content with nothing but success.
     fn done(&self, words: &[&str]) -> String {
         let out = self.cvtcycle(words);
-        assert_eq!(out.status.code(), Some(0), "{words:?}: {}", String::from_utf8_lossy(&out.stderr));
+        assert_eq!(
+            out.status.code(),
+            Some(0),
+            "{words:?}: {}",
+            String::from_utf8_lossy(&out.stderr)
+        );
         String::from_utf8(out.stdout).unwrap()
     }
 
@@ -38,7 +48,10 @@ impl Place {
         let stderr = String::from_utf8_lossy(&out.stderr);
         assert_eq!(out.status.code(), Some(code), "{words:?}: {stderr}");
         for part in said {
-            assert!(stderr.contains(part), "{words:?} does not say `{part}`: {stderr}");
+            assert!(
+                stderr.contains(part),
+                "{words:?} does not say `{part}`: {stderr}"
+            );
         }
     }
 
@@ -57,8 +70,20 @@ impl Place {
 
 /// A short run of two cars, quick to make.
 fn run(place: &Place, dir: &str, more: &[&str]) {
-    let words =
-        ["run", "--cycle", "ece15", "--ambient", "-10", "--baseline", "rover_216_5mt", "--sensitivity", "never", "--quiet", "--out", dir];
+    let words = [
+        "run",
+        "--cycle",
+        "ece15",
+        "--ambient",
+        "-10",
+        "--baseline",
+        "rover_216_5mt",
+        "--sensitivity",
+        "never",
+        "--quiet",
+        "--out",
+        dir,
+    ];
     place.done(&[&words[..], more].concat());
 }
 
@@ -83,7 +108,9 @@ fn words_of(page: &str) -> String {
 
 /// Every figure's drawing, from its page.
 fn drawings(page: &str) -> Vec<&str> {
-    page.match_indices("<svg").map(|(at, _)| &page[at..at + page[at..].find("</svg>").unwrap() + 6]).collect()
+    page.match_indices("<svg")
+        .map(|(at, _)| &page[at..at + page[at..].find("</svg>").unwrap() + 6])
+        .collect()
 }
 
 #[test]
@@ -101,17 +128,33 @@ fn the_page_says_what_the_summary_says() {
             assert!(words.contains(&number(&run[key], decimals)), "{key}");
         }
         for (name, kj) in run["loss_kj"].as_object().unwrap() {
-            if kj.as_f64().is_some_and(|kj| kj < 999.0) && !["accessories", "brake"].contains(&name.as_str()) {
+            if kj.as_f64().is_some_and(|kj| kj < 999.0)
+                && !["accessories", "brake"].contains(&name.as_str())
+            {
                 assert!(words.contains(&number(kj, 1)), "{name} {kj}");
             }
         }
-        for degc in run["end_degc"].as_object().unwrap().values().filter(|x| x.is_number()) {
-            assert!(words.contains(&number(degc, 1).replace('-', "\u{2212}")), "{degc}");
+        for degc in run["end_degc"]
+            .as_object()
+            .unwrap()
+            .values()
+            .filter(|x| x.is_number())
+        {
+            assert!(
+                words.contains(&number(degc, 1).replace('-', "\u{2212}")),
+                "{degc}"
+            );
         }
     }
     let percent = summary["comparison"][0]["fuel_percent"].as_f64().unwrap();
-    assert!(percent > 0.0 && words.contains(&format!("{percent:.1} % more than")), "{percent}");
-    assert!(words.contains("cvtcycle run --cycle ece15 --ambient -10"), "the exact command");
+    assert!(
+        percent > 0.0 && words.contains(&format!("{percent:.1} % more than")),
+        "{percent}"
+    );
+    assert!(
+        words.contains("cvtcycle run --cycle ece15 --ambient -10"),
+        "the exact command"
+    );
     for hash in page.match_indices("SHA-256").map(|(at, _)| at).take(1) {
         assert!(page[hash..].contains("embedded:rover_216_cvt.toml"));
     }
@@ -125,18 +168,37 @@ fn val_figures_are_whole_and_their_tables_are_the_trace() {
     place.done(&["report", "cold", "--quiet"]);
     let page = place.text("cold/report.html");
     let drawings = drawings(&page);
-    let files: Vec<_> = fs::read_dir(place.path().join("cold/report_figures")).unwrap().map(|e| e.unwrap().path()).collect();
-    assert!(drawings.len() >= 15 && drawings.len() == files.len(), "{} {}", drawings.len(), files.len());
-    for svg in drawings.iter().copied().map(str::to_owned).chain(files.iter().map(|f| fs::read_to_string(f).unwrap())) {
+    let files: Vec<_> = fs::read_dir(place.path().join("cold/report_figures"))
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
+    assert!(
+        drawings.len() >= 15 && drawings.len() == files.len(),
+        "{} {}",
+        drawings.len(),
+        files.len()
+    );
+    for svg in drawings
+        .iter()
+        .copied()
+        .map(str::to_owned)
+        .chain(files.iter().map(|f| fs::read_to_string(f).unwrap()))
+    {
         let document = roxmltree::Document::parse(&svg).unwrap();
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
         let root = document.root_element();
-        assert!(root.children().any(|n| n.has_tag_name("title")) && root.children().any(|n| n.has_tag_name("desc")));
+        assert!(
+            root.children().any(|n| n.has_tag_name("title"))
+                && root.children().any(|n| n.has_tag_name("desc"))
+        );
         let width: f64 = root.attribute("width").unwrap().parse().unwrap();
         assert!(width <= 880.0, "{width} px is too wide for A4");
     }
     // One name for one thing: no id stands twice in the page.
-    let mut ids: Vec<&str> = page.match_indices(" id=\"").map(|(at, _)| page[at + 5..].split('"').next().unwrap()).collect();
+    let mut ids: Vec<&str> = page
+        .match_indices(" id=\"")
+        .map(|(at, _)| page[at + 5..].split('"').next().unwrap())
+        .collect();
     let count = ids.len();
     ids.sort_unstable();
     ids.dedup();
@@ -144,13 +206,26 @@ fn val_figures_are_whole_and_their_tables_are_the_trace() {
     // The sump's temperature at the end, from the trace's last row, in the table of the warm-up figure.
     let trace = place.text("cold/trace_rover_216_cvt.csv");
     let mut reader = csv::Reader::from_reader(trace.as_bytes());
-    let column = reader.headers().unwrap().iter().position(|h| h == "transmission_sump_degc").unwrap();
-    let last: f64 = reader.records().last().unwrap().unwrap()[column].parse().unwrap();
+    let column = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .position(|h| h == "transmission_sump_degc")
+        .unwrap();
+    let last: f64 = reader.records().last().unwrap().unwrap()[column]
+        .parse()
+        .unwrap();
     let figure = &page[page.find("id=\"fig-temperatures_rover_216_cvt\"").unwrap()..];
     let table = &figure[figure.find("<tbody>").unwrap()..figure.find("</tbody>").unwrap()];
     let row = &table[table.rfind("<tr").unwrap()..];
-    let shown: Vec<f64> = row.split(['<', '>']).filter_map(|cell| cell.replace('\u{2212}', "-").parse().ok()).collect();
-    assert!(shown.iter().any(|x| (x - last).abs() <= 0.051), "{last} in {shown:?}");
+    let shown: Vec<f64> = row
+        .split(['<', '>'])
+        .filter_map(|cell| cell.replace('\u{2212}', "-").parse().ok())
+        .collect();
+    assert!(
+        shown.iter().any(|x| (x - last).abs() <= 0.051),
+        "{last} in {shown:?}"
+    );
 }
 
 #[test]
@@ -163,23 +238,45 @@ fn the_same_run_gives_the_same_page_and_is_not_in_the_way_of_the_next() {
     place.done(&["report", "cold", "--force"]);
     assert_eq!(first, place.text("cold/report.html"));
     run(&place, "cold", &["--force"]);
-    let said: Value = serde_json::from_str(&place.done(&["report", "cold", "--force", "--json"])).unwrap();
-    assert_eq!(said["figures"].as_array().unwrap().len(), drawings(&first).len());
+    let said: Value =
+        serde_json::from_str(&place.done(&["report", "cold", "--force", "--json"])).unwrap();
+    assert_eq!(
+        said["figures"].as_array().unwrap().len(),
+        drawings(&first).len()
+    );
     // A folder with something of the user's own in it is left alone.
     place.write("cold/report_figures/mine.txt", "x");
-    place.refused(&["report", "cold", "--force"], 2, &["something else than figures", "mine.txt"]);
+    place.refused(
+        &["report", "cold", "--force"],
+        2,
+        &["something else than figures", "mine.txt"],
+    );
     assert!(place.has("cold/report_figures/mine.txt"));
 }
 
 #[test]
 fn a_year_of_traces_stays_small() {
     let place = Place::new();
-    place.done(&["run", "--cycle", "ftp75", "--sensitivity", "never", "--quiet", "--out", "ftp"]);
+    place.done(&[
+        "run",
+        "--cycle",
+        "ftp75",
+        "--sensitivity",
+        "never",
+        "--quiet",
+        "--out",
+        "ftp",
+    ]);
     place.done(&["report", "ftp", "--quiet"]);
-    let size = fs::metadata(place.path().join("ftp/report.html")).unwrap().len();
+    let size = fs::metadata(place.path().join("ftp/report.html"))
+        .unwrap()
+        .len();
     assert!(size < 3_000_000, "{size} bytes");
     let words = words_of(&place.text("ftp/report.html"));
-    assert!(words.contains("weighted") && words.contains("cold transient"), "bags and weighted fuel");
+    assert!(
+        words.contains("weighted") && words.contains("cold transient"),
+        "bags and weighted fuel"
+    );
 }
 
 #[test]
@@ -187,13 +284,28 @@ fn what_is_missing_is_said_and_the_rest_is_there() {
     let place = Place::new();
     run(&place, "cold", &[]);
     fs::remove_file(place.path().join("cold/trace_rover_216_cvt.csv")).unwrap();
-    place.refused(&["report", "cold"], 1, &["trace of rover_216_cvt is not there"]);
+    place.refused(
+        &["report", "cold"],
+        1,
+        &["trace of rover_216_cvt is not there"],
+    );
     let page = place.text("cold/report.html");
     assert!(words_of(&page).contains("trace of rover_216_cvt is not there"));
-    assert!(page.contains("fig-temperatures_rover_216_5mt") && !page.contains("fig-temperatures_rover_216_cvt"));
+    assert!(
+        page.contains("fig-temperatures_rover_216_5mt")
+            && !page.contains("fig-temperatures_rover_216_cvt")
+    );
     fs::remove_file(place.path().join("cold/inputs.json")).unwrap();
-    place.refused(&["report", "cold", "--force"], 1, &["inputs.json is not there"]);
-    assert!(place.text("cold/report.html").contains("energy_flow_rover_216_cvt"));
+    place.refused(
+        &["report", "cold", "--force"],
+        1,
+        &["inputs.json is not there"],
+    );
+    assert!(
+        place
+            .text("cold/report.html")
+            .contains("energy_flow_rover_216_cvt")
+    );
 }
 
 #[test]
@@ -202,26 +314,63 @@ fn what_is_no_run_is_refused_with_a_hint_and_leaves_nothing() {
     run(&place, "cold", &[]);
     fs::create_dir(place.path().join("empty")).unwrap();
     place.refused(&["report", "nowhere"], 2, &["nowhere", "check the path"]);
-    place.refused(&["report", "empty"], 2, &["neither summary.json nor study.json", "cvtcycle run"]);
+    place.refused(
+        &["report", "empty"],
+        2,
+        &["neither summary.json nor study.json", "cvtcycle run"],
+    );
     place.refused(&["report", "cold/summary.json"], 2, &["name the directory"]);
     place.refused(&["report", "cold", "empty"], 2, &["neither"]);
-    place.refused(&["report", "cold", "--with", "empty"], 2, &["neither a study nor a validation"]);
-    place.refused(&["report", "cold", "--format", "pdf"], 2, &["pdf", "html, md"]);
-    place.refused(&["report", "cold", "--out", "no/such/report.html"], 2, &["no directory"]);
+    place.refused(
+        &["report", "cold", "--with", "empty"],
+        2,
+        &["neither a study nor a validation"],
+    );
+    place.refused(
+        &["report", "cold", "--format", "pdf"],
+        2,
+        &["pdf", "html, md"],
+    );
+    place.refused(
+        &["report", "cold", "--out", "no/such/report.html"],
+        2,
+        &["no directory"],
+    );
     place.refused(&["report", "cold", "--out", "cold"], 2, &["is a directory"]);
-    place.refused(&["report", "cold", "--cover", "none.toml"], 2, &["none.toml"]);
+    place.refused(
+        &["report", "cold", "--cover", "none.toml"],
+        2,
+        &["none.toml"],
+    );
 
     let summary = place.text("cold/summary.json");
-    place.write("cold/summary.json", &summary.replacen("\"schema\": 1", "\"schema\": 9", 1));
-    place.refused(&["report", "cold"], 2, &["schema 9", "reads schema 1", "the program that wrote it"]);
+    place.write(
+        "cold/summary.json",
+        &summary.replacen("\"schema\": 1", "\"schema\": 9", 1),
+    );
+    place.refused(
+        &["report", "cold"],
+        2,
+        &["schema 9", "reads schema 1", "the program that wrote it"],
+    );
     place.write("cold/summary.json", &summary[..summary.len() / 2]);
     place.refused(&["report", "cold"], 2, &["no whole JSON", "damaged"]);
-    place.write("cold/summary.json", &summary.replace("rover_216_5mt", "../../etc/passwd"));
+    place.write(
+        "cold/summary.json",
+        &summary.replace("rover_216_5mt", "../../etc/passwd"),
+    );
     place.refused(&["report", "cold"], 2, &["cannot be the name of a vehicle"]);
     place.write("cold/summary.json", &summary);
     let trace = place.text("cold/trace_rover_216_cvt.csv");
-    place.write("cold/trace_rover_216_cvt.csv", &trace.replacen("\n2,", "\n1x,", 1));
-    place.refused(&["report", "cold"], 2, &["trace_rover_216_cvt.csv", "1x", "time_s"]);
+    place.write(
+        "cold/trace_rover_216_cvt.csv",
+        &trace.replacen("\n2,", "\n1x,", 1),
+    );
+    place.refused(
+        &["report", "cold"],
+        2,
+        &["trace_rover_216_cvt.csv", "1x", "time_s"],
+    );
     assert!(!place.has("cold/report.html") && !place.has("cold/report_figures"));
     place.write("cold/trace_rover_216_cvt.csv", &trace);
     place.done(&["report", "cold"]);
@@ -232,14 +381,27 @@ fn nothing_but_a_report_is_replaced() {
     let place = Place::new();
     run(&place, "cold", &[]);
     let before = place.text("cold/summary.json");
-    place.refused(&["report", "cold", "--out", "cold/summary.json", "--force"], 2, &["ending", "html"]);
+    place.refused(
+        &["report", "cold", "--out", "cold/summary.json", "--force"],
+        2,
+        &["ending", "html"],
+    );
     place.write("notes.html", "<p>mine</p>");
-    place.refused(&["report", "cold", "--out", "notes.html", "--force"], 2, &["no report of this program"]);
-    assert_eq!((place.text("cold/summary.json"), place.text("notes.html")), (before, "<p>mine</p>".to_owned()));
+    place.refused(
+        &["report", "cold", "--out", "notes.html", "--force"],
+        2,
+        &["no report of this program"],
+    );
+    assert_eq!(
+        (place.text("cold/summary.json"), place.text("notes.html")),
+        (before, "<p>mine</p>".to_owned())
+    );
     // The ending tells the form.
     place.done(&["report", "cold", "--out", "a b.md"]);
     place.done(&["report", "cold", "--out", "a b.md", "--force"]);
-    assert!(place.text("a b.md").contains("](a%20b_figures/") && place.text("a b.md").starts_with("# "));
+    assert!(
+        place.text("a b.md").contains("](a%20b_figures/") && place.text("a b.md").starts_with("# ")
+    );
 }
 
 #[test]
@@ -250,15 +412,40 @@ fn a_trace_has_to_be_that_of_the_summary() {
     let trace = place.text("cold/trace_rover_216_cvt.csv");
     let half: Vec<&str> = trace.lines().take(100).collect();
     place.write("cold/trace_rover_216_cvt.csv", &(half.join("\n") + "\n"));
-    place.refused(&["report", "cold"], 2, &["not that of the summary", "time of 99"]);
-    place.write("cold/trace_rover_216_cvt.csv", &place.text("warm/trace_rover_216_cvt.csv"));
-    place.refused(&["report", "cold"], 2, &["not that of the summary", "fuel of"]);
-    place.write("cold/trace_rover_216_cvt.csv", &trace.replacen("pump_loss_w", "plump_loss_w", 1));
-    place.refused(&["report", "cold"], 2, &["losses of the transmission", "trace_rover_216_cvt.csv"]);
+    place.refused(
+        &["report", "cold"],
+        2,
+        &["not that of the summary", "time of 99"],
+    );
+    place.write(
+        "cold/trace_rover_216_cvt.csv",
+        &place.text("warm/trace_rover_216_cvt.csv"),
+    );
+    place.refused(
+        &["report", "cold"],
+        2,
+        &["not that of the summary", "fuel of"],
+    );
+    place.write(
+        "cold/trace_rover_216_cvt.csv",
+        &trace.replacen("pump_loss_w", "plump_loss_w", 1),
+    );
+    place.refused(
+        &["report", "cold"],
+        2,
+        &["losses of the transmission", "trace_rover_216_cvt.csv"],
+    );
     place.write("cold/trace_rover_216_cvt.csv", &trace);
     let summary = place.text("cold/summary.json");
-    let fuel = summary.lines().find(|line| line.contains("\"fuel_l_per_100km\"")).unwrap().to_owned();
-    place.write("cold/summary.json", &summary.replacen(&fuel, "\"fuel_l_per_100km\": 5.0,", 1));
+    let fuel = summary
+        .lines()
+        .find(|line| line.contains("\"fuel_l_per_100km\""))
+        .unwrap()
+        .to_owned();
+    place.write(
+        "cold/summary.json",
+        &summary.replacen(&fuel, "\"fuel_l_per_100km\": 5.0,", 1),
+    );
     place.refused(&["report", "cold"], 2, &["do not agree with each other"]);
     assert!(!place.has("cold/report.html"));
 }
@@ -267,17 +454,58 @@ fn a_trace_has_to_be_that_of_the_summary() {
 fn a_study_of_another_case_stays_out_of_the_answer() {
     let place = Place::new();
     run(&place, "cold", &[]);
-    place.done(&["study", "ambient", "--cycle", "ece15", "--quiet", "--out", "cold/matrix"]);
-    place.done(&["run", "--cycle", "eudc", "--sensitivity", "never", "--quiet", "--out", "other"]);
-    place.done(&["report", "other", "--with", "cold/matrix", "--with", "cold/matrix"]);
+    place.done(&[
+        "study",
+        "ambient",
+        "--cycle",
+        "ece15",
+        "--quiet",
+        "--out",
+        "cold/matrix",
+    ]);
+    place.done(&[
+        "run",
+        "--cycle",
+        "eudc",
+        "--sensitivity",
+        "never",
+        "--quiet",
+        "--out",
+        "other",
+    ]);
+    place.done(&[
+        "report",
+        "other",
+        "--with",
+        "cold/matrix",
+        "--with",
+        "cold/matrix",
+    ]);
     let words = words_of(&place.text("other/report.html"));
     let answer = &words[..words.find("What to doubt").unwrap()];
-    assert!(answer.contains("is of another case: cycle ece15 instead of eudc") && !answer.contains("Fuel of rover_216_cvt over"));
+    assert!(
+        answer.contains("is of another case: cycle ece15 instead of eudc")
+            && !answer.contains("Fuel of rover_216_cvt over")
+    );
     assert!(words.contains("No study of uncertainty of this case"));
-    assert_eq!(place.text("other/report.html").matches("id=\"fig-ambient_fuel\"").count(), 1, "named twice, shown once");
+    assert_eq!(
+        place
+            .text("other/report.html")
+            .matches("id=\"fig-ambient_fuel\"")
+            .count(),
+        1,
+        "named twice, shown once"
+    );
     place.done(&["report", "cold"]);
-    assert!(words_of(&place.text("cold/report.html")).contains("Fuel of rover_216_cvt over rover_216_5mt"));
-    place.refused(&["report", "cold", "other", "--with", "cold/matrix"], 2, &["not beside"]);
+    assert!(
+        words_of(&place.text("cold/report.html"))
+            .contains("Fuel of rover_216_cvt over rover_216_5mt")
+    );
+    place.refused(
+        &["report", "cold", "other", "--with", "cold/matrix"],
+        2,
+        &["not beside"],
+    );
 }
 
 #[test]
@@ -285,10 +513,24 @@ fn names_and_remarks_are_shown_as_text() {
     let place = Place::new();
     let vehicle = place.done(&["show", "rover_216_cvt", "--help"]);
     assert!(!vehicle.is_empty());
-    let source = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/vehicles/rover_216_cvt.toml")).unwrap();
-    let line = source.lines().find(|line| line.trim_start().starts_with("title")).unwrap().to_owned();
-    place.write("own.toml", &source.replace(&line, "title = \"<script>alert(1)</script> & <b>bold</b>\""));
-    place.write("cover.toml", "author = \"<i>me</i>\"\n[remarks]\nanswer = \"<img src=x onerror=alert(2)> | *so*\"\n");
+    let source = fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/vehicles/rover_216_cvt.toml"
+    ))
+    .unwrap();
+    let line = source
+        .lines()
+        .find(|line| line.trim_start().starts_with("title"))
+        .unwrap()
+        .to_owned();
+    place.write(
+        "own.toml",
+        &source.replace(&line, "title = \"<script>alert(1)</script> & <b>bold</b>\""),
+    );
+    place.write(
+        "cover.toml",
+        "author = \"<i>me</i>\"\n[remarks]\nanswer = \"<img src=x onerror=alert(2)> | *so*\"\n",
+    );
     place.done(&[
         "run",
         "--cycle",
@@ -309,11 +551,17 @@ fn names_and_remarks_are_shown_as_text() {
         assert!(!page.contains(bad), "{bad}");
     }
     let words = words_of(&page);
-    assert!(words.contains("alert(1)") && words.contains("onerror=alert(2)"), "they are there, as text");
+    assert!(
+        words.contains("alert(1)") && words.contains("onerror=alert(2)"),
+        "they are there, as text"
+    );
     place.done(&["report", "own", "--cover", "cover.toml", "--format", "md"]);
     let text = place.text("own/report.md");
     assert!(!text.contains("<script>") && !text.contains("<img") && text.contains("\\| \\*so\\*"));
-    assert_eq!(text.matches("](report_figures/").count(), drawings(&page).len());
+    assert_eq!(
+        text.matches("](report_figures/").count(),
+        drawings(&page).len()
+    );
 }
 
 /// Outside truth: the difference of the two summaries.
@@ -321,44 +569,95 @@ fn names_and_remarks_are_shown_as_text() {
 fn val_two_runs_differ_by_what_their_summaries_differ() {
     let place = Place::new();
     run(&place, "a", &[]);
-    run(&place, "b", &["--set", "transmission.cvt.pump.displacement_cc_rev=12"]);
+    run(
+        &place,
+        "b",
+        &["--set", "transmission.cvt.pump.displacement_cc_rev=12"],
+    );
     place.done(&["report", "a", "b", "--out", "ab.html"]);
     let page = place.text("ab.html");
     let words = words_of(&page);
     let fuel = |dir: &str| -> f64 {
-        let summary: Value = serde_json::from_str(&place.text(&format!("{dir}/summary.json"))).unwrap();
+        let summary: Value =
+            serde_json::from_str(&place.text(&format!("{dir}/summary.json"))).unwrap();
         summary["runs"][0]["fuel_l_per_100km"].as_f64().unwrap()
     };
     let (a, b) = (fuel("a"), fuel("b"));
-    assert!(b > a && words.contains(&format!("{:.3} L/100 km or", b - a)) && words.contains("more than that of a"), "{a} {b}");
+    assert!(
+        b > a
+            && words.contains(&format!("{:.3} L/100 km or", b - a))
+            && words.contains("more than that of a"),
+        "{a} {b}"
+    );
     assert!(words.contains("transmission.cvt.pump.displacement_cc_rev") && words.contains(" 12 "));
     // The terms add up to the fuel's difference in kJ: the table under the bars.
     let figure = &page[page.find("id=\"fig-difference\"").unwrap()..];
     let table = &figure[figure.find("<tbody>").unwrap()..figure.find("</tbody>").unwrap()];
-    assert!(table.matches("<tr").count() > 12, "every component and term has a row");
+    assert!(
+        table.matches("<tr").count() > 12,
+        "every component and term has a row"
+    );
 
-    place.done(&["run", "--cycle", "eudc", "--baseline", "none", "--sensitivity", "never", "--quiet", "--out", "other"]);
-    place.refused(&["report", "a", "other"], 2, &["ece15", "eudc", "runs of one cycle"]);
-    place.done(&["study", "ambient", "--cycle", "ece15", "--quiet", "--out", "matrix"]);
-    place.refused(&["report", "a", "matrix"], 2, &["no pair of runs", "--with"]);
+    place.done(&[
+        "run",
+        "--cycle",
+        "eudc",
+        "--baseline",
+        "none",
+        "--sensitivity",
+        "never",
+        "--quiet",
+        "--out",
+        "other",
+    ]);
+    place.refused(
+        &["report", "a", "other"],
+        2,
+        &["ece15", "eudc", "runs of one cycle"],
+    );
+    place.done(&[
+        "study", "ambient", "--cycle", "ece15", "--quiet", "--out", "matrix",
+    ]);
+    place.refused(
+        &["report", "a", "matrix"],
+        2,
+        &["no pair of runs", "--with"],
+    );
 }
 
 #[test]
 fn studies_and_validation_come_into_the_report_of_a_run() {
     let place = Place::new();
     run(&place, "cold", &[]);
-    place.done(&["study", "ambient", "--cycle", "ece15", "--quiet", "--out", "cold/matrix"]);
+    place.done(&[
+        "study",
+        "ambient",
+        "--cycle",
+        "ece15",
+        "--quiet",
+        "--out",
+        "cold/matrix",
+    ]);
     place.done(&["validate", "--chapter", "C", "--quiet", "--out", "check"]);
     place.done(&["report", "cold", "--with", "check"]);
     let words = words_of(&place.text("cold/report.html"));
-    assert!(words.contains("Ambient temperatures") && words.contains("Validation") && words.contains("printed numbers"));
+    assert!(
+        words.contains("Ambient temperatures")
+            && words.contains("Validation")
+            && words.contains("printed numbers")
+    );
     place.refused(&["report", "check"], 2, &["cvtcycle validate", "--with"]);
 
     place.done(&["report", "cold/matrix"]);
     assert!(drawings(&place.text("cold/matrix/report.html")).len() >= 3);
     // Half a study: reported as far as it is whole.
-    let mark = fs::read_dir(place.path().join("cold/matrix/parts")).unwrap().map(|e| e.unwrap().path());
-    let mark = mark.filter(|path| path.extension().is_some_and(|e| e == "sha256")).max().unwrap();
+    let mark = fs::read_dir(place.path().join("cold/matrix/parts"))
+        .unwrap()
+        .map(|e| e.unwrap().path());
+    let mark = mark
+        .filter(|path| path.extension().is_some_and(|e| e == "sha256"))
+        .max()
+        .unwrap();
     fs::remove_file(mark).unwrap();
     place.refused(&["report", "cold/matrix", "--force"], 1, &["not finished"]);
     assert!(words_of(&place.text("cold/matrix/report.html")).contains("is not finished"));

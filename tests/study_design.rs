@@ -14,11 +14,20 @@ const DRAWN: &str = "status = \"assumed\"\ndistribution.uniform = { low = 0, hig
 fn factors(entries: &[usize]) -> Vec<Factor> {
     let factor = |(k, &n): (usize, &usize)| {
         let list: Vec<String> = (0..n).map(|k| k.to_string()).collect();
-        let values = if n == 0 { DRAWN.to_owned() } else { format!("values = [{}]\n", list.join(", ")) };
+        let values = if n == 0 {
+            DRAWN.to_owned()
+        } else {
+            format!("values = [{}]\n", list.join(", "))
+        };
         format!("[[factor]]\nkey = \"a.b{k}\"\n{values}")
     };
     let text: String = entries.iter().enumerate().map(factor).collect();
-    Plan::read("p.toml", &format!("study.design = \"one_at_a_time\"\n{text}")).unwrap().factors
+    Plan::read(
+        "p.toml",
+        &format!("study.design = \"one_at_a_time\"\n{text}"),
+    )
+    .unwrap()
+    .factors
 }
 
 fn levels(design: Design, factors: &[Factor], point: u64) -> Vec<Level> {
@@ -36,7 +45,9 @@ fn share(design: Design, factors: &[Factor], point: u64, factor: usize) -> f64 {
 
 fn shares(design: Design, count: usize, factor: usize) -> Vec<f64> {
     let f = factors(&vec![0; count]);
-    (0..design.points(&f).unwrap()).map(|point| share(design, &f, point, factor)).collect()
+    (0..design.points(&f).unwrap())
+        .map(|point| share(design, &f, point, factor))
+        .collect()
 }
 
 /// Designs that draw, of about `samples` points.
@@ -53,14 +64,22 @@ fn correlation(x: &[f64], y: &[f64]) -> f64 {
     let n = x.len() as f64;
     let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
     let (mx, my) = (mean(x), mean(y));
-    let sum = |f: &dyn Fn(f64, f64) -> f64| x.iter().zip(y).map(|(&a, &b)| f(a - mx, b - my)).sum::<f64>();
+    let sum = |f: &dyn Fn(f64, f64) -> f64| {
+        x.iter()
+            .zip(y)
+            .map(|(&a, &b)| f(a - mx, b - my))
+            .sum::<f64>()
+    };
     sum(&|a, b| a * b) / (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt()
 }
 
 /// Probability that a chi-squared as large comes by chance, for counts in equal classes.
 fn chance(counts: &[u64]) -> f64 {
     let expected = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
-    let chi2: f64 = counts.iter().map(|&count| (count as f64 - expected).powi(2) / expected).sum();
+    let chi2: f64 = counts
+        .iter()
+        .map(|&count| (count as f64 - expected).powi(2) / expected)
+        .sum();
     ChiSquared::new(counts.len() as f64 - 1.0).unwrap().sf(chi2)
 }
 
@@ -69,10 +88,15 @@ fn chance(counts: &[u64]) -> f64 {
 fn val_order_of_a_grid() {
     let f = factors(&[2, 3]);
     assert_eq!(Design::Grid.points(&f), Some(6));
-    let order: Vec<Vec<Level>> = (0..6).map(|point| levels(Design::Grid, &f, point)).collect();
+    let order: Vec<Vec<Level>> = (0..6)
+        .map(|point| levels(Design::Grid, &f, point))
+        .collect();
     let expected = [[0, 0], [0, 1], [0, 2], [1, 0], [1, 1], [1, 2]];
     assert_eq!(order, expected.map(|pair| pair.map(Level::Entry).to_vec()));
-    assert_eq!((Design::Grid.points(&[]), levels(Design::Grid, &[], 0)), (Some(1), vec![]));
+    assert_eq!(
+        (Design::Grid.points(&[]), levels(Design::Grid, &[], 0)),
+        (Some(1), vec![])
+    );
 }
 
 /// Hand calculation: the base, two entries, two quantiles, one entry.
@@ -98,17 +122,41 @@ fn val_order_of_one_at_a_time() {
 #[test]
 fn val_blocks_of_saltelli() {
     let f = factors(&[0, 0]);
-    let design = Design::Saltelli { samples: 8, seed: 3 };
+    let design = Design::Saltelli {
+        samples: 8,
+        seed: 3,
+    };
     assert_eq!(design.points(&f), Some(32));
     let roles: Vec<(u64, Role)> = (4..9).map(|point| saltelli_role(2, point)).collect();
-    assert_eq!(roles, [(1, Role::A), (1, Role::B), (1, Role::AB(0)), (1, Role::AB(1)), (2, Role::A)]);
+    assert_eq!(
+        roles,
+        [
+            (1, Role::A),
+            (1, Role::B),
+            (1, Role::AB(0)),
+            (1, Role::AB(1)),
+            (2, Role::A)
+        ]
+    );
     // The whole block is one point of a Sobol sequence in four dimensions.
     let four = factors(&[0; 4]);
     for sample in 0..8 {
-        let wide = levels(Design::Sobol { samples: 8, seed: 3 }, &four, sample);
-        let block: Vec<Vec<Level>> = (0..4).map(|column| levels(design, &f, 4 * sample + column)).collect();
+        let wide = levels(
+            Design::Sobol {
+                samples: 8,
+                seed: 3,
+            },
+            &four,
+            sample,
+        );
+        let block: Vec<Vec<Level>> = (0..4)
+            .map(|column| levels(design, &f, 4 * sample + column))
+            .collect();
         let (a, b) = (&wide[..2], &wide[2..]);
-        assert_eq!(block, [a.to_vec(), b.to_vec(), vec![b[0], a[1]], vec![a[0], b[1]]]);
+        assert_eq!(
+            block,
+            [a.to_vec(), b.to_vec(), vec![b[0], a[1]], vec![a[0], b[1]]]
+        );
     }
 }
 
@@ -118,8 +166,14 @@ fn a_latin_hypercube_hits_each_stratum_once() {
         for seed in 0..3 {
             for factor in 0..3 {
                 let strata: BTreeSet<u64> =
-                    shares(Design::LatinHypercube { samples: n, seed }, 3, factor).iter().map(|u| (u * n as f64) as u64).collect();
-                assert!(strata.len() as u64 == n && strata.last() == Some(&(n - 1)), "n {n}, seed {seed}, factor {factor}");
+                    shares(Design::LatinHypercube { samples: n, seed }, 3, factor)
+                        .iter()
+                        .map(|u| (u * n as f64) as u64)
+                        .collect();
+                assert!(
+                    strata.len() as u64 == n && strata.last() == Some(&(n - 1)),
+                    "n {n}, seed {seed}, factor {factor}"
+                );
             }
         }
     }
@@ -133,12 +187,20 @@ fn val_factors_of_a_latin_hypercube_are_uncorrelated() {
         let scaled = |seed: u64| {
             let column = |factor| shares(Design::LatinHypercube { samples, seed }, 3, factor);
             let (x, y, z) = (column(0), column(1), column(2));
-            [correlation(&x, &y), correlation(&y, &z), correlation(&z, &x)].map(|r| r * (samples as f64 - 1.0).sqrt())
+            [
+                correlation(&x, &y),
+                correlation(&y, &z),
+                correlation(&z, &x),
+            ]
+            .map(|r| r * (samples as f64 - 1.0).sqrt())
         };
         let all: Vec<f64> = (0..400).flat_map(scaled).collect();
         let mean = all.iter().sum::<f64>() / 1200.0;
         let variance = all.iter().map(|r| r * r).sum::<f64>() / 1200.0;
-        assert!(mean.abs() < 0.115 && (variance - 1.0).abs() < 0.17, "n {samples}: mean {mean}, variance {variance}");
+        assert!(
+            mean.abs() < 0.115 && (variance - 1.0).abs() < 0.17,
+            "n {samples}: mean {mean}, variance {variance}"
+        );
     }
 }
 
@@ -146,7 +208,14 @@ fn val_factors_of_a_latin_hypercube_are_uncorrelated() {
 #[test]
 fn val_jitter_is_uniform() {
     let mut counts = [0_u64; 20];
-    for u in shares(Design::LatinHypercube { samples: 20_000, seed: 5 }, 1, 0) {
+    for u in shares(
+        Design::LatinHypercube {
+            samples: 20_000,
+            seed: 5,
+        },
+        1,
+        0,
+    ) {
         counts[((u * 20_000.0).fract() * 20.0) as usize] += 1;
     }
     assert!(chance(&counts) > 1e-3, "{counts:?}");
@@ -156,7 +225,10 @@ fn val_jitter_is_uniform() {
 #[test]
 fn val_monte_carlo_is_uniform_and_independent() {
     for seed in [1, 2, u64::MAX] {
-        let design = Design::MonteCarlo { samples: 50_000, seed };
+        let design = Design::MonteCarlo {
+            samples: 50_000,
+            seed,
+        };
         let columns: Vec<Vec<f64>> = (0..4).map(|factor| shares(design, 4, factor)).collect();
         for x in &columns {
             let mut counts = [0_u64; 50];
@@ -165,15 +237,32 @@ fn val_monte_carlo_is_uniform_and_independent() {
             let mut largest = 0.0_f64;
             let mut sorted = x.clone();
             sorted.sort_by(f64::total_cmp);
-            sorted.iter().enumerate().for_each(|(k, u)| largest = largest.max((u - (k as f64 + 0.5) / 50_000.0).abs()));
+            sorted
+                .iter()
+                .enumerate()
+                .for_each(|(k, u)| largest = largest.max((u - (k as f64 + 0.5) / 50_000.0).abs()));
             // Kolmogorov and Smirnov: 1.95 / sqrt(n) is passed by one in a thousand.
             assert!(largest < 1.95 / 50_000_f64.sqrt(), "seed {seed}: {largest}");
         }
-        let other = shares(Design::MonteCarlo { samples: 50_000, seed: seed.wrapping_add(1) }, 4, 0);
-        let pairs = [(&columns[0], &columns[1], 0), (&columns[2], &columns[3], 0), (&columns[0], &columns[0], 1), (&columns[0], &other, 0)];
+        let other = shares(
+            Design::MonteCarlo {
+                samples: 50_000,
+                seed: seed.wrapping_add(1),
+            },
+            4,
+            0,
+        );
+        let pairs = [
+            (&columns[0], &columns[1], 0),
+            (&columns[2], &columns[3], 0),
+            (&columns[0], &columns[0], 1),
+            (&columns[0], &other, 0),
+        ];
         for (x, y, lag) in pairs {
             let mut counts = [0_u64; 100];
-            x.iter().zip(&y[lag..]).for_each(|(u, v)| counts[(u * 10.0) as usize * 10 + (v * 10.0) as usize] += 1);
+            x.iter()
+                .zip(&y[lag..])
+                .for_each(|(u, v)| counts[(u * 10.0) as usize * 10 + (v * 10.0) as usize] += 1);
             assert!(chance(&counts) > 1e-4, "seed {seed}, lag {lag}: {counts:?}");
         }
     }
@@ -184,14 +273,29 @@ fn val_monte_carlo_is_uniform_and_independent() {
 #[test]
 fn val_sobol_points_are_nets() {
     for seed in [1, 7] {
-        let x: Vec<Vec<f64>> = (0..6).map(|factor| shares(Design::Sobol { samples: 1024, seed }, 6, factor)).collect();
+        let x: Vec<Vec<f64>> = (0..6)
+            .map(|factor| {
+                shares(
+                    Design::Sobol {
+                        samples: 1024,
+                        seed,
+                    },
+                    6,
+                    factor,
+                )
+            })
+            .collect();
         for column in &x {
             let strata: BTreeSet<u64> = column.iter().map(|u| (u * 1024.0) as u64).collect();
             assert_eq!(strata.len(), 1024);
         }
         for split in 0..=10 {
             let (rows, columns) = (f64::from(1 << split), f64::from(1 << (10 - split)));
-            let boxes: BTreeSet<(u64, u64)> = x[0].iter().zip(&x[1]).map(|(u, v)| ((u * rows) as u64, (v * columns) as u64)).collect();
+            let boxes: BTreeSet<(u64, u64)> = x[0]
+                .iter()
+                .zip(&x[1])
+                .map(|(u, v)| ((u * rows) as u64, (v * columns) as u64))
+                .collect();
             assert_eq!(boxes.len(), 1024, "seed {seed}: {rows} x {columns}");
         }
     }
@@ -205,29 +309,48 @@ fn val_sobol_integrates_better_than_monte_carlo() {
     let error = |design: &dyn Fn(u64) -> Design| {
         let squares = (0..40).map(|seed| {
             let f = factors(&vec![0; d]);
-            let product = |point| (0..d).map(|factor| 0.5 + share(design(seed), &f, point, factor)).product::<f64>();
+            let product = |point| {
+                (0..d)
+                    .map(|factor| 0.5 + share(design(seed), &f, point, factor))
+                    .product::<f64>()
+            };
             ((0..n).map(product).sum::<f64>() / n as f64 - 1.0).powi(2)
         });
         (squares.sum::<f64>() / 40.0).sqrt()
     };
     let monte_carlo = error(&|seed| Design::MonteCarlo { samples: n, seed });
     let variance = (13.0 / 12.0_f64).powi(d as i32) - 1.0;
-    let near = |found: f64, variance: f64| (found / (variance / n as f64).sqrt() - 1.0).abs() < 0.35;
+    let near =
+        |found: f64, variance: f64| (found / (variance / n as f64).sqrt() - 1.0).abs() < 0.35;
     assert!(near(monte_carlo, variance), "{monte_carlo}");
     let hypercube = error(&|seed| Design::LatinHypercube { samples: n, seed });
     assert!(near(hypercube, variance - d as f64 / 12.0), "{hypercube}");
     let sobol = error(&|seed| Design::Sobol { samples: n, seed });
-    println!("errors: Monte Carlo {monte_carlo:.2e}, Latin hypercube {hypercube:.2e}, Sobol {sobol:.2e}");
+    println!(
+        "errors: Monte Carlo {monte_carlo:.2e}, Latin hypercube {hypercube:.2e}, Sobol {sobol:.2e}"
+    );
     assert!(sobol < monte_carlo / 8.0, "{sobol}, {monte_carlo}");
 }
 
 /// Truth: independent seeds give uncorrelated sequences; and the last dimensions of the largest design are still even.
 #[test]
 fn sobol_seeds_and_high_dimensions() {
-    let column = |seed, factor| shares(Design::Sobol { samples: 4096, seed }, 256, factor);
+    let column = |seed, factor| {
+        shares(
+            Design::Sobol {
+                samples: 4096,
+                seed,
+            },
+            256,
+            factor,
+        )
+    };
     assert!(correlation(&column(1, 0), &column(2, 0)).abs() < 0.06);
     for pair in [(0, 255), (127, 128), (254, 255), (100, 228)] {
-        assert!(correlation(&column(1, pair.0), &column(1, pair.1)).abs() < 0.06, "{pair:?}");
+        assert!(
+            correlation(&column(1, pair.0), &column(1, pair.1)).abs() < 0.06,
+            "{pair:?}"
+        );
     }
 }
 
@@ -235,12 +358,19 @@ fn sobol_seeds_and_high_dimensions() {
 #[test]
 fn points_stay_what_they_are() {
     let f = factors(&[0, 0, 0]);
-    let found: Vec<u64> = drawn(1000, 42).map(|design| share(design, &f, 617, 1).to_bits()).to_vec();
+    let found: Vec<u64> = drawn(1000, 42)
+        .map(|design| share(design, &f, 617, 1).to_bits())
+        .to_vec();
     let shown: Vec<f64> = found.iter().map(|bits| f64::from_bits(*bits)).collect();
     assert_eq!(found, KEPT, "{shown:?}");
 }
 
-const KEPT: [u64; 4] = [4599521494267026473, 4605275378695536640, 4599721567129739470, 4595679480621563904];
+const KEPT: [u64; 4] = [
+    4599521494267026473,
+    4605275378695536640,
+    4599721567129739470,
+    4595679480621563904,
+];
 
 /// Truth: brute force.
 #[test]
@@ -249,12 +379,23 @@ fn val_span_of_the_shares() {
         for factor in 0..2 {
             let mut all = shares(design, 2, factor);
             all.sort_by(f64::total_cmp);
-            assert_eq!(design.share_span(&factors(&[0, 0]), factor), (all[0], all[all.len() - 1]), "{design:?}");
+            assert_eq!(
+                design.share_span(&factors(&[0, 0]), factor),
+                (all[0], all[all.len() - 1]),
+                "{design:?}"
+            );
         }
     }
-    let (low, high) = Design::MonteCarlo { samples: 1 << 30, seed: 1 }.share_span(&factors(&[0]), 0);
+    let (low, high) = Design::MonteCarlo {
+        samples: 1 << 30,
+        seed: 1,
+    }
+    .share_span(&factors(&[0]), 0);
     assert!(0.0 < low && low < 1e-12 && high < 1.0 && 1.0 - high < 1e-12);
-    assert_eq!(Design::OneAtATime { quantile: 0.2 }.share_span(&factors(&[0]), 0), (0.2, 0.8));
+    assert_eq!(
+        Design::OneAtATime { quantile: 0.2 }.share_span(&factors(&[0]), 0),
+        (0.2, 0.8)
+    );
 }
 
 /// Truth: each of 7 entries is drawn about equally often, and a share just below 1 is the last one.
@@ -264,15 +405,26 @@ fn lists_are_drawn_evenly() {
     for design in drawn(7000, 4) {
         let mut counts = [0_u64; 7];
         for point in 0..7000 {
-            let Some(FactorValue::Number(x)) = f[0].value(design.level(&f, point, 0)) else { panic!("no value") };
+            let Some(FactorValue::Number(x)) = f[0].value(design.level(&f, point, 0)) else {
+                panic!("no value")
+            };
             counts[x as usize] += 1;
         }
         assert!(chance(&counts) > 1e-4, "{design:?}: {counts:?}");
     }
-    assert_eq!(f[0].value(Level::Share(1.0)), Some(FactorValue::Number(6.0)));
-    assert_eq!((f[0].value(Level::Entry(7)), f[0].value(Level::Base)), (None, None));
+    assert_eq!(
+        f[0].value(Level::Share(1.0)),
+        Some(FactorValue::Number(6.0))
+    );
+    assert_eq!(
+        (f[0].value(Level::Entry(7)), f[0].value(Level::Base)),
+        (None, None)
+    );
     let drawn = &factors(&[0])[0];
-    assert_eq!((drawn.value(Level::Share(0.25)), drawn.value(Level::Base)), (Some(FactorValue::Number(0.25)), None));
+    assert_eq!(
+        (drawn.value(Level::Share(0.25)), drawn.value(Level::Base)),
+        (Some(FactorValue::Number(0.25)), None)
+    );
 }
 
 /// Truth: published quantiles of the normal distribution, here those of statrs; no share of any design leads to an infinite value.
@@ -281,7 +433,13 @@ fn shares_lead_to_finite_values() {
     let normal = Normal::standard();
     for design in drawn(MOST_SOBOL_SAMPLES, 11) {
         let (low, high) = design.share_span(&factors(&[0, 0]), 1);
-        assert!(0.0 < low && high < 1.0 && normal.inverse_cdf(low).is_finite() && normal.inverse_cdf(high).is_finite(), "{design:?}");
+        assert!(
+            0.0 < low
+                && high < 1.0
+                && normal.inverse_cdf(low).is_finite()
+                && normal.inverse_cdf(high).is_finite(),
+            "{design:?}"
+        );
     }
 }
 

@@ -6,10 +6,25 @@ use proptest::prelude::*;
 use statrs::distribution::{ContinuousCDF, LogNormal, Normal, Triangular, Uniform};
 use statrs::statistics::Distribution as Moments;
 
-const SHARES: [f64; 11] = [1e-12, 1e-7, 1e-3, 0.05, 0.3, 0.5, 0.7, 0.95, 0.999, 1.0 - 1e-7, 1.0 - 1e-12];
+const SHARES: [f64; 11] = [
+    1e-12,
+    1e-7,
+    1e-3,
+    0.05,
+    0.3,
+    0.5,
+    0.7,
+    0.95,
+    0.999,
+    1.0 - 1e-7,
+    1.0 - 1e-12,
+];
 
 fn near(found: f64, expected: f64, tolerance: f64) {
-    assert!((found - expected).abs() <= tolerance * (1.0 + expected.abs()), "{found} instead of {expected}");
+    assert!(
+        (found - expected).abs() <= tolerance * (1.0 + expected.abs()),
+        "{found} instead of {expected}"
+    );
 }
 
 /// Value by value against an inverse, and moments against a distribution of statrs.
@@ -25,11 +40,33 @@ fn against<D: ContinuousCDF<f64, f64> + Moments<f64>>(own: Distribution, truth: 
 /// Truth: the distribution functions and moments of statrs, which has no hand in the closed forms here.
 #[test]
 fn val_against_statrs() {
-    against(Distribution::Normal { mean: 3.0, sd: 0.5 }, &Normal::new(3.0, 0.5).unwrap());
-    against(Distribution::Uniform { low: -2.0, high: 5.0 }, &Uniform::new(-2.0, 5.0).unwrap());
-    against(Distribution::Lognormal { median: 2.0, geometric_sd: 1.3 }, &LogNormal::new(2.0_f64.ln(), 1.3_f64.ln()).unwrap());
+    against(
+        Distribution::Normal { mean: 3.0, sd: 0.5 },
+        &Normal::new(3.0, 0.5).unwrap(),
+    );
+    against(
+        Distribution::Uniform {
+            low: -2.0,
+            high: 5.0,
+        },
+        &Uniform::new(-2.0, 5.0).unwrap(),
+    );
+    against(
+        Distribution::Lognormal {
+            median: 2.0,
+            geometric_sd: 1.3,
+        },
+        &LogNormal::new(2.0_f64.ln(), 1.3_f64.ln()).unwrap(),
+    );
     for mode in [1.0, 1.2, 2.0, 3.9, 4.0] {
-        against(Distribution::Triangular { low: 1.0, mode, high: 4.0 }, &Triangular::new(1.0, 4.0, mode).unwrap());
+        against(
+            Distribution::Triangular {
+                low: 1.0,
+                mode,
+                high: 4.0,
+            },
+            &Triangular::new(1.0, 4.0, mode).unwrap(),
+        );
     }
 }
 
@@ -37,17 +74,28 @@ fn val_against_statrs() {
 #[test]
 fn val_quantiles_of_the_normal_distribution() {
     let own = Distribution::Normal { mean: 0.0, sd: 1.0 };
-    for (u, z) in
-        [(0.975, 1.959_963_984_540_054), (0.995, 2.575_829_303_548_901), (1e-3, -3.090_232_306_167_813), (1e-9, -5.997_807_015_007_773)]
-    {
+    for (u, z) in [
+        (0.975, 1.959_963_984_540_054),
+        (0.995, 2.575_829_303_548_901),
+        (1e-3, -3.090_232_306_167_813),
+        (1e-9, -5.997_807_015_007_773),
+    ] {
         near(own.inverse_cdf(u), z, 1e-9);
     }
     // One mirrors the other to the last digit, so that designs are symmetric.
-    assert_eq!(own.inverse_cdf(0.25).to_bits(), (-own.inverse_cdf(0.75)).to_bits());
+    assert_eq!(
+        own.inverse_cdf(0.25).to_bits(),
+        (-own.inverse_cdf(0.75)).to_bits()
+    );
 }
 
 fn cut(low: f64, high: f64) -> Distribution {
-    Distribution::TruncatedNormal { mean: 0.0, sd: 1.0, low, high }
+    Distribution::TruncatedNormal {
+        mean: 0.0,
+        sd: 1.0,
+        low,
+        high,
+    }
 }
 
 /// Truth: half-normal distribution, mean sqrt(2/pi) and variance 1 - 2/pi; cut at one standard deviation either way, variance
@@ -61,7 +109,11 @@ fn val_moments_of_the_truncated_normal() {
     near(cut(-30.0, 30.0).sd(), 1.0, 1e-9);
     // Far out in the tail the excess over the cut is nearly exponential: mean 1/a - 2/a^3 + 10/a^5 (continued fraction of Mills' ratio).
     let a = 30.0_f64;
-    near((cut(a, 1e3).mean() - a) * a, 1.0 - 2.0 / a.powi(2) + 10.0 / a.powi(4), 1e-3);
+    near(
+        (cut(a, 1e3).mean() - a) * a,
+        1.0 - 2.0 / a.powi(2) + 10.0 / a.powi(4),
+        1e-3,
+    );
     // Cut narrowly it is uniform.
     near(cut(1.0, 1.0 + 1e-6).sd() * 12.0_f64.sqrt() * 1e6, 1.0, 1e-6);
 }
@@ -69,15 +121,37 @@ fn val_moments_of_the_truncated_normal() {
 /// Truth: Simpson's rule over the density from the lower end, also where the distribution function of statrs has run out of digits.
 #[test]
 fn val_quantiles_of_the_truncated_normal() {
-    for (low, high) in [(-1.0, 1.0), (0.5, 3.0), (-3.0, -0.5), (-6.0, 0.2), (8.0, 9.0), (-9.0, -8.0), (20.0, 20.5), (-0.001, 0.001)] {
+    for (low, high) in [
+        (-1.0, 1.0),
+        (0.5, 3.0),
+        (-3.0, -0.5),
+        (-6.0, 0.2),
+        (8.0, 9.0),
+        (-9.0, -8.0),
+        (20.0, 20.5),
+        (-0.001, 0.001),
+    ] {
         let density = |z: f64| (0.5 * (low * low - z * z)).exp();
         let integral = |to: f64| {
             let step = (to - low) / 2000.0;
-            let weight = |k: u32| if k == 0 || k == 2000 { 1.0 } else { f64::from(2 + 2 * (k % 2)) };
-            step / 3.0 * (0..=2000).map(|k| weight(k) * density(low + f64::from(k) * step)).sum::<f64>()
+            let weight = |k: u32| {
+                if k == 0 || k == 2000 {
+                    1.0
+                } else {
+                    f64::from(2 + 2 * (k % 2))
+                }
+            };
+            step / 3.0
+                * (0..=2000)
+                    .map(|k| weight(k) * density(low + f64::from(k) * step))
+                    .sum::<f64>()
         };
         for u in [1e-6, 0.01, 0.2, 0.5, 0.8, 0.99, 1.0 - 1e-6] {
-            near(integral(cut(low, high).inverse_cdf(u)) / integral(high), u, 2e-9);
+            near(
+                integral(cut(low, high).inverse_cdf(u)) / integral(high),
+                u,
+                2e-9,
+            );
         }
     }
 }
@@ -89,10 +163,24 @@ fn ends_and_expected_spans() {
     let (low, high) = normal.expected_span(20);
     near(low, 1.0 - 2.0 * 1.959_963_984_540_054, 1e-9);
     near(high, 1.0 + 2.0 * 1.959_963_984_540_054, 1e-9);
-    let lognormal = Distribution::Lognormal { median: 1.0, geometric_sd: 1.1 };
+    let lognormal = Distribution::Lognormal {
+        median: 1.0,
+        geometric_sd: 1.1,
+    };
     assert!(lognormal.support().0.abs() < 1e-300 && lognormal.expected_span(20).0 > 0.8);
-    assert_eq!(Distribution::Triangular { low: 1.0, mode: 1.0, high: 2.0 }.expected_span(5), (1.0, 2.0));
-    assert_eq!((cut(-1.0, 2.0).support(), cut(-1.0, 2.0).expected_span(9)), ((-1.0, 2.0), (-1.0, 2.0)));
+    assert_eq!(
+        Distribution::Triangular {
+            low: 1.0,
+            mode: 1.0,
+            high: 2.0
+        }
+        .expected_span(5),
+        (1.0, 2.0)
+    );
+    assert_eq!(
+        (cut(-1.0, 2.0).support(), cut(-1.0, 2.0).expected_span(9)),
+        ((-1.0, 2.0), (-1.0, 2.0))
+    );
     assert!(normal.expected_span(0).0.is_finite());
 }
 
@@ -100,15 +188,32 @@ fn any_distribution() -> impl Strategy<Value = Distribution> {
     let ends = (-1e3..1e3_f64, 1e-3..1e3_f64);
     prop_oneof![
         (-1e3..1e3_f64, 1e-3..1e2_f64).prop_map(|(mean, sd)| Distribution::Normal { mean, sd }),
-        ends.clone().prop_map(|(low, width)| Distribution::Uniform { low, high: low + width }),
+        ends.clone().prop_map(|(low, width)| Distribution::Uniform {
+            low,
+            high: low + width
+        }),
         (ends, 0.0..=1.0_f64).prop_map(|((low, width), share)| {
             let high = low + width;
-            Distribution::Triangular { low, mode: (low + share * width).min(high), high }
+            Distribution::Triangular {
+                low,
+                mode: (low + share * width).min(high),
+                high,
+            }
         }),
         (-4.0..2.0_f64, 0.05..4.0_f64, 0.1..50.0_f64).prop_map(|(a, width, sd)| {
-            Distribution::TruncatedNormal { mean: 5.0, sd, low: 5.0 + a * sd, high: 5.0 + (a + width) * sd }
+            Distribution::TruncatedNormal {
+                mean: 5.0,
+                sd,
+                low: 5.0 + a * sd,
+                high: 5.0 + (a + width) * sd,
+            }
         }),
-        (1e-3..1e3_f64, 1.001..3.0_f64).prop_map(|(median, geometric_sd)| Distribution::Lognormal { median, geometric_sd }),
+        (1e-3..1e3_f64, 1.001..3.0_f64).prop_map(|(median, geometric_sd)| {
+            Distribution::Lognormal {
+                median,
+                geometric_sd,
+            }
+        }),
     ]
 }
 

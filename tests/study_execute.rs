@@ -20,8 +20,16 @@ fn study(keep: &str) -> Study {
     Study::prepare(Plan::read("p.toml", &text).unwrap()).unwrap()
 }
 
-fn execute(study: &Study, threads: usize, sink: &dyn Sink, watcher: &dyn Watcher) -> Result<End, Problem> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+fn execute(
+    study: &Study,
+    threads: usize,
+    sink: &dyn Sink,
+    watcher: &dyn Watcher,
+) -> Result<End, Problem> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
     pool.install(|| study.execute(&BTreeSet::from([5]), sink, watcher))
 }
 
@@ -31,7 +39,11 @@ struct Shelf(Mutex<BTreeMap<u64, (Rows, Option<Rows>)>>);
 
 impl Sink for Shelf {
     fn write(&self, part: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem> {
-        let before = self.0.lock().unwrap().insert(part, (runs.clone(), trace.cloned()));
+        let before = self
+            .0
+            .lock()
+            .unwrap()
+            .insert(part, (runs.clone(), trace.cloned()));
         assert!(before.is_none(), "part {part} twice");
         Ok(())
     }
@@ -47,11 +59,17 @@ fn points(rows: &Rows) -> Vec<i64> {
 /// Property: every part that was not done comes once, with its points in order and the same cells, on one thread and on many.
 #[test]
 fn parts_are_whole_and_the_same_on_any_number_of_threads() {
-    for keep in ["\"summary\"", "[\"time_s\", \"gear\", \"flags\", \"phase\", \"slip_percent\"]"] {
+    for keep in [
+        "\"summary\"",
+        "[\"time_s\", \"gear\", \"flags\", \"phase\", \"slip_percent\"]",
+    ] {
         let study = study(keep);
         let parts = |threads| {
             let shelf = Shelf::default();
-            assert_eq!(execute(&study, threads, &shelf, &Unwatched).unwrap(), End::Complete);
+            assert_eq!(
+                execute(&study, threads, &shelf, &Unwatched).unwrap(),
+                End::Complete
+            );
             shelf.0.into_inner().unwrap()
         };
         let alone = parts(1);
@@ -61,7 +79,12 @@ fn parts_are_whole_and_the_same_on_any_number_of_threads() {
             assert!(points(runs).into_iter().eq(of_part), "part {part}");
             assert_eq!(trace.is_some(), keep != "\"summary\"");
             // 195 rows a run, one a second.
-            assert!(trace.as_ref().is_none_or(|trace| trace.len() == 195 * runs.len() && points(trace).is_sorted()), "part {part}");
+            assert!(
+                trace.as_ref().is_none_or(
+                    |trace| trace.len() == 195 * runs.len() && points(trace).is_sorted()
+                ),
+                "part {part}"
+            );
         }
         // As text, since what is no number is unlike itself.
         assert_eq!(format!("{:?}", parts(5)), format!("{alone:?}"));
@@ -73,8 +96,15 @@ struct Full(u64);
 
 impl Sink for Full {
     fn write(&self, part: u64, _: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
-        let problem = || Problem { message: "no room".to_owned(), ..Problem::default() };
-        if part == self.0 { Err(problem()) } else { Ok(()) }
+        let problem = || Problem {
+            message: "no room".to_owned(),
+            ..Problem::default()
+        };
+        if part == self.0 {
+            Err(problem())
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -84,7 +114,12 @@ fn a_sink_that_fails_ends_the_study_with_its_problem() {
     let study = study("\"summary\"");
     for part in [0, 11, 23] {
         for threads in [1, 4] {
-            assert_eq!(execute(&study, threads, &Full(part), &Unwatched).unwrap_err().message, "no room");
+            assert_eq!(
+                execute(&study, threads, &Full(part), &Unwatched)
+                    .unwrap_err()
+                    .message,
+                "no room"
+            );
         }
     }
 }
@@ -105,7 +140,9 @@ impl Sink for Slow {
             *by_drivers += 1;
             self.changed.notify_all();
         } else {
-            let wait = self.changed.wait_timeout_while(by_drivers, Duration::from_secs(120), |count| *count == 0);
+            let wait =
+                self.changed
+                    .wait_timeout_while(by_drivers, Duration::from_secs(120), |count| *count == 0);
             assert!(!wait.unwrap().1.timed_out(), "nobody else writes");
         }
         Ok(())
@@ -116,7 +153,10 @@ impl Sink for Slow {
 #[test]
 fn who_drives_writes_when_the_writer_is_behind() {
     let slow = Slow::default();
-    assert_eq!(execute(&study("\"summary\""), 1, &slow, &Unwatched).unwrap(), End::Complete);
+    assert_eq!(
+        execute(&study("\"summary\""), 1, &slow, &Unwatched).unwrap(),
+        End::Complete
+    );
     assert_eq!(slow.parts.load(Ordering::Relaxed), 23);
 }
 
@@ -139,11 +179,13 @@ fn a_stopped_study_leaves_whole_parts() {
     let study = study("\"summary\"");
     for threads in [1, 3] {
         let shelf = Shelf::default();
-        assert_eq!(execute(&study, threads, &shelf, &Enough(Mutex::new(0))).unwrap(), End::Stopped);
+        assert_eq!(
+            execute(&study, threads, &shelf, &Enough(Mutex::new(0))).unwrap(),
+            End::Stopped
+        );
         let parts = shelf.0.into_inner().unwrap();
         assert!(!parts.is_empty() && parts.len() < 10, "{}", parts.len());
-        assert!(
-            parts.iter().all(|(part, (runs, _))| runs.len() as u64 == 2 * (study.part_points(*part).end - study.part_points(*part).start))
-        );
+        assert!(parts.iter().all(|(part, (runs, _))| runs.len() as u64
+            == 2 * (study.part_points(*part).end - study.part_points(*part).start)));
     }
 }

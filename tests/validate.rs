@@ -8,7 +8,12 @@ use assert_cmd::Command;
 use serde_json::Value;
 
 fn cvtcycle(args: &[&str]) -> std::process::Output {
-    Command::cargo_bin("cvtcycle").unwrap().args(args).env("NO_COLOR", "1").output().unwrap()
+    Command::cargo_bin("cvtcycle")
+        .unwrap()
+        .args(args)
+        .env("NO_COLOR", "1")
+        .output()
+        .unwrap()
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -17,7 +22,8 @@ fn text(bytes: &[u8]) -> String {
 
 fn json(args: &[&str]) -> (Option<i32>, Value) {
     let output = cvtcycle(args);
-    let value = serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {}", text(&output.stderr)));
+    let value = serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|e| panic!("{e}: {}", text(&output.stderr)));
     (output.status.code(), value)
 }
 
@@ -34,26 +40,43 @@ impl Own {
     }
 
     fn path(&self) -> String {
-        self.dir.path().join("own.toml").to_string_lossy().into_owned()
+        self.dir
+            .path()
+            .join("own.toml")
+            .to_string_lossy()
+            .into_owned()
     }
 
     fn run(&self, more: &[&str]) -> std::process::Output {
         let path = self.path();
-        let args: Vec<&str> = ["validate", "--only-rows", "--rows", &path].into_iter().chain(more.iter().copied()).collect();
+        let args: Vec<&str> = ["validate", "--only-rows", "--rows", &path]
+            .into_iter()
+            .chain(more.iter().copied())
+            .collect();
         cvtcycle(&args)
     }
 }
 
 /// A row that is computed without any source; `more` are further keys.
 fn row(id: &str, more: &str) -> String {
-    format!("[[row]]\nid = \"{id}\"\nchapter = \"own\"\nmechanism = \"user\"\nwhat = \"a number\"\nprinted = \"3\"\n{more}\n")
+    format!(
+        "[[row]]\nid = \"{id}\"\nchapter = \"own\"\nmechanism = \"user\"\nwhat = \"a number\"\nprinted = \"3\"\n{more}\n"
+    )
 }
 
 #[test]
 fn every_statement_of_the_thesis_has_a_row() {
     let (_, all) = json(&["validate", "--json"]);
-    let stem = |id: &str| id.trim_end_matches(|c: char| c.is_ascii_lowercase()).to_owned();
-    let rows: BTreeSet<String> = all["rows"].as_array().unwrap().iter().map(|row| stem(row["id"].as_str().unwrap())).collect();
+    let stem = |id: &str| {
+        id.trim_end_matches(|c: char| c.is_ascii_lowercase())
+            .to_owned()
+    };
+    let rows: BTreeSet<String> = all["rows"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|row| stem(row["id"].as_str().unwrap()))
+        .collect();
     let ids = include_str!("golden/statement_ids.txt");
     assert_eq!(ids.lines().count(), 171);
     let missing: Vec<&str> = ids.lines().filter(|id| !rows.contains(*id)).collect();
@@ -63,16 +86,36 @@ fn every_statement_of_the_thesis_has_a_row() {
 #[test]
 fn the_shipped_rows_keep_their_recorded_verdicts() {
     let output = cvtcycle(&["validate", "--json"]);
-    let (code, all) = (output.status.code(), serde_json::from_slice::<Value>(&output.stdout).unwrap());
-    assert_eq!(all["moved"], Value::Array(Vec::new()), "{}", text(&output.stderr));
+    let (code, all) = (
+        output.status.code(),
+        serde_json::from_slice::<Value>(&output.stdout).unwrap(),
+    );
+    assert_eq!(
+        all["moved"],
+        Value::Array(Vec::new()),
+        "{}",
+        text(&output.stderr)
+    );
     assert_eq!(code, Some(0), "{}", text(&output.stderr));
     for row in all["rows"].as_array().unwrap() {
-        assert!(row["recorded"].is_string(), "{}: no recorded verdict", row["id"]);
+        assert!(
+            row["recorded"].is_string(),
+            "{}: no recorded verdict",
+            row["id"]
+        );
         if row["verdict"] == "differs" {
-            assert!(!row["reason"].as_str().unwrap().is_empty() && row["cause"].is_string(), "{}", row["id"]);
+            assert!(
+                !row["reason"].as_str().unwrap().is_empty() && row["cause"].is_string(),
+                "{}",
+                row["id"]
+            );
         }
         if row["verdict"] == "fit" {
-            assert!(!row["fitted_to"].as_array().unwrap().is_empty(), "{}", row["id"]);
+            assert!(
+                !row["fitted_to"].as_array().unwrap().is_empty(),
+                "{}",
+                row["id"]
+            );
         }
     }
 }
@@ -85,8 +128,17 @@ fn the_readme_counts_the_verdicts_of_today() {
     let readme = include_str!("../README.md").replace('\n', " ");
     let readme = readme.split_whitespace().collect::<Vec<_>>().join(" ");
     for words in [
-        format!("{} in all: {} agree, {} are fits", rows.len(), of("agrees"), of("fit")),
-        format!("{} differ, each with reason and computed cause, {} cannot be compared", of("differs"), of("not comparable")),
+        format!(
+            "{} in all: {} agree, {} are fits",
+            rows.len(),
+            of("agrees"),
+            of("fit")
+        ),
+        format!(
+            "{} differ, each with reason and computed cause, {} cannot be compared",
+            of("differs"),
+            of("not comparable")
+        ),
     ] {
         assert!(readme.contains(&words), "README.md should say: {words}");
     }
@@ -94,14 +146,20 @@ fn the_readme_counts_the_verdicts_of_today() {
 
 #[test]
 fn another_parameter_moves_rows_and_fails() {
-    for set in ["transmission.cvt.pump.displacement_cc_rev=11.7", "lubricant.friction.band=0.1"] {
+    for set in [
+        "transmission.cvt.pump.displacement_cc_rev=11.7",
+        "lubricant.friction.band=0.1",
+    ] {
         let output = cvtcycle(&["validate", "--json", "--set", set]);
         let all: Value = serde_json::from_slice(&output.stdout).unwrap();
         assert_eq!(output.status.code(), Some(1), "{set}");
         let moved = all["moved"].as_array().unwrap();
         assert!(!moved.is_empty());
         for id in moved {
-            assert!(text(&output.stderr).contains(&format!("row {}: ", id.as_str().unwrap())), "{set}: {id}");
+            assert!(
+                text(&output.stderr).contains(&format!("row {}: ", id.as_str().unwrap())),
+                "{set}: {id}"
+            );
         }
     }
 }
@@ -109,31 +167,61 @@ fn another_parameter_moves_rows_and_fails() {
 #[test]
 fn the_verdict_follows_from_the_rule() {
     let verdicts = |more: &str, verdict: &str| {
-        let own = Own::new(&format!("[tolerances.t]\nwidth = 0.5\nfrom = \"test\"\n{}", row("a", more)));
+        let own = Own::new(&format!(
+            "[tolerances.t]\nwidth = 0.5\nfrom = \"test\"\n{}",
+            row("a", more)
+        ));
         let output = own.run(&["--json"]);
-        let all: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
+        let all: Value = serde_json::from_slice(&output.stdout)
+            .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
         assert_eq!(all["rows"][0]["verdict"], verdict, "{more}");
-        assert_eq!(output.status.code(), Some(0), "{more}: no verdict is recorded");
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{more}: no verdict is recorded"
+        );
     };
     verdicts("value = 3\ntolerance = \"t\"\ncompute = \"3.5\"", "agrees");
-    verdicts("value = 3\ntolerance = \"t\"\ncompute = \"3.51\"", "differs");
+    verdicts(
+        "value = 3\ntolerance = \"t\"\ncompute = \"3.51\"",
+        "differs",
+    );
     verdicts("low = 3\ntolerance = \"t\"\ncompute = \"1000\"", "agrees");
-    verdicts("low = 1\nhigh = 3\ntolerance = \"t\"\ncompute = \"span(x in 0.6, 3.4: x)\"", "agrees");
-    verdicts("low = 1\nhigh = 3\ntolerance = \"t\"\ncompute = \"span(x in 0.4, 3.4: x)\"", "differs");
+    verdicts(
+        "low = 1\nhigh = 3\ntolerance = \"t\"\ncompute = \"span(x in 0.6, 3.4: x)\"",
+        "agrees",
+    );
+    verdicts(
+        "low = 1\nhigh = 3\ntolerance = \"t\"\ncompute = \"span(x in 0.4, 3.4: x)\"",
+        "differs",
+    );
     verdicts("compute = \"3 > 2\"", "agrees");
     verdicts("compute = \"2 > 3\"", "differs");
     verdicts("expect = false\ncompute = \"2 > 3\"", "agrees");
     let fitted = "fitted_to = [\"transmission.cvt.pump.displacement_cc_rev\"]\n";
-    verdicts(&format!("{fitted}value = 3\ntolerance = \"t\"\ncompute = \"3\""), "fit");
-    verdicts(&format!("{fitted}value = 3\ntolerance = \"t\"\ncompute = \"4\""), "differs");
+    verdicts(
+        &format!("{fitted}value = 3\ntolerance = \"t\"\ncompute = \"3\""),
+        "fit",
+    );
+    verdicts(
+        &format!("{fitted}value = 3\ntolerance = \"t\"\ncompute = \"4\""),
+        "differs",
+    );
 }
 
 #[test]
 fn a_recorded_verdict_that_no_longer_holds_is_exit_1() {
-    let own = Own::new(&row("a", "value = 3\ntolerance = \"exact\"\ncompute = \"3.1\"\nverdict = \"agrees\""));
+    let own = Own::new(&row(
+        "a",
+        "value = 3\ntolerance = \"exact\"\ncompute = \"3.1\"\nverdict = \"agrees\"",
+    ));
     let output = own.run(&[]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(text(&output.stdout).contains("row a: `agrees` recorded, now `differs`"), "{}", text(&output.stdout));
+    assert!(
+        text(&output.stdout).contains("row a: `agrees` recorded, now `differs`"),
+        "{}",
+        text(&output.stdout)
+    );
     let quiet = own.run(&["--quiet"]);
     assert!(quiet.stdout.is_empty() && text(&quiet.stderr).contains("row a"));
 }
@@ -184,25 +272,54 @@ fn users_rows_reach_every_source() {
         ("fluid", "one(oil: kinematic_mm2_s where temp_degc == 100)"),
         ("key", "key(transmission.cvt.belt.band_offset_mm)"),
     ];
-    let rows: String = computes.iter().map(|(id, compute)| row(id, &format!("{wide}\"{compute}\""))).collect();
+    let rows: String = computes
+        .iter()
+        .map(|(id, compute)| row(id, &format!("{wide}\"{compute}\"")))
+        .collect();
     let own = Own::new(&(SOURCES.to_owned() + &rows));
     let output = own.run(&["--json"]);
-    let all: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
+    let all: Value = serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
     let computed = |k: usize| all["rows"][k]["computed_low"].as_f64().unwrap();
-    assert!((computed(0) - 6.0).abs() < 1e-12, "two ratios, three speeds: {}", computed(0));
-    assert!(computed(1).abs() > 0.1, "another temperature and friction: {}", computed(1));
-    assert!((computed(2) - 20.0).abs() < 1e-12, "2000 Nm are gross slip: {}", computed(2));
+    assert!(
+        (computed(0) - 6.0).abs() < 1e-12,
+        "two ratios, three speeds: {}",
+        computed(0)
+    );
+    assert!(
+        computed(1).abs() > 0.1,
+        "another temperature and friction: {}",
+        computed(1)
+    );
+    assert!(
+        (computed(2) - 20.0).abs() < 1e-12,
+        "2000 Nm are gross slip: {}",
+        computed(2)
+    );
     assert_eq!(all["rows"][2]["gross_slip_left_out"], 1);
     assert!(computed(3) > 0.0);
-    assert!((computed(4) - 7.2).abs() < 1e-9, "the shipped fluid's KV100: {}", computed(4));
+    assert!(
+        (computed(4) - 7.2).abs() < 1e-9,
+        "the shipped fluid's KV100: {}",
+        computed(4)
+    );
     assert!((computed(5) - 3.0).abs() < 1e-12);
     // A vehicle file of the user's stands beside the rows.
-    let car = include_str!("../vehicles/rover_216_cvt.toml").replace("band_offset_mm = { value = 3.0", "band_offset_mm = { value = 2.0");
-    let of_car = row("own", &format!("{wide}\"key(mine: transmission.cvt.belt.band_offset_mm)\""));
-    let mine = Own::new(&format!("{SOURCES}\n[sources.mine]\nsource = \"vehicle\"\nvehicle = \"car.toml\"\n{of_car}"));
+    let car = include_str!("../vehicles/rover_216_cvt.toml").replace(
+        "band_offset_mm = { value = 3.0",
+        "band_offset_mm = { value = 2.0",
+    );
+    let of_car = row(
+        "own",
+        &format!("{wide}\"key(mine: transmission.cvt.belt.band_offset_mm)\""),
+    );
+    let mine = Own::new(&format!(
+        "{SOURCES}\n[sources.mine]\nsource = \"vehicle\"\nvehicle = \"car.toml\"\n{of_car}"
+    ));
     std::fs::write(mine.dir.path().join("car.toml"), car).unwrap();
     let output = mine.run(&["--json"]);
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
+    let found: Value = serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
     assert!((found["rows"][0]["computed_low"].as_f64().unwrap() - 2.0).abs() < 1e-12);
     let beside = cvtcycle(&["validate", "--json", "--rows", &own.path()]);
     let beside: Value = serde_json::from_slice(&beside.stdout).unwrap();
@@ -229,14 +346,29 @@ like = "nobody"
 "#;
     let rows = [
         row("a", "value = 3\ncompute = \"1 + max(lwo: y)\""),
-        row("b", "value = 3\ntolerance = \"exct\"\ncompute = \"max(low: totl_nm)\""),
-        row("c", "value = 3\ntolerance = \"exact\"\ncompute = \"3\"\nverdict = \"differs\""),
+        row(
+            "b",
+            "value = 3\ntolerance = \"exct\"\ncompute = \"max(low: totl_nm)\"",
+        ),
+        row(
+            "c",
+            "value = 3\ntolerance = \"exact\"\ncompute = \"3\"\nverdict = \"differs\"",
+        ),
         row("d", "verdict = \"not comparable\""),
-        row("e", "value = 3\ntolerance = \"exact\"\ncompute = \"3\"\nverdict = \"agree\"\nfitted_to = [\"pump.size\"]"),
+        row(
+            "e",
+            "value = 3\ntolerance = \"exact\"\ncompute = \"3\"\nverdict = \"agree\"\nfitted_to = [\"pump.size\"]",
+        ),
         row("f", "compute = \"3\"\nuint = \"Nm\""),
         row("a", "compute = \"3 > 2\""),
-        row("g", "low = 4\nhigh = 3\ntolerance = \"exact\"\ncompute = \"3 > 2\""),
-        row("h", "value = 3\ntolerance = \"totals\"\nunit = \"bar\"\ncompute = \"3\""),
+        row(
+            "g",
+            "low = 4\nhigh = 3\ntolerance = \"exact\"\ncompute = \"3 > 2\"",
+        ),
+        row(
+            "h",
+            "value = 3\ntolerance = \"totals\"\nunit = \"bar\"\ncompute = \"3\"",
+        ),
     ];
     let own = Own::new(&(bad.to_owned() + &rows.concat()));
     let output = own.run(&[]);
@@ -275,20 +407,29 @@ fn what_cannot_be_computed_is_a_problem_and_no_verdict() {
     let wide = "low = 0\ntolerance = \"wide\"\ncompute = ";
     for (compute, why) in [
         ("one(box: total_nm)", "6 rows where one was expected"),
-        ("max(grip: slip_percent where torque_nm == 2000)", "gross slip"),
+        (
+            "max(grip: slip_percent where torque_nm == 2000)",
+            "gross slip",
+        ),
         ("key(transmission.manual.seal_nm)", "not known"),
     ] {
         let own = Own::new(&(SOURCES.to_owned() + &row("a", &format!("{wide}\"{compute}\""))));
         let output = own.run(&[]);
         let said = text(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{compute}: {said}");
-        assert!(said.contains("row a") && said.contains(why), "{compute}: {said}");
+        assert!(
+            said.contains("row a") && said.contains(why),
+            "{compute}: {said}"
+        );
     }
-    let own = Own::new(&format!("{SOURCES}\n[sources.worse]\nlike = \"box\"\nset = [\"transmission.cvt.belt.band_ofset_mm=3\"]\n"));
+    let own = Own::new(&format!(
+        "{SOURCES}\n[sources.worse]\nlike = \"box\"\nset = [\"transmission.cvt.belt.band_ofset_mm=3\"]\n"
+    ));
     let output = own.run(&[]);
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        text(&output.stderr).contains("source `worse`: ") && text(&output.stderr).contains("band_offset_mm"),
+        text(&output.stderr).contains("source `worse`: ")
+            && text(&output.stderr).contains("band_offset_mm"),
         "{}",
         text(&output.stderr)
     );
@@ -297,8 +438,15 @@ fn what_cannot_be_computed_is_a_problem_and_no_verdict() {
 /// A ratio that the box does not have is computed and told.
 #[test]
 fn points_outside_validity_are_told() {
-    let source = "[sources.b]\nsource = \"bench\"\nratio = [2.4, 2.9]\nspeed_rpm = 2000\ntemp_degc = 80\n";
-    let own = Own::new(&(source.to_owned() + &row("a", "low = 0\ncompute = \"mean(b: total_nm)\"\ntolerance = \"exact\"")));
+    let source =
+        "[sources.b]\nsource = \"bench\"\nratio = [2.4, 2.9]\nspeed_rpm = 2000\ntemp_degc = 80\n";
+    let own = Own::new(
+        &(source.to_owned()
+            + &row(
+                "a",
+                "low = 0\ncompute = \"mean(b: total_nm)\"\ntolerance = \"exact\"",
+            )),
+    );
     let told: Value = serde_json::from_slice(&own.run(&["--json"]).stdout).unwrap();
     assert_eq!(told["rows"][0]["outside_validity"], 1, "{told}");
     assert!(text(&own.run(&[]).stdout).contains("1 points outside the validity"));
@@ -325,31 +473,60 @@ fn csv_json_and_html_have_the_same_rows() {
         assert!(near, "{}: {number:?} {}", row["id"], row["computed_low"]);
     }
     let html = text(&cvtcycle(&["validate", "--chapter", "8", "--format", "html"]).stdout);
-    let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
+    let options = roxmltree::ParsingOptions {
+        allow_dtd: true,
+        ..Default::default()
+    };
     let document = roxmltree::Document::parse_with_options(&html, options).unwrap();
-    let ids: Vec<&str> =
-        document.descendants().filter(|n| n.has_tag_name("th") && n.attribute("scope") == Some("row")).filter_map(|n| n.text()).collect();
-    assert_eq!(ids, rows.iter().map(|row| row["id"].as_str().unwrap()).collect::<Vec<_>>());
+    let ids: Vec<&str> = document
+        .descendants()
+        .filter(|n| n.has_tag_name("th") && n.attribute("scope") == Some("row"))
+        .filter_map(|n| n.text())
+        .collect();
+    assert_eq!(
+        ids,
+        rows.iter()
+            .map(|row| row["id"].as_str().unwrap())
+            .collect::<Vec<_>>()
+    );
     for never in ["<script", "http:", "https:", "<link", "<img"] {
         assert!(!html.contains(never), "{never}: the page stands alone");
     }
-    for word in ["prefers-color-scheme: dark", "@media print", "agrees", "differs"] {
+    for word in [
+        "prefers-color-scheme: dark",
+        "@media print",
+        "agrees",
+        "differs",
+    ] {
         assert!(html.contains(word), "{word}");
     }
 }
 
 #[test]
 fn html_and_markdown_escape_what_users_write() {
-    let wild =
-        "value = 3\ntolerance = \"exact\"\ncompute = \"3\"\nremark = \"<script>alert('x')</script> & | *so*\"\ncondition = \"a < b | c\"";
+    let wild = "value = 3\ntolerance = \"exact\"\ncompute = \"3\"\nremark = \"<script>alert('x')</script> & | *so*\"\ncondition = \"a < b | c\"";
     let own = Own::new(&row("a", wild).replace("\"own\"", "\"<b>own</b>\""));
     let html = text(&own.run(&["--format", "html"]).stdout);
-    assert!(!html.contains("<script") && !html.contains("<b>own"), "{html}");
-    let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
+    assert!(
+        !html.contains("<script") && !html.contains("<b>own"),
+        "{html}"
+    );
+    let options = roxmltree::ParsingOptions {
+        allow_dtd: true,
+        ..Default::default()
+    };
     let document = roxmltree::Document::parse_with_options(&html, options).unwrap();
-    assert!(document.descendants().any(|n| n.text().is_some_and(|t| t.contains("<script>alert('x')</script> & | *so*"))));
+    assert!(document.descendants().any(|n| {
+        n.text()
+            .is_some_and(|t| t.contains("<script>alert('x')</script> & | *so*"))
+    }));
     let markdown = text(&own.run(&["--format", "md"]).stdout);
-    assert!(!markdown.contains("<script") && markdown.contains("a &lt; b \\| c") && markdown.contains("\\*so\\*"), "{markdown}");
+    assert!(
+        !markdown.contains("<script")
+            && markdown.contains("a &lt; b \\| c")
+            && markdown.contains("\\*so\\*"),
+        "{markdown}"
+    );
 }
 
 #[test]
@@ -358,7 +535,11 @@ fn filters_and_files() {
     assert_eq!(code, Some(0));
     let rows = pump["rows"].as_array().unwrap();
     assert!(rows.len() > 5 && rows.iter().all(|row| row["mechanism"] == "pump"));
-    for args in [["validate", "--chapter", "77"], ["validate", "--mechanism", "pmup"], ["validate", "--format", "pdf"]] {
+    for args in [
+        ["validate", "--chapter", "77"],
+        ["validate", "--mechanism", "pmup"],
+        ["validate", "--format", "pdf"],
+    ] {
         let output = cvtcycle(&args);
         assert_eq!(output.status.code(), Some(2), "{args:?}");
         assert!(text(&output.stderr).contains(args[2]), "{args:?}");
@@ -366,16 +547,41 @@ fn filters_and_files() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("report");
     let out_word = out.to_string_lossy().into_owned();
-    assert_eq!(cvtcycle(&["validate", "--chapter", "7", "--quiet", "--out", &out_word]).status.code(), Some(0));
-    for name in ["summary.json", "validation.csv", "validation.html", "validation.md"] {
+    assert_eq!(
+        cvtcycle(&["validate", "--chapter", "7", "--quiet", "--out", &out_word])
+            .status
+            .code(),
+        Some(0)
+    );
+    for name in [
+        "summary.json",
+        "validation.csv",
+        "validation.html",
+        "validation.md",
+    ] {
         assert!(out.join(name).is_file(), "{name}");
     }
     assert_eq!(
-        cvtcycle(&["validate", "--chapter", "7", "--quiet", "--out", &out_word]).status.code(),
+        cvtcycle(&["validate", "--chapter", "7", "--quiet", "--out", &out_word])
+            .status
+            .code(),
         Some(2),
         "nothing is overwritten silently"
     );
-    assert_eq!(cvtcycle(&["validate", "--chapter", "7", "--quiet", "--force", "--out", &out_word]).status.code(), Some(0));
+    assert_eq!(
+        cvtcycle(&[
+            "validate",
+            "--chapter",
+            "7",
+            "--quiet",
+            "--force",
+            "--out",
+            &out_word
+        ])
+        .status
+        .code(),
+        Some(0)
+    );
 }
 
 /// The book's fragments are what the program prints: `cvtcycle validate --format md --mechanism NAME > docs/book/src/generated/validation_NAME.md`.
@@ -388,12 +594,24 @@ fn the_books_fragments_are_up_to_date() {
     let mut stale = Vec::new();
     for entry in entries.map(Result::unwrap) {
         let name = entry.file_name().to_string_lossy().into_owned();
-        let Some(mechanism) = name.strip_prefix("validation_").and_then(|rest| rest.strip_suffix(".md")) else {
+        let Some(mechanism) = name
+            .strip_prefix("validation_")
+            .and_then(|rest| rest.strip_suffix(".md"))
+        else {
             continue;
         };
         let printed = cvtcycle(&["validate", "--format", "md", "--mechanism", mechanism]);
-        assert_ne!(printed.status.code(), Some(2), "{name}: {}", text(&printed.stderr));
-        if std::fs::read_to_string(entry.path()).unwrap().replace("\r\n", "\n") != text(&printed.stdout) {
+        assert_ne!(
+            printed.status.code(),
+            Some(2),
+            "{name}: {}",
+            text(&printed.stderr)
+        );
+        if std::fs::read_to_string(entry.path())
+            .unwrap()
+            .replace("\r\n", "\n")
+            != text(&printed.stdout)
+        {
             stale.push(name);
         }
     }
@@ -407,17 +625,39 @@ fn the_programs_rows_need_a_cvt() {
     let output = cvtcycle(&["validate", "--vehicle", "rover_216_5mt"]);
     let told = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{told}");
-    assert!(told.contains("manual box") && told.contains("--only-rows") && told.contains("1 problem in --vehicle"), "{told}");
+    assert!(
+        told.contains("manual box")
+            && told.contains("--only-rows")
+            && told.contains("1 problem in --vehicle"),
+        "{told}"
+    );
     let own = Own::new(&row("own.1", "kind = \"O\"\ncompute = \"2 > 1\""));
-    assert_eq!(own.run(&["--vehicle", "rover_216_5mt"]).status.code(), Some(0));
+    assert_eq!(
+        own.run(&["--vehicle", "rover_216_5mt"]).status.code(),
+        Some(0)
+    );
 }
 
 /// The page says how wide "agrees" is: 3 to 4 within 0.5 on both sides, a share of each end for itself.
 #[test]
 fn the_page_shows_the_tolerance() {
-    let head = "[tolerances.a]\nwidth = 0.5\nfrom = \"x\"\n[tolerances.b]\nshare = 0.1\nfrom = \"x\"\n";
-    let one = row("own.1", "kind = \"N\"\nvalue = 3\ntolerance = \"a\"\ncompute = \"3\"");
-    let two = row("own.2", "kind = \"N\"\nlow = 2\nhigh = 4\ntolerance = \"b\"\ncompute = \"3\"");
-    let page = text(&Own::new(&format!("{head}{one}{two}")).run(&["--format", "html"]).stdout);
-    assert!(page.contains("(± 0.5)") && page.contains("(-0.2, +0.4)"), "{page}");
+    let head =
+        "[tolerances.a]\nwidth = 0.5\nfrom = \"x\"\n[tolerances.b]\nshare = 0.1\nfrom = \"x\"\n";
+    let one = row(
+        "own.1",
+        "kind = \"N\"\nvalue = 3\ntolerance = \"a\"\ncompute = \"3\"",
+    );
+    let two = row(
+        "own.2",
+        "kind = \"N\"\nlow = 2\nhigh = 4\ntolerance = \"b\"\ncompute = \"3\"",
+    );
+    let page = text(
+        &Own::new(&format!("{head}{one}{two}"))
+            .run(&["--format", "html"])
+            .stdout,
+    );
+    assert!(
+        page.contains("(± 0.5)") && page.contains("(-0.2, +0.4)"),
+        "{page}"
+    );
 }

@@ -1,7 +1,11 @@
 //! Writes the figures and the generated tables of the book: `cargo run --release --example book_figures`.
 //!
 //! They are committed; `tests/book.rs` holds them against what the models give now.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example is a program")]
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "an example is a program"
+)]
 
 mod content;
 

@@ -39,14 +39,20 @@ pub fn page(markdown: &str) -> Result<String, Vec<String>> {
         rest = &rest[used..];
     }
     out.push_str(rest);
-    if problems.is_empty() { Ok(out) } else { Err(problems) }
+    if problems.is_empty() {
+        Ok(out)
+    } else {
+        Err(problems)
+    }
 }
 
 /// Label of a line `**BT-3** (derived)`.
 pub fn label(line: &str) -> Option<&str> {
     let (label, rest) = line.strip_prefix("**")?.split_once("** (")?;
     let (letters, digits) = label.split_once('-')?;
-    let known = letters.len() == 2 && letters.bytes().all(|b| b.is_ascii_uppercase()) && digits.bytes().all(|b| b.is_ascii_digit());
+    let known = letters.len() == 2
+        && letters.bytes().all(|b| b.is_ascii_uppercase())
+        && digits.bytes().all(|b| b.is_ascii_digit());
     (known && !digits.is_empty() && rest.lines().next()?.contains(')')).then_some(label)
 }
 
@@ -54,18 +60,31 @@ pub fn label(line: &str) -> Option<&str> {
 fn code_span(text: &str) -> usize {
     let ticks = text.bytes().take_while(|b| *b == b'`').count();
     let mark = &text[..ticks];
-    text[ticks..].find(mark).map_or(ticks, |end| 2 * ticks + end)
+    text[ticks..]
+        .find(mark)
+        .map_or(ticks, |end| 2 * ticks + end)
 }
 
 /// Length of an equation with its closing mark, and its MathML.
-fn equation(body: &str, mark: &str, mode: DisplayMode, problems: &mut Vec<String>) -> (usize, String) {
+fn equation(
+    body: &str,
+    mark: &str,
+    mode: DisplayMode,
+    problems: &mut Vec<String>,
+) -> (usize, String) {
     let Some(end) = body.find(mark) else {
-        problems.push(format!("equation without end: {}", body.lines().next().unwrap_or_default()));
+        problems.push(format!(
+            "equation without end: {}",
+            body.lines().next().unwrap_or_default()
+        ));
         return (body.len(), String::new());
     };
     let tex = body[..end].trim();
     if tex.contains("\n\n") {
-        problems.push(format!("equation over a blank line: {}", tex.lines().next().unwrap_or_default()));
+        problems.push(format!(
+            "equation over a blank line: {}",
+            tex.lines().next().unwrap_or_default()
+        ));
     }
     let storage = Storage::new();
     let mut events = Vec::new();
@@ -76,7 +95,11 @@ fn equation(body: &str, mark: &str, mode: DisplayMode, problems: &mut Vec<String
         }
     }
     let mut mathml = String::new();
-    let config = RenderConfig { display_mode: mode, xml: true, ..RenderConfig::default() };
+    let config = RenderConfig {
+        display_mode: mode,
+        xml: true,
+        ..RenderConfig::default()
+    };
     if let Err(why) = push_mathml(&mut mathml, events.into_iter(), config) {
         problems.push(format!("{tex}: {why}"));
     }
@@ -106,7 +129,9 @@ fn plain_for_markdown(mathml: &str) -> String {
         }
         match c {
             '\n' | '\r' => out.push(' '),
-            '*' | '_' | '|' | '\\' | '`' | '[' | ']' | '~' if !tag => out.push_str(&format!("&#{};", u32::from(c))),
+            '*' | '_' | '|' | '\\' | '`' | '[' | ']' | '~' if !tag => {
+                out.push_str(&format!("&#{};", u32::from(c)))
+            }
             c => out.push(c),
         }
     }

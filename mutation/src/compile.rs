@@ -23,14 +23,25 @@ fn cargo(root: &Path, args: &[&str]) -> Result<(bool, Vec<Value>), String> {
         .args(["--locked", "--message-format", "json"])
         .current_dir(root)
         .env("CARGO_INCREMENTAL", "0")
-        .envs([("CARGO_PROFILE_TEST_OPT_LEVEL", "2"), ("CARGO_PROFILE_TEST_DEBUG", "0")])
-        .envs([("CARGO_PROFILE_DEV_OPT_LEVEL", "2"), ("CARGO_PROFILE_DEV_DEBUG", "0")])
+        .envs([
+            ("CARGO_PROFILE_TEST_OPT_LEVEL", "2"),
+            ("CARGO_PROFILE_TEST_DEBUG", "0"),
+        ])
+        .envs([
+            ("CARGO_PROFILE_DEV_OPT_LEVEL", "2"),
+            ("CARGO_PROFILE_DEV_DEBUG", "0"),
+        ])
         .env_remove("CVTCYCLE_MUTANT")
         .stderr(Stdio::inherit())
         .output()
         .map_err(|e| format!("cargo: {e}"))?;
     let text = String::from_utf8_lossy(&output.stdout);
-    Ok((output.status.success(), text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()))
+    Ok((
+        output.status.success(),
+        text.lines()
+            .filter_map(|line| serde_json::from_str(line).ok())
+            .collect(),
+    ))
 }
 
 /// Makes the copy and checks it until only what compiles is left, beginning without what was `dropped` before: a file that is written
@@ -38,7 +49,12 @@ fn cargo(root: &Path, args: &[&str]) -> Result<(bool, Vec<Value>), String> {
 ///
 /// # Errors
 /// An error of the compiler that is in no point, or cargo cannot be run.
-pub fn compiling(root: &Path, to: &Path, config: &Config, mut dropped: HashSet<String>) -> Result<(Copy, HashSet<String>), String> {
+pub fn compiling(
+    root: &Path,
+    to: &Path,
+    config: &Config,
+    mut dropped: HashSet<String>,
+) -> Result<(Copy, HashSet<String>), String> {
     loop {
         let copy = copy::make(root, to, config, &dropped)?;
         let (good, messages) = cargo(to, &["check", "--lib"])?;
@@ -47,16 +63,32 @@ pub fn compiling(root: &Path, to: &Path, config: &Config, mut dropped: HashSet<S
         }
         let before = dropped.len();
         let mut unknown = Vec::new();
-        for message in messages.iter().filter(|m| m["reason"] == "compiler-message" && m["message"]["level"] == "error") {
-            for span in message["message"]["spans"].as_array().into_iter().flatten().filter(|s| s["is_primary"] == true) {
+        for message in messages
+            .iter()
+            .filter(|m| m["reason"] == "compiler-message" && m["message"]["level"] == "error")
+        {
+            for span in message["message"]["spans"]
+                .as_array()
+                .into_iter()
+                .flatten()
+                .filter(|s| s["is_primary"] == true)
+            {
                 match guilty(&copy, span, &dropped) {
                     Some(name) => drop(dropped.insert(name)),
-                    None => unknown.push(message["message"]["rendered"].as_str().unwrap_or_default().to_owned()),
+                    None => unknown.push(
+                        message["message"]["rendered"]
+                            .as_str()
+                            .unwrap_or_default()
+                            .to_owned(),
+                    ),
                 }
             }
         }
         if dropped.len() == before {
-            return Err(format!("the copy does not compile:\n{}", unknown.join("\n")));
+            return Err(format!(
+                "the copy does not compile:\n{}",
+                unknown.join("\n")
+            ));
         }
     }
 }
@@ -64,11 +96,24 @@ pub fn compiling(root: &Path, to: &Path, config: &Config, mut dropped: HashSet<S
 /// The smallest point that holds an error, or the smallest inside of it.
 fn guilty(copy: &Copy, span: &Value, dropped: &HashSet<String>) -> Option<String> {
     let file = span["file_name"].as_str()?;
-    let (start, end) = (span["byte_start"].as_u64()? as usize, span["byte_end"].as_u64()? as usize);
-    let points =
-        || copy.points.iter().zip(&copy.ranges).filter(|(p, r)| p.file == file && !r.is_empty() && !dropped.contains(&copy::name(p)));
-    let around = points().filter(|(_, r)| r.start <= start && end <= r.end).min_by_key(|(_, r)| r.len());
-    let inside = || points().filter(|(_, r)| start <= r.start && r.end <= end).min_by_key(|(_, r)| r.len());
+    let (start, end) = (
+        span["byte_start"].as_u64()? as usize,
+        span["byte_end"].as_u64()? as usize,
+    );
+    let points = || {
+        copy.points
+            .iter()
+            .zip(&copy.ranges)
+            .filter(|(p, r)| p.file == file && !r.is_empty() && !dropped.contains(&copy::name(p)))
+    };
+    let around = points()
+        .filter(|(_, r)| r.start <= start && end <= r.end)
+        .min_by_key(|(_, r)| r.len());
+    let inside = || {
+        points()
+            .filter(|(_, r)| start <= r.start && r.end <= end)
+            .min_by_key(|(_, r)| r.len())
+    };
     around.or_else(inside).map(|(p, _)| copy::name(p))
 }
 
@@ -86,17 +131,29 @@ pub fn tests(copy: &Copy, config: &Config) -> Result<Vec<Program>, String> {
     }
     let (good, messages) = cargo(&copy.root, &args)?;
     if !good {
-        let errors = messages.iter().filter_map(|m| m["message"]["rendered"].as_str().filter(|_| m["message"]["level"] == "error"));
-        return Err(format!("the tests do not build:\n{}", errors.collect::<Vec<_>>().join("\n")));
+        let errors = messages.iter().filter_map(|m| {
+            m["message"]["rendered"]
+                .as_str()
+                .filter(|_| m["message"]["level"] == "error")
+        });
+        return Err(format!(
+            "the tests do not build:\n{}",
+            errors.collect::<Vec<_>>().join("\n")
+        ));
     }
     let mut programs = Vec::new();
     for m in messages.iter().filter(|m| m["profile"]["test"] == true) {
-        if let (Some(path), Some(kind), Some(name)) =
-            (m["executable"].as_str(), m["target"]["kind"][0].as_str(), m["target"]["name"].as_str())
-        {
+        if let (Some(path), Some(kind), Some(name)) = (
+            m["executable"].as_str(),
+            m["target"]["kind"][0].as_str(),
+            m["target"]["name"].as_str(),
+        ) {
             let name = if kind == "lib" { "lib" } else { name };
             if config.tests.iter().any(|t| t == name) && kind != "bin" {
-                programs.push(Program { name: name.to_owned(), path: path.into() });
+                programs.push(Program {
+                    name: name.to_owned(),
+                    path: path.into(),
+                });
             }
         }
     }

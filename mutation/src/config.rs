@@ -50,9 +50,14 @@ impl Config {
     /// No file, no TOML, other keys.
     pub fn read(root: &Path) -> Result<Self, String> {
         let path = root.join("mutation/mutation.toml");
-        let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let text =
+            std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
         let config: Self = toml::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))?;
-        let reasons = config.leave.iter().map(|l| &l.because).chain(config.skip.iter().map(|s| &s.because));
+        let reasons = config
+            .leave
+            .iter()
+            .map(|l| &l.because)
+            .chain(config.skip.iter().map(|s| &s.because));
         if reasons.clone().any(|because| because.is_empty()) {
             return Err(format!("{}: `because` is empty", path.display()));
         }
@@ -62,9 +67,17 @@ impl Config {
     /// Whether a file of the repository is mutated.
     #[must_use]
     pub fn mutates(&self, file: &str) -> bool {
-        let named = |name: &str| if name.ends_with('/') { file.starts_with(name) } else { file == name };
+        let named = |name: &str| {
+            if name.ends_with('/') {
+                file.starts_with(name)
+            } else {
+                file == name
+            }
+        };
         let left = |name: &str| named(name) || file.ends_with(name);
-        file.ends_with(".rs") && self.mutate.iter().any(|n| named(n)) && !self.leave.iter().any(|l| left(&l.file))
+        file.ends_with(".rs")
+            && self.mutate.iter().any(|n| named(n))
+            && !self.leave.iter().any(|l| left(&l.file))
     }
 
     /// Whether the literals of a file stay.

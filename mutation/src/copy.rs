@@ -25,15 +25,32 @@ pub struct Copy {
 /// git fails.
 pub fn files(root: &Path) -> Result<Vec<String>, String> {
     let output = Command::new("git")
-        .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
+        .args([
+            "ls-files",
+            "-z",
+            "--cached",
+            "--others",
+            "--exclude-standard",
+        ])
         .current_dir(root)
         .output()
         .map_err(|e| format!("git: {e}"))?;
     let text = String::from_utf8_lossy(&output.stdout);
-    let mut files: Vec<String> = text.split('\0').filter(|f| !f.is_empty() && root.join(f).is_file()).map(str::to_owned).collect();
+    let mut files: Vec<String> = text
+        .split('\0')
+        .filter(|f| !f.is_empty() && root.join(f).is_file())
+        .map(str::to_owned)
+        .collect();
     files.sort();
     files.dedup();
-    if files.is_empty() { Err(format!("no files of a git repository in {}", root.display())) } else { Ok(files) }
+    if files.is_empty() {
+        Err(format!(
+            "no files of a git repository in {}",
+            root.display()
+        ))
+    } else {
+        Ok(files)
+    }
 }
 
 fn read(path: &Path) -> Result<String, String> {
@@ -59,7 +76,10 @@ fn keep(path: &Path, bytes: &[u8]) -> Result<(), String> {
 pub fn points(root: &Path, config: &Config, files: &[String]) -> Result<Vec<Point>, String> {
     let mut constants = BTreeSet::new();
     let mut texts = Vec::new();
-    for file in files.iter().filter(|f| f.starts_with("src/") && f.ends_with(".rs")) {
+    for file in files
+        .iter()
+        .filter(|f| f.starts_with("src/") && f.ends_with(".rs"))
+    {
         let text = read(&root.join(file))?;
         constants.extend(find::constants(&text));
         if config.mutates(file) {
@@ -69,7 +89,12 @@ pub fn points(root: &Path, config: &Config, files: &[String]) -> Result<Vec<Poin
     let mut all = Vec::new();
     let mut next = 1;
     for (file, text) in &texts {
-        let source = Source { file, text, constants: &constants, keep_literals: config.keeps_literals(file) };
+        let source = Source {
+            file,
+            text,
+            constants: &constants,
+            keep_literals: config.keeps_literals(file),
+        };
         let found = find::points(&source, next)?;
         next += found.iter().map(|p| p.choices.len() as u32).sum::<u32>();
         all.extend(found);
@@ -81,7 +106,12 @@ pub fn points(root: &Path, config: &Config, files: &[String]) -> Result<Vec<Poin
 ///
 /// # Errors
 /// A file cannot be read or written.
-pub fn make(root: &Path, to: &Path, config: &Config, dropped: &HashSet<String>) -> Result<Copy, String> {
+pub fn make(
+    root: &Path,
+    to: &Path,
+    config: &Config,
+    dropped: &HashSet<String>,
+) -> Result<Copy, String> {
     let files = files(root)?;
     let points = points(root, config, &files)?;
     let count = points.iter().map(|p| p.choices.len()).sum::<usize>() + 1;
@@ -89,7 +119,9 @@ pub fn make(root: &Path, to: &Path, config: &Config, dropped: &HashSet<String>) 
     for file in files.iter().filter(|f| !f.starts_with("mutation/")) {
         let bytes = fs::read(root.join(file)).map_err(|e| format!("{file}: {e}"))?;
         let bytes = match file.as_str() {
-            _ if points.iter().any(|p| p.file == *file) => mutated(file, &bytes, &points, dropped, &mut ranges)?,
+            _ if points.iter().any(|p| p.file == *file) => {
+                mutated(file, &bytes, &points, dropped, &mut ranges)?
+            }
             "src/lib.rs" => [&bytes, "\n/// Mutants.\npub mod mutant;\n".as_bytes()].concat(),
             "Cargo.toml" => without_lints(&String::from_utf8_lossy(&bytes)).into_bytes(),
             _ => bytes,
@@ -101,12 +133,24 @@ pub fn make(root: &Path, to: &Path, config: &Config, dropped: &HashSet<String>) 
     for folder in ["src", "tests"] {
         remove_others(to, &to.join(folder), &files)?;
     }
-    Ok(Copy { root: to.to_owned(), points, ranges })
+    Ok(Copy {
+        root: to.to_owned(),
+        points,
+        ranges,
+    })
 }
 
-fn mutated(file: &str, bytes: &[u8], all: &[Point], dropped: &HashSet<String>, ranges: &mut [Range<usize>]) -> Result<Vec<u8>, String> {
+fn mutated(
+    file: &str,
+    bytes: &[u8],
+    all: &[Point],
+    dropped: &HashSet<String>,
+    ranges: &mut [Range<usize>],
+) -> Result<Vec<u8>, String> {
     let text = std::str::from_utf8(bytes).map_err(|e| format!("{file}: {e}"))?;
-    let chosen: Vec<usize> = (0..all.len()).filter(|i| all[*i].file == file && !dropped.contains(&name(&all[*i]))).collect();
+    let chosen: Vec<usize> = (0..all.len())
+        .filter(|i| all[*i].file == file && !dropped.contains(&name(&all[*i])))
+        .collect();
     let points: Vec<Point> = chosen.iter().map(|i| all[*i].clone()).collect();
     let written = point::write(text, &points);
     for (index, range) in chosen.into_iter().zip(written.ranges) {
@@ -118,7 +162,10 @@ fn mutated(file: &str, bytes: &[u8], all: &[Point], dropped: &HashSet<String>, r
 /// Name of a point: the key of its first mutant.
 #[must_use]
 pub fn name(point: &Point) -> String {
-    point.choices.first().map_or_else(String::new, |c| point.key(c))
+    point
+        .choices
+        .first()
+        .map_or_else(String::new, |c| point.key(c))
 }
 
 /// The manifest without its lint tables: mutants are no style.
@@ -135,9 +182,16 @@ fn without_lints(text: &str) -> String {
 
 /// Removes files of a former copy that the repository no longer has.
 fn remove_others(to: &Path, folder: &Path, files: &[String]) -> Result<(), String> {
-    for entry in fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?.flatten() {
+    for entry in fs::read_dir(folder)
+        .map_err(|e| format!("{}: {e}", folder.display()))?
+        .flatten()
+    {
         let path = entry.path();
-        let short = path.strip_prefix(to).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+        let short = path
+            .strip_prefix(to)
+            .unwrap_or(&path)
+            .to_string_lossy()
+            .replace('\\', "/");
         if path.is_dir() {
             remove_others(to, &path, files)?;
         } else if short != "src/mutant.rs" && files.binary_search(&short).is_err() {

@@ -39,21 +39,46 @@ pub struct Run<'a> {
 /// The program cannot be started.
 pub fn run(run: &Run) -> Result<(End, Duration), String> {
     let mut command = Command::new(&run.program.path);
-    command.args(["--exact", "--test-threads=1", "-q"]).args(&run.names).current_dir(run.root);
-    command.env("CARGO_MANIFEST_DIR", run.root).env("PROPTEST_MAX_SHRINK_ITERS", "0").env("PROPTEST_FAILURE_PERSISTENCE", "off");
-    command.env_remove("CVTCYCLE_MUTANT").env("RUST_BACKTRACE", "0").envs(run.env.iter().map(|(k, v)| (k, v)));
-    let output = std::fs::File::create(run.output).map_err(|e| format!("{}: {e}", run.output.display()))?;
-    command.stdin(Stdio::null()).stdout(output).stderr(Stdio::null()).process_group(0);
+    command
+        .args(["--exact", "--test-threads=1", "-q"])
+        .args(&run.names)
+        .current_dir(run.root);
+    command
+        .env("CARGO_MANIFEST_DIR", run.root)
+        .env("PROPTEST_MAX_SHRINK_ITERS", "0")
+        .env("PROPTEST_FAILURE_PERSISTENCE", "off");
+    command
+        .env_remove("CVTCYCLE_MUTANT")
+        .env("RUST_BACKTRACE", "0")
+        .envs(run.env.iter().map(|(k, v)| (k, v)));
+    let output =
+        std::fs::File::create(run.output).map_err(|e| format!("{}: {e}", run.output.display()))?;
+    command
+        .stdin(Stdio::null())
+        .stdout(output)
+        .stderr(Stdio::null())
+        .process_group(0);
     let begun = Instant::now();
-    let mut child = command.spawn().map_err(|e| format!("{}: {e}", run.program.path.display()))?;
+    let mut child = command
+        .spawn()
+        .map_err(|e| format!("{}: {e}", run.program.path.display()))?;
     let mut nap = Duration::from_micros(500);
     loop {
         if let Some(status) = child.try_wait().map_err(|e| e.to_string())? {
-            return Ok((if status.success() { End::Passed } else { End::Failed }, begun.elapsed()));
+            return Ok((
+                if status.success() {
+                    End::Passed
+                } else {
+                    End::Failed
+                },
+                begun.elapsed(),
+            ));
         }
         if begun.elapsed() > run.limit {
             // The whole group: a test may have started the program itself.
-            let _ = Command::new("kill").args(["-9", "--", &format!("-{}", child.id())]).status();
+            let _ = Command::new("kill")
+                .args(["-9", "--", &format!("-{}", child.id())])
+                .status();
             let _ = child.wait();
             return Ok((End::Late, begun.elapsed()));
         }
@@ -68,13 +93,24 @@ pub fn run(run: &Run) -> Result<(End, Duration), String> {
 /// It cannot be run.
 pub fn list(root: &Path, program: &Program) -> Result<Vec<String>, String> {
     let ask = |more: &[&str]| {
-        let output = Command::new(&program.path).args(["--list", "--format", "terse"]).args(more).current_dir(root).output();
+        let output = Command::new(&program.path)
+            .args(["--list", "--format", "terse"])
+            .args(more)
+            .current_dir(root)
+            .output();
         let output = output.map_err(|e| format!("{}: {e}", program.path.display()))?;
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
-        Ok::<_, String>(text.lines().filter_map(|l| l.strip_suffix(": test").map(str::to_owned)).collect::<Vec<_>>())
+        Ok::<_, String>(
+            text.lines()
+                .filter_map(|l| l.strip_suffix(": test").map(str::to_owned))
+                .collect::<Vec<_>>(),
+        )
     };
     let ignored = ask(&["--ignored"])?;
-    Ok(ask(&[])?.into_iter().filter(|t| !ignored.contains(t)).collect())
+    Ok(ask(&[])?
+        .into_iter()
+        .filter(|t| !ignored.contains(t))
+        .collect())
 }
 
 /// The first test that a program's output calls failed.

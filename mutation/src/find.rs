@@ -26,7 +26,13 @@ pub struct Source<'a> {
 /// The file is no Rust.
 pub fn points(source: &Source, first: u32) -> Result<Vec<Point>, String> {
     let tree = syn::parse_file(source.text).map_err(|e| format!("{}: {e}", source.file))?;
-    let mut finder = Finder { source, function: Vec::new(), points: Vec::new(), next: first, seen: HashMap::new() };
+    let mut finder = Finder {
+        source,
+        function: Vec::new(),
+        points: Vec::new(),
+        next: first,
+        seen: HashMap::new(),
+    };
     finder.visit_file(&tree);
     Ok(finder.points)
 }
@@ -37,7 +43,9 @@ pub fn constants(text: &str) -> Vec<String> {
     let names = text.lines().filter_map(|line| {
         let (_, rest) = line.split_once("const ")?;
         let (name, kind) = rest.split_once(':')?;
-        kind.trim_start().starts_with("f64").then(|| name.trim().to_owned())
+        kind.trim_start()
+            .starts_with("f64")
+            .then(|| name.trim().to_owned())
     });
     names.collect()
 }
@@ -52,22 +60,50 @@ struct Finder<'a> {
 }
 
 impl Finder<'_> {
-    fn add(&mut self, span: Range<usize>, text: &str, shape: Shape, was: &str, with: &[(&str, String)]) {
+    fn add(
+        &mut self,
+        span: Range<usize>,
+        text: &str,
+        shape: Shape,
+        was: &str,
+        with: &[(&str, String)],
+    ) {
         let file = self.source.file.to_owned();
         let function = self.function.join("::");
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        let text = if text.chars().count() > 90 { text.chars().take(87).collect::<String>() + "..." } else { text };
+        let text = if text.chars().count() > 90 {
+            text.chars().take(87).collect::<String>() + "..."
+        } else {
+            text
+        };
         let line = self.source.text[..span.start].matches('\n').count() + 1;
         let kind = with.first().map_or("", |w| &w.1);
-        let seen = self.seen.entry((function.clone(), format!("{text}{kind}"))).or_default();
+        let seen = self
+            .seen
+            .entry((function.clone(), format!("{text}{kind}")))
+            .or_default();
         let nth = *seen;
         *seen += 1;
         let mut choices = Vec::new();
         for (with, mutation) in with {
-            choices.push(Choice { number: self.next, mutation: mutation.clone(), with: (*with).to_owned() });
+            choices.push(Choice {
+                number: self.next,
+                mutation: mutation.clone(),
+                with: (*with).to_owned(),
+            });
             self.next += 1;
         }
-        self.points.push(Point { file, line, function, text, nth, span, shape, was: was.to_owned(), choices });
+        self.points.push(Point {
+            file,
+            line,
+            function,
+            text,
+            nth,
+            span,
+            shape,
+            was: was.to_owned(),
+            choices,
+        });
     }
 
     fn text(&self, range: &Range<usize>) -> String {
@@ -78,8 +114,17 @@ impl Finder<'_> {
     fn replace(&mut self, node: &Expr, shape: Shape, was: &str, with: &[&str]) {
         let span = bytes(node.span());
         let text = self.text(&span);
-        let word = |w: &str| if w.trim().is_empty() { "nothing".to_owned() } else { w.to_owned() };
-        let with: Vec<_> = with.iter().map(|w| (*w, format!("{was} -> {}", word(w)))).collect();
+        let word = |w: &str| {
+            if w.trim().is_empty() {
+                "nothing".to_owned()
+            } else {
+                w.to_owned()
+            }
+        };
+        let with: Vec<_> = with
+            .iter()
+            .map(|w| (*w, format!("{was} -> {}", word(w))))
+            .collect();
         self.add(span, &text, shape, was, &with);
     }
 
@@ -107,9 +152,17 @@ impl Finder<'_> {
             _ => return,
         };
         let shape = match node.op {
-            BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_) | BinOp::Rem(_) => Shape::Values { op },
-            BinOp::And(_) | BinOp::Or(_) => Shape::Logic { op, and: matches!(node.op, BinOp::And(_)) },
-            BinOp::AddAssign(_) | BinOp::SubAssign(_) | BinOp::MulAssign(_) | BinOp::DivAssign(_) => Shape::Assigned { op },
+            BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_) | BinOp::Rem(_) => {
+                Shape::Values { op }
+            }
+            BinOp::And(_) | BinOp::Or(_) => Shape::Logic {
+                op,
+                and: matches!(node.op, BinOp::And(_)),
+            },
+            BinOp::AddAssign(_)
+            | BinOp::SubAssign(_)
+            | BinOp::MulAssign(_)
+            | BinOp::DivAssign(_) => Shape::Assigned { op },
             _ => Shape::Compared { op },
         };
         self.replace(whole, shape, &was, with);
@@ -122,16 +175,35 @@ impl Finder<'_> {
         match (name.as_str(), node.args.first()) {
             ("max" | "min", Some(right)) if node.args.len() == 1 => {
                 let right = bytes(right.span());
-                let shape = Shape::Extreme { between: value_end..right.start, right_end: right.end };
-                self.replace(whole, shape, &name, &[if name == "max" { "min" } else { "max" }]);
+                let shape = Shape::Extreme {
+                    between: value_end..right.start,
+                    right_end: right.end,
+                };
+                self.replace(
+                    whole,
+                    shape,
+                    &name,
+                    &[if name == "max" { "min" } else { "max" }],
+                );
             }
-            ("abs", None) => self.replace(whole, Shape::Unary { value_end }, &self.text(&(value_end..end)), &[""]),
+            ("abs", None) => self.replace(
+                whole,
+                Shape::Unary { value_end },
+                &self.text(&(value_end..end)),
+                &[""],
+            ),
             ("powi", Some(exponent)) if !self.source.keep_literals => {
                 let span = bytes(exponent.span());
                 let was = self.text(&span);
                 let more = format!("{was} + 1");
                 let text = self.text(&bytes(whole.span()));
-                self.add(span, &text, Shape::Leaf, &was, &[(&more, format!("power {was} -> {more}"))]);
+                self.add(
+                    span,
+                    &text,
+                    Shape::Leaf,
+                    &was,
+                    &[(&more, format!("power {was} -> {more}"))],
+                );
             }
             _ => {}
         }
@@ -148,13 +220,22 @@ impl Finder<'_> {
                 let with = format!("{was} * 1.05");
                 self.replace(whole, Shape::Leaf, &was, &[&with]);
             }
-            Lit::Bool(value) => self.replace(whole, Shape::Leaf, &was, &[if value.value { "false" } else { "true" }]),
+            Lit::Bool(value) => self.replace(
+                whole,
+                Shape::Leaf,
+                &was,
+                &[if value.value { "false" } else { "true" }],
+            ),
             _ => {}
         }
     }
 
     fn constant(&mut self, node: &syn::ExprPath, whole: &Expr) {
-        let known = node.path.segments.last().is_some_and(|s| self.source.constants.contains(&s.ident.to_string()));
+        let known = node
+            .path
+            .segments
+            .last()
+            .is_some_and(|s| self.source.constants.contains(&s.ident.to_string()));
         let std = self.text(&bytes(node.span())).contains("consts::");
         if (known || std) && !self.source.keep_literals {
             let was = self.text(&bytes(node.span()));
@@ -164,11 +245,20 @@ impl Finder<'_> {
     }
 
     fn condition(&mut self, cond: &Expr) {
-        let plain = matches!(cond, Expr::MethodCall(_) | Expr::Call(_) | Expr::Path(_) | Expr::Field(_) | Expr::Macro(_));
+        let plain = matches!(
+            cond,
+            Expr::MethodCall(_) | Expr::Call(_) | Expr::Path(_) | Expr::Field(_) | Expr::Macro(_)
+        );
         if plain {
             let span = bytes(cond.span());
             let text = self.text(&span);
-            self.add(span, &text, Shape::Condition, "", &[("", "condition -> its opposite".into())]);
+            self.add(
+                span,
+                &text,
+                Shape::Condition,
+                "",
+                &[("", "condition -> its opposite".into())],
+            );
         }
     }
 
@@ -180,7 +270,11 @@ impl Finder<'_> {
             ReturnType::Type(_, kind) => match (&**kind, self.text(&bytes(kind.span())).as_str()) {
                 (_, "f64") => &["0.0", "1.0", "-1.0"],
                 (_, "bool") => &["true", "false"],
-                (Type::Path(p), _) if p.path.segments.last().is_some_and(|s| s.ident == "Option") => &["None"],
+                (Type::Path(p), _)
+                    if p.path.segments.last().is_some_and(|s| s.ident == "Option") =>
+                {
+                    &["None"]
+                }
                 _ => return,
             },
         };
@@ -210,7 +304,10 @@ fn bytes(span: Span) -> Range<usize> {
 fn for_tests(attrs: &[syn::Attribute]) -> bool {
     attrs.iter().any(|a| {
         let test = a.path().is_ident("test");
-        let cfg = a.path().is_ident("cfg") && a.meta.require_list().is_ok_and(|l| l.tokens.to_string() == "test");
+        let cfg = a.path().is_ident("cfg")
+            && a.meta
+                .require_list()
+                .is_ok_and(|l| l.tokens.to_string() == "test");
         test || cfg
     })
 }
@@ -226,7 +323,10 @@ fn binds(e: &Expr) -> bool {
 }
 
 fn assigns(op: &BinOp) -> bool {
-    matches!(op, BinOp::AddAssign(_) | BinOp::SubAssign(_) | BinOp::MulAssign(_) | BinOp::DivAssign(_))
+    matches!(
+        op,
+        BinOp::AddAssign(_) | BinOp::SubAssign(_) | BinOp::MulAssign(_) | BinOp::DivAssign(_)
+    )
 }
 
 impl<'ast> Visit<'ast> for Finder<'_> {
@@ -281,10 +381,24 @@ impl<'ast> Visit<'ast> for Finder<'_> {
                 }
             }
             Expr::Unary(u) if matches!(u.op, UnOp::Neg(_)) => {
-                self.replace(node, Shape::Prefixed { op: bytes(u.op.span()) }, "-", &[""]);
+                self.replace(
+                    node,
+                    Shape::Prefixed {
+                        op: bytes(u.op.span()),
+                    },
+                    "-",
+                    &[""],
+                );
             }
             Expr::Unary(u) if matches!(u.op, UnOp::Not(_)) => {
-                self.replace(node, Shape::Prefixed { op: bytes(u.op.span()) }, "!", &[""]);
+                self.replace(
+                    node,
+                    Shape::Prefixed {
+                        op: bytes(u.op.span()),
+                    },
+                    "!",
+                    &[""],
+                );
             }
             Expr::MethodCall(m) => self.method(m, node),
             Expr::Lit(l) => self.literal(l, node),

@@ -85,17 +85,29 @@ impl Hunt<'_> {
     /// A program cannot be run, the log not be written.
     pub fn all(&self, mutants: &[Quarry], jobs: usize) -> Result<(), String> {
         let path = self.state.join("results.jsonl");
-        let log = fs::OpenOptions::new().create(true).append(true).open(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let log = fs::OpenOptions::new()
+            .create(true)
+            .append(true)
+            .open(&path)
+            .map_err(|e| format!("{}: {e}", path.display()))?;
         let (log, luck) = (Mutex::new(log), Mutex::new(Luck::new()));
         let done = Mutex::new(0);
         work::share(jobs, mutants.len(), |worker, index| {
             let (fate, by) = self.one(&mutants[index], worker, &luck)?;
             let Quarry { key, source, .. } = &mutants[index];
-            let line = serde_json::to_string(&Outcome { key: key.clone(), fate, by, source: *source }).map_err(|e| e.to_string())?;
+            let line = serde_json::to_string(&Outcome {
+                key: key.clone(),
+                fate,
+                by,
+                source: *source,
+            })
+            .map_err(|e| e.to_string())?;
             if !self.all_tests && !matches!(fate, Fate::Caught | Fate::Hung) {
                 return Ok(());
             }
-            work::lock(&log).write_all(format!("{line}\n").as_bytes()).map_err(|e| format!("{}: {e}", path.display()))?;
+            work::lock(&log)
+                .write_all(format!("{line}\n").as_bytes())
+                .map_err(|e| format!("{}: {e}", path.display()))?;
             let mut done = work::lock(&done);
             *done += 1;
             if *done % 100 == 0 {
@@ -105,7 +117,12 @@ impl Hunt<'_> {
         })
     }
 
-    fn one(&self, mutant: &Quarry, worker: usize, luck: &Mutex<Luck>) -> Result<(Fate, String), String> {
+    fn one(
+        &self,
+        mutant: &Quarry,
+        worker: usize,
+        luck: &Mutex<Luck>,
+    ) -> Result<(Fate, String), String> {
         let mut batches = self.batches(mutant.number);
         if batches.is_empty() {
             return Ok((Fate::Unreached, String::new()));
@@ -122,15 +139,25 @@ impl Hunt<'_> {
         for batch in &batches {
             let limit = Duration::from_secs_f64(20.0 + 10.0 * batch.seconds);
             let env = Some(("CVTCYCLE_MUTANT", mutant.number.to_string()));
-            let (end, _) =
-                exec::run(&Run { root: self.root, program: batch.program, names: batch.names.clone(), env, limit, output: &output })?;
+            let (end, _) = exec::run(&Run {
+                root: self.root,
+                program: batch.program,
+                names: batch.names.clone(),
+                env,
+                limit,
+                output: &output,
+            })?;
             let mut luck = work::lock(luck);
             let (tries, catches) = luck.entry(batch.name.clone()).or_default();
             *tries += 1;
             if end != End::Passed {
                 *catches += 1;
                 let by = exec::first_failed(&output).unwrap_or_else(|| batch.names[0].to_owned());
-                let fate = if end == End::Late { Fate::Hung } else { Fate::Caught };
+                let fate = if end == End::Late {
+                    Fate::Hung
+                } else {
+                    Fate::Caught
+                };
                 return Ok((fate, format!("{}::{by}", batch.program.name)));
             }
         }
@@ -139,16 +166,31 @@ impl Hunt<'_> {
 
     fn batches(&self, number: u32) -> Vec<Batch<'_>> {
         let mut batches: Vec<Batch> = Vec::new();
-        for test in self.tests.iter().filter(|t| t.reaches.binary_search(&number).is_ok()) {
-            let Some(program) = self.programs.iter().find(|p| p.name == test.program) else { continue };
+        for test in self
+            .tests
+            .iter()
+            .filter(|t| t.reaches.binary_search(&number).is_ok())
+        {
+            let Some(program) = self.programs.iter().find(|p| p.name == test.program) else {
+                continue;
+            };
             let cheap = test.seconds < CHEAP_S;
-            let name = if cheap { test.program.clone() } else { format!("{}::{}", test.program, test.name) };
+            let name = if cheap {
+                test.program.clone()
+            } else {
+                format!("{}::{}", test.program, test.name)
+            };
             match batches.iter_mut().find(|b| b.name == name) {
                 Some(batch) => {
                     batch.names.push(&test.name);
                     batch.seconds += test.seconds;
                 }
-                None => batches.push(Batch { name, program, names: vec![&test.name], seconds: test.seconds }),
+                None => batches.push(Batch {
+                    name,
+                    program,
+                    names: vec![&test.name],
+                    seconds: test.seconds,
+                }),
             }
         }
         batches
@@ -159,6 +201,8 @@ impl Hunt<'_> {
 #[must_use]
 pub fn log(state: &Path) -> HashMap<String, Outcome> {
     let text = fs::read_to_string(state.join("results.jsonl")).unwrap_or_default();
-    let lines = text.lines().filter_map(|l| serde_json::from_str::<Outcome>(l).ok());
+    let lines = text
+        .lines()
+        .filter_map(|l| serde_json::from_str::<Outcome>(l).ok());
     lines.map(|r| (r.key.clone(), r)).collect()
 }

@@ -90,15 +90,26 @@ impl Point {
     /// Name of a mutant that survives edits elsewhere in the file.
     #[must_use]
     pub fn key(&self, choice: &Choice) -> String {
-        let nth = if self.nth > 0 { format!(" #{}", self.nth + 1) } else { String::new() };
-        format!("{} | {} | {}{nth} | {}", self.file, self.function, self.text, choice.mutation)
+        let nth = if self.nth > 0 {
+            format!(" #{}", self.nth + 1)
+        } else {
+            String::new()
+        };
+        format!(
+            "{} | {} | {}{nth} | {}",
+            self.file, self.function, self.text, choice.mutation
+        )
     }
 
     /// `if on(1) { a } else if on(2) { b } else { original }`, each written by `write`.
     fn chain(&self, write: impl Fn(&str) -> String) -> String {
         let mut out = String::new();
         for choice in &self.choices {
-            out += &format!("if crate::mutant::on({}) {{ {} }} else ", choice.number, write(&choice.with));
+            out += &format!(
+                "if crate::mutant::on({}) {{ {} }} else ",
+                choice.number,
+                write(&choice.with)
+            );
         }
         out + &format!("{{ {} }}", write(&self.was))
     }
@@ -107,45 +118,92 @@ impl Point {
     #[must_use]
     pub fn edits(&self, source: &str) -> Vec<Edit> {
         let Range { start, end } = self.span;
-        let edit = |range: Range<usize>, text: String| Edit { range, text, outer: self.span.clone() };
+        let edit = |range: Range<usize>, text: String| Edit {
+            range,
+            text,
+            outer: self.span.clone(),
+        };
         let open = |text: &str| edit(start..start, text.to_owned());
         let close = |text: String| edit(end..end, text);
         match &self.shape {
             Shape::Values { op } => {
                 let arms = self.chain(|op| format!("l_ {op} r_"));
-                vec![open("(match ("), edit(op.clone(), ",".into()), close(format!(") {{ (l_, r_) => {arms} }})"))]
+                vec![
+                    open("(match ("),
+                    edit(op.clone(), ",".into()),
+                    close(format!(") {{ (l_, r_) => {arms} }})")),
+                ]
             }
             Shape::Compared { op } => {
                 let arms = self.chain(|op| format!("l_ {op} r_"));
-                vec![open("(match (&("), edit(op.clone(), "), &(".into()), close(format!(")) {{ (l_, r_) => {arms} }})"))]
+                vec![
+                    open("(match (&("),
+                    edit(op.clone(), "), &(".into()),
+                    close(format!(")) {{ (l_, r_) => {arms} }})")),
+                ]
             }
             Shape::Logic { op, and } => {
                 let sign = if *and { "!=" } else { "==" };
-                let middle = format!(") {{ l_ => if l_ {sign} crate::mutant::on({}) {{", self.choices[0].number);
-                vec![open("(match ("), edit(op.clone(), middle), close("} else { l_ } })".into())]
+                let middle = format!(
+                    ") {{ l_ => if l_ {sign} crate::mutant::on({}) {{",
+                    self.choices[0].number
+                );
+                vec![
+                    open("(match ("),
+                    edit(op.clone(), middle),
+                    close("} else { l_ } })".into()),
+                ]
             }
             Shape::Assigned { op } => {
                 let place = source[start..op.start].trim();
                 let arms = self.chain(|op| format!("{place} {op} r_;"));
-                vec![edit(start..op.end, "(match (".into()), close(format!(") {{ r_ => {arms} }})"))]
+                vec![
+                    edit(start..op.end, "(match (".into()),
+                    close(format!(") {{ r_ => {arms} }})")),
+                ]
             }
             Shape::Prefixed { op } => {
                 let arms = self.chain(|op| format!("{op}v_"));
-                vec![open("(match ("), edit(op.clone(), String::new()), close(format!(") {{ v_ => {arms} }})"))]
+                vec![
+                    open("(match ("),
+                    edit(op.clone(), String::new()),
+                    close(format!(") {{ v_ => {arms} }})")),
+                ]
             }
             Shape::Extreme { between, right_end } => {
                 let arms = self.chain(|name| format!("l_.{name}(r_)"));
-                vec![open("(match ("), edit(between.clone(), ", ".into()), edit(*right_end..end, format!(") {{ (l_, r_) => {arms} }})"))]
+                vec![
+                    open("(match ("),
+                    edit(between.clone(), ", ".into()),
+                    edit(*right_end..end, format!(") {{ (l_, r_) => {arms} }})")),
+                ]
             }
             Shape::Unary { value_end } => {
                 let arms = self.chain(|call| format!("v_{call}"));
-                vec![open("(match ("), edit(*value_end..end, format!(") {{ v_ => {arms} }})"))]
+                vec![
+                    open("(match ("),
+                    edit(*value_end..end, format!(") {{ v_ => {arms} }})")),
+                ]
             }
             Shape::Leaf => vec![edit(start..end, format!("({})", self.chain(str::to_owned)))],
-            Shape::Condition => vec![open(&format!("crate::mutant::on({}) != (", self.choices[0].number)), close(")".into())],
+            Shape::Condition => vec![
+                open(&format!(
+                    "crate::mutant::on({}) != (",
+                    self.choices[0].number
+                )),
+                close(")".into()),
+            ],
             Shape::Body => {
-                let returns = |c: &Choice| format!(" if crate::mutant::on({}) {{ return {}; }}", c.number, c.with);
-                vec![edit(start..start, self.choices.iter().map(returns).collect())]
+                let returns = |c: &Choice| {
+                    format!(
+                        " if crate::mutant::on({}) {{ return {}; }}",
+                        c.number, c.with
+                    )
+                };
+                vec![edit(
+                    start..start,
+                    self.choices.iter().map(returns).collect(),
+                )]
             }
         }
     }
@@ -204,5 +262,8 @@ pub fn write(source: &str, points: &[Point]) -> Written {
         ranges[*index] = Some(start..text.len());
     }
     text += &source[at..];
-    Written { text, ranges: ranges.into_iter().map(Option::unwrap_or_default).collect() }
+    Written {
+        text,
+        ranges: ranges.into_iter().map(Option::unwrap_or_default).collect(),
+    }
 }

@@ -7,7 +7,11 @@ use std::sync::{Mutex, MutexGuard};
 ///
 /// # Errors
 /// The first error of the work.
-pub fn share(jobs: usize, count: usize, work: impl Fn(usize, usize) -> Result<(), String> + Sync) -> Result<(), String> {
+pub fn share(
+    jobs: usize,
+    count: usize,
+    work: impl Fn(usize, usize) -> Result<(), String> + Sync,
+) -> Result<(), String> {
     let next = AtomicUsize::new(0);
     let error = Mutex::new(None);
     std::thread::scope(|scope| {
@@ -32,5 +36,7 @@ pub fn share(jobs: usize, count: usize, work: impl Fn(usize, usize) -> Result<()
 
 /// A lock that somebody who panicked leaves usable.
 pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    mutex
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner)
 }

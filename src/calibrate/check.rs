@@ -14,5 +14,9 @@ pub fn open(word: &str, option: &str) -> Result<Plan, Vec<Problem>> {
     if !plan.vehicle.is_empty() {
         problems.append(&mut Model::new(&plan).err().unwrap_or_default());
     }
-    if problems.is_empty() { Ok(plan) } else { Err(problems) }
+    if problems.is_empty() {
+        Ok(plan)
+    } else {
+        Err(problems)
+    }
 }

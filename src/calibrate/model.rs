@@ -76,9 +76,21 @@ impl<'p> Model<'p> {
             common: Vec::new(),
             pool: Mutex::default(),
         };
-        let mut problems: Vec<Problem> = model.car(None).err().unwrap_or_default().into_iter().map(|p| in_plan(plan, p)).collect();
+        let mut problems: Vec<Problem> = model
+            .car(None)
+            .err()
+            .unwrap_or_default()
+            .into_iter()
+            .map(|p| in_plan(plan, p))
+            .collect();
         problems.append(&mut model.free());
-        problems.extend(Conditions::load(&plan.set).err().unwrap_or_default().into_iter().map(|p| in_plan(plan, p)));
+        problems.extend(
+            Conditions::load(&plan.set)
+                .err()
+                .unwrap_or_default()
+                .into_iter()
+                .map(|p| in_plan(plan, p)),
+        );
         for source in used(plan) {
             let mut found = model.of_source(source, &problems);
             found.retain(|problem| !problems.contains(problem));
@@ -88,10 +100,18 @@ impl<'p> Model<'p> {
             return Err(problems);
         }
         for group in &plan.groups {
-            model.common.push(group.common_sd.map(|_| model.parameters.len()));
+            model
+                .common
+                .push(group.common_sd.map(|_| model.parameters.len()));
             if let Some(sd) = group.common_sd {
                 let (name, wide) = (format!("common error of {}", group.name), COMMON_WIDTH * sd);
-                model.parameters.push(Parameter { name, start: 0.0, low: -wide, high: wide, prior: Some(Prior { mean: 0.0, sd }) });
+                model.parameters.push(Parameter {
+                    name,
+                    start: 0.0,
+                    low: -wide,
+                    high: wide,
+                    prior: Some(Prior { mean: 0.0, sd }),
+                });
             }
         }
         Ok(model)
@@ -113,15 +133,35 @@ impl<'p> Model<'p> {
     #[must_use]
     pub fn file_values(&self) -> Vec<f64> {
         let own = self.kinds[0].slots.iter().map(Slot::base);
-        own.chain(self.parameters[self.plan.parameters.len()..].iter().map(|parameter| parameter.start)).collect()
+        own.chain(
+            self.parameters[self.plan.parameters.len()..]
+                .iter()
+                .map(|parameter| parameter.start),
+        )
+        .collect()
     }
 
     /// Units of the parameters.
     #[must_use]
     pub fn units(&self) -> Vec<String> {
-        let own = self.kinds[0].slots.iter().map(|slot| slot.unit().to_owned());
-        let common = self.plan.groups.iter().enumerate().filter(|(_, group)| group.common_sd.is_some());
-        let unit_of = |group: usize| self.plan.observations.iter().find(|o| o.group == group).map(|o| o.unit.clone()).unwrap_or_default();
+        let own = self.kinds[0]
+            .slots
+            .iter()
+            .map(|slot| slot.unit().to_owned());
+        let common = self
+            .plan
+            .groups
+            .iter()
+            .enumerate()
+            .filter(|(_, group)| group.common_sd.is_some());
+        let unit_of = |group: usize| {
+            self.plan
+                .observations
+                .iter()
+                .find(|o| o.group == group)
+                .map(|o| o.unit.clone())
+                .unwrap_or_default()
+        };
         own.chain(common.map(|(k, _)| unit_of(k))).collect()
     }
 
@@ -129,19 +169,28 @@ impl<'p> Model<'p> {
     fn options(&self, source: Option<&Source>) -> Options {
         let own = source.is_none_or(|source| source.vehicle.is_none());
         let plan_set = if own { self.plan.set.as_slice() } else { &[] };
-        let source_set = source.map(|source| source.set.as_slice()).unwrap_or_default();
+        let source_set = source
+            .map(|source| source.set.as_slice())
+            .unwrap_or_default();
         let lubricant = source.and_then(|source| source.lubricant.clone());
         Options {
             lubricant: lubricant.or_else(|| self.plan.lubricant.clone().filter(|_| own)),
             engine_oil: self.plan.engine_oil.clone().filter(|_| own),
-            set: plan_set.iter().chain(source_set).filter(|set| !set.starts_with(PREFIX)).cloned().collect(),
+            set: plan_set
+                .iter()
+                .chain(source_set)
+                .filter(|set| !set.starts_with(PREFIX))
+                .cloned()
+                .collect(),
             formulation: source.map(|source| source.formulation).unwrap_or_default(),
         }
     }
 
     /// The car of a source by name.
     fn name_of(&self, source: Option<&Source>) -> String {
-        let vehicle = source.and_then(|source| source.vehicle.as_deref()).unwrap_or(&self.plan.vehicle);
+        let vehicle = source
+            .and_then(|source| source.vehicle.as_deref())
+            .unwrap_or(&self.plan.vehicle);
         let own = source.is_none_or(|source| source.vehicle.is_none());
         format!("{own} {vehicle} {:?}", self.options(source))
     }
@@ -156,7 +205,8 @@ impl<'p> Model<'p> {
             self.fixed.insert(name, load(vehicle, "vehicle", &options)?);
             return Ok(());
         }
-        let (blueprint, setup) = Blueprint::load(&self.plan.vehicle, "calibration.vehicle", &options)?;
+        let (blueprint, setup) =
+            Blueprint::load(&self.plan.vehicle, "calibration.vehicle", &options)?;
         let mut problems: Vec<Problem> = Vec::new();
         let mut slots = Vec::new();
         for free in &self.plan.parameters {
@@ -166,40 +216,87 @@ impl<'p> Model<'p> {
                     let allowed = "the key of a single number of the vehicle or of its fluids";
                     // The words of others are of options.
                     let hint = match found.hint.contains("--set") {
-                        true => format!("`cvtcycle show {}` prints its keys; words and lists are held, in `set`", self.plan.vehicle),
+                        true => format!(
+                            "`cvtcycle show {}` prints its keys; words and lists are held, in `set`",
+                            self.plan.vehicle
+                        ),
                         false => found.hint.clone(),
                     };
                     let found = Problem { hint, ..found };
-                    let told = Problem { place: free.place.clone(), key: "key".into(), value: free.key.clone(), ..found };
-                    problems.push(if told.allowed.is_empty() { Problem { allowed: allowed.into(), ..told } } else { told });
+                    let told = Problem {
+                        place: free.place.clone(),
+                        key: "key".into(),
+                        value: free.key.clone(),
+                        ..found
+                    };
+                    problems.push(if told.allowed.is_empty() {
+                        Problem {
+                            allowed: allowed.into(),
+                            ..told
+                        }
+                    } else {
+                        told
+                    });
                 }
             }
         }
         // With what could be found more can be checked; nothing is computed with a plan of which this is not all.
         self.by_options.insert(name, self.kinds.len());
-        self.kinds.push(Kind { blueprint, slots, keys: setup.keys });
-        if problems.is_empty() { Ok(()) } else { Err(problems) }
+        self.kinds.push(Kind {
+            blueprint,
+            slots,
+            keys: setup.keys,
+        });
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(problems)
+        }
     }
 
     /// Loads what a source needs; gives its problems, but those of the plan's own car, `known` already, only once.
     fn of_source(&mut self, source: &Source, known: &[Problem]) -> Vec<Problem> {
         let at = |found: Problem| {
-            let place = if found.place.line > 0 { found.place.clone() } else { source.place.clone() };
+            let place = if found.place.line > 0 {
+                found.place.clone()
+            } else {
+                source.place.clone()
+            };
             let key = match found.key.as_str() {
                 "--lubricant" => "lubricant".to_owned(),
                 _ => found.key.clone(),
             };
-            Problem { message: format!("source `{}`: {}", source.name, found.message), ..assigned(Problem { key, ..found }, place) }
+            Problem {
+                message: format!("source `{}`: {}", source.name, found.message),
+                ..assigned(Problem { key, ..found }, place)
+            }
         };
-        let is_new = |found: &Problem| !known.iter().any(|old| old.message == found.message && old.value == found.value);
+        let is_new = |found: &Problem| {
+            !known
+                .iter()
+                .any(|old| old.message == found.message && old.value == found.value)
+        };
         let mut problems: Vec<Problem> = Vec::new();
         if source.vehicle.is_none() {
             problems.extend(self.held(&source.set, &source.place).into_iter().map(at));
             if source.lubricant.is_some()
-                && let Some(free) = self.plan.parameters.iter().find(|free| free.key.starts_with("lubricant."))
+                && let Some(free) = self
+                    .plan
+                    .parameters
+                    .iter()
+                    .find(|free| free.key.starts_with("lubricant."))
             {
-                let message = format!("source `{}` has a fluid of its own, in which `{}` would be another value", source.name, free.key);
-                problems.push(problem(&source.place, "lubricant", "", message, "fit the two fluids in plans of their own"));
+                let message = format!(
+                    "source `{}` has a fluid of its own, in which `{}` would be another value",
+                    source.name, free.key
+                );
+                problems.push(problem(
+                    &source.place,
+                    "lubricant",
+                    "",
+                    message,
+                    "fit the two fluids in plans of their own",
+                ));
             }
         }
         // Without the plan's own car there is none with a source's changes either.
@@ -220,39 +317,92 @@ impl<'p> Model<'p> {
 
     /// Assignments that hold what is to be fitted.
     fn held(&self, sets: &[String], place: &Place) -> Vec<Problem> {
-        let holds = |free: &&Free| sets.iter().any(|set| set.split_once('=').is_some_and(|(key, _)| key.trim() == free.key));
+        let holds = |free: &&Free| {
+            sets.iter().any(|set| {
+                set.split_once('=')
+                    .is_some_and(|(key, _)| key.trim() == free.key)
+            })
+        };
         let hint = "what is set is held: remove it from `set`, or remove its [[parameter]]";
-        let told = |free: &Free| problem(&at_item(place.clone(), &free.key), "set", "", format!("`{}` is set and free", free.key), hint);
-        self.plan.parameters.iter().filter(holds).map(told).collect()
+        let told = |free: &Free| {
+            problem(
+                &at_item(place.clone(), &free.key),
+                "set",
+                "",
+                format!("`{}` is set and free", free.key),
+                hint,
+            )
+        };
+        self.plan
+            .parameters
+            .iter()
+            .filter(holds)
+            .map(told)
+            .collect()
     }
 
     /// Checks the plan's parameters against the car and makes those of the fit.
     fn free(&mut self) -> Vec<Problem> {
         let mut problems = self.held(&self.plan.set, &self.plan.places[3]);
-        let Some(kind) = self.kinds.first() else { return problems };
+        let Some(kind) = self.kinds.first() else {
+            return problems;
+        };
         let mut bench = kind.blueprint.bench();
         for free in &self.plan.parameters {
             // One that is not found was told already.
-            let Some(slot) = kind.slots.iter().find(|slot| slot.key() == free.key.trim()) else { continue };
-            for (word, value, place) in [("low", free.low, &free.bounds[0]), ("high", free.high, &free.bounds[1])] {
+            let Some(slot) = kind.slots.iter().find(|slot| slot.key() == free.key.trim()) else {
+                continue;
+            };
+            for (word, value, place) in [
+                ("low", free.low, &free.bounds[0]),
+                ("high", free.high, &free.bounds[1]),
+            ] {
                 bench.reset();
                 bench.set(slot, value);
                 if bench.build().is_err() {
                     let first = bench.problems().into_iter().next().unwrap_or_default();
-                    let message = format!("parameter {}: the car is refused at `{word}`: {}", free.key, first.message);
-                    let allowed = if first.allowed.is_empty() { slot.allowed().to_owned() } else { first.allowed };
+                    let message = format!(
+                        "parameter {}: the car is refused at `{word}`: {}",
+                        free.key, first.message
+                    );
+                    let allowed = if first.allowed.is_empty() {
+                        slot.allowed().to_owned()
+                    } else {
+                        first.allowed
+                    };
                     // It may call for another key that goes with it.
-                    let own = first.key.is_empty() || slot.key().ends_with(&first.key) || first.hint.is_empty();
-                    let hint = if own { "bounds are in the unit of the key; the search may go to both" } else { &first.hint };
-                    problems.push(Problem { value: value.to_string(), ..problem(place, word, &allowed, message, hint) });
+                    let own = first.key.is_empty()
+                        || slot.key().ends_with(&first.key)
+                        || first.hint.is_empty();
+                    let hint = if own {
+                        "bounds are in the unit of the key; the search may go to both"
+                    } else {
+                        &first.hint
+                    };
+                    problems.push(Problem {
+                        value: value.to_string(),
+                        ..problem(place, word, &allowed, message, hint)
+                    });
                 }
             }
             let start = free.start.unwrap_or(slot.base());
             if start.is_nan() {
-                let message = format!("parameter {}: the file has no value to start from", free.key);
-                problems.push(problem(&free.place, "start", "a number", message, "add `start`, in the unit of the key"));
+                let message = format!(
+                    "parameter {}: the file has no value to start from",
+                    free.key
+                );
+                problems.push(problem(
+                    &free.place,
+                    "start",
+                    "a number",
+                    message,
+                    "add `start`, in the unit of the key",
+                ));
             } else if !(free.low..=free.high).contains(&start) {
-                let message = format!("parameter {}: the file's value {start} is outside the bounds", free.key);
+                let message = format!(
+                    "parameter {}: the file's value {start} is outside the bounds",
+                    free.key
+                );
                 problems.push(problem(
                     &free.place,
                     "start",
@@ -261,7 +411,13 @@ impl<'p> Model<'p> {
                     "widen the bounds, or add `start`",
                 ));
             }
-            self.parameters.push(Parameter { name: free.key.clone(), start, low: free.low, high: free.high, prior: free.prior });
+            self.parameters.push(Parameter {
+                name: free.key.clone(),
+                start,
+                low: free.low,
+                high: free.high,
+                prior: free.prior,
+            });
         }
         problems
     }
@@ -271,11 +427,28 @@ impl<'p> Model<'p> {
     /// # Errors
     /// Why one of them has no number at these values.
     pub fn answer(&self, values: &[f64]) -> Result<Answer, String> {
-        let taken = self.pool.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let benches = taken.unwrap_or_else(|| self.kinds.iter().map(|kind| kind.blueprint.bench()).collect());
-        let candidate = Candidate { model: self, values, benches: RefCell::new(benches), built: RefCell::default() };
+        let taken = self
+            .pool
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .pop();
+        let benches = taken.unwrap_or_else(|| {
+            self.kinds
+                .iter()
+                .map(|kind| kind.blueprint.bench())
+                .collect()
+        });
+        let candidate = Candidate {
+            model: self,
+            values,
+            benches: RefCell::new(benches),
+            built: RefCell::default(),
+        };
         let answer = candidate.answer();
-        self.pool.lock().unwrap_or_else(PoisonError::into_inner).push(candidate.benches.into_inner());
+        self.pool
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(candidate.benches.into_inner());
         answer
     }
 
@@ -286,7 +459,12 @@ impl<'p> Model<'p> {
             let common = self.common[observation.group].map_or(0.0, |k| values[k]);
             observation.measured.distance(computed + common) // CM-1
         };
-        self.plan.observations.iter().zip(computed).map(one).collect()
+        self.plan
+            .observations
+            .iter()
+            .zip(computed)
+            .map(one)
+            .collect()
     }
 }
 
@@ -298,7 +476,13 @@ impl Residuals for Model<'_> {
     fn at(&self, values: &[f64]) -> Result<Vec<f64>, String> {
         let answer = self.answer(values)?;
         let distances = self.distances(&answer.computed, values);
-        Ok(self.plan.observations.iter().zip(distances).map(|(observation, distance)| distance / observation.weight_sd).collect())
+        Ok(self
+            .plan
+            .observations
+            .iter()
+            .zip(distances)
+            .map(|(observation, distance)| distance / observation.weight_sd)
+            .collect())
     }
 }
 
@@ -312,24 +496,44 @@ fn in_plan(plan: &Plan, found: Problem) -> Problem {
         file if file.starts_with("--set") => (set, "set"),
         _ => return found,
     };
-    assigned(Problem { key: key.to_owned(), ..found }, place.clone())
+    assigned(
+        Problem {
+            key: key.to_owned(),
+            ..found
+        },
+        place.clone(),
+    )
 }
 
 /// A problem moved to a place in the plan: there to the assignment of a list that is meant, where it stands in that line.
 fn assigned(found: Problem, place: Place) -> Problem {
     let assignment = found.place.file.strip_prefix("--set ").unwrap_or_default();
     let hint = found.hint.replace(AS_OPTION, "write \"table.key=VALUE\"");
-    Problem { place: at_item(place, assignment), hint, ..found }
+    Problem {
+        place: at_item(place, assignment),
+        hint,
+        ..found
+    }
 }
 
 /// All sources that observations look at.
 fn used(plan: &Plan) -> Vec<&Source> {
-    let mut found: Vec<&Source> = plan.benches.iter().map(|bench| &bench.source).chain(&plan.runs).collect();
+    let mut found: Vec<&Source> = plan
+        .benches
+        .iter()
+        .map(|bench| &bench.source)
+        .chain(&plan.runs)
+        .collect();
     for observation in &plan.observations {
         if let What::Expression { view, expr } = &observation.what_computed {
             let mut indices = Vec::new();
             expr.sources(&mut indices);
-            found.extend(indices.into_iter().flatten().filter_map(|k| plan.views[*view].get(k)));
+            found.extend(
+                indices
+                    .into_iter()
+                    .flatten()
+                    .filter_map(|k| plan.views[*view].get(k)),
+            );
         }
     }
     let mut seen: Vec<(&str, &crate::config::Place)> = Vec::new();

@@ -179,7 +179,9 @@ impl Outcome {
     /// Root mean square of all residuals in standard deviations: with the files' values, fitted, predicted fold by fold (CO-1).
     #[must_use]
     pub fn rms_sd(&self) -> [Option<f64>; 3] {
-        let rms = |list: Vec<Option<f64>>| rms(list.into_iter().collect::<Option<Vec<f64>>>()?.into_iter());
+        let rms = |list: Vec<Option<f64>>| {
+            rms(list.into_iter().collect::<Option<Vec<f64>>>()?.into_iter())
+        };
         [
             rms(self.residuals.iter().map(|r| r.before_sd).collect()),
             rms(self.residuals.iter().map(|r| Some(r.after_sd)).collect()),

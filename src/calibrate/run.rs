@@ -22,8 +22,12 @@ const FAR: f64 = 3.0;
 pub fn calibrate(plan: &Plan, watcher: &dyn Watcher) -> Result<Outcome, Vec<Problem>> {
     let model = Model::new(plan)?;
     let search = &plan.search;
-    let options =
-        Options { starts: search.starts, seed: search.seed, most_evaluations: search.most_evaluations, tolerance: search.tolerance };
+    let options = Options {
+        starts: search.starts,
+        seed: search.seed,
+        most_evaluations: search.most_evaluations,
+        tolerance: search.tolerance,
+    };
     let fit = solve::fit(&model, model.parameters(), &options, watcher).map_err(|failure| {
         let hint = "leave out data where the model has no number; the first start is at the values of the files";
         // Each cause once: the starts and their many values say no more.
@@ -34,12 +38,22 @@ pub fn calibrate(plan: &Plan, watcher: &dyn Watcher) -> Result<Outcome, Vec<Prob
         whys.into_iter().map(|why| problem(&plan.place, "", "", format!("the model has no answer: {why}"), hint)).collect::<Vec<Problem>>()
     })?;
     let folds = if search.leave_out && plan.folds.len() > 1 && fit.end != End::Stopped {
-        let groups: Vec<usize> = plan.observations.iter().map(|observation| observation.fold).collect();
+        let groups: Vec<usize> = plan
+            .observations
+            .iter()
+            .map(|observation| observation.fold)
+            .collect();
         solve::leave_out(&model, model.parameters(), &groups, &fit, &options, watcher)
     } else {
         Vec::new()
     };
-    Ok(Found { uncertainty: solve::uncertainty(&fit, model.parameters()), model: &model, fit, folds }.outcome())
+    Ok(Found {
+        uncertainty: solve::uncertainty(&fit, model.parameters()),
+        model: &model,
+        fit,
+        folds,
+    }
+    .outcome())
 }
 
 /// A finished fit with its model.
@@ -58,14 +72,23 @@ impl Found<'_> {
         let residuals = self.residuals(before.as_ref(), &file_values);
         let parameters = self.parameters(&file_values);
         let sum = |list: &mut dyn Iterator<Item = f64>| list.map(|x| x * x).sum::<f64>();
-        let prior_before = sum(&mut parameters.iter().filter_map(|p| p.prior.map(|[mean, sd]| (p.file_value - mean) / sd)));
+        let prior_before = sum(&mut parameters
+            .iter()
+            .filter_map(|p| p.prior.map(|[mean, sd]| (p.file_value - mean) / sd)));
         let mut outcome = Outcome {
             schema: SCHEMA,
             program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")).to_owned(),
             title: plan.title.clone(),
             plan: plan.file.clone(),
-            plan_sha256: Sha256::digest(plan.text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect(),
-            files: plan.files.iter().map(|(path, hash)| [path.clone(), hash.clone()]).collect(),
+            plan_sha256: Sha256::digest(plan.text.as_bytes())
+                .iter()
+                .map(|byte| format!("{byte:02x}"))
+                .collect(),
+            files: plan
+                .files
+                .iter()
+                .map(|(path, hash)| [path.clone(), hash.clone()])
+                .collect(),
             vehicle: plan.vehicle.clone(),
             end: end_words(fit.end).to_owned(),
             converged: fit.end == End::Converged,
@@ -87,7 +110,10 @@ impl Found<'_> {
                 .directions
                 .iter()
                 .rev()
-                .map(|d| Direction { singular_value: d.singular_value, weights: d.weights.clone() })
+                .map(|d| Direction {
+                    singular_value: d.singular_value,
+                    weights: d.weights.clone(),
+                })
                 .collect(),
             not_identified: solve::words(fit, self.model.parameters()),
             folds: Vec::new(),
@@ -116,21 +142,34 @@ impl Found<'_> {
                 high: p.high,
                 prior: p.prior.map(|prior| [prior.mean, prior.sd]),
                 prior_status: own.map_or_else(|| "assumed".to_owned(), |free| free.status.clone()),
-                source: own.map_or_else(|| "one error for all data of the group".to_owned(), |free| free.source.clone()),
+                source: own.map_or_else(
+                    || "one error for all data of the group".to_owned(),
+                    |free| free.source.clone(),
+                ),
                 prior_share: u.prior_share[k],
-                at_bound: u.at_bound[k].map(|bound| if bound == Bound::Low { "low" } else { "high" }),
+                at_bound: u.at_bound[k]
+                    .map(|bound| if bound == Bound::Low { "low" } else { "high" }),
                 is_dead: u.dead.contains(&k),
             }
         };
-        self.model.parameters().iter().enumerate().map(one).collect()
+        self.model
+            .parameters()
+            .iter()
+            .enumerate()
+            .map(one)
+            .collect()
     }
 
     fn residuals(&self, before: Option<&Answer>, file_values: &[f64]) -> Vec<Residual> {
         let plan = self.model.plan();
         // The fit ended where the model has an answer.
-        let after = self.model.answer(&self.fit.values).unwrap_or(Answer { computed: Vec::new(), doubtful: Vec::new() });
+        let after = self.model.answer(&self.fit.values).unwrap_or(Answer {
+            computed: Vec::new(),
+            doubtful: Vec::new(),
+        });
         let left_out = self.left_out();
-        let before_distances = before.map(|answer| self.model.distances(&answer.computed, file_values));
+        let before_distances =
+            before.map(|answer| self.model.distances(&answer.computed, file_values));
         let one = |(k, o): (usize, &super::plan::Observation)| {
             let (low, high) = match o.measured {
                 Measured::Value(x) => (x, x),
@@ -142,7 +181,11 @@ impl Found<'_> {
                 label: o.label.clone(),
                 what: o.what.clone(),
                 column: o.column.clone(),
-                time_s: if let What::Trace { time_s, .. } = o.what_computed { Some(time_s) } else { None },
+                time_s: if let What::Trace { time_s, .. } = o.what_computed {
+                    Some(time_s)
+                } else {
+                    None
+                },
                 unit: o.unit.clone(),
                 low: low.is_finite().then_some(low),
                 high: high.is_finite().then_some(high),
@@ -165,7 +208,9 @@ impl Found<'_> {
         let plan = self.model.plan();
         let mut all = vec![(None, None); plan.observations.len()];
         for fold in &self.folds {
-            let Ok(answer) = self.model.answer(&fold.values) else { continue };
+            let Ok(answer) = self.model.answer(&fold.values) else {
+                continue;
+            };
             let own = (0..all.len()).filter(|k| plan.observations[*k].fold == fold.group);
             for (k, residual) in own.zip(&fold.residuals) {
                 all[k] = (Some(answer.computed[k]), Some(*residual));
@@ -183,7 +228,10 @@ impl Found<'_> {
                 observations: own().count(),
                 fitted_rms_sd: rms(own().map(|r| r.after_sd)).unwrap_or(f64::NAN),
                 predicted_rms_sd: rms(fold.residuals.iter().copied()),
-                end: fold.failure.clone().unwrap_or_else(|| end_words(fold.end).to_owned()),
+                end: fold
+                    .failure
+                    .clone()
+                    .unwrap_or_else(|| end_words(fold.end).to_owned()),
                 name,
             }
         };
@@ -202,7 +250,10 @@ fn end_words(end: End) -> &'static str {
 }
 
 fn start(start: &solve::Start) -> Start {
-    let end = start.failure.as_ref().map_or_else(|| end_words(start.end).to_owned(), |why| format!("{}: {why}", end_words(start.end)));
+    let end = start.failure.as_ref().map_or_else(
+        || end_words(start.end).to_owned(),
+        |why| format!("{}: {why}", end_words(start.end)),
+    );
     Start {
         from: start.from.clone(),
         to: start.to.clone(),
@@ -213,26 +264,41 @@ fn start(start: &solve::Start) -> Start {
 }
 
 fn matrix(m: &nalgebra::DMatrix<f64>) -> Vec<Vec<Option<f64>>> {
-    m.row_iter().map(|row| row.iter().map(|x| x.is_finite().then_some(*x)).collect()).collect()
+    m.row_iter()
+        .map(|row| row.iter().map(|x| x.is_finite().then_some(*x)).collect())
+        .collect()
 }
 
 /// What a reader must not overlook.
 fn warnings(o: &Outcome) -> Vec<String> {
     let mut said = Vec::new();
     if !o.converged {
-        said.push(format!("the search did not converge ({}): the values are the best point so far, no minimum", o.end));
+        said.push(format!(
+            "the search did not converge ({}): the values are the best point so far, no minimum",
+            o.end
+        ));
     }
     for p in o.parameters.iter().filter(|p| p.is_dead) {
-        said.push(format!("{} moves no datum: it is not fitted by these data", p.name));
+        said.push(format!(
+            "{} moves no datum: it is not fitted by these data",
+            p.name
+        ));
     }
     for p in &o.parameters {
         if let Some(bound) = p.at_bound {
-            said.push(format!("{} lies at its {bound} bound, {}: the data would carry it further", p.name, p.value));
+            said.push(format!(
+                "{} lies at its {bound} bound, {}: the data would carry it further",
+                p.name, p.value
+            ));
         }
         if let Some([mean, sd]) = p.prior
             && (p.value - mean).abs() > FAR * sd
         {
-            said.push(format!("{} is {:.1} standard deviations away from its prior", p.name, (p.value - mean).abs() / sd));
+            said.push(format!(
+                "{} is {:.1} standard deviations away from its prior",
+                p.name,
+                (p.value - mean).abs() / sd
+            ));
         }
     }
     if let Some(p) = o.chi2_probability.filter(|p| *p < UNLIKELY) {
@@ -244,14 +310,33 @@ fn warnings(o: &Outcome) -> Vec<String> {
             (o.cost_after / o.degrees_of_freedom as f64).sqrt()
         ));
     }
-    let doubtful: Vec<&str> = o.residuals.iter().filter(|r| r.doubtful > 0).map(|r| r.label.as_str()).collect();
+    let doubtful: Vec<&str> = o
+        .residuals
+        .iter()
+        .filter(|r| r.doubtful > 0)
+        .map(|r| r.label.as_str())
+        .collect();
     if let Some(first) = doubtful.first() {
-        let more = if doubtful.len() > 1 { format!(" and {} more", doubtful.len() - 1) } else { String::new() };
+        let more = if doubtful.len() > 1 {
+            format!(" and {} more", doubtful.len() - 1)
+        } else {
+            String::new()
+        };
         said.push(format!("{first}{more}: computed outside the validity of a model, or with points left out at gross slip"));
     }
-    let elsewhere = o.starts.iter().filter(|s| s.cost.is_none_or(|cost| cost > o.cost_after * (1.0 + SAME_COST) + 1e-9)).count();
+    let elsewhere = o
+        .starts
+        .iter()
+        .filter(|s| {
+            s.cost
+                .is_none_or(|cost| cost > o.cost_after * (1.0 + SAME_COST) + 1e-9)
+        })
+        .count();
     if elsewhere > 0 {
-        said.push(format!("{elsewhere} of {} starts ended in another place, with a larger sum of squares", o.starts.len()));
+        said.push(format!(
+            "{elsewhere} of {} starts ended in another place, with a larger sum of squares",
+            o.starts.len()
+        ));
     }
     said
 }

@@ -29,7 +29,10 @@ pub type Reply = Result<Answer, Vec<Problem>>;
 impl Answer {
     /// An answer that is all fine.
     pub fn text(stdout: String) -> Self {
-        Answer { stdout, ..Answer::default() }
+        Answer {
+            stdout,
+            ..Answer::default()
+        }
     }
 
     /// One JSON object and nothing else.
@@ -44,13 +47,17 @@ impl Answer {
 /// Never for the values of this program; a map with keys that are no text would be one.
 pub fn json_text(value: &impl serde::Serialize) -> Result<String, Vec<Problem>> {
     let text = serde_json::to_string_pretty(value);
-    text.map(|text| text + "\n").map_err(|e| vec![problem("--json", &e.to_string(), "")])
+    text.map(|text| text + "\n")
+        .map_err(|e| vec![problem("--json", &e.to_string(), "")])
 }
 
 /// A problem of an option or argument without more places than its name.
 pub fn problem(option: &str, message: &str, hint: &str) -> Problem {
     Problem {
-        place: Place { file: option.to_owned(), ..Place::default() },
+        place: Place {
+            file: option.to_owned(),
+            ..Place::default()
+        },
         key: option.to_owned(),
         message: message.to_owned(),
         hint: hint.to_owned(),

@@ -55,7 +55,12 @@ pub struct Args {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Adopted band speed for the travel columns: 0 the mean of what the pulleys require, 0.5 the smaller pulley's, -0.5 the larger one's
-    #[arg(long, value_name = "SHARE", default_value = "0", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "SHARE",
+        default_value = "0",
+        allow_hyphen_values = true
+    )]
     band_speed: String,
     /// Write the table into this file instead of standard output
     #[arg(long, value_name = "FILE.csv")]
@@ -87,12 +92,23 @@ struct Asked {
 pub fn answer(args: &Args, _: Context) -> Reply {
     let mut problems = Problems::default();
     let mut asked = asked(args, &mut problems);
-    let file = if args.points == "-" { "standard input" } else { args.points.as_str() };
-    let out = asked.out.as_ref().map(|out| out.path().display().to_string());
+    let file = if args.points == "-" {
+        "standard input"
+    } else {
+        args.points.as_str()
+    };
+    let out = asked
+        .out
+        .as_ref()
+        .map(|out| out.path().display().to_string());
     let reader = problems.take(open(&args.points));
     let mut offer = Offer::new(asked.out.take(), args.json);
     let done = reader.and_then(|reader| {
-        let job = Job { model: asked.model.take(), formulation: asked.formulation, rows: &mut offer };
+        let job = Job {
+            model: asked.model.take(),
+            formulation: asked.formulation,
+            rows: &mut offer,
+        };
         problems.take(points::read(file, reader, job))
     });
     problems.finish()?;
@@ -102,7 +118,10 @@ pub fn answer(args: &Args, _: Context) -> Reply {
     sink.finish(&head(&asked, &counts))?;
     let mut reply = Answer::default();
     if !ignored.is_empty() && !args.quiet {
-        reply.stderr = format!("cvtcycle: {file}: computed anew, not read: {}\n", some(&ignored));
+        reply.stderr = format!(
+            "cvtcycle: {file}: computed anew, not read: {}\n",
+            some(&ignored)
+        );
     }
     if let Some(out) = out.filter(|_| !args.quiet && !args.json) {
         reply.stdout = counts.text(&out);
@@ -111,25 +130,52 @@ pub fn answer(args: &Args, _: Context) -> Reply {
 }
 
 fn asked(args: &Args, problems: &mut Problems) -> Asked {
-    let formulation = problems.take(inputs::word("--formulation", &args.formulation, &Formulation::NAMES)).unwrap_or_default();
-    let options = Options { lubricant: args.lubricant.clone(), set: args.set.clone(), ..Options::default() };
+    let formulation = problems
+        .take(inputs::word(
+            "--formulation",
+            &args.formulation,
+            &Formulation::NAMES,
+        ))
+        .unwrap_or_default();
+    let options = Options {
+        lubricant: args.lubricant.clone(),
+        set: args.set.clone(),
+        ..Options::default()
+    };
     let setup = problems.take(setup::load(&args.vehicle, "--vehicle", &options));
-    let band_speed = problems.take(inputs::number("--band-speed", &args.band_speed, Bound::closed(-1.0, 1.0), ""));
+    let band_speed = problems.take(inputs::number(
+        "--band-speed",
+        &args.band_speed,
+        Bound::closed(-1.0, 1.0),
+        "",
+    ));
     let model = setup.as_ref().zip(band_speed).and_then(|(setup, share)| {
         let model = Model::new(setup, share);
         if model.is_none() {
             let message = format!("{} has no belt", args.vehicle);
             let hint = "`cvtcycle list vehicles` shows which have a CVT";
-            problems.add(inputs::bad_value("--vehicle", &args.vehicle, "a vehicle with a CVT", message, hint.to_owned()));
+            problems.add(inputs::bad_value(
+                "--vehicle",
+                &args.vehicle,
+                "a vehicle with a CVT",
+                message,
+                hint.to_owned(),
+            ));
         }
         model
     });
     let file = args.out.as_ref().filter(|path| path.as_os_str() != "-");
-    let out = file.map(|path| OutputFile::create(path, args.force).map_err(|problem| vec![problem]));
+    let out =
+        file.map(|path| OutputFile::create(path, args.force).map_err(|problem| vec![problem]));
     let out = out.and_then(|out| problems.take(out));
     // Points are computed only where everything else is good: what is bad is said without delay.
     let model = if problems.is_empty() { model } else { None };
-    Asked { setup, model, formulation, out }
+    Asked {
+        setup,
+        model,
+        formulation,
+        out,
+    }
 }
 
 fn open(points: &str) -> Result<Box<dyn BufRead>, Vec<Problem>> {
@@ -138,14 +184,26 @@ fn open(points: &str) -> Result<Box<dyn BufRead>, Vec<Problem>> {
     }
     let unreadable = |why: String, hint: &str| {
         let message = format!("cannot read `{points}`: {why}");
-        vec![inputs::bad_value("--points", points, "a readable file, or - for standard input", message, hint.to_owned())]
+        vec![inputs::bad_value(
+            "--points",
+            points,
+            "a readable file, or - for standard input",
+            message,
+            hint.to_owned(),
+        )]
     };
     if std::path::Path::new(points).is_dir() {
-        return Err(unreadable("it is a directory".to_owned(), "name a file in that directory"));
+        return Err(unreadable(
+            "it is a directory".to_owned(),
+            "name a file in that directory",
+        ));
     }
     match File::open(points) {
         Ok(file) => Ok(Box::new(BufReader::with_capacity(1 << 16, file))),
-        Err(error) => Err(unreadable(error.to_string(), "check the path and its permissions; it is taken from the current directory")),
+        Err(error) => Err(unreadable(
+            error.to_string(),
+            "check the path and its permissions; it is taken from the current directory",
+        )),
     }
 }
 
@@ -154,20 +212,43 @@ fn some(names: &[&str]) -> String {
     const LISTED: usize = 6;
     let more = names.len().saturating_sub(LISTED);
     let list = names[..names.len() - more].join(", ");
-    if more > 0 { format!("{list} and {more} more") } else { list }
+    if more > 0 {
+        format!("{list} and {more} more")
+    } else {
+        list
+    }
 }
 
 /// The JSON object without its rows.
 fn head(asked: &Asked, counts: &Counts) -> Map<String, Value> {
     let mut head = Map::new();
     head.insert("schema".into(), json!(1));
-    head.insert("program".into(), json!(concat!("cvtcycle ", env!("CARGO_PKG_VERSION"))));
+    head.insert(
+        "program".into(),
+        json!(concat!("cvtcycle ", env!("CARGO_PKG_VERSION"))),
+    );
     if let Some(setup) = &asked.setup {
         head.insert("vehicle".into(), json!(setup.name));
         head.insert("lubricant".into(), json!(setup.oils().0.name));
     }
     head.insert("points".into(), json!(counts.points));
-    head.insert("status".into(), Value::Object(counts.by_status().map(|(name, count)| (name.to_owned(), json!(count))).collect()));
-    head.insert("flags".into(), Value::Object(counts.by_flag().map(|(name, count)| (name.to_owned(), json!(count))).collect()));
+    head.insert(
+        "status".into(),
+        Value::Object(
+            counts
+                .by_status()
+                .map(|(name, count)| (name.to_owned(), json!(count)))
+                .collect(),
+        ),
+    );
+    head.insert(
+        "flags".into(),
+        Value::Object(
+            counts
+                .by_flag()
+                .map(|(name, count)| (name.to_owned(), json!(count)))
+                .collect(),
+        ),
+    );
     head
 }

@@ -66,7 +66,10 @@ pub struct Args {
 }
 
 fn plans() -> Vec<&'static str> {
-    embedded_calibrations().iter().map(|(name, _)| *name).collect()
+    embedded_calibrations()
+        .iter()
+        .map(|(name, _)| *name)
+        .collect()
 }
 
 /// Runs the command.
@@ -74,15 +77,30 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     listen();
     let mut problems = Problems::default();
     let plan = problems.take(open(&args.plan, "PLAN"));
-    let out = args.out.as_ref().map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
+    let out = args
+        .out
+        .as_ref()
+        .map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
     let out = out.and_then(|dir| problems.take(dir));
     problems.finish()?;
-    let Some(mut plan) = plan else { return Ok(Answer::default()) };
+    let Some(mut plan) = plan else {
+        return Ok(Answer::default());
+    };
     asked(&mut plan, args);
     let outcome = match fit(&plan, args) {
-        Err(problems) if stop_asked() && problems.iter().all(|problem| problem.message.contains("stopped")) => {
-            let stderr = "cvtcycle: stopped before the model gave an answer; nothing was written\n".to_owned();
-            return Ok(Answer { stderr, code: FAILED, ..Answer::default() });
+        Err(problems)
+            if stop_asked()
+                && problems
+                    .iter()
+                    .all(|problem| problem.message.contains("stopped")) =>
+        {
+            let stderr = "cvtcycle: stopped before the model gave an answer; nothing was written\n"
+                .to_owned();
+            return Ok(Answer {
+                stderr,
+                code: FAILED,
+                ..Answer::default()
+            });
         }
         outcome => outcome?,
     };
@@ -105,8 +123,16 @@ fn asked(plan: &mut Plan, args: &Args) {
 }
 
 fn fit(plan: &Plan, args: &Args) -> Result<Outcome, Vec<Problem>> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build();
-    let pool = pool.map_err(|e| vec![problem("--threads", &format!("cannot start threads: {e}"), "give fewer")])?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(args.threads.map_or(0, usize::from))
+        .build();
+    let pool = pool.map_err(|e| {
+        vec![problem(
+            "--threads",
+            &format!("cannot start threads: {e}"),
+            "give fewer",
+        )]
+    })?;
     let progress = Progress::new(args.quiet);
     let outcome = pool.install(|| calibrate(plan, &progress));
     progress.finish();
@@ -121,25 +147,59 @@ fn reply(outcome: &Outcome, written: &Written, args: &Args, context: Context) ->
         (_, true) => String::new(),
         _ => text::answer(outcome, context.paint) + &written.text(),
     };
-    let left = if args.json || args.quiet { String::new() } else { written.left_over_text() };
-    let stderr = failures.iter().map(|why| format!("cvtcycle: {why}\n")).collect::<String>() + &left;
-    Ok(Answer { stdout, stderr, code: if failures.is_empty() { 0 } else { FAILED } })
+    let left = if args.json || args.quiet {
+        String::new()
+    } else {
+        written.left_over_text()
+    };
+    let stderr = failures
+        .iter()
+        .map(|why| format!("cvtcycle: {why}\n"))
+        .collect::<String>()
+        + &left;
+    Ok(Answer {
+        stdout,
+        stderr,
+        code: if failures.is_empty() { 0 } else { FAILED },
+    })
 }
 
 /// What makes the exit code 1; a parameter at a bound is a warning only.
 fn failures(outcome: &Outcome) -> Vec<String> {
     let mut list = Vec::new();
     if !outcome.converged {
-        list.push(format!("the search did not converge ({}); the values are those of the best point so far", outcome.end));
+        list.push(format!(
+            "the search did not converge ({}); the values are those of the best point so far",
+            outcome.end
+        ));
     }
-    let dead: Vec<&str> = outcome.parameters.iter().filter(|p| p.is_dead).map(|p| p.name.as_str()).collect();
+    let dead: Vec<&str> = outcome
+        .parameters
+        .iter()
+        .filter(|p| p.is_dead)
+        .map(|p| p.name.as_str())
+        .collect();
     if !dead.is_empty() {
-        list.push(format!("no observation depends on {}: hold it, or add data that see it", dead.join(", ")));
+        list.push(format!(
+            "no observation depends on {}: hold it, or add data that see it",
+            dead.join(", ")
+        ));
     }
-    let doubtful: Vec<&str> = outcome.residuals.iter().filter(|r| r.doubtful > 0).map(|r| r.label.as_str()).collect();
+    let doubtful: Vec<&str> = outcome
+        .residuals
+        .iter()
+        .filter(|r| r.doubtful > 0)
+        .map(|r| r.label.as_str())
+        .collect();
     if let Some(first) = doubtful.first() {
-        let more = if doubtful.len() > 1 { format!(" and {} more", doubtful.len() - 1) } else { String::new() };
-        list.push(format!("outside the validity of a model, or with points left out at gross slip: {first}{more}"));
+        let more = if doubtful.len() > 1 {
+            format!(" and {} more", doubtful.len() - 1)
+        } else {
+            String::new()
+        };
+        list.push(format!(
+            "outside the validity of a model, or with points left out at gross slip: {first}{more}"
+        ));
     }
     list
 }

@@ -29,16 +29,41 @@ pub struct Args {
 
 /// Runs the command.
 pub fn answer(args: &Args, context: Context) -> Reply {
-    let checked: Vec<(&String, Result<Sort, Vec<Problem>>)> = args.files.iter().map(|file| (file, check(file))).collect();
-    let code = if checked.iter().all(|(_, result)| result.is_ok()) { 0 } else { BAD_INPUT };
+    let checked: Vec<(&String, Result<Sort, Vec<Problem>>)> =
+        args.files.iter().map(|file| (file, check(file))).collect();
+    let code = if checked.iter().all(|(_, result)| result.is_ok()) {
+        0
+    } else {
+        BAD_INPUT
+    };
     if args.json {
-        let files: Vec<serde_json::Value> = checked.iter().map(|(file, result)| json(file, result)).collect();
-        return Ok(Answer { stdout: json_text(&serde_json::json!({ "files": files }))?, code, ..Answer::default() });
+        let files: Vec<serde_json::Value> = checked
+            .iter()
+            .map(|(file, result)| json(file, result))
+            .collect();
+        return Ok(Answer {
+            stdout: json_text(&serde_json::json!({ "files": files }))?,
+            code,
+            ..Answer::default()
+        });
     }
-    let ok = checked.iter().filter_map(|(file, result)| result.as_ref().ok().map(|sort| (file, sort)));
-    let stdout = ok.map(|(file, sort)| format!("ok  {file} ({})\n", sort.word())).collect();
-    let problems: Vec<Problem> = checked.iter().filter_map(|(_, result)| result.as_ref().err()).flatten().cloned().collect();
-    Ok(Answer { stdout, stderr: render(&problems, context.colour.stderr().is_on()), code })
+    let ok = checked
+        .iter()
+        .filter_map(|(file, result)| result.as_ref().ok().map(|sort| (file, sort)));
+    let stdout = ok
+        .map(|(file, sort)| format!("ok  {file} ({})\n", sort.word()))
+        .collect();
+    let problems: Vec<Problem> = checked
+        .iter()
+        .filter_map(|(_, result)| result.as_ref().err())
+        .flatten()
+        .cloned()
+        .collect();
+    Ok(Answer {
+        stdout,
+        stderr: render(&problems, context.colour.stderr().is_on()),
+        code,
+    })
 }
 
 fn check(file: &str) -> Result<Sort, Vec<Problem>> {
@@ -53,7 +78,9 @@ fn check(file: &str) -> Result<Sort, Vec<Problem>> {
         Sort::Vehicle => {
             let setup = setup::load(&word, "FILE", &Options::default())?;
             // Only a run reads the baselines; a name that leads nowhere should show now.
-            let texts = setup.baselines.iter().map(|name| setup::text_of(&inputs::beside(&word, name), Kind::Vehicle, file).map(drop));
+            let texts = setup.baselines.iter().map(|name| {
+                setup::text_of(&inputs::beside(&word, name), Kind::Vehicle, file).map(drop)
+            });
             let bad: Vec<Problem> = texts.filter_map(Result::err).flatten().collect();
             if !bad.is_empty() {
                 return Err(bad);

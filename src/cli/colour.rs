@@ -20,10 +20,23 @@ pub struct Paint(bool);
 impl Colour {
     /// The wish as far as it can be told before the words are parsed.
     pub fn from_words(words: &[OsString]) -> Self {
-        let words: Vec<&str> = words.iter().filter_map(|word| word.to_str()).take_while(|word| *word != "--").collect();
-        let follows = words.windows(2).filter(|pair| pair[0] == "--color").map(|pair| pair[1]);
-        let joined = words.iter().filter_map(|word| word.strip_prefix("--color="));
-        follows.chain(joined).filter_map(|word| Colour::from_str(word, false).ok()).next().unwrap_or(Colour::Auto)
+        let words: Vec<&str> = words
+            .iter()
+            .filter_map(|word| word.to_str())
+            .take_while(|word| *word != "--")
+            .collect();
+        let follows = words
+            .windows(2)
+            .filter(|pair| pair[0] == "--color")
+            .map(|pair| pair[1]);
+        let joined = words
+            .iter()
+            .filter_map(|word| word.strip_prefix("--color="));
+        follows
+            .chain(joined)
+            .filter_map(|word| Colour::from_str(word, false).ok())
+            .next()
+            .unwrap_or(Colour::Auto)
     }
 
     /// In clap's words. What to do without a wish is decided here, not there.
@@ -74,6 +87,10 @@ impl Paint {
     }
 
     fn wrap(self, code: &str, text: &str) -> String {
-        if self.0 { format!("\u{1b}[{code}m{text}\u{1b}[0m") } else { text.to_owned() }
+        if self.0 {
+            format!("\u{1b}[{code}m{text}\u{1b}[0m")
+        } else {
+            text.to_owned()
+        }
     }
 }

@@ -18,8 +18,15 @@ impl Grid {
     /// A table with columns set flush right (`r`) or left (`l`).
     pub fn new(columns: &str) -> Self {
         let mut table = Table::new();
-        table.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH);
-        Grid { table, right: columns.bytes().map(|c| c == b'r').collect(), indent: "" }
+        table
+            .load_style(NOTHING)
+            .set_content_arrangement(ContentArrangement::Dynamic)
+            .set_width(WIDTH);
+        Grid {
+            table,
+            right: columns.bytes().map(|c| c == b'r').collect(),
+            indent: "",
+        }
     }
 
     /// Sets all lines in.
@@ -31,7 +38,11 @@ impl Grid {
     /// Adds a row.
     pub fn row<S: AsRef<str>>(&mut self, cells: impl IntoIterator<Item = S>) {
         let cells = cells.into_iter().zip(&self.right).map(|(text, right)| {
-            let side = if *right { CellAlignment::Right } else { CellAlignment::Left };
+            let side = if *right {
+                CellAlignment::Right
+            } else {
+                CellAlignment::Left
+            };
             Cell::new(text.as_ref()).set_alignment(side)
         });
         self.table.add_row(cells.collect::<Vec<_>>());
@@ -54,7 +65,10 @@ impl Grid {
             column.set_padding((0, if k == last { 0 } else { 2 }));
             if k < last {
                 let own = content.get(k).copied().unwrap_or(0);
-                let floor = least.get(k).and_then(|w| u16::try_from(*w).ok()).unwrap_or(0);
+                let floor = least
+                    .get(k)
+                    .and_then(|w| u16::try_from(*w).ok())
+                    .unwrap_or(0);
                 column.set_constraint(ColumnConstraint::Absolute(Width::Fixed(own.max(floor) + 2)));
             }
         }

@@ -13,7 +13,12 @@ pub struct Offering(pub fn() -> Vec<&'static str>);
 impl TypedValueParser for Offering {
     type Value = String;
 
-    fn parse_ref(&self, command: &clap::Command, argument: Option<&clap::Arg>, value: &std::ffi::OsStr) -> Result<String, clap::Error> {
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &std::ffi::OsStr,
+    ) -> Result<String, clap::Error> {
         StringValueParser::new().parse_ref(command, argument, value)
     }
 
@@ -29,7 +34,10 @@ pub fn cycles() -> Vec<&'static str> {
 
 /// Names of the embedded vehicles.
 pub fn vehicles() -> Vec<&'static str> {
-    setup::embedded_vehicles().iter().map(|(name, _)| *name).collect()
+    setup::embedded_vehicles()
+        .iter()
+        .map(|(name, _)| *name)
+        .collect()
 }
 
 /// Names of the embedded vehicles, and `none`.
@@ -39,12 +47,18 @@ pub fn baselines() -> Vec<&'static str> {
 
 /// Names of the embedded lubricants.
 pub fn lubricants() -> Vec<&'static str> {
-    setup::embedded_lubricants().iter().map(|(name, _)| *name).collect()
+    setup::embedded_lubricants()
+        .iter()
+        .map(|(name, _)| *name)
+        .collect()
 }
 
 /// Names of the embedded rigs.
 pub fn rigs() -> Vec<&'static str> {
-    setup::embedded_rigs().iter().map(|(name, _)| *name).collect()
+    setup::embedded_rigs()
+        .iter()
+        .map(|(name, _)| *name)
+        .collect()
 }
 
 /// Everything that goes wrong, gathered over all inputs.
@@ -54,7 +68,9 @@ pub struct Problems(Vec<Problem>);
 impl Problems {
     /// The value, or none and its problems noted.
     pub fn take<T>(&mut self, result: Result<T, Vec<Problem>>) -> Option<T> {
-        result.map_err(|problems| problems.into_iter().for_each(|problem| self.add(problem))).ok()
+        result
+            .map_err(|problems| problems.into_iter().for_each(|problem| self.add(problem)))
+            .ok()
     }
 
     /// Notes a problem, once: two cars may name the same bad file.
@@ -71,14 +87,27 @@ impl Problems {
 
     /// Nothing, or all problems.
     pub fn finish(self) -> Result<(), Vec<Problem>> {
-        if self.0.is_empty() { Ok(()) } else { Err(self.0) }
+        if self.0.is_empty() {
+            Ok(())
+        } else {
+            Err(self.0)
+        }
     }
 }
 
 /// A problem of an option's value.
-pub fn bad_value(option: &str, value: &str, allowed: &str, message: String, hint: String) -> Problem {
+pub fn bad_value(
+    option: &str,
+    value: &str,
+    allowed: &str,
+    message: String,
+    hint: String,
+) -> Problem {
     Problem {
-        place: Place { file: option.to_owned(), ..Place::default() },
+        place: Place {
+            file: option.to_owned(),
+            ..Place::default()
+        },
         key: option.to_owned(),
         value: value.to_owned(),
         allowed: allowed.to_owned(),
@@ -89,23 +118,48 @@ pub fn bad_value(option: &str, value: &str, allowed: &str, message: String, hint
 
 /// The value as a word between backquotes; an empty one is called so.
 fn quoted(value: &str) -> String {
-    if value.is_empty() { "an empty value".to_owned() } else { format!("`{value}`") }
+    if value.is_empty() {
+        "an empty value".to_owned()
+    } else {
+        format!("`{value}`")
+    }
 }
 
 /// A finite number within its range; `suffix` is that of a key with the same unit.
-pub fn number(option: &str, value: &str, allowed: Bound, suffix: &str) -> Result<f64, Vec<Problem>> {
+pub fn number(
+    option: &str,
+    value: &str,
+    allowed: Bound,
+    suffix: &str,
+) -> Result<f64, Vec<Problem>> {
     let unit = unit_of(suffix);
     let range = allowed.in_unit(unit);
     match value.trim().parse::<f64>() {
         Ok(x) if allowed.contains(x) => Ok(x),
         Ok(x) if x.is_finite() => {
             let message = format!("{} is out of range", quoted(value));
-            Err(vec![bad_value(option, value, &range, message, String::new())])
+            Err(vec![bad_value(
+                option,
+                value,
+                &range,
+                message,
+                String::new(),
+            )])
         }
         parsed => {
-            let what = if parsed.is_ok() { "not a finite number" } else { "not a number" };
+            let what = if parsed.is_ok() {
+                "not a finite number"
+            } else {
+                "not a number"
+            };
             let message = format!("{} is {what}", quoted(value));
-            Err(vec![bad_value(option, value, &range, message, number_hint(option, value, unit))])
+            Err(vec![bad_value(
+                option,
+                value,
+                &range,
+                message,
+                number_hint(option, value, unit),
+            )])
         }
     }
 }
@@ -119,7 +173,9 @@ fn number_hint(option: &str, value: &str, unit: &str) -> String {
         return format!("write a decimal point: {option} {pointed}");
     }
     // Only where what follows is a unit: a digit mistyped as a letter must not be cut off.
-    let rest = value.trim().trim_start_matches(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    let rest = value
+        .trim()
+        .trim_start_matches(|c: char| c.is_ascii_digit() || "+-.".contains(c));
     let figure = value.trim().trim_end_matches(rest);
     if UNITS.contains(&rest.trim().to_lowercase().as_str()) && figure.parse::<f64>().is_ok() {
         return format!("write the number alone, in {unit}: {option} {figure}");
@@ -128,13 +184,23 @@ fn number_hint(option: &str, value: &str, unit: &str) -> String {
 }
 
 /// One of some words.
-pub fn word<T: Copy>(option: &str, value: &str, known: &[(&'static str, T)]) -> Result<T, Vec<Problem>> {
+pub fn word<T: Copy>(
+    option: &str,
+    value: &str,
+    known: &[(&'static str, T)],
+) -> Result<T, Vec<Problem>> {
     if let Some((_, found)) = known.iter().find(|(name, _)| *name == value) {
         return Ok(*found);
     }
     let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
     let hint = did_you_mean(value, &names).unwrap_or_default();
-    Err(vec![bad_value(option, value, &format!("one of {}", names.join(", ")), format!("{} is not known", quoted(value)), hint)])
+    Err(vec![bad_value(
+        option,
+        value,
+        &format!("one of {}", names.join(", ")),
+        format!("{} is not known", quoted(value)),
+        hint,
+    )])
 }
 
 /// Question for the known names that are like the given one.
@@ -145,6 +211,11 @@ pub fn did_you_mean(value: &str, known: &[&str]) -> Option<String> {
 
 /// The file that a file names, seen from the current directory: its own folder is where its paths begin.
 pub fn beside(file: &str, named: &str) -> String {
-    let folder = std::path::Path::new(file).parent().filter(|_| is_path(file) && is_path(named));
-    folder.map_or_else(|| named.to_owned(), |folder| folder.join(named).to_string_lossy().into_owned())
+    let folder = std::path::Path::new(file)
+        .parent()
+        .filter(|_| is_path(file) && is_path(named));
+    folder.map_or_else(
+        || named.to_owned(),
+        |folder| folder.join(named).to_string_lossy().into_owned(),
+    )
 }

@@ -87,7 +87,9 @@ pub fn answer(args: &Args, context: Context) -> Reply {
                 return Answer::json(&serde_json::json!({ "vehicles": list }));
             }
             let more = "\n`cvtcycle show NAME` prints every value with its source; --vehicle also takes the path of a TOML file.\n";
-            Ok(Answer::text(heading("Vehicles") + &vehicle_table(&list) + more))
+            Ok(Answer::text(
+                heading("Vehicles") + &vehicle_table(&list) + more,
+            ))
         }
         What::Lubricants => {
             let list = lubricant_lines()?;
@@ -95,13 +97,17 @@ pub fn answer(args: &Args, context: Context) -> Reply {
                 return Answer::json(&serde_json::json!({ "lubricants": list }));
             }
             let more = "\nKinematic viscosities in mm2/s at -10, 40 and 100 degC, density in kg/m3 at 15 degC.\n";
-            Ok(Answer::text(heading("Lubricants") + &lubricant_table(&list) + more))
+            Ok(Answer::text(
+                heading("Lubricants") + &lubricant_table(&list) + more,
+            ))
         }
     }
 }
 
 fn cycle_lines() -> Vec<CycleLine> {
-    let cycles = cycle::names().iter().filter_map(|name| cycle::embedded(name).map(|cycle| (*name, cycle)));
+    let cycles = cycle::names()
+        .iter()
+        .filter_map(|name| cycle::embedded(name).map(|cycle| (*name, cycle)));
     cycles
         .map(|(name, cycle)| {
             let (manual, automatic) = (cycle.trace_for(false), cycle.trace_for(true));
@@ -122,9 +128,23 @@ fn cycle_table(list: &[CycleLine]) -> String {
     let mut grid = Grid::new("lrrrrl");
     grid.row(["name", "s", "km", "km (auto)", "max km/h", "title"]);
     for line in list {
-        let (manual, automatic) = (fixed(line.distance_km, 3), fixed(line.distance_automatic_km, 3));
-        let automatic = if manual == automatic { String::new() } else { automatic };
-        grid.row([line.name, &fixed(line.duration_s, 0), &manual, &automatic, &fixed(line.max_speed_kmh, 1), &line.title]);
+        let (manual, automatic) = (
+            fixed(line.distance_km, 3),
+            fixed(line.distance_automatic_km, 3),
+        );
+        let automatic = if manual == automatic {
+            String::new()
+        } else {
+            automatic
+        };
+        grid.row([
+            line.name,
+            &fixed(line.duration_s, 0),
+            &manual,
+            &automatic,
+            &fixed(line.max_speed_kmh, 1),
+            &line.title,
+        ]);
     }
     grid.text()
 }
@@ -135,7 +155,11 @@ fn vehicle_lines() -> Result<Vec<VehicleLine>, Vec<Problem>> {
         let car = setup.car(ZERO_DEGC_K + 20.0);
         Ok(VehicleLine {
             name,
-            transmission: if setup.transmission().is_cvt() { "cvt" } else { "manual" },
+            transmission: if setup.transmission().is_cvt() {
+                "cvt"
+            } else {
+                "manual"
+            },
             mass_kg: car.road_load.mass_kg,
             displacement_l: car.engine.displacement_m3 * 1e3,
             rated_kw: car.engine.rated_w / 1e3,
@@ -150,8 +174,19 @@ fn vehicle_table(list: &[VehicleLine]) -> String {
     let mut grid = Grid::new("llrrrl");
     grid.row(["name", "gearbox", "kg", "litres", "kW", "title"]);
     for line in list {
-        let numbers = [fixed(line.mass_kg, 0), fixed(line.displacement_l, 2), fixed(line.rated_kw, 0)];
-        grid.row([line.name, line.transmission, &numbers[0], &numbers[1], &numbers[2], &line.title]);
+        let numbers = [
+            fixed(line.mass_kg, 0),
+            fixed(line.displacement_l, 2),
+            fixed(line.rated_kw, 0),
+        ];
+        grid.row([
+            line.name,
+            line.transmission,
+            &numbers[0],
+            &numbers[1],
+            &numbers[2],
+            &line.title,
+        ]);
     }
     grid.text()
 }
@@ -176,8 +211,19 @@ fn lubricant_table(list: &[LubricantLine]) -> String {
     let mut grid = Grid::new("lrrrrl");
     grid.row(["name", "KV-10", "KV40", "KV100", "density", "title"]);
     for line in list {
-        let kv = [fixed(line.kv_minus10_mm2_s, 0), fixed(line.kv40_mm2_s, 1), fixed(line.kv100_mm2_s, 2)];
-        grid.row([line.name, &kv[0], &kv[1], &kv[2], &fixed(line.density15_kg_m3, 0), &line.title]);
+        let kv = [
+            fixed(line.kv_minus10_mm2_s, 0),
+            fixed(line.kv40_mm2_s, 1),
+            fixed(line.kv100_mm2_s, 2),
+        ];
+        grid.row([
+            line.name,
+            &kv[0],
+            &kv[1],
+            &kv[2],
+            &fixed(line.density15_kg_m3, 0),
+            &line.title,
+        ]);
     }
     grid.text()
 }

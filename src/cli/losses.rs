@@ -41,13 +41,28 @@ pub struct Args {
     #[arg(long, value_name = "GEAR", allow_hyphen_values = true)]
     gear: Option<String>,
     /// Speed of the input shaft, rpm, above 0
-    #[arg(long, value_name = "RPM", default_value = "2500", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "RPM",
+        default_value = "2500",
+        allow_hyphen_values = true
+    )]
     speed: String,
     /// Torque taken from the output shaft, after the final drive, Nm; negative where the wheels drive
-    #[arg(long, value_name = "NM", default_value = "0", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "NM",
+        default_value = "0",
+        allow_hyphen_values = true
+    )]
     torque: String,
     /// Transmission oil in the sump, degC
-    #[arg(long, value_name = "DEGC", default_value = "80", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "DEGC",
+        default_value = "80",
+        allow_hyphen_values = true
+    )]
     temp: String,
     /// Belt and the oil sprayed off it, degC [default: in steady state over the sump]
     #[arg(long, value_name = "DEGC", allow_hyphen_values = true)]
@@ -132,24 +147,57 @@ pub fn answer(args: &Args, context: Context) -> Reply {
         rows().for_each(drop);
     } else {
         stdout = text::table(&plan, rows(), context.paint);
-        stdout += &written.as_ref().map_or_else(String::new, files::Written::text);
+        stdout += &written
+            .as_ref()
+            .map_or_else(String::new, files::Written::text);
     }
-    let mut stderr = written.as_ref().map_or_else(String::new, files::Written::left_over_text);
-    let open = flags.borrow().named().find(|(name, _)| *name == "not_converged");
+    let mut stderr = written
+        .as_ref()
+        .map_or_else(String::new, files::Written::left_over_text);
+    let open = flags
+        .borrow()
+        .named()
+        .find(|(name, _)| *name == "not_converged");
     if let Some((_, count)) = open {
-        stderr += &format!("cvtcycle: {count} of {} points not converged\n", plan.grid.len());
+        stderr += &format!(
+            "cvtcycle: {count} of {} points not converged\n",
+            plan.grid.len()
+        );
     }
-    Ok(Answer { stdout, stderr, code: if open.is_some() { FAILED } else { 0 } })
+    Ok(Answer {
+        stdout,
+        stderr,
+        code: if open.is_some() { FAILED } else { 0 },
+    })
 }
 
-fn map(args: &Args, plan: &Plan, part: MapPart, out: Option<cvtcycle::results::files::OutputDir>) -> Reply {
+fn map(
+    args: &Args,
+    plan: &Plan,
+    part: MapPart,
+    out: Option<cvtcycle::results::files::OutputDir>,
+) -> Reply {
     let write = |out: &mut dyn io::Write| write_map(out, &plan.bench, part, &plan.grid);
     let Some(mut dir) = out else {
         stream::to_stdout(write)?;
         return Ok(Answer::default());
     };
-    let written = files::write_map(&mut dir, plan, args.as_map.as_deref().unwrap_or_default(), write).and_then(|()| files::commit(dir));
+    let written = files::write_map(
+        &mut dir,
+        plan,
+        args.as_map.as_deref().unwrap_or_default(),
+        write,
+    )
+    .and_then(|()| files::commit(dir));
     let written = written.map_err(|problem| vec![problem])?;
-    let stdout = if args.quiet { String::new() } else { written.text().trim_start().to_owned() };
-    Ok(Answer { stdout, stderr: written.left_over_text(), code: 0 })
+    let stdout = if args.quiet {
+        String::new()
+    } else {
+        written.text().trim_start().to_owned()
+    };
+    Ok(Answer {
+        stdout,
+        stderr: written.left_over_text(),
+        code: 0,
+    })
 }

@@ -46,7 +46,14 @@ use cvtcycle::config::Problem;
 )]
 struct Cli {
     /// When to colour the output; `auto` colours on a terminal and obeys NO_COLOR
-    #[arg(long, value_enum, global = true, value_name = "WHEN", default_value = "auto", display_order = 1000)]
+    #[arg(
+        long,
+        value_enum,
+        global = true,
+        value_name = "WHEN",
+        default_value = "auto",
+        display_order = 1000
+    )]
     color: Colour,
     #[command(subcommand)]
     command: Command,
@@ -101,10 +108,21 @@ pub fn main() -> ExitCode {
     // Looked for before clap reads the words, since its own messages are to follow it as well.
     let asked = Colour::from_words(&words);
     let unreadable = words.iter().find(|word| word.to_str().is_none()).cloned();
-    let cli = Cli::command().color(asked.for_clap()).try_get_matches_from(words).and_then(|matches| Cli::from_arg_matches(&matches));
+    let cli = Cli::command()
+        .color(asked.for_clap())
+        .try_get_matches_from(words)
+        .and_then(|matches| Cli::from_arg_matches(&matches));
     let (reply, colour) = match cli {
-        Ok(cli) => (cli.command.answer(Context { paint: cli.color.stdout(), colour: cli.color }), cli.color),
-        Err(error) if error.kind() == ErrorKind::InvalidUtf8 => (Err(vec![no_text(unreadable)]), asked),
+        Ok(cli) => (
+            cli.command.answer(Context {
+                paint: cli.color.stdout(),
+                colour: cli.color,
+            }),
+            cli.color,
+        ),
+        Err(error) if error.kind() == ErrorKind::InvalidUtf8 => {
+            (Err(vec![no_text(unreadable)]), asked)
+        }
         Err(error) => (Ok(usage(&error, asked)), asked),
     };
     answer::finish(reply, colour)
@@ -136,15 +154,38 @@ impl Command {
 fn no_text(word: Option<OsString>) -> Problem {
     let value = word.unwrap_or_default().to_string_lossy().into_owned();
     let hint = "rename the file, or name it by a link; --out takes any name";
-    Problem { value: value.clone(), ..problem("command line", &format!("`{value}` is not UTF-8"), hint) }
+    Problem {
+        value: value.clone(),
+        ..problem("command line", &format!("`{value}` is not UTF-8"), hint)
+    }
 }
 
 /// Help, version and clap's complaints, through our own writer: a closed pipe or a full disk is handled there.
 fn usage(error: &clap::Error, colour: Colour) -> Answer {
-    let paint = if error.use_stderr() { colour.stderr() } else { colour.stdout() };
+    let paint = if error.use_stderr() {
+        colour.stderr()
+    } else {
+        colour.stdout()
+    };
     let text = error.render();
-    let text = if paint.is_on() { text.ansi().to_string() } else { text.to_string() };
+    let text = if paint.is_on() {
+        text.ansi().to_string()
+    } else {
+        text.to_string()
+    };
     // 2 for bad usage, 0 for help; no other code exists.
     let code = u8::try_from(error.exit_code()).unwrap_or(2);
-    if error.use_stderr() { Answer { stderr: text, code, ..Answer::default() } } else { Answer { stdout: text, code, ..Answer::default() } }
+    if error.use_stderr() {
+        Answer {
+            stderr: text,
+            code,
+            ..Answer::default()
+        }
+    } else {
+        Answer {
+            stdout: text,
+            code,
+            ..Answer::default()
+        }
+    }
 }

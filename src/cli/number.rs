@@ -9,7 +9,11 @@ pub fn fixed(x: impl Into<Option<f64>>, decimals: usize) -> String {
         Some(x) => {
             let text = format!("{x:.decimals$}");
             // A rounded-off negative number is no negative zero.
-            if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
+            if text.trim_start_matches(['-', '0', '.']).is_empty() {
+                text.trim_start_matches('-').to_owned()
+            } else {
+                text
+            }
         }
         None => NONE.to_owned(),
     }
@@ -19,7 +23,11 @@ pub fn fixed(x: impl Into<Option<f64>>, decimals: usize) -> String {
 pub fn signed(x: impl Into<Option<f64>>, decimals: usize) -> String {
     let x = x.into();
     let text = fixed(x, decimals);
-    if x.is_some_and(|x| x > 0.0) && text.bytes().any(|b| (b'1'..=b'9').contains(&b)) { format!("+{text}") } else { text }
+    if x.is_some_and(|x| x > 0.0) && text.bytes().any(|b| (b'1'..=b'9').contains(&b)) {
+        format!("+{text}")
+    } else {
+        text
+    }
 }
 
 /// A part as per cent of a whole.
@@ -29,7 +37,11 @@ pub fn percent(part: impl Into<Option<f64>>, whole: f64, decimals: usize) -> Str
 
 /// The shortest text of a number that the user gave.
 pub fn plain(x: f64) -> String {
-    if x.abs() > 0.0 { format!("{x}") } else { "0".to_owned() }
+    if x.abs() > 0.0 {
+        format!("{x}")
+    } else {
+        "0".to_owned()
+    }
 }
 
 /// A small error such as 3e-15.

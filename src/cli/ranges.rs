@@ -16,7 +16,12 @@ const PIECES: f64 = 10.0;
 ///
 /// # Errors
 /// A problem for each part that is none or out of range.
-pub fn values(option: &str, text: &str, allowed: Bound, suffix: &str) -> Result<Vec<f64>, Vec<Problem>> {
+pub fn values(
+    option: &str,
+    text: &str,
+    allowed: Bound,
+    suffix: &str,
+) -> Result<Vec<f64>, Vec<Problem>> {
     values_or_words(option, text, allowed, suffix, &[])
 }
 
@@ -24,8 +29,19 @@ pub fn values(option: &str, text: &str, allowed: Bound, suffix: &str) -> Result<
 ///
 /// # Errors
 /// As [`values`].
-pub fn values_or_words(option: &str, text: &str, allowed: Bound, suffix: &str, words: &[(&str, f64)]) -> Result<Vec<f64>, Vec<Problem>> {
-    let list = List { option, allowed, unit: unit_of(suffix), words };
+pub fn values_or_words(
+    option: &str,
+    text: &str,
+    allowed: Bound,
+    suffix: &str,
+    words: &[(&str, f64)],
+) -> Result<Vec<f64>, Vec<Problem>> {
+    let list = List {
+        option,
+        allowed,
+        unit: unit_of(suffix),
+        words,
+    };
     let (mut found, mut problems): (Vec<f64>, Vec<Problem>) = (Vec::new(), Vec::new());
     for part in text.split(',') {
         match list.part(part.trim()) {
@@ -33,14 +49,22 @@ pub fn values_or_words(option: &str, text: &str, allowed: Bound, suffix: &str, w
             Err(problem) => problems.push(problem),
         }
     }
-    if problems.is_empty() { Ok(once(found)) } else { Err(problems) }
+    if problems.is_empty() {
+        Ok(once(found))
+    } else {
+        Err(problems)
+    }
 }
 
 /// Each value where it stands first.
 fn once(values: Vec<f64>) -> Vec<f64> {
     let mut seen = std::collections::BTreeSet::new();
     // Adding zero turns a negative zero into a plain one.
-    values.into_iter().map(|x| x + 0.0).filter(|x| seen.insert(x.to_bits())).collect()
+    values
+        .into_iter()
+        .map(|x| x + 0.0)
+        .filter(|x| seen.insert(x.to_bits()))
+        .collect()
 }
 
 struct List<'a> {
@@ -55,7 +79,9 @@ impl List<'_> {
         let Some((from, rest)) = part.split_once("..") else {
             return self.within(part, self.number(part, part)?).map(|x| vec![x]);
         };
-        let (to, step) = rest.split_once(':').map_or((rest, None), |(to, step)| (to, Some(step)));
+        let (to, step) = rest
+            .split_once(':')
+            .map_or((rest, None), |(to, step)| (to, Some(step)));
         let low = self.within(part, self.number(part, from)?)?;
         let high = self.within(part, self.number(part, to)?)?;
         if low > high {
@@ -74,9 +100,15 @@ impl List<'_> {
         }
         let count = ((high - low) / step * (1.0 + 1e-12)).floor();
         if count >= MOST {
-            return Err(self.bad(part, &format!("has {:.0} values", count + 1.0), format!("at most {MOST} values; take a larger step")));
+            return Err(self.bad(
+                part,
+                &format!("has {:.0} values", count + 1.0),
+                format!("at most {MOST} values; take a larger step"),
+            ));
         }
-        let mut values: Vec<f64> = (0..=count as u32).map(|i| clean(low + f64::from(i) * step)).collect();
+        let mut values: Vec<f64> = (0..=count as u32)
+            .map(|i| clean(low + f64::from(i) * step))
+            .collect();
         let near = |x: &f64| (high - x).abs() <= 1e-9 * step;
         if values.last().is_some_and(near) {
             values.pop();
@@ -90,26 +122,58 @@ impl List<'_> {
         if let Some((_, x)) = self.words.iter().find(|(word, _)| *word == text) {
             return Ok(*x);
         }
-        let what = if part == text || text.is_empty() { "is not a number" } else { "has an end or step that is not a number" };
-        text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| self.bad(part, what, self.example()))
+        let what = if part == text || text.is_empty() {
+            "is not a number"
+        } else {
+            "has an end or step that is not a number"
+        };
+        text.parse::<f64>()
+            .ok()
+            .filter(|x| x.is_finite())
+            .ok_or_else(|| self.bad(part, what, self.example()))
     }
 
     fn within(&self, part: &str, x: f64) -> Result<f64, Problem> {
-        if self.allowed.contains(x) { Ok(x) } else { Err(self.bad(part, "is out of range", String::new())) }
+        if self.allowed.contains(x) {
+            Ok(x)
+        } else {
+            Err(self.bad(part, "is out of range", String::new()))
+        }
     }
 
     fn bad(&self, part: &str, what: &str, hint: String) -> Problem {
-        let named = if part.is_empty() { "an empty value".to_owned() } else { format!("`{part}`") };
-        let words: String = self.words.iter().map(|(word, _)| format!("{word}, ")).collect();
+        let named = if part.is_empty() {
+            "an empty value".to_owned()
+        } else {
+            format!("`{part}`")
+        };
+        let words: String = self
+            .words
+            .iter()
+            .map(|(word, _)| format!("{word}, "))
+            .collect();
         let also = if words.is_empty() { "" } else { "or " };
-        bad_value(self.option, part, &format!("{words}{also}{}", self.allowed.in_unit(self.unit)), format!("{named} {what}"), hint)
+        bad_value(
+            self.option,
+            part,
+            &format!("{words}{also}{}", self.allowed.in_unit(self.unit)),
+            format!("{named} {what}"),
+            hint,
+        )
     }
 
     fn example(&self) -> String {
         let (low, high) = (10.0, 40.0);
-        let (low, high) = if self.allowed.contains(low) && self.allowed.contains(high) { (low, high) } else { (0.5, 2.0) };
+        let (low, high) = if self.allowed.contains(low) && self.allowed.contains(high) {
+            (low, high)
+        } else {
+            (0.5, 2.0)
+        };
         let step = step_for(low, high);
-        format!("write a number, a list ({0} {low},{high}), a range with a step ({0} {low}..{high}:{step}), or these mixed", self.option)
+        format!(
+            "write a number, a list ({0} {low},{high}), a range with a step ({0} {low}..{high}:{step}), or these mixed",
+            self.option
+        )
     }
 }
 
@@ -129,7 +193,9 @@ fn round_step(x: f64) -> f64 {
         return 1.0;
     }
     let power = 10f64.powf(x.log10().floor());
-    let factor = [1.0, 2.0, 5.0].into_iter().find(|f| x / power <= f * (1.0 + 1e-9));
+    let factor = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|f| x / power <= f * (1.0 + 1e-9));
     power * factor.unwrap_or(10.0)
 }
 
@@ -138,7 +204,8 @@ mod tests {
     use super::*;
 
     fn good(text: &str) -> Vec<f64> {
-        values("--speed", text, Bound::closed(-100.0, 7000.0), "_rpm").unwrap_or_else(|p| panic!("{text}: {p:?}"))
+        values("--speed", text, Bound::closed(-100.0, 7000.0), "_rpm")
+            .unwrap_or_else(|p| panic!("{text}: {p:?}"))
     }
 
     fn bad(text: &str) -> Vec<Problem> {
@@ -162,7 +229,10 @@ mod tests {
     fn val_ends_and_decimals() {
         assert_eq!(good("0..0.3:0.1"), [0.0, 0.1, 0.2, 0.3]);
         assert_eq!(good("1000..2100:500"), [1000.0, 1500.0, 2000.0, 2100.0]);
-        assert_eq!(good("1000..4000"), [1000.0, 1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0]);
+        assert_eq!(
+            good("1000..4000"),
+            [1000.0, 1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0]
+        );
         assert_eq!(good("0..100").len(), 11);
         assert_eq!(good("10..12:0.5"), [10.0, 10.5, 11.0, 11.5, 12.0]);
         assert_eq!(good("1e3..3e3:1e3"), [1000.0, 2000.0, 3000.0]);
@@ -171,10 +241,21 @@ mod tests {
     #[test]
     fn words_stand_for_numbers() {
         let words = [("low", 2.4), ("high", 0.4)];
-        let found = values_or_words("--ratio", "high,1..low:1", Bound::closed(0.3, 3.0), "", &words).expect("words");
+        let found = values_or_words(
+            "--ratio",
+            "high,1..low:1",
+            Bound::closed(0.3, 3.0),
+            "",
+            &words,
+        )
+        .expect("words");
         assert_eq!(found, [0.4, 1.0, 2.0, 2.4]);
-        let problems = values_or_words("--ratio", "lo", Bound::closed(0.3, 3.0), "", &words).expect_err("no word");
-        assert!(problems[0].allowed.contains("low, high, or 0.3 to 3"), "{problems:?}");
+        let problems = values_or_words("--ratio", "lo", Bound::closed(0.3, 3.0), "", &words)
+            .expect_err("no word");
+        assert!(
+            problems[0].allowed.contains("low, high, or 0.3 to 3"),
+            "{problems:?}"
+        );
     }
 
     #[test]
@@ -197,9 +278,17 @@ mod tests {
             ("1000-4000", "not a number"),
         ] {
             let problems = bad(text);
-            assert!(problems[0].message.contains(word), "{text}: {:?}", problems[0]);
+            assert!(
+                problems[0].message.contains(word),
+                "{text}: {:?}",
+                problems[0]
+            );
             assert_eq!(problems[0].allowed, "-100 to 7000 rpm");
         }
-        assert!(bad("x")[0].hint.contains("--speed 10..40:5"), "{}", bad("x")[0].hint);
+        assert!(
+            bad("x")[0].hint.contains("--speed 10..40:5"),
+            "{}",
+            bad("x")[0].hint
+        );
     }
 }

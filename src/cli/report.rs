@@ -58,7 +58,9 @@ pub fn answer(args: &Args) -> Reply {
     let mut problems = inputs::Problems::default();
     let by_ending = || args.out.as_deref().and_then(Form::of).unwrap_or(Form::Html);
     let form = match &args.format {
-        Some(word) => problems.take(inputs::word("--format", word, &Form::NAMES)).unwrap_or(Form::Html),
+        Some(word) => problems
+            .take(inputs::word("--format", word, &Form::NAMES))
+            .unwrap_or(Form::Html),
         None => by_ending(),
     };
     let file = match (&args.out, args.dirs.first()) {
@@ -73,17 +75,36 @@ pub fn answer(args: &Args) -> Reply {
         _ => problems.take(Target::new(&file, form, args.force).map_err(|problem| vec![problem])),
     };
     problems.finish()?;
-    let (Some(document), Some(target)) = (document, target) else { unreachable!("what is missing has left a problem") };
+    let (Some(document), Some(target)) = (document, target) else {
+        unreachable!("what is missing has left a problem")
+    };
     let written = target.write(&document).map_err(|problem| vec![problem])?;
-    let warnings: String = document.warnings.iter().map(|line| format!("cvtcycle: {line}\n")).collect();
-    let code = if document.warnings.is_empty() { 0 } else { FAILED };
-    let paths: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+    let warnings: String = document
+        .warnings
+        .iter()
+        .map(|line| format!("cvtcycle: {line}\n"))
+        .collect();
+    let code = if document.warnings.is_empty() {
+        0
+    } else {
+        FAILED
+    };
+    let paths: Vec<String> = written
+        .iter()
+        .map(|path| path.display().to_string())
+        .collect();
     let stdout = match (args.json, args.quiet, paths.split_first()) {
-        (true, _, Some((report, figures))) => {
-            json_text(&serde_json::json!({ "report": report, "figures": figures, "missing": document.warnings }))?
+        (true, _, Some((report, figures))) => json_text(
+            &serde_json::json!({ "report": report, "figures": figures, "missing": document.warnings }),
+        )?,
+        (false, false, Some((report, figures))) => {
+            format!("{report}\n{} figures beside it\n", figures.len())
         }
-        (false, false, Some((report, figures))) => format!("{report}\n{} figures beside it\n", figures.len()),
         _ => String::new(),
     };
-    Ok(Answer { stdout, stderr: warnings, code })
+    Ok(Answer {
+        stdout,
+        stderr: warnings,
+        code,
+    })
 }

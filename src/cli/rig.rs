@@ -10,7 +10,9 @@ use super::answer::Reply;
 
 /// Arguments of `rig`.
 #[derive(Clone, Debug, clap::Args)]
-#[command(after_help = "Examples:\n  cvtcycle rig transmission --test transient\n  cvtcycle rig variator --ratio low")]
+#[command(
+    after_help = "Examples:\n  cvtcycle rig transmission --test transient\n  cvtcycle rig variator --ratio low"
+)]
 pub struct Args {
     #[command(subcommand)]
     rig: Rig,

@@ -46,11 +46,21 @@ pub struct Args {
     #[arg(long, value_name = "NAME|FILE.toml|none", value_parser = Offering(inputs::baselines), hide_possible_values = true)]
     baseline: Vec<String>,
     /// Ambient temperature, degC, -40 to 60
-    #[arg(long, value_name = "DEGC", default_value = "25", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "DEGC",
+        default_value = "25",
+        allow_hyphen_values = true
+    )]
     ambient: String,
     /// Start: `soak` (everything at ambient), `warm` (the same cycle has just been driven from a soak), or all
     /// temperatures in degC
-    #[arg(long, value_name = "soak|warm|DEGC", default_value = "soak", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "soak|warm|DEGC",
+        default_value = "soak",
+        allow_hyphen_values = true
+    )]
     start: String,
     /// Transmission oil of the vehicle in question; baselines keep theirs
     #[arg(long, value_name = "NAME|FILE.toml", value_parser = Offering(inputs::lubricants), hide_possible_values = true)]
@@ -65,7 +75,12 @@ pub struct Args {
     #[arg(long, value_name = "KEY=VALUE")]
     set_all: Vec<String>,
     /// Longest time step, s, 0.01 to 10
-    #[arg(long, value_name = "SECONDS", default_value = "1", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value = "1",
+        allow_hyphen_values = true
+    )]
     dt: String,
     /// Reading of the belt model: smooth (for driving), appendix_c or chapter_8 (as printed in the thesis)
     #[arg(long, value_name = "NAME", default_value = "smooth", value_parser = Offering(formulations), hide_possible_values = true)]
@@ -119,11 +134,27 @@ struct Plan {
 /// Runs the command.
 pub fn answer(args: &Args, context: Context) -> Reply {
     let plan = plan(args)?;
-    let conditions =
-        Conditions { ambient_k: plan.ambient_degc + ZERO_DEGC_K, start: plan.start.0, max_dt_s: plan.dt_s, keep_rows: plan.out.is_some() };
-    let outcomes: Vec<Outcome> = plan.cars.iter().map(|car| drive(&car.setup, &plan.cycle, &conditions)).collect();
-    let driven: Vec<Driven> =
-        plan.cars.iter().zip(&outcomes).map(|(car, outcome)| Driven { name: &car.name, setup: &car.setup, outcome }).collect();
+    let conditions = Conditions {
+        ambient_k: plan.ambient_degc + ZERO_DEGC_K,
+        start: plan.start.0,
+        max_dt_s: plan.dt_s,
+        keep_rows: plan.out.is_some(),
+    };
+    let outcomes: Vec<Outcome> = plan
+        .cars
+        .iter()
+        .map(|car| drive(&car.setup, &plan.cycle, &conditions))
+        .collect();
+    let driven: Vec<Driven> = plan
+        .cars
+        .iter()
+        .zip(&outcomes)
+        .map(|(car, outcome)| Driven {
+            name: &car.name,
+            setup: &car.setup,
+            outcome,
+        })
+        .collect();
     let settings = Settings {
         dt_s: plan.dt_s,
         formulation: name_of(plan.formulation).to_owned(),
@@ -131,48 +162,117 @@ pub fn answer(args: &Args, context: Context) -> Reply {
         set_all: args.set_all.clone(),
         strict: args.strict,
     };
-    let summary = summarise(&plan.cycle, plan.ambient_degc, plan.start.1, settings, &driven);
+    let summary = summarise(
+        &plan.cycle,
+        plan.ambient_degc,
+        plan.start.1,
+        settings,
+        &driven,
+    );
     let json = json_text(&summary)?;
     let written = match plan.out {
         Some(mut dir) => {
-            let record = json_text(&record::record(&plan.cars, &plan.cycle, &conditions, plan.sensitivity)?)?;
-            dir.write(FILE, |out| out.write_all(record.as_bytes())).map_err(|problem| vec![problem])?;
-            files::write(dir, plan.format, &json, &summary, &plan.cycle, &driven).map_err(|problem| vec![problem])?
+            let record = json_text(&record::record(
+                &plan.cars,
+                &plan.cycle,
+                &conditions,
+                plan.sensitivity,
+            )?)?;
+            dir.write(FILE, |out| out.write_all(record.as_bytes()))
+                .map_err(|problem| vec![problem])?;
+            files::write(dir, plan.format, &json, &summary, &plan.cycle, &driven)
+                .map_err(|problem| vec![problem])?
         }
         None => files::Written::default(),
     };
     Ok(reply(args, context, &plan.cycle, &summary, json, &written))
 }
 
-fn reply(args: &Args, context: Context, cycle: &Cycle, summary: &Summary, json: String, written: &files::Written) -> Answer {
+fn reply(
+    args: &Args,
+    context: Context,
+    cycle: &Cycle,
+    summary: &Summary,
+    json: String,
+    written: &files::Written,
+) -> Answer {
     let failed = text::failures(summary);
     let code = if failed.is_empty() { 0 } else { FAILED };
-    let told = failed.iter().map(|line| format!("cvtcycle: {line}\n")).collect::<String>();
+    let told = failed
+        .iter()
+        .map(|line| format!("cvtcycle: {line}\n"))
+        .collect::<String>();
     if args.json || args.quiet {
         let stdout = if args.json { json } else { String::new() };
-        return Answer { stdout, stderr: told + &written.left_over_text(), code };
+        return Answer {
+            stdout,
+            stderr: told + &written.left_over_text(),
+            code,
+        };
     }
     let stdout = text::tables(summary, cycle, context.paint) + &written.text();
-    Answer { stdout, stderr: written.left_over_text(), code }
+    Answer {
+        stdout,
+        stderr: written.left_over_text(),
+        code,
+    }
 }
 
 fn plan(args: &Args) -> Result<Plan, Vec<cvtcycle::config::Problem>> {
     let mut problems = Problems::default();
     let cycle = problems.take(inputs::cycle("--cycle", &args.cycle));
-    let formulation = problems.take(inputs::word("--formulation", &args.formulation, &Formulation::NAMES));
+    let formulation = problems.take(inputs::word(
+        "--formulation",
+        &args.formulation,
+        &Formulation::NAMES,
+    ));
     let cars = cars::load(args, formulation.unwrap_or_default(), &mut problems);
-    let ambient = problems.take(inputs::number("--ambient", &args.ambient, AMBIENT, "ambient_degc"));
+    let ambient = problems.take(inputs::number(
+        "--ambient",
+        &args.ambient,
+        AMBIENT,
+        "ambient_degc",
+    ));
     let start = problems.take(start(&args.start));
     let dt_s = problems.take(inputs::number("--dt", &args.dt, STEP, "dt_s"));
     let format = problems.take(inputs::word("--format", &args.format, &TraceFormat::NAMES));
-    let sensitivity = problems.take(inputs::word("--sensitivity", &args.sensitivity, &record::WHEN));
-    let out = args.out.as_ref().map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
+    let sensitivity = problems.take(inputs::word(
+        "--sensitivity",
+        &args.sensitivity,
+        &record::WHEN,
+    ));
+    let out = args
+        .out
+        .as_ref()
+        .map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
     let out = out.and_then(|dir| problems.take(dir));
     problems.finish()?;
-    match (cycle, ambient, start, dt_s, formulation, format.zip(sensitivity)) {
-        (Some(cycle), Some(ambient_degc), Some(start), Some(dt_s), Some(formulation), Some((format, sensitivity))) => {
-            Ok(Plan { cycle, cars, ambient_degc, start, dt_s, formulation, format, sensitivity, out })
-        }
+    match (
+        cycle,
+        ambient,
+        start,
+        dt_s,
+        formulation,
+        format.zip(sensitivity),
+    ) {
+        (
+            Some(cycle),
+            Some(ambient_degc),
+            Some(start),
+            Some(dt_s),
+            Some(formulation),
+            Some((format, sensitivity)),
+        ) => Ok(Plan {
+            cycle,
+            cars,
+            ambient_degc,
+            start,
+            dt_s,
+            formulation,
+            format,
+            sensitivity,
+            out,
+        }),
         _ => unreachable!("what is missing has left a problem"),
     }
 }
@@ -190,7 +290,11 @@ fn start(value: &str) -> Result<(Start, StartWord), Vec<cvtcycle::config::Proble
         let hint = inputs::did_you_mean(value, &["soak", "warm"]);
         problems
             .into_iter()
-            .map(|p| cvtcycle::config::Problem { allowed: allowed.clone(), hint: hint.clone().unwrap_or(p.hint), ..p })
+            .map(|p| cvtcycle::config::Problem {
+                allowed: allowed.clone(),
+                hint: hint.clone().unwrap_or(p.hint),
+                ..p
+            })
             .collect::<Vec<_>>()
     })?;
     Ok((Start::At(degc + ZERO_DEGC_K), StartWord::Degc(degc)))

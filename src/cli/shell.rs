@@ -46,9 +46,17 @@ pub fn man(args: &ManArgs, mut program: clap::Command) -> Reply {
         Some(name) => {
             let found = program.find_subcommand(name).cloned();
             found.ok_or_else(|| {
-                let names: Vec<&str> = program.get_subcommands().map(clap::Command::get_name).collect();
-                let hint = did_you_mean(name, &names).unwrap_or_else(|| format!("one of {}", names.join(", ")));
-                vec![problem("man", &format!("there is no command named `{name}`"), &hint)]
+                let names: Vec<&str> = program
+                    .get_subcommands()
+                    .map(clap::Command::get_name)
+                    .collect();
+                let hint = did_you_mean(name, &names)
+                    .unwrap_or_else(|| format!("one of {}", names.join(", ")));
+                vec![problem(
+                    "man",
+                    &format!("there is no command named `{name}`"),
+                    &hint,
+                )]
             })?
         }
     };

@@ -55,7 +55,12 @@ pub enum Status {
 }
 
 fn names() -> Vec<&'static str> {
-    inputs::vehicles().into_iter().chain(inputs::lubricants()).chain(inputs::rigs()).chain(inputs::cycles()).collect()
+    inputs::vehicles()
+        .into_iter()
+        .chain(inputs::lubricants())
+        .chain(inputs::rigs())
+        .chain(inputs::cycles())
+        .collect()
 }
 
 /// One key as JSON.
@@ -94,7 +99,8 @@ pub fn answer(args: &Args, context: Context) -> Reply {
         Sort::Vehicle => {
             let setup = setup::load(&word, "NAME", &Options::default())?;
             // The fluids have pages of their own.
-            let own = |k: &KeyInfo| !k.key.starts_with("lubricant.") && !k.key.starts_with("engine_oil.");
+            let own =
+                |k: &KeyInfo| !k.key.starts_with("lubricant.") && !k.key.starts_with("engine_oil.");
             (setup.title, setup.keys.into_iter().filter(own).collect())
         }
         Sort::Lubricant => {
@@ -102,34 +108,62 @@ pub fn answer(args: &Args, context: Context) -> Reply {
             (oil.title, keys)
         }
         Sort::Rig => rig(&word),
-        Sort::Calibration => return Err(plan(&word, "a calibration", "name the vehicle that it fits")),
+        Sort::Calibration => {
+            return Err(plan(
+                &word,
+                "a calibration",
+                "name the vehicle that it fits",
+            ));
+        }
         Sort::Study => return Err(plan(&word, "a study", "name the vehicle that it varies")),
     };
-    let wanted = |info: &KeyInfo| args.status.is_empty() || args.status.iter().any(|s| s.word() == info.status);
+    let wanted = |info: &KeyInfo| {
+        args.status.is_empty() || args.status.iter().any(|s| s.word() == info.status)
+    };
     let keys: Vec<KeyInfo> = keys.into_iter().filter(wanted).collect();
     if args.json {
         let lines: Vec<KeyLine> = keys.iter().map(KeyLine::from).collect();
         let name = &args.name;
-        return Answer::json(&serde_json::json!({ "name": name, "kind": sort.word(), "title": title, "keys": lines }));
+        return Answer::json(
+            &serde_json::json!({ "name": name, "kind": sort.word(), "title": title, "keys": lines }),
+        );
     }
     let head = format!("{}  {title}\n", context.paint.heading(&args.name));
     if keys.is_empty() {
         return Ok(Answer::text(head + "\nno value of this status\n"));
     }
-    Ok(Answer::text(head + &tables(&keys, context) + &counts(&keys)))
+    Ok(Answer::text(
+        head + &tables(&keys, context) + &counts(&keys),
+    ))
 }
 
 /// A plan, which has nothing to show.
 fn plan(word: &str, of: &str, instead: &str) -> Vec<Problem> {
     let message = format!("`{word}` is the plan of {of}, which holds no values of a car");
     let hint = format!("{instead}; `cvtcycle check` reads a plan");
-    vec![inputs::bad_value("NAME", word, "a vehicle, lubricant, cycle or rig", message, hint)]
+    vec![inputs::bad_value(
+        "NAME",
+        word,
+        "a vehicle, lubricant, cycle or rig",
+        message,
+        hint,
+    )]
 }
 
 /// Title and keys of an embedded rig.
 fn rig(word: &str) -> (String, Vec<KeyInfo>) {
-    let keys = catalogue::files().into_iter().find(|file| file.name == word).map(|file| file.keys).unwrap_or_default();
-    (keys.iter().find(|k| k.key == "rig.title").map(|k| k.value.clone()).unwrap_or_default(), keys)
+    let keys = catalogue::files()
+        .into_iter()
+        .find(|file| file.name == word)
+        .map(|file| file.keys)
+        .unwrap_or_default();
+    (
+        keys.iter()
+            .find(|k| k.key == "rig.title")
+            .map(|k| k.value.clone())
+            .unwrap_or_default(),
+        keys,
+    )
 }
 
 impl Status {
@@ -153,7 +187,11 @@ fn split(key: &str) -> (&str, &str) {
 fn tables(keys: &[KeyInfo], context: Context) -> String {
     let width = |of: &dyn Fn(&KeyInfo) -> usize| keys.iter().map(of).max().unwrap_or(0);
     let short = |info: &KeyInfo| value(info).chars().count().min(VALUE);
-    let widths = [width(&|k| split(&k.key).1.len()), width(&short), width(&|k| k.status.len())];
+    let widths = [
+        width(&|k| split(&k.key).1.len()),
+        width(&short),
+        width(&|k| k.status.len()),
+    ];
     // In the order of reading, but every table in one piece.
     let mut order: Vec<&str> = Vec::new();
     for info in keys {
@@ -163,11 +201,20 @@ fn tables(keys: &[KeyInfo], context: Context) -> String {
     }
     let mut text = String::new();
     for table in order {
-        let heading = if table.is_empty() { "[top]".to_owned() } else { format!("[{table}]") };
+        let heading = if table.is_empty() {
+            "[top]".to_owned()
+        } else {
+            format!("[{table}]")
+        };
         text += &format!("\n{}\n", context.paint.heading(&heading));
         let mut grid = Grid::new("llll").indented();
         for info in keys.iter().filter(|info| split(&info.key).0 == table) {
-            grid.row([split(&info.key).1, &own_column(info), &info.status, &remarks(info)]);
+            grid.row([
+                split(&info.key).1,
+                &own_column(info),
+                &info.status,
+                &remarks(info),
+            ]);
         }
         text += &grid.text_with_widths(&widths);
     }
@@ -176,20 +223,30 @@ fn tables(keys: &[KeyInfo], context: Context) -> String {
 
 fn own_column(info: &KeyInfo) -> String {
     let text = value(info);
-    if text.chars().count() > VALUE { "...".to_owned() } else { text }
+    if text.chars().count() > VALUE {
+        "...".to_owned()
+    } else {
+        text
+    }
 }
 
 fn remarks(info: &KeyInfo) -> String {
     let text = value(info);
     let long = (text.chars().count() > VALUE).then_some(text);
-    let parts = long.iter().chain([&info.source, &info.note]).filter(|part| !part.is_empty());
+    let parts = long
+        .iter()
+        .chain([&info.source, &info.note])
+        .filter(|part| !part.is_empty());
     parts.cloned().collect::<Vec<_>>().join("; ")
 }
 
 fn counts(keys: &[KeyInfo]) -> String {
     let words = Status::value_variants().iter().map(|status| status.word());
     let counts = words.map(|word| (word, keys.iter().filter(|info| info.status == word).count()));
-    let parts: Vec<String> = counts.filter(|(_, n)| *n > 0).map(|(word, n)| format!("{n} {word}")).collect();
+    let parts: Vec<String> = counts
+        .filter(|(_, n)| *n > 0)
+        .map(|(word, n)| format!("{n} {word}"))
+        .collect();
     format!("\n{} keys: {}\n", keys.len(), parts.join(", "))
 }
 
@@ -202,11 +259,21 @@ struct PhaseLine {
 
 fn cycle(args: &Args, cycle: &Cycle, context: Context) -> Reply {
     let (manual, automatic) = (cycle.trace_for(false), cycle.trace_for(true));
-    let km = |trace: &cvtcycle::cycle::Trace, phases: &[u16]| phases.iter().map(|phase| trace.phase_distance_m(*phase)).sum::<f64>() / 1e3;
+    let km = |trace: &cvtcycle::cycle::Trace, phases: &[u16]| {
+        phases
+            .iter()
+            .map(|phase| trace.phase_distance_m(*phase))
+            .sum::<f64>()
+            / 1e3
+    };
     let phases: Vec<PhaseLine> = cycle
         .phase_groups()
         .into_iter()
-        .map(|(name, list)| PhaseLine { name, distance_km: km(manual, &list), distance_automatic_km: km(automatic, &list) })
+        .map(|(name, list)| PhaseLine {
+            name,
+            distance_km: km(manual, &list),
+            distance_automatic_km: km(automatic, &list),
+        })
         .collect();
     if args.json {
         return Answer::json(&serde_json::json!({
@@ -218,13 +285,30 @@ fn cycle(args: &Args, cycle: &Cycle, context: Context) -> Reply {
     let mut grid = Grid::new("lrr").indented();
     grid.row(["phase", "km", "km (automatic)"]);
     for phase in &phases {
-        grid.row([&phase.name, &fixed(phase.distance_km, 3), &fixed(phase.distance_automatic_km, 3)]);
+        grid.row([
+            &phase.name,
+            &fixed(phase.distance_km, 3),
+            &fixed(phase.distance_automatic_km, 3),
+        ]);
     }
-    grid.row(["total", &fixed(manual.distance_m() / 1e3, 3), &fixed(automatic.distance_m() / 1e3, 3)]);
-    let gears = if cycle.has_gears() { "prescribed for manual cars" } else { "left to the car" };
+    grid.row([
+        "total",
+        &fixed(manual.distance_m() / 1e3, 3),
+        &fixed(automatic.distance_m() / 1e3, 3),
+    ]);
+    let gears = if cycle.has_gears() {
+        "prescribed for manual cars"
+    } else {
+        "left to the car"
+    };
     let mean = manual.distance_m() / manual.duration_s() * 3.6;
     let more = manual.distance_m() - automatic.distance_m();
-    let mut text = format!("{}  {}\n\n{}", context.paint.heading(&cycle.name), cycle.title, grid.text());
+    let mut text = format!(
+        "{}  {}\n\n{}",
+        context.paint.heading(&cycle.name),
+        cycle.title,
+        grid.text()
+    );
     text += &format!(
         "\nduration {} s, highest speed {} km/h, mean {} km/h; gears {gears}\n",
         fixed(manual.duration_s(), 0),
@@ -232,7 +316,10 @@ fn cycle(args: &Args, cycle: &Cycle, context: Context) -> Reply {
         fixed(mean, 1)
     );
     if more.abs() > 0.5 {
-        text += &format!("in its gear-change plateaux a manual car drives {} m\n", signed(more, 0));
+        text += &format!(
+            "in its gear-change plateaux a manual car drives {} m\n",
+            signed(more, 0)
+        );
     }
     Ok(Answer::text(text))
 }

@@ -15,7 +15,11 @@ pub fn to_stdout(f: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(),
     match f(&mut out).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             let hint = "free some space, or send the output elsewhere";
-            Err(vec![problem("standard output", &format!("cannot write: {error}"), hint)])
+            Err(vec![problem(
+                "standard output",
+                &format!("cannot write: {error}"),
+                hint,
+            )])
         }
         _ => Ok(()),
     }

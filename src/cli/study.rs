@@ -69,7 +69,10 @@ struct PlanArgs {
 }
 
 fn plans() -> Vec<&'static str> {
-    cvtcycle::study::plan::embedded_plans().iter().map(|(name, _)| *name).collect()
+    cvtcycle::study::plan::embedded_plans()
+        .iter()
+        .map(|(name, _)| *name)
+        .collect()
 }
 
 /// Runs the command.
@@ -84,7 +87,10 @@ pub fn answer(args: &Args, context: Context) -> Reply {
 
 fn plan(args: &PlanArgs, context: Context) -> Reply {
     let Some(word) = &args.plan else {
-        let hint = format!("name a plan: {}, or a TOML file; or `study ambient`", plans().join(", "));
+        let hint = format!(
+            "name a plan: {}, or a TOML file; or `study ambient`",
+            plans().join(", ")
+        );
         return Err(vec![problem("PLAN", "no plan is named", &hint)]);
     };
     let mut plan = Plan::open(word, "PLAN")?;
@@ -97,16 +103,31 @@ fn drawn(design: &Design, args: &PlanArgs) -> Result<Design, Vec<Problem>> {
     if args.samples.is_none() && args.seed.is_none() {
         return Ok(*design);
     }
-    let option = if args.samples.is_some() { "--samples" } else { "--seed" };
-    let (Some(range), Some(changed)) = (design.sample_range(), design.with(args.samples, args.seed)) else {
-        let hint = "--samples and --seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs";
-        return Err(vec![problem(option, "the plan's design draws nothing", hint)]);
+    let option = if args.samples.is_some() {
+        "--samples"
+    } else {
+        "--seed"
+    };
+    let (Some(range), Some(changed)) =
+        (design.sample_range(), design.with(args.samples, args.seed))
+    else {
+        let hint =
+            "--samples and --seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs";
+        return Err(vec![problem(
+            option,
+            "the plan's design draws nothing",
+            hint,
+        )]);
     };
     match args.samples {
         Some(samples) if !range.contains(&samples) => Err(vec![Problem {
             value: samples.to_string(),
             allowed: format!("{} to {}", range.start(), range.end()),
-            ..problem("--samples", &format!("{samples} samples are out of range for this design"), "")
+            ..problem(
+                "--samples",
+                &format!("{samples} samples are out of range for this design"),
+                "",
+            )
         }]),
         _ => Ok(changed),
     }

@@ -5,7 +5,10 @@ mod text;
 use cvtcycle::config::{Problem, bounded, decode};
 use cvtcycle::results::files::OutputDir;
 use cvtcycle::setup;
-use cvtcycle::validate::{COMMON, File, MECHANISMS, Report, Row, Subject, csv, embedded_rows, json, judge, markdown, page, read};
+use cvtcycle::validate::{
+    COMMON, File, MECHANISMS, Report, Row, Subject, csv, embedded_rows, json, judge, markdown,
+    page, read,
+};
 
 use super::Context;
 use super::answer::{Answer, FAILED, Reply, json_text, problem};
@@ -75,7 +78,12 @@ enum Form {
     Markdown,
 }
 
-const FORMS: [(&str, Form); 4] = [("table", Form::Table), ("csv", Form::Csv), ("html", Form::Html), ("md", Form::Markdown)];
+const FORMS: [(&str, Form); 4] = [
+    ("table", Form::Table),
+    ("csv", Form::Csv),
+    ("html", Form::Html),
+    ("md", Form::Markdown),
+];
 
 /// Every mechanism.
 const ALL: &str = "all";
@@ -91,19 +99,30 @@ fn mechanisms() -> Vec<&'static str> {
 /// Runs the command.
 pub fn answer(args: &Args, context: Context) -> Reply {
     let mut problems = Problems::default();
-    let form = problems.take(inputs::word("--format", &args.format, &FORMS)).unwrap_or(Form::Table);
+    let form = problems
+        .take(inputs::word("--format", &args.format, &FORMS))
+        .unwrap_or(Form::Table);
     let texts = problems.take(texts(args)).unwrap_or_default();
-    let files = problems.take(read((&embedded_name(COMMON.0), COMMON.1), &texts)).unwrap_or_default();
+    let files = problems
+        .take(read((&embedded_name(COMMON.0), COMMON.1), &texts))
+        .unwrap_or_default();
     if !texts.is_empty() {
         filters(args, &files, &mut problems);
     }
-    let out = args.out.as_ref().map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
+    let out = args
+        .out
+        .as_ref()
+        .map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
     let out = out.and_then(|dir| problems.take(dir));
     if !args.only_rows {
         manual(args, &mut problems);
     }
     problems.finish()?;
-    let subject = Subject { vehicle: args.vehicle.clone(), lubricant: args.lubricant.clone(), set: args.set.clone() };
+    let subject = Subject {
+        vehicle: args.vehicle.clone(),
+        lubricant: args.lubricant.clone(),
+        set: args.set.clone(),
+    };
     let report = judge(&files, &subject, |row| wanted(args, row))?;
     let written = match out {
         Some(dir) => write(dir, &report).map_err(|problem| vec![problem])?,
@@ -120,8 +139,16 @@ pub fn answer(args: &Args, context: Context) -> Reply {
         Form::Markdown => markdown(&report),
     };
     // The table shows them itself.
-    let stderr = if form == Form::Table && !args.json && !args.quiet { String::new() } else { moved };
-    Ok(Answer { stdout, stderr, code })
+    let stderr = if form == Form::Table && !args.json && !args.quiet {
+        String::new()
+    } else {
+        moved
+    };
+    Ok(Answer {
+        stdout,
+        stderr,
+        code,
+    })
 }
 
 /// The program's own rows look into a CVT: with a manual box every one of their sources would be a problem.
@@ -129,9 +156,16 @@ fn manual(args: &Args, problems: &mut Problems) {
     // What is wrong with the vehicle itself is told with its overrides.
     let vehicle = setup::load(&args.vehicle, "--vehicle", &setup::Options::default());
     if vehicle.is_ok_and(|setup| !setup.transmission().is_cvt()) {
-        let hint = "`--only-rows` with `--rows FILE.toml` holds your own rows against it".to_owned();
+        let hint =
+            "`--only-rows` with `--rows FILE.toml` holds your own rows against it".to_owned();
         let message = format!("`{}` has a manual box", args.vehicle);
-        problems.add(inputs::bad_value("--vehicle", &args.vehicle, "a vehicle with a CVT for the program's own rows", message, hint));
+        problems.add(inputs::bad_value(
+            "--vehicle",
+            &args.vehicle,
+            "a vehicle with a CVT for the program's own rows",
+            message,
+            hint,
+        ));
     }
 }
 
@@ -143,9 +177,12 @@ fn embedded_name(name: &str) -> String {
 fn texts(args: &Args) -> Result<Vec<(String, String)>, Vec<Problem>> {
     let mut problems = Problems::default();
     let embedded = embedded_rows().iter().filter(|_| !args.only_rows);
-    let mut texts: Vec<(String, String)> = embedded.map(|(name, text)| (embedded_name(name), (*text).to_owned())).collect();
+    let mut texts: Vec<(String, String)> = embedded
+        .map(|(name, text)| (embedded_name(name), (*text).to_owned()))
+        .collect();
     for path in &args.rows {
-        let text = inputs::bytes("--rows", path, bounded::TOML).and_then(|bytes| decode(path, &bytes));
+        let text =
+            inputs::bytes("--rows", path, bounded::TOML).and_then(|bytes| decode(path, &bytes));
         texts.extend(problems.take(text).map(|text| (path.clone(), text)));
     }
     problems.finish()?;
@@ -153,9 +190,15 @@ fn texts(args: &Args) -> Result<Vec<(String, String)>, Vec<Problem>> {
 }
 
 fn wanted(args: &Args, row: &Row) -> bool {
-    let is = |asked: &Option<String>, own: &str| asked.as_ref().is_none_or(|asked| asked.eq_ignore_ascii_case(own));
+    let is = |asked: &Option<String>, own: &str| {
+        asked
+            .as_ref()
+            .is_none_or(|asked| asked.eq_ignore_ascii_case(own))
+    };
     let mechanism = args.mechanism.clone().filter(|name| name != ALL);
-    is(&args.chapter, &row.chapter) && is(&mechanism, &row.mechanism) && (!args.held_out || row.is_held_out())
+    is(&args.chapter, &row.chapter)
+        && is(&mechanism, &row.mechanism)
+        && (!args.held_out || row.is_held_out())
 }
 
 /// A chapter or mechanism that nothing has is a slip of the pen; a known mechanism without rows is not.
@@ -176,10 +219,18 @@ fn filters(args: &Args, files: &[File], problems: &mut Problems) {
     }
     if let Some(name) = &args.mechanism
         && name != ALL
-        && !MECHANISMS.iter().any(|known| known.eq_ignore_ascii_case(name))
+        && !MECHANISMS
+            .iter()
+            .any(|known| known.eq_ignore_ascii_case(name))
     {
         let hint = inputs::did_you_mean(name, &MECHANISMS).unwrap_or_default();
-        problems.add(inputs::bad_value("--mechanism", name, &MECHANISMS.join(", "), format!("there is no mechanism `{name}`"), hint));
+        problems.add(inputs::bad_value(
+            "--mechanism",
+            name,
+            &MECHANISMS.join(", "),
+            format!("there is no mechanism `{name}`"),
+            hint,
+        ));
     }
 }
 
@@ -189,11 +240,19 @@ fn html(report: &Report) -> Result<String, Problem> {
 
 fn write(mut dir: OutputDir, report: &Report) -> Result<String, Problem> {
     let json = json_text(&json(report)).map_err(|mut problems| problems.remove(0))?;
-    let files =
-        [("summary.json", json), ("validation.csv", csv(report)), ("validation.html", html(report)?), ("validation.md", markdown(report))];
+    let files = [
+        ("summary.json", json),
+        ("validation.csv", csv(report)),
+        ("validation.html", html(report)?),
+        ("validation.md", markdown(report)),
+    ];
     for (name, text) in files {
         dir.write(name, |out| out.write_all(text.as_bytes()))?;
     }
-    let paths: Vec<String> = dir.commit()?.iter().map(|path| format!("  {}\n", path.display())).collect();
+    let paths: Vec<String> = dir
+        .commit()?
+        .iter()
+        .map(|path| format!("  {}\n", path.display()))
+        .collect();
     Ok(format!("\nFiles written\n{}", paths.concat()))
 }

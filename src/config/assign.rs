@@ -18,7 +18,10 @@ impl Document {
     /// A text that is no assignment, or a path that leads through a value.
     pub fn set(&mut self, assignment: &str) -> Result<(), Problem> {
         let refuse = |key: &str, message: String, hint: &str| Problem {
-            place: Place { file: format!("--set {assignment}"), ..Place::default() },
+            place: Place {
+                file: format!("--set {assignment}"),
+                ..Place::default()
+            },
             key: key.to_string(),
             message,
             hint: hint.to_string(),
@@ -41,7 +44,13 @@ impl Document {
             Ok(value) => convert(value.get_ref(), source),
             Err(_) => Value::Text(text.to_string()),
         };
-        let node = Node { value, span: Span { source, range: 0..text.len() } };
+        let node = Node {
+            value,
+            span: Span {
+                source,
+                range: 0..text.len(),
+            },
+        };
         insert(&mut self.root, &keys, node).map_err(|depth| {
             let value = keys[..=depth].join(".");
             let message = format!("`{value}` is a value, so `{path}` cannot exist");
@@ -71,7 +80,11 @@ fn remove(table: &mut Table, keys: &[&str]) {
         [] => {}
         [last] => drop(table.entries.remove(*last)),
         [first, rest @ ..] => {
-            if let Some(Value::Table(inner)) = table.entries.get_mut(*first).map(|entry| &mut entry.node.value) {
+            if let Some(Value::Table(inner)) = table
+                .entries
+                .get_mut(*first)
+                .map(|entry| &mut entry.node.value)
+            {
                 remove(inner, rest);
             }
         }
@@ -79,29 +92,55 @@ fn remove(table: &mut Table, keys: &[&str]) {
 }
 
 /// Puts `node` at the path `keys`; fails with the depth at which a value stands in the way.
-pub(super) fn insert<S: AsRef<str>>(table: &mut Table, keys: &[S], node: Node) -> Result<(), usize> {
+pub(super) fn insert<S: AsRef<str>>(
+    table: &mut Table,
+    keys: &[S],
+    node: Node,
+) -> Result<(), usize> {
     let Some((last, parents)) = keys.split_last() else {
         return Ok(());
     };
     let mut table = table;
     for (depth, key) in parents.iter().enumerate() {
-        let empty = Node { value: Value::Table(Table::default()), span: node.span.clone() };
-        let entry = Entry { key: node.span.clone(), node: empty };
-        let entry = table.entries.entry(key.as_ref().to_string()).or_insert(entry);
+        let empty = Node {
+            value: Value::Table(Table::default()),
+            span: node.span.clone(),
+        };
+        let entry = Entry {
+            key: node.span.clone(),
+            node: empty,
+        };
+        let entry = table
+            .entries
+            .entry(key.as_ref().to_string())
+            .or_insert(entry);
         make_room(&mut entry.node);
         match &mut entry.node.value {
             Value::Table(inner) if inner.wrapped().is_none() => table = inner,
             _ => return Err(depth),
         }
     }
-    if let Some(Entry { node: Node { value: Value::Table(options), .. }, .. }) = table.entries.get_mut(last.as_ref()) {
+    if let Some(Entry {
+        node: Node {
+            value: Value::Table(options),
+            ..
+        },
+        ..
+    }) = table.entries.get_mut(last.as_ref())
+    {
         // A word for a table names one of its options; what the file says about it stays.
         if matches!(node.value, Value::Text(_)) && options.wrapped().is_none() {
             options.choice = Some(Box::new(node));
             return Ok(());
         }
     }
-    table.entries.insert(last.as_ref().to_string(), Entry { key: node.span.clone(), node });
+    table.entries.insert(
+        last.as_ref().to_string(),
+        Entry {
+            key: node.span.clone(),
+            node,
+        },
+    );
     Ok(())
 }
 
@@ -110,7 +149,10 @@ pub(super) fn insert<S: AsRef<str>>(table: &mut Table, keys: &[S], node: Node) -
 pub(super) fn make_room(node: &mut Node) {
     if is_word(node) {
         let choice = node.span.is_set().then(|| Box::new(node.clone()));
-        node.value = Value::Table(Table { entries: BTreeMap::new(), choice });
+        node.value = Value::Table(Table {
+            entries: BTreeMap::new(),
+            choice,
+        });
     }
 }
 
@@ -118,7 +160,9 @@ pub(super) fn make_room(node: &mut Node) {
 pub(super) fn is_word(node: &Node) -> bool {
     match &node.value {
         Value::Text(_) => true,
-        Value::Table(table) => table.wrapped().is_some_and(|node| matches!(node.value, Value::Text(_))),
+        Value::Table(table) => table
+            .wrapped()
+            .is_some_and(|node| matches!(node.value, Value::Text(_))),
         _ => false,
     }
 }

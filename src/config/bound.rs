@@ -12,12 +12,20 @@ pub struct Bound {
 impl Bound {
     /// From `low` to `high`, both included; an infinite end means no limit on that side.
     pub const fn closed(low: f64, high: f64) -> Self {
-        Bound { low, high, low_included: true }
+        Bound {
+            low,
+            high,
+            low_included: true,
+        }
     }
 
     /// Above `low`, up to and including `high`.
     pub const fn open_low(low: f64, high: f64) -> Self {
-        Bound { low, high, low_included: false }
+        Bound {
+            low,
+            high,
+            low_included: false,
+        }
     }
 
     /// Above zero.
@@ -32,20 +40,32 @@ impl Bound {
 
     /// Whether `x` is allowed; never for NaN and infinities.
     pub fn contains(&self, x: f64) -> bool {
-        let above = if self.low_included { self.low <= x } else { self.low < x };
+        let above = if self.low_included {
+            self.low <= x
+        } else {
+            self.low < x
+        };
         above && x <= self.high && x.is_finite()
     }
 
     /// The range in words with its unit, such as "0.5 to 10 mm"; `-` stands for no unit.
     pub fn in_unit(&self, unit: &str) -> String {
-        if unit == "-" || unit.is_empty() || *self == Bound::any() { self.to_string() } else { format!("{self} {unit}") }
+        if unit == "-" || unit.is_empty() || *self == Bound::any() {
+            self.to_string()
+        } else {
+            format!("{self} {unit}")
+        }
     }
 }
 
 /// The range in words without a unit.
 impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Bound { low, high, low_included } = *self;
+        let Bound {
+            low,
+            high,
+            low_included,
+        } = *self;
         match (low.is_finite(), high.is_finite()) {
             (true, true) if low_included => write!(f, "{low} to {high}"),
             (true, true) => write!(f, "above {low} up to {high}"),
@@ -86,8 +106,14 @@ mod tests {
         assert_eq!(Bound::closed(0.5, 10.0).in_unit("mm"), "0.5 to 10 mm");
         assert_eq!(Bound::open_low(0.0, 1.0).in_unit("-"), "above 0 up to 1");
         assert_eq!(Bound::positive().in_unit("kg"), "above 0 kg");
-        assert_eq!(Bound::closed(f64::NEG_INFINITY, 3.0).in_unit("bar"), "at most 3 bar");
-        assert_eq!(Bound::closed(2.0, f64::INFINITY).in_unit("bar"), "at least 2 bar");
+        assert_eq!(
+            Bound::closed(f64::NEG_INFINITY, 3.0).in_unit("bar"),
+            "at most 3 bar"
+        );
+        assert_eq!(
+            Bound::closed(2.0, f64::INFINITY).in_unit("bar"),
+            "at least 2 bar"
+        );
         assert_eq!(Bound::any().in_unit("bar"), "any finite number");
     }
 }

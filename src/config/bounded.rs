@@ -27,21 +27,39 @@ pub struct Limit {
 }
 
 const MIB: u64 = 1 << 20;
-const DAMAGED: &str = "no file that this program writes is as large: it is damaged, or another file";
+const DAMAGED: &str =
+    "no file that this program writes is as large: it is damaged, or another file";
 
 /// A TOML file of the user: vehicle, lubricant, plan, rows, cover.
-pub const TOML: Limit = Limit { bytes: MIB, hint: "is this the file that was meant? measured values belong into a CSV file that it names" };
+pub const TOML: Limit = Limit {
+    bytes: MIB,
+    hint: "is this the file that was meant? measured values belong into a CSV file that it names",
+};
 /// A CSV table of the user: cycle, map, measured data.
-pub const TABLE: Limit =
-    Limit { bytes: 64 * MIB, hint: "is this the file that was meant? otherwise thin it out: fewer rows, fewer decimals" };
+pub const TABLE: Limit = Limit {
+    bytes: 64 * MIB,
+    hint: "is this the file that was meant? otherwise thin it out: fewer rows, fewer decimals",
+};
 /// A trace of a run as CSV.
-pub const TRACE: Limit = Limit { bytes: 512 * MIB, hint: "run it again with a larger --dt, or with --format parquet" };
+pub const TRACE: Limit = Limit {
+    bytes: 512 * MIB,
+    hint: "run it again with a larger --dt, or with --format parquet",
+};
 /// JSON of the program: summary, inputs, manifest.
-pub const RECORD: Limit = Limit { bytes: 64 * MIB, hint: DAMAGED };
+pub const RECORD: Limit = Limit {
+    bytes: 64 * MIB,
+    hint: DAMAGED,
+};
 /// A list of checksums.
-pub const CHECKSUMS: Limit = Limit { bytes: MIB, hint: DAMAGED };
+pub const CHECKSUMS: Limit = Limit {
+    bytes: MIB,
+    hint: DAMAGED,
+};
 /// A logo.
-pub const LOGO: Limit = Limit { bytes: 500_000, hint: "make it smaller: it is copied into the report" };
+pub const LOGO: Limit = Limit {
+    bytes: 500_000,
+    hint: "make it smaller: it is copied into the report",
+};
 
 impl Limit {
     /// What is allowed, in words.
@@ -132,7 +150,11 @@ pub fn read(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, Refused> {
     // One byte more than allowed tells a file that goes on from one that ends there.
     let mut bytes = Vec::with_capacity(usize::try_from(size + 1).unwrap_or(0));
     let read = file.take(limit.bytes + 1).read_to_end(&mut bytes)?;
-    if read as u64 > limit.bytes { Err(Refused::TooLarge(None, limit)) } else { Ok(bytes) }
+    if read as u64 > limit.bytes {
+        Err(Refused::TooLarge(None, limit))
+    } else {
+        Ok(bytes)
+    }
 }
 
 /// The bytes of a file that another file names, or that the program has written: whoever made that file may be a stranger, and a pipe
@@ -157,20 +179,33 @@ pub fn open_file(path: impl AsRef<Path>) -> Result<File, Refused> {
 fn is_file(path: &Path) -> Result<(), Refused> {
     let found = fs::metadata(path)?;
     // A directory has its own words from the operating system.
-    if found.is_file() || found.is_dir() { Ok(()) } else { Err(Refused::NoFile) }
+    if found.is_file() || found.is_dir() {
+        Ok(())
+    } else {
+        Err(Refused::NoFile)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const SMALL: Limit = Limit { bytes: 1000, hint: "less" };
+    const SMALL: Limit = Limit {
+        bytes: 1000,
+        hint: "less",
+    };
 
     #[test]
     fn a_file_at_its_limit_is_read_and_one_byte_more_is_not() {
         let dir = tempfile::tempdir().expect("a folder");
         let path = dir.path().join("f");
-        for (length, is_read) in [(0, true), (999, true), (1000, true), (1001, false), (5000, false)] {
+        for (length, is_read) in [
+            (0, true),
+            (999, true),
+            (1000, true),
+            (1001, false),
+            (5000, false),
+        ] {
             std::fs::write(&path, vec![b'x'; length]).expect("written");
             for read in [read(&path, SMALL), read_file(&path, SMALL)] {
                 match read {
@@ -178,7 +213,10 @@ mod tests {
                     Err(refused) => {
                         assert!(!is_read, "{length}: {refused}");
                         assert_eq!(refused.to_string(), format!("it has {length} bytes"));
-                        assert_eq!((refused.allowed("x"), refused.hint("x")), ("up to 1 kB".to_owned(), "less"));
+                        assert_eq!(
+                            (refused.allowed("x"), refused.hint("x")),
+                            ("up to 1 kB".to_owned(), "less")
+                        );
                     }
                 }
             }
@@ -189,10 +227,16 @@ mod tests {
     fn what_cannot_be_read_keeps_its_words() {
         let dir = tempfile::tempdir().expect("a folder");
         let missing = read_file(dir.path().join("no"), SMALL).expect_err("not there");
-        assert_eq!((missing.kind(), missing.allowed("a"), missing.hint("b")), (io::ErrorKind::NotFound, "a".to_owned(), "b"));
+        assert_eq!(
+            (missing.kind(), missing.allowed("a"), missing.hint("b")),
+            (io::ErrorKind::NotFound, "a".to_owned(), "b")
+        );
         let folder = read_file(dir.path(), SMALL).expect_err("a folder");
         assert!(matches!(folder, Refused::Unreadable(_)), "{folder}");
-        assert_eq!([TOML, TABLE, TRACE, LOGO].map(|limit| limit.size()), ["1 MiB", "64 MiB", "512 MiB", "500 kB"]);
+        assert_eq!(
+            [TOML, TABLE, TRACE, LOGO].map(|limit| limit.size()),
+            ["1 MiB", "64 MiB", "512 MiB", "500 kB"]
+        );
     }
 
     #[cfg(unix)]
@@ -201,7 +245,10 @@ mod tests {
         let endless = read("/dev/zero", SMALL).expect_err("endless");
         assert_eq!(endless.to_string(), "it has more than 1 kB");
         assert_eq!(endless.allowed("x"), "up to 1 kB");
-        assert!(matches!(read_file("/dev/zero", SMALL), Err(Refused::NoFile)));
+        assert!(matches!(
+            read_file("/dev/zero", SMALL),
+            Err(Refused::NoFile)
+        ));
         assert_eq!(read("/dev/null", SMALL).expect("nothing"), b"");
     }
 }

@@ -112,11 +112,18 @@ impl Document {
         if !errors.is_empty() {
             return Err(syntax::problems(&source, &errors));
         }
-        let levels = Levels { source: 0, too_deep: Cell::new(None) };
+        let levels = Levels {
+            source: 0,
+            too_deep: Cell::new(None),
+        };
         let root = levels.table(table.get_ref(), 0);
         match levels.too_deep.take() {
             Some(at) => Err(vec![nested(&source, at)]),
-            None => Ok(Document { sources: vec![Arc::new(source)], root, header: None }),
+            None => Ok(Document {
+                sources: vec![Arc::new(source)],
+                root,
+                header: None,
+            }),
         }
     }
 
@@ -128,11 +135,22 @@ impl Document {
         if !self.root.entries.get(key).is_some_and(all) {
             return Vec::new();
         }
-        let Some(Entry { node: Node { value: Value::List(items), .. }, .. }) = self.root.entries.remove(key) else {
+        let Some(Entry {
+            node: Node {
+                value: Value::List(items),
+                ..
+            },
+            ..
+        }) = self.root.entries.remove(key)
+        else {
             return Vec::new();
         };
         let document = |item: Node| match item.value {
-            Value::Table(root) => Some(Document { sources: self.sources.clone(), root, header: Some(item.span) }),
+            Value::Table(root) => Some(Document {
+                sources: self.sources.clone(),
+                root,
+                header: Some(item.span),
+            }),
             _ => None,
         };
         items.into_iter().filter_map(document).collect()
@@ -145,7 +163,10 @@ impl Document {
 
     /// The text of a span as written.
     pub(super) fn written(&self, span: &Span) -> &str {
-        self.sources[span.source].text.get(span.range.clone()).unwrap_or_default()
+        self.sources[span.source]
+            .text
+            .get(span.range.clone())
+            .unwrap_or_default()
     }
 
     /// The text of a span as it is repeated in a problem: cut where it is long.
@@ -155,16 +176,38 @@ impl Document {
 }
 
 fn too_much(source: &Source, excess: Excess) -> Problem {
-    let hint = "is this the file that was meant? measured values belong into a CSV file that it names";
+    let hint =
+        "is this the file that was meant? measured values belong into a CSV file that it names";
     let (at, allowed, message, hint) = match excess {
-        Excess::Tables(at) => (at, format!("up to {} tables", shape::MOST_TABLES), "the file has too many tables", hint),
-        Excess::Keys(at) => (at, format!("up to {} keys", shape::MOST_KEYS), "the file has too many keys", hint),
+        Excess::Tables(at) => (
+            at,
+            format!("up to {} tables", shape::MOST_TABLES),
+            "the file has too many tables",
+            hint,
+        ),
+        Excess::Keys(at) => (
+            at,
+            format!("up to {} keys", shape::MOST_KEYS),
+            "the file has too many keys",
+            hint,
+        ),
         Excess::Names(at) => {
             let hint = "a dotted key is `table.table.key`; text stands in quotes";
-            (at, format!("up to {} names", shape::MOST_NAMES), "this key has too many names", hint)
+            (
+                at,
+                format!("up to {} names", shape::MOST_NAMES),
+                "this key has too many names",
+                hint,
+            )
         }
     };
-    Problem { place: source.place(at..at + 1), allowed, message: message.to_string(), hint: hint.to_string(), ..Problem::default() }
+    Problem {
+        place: source.place(at..at + 1),
+        allowed,
+        message: message.to_string(),
+        hint: hint.to_string(),
+        ..Problem::default()
+    }
 }
 
 fn nested(source: &Source, at: usize) -> Problem {
@@ -179,7 +222,11 @@ fn nested(source: &Source, at: usize) -> Problem {
 
 /// The value of an assignment; what is nested too deep is left out, which a command line hardly can be.
 pub(super) fn convert(value: &DeValue<'_>, source: usize) -> Value {
-    Levels { source, too_deep: Cell::new(None) }.value(value, 0)
+    Levels {
+        source,
+        too_deep: Cell::new(None),
+    }
+    .value(value, 0)
 }
 
 /// The parser's values to those that are kept, down to the deepest level.
@@ -197,7 +244,9 @@ impl Levels {
             DeValue::Float(float) => Value::Float(float.as_str().parse().unwrap_or(f64::NAN)),
             DeValue::Boolean(boolean) => Value::Boolean(*boolean),
             DeValue::Datetime(_) => Value::Date,
-            DeValue::Array(items) => Value::List(items.iter().map(|item| self.node(item, level)).collect()),
+            DeValue::Array(items) => {
+                Value::List(items.iter().map(|item| self.node(item, level)).collect())
+            }
             DeValue::Table(table) => Value::Table(self.table(table, level)),
         }
     }
@@ -206,17 +255,38 @@ impl Levels {
         let range = value.span();
         if level >= shape::MOST_LEVELS {
             self.too_deep.set(self.too_deep.get().or(Some(range.start)));
-            return Node { value: Value::Date, span: Span { source: self.source, range } };
+            return Node {
+                value: Value::Date,
+                span: Span {
+                    source: self.source,
+                    range,
+                },
+            };
         }
-        Node { value: self.value(value.get_ref(), level + 1), span: Span { source: self.source, range } }
+        Node {
+            value: self.value(value.get_ref(), level + 1),
+            span: Span {
+                source: self.source,
+                range,
+            },
+        }
     }
 
     fn table(&self, table: &DeTable<'_>, level: usize) -> Table {
         let entries = table.iter().map(|(key, value)| {
-            let entry = Entry { key: Span { source: self.source, range: key.span() }, node: self.node(value, level) };
+            let entry = Entry {
+                key: Span {
+                    source: self.source,
+                    range: key.span(),
+                },
+                node: self.node(value, level),
+            };
             (key.get_ref().to_string(), entry)
         });
-        Table { entries: entries.collect(), choice: None }
+        Table {
+            entries: entries.collect(),
+            choice: None,
+        }
     }
 }
 

@@ -33,8 +33,16 @@ impl Draft {
     pub fn new(document: &Document) -> Self {
         let source = document.sources.len();
         let without_text = Arc::new(Source::new("", "", false));
-        let document = Document { sources: vec![without_text; source + 1], root: bare(&document.root), header: document.header.clone() };
-        Draft { document, source, changes: Vec::new() }
+        let document = Document {
+            sources: vec![without_text; source + 1],
+            root: bare(&document.root),
+            header: document.header.clone(),
+        };
+        Draft {
+            document,
+            source,
+            changes: Vec::new(),
+        }
     }
 
     /// The document as it is now.
@@ -54,9 +62,17 @@ impl Draft {
             entry.node.value = value;
             return true;
         }
-        let Some(depth) = outermost_change(root, path) else { return false };
-        let span = Span { source: self.source, range: 0..0 };
-        let node = Node { value, span: span.clone() };
+        let Some(depth) = outermost_change(root, path) else {
+            return false;
+        };
+        let span = Span {
+            source: self.source,
+            range: 0..0,
+        };
+        let node = Node {
+            value,
+            span: span.clone(),
+        };
         let before = if depth + 1 == path.len() {
             replace(root, path, Some(Entry { key: span, node }))
         } else {
@@ -65,13 +81,22 @@ impl Draft {
             let _ = insert(root, path, node);
             before
         };
-        self.changes.push(Change { path: Arc::clone(path), depth, before });
+        self.changes.push(Change {
+            path: Arc::clone(path),
+            depth,
+            before,
+        });
         true
     }
 
     /// Takes all numbers back.
     pub fn reset(&mut self) {
-        while let Some(Change { path, depth, before }) = self.changes.pop() {
+        while let Some(Change {
+            path,
+            depth,
+            before,
+        }) = self.changes.pop()
+        {
             replace(&mut self.document.root, &path[..=depth], before);
         }
     }
@@ -80,10 +105,13 @@ impl Draft {
     pub fn numbers(&self) -> impl Iterator<Item = (String, f64)> + '_ {
         self.changes.iter().filter_map(|change| {
             let (last, parents) = change.path.split_last()?;
-            let table = parents.iter().try_fold(&self.document.root, |table, key| match &table.entries.get(&**key)?.node.value {
-                Value::Table(inner) => Some(inner),
-                _ => None,
-            })?;
+            let table =
+                parents.iter().try_fold(&self.document.root, |table, key| {
+                    match &table.entries.get(&**key)?.node.value {
+                        Value::Table(inner) => Some(inner),
+                        _ => None,
+                    }
+                })?;
             let number = match table.entries.get(&**last)?.node.value {
                 Value::Integer(number) => number as f64,
                 Value::Float(number) => number,
@@ -98,20 +126,41 @@ impl Draft {
 fn bare(table: &Table) -> Table {
     let node = |node: &Node| {
         let value = match &node.value {
-            Value::Table(inner) => inner.wrapped().map_or_else(|| Value::Table(bare(inner)), |wrapped| wrapped.value.clone()),
+            Value::Table(inner) => inner.wrapped().map_or_else(
+                || Value::Table(bare(inner)),
+                |wrapped| wrapped.value.clone(),
+            ),
             value => value.clone(),
         };
-        Node { value, span: node.span.clone() }
+        Node {
+            value,
+            span: node.span.clone(),
+        }
     };
-    let entry = |(name, entry): (&String, &Entry)| (name.clone(), Entry { key: entry.key.clone(), node: node(&entry.node) });
-    Table { entries: table.entries.iter().map(entry).collect(), choice: table.choice.clone() }
+    let entry = |(name, entry): (&String, &Entry)| {
+        (
+            name.clone(),
+            Entry {
+                key: entry.key.clone(),
+                node: node(&entry.node),
+            },
+        )
+    };
+    Table {
+        entries: table.entries.iter().map(entry).collect(),
+        choice: table.choice.clone(),
+    }
 }
 
 /// A number as a file would have it.
 fn written(number: f64) -> Value {
     const MOST: f64 = 9e18; // below the largest integer
     let whole = number.trunc();
-    if whole.to_bits() == number.to_bits() && (-MOST..=MOST).contains(&whole) { Value::Integer(whole as i64) } else { Value::Float(number) }
+    if whole.to_bits() == number.to_bits() && (-MOST..=MOST).contains(&whole) {
+        Value::Integer(whole as i64)
+    } else {
+        Value::Float(number)
+    }
 }
 
 /// Depth of the first entry of the path that a number there would change; none if a value is in the way.
@@ -120,7 +169,10 @@ fn outermost_change(root: &Table, path: &[Box<str>]) -> Option<usize> {
     for (depth, key) in path.iter().enumerate() {
         match table.entries.get(&**key).map(|entry| &entry.node) {
             _ if depth + 1 == path.len() => return Some(depth),
-            Some(Node { value: Value::Table(inner), .. }) if inner.wrapped().is_none() => table = inner,
+            Some(Node {
+                value: Value::Table(inner),
+                ..
+            }) if inner.wrapped().is_none() => table = inner,
             Some(node) => return is_word(node).then_some(depth),
             None => return Some(depth),
         }
@@ -135,9 +187,11 @@ fn entry_mut<'t>(root: &'t mut Table, path: &[Box<str>]) -> Option<&'t mut Entry
 }
 
 fn table_mut<'t>(root: &'t mut Table, path: &[Box<str>]) -> Option<&'t mut Table> {
-    path.iter().try_fold(root, |table, key| match &mut table.entries.get_mut(&**key)?.node.value {
-        Value::Table(inner) => Some(inner),
-        _ => None,
+    path.iter().try_fold(root, |table, key| {
+        match &mut table.entries.get_mut(&**key)?.node.value {
+            Value::Table(inner) => Some(inner),
+            _ => None,
+        }
     })
 }
 

@@ -29,8 +29,10 @@ pub fn near<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a s
         return Vec::new();
     }
     let lower = wanted.to_lowercase();
-    let mut rated: Vec<(f64, &str)> =
-        known.map(|name| (likeness(&lower, &name.to_lowercase()), name)).filter(|(rating, _)| plausible(*rating)).collect();
+    let mut rated: Vec<(f64, &str)> = known
+        .map(|name| (likeness(&lower, &name.to_lowercase()), name))
+        .filter(|(rating, _)| plausible(*rating))
+        .collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0));
     rated.dedup_by(|a, b| a.1 == b.1);
     rated.into_iter().take(3).map(|(_, name)| name).collect()
@@ -41,7 +43,10 @@ pub(super) fn question<S: AsRef<str>>(names: &[S]) -> String {
     if names.is_empty() {
         return String::new();
     }
-    let quoted: Vec<String> = names.iter().map(|name| format!("`{}`", name.as_ref())).collect();
+    let quoted: Vec<String> = names
+        .iter()
+        .map(|name| format!("`{}`", name.as_ref()))
+        .collect();
     format!("did you mean {}?", quoted.join(" or "))
 }
 
@@ -53,7 +58,11 @@ pub(super) fn one_of(words: &[&str]) -> String {
 /// Question for near names, else the list of what is known.
 pub(super) fn suggest(wanted: &str, known: &[&str]) -> String {
     let names = near(wanted, known.iter().copied());
-    if names.is_empty() { format!("write {}", one_of(known)) } else { question(&names) }
+    if names.is_empty() {
+        format!("write {}", one_of(known))
+    } else {
+        question(&names)
+    }
 }
 
 #[cfg(test)]
@@ -63,7 +72,10 @@ mod tests {
     #[test]
     fn a_slip_of_the_finger_is_found() {
         let known = ["band_offset_mm", "band_width_mm", "pitch_mm", "mass_kg"];
-        assert_eq!(near("band_ofset_mm", known.into_iter())[0], "band_offset_mm");
+        assert_eq!(
+            near("band_ofset_mm", known.into_iter())[0],
+            "band_offset_mm"
+        );
         assert_eq!(near("mass", known.into_iter()), ["mass_kg"]);
         assert_eq!(near("Mass_Kg", known.into_iter()), ["mass_kg"]);
     }

@@ -34,7 +34,11 @@ pub struct Problem {
 
 /// A number for a sentence: so many decimals, and with a power of ten where the figures before the point would be no help.
 pub(crate) fn readable(x: f64, decimals: usize) -> String {
-    if x.abs() < 1e6 { format!("{x:.decimals$}") } else { format!("{x:.1e}") }
+    if x.abs() < 1e6 {
+        format!("{x:.decimals$}")
+    } else {
+        format!("{x:.1e}")
+    }
 }
 
 /// The end of the sentence that counts what is not shown, for one and for several.
@@ -45,7 +49,10 @@ impl Problem {
     #[must_use]
     pub fn more(file: &str, count: usize) -> Self {
         Problem {
-            place: Place { file: file.to_string(), ..Place::default() },
+            place: Place {
+                file: file.to_string(),
+                ..Place::default()
+            },
             message: format!("{count}{}", NOT_SHOWN[usize::from(count != 1)]),
             hint: "mend the ones above first; they often have one cause".to_string(),
             ..Problem::default()
@@ -55,8 +62,12 @@ impl Problem {
     /// The number of a [`Problem::more`]; none of any other problem.
     #[must_use]
     pub fn not_shown(&self) -> Option<usize> {
-        let count = NOT_SHOWN.iter().find_map(|end| self.message.strip_suffix(end));
-        count.filter(|_| self.place.line == 0).and_then(|count| count.parse().ok())
+        let count = NOT_SHOWN
+            .iter()
+            .find_map(|end| self.message.strip_suffix(end));
+        count
+            .filter(|_| self.place.line == 0)
+            .and_then(|count| count.parse().ok())
     }
 }
 
@@ -72,7 +83,10 @@ pub fn append(all: &mut Vec<Problem>, found: Vec<Problem>) {
             (None, true) => all.push(problem),
             (count, _) => {
                 let before = rest.and_then(|rest| rest.not_shown()).unwrap_or(0);
-                rest = Some(Problem::more(&problem.place.file, before + count.unwrap_or(1)));
+                rest = Some(Problem::more(
+                    &problem.place.file,
+                    before + count.unwrap_or(1),
+                ));
             }
         }
     }
@@ -84,8 +98,15 @@ mod tests {
     use super::*;
 
     fn some(count: usize) -> Vec<Problem> {
-        let one =
-            |line| Problem { place: Place { file: "f".into(), line, ..Place::default() }, message: "no".into(), ..Problem::default() };
+        let one = |line| Problem {
+            place: Place {
+                file: "f".into(),
+                line,
+                ..Place::default()
+            },
+            message: "no".into(),
+            ..Problem::default()
+        };
         (1..=count).map(one).collect()
     }
 
@@ -98,12 +119,29 @@ mod tests {
         assert_eq!(all[MOST_KEPT].message, "1 more problem is not shown");
         append(&mut all, [some(3), vec![Problem::more("f", 70)]].concat());
         append(&mut all, Vec::new());
-        assert_eq!((all.len(), all[MOST_KEPT].not_shown(), all[MOST_KEPT].place.file.as_str()), (MOST_KEPT + 1, Some(74), "f"));
-        assert!(all[..MOST_KEPT].iter().all(|problem| problem.not_shown().is_none()));
+        assert_eq!(
+            (
+                all.len(),
+                all[MOST_KEPT].not_shown(),
+                all[MOST_KEPT].place.file.as_str()
+            ),
+            (MOST_KEPT + 1, Some(74), "f")
+        );
+        assert!(
+            all[..MOST_KEPT]
+                .iter()
+                .all(|problem| problem.not_shown().is_none())
+        );
         let mut short = some(1);
         append(&mut short, vec![Problem::more("g", 5)]);
         append(&mut short, some(1));
-        assert_eq!(short.iter().filter_map(Problem::not_shown).collect::<Vec<_>>(), [5]);
+        assert_eq!(
+            short
+                .iter()
+                .filter_map(Problem::not_shown)
+                .collect::<Vec<_>>(),
+            [5]
+        );
         assert_eq!((short.len(), short[2].not_shown()), (3, Some(5)));
     }
 }

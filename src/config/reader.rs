@@ -70,13 +70,21 @@ pub struct Reader<'d> {
 impl<'d> Reader<'d> {
     /// Starts to read `document`.
     pub fn new(document: &'d Document) -> Self {
-        Reader { document, log: Some(RefCell::default()), faults: Cell::new(0) }
+        Reader {
+            document,
+            log: Some(RefCell::default()),
+            faults: Cell::new(0),
+        }
     }
 
     /// Starts to read `document` silently: [`Reader::finish`] then gives no keys, and problems without words. Keys that are present but
     /// not known are not looked for.
     pub fn silent(document: &'d Document) -> Self {
-        Reader { document, log: None, faults: Cell::new(0) }
+        Reader {
+            document,
+            log: None,
+            faults: Cell::new(0),
+        }
     }
 
     /// Whether nobody wants to know more than whether all is well.
@@ -132,7 +140,10 @@ impl<'d> Reader<'d> {
 
     /// Every key that was looked up so far, whatever is wrong with its value.
     pub fn known(&self) -> Vec<KeyInfo> {
-        self.log.as_ref().map(|log| log.borrow().keys.clone()).unwrap_or_default()
+        self.log
+            .as_ref()
+            .map(|log| log.borrow().keys.clone())
+            .unwrap_or_default()
     }
 
     /// Ends the session with every key that was read, in the order of reading.
@@ -144,7 +155,11 @@ impl<'d> Reader<'d> {
         let document = self.document;
         let Some(log) = self.log else {
             let faults = self.faults.get();
-            return if faults == 0 { Ok(Vec::new()) } else { Err(vec![Problem::default(); faults]) };
+            return if faults == 0 {
+                Ok(Vec::new())
+            } else {
+                Err(vec![Problem::default(); faults])
+            };
         };
         let mut log = log.into_inner();
         let mut unknown = Vec::new();
@@ -156,7 +171,11 @@ impl<'d> Reader<'d> {
             }
             let (problem, meant) = log.unknown(document, &path, entry);
             // A mistyped option explains the missing choice around it, too.
-            let explained = |key: &str| meant.as_deref().is_some_and(|meant| key == meant || key == parent(meant));
+            let explained = |key: &str| {
+                meant
+                    .as_deref()
+                    .is_some_and(|meant| key == meant || key == parent(meant))
+            };
             log.missing.retain(|missing| !explained(&missing.key));
             log.problems.push(problem);
         }
@@ -164,7 +183,12 @@ impl<'d> Reader<'d> {
         if log.problems.is_empty() {
             return Ok(log.keys);
         }
-        let rank = |place: &Place| document.sources.iter().position(|source| source.name == place.file);
+        let rank = |place: &Place| {
+            document
+                .sources
+                .iter()
+                .position(|source| source.name == place.file)
+        };
         log.problems.sort_by_key(|problem| {
             let place = &problem.place;
             (rank(place).unwrap_or(usize::MAX), place.line, place.column)
@@ -198,18 +222,34 @@ impl Log {
 
     /// The problem of an entry that nobody read, and the known key it most likely means.
     fn unknown(&self, document: &Document, path: &str, entry: &Entry) -> (Problem, Option<String>) {
-        let is_table = matches!(&entry.node.value, Value::Table(table) if table.wrapped().is_none());
-        let span = if is_table { &entry.node.span } else { &entry.key };
+        let is_table =
+            matches!(&entry.node.value, Value::Table(table) if table.wrapped().is_none());
+        let span = if is_table {
+            &entry.node.span
+        } else {
+            &entry.key
+        };
         let mut problem = Problem {
             place: document.place(span),
             key: path.to_string(),
-            value: if is_table { String::new() } else { document.shown(&entry.node.span) },
-            message: format!("unknown {} `{path}`", if is_table { "table" } else { "key" }),
+            value: if is_table {
+                String::new()
+            } else {
+                document.shown(&entry.node.span)
+            },
+            message: format!(
+                "unknown {} `{path}`",
+                if is_table { "table" } else { "key" }
+            ),
             ..Problem::default()
         };
         if self.tables.contains(path) {
-            if let Value::Table(Table { choice: Some(word), .. }) = &entry.node.value {
-                (problem.place, problem.value) = (document.place(&word.span), document.shown(&word.span));
+            if let Value::Table(Table {
+                choice: Some(word), ..
+            }) = &entry.node.value
+            {
+                (problem.place, problem.value) =
+                    (document.place(&word.span), document.shown(&word.span));
             }
             problem.message = format!("`{path}` is a table, not a value");
             return (problem, None);
@@ -227,22 +267,36 @@ impl Log {
             return (problem, Some(known.to_string()));
         }
         let names = self.nearest(path);
-        let meant = names.first().filter(|name| span.is_set() || parent(name) == parent(path));
+        let meant = names
+            .first()
+            .filter(|name| span.is_set() || parent(name) == parent(path));
         let shown: Vec<&str> = names.iter().map(|name| shown(path, name, span)).collect();
-        problem.hint = if names.is_empty() { self.neighbours(path) } else { question(&shown) };
+        problem.hint = if names.is_empty() {
+            self.neighbours(path)
+        } else {
+            question(&shown)
+        };
         (problem, meant.map(|name| (*name).to_string()))
     }
 
     fn known(&self) -> impl Iterator<Item = &str> {
-        self.keys.iter().map(|info| info.key.as_str()).chain(self.tables.iter().map(String::as_str))
+        self.keys
+            .iter()
+            .map(|info| info.key.as_str())
+            .chain(self.tables.iter().map(String::as_str))
     }
 
     /// The known key for the same quantity in another unit; assignments may name the wrong table too.
     fn other_unit(&self, path: &str, span: &Span) -> Option<&str> {
-        let same = |key: &&str| stem(last(key)) == stem(last(path)) && (span.is_set() || parent(key) == parent(path));
+        let same = |key: &&str| {
+            stem(last(key)) == stem(last(path)) && (span.is_set() || parent(key) == parent(path))
+        };
         let keys = || self.keys.iter().map(|info| info.key.as_str());
         let misplaced = keys().any(|key| last(key) == last(path));
-        keys().filter(|_| !misplaced).filter(same).max_by(|a, b| likeness(a, path).total_cmp(&likeness(b, path)))
+        keys()
+            .filter(|_| !misplaced)
+            .filter(same)
+            .max_by(|a, b| likeness(a, path).total_cmp(&likeness(b, path)))
     }
 
     /// Up to three known paths like this one. The last names decide, whole paths only between equals:
@@ -251,16 +305,34 @@ impl Log {
         let lower = path.to_lowercase();
         let mut rated: Vec<(f64, f64, &str)> = self
             .known()
-            .map(|known| (likeness(last(known), last(&lower)), likeness(known, &lower), known))
-            .filter(|(own, _, known)| plausible(*own) && *known != path && (parent(known) == parent(path) || *own > ELSEWHERE))
+            .map(|known| {
+                (
+                    likeness(last(known), last(&lower)),
+                    likeness(known, &lower),
+                    known,
+                )
+            })
+            .filter(|(own, _, known)| {
+                plausible(*own)
+                    && *known != path
+                    && (parent(known) == parent(path) || *own > ELSEWHERE)
+            })
             .collect();
         rated.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
-        rated.into_iter().take(3).map(|(_, _, known)| known).collect()
+        rated
+            .into_iter()
+            .take(3)
+            .map(|(_, _, known)| known)
+            .collect()
     }
 
     /// What may stand beside an entry that is like nothing known.
     fn neighbours(&self, path: &str) -> String {
-        let names: BTreeSet<&str> = self.known().filter(|known| parent(known) == parent(path)).map(last).collect();
+        let names: BTreeSet<&str> = self
+            .known()
+            .filter(|known| parent(known) == parent(path))
+            .map(last)
+            .collect();
         if names.is_empty() || names.len() > 12 {
             return "remove it".to_string();
         }
@@ -284,7 +356,11 @@ fn unread<'t>(log: &Log, table: &'t Table, path: &str, unknown: &mut Vec<(String
                 unread(log, inner, &path, unknown);
             }
             // An assignment makes its tables itself: the user wrote the whole path.
-            Value::Table(inner) if entry.node.span.is_set() && inner.wrapped().is_none() && !inner.entries.is_empty() => {
+            Value::Table(inner)
+                if entry.node.span.is_set()
+                    && inner.wrapped().is_none()
+                    && !inner.entries.is_empty() =>
+            {
                 unread(log, inner, &path, unknown);
             }
             _ => unknown.push((path, entry)),
@@ -294,15 +370,30 @@ fn unread<'t>(log: &Log, table: &'t Table, path: &str, unknown: &mut Vec<(String
 
 /// A known path as the user should write it: the bare name within the same table of a file.
 fn shown<'k>(path: &str, known: &'k str, span: &Span) -> &'k str {
-    if !span.is_set() && parent(path) == parent(known) { last(known) } else { known }
+    if !span.is_set() && parent(path) == parent(known) {
+        last(known)
+    } else {
+        known
+    }
 }
 
 /// Dotted path of an entry; names with unusual characters are quoted, so that a dot within a name
 /// does not look like a table.
 pub(super) fn join(path: &str, name: &str) -> String {
-    let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    let name = if bare { name.to_string() } else { format!("{name:?}") };
-    if path.is_empty() { name } else { format!("{path}.{name}") }
+    let bare = !name.is_empty()
+        && name
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    let name = if bare {
+        name.to_string()
+    } else {
+        format!("{name:?}")
+    };
+    if path.is_empty() {
+        name
+    } else {
+        format!("{path}.{name}")
+    }
 }
 
 fn last(path: &str) -> &str {

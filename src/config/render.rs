@@ -19,18 +19,36 @@ pub fn render(problems: &[Problem], colour: bool) -> String {
     if problems.is_empty() {
         return String::new();
     }
-    let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+    let renderer = if colour {
+        Renderer::styled()
+    } else {
+        Renderer::plain()
+    };
     let renderer = renderer.decor_style(DecorStyle::Ascii).term_width(WIDTH);
     let mut text = String::new();
     for problem in problems {
         text.push_str(&renderer.render(&[group(problem)]));
         text.push_str("\n\n");
     }
-    let files: BTreeSet<&str> = problems.iter().map(|problem| problem.place.file.as_str()).collect();
-    let files: Vec<String> = files.into_iter().filter(|file| !file.is_empty()).map(visible).collect();
-    let number: usize = problems.iter().map(|problem| problem.not_shown().unwrap_or(1)).sum();
+    let files: BTreeSet<&str> = problems
+        .iter()
+        .map(|problem| problem.place.file.as_str())
+        .collect();
+    let files: Vec<String> = files
+        .into_iter()
+        .filter(|file| !file.is_empty())
+        .map(visible)
+        .collect();
+    let number: usize = problems
+        .iter()
+        .map(|problem| problem.not_shown().unwrap_or(1))
+        .sum();
     let noun = if number == 1 { "problem" } else { "problems" };
-    let place = if files.is_empty() { String::new() } else { format!(" in {}", files.join(", ")) };
+    let place = if files.is_empty() {
+        String::new()
+    } else {
+        format!(" in {}", files.join(", "))
+    };
     text.push_str(&format!("{number} {noun}{place}\n"));
     text
 }
@@ -49,14 +67,28 @@ fn group(problem: &Problem) -> Group<'static> {
         };
     }
     let mut group = Group::with_title(Level::ERROR.primary_title(title));
-    let allowed = if problem.allowed.is_empty() { String::new() } else { format!("allowed: {}", visible(&problem.allowed)) };
+    let allowed = if problem.allowed.is_empty() {
+        String::new()
+    } else {
+        format!("allowed: {}", visible(&problem.allowed))
+    };
     if has_line {
         let annotation = AnnotationKind::Primary.span(underlined(place));
-        let annotation = if allowed.is_empty() { annotation } else { annotation.label(allowed) };
-        let snippet = Snippet::source(place.line_text.clone()).line_start(place.line).path(visible(&place.file));
+        let annotation = if allowed.is_empty() {
+            annotation
+        } else {
+            annotation.label(allowed)
+        };
+        let snippet = Snippet::source(place.line_text.clone())
+            .line_start(place.line)
+            .path(visible(&place.file));
         group = group.element(snippet.annotation(annotation));
     } else if !allowed.is_empty() {
-        let value = if problem.value.is_empty() { String::new() } else { format!("{}; ", visible(&problem.value)) };
+        let value = if problem.value.is_empty() {
+            String::new()
+        } else {
+            format!("{}; ", visible(&problem.value))
+        };
         group = group.element(Level::NOTE.message(format!("{value}{allowed}")));
     }
     if !problem.hint.is_empty() {
@@ -75,7 +107,11 @@ fn unsaid_key(problem: &Problem) -> Option<&str> {
 /// The bytes of the line that the caret underlines.
 fn underlined(place: &Place) -> std::ops::Range<usize> {
     let line = &place.line_text;
-    let byte = |characters: usize| line.char_indices().nth(characters).map_or(line.len(), |(at, _)| at);
+    let byte = |characters: usize| {
+        line.char_indices()
+            .nth(characters)
+            .map_or(line.len(), |(at, _)| at)
+    };
     let first = place.column.saturating_sub(1);
     byte(first)..byte(first.saturating_add(place.width.max(1)))
 }
@@ -83,7 +119,11 @@ fn underlined(place: &Place) -> std::ops::Range<usize> {
 /// Input is repeated without its control characters, which could rewrite the terminal, and not without end.
 fn visible(text: impl AsRef<str>) -> String {
     let text = text.as_ref();
-    let mut shown: String = text.chars().take(LONGEST_TEXT).map(|c| if c.is_control() { '\u{FFFD}' } else { c }).collect();
+    let mut shown: String = text
+        .chars()
+        .take(LONGEST_TEXT)
+        .map(|c| if c.is_control() { '\u{FFFD}' } else { c })
+        .collect();
     if text.chars().nth(LONGEST_TEXT).is_some() {
         shown.push_str("...");
     }
@@ -96,7 +136,13 @@ mod tests {
 
     fn problem() -> Problem {
         Problem {
-            place: Place { file: "car.toml".into(), line: 7, column: 18, line_text: "band_offset_mm = 99.0 # é".into(), width: 4 },
+            place: Place {
+                file: "car.toml".into(),
+                line: 7,
+                column: 18,
+                line_text: "band_offset_mm = 99.0 # é".into(),
+                width: 4,
+            },
             key: "belt.band_offset_mm".into(),
             value: "99.0".into(),
             allowed: "0.5 to 10 mm".into(),
@@ -108,7 +154,13 @@ mod tests {
     #[test]
     fn a_problem_with_its_line() {
         let text = render(&[problem()], false);
-        for part in ["car.toml:7:18", "band_offset_mm = 99.0", "^^^^ allowed: 0.5 to 10 mm", "try less", "out of range"] {
+        for part in [
+            "car.toml:7:18",
+            "band_offset_mm = 99.0",
+            "^^^^ allowed: 0.5 to 10 mm",
+            "try less",
+            "out of range",
+        ] {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
         assert!(text.ends_with("\n1 problem in car.toml\n"), "{text}");
@@ -119,38 +171,92 @@ mod tests {
 
     #[test]
     fn a_problem_without_a_line_is_plain_text() {
-        let place = Place { file: "--set a=2".into(), ..Place::default() };
+        let place = Place {
+            file: "--set a=2".into(),
+            ..Place::default()
+        };
         let text = render(&[Problem { place, ..problem() }, problem()], false);
-        assert!(text.contains("--set a=2: `belt.band_offset_mm` is out of range"), "{text}");
+        assert!(
+            text.contains("--set a=2: `belt.band_offset_mm` is out of range"),
+            "{text}"
+        );
         assert!(text.contains("99.0; allowed: 0.5 to 10 mm"), "{text}");
-        assert!(text.ends_with("2 problems in --set a=2, car.toml\n"), "{text}");
+        assert!(
+            text.ends_with("2 problems in --set a=2, car.toml\n"),
+            "{text}"
+        );
     }
 
     #[test]
     fn a_cell_is_named_by_its_column() {
-        let cell = Problem { message: "this is not a number".into(), key: "speed_kmh".into(), ..problem() };
-        assert!(render(std::slice::from_ref(&cell), false).starts_with("error: speed_kmh: this is not a number\n"));
-        let far = Problem { place: Place { line_text: String::new(), ..cell.place.clone() }, ..cell.clone() };
-        assert!(render(&[far], false).starts_with("error: car.toml:7: speed_kmh: this is not a number\n"));
-        let long = Problem { key: "k".repeat(1000), ..cell };
+        let cell = Problem {
+            message: "this is not a number".into(),
+            key: "speed_kmh".into(),
+            ..problem()
+        };
+        assert!(
+            render(std::slice::from_ref(&cell), false)
+                .starts_with("error: speed_kmh: this is not a number\n")
+        );
+        let far = Problem {
+            place: Place {
+                line_text: String::new(),
+                ..cell.place.clone()
+            },
+            ..cell.clone()
+        };
+        assert!(
+            render(&[far], false)
+                .starts_with("error: car.toml:7: speed_kmh: this is not a number\n")
+        );
+        let long = Problem {
+            key: "k".repeat(1000),
+            ..cell
+        };
         assert!(render(&[long], false).starts_with("error: this is not a number\n"));
-        assert_eq!(render(&[problem()], false).matches("belt.band_offset_mm").count(), 1);
+        assert_eq!(
+            render(&[problem()], false)
+                .matches("belt.band_offset_mm")
+                .count(),
+            1
+        );
     }
 
     #[test]
     fn long_texts_are_cut_and_all_problems_are_counted() {
-        let long = Problem { message: "ä".repeat(1 << 20), ..problem() };
+        let long = Problem {
+            message: "ä".repeat(1 << 20),
+            ..problem()
+        };
         let text = render(&[long, Problem::more("car.toml", 41)], false);
-        assert!(text.contains(&format!("{}...\n", "ä".repeat(LONGEST_TEXT))) && text.len() < 2 * LONGEST_TEXT + 1000);
-        assert!(text.ends_with("\n42 problems in car.toml\n"), "{}", &text[text.len() - 100..]);
+        assert!(
+            text.contains(&format!("{}...\n", "ä".repeat(LONGEST_TEXT)))
+                && text.len() < 2 * LONGEST_TEXT + 1000
+        );
+        assert!(
+            text.ends_with("\n42 problems in car.toml\n"),
+            "{}",
+            &text[text.len() - 100..]
+        );
     }
 
     #[test]
     fn places_beyond_the_line_do_not_panic() {
-        let place = Place { column: 900, width: usize::MAX, ..problem().place };
+        let place = Place {
+            column: 900,
+            width: usize::MAX,
+            ..problem().place
+        };
         assert!(render(&[Problem { place, ..problem() }], false).contains("car.toml"));
-        let place = Place { file: "a\u{1b}[31m.toml".into(), ..problem().place };
-        let wild = Problem { message: "a\u{1b}[31mb\nc".into(), place, ..problem() };
+        let place = Place {
+            file: "a\u{1b}[31m.toml".into(),
+            ..problem().place
+        };
+        let wild = Problem {
+            message: "a\u{1b}[31mb\nc".into(),
+            place,
+            ..problem()
+        };
         assert!(!render(&[wild], false).contains('\u{1b}'));
     }
 }

@@ -23,7 +23,13 @@ pub struct Section<'r> {
 impl<'r> Section<'r> {
     pub(super) fn root(reader: &'r Reader<'r>) -> Self {
         let table = Some(&reader.document.root);
-        Section { reader, path: String::new(), table, header: reader.document.header.clone(), muted: false }
+        Section {
+            reader,
+            path: String::new(),
+            table,
+            header: reader.document.header.clone(),
+            muted: false,
+        }
     }
 
     /// Dotted path of the table; empty for the whole document.
@@ -38,12 +44,15 @@ impl<'r> Section<'r> {
 
     /// Whether the key is present, as a value or as a table.
     pub fn has(&self, key: &str) -> bool {
-        self.table.is_some_and(|table| table.entries.contains_key(key))
+        self.table
+            .is_some_and(|table| table.entries.contains_key(key))
     }
 
     /// Names of the entries of the table, in the order of the alphabet.
     pub fn names(&self) -> Vec<&'r str> {
-        self.table.map(|table| table.entries.keys().map(String::as_str).collect()).unwrap_or_default()
+        self.table
+            .map(|table| table.entries.keys().map(String::as_str).collect())
+            .unwrap_or_default()
     }
 
     /// Where the value of `key` stands; the header of the table, or the file, where it is absent.
@@ -60,8 +69,15 @@ impl<'r> Section<'r> {
         self.reader.note(|log| {
             log.tables.insert(section.path.clone());
         });
-        match self.table.and_then(|table| table.entries.get(name)).map(|entry| &entry.node) {
-            Some(Node { value: Value::Table(table), span }) => {
+        match self
+            .table
+            .and_then(|table| table.entries.get(name))
+            .map(|entry| &entry.node)
+        {
+            Some(Node {
+                value: Value::Table(table),
+                span,
+            }) => {
                 (section.table, section.header) = (Some(table), Some(span.clone()));
             }
             Some(node) => {
@@ -78,31 +94,46 @@ impl<'r> Section<'r> {
 
     /// The table `name` within this one, before it is known whether there is one. Silent readings know no paths.
     pub(super) fn below(&self, name: &str) -> Section<'r> {
-        let path = if self.reader.is_silent() { String::new() } else { join(&self.path, name) };
-        Section { reader: self.reader, path, table: None, header: self.header.clone(), muted: self.muted }
+        let path = if self.reader.is_silent() {
+            String::new()
+        } else {
+            join(&self.path, name)
+        };
+        Section {
+            reader: self.reader,
+            path,
+            table: None,
+            header: self.header.clone(),
+            muted: self.muted,
+        }
     }
 
     /// A required number, in SI units; NaN after a problem.
     pub fn number(&self, key: &str, allowed: Bound, doc: &str) -> f64 {
-        self.read_number(key, allowed, doc).unwrap_or_else(|absent| {
-            if absent {
-                self.missing(key, Lazy(|| allowed.in_unit(unit_of(key))));
-            }
-            f64::NAN
-        })
+        self.read_number(key, allowed, doc)
+            .unwrap_or_else(|absent| {
+                if absent {
+                    self.missing(key, Lazy(|| allowed.in_unit(unit_of(key))));
+                }
+                f64::NAN
+            })
     }
 
     /// A number, in SI units, with a default in the key's own unit; NaN after a problem.
     pub fn number_or(&self, key: &str, allowed: Bound, default: f64, doc: &str) -> f64 {
-        debug_assert!(allowed.contains(default), "default of {key} is out of range");
-        self.read_number(key, allowed, doc).unwrap_or_else(|absent| {
-            if !absent {
-                return f64::NAN;
-            }
-            let si = to_si(key, default);
-            self.defaulted(key, default, Some(si));
-            si
-        })
+        debug_assert!(
+            allowed.contains(default),
+            "default of {key} is out of range"
+        );
+        self.read_number(key, allowed, doc)
+            .unwrap_or_else(|absent| {
+                if !absent {
+                    return f64::NAN;
+                }
+                let si = to_si(key, default);
+                self.defaulted(key, default, Some(si));
+                si
+            })
     }
 
     /// A number, in SI units, that may be absent; NaN after a problem.
@@ -114,7 +145,13 @@ impl<'r> Section<'r> {
     }
 
     /// An integer with a default; the default also after a problem. It is not converted to SI units.
-    pub fn integer_or(&self, key: &str, allowed: RangeInclusive<i64>, default: i64, doc: &str) -> i64 {
+    pub fn integer_or(
+        &self,
+        key: &str,
+        allowed: RangeInclusive<i64>,
+        default: i64,
+        doc: &str,
+    ) -> i64 {
         let range = Lazy(|| match (*allowed.start(), *allowed.end()) {
             (low, i64::MAX) => format!("integer of at least {low}"),
             (low, high) => format!("integer from {low} to {high}"),
@@ -186,7 +223,13 @@ impl<'r> Section<'r> {
     }
 
     /// One of `words`, with a default; the default also after a problem.
-    pub fn word_or(&self, key: &str, words: &[&'static str], default: &'static str, doc: &str) -> &'static str {
+    pub fn word_or(
+        &self,
+        key: &str,
+        words: &[&'static str],
+        default: &'static str,
+        doc: &str,
+    ) -> &'static str {
         let allowed = Lazy(|| one_of(words));
         match self.open(key, &allowed, doc) {
             Lookup::Found(found) => {
@@ -218,12 +261,21 @@ impl<'r> Section<'r> {
     pub fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str) {
         let entry = self.table.and_then(|table| table.entries.get(key));
         let problem = match entry.map(|entry| &entry.node) {
-            Some(Node { value: Value::Table(table), span }) => {
+            Some(Node {
+                value: Value::Table(table),
+                span,
+            }) => {
                 let span = table.wrapped().map_or(span, |node| &node.span);
                 return self.report(span, key, allowed, message.to_string(), hint.to_string());
             }
             Some(node) => {
-                return self.report(&node.span, key, allowed, message.to_string(), hint.to_string());
+                return self.report(
+                    &node.span,
+                    key,
+                    allowed,
+                    message.to_string(),
+                    hint.to_string(),
+                );
             }
             None => || self.absent(key, allowed, message.to_string(), hint.to_string()),
         };

@@ -82,7 +82,13 @@ pub(super) fn excess(text: &str) -> Option<Excess> {
 
 /// The first word and its length in bytes.
 fn next(bytes: &[u8]) -> (Word, usize) {
-    let until = |ends: &[u8], from: usize| bytes.iter().skip(from).position(|byte| ends.contains(byte)).map_or(bytes.len(), |at| from + at);
+    let until = |ends: &[u8], from: usize| {
+        bytes
+            .iter()
+            .skip(from)
+            .position(|byte| ends.contains(byte))
+            .map_or(bytes.len(), |at| from + at)
+    };
     match bytes[0] {
         b'\n' | b'\r' => (Word::Line, 1),
         b' ' | b'\t' => (Word::Blank, 1),
@@ -95,7 +101,14 @@ fn next(bytes: &[u8]) -> (Word, usize) {
         quote @ (b'"' | b'\'') => (Word::Text, quoted(bytes, quote)),
         _ => {
             let length = until(b".=,[]{} \t#\r\n", 0);
-            (Word::Atom(bytes[..length].iter().all(|byte| byte.is_ascii_digit() || b"+-_eE".contains(byte))), length)
+            (
+                Word::Atom(
+                    bytes[..length]
+                        .iter()
+                        .all(|byte| byte.is_ascii_digit() || b"+-_eE".contains(byte)),
+                ),
+                length,
+            )
         }
     }
 }
@@ -106,13 +119,20 @@ fn quoted(bytes: &[u8], quote: u8) -> usize {
     let mut at = if long { 3 } else { 1 };
     while let Some(&byte) = bytes.get(at) {
         match byte {
-            b'\\' if quote == b'"' => at += 1 + usize::from(bytes.get(at + 1).is_some_and(|next| b"\\\"".contains(next))),
+            b'\\' if quote == b'"' => {
+                at += 1 + usize::from(bytes.get(at + 1).is_some_and(|next| b"\\\"".contains(next)))
+            }
             b'\n' if !long => return at,
             _ if byte == quote && !long => return at + 1,
             _ if byte == quote && bytes[at..].starts_with(&[quote; 3]) => {
                 let end = at + 3;
                 // Two more belong to the text.
-                return end + bytes[end..].iter().take(2).take_while(|byte| **byte == quote).count();
+                return end
+                    + bytes[end..]
+                        .iter()
+                        .take(2)
+                        .take_while(|byte| **byte == quote)
+                        .count();
             }
             _ => at += 1,
         }
@@ -127,9 +147,22 @@ mod tests {
     #[test]
     fn tables_are_counted_in_all_their_forms() {
         let many = MOST_TABLES / 2;
-        for table in ["[a]\n", "[[a]]\n", "  [a]\n", "x={}\n", "a.b=1\n", "1.1=1\n", "a . b = 1\n", "\"a\".b=1\n", "[1.1]\n"] {
+        for table in [
+            "[a]\n",
+            "[[a]]\n",
+            "  [a]\n",
+            "x={}\n",
+            "a.b=1\n",
+            "1.1=1\n",
+            "a . b = 1\n",
+            "\"a\".b=1\n",
+            "[1.1]\n",
+        ] {
             assert_eq!(excess(&table.repeat(many)), None, "{table}");
-            assert!(matches!(excess(&table.repeat(2 * many + 1)), Some(Excess::Tables(_))), "{table}");
+            assert!(
+                matches!(excess(&table.repeat(2 * many + 1)), Some(Excess::Tables(_))),
+                "{table}"
+            );
         }
         // Two tables a line.
         for table in ["[a.b]\n", "x={a.b=1}\n", "a.b.c=1\n", "1.1.1=1\n"] {
@@ -139,13 +172,24 @@ mod tests {
 
     #[test]
     fn what_makes_no_table_does_not_count() {
-        for line in
-            ["1.5, 2.5,\n", "x = 1.5\n", "x = -1.5e-3 # a.b.c [x] {\n", "x = \"a.b [ {\"\n", "x = '''\n[a]\n'''\n", "x = [[1], [2]]\n"]
-        {
+        for line in [
+            "1.5, 2.5,\n",
+            "x = 1.5\n",
+            "x = -1.5e-3 # a.b.c [x] {\n",
+            "x = \"a.b [ {\"\n",
+            "x = '''\n[a]\n'''\n",
+            "x = [[1], [2]]\n",
+        ] {
             assert_eq!(excess(&line.repeat(2 * MOST_TABLES)), None, "{line}");
         }
         assert_eq!(excess(&"x = \"\\\"{{\\\\\"\n".repeat(MOST_TABLES)), None);
-        assert_eq!(excess(&format!("x = \"\"\"{}\"\"\"\"\"\n", "{\n".repeat(2 * MOST_TABLES))), None);
+        assert_eq!(
+            excess(&format!(
+                "x = \"\"\"{}\"\"\"\"\"\n",
+                "{\n".repeat(2 * MOST_TABLES)
+            )),
+            None
+        );
         // A text that is not closed ends with its line.
         assert!(excess(&"x = \"a\n{}".repeat(MOST_TABLES + 1)).is_some());
     }
@@ -161,9 +205,25 @@ mod tests {
     #[test]
     fn long_keys_are_refused_wherever_they_stand() {
         let key = |names: usize| vec!["a"; names].join(".");
-        for (before, after) in [("", " = 1"), ("[", "]"), ("x = { ", " = 1 }"), ("] ", " \""), ("} ", " ] [")] {
-            assert_eq!(excess(&format!("{before}{}{after}\n", key(MOST_NAMES))), None, "{before}");
-            assert!(matches!(excess(&format!("{before}{}{after}\n", key(MOST_NAMES + 1))), Some(Excess::Names(_))), "{before}");
+        for (before, after) in [
+            ("", " = 1"),
+            ("[", "]"),
+            ("x = { ", " = 1 }"),
+            ("] ", " \""),
+            ("} ", " ] ["),
+        ] {
+            assert_eq!(
+                excess(&format!("{before}{}{after}\n", key(MOST_NAMES))),
+                None,
+                "{before}"
+            );
+            assert!(
+                matches!(
+                    excess(&format!("{before}{}{after}\n", key(MOST_NAMES + 1))),
+                    Some(Excess::Names(_))
+                ),
+                "{before}"
+            );
         }
         assert_eq!(excess(&format!("# {}\nx = \"{}\"", key(99), key(99))), None);
     }

@@ -23,51 +23,86 @@ pub(super) struct Source {
 impl Source {
     /// An input of that name.
     pub fn new(name: &str, text: &str, has_lines: bool) -> Self {
-        Source { name: name.to_string(), text: text.to_string(), has_lines, ends: OnceLock::new() }
+        Source {
+            name: name.to_string(),
+            text: text.to_string(),
+            has_lines,
+            ends: OnceLock::new(),
+        }
     }
 
     /// The place of a stretch of the text.
     pub fn place(&self, range: Range<usize>) -> Place {
         let file = self.name.clone();
         if !self.has_lines {
-            return Place { file, ..Place::default() };
+            return Place {
+                file,
+                ..Place::default()
+            };
         }
         let start = self.clamp(range.start);
         let line_start = self.line_start(start);
         let line_text = self.line_at(start);
-        let end = self.clamp(range.end).clamp(start, line_start.max(start).max(line_start + line_text.len()));
+        let end = self.clamp(range.end).clamp(
+            start,
+            line_start.max(start).max(line_start + line_text.len()),
+        );
         Place {
             file,
             line: self.line(start) + 1,
             column: self.text[line_start..start].chars().count() + 1,
-            line_text: if line_text.len() <= LONGEST_LINE { line_text.to_string() } else { String::new() },
+            line_text: if line_text.len() <= LONGEST_LINE {
+                line_text.to_string()
+            } else {
+                String::new()
+            },
             width: self.text[start..end].chars().count().max(1),
         }
     }
 
     /// Number of line ends before a byte; looked up, since a file may have as many problems as lines.
     fn line(&self, at: usize) -> usize {
-        let newlines = || self.text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at).collect();
-        self.ends.get_or_init(newlines).partition_point(|end| *end < at)
+        let newlines = || {
+            self.text
+                .bytes()
+                .enumerate()
+                .filter(|(_, byte)| *byte == b'\n')
+                .map(|(at, _)| at)
+                .collect()
+        };
+        self.ends
+            .get_or_init(newlines)
+            .partition_point(|end| *end < at)
     }
 
     /// Start of the line in which a byte stands.
     pub fn line_start(&self, at: usize) -> usize {
         let line = self.line(self.clamp(at));
-        self.ends.get().and_then(|ends| ends.get(line.checked_sub(1)?)).map_or(0, |end| end + 1)
+        self.ends
+            .get()
+            .and_then(|ends| ends.get(line.checked_sub(1)?))
+            .map_or(0, |end| end + 1)
     }
 
     /// The line in which a byte stands, without its end.
     pub fn line_at(&self, at: usize) -> &str {
         let start = self.line_start(at);
-        let end = self.ends.get().and_then(|ends| ends.get(self.line(self.clamp(at)))).map_or(self.text.len(), |end| end + 1);
+        let end = self
+            .ends
+            .get()
+            .and_then(|ends| ends.get(self.line(self.clamp(at))))
+            .map_or(self.text.len(), |end| end + 1);
         self.text[start..end].lines().next().unwrap_or_default()
     }
 
     /// The nearest earlier start of a character. The end of the text counts as the end of its last
     /// line with content, since nothing can be shown on the empty line after it.
     pub fn clamp(&self, at: usize) -> usize {
-        let mut at = if at >= self.text.len() { self.text.trim_end().len() } else { at };
+        let mut at = if at >= self.text.len() {
+            self.text.trim_end().len()
+        } else {
+            at
+        };
         while !self.text.is_char_boundary(at) {
             at -= 1;
         }

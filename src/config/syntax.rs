@@ -14,18 +14,34 @@ const LONGEST_LINE: usize = 1000;
 /// One problem if the bytes are not UTF-8 text or hold nothing but white space.
 pub fn decode(file: &str, bytes: &[u8]) -> Result<String, Vec<Problem>> {
     let problem = |message: &str, hint: &str| {
-        let place = Place { file: file.to_string(), ..Place::default() };
+        let place = Place {
+            file: file.to_string(),
+            ..Place::default()
+        };
         let (message, hint) = (message.to_string(), hint.to_string());
-        vec![Problem { place, message, hint, ..Problem::default() }]
+        vec![Problem {
+            place,
+            message,
+            hint,
+            ..Problem::default()
+        }]
     };
-    let binary = || problem("binary file, expected text", "save the file as plain text in UTF-8");
+    let binary = || {
+        problem(
+            "binary file, expected text",
+            "save the file as plain text in UTF-8",
+        )
+    };
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let text = std::str::from_utf8(bytes).map_err(|_| binary())?;
     if text.contains('\0') {
         return Err(binary());
     }
     if text.trim().is_empty() {
-        return Err(problem("file is empty", "was it saved? lines are `key = value` below a `[table]`"));
+        return Err(problem(
+            "file is empty",
+            "was it saved? lines are `key = value` below a `[table]`",
+        ));
     }
     Ok(text.to_string())
 }
@@ -36,8 +52,15 @@ const MOST_SHOWN: usize = 100;
 /// The parser's errors as problems, one per line: what follows the first error of a line is
 /// mostly its consequence.
 pub(super) fn problems(source: &Source, errors: &[toml::de::Error]) -> Vec<Problem> {
-    let mut ordered: Vec<(Range<usize>, &str)> =
-        errors.iter().map(|error| (error.span().unwrap_or(source.text.len()..source.text.len()), error.message())).collect();
+    let mut ordered: Vec<(Range<usize>, &str)> = errors
+        .iter()
+        .map(|error| {
+            (
+                error.span().unwrap_or(source.text.len()..source.text.len()),
+                error.message(),
+            )
+        })
+        .collect();
     ordered.sort_by_key(|(span, _)| span.start);
     let mut found = Vec::new();
     let mut more = 0;
@@ -45,7 +68,11 @@ pub(super) fn problems(source: &Source, errors: &[toml::de::Error]) -> Vec<Probl
     for (span, parser) in ordered {
         let start = source.clamp(span.start);
         if line_end.is_none_or(|end| start > end) {
-            line_end = Some(source.text[start..].find('\n').map_or(source.text.len(), |length| start + length));
+            line_end = Some(
+                source.text[start..]
+                    .find('\n')
+                    .map_or(source.text.len(), |length| start + length),
+            );
             if found.len() < MOST_SHOWN {
                 found.push(syntax_problem(source, span, parser));
             } else {
@@ -94,22 +121,33 @@ fn slip(line: &str) -> Option<(Range<usize>, String)> {
         let end = value.find(['#', '}']).unwrap_or(value.len());
         let value = value[..end].trim_end();
         if let Some((length, point)) = decimal_comma(value) {
-            return Some((at..at + length, format!("write {point} with a decimal point")));
+            return Some((
+                at..at + length,
+                format!("write {point} with a decimal point"),
+            ));
         }
         let number = value.split(',').next().unwrap_or_default().trim_end();
         if let Some((figure, unit)) = number_with_unit(number) {
             return Some((at..at + number.len(), number_hint(figure, unit)));
         }
         let bare = value.starts_with(char::is_alphabetic)
-            && value.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-' || c == ' ')
+            && value
+                .chars()
+                .all(|c| c.is_alphanumeric() || c == '_' || c == '-' || c == ' ')
             && !["true", "false", "nan", "inf"].contains(&value);
-        bare.then(|| (at..at + value.len(), format!("text stands in quotes: \"{value}\"")))
+        bare.then(|| {
+            (
+                at..at + value.len(),
+                format!("text stands in quotes: \"{value}\""),
+            )
+        })
     })
 }
 
 /// Length of a number with a decimal comma at the start of `text`, and the number with a point.
 pub(super) fn decimal_comma(text: &str) -> Option<(usize, String)> {
-    let digits = |text: &str| text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+    let digits =
+        |text: &str| text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
     let sign = usize::from(text.starts_with(['+', '-']));
     let whole = digits(&text[sign..]);
     let fraction = text[sign + whole..].strip_prefix(',').map_or(0, digits);
@@ -122,8 +160,9 @@ pub(super) fn number_with_unit(text: &str) -> Option<(&str, &str)> {
     let text = text.trim();
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.,".contains(c)))?;
     let (figure, unit) = (&text[..end], text[end..].trim_start());
-    let is_unit =
-        unit.starts_with(|c: char| c.is_alphabetic() || c == '°' || c == '%') && unit.chars().count() <= 12 && !unit.contains(':');
+    let is_unit = unit.starts_with(|c: char| c.is_alphabetic() || c == '°' || c == '%')
+        && unit.chars().count() <= 12
+        && !unit.contains(':');
     (figure.contains(|c: char| c.is_ascii_digit()) && is_unit).then_some((figure, unit))
 }
 
@@ -144,16 +183,32 @@ mod tests {
             assert!(problems[0].message.contains("binary file"), "{problems:?}");
             assert_eq!(problems[0].place.file, "x.toml");
         }
-        assert!(decode("x", b" \r\n\t").unwrap_err()[0].message.contains("file is empty"));
-        assert!(decode("x", b"\xEF\xBB\xBF").unwrap_err()[0].message.contains("file is empty"));
+        assert!(
+            decode("x", b" \r\n\t").unwrap_err()[0]
+                .message
+                .contains("file is empty")
+        );
+        assert!(
+            decode("x", b"\xEF\xBB\xBF").unwrap_err()[0]
+                .message
+                .contains("file is empty")
+        );
         assert_eq!(decode("x", b"\xEF\xBB\xBFa = 1").unwrap(), "a = 1");
     }
 
     #[test]
     fn slips_in_a_line() {
-        assert_eq!(slip("a = 2,40").unwrap(), (4..8, "write 2.40 with a decimal point".into()));
+        assert_eq!(
+            slip("a = 2,40").unwrap(),
+            (4..8, "write 2.40 with a decimal point".into())
+        );
         assert!(slip("a = -1,5 # x").unwrap().1.contains("-1.5"));
-        assert!(slip("a = { value = 2,40, status = \"source\" }").unwrap().1.contains("2.40"));
+        assert!(
+            slip("a = { value = 2,40, status = \"source\" }")
+                .unwrap()
+                .1
+                .contains("2.40")
+        );
         assert!(slip("a_mm = 3 mm").unwrap().1.contains("without `mm`"));
         assert!(slip("a = belt drive").unwrap().1.contains("\"belt drive\""));
         assert_eq!(slip("a_mm = 3 mm # x").unwrap().0, 7..11);

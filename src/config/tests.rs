@@ -22,7 +22,11 @@ const OFFSET: Bound = Bound::closed(0.5, 10.0);
 /// Reads the band offset of a belt and ends the session.
 fn belt(document: &Document) -> (f64, Result<Vec<KeyInfo>, Vec<Problem>>) {
     let reader = Reader::new(document);
-    let belt = reader.root().table("transmission").table("cvt").table("belt");
+    let belt = reader
+        .root()
+        .table("transmission")
+        .table("cvt")
+        .table("belt");
     let offset = belt.number("band_offset_mm", OFFSET, "Distance of the bands");
     drop(belt);
     (offset, reader.finish())
@@ -59,17 +63,47 @@ fn both_forms_carry_their_status() {
 
 #[test]
 fn a_problem_has_its_place_value_range() {
-    let problem = only(belt(&document(&format!("\n{HEAD}  band_offset_mm = {{ value = 99.0 }} # é"))).1);
-    assert_eq!((problem.place.line, problem.place.column, problem.place.width), (3, 30, 4));
-    assert_eq!(problem.place.line_text, "  band_offset_mm = { value = 99.0 } # é");
-    assert_eq!((problem.value.as_str(), problem.allowed.as_str()), ("99.0", "0.5 to 10 mm"));
+    let problem = only(
+        belt(&document(&format!(
+            "\n{HEAD}  band_offset_mm = {{ value = 99.0 }} # é"
+        )))
+        .1,
+    );
+    assert_eq!(
+        (
+            problem.place.line,
+            problem.place.column,
+            problem.place.width
+        ),
+        (3, 30, 4)
+    );
+    assert_eq!(
+        problem.place.line_text,
+        "  band_offset_mm = { value = 99.0 } # é"
+    );
+    assert_eq!(
+        (problem.value.as_str(), problem.allowed.as_str()),
+        ("99.0", "0.5 to 10 mm")
+    );
     assert_eq!(problem.key, "transmission.cvt.belt.band_offset_mm");
 }
 
 #[test]
 fn columns_count_characters() {
-    let problem = only(belt(&document("transmission.cvt.belt.\"é\" = 1\ntransmission.cvt.belt.band_offset_mm = 1\n")).1);
-    assert_eq!((problem.place.line, problem.place.column, problem.place.width), (1, 23, 3));
+    let problem = only(
+        belt(&document(
+            "transmission.cvt.belt.\"é\" = 1\ntransmission.cvt.belt.band_offset_mm = 1\n",
+        ))
+        .1,
+    );
+    assert_eq!(
+        (
+            problem.place.line,
+            problem.place.column,
+            problem.place.width
+        ),
+        (1, 23, 3)
+    );
 }
 
 #[test]
@@ -77,10 +111,17 @@ fn a_missing_key_stands_at_the_header() {
     let (si, result) = belt(&document(HEAD));
     assert!(si.is_nan());
     let problem = only(result);
-    assert!(problem.message.contains("missing key `transmission.cvt.belt.band_offset_mm`"));
+    assert!(
+        problem
+            .message
+            .contains("missing key `transmission.cvt.belt.band_offset_mm`")
+    );
     assert_eq!((problem.place.line, problem.place.column), (1, 1));
     let problem = only(belt(&document("")).1);
-    assert_eq!((problem.place.line, problem.place.file.as_str()), (0, "car.toml"));
+    assert_eq!(
+        (problem.place.line, problem.place.file.as_str()),
+        (0, "car.toml")
+    );
 }
 
 #[test]
@@ -97,10 +138,19 @@ fn kinds_of_values() {
     assert_eq!(root.text_or("name2", "y", ""), "y");
     assert_eq!(root.optional_text("name3", ""), None);
     assert_eq!(root.word_or("word", &["warm", "cold"], "warm", ""), "cold");
-    assert_eq!(root.numbers("list_mm", Bound::positive(), 1..=2, ""), [1e-3, 2.5 * 1e-3]);
-    let columns = [("temperature_degc", Bound::any()), ("viscosity_mm2_s", Bound::positive())];
+    assert_eq!(
+        root.numbers("list_mm", Bound::positive(), 1..=2, ""),
+        [1e-3, 2.5 * 1e-3]
+    );
+    let columns = [
+        ("temperature_degc", Bound::any()),
+        ("viscosity_mm2_s", Bound::positive()),
+    ];
     let rows = root.rows("points", &columns, "");
-    assert_eq!(rows, [[-40.0 + 273.15, 9000.0 * 1e-6], [273.15, 250.0 * 1e-6]]);
+    assert_eq!(
+        rows,
+        [[-40.0 + 273.15, 9000.0 * 1e-6], [273.15, 250.0 * 1e-6]]
+    );
     assert!(root.rows("points2", &columns, "").is_empty());
     assert_eq!(root.optional_number("x_mm", OFFSET, ""), None);
     assert!((root.number_or("x_m", OFFSET, 1.0, "") - 1.0).abs() < 1e-15);
@@ -109,10 +159,16 @@ fn kinds_of_values() {
     let keys = reader.finish().unwrap();
     let find = |key: &str| keys.iter().find(|info| info.key == key).unwrap();
     assert_eq!(find("name").status, "assumed");
-    assert_eq!((find("n2").status.as_str(), find("n2").value.as_str()), ("default", "2"));
+    assert_eq!(
+        (find("n2").status.as_str(), find("n2").value.as_str()),
+        ("default", "2")
+    );
     assert_eq!(find("points").unit, "°C, mm²/s");
     assert_eq!(find("list_mm").value, "[1.0, 2.5]");
-    assert_eq!((find("x_mm").value.as_str(), find("x_mm").status.as_str()), ("", ""));
+    assert_eq!(
+        (find("x_mm").value.as_str(), find("x_mm").status.as_str()),
+        ("", "")
+    );
 }
 
 #[test]
@@ -130,7 +186,12 @@ fn lists_keep_their_length_after_a_problem() {
 #[test]
 fn a_value_where_a_table_belongs_is_one_problem() {
     let problem = only(belt(&document("transmission = 3\n")).1);
-    assert!(problem.message.contains("`transmission`: expected a table, found an integer"), "{problem:?}");
+    assert!(
+        problem
+            .message
+            .contains("`transmission`: expected a table, found an integer"),
+        "{problem:?}"
+    );
 }
 
 #[test]
@@ -141,12 +202,30 @@ fn complaints_stand_at_the_value() {
     section.number("x", Bound::any(), "");
     section.complain("x", "below y", "`x` is above `y`", "swap them");
     section.complain("y", "", "no `y`", "");
-    reader.problem(Problem { message: "from outside".into(), ..Problem::default() });
+    reader.problem(Problem {
+        message: "from outside".into(),
+        ..Problem::default()
+    });
     drop(section);
     let problems = reader.finish().unwrap_err();
-    let at = |message: &str| problems.iter().find(|problem| problem.message.contains(message)).unwrap();
-    assert_eq!((at("above").place.line, at("above").place.column, at("above").value.as_str()), (2, 15, "3"));
-    assert_eq!((at("no `y`").place.line, at("no `y`").key.as_str()), (1, "a.y"));
+    let at = |message: &str| {
+        problems
+            .iter()
+            .find(|problem| problem.message.contains(message))
+            .unwrap()
+    };
+    assert_eq!(
+        (
+            at("above").place.line,
+            at("above").place.column,
+            at("above").value.as_str()
+        ),
+        (2, 15, "3")
+    );
+    assert_eq!(
+        (at("no `y`").place.line, at("no `y`").key.as_str()),
+        (1, "a.y")
+    );
     assert_eq!(at("from outside").key, "");
 }
 
@@ -167,7 +246,12 @@ fn problems_stand_in_the_order_of_the_file() {
         reader.root().number(key, Bound::closed(0.0, 1.0), "");
         reader.root().number(key, Bound::closed(0.0, 1.0), "");
     }
-    let lines: Vec<usize> = reader.finish().unwrap_err().iter().map(|problem| problem.place.line).collect();
+    let lines: Vec<usize> = reader
+        .finish()
+        .unwrap_err()
+        .iter()
+        .map(|problem| problem.place.line)
+        .collect();
     assert_eq!(lines, [1, 2]);
 }
 
@@ -211,7 +295,13 @@ fn counted(document: &Document) -> (usize, usize) {
     root.number("mass_kg", Bound::positive(), "mass");
     root.numbers("list_mm", OFFSET, 0..=usize::MAX, "numbers");
     let problems = reader.finish().unwrap_err();
-    (problems.len(), problems.iter().map(|problem| problem.not_shown().unwrap_or(1)).sum())
+    (
+        problems.len(),
+        problems
+            .iter()
+            .map(|problem| problem.not_shown().unwrap_or(1))
+            .sum(),
+    )
 }
 
 #[test]
@@ -222,24 +312,50 @@ fn of_a_great_many_problems_the_rest_is_counted() {
     assert_eq!(counted(&document(&list)), (501, 10_000));
     let twice = "a = 1\n".repeat(1000);
     let problems = Document::parse("car.toml", &twice).unwrap_err();
-    assert_eq!((problems.len(), problems.last().and_then(Problem::not_shown)), (101, Some(899)));
+    assert_eq!(
+        (problems.len(), problems.last().and_then(Problem::not_shown)),
+        (101, Some(899))
+    );
 }
 
 #[test]
 fn long_lines_and_values_are_not_repeated() {
-    let long = format!("mass_kg = 1\n{}\nx = \"{}\" # {}\n", "# \u{e9}".repeat(300), "\u{e9}".repeat(300), "y".repeat(600));
+    let long = format!(
+        "mass_kg = 1\n{}\nx = \"{}\" # {}\n",
+        "# \u{e9}".repeat(300),
+        "\u{e9}".repeat(300),
+        "y".repeat(600)
+    );
     let written = document(&long);
     let reader = Reader::new(&written);
     reader.root().number("mass_kg", Bound::positive(), "mass");
     let problem = only(reader.finish());
-    assert_eq!((problem.place.line, problem.place.column, problem.place.line_text.as_str()), (3, 1, ""));
+    assert_eq!(
+        (
+            problem.place.line,
+            problem.place.column,
+            problem.place.line_text.as_str()
+        ),
+        (3, 1, "")
+    );
     assert_eq!(problem.value, format!("\"{}...", "\u{e9}".repeat(199)));
     // Line ends of every kind, the last line without one.
     for text in ["a = 1\r\nb = 2\r\n\r\nc = 3", "a = 1\nb = 2\n\nc = 3\n"] {
         let document = document(text);
         let reader = Reader::new(&document);
-        let places: Vec<(usize, String)> =
-            reader.finish().unwrap_err().into_iter().map(|problem| (problem.place.line, problem.place.line_text)).collect();
-        assert_eq!(places, [(1, "a = 1".to_string()), (2, "b = 2".to_string()), (4, "c = 3".to_string())]);
+        let places: Vec<(usize, String)> = reader
+            .finish()
+            .unwrap_err()
+            .into_iter()
+            .map(|problem| (problem.place.line, problem.place.line_text))
+            .collect();
+        assert_eq!(
+            places,
+            [
+                (1, "a = 1".to_string()),
+                (2, "b = 2".to_string()),
+                (4, "c = 3".to_string())
+            ]
+        );
     }
 }

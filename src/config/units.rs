@@ -11,7 +11,12 @@ struct Unit {
 }
 
 const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Unit {
-    Unit { suffix, name, factor, offset: 0.0 }
+    Unit {
+        suffix,
+        name,
+        factor,
+        offset: 0.0,
+    }
 }
 
 /// rad/s in one rpm.
@@ -42,7 +47,12 @@ const UNITS: [Unit; 58] = [
     unit("_gpa", "GPa", 1e9),
     unit("_mpa_s", "mPa s", 1e-3),
     unit("_mm2_s", "mm²/s", 1e-6),
-    Unit { suffix: "_degc", name: "°C", factor: 1.0, offset: 273.15 },
+    Unit {
+        suffix: "_degc",
+        name: "°C",
+        factor: 1.0,
+        offset: 273.15,
+    },
     unit("_k", "K", 1.0),
     unit("_per_k", "1/K", 1.0),
     unit("_s", "s", 1.0),
@@ -82,7 +92,8 @@ const UNITS: [Unit; 58] = [
 static BY_LAST_BYTE: LazyLock<[Vec<&'static Unit>; 128]> = LazyLock::new(|| {
     let mut units = std::array::from_fn(|_| Vec::new());
     for unit in &UNITS {
-        let list: &mut Vec<&'static Unit> = &mut units[usize::from(unit.suffix.as_bytes()[unit.suffix.len() - 1])];
+        let list: &mut Vec<&'static Unit> =
+            &mut units[usize::from(unit.suffix.as_bytes()[unit.suffix.len() - 1])];
         list.push(unit);
         list.sort_by_key(|unit| std::cmp::Reverse(unit.suffix.len()));
     }
@@ -92,7 +103,11 @@ static BY_LAST_BYTE: LazyLock<[Vec<&'static Unit>; 128]> = LazyLock::new(|| {
 /// The unit with the longest suffix that ends the key; none for dimensionless keys.
 fn find(key: &str) -> Option<&'static Unit> {
     let last = *key.as_bytes().last()?;
-    BY_LAST_BYTE.get(usize::from(last))?.iter().find(|unit| key.ends_with(unit.suffix)).copied()
+    BY_LAST_BYTE
+        .get(usize::from(last))?
+        .iter()
+        .find(|unit| key.ends_with(unit.suffix))
+        .copied()
 }
 
 /// A value in the unit of the key, converted to SI (temperatures to kelvin).
@@ -107,7 +122,9 @@ pub fn unit_of(key: &str) -> &'static str {
 
 /// The key without its unit, to recognise the same quantity in another unit.
 pub(super) fn stem(key: &str) -> &str {
-    find(key).and_then(|unit| key.strip_suffix(unit.suffix)).unwrap_or(key)
+    find(key)
+        .and_then(|unit| key.strip_suffix(unit.suffix))
+        .unwrap_or(key)
 }
 
 #[cfg(test)]
@@ -116,7 +133,12 @@ mod tests {
 
     /// Key, value, SI value worked out by hand, unit as shown.
     const EXPECTED: [(&str, f64, f64, &str); 62] = [
-        ("fall_per_1000_rpm", 0.2, 0.001_909_859_317_102_744, "1/1000 rpm"),
+        (
+            "fall_per_1000_rpm",
+            0.2,
+            0.001_909_859_317_102_744,
+            "1/1000 rpm",
+        ),
         ("film_thickness_um", 0.5, 5e-7, "µm"),
         ("lift_n_per_m", 0.028, 0.028, "N/m"),
         ("ram_w_k_per_m_s", 40.0, 40.0, "W/K per m/s"),
@@ -173,8 +195,18 @@ mod tests {
         ("f2_n_per_kmh2", 0.03, 0.3888, "N/(km/h)²"),
         ("rated_nm", 140.0, 140.0, "N m"),
         ("viscous_nm_s", 0.01, 0.01, "N m s"),
-        ("drag_nm_per_rpm", 0.001, 0.009_549_296_585_513_72, "N m/rpm"),
-        ("drag_nm_per_rpm2", 1e-6, 9.118_906_527_810_399e-5, "N m/rpm²"),
+        (
+            "drag_nm_per_rpm",
+            0.001,
+            0.009_549_296_585_513_72,
+            "N m/rpm",
+        ),
+        (
+            "drag_nm_per_rpm2",
+            1e-6,
+            9.118_906_527_810_399e-5,
+            "N m/rpm²",
+        ),
         ("slip_percent", 2.5, 0.025, "%"),
         // Names that end like a unit without being one of the pair `_unit`.
         ("nm", 1.0, 1.0, "-"),
@@ -185,7 +217,10 @@ mod tests {
     fn every_unit_converts_as_worked_out_by_hand() {
         for (key, value, si, name) in EXPECTED {
             let found = to_si(key, value);
-            assert!((found - si).abs() <= 1e-12 * si.abs(), "{key}: {found} instead of {si}");
+            assert!(
+                (found - si).abs() <= 1e-12 * si.abs(),
+                "{key}: {found} instead of {si}"
+            );
             assert_eq!(unit_of(key), name, "{key}");
         }
     }
@@ -193,9 +228,19 @@ mod tests {
     #[test]
     fn the_table_above_leaves_no_unit_out() {
         for unit in &UNITS {
-            let tried = EXPECTED.iter().any(|(key, ..)| find(key).is_some_and(|found| found.suffix == unit.suffix));
+            let tried = EXPECTED
+                .iter()
+                .any(|(key, ..)| find(key).is_some_and(|found| found.suffix == unit.suffix));
             assert!(tried, "{} is not tried", unit.suffix);
-            assert_eq!(UNITS.iter().filter(|other| other.suffix == unit.suffix).count(), 1, "{}", unit.suffix);
+            assert_eq!(
+                UNITS
+                    .iter()
+                    .filter(|other| other.suffix == unit.suffix)
+                    .count(),
+                1,
+                "{}",
+                unit.suffix
+            );
         }
     }
 

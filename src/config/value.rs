@@ -56,7 +56,9 @@ impl<'r> Section<'r> {
     pub(super) fn read_number(&self, key: &str, allowed: Bound, doc: &str) -> Result<f64, bool> {
         match self.open(key, Lazy(|| allowed.in_unit(unit_of(key))), doc) {
             Lookup::Found(found) => {
-                let value = self.check_number(key, key, found.node, allowed).ok_or(false)?;
+                let value = self
+                    .check_number(key, key, found.node, allowed)
+                    .ok_or(false)?;
                 let si = to_si(key, value);
                 self.given(key, &found, value, Some(si));
                 Ok(si)
@@ -84,7 +86,13 @@ impl<'r> Section<'r> {
     }
 
     /// A finite number within its range, in its own unit; `quantity` carries the unit.
-    pub(super) fn check_number(&self, key: &str, quantity: &str, node: &Node, allowed: Bound) -> Option<f64> {
+    pub(super) fn check_number(
+        &self,
+        key: &str,
+        quantity: &str,
+        node: &Node,
+        allowed: Bound,
+    ) -> Option<f64> {
         let value = match &node.value {
             Value::Integer(value) => *value as f64,
             Value::Float(value) => *value,
@@ -127,8 +135,17 @@ impl<'r> Section<'r> {
 
     /// The value with its origin, from either of its two forms.
     pub(super) fn unwrap(&self, key: &str, node: &'r Node) -> Lookup<'r> {
-        let (status, source) = if node.span.is_set() { ("set", "command line") } else { ("user", "") };
-        let mut found = Found { node, status, source, note: "" };
+        let (status, source) = if node.span.is_set() {
+            ("set", "command line")
+        } else {
+            ("user", "")
+        };
+        let mut found = Found {
+            node,
+            status,
+            source,
+            note: "",
+        };
         let Value::Table(table) = &node.value else {
             return Lookup::Found(found);
         };
@@ -162,7 +179,13 @@ impl<'r> Section<'r> {
                 _ => {
                     let hint = suggest(name, &["value", "status", "source", "note"]);
                     let message = format!("unknown field `{name}` in `{}`", join(&self.path, key));
-                    self.report(&entry.key, key, "value, status, source, note", message, hint);
+                    self.report(
+                        &entry.key,
+                        key,
+                        "value, status, source, note",
+                        message,
+                        hint,
+                    );
                 }
             }
         }
@@ -172,7 +195,13 @@ impl<'r> Section<'r> {
         if !STATUSES.contains(&text) {
             let names = near(text, STATUSES.into_iter());
             let message = format!("`{}` has no known status", join(&self.path, key));
-            self.report(&node.span, key, &one_of(&STATUSES), message, question(&names));
+            self.report(
+                &node.span,
+                key,
+                &one_of(&STATUSES),
+                message,
+                question(&names),
+            );
         } else if *status != "set" {
             *status = text;
         }
@@ -203,7 +232,11 @@ impl<'r> Section<'r> {
 
     fn fill(&self, key: &str, write: impl FnOnce(&mut KeyInfo)) {
         self.reader.note(|log| {
-            if let Some(info) = log.index.get(&join(&self.path, key)).and_then(|at| log.keys.get_mut(*at)) {
+            if let Some(info) = log
+                .index
+                .get(&join(&self.path, key))
+                .and_then(|at| log.keys.get_mut(*at))
+            {
                 write(info);
             }
         });
@@ -216,31 +249,53 @@ impl<'r> Section<'r> {
 
     pub(super) fn wrong_type(&self, key: &str, node: &Node, expected: &str) {
         let hint = self.type_hint(key, node, expected);
-        let message = format!("`{}`: expected {expected}, found {}", self.dotted(key), node.value.kind());
+        let message = format!(
+            "`{}`: expected {expected}, found {}",
+            self.dotted(key),
+            node.value.kind()
+        );
         // The range that the key was registered with, where the message does not say it already.
         let mut allowed = String::new();
         self.reader.note(|log| {
-            let info = log.index.get(&join(&self.path, key)).and_then(|at| log.keys.get(*at));
-            allowed = info.map(|info| info.allowed.clone()).filter(|range| *range != expected).unwrap_or_default();
+            let info = log
+                .index
+                .get(&join(&self.path, key))
+                .and_then(|at| log.keys.get(*at));
+            allowed = info
+                .map(|info| info.allowed.clone())
+                .filter(|range| *range != expected)
+                .unwrap_or_default();
         });
         self.report(&node.span, key, &allowed, message, hint);
     }
 
     /// Path of a key of this table, or of one in a table within it.
     fn dotted(&self, key: &str) -> String {
-        key.split('.').fold(self.path.clone(), |path, name| join(&path, name))
+        key.split('.')
+            .fold(self.path.clone(), |path, name| join(&path, name))
     }
 
     /// What to write instead of a value of another kind.
     fn type_hint(&self, key: &str, node: &Node, expected: &str) -> String {
         let written = self.reader.document.written(&node.span);
         match &node.value {
-            Value::Text(text) if expected.contains("number") || expected.contains("integer") => text_hint(text),
-            Value::Text(_) if expected == "true or false" => format!("write `{key} = true` or `{key} = false`, without quotes"),
-            Value::Table(_) | Value::List(_) if expected == "text" => "write one text in quotes".to_string(),
+            Value::Text(text) if expected.contains("number") || expected.contains("integer") => {
+                text_hint(text)
+            }
+            Value::Text(_) if expected == "true or false" => {
+                format!("write `{key} = true` or `{key} = false`, without quotes")
+            }
+            Value::Table(_) | Value::List(_) if expected == "text" => {
+                "write one text in quotes".to_string()
+            }
             _ if expected == "text" => format!("write it in quotes: \"{written}\""),
-            _ if expected == "a table" => format!("write [{}] with its keys on the lines below", self.dotted(key)),
-            Value::Text(_) | Value::Integer(_) | Value::Float(_) if expected.starts_with("a list of") && !expected.contains("rows") => {
+            _ if expected == "a table" => format!(
+                "write [{}] with its keys on the lines below",
+                self.dotted(key)
+            ),
+            Value::Text(_) | Value::Integer(_) | Value::Float(_)
+                if expected.starts_with("a list of") && !expected.contains("rows") =>
+            {
                 format!("write `{key} = [{written}]`")
             }
             _ => String::new(),
@@ -253,17 +308,38 @@ impl<'r> Section<'r> {
             return;
         }
         self.reader.fault_of_missing(|| {
-            let table = if self.path.is_empty() { "the top of the file".to_string() } else { format!("[{}]", self.path) };
+            let table = if self.path.is_empty() {
+                "the top of the file".to_string()
+            } else {
+                format!("[{}]", self.path)
+            };
             let message = format!("missing key `{}`", join(&self.path, key));
-            self.absent(key, &allowed.to_string(), message, format!("add `{key} = …` to {table}"))
+            self.absent(
+                key,
+                &allowed.to_string(),
+                message,
+                format!("add `{key} = …` to {table}"),
+            )
         });
     }
 
-    pub(super) fn absent(&self, key: &str, allowed: &str, message: String, hint: String) -> Problem {
+    pub(super) fn absent(
+        &self,
+        key: &str,
+        allowed: &str,
+        message: String,
+        hint: String,
+    ) -> Problem {
         let document = self.reader.document;
-        let whole = || Place { file: document.sources[0].name.clone(), ..Place::default() };
+        let whole = || Place {
+            file: document.sources[0].name.clone(),
+            ..Place::default()
+        };
         Problem {
-            place: self.header.as_ref().map_or_else(whole, |span| document.place(span)),
+            place: self
+                .header
+                .as_ref()
+                .map_or_else(whole, |span| document.place(span)),
             key: join(&self.path, key),
             allowed: allowed.to_string(),
             message,
@@ -272,7 +348,14 @@ impl<'r> Section<'r> {
         }
     }
 
-    pub(super) fn report(&self, span: &Span, key: &str, allowed: &str, message: String, hint: String) {
+    pub(super) fn report(
+        &self,
+        span: &Span,
+        key: &str,
+        allowed: &str,
+        message: String,
+        hint: String,
+    ) {
         let document = self.reader.document;
         self.reader.fault(|| Problem {
             place: document.place(span),

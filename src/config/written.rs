@@ -19,8 +19,17 @@ impl<'r> Section<'r> {
     pub fn written(&self, key: &str, allowed: &str, doc: &str) -> Option<Written<'r>> {
         match self.open(key, allowed, doc) {
             Lookup::Found(found) => {
-                self.given(key, &found, self.reader.document.written(&found.node.span).to_string(), None);
-                Some(Written { section: self.clone(), key: key.to_string(), node: found.node })
+                self.given(
+                    key,
+                    &found,
+                    self.reader.document.written(&found.node.span).to_string(),
+                    None,
+                );
+                Some(Written {
+                    section: self.clone(),
+                    key: key.to_string(),
+                    node: found.node,
+                })
             }
             Lookup::Absent | Lookup::Bad => None,
         }
@@ -65,7 +74,15 @@ impl<'r> Written<'r> {
     #[must_use]
     pub fn items(&self) -> Option<Vec<Written<'r>>> {
         match &self.node.value {
-            Value::List(items) => Some(items.iter().map(|node| Written { node, ..self.clone() }).collect()),
+            Value::List(items) => Some(
+                items
+                    .iter()
+                    .map(|node| Written {
+                        node,
+                        ..self.clone()
+                    })
+                    .collect(),
+            ),
             _ => None,
         }
     }
@@ -73,7 +90,8 @@ impl<'r> Written<'r> {
     /// The finite number that it is, within its range; otherwise none, and reported. `quantity` is a key that ends in the number's unit.
     #[must_use]
     pub fn number(&self, quantity: &str, allowed: Bound) -> Option<f64> {
-        self.section.check_number(&self.key, quantity, self.node, allowed)
+        self.section
+            .check_number(&self.key, quantity, self.node, allowed)
     }
 
     /// Reports that it is of another kind than expected.
@@ -83,6 +101,12 @@ impl<'r> Written<'r> {
 
     /// Reports it.
     pub fn complain(&self, allowed: &str, message: &str, hint: &str) {
-        self.section.report(&self.node.span, &self.key, allowed, message.to_string(), hint.to_string());
+        self.section.report(
+            &self.node.span,
+            &self.key,
+            allowed,
+            message.to_string(),
+            hint.to_string(),
+        );
     }
 }

@@ -68,15 +68,45 @@ static ENTRIES: [Entry; 27] = [
     entry!("artemis_motorway150", "Artemis motorway, 150 km/h version"),
     entry!("artemis_road", "Artemis rural road"),
     entry!("artemis_urban", "Artemis urban"),
-    entry!("ece15", "ECE 15, one elementary urban cycle (UN R83 part one)", Automatic::Table("ece15_auto"), SixGears::LikeFive),
-    entry!("ece15_auto", "ECE 15, one elementary urban cycle without gear-change plateaux"),
-    entry!("ece15_eudc", "NEDC: four ECE 15 and one EUDC, 1180 s (UN R83)", Automatic::Table("ece15_eudc_auto")),
+    entry!(
+        "ece15",
+        "ECE 15, one elementary urban cycle (UN R83 part one)",
+        Automatic::Table("ece15_auto"),
+        SixGears::LikeFive
+    ),
+    entry!(
+        "ece15_auto",
+        "ECE 15, one elementary urban cycle without gear-change plateaux"
+    ),
+    entry!(
+        "ece15_eudc",
+        "NEDC: four ECE 15 and one EUDC, 1180 s (UN R83)",
+        Automatic::Table("ece15_eudc_auto")
+    ),
     entry!("ece15_eudc_auto", "NEDC without gear-change plateaux"),
-    entry!("ece15_eudc_low", "NEDC for low-powered cars: EUDC up to 90 km/h", Automatic::Table("ece15_eudc_low_auto")),
-    entry!("ece15_eudc_low_auto", "NEDC for low-powered cars without gear-change plateaux"),
-    entry!("eudc", "EUDC, extra-urban cycle (UN R83 part two)", Automatic::Table("eudc_auto")),
+    entry!(
+        "ece15_eudc_low",
+        "NEDC for low-powered cars: EUDC up to 90 km/h",
+        Automatic::Table("ece15_eudc_low_auto")
+    ),
+    entry!(
+        "ece15_eudc_low_auto",
+        "NEDC for low-powered cars without gear-change plateaux"
+    ),
+    entry!(
+        "eudc",
+        "EUDC, extra-urban cycle (UN R83 part two)",
+        Automatic::Table("eudc_auto")
+    ),
     entry!("eudc_auto", "EUDC without gear-change plateaux"),
-    entry!("eudc_low", "EUDC for low-powered cars, up to 90 km/h", Automatic::TailOf { name: "ece15_eudc_low_auto", duration_s: EUDC_S }),
+    entry!(
+        "eudc_low",
+        "EUDC for low-powered cars, up to 90 km/h",
+        Automatic::TailOf {
+            name: "ece15_eudc_low_auto",
+            duration_s: EUDC_S
+        }
+    ),
     entry!("ftp75", "FTP-75 with 600 s engine-off soak (40 CFR 86)"),
     entry!("hwfet", "HWFET, highway fuel economy test (40 CFR 600)"),
     entry!("jc08", "JC08 (Japan)"),
@@ -85,12 +115,21 @@ static ENTRIES: [Entry; 27] = [
     entry!(
         "mvega_idle40",
         "MVEG-A: 40 s idle before sampling, then the NEDC (until 2000)",
-        Automatic::IdleThen { idle_s: MVEGA_IDLE_S, name: "ece15_eudc_auto" },
-        SixGears::IdleThen { idle_s: MVEGA_IDLE_S, name: "ece15_eudc" }
+        Automatic::IdleThen {
+            idle_s: MVEGA_IDLE_S,
+            name: "ece15_eudc_auto"
+        },
+        SixGears::IdleThen {
+            idle_s: MVEGA_IDLE_S,
+            name: "ece15_eudc"
+        }
     ),
     entry!("nycc", "NYCC, New York City cycle (40 CFR 86)"),
     entry!("sc03", "SC03, air-conditioning test (40 CFR 86)"),
-    entry!("udds", "UDDS, urban dynamometer driving schedule (40 CFR 86)"),
+    entry!(
+        "udds",
+        "UDDS, urban dynamometer driving schedule (40 CFR 86)"
+    ),
     entry!("us06", "US06, aggressive driving (40 CFR 86)"),
     entry!("wltc_class1", "WLTC class 1 (UN GTR 15)"),
     entry!("wltc_class2", "WLTC class 2 (UN GTR 15)"),
@@ -120,9 +159,12 @@ pub fn names() -> &'static [&'static str] {
 /// A table is parsed when its name is first asked for.
 #[must_use]
 pub fn embedded(name: &str) -> Option<Cycle> {
-    static PARSED: [OnceLock<Option<Cycle>>; ENTRIES.len()] = [const { OnceLock::new() }; ENTRIES.len()];
+    static PARSED: [OnceLock<Option<Cycle>>; ENTRIES.len()] =
+        [const { OnceLock::new() }; ENTRIES.len()];
     let place = NAMES.iter().position(|known| *known == name)?;
-    PARSED[place].get_or_init(|| parsed(&ENTRIES[place])).clone()
+    PARSED[place]
+        .get_or_init(|| parsed(&ENTRIES[place]))
+        .clone()
 }
 
 fn parsed(entry: &Entry) -> Option<Cycle> {
@@ -131,23 +173,40 @@ fn parsed(entry: &Entry) -> Option<Cycle> {
     let automatic = match entry.automatic {
         Automatic::Same => None,
         Automatic::Table(name) => Some(named(name, &mut phases)?),
-        Automatic::TailOf { name, duration_s } => Some(tail(&named(name, &mut Vec::new())?, duration_s)),
-        Automatic::IdleThen { idle_s, name } => Some(idle_then(&manual, idle_s, &named(name, &mut phases)?)),
+        Automatic::TailOf { name, duration_s } => {
+            Some(tail(&named(name, &mut Vec::new())?, duration_s))
+        }
+        Automatic::IdleThen { idle_s, name } => {
+            Some(idle_then(&manual, idle_s, &named(name, &mut phases)?))
+        }
     };
     let six = match entry.six_gears {
         SixGears::AsTable => None,
         SixGears::LikeFive => manual.gears(5).map(<[GearCommand]>::to_vec),
-        SixGears::IdleThen { idle_s, name } => idle_then_gears(&manual, idle_s, &named(name, &mut phases)?),
+        SixGears::IdleThen { idle_s, name } => {
+            idle_then_gears(&manual, idle_s, &named(name, &mut phases)?)
+        }
     };
     if six.is_some() {
         manual.gear_columns_mut().six = six;
     }
-    let weighting = if entry.name == "ftp75" { Weighting::Ftp75 } else { Weighting::None };
+    let weighting = if entry.name == "ftp75" {
+        Weighting::Ftp75
+    } else {
+        Weighting::None
+    };
     if weighting == Weighting::Ftp75 {
         stop_engine(&mut manual, &phases, "hot_soak");
     }
     let (name, title) = (entry.name.to_owned(), entry.title.to_owned());
-    Some(Cycle { name, title, phases, weighting, manual, automatic })
+    Some(Cycle {
+        name,
+        title,
+        phases,
+        weighting,
+        manual,
+        automatic,
+    })
 }
 
 fn entry(name: &str) -> Option<&'static Entry> {
@@ -164,22 +223,41 @@ fn table(entry: &Entry, phases: &mut Vec<String>) -> Option<Trace> {
 }
 
 fn shifted(interval: &Interval, by_s: f64) -> Interval {
-    Interval { start_s: interval.start_s + by_s, end_s: interval.end_s + by_s, ..*interval }
+    Interval {
+        start_s: interval.start_s + by_s,
+        end_s: interval.end_s + by_s,
+        ..*interval
+    }
 }
 
 // The part stands alone, as a cycle without phases.
 fn tail(whole: &Trace, duration_s: f64) -> Trace {
     let from_s = whole.duration_s() - duration_s;
-    let part = whole.intervals.iter().filter(|interval| interval.start_s >= from_s);
-    Trace::without_gears(part.map(|interval| Interval { phase: 0, ..shifted(interval, -from_s) }).collect())
+    let part = whole
+        .intervals
+        .iter()
+        .filter(|interval| interval.start_s >= from_s);
+    Trace::without_gears(
+        part.map(|interval| Interval {
+            phase: 0,
+            ..shifted(interval, -from_s)
+        })
+        .collect(),
+    )
 }
 
 fn idle(trace: &Trace, idle_s: f64) -> impl Iterator<Item = &Interval> {
-    trace.intervals.iter().take_while(move |interval| interval.end_s <= idle_s)
+    trace
+        .intervals
+        .iter()
+        .take_while(move |interval| interval.end_s <= idle_s)
 }
 
 fn idle_then(first: &Trace, idle_s: f64, then: &Trace) -> Trace {
-    let rest = then.intervals.iter().map(|interval| shifted(interval, idle_s));
+    let rest = then
+        .intervals
+        .iter()
+        .map(|interval| shifted(interval, idle_s));
     Trace::without_gears(idle(first, idle_s).copied().chain(rest).collect())
 }
 
@@ -189,7 +267,10 @@ fn idle_then_gears(first: &Trace, idle_s: f64, then: &Trace) -> Option<Vec<GearC
 }
 
 fn stop_engine(trace: &mut Trace, phases: &[String], soak: &str) {
-    let soak = (0_u16..).zip(phases).find(|phase| phase.1 == soak).map(|phase| phase.0);
+    let soak = (0_u16..)
+        .zip(phases)
+        .find(|phase| phase.1 == soak)
+        .map(|phase| phase.0);
     for interval in &mut trace.intervals {
         interval.engine_off = Some(interval.phase) == soak;
     }
@@ -211,7 +292,10 @@ mod tests {
     fn the_urban_part_asks_six_gears_for_the_same_as_five() {
         // what SixGears::LikeFive stands on
         let trace = table(entry("ece15_eudc").unwrap(), &mut Vec::new()).unwrap();
-        assert_eq!(trace.gears(5).unwrap()[..780], trace.gears(6).unwrap()[..780]);
+        assert_eq!(
+            trace.gears(5).unwrap()[..780],
+            trace.gears(6).unwrap()[..780]
+        );
         assert_ne!(trace.gears(5).unwrap(), trace.gears(6).unwrap());
     }
 }

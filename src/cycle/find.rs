@@ -11,7 +11,12 @@ use crate::setup::is_path;
 /// An unknown name with those like it, an unreadable file, or all problems of the file.
 pub fn find(option: &str, value: &str) -> Result<Cycle, Vec<Problem>> {
     if let Some(constant) = constant_speed(value).filter(|_| !is_csv(value)) {
-        return constant.map_err(|problem| vec![Problem { place: place(option), ..problem }]);
+        return constant.map_err(|problem| {
+            vec![Problem {
+                place: place(option),
+                ..problem
+            }]
+        });
     }
     if let Some(found) = embedded(value) {
         return Ok(found);
@@ -20,13 +25,23 @@ pub fn find(option: &str, value: &str) -> Result<Cycle, Vec<Problem>> {
         return read_csv(value, &bytes(option, value, bounded::TABLE)?);
     }
     let close = near(value, names().iter().copied());
-    let question = if close.is_empty() { String::new() } else { format!("did you mean {}? ", close.join(" or ")) };
-    let quoted = if value.is_empty() { "an empty value".to_owned() } else { format!("`{value}`") };
+    let question = if close.is_empty() {
+        String::new()
+    } else {
+        format!("did you mean {}? ", close.join(" or "))
+    };
+    let quoted = if value.is_empty() {
+        "an empty value".to_owned()
+    } else {
+        format!("`{value}`")
+    };
     Err(vec![Problem {
         place: place(option),
         key: option.to_owned(),
         value: value.to_owned(),
-        allowed: "a name of `cvtcycle list cycles`, constant_V with V in km/h, or the path of a CSV file".to_owned(),
+        allowed:
+            "a name of `cvtcycle list cycles`, constant_V with V in km/h, or the path of a CSV file"
+                .to_owned(),
         message: format!("there is no cycle named {quoted}"),
         hint: format!("{question}`cvtcycle list cycles` shows all; a path needs a / or an ending"),
     }])
@@ -45,7 +60,9 @@ pub fn is_csv(word: &str) -> bool {
 pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Vec<Problem>> {
     bounded::read(path, limit).map_err(|error| {
         let hint = match error.kind() {
-            std::io::ErrorKind::NotFound => "check the path; it is taken from the current directory",
+            std::io::ErrorKind::NotFound => {
+                "check the path; it is taken from the current directory"
+            }
             std::io::ErrorKind::IsADirectory => "name a file in that directory",
             _ => "check the path and its permissions",
         };
@@ -61,5 +78,8 @@ pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Vec<Prob
 }
 
 fn place(option: &str) -> Place {
-    Place { file: option.to_owned(), ..Place::default() }
+    Place {
+        file: option.to_owned(),
+        ..Place::default()
+    }
 }

@@ -109,9 +109,23 @@ pub(super) struct GearColumns {
 }
 
 impl GearColumns {
-    pub(super) fn new(five: Option<Vec<GearCommand>>, six: Option<Vec<GearCommand>>, plain: Option<Vec<GearCommand>>) -> Self {
-        let plain_highest = plain.iter().flatten().map(|command| command.gear()).max().unwrap_or(0);
-        Self { five, six, plain, plain_highest }
+    pub(super) fn new(
+        five: Option<Vec<GearCommand>>,
+        six: Option<Vec<GearCommand>>,
+        plain: Option<Vec<GearCommand>>,
+    ) -> Self {
+        let plain_highest = plain
+            .iter()
+            .flatten()
+            .map(|command| command.gear())
+            .max()
+            .unwrap_or(0);
+        Self {
+            five,
+            six,
+            plain,
+            plain_highest,
+        }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -136,13 +150,38 @@ mod tests {
     use GearCommand::{Change, Declutched, InGear, Neutral};
 
     fn decode(rows: &[(u8, &str)]) -> Vec<GearCommand> {
-        commands(rows.iter().map(|&(gear, note)| (gear, Note::parse(note).unwrap())))
+        commands(
+            rows.iter()
+                .map(|&(gear, note)| (gear, Note::parse(note).unwrap())),
+        )
     }
 
     #[test]
     fn notes_become_commands() {
-        let rows = [(0, "PM"), (0, "K1"), (1, "1"), (0, "GC"), (0, "GC"), (2, ""), (0, "K2"), (0, ""), (3, "pm"), (4, "k5")];
-        let expected = [Neutral, Declutched(1), InGear(1), Change(2), Change(2), InGear(2), Declutched(2), Neutral, Neutral, Declutched(5)];
+        let rows = [
+            (0, "PM"),
+            (0, "K1"),
+            (1, "1"),
+            (0, "GC"),
+            (0, "GC"),
+            (2, ""),
+            (0, "K2"),
+            (0, ""),
+            (3, "pm"),
+            (4, "k5"),
+        ];
+        let expected = [
+            Neutral,
+            Declutched(1),
+            InGear(1),
+            Change(2),
+            Change(2),
+            InGear(2),
+            Declutched(2),
+            Neutral,
+            Neutral,
+            Declutched(5),
+        ];
         assert_eq!(decode(&rows), expected);
     }
 
@@ -150,13 +189,21 @@ mod tests {
     fn a_change_goes_into_its_own_gear_then_into_the_next_engaged() {
         assert_eq!(decode(&[(3, "GC"), (2, "")]), [Change(3), InGear(2)]);
         assert_eq!(decode(&[(0, "GC"), (0, "K2")]), [Change(2), Declutched(2)]);
-        assert_eq!(decode(&[(0, "GC"), (0, "PM"), (1, "")]), [Change(1), Neutral, InGear(1)]);
-        assert_eq!(decode(&[(4, ""), (0, "GC"), (0, "PM")]), [InGear(4), Neutral, Neutral]);
+        assert_eq!(
+            decode(&[(0, "GC"), (0, "PM"), (1, "")]),
+            [Change(1), Neutral, InGear(1)]
+        );
+        assert_eq!(
+            decode(&[(4, ""), (0, "GC"), (0, "PM")]),
+            [InGear(4), Neutral, Neutral]
+        );
     }
 
     #[test]
     fn only_known_notes_are_taken() {
-        for bad in ["K", "K0", "K11", "K+1", "KX", "P", "GCC", "K1 ", "é", "11", "-1", "+1"] {
+        for bad in [
+            "K", "K0", "K11", "K+1", "KX", "P", "GCC", "K1 ", "é", "11", "-1", "+1",
+        ] {
             assert_eq!(Note::parse(bad), None, "{bad}");
         }
     }

@@ -47,8 +47,16 @@ pub struct Complaint {
 impl Complaint {
     /// From its three texts.
     #[must_use]
-    pub fn new(message: impl Into<String>, allowed: impl Into<String>, hint: impl Into<String>) -> Self {
-        Self { message: message.into(), allowed: allowed.into(), hint: hint.into() }
+    pub fn new(
+        message: impl Into<String>,
+        allowed: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> Self {
+        Self {
+            message: message.into(),
+            allowed: allowed.into(),
+            hint: hint.into(),
+        }
     }
 }
 
@@ -64,15 +72,25 @@ impl<'f> Problems<'f> {
     /// None yet, of a file of that name.
     #[must_use]
     pub fn new(file: &'f str) -> Self {
-        Self { file, list: Vec::new(), more: 0 }
+        Self {
+            file,
+            list: Vec::new(),
+            more: 0,
+        }
     }
 
     /// The lines of a file that have something on them; none, and said so, where the bytes are no text or a line is too long for a table.
-    pub fn lines<'t>(&mut self, bytes: &'t [u8]) -> Option<impl Iterator<Item = Line<'t>> + use<'t>> {
+    pub fn lines<'t>(
+        &mut self,
+        bytes: &'t [u8],
+    ) -> Option<impl Iterator<Item = Line<'t>> + use<'t>> {
         match decode(bytes).and_then(no_long_line) {
-            Ok(text) => {
-                Some((1..).zip(text.lines()).map(|(number, text)| Line { number, text }).filter(|line| !line.text.trim().is_empty()))
-            }
+            Ok(text) => Some(
+                (1..)
+                    .zip(text.lines())
+                    .map(|(number, text)| Line { number, text })
+                    .filter(|line| !line.text.trim().is_empty()),
+            ),
             Err(complaint) => {
                 self.file(complaint);
                 None
@@ -93,7 +111,9 @@ impl<'f> Problems<'f> {
             if count(separator) > count(',') {
                 let message = format!("this file uses {name} - save it with commas");
                 let hint = "and with decimal points: 12.5 and not 12,5";
-                self.line(line, "", || Complaint::new(message, "commas between the columns", hint));
+                self.line(line, "", || {
+                    Complaint::new(message, "commas between the columns", hint)
+                });
                 return false;
             }
         }
@@ -110,7 +130,9 @@ impl<'f> Problems<'f> {
             Ok(()) if fields.len() > MOST_COLUMNS => {
                 let message = format!("this line has {} column names", fields.len());
                 let hint = "keep the columns that are needed, with a row for every point";
-                self.line(line, "", || Complaint::new(message, format!("up to {MOST_COLUMNS}"), hint));
+                self.line(line, "", || {
+                    Complaint::new(message, format!("up to {MOST_COLUMNS}"), hint)
+                });
                 None
             }
             Ok(()) => Some(fields),
@@ -122,7 +144,12 @@ impl<'f> Problems<'f> {
     }
 
     /// Splits a row into as many fields as there are column names; says what is wrong where that fails.
-    pub fn split<'t>(&mut self, line: Line<'t>, wanted: usize, fields: &mut Vec<Field<'t>>) -> bool {
+    pub fn split<'t>(
+        &mut self,
+        line: Line<'t>,
+        wanted: usize,
+        fields: &mut Vec<Field<'t>>,
+    ) -> bool {
         if let Err(start) = split(line.text, fields) {
             self.open_quote(line, start);
             return false;
@@ -135,8 +162,15 @@ impl<'f> Problems<'f> {
                 } else {
                     "an empty value keeps its comma; was the file cut off?"
                 };
-                let message = format!("this row has {found} {}", if found == 1 { "value" } else { "values" });
-                Complaint::new(message, format!("{wanted}, as the line of column names has"), hint)
+                let message = format!(
+                    "this row has {found} {}",
+                    if found == 1 { "value" } else { "values" }
+                );
+                Complaint::new(
+                    message,
+                    format!("{wanted}, as the line of column names has"),
+                    hint,
+                )
             });
         }
         found == wanted
@@ -144,24 +178,55 @@ impl<'f> Problems<'f> {
 
     /// A quote at that byte of the line is not closed.
     pub fn open_quote(&mut self, line: Line<'_>, start: usize) {
-        let field = Field { text: &line.text[start..], start };
-        self.value(line, field, "", || Complaint::new("this quote is not closed", "", "close it behind the value, or remove it"));
+        let field = Field {
+            text: &line.text[start..],
+            start,
+        };
+        self.value(line, field, "", || {
+            Complaint::new(
+                "this quote is not closed",
+                "",
+                "close it behind the value, or remove it",
+            )
+        });
     }
 
     /// A problem of the whole file.
     pub fn file(&mut self, complaint: Complaint) {
-        self.push("", |file| (Place { file: file.to_owned(), ..Place::default() }, String::new(), complaint));
+        self.push("", |file| {
+            (
+                Place {
+                    file: file.to_owned(),
+                    ..Place::default()
+                },
+                String::new(),
+                complaint,
+            )
+        });
     }
 
     /// A problem of a whole line; `key` is the column that is meant, if any.
     pub fn line(&mut self, line: Line<'_>, key: &str, complaint: impl FnOnce() -> Complaint) {
-        let whole = Field { text: line.text, start: 0 };
-        self.push(key, |file| (place(file, line, whole), String::new(), complaint()));
+        let whole = Field {
+            text: line.text,
+            start: 0,
+        };
+        self.push(key, |file| {
+            (place(file, line, whole), String::new(), complaint())
+        });
     }
 
     /// A problem of one value, `key` being its column.
-    pub fn value(&mut self, line: Line<'_>, field: Field<'_>, key: &str, complaint: impl FnOnce() -> Complaint) {
-        self.push(key, |file| (place(file, line, field), shortened(field.text), complaint()));
+    pub fn value(
+        &mut self,
+        line: Line<'_>,
+        field: Field<'_>,
+        key: &str,
+        complaint: impl FnOnce() -> Complaint,
+    ) {
+        self.push(key, |file| {
+            (place(file, line, field), shortened(field.text), complaint())
+        });
     }
 
     /// A problem of one table cell.
@@ -184,8 +249,23 @@ impl<'f> Problems<'f> {
             self.more += 1;
             return;
         }
-        let (place, value, Complaint { message, allowed, hint }) = build(self.file);
-        self.list.push(Problem { place, key: key.to_owned(), value, allowed, message, hint });
+        let (
+            place,
+            value,
+            Complaint {
+                message,
+                allowed,
+                hint,
+            },
+        ) = build(self.file);
+        self.list.push(Problem {
+            place,
+            key: key.to_owned(),
+            value,
+            allowed,
+            message,
+            hint,
+        });
     }
 
     /// All of them; beyond the first 50, one last entry says how many more there are.
@@ -202,7 +282,11 @@ fn no_long_line(text: &str) -> Result<&str, Complaint> {
     match text.split('\n').position(|line| line.len() >= LONGEST_LINE) {
         Some(before) => {
             let message = format!("line {} is too long for a row of a table", before + 1);
-            Err(Complaint::new(message, format!("up to {LONGEST_LINE} bytes"), "is this a CSV file?"))
+            Err(Complaint::new(
+                message,
+                format!("up to {LONGEST_LINE} bytes"),
+                "is this a CSV file?",
+            ))
         }
         None => Ok(text),
     }
@@ -215,7 +299,11 @@ fn place(file: &str, line: Line<'_>, field: Field<'_>) -> Place {
         file: file.to_owned(),
         line: line.number,
         column: before.chars().count() + 1,
-        line_text: if shown { line.text.to_owned() } else { String::new() },
+        line_text: if shown {
+            line.text.to_owned()
+        } else {
+            String::new()
+        },
         width: field.text.chars().count().max(1),
     }
 }
@@ -233,20 +321,56 @@ mod tests {
 
     #[test]
     fn a_place_counts_characters_and_not_bytes() {
-        let line = Line { number: 7, text: "é,ü,12" };
+        let line = Line {
+            number: 7,
+            text: "é,ü,12",
+        };
         let mut problems = Problems::new("f.csv");
-        problems.value(line, Field { text: "12", start: 6 }, "k", Complaint::default);
+        problems.value(
+            line,
+            Field {
+                text: "12",
+                start: 6,
+            },
+            "k",
+            Complaint::default,
+        );
         let place = &problems.finish()[0].place;
-        assert_eq!((place.line, place.column, place.width, place.line_text.as_str()), (7, 5, 2, "é,ü,12"));
+        assert_eq!(
+            (
+                place.line,
+                place.column,
+                place.width,
+                place.line_text.as_str()
+            ),
+            (7, 5, 2, "é,ü,12")
+        );
     }
 
     #[test]
     fn long_lines_and_values_are_kept_off_the_screen() {
         let text = "ö".repeat(1000);
         let mut problems = Problems::new("f.csv");
-        problems.value(Line { number: 1, text: &text }, Field { text: &text, start: 0 }, "k", Complaint::default);
+        problems.value(
+            Line {
+                number: 1,
+                text: &text,
+            },
+            Field {
+                text: &text,
+                start: 0,
+            },
+            "k",
+            Complaint::default,
+        );
         let problem = &problems.finish()[0];
-        assert_eq!((problem.place.line_text.as_str(), problem.value.chars().count()), ("", 63));
+        assert_eq!(
+            (
+                problem.place.line_text.as_str(),
+                problem.value.chars().count()
+            ),
+            ("", 63)
+        );
     }
 
     #[test]
@@ -254,28 +378,51 @@ mod tests {
         for (length, taken) in [(LONGEST_LINE - 1, true), (LONGEST_LINE, false)] {
             let text = format!("a,b\n{}\n1,2\n", "1".repeat(length));
             let mut problems = Problems::new("f.csv");
-            assert_eq!(problems.lines(text.as_bytes()).map(Iterator::count), taken.then_some(3));
+            assert_eq!(
+                problems.lines(text.as_bytes()).map(Iterator::count),
+                taken.then_some(3)
+            );
             let list = problems.finish();
-            assert_eq!(list.first().map(|p| p.message.as_str()), (!taken).then_some("line 2 is too long for a row of a table"));
+            assert_eq!(
+                list.first().map(|p| p.message.as_str()),
+                (!taken).then_some("line 2 is too long for a row of a table")
+            );
         }
         for (columns, taken) in [(MOST_COLUMNS, true), (MOST_COLUMNS + 1, false)] {
             let text = vec!["a"; columns].join(",");
             let mut problems = Problems::new("f.csv");
-            assert_eq!(problems.names(Line { number: 1, text: &text }).is_some(), taken);
+            assert_eq!(
+                problems
+                    .names(Line {
+                        number: 1,
+                        text: &text
+                    })
+                    .is_some(),
+                taken
+            );
             assert_eq!(problems.is_empty(), taken);
         }
     }
 
     #[test]
     fn the_rest_is_counted() {
-        for (count, last) in [(50, None), (51, Some("1 more problem is not shown")), (250, Some("200 more problems are not shown"))] {
+        for (count, last) in [
+            (50, None),
+            (51, Some("1 more problem is not shown")),
+            (250, Some("200 more problems are not shown")),
+        ] {
             let mut problems = Problems::new("f.csv");
             for _ in 0..count {
                 problems.file(Complaint::default());
             }
             let list = problems.finish();
             assert_eq!(list.len(), count.min(50) + usize::from(last.is_some()));
-            assert_eq!(list.last().map(|p| p.message.as_str()).filter(|m| !m.is_empty()), last);
+            assert_eq!(
+                list.last()
+                    .map(|p| p.message.as_str())
+                    .filter(|m| !m.is_empty()),
+                last
+            );
         }
     }
 }

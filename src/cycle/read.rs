@@ -23,26 +23,50 @@ pub fn read_csv(file: &str, bytes: &[u8]) -> Result<Cycle, Vec<Problem>> {
     let mut phases = Vec::new();
     let manual = read_trace(file, bytes, &mut phases)?;
     let path = Path::new(file);
-    let text = |part: Option<&std::ffi::OsStr>| part.and_then(|part| part.to_str()).unwrap_or(file).to_owned();
-    Ok(Cycle { name: text(path.file_stem()), title: text(path.file_name()), phases, weighting: Weighting::None, manual, automatic: None })
+    let text = |part: Option<&std::ffi::OsStr>| {
+        part.and_then(|part| part.to_str())
+            .unwrap_or(file)
+            .to_owned()
+    };
+    Ok(Cycle {
+        name: text(path.file_stem()),
+        title: text(path.file_name()),
+        phases,
+        weighting: Weighting::None,
+        manual,
+        automatic: None,
+    })
 }
 
 /// The trace alone. Phases known already keep their index, new ones are added.
-pub(super) fn read_trace(file: &str, bytes: &[u8], phases: &mut Vec<String>) -> Result<Trace, Vec<Problem>> {
+pub(super) fn read_trace(
+    file: &str,
+    bytes: &[u8],
+    phases: &mut Vec<String>,
+) -> Result<Trace, Vec<Problem>> {
     let mut problems = Problems::new(file);
     let Some(mut lines) = problems.lines(bytes) else {
         return Err(problems.finish());
     };
-    let header = lines.next().and_then(|line| Header::read(line, &mut problems));
+    let header = lines
+        .next()
+        .and_then(|line| Header::read(line, &mut problems));
     let Some(header) = header else {
         return Err(problems.finish());
     };
     let (rows, problems) = Table::read(&header, phases, problems, lines);
-    if problems.is_empty() { Ok(trace(&header, &rows)) } else { Err(problems.finish()) }
+    if problems.is_empty() {
+        Ok(trace(&header, &rows))
+    } else {
+        Err(problems.finish())
+    }
 }
 
 fn trace(header: &Header, rows: &[Row]) -> Trace {
-    let intervals = rows.windows(2).map(|pair| interval(&pair[0], &pair[1])).collect();
+    let intervals = rows
+        .windows(2)
+        .map(|pair| interval(&pair[0], &pair[1]))
+        .collect();
     let column = |column: Column, gear: fn(&Row) -> u8| -> Option<Vec<GearCommand>> {
         header.has(column).then(|| {
             let mut list = commands(rows.iter().map(|row| (gear(row), row.note)));
@@ -57,7 +81,12 @@ fn trace(header: &Header, rows: &[Row]) -> Trace {
 }
 
 fn interval(row: &Row, next: &Row) -> Interval {
-    let Row { phase, grade, engine_off, .. } = *row;
+    let Row {
+        phase,
+        grade,
+        engine_off,
+        ..
+    } = *row;
     Interval {
         start_s: row.time_s.unwrap_or_default(),
         end_s: next.time_s.unwrap_or_default(),

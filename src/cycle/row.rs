@@ -65,7 +65,11 @@ fn check_note(line: Line<'_>, row: &Row, problems: &mut Problems<'_>) {
     {
         problems.line(line, "gear_note", || {
             let message = format!("the note says gear {gear} and the gear column says none");
-            Complaint::new(message, "the same gear", "write the gear into the gear column")
+            Complaint::new(
+                message,
+                "the same gear",
+                "write the gear into the gear column",
+            )
         });
     }
 }
@@ -75,10 +79,19 @@ fn number(cell: &Cell<'_>, allowed: &str, problems: &mut Problems<'_>) -> Option
     let (message, hint) = match text.parse::<f64>() {
         Ok(value) if value.is_finite() => return Some(value),
         Ok(value) if value.is_nan() => ("this is not a number", "fill the gap or remove the row"),
-        Ok(_) => ("this is not a finite number", "fill the gap or remove the row"),
+        Ok(_) => (
+            "this is not a finite number",
+            "fill the gap or remove the row",
+        ),
         Err(_) if text.is_empty() => ("the value is missing", "fill the gap or remove the row"),
-        Err(_) if text.contains(',') => ("this is not a number", "write a decimal point: 12.5 and not 12,5"),
-        Err(_) => ("this is not a number", "write the bare number; the unit is in the column's name"),
+        Err(_) if text.contains(',') => (
+            "this is not a number",
+            "write a decimal point: 12.5 and not 12,5",
+        ),
+        Err(_) => (
+            "this is not a number",
+            "write the bare number; the unit is in the column's name",
+        ),
     };
     problems.cell(cell, || Complaint::new(message, allowed, hint));
     None
@@ -93,9 +106,15 @@ fn speed(cell: &Cell<'_>, unit: SpeedUnit, problems: &mut Problems<'_>) -> Optio
     }
     problems.cell(cell, || {
         let (message, hint) = if value < 0.0 {
-            ("the speed is negative".to_owned(), "set a sensor's small negative values to 0; reversing cannot be driven".to_owned())
+            (
+                "the speed is negative".to_owned(),
+                "set a sensor's small negative values to 0; reversing cannot be driven".to_owned(),
+            )
         } else {
-            (format!("{} km/h is too fast", readable(kmh, 1)), format!("is the column in another unit than {} says?", cell.key))
+            (
+                format!("{} km/h is too fast", readable(kmh, 1)),
+                format!("is the column in another unit than {} says?", cell.key),
+            )
         };
         Complaint::new(message, "0 to 300 km/h", hint)
     });
@@ -108,11 +127,21 @@ fn phase(cell: &Cell<'_>, last: u16, phases: &mut Vec<String>, problems: &mut Pr
         return u16::try_from(found).unwrap_or(last);
     }
     if name.is_empty() {
-        problems.cell(cell, || Complaint::new("the phase has no name", "a name in each row", "repeat the name in each row of the phase"));
+        problems.cell(cell, || {
+            Complaint::new(
+                "the phase has no name",
+                "a name in each row",
+                "repeat the name in each row of the phase",
+            )
+        });
     } else if phases.len() >= MOST_PHASES {
         let allowed = format!("up to {MOST_PHASES} different names");
         problems.cell(cell, || {
-            Complaint::new("there are too many phases", allowed, "a phase is a part of the cycle that is reported by itself")
+            Complaint::new(
+                "there are too many phases",
+                allowed,
+                "a phase is a part of the cycle that is reported by itself",
+            )
         });
     } else {
         phases.push(name.to_owned());
@@ -124,12 +153,21 @@ fn phase(cell: &Cell<'_>, last: u16, phases: &mut Vec<String>, problems: &mut Pr
 fn gear(cell: &Cell<'_>, highest: u8, problems: &mut Problems<'_>) -> u8 {
     let text = cell.field.text;
     // other programs write whole numbers as 3.0
-    let value = text.parse::<f64>().ok().filter(|value| value.fract() == 0.0 && (0.0..=f64::from(highest)).contains(value));
+    let value = text
+        .parse::<f64>()
+        .ok()
+        .filter(|value| value.fract() == 0.0 && (0.0..=f64::from(highest)).contains(value));
     if let Some(value) = value {
         return value as u8;
     }
     let hint = "write the number alone, and 0 where no gear is engaged";
-    problems.cell(cell, || Complaint::new("this is no gear", format!("a whole number from 0 to {highest}; 0: no gear engaged"), hint));
+    problems.cell(cell, || {
+        Complaint::new(
+            "this is no gear",
+            format!("a whole number from 0 to {highest}; 0: no gear engaged"),
+            hint,
+        )
+    });
     0
 }
 
@@ -139,8 +177,16 @@ fn note(cell: &Cell<'_>, highest: u8, problems: &mut Problems<'_>) -> Note {
         Some(note) => return note,
         None => {}
     }
-    let allowed = format!("PM (neutral), K1 to K{highest} (clutch disengaged in that gear), GC (gear change), the gear again or nothing");
-    problems.cell(cell, || Complaint::new("this note is not known", allowed, "leave the cell empty where the gear column says all"));
+    let allowed = format!(
+        "PM (neutral), K1 to K{highest} (clutch disengaged in that gear), GC (gear change), the gear again or nothing"
+    );
+    problems.cell(cell, || {
+        Complaint::new(
+            "this note is not known",
+            allowed,
+            "leave the cell empty where the gear column says all",
+        )
+    });
     Note::Blank
 }
 
@@ -153,9 +199,14 @@ fn grade(cell: &Cell<'_>, divisor: f64, problems: &mut Problems<'_>) -> f64 {
     if value.abs() <= limit {
         return value / divisor;
     }
-    let hint =
-        if divisor > 1.0 { "is the column in per mille or in degrees?" } else { "is the column in percent? then name it grade_percent" };
-    problems.cell(cell, || Complaint::new("the road is too steep", allowed, hint));
+    let hint = if divisor > 1.0 {
+        "is the column in per mille or in degrees?"
+    } else {
+        "is the column in percent? then name it grade_percent"
+    };
+    problems.cell(cell, || {
+        Complaint::new("the road is too steep", allowed, hint)
+    });
     0.0
 }
 

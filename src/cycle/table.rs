@@ -36,7 +36,15 @@ impl<'a> Table<'a> {
         problems: Problems<'a>,
         lines: impl Iterator<Item = Line<'t>>,
     ) -> (Vec<Row>, Problems<'a>) {
-        let mut table = Self { header, phases, problems, rows: Vec::new(), before: Row::default(), first_time_s: None, too_long: false };
+        let mut table = Self {
+            header,
+            phases,
+            problems,
+            rows: Vec::new(),
+            before: Row::default(),
+            first_time_s: None,
+            too_long: false,
+        };
         table.read_lines(lines);
         (table.rows, table.problems)
     }
@@ -47,13 +55,21 @@ impl<'a> Table<'a> {
         let mut names = self.phases.len();
         for line in lines {
             if count == MOST_ROWS {
-                self.problems
-                    .line(line, "", || Complaint::new("the file has too many rows", format!("up to {MOST_ROWS} rows"), "thin it out"));
+                self.problems.line(line, "", || {
+                    Complaint::new(
+                        "the file has too many rows",
+                        format!("up to {MOST_ROWS} rows"),
+                        "thin it out",
+                    )
+                });
                 return;
             }
             count += 1;
             names = self.phases.len();
-            if !self.problems.split(line, self.header.columns.len(), &mut fields) {
+            if !self
+                .problems
+                .split(line, self.header.columns.len(), &mut fields)
+            {
                 self.before = Row::default();
                 continue;
             }
@@ -63,8 +79,16 @@ impl<'a> Table<'a> {
         // the last row holds over nothing: a phase named there only has no interval
         self.phases.truncate(names);
         if count < 2 {
-            let message = if count == 0 { "the file has column names and no rows" } else { "the file has one row only" };
-            self.problems.file(Complaint::new(message, "at least two rows", "a row holds until the next one: add one for the end"));
+            let message = if count == 0 {
+                "the file has column names and no rows"
+            } else {
+                "the file has one row only"
+            };
+            self.problems.file(Complaint::new(
+                message,
+                "at least two rows",
+                "a row holds until the next one: add one for the end",
+            ));
         }
     }
 
@@ -91,7 +115,13 @@ impl<'a> Table<'a> {
         if !self.too_long && !(..=LONGEST_CYCLE_S).contains(&time_s) {
             self.too_long = true;
             let hint = "is the time in milliseconds?";
-            self.problems.cell(cell, || Complaint::new("the cycle is too long", "up to 1000000 s after the first row", hint));
+            self.problems.cell(cell, || {
+                Complaint::new(
+                    "the cycle is too long",
+                    "up to 1000000 s after the first row",
+                    hint,
+                )
+            });
         }
         let dt_s = time_s - self.before.time_s?;
         let complaint = if dt_s > 0.0 && dt_s <= LONGEST_INTERVAL_S {
@@ -103,7 +133,11 @@ impl<'a> Table<'a> {
                 "is the time in milliseconds? otherwise fill the gap with rows",
             )
         } else {
-            Complaint::new("the time does not rise", "more than in the row above", "sort the rows by time and remove doubled ones")
+            Complaint::new(
+                "the time does not rise",
+                "more than in the row above",
+                "sort the rows by time and remove doubled ones",
+            )
         };
         self.problems.cell(cell, || complaint);
         None
@@ -116,11 +150,16 @@ impl<'a> Table<'a> {
         let accel_m_s2 = (to - from) / dt_s;
         if !(-HIGHEST_ACCEL_M_S2..=HIGHEST_ACCEL_M_S2).contains(&accel_m_s2) {
             let hint = match cell.key {
-                "speed_kmh" | "speed_km_h" => "is the column in km/h? is the time in seconds? or are samples lost?",
+                "speed_kmh" | "speed_km_h" => {
+                    "is the column in km/h? is the time in seconds? or are samples lost?"
+                }
                 _ => "is the column in km/h? then name it speed_kmh",
             };
             self.problems.cell(cell, || {
-                let message = format!("the speed jumps: {} m/s2 from the row above", readable(accel_m_s2, 1));
+                let message = format!(
+                    "the speed jumps: {} m/s2 from the row above",
+                    readable(accel_m_s2, 1)
+                );
                 Complaint::new(message, "-12 to 12 m/s2", hint)
             });
         }
@@ -132,20 +171,42 @@ impl<'a> Table<'a> {
         }
         if row.engine_off {
             let hint = "only a standing car can have its engine off";
-            self.problems
-                .cell(engine_off, || Complaint::new("the engine is off while the car moves", "0 where the speed is above 0", hint));
+            self.problems.cell(engine_off, || {
+                Complaint::new(
+                    "the engine is off while the car moves",
+                    "0 where the speed is above 0",
+                    hint,
+                )
+            });
         } else if self.before.engine_off {
             let hint = "set engine_off to 0 in the row above: it holds until this row";
-            self.problems.cell(speed, || Complaint::new("the car starts with its engine off", "0 up to the end of engine_off", hint));
+            self.problems.cell(speed, || {
+                Complaint::new(
+                    "the car starts with its engine off",
+                    "0 up to the end of engine_off",
+                    hint,
+                )
+            });
         }
     }
 }
 
 const SPEED: Column = Column::Speed(SpeedUnit::KmH);
 
-fn cell<'t>(header: &Header, line: Line<'t>, fields: &[Field<'t>], column: Column) -> Option<Cell<'t>> {
-    let same = |known: &Option<(Column, &str)>| known.is_some_and(|known| discriminant(&known.0) == discriminant(&column));
+fn cell<'t>(
+    header: &Header,
+    line: Line<'t>,
+    fields: &[Field<'t>],
+    column: Column,
+) -> Option<Cell<'t>> {
+    let same = |known: &Option<(Column, &str)>| {
+        known.is_some_and(|known| discriminant(&known.0) == discriminant(&column))
+    };
     let at = header.columns.iter().position(same)?;
     let (_, key) = header.columns[at]?;
-    Some(Cell { line, key, field: *fields.get(at)? })
+    Some(Cell {
+        line,
+        key,
+        field: *fields.get(at)?,
+    })
 }

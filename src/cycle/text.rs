@@ -20,22 +20,48 @@ pub struct Field<'t> {
 pub fn decode(bytes: &[u8]) -> Result<&str, Complaint> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        return Err(Complaint::new("the file is UTF-16 text", "UTF-8 text", "save it as CSV UTF-8"));
+        return Err(Complaint::new(
+            "the file is UTF-16 text",
+            "UTF-8 text",
+            "save it as CSV UTF-8",
+        ));
     }
     if let Some(at) = bytes.iter().position(|&byte| byte == 0) {
-        let message = format!("the file is not text: it has a zero byte in line {}", line_of(bytes, at));
-        return Err(Complaint::new(message, "UTF-8 text", "save the table as CSV; a spreadsheet's own format cannot be read"));
+        let message = format!(
+            "the file is not text: it has a zero byte in line {}",
+            line_of(bytes, at)
+        );
+        return Err(Complaint::new(
+            message,
+            "UTF-8 text",
+            "save the table as CSV; a spreadsheet's own format cannot be read",
+        ));
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
-        let message = format!("the file is not UTF-8 text: line {} has a byte that is none", line_of(bytes, error.valid_up_to()));
-        Complaint::new(message, "UTF-8 text", "save it as CSV UTF-8; a spreadsheet's own format cannot be read")
+        let message = format!(
+            "the file is not UTF-8 text: line {} has a byte that is none",
+            line_of(bytes, error.valid_up_to())
+        );
+        Complaint::new(
+            message,
+            "UTF-8 text",
+            "save it as CSV UTF-8; a spreadsheet's own format cannot be read",
+        )
     })?;
     if text.trim().is_empty() {
-        return Err(Complaint::new("the file is empty", "", "it needs a line of column names and at least two rows"));
+        return Err(Complaint::new(
+            "the file is empty",
+            "",
+            "it needs a line of column names and at least two rows",
+        ));
     }
     if text.contains('\r') && !text.contains('\n') {
         let message = "the lines end with a carriage return alone";
-        return Err(Complaint::new(message, "lines that end with LF or CR LF", "save it with the line ends of today"));
+        return Err(Complaint::new(
+            message,
+            "lines that end with LF or CR LF",
+            "save it with the line ends of today",
+        ));
     }
     Ok(text)
 }
@@ -58,7 +84,10 @@ pub fn split<'t>(line: &'t str, fields: &mut Vec<Field<'t>>) -> Result<(), usize
         let end = if rest[blanks..].starts_with('"') {
             let start = at + blanks + 1;
             let close = closing_quote(line, start).ok_or(start - 1)?;
-            fields.push(Field { text: &line[start..close], start });
+            fields.push(Field {
+                text: &line[start..close],
+                start,
+            });
             let after = &line[close + 1..];
             let comma = after.find(',').unwrap_or(after.len());
             if !after[..comma].trim().is_empty() {
@@ -68,7 +97,10 @@ pub fn split<'t>(line: &'t str, fields: &mut Vec<Field<'t>>) -> Result<(), usize
         } else {
             let comma = rest.find(',').unwrap_or(rest.len());
             let start = at + blanks.min(comma);
-            fields.push(Field { text: rest[..comma].trim(), start });
+            fields.push(Field {
+                text: rest[..comma].trim(),
+                start,
+            });
             at + comma
         };
         if end >= line.len() {
@@ -100,7 +132,10 @@ mod tests {
     fn fields(line: &str) -> Vec<(&str, usize)> {
         let mut fields = Vec::new();
         split(line, &mut fields).unwrap();
-        fields.into_iter().map(|field| (field.text, field.start)).collect()
+        fields
+            .into_iter()
+            .map(|field| (field.text, field.start))
+            .collect()
     }
 
     #[test]
@@ -114,7 +149,10 @@ mod tests {
     #[test]
     fn quotes_hold_commas_together() {
         assert_eq!(fields("\"a,b\",c"), [("a,b", 1), ("c", 6)]);
-        assert_eq!(fields(" \"\" , \"x \"\"y\"\"\""), [("", 2), ("x \"\"y\"\"", 7)]);
+        assert_eq!(
+            fields(" \"\" , \"x \"\"y\"\"\""),
+            [("", 2), ("x \"\"y\"\"", 7)]
+        );
         let mut list = Vec::new();
         assert_eq!(split("a,\"b,c", &mut list), Err(2));
         assert_eq!(split("a,\"b\" c,d", &mut list), Err(2));
@@ -126,7 +164,9 @@ mod tests {
         assert!(message(b"\xff\xfet\0").contains("UTF-16"));
         assert!(message(b"PK\n\0\x01").contains("zero byte in line 2"));
         assert!(message(b"a\nb\n\xe9\n").contains("UTF-8 text: line 3"));
-        assert!(message(b"\xef\xbb\xbf \r\n\n").contains("empty") && message(b"").contains("empty"));
+        assert!(
+            message(b"\xef\xbb\xbf \r\n\n").contains("empty") && message(b"").contains("empty")
+        );
         assert!(message(b"a,b\r1,2\r").contains("carriage return"));
         assert_eq!(decode(b"\xef\xbb\xbfa,b\r\n").unwrap(), "a,b\r\n");
     }

@@ -36,7 +36,11 @@ impl Interval {
             return 1; // the usual case, without a division
         }
         let parts = ((self.end_s - self.start_s) / max_dt_s - 1e-9).ceil();
-        if max_dt_s > 0.0 && parts > 1.0 { parts as usize } else { 1 }
+        if max_dt_s > 0.0 && parts > 1.0 {
+            parts as usize
+        } else {
+            1
+        }
     }
 
     // The division points come from the index alone, so that they neither drift nor differ between neighbours.
@@ -46,18 +50,43 @@ impl Interval {
         }
         let share = index as f64 / parts as f64;
         let time_s = self.start_s + share * (self.end_s - self.start_s);
-        (time_s, self.start_speed_m_s + share * (self.end_speed_m_s - self.start_speed_m_s))
+        (
+            time_s,
+            self.start_speed_m_s + share * (self.end_speed_m_s - self.start_speed_m_s),
+        )
     }
 
     fn motion(&self) -> Motion {
-        Motion::between(self.start_speed_m_s, self.end_speed_m_s, self.end_s - self.start_s)
+        Motion::between(
+            self.start_speed_m_s,
+            self.end_speed_m_s,
+            self.end_s - self.start_s,
+        )
     }
 
     /// The whole interval as one step.
     #[inline]
     fn whole(&self, interval: usize, motion: Motion) -> Step {
-        let Self { start_s, end_s, start_speed_m_s, end_speed_m_s, phase, grade, engine_off } = *self;
-        Step { time_s: end_s, dt_s: end_s - start_s, start_speed_m_s, end_speed_m_s, motion, phase, grade, engine_off, interval }
+        let Self {
+            start_s,
+            end_s,
+            start_speed_m_s,
+            end_speed_m_s,
+            phase,
+            grade,
+            engine_off,
+        } = *self;
+        Step {
+            time_s: end_s,
+            dt_s: end_s - start_s,
+            start_speed_m_s,
+            end_speed_m_s,
+            motion,
+            phase,
+            grade,
+            engine_off,
+            interval,
+        }
     }
 
     /// A part of the interval as a step.
@@ -66,8 +95,23 @@ impl Interval {
         let (time_s, end_speed_m_s) = self.point(index + 1, parts);
         let dt_s = (self.end_s - self.start_s) / parts as f64;
         let motion = Motion::between(start_speed_m_s, end_speed_m_s, dt_s);
-        let Self { phase, grade, engine_off, .. } = *self;
-        Step { time_s, dt_s, start_speed_m_s, end_speed_m_s, motion, phase, grade, engine_off, interval }
+        let Self {
+            phase,
+            grade,
+            engine_off,
+            ..
+        } = *self;
+        Step {
+            time_s,
+            dt_s,
+            start_speed_m_s,
+            end_speed_m_s,
+            motion,
+            phase,
+            grade,
+            engine_off,
+            interval,
+        }
     }
 }
 
@@ -98,7 +142,11 @@ impl Motion {
             accel_m_s2: (v1 - v0) / dt_s,
             square_m2_s2: (v0 * v0 + v0 * v1 + v1 * v1) / 3.0,
             cube_m3_s3: (v0 + v1) * (v0 * v0 + v1 * v1) / 4.0,
-            speed_power_07: if speed_m_s > 0.0 { exp(0.7 * ln(speed_m_s)) } else { 0.0 },
+            speed_power_07: if speed_m_s > 0.0 {
+                exp(0.7 * ln(speed_m_s))
+            } else {
+                0.0
+            },
         }
     }
 }
@@ -142,7 +190,11 @@ impl Trace {
     }
 
     pub(super) fn with_gears(intervals: Vec<Interval>, gears: GearColumns) -> Self {
-        Self { motions: intervals.iter().map(Interval::motion).collect(), intervals, gears }
+        Self {
+            motions: intervals.iter().map(Interval::motion).collect(),
+            intervals,
+            gears,
+        }
     }
 
     pub(super) fn gear_columns_mut(&mut self) -> &mut GearColumns {
@@ -178,14 +230,24 @@ impl Trace {
     /// Highest speed, m/s.
     #[must_use]
     pub fn max_speed_m_s(&self) -> f64 {
-        let ends = self.intervals.iter().flat_map(|interval| [interval.start_speed_m_s, interval.end_speed_m_s]);
-        ends.fold(0.0, |highest, speed| if speed > highest { speed } else { highest })
+        let ends = self
+            .intervals
+            .iter()
+            .flat_map(|interval| [interval.start_speed_m_s, interval.end_speed_m_s]);
+        ends.fold(
+            0.0,
+            |highest, speed| if speed > highest { speed } else { highest },
+        )
     }
 
     /// Distance driven in one phase, m, over all the intervals that bear its index; 0 for a phase that does not occur.
     #[must_use]
     pub fn phase_distance_m(&self, phase: u16) -> f64 {
-        self.intervals.iter().filter(|interval| interval.phase == phase).map(Interval::distance_m).sum()
+        self.intervals
+            .iter()
+            .filter(|interval| interval.phase == phase)
+            .map(Interval::distance_m)
+            .sum()
     }
 
     /// The steps of the simulation: each interval is divided into the least number of equal parts that are not longer than
@@ -194,7 +256,13 @@ impl Trace {
         let intervals = self.intervals.iter().zip(&self.motions).enumerate();
         intervals.flat_map(move |(number, (interval, motion))| {
             let parts = interval.parts(max_dt_s);
-            let step = move |index| if parts == 1 { interval.whole(number, *motion) } else { interval.step(number, index, parts) };
+            let step = move |index| {
+                if parts == 1 {
+                    interval.whole(number, *motion)
+                } else {
+                    interval.step(number, index, parts)
+                }
+            };
             (0..parts).map(step)
         })
     }
@@ -205,7 +273,11 @@ impl Trace {
         for (number, (interval, motion)) in self.intervals.iter().zip(&self.motions).enumerate() {
             let parts = interval.parts(max_dt_s);
             for index in 0..parts {
-                take(if parts == 1 { interval.whole(number, *motion) } else { interval.step(number, index, parts) });
+                take(if parts == 1 {
+                    interval.whole(number, *motion)
+                } else {
+                    interval.step(number, index, parts)
+                });
             }
         }
     }
@@ -213,7 +285,9 @@ impl Trace {
     /// How many steps [`Trace::steps`] gives.
     #[must_use]
     pub fn step_count(&self, max_dt_s: f64) -> usize {
-        self.intervals.iter().fold(0, |sum: usize, interval| sum.saturating_add(interval.parts(max_dt_s)))
+        self.intervals.iter().fold(0, |sum: usize, interval| {
+            sum.saturating_add(interval.parts(max_dt_s))
+        })
     }
 }
 
@@ -223,36 +297,87 @@ mod tests {
     use super::*;
 
     fn ramp(start_s: f64, end_s: f64, start_speed_m_s: f64, end_speed_m_s: f64) -> Interval {
-        Interval { start_s, end_s, start_speed_m_s, end_speed_m_s, phase: 3, grade: 0.01, engine_off: false }
+        Interval {
+            start_s,
+            end_s,
+            start_speed_m_s,
+            end_speed_m_s,
+            phase: 3,
+            grade: 0.01,
+            engine_off: false,
+        }
     }
 
     #[test]
     fn an_interval_is_cut_into_the_least_number_of_equal_parts() {
-        let trace = Trace::without_gears(vec![ramp(0.0, 1.0, 0.0, 2.0), ramp(1.0, 1.05, 2.0, 2.0), ramp(1.05, 3.05, 2.0, 0.0)]);
-        for (max_dt_s, parts) in [(1.0, [1, 1, 2]), (0.5, [2, 1, 4]), (0.3, [4, 1, 7]), (0.1, [10, 1, 20]), (9.0, [1, 1, 1])] {
-            let count = |number| trace.steps(max_dt_s).filter(|step| step.interval == number).count();
+        let trace = Trace::without_gears(vec![
+            ramp(0.0, 1.0, 0.0, 2.0),
+            ramp(1.0, 1.05, 2.0, 2.0),
+            ramp(1.05, 3.05, 2.0, 0.0),
+        ]);
+        for (max_dt_s, parts) in [
+            (1.0, [1, 1, 2]),
+            (0.5, [2, 1, 4]),
+            (0.3, [4, 1, 7]),
+            (0.1, [10, 1, 20]),
+            (9.0, [1, 1, 1]),
+        ] {
+            let count = |number| {
+                trace
+                    .steps(max_dt_s)
+                    .filter(|step| step.interval == number)
+                    .count()
+            };
             assert_eq!([count(0), count(1), count(2)], parts, "{max_dt_s}");
             assert_eq!(trace.step_count(max_dt_s), parts.iter().sum::<usize>());
             let mut taken = Vec::new();
             trace.for_each_step(max_dt_s, |step| taken.push(step));
             assert!(trace.steps(max_dt_s).eq(taken));
-            assert!(trace.steps(max_dt_s).all(|step| step.dt_s <= max_dt_s * (1.0 + 1e-8)));
+            assert!(
+                trace
+                    .steps(max_dt_s)
+                    .all(|step| step.dt_s <= max_dt_s * (1.0 + 1e-8))
+            );
         }
     }
 
     #[test]
     fn steps_join_without_gap_or_drift() {
-        let trace = Trace::without_gears(vec![ramp(0.0, 700.0, 0.0, 20.0), ramp(700.0, 700.7, 20.0, 13.0)]);
+        let trace = Trace::without_gears(vec![
+            ramp(0.0, 700.0, 0.0, 20.0),
+            ramp(700.0, 700.7, 20.0, 13.0),
+        ]);
         let steps: Vec<Step> = trace.steps(0.1).collect();
         assert_eq!(steps.len(), 7007);
         assert_eq!(steps[2999].time_s, 700.0 * (3000.0 / 7000.0));
-        assert_eq!((steps[6999].time_s, steps[6999].end_speed_m_s), (700.0, 20.0));
-        assert_eq!((steps[7006].time_s, steps[7006].end_speed_m_s), (700.7, 13.0));
-        assert!(steps.windows(2).all(|pair| pair[0].end_speed_m_s == pair[1].start_speed_m_s));
-        assert!(steps.windows(2).all(|pair| (pair[1].time_s - pair[0].time_s - pair[1].dt_s).abs() < 1e-12 * 700.0));
-        let distance: f64 = steps.iter().map(|s| 0.5 * (s.start_speed_m_s + s.end_speed_m_s) * s.dt_s).sum();
+        assert_eq!(
+            (steps[6999].time_s, steps[6999].end_speed_m_s),
+            (700.0, 20.0)
+        );
+        assert_eq!(
+            (steps[7006].time_s, steps[7006].end_speed_m_s),
+            (700.7, 13.0)
+        );
+        assert!(
+            steps
+                .windows(2)
+                .all(|pair| pair[0].end_speed_m_s == pair[1].start_speed_m_s)
+        );
+        assert!(
+            steps
+                .windows(2)
+                .all(|pair| (pair[1].time_s - pair[0].time_s - pair[1].dt_s).abs() < 1e-12 * 700.0)
+        );
+        let distance: f64 = steps
+            .iter()
+            .map(|s| 0.5 * (s.start_speed_m_s + s.end_speed_m_s) * s.dt_s)
+            .sum();
         assert!((distance / trace.distance_m() - 1.0).abs() < 1e-12);
-        assert!(steps.iter().all(|step| step.phase == 3 && step.grade == 0.01 && !step.engine_off));
+        assert!(
+            steps
+                .iter()
+                .all(|step| step.phase == 3 && step.grade == 0.01 && !step.engine_off)
+        );
     }
 
     #[test]
@@ -266,9 +391,24 @@ mod tests {
 
     #[test]
     fn sums_by_hand() {
-        let mut trace = Trace::without_gears(vec![ramp(0.0, 2.0, 0.0, 4.0), ramp(2.0, 5.0, 4.0, 4.0)]);
+        let mut trace =
+            Trace::without_gears(vec![ramp(0.0, 2.0, 0.0, 4.0), ramp(2.0, 5.0, 4.0, 4.0)]);
         trace.intervals[1].phase = 1;
-        assert_eq!((trace.duration_s(), trace.distance_m(), trace.max_speed_m_s()), (5.0, 16.0, 4.0));
-        assert_eq!((trace.phase_distance_m(3), trace.phase_distance_m(1), trace.phase_distance_m(0)), (4.0, 12.0, 0.0));
+        assert_eq!(
+            (
+                trace.duration_s(),
+                trace.distance_m(),
+                trace.max_speed_m_s()
+            ),
+            (5.0, 16.0, 4.0)
+        );
+        assert_eq!(
+            (
+                trace.phase_distance_m(3),
+                trace.phase_distance_m(1),
+                trace.phase_distance_m(0)
+            ),
+            (4.0, 12.0, 0.0)
+        );
     }
 }

@@ -83,10 +83,20 @@ impl FuelModel {
     /// Fuel for a brake mean effective pressure with friction in force, both Pa.
     #[must_use]
     #[inline]
-    pub fn fuel_mep(&self, piston_m_s: f64, speed_rad_s: f64, brake_pa: f64, friction_pa: f64) -> FuelPoint {
+    pub fn fuel_mep(
+        &self,
+        piston_m_s: f64,
+        speed_rad_s: f64,
+        brake_pa: f64,
+        friction_pa: f64,
+    ) -> FuelPoint {
         let need = brake_pa + friction_pa;
         if need <= 0.0 {
-            return FuelPoint { fuel_pa: 0.0, indicated_pa: 0.0, outside: false };
+            return FuelPoint {
+                fuel_pa: 0.0,
+                indicated_pa: 0.0,
+                outside: false,
+            };
         }
         match self {
             FuelModel::Willans(w) => w.fuel(piston_m_s, need),
@@ -96,7 +106,11 @@ impl FuelModel {
                 let possible = fuel_pa >= need;
                 // Below the map both go to zero together, up to rounding.
                 let outside = !inside || fuel_pa < need * (1.0 - 1e-6) - 1e-3;
-                FuelPoint { fuel_pa: if possible { fuel_pa } else { need }, indicated_pa: need, outside }
+                FuelPoint {
+                    fuel_pa: if possible { fuel_pa } else { need },
+                    indicated_pa: need,
+                    outside,
+                }
             }
         }
     }
@@ -119,7 +133,11 @@ impl Willans {
         let f = 2.0 * need / (b + if turned { 0.0 } else { disc.sqrt() }); // WI-1
         let indicated = (b + self.a2 * f) * f; // WI-2
         let outside = turned || !EFFICIENCY.contains(&line);
-        FuelPoint { fuel_pa: f * BAR, indicated_pa: if turned { need_pa } else { indicated * BAR }, outside }
+        FuelPoint {
+            fuel_pa: f * BAR,
+            indicated_pa: if turned { need_pa } else { indicated * BAR },
+            outside,
+        }
     }
 }
 
@@ -127,19 +145,33 @@ impl BsfcMap {
     /// Fuel MEP at a speed and load with hot friction, Pa, and whether the point lies within the map.
     fn at_speed(&self, speed_rad_s: f64, bmep_pa: f64, friction_pa: f64) -> (f64, bool) {
         let n = self.speed_rad_s.len();
-        let hi = self.speed_rad_s.partition_point(|&s| s <= speed_rad_s).clamp(1, n - 1);
+        let hi = self
+            .speed_rad_s
+            .partition_point(|&s| s <= speed_rad_s)
+            .clamp(1, n - 1);
         let (s0, s1) = (self.speed_rad_s[hi - 1], self.speed_rad_s[hi]);
         let u = ((speed_rad_s - s0) / (s1 - s0)).clamp(0.0, 1.0);
         let m = self.bmep_pa.len();
-        let row = |j: usize| self.fuel_pa[hi - 1][j] + u * (self.fuel_pa[hi][j] - self.fuel_pa[hi - 1][j]);
+        let row = |j: usize| {
+            self.fuel_pa[hi - 1][j] + u * (self.fuel_pa[hi][j] - self.fuel_pa[hi - 1][j])
+        };
         let inside = s0 <= speed_rad_s && speed_rad_s <= s1 && bmep_pa <= self.bmep_pa[m - 1];
         let lowest = self.bmep_pa[0];
         if bmep_pa < lowest {
-            return (row(0) * (bmep_pa + friction_pa) / (lowest + friction_pa), inside); // BM-2
+            return (
+                row(0) * (bmep_pa + friction_pa) / (lowest + friction_pa),
+                inside,
+            ); // BM-2
         }
-        let k = self.bmep_pa.partition_point(|&p| p <= bmep_pa).clamp(1, m - 1);
+        let k = self
+            .bmep_pa
+            .partition_point(|&p| p <= bmep_pa)
+            .clamp(1, m - 1);
         let (p0, p1) = (self.bmep_pa[k - 1], self.bmep_pa[k]);
-        (row(k - 1) + (row(k) - row(k - 1)) * (bmep_pa - p0) / (p1 - p0), inside) // BM-1
+        (
+            row(k - 1) + (row(k) - row(k - 1)) * (bmep_pa - p0) / (p1 - p0),
+            inside,
+        ) // BM-1
     }
 }
 
@@ -148,7 +180,14 @@ mod tests {
     use super::*;
 
     fn willans() -> Willans {
-        Willans { a: 0.4851, b: 0.01193, c: -0.00065, a2: -0.00385, l: 2.39882, l2: 0.00286 }
+        Willans {
+            a: 0.4851,
+            b: 0.01193,
+            c: -0.00065,
+            a2: -0.00385,
+            l: 2.39882,
+            l2: 0.00286,
+        }
     }
 
     /// BSFC of the natural-aspiration set at 2000 rpm and 79 mm stroke, from the facts table (g/kWh at bmep bar).
@@ -157,10 +196,21 @@ mod tests {
         let w = willans();
         let cm = 2000.0 * 79.0 / 30_000.0;
         let friction = (w.l + w.l2 * cm * cm) * BAR;
-        for (bmep, bsfc) in [(1.0, 576.0), (2.0, 377.0), (3.0, 313.0), (4.0, 283.0), (6.0, 257.0), (8.0, 249.0), (10.0, 251.0)] {
+        for (bmep, bsfc) in [
+            (1.0, 576.0),
+            (2.0, 377.0),
+            (3.0, 313.0),
+            (4.0, 283.0),
+            (6.0, 257.0),
+            (8.0, 249.0),
+            (10.0, 251.0),
+        ] {
             let p = FuelModel::Willans(w).fuel_mep(cm, 209.0, bmep * BAR, friction);
             let got = p.fuel_pa / (bmep * BAR) / 43.2e6 * 3.6e9;
-            assert!((got / bsfc - 1.0).abs() < 0.004, "{bmep} bar: {got:.1} instead of {bsfc}");
+            assert!(
+                (got / bsfc - 1.0).abs() < 0.004,
+                "{bmep} bar: {got:.1} instead of {bsfc}"
+            );
         }
     }
 
@@ -180,13 +230,33 @@ mod tests {
         let cm = |s: f64| s * stroke / std::f64::consts::PI;
         let fuel = speeds
             .iter()
-            .map(|&s| bmeps.iter().map(|&p| line.fuel_mep(cm(s), s, p, line.hot_friction_pa(cm(s))).fuel_pa).collect())
+            .map(|&s| {
+                bmeps
+                    .iter()
+                    .map(|&p| {
+                        line.fuel_mep(cm(s), s, p, line.hot_friction_pa(cm(s)))
+                            .fuel_pa
+                    })
+                    .collect()
+            })
             .collect();
-        let map = FuelModel::Map(BsfcMap { speed_rad_s: speeds.to_vec(), bmep_pa: bmeps, fuel_pa: fuel, friction: (2.39882, 0.00286) });
+        let map = FuelModel::Map(BsfcMap {
+            speed_rad_s: speeds.to_vec(),
+            bmep_pa: bmeps,
+            fuel_pa: fuel,
+            friction: (2.39882, 0.00286),
+        });
         for p in [1.0, 3.0, 6.0] {
             let hot = line.hot_friction_pa(cm(200.0));
             let a = line.fuel_mep(cm(200.0), 200.0, p * BAR, 1.5 * hot).fuel_pa;
-            let b = map.fuel_mep(cm(200.0), 200.0, p * BAR, 1.5 * map.hot_friction_pa(cm(200.0))).fuel_pa;
+            let b = map
+                .fuel_mep(
+                    cm(200.0),
+                    200.0,
+                    p * BAR,
+                    1.5 * map.hot_friction_pa(cm(200.0)),
+                )
+                .fuel_pa;
             assert!((a / b - 1.0).abs() < 0.01, "{p} bar: {a} {b}");
         }
     }

@@ -124,27 +124,53 @@ impl Engine {
 
     /// Prepares the engine for coolant and oil temperature, oil and ambient pressure ratio.
     #[must_use]
-    pub fn at(&self, coolant_k: f64, oil_k: f64, oil: &Lubricant, pressure_factor: f64) -> EngineNow<'_> {
-        self.at_temperatures(coolant_k, oil_k, self.unlike_reference(oil), pressure_factor)
+    pub fn at(
+        &self,
+        coolant_k: f64,
+        oil_k: f64,
+        oil: &Lubricant,
+        pressure_factor: f64,
+    ) -> EngineNow<'_> {
+        self.at_temperatures(
+            coolant_k,
+            oil_k,
+            self.unlike_reference(oil),
+            pressure_factor,
+        )
     }
 
     /// The same, with what [`Engine::unlike_reference`] says of the oil: it holds for a whole drive.
     #[must_use]
     #[inline(always)]
-    pub fn at_temperatures(&self, coolant_k: f64, oil_k: f64, unlike: Option<&Lubricant>, pressure_factor: f64) -> EngineNow<'_> {
+    pub fn at_temperatures(
+        &self,
+        coolant_k: f64,
+        oil_k: f64,
+        unlike: Option<&Lubricant>,
+        pressure_factor: f64,
+    ) -> EngineNow<'_> {
         let theta = 0.5 * (coolant_k + oil_k) / self.hot_k;
         let viscous = unlike.map_or(1.0, |oil| {
             let relative = oil.kinematic_m2_s(oil_k) / self.reference_oil.kinematic_m2_s(oil_k);
             1.0 + self.viscous_share * (exp(self.viscous_exponent * ln(relative)) - 1.0)
         });
-        let thick = if theta < 1.0 { exp(-self.friction_exponent * ln(theta)) } else { 1.0 };
+        let thick = if theta < 1.0 {
+            exp(-self.friction_exponent * ln(theta))
+        } else {
+            1.0
+        };
         let cold = held((60.0 + ZERO_DEGC_K - coolant_k) / 70.0, 0.0, 1.0);
         let enrich = (60.0 + ZERO_DEGC_K - coolant_k) / 60.0;
         EngineNow {
             engine: self,
-            friction_factor: thick * viscous,                                                      // EN-2
+            friction_factor: thick * viscous, // EN-2
             idle_rad_s: self.idle_hot_rad_s + (self.idle_cold_rad_s - self.idle_hot_rad_s) * cold, // EN-1
-            enrichment: 1.0 + if enrich > 0.0 { self.enrichment * enrich } else { 0.0 },           // EN-3
+            enrichment: 1.0
+                + if enrich > 0.0 {
+                    self.enrichment * enrich
+                } else {
+                    0.0
+                }, // EN-3
             full_load_factor: pressure_factor,
         }
     }
@@ -173,7 +199,10 @@ impl Engine {
     /// Speed of the greatest full-load power, rad/s.
     #[must_use]
     pub fn peak_power_rad_s(&self) -> f64 {
-        self.speed_for_power().points().last().map_or(self.highest_rad_s, |p| p.1)
+        self.speed_for_power()
+            .points()
+            .last()
+            .map_or(self.highest_rad_s, |p| p.1)
     }
 
     /// Lowest speed, on a fine grid, at which full load gives a power; as a curve power W to speed rad/s.
@@ -207,15 +236,26 @@ impl EngineNow<'_> {
     #[inline]
     pub fn accessories_nm(&self, speed_rad_s: f64) -> f64 {
         let least = 0.5 * self.engine.idle_hot_rad_s;
-        let w = if speed_rad_s > least { speed_rad_s } else { least };
-        if speed_rad_s > 0.0 { self.engine.electrical_w / w + self.engine.accessory_nm } else { 0.0 } // EN-4
+        let w = if speed_rad_s > least {
+            speed_rad_s
+        } else {
+            least
+        };
+        if speed_rad_s > 0.0 {
+            self.engine.electrical_w / w + self.engine.accessory_nm
+        } else {
+            0.0
+        } // EN-4
     }
 
     /// Friction mean effective pressure at the present temperature, Pa.
     #[must_use]
     #[inline]
     pub fn friction_pa(&self, speed_rad_s: f64) -> f64 {
-        self.engine.fuel.hot_friction_pa(self.engine.piston_m_s(speed_rad_s)) * self.friction_factor
+        self.engine
+            .fuel
+            .hot_friction_pa(self.engine.piston_m_s(speed_rad_s))
+            * self.friction_factor
     }
 
     /// Torque that the engine takes up in overrun with fuel cut off, Nm, positive (EN-7).
@@ -235,14 +275,24 @@ impl EngineNow<'_> {
         }
         let brake_pa = e.mep_pa(torque_nm);
         let friction_pa = self.friction_pa(speed_rad_s);
-        let point = e.fuel.fuel_mep(e.piston_m_s(speed_rad_s), speed_rad_s, brake_pa, friction_pa);
+        let point = e.fuel.fuel_mep(
+            e.piston_m_s(speed_rad_s),
+            speed_rad_s,
+            brake_pa,
+            friction_pa,
+        );
         let watts = e.displacement_m3 * speed_rad_s / (4.0 * std::f64::consts::PI);
         let burnt = point.fuel_pa * watts;
         let indicated = point.indicated_pa * watts;
         // With fuel cut, throttle losses add to friction: what is taken up is the drag itself.
-        let friction = if point.fuel_pa > 0.0 { friction_pa * watts } else { -brake_pa * watts };
+        let friction = if point.fuel_pa > 0.0 {
+            friction_pa * watts
+        } else {
+            -brake_pa * watts
+        };
         let fast = (speed_rad_s - e.idle_hot_rad_s) / (e.highest_rad_s - e.idle_hot_rad_s);
-        let exhaust_share = e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * held(fast, 0.0, 1.0);
+        let exhaust_share =
+            e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * held(fast, 0.0, 1.0);
         let waste = burnt - indicated;
         let fuel_w = burnt * self.enrichment;
         Burn {
@@ -253,7 +303,9 @@ impl EngineNow<'_> {
             exhaust_w: exhaust_share * waste + (self.enrichment - 1.0) * burnt,
             cut: point.fuel_pa <= 0.0,
             // More taken up than the closed throttle explains would be energy from nowhere in the heat of friction.
-            outside: point.outside || (point.fuel_pa <= 0.0 && -torque_nm > self.drag_nm(speed_rad_s) * (1.0 + 1e-4) + 1e-3),
+            outside: point.outside
+                || (point.fuel_pa <= 0.0
+                    && -torque_nm > self.drag_nm(speed_rad_s) * (1.0 + 1e-4) + 1e-3),
         }
     }
 }

@@ -69,14 +69,25 @@ impl Friction {
     #[inline]
     pub fn band(&self, belt_k: f64, eta_pa_s: f64, sliding_m_s: f64) -> BandFriction {
         let load = self.film_load(eta_pa_s, sliding_m_s);
-        self.band_on_film(belt_k, if load > 0.0 { exp(self.lift_exponent * ln(load)) } else { 0.0 })
+        self.band_on_film(
+            belt_k,
+            if load > 0.0 {
+                exp(self.lift_exponent * ln(load))
+            } else {
+                0.0
+            },
+        )
     }
 
     /// eta dv / `N_lift` of LU-5; 0 where nothing slides or the film is switched off.
     #[must_use]
     #[inline]
     pub fn film_load(&self, eta_pa_s: f64, sliding_m_s: f64) -> f64 {
-        if self.lift_off { eta_pa_s * sliding_m_s / self.lift_n_m } else { 0.0 }
+        if self.lift_off {
+            eta_pa_s * sliding_m_s / self.lift_n_m
+        } else {
+            0.0
+        }
     }
 
     /// Band friction at belt temperature with the power z of the film's load known (LU-4, LU-5).
@@ -86,7 +97,10 @@ impl Friction {
         let warm = 1.0 + self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0);
         let warm = held(warm, self.band_floor, self.band_ceiling);
         let film_share = if z.is_finite() { z / (1.0 + z) } else { 1.0 }; // LU-5
-        BandFriction { mu: self.band * warm * (1.0 - self.lift_reduction * film_share), film_share } // LU-4
+        BandFriction {
+            mu: self.band * warm * (1.0 - self.lift_reduction * film_share),
+            film_share,
+        } // LU-4
     }
 }
 
@@ -122,7 +136,12 @@ impl Lubricant {
     pub fn density_kg_m3(&self, temp_k: f64) -> f64 {
         let share = 1.0 - 0.000_68 * (temp_k - ZERO_DEGC_K - 15.0);
         // Far beyond its validity the line would reach zero, and there is no oil of negative mass.
-        self.density15_kg_m3 * if share < LEAST_DENSITY { LEAST_DENSITY } else { share } // LU-2
+        self.density15_kg_m3
+            * if share < LEAST_DENSITY {
+                LEAST_DENSITY
+            } else {
+                share
+            } // LU-2
     }
 
     /// Dynamic viscosity, Pa s.

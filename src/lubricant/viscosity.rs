@@ -27,7 +27,10 @@ impl Viscosity {
         if points.len() < 2 {
             return Err("viscosity needs at least two points".into());
         }
-        if points.iter().any(|p| !(p.0 > 0.0 && p.1 * 1e6 > 0.5 && p.1.is_finite())) {
+        if points
+            .iter()
+            .any(|p| !(p.0 > 0.0 && p.1 * 1e6 > 0.5 && p.1.is_finite()))
+        {
             return Err("viscosity must be above 0.5 mm2/s at a temperature above 0 K".into());
         }
         if points.windows(2).any(|p| p[0].0 >= p[1].0) {
@@ -38,9 +41,15 @@ impl Viscosity {
         }
         let x: Vec<f64> = points.iter().map(|p| p.0.ln()).collect();
         let w: Vec<f64> = points.iter().map(|p| (p.1 * 1e6 + 0.7).ln().ln()).collect();
-        let slope: Vec<f64> = (0..x.len()).map(|i| i.max(1)).map(|hi| (w[hi] - w[hi - 1]) / (x[hi] - x[hi - 1])).collect();
+        let slope: Vec<f64> = (0..x.len())
+            .map(|i| i.max(1))
+            .map(|hi| (w[hi] - w[hi - 1]) / (x[hi] - x[hi - 1]))
+            .collect();
         if slope.iter().any(|slope| *slope < -STEEPEST) {
-            return Err("viscosity falls more steeply than that of any oil (slope above 5 in ASTM D341)".into());
+            return Err(
+                "viscosity falls more steeply than that of any oil (slope above 5 in ASTM D341)"
+                    .into(),
+            );
         }
         Ok(Viscosity { x, w, slope })
     }
@@ -64,7 +73,11 @@ impl Viscosity {
     #[inline(always)]
     fn line(&self, x: f64) -> f64 {
         let last = self.x.len() - 1;
-        let hi = if last == 1 { 1 } else { self.x.partition_point(|&p| p <= x).clamp(1, last) };
+        let hi = if last == 1 {
+            1
+        } else {
+            self.x.partition_point(|&p| p <= x).clamp(1, last)
+        };
         self.w[hi] + self.slope[hi] * (x - self.x[hi])
     }
 }
@@ -87,13 +100,21 @@ mod tests {
         let v = Viscosity::new(&[(313.15, 36e-6), (373.15, 7.2e-6)]).expect("valid");
         for (t_c, nu) in [(-10.0, 519.0), (0.0, 258.0), (20.0, 84.0), (80.0, 11.0)] {
             let got = v.kinematic_m2_s(t_c + 273.15) * 1e6;
-            assert!((got / nu - 1.0).abs() < 0.005, "{t_c} degC: {got} instead of {nu}");
+            assert!(
+                (got / nu - 1.0).abs() < 0.005,
+                "{t_c} degC: {got} instead of {nu}"
+            );
         }
     }
 
     #[test]
     fn table_goes_through_its_points_and_falls_everywhere() {
-        let points = [(233.15, 12000e-6), (263.15, 600e-6), (313.15, 36e-6), (373.15, 7.2e-6)];
+        let points = [
+            (233.15, 12000e-6),
+            (263.15, 600e-6),
+            (313.15, 36e-6),
+            (373.15, 7.2e-6),
+        ];
         let v = Viscosity::new(&points).expect("valid");
         for (t, nu) in points {
             assert!((v.kinematic_m2_s(t) / nu - 1.0).abs() < 1e-9);

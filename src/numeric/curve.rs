@@ -51,12 +51,35 @@ impl Curve {
     fn build(points: &[(f64, f64)]) -> Self {
         let (first, last) = (points[0], points[points.len() - 1]);
         let width = last.0 - first.0;
-        let cells_per_x = if width > 0.0 { CELLS as f64 / width } else { 0.0 };
-        let between = points.windows(2).map(|p| Piece { x: p[0].0, y: p[0].1, slope: (p[1].1 - p[0].1) / (p[1].0 - p[0].0), end: p[1].0 });
-        let piece = |x: f64| points.partition_point(|p| p.0 <= x).clamp(1, points.len().max(2) - 1) - 1;
+        let cells_per_x = if width > 0.0 {
+            CELLS as f64 / width
+        } else {
+            0.0
+        };
+        let between = points.windows(2).map(|p| Piece {
+            x: p[0].0,
+            y: p[0].1,
+            slope: (p[1].1 - p[0].1) / (p[1].0 - p[0].0),
+            end: p[1].0,
+        });
+        let piece = |x: f64| {
+            points
+                .partition_point(|p| p.0 <= x)
+                .clamp(1, points.len().max(2) - 1)
+                - 1
+        };
         Curve {
-            pieces: between.chain([Piece { x: last.0, y: last.1, slope: 0.0, end: f64::INFINITY }]).collect(),
-            cell: (0..CELLS).map(|i| piece(first.0 + i as f64 * width / CELLS as f64) as u16).collect(),
+            pieces: between
+                .chain([Piece {
+                    x: last.0,
+                    y: last.1,
+                    slope: 0.0,
+                    end: f64::INFINITY,
+                }])
+                .collect(),
+            cell: (0..CELLS)
+                .map(|i| piece(first.0 + i as f64 * width / CELLS as f64) as u16)
+                .collect(),
             cells_per_x,
             first,
             last,
@@ -103,8 +126,20 @@ mod tests {
     #[test]
     fn val_interpolates_by_hand() {
         let c = Curve::new(&[(0.0, 1.0), (2.0, 3.0), (4.0, 0.0)]).expect("valid");
-        for (x, y) in [(-1.0, 1.0), (0.0, 1.0), (1.0, 2.0), (2.0, 3.0), (3.0, 1.5), (4.0, 0.0), (9.0, 0.0)] {
-            assert!((c.at(x) - y).abs() < 1e-15, "at {x}: {} instead of {y}", c.at(x));
+        for (x, y) in [
+            (-1.0, 1.0),
+            (0.0, 1.0),
+            (1.0, 2.0),
+            (2.0, 3.0),
+            (3.0, 1.5),
+            (4.0, 0.0),
+            (9.0, 0.0),
+        ] {
+            assert!(
+                (c.at(x) - y).abs() < 1e-15,
+                "at {x}: {} instead of {y}",
+                c.at(x)
+            );
         }
     }
 

@@ -89,14 +89,22 @@ pub fn exp(x: f64) -> f64 {
 pub fn exp_each<const N: usize>(x: [f64; N]) -> [f64; N] {
     // One comparison for all: a sum within reach has every term within it. Beyond, each is asked.
     let sum = x.iter().fold(0.0, |sum, x| sum + x.abs());
-    if sum < EXP_REACH { x.map(exp_within) } else { x.map(exp_anywhere) }
+    if sum < EXP_REACH {
+        x.map(exp_within)
+    } else {
+        x.map(exp_anywhere)
+    }
 }
 
 /// exp where several are large.
 #[cold]
 #[inline(never)]
 fn exp_anywhere(x: f64) -> f64 {
-    if x.abs() < EXP_REACH { exp_within(x) } else { x.exp() }
+    if x.abs() < EXP_REACH {
+        exp_within(x)
+    } else {
+        x.exp()
+    }
 }
 
 /// exp within reach of its series.
@@ -129,15 +137,25 @@ pub fn ln(x: f64) -> f64 {
 pub fn ln_each<const N: usize>(x: [f64; N]) -> [f64; N] {
     // One comparison for all: between 2^-511 and 2^512 the two leading bits of this difference are zero. Beyond, each is asked.
     const LEAST: u64 = 512 << 52;
-    let bits = x.iter().fold(0, |bits, x| bits | x.to_bits().wrapping_sub(LEAST));
-    if bits >> 62 == 0 { x.map(ln_plain) } else { x.map(ln_anywhere) }
+    let bits = x
+        .iter()
+        .fold(0, |bits, x| bits | x.to_bits().wrapping_sub(LEAST));
+    if bits >> 62 == 0 {
+        x.map(ln_plain)
+    } else {
+        x.map(ln_anywhere)
+    }
 }
 
 /// ln where one of several is far from 1.
 #[cold]
 #[inline(never)]
 fn ln_anywhere(x: f64) -> f64 {
-    if (f64::MIN_POSITIVE..f64::INFINITY).contains(&x) { ln_plain(x) } else { x.ln() }
+    if (f64::MIN_POSITIVE..f64::INFINITY).contains(&x) {
+        ln_plain(x)
+    } else {
+        x.ln()
+    }
 }
 
 /// ln of a normal positive number.
@@ -150,7 +168,12 @@ fn ln_plain(x: f64) -> f64 {
     let above = x.to_bits().wrapping_add(BIAS - FIRST_CELL);
     let (inverse, ln_c) = CELL[(above >> 45) as usize % CELLS];
     let e = f64::from_bits(above >> 52 | TWO_52.to_bits()) - (TWO_52 + 1023.0);
-    let r = f64::from_bits(x.to_bits().wrapping_sub(above & 0xfff0_0000_0000_0000).wrapping_add(BIAS)) * inverse - 1.0;
+    let r = f64::from_bits(
+        x.to_bits()
+            .wrapping_sub(above & 0xfff0_0000_0000_0000)
+            .wrapping_add(BIAS),
+    ) * inverse
+        - 1.0;
     let r2 = r * r;
     let low = r2 * (r * (1.0 / 3.0) - 0.5);
     let high = r2 * r2 * ((0.2 * r - 0.25) + r2 * (r * (1.0 / 7.0) - 1.0 / 6.0));
@@ -162,8 +185,14 @@ mod tests {
     use super::*;
 
     /// Largest relative distance to the standard library's function over many numbers.
-    fn worst(own: impl Fn(f64) -> f64, truth: impl Fn(f64) -> f64, numbers: impl Iterator<Item = f64>) -> f64 {
-        numbers.fold(0.0, |most: f64, x| most.max((own(x) / truth(x) - 1.0).abs()))
+    fn worst(
+        own: impl Fn(f64) -> f64,
+        truth: impl Fn(f64) -> f64,
+        numbers: impl Iterator<Item = f64>,
+    ) -> f64 {
+        numbers.fold(0.0, |most: f64, x| {
+            most.max((own(x) / truth(x) - 1.0).abs())
+        })
     }
 
     /// Outside truth: the standard library, itself within one unit of the last place.
@@ -173,9 +202,20 @@ mod tests {
         assert!(worst(exp, f64::exp, near) <= 6e-16);
         assert!(worst(exp, f64::exp, (-6999..6999).map(|k| 0.1 * f64::from(k))) <= 6e-16);
         let absolute = |x: f64| (ln(x) - x.ln()).abs() / x.ln().abs().max(1.0);
-        assert!((1..4_000_000).map(|k| absolute(1e-4 * f64::from(k))).fold(0.0, f64::max) <= 6e-16);
-        assert!((-1000..1000).map(|k| absolute(10f64.powf(0.3 * f64::from(k)))).fold(0.0, f64::max) <= 6e-16);
-        let near_one = (1..39_000).flat_map(|k| [1.0 + 1e-7 * f64::from(k), 1.0 - 1e-7 * f64::from(k)]);
+        assert!(
+            (1..4_000_000)
+                .map(|k| absolute(1e-4 * f64::from(k)))
+                .fold(0.0, f64::max)
+                <= 6e-16
+        );
+        assert!(
+            (-1000..1000)
+                .map(|k| absolute(10f64.powf(0.3 * f64::from(k))))
+                .fold(0.0, f64::max)
+                <= 6e-16
+        );
+        let near_one =
+            (1..39_000).flat_map(|k| [1.0 + 1e-7 * f64::from(k), 1.0 - 1e-7 * f64::from(k)]);
         assert!(worst(ln, f64::ln, near_one) <= 5e-16);
     }
 
@@ -183,10 +223,18 @@ mod tests {
     #[test]
     fn several_together_are_each_alone() {
         let bits = |x: [f64; 5]| x.map(f64::to_bits);
-        for x in [[0.3, -2.0, 650.0, -12.5, 1e-9], [0.3, f64::NEG_INFINITY, 701.0, -12.5, 0.0], [f64::MIN_POSITIVE, 0.0, 3.0, 1e300, 0.7]] {
+        for x in [
+            [0.3, -2.0, 650.0, -12.5, 1e-9],
+            [0.3, f64::NEG_INFINITY, 701.0, -12.5, 0.0],
+            [f64::MIN_POSITIVE, 0.0, 3.0, 1e300, 0.7],
+        ] {
             assert_eq!(bits(exp_each(x)), bits(x.map(exp)), "{x:?}");
             let positive = x.map(f64::abs);
-            assert_eq!(bits(ln_each(positive)), bits(positive.map(ln)), "{positive:?}");
+            assert_eq!(
+                bits(ln_each(positive)),
+                bits(positive.map(ln)),
+                "{positive:?}"
+            );
         }
     }
 
@@ -194,10 +242,28 @@ mod tests {
     #[allow(clippy::float_cmp, reason = "promised exactly")]
     fn exact_where_it_matters_and_never_a_surprise() {
         assert_eq!((exp(0.0), ln(1.0), ln(2.0)), (1.0, 0.0, LN_2));
-        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 709.0, 710.0, -745.0, -746.0, 700.0, -700.0] {
+        for x in [
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            709.0,
+            710.0,
+            -745.0,
+            -746.0,
+            700.0,
+            -700.0,
+        ] {
             assert!(exp(x) == x.exp() || exp(x).is_nan() && x.is_nan(), "{x}");
         }
-        for x in [f64::NAN, f64::INFINITY, 0.0, -0.0, -1.0, 5e-324, f64::MIN_POSITIVE / 2.0] {
+        for x in [
+            f64::NAN,
+            f64::INFINITY,
+            0.0,
+            -0.0,
+            -1.0,
+            5e-324,
+            f64::MIN_POSITIVE / 2.0,
+        ] {
             assert!(ln(x) == x.ln() || ln(x).is_nan() && x.ln().is_nan(), "{x}");
         }
     }

@@ -31,7 +31,11 @@ impl Grid {
         }
         let size: usize = axes.iter().map(Vec::len).product();
         if size != rows.len() || size == 0 {
-            return Err(format!("the {} rows do not fill the grid of {} combinations exactly once", rows.len(), size));
+            return Err(format!(
+                "the {} rows do not fill the grid of {} combinations exactly once",
+                rows.len(),
+                size
+            ));
         }
         let mut values = vec![f64::NAN; size];
         for (x, value) in rows {
@@ -39,10 +43,15 @@ impl Grid {
             if values[index].is_nan() {
                 values[index] = *value;
             } else {
-                return Err(format!("the combination {x:?} stands twice, another is missing"));
+                return Err(format!(
+                    "the combination {x:?} stands twice, another is missing"
+                ));
             }
         }
-        Ok(Grid { axes, values: values.into() })
+        Ok(Grid {
+            axes,
+            values: values.into(),
+        })
     }
 
     /// Value at `x` and whether `x` lies within the grid on every axis that has more than one value.
@@ -79,7 +88,9 @@ impl Grid {
 
 /// Index of the value at given coordinates of the axes.
 fn index_of(axes: &[Vec<f64>; GRID_AXES], x: &[f64; GRID_AXES]) -> usize {
-    axes.iter().zip(x).fold(0, |index, (axis, &v)| index * axis.len() + axis.partition_point(|&a| a < v).min(axis.len() - 1))
+    axes.iter().zip(x).fold(0, |index, (axis, &v)| {
+        index * axis.len() + axis.partition_point(|&a| a < v).min(axis.len() - 1)
+    })
 }
 
 #[cfg(test)]
@@ -103,9 +114,17 @@ mod tests {
         }
         rows.reverse();
         let grid = Grid::from_rows(&rows).expect("full grid");
-        for x in [[0.3, 0.1, 0.0, 0.0, 12.0], [3.9, 1.9, 5.0, 1.0, 19.0], [4.0, 2.0, 7.0, 0.0, 20.0]] {
+        for x in [
+            [0.3, 0.1, 0.0, 0.0, 12.0],
+            [3.9, 1.9, 5.0, 1.0, 19.0],
+            [4.0, 2.0, 7.0, 0.0, 20.0],
+        ] {
             let (y, inside) = grid.at(x);
-            assert!((y - plane(x)).abs() < 1e-12 && inside, "{x:?}: {y} {}", plane(x));
+            assert!(
+                (y - plane(x)).abs() < 1e-12 && inside,
+                "{x:?}: {y} {}",
+                plane(x)
+            );
         }
         assert!(!grid.at([5.0, 0.0, 0.0, 0.0, 12.0]).1);
     }
@@ -114,6 +133,8 @@ mod tests {
     fn refuses_holes_and_doubles() {
         let row = |a: f64, b: f64| ([a, b, 0.0, 0.0, 0.0], 1.0);
         assert!(Grid::from_rows(&[row(0.0, 0.0), row(1.0, 1.0)]).is_err());
-        assert!(Grid::from_rows(&[row(0.0, 0.0), row(1.0, 1.0), row(0.0, 1.0), row(0.0, 0.0)]).is_err());
+        assert!(
+            Grid::from_rows(&[row(0.0, 0.0), row(1.0, 1.0), row(0.0, 1.0), row(0.0, 0.0)]).is_err()
+        );
     }
 }

@@ -24,7 +24,11 @@ pub fn held(x: f64, low: f64, high: f64) -> f64 {
 #[inline]
 pub fn ramp(x: f64, from: f64, to: f64) -> f64 {
     let width = to - from;
-    if width.abs() > 0.0 { held((x - from) / width, 0.0, 1.0) } else { f64::from(u8::from(x >= from)) }
+    if width.abs() > 0.0 {
+        held((x - from) / width, 0.0, 1.0)
+    } else {
+        f64::from(u8::from(x >= from))
+    }
 }
 
 /// Smooth ramp with zero slope at both ends (3 u2 - 2 u3).

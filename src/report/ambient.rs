@@ -8,7 +8,12 @@ const AMBIENT: &str = "Ambient temperature [\u{b0}C]";
 
 /// Ambient temperatures, degC, and a number at each, from cold to warm in whatever order they were asked for.
 fn points(x: &[f64], y: &[f64]) -> Points {
-    let mut list: Points = x.iter().copied().zip(y.iter().copied()).filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+    let mut list: Points = x
+        .iter()
+        .copied()
+        .zip(y.iter().copied())
+        .filter(|(x, y)| x.is_finite() && y.is_finite())
+        .collect();
     list.sort_by(|a, b| a.0.total_cmp(&b.0));
     list
 }
@@ -18,7 +23,10 @@ fn series(matrix: &Matrix, by_car: &[Vec<Vec<f64>>], first_look: usize) -> Vec<(
     let mut list = Vec::new();
     for (car, by_start) in by_car.iter().enumerate() {
         for (start, numbers) in by_start.iter().enumerate() {
-            list.push((look(matrix, car + first_look, start), points(&matrix.ambient_degc, numbers)));
+            list.push((
+                look(matrix, car + first_look, start),
+                points(&matrix.ambient_degc, numbers),
+            ));
         }
     }
     list
@@ -27,8 +35,14 @@ fn series(matrix: &Matrix, by_car: &[Vec<Vec<f64>>], first_look: usize) -> Vec<(
 /// With two starts a car keeps its colour and the second start is dotted; with more, every line has its own look.
 fn look(matrix: &Matrix, car: usize, start: usize) -> Look {
     match matrix.starts.len() {
-        0..=2 => Look { index: car, dotted: start == 1 },
-        starts => Look { index: car * starts + start, dotted: false },
+        0..=2 => Look {
+            index: car,
+            dotted: start == 1,
+        },
+        starts => Look {
+            index: car * starts + start,
+            dotted: false,
+        },
     }
 }
 
@@ -36,7 +50,10 @@ fn names(matrix: &Matrix, cars: &[String], first_look: usize) -> Vec<(Look, Stri
     let mut list = Vec::new();
     for (car, name) in cars.iter().enumerate() {
         for (start, word) in matrix.starts.iter().enumerate() {
-            list.push((look(matrix, car + first_look, start), format!("{name}, {word}")));
+            list.push((
+                look(matrix, car + first_look, start),
+                format!("{name}, {word}"),
+            ));
         }
     }
     list
@@ -51,7 +68,15 @@ pub fn ambient_fuel(matrix: &Matrix, title: &str) -> Picture {
         series: series(matrix, &part.l_per_100km, 0),
         ..ChartPanel::default()
     };
-    let told = |part: &FuelPart| told(matrix, &part.name, &part.l_per_100km, &matrix.cars, "L/100 km");
+    let told = |part: &FuelPart| {
+        told(
+            matrix,
+            &part.name,
+            &part.l_per_100km,
+            &matrix.cars,
+            "L/100 km",
+        )
+    };
     chart(&Chart {
         title: "Fuel against ambient temperature".into(),
         subject: title.to_owned(),
@@ -80,7 +105,10 @@ pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<Picture> {
         ..ChartPanel::default()
     };
     let told = |part: &FuelPart| told(matrix, &part.name, &part.excess_percent, baselines, "%");
-    let over: Vec<String> = baselines.iter().map(|name| format!("over {name}")).collect();
+    let over: Vec<String> = baselines
+        .iter()
+        .map(|name| format!("over {name}"))
+        .collect();
     Some(chart(&Chart {
         title: format!("Fuel of {subject} over that of its baselines"),
         subject: title.to_owned(),
@@ -103,9 +131,17 @@ pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> P
         let node = |what: &str, of: fn(&WarmUp) -> &[f64]| {
             let line = |run: &WarmUp| {
                 let seconds = run.time_s.iter().copied();
-                (Look { index: run.ambient, dotted: false }, seconds.zip(of(run).iter().copied()).collect())
+                (
+                    Look {
+                        index: run.ambient,
+                        dotted: false,
+                    },
+                    seconds.zip(of(run).iter().copied()).collect(),
+                )
             };
-            let own = runs.iter().filter(|run| run.car == car && run.start == start);
+            let own = runs
+                .iter()
+                .filter(|run| run.car == car && run.start == start);
             ChartPanel {
                 heading: format!("{name}: {what}"),
                 y_title: "Temperature [\u{b0}C]",
@@ -118,15 +154,37 @@ pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> P
     }
     let end = |run: &WarmUp| {
         let last = |list: &[f64]| list.last().copied().unwrap_or(f64::NAN);
-        let ambient = matrix.ambient_degc.get(run.ambient).copied().unwrap_or(f64::NAN);
+        let ambient = matrix
+            .ambient_degc
+            .get(run.ambient)
+            .copied()
+            .unwrap_or(f64::NAN);
         let car = matrix.cars.get(run.car).map_or("", String::as_str);
         let (sump, oil) = (last(&run.sump_degc), last(&run.engine_oil_degc));
-        format!("{car} at {}: sump ends at {sump:.0}, engine oil at {oil:.0} \u{b0}C", degrees(ambient))
+        format!(
+            "{car} at {}: sump ends at {sump:.0}, engine oil at {oil:.0} \u{b0}C",
+            degrees(ambient)
+        )
     };
-    let ends: Vec<String> = runs.iter().filter(|run| run.start == start).map(end).collect();
-    let name = |(index, degc): (usize, &f64)| (Look { index, dotted: false }, degrees(*degc));
+    let ends: Vec<String> = runs
+        .iter()
+        .filter(|run| run.start == start)
+        .map(end)
+        .collect();
+    let name = |(index, degc): (usize, &f64)| {
+        (
+            Look {
+                index,
+                dotted: false,
+            },
+            degrees(*degc),
+        )
+    };
     chart(&Chart {
-        title: format!("Warm-up, start {}", matrix.starts.get(start).map_or("", String::as_str)),
+        title: format!(
+            "Warm-up, start {}",
+            matrix.starts.get(start).map_or("", String::as_str)
+        ),
         subject: title.to_owned(),
         description: ends.join(". "),
         x_title: "Time [s]",
@@ -145,15 +203,29 @@ fn degrees(degc: f64) -> String {
 }
 
 fn heading(part: &str) -> String {
-    if part == "total" { "Whole cycle".to_owned() } else { part.to_uppercase() }
+    if part == "total" {
+        "Whole cycle".to_owned()
+    } else {
+        part.to_uppercase()
+    }
 }
 
-fn told(matrix: &Matrix, part: &str, by_car: &[Vec<Vec<f64>>], names: &[String], unit: &str) -> String {
+fn told(
+    matrix: &Matrix,
+    part: &str,
+    by_car: &[Vec<Vec<f64>>],
+    names: &[String],
+    unit: &str,
+) -> String {
     let mut list = Vec::new();
     for (name, by_start) in names.iter().zip(by_car) {
         for (start, numbers) in matrix.starts.iter().zip(by_start) {
-            let cells: Vec<String> =
-                matrix.ambient_degc.iter().zip(numbers).map(|(degc, x)| format!("{x:.2} at {}", degrees(*degc))).collect();
+            let cells: Vec<String> = matrix
+                .ambient_degc
+                .iter()
+                .zip(numbers)
+                .map(|(degc, x)| format!("{x:.2} at {}", degrees(*degc)))
+                .collect();
             list.push(format!("{name} from {start}: {}", cells.join(", ")));
         }
     }

@@ -24,8 +24,16 @@ impl Axis {
         let first = (low / step + 1e-9).floor();
         let last = (high / step - 1e-9).ceil();
         let near = |end: f64, value: f64| value.abs() > 0.0 && (end - value).abs() < 0.1 * step;
-        let low = if near(first * step, low) { first - 0.5 } else { first };
-        let high = if near(last * step, high) { last + 0.5 } else { last };
+        let low = if near(first * step, low) {
+            first - 0.5
+        } else {
+            first
+        };
+        let high = if near(last * step, high) {
+            last + 0.5
+        } else {
+            last
+        };
         Self::with_step(title, low * step, high * step, step)
     }
 
@@ -34,15 +42,30 @@ impl Axis {
         let ordered = low.is_finite() && high.is_finite() && low < high;
         let (low, high) = if ordered { (low, high) } else { (0.0, 1.0) };
         let (low, high) = widened(low, high);
-        Self::with_step(title, low, high, round_step((high - low) / most_ticks.max(2) as f64))
+        Self::with_step(
+            title,
+            low,
+            high,
+            round_step((high - low) / most_ticks.max(2) as f64),
+        )
     }
 
     fn with_step(title: &str, low: f64, high: f64, step: f64) -> Self {
         let first = (low / step - 1e-9).ceil();
-        let count = ((high - first * step) / step + 1e-9).floor().clamp(0.0, 50.0) as i32;
+        let count = ((high - first * step) / step + 1e-9)
+            .floor()
+            .clamp(0.0, 50.0) as i32;
         // Adding zero turns a negative zero into a plain one.
-        let ticks = (0..=count).map(|i| (first + f64::from(i)) * step + 0.0).collect();
-        Axis { title: title.to_string(), low, high, ticks, step }
+        let ticks = (0..=count)
+            .map(|i| (first + f64::from(i)) * step + 0.0)
+            .collect();
+        Axis {
+            title: title.to_string(),
+            low,
+            high,
+            ticks,
+            step,
+        }
     }
 
     /// The label of a tick.
@@ -58,10 +81,12 @@ impl Axis {
 
 /// The least and greatest finite value.
 pub(super) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    values.filter(|x| x.is_finite()).fold(None, |range, x| match range {
-        None => Some((x, x)),
-        Some((low, high)) => Some((low.min(x), high.max(x))),
-    })
+    values
+        .filter(|x| x.is_finite())
+        .fold(None, |range, x| match range {
+            None => Some((x, x)),
+            Some((low, high)) => Some((low.min(x), high.max(x))),
+        })
 }
 
 /// A number with as many decimals as a step between neighbours needs.
@@ -81,14 +106,17 @@ pub(super) fn number(value: f64, step: f64) -> String {
         return text.trim_start_matches('-').to_string();
     }
     // A true minus sign is as wide as the digits and does not break off.
-    text.strip_prefix('-').map_or_else(|| text.clone(), |rest| format!("\u{2212}{rest}"))
+    text.strip_prefix('-')
+        .map_or_else(|| text.clone(), |rest| format!("\u{2212}{rest}"))
 }
 
 /// 1, 2 or 5 times a power of ten, not below `x`.
 pub(super) fn round_step(x: f64) -> f64 {
     let power = 10f64.powf(x.log10().floor());
     let factor = x / power;
-    let round = [1.0, 2.0, 5.0].into_iter().find(|f| factor <= f * (1.0 + 1e-9));
+    let round = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|f| factor <= f * (1.0 + 1e-9));
     power * round.unwrap_or(10.0)
 }
 
@@ -114,22 +142,40 @@ mod tests {
         assert_eq!(axis.ticks, [0.0, 200.0, 400.0, 600.0, 800.0, 1000.0]);
         assert_eq!(axis.label(200.0), "200");
         let axis = Axis::round("T", [-7.0, 91.0].into_iter(), 6);
-        assert_eq!(axis.ticks.first().zip(axis.ticks.last()), Some((&-20.0, &100.0)));
+        assert_eq!(
+            axis.ticks.first().zip(axis.ticks.last()),
+            Some((&-20.0, &100.0))
+        );
         assert_eq!(axis.label(-20.0), "\u{2212}20");
         let axis = Axis::round("I", [0.44, 2.31].into_iter(), 5);
         assert_eq!(axis.label(axis.ticks[0]), "0.0");
         // Neighbours differ, however small the step is against the values.
         let label = |value, step| number(value, step);
-        assert_eq!([label(7.0, 1e-5), label(7.000_01, 1e-5)], ["7.00000e0", "7.00001e0"]);
-        assert_eq!([label(0.0, 5e-8), label(7.5e-7, 5e-8), label(2e7, 1e7)], ["0", "7.5e-7", "2.0e7"]);
+        assert_eq!(
+            [label(7.0, 1e-5), label(7.000_01, 1e-5)],
+            ["7.00000e0", "7.00001e0"]
+        );
+        assert_eq!(
+            [label(0.0, 5e-8), label(7.5e-7, 5e-8), label(2e7, 1e7)],
+            ["0", "7.5e-7", "2.0e7"]
+        );
     }
 
     #[test]
     fn every_range_gives_an_axis() {
-        for (low, high) in [(0.0, 0.0), (5.0, 5.0), (-3.0, -3.0), (f64::MIN, f64::MAX), (0.0, 1e-320), (1e16, 1e16)] {
+        for (low, high) in [
+            (0.0, 0.0),
+            (5.0, 5.0),
+            (-3.0, -3.0),
+            (f64::MIN, f64::MAX),
+            (0.0, 1e-320),
+            (1e16, 1e16),
+        ] {
             let axis = Axis::round("x", [low, high, f64::NAN, f64::INFINITY].into_iter(), 5);
             assert!(axis.high > axis.low && !axis.ticks.is_empty() && axis.ticks.len() < 60);
-            assert!(axis.low.is_finite() && axis.high.is_finite() && (axis.high - axis.low).is_finite());
+            assert!(
+                axis.low.is_finite() && axis.high.is_finite() && (axis.high - axis.low).is_finite()
+            );
         }
         assert!(Axis::round("x", std::iter::empty(), 5).high > 0.5);
     }

@@ -32,33 +32,69 @@ pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
         [run] => run.name.to_string(),
         _ => format!("{} vehicles", runs.len()),
     };
-    let mut figure = Figure::new(size, PLOT_LEFT, "Fuel consumption", &subject, &describe(runs));
-    let rect = Rect { left: PLOT_LEFT, right, top: TOP, bottom };
+    let mut figure = Figure::new(
+        size,
+        PLOT_LEFT,
+        "Fuel consumption",
+        &subject,
+        &describe(runs),
+    );
+    let rect = Rect {
+        left: PLOT_LEFT,
+        right,
+        top: TOP,
+        bottom,
+    };
     let y = axis(runs);
     let mut x = Axis::exact("", 0.0, groups.len().max(1) as f64, 5);
     // Groups have names in place of numbers; these are written below.
     x.ticks.clear();
     let panel = Panel::draw(&mut figure, rect, x, y, false);
-    let paints: Vec<String> = (0..runs.len()).map(|i| fill(&mut figure, "fuel", i, runs.len())).collect();
+    let paints: Vec<String> = (0..runs.len())
+        .map(|i| fill(&mut figure, "fuel", i, runs.len()))
+        .collect();
     let table = draw_groups(&mut figure, &panel, runs, &groups, &paints);
     if groups.is_empty() {
         panel.empty(&mut figure);
     }
     panel.outline(&mut figure);
     let entries: Vec<_> = paints.into_iter().map(Mark::Fill).zip(names).collect();
-    legend_below(&mut figure, (PLOT_LEFT, bottom + 34.0), plot, "Vehicle", &entries);
-    Picture { svg: figure.finish(), table }
+    legend_below(
+        &mut figure,
+        (PLOT_LEFT, bottom + 34.0),
+        plot,
+        "Vehicle",
+        &entries,
+    );
+    Picture {
+        svg: figure.finish(),
+        table,
+    }
 }
 
 /// Draws the bars of all groups; returns their values.
-fn draw_groups(figure: &mut Figure, panel: &Panel, runs: &[PlotRun], groups: &[String], paints: &[String]) -> PictureTable {
-    let mut table = PictureTable::new(&[("Part of the cycle", ""), ("Vehicle", ""), ("Fuel", "L/100 km")]);
+fn draw_groups(
+    figure: &mut Figure,
+    panel: &Panel,
+    runs: &[PlotRun],
+    groups: &[String],
+    paints: &[String],
+) -> PictureTable {
+    let mut table = PictureTable::new(&[
+        ("Part of the cycle", ""),
+        ("Vehicle", ""),
+        ("Fuel", "L/100 km"),
+    ]);
     let width = (1.0 - GAP) / runs.len().max(1) as f64;
     for (g, group) in groups.iter().enumerate() {
         for (i, (run, paint)) in runs.iter().zip(paints).enumerate() {
             let from = g as f64 + 0.5 * GAP + i as f64 * width;
             let value = value_of(run, group);
-            let row = table.push(vec![group.clone(), run.name.to_owned(), cell(value.unwrap_or(f64::NAN), 0.01)]);
+            let row = table.push(vec![
+                group.clone(),
+                run.name.to_owned(),
+                cell(value.unwrap_or(f64::NAN), 0.01),
+            ]);
             if let Some(value) = value {
                 bar(figure, panel, (from, from + width), value, (paint, row));
             }
@@ -66,7 +102,11 @@ fn draw_groups(figure: &mut Figure, panel: &Panel, runs: &[PlotRun], groups: &[S
         let middle = panel.px(g as f64 + 0.5);
         let room = panel.px(1.0) - panel.px(0.0) - 6.0;
         let name = fit(group, 12.0, room);
-        let weight = if group == "total" { "font-weight=\"bold\"" } else { "" };
+        let weight = if group == "total" {
+            "font-weight=\"bold\""
+        } else {
+            ""
+        };
         let at = (middle, panel.rect.bottom + 20.0);
         figure.text(at, 12.0, Anchor::Middle, weight, INK, &name);
     }
@@ -75,15 +115,31 @@ fn draw_groups(figure: &mut Figure, panel: &Panel, runs: &[PlotRun], groups: &[S
 
 /// From zero, with room for the values over the highest bar.
 fn axis(runs: &[PlotRun]) -> Axis {
-    let values = || runs.iter().flat_map(|run| run.group_fuel.iter().map(|(_, fuel)| *fuel));
+    let values = || {
+        runs.iter()
+            .flat_map(|run| run.group_fuel.iter().map(|(_, fuel)| *fuel))
+    };
     let highest = values().filter(|x| x.is_finite()).fold(0.0, f64::max);
     Axis::round("Fuel [L/100 km]", [0.0, 1.12 * highest].into_iter(), 8)
 }
 
-fn bar(figure: &mut Figure, panel: &Panel, (from, to): (f64, f64), value: f64, (paint, row): (&str, usize)) {
+fn bar(
+    figure: &mut Figure,
+    panel: &Panel,
+    (from, to): (f64, f64),
+    value: f64,
+    (paint, row): (&str, usize),
+) {
     let (left, right, top) = (panel.px(from), panel.px(to), panel.py(value));
-    let rect = Rect { left, right, top, bottom: panel.rect.bottom };
-    let attributes = format!("class=\"bar\" data-row=\"{row}\" fill=\"{paint}\" stroke=\"{INK}\" stroke-width=\"3\"");
+    let rect = Rect {
+        left,
+        right,
+        top,
+        bottom: panel.rect.bottom,
+    };
+    let attributes = format!(
+        "class=\"bar\" data-row=\"{row}\" fill=\"{paint}\" stroke=\"{INK}\" stroke-width=\"3\""
+    );
     figure.rect(rect, &attributes);
     let text = format!("{value:.2}");
     let middle = 0.5 * (left + right);
@@ -91,9 +147,19 @@ fn bar(figure: &mut Figure, panel: &Panel, (from, to): (f64, f64), value: f64, (
         figure.text((middle, top - 4.0), LABEL, Anchor::Middle, "", INK, &text);
     } else if right - left >= UPRIGHT {
         // Upright where the bars are thinner than their values are wide.
-        let (x, y) = (super::figure::units(middle + 3.5), super::figure::units(top - 4.0));
+        let (x, y) = (
+            super::figure::units(middle + 3.5),
+            super::figure::units(top - 4.0),
+        );
         let turn = format!("transform=\"rotate(-90 {x} {y})\"");
-        figure.text((middle + 3.5, top - 4.0), LABEL, Anchor::Start, &turn, INK, &text);
+        figure.text(
+            (middle + 3.5, top - 4.0),
+            LABEL,
+            Anchor::Start,
+            &turn,
+            INK,
+            &text,
+        );
     }
 }
 
@@ -119,9 +185,16 @@ fn describe(runs: &[PlotRun]) -> String {
     let told: Vec<String> = runs
         .iter()
         .map(|run| {
-            let fuel: Vec<String> = run.group_fuel.iter().map(|(name, fuel)| format!("{name} {fuel:.2}")).collect();
+            let fuel: Vec<String> = run
+                .group_fuel
+                .iter()
+                .map(|(name, fuel)| format!("{name} {fuel:.2}"))
+                .collect();
             format!("{}: {}", run.name, fuel.join(", "))
         })
         .collect();
-    format!("Fuel in L/100 km by part of the cycle, one bar per vehicle. {}.", told.join("; "))
+    format!(
+        "Fuel in L/100 km by part of the cycle, one bar per vehicle. {}.",
+        told.join("; ")
+    )
 }

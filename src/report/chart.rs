@@ -84,20 +84,34 @@ pub struct Chart {
 #[must_use]
 pub fn chart(chart: &Chart) -> Picture {
     let place = Layout::of(chart);
-    let mut figure = Figure::new((WIDTH, place.tall), PLOT_LEFT, &chart.title, &chart.subject, &chart.description);
+    let mut figure = Figure::new(
+        (WIDTH, place.tall),
+        PLOT_LEFT,
+        &chart.title,
+        &chart.subject,
+        &chart.description,
+    );
     let stacked = chart.panels.iter().any(|p| p.stacked);
     let count = chart.names.len();
-    let paints: Vec<String> = (0..if stacked { count } else { 0 }).map(|i| fill(&mut figure, "part", i, count)).collect();
+    let paints: Vec<String> = (0..if stacked { count } else { 0 })
+        .map(|i| fill(&mut figure, "part", i, count))
+        .collect();
     let (table, columns) = table::table(chart);
     for (k, panel) in chart.panels.iter().enumerate() {
         // Which columns of the table the panel draws.
-        figure.raw(&format!("<g data-columns=\"{}\">", columns.get(k).map_or("", String::as_str)));
+        figure.raw(&format!(
+            "<g data-columns=\"{}\">",
+            columns.get(k).map_or("", String::as_str)
+        ));
         draw(&mut figure, chart, panel, place.rect(k), &paints);
         figure.close();
     }
     let mut entries: Vec<(Mark, String)> = Vec::new();
     for (look, name) in &chart.names {
-        let mark = paints.get(look.index).map_or_else(|| Mark::Line(stroke(*look)), |paint| Mark::Fill(paint.clone()));
+        let mark = paints.get(look.index).map_or_else(
+            || Mark::Line(stroke(*look)),
+            |paint| Mark::Fill(paint.clone()),
+        );
         entries.push((mark, name.clone()));
     }
     if stacked {
@@ -111,7 +125,10 @@ pub fn chart(chart: &Chart) -> Picture {
             legend_below(&mut figure, (left, top), width, &chart.legend, &entries);
         }
     }
-    Picture { svg: figure.finish(), table }
+    Picture {
+        svg: figure.finish(),
+        table,
+    }
 }
 
 /// Where panels and legend go.
@@ -131,49 +148,89 @@ impl Layout {
         let several = chart.panels.len() > 1;
         let columns = if several { 2 } else { 1 };
         let rows = chart.panels.len().div_ceil(columns).max(1);
-        let wide = if several { (PLOT_RIGHT - PLOT_LEFT - LEFT - GAP.0) / 2.0 } else { PLOT_RIGHT - PLOT_LEFT };
+        let wide = if several {
+            (PLOT_RIGHT - PLOT_LEFT - LEFT - GAP.0) / 2.0
+        } else {
+            PLOT_RIGHT - PLOT_LEFT
+        };
         let tall = TALL[usize::from(several)];
-        let heading = if chart.panels.iter().any(|panel| !panel.heading.is_empty()) { HEADING } else { 0.0 };
+        let heading = if chart.panels.iter().any(|panel| !panel.heading.is_empty()) {
+            HEADING
+        } else {
+            0.0
+        };
         let pitch = (wide + LEFT + GAP.0, tall + heading + BELOW + GAP.1);
         let bottom = TOP + rows as f64 * pitch.1;
         let names: Vec<String> = chart.names.iter().map(|(_, name)| name.clone()).collect();
         let free = tall - if chart.legend.is_empty() { 0.0 } else { 20.0 };
-        let beside = several && chart.panels.len() % 2 == 1 && !names.is_empty() && height(&names, wide) <= free;
+        let beside = several
+            && chart.panels.len() % 2 == 1
+            && !names.is_empty()
+            && height(&names, wide) <= free;
         let full = PLOT_RIGHT - PLOT_LEFT;
         let (legend, tall_legend) = if beside {
-            (((PLOT_LEFT + pitch.0, bottom - pitch.1 + heading), wide), 0.0)
+            (
+                ((PLOT_LEFT + pitch.0, bottom - pitch.1 + heading), wide),
+                0.0,
+            )
         } else if names.is_empty() {
             (((PLOT_LEFT, bottom), full), 0.0)
         } else {
-            (((PLOT_LEFT, bottom), full), below_height(names.iter().map(String::as_str), full, &chart.legend) + 6.0)
+            (
+                ((PLOT_LEFT, bottom), full),
+                below_height(names.iter().map(String::as_str), full, &chart.legend) + 6.0,
+            )
         };
-        Layout { columns, panel: (wide, tall), pitch, first: (PLOT_LEFT, TOP + heading), legend, beside, tall: bottom + tall_legend }
+        Layout {
+            columns,
+            panel: (wide, tall),
+            pitch,
+            first: (PLOT_LEFT, TOP + heading),
+            legend,
+            beside,
+            tall: bottom + tall_legend,
+        }
     }
 
     fn rect(&self, k: usize) -> Rect {
-        let (left, top) =
-            (self.first.0 + (k % self.columns) as f64 * self.pitch.0, self.first.1 + (k / self.columns) as f64 * self.pitch.1);
-        Rect { left, right: left + self.panel.0, top, bottom: top + self.panel.1 }
+        let (left, top) = (
+            self.first.0 + (k % self.columns) as f64 * self.pitch.0,
+            self.first.1 + (k / self.columns) as f64 * self.pitch.1,
+        );
+        Rect {
+            left,
+            right: left + self.panel.0,
+            top,
+            bottom: top + self.panel.1,
+        }
     }
 }
 
 impl Chart {
     /// Title of the horizontal axis of a panel.
     fn x_title(&self, panel: &ChartPanel) -> &'static str {
-        if panel.x_title.is_empty() { self.x_title } else { panel.x_title }
+        if panel.x_title.is_empty() {
+            self.x_title
+        } else {
+            panel.x_title
+        }
     }
 
     /// Whether all panels stand over one quantity.
     fn one_x(&self) -> bool {
-        self.panels.windows(2).all(|pair| self.x_title(&pair[0]) == self.x_title(&pair[1]))
+        self.panels
+            .windows(2)
+            .all(|pair| self.x_title(&pair[0]) == self.x_title(&pair[1]))
     }
 }
 
 fn draw(figure: &mut Figure, chart: &Chart, panel: &ChartPanel, rect: Rect, paints: &[String]) {
     let ticks = TICKS[usize::from(chart.panels.len() > 1)];
     let own = std::slice::from_ref(panel);
-    let xs =
-        if chart.own_x { own } else { &chart.panels }.iter().flat_map(|p| &p.series).flat_map(|(_, points)| points.iter().map(|p| p.0));
+    let xs = if chart.own_x { own } else { &chart.panels }
+        .iter()
+        .flat_map(|p| &p.series)
+        .flat_map(|(_, points)| points.iter().map(|p| p.0));
     let (low, high) = range(xs).unwrap_or((0.0, 1.0));
     let room = match high - low {
         span if span > 0.0 && chart.marked => 0.03 * span,
@@ -182,10 +239,26 @@ fn draw(figure: &mut Figure, chart: &Chart, panel: &ChartPanel, rect: Rect, pain
         _ => 0.1 * low.abs() + 1e-3,
     };
     let x = Axis::exact(chart.x_title(panel), low - room, high + room, ticks.0);
-    let y = y_axis(panel.y_title, if chart.same_y { &chart.panels } else { own }, chart.tight, ticks.1);
-    let axes = if chart.one_x() { Panel::over_table(figure, rect, x, y, true) } else { Panel::draw(figure, rect, x, y, true) };
+    let y = y_axis(
+        panel.y_title,
+        if chart.same_y { &chart.panels } else { own },
+        chart.tight,
+        ticks.1,
+    );
+    let axes = if chart.one_x() {
+        Panel::over_table(figure, rect, x, y, true)
+    } else {
+        Panel::draw(figure, rect, x, y, true)
+    };
     let heading = fit(&panel.heading, HEADING_TEXT, rect.right - rect.left);
-    figure.text((rect.left, rect.top - 7.0), HEADING_TEXT, Anchor::Start, "font-weight=\"bold\"", INK, &heading);
+    figure.text(
+        (rect.left, rect.top - 7.0),
+        HEADING_TEXT,
+        Anchor::Start,
+        "font-weight=\"bold\"",
+        INK,
+        &heading,
+    );
     if axes.y.low < 0.0 && axes.y.high > 0.0 && panel.with_y.iter().any(|y| y.abs() <= 0.0) {
         axes.line(figure, &[(axes.x.low, 0.0), (axes.x.high, 0.0)], CONTEXT);
     }
@@ -201,7 +274,11 @@ fn draw(figure: &mut Figure, chart: &Chart, panel: &ChartPanel, rect: Rect, pain
         }
     }
     let finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
-    if !panel.series.iter().any(|(_, points)| points.iter().any(finite)) {
+    if !panel
+        .series
+        .iter()
+        .any(|(_, points)| points.iter().any(finite))
+    {
         axes.empty(figure);
     }
     axes.outline(figure);
@@ -224,18 +301,38 @@ fn heights(panel: &ChartPanel) -> Vec<f64> {
     let mut all = panel.with_y.clone();
     if panel.stacked {
         all.push(0.0);
-        let most = panel.series.iter().map(|(_, points)| points.len()).max().unwrap_or(0);
-        let sum = |i: usize| panel.series.iter().filter_map(|(_, points)| points.get(i)).map(|p| p.1).sum::<f64>();
+        let most = panel
+            .series
+            .iter()
+            .map(|(_, points)| points.len())
+            .max()
+            .unwrap_or(0);
+        let sum = |i: usize| {
+            panel
+                .series
+                .iter()
+                .filter_map(|(_, points)| points.get(i))
+                .map(|p| p.1)
+                .sum::<f64>()
+        };
         all.extend((0..most).map(sum));
     } else {
-        all.extend(panel.series.iter().flat_map(|(_, points)| points.iter().map(|p| p.1)));
+        all.extend(
+            panel
+                .series
+                .iter()
+                .flat_map(|(_, points)| points.iter().map(|p| p.1)),
+        );
     }
     all
 }
 
 /// A line with gaps where values are not finite; what turns back on its way is drawn in full.
 fn line(figure: &mut Figure, axes: &Panel, points: &[(f64, f64)], stroke: Stroke) {
-    for part in points.split(|(x, y)| !x.is_finite() || !y.is_finite()).filter(|part| !part.is_empty()) {
+    for part in points
+        .split(|(x, y)| !x.is_finite() || !y.is_finite())
+        .filter(|part| !part.is_empty())
+    {
         if part.is_sorted_by(|a, b| a.0 <= b.0) {
             axes.line(figure, part, stroke);
         } else {
@@ -246,14 +343,28 @@ fn line(figure: &mut Figure, axes: &Panel, points: &[(f64, f64)], stroke: Stroke
 
 /// A dot at each point.
 fn marks(figure: &mut Figure, axes: &Panel, points: &[(f64, f64)], stroke: Stroke) {
-    for (x, y) in points.iter().filter(|(x, y)| x.is_finite() && y.is_finite()) {
+    for (x, y) in points
+        .iter()
+        .filter(|(x, y)| x.is_finite() && y.is_finite())
+    {
         let (cx, cy, r) = (units(axes.px(*x)), units(axes.py(*y)), 2.6 * UNITS);
-        figure.raw(&format!("<circle class=\"mark\" cx=\"{cx}\" cy=\"{cy}\" r=\"{r:.1}\" fill=\"{}\"/>", stroke.colour));
+        figure.raw(&format!(
+            "<circle class=\"mark\" cx=\"{cx}\" cy=\"{cy}\" r=\"{r:.1}\" fill=\"{}\"/>",
+            stroke.colour
+        ));
     }
 }
 
 fn stack(figure: &mut Figure, axes: &Panel, panel: &ChartPanel, paints: &[String]) {
-    let mut base: Vec<f64> = vec![0.0; panel.series.iter().map(|(_, points)| points.len()).max().unwrap_or(0)];
+    let mut base: Vec<f64> = vec![
+        0.0;
+        panel
+            .series
+            .iter()
+            .map(|(_, points)| points.len())
+            .max()
+            .unwrap_or(0)
+    ];
     for (look, points) in &panel.series {
         let top: Vec<f64> = base.iter().zip(points).map(|(low, p)| low + p.1).collect();
         let mut path = Path::default();
@@ -275,7 +386,15 @@ fn stack(figure: &mut Figure, axes: &Panel, panel: &ChartPanel, paints: &[String
 
 fn stroke(look: Look) -> Stroke {
     let full = STROKES[look.index % STROKES.len()];
-    if look.dotted { Stroke { width: 1.2, dash: &[1.5, 2.5], ..full } } else { full }
+    if look.dotted {
+        Stroke {
+            width: 1.2,
+            dash: &[1.5, 2.5],
+            ..full
+        }
+    } else {
+        full
+    }
 }
 
 #[cfg(test)]

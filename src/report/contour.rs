@@ -14,7 +14,11 @@ type Edge = (usize, usize, bool);
 
 impl Grid<'_> {
     fn at(&self, i: usize, j: usize) -> f64 {
-        self.values.get(i).and_then(|column| column.get(j)).copied().unwrap_or(f64::NAN)
+        self.values
+            .get(i)
+            .and_then(|column| column.get(j))
+            .copied()
+            .unwrap_or(f64::NAN)
     }
 
     /// The connected lines on which the values are `level`. Cells with a corner that is not finite
@@ -33,10 +37,17 @@ impl Grid<'_> {
         // Open lines from one of their ends first; what then is left are rings.
         for open in [true, false] {
             loop {
-                let start = next.iter().find(|(_, to)| !to.is_empty() && (!open || to.len() == 1));
+                let start = next
+                    .iter()
+                    .find(|(_, to)| !to.is_empty() && (!open || to.len() == 1));
                 let Some((&start, _)) = start else { break };
                 let edges = walk(&mut next, start);
-                lines.push(edges.into_iter().map(|edge| self.crossing(edge, level)).collect());
+                lines.push(
+                    edges
+                        .into_iter()
+                        .map(|edge| self.crossing(edge, level))
+                        .collect(),
+                );
             }
         }
         lines
@@ -44,12 +55,22 @@ impl Grid<'_> {
 
     /// The pieces of line in one cell, each from edge to edge.
     fn cell(&self, i: usize, j: usize, level: f64) -> Vec<(Edge, Edge)> {
-        let corners = [self.at(i, j), self.at(i + 1, j), self.at(i + 1, j + 1), self.at(i, j + 1)];
+        let corners = [
+            self.at(i, j),
+            self.at(i + 1, j),
+            self.at(i + 1, j + 1),
+            self.at(i, j + 1),
+        ];
         if corners.iter().any(|value| !value.is_finite()) {
             return Vec::new();
         }
         // Bottom, right, top, left: edge k lies between corners k and k + 1.
-        let edges: [Edge; 4] = [(i, j, false), (i + 1, j, true), (i, j + 1, false), (i, j, true)];
+        let edges: [Edge; 4] = [
+            (i, j, false),
+            (i + 1, j, true),
+            (i, j + 1, false),
+            (i, j, true),
+        ];
         let above = corners.map(|value| value >= level);
         let crossed: Vec<usize> = (0..4).filter(|&k| above[k] != above[(k + 1) % 4]).collect();
         match crossed[..] {
@@ -72,7 +93,10 @@ impl Grid<'_> {
         let (i1, j1) = if along_y { (i, j + 1) } else { (i + 1, j) };
         let (a, b) = (self.at(i, j), self.at(i1, j1));
         let t = ((level - a) / (b - a)).clamp(0.0, 1.0);
-        (self.x[i] + t * (self.x[i1] - self.x[i]), self.y[j] + t * (self.y[j1] - self.y[j]))
+        (
+            self.x[i] + t * (self.x[i1] - self.x[i]),
+            self.y[j] + t * (self.y[j1] - self.y[j]),
+        )
     }
 }
 
@@ -99,8 +123,15 @@ mod tests {
     #[test]
     fn a_cone_gives_one_ring_at_its_radius() {
         let axis: Vec<f64> = (0..41).map(|i| -2.0 + 0.1 * f64::from(i)).collect();
-        let values: Vec<Vec<f64>> = axis.iter().map(|x| axis.iter().map(|y| x.hypot(*y)).collect()).collect();
-        let grid = Grid { x: &axis, y: &axis, values: &values };
+        let values: Vec<Vec<f64>> = axis
+            .iter()
+            .map(|x| axis.iter().map(|y| x.hypot(*y)).collect())
+            .collect();
+        let grid = Grid {
+            x: &axis,
+            y: &axis,
+            values: &values,
+        };
         let lines = grid.lines(1.23);
         assert_eq!(lines.len(), 1);
         assert_eq!(lines[0].first(), lines[0].last());
@@ -113,19 +144,39 @@ mod tests {
     fn a_slope_gives_one_open_line_and_gaps_where_values_miss() {
         let axis: Vec<f64> = (0..11).map(f64::from).collect();
         let mut values: Vec<Vec<f64>> = axis.iter().map(|_| axis.clone()).collect();
-        let grid = Grid { x: &axis, y: &axis, values: &values };
+        let grid = Grid {
+            x: &axis,
+            y: &axis,
+            values: &values,
+        };
         let lines = grid.lines(4.5);
         assert_eq!((lines.len(), lines[0].len()), (1, 11));
         values[5][4] = f64::NAN;
-        let grid = Grid { x: &axis, y: &axis, values: &values };
+        let grid = Grid {
+            x: &axis,
+            y: &axis,
+            values: &values,
+        };
         assert_eq!(grid.lines(4.5).len(), 2);
-        assert!(Grid { x: &[], y: &axis, values: &[] }.lines(1.0).is_empty());
+        assert!(
+            Grid {
+                x: &[],
+                y: &axis,
+                values: &[]
+            }
+            .lines(1.0)
+            .is_empty()
+        );
     }
 
     #[test]
     fn a_saddle_is_cut_without_crossing() {
         let values = vec![vec![0.0, 1.0], vec![1.0, 0.0]];
-        let grid = Grid { x: &[0.0, 1.0], y: &[0.0, 1.0], values: &values };
+        let grid = Grid {
+            x: &[0.0, 1.0],
+            y: &[0.0, 1.0],
+            values: &values,
+        };
         assert_eq!(grid.lines(0.4).len(), 2);
         assert_eq!(grid.lines(0.6).len(), 2);
     }

@@ -50,7 +50,11 @@ const TOP: f64 = 58.0;
 const ABOVE: f64 = 26.0;
 const WIDE: f64 = 594.0;
 const STRIP: f64 = 196.0;
-const ZERO: Stroke = Stroke { colour: "#000000", width: 0.8, dash: &[] };
+const ZERO: Stroke = Stroke {
+    colour: "#000000",
+    width: 0.8,
+    dash: &[],
+};
 const CIRCLE: &str = "fill=\"#ffffff\" stroke=\"#000000\" stroke-width=\"6\"";
 
 /// Draws the picture.
@@ -63,9 +67,17 @@ pub fn curve_figure(of: &CurveFigure) -> String {
     // Every panel keeps its own range of x: high ratio ends where low ratio has hardly begun.
     let place = |k: usize| {
         let top = TOP + above + k as f64 * (tall + BELOW + ABOVE + 10.0);
-        Rect { left: LEFT + 8.0, top, right: LEFT + 8.0 + WIDE, bottom: top + tall }
+        Rect {
+            left: LEFT + 8.0,
+            top,
+            right: LEFT + 8.0 + WIDE,
+            bottom: top + tall,
+        }
     };
-    let size = (place(0).right + 16.0 + STRIP, place(count - 1).bottom + BELOW + 6.0);
+    let size = (
+        place(0).right + 16.0 + STRIP,
+        place(count - 1).bottom + BELOW + 6.0,
+    );
     let mut figure = Figure::new(size, LEFT + 8.0, of.title, of.subject, &told(of));
     for (k, panel) in of.panels.iter().enumerate() {
         draw(&mut figure, place(k), of.x, panel);
@@ -74,13 +86,24 @@ pub fn curve_figure(of: &CurveFigure) -> String {
 }
 
 fn draw(figure: &mut Figure, rect: Rect, x_title: &str, of: &CurvePanel) {
-    let all = || of.series.iter().flat_map(|s| s.points.iter().chain(&s.marked));
+    let all = || {
+        of.series
+            .iter()
+            .flat_map(|s| s.points.iter().chain(&s.marked))
+    };
     let (low, high) = range(all().map(|p| p.0)).unwrap_or((0.0, 1.0));
     let x = Axis::exact(x_title, low, high, 8);
     let zero = of.with_zero.then_some(0.0);
     let y = Axis::round(&of.y, all().map(|p| p.1).chain(zero), 7);
     let panel = Panel::draw(figure, rect, x, y, true);
-    figure.text((rect.left, rect.top - 8.0), 12.0, Anchor::Start, "", INK, &of.title);
+    figure.text(
+        (rect.left, rect.top - 8.0),
+        12.0,
+        Anchor::Start,
+        "",
+        INK,
+        &of.title,
+    );
     if panel.y.low < 0.0 && panel.y.high > 0.0 {
         panel.line(figure, &[(panel.x.low, 0.0), (panel.x.high, 0.0)], ZERO);
     }
@@ -88,30 +111,67 @@ fn draw(figure: &mut Figure, rect: Rect, x_title: &str, of: &CurvePanel) {
     for (i, series) in of.series.iter().enumerate().rev() {
         panel.line(figure, &series.points, stroke(i, series));
     }
-    for (x, y) in of.series.iter().flat_map(|s| &s.marked).filter(|p| p.0.is_finite() && p.1.is_finite()) {
+    for (x, y) in of
+        .series
+        .iter()
+        .flat_map(|s| &s.marked)
+        .filter(|p| p.0.is_finite() && p.1.is_finite())
+    {
         let (cx, cy, r) = (units(panel.px(*x)), units(panel.py(*y)), 3.6 * UNITS);
-        figure.raw(&format!("<circle class=\"mark\" cx=\"{cx}\" cy=\"{cy}\" r=\"{r:.1}\" {CIRCLE}/>"));
+        figure.raw(&format!(
+            "<circle class=\"mark\" cx=\"{cx}\" cy=\"{cy}\" r=\"{r:.1}\" {CIRCLE}/>"
+        ));
     }
     if all().next().is_none() {
         panel.empty(figure);
     }
-    let mut entries: Vec<(Mark, String)> = of.series.iter().enumerate().map(|(i, s)| (Mark::Line(stroke(i, s)), s.name.clone())).collect();
+    let mut entries: Vec<(Mark, String)> = of
+        .series
+        .iter()
+        .enumerate()
+        .map(|(i, s)| (Mark::Line(stroke(i, s)), s.name.clone()))
+        .collect();
     if !of.marks.is_empty() {
         entries.push((Mark::Circle(3.6, CIRCLE.to_owned()), of.marks.clone()));
     }
     let names: Vec<String> = entries.iter().map(|(_, name)| name.clone()).collect();
-    debug_assert!(height(&names, STRIP) < rect.bottom - rect.top + BELOW, "the legend is longer than its panel");
-    legend(figure, (rect.right + 16.0, rect.top), STRIP - 8.0, "", &entries);
+    debug_assert!(
+        height(&names, STRIP) < rect.bottom - rect.top + BELOW,
+        "the legend is longer than its panel"
+    );
+    legend(
+        figure,
+        (rect.right + 16.0, rect.top),
+        STRIP - 8.0,
+        "",
+        &entries,
+    );
 }
 
 fn told(of: &CurveFigure) -> String {
     let panel = |panel: &CurvePanel| {
-        let series = panel.series.iter().map(|s| match range(s.points.iter().map(|p| p.1)) {
-            Some((low, high)) => format!("{} from {} to {}", s.name, number(low, (high - low) / 100.0), number(high, (high - low) / 100.0)),
-            None => format!("{} without data", s.name),
-        });
-        let head = if panel.title.is_empty() { panel.y.clone() } else { format!("{}, {}", panel.title, panel.y) };
+        let series = panel
+            .series
+            .iter()
+            .map(|s| match range(s.points.iter().map(|p| p.1)) {
+                Some((low, high)) => format!(
+                    "{} from {} to {}",
+                    s.name,
+                    number(low, (high - low) / 100.0),
+                    number(high, (high - low) / 100.0)
+                ),
+                None => format!("{} without data", s.name),
+            });
+        let head = if panel.title.is_empty() {
+            panel.y.clone()
+        } else {
+            format!("{}, {}", panel.title, panel.y)
+        };
         format!("{head}: {}", series.collect::<Vec<_>>().join("; "))
     };
-    format!("Over {}. {}.", of.x, of.panels.iter().map(panel).collect::<Vec<_>>().join(". "))
+    format!(
+        "Over {}. {}.",
+        of.x,
+        of.panels.iter().map(panel).collect::<Vec<_>>().join(". ")
+    )
 }

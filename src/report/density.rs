@@ -33,11 +33,16 @@ pub(in crate::report) struct Density {
 
 impl Density {
     /// Gathers points of x, y and seconds in cells of that size. A point without finite place or positive time counts as nothing.
-    pub(in crate::report) fn gather(size: (f64, f64), points: impl Iterator<Item = (f64, f64, f64)>) -> Self {
+    pub(in crate::report) fn gather(
+        size: (f64, f64),
+        points: impl Iterator<Item = (f64, f64, f64)>,
+    ) -> Self {
         let mut seconds: BTreeMap<(i64, i64), f64> = BTreeMap::new();
         for (x, y, dt) in points {
             if x.is_finite() && y.is_finite() && dt.is_finite() && dt > 0.0 {
-                *seconds.entry(((x / size.0).floor() as i64, (y / size.1).floor() as i64)).or_default() += dt;
+                *seconds
+                    .entry(((x / size.0).floor() as i64, (y / size.1).floor() as i64))
+                    .or_default() += dt;
             }
         }
         Density { size, seconds }
@@ -56,7 +61,13 @@ impl Density {
     /// The cells in which time was spent, by x and then y.
     pub(in crate::report) fn cells(&self) -> impl Iterator<Item = DensityCell> {
         let edges = |k: i64, size: f64| (k as f64 * size, (k + 1) as f64 * size);
-        self.seconds.iter().map(move |(&(i, j), &seconds)| DensityCell { x: edges(i, self.size.0), y: edges(j, self.size.1), seconds })
+        self.seconds
+            .iter()
+            .map(move |(&(i, j), &seconds)| DensityCell {
+                x: edges(i, self.size.0),
+                y: edges(j, self.size.1),
+                seconds,
+            })
     }
 
     /// How seconds become a colour.
@@ -78,21 +89,36 @@ pub(in crate::report) struct DensityScale {
 impl DensityScale {
     /// A scale for times from `least` to `most`, s; several panels share one made of the extremes of all.
     pub(in crate::report) fn new(least: f64, most: f64) -> Self {
-        let high = if most.is_finite() && most > 0.0 { most } else { 1.0 };
+        let high = if most.is_finite() && most > 0.0 {
+            most
+        } else {
+            1.0
+        };
         let log = least > 0.0 && high / least > LINEAR_UP_TO;
-        DensityScale { low: if log { least } else { 0.0 }, high, log }
+        DensityScale {
+            low: if log { least } else { 0.0 },
+            high,
+            log,
+        }
     }
 
     /// Where a time lies on the scale, 0 to 1.
     fn share(&self, seconds: f64) -> f64 {
-        let share =
-            if self.log { (seconds / self.low).ln() / (self.high / self.low).ln() } else { (seconds - self.low) / (self.high - self.low) };
+        let share = if self.log {
+            (seconds / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (seconds - self.low) / (self.high - self.low)
+        };
         share.clamp(0.0, 1.0)
     }
 
     /// The time at a place on the scale, s.
     fn seconds(&self, share: f64) -> f64 {
-        if self.log { self.low * (self.high / self.low).powf(share) } else { self.low + share * (self.high - self.low) }
+        if self.log {
+            self.low * (self.high / self.low).powf(share)
+        } else {
+            self.low + share * (self.high - self.low)
+        }
     }
 
     /// The colour of a time.
@@ -105,11 +131,20 @@ impl DensityScale {
     fn marks(&self) -> Vec<f64> {
         if !self.log {
             let step = round_step(self.high / 5.0);
-            return (0..=5).map(|k| f64::from(k) * step).filter(|s| *s <= self.high * (1.0 + 1e-9)).collect();
+            return (0..=5)
+                .map(|k| f64::from(k) * step)
+                .filter(|s| *s <= self.high * (1.0 + 1e-9))
+                .collect();
         }
-        let (from, to) = (self.low.log10().floor() as i32, self.high.log10().ceil() as i32);
-        let round = (from..=to).flat_map(|power| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(power)));
-        round.filter(|s| *s >= self.low * (1.0 - 1e-9) && *s <= self.high * (1.0 + 1e-9)).collect()
+        let (from, to) = (
+            self.low.log10().floor() as i32,
+            self.high.log10().ceil() as i32,
+        );
+        let round =
+            (from..=to).flat_map(|power| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(power)));
+        round
+            .filter(|s| *s >= self.low * (1.0 - 1e-9) && *s <= self.high * (1.0 + 1e-9))
+            .collect()
     }
 }
 
@@ -139,28 +174,70 @@ pub(in crate::report) fn draw_cells(
 }
 
 /// Draws the key of the colours with its upper left corner at `at`: a heading, a strip and times in seconds. It is [`KEY_HEIGHT`] tall.
-pub(in crate::report) fn colour_key(figure: &mut Figure, at: (f64, f64), width: f64, scale: &DensityScale) {
+pub(in crate::report) fn colour_key(
+    figure: &mut Figure,
+    at: (f64, f64),
+    width: f64,
+    scale: &DensityScale,
+) {
     let (left, top) = at;
     figure.open("legend");
-    let heading = if scale.log { "Time spent in a cell [s], logarithmic" } else { "Time spent in a cell [s]" };
+    let heading = if scale.log {
+        "Time spent in a cell [s], logarithmic"
+    } else {
+        "Time spent in a cell [s]"
+    };
     figure.text((left, top + TEXT), TEXT, Anchor::Start, "", INK, heading);
-    let strip = Rect { left, right: left + width, top: top + 17.0, bottom: top + 29.0 };
+    let strip = Rect {
+        left,
+        right: left + width,
+        top: top + 17.0,
+        bottom: top + 29.0,
+    };
     for k in 0..SLICES {
         let place = |k: usize| left + width * k as f64 / SLICES as f64;
         let colour = scale.colour(scale.seconds((k as f64 + 0.5) / SLICES as f64));
-        let slice = Rect { left: place(k), right: place(k + 1), ..strip };
-        figure.rect(slice, &format!("fill=\"{colour}\" shape-rendering=\"crispEdges\""));
+        let slice = Rect {
+            left: place(k),
+            right: place(k + 1),
+            ..strip
+        };
+        figure.rect(
+            slice,
+            &format!("fill=\"{colour}\" shape-rendering=\"crispEdges\""),
+        );
     }
-    figure.rect(strip, &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\""));
+    figure.rect(
+        strip,
+        &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\""),
+    );
     // From the end: the greatest time is what one looks for first.
     let mut free_to = f64::INFINITY;
     for seconds in scale.marks().into_iter().rev() {
         let x = left + width * scale.share(seconds);
-        figure.line((x, strip.bottom), (x, strip.bottom + 3.0), &format!("stroke=\"{INK}\" stroke-width=\"3\""));
-        let label = number(seconds, if scale.log { seconds.max(1e-4) } else { round_step(scale.high / 5.0) });
+        figure.line(
+            (x, strip.bottom),
+            (x, strip.bottom + 3.0),
+            &format!("stroke=\"{INK}\" stroke-width=\"3\""),
+        );
+        let label = number(
+            seconds,
+            if scale.log {
+                seconds.max(1e-4)
+            } else {
+                round_step(scale.high / 5.0)
+            },
+        );
         let half = 0.5 * text_width(&label, TEXT);
         if x + half + 4.0 < free_to {
-            figure.text((x, strip.bottom + 15.0), TEXT, Anchor::Middle, "", INK, &label);
+            figure.text(
+                (x, strip.bottom + 15.0),
+                TEXT,
+                Anchor::Middle,
+                "",
+                INK,
+                &label,
+            );
             free_to = x - half;
         }
     }
@@ -173,27 +250,60 @@ mod tests {
 
     #[test]
     fn all_time_is_in_the_cells_and_borders_belong_to_one_cell() {
-        let points = [(0.0, 0.0, 1.0), (9.99, 4.9, 0.5), (10.0, 5.0, 2.0), (-0.1, -5.0, 4.0), (f64::NAN, 0.0, 8.0), (1.0, 1.0, -1.0)];
+        let points = [
+            (0.0, 0.0, 1.0),
+            (9.99, 4.9, 0.5),
+            (10.0, 5.0, 2.0),
+            (-0.1, -5.0, 4.0),
+            (f64::NAN, 0.0, 8.0),
+            (1.0, 1.0, -1.0),
+        ];
         let density = Density::gather((10.0, 5.0), points.into_iter());
         assert!((density.total_s() - 7.5).abs() < 1e-12);
         let cells: Vec<_> = density.cells().collect();
         assert_eq!(cells.len(), 3);
-        assert_eq!(cells[0], DensityCell { x: (-10.0, 0.0), y: (-5.0, 0.0), seconds: 4.0 });
-        assert_eq!(cells[1], DensityCell { x: (0.0, 10.0), y: (0.0, 5.0), seconds: 1.5 });
+        assert_eq!(
+            cells[0],
+            DensityCell {
+                x: (-10.0, 0.0),
+                y: (-5.0, 0.0),
+                seconds: 4.0
+            }
+        );
+        assert_eq!(
+            cells[1],
+            DensityCell {
+                x: (0.0, 10.0),
+                y: (0.0, 5.0),
+                seconds: 1.5
+            }
+        );
     }
 
     #[test]
     fn more_time_is_darker_and_marks_lie_on_the_key() {
         let light = |colour: &str| {
-            let part = |at: usize| f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap_or(0));
+            let part =
+                |at: usize| f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap_or(0));
             0.2126 * part(1) + 0.7152 * part(3) + 0.0722 * part(5)
         };
-        for (scale, log) in [(DensityScale::new(0.1, 400.0), true), (DensityScale::new(1.0, 40.0), false)] {
+        for (scale, log) in [
+            (DensityScale::new(0.1, 400.0), true),
+            (DensityScale::new(1.0, 40.0), false),
+        ] {
             assert_eq!(scale.log, log);
-            let seen: Vec<f64> = (0..=20).map(|k| light(&scale.colour(scale.seconds(f64::from(k) / 20.0)))).collect();
+            let seen: Vec<f64> = (0..=20)
+                .map(|k| light(&scale.colour(scale.seconds(f64::from(k) / 20.0))))
+                .collect();
             assert!(seen.windows(2).all(|pair| pair[1] < pair[0]), "{seen:?}");
             let marks = scale.marks();
-            assert!(marks.len() >= 3 && marks.iter().all(|s| *s >= scale.low - 1e-12 && *s <= scale.high + 1e-9), "{marks:?}");
+            assert!(
+                marks.len() >= 3
+                    && marks
+                        .iter()
+                        .all(|s| *s >= scale.low - 1e-12 && *s <= scale.high + 1e-9),
+                "{marks:?}"
+            );
             for share in [0.0, 0.3, 1.0] {
                 assert!((scale.share(scale.seconds(share)) - share).abs() < 1e-12);
             }

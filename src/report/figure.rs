@@ -41,11 +41,36 @@ impl Figure {
     /// A white picture with a heading over `left`: what it shows, and of which vehicle.
     pub fn new(size: (f64, f64), left: f64, title: &str, subject: &str, desc: &str) -> Self {
         let (width, height) = size;
-        let full = if subject.is_empty() { title.to_string() } else { format!("{title}: {subject}") };
-        let mut figure = Figure { width, height, title: full, desc: desc.to_string(), defs: String::new(), body: String::new() };
+        let full = if subject.is_empty() {
+            title.to_string()
+        } else {
+            format!("{title}: {subject}")
+        };
+        let mut figure = Figure {
+            width,
+            height,
+            title: full,
+            desc: desc.to_string(),
+            defs: String::new(),
+            body: String::new(),
+        };
         let room = width - left - 10.0;
-        figure.text((left, 24.0), 15.0, Anchor::Start, "font-weight=\"bold\"", INK, &fit(title, 15.0, room));
-        figure.text((left, 42.0), 12.0, Anchor::Start, "", QUIET, &fit(subject, 12.0, room));
+        figure.text(
+            (left, 24.0),
+            15.0,
+            Anchor::Start,
+            "font-weight=\"bold\"",
+            INK,
+            &fit(title, 15.0, room),
+        );
+        figure.text(
+            (left, 42.0),
+            12.0,
+            Anchor::Start,
+            "",
+            QUIET,
+            &fit(subject, 12.0, room),
+        );
         figure
     }
 
@@ -76,7 +101,15 @@ impl Figure {
     }
 
     /// A line of text at its base line, with further attributes.
-    pub fn text(&mut self, at: (f64, f64), size: f64, anchor: Anchor, attributes: &str, colour: &str, text: &str) {
+    pub fn text(
+        &mut self,
+        at: (f64, f64),
+        size: f64,
+        anchor: Anchor,
+        attributes: &str,
+        colour: &str,
+        text: &str,
+    ) {
         if text.is_empty() {
             return;
         }
@@ -97,13 +130,17 @@ impl Figure {
     pub fn rect(&mut self, rect: Rect, attributes: &str) {
         let (x, y) = (units(rect.left), units(rect.top));
         let (width, height) = (units(rect.right) - x, units(rect.bottom) - y);
-        self.raw(&format!("<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" {attributes}/>"));
+        self.raw(&format!(
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" {attributes}/>"
+        ));
     }
 
     /// A straight line with SVG paint attributes.
     pub fn line(&mut self, from: (f64, f64), to: (f64, f64), attributes: &str) {
         let (x1, y1, x2, y2) = (units(from.0), units(from.1), units(to.0), units(to.1));
-        self.raw(&format!("<line x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\" {attributes}/>"));
+        self.raw(&format!(
+            "<line x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\" {attributes}/>"
+        ));
     }
 
     /// The document.
@@ -204,7 +241,8 @@ pub(super) fn escape(text: &str) -> String {
 /// About how wide a text comes out in a wide sans-serif face, in pixels.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     let ems = text.chars().map(|c| match c {
-        'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '|' | '\'' | '!' | '(' | ')' | '[' | ']' | ' ' => 0.4,
+        'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '|' | '\'' | '!' | '(' | ')' | '[' | ']'
+        | ' ' => 0.4,
         'm' | 'w' | 'M' | 'W' | '%' | '@' => 1.0,
         c if c as u32 >= 0x1100 => 1.05,
         c if c.is_uppercase() => 0.75,
@@ -219,7 +257,10 @@ pub(super) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     let best = breaks.rfind(|at| text_width(&text[..*at], size) <= width);
     match best {
         Some(at) if text_width(text, size) > width => {
-            vec![text[..at].to_string(), fit(text[at..].trim_start(), size, width)]
+            vec![
+                text[..at].to_string(),
+                fit(text[at..].trim_start(), size, width),
+            ]
         }
         _ => vec![fit(text, size, width)],
     }

@@ -33,16 +33,39 @@ const STRIP: f64 = 190.0;
 pub fn stack_figure(of: &StackFigure) -> String {
     let several = of.panels.len() > 1;
     let (wide, tall) = if several { ONE_OF_MANY } else { ALONE };
-    let columns = if of.panels.len() > 4 { 3 } else { of.panels.len().clamp(1, 2) };
+    let columns = if of.panels.len() > 4 {
+        3
+    } else {
+        of.panels.len().clamp(1, 2)
+    };
     let rows = of.panels.len().div_ceil(columns).max(1);
-    let above = if of.panels.iter().any(|(title, _)| !title.is_empty()) { ABOVE } else { 0.0 };
+    let above = if of.panels.iter().any(|(title, _)| !title.is_empty()) {
+        ABOVE
+    } else {
+        0.0
+    };
     let place = |k: usize| {
         let left = LEFT + 8.0 + (k % columns) as f64 * (wide + LEFT + 20.0);
         let top = TOP + above + (k / columns) as f64 * (tall + ABOVE + BELOW + 8.0);
-        Rect { left, top, right: left + wide, bottom: top + tall }
+        Rect {
+            left,
+            top,
+            right: left + wide,
+            bottom: top + tall,
+        }
     };
-    let sum = |parts: &[Vec<f64>], i: usize| parts.iter().map(|values| values[i]).filter(|x| x.is_finite()).sum::<f64>();
-    let sums: Vec<f64> = of.panels.iter().flat_map(|(_, parts)| (0..of.x.1.len()).map(move |i| sum(parts, i))).collect();
+    let sum = |parts: &[Vec<f64>], i: usize| {
+        parts
+            .iter()
+            .map(|values| values[i])
+            .filter(|x| x.is_finite())
+            .sum::<f64>()
+    };
+    let sums: Vec<f64> = of
+        .panels
+        .iter()
+        .flat_map(|(_, parts)| (0..of.x.1.len()).map(move |i| sum(parts, i)))
+        .collect();
     let edge = place(columns - 1).right;
     let bottom = place((rows - 1) * columns).bottom;
     let names = of.parts.join(", ");
@@ -56,15 +79,39 @@ pub fn stack_figure(of: &StackFigure) -> String {
         ),
         None => format!("{} over {}, without data.", of.value, of.x.0),
     };
-    let mut figure = Figure::new((edge + STRIP + 16.0, bottom + BELOW + 6.0), LEFT + 8.0, of.title, of.subject, &desc);
-    let x = Axis::exact(of.x.0, of.x.1[0], of.x.1[of.x.1.len() - 1], if several { 4 } else { 8 });
-    let y = Axis::round(of.value, sums.into_iter().chain([0.0]), if several { 5 } else { 8 });
+    let mut figure = Figure::new(
+        (edge + STRIP + 16.0, bottom + BELOW + 6.0),
+        LEFT + 8.0,
+        of.title,
+        of.subject,
+        &desc,
+    );
+    let x = Axis::exact(
+        of.x.0,
+        of.x.1[0],
+        of.x.1[of.x.1.len() - 1],
+        if several { 4 } else { 8 },
+    );
+    let y = Axis::round(
+        of.value,
+        sums.into_iter().chain([0.0]),
+        if several { 5 } else { 8 },
+    );
     let count = of.parts.len();
-    let paints: Vec<String> = (0..count).map(|i| fill(&mut figure, "stack", i, count)).collect();
+    let paints: Vec<String> = (0..count)
+        .map(|i| fill(&mut figure, "stack", i, count))
+        .collect();
     for (k, (title, parts)) in of.panels.iter().enumerate() {
         let rect = place(k);
         let panel = Panel::draw(&mut figure, rect, x.clone(), y.clone(), true);
-        figure.text((rect.left, rect.top - 7.0), 12.0, Anchor::Start, "", INK, title);
+        figure.text(
+            (rect.left, rect.top - 7.0),
+            12.0,
+            Anchor::Start,
+            "",
+            INK,
+            title,
+        );
         let mut base = vec![0.0; of.x.1.len()];
         for (values, paint) in parts.iter().zip(&paints) {
             layer(&mut figure, &panel, of.x.1, values, &mut base, paint);
@@ -72,14 +119,36 @@ pub fn stack_figure(of: &StackFigure) -> String {
         panel.outline(&mut figure);
     }
     // Listed from the top, as they lie in the stack.
-    let entries: Vec<_> = paints.into_iter().map(Mark::Fill).zip(of.parts.iter().cloned()).rev().collect();
-    legend(&mut figure, (edge + 16.0, TOP + above), STRIP - 8.0, "", &entries);
+    let entries: Vec<_> = paints
+        .into_iter()
+        .map(Mark::Fill)
+        .zip(of.parts.iter().cloned())
+        .rev()
+        .collect();
+    legend(
+        &mut figure,
+        (edge + 16.0, TOP + above),
+        STRIP - 8.0,
+        "",
+        &entries,
+    );
     figure.finish()
 }
 
 /// Draws one part on top of `base`, and raises that.
-fn layer(figure: &mut Figure, panel: &Panel, x: &[f64], values: &[f64], base: &mut [f64], paint: &str) {
-    let top: Vec<f64> = base.iter().zip(values).map(|(low, v)| low + if v.is_finite() { *v } else { 0.0 }).collect();
+fn layer(
+    figure: &mut Figure,
+    panel: &Panel,
+    x: &[f64],
+    values: &[f64],
+    base: &mut [f64],
+    paint: &str,
+) {
+    let top: Vec<f64> = base
+        .iter()
+        .zip(values)
+        .map(|(low, v)| low + if v.is_finite() { *v } else { 0.0 })
+        .collect();
     if top.iter().zip(base.iter()).any(|(high, low)| high > low) {
         let mut path = Path::default();
         for (i, (x, high)) in x.iter().zip(&top).enumerate() {

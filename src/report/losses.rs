@@ -27,7 +27,11 @@ impl LossBins {
     /// Energy that a component has lost in all bins, J.
     #[must_use]
     pub fn energy_j(&self, component: Component) -> f64 {
-        self.mean_w.iter().zip(&self.seconds).map(|(w, s)| w[component as usize] * s).sum()
+        self.mean_w
+            .iter()
+            .zip(&self.seconds)
+            .map(|(w, s)| w[component as usize] * s)
+            .sum()
     }
 }
 
@@ -44,7 +48,11 @@ pub fn bin_losses(history: &History, bins: usize) -> LossBins {
     let length = total / bins.max(1) as f64;
     let losses = Component::ALL.map(|component| history.loss_w(component));
     let (mut elapsed, mut bin, mut energy) = (0.0, 0.0, [0.0; Component::COUNT]);
-    out.edges_s.extend(time.first().zip(steps.first()).map(|(end, dt)| end - seconds(dt)));
+    out.edges_s.extend(
+        time.first()
+            .zip(steps.first())
+            .map(|(end, dt)| end - seconds(dt)),
+    );
     for (i, (end, dt)) in time.iter().zip(steps).enumerate() {
         let dt = seconds(dt);
         elapsed += dt;
@@ -72,7 +80,11 @@ pub fn losses(run: &PlotRun) -> Picture {
     let components = run.history.components();
     let energy: Vec<f64> = components.iter().map(|&c| bins.energy_j(c)).collect();
     let total: f64 = energy.iter().sum();
-    let told: Vec<String> = components.iter().zip(&energy).map(|(&component, &joule)| told(component, joule, total)).collect();
+    let told: Vec<String> = components
+        .iter()
+        .zip(&energy)
+        .map(|(&component, &joule)| told(component, joule, total))
+        .collect();
     let desc = format!(
         "Loss power over time, stacked from the bottom in the order of the power flow. Energy lost in all: {}. By component: {}.",
         kilojoule(total),
@@ -81,12 +93,32 @@ pub fn losses(run: &PlotRun) -> Picture {
     let heading = format!("All losses: {}", kilojoule(total));
     let (width, bottom) = (PLOT_RIGHT - PLOT_LEFT, PLOT_TOP + TALL);
     let below = below_height(told.iter().map(String::as_str), width, &heading);
-    let mut figure = Figure::new((WIDTH, bottom + BELOW + 8.0 + below), PLOT_LEFT, "Transmission losses", run.name, &desc);
-    let rect = Rect { left: PLOT_LEFT, right: PLOT_RIGHT, top: PLOT_TOP, bottom };
-    let stack = |watts: &[f64; Component::COUNT]| components.iter().map(|&c| watts[c as usize]).sum::<f64>();
-    let y = Axis::round("Loss power [W]", bins.mean_w.iter().map(stack).chain([0.0]), 8);
+    let mut figure = Figure::new(
+        (WIDTH, bottom + BELOW + 8.0 + below),
+        PLOT_LEFT,
+        "Transmission losses",
+        run.name,
+        &desc,
+    );
+    let rect = Rect {
+        left: PLOT_LEFT,
+        right: PLOT_RIGHT,
+        top: PLOT_TOP,
+        bottom,
+    };
+    let stack = |watts: &[f64; Component::COUNT]| {
+        components.iter().map(|&c| watts[c as usize]).sum::<f64>()
+    };
+    let y = Axis::round(
+        "Loss power [W]",
+        bins.mean_w.iter().map(stack).chain([0.0]),
+        8,
+    );
     let panel = Panel::over_table(&mut figure, rect, time_axis(run.history), y, true);
-    let paints: Vec<String> = components.iter().map(|&c| component_fill(&mut figure, "losses", c)).collect();
+    let paints: Vec<String> = components
+        .iter()
+        .map(|&c| component_fill(&mut figure, "losses", c))
+        .collect();
     let mut base = vec![0.0; bins.mean_w.len()];
     for (&component, paint) in components.iter().zip(&paints) {
         layer(&mut figure, &panel, &bins, component, &mut base, paint);
@@ -98,8 +130,17 @@ pub fn losses(run: &PlotRun) -> Picture {
     phases(&mut figure, &panel, run.history, true);
     // Listed from the top, as they lie in the stack.
     let entries: Vec<_> = paints.into_iter().map(Mark::Fill).zip(told).rev().collect();
-    legend_below(&mut figure, (PLOT_LEFT, bottom + BELOW + 8.0), width, &heading, &entries);
-    Picture { svg: figure.finish(), table: table(&bins, &components) }
+    legend_below(
+        &mut figure,
+        (PLOT_LEFT, bottom + BELOW + 8.0),
+        width,
+        &heading,
+        &entries,
+    );
+    Picture {
+        svg: figure.finish(),
+        table: table(&bins, &components),
+    }
 }
 
 /// The stretches with the mean of each component.
@@ -124,8 +165,19 @@ fn table(bins: &LossBins, components: &[Component]) -> PictureTable {
 }
 
 /// Draws one component on top of `base`, and raises that.
-fn layer(figure: &mut Figure, panel: &Panel, bins: &LossBins, component: Component, base: &mut [f64], paint: &str) {
-    let top: Vec<f64> = base.iter().zip(&bins.mean_w).map(|(low, watts)| low + watts[component as usize]).collect();
+fn layer(
+    figure: &mut Figure,
+    panel: &Panel,
+    bins: &LossBins,
+    component: Component,
+    base: &mut [f64],
+    paint: &str,
+) {
+    let top: Vec<f64> = base
+        .iter()
+        .zip(&bins.mean_w)
+        .map(|(low, watts)| low + watts[component as usize])
+        .collect();
     let spans = || bins.edges_s.windows(2).zip(&top).zip(base.iter());
     if spans().any(|((_, high), low)| high > low) {
         let mut path = Path::default();
@@ -153,13 +205,26 @@ fn layer(figure: &mut Figure, panel: &Panel, bins: &LossBins, component: Compone
 fn name(component: Component) -> String {
     let words = component.name().replace('_', " ");
     let mut letters = words.chars();
-    letters.next().map(|c| c.to_ascii_uppercase()).into_iter().chain(letters).collect()
+    letters
+        .next()
+        .map(|c| c.to_ascii_uppercase())
+        .into_iter()
+        .chain(letters)
+        .collect()
 }
 
 /// A component with its energy and share.
 fn told(component: Component, joule: f64, total: f64) -> String {
     let name = name(component);
-    if total > 0.0 { format!("{name}: {} ({:.0} %)", kilojoule(joule), 100.0 * joule / total) } else { name }
+    if total > 0.0 {
+        format!(
+            "{name}: {} ({:.0} %)",
+            kilojoule(joule),
+            100.0 * joule / total
+        )
+    } else {
+        name
+    }
 }
 
 fn kilojoule(joule: f64) -> String {

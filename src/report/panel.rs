@@ -32,19 +32,39 @@ impl Panel {
     /// Draws grid, ticks and titles. The horizontal ticks and title are left out of a panel that
     /// shares them with the one below.
     pub fn draw(figure: &mut Figure, rect: Rect, x: Axis, y: Axis, with_x: bool) -> Self {
-        Self::drawn(figure, Panel { rect, x, y, of_table: false }, with_x)
+        Self::drawn(
+            figure,
+            Panel {
+                rect,
+                x,
+                y,
+                of_table: false,
+            },
+            with_x,
+        )
     }
 
     /// The same, of a picture whose table has the horizontal axis as its first column: the frame tells its ends.
     pub fn over_table(figure: &mut Figure, rect: Rect, x: Axis, y: Axis, with_x: bool) -> Self {
-        Self::drawn(figure, Panel { rect, x, y, of_table: true }, with_x)
+        Self::drawn(
+            figure,
+            Panel {
+                rect,
+                x,
+                y,
+                of_table: true,
+            },
+            with_x,
+        )
     }
 
     fn drawn(figure: &mut Figure, panel: Self, with_x: bool) -> Self {
         let mut svg = String::new();
         // Writing SVG into a String has no way to fail; the data would still show without a frame.
         if panel.frame(&mut svg, figure.size(), with_x).is_ok() {
-            let start = svg.find("<svg").and_then(|at| svg[at..].find('>').map(|end| at + end + 1));
+            let start = svg
+                .find("<svg")
+                .and_then(|at| svg[at..].find('>').map(|end| at + end + 1));
             let end = svg.rfind("</svg>");
             if let Some(elements) = start.zip(end).and_then(|(start, end)| svg.get(start..end)) {
                 figure.raw(elements.trim());
@@ -56,20 +76,38 @@ impl Panel {
 
     /// The border of the plot, again, for areas and lines cover the half of the axis lines.
     pub fn outline(&self, figure: &mut Figure) {
-        let ends = if self.of_table { format!(" data-x0=\"{:?}\" data-x1=\"{:?}\"", self.x.low, self.x.high) } else { String::new() };
-        let attributes = format!("class=\"plot\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"3\"{ends}");
+        let ends = if self.of_table {
+            format!(
+                " data-x0=\"{:?}\" data-x1=\"{:?}\"",
+                self.x.low, self.x.high
+            )
+        } else {
+            String::new()
+        };
+        let attributes =
+            format!("class=\"plot\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"3\"{ends}");
         figure.rect(self.rect, &attributes);
     }
 
-    fn frame(&self, svg: &mut String, (width, height): (f64, f64), with_x: bool) -> Result<(), Box<dyn std::error::Error>> {
+    fn frame(
+        &self,
+        svg: &mut String,
+        (width, height): (f64, f64),
+        with_x: bool,
+    ) -> Result<(), Box<dyn std::error::Error>> {
         let backend = SVGBackend::with_string(svg, (units(width) as u32, units(height) as u32));
         let below = if with_x { units(BELOW) as i32 } else { 0 };
         let rect = self.rect;
         let corner = (units(rect.left - LEFT) as i32, units(rect.top) as i32);
-        let size = (units(rect.right) as i32 - corner.0, units(rect.bottom) as i32 - corner.1 + below);
+        let size = (
+            units(rect.right) as i32 - corner.0,
+            units(rect.bottom) as i32 - corner.1 + below,
+        );
         let area = backend.into_drawing_area().shrink(corner, size);
         let mut builder = ChartBuilder::on(&area);
-        builder.y_label_area_size(units(LEFT) as i32).x_label_area_size(below);
+        builder
+            .y_label_area_size(units(LEFT) as i32)
+            .x_label_area_size(below);
         let mut chart = builder.build_cartesian_2d(Scale(&self.x), Scale(&self.y))?;
         // Plotters takes whole sizes and drops the rest.
         let text = |size: f64| ("sans-serif", (size * UNITS * FONT).ceil());
@@ -103,7 +141,10 @@ impl Panel {
     pub fn line(&self, figure: &mut Figure, points: &[(f64, f64)], stroke: Stroke) {
         let mut path = Path::default();
         for part in points.split(|(x, y)| !x.is_finite() || !y.is_finite()) {
-            let pixels: Vec<_> = part.iter().map(|&(x, y)| (self.px(x), self.py(y))).collect();
+            let pixels: Vec<_> = part
+                .iter()
+                .map(|&(x, y)| (self.px(x), self.py(y)))
+                .collect();
             for (i, (x, y)) in thinned(&pixels).into_iter().enumerate() {
                 if i == 0 {
                     path.move_to(x, y);
@@ -117,7 +158,9 @@ impl Panel {
             return;
         }
         let attributes = stroke.attributes();
-        figure.raw(&format!("<path class=\"series\" d=\"{data}\" {attributes}/>"));
+        figure.raw(&format!(
+            "<path class=\"series\" d=\"{data}\" {attributes}/>"
+        ));
     }
 
     /// Draws a line through points in any order of x, all of them.
@@ -132,7 +175,10 @@ impl Panel {
 
     /// Says that there is nothing to see.
     pub fn empty(&self, figure: &mut Figure) {
-        let at = (0.5 * (self.rect.left + self.rect.right), 0.5 * (self.rect.top + self.rect.bottom) + 4.0);
+        let at = (
+            0.5 * (self.rect.left + self.rect.right),
+            0.5 * (self.rect.top + self.rect.bottom) + 4.0,
+        );
         figure.text(at, 12.0, Anchor::Middle, "", QUIET, "no data");
     }
 }
@@ -150,7 +196,11 @@ impl Ranged for Scale<'_> {
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
         // Light points would be lines between the ticks.
-        if hint.weight().allow_light_points() { Vec::new() } else { self.0.ticks.clone() }
+        if hint.weight().allow_light_points() {
+            Vec::new()
+        } else {
+            self.0.ticks.clone()
+        }
     }
 
     fn range(&self) -> std::ops::Range<f64> {

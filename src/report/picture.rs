@@ -27,7 +27,13 @@ impl PictureTable {
     /// A table of columns.
     #[must_use]
     pub fn new(columns: &[(&str, &'static str)]) -> Self {
-        PictureTable { columns: columns.iter().map(|(name, unit)| ((*name).to_owned(), *unit)).collect(), ..PictureTable::default() }
+        PictureTable {
+            columns: columns
+                .iter()
+                .map(|(name, unit)| ((*name).to_owned(), *unit))
+                .collect(),
+            ..PictureTable::default()
+        }
     }
 
     /// Adds a row and returns its index, for `data-row`.
@@ -40,5 +46,9 @@ impl PictureTable {
 /// A number for a cell, with as many decimals as `step` between neighbours needs; empty where there is none.
 #[must_use]
 pub fn cell(value: f64, step: f64) -> String {
-    if value.is_finite() { number(value, step) } else { String::new() }
+    if value.is_finite() {
+        number(value, step)
+    } else {
+        String::new()
+    }
 }

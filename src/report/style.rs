@@ -14,34 +14,87 @@ pub(super) struct Stroke {
 }
 
 /// The line of a plot with one series.
-pub(super) const PLAIN: Stroke = Stroke { colour: "#1f3b73", width: 1.3, dash: &[] };
+pub(super) const PLAIN: Stroke = Stroke {
+    colour: "#1f3b73",
+    width: 1.3,
+    dash: &[],
+};
 /// A line that is only context.
-pub(super) const CONTEXT: Stroke = Stroke { colour: "#777777", width: 1.0, dash: &[] };
+pub(super) const CONTEXT: Stroke = Stroke {
+    colour: "#777777",
+    width: 1.0,
+    dash: &[],
+};
 
 /// Secondary and primary pressure.
-pub(super) const PRESSURES: [Stroke; 2] =
-    [Stroke { colour: "#000000", width: 1.6, dash: &[] }, Stroke { colour: "#d55e00", width: 1.3, dash: &[4.0, 2.0] }];
+pub(super) const PRESSURES: [Stroke; 2] = [
+    Stroke {
+        colour: "#000000",
+        width: 1.6,
+        dash: &[],
+    },
+    Stroke {
+        colour: "#d55e00",
+        width: 1.3,
+        dash: &[4.0, 2.0],
+    },
+];
 
 /// Lines of a plot with several series: each differs in colour, lightness and dashes.
 pub(super) const STROKES: [Stroke; 7] = [
-    Stroke { colour: "#000000", width: 2.2, dash: &[] },
-    Stroke { colour: "#d55e00", width: 1.5, dash: &[] },
-    Stroke { colour: "#0072b2", width: 1.9, dash: &[9.0, 4.0] },
-    Stroke { colour: "#009e73", width: 1.9, dash: &[9.0, 3.0, 2.0, 3.0] },
-    Stroke { colour: "#aa4499", width: 1.7, dash: &[4.0, 2.5] },
-    Stroke { colour: "#666666", width: 2.0, dash: &[1.5, 2.5] },
-    Stroke { colour: "#4b2991", width: 1.5, dash: &[14.0, 3.0, 2.0, 3.0, 2.0, 3.0] },
+    Stroke {
+        colour: "#000000",
+        width: 2.2,
+        dash: &[],
+    },
+    Stroke {
+        colour: "#d55e00",
+        width: 1.5,
+        dash: &[],
+    },
+    Stroke {
+        colour: "#0072b2",
+        width: 1.9,
+        dash: &[9.0, 4.0],
+    },
+    Stroke {
+        colour: "#009e73",
+        width: 1.9,
+        dash: &[9.0, 3.0, 2.0, 3.0],
+    },
+    Stroke {
+        colour: "#aa4499",
+        width: 1.7,
+        dash: &[4.0, 2.5],
+    },
+    Stroke {
+        colour: "#666666",
+        width: 2.0,
+        dash: &[1.5, 2.5],
+    },
+    Stroke {
+        colour: "#4b2991",
+        width: 1.5,
+        dash: &[14.0, 3.0, 2.0, 3.0, 2.0, 3.0],
+    },
 ];
 
 impl Stroke {
     /// Its SVG attributes, in canvas units.
     pub fn attributes(&self) -> String {
         let width = self.width * UNITS;
-        let mut text = format!("fill=\"none\" stroke=\"{}\" stroke-width=\"{width:.1}\" stroke-linejoin=\"round\"", self.colour);
+        let mut text = format!(
+            "fill=\"none\" stroke=\"{}\" stroke-width=\"{width:.1}\" stroke-linejoin=\"round\"",
+            self.colour
+        );
         if self.dash.is_empty() {
             text += " stroke-linecap=\"round\"";
         } else {
-            let dashes: Vec<_> = self.dash.iter().map(|d| format!("{:.0}", d * UNITS)).collect();
+            let dashes: Vec<_> = self
+                .dash
+                .iter()
+                .map(|d| format!("{:.0}", d * UNITS))
+                .collect();
             text += &format!(" stroke-dasharray=\"{}\"", dashes.join(" "));
         }
         text
@@ -60,8 +113,13 @@ const RAMP: [(f64, f64, f64); 7] = [
 ];
 
 /// Anchors of a second ramp of the same kind, for the parts of a manual box beside those of a CVT.
-const WARM: [(f64, f64, f64); 5] =
-    [(82.0, 8.0, 24.0), (152.0, 38.0, 18.0), (208.0, 88.0, 28.0), (238.0, 156.0, 62.0), (250.0, 222.0, 150.0)];
+const WARM: [(f64, f64, f64); 5] = [
+    (82.0, 8.0, 24.0),
+    (152.0, 38.0, 18.0),
+    (208.0, 88.0, 28.0),
+    (238.0, 156.0, 62.0),
+    (250.0, 222.0, 150.0),
+];
 
 /// Colour of the ramp at a share of 0 to 1.
 pub(super) fn ramp(share: f64) -> String {
@@ -74,15 +132,30 @@ pub(super) fn between(anchors: &[(f64, f64, f64)], share: f64) -> String {
     let cell = (place.floor() as usize).min(anchors.len() - 2);
     let (a, b, t) = (anchors[cell], anchors[cell + 1], place - cell as f64);
     let mix = |a: f64, b: f64| (a + (b - a) * t).round() as u8;
-    format!("#{:02x}{:02x}{:02x}", mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+    format!(
+        "#{:02x}{:02x}{:02x}",
+        mix(a.0, b.0),
+        mix(a.1, b.1),
+        mix(a.2, b.2)
+    )
 }
 
 /// Defines the fill `index` of `count` under names that begin with `plot`; returns its paint.
 ///
 /// Lightness rises with the index; neighbours differ in their hatch too.
 pub(super) fn fill(figure: &mut Figure, plot: &str, index: usize, count: usize) -> String {
-    let share = if count > 1 { index as f64 / (count - 1) as f64 } else { 0.4 };
-    hatched(figure, &format!("{plot}-{index}"), &ramp(share), share, index)
+    let share = if count > 1 {
+        index as f64 / (count - 1) as f64
+    } else {
+        0.4
+    };
+    hatched(
+        figure,
+        &format!("{plot}-{index}"),
+        &ramp(share),
+        share,
+        index,
+    )
 }
 
 /// Defines the fill of a component, the same in every picture, under a name that begins with `plot`; returns its paint.
@@ -106,7 +179,13 @@ pub(super) fn component_fill(figure: &mut Figure, plot: &str, component: Compone
         C::Seal => (&WARM, 4, 4.0),
     };
     let share = index as f64 / last;
-    hatched(figure, &format!("{plot}-{}", component.name()), &between(anchors, share), share, index)
+    hatched(
+        figure,
+        &format!("{plot}-{}", component.name()),
+        &between(anchors, share),
+        share,
+        index,
+    )
 }
 
 fn hatched(figure: &mut Figure, id: &str, base: &str, share: f64, index: usize) -> String {

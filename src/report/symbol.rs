@@ -34,7 +34,14 @@ const SHAPES: [Corners; 7] = [
         (-1.2, -0.4),
         (-0.4, -0.4),
     ],
-    &[(-0.6, -1.1), (0.6, -1.1), (1.2, 0.0), (0.6, 1.1), (-0.6, 1.1), (-1.2, 0.0)],
+    &[
+        (-0.6, -1.1),
+        (0.6, -1.1),
+        (1.2, 0.0),
+        (0.6, 1.1),
+        (-0.6, 1.1),
+        (-1.2, 0.0),
+    ],
 ];
 
 /// Colours in an order in which neighbours differ most.
@@ -44,12 +51,18 @@ impl Symbol {
     /// The symbol of the group with that number; no two of the first 49 are alike.
     pub fn of(index: usize) -> Self {
         let (turn, k) = (index / SHAPES.len(), index % SHAPES.len());
-        Symbol { shape: (k + turn) % SHAPES.len(), colour: STROKES[ORDER[k]].colour }
+        Symbol {
+            shape: (k + turn) % SHAPES.len(),
+            colour: STROKES[ORDER[k]].colour,
+        }
     }
 
     /// A symbol of one colour that is no group's.
     pub fn plain(shape: usize, colour: &'static str) -> Self {
-        Symbol { shape: shape % SHAPES.len(), colour }
+        Symbol {
+            shape: shape % SHAPES.len(),
+            colour,
+        }
     }
 
     /// Its colour.
@@ -59,7 +72,15 @@ impl Symbol {
 
     /// Draws it filled, with further SVG attributes.
     pub fn filled(self, figure: &mut Figure, at: (f64, f64), radius: f64, attributes: &str) {
-        self.draw(figure, at, radius, &format!("fill=\"{0}\" stroke=\"{0}\" stroke-width=\"2\" {attributes}", self.colour));
+        self.draw(
+            figure,
+            at,
+            radius,
+            &format!(
+                "fill=\"{0}\" stroke=\"{0}\" stroke-width=\"2\" {attributes}",
+                self.colour
+            ),
+        );
     }
 
     /// Draws its outline only, with further SVG attributes.
@@ -76,7 +97,9 @@ impl Symbol {
         let corners = SHAPES[self.shape];
         if corners.is_empty() {
             let (cx, cy, r) = (units(x), units(y), radius * UNITS);
-            return figure.raw(&format!("<circle cx=\"{cx}\" cy=\"{cy}\" r=\"{r:.1}\" {attributes}/>"));
+            return figure.raw(&format!(
+                "<circle cx=\"{cx}\" cy=\"{cy}\" r=\"{r:.1}\" {attributes}/>"
+            ));
         }
         let mut path = Path::default();
         for (dx, dy) in corners {

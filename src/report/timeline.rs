@@ -19,7 +19,11 @@ const GAP: f64 = 16.0;
 /// Rows of a table at most.
 const MOST_ROWS: usize = 600;
 /// The line of a marked value.
-const LEVEL: Stroke = Stroke { colour: QUIET, width: 0.8, dash: &[4.0, 2.0] };
+const LEVEL: Stroke = Stroke {
+    colour: QUIET,
+    width: 0.8,
+    dash: &[4.0, 2.0],
+};
 const PHASE_TEXT: f64 = 11.0;
 
 /// A column of the trace as a line.
@@ -50,7 +54,19 @@ pub(super) struct Strip {
 impl Strip {
     /// A panel of one line that begins at zero.
     pub fn of(column: &'static str, title: &'static str, tall: f64, stroke: Stroke) -> Self {
-        Strip { title, tall, lines: vec![Series { column, title, stroke }], with: &[0.0], most: f64::INFINITY, mark: None, legend: false }
+        Strip {
+            title,
+            tall,
+            lines: vec![Series {
+                column,
+                title,
+                stroke,
+            }],
+            with: &[0.0],
+            most: f64::INFINITY,
+            mark: None,
+            legend: false,
+        }
     }
 
     fn unit(&self) -> &'static str {
@@ -58,9 +74,23 @@ impl Strip {
     }
 
     fn axis(&self, history: &History) -> Axis {
-        let title = if self.unit().is_empty() { self.title.to_owned() } else { format!("{} [{}]", self.title, self.unit()) };
-        let values = self.lines.iter().flat_map(|line| history.column(line.column)).map(|y| y.min(self.most));
-        Axis::round(&title, values.filter(|y| y.is_finite()).chain(self.with.iter().copied()), (self.tall / 28.0) as usize)
+        let title = if self.unit().is_empty() {
+            self.title.to_owned()
+        } else {
+            format!("{} [{}]", self.title, self.unit())
+        };
+        let values = self
+            .lines
+            .iter()
+            .flat_map(|line| history.column(line.column))
+            .map(|y| y.min(self.most));
+        Axis::round(
+            &title,
+            values
+                .filter(|y| y.is_finite())
+                .chain(self.with.iter().copied()),
+            (self.tall / 28.0) as usize,
+        )
     }
 }
 
@@ -69,18 +99,40 @@ pub(super) fn timeline(run: &PlotRun, title: &str, about: &str, strips: &[Strip]
     let lines = || strips.iter().flat_map(|strip| &strip.lines);
     let told: Vec<String> = lines().map(|line| words(run.history, line)).collect();
     // A line that has its panel alone is named by the axis.
-    let named = strips.iter().filter(|strip| strip.legend).flat_map(|strip| &strip.lines).map(|line| (line.stroke, line.title));
-    let levels = strips.iter().filter_map(|strip| strip.mark).map(|(_, name)| (LEVEL, name));
-    let entries: Vec<_> = named.chain(levels).map(|(stroke, name)| (Mark::Line(stroke), name.to_owned())).collect();
+    let named = strips
+        .iter()
+        .filter(|strip| strip.legend)
+        .flat_map(|strip| &strip.lines)
+        .map(|line| (line.stroke, line.title));
+    let levels = strips
+        .iter()
+        .filter_map(|strip| strip.mark)
+        .map(|(_, name)| (LEVEL, name));
+    let entries: Vec<_> = named
+        .chain(levels)
+        .map(|(stroke, name)| (Mark::Line(stroke), name.to_owned()))
+        .collect();
     let width = PLOT_RIGHT - PLOT_LEFT;
-    let bottom = PLOT_TOP + strips.iter().map(|strip| strip.tall + GAP).sum::<f64>() - GAP + BELOW + 8.0;
+    let bottom =
+        PLOT_TOP + strips.iter().map(|strip| strip.tall + GAP).sum::<f64>() - GAP + BELOW + 8.0;
     let below = below_height(entries.iter().map(|(_, name)| name.as_str()), width, "");
     let desc = format!("{about} {}.", told.join("; "));
     let mut figure = Figure::new((WIDTH, bottom + below), PLOT_LEFT, title, run.name, &desc);
     let mut top = PLOT_TOP;
     for (k, strip) in strips.iter().enumerate() {
-        let rect = Rect { left: PLOT_LEFT, right: PLOT_RIGHT, top, bottom: top + strip.tall };
-        let axes = Panel::over_table(&mut figure, rect, time_axis(run.history), strip.axis(run.history), k + 1 == strips.len());
+        let rect = Rect {
+            left: PLOT_LEFT,
+            right: PLOT_RIGHT,
+            top,
+            bottom: top + strip.tall,
+        };
+        let axes = Panel::over_table(
+            &mut figure,
+            rect,
+            time_axis(run.history),
+            strip.axis(run.history),
+            k + 1 == strips.len(),
+        );
         phases(&mut figure, &axes, run.history, k == 0);
         draw(&mut figure, &axes, run.history, strip);
         top += strip.tall + GAP;
@@ -88,13 +140,20 @@ pub(super) fn timeline(run: &PlotRun, title: &str, about: &str, strips: &[Strip]
     if !entries.is_empty() {
         legend_below(&mut figure, (PLOT_LEFT, bottom), width, "", &entries);
     }
-    Picture { svg: figure.finish(), table: table(run, &lines().collect::<Vec<_>>()) }
+    Picture {
+        svg: figure.finish(),
+        table: table(run, &lines().collect::<Vec<_>>()),
+    }
 }
 
 fn draw(figure: &mut Figure, axes: &Panel, history: &History, strip: &Strip) {
     if let Some((level, _)) = strip.mark {
         let at = axes.py(level);
-        figure.line((axes.rect.left, at), (axes.rect.right, at), &LEVEL.attributes());
+        figure.line(
+            (axes.rect.left, at),
+            (axes.rect.right, at),
+            &LEVEL.attributes(),
+        );
     }
     let cut = strip.most.is_finite();
     if cut {
@@ -128,18 +187,31 @@ fn unit(name: &str) -> &'static str {
 
 /// The points of a column: means stand in the middle of their step, temperatures at its end, a gear holds for the whole of it.
 fn points(history: &History, name: &str) -> Vec<(f64, f64)> {
-    let steps = || history.time_s().iter().zip(history.dt_s()).zip(history.column(name));
+    let steps = || {
+        history
+            .time_s()
+            .iter()
+            .zip(history.dt_s())
+            .zip(history.column(name))
+    };
     if name == "gear" {
-        return steps().flat_map(|((end, dt), y)| [(end - dt, *y), (*end, *y)]).collect();
+        return steps()
+            .flat_map(|((end, dt), y)| [(end - dt, *y), (*end, *y)])
+            .collect();
     }
     let back = if name.ends_with("_degc") { 0.0 } else { 0.5 };
-    steps().map(|((end, dt), y)| (end - back * dt, *y)).collect()
+    steps()
+        .map(|((end, dt), y)| (end - back * dt, *y))
+        .collect()
 }
 
 /// The time axis of a trace: all of it, no more.
 pub(super) fn time_axis(history: &History) -> Axis {
     let (time, dt) = (history.time_s(), history.dt_s());
-    let start = time.first().zip(dt.first()).map_or(0.0, |(end, dt)| end - dt);
+    let start = time
+        .first()
+        .zip(dt.first())
+        .map_or(0.0, |(end, dt)| end - dt);
     Axis::exact("Time [s]", start, time.last().copied().unwrap_or(1.0), 10)
 }
 
@@ -154,9 +226,20 @@ fn words(history: &History, line: &Series) -> String {
         unit => format!(" {unit}"),
     };
     let step = if high - low < 20.0 { 0.01 } else { 1.0 };
-    let last = values.iter().rev().find(|y| y.is_finite()).filter(|_| line.column.ends_with("_degc"));
-    let end = last.map_or(String::new(), |y| format!(" and {} at the end", number(*y, 1.0)));
-    format!("{} from {} to {}{unit}{end}", line.title, number(low, step), number(high, step))
+    let last = values
+        .iter()
+        .rev()
+        .find(|y| y.is_finite())
+        .filter(|_| line.column.ends_with("_degc"));
+    let end = last.map_or(String::new(), |y| {
+        format!(" and {} at the end", number(*y, 1.0))
+    });
+    format!(
+        "{} from {} to {}{unit}{end}",
+        line.title,
+        number(low, step),
+        number(high, step)
+    )
 }
 
 /// Marks where phases begin, with their names above the plot where these fit.
@@ -166,23 +249,40 @@ pub(super) fn phases(figure: &mut Figure, panel: &Panel, history: &History, name
         return;
     };
     let steps: Vec<usize> = (0..time.len()).collect();
-    let parts: Vec<&[usize]> = steps.chunk_by(|a, b| history.phase(*a) == history.phase(*b)).collect();
+    let parts: Vec<&[usize]> = steps
+        .chunk_by(|a, b| history.phase(*a) == history.phase(*b))
+        .collect();
     for (i, part) in parts.iter().enumerate() {
         let (Some(first), Some(last)) = (part.first(), part.last()) else {
             continue;
         };
         let (left, right) = (panel.px(from), panel.px(time[*last]));
         if i > 0 && left.is_finite() && right - left > 3.0 {
-            let attributes = format!("stroke=\"{QUIET}\" stroke-width=\"3\" stroke-dasharray=\"4 10\"");
-            figure.line((left, panel.rect.top), (left, panel.rect.bottom), &attributes);
+            let attributes =
+                format!("stroke=\"{QUIET}\" stroke-width=\"3\" stroke-dasharray=\"4 10\"");
+            figure.line(
+                (left, panel.rect.top),
+                (left, panel.rect.bottom),
+                &attributes,
+            );
         }
-        let name = history.phases().get(history.phase(*first)).map_or("", String::as_str);
+        let name = history
+            .phases()
+            .get(history.phase(*first))
+            .map_or("", String::as_str);
         let short = fit(name, PHASE_TEXT, right - left - 4.0);
         // A name cut to a few letters tells nothing.
         let tells = short == name || text_width(&short, PHASE_TEXT) > 40.0;
         if named && parts.len() > 1 && tells && !short.is_empty() {
             let at = (0.5 * (left + right), panel.rect.top - 5.0);
-            figure.text(at, PHASE_TEXT, Anchor::Middle, "class=\"phase\"", INK, &short);
+            figure.text(
+                at,
+                PHASE_TEXT,
+                Anchor::Middle,
+                "class=\"phase\"",
+                INK,
+                &short,
+            );
         }
         from = time[*last];
     }
@@ -191,26 +291,45 @@ pub(super) fn phases(figure: &mut Figure, panel: &Panel, history: &History, name
 /// Every so many steps with all columns that are drawn.
 fn table(run: &PlotRun, lines: &[&Series]) -> PictureTable {
     let mut columns = vec![("Time", "s")];
-    columns.extend(lines.iter().map(|line| (line.title, shown(unit(line.column)))));
+    columns.extend(
+        lines
+            .iter()
+            .map(|line| (line.title, shown(unit(line.column)))),
+    );
     let mut table = PictureTable::new(&columns);
     let history = run.history;
     let every = history.len().div_ceil(MOST_ROWS).max(1);
     // Steps are hardly ever shorter than a hundredth of a second; times are told apart in any case.
-    let step_s = range(history.dt_s().iter().copied()).map_or(1.0, |(least, _)| if least >= 0.999_999 { 0.1 } else { 0.01 });
+    let step_s = range(history.dt_s().iter().copied()).map_or(1.0, |(least, _)| {
+        if least >= 0.999_999 { 0.1 } else { 0.01 }
+    });
     for (i, time) in history.time_s().iter().enumerate().step_by(every) {
         let mut cells = vec![cell(*time, step_s)];
-        cells.extend(lines.iter().map(|line| cell(history.column(line.column).get(i).copied().unwrap_or(f64::NAN), fineness(line.column))));
+        cells.extend(lines.iter().map(|line| {
+            cell(
+                history
+                    .column(line.column)
+                    .get(i)
+                    .copied()
+                    .unwrap_or(f64::NAN),
+                fineness(line.column),
+            )
+        }));
         table.push(cells);
     }
-    table.note = "A row is the step that ends at its time: temperatures at its end, all else its mean.".to_owned();
+    table.note =
+        "A row is the step that ends at its time: temperatures at its end, all else its mean."
+            .to_owned();
     if every > 1 {
         let ordinal = match every {
             2 => "second".to_owned(),
             3 => "third".to_owned(),
             n => format!("{n}th"),
         };
-        table.note +=
-            &format!(" Every {ordinal} step is listed; all of them are in trace_{}.csv; the lines are drawn from all steps.", run.name);
+        table.note += &format!(
+            " Every {ordinal} step is listed; all of them are in trace_{}.csv; the lines are drawn from all steps.",
+            run.name
+        );
     }
     table
 }

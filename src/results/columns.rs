@@ -91,7 +91,9 @@ pub fn column(name: &str) -> Option<&'static Column> {
 /// The column of a component's loss power.
 #[must_use]
 pub fn loss_column(component: Component) -> Option<&'static Column> {
-    COLUMNS.iter().find(|column| column.scope == Scope::Has(component))
+    COLUMNS
+        .iter()
+        .find(|column| column.scope == Scope::Has(component))
 }
 
 fn kmh(speed_m_s: f64) -> f64 {
@@ -204,12 +206,18 @@ mod tests {
                 _ => None,
             })
             .collect();
-        let wanted: Vec<_> = Component::ALL.iter().map(|c| format!("{}_loss_w", c.name())).collect();
+        let wanted: Vec<_> = Component::ALL
+            .iter()
+            .map(|c| format!("{}_loss_w", c.name()))
+            .collect();
         assert_eq!(names, wanted);
         for component in Component::ALL {
             let mut row = Row::default();
             row.loss_w[component as usize] = 7.5;
-            let sum: f64 = Component::ALL.iter().map(|&c| loss_column(c).map_or(f64::NAN, |column| column.number(&row))).sum();
+            let sum: f64 = Component::ALL
+                .iter()
+                .map(|&c| loss_column(c).map_or(f64::NAN, |column| column.number(&row)))
+                .sum();
             let own = loss_column(component).map_or(f64::NAN, |column| column.number(&row));
             assert!((own - 7.5).abs() < 1e-15 && (sum - 7.5).abs() < 1e-15);
         }
@@ -217,13 +225,27 @@ mod tests {
 
     #[test]
     fn many_numbers_are_those_of_single_rows() {
-        let row = |k: u8| Row { time_s: f64::from(k), phase: u16::from(k), gear: k, slip: f64::NAN, loss_w: [0.5; 16], ..Row::default() };
+        let row = |k: u8| Row {
+            time_s: f64::from(k),
+            phase: u16::from(k),
+            gear: k,
+            slip: f64::NAN,
+            loss_w: [0.5; 16],
+            ..Row::default()
+        };
         let rows: Vec<Row> = (0..5).map(row).collect();
         for column in COLUMNS {
             let mut numbers = vec![7.0];
             (column.numbers)(&rows, &mut numbers);
             let single = rows.iter().map(|row| column.number(row).to_bits());
-            assert!(numbers.iter().map(|x| x.to_bits()).eq([7.0_f64.to_bits()].into_iter().chain(single)), "{}", column.name);
+            assert!(
+                numbers
+                    .iter()
+                    .map(|x| x.to_bits())
+                    .eq([7.0_f64.to_bits()].into_iter().chain(single)),
+                "{}",
+                column.name
+            );
         }
     }
 

@@ -25,12 +25,26 @@ impl OutputFile {
     pub fn create(path: impl AsRef<Path>, force: bool) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         if path.file_name().is_none() {
-            return Err(problem(&path, "the name of the output file is empty", "name a file, for example --out points.csv"));
+            return Err(problem(
+                &path,
+                "the name of the output file is empty",
+                "name a file, for example --out points.csv",
+            ));
         }
         check_target(&path, force)?;
         let folder = folder(&path);
-        let out = temporary_in(&folder).map_err(|error| failed(&path, &format!("cannot write in {}", folder.display()), &error))?;
-        Ok(OutputFile { path, out: BufWriter::new(out), force })
+        let out = temporary_in(&folder).map_err(|error| {
+            failed(
+                &path,
+                &format!("cannot write in {}", folder.display()),
+                &error,
+            )
+        })?;
+        Ok(OutputFile {
+            path,
+            out: BufWriter::new(out),
+            force,
+        })
     }
 
     /// Where the file will stand.
@@ -47,11 +61,15 @@ impl OutputFile {
         let OutputFile { path, out, force } = self;
         // Somebody else may have written it meanwhile.
         check_target(&path, force)?;
-        let written = out.into_inner().map_err(io::IntoInnerError::into_error).and_then(|file| {
-            file.as_file().sync_all()?;
-            file.persist(&path).map_err(|error| error.error)
-        });
-        written.map_err(|error| failed(&path, &format!("cannot write {}", path.display()), &error))?;
+        let written = out
+            .into_inner()
+            .map_err(io::IntoInnerError::into_error)
+            .and_then(|file| {
+                file.as_file().sync_all()?;
+                file.persist(&path).map_err(|error| error.error)
+            });
+        written
+            .map_err(|error| failed(&path, &format!("cannot write {}", path.display()), &error))?;
         sync_directory(&folder(&path));
         Ok(path)
     }
@@ -59,7 +77,11 @@ impl OutputFile {
     /// The problem of an error in writing.
     #[must_use]
     pub fn cannot_write(&self, error: &io::Error) -> Problem {
-        failed(&self.path, &format!("cannot write {}", self.path.display()), error)
+        failed(
+            &self.path,
+            &format!("cannot write {}", self.path.display()),
+            error,
+        )
     }
 }
 
@@ -74,7 +96,9 @@ impl Write for OutputFile {
 }
 
 fn folder(path: &Path) -> PathBuf {
-    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+    let parent = path
+        .parent()
+        .filter(|parent| !parent.as_os_str().is_empty());
     parent.map_or_else(|| PathBuf::from("."), Path::to_path_buf)
 }
 
@@ -84,10 +108,18 @@ fn check_target(path: &Path, force: bool) -> Result<(), Problem> {
     };
     let name = path.display();
     if !found.is_file() && !found.is_symlink() {
-        return Err(problem(path, &format!("{name} exists and is not a plain file"), "choose another name"));
+        return Err(problem(
+            path,
+            &format!("{name} exists and is not a plain file"),
+            "choose another name",
+        ));
     }
     if force {
         return Ok(());
     }
-    Err(problem(path, &format!("{name} exists"), "choose another name, or replace it with --force"))
+    Err(problem(
+        path,
+        &format!("{name} exists"),
+        "choose another name, or replace it with --force",
+    ))
 }

@@ -38,12 +38,30 @@ impl OutputDir {
     pub fn create(path: impl AsRef<Path>, force: bool) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         check_directory(&path)?;
-        let created = Created::new(&path).map_err(|error| failed(&path, &format!("cannot create directory {}", path.display()), &error))?;
-        let earlier = names_in(&path).map_err(|error| failed(&path, &format!("cannot read directory {}", path.display()), &error))?;
+        let created = Created::new(&path).map_err(|error| {
+            failed(
+                &path,
+                &format!("cannot create directory {}", path.display()),
+                &error,
+            )
+        })?;
+        let earlier = names_in(&path).map_err(|error| {
+            failed(
+                &path,
+                &format!("cannot read directory {}", path.display()),
+                &error,
+            )
+        })?;
         check_contents(&path, &earlier, force)?;
-        let dir = OutputDir { path, earlier, written: Vec::new(), created };
+        let dir = OutputDir {
+            path,
+            earlier,
+            written: Vec::new(),
+            created,
+        };
         // Better to learn now than after the simulation that nothing can be written here.
-        dir.temporary().map_err(|error| dir.cannot_write("a file", &error))?;
+        dir.temporary()
+            .map_err(|error| dir.cannot_write("a file", &error))?;
         Ok(dir)
     }
 
@@ -52,7 +70,11 @@ impl OutputDir {
     /// # Errors
     /// A problem of `--out` with the words of the operating system, or for a name that is not a
     /// plain file name or was used before in this run.
-    pub fn write(&mut self, name: &str, f: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>) -> Result<(), Problem> {
+    pub fn write(
+        &mut self,
+        name: &str,
+        f: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
+    ) -> Result<(), Problem> {
         self.check_name(name)?;
         let written = self.temporary().and_then(|file| {
             // The bare file: the named one would add its temporary name to every error.
@@ -72,7 +94,11 @@ impl OutputDir {
     #[must_use]
     pub fn left_over(&self) -> Vec<String> {
         let rewritten = |name: &String| self.written.iter().any(|(other, _)| other == name);
-        self.earlier.iter().filter(|name| !rewritten(name)).cloned().collect()
+        self.earlier
+            .iter()
+            .filter(|name| !rewritten(name))
+            .cloned()
+            .collect()
     }
 
     /// Gives every file its name and returns their paths in the order of writing.
@@ -80,13 +106,19 @@ impl OutputDir {
     /// # Errors
     /// A problem of `--out`; the directory is then as it was before the run.
     pub fn commit(mut self) -> Result<Vec<PathBuf>, Problem> {
-        let paths: Vec<PathBuf> = self.written.iter().map(|(name, _)| self.path.join(name)).collect();
+        let paths: Vec<PathBuf> = self
+            .written
+            .iter()
+            .map(|(name, _)| self.path.join(name))
+            .collect();
         let mut written = std::mem::take(&mut self.written);
         // The mark comes last, so that it never stands for a run of which files are missing.
         written.sort_by_key(|(name, _)| is_mark(name));
         let mut swap = Swap::default();
         for (name, temporary) in written {
-            let done = self.temporary_name().and_then(|spare| swap.put(temporary, self.path.join(&name), spare));
+            let done = self
+                .temporary_name()
+                .and_then(|spare| swap.put(temporary, self.path.join(&name), spare));
             done.map_err(|error| self.cannot_write(&name, &error))?;
         }
         swap.keep();
@@ -112,7 +144,11 @@ impl OutputDir {
         }
         // Not all file systems tell upper from lower case.
         let lower = name.to_lowercase();
-        if self.written.iter().any(|(other, _)| other.to_lowercase() == lower) {
+        if self
+            .written
+            .iter()
+            .any(|(other, _)| other.to_lowercase() == lower)
+        {
             let message = format!("two files of the run would be named {name}");
             let hint = "give every vehicle of the run a name of its own";
             return Err(problem(&self.path, &message, hint));
@@ -121,8 +157,11 @@ impl OutputDir {
     }
 
     fn cannot_write(&self, name: &str, error: &io::Error) -> Problem {
-        let target =
-            if name.contains('.') { self.path.join(name).display().to_string() } else { format!("{name} in {}", self.path.display()) };
+        let target = if name.contains('.') {
+            self.path.join(name).display().to_string()
+        } else {
+            format!("{name} in {}", self.path.display())
+        };
         failed(&self.path, &format!("cannot write {target}"), error)
     }
 }
@@ -135,7 +174,11 @@ impl Created {
     /// Creates what is missing of a directory.
     pub(crate) fn new(path: &Path) -> io::Result<Self> {
         let missing = |dir: &&Path| !dir.as_os_str().is_empty() && !dir.exists();
-        let mut new: Vec<PathBuf> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        let mut new: Vec<PathBuf> = path
+            .ancestors()
+            .take_while(missing)
+            .map(Path::to_path_buf)
+            .collect();
         new.reverse();
         // Kept first: what was created before an error must go again.
         let created = Created(new);
@@ -169,7 +212,10 @@ impl Swap {
     fn put(&mut self, new: TempPath, target: PathBuf, spare: TempPath) -> io::Result<()> {
         let spare = match fs::symlink_metadata(&target) {
             Ok(meta) if meta.is_dir() => {
-                return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a directory"));
+                return Err(io::Error::new(
+                    io::ErrorKind::IsADirectory,
+                    "is a directory",
+                ));
             }
             Ok(_) => {
                 fs::rename(&target, &spare)?;
@@ -204,7 +250,11 @@ impl Drop for Swap {
 pub(crate) fn check_directory(path: &Path) -> Result<(), Problem> {
     if path.as_os_str().is_empty() {
         let hint = "name a directory, for example --out run1";
-        return Err(problem(path, "the name of the output directory is empty", hint));
+        return Err(problem(
+            path,
+            "the name of the output directory is empty",
+            hint,
+        ));
     }
     if path.exists() && !path.is_dir() {
         let message = format!("{} exists and is not a directory", path.display());
@@ -258,7 +308,11 @@ fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Prob
     let path_text = path.display();
     Err(if marked {
         let message = format!("{path_text} holds the files of an earlier run: {list}");
-        problem(path, &message, "choose another name, or replace them with --force")
+        problem(
+            path,
+            &message,
+            "choose another name, or replace them with --force",
+        )
     } else {
         let message = format!("{path_text} holds files of something else: {list}");
         problem(path, &message, "choose another name, or an empty directory")
@@ -267,8 +321,17 @@ fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Prob
 
 /// The first names, and how many more there are.
 pub(crate) fn list(names: &[String]) -> String {
-    let list = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
-    if names.len() > LISTED { format!("{list} and {} more", names.len() - LISTED) } else { list }
+    let list = names
+        .iter()
+        .take(LISTED)
+        .cloned()
+        .collect::<Vec<_>>()
+        .join(", ");
+    if names.len() > LISTED {
+        format!("{list} and {} more", names.len() - LISTED)
+    } else {
+        list
+    }
 }
 
 /// Makes the renames last through a power cut, where directories can be synced at all.
@@ -279,7 +342,9 @@ pub(crate) fn sync_directory(path: &Path) {
 }
 
 pub(crate) fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
-    use io::ErrorKind::{NotADirectory, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
+    use io::ErrorKind::{
+        NotADirectory, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull,
+    };
     let hint = match error.kind() {
         PermissionDenied | ReadOnlyFilesystem => "choose a directory in which you may write",
         StorageFull | QuotaExceeded => "free some space, or choose a directory on another disk",
@@ -294,7 +359,10 @@ pub(crate) fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
 
 pub(crate) fn problem(path: &Path, message: &str, hint: &str) -> Problem {
     Problem {
-        place: Place { file: "--out".to_string(), ..Place::default() },
+        place: Place {
+            file: "--out".to_string(),
+            ..Place::default()
+        },
         key: "--out".to_string(),
         value: path.display().to_string(),
         allowed: String::new(),

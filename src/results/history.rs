@@ -29,11 +29,24 @@ impl History {
     /// Rows of a run as columns. `phases` are the names that belong to [`Row::phase`]; only those that occur are kept, in their order.
     #[must_use]
     pub fn of(rows: &[Row], columns: &[&'static Column], phases: &[String]) -> Self {
-        let numbers = |column: &&'static Column| (*column, rows.iter().map(|row| plain(column.number(row))).collect());
-        let mut history =
-            History { columns: columns.iter().filter(|column| is_number(column)).map(numbers).collect(), ..History::default() };
+        let numbers = |column: &&'static Column| {
+            (
+                *column,
+                rows.iter().map(|row| plain(column.number(row))).collect(),
+            )
+        };
+        let mut history = History {
+            columns: columns
+                .iter()
+                .filter(|column| is_number(column))
+                .map(numbers)
+                .collect(),
+            ..History::default()
+        };
         for row in rows {
-            let name = phases.get(usize::from(row.phase)).map_or("", String::as_str);
+            let name = phases
+                .get(usize::from(row.phase))
+                .map_or("", String::as_str);
             history.step(name, row.flags);
         }
         history
@@ -41,12 +54,19 @@ impl History {
 
     /// A history of these columns without steps yet.
     pub(crate) fn empty(columns: &[&'static Column]) -> Self {
-        History { columns: columns.iter().map(|column| (*column, Vec::new())).collect(), ..History::default() }
+        History {
+            columns: columns.iter().map(|column| (*column, Vec::new())).collect(),
+            ..History::default()
+        }
     }
 
     /// Puts the numbers of a column in place.
     pub(crate) fn put(&mut self, name: &str, numbers: Vec<f64>) {
-        if let Some((_, own)) = self.columns.iter_mut().find(|(column, _)| column.name == name) {
+        if let Some((_, own)) = self
+            .columns
+            .iter_mut()
+            .find(|(column, _)| column.name == name)
+        {
             *own = numbers;
         }
     }
@@ -56,10 +76,12 @@ impl History {
         // A phase mostly is that of the step before.
         let known = |at: &usize| self.phases.get(*at).is_some_and(|name| name == phase);
         let before = self.phase.last().copied().filter(known);
-        let index = before.or_else(|| self.phases.iter().position(|name| name == phase)).unwrap_or_else(|| {
-            self.phases.push(phase.to_owned());
-            self.phases.len() - 1
-        });
+        let index = before
+            .or_else(|| self.phases.iter().position(|name| name == phase))
+            .unwrap_or_else(|| {
+                self.phases.push(phase.to_owned());
+                self.phases.len() - 1
+            });
         self.phase.push(index);
         self.flags.push(flags);
     }
@@ -68,12 +90,17 @@ impl History {
     /// or that holds words.
     #[must_use]
     pub fn column(&self, name: &str) -> &[f64] {
-        self.columns.iter().find(|(column, _)| column.name == name).map_or(&[], |(_, numbers)| numbers)
+        self.columns
+            .iter()
+            .find(|(column, _)| column.name == name)
+            .map_or(&[], |(_, numbers)| numbers)
     }
 
     /// All columns of numbers, in the order of the table.
     pub fn columns(&self) -> impl Iterator<Item = (&'static Column, &[f64])> {
-        self.columns.iter().map(|(column, numbers)| (*column, numbers.as_slice()))
+        self.columns
+            .iter()
+            .map(|(column, numbers)| (*column, numbers.as_slice()))
     }
 
     /// Whether there is a column of numbers of that name.
@@ -133,7 +160,10 @@ impl History {
     /// The loss components that have a column, in the order of the power flow.
     #[must_use]
     pub fn components(&self) -> Vec<Component> {
-        Component::ALL.into_iter().filter(|component| loss_column(*component).is_some_and(|column| self.has(column.name))).collect()
+        Component::ALL
+            .into_iter()
+            .filter(|component| loss_column(*component).is_some_and(|column| self.has(column.name)))
+            .collect()
     }
 
     /// Loss power of a component at each step, W; empty if the car has none.
@@ -145,19 +175,29 @@ impl History {
 
 /// A number as the files keep it: NaN where it is not finite, zero without a sign.
 fn plain(number: f64) -> f64 {
-    if number.is_finite() { number + 0.0 } else { f64::NAN }
+    if number.is_finite() {
+        number + 0.0
+    } else {
+        f64::NAN
+    }
 }
 
 /// Whether the cells of a column are numbers.
 pub(crate) fn is_number(column: &Column) -> bool {
-    matches!((column.get)(&Row::default()), Value::Number(_) | Value::Count(_))
+    matches!(
+        (column.get)(&Row::default()),
+        Value::Number(_) | Value::Count(_)
+    )
 }
 
 /// The flags of a cell; the first word that is no flag, where there is one.
 pub(crate) fn flags_of(cell: &str) -> Result<Flags, &str> {
     let mut flags = Flags::default();
     for word in cell.split('|').filter(|_| !cell.is_empty()) {
-        let (flag, _) = Flags::NAMES.iter().find(|(_, name)| *name == word).ok_or(word)?;
+        let (flag, _) = Flags::NAMES
+            .iter()
+            .find(|(_, name)| *name == word)
+            .ok_or(word)?;
         flags.set(*flag, true);
     }
     Ok(flags)
@@ -168,11 +208,18 @@ pub(crate) fn missing(there: &[&'static Column]) -> Vec<&'static Column> {
     let cvt = there.iter().any(|column| column.scope == Scope::Cvt);
     let kind = if cvt { Scope::Cvt } else { Scope::Manual };
     let wanted = |own: &&Column| own.scope == Scope::Always || own.scope == kind;
-    COLUMNS.iter().filter(wanted).filter(|own| !there.iter().any(|column| column.name == own.name)).collect()
+    COLUMNS
+        .iter()
+        .filter(wanted)
+        .filter(|own| !there.iter().any(|column| column.name == own.name))
+        .collect()
 }
 
 /// The columns of these names that this program knows, in the order of the table.
 pub(crate) fn known<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'static Column> {
     let list: Vec<&Column> = names.filter_map(column).collect();
-    COLUMNS.iter().filter(|own| list.iter().any(|column| column.name == own.name)).collect()
+    COLUMNS
+        .iter()
+        .filter(|own| list.iter().any(|column| column.name == own.name))
+        .collect()
 }

@@ -34,8 +34,19 @@ pub struct Terms {
 }
 
 /// Names of the terms, in the order of [`Terms::as_array`].
-pub const TERM_NAMES: [&str; 11] =
-    ["fuel", "wheels", "brake", "accessories", "losses", "kinetic", "engine_heat", "exhaust", "node_heat", "stored", "to_air"];
+pub const TERM_NAMES: [&str; 11] = [
+    "fuel",
+    "wheels",
+    "brake",
+    "accessories",
+    "losses",
+    "kinetic",
+    "engine_heat",
+    "exhaust",
+    "node_heat",
+    "stored",
+    "to_air",
+];
 
 #[inline]
 fn error(difference: f64, scale: f64) -> f64 {
@@ -47,8 +58,18 @@ impl Terms {
     #[must_use]
     #[inline]
     pub fn power_error(&self) -> f64 {
-        let (from, to) = if self.wheels < 0.0 { (-self.wheels, 0.0) } else { (0.0, self.wheels) };
-        let out = to + self.brake + self.accessories + self.losses + self.kinetic + self.engine_heat + self.exhaust;
+        let (from, to) = if self.wheels < 0.0 {
+            (-self.wheels, 0.0)
+        } else {
+            (0.0, self.wheels)
+        };
+        let out = to
+            + self.brake
+            + self.accessories
+            + self.losses
+            + self.kinetic
+            + self.engine_heat
+            + self.exhaust;
         let scale = self.fuel.abs()
             + self.wheels.abs()
             + self.brake.abs()

@@ -152,7 +152,10 @@ impl Effect {
     #[must_use]
     pub fn size_percent(&self) -> f64 {
         let both = [self.lowered_percent, self.raised_percent];
-        both.into_iter().flatten().map(f64::abs).fold(f64::NAN, |a, b| if a > b { a } else { b })
+        both.into_iter()
+            .flatten()
+            .map(f64::abs)
+            .fold(f64::NAN, |a, b| if a > b { a } else { b })
     }
 }
 
@@ -162,7 +165,12 @@ mod tests {
 
     #[test]
     fn the_size_of_an_effect_is_that_of_its_larger_side() {
-        let effect = |lowered_percent, raised_percent| Effect { car: String::new(), key: String::new(), lowered_percent, raised_percent };
+        let effect = |lowered_percent, raised_percent| Effect {
+            car: String::new(),
+            key: String::new(),
+            lowered_percent,
+            raised_percent,
+        };
         assert!((effect(Some(-0.4), Some(0.3)).size_percent() - 0.4).abs() < 1e-15);
         assert!((effect(None, Some(0.3)).size_percent() - 0.3).abs() < 1e-15);
         assert!(effect(None, None).size_percent().is_nan());

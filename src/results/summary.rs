@@ -20,7 +20,12 @@ pub const SCHEMA: u32 = 1;
 /// Ledger error above which a run counts as failed.
 pub const LEDGER_TOLERANCE: f64 = 1e-9;
 /// Flags that fail a strict run.
-const STRICT: [Flags; 4] = [Flags::OUTSIDE_VALIDITY, Flags::GROSS_SLIP, Flags::LOW_CLAMP, Flags::FLOW_LIMITED];
+const STRICT: [Flags; 4] = [
+    Flags::OUTSIDE_VALIDITY,
+    Flags::GROSS_SLIP,
+    Flags::LOW_CLAMP,
+    Flags::FLOW_LIMITED,
+];
 
 /// A whole run: the subject and its baselines through one cycle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -231,19 +236,28 @@ impl RunSummary {
 
     fn checks(&self, strict: bool) -> Vec<String> {
         let flag = |flag: Flags| {
-            let name = Flags::NAMES.iter().find(|(f, _)| *f == flag).map_or("", |(_, name)| name);
+            let name = Flags::NAMES
+                .iter()
+                .find(|(f, _)| *f == flag)
+                .map_or("", |(_, name)| name);
             (name, self.flags_s.get(name).is_some_and(|s| s > 0.0))
         };
         // Stated as what is good, so that an error that is no number fails.
         let closed = |error: Option<f64>| error.is_some_and(|e| e <= LEDGER_TOLERANCE);
         let mut list = vec![
             flag(Flags::MISSED_TRACE),
-            ("ledger_error", !(closed(self.ledger_error) && closed(self.run_ledger_error))),
+            (
+                "ledger_error",
+                !(closed(self.ledger_error) && closed(self.run_ledger_error)),
+            ),
             flag(Flags::NOT_CONVERGED),
         ];
         if strict {
             list.extend(STRICT.map(flag));
         }
-        list.into_iter().filter(|(_, failed)| *failed).map(|(name, _)| name.to_owned()).collect()
+        list.into_iter()
+            .filter(|(_, failed)| *failed)
+            .map(|(name, _)| name.to_owned())
+            .collect()
     }
 }

@@ -67,14 +67,22 @@ impl Totals {
     /// Seconds with a flag.
     #[must_use]
     pub fn seconds(&self, flag: Flags) -> f64 {
-        Flags::NAMES.iter().zip(&self.flag_s).filter(|((f, _), _)| *f == flag).map(|(_, s)| s).sum()
+        Flags::NAMES
+            .iter()
+            .zip(&self.flag_s)
+            .filter(|((f, _), _)| *f == flag)
+            .map(|(_, s)| s)
+            .sum()
     }
 
     /// Sums over some phases.
     #[must_use]
     pub fn over(&self, phases: &[u16]) -> PhaseTotals {
         let mut sum = PhaseTotals::default();
-        for p in phases.iter().filter_map(|&k| self.phases.get(usize::from(k))) {
+        for p in phases
+            .iter()
+            .filter_map(|&k| self.phases.get(usize::from(k)))
+        {
             sum.add(p);
         }
         sum
@@ -92,7 +100,11 @@ impl Totals {
 
     #[inline(always)]
     fn extremes(&mut self, row: &Row) {
-        let error = if row.power_ledger_error > row.heat_ledger_error { row.power_ledger_error } else { row.heat_ledger_error };
+        let error = if row.power_ledger_error > row.heat_ledger_error {
+            row.power_ledger_error
+        } else {
+            row.heat_ledger_error
+        };
         // A ledger error that is not a number must not hide.
         if error.is_nan() || error > self.ledger_error {
             self.ledger_error = error;

@@ -12,9 +12,16 @@ use super::{Flags, Row};
 ///
 /// # Errors
 /// Whatever `out` reports.
-pub fn write_trace<W: Write>(out: W, columns: &[&Column], rows: &[Row], phases: &[String]) -> io::Result<()> {
+pub fn write_trace<W: Write>(
+    out: W,
+    columns: &[&Column],
+    rows: &[Row],
+    phases: &[String],
+) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(columns.iter().map(|column| column.name)).map_err(csv_error)?;
+    writer
+        .write_record(columns.iter().map(|column| column.name))
+        .map_err(csv_error)?;
     let mut text = String::new();
     for row in rows {
         for column in columns {

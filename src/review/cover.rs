@@ -65,11 +65,20 @@ impl Cover {
         let toml = Toml::parse(path, &text)?;
         let reader = Reader::new(&toml);
         let root = reader.root();
-        let text = |key: &str, doc: &str| root.optional_text(key, doc).filter(|text| !text.trim().is_empty());
-        let mut cover =
-            Cover { title: text("title", "title of the report"), subtitle: text("subtitle", "a line below it"), ..Cover::default() };
-        for (key, doc) in [("author", "who made the report"), ("organisation", "for whom the author works"), ("date", "when, in any form")]
-        {
+        let text = |key: &str, doc: &str| {
+            root.optional_text(key, doc)
+                .filter(|text| !text.trim().is_empty())
+        };
+        let mut cover = Cover {
+            title: text("title", "title of the report"),
+            subtitle: text("subtitle", "a line below it"),
+            ..Cover::default()
+        };
+        for (key, doc) in [
+            ("author", "who made the report"),
+            ("organisation", "for whom the author works"),
+            ("date", "when, in any form"),
+        ] {
             cover.byline.extend(text(key, doc));
         }
         let logo = text("logo", "file of the logo, beside this file");
@@ -77,13 +86,22 @@ impl Cover {
         if let Some(name) = logo {
             match logo_data(path, &name) {
                 Ok(data) => cover.logo = Some((data, words.unwrap_or_else(|| "Logo".to_owned()))),
-                Err((message, hint)) => root.complain("logo", "a PNG, JPEG or SVG file of at most 500 kB", &message, &hint),
+                Err((message, hint)) => root.complain(
+                    "logo",
+                    "a PNG, JPEG or SVG file of at most 500 kB",
+                    &message,
+                    &hint,
+                ),
             }
         }
         let remarks = root.table("remarks");
         for section in SECTIONS {
             let remark = remarks.optional_text(section, "remark at the beginning of that section");
-            cover.remarks.extend(remark.filter(|text| !text.trim().is_empty()).map(|text| (section, text)));
+            cover.remarks.extend(
+                remark
+                    .filter(|text| !text.trim().is_empty())
+                    .map(|text| (section, text)),
+            );
         }
         reader.finish()?;
         Ok(cover)
@@ -100,9 +118,15 @@ impl Cover {
         document.byline.clone_from(&self.byline);
         document.logo.clone_from(&self.logo);
         for (id, text) in &self.remarks {
-            match document.sections.iter_mut().find(|section| section.id == *id) {
+            match document
+                .sections
+                .iter_mut()
+                .find(|section| section.id == *id)
+            {
                 Some(section) => section.blocks.insert(0, Block::Remark(text.clone())),
-                None => document.warnings.push(format!("the cover has a remark on `{id}`, a section that this report does not have")),
+                None => document.warnings.push(format!(
+                    "the cover has a remark on `{id}`, a section that this report does not have"
+                )),
             }
         }
     }
@@ -110,9 +134,14 @@ impl Cover {
 
 /// A logo as a data URI, or what is wrong with it and what helps.
 fn logo_data(cover: &str, name: &str) -> Result<String, (String, String)> {
-    let path = Path::new(cover).parent().unwrap_or(Path::new("")).join(name);
+    let path = Path::new(cover)
+        .parent()
+        .unwrap_or(Path::new(""))
+        .join(name);
     let bytes = bounded::read_file(&path, bounded::LOGO).map_err(|error| match error {
-        Refused::TooLarge(Some(size), limit) => (format!("the logo has {size} bytes"), limit.hint.to_owned()),
+        Refused::TooLarge(Some(size), limit) => {
+            (format!("the logo has {size} bytes"), limit.hint.to_owned())
+        }
         _ => unreadable(&path, &error),
     })?;
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(1000)]).to_lowercase();
@@ -120,14 +149,25 @@ fn logo_data(cover: &str, name: &str) -> Result<String, (String, String)> {
         () if bytes.starts_with(b"\x89PNG\r\n\x1a\n") => "image/png",
         () if bytes.starts_with(b"\xff\xd8\xff") => "image/jpeg",
         () if head.contains("<svg") => "image/svg+xml",
-        () => return Err(("the file is no PNG, JPEG or SVG".to_owned(), "save the logo in one of these forms".to_owned())),
+        () => {
+            return Err((
+                "the file is no PNG, JPEG or SVG".to_owned(),
+                "save the logo in one of these forms".to_owned(),
+            ));
+        }
     };
-    Ok(format!("data:{kind};base64,{}", BASE64_STANDARD.encode(&bytes)))
+    Ok(format!(
+        "data:{kind};base64,{}",
+        BASE64_STANDARD.encode(&bytes)
+    ))
 }
 
 fn unreadable(path: &Path, error: &Refused) -> (String, String) {
     let hint = error.hint("the path is taken from the folder of this file");
-    (format!("cannot read {}: {error}", path.display()), hint.to_owned())
+    (
+        format!("cannot read {}: {error}", path.display()),
+        hint.to_owned(),
+    )
 }
 
 #[cfg(test)]
@@ -138,7 +178,8 @@ mod tests {
     fn written(text: &str, logo: &[u8]) -> (tempfile::TempDir, String) {
         let dir = tempfile::tempdir().unwrap_or_else(|e| unreachable!("{e}"));
         let path = dir.path().join("cover.toml");
-        let done = std::fs::write(&path, text).and_then(|()| std::fs::write(dir.path().join("logo.svg"), logo));
+        let done = std::fs::write(&path, text)
+            .and_then(|()| std::fs::write(dir.path().join("logo.svg"), logo));
         assert!(done.is_ok());
         let name = path.display().to_string();
         (dir, name)
@@ -153,17 +194,30 @@ mod tests {
         let cover = Cover::read(&path).unwrap_or_else(|p| unreachable!("{p:?}"));
         let mut section = Section::new("answer", "Answer");
         section.text("own");
-        let mut document = Document { title: "own".into(), sections: vec![section], ..Document::default() };
+        let mut document = Document {
+            title: "own".into(),
+            sections: vec![section],
+            ..Document::default()
+        };
         cover.apply(&mut document);
-        assert_eq!((document.title.as_str(), document.byline.len()), ("Mine", 2));
-        assert_eq!(document.logo.as_ref().map(|l| l.0.as_str()), Some("data:image/svg+xml;base64,PHN2Zy8+"));
+        assert_eq!(
+            (document.title.as_str(), document.byline.len()),
+            ("Mine", 2)
+        );
+        assert_eq!(
+            document.logo.as_ref().map(|l| l.0.as_str()),
+            Some("data:image/svg+xml;base64,PHN2Zy8+")
+        );
         assert!(matches!(&document.sections[0].blocks[0], Block::Remark(text) if text == "so"));
         assert!(document.warnings.len() == 1 && document.warnings[0].contains("engine"));
     }
 
     #[test]
     fn all_that_is_wrong_is_told_at_once() {
-        let (_dir, path) = written("titel = \"x\"\nauthor = 3\nlogo = \"logo.svg\"\n[remarks]\nloses = \"x\"", b"GIF89a");
+        let (_dir, path) = written(
+            "titel = \"x\"\nauthor = 3\nlogo = \"logo.svg\"\n[remarks]\nloses = \"x\"",
+            b"GIF89a",
+        );
         let problems = Cover::read(&path).err().unwrap_or_default();
         let keys: Vec<&str> = problems.iter().map(|p| p.key.as_str()).collect();
         assert_eq!(problems.len(), 4, "{problems:?}");

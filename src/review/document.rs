@@ -103,7 +103,11 @@ impl Section {
     /// An empty section.
     #[must_use]
     pub fn new(id: &str, title: &str) -> Self {
-        Section { id: id.to_owned(), title: title.to_owned(), blocks: Vec::new() }
+        Section {
+            id: id.to_owned(),
+            title: title.to_owned(),
+            blocks: Vec::new(),
+        }
     }
 
     /// Adds a paragraph.
@@ -112,8 +116,17 @@ impl Section {
     }
 
     /// Adds a figure.
-    pub fn figure(&mut self, name: impl Into<String>, caption: impl Into<String>, picture: Picture) {
-        self.blocks.push(Block::Figure(Figure { name: name.into(), caption: caption.into(), picture }));
+    pub fn figure(
+        &mut self,
+        name: impl Into<String>,
+        caption: impl Into<String>,
+        picture: Picture,
+    ) {
+        self.blocks.push(Block::Figure(Figure {
+            name: name.into(),
+            caption: caption.into(),
+            picture,
+        }));
     }
 
     /// Adds a table.
@@ -125,17 +138,39 @@ impl Section {
 impl Table {
     /// A table of a column of names and columns of numbers with their units.
     #[must_use]
-    pub fn of_numbers(caption: &str, first: &str, columns: impl IntoIterator<Item = (String, String)>) -> Self {
-        let first = Column { name: first.to_owned(), ..Column::default() };
-        let rest = columns.into_iter().map(|(name, unit)| Column { name, unit, number: true });
-        Table { caption: caption.to_owned(), columns: [first].into_iter().chain(rest).collect(), ..Table::default() }
+    pub fn of_numbers(
+        caption: &str,
+        first: &str,
+        columns: impl IntoIterator<Item = (String, String)>,
+    ) -> Self {
+        let first = Column {
+            name: first.to_owned(),
+            ..Column::default()
+        };
+        let rest = columns.into_iter().map(|(name, unit)| Column {
+            name,
+            unit,
+            number: true,
+        });
+        Table {
+            caption: caption.to_owned(),
+            columns: [first].into_iter().chain(rest).collect(),
+            ..Table::default()
+        }
     }
 
     /// A table of words.
     #[must_use]
     pub fn of_words(caption: &str, columns: &[&str]) -> Self {
-        let column = |name: &&str| Column { name: (*name).to_owned(), ..Column::default() };
-        Table { caption: caption.to_owned(), columns: columns.iter().map(column).collect(), ..Table::default() }
+        let column = |name: &&str| Column {
+            name: (*name).to_owned(),
+            ..Column::default()
+        };
+        Table {
+            caption: caption.to_owned(),
+            columns: columns.iter().map(column).collect(),
+            ..Table::default()
+        }
     }
 
     /// Whether every column but the first holds numbers.
@@ -147,17 +182,27 @@ impl Table {
     /// Whether the cells of a column have to be marked as numbers, since not all columns hold some.
     #[must_use]
     pub fn marked(&self, column: &usize) -> bool {
-        !self.all_numbers() && self.columns.get(*column).is_some_and(|column| column.number)
+        !self.all_numbers()
+            && self
+                .columns
+                .get(*column)
+                .is_some_and(|column| column.number)
     }
 
     /// Adds a row.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.rows.push(Row { cells: cells.into_iter().collect(), strong: false });
+        self.rows.push(Row {
+            cells: cells.into_iter().collect(),
+            strong: false,
+        });
     }
 
     /// Adds a row that stands out.
     pub fn strong_row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.rows.push(Row { cells: cells.into_iter().collect(), strong: true });
+        self.rows.push(Row {
+            cells: cells.into_iter().collect(),
+            strong: true,
+        });
     }
 }
 
@@ -166,15 +211,32 @@ impl Table {
 pub fn table_of(caption: &str, table: &PictureTable) -> Table {
     // A column holds numbers if all its cells are some.
     let numeric = |k: usize| {
-        let cells = || table.rows.iter().filter_map(|row| row.get(k)).filter(|cell| !cell.is_empty());
-        cells().next().is_some() && cells().all(|cell| cell.replace('\u{2212}', "-").parse::<f64>().is_ok())
+        let cells = || {
+            table
+                .rows
+                .iter()
+                .filter_map(|row| row.get(k))
+                .filter(|cell| !cell.is_empty())
+        };
+        cells().next().is_some()
+            && cells().all(|cell| cell.replace('\u{2212}', "-").parse::<f64>().is_ok())
     };
-    let column =
-        |(k, (name, unit)): (usize, &(String, &'static str))| Column { name: name.clone(), unit: (*unit).to_owned(), number: numeric(k) };
+    let column = |(k, (name, unit)): (usize, &(String, &'static str))| Column {
+        name: name.clone(),
+        unit: (*unit).to_owned(),
+        number: numeric(k),
+    };
     Table {
         caption: caption.to_owned(),
         columns: table.columns.iter().enumerate().map(column).collect(),
-        rows: table.rows.iter().map(|cells| Row { cells: cells.clone(), strong: false }).collect(),
+        rows: table
+            .rows
+            .iter()
+            .map(|cells| Row {
+                cells: cells.clone(),
+                strong: false,
+            })
+            .collect(),
         note: table.note.clone(),
     }
 }
@@ -182,9 +244,12 @@ pub fn table_of(caption: &str, table: &PictureTable) -> Table {
 impl Document {
     /// All figures in their order.
     pub fn figures(&self) -> impl Iterator<Item = &Figure> {
-        self.sections.iter().flat_map(|section| &section.blocks).filter_map(|block| match block {
-            Block::Figure(figure) => Some(figure),
-            _ => None,
-        })
+        self.sections
+            .iter()
+            .flat_map(|section| &section.blocks)
+            .filter_map(|block| match block {
+                Block::Figure(figure) => Some(figure),
+                _ => None,
+            })
     }
 }

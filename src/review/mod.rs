@@ -38,17 +38,30 @@ use found::{Found, find};
 ///
 /// # Errors
 /// All problems of all inputs.
-pub fn report(dirs: &[PathBuf], with: &[PathBuf], cover: Option<&str>) -> Result<Document, Vec<Problem>> {
+pub fn report(
+    dirs: &[PathBuf],
+    with: &[PathBuf],
+    cover: Option<&str>,
+) -> Result<Document, Vec<Problem>> {
     let cover = cover.map(Cover::read).transpose();
     let looked: Vec<Result<Found, Vec<Problem>>> = dirs.iter().map(|dir| find(dir, with)).collect();
     let mut problems: Vec<Problem> = cover.as_ref().err().cloned().unwrap_or_default();
-    problems.extend(looked.iter().filter_map(|found| found.as_ref().err()).flatten().cloned());
+    problems.extend(
+        looked
+            .iter()
+            .filter_map(|found| found.as_ref().err())
+            .flatten()
+            .cloned(),
+    );
     if !problems.is_empty() {
         return Err(problems);
     }
     if let ([_, other], [first, ..]) = (dirs, with) {
         let hint = "leave it out, or make the report of one run";
-        let message = format!("a study stands beside one run, not beside {} and another one", other.display());
+        let message = format!(
+            "a study stands beside one run, not beside {} and another one",
+            other.display()
+        );
         return Err(vec![found::problem(first, &message, hint)]);
     }
     let pair: Vec<Found> = looked.into_iter().flatten().collect();
@@ -59,7 +72,11 @@ pub fn report(dirs: &[PathBuf], with: &[PathBuf], cover: Option<&str>) -> Result
         [Found::Run(a), Found::Run(b)] => compare::document(a, b)?,
         _ => {
             let hint = "two directories are compared if both are runs; a study stands beside a run by --with";
-            return Err(vec![found::problem(&dirs[dirs.len() - 1], "this is no pair of runs", hint)]);
+            return Err(vec![found::problem(
+                &dirs[dirs.len() - 1],
+                "this is no pair of runs",
+                hint,
+            )]);
         }
     };
     if let Ok(Some(cover)) = cover {

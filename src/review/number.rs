@@ -106,7 +106,11 @@ impl Quantity {
 /// A whole number; of five digits and more with its thousands set apart by thin spaces.
 fn grouped(x: f64) -> String {
     let digits = format!("{:.0}", x.abs());
-    let mut text = if x < 0.0 { "-".to_owned() } else { String::new() };
+    let mut text = if x < 0.0 {
+        "-".to_owned()
+    } else {
+        String::new()
+    };
     for (k, digit) in digits.chars().enumerate() {
         if digits.len() > 4 && k > 0 && (digits.len() - k).is_multiple_of(3) {
             text.push('\u{202f}');
@@ -157,7 +161,11 @@ pub fn words(name: &str) -> String {
 #[must_use]
 pub fn phase(name: &str) -> String {
     let code = name.chars().any(|c| c.is_ascii_digit()) || name.eq_ignore_ascii_case("eudc");
-    if code { words(name).to_uppercase() } else { words(name) }
+    if code {
+        words(name).to_uppercase()
+    } else {
+        words(name)
+    }
 }
 
 /// The same, as the beginning of a line.
@@ -165,7 +173,11 @@ pub fn phase(name: &str) -> String {
 pub fn capital(name: &str) -> String {
     let text = words(name);
     let mut letters = text.chars();
-    letters.next().map(|c| c.to_uppercase().collect::<String>()).unwrap_or_default() + letters.as_str()
+    letters
+        .next()
+        .map(|c| c.to_uppercase().collect::<String>())
+        .unwrap_or_default()
+        + letters.as_str()
 }
 
 #[cfg(test)]
@@ -180,14 +192,27 @@ mod tests {
         assert_eq!(Quantity::Percent.signed(0.01), "0.0\u{a0}%");
         assert_eq!(Quantity::Percent.bare(-11.93), "\u{2212}11.9");
         assert_eq!(Quantity::Energy.text(27199.1), "27\u{202f}199\u{a0}kJ");
-        assert_eq!(Quantity::Energy.bare_signed(-1234567.0), "\u{2212}1\u{202f}234\u{202f}567");
-        assert_eq!((Quantity::Energy.bare(999.96), Quantity::Energy.bare(999.94)), ("1000".into(), "999.9".into()));
-        assert_eq!((phase("ece15"), phase("eudc"), phase("cold_transient")), ("ECE15".into(), "EUDC".into(), "cold transient".into()));
+        assert_eq!(
+            Quantity::Energy.bare_signed(-1234567.0),
+            "\u{2212}1\u{202f}234\u{202f}567"
+        );
+        assert_eq!(
+            (Quantity::Energy.bare(999.96), Quantity::Energy.bare(999.94)),
+            ("1000".into(), "999.9".into())
+        );
+        assert_eq!(
+            (phase("ece15"), phase("eudc"), phase("cold_transient")),
+            ("ECE15".into(), "EUDC".into(), "cold transient".into())
+        );
         assert_eq!(Quantity::Fuel.text(None), NONE);
         assert_eq!(Quantity::Fuel.text(f64::NAN), NONE);
         assert_eq!(
             (degc(-10.0), degc(-0.0), degc(22.5)),
-            ("\u{2212}10\u{a0}\u{b0}C".into(), "0\u{a0}\u{b0}C".into(), "22.5\u{a0}\u{b0}C".into())
+            (
+                "\u{2212}10\u{a0}\u{b0}C".into(),
+                "0\u{a0}\u{b0}C".into(),
+                "22.5\u{a0}\u{b0}C".into()
+            )
         );
         assert_eq!(
             (percent(1.0, 8.0), tiny(Some(3.2e-15)), capital("belt_band")),

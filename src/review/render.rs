@@ -63,7 +63,13 @@ struct ShownFigure<'a> {
 /// # Errors
 /// Never for the templates of this program.
 pub fn html(document: &Document) -> Result<String, String> {
-    Page { program: PROGRAM, document, sections: sections(document) }.render().map_err(|error| error.to_string())
+    Page {
+        program: PROGRAM,
+        document,
+        sections: sections(document),
+    }
+    .render()
+    .map_err(|error| error.to_string())
 }
 
 /// The document as Markdown; its figures are the SVG files in the folder `figures`.
@@ -71,7 +77,12 @@ pub fn html(document: &Document) -> Result<String, String> {
 /// # Errors
 /// Never for the templates of this program.
 pub fn markdown(document: &Document, figures: &str) -> Result<String, String> {
-    let text = Text { program: PROGRAM, document, sections: sections(document), figures };
+    let text = Text {
+        program: PROGRAM,
+        document,
+        sections: sections(document),
+        figures,
+    };
     let text = text.render().map_err(|error| error.to_string())?;
     // What the template leaves between blocks.
     let mut out = String::with_capacity(text.len());
@@ -95,7 +106,11 @@ fn sections(document: &Document) -> Vec<ShownSection<'_>> {
         for block in &own.blocks {
             blocks.push(shown(block, &mut figures, &mut tables));
         }
-        list.push(ShownSection { id: &own.id, title: &own.title, blocks });
+        list.push(ShownSection {
+            id: &own.id,
+            title: &own.title,
+            blocks,
+        });
     }
     list
 }
@@ -103,13 +118,21 @@ fn sections(document: &Document) -> Vec<ShownSection<'_>> {
 fn shown<'a>(block: &'a Block, figures: &mut usize, tables: &mut usize) -> Shown<'a> {
     let mut labelled = |table: &Table| {
         *tables += 1;
-        ShownTable { table: table.clone(), label: format!("Table {tables}: {}", table.caption) }
+        ShownTable {
+            table: table.clone(),
+            label: format!("Table {tables}: {}", table.caption),
+        }
     };
     match block {
         Block::Lead(text) => Shown::Lead(text),
         Block::Text(text) => Shown::Text(text),
         Block::Alert(text) => Shown::Alert(text),
-        Block::Remark(text) => Shown::Remark(text.lines().map(str::trim).filter(|line| !line.is_empty()).collect()),
+        Block::Remark(text) => Shown::Remark(
+            text.lines()
+                .map(str::trim)
+                .filter(|line| !line.is_empty())
+                .collect(),
+        ),
         Block::Heading(text) => Shown::Heading(text),
         Block::List(items) => Shown::List(items),
         Block::Facts(facts) => Shown::Facts(facts),
@@ -123,19 +146,26 @@ fn shown<'a>(block: &'a Block, figures: &mut usize, tables: &mut usize) -> Shown
 }
 
 fn shown_figure(figure: &Figure, number: usize) -> ShownFigure<'_> {
-    let table = table_of(&format!("Numbers of figure {number}"), &figure.picture.table);
+    let table = table_of(
+        &format!("Numbers of figure {number}"),
+        &figure.picture.table,
+    );
     ShownFigure {
         name: &figure.name,
         number,
         caption: &figure.caption,
         svg: apart(&figure.picture.svg, number),
-        shown: ShownTable { label: format!("Figure {number}, numbers"), table },
+        shown: ShownTable {
+            label: format!("Figure {number}, numbers"),
+            table,
+        },
     }
 }
 
 /// A drawing whose ids no other drawing of the page has.
 fn apart(svg: &str, number: usize) -> String {
-    svg.replace(" id=\"", &format!(" id=\"f{number}-")).replace("url(#", &format!("url(#f{number}-"))
+    svg.replace(" id=\"", &format!(" id=\"f{number}-"))
+        .replace("url(#", &format!("url(#f{number}-"))
 }
 
 /// Filters of the templates.
@@ -177,13 +207,26 @@ mod tests {
     fn document() -> Document {
         let mut section = Section::new("one", "First <b>");
         section.text("a & b < c | d * e");
-        section.blocks.push(Block::Remark("<script>alert(1)</script>\n\nsecond".into()));
+        section
+            .blocks
+            .push(Block::Remark("<script>alert(1)</script>\n\nsecond".into()));
         let mut table = PictureTable::new(&[("time", "s"), ("speed", "km/h")]);
         table.push(vec!["1".into(), "\u{2212}2.5".into()]);
         let svg = "<svg><defs><pattern id=\"p\"/></defs><rect fill=\"url(#p)\"/></svg>".to_owned();
-        section.figure("x", "What <is> seen", Picture { svg: svg.clone(), table: table.clone() });
+        section.figure(
+            "x",
+            "What <is> seen",
+            Picture {
+                svg: svg.clone(),
+                table: table.clone(),
+            },
+        );
         section.figure("y", "Again", Picture { svg, table });
-        Document { title: "T \"q\" <i>".into(), sections: vec![section], ..Document::default() }
+        Document {
+            title: "T \"q\" <i>".into(),
+            sections: vec![section],
+            ..Document::default()
+        }
     }
 
     #[test]
@@ -191,8 +234,15 @@ mod tests {
         let page = html(&document()).unwrap_or_else(|e| unreachable!("{e}"));
         assert!(!page.contains("<script>alert") && page.contains("alert(1)"));
         assert!(!page.contains("<b>") && !page.contains("<i>") && !page.contains("What <is>"));
-        assert!(page.contains("id=\"f1-p\"") && page.contains("url(#f2-p)") && !page.contains("url(#p)"));
-        assert!(page.contains("class=\"numbers\""), "a true minus is a number's sign");
+        assert!(
+            page.contains("id=\"f1-p\"")
+                && page.contains("url(#f2-p)")
+                && !page.contains("url(#p)")
+        );
+        assert!(
+            page.contains("class=\"numbers\""),
+            "a true minus is a number's sign"
+        );
         assert!(page.contains("Figure 2.") && page.contains("Table of figure 2"));
     }
 
@@ -202,7 +252,10 @@ mod tests {
         assert!(text.contains("a &amp; b &lt; c \\| d \\* e"), "{text}");
         assert!(!text.contains("<script>"));
         assert!(text.contains("](figures/x.svg)"));
-        assert!(text.contains("| time [s] | speed [km/h] |") || text.contains("Figure 1."), "{text}");
+        assert!(
+            text.contains("| time [s] | speed [km/h] |") || text.contains("Figure 1."),
+            "{text}"
+        );
         assert!(!text.contains("\n\n\n"));
     }
 }

@@ -34,12 +34,16 @@ impl Form {
     /// The form that a file's ending stands for.
     #[must_use]
     pub fn of(file: &Path) -> Option<Form> {
-        [Form::Html, Form::Markdown].into_iter().find(|form| form.endings().contains(&ending(file).as_str()))
+        [Form::Html, Form::Markdown]
+            .into_iter()
+            .find(|form| form.endings().contains(&ending(file).as_str()))
     }
 }
 
 fn ending(file: &Path) -> String {
-    file.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
+    file.extension()
+        .map(|ending| ending.to_string_lossy().to_lowercase())
+        .unwrap_or_default()
 }
 
 /// Whether a file is a report that this program has written.
@@ -53,7 +57,8 @@ fn is_report(file: &Path) -> bool {
         Ok((head, tail))
     };
     let (head, tail) = ends().unwrap_or_default();
-    String::from_utf8_lossy(&head).contains(GENERATOR) || String::from_utf8_lossy(&tail).contains(MADE_BY)
+    String::from_utf8_lossy(&head).contains(GENERATOR)
+        || String::from_utf8_lossy(&tail).contains(MADE_BY)
 }
 
 /// By these words a page and a Markdown text are known as reports.
@@ -80,9 +85,16 @@ impl Target {
     /// # Errors
     /// A problem of `--out` that says what is in the way.
     pub fn new(file: &Path, form: Form, force: bool) -> Result<Self, Problem> {
-        let stem = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).filter(|stem| !stem.is_empty());
+        let stem = file
+            .file_stem()
+            .map(|stem| stem.to_string_lossy().into_owned())
+            .filter(|stem| !stem.is_empty());
         let Some(stem) = stem else {
-            return Err(problem(file, "the name of the report is empty", "name a file, for example --out report.html"));
+            return Err(problem(
+                file,
+                "the name of the report is empty",
+                "name a file, for example --out report.html",
+            ));
         };
         let folder = format!("{stem}_figures");
         let parent = match file.parent() {
@@ -90,16 +102,32 @@ impl Target {
             _ => PathBuf::from("."),
         };
         if file.is_dir() {
-            return Err(problem(file, &format!("{} is a directory", file.display()), "name a file, for example report.html in it"));
+            return Err(problem(
+                file,
+                &format!("{} is a directory", file.display()),
+                "name a file, for example report.html in it",
+            ));
         }
         if !parent.is_dir() {
-            return Err(problem(file, &format!("there is no directory {}", parent.display()), "make it first, or choose another place"));
+            return Err(problem(
+                file,
+                &format!("there is no directory {}", parent.display()),
+                "make it first, or choose another place",
+            ));
         }
         let figures = parent.join(&folder);
-        let target = Target { file: file.to_path_buf(), figures, folder, form };
+        let target = Target {
+            file: file.to_path_buf(),
+            figures,
+            folder,
+            form,
+        };
         if !form.endings().contains(&ending(file).as_str()) {
             let message = format!("{} has not the ending of its form", file.display());
-            let hint = format!("end its name in .{}, or choose the other --format", form.endings().join(" or ."));
+            let hint = format!(
+                "end its name in .{}, or choose the other --format",
+                form.endings().join(" or .")
+            );
             return Err(problem(file, &message, &hint));
         }
         if let Ok(there) = fs::symlink_metadata(file) {
@@ -112,12 +140,22 @@ impl Target {
             }
             // What somebody else has written, or a device, is not replaced by any word.
             if !there.is_file() || !is_report(file) {
-                return Err(problem(file, &format!("{} is no report of this program", file.display()), "choose another name"));
+                return Err(problem(
+                    file,
+                    &format!("{} is no report of this program", file.display()),
+                    "choose another name",
+                ));
             }
         }
         target.check_figures()?;
         // Better to learn now than after the work that nothing can be written here.
-        temporary_in(&parent).map_err(|error| failed(file, &format!("cannot write in {}", parent.display()), &error))?;
+        temporary_in(&parent).map_err(|error| {
+            failed(
+                file,
+                &format!("cannot write in {}", parent.display()),
+                &error,
+            )
+        })?;
         Ok(target)
     }
 
@@ -125,14 +163,30 @@ impl Target {
         if !self.figures.exists() {
             return Ok(());
         }
-        let names =
-            names_in(&self.figures).map_err(|error| failed(&self.file, &format!("cannot read {}", self.figures.display()), &error))?;
-        let others: Vec<String> = names.into_iter().filter(|name| !name.ends_with(".svg")).collect();
+        let names = names_in(&self.figures).map_err(|error| {
+            failed(
+                &self.file,
+                &format!("cannot read {}", self.figures.display()),
+                &error,
+            )
+        })?;
+        let others: Vec<String> = names
+            .into_iter()
+            .filter(|name| !name.ends_with(".svg"))
+            .collect();
         if others.is_empty() {
             return Ok(());
         }
-        let message = format!("{} holds something else than figures: {}", self.figures.display(), list(&others));
-        Err(problem(&self.file, &message, "choose another name for the report"))
+        let message = format!(
+            "{} holds something else than figures: {}",
+            self.figures.display(),
+            list(&others)
+        );
+        Err(problem(
+            &self.file,
+            &message,
+            "choose another name for the report",
+        ))
     }
 
     /// Writes the report. Returns the document's path and those of the figures.
@@ -144,14 +198,29 @@ impl Target {
             Form::Html => html(document),
             Form::Markdown => markdown(document, &self.folder.replace(' ', "%20")),
         };
-        let text = text.map_err(|why| problem(&self.file, &format!("cannot fill in the template: {why}"), ""))?;
-        self.put(document, &text).map_err(|error| failed(&self.file, &format!("cannot write {}", self.file.display()), &error))
+        let text = text.map_err(|why| {
+            problem(
+                &self.file,
+                &format!("cannot fill in the template: {why}"),
+                "",
+            )
+        })?;
+        self.put(document, &text).map_err(|error| {
+            failed(
+                &self.file,
+                &format!("cannot write {}", self.file.display()),
+                &error,
+            )
+        })
     }
 
     fn put(&self, document: &Document, text: &str) -> io::Result<Vec<PathBuf>> {
         let parent = self.figures.parent().unwrap_or(Path::new("."));
         // Beside the target, so that a rename is all that is left to do.
-        let fresh = tempfile::Builder::new().prefix(".cvtcycle-").suffix(".tmp").tempdir_in(parent)?;
+        let fresh = tempfile::Builder::new()
+            .prefix(".cvtcycle-")
+            .suffix(".tmp")
+            .tempdir_in(parent)?;
         let new = fresh.path().join("new");
         fs::create_dir(&new)?;
         let mut paths = vec![self.file.clone()];
@@ -179,7 +248,8 @@ impl Target {
             error
         };
         fs::rename(&new, &self.figures).map_err(back)?;
-        page.persist(&self.file).map_err(|error| back(error.error))?;
+        page.persist(&self.file)
+            .map_err(|error| back(error.error))?;
         sync_directory(parent);
         Ok(paths)
     }
@@ -188,5 +258,13 @@ impl Target {
 /// A name without anything that leads elsewhere.
 #[must_use]
 pub fn file_name(name: &str) -> String {
-    name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
+    name.chars()
+        .map(|c| {
+            if c.is_alphanumeric() || "-_.".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        })
+        .collect()
 }

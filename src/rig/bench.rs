@@ -34,7 +34,12 @@ pub struct Parts {
 
 impl Parts {
     /// The complete box.
-    pub const ALL: Parts = Parts { final_drive: true, belt: true, reverse_clutch: true, pump: true };
+    pub const ALL: Parts = Parts {
+        final_drive: true,
+        belt: true,
+        reverse_clutch: true,
+        pump: true,
+    };
 }
 
 /// What the bench is set to.
@@ -98,8 +103,14 @@ pub struct BenchAnswer {
 }
 
 /// Components that make up the belt.
-pub const BELT_PARTS: [Component; 6] =
-    [Component::BeltBand, Component::BeltFilm, Component::BeltSlip, Component::BeltWedge, Component::BeltPenetration, Component::BeltMap];
+pub const BELT_PARTS: [Component; 6] = [
+    Component::BeltBand,
+    Component::BeltFilm,
+    Component::BeltSlip,
+    Component::BeltWedge,
+    Component::BeltPenetration,
+    Component::BeltMap,
+];
 
 impl BenchAnswer {
     /// Loss of one component, Nm at the input shaft.
@@ -132,7 +143,10 @@ impl Bench {
     /// Puts a vehicle's transmission on the bench.
     #[must_use]
     pub fn new(setup: &Setup) -> Self {
-        Bench { car: setup.car(crate::vehicle::REFERENCE_K), printed: false }
+        Bench {
+            car: setup.car(crate::vehicle::REFERENCE_K),
+            printed: false,
+        }
     }
 
     /// The same with the belt as printed (PR-1 to PR-5) where the formulation is one of the thesis's two: whole active segments, no
@@ -140,7 +154,9 @@ impl Bench {
     #[must_use]
     pub fn as_printed(setup: &Setup) -> Self {
         let bench = Bench::new(setup);
-        let printed = bench.cvt().is_some_and(|cvt| cvt.belt.formulation != Formulation::Smooth);
+        let printed = bench
+            .cvt()
+            .is_some_and(|cvt| cvt.belt.formulation != Formulation::Smooth);
         Bench { printed, ..bench }
     }
 
@@ -180,7 +196,10 @@ impl Bench {
         }
         let input_nm = output_nm + loss_nm.iter().sum::<f64>(); // RB-3
         let mut flags = Flags::default();
-        flags.set(Flags::OUTSIDE_VALIDITY, !VALID_K.contains(&p.sump_k) || !inside);
+        flags.set(
+            Flags::OUTSIDE_VALIDITY,
+            !VALID_K.contains(&p.sump_k) || !inside,
+        );
         flags.set(Flags::OVERRUN, input_nm < 0.0);
         BenchAnswer {
             loss_nm,

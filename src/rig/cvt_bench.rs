@@ -10,7 +10,9 @@ use crate::transmission::cvt::pump::PumpNow;
 use crate::transmission::cvt::spin::SpinNow;
 use crate::transmission::cvt::variator::point::LIMIT_SLACK;
 use crate::transmission::cvt::variator::point::PointStatus;
-use crate::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, BeltState, Slip, belt_point, belt_state, sliding_speed_m_s};
+use crate::transmission::cvt::variator::{
+    Belt, BeltAtRatio, BeltLoad, BeltState, Slip, belt_point, belt_state, sliding_speed_m_s,
+};
 use crate::transmission::loss_map::{LossMap, MapPoint};
 
 /// Most passes of the fixed point; its contraction is below 0.2 in the shipped box, so far fewer are used.
@@ -31,7 +33,9 @@ struct Unknown {
 impl Unknown {
     fn moved(&self, to: &Unknown) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() <= STILL;
-        !(near(self.slip, to.slip) && near(self.belt_k, to.belt_k) && near(1e-5 * self.pressure_pa, 1e-5 * to.pressure_pa))
+        !(near(self.slip, to.slip)
+            && near(self.belt_k, to.belt_k)
+            && near(1e-5 * self.pressure_pa, 1e-5 * to.pressure_pa))
     }
 
     fn halfway(&self, to: &Unknown) -> Unknown {
@@ -46,7 +50,14 @@ impl Unknown {
 /// The belt in its printed form (PR-1 to PR-5) under the names of driving; slip and its losses are NaN where it has no active arc.
 fn printed_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
     let segment_friction = belt.formulation.segment_friction(load.segment_friction);
-    let p = belt_point(belt, at, &BeltLoad { segment_friction, ..*load });
+    let p = belt_point(
+        belt,
+        at,
+        &BeltLoad {
+            segment_friction,
+            ..*load
+        },
+    );
     let sum = |pair: [f64; 2]| pair[0] + pair[1];
     let [primary, secondary] = p.slip_m_s.map(|v| v / p.belt_speed_m_s);
     BeltState {
@@ -110,8 +121,11 @@ pub(super) fn solve(car: &Car, cvt: &Cvt, point: &BenchPoint, printed: bool) -> 
         pump: cvt.pump.at(eta_sump),
         eta_sump,
     };
-    let mut unknown =
-        Unknown { slip: 0.0, belt_k: point.belt_k.unwrap_or(point.sump_k), pressure_pa: point.pressure_pa.unwrap_or(cvt.floor_pa) };
+    let mut unknown = Unknown {
+        slip: 0.0,
+        belt_k: point.belt_k.unwrap_or(point.sump_k),
+        pressure_pa: point.pressure_pa.unwrap_or(cvt.floor_pa),
+    };
     let mut count = 0;
     let pass = loop {
         let pass = this.pass(&unknown);
@@ -119,17 +133,32 @@ pub(super) fn solve(car: &Car, cvt: &Cvt, point: &BenchPoint, printed: bool) -> 
         if !unknown.moved(&pass.next) || count >= MOST_PASSES {
             break pass;
         }
-        unknown = if count > DAMPED_FROM { unknown.halfway(&pass.next) } else { pass.next };
+        unknown = if count > DAMPED_FROM {
+            unknown.halfway(&pass.next)
+        } else {
+            pass.next
+        };
     };
     this.answer(&unknown, &pass, count < MOST_PASSES)
 }
 
 impl OnBench<'_> {
     /// Loss that a measured map gives at the input shaft, Nm, if there is one.
-    fn mapped(&self, map: Option<&LossMap>, torque_nm: f64, pressure_pa: f64, inside: &mut bool) -> Option<f64> {
+    fn mapped(
+        &self,
+        map: Option<&LossMap>,
+        torque_nm: f64,
+        pressure_pa: f64,
+        inside: &mut bool,
+    ) -> Option<f64> {
         let p = self.point;
-        let (loss, ok) =
-            map?.loss_nm(&MapPoint { ratio: p.ratio, input_speed_rad_s: p.input_rad_s, torque_nm, pressure_pa, oil_k: p.sump_k });
+        let (loss, ok) = map?.loss_nm(&MapPoint {
+            ratio: p.ratio,
+            input_speed_rad_s: p.input_rad_s,
+            torque_nm,
+            pressure_pa,
+            oil_k: p.sump_k,
+        });
         *inside &= ok;
         Some(loss)
     }
@@ -141,15 +170,25 @@ impl OnBench<'_> {
         let output_nm = p.output_nm / cvt.final_drive;
         let secondary_nm = if !p.parts.final_drive {
             output_nm
-        } else if let Some(loss) = self.mapped(cvt.maps.final_drive.as_ref(), output_nm, u.pressure_pa, &mut inside_maps) {
+        } else if let Some(loss) = self.mapped(
+            cvt.maps.final_drive.as_ref(),
+            output_nm,
+            u.pressure_pa,
+            &mut inside_maps,
+        ) {
             output_nm + loss * w / secondary_rad_s
         } else {
-            cvt.spin.secondary_torque_nm(cvt.spin.drive_nm(&self.spin, secondary_rad_s), output_nm)
+            cvt.spin
+                .secondary_torque_nm(cvt.spin.drive_nm(&self.spin, secondary_rad_s), output_nm)
         };
         let load = self.load(u, secondary_nm, secondary_rad_s);
         let held_k = p.belt_k.unwrap_or(p.sump_k);
         let mut pass = Pass {
-            next: Unknown { slip: 0.0, belt_k: held_k, pressure_pa: self.pressure_pa(&load, secondary_rad_s) },
+            next: Unknown {
+                slip: 0.0,
+                belt_k: held_k,
+                pressure_pa: self.pressure_pa(&load, secondary_rad_s),
+            },
             loss_nm: [0.0; Component::COUNT],
             secondary_rad_s,
             secondary_nm,
@@ -159,7 +198,8 @@ impl OnBench<'_> {
             inside_maps,
         };
         if p.parts.belt {
-            pass.loss_nm[Component::FinalDrive as usize] = (secondary_nm - output_nm) * secondary_rad_s / w;
+            pass.loss_nm[Component::FinalDrive as usize] =
+                (secondary_nm - output_nm) * secondary_rad_s / w;
             self.belt(&mut pass, &load, u);
         }
         self.engine_side(&mut pass, u);
@@ -170,8 +210,17 @@ impl OnBench<'_> {
     fn belt(&self, pass: &mut Pass, load: &BeltLoad, u: &Unknown) {
         let (cvt, p) = (self.cvt, self.point);
         let mut tells = true;
-        let state = if self.printed { printed_state(&cvt.belt, &self.at, load) } else { belt_state(&cvt.belt, &self.at, load) };
-        if let Some(loss) = self.mapped(cvt.maps.belt.as_ref(), load.output_torque_nm, u.pressure_pa, &mut pass.inside_maps) {
+        let state = if self.printed {
+            printed_state(&cvt.belt, &self.at, load)
+        } else {
+            belt_state(&cvt.belt, &self.at, load)
+        };
+        if let Some(loss) = self.mapped(
+            cvt.maps.belt.as_ref(),
+            load.output_torque_nm,
+            u.pressure_pa,
+            &mut pass.inside_maps,
+        ) {
             pass.loss_nm[Component::BeltMap as usize] = loss;
         } else {
             // Where a printed form has no meaning, it must not carry speeds and belt temperature away with it.
@@ -185,8 +234,13 @@ impl OnBench<'_> {
             pass.belt = Some(state);
         }
         if p.belt_k.is_none() {
-            let belt_w = BELT_PARTS.iter().map(|c| pass.loss_nm[*c as usize]).sum::<f64>() * p.input_rad_s;
-            let rise_k = self.car.belt_heat_share * belt_w / self.car.network.spray_now_w_k(p.input_rad_s); // RB-2
+            let belt_w = BELT_PARTS
+                .iter()
+                .map(|c| pass.loss_nm[*c as usize])
+                .sum::<f64>()
+                * p.input_rad_s;
+            let rise_k =
+                self.car.belt_heat_share * belt_w / self.car.network.spray_now_w_k(p.input_rad_s); // RB-2
             pass.next.belt_k = p.sump_k + if tells { rise_k } else { 0.0 };
         }
     }
@@ -196,30 +250,53 @@ impl OnBench<'_> {
         let (cvt, p, w) = (self.cvt, self.point, self.point.input_rad_s);
         let maps = &cvt.maps;
         if p.parts.reverse_clutch {
-            let mapped = self.mapped(maps.clutch_drag.as_ref(), 0.0, u.pressure_pa, &mut pass.inside_maps);
+            let mapped = self.mapped(
+                maps.clutch_drag.as_ref(),
+                0.0,
+                u.pressure_pa,
+                &mut pass.inside_maps,
+            );
             pass.loss_nm[Component::ClutchDrag as usize] = mapped.unwrap_or(self.spin.clutch_nm);
         }
         if p.parts.pump {
             let need = cvt.pump.steady_need_m3_s(u.pressure_pa, self.eta_sump);
             let pump = cvt.pump.state(&self.pump, w, u.pressure_pa, need);
-            let mapped = self.mapped(maps.pump.as_ref(), 0.0, u.pressure_pa, &mut pass.inside_maps);
+            let mapped = self.mapped(
+                maps.pump.as_ref(),
+                0.0,
+                u.pressure_pa,
+                &mut pass.inside_maps,
+            );
             pass.loss_nm[Component::Pump as usize] = mapped.unwrap_or(pump.torque_nm);
             pass.oil_flow_m3_s = pump.working_m3_s;
             pass.flow_limited = pump.flow_limited;
         }
-        let mapped = self.mapped(maps.input_shaft.as_ref(), 0.0, u.pressure_pa, &mut pass.inside_maps);
-        pass.loss_nm[Component::InputShaft as usize] = mapped.unwrap_or_else(|| self.spin.shaft_nm(w));
+        let mapped = self.mapped(
+            maps.input_shaft.as_ref(),
+            0.0,
+            u.pressure_pa,
+            &mut pass.inside_maps,
+        );
+        pass.loss_nm[Component::InputShaft as usize] =
+            mapped.unwrap_or_else(|| self.spin.shaft_nm(w));
     }
 
     fn load(&self, u: &Unknown, output_torque_nm: f64, secondary_rad_s: f64) -> BeltLoad {
         let (cvt, p, oil) = (self.cvt, self.point, &self.car.oil);
         let eta_pa_s = oil.dynamic_pa_s(u.belt_k);
         let film = cvt.belt.formulation.has_film();
-        let sliding = if film { sliding_speed_m_s(&cvt.belt, p.ratio, p.input_rad_s) } else { 0.0 };
+        let sliding = if film {
+            sliding_speed_m_s(&cvt.belt, p.ratio, p.input_rad_s)
+        } else {
+            0.0
+        };
         BeltLoad {
             primary_speed_rad_s: p.input_rad_s,
             output_torque_nm,
-            secondary_clamp_n: cvt.secondary_clamp_n(if p.parts.pump { u.pressure_pa } else { 0.0 }, secondary_rad_s),
+            secondary_clamp_n: cvt.secondary_clamp_n(
+                if p.parts.pump { u.pressure_pa } else { 0.0 },
+                secondary_rad_s,
+            ),
             band: oil.friction.band(u.belt_k, eta_pa_s, sliding),
             eta_pa_s,
             film_thickness_m: oil.friction.film_thickness_m,
@@ -237,27 +314,51 @@ impl OnBench<'_> {
             oil_k: p.sump_k,
             radius_factor: self.cvt.radius_factor(&self.at),
         };
-        p.pressure_pa.unwrap_or_else(|| p.pressure_factor * self.cvt.pressure_pa(&signals, &self.at, || *load, secondary_rad_s))
+        p.pressure_pa.unwrap_or_else(|| {
+            p.pressure_factor
+                * self
+                    .cvt
+                    .pressure_pa(&signals, &self.at, || *load, secondary_rad_s)
+        })
     }
 
     fn answer(&self, u: &Unknown, pass: &Pass, converged: bool) -> BenchAnswer {
         let (cvt, p) = (self.cvt, self.point);
-        let through = if p.parts.belt { p.output_nm / cvt.final_drive * pass.secondary_rad_s / p.input_rad_s } else { 0.0 };
+        let through = if p.parts.belt {
+            p.output_nm / cvt.final_drive * pass.secondary_rad_s / p.input_rad_s
+        } else {
+            0.0
+        };
         let input_nm = through + pass.loss_nm.iter().sum::<f64>(); // RB-1
         let limits = cvt.ratio.high * (1.0 - LIMIT_SLACK)..=cvt.ratio.low * (1.0 + LIMIT_SLACK);
-        let valid = VALID_K.contains(&p.sump_k) && VALID_K.contains(&u.belt_k) && pass.inside_maps && limits.contains(&p.ratio);
+        let valid = VALID_K.contains(&p.sump_k)
+            && VALID_K.contains(&u.belt_k)
+            && pass.inside_maps
+            && limits.contains(&p.ratio);
         let mut flags = Flags::default();
         flags.set(Flags::NOT_CONVERGED, !converged);
         flags.set(Flags::GROSS_SLIP, pass.belt.is_some_and(|b| b.gross_slip));
-        flags.set(Flags::LOW_CLAMP, pass.belt.is_some_and(|b| b.capacity_nm < pass.secondary_nm.abs()));
+        flags.set(
+            Flags::LOW_CLAMP,
+            pass.belt
+                .is_some_and(|b| b.capacity_nm < pass.secondary_nm.abs()),
+        );
         flags.set(Flags::FLOW_LIMITED, pass.flow_limited);
         flags.set(Flags::OVERRUN, input_nm < 0.0);
         flags.set(Flags::OUTSIDE_VALIDITY, !valid);
         BenchAnswer {
             loss_nm: pass.loss_nm,
             input_nm,
-            output_rad_s: if p.parts.belt { pass.secondary_rad_s / cvt.final_drive } else { 0.0 },
-            secondary_pa: if p.parts.pump { u.pressure_pa } else { f64::NAN },
+            output_rad_s: if p.parts.belt {
+                pass.secondary_rad_s / cvt.final_drive
+            } else {
+                0.0
+            },
+            secondary_pa: if p.parts.pump {
+                u.pressure_pa
+            } else {
+                f64::NAN
+            },
             belt_k: if p.parts.belt { u.belt_k } else { f64::NAN },
             belt: pass.belt,
             oil_flow_m3_s: pass.oil_flow_m3_s,

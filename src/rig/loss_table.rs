@@ -64,13 +64,26 @@ impl MapPart {
             MapPart::Pump => part(Component::Pump, point),
             MapPart::InputShaft => part(Component::InputShaft, point),
             MapPart::ClutchDrag => part(Component::ClutchDrag, point),
-            MapPart::FinalDrive => {
-                part(Component::FinalDrive, &BenchPoint { output_nm: point.output_nm * own_ratio(bench, point), ..*point })
-            }
+            MapPart::FinalDrive => part(
+                Component::FinalDrive,
+                &BenchPoint {
+                    output_nm: point.output_nm * own_ratio(bench, point),
+                    ..*point
+                },
+            ),
             MapPart::Belt => {
                 // Without the final drive the pulley's torque is what was asked for.
-                let parts = Parts { final_drive: false, ..point.parts };
-                bench.solve(&BenchPoint { output_nm: point.output_nm * own_ratio(bench, point), parts, ..*point }).belt_nm()
+                let parts = Parts {
+                    final_drive: false,
+                    ..point.parts
+                };
+                bench
+                    .solve(&BenchPoint {
+                        output_nm: point.output_nm * own_ratio(bench, point),
+                        parts,
+                        ..*point
+                    })
+                    .belt_nm()
             }
             MapPart::Box => bench.solve(&at_input_torque(bench, point)).total_nm(),
         }
@@ -88,7 +101,10 @@ fn own_ratio(bench: &Bench, point: &BenchPoint) -> f64 {
 /// The point at which the box takes the point's torque at its input instead of giving it at its output.
 fn at_input_torque(bench: &Bench, point: &BenchPoint) -> BenchPoint {
     let (wanted_nm, overall) = (point.output_nm, own_ratio(bench, point));
-    let mut found = BenchPoint { output_nm: wanted_nm * overall, ..*point };
+    let mut found = BenchPoint {
+        output_nm: wanted_nm * overall,
+        ..*point
+    };
     // The losses change by a few per cent of the torque, so that each pass leaves a few per cent of the error.
     for _ in 0..60 {
         let miss = bench.solve(&found).input_nm - wanted_nm;
@@ -102,7 +118,10 @@ fn at_input_torque(bench: &Bench, point: &BenchPoint) -> BenchPoint {
 
 /// Columns of the map over a grid, with the grid's axis where the cell comes from one.
 fn map_columns(part: MapPart, grid: &LossGrid) -> Vec<(&'static str, Axis)> {
-    let mut list = vec![(if part.of_cvt() { "ratio" } else { "gear" }, Axis::Ratio), ("input_speed_rpm", Axis::Speed)];
+    let mut list = vec![
+        (if part.of_cvt() { "ratio" } else { "gear" }, Axis::Ratio),
+        ("input_speed_rpm", Axis::Speed),
+    ];
     list.extend(part.torque_column().map(|name| (name, Axis::Torque)));
     if !grid.of(Axis::Pressure).is_empty() {
         list.push(("secondary_pressure_bar", Axis::Pressure));
@@ -115,7 +134,12 @@ fn map_columns(part: MapPart, grid: &LossGrid) -> Vec<(&'static str, Axis)> {
 ///
 /// # Errors
 /// Whatever `out` reports.
-pub fn write_map(out: &mut dyn Write, bench: &Bench, part: MapPart, grid: &LossGrid) -> io::Result<()> {
+pub fn write_map(
+    out: &mut dyn Write,
+    bench: &Bench,
+    part: MapPart,
+    grid: &LossGrid,
+) -> io::Result<()> {
     let columns = map_columns(part, grid);
     let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
     writeln!(out, "{},torque_loss_nm", names.join(","))?;
@@ -127,7 +151,11 @@ pub fn write_map(out: &mut dyn Write, bench: &Bench, part: MapPart, grid: &LossG
             push_value(&mut line, Value::Number(asked[*axis as usize]), &[]);
             line.push(',');
         }
-        push_value(&mut line, Value::Number(part.loss_nm(bench, &bench_point(&asked))), &[]);
+        push_value(
+            &mut line,
+            Value::Number(part.loss_nm(bench, &bench_point(&asked))),
+            &[],
+        );
         line.push('\n');
         out.write_all(line.as_bytes())?;
     }

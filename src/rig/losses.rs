@@ -36,7 +36,15 @@ impl Axis {
     /// Number of axes.
     pub const COUNT: usize = 7;
     /// All axes, outermost first.
-    pub const ALL: [Axis; Self::COUNT] = [Axis::Ratio, Axis::Sump, Axis::Belt, Axis::Throttle, Axis::Pressure, Axis::Torque, Axis::Speed];
+    pub const ALL: [Axis; Self::COUNT] = [
+        Axis::Ratio,
+        Axis::Sump,
+        Axis::Belt,
+        Axis::Throttle,
+        Axis::Pressure,
+        Axis::Torque,
+        Axis::Speed,
+    ];
 
     /// Title of a plot's axis.
     #[must_use]
@@ -71,7 +79,10 @@ impl LossGrid {
     /// Axes with more than one value, outermost first.
     #[must_use]
     pub fn varied(&self) -> Vec<Axis> {
-        Axis::ALL.into_iter().filter(|axis| self.of(*axis).len() > 1).collect()
+        Axis::ALL
+            .into_iter()
+            .filter(|axis| self.of(*axis).len() > 1)
+            .collect()
     }
 
     /// Number of points, as a float: it may exceed what can be counted.
@@ -132,7 +143,8 @@ pub struct LossRow {
 #[must_use]
 pub fn bench_point(asked: &[f64; Axis::COUNT]) -> BenchPoint {
     let value = |axis: Axis| asked[axis as usize];
-    let given = |axis: Axis, suffix: &str| Some(to_si(suffix, value(axis))).filter(|x| x.is_finite());
+    let given =
+        |axis: Axis, suffix: &str| Some(to_si(suffix, value(axis))).filter(|x| x.is_finite());
     BenchPoint {
         ratio: value(Axis::Ratio),
         input_rad_s: to_si("_rpm", value(Axis::Speed)),
@@ -150,7 +162,11 @@ impl LossRow {
     #[must_use]
     pub fn new(bench: &Bench, asked: [f64; Axis::COUNT]) -> Self {
         let point = bench_point(&asked);
-        LossRow { asked, point, answer: bench.solve(&point) }
+        LossRow {
+            asked,
+            point,
+            answer: bench.solve(&point),
+        }
     }
 
     /// Power at the input shaft, W.
@@ -188,7 +204,8 @@ impl LossRow {
     #[must_use]
     pub fn clamp_safety(&self) -> f64 {
         self.answer.belt.map_or(f64::NAN, |belt| {
-            let secondary_nm = (belt.input_torque_nm - belt.loss_nm()) * self.point.ratio / (1.0 - belt.slip_total);
+            let secondary_nm = (belt.input_torque_nm - belt.loss_nm()) * self.point.ratio
+                / (1.0 - belt.slip_total);
             belt.capacity_nm / secondary_nm.abs()
         })
     }
@@ -249,30 +266,84 @@ impl LossColumn {
 /// Components that a bench knows: all but the launch clutch, which is locked.
 #[must_use]
 pub fn bench_components(transmission: &Transmission) -> Vec<Component> {
-    components(transmission).into_iter().filter(|c| *c != Component::LaunchClutch).collect()
+    components(transmission)
+        .into_iter()
+        .filter(|c| *c != Component::LaunchClutch)
+        .collect()
 }
 
 /// Columns for a transmission, in the order in which they are written.
 #[must_use]
 pub fn columns(transmission: &Transmission) -> Vec<LossColumn> {
     let cvt = transmission.is_cvt();
-    let number = |name: &str, unit, doc, get| LossColumn { name: name.to_owned(), unit, doc, cell: Cell::Number(get) };
-    let mut list = vec![number("input_speed_rpm", "rpm", "speed of the input shaft", |r| r.asked[Axis::Speed as usize])];
+    let number = |name: &str, unit, doc, get| LossColumn {
+        name: name.to_owned(),
+        unit,
+        doc,
+        cell: Cell::Number(get),
+    };
+    let mut list = vec![number(
+        "input_speed_rpm",
+        "rpm",
+        "speed of the input shaft",
+        |r| r.asked[Axis::Speed as usize],
+    )];
     if cvt {
-        list.push(number("belt_ratio", "-", "belt ratio, secondary over primary running radius", |r| r.asked[Axis::Ratio as usize]));
+        list.push(number(
+            "belt_ratio",
+            "-",
+            "belt ratio, secondary over primary running radius",
+            |r| r.asked[Axis::Ratio as usize],
+        ));
     } else {
-        list.push(LossColumn { name: "gear".to_owned(), unit: "", doc: "gear", cell: Cell::Gear });
+        list.push(LossColumn {
+            name: "gear".to_owned(),
+            unit: "",
+            doc: "gear",
+            cell: Cell::Gear,
+        });
     }
-    list.push(number("output_torque_nm", "Nm", "torque taken from the output shaft, after the final drive", |r| r.point.output_nm));
-    list.push(number("transmission_sump_degc", "degC", "transmission oil in the sump", |r| r.asked[Axis::Sump as usize]));
+    list.push(number(
+        "output_torque_nm",
+        "Nm",
+        "torque taken from the output shaft, after the final drive",
+        |r| r.point.output_nm,
+    ));
+    list.push(number(
+        "transmission_sump_degc",
+        "degC",
+        "transmission oil in the sump",
+        |r| r.asked[Axis::Sump as usize],
+    ));
     if cvt {
         let belt = |r: &LossRow| r.asked_or(Axis::Belt, r.answer.belt_k - 273.15);
         let pressure = |r: &LossRow| r.asked_or(Axis::Pressure, r.answer.secondary_pa / 1e5);
-        list.push(number("belt_spray_degc", "degC", "belt, pulleys and the oil sprayed off them", belt));
-        list.push(number("throttle", "-", "throttle that the clamp law sees", |r| r.point.throttle));
-        list.push(number("secondary_pressure_bar", "bar", "secondary pulley pressure", pressure));
-        list.push(number("slip_percent", "%", "belt slip", |r| 100.0 * r.slip()));
-        let segments = |r: &LossRow| r.answer.belt.map_or(f64::NAN, |belt| belt.slip.active_segments);
+        list.push(number(
+            "belt_spray_degc",
+            "degC",
+            "belt, pulleys and the oil sprayed off them",
+            belt,
+        ));
+        list.push(number(
+            "throttle",
+            "-",
+            "throttle that the clamp law sees",
+            |r| r.point.throttle,
+        ));
+        list.push(number(
+            "secondary_pressure_bar",
+            "bar",
+            "secondary pulley pressure",
+            pressure,
+        ));
+        list.push(number("slip_percent", "%", "belt slip", |r| {
+            100.0 * r.slip()
+        }));
+        let segments = |r: &LossRow| {
+            r.answer
+                .belt
+                .map_or(f64::NAN, |belt| belt.slip.active_segments)
+        };
         list.push(number(
             "active_segments",
             "-",
@@ -280,22 +351,71 @@ pub fn columns(transmission: &Transmission) -> Vec<LossColumn> {
             segments,
         ));
         let doc = "ok, gross_slip, or no_active_arc: no number of segments carries the load (printed forms only)";
-        list.push(LossColumn { name: "belt_status".to_owned(), unit: "", doc, cell: Cell::BeltStatus });
-        list.push(number("clamp_safety", "-", "torque capacity of the belt over its torque; none without load", LossRow::clamp_safety));
+        list.push(LossColumn {
+            name: "belt_status".to_owned(),
+            unit: "",
+            doc,
+            cell: Cell::BeltStatus,
+        });
+        list.push(number(
+            "clamp_safety",
+            "-",
+            "torque capacity of the belt over its torque; none without load",
+            LossRow::clamp_safety,
+        ));
     }
-    list.extend(bench_components(transmission).into_iter().map(|component| LossColumn {
-        name: format!("{}_loss_nm", component.name()),
-        unit: "Nm",
-        doc: component_doc(component),
-        cell: Cell::Loss(component),
-    }));
-    list.push(number("total_loss_nm", "Nm", "all losses, torque at the input shaft", |r| r.answer.total_nm()));
-    list.push(number("input_torque_nm", "Nm", "torque at the input shaft", |r| r.answer.input_nm));
-    list.push(number("input_power_w", "W", "power at the input shaft", LossRow::input_w));
-    list.push(number("output_speed_rpm", "rpm", "speed of the output shaft", |r| r.answer.output_rad_s * 30.0 / std::f64::consts::PI));
-    list.push(number("output_power_w", "W", "power at the output shaft", LossRow::output_w));
-    list.push(number("efficiency", "-", "power out over power in; none where both shafts drive", LossRow::efficiency));
-    list.push(LossColumn { name: "flags".to_owned(), unit: "", doc: "states and departures from validity", cell: Cell::Flags });
+    list.extend(
+        bench_components(transmission)
+            .into_iter()
+            .map(|component| LossColumn {
+                name: format!("{}_loss_nm", component.name()),
+                unit: "Nm",
+                doc: component_doc(component),
+                cell: Cell::Loss(component),
+            }),
+    );
+    list.push(number(
+        "total_loss_nm",
+        "Nm",
+        "all losses, torque at the input shaft",
+        |r| r.answer.total_nm(),
+    ));
+    list.push(number(
+        "input_torque_nm",
+        "Nm",
+        "torque at the input shaft",
+        |r| r.answer.input_nm,
+    ));
+    list.push(number(
+        "input_power_w",
+        "W",
+        "power at the input shaft",
+        LossRow::input_w,
+    ));
+    list.push(number(
+        "output_speed_rpm",
+        "rpm",
+        "speed of the output shaft",
+        |r| r.answer.output_rad_s * 30.0 / std::f64::consts::PI,
+    ));
+    list.push(number(
+        "output_power_w",
+        "W",
+        "power at the output shaft",
+        LossRow::output_w,
+    ));
+    list.push(number(
+        "efficiency",
+        "-",
+        "power out over power in; none where both shafts drive",
+        LossRow::efficiency,
+    ));
+    list.push(LossColumn {
+        name: "flags".to_owned(),
+        unit: "",
+        doc: "states and departures from validity",
+        cell: Cell::Flags,
+    });
     list
 }
 
@@ -305,18 +425,30 @@ fn component_doc(component: Component) -> &'static str {
         Component::Pump => "loss of the oil pump, torque at the input shaft",
         Component::InputShaft => "loss of the input shaft's bearings and seals",
         Component::ClutchDrag => "drag of the open reverse clutch",
-        Component::BeltBand => "boundary friction between bands and between band and segments, torque at the input shaft",
+        Component::BeltBand => {
+            "boundary friction between bands and between band and segments, torque at the input shaft"
+        }
         Component::BeltFilm => "viscous shear between the bands, torque at the input shaft",
-        Component::BeltSlip => "sliding of the segments along the pulleys, torque at the input shaft",
+        Component::BeltSlip => {
+            "sliding of the segments along the pulleys, torque at the input shaft"
+        }
         Component::BeltWedge => "wedging at pulley entry and exit, torque at the input shaft",
-        Component::BeltPenetration => "penetration into the deflected pulleys, torque at the input shaft",
-        Component::BeltMap => "loss of the whole belt from its measured map, torque at the input shaft",
+        Component::BeltPenetration => {
+            "penetration into the deflected pulleys, torque at the input shaft"
+        }
+        Component::BeltMap => {
+            "loss of the whole belt from its measured map, torque at the input shaft"
+        }
         Component::FinalDrive => "loss of the final drive, torque at the input shaft",
-        Component::GearMesh => "gear mesh loss of the manual box with its final drive, torque at the input shaft",
+        Component::GearMesh => {
+            "gear mesh loss of the manual box with its final drive, torque at the input shaft"
+        }
         Component::Bearing => "bearing loss of the manual box",
         Component::Churning => "churning loss of the manual box",
         Component::Seal => "seal loss of the manual box",
-        Component::BoxMap => "loss of the whole manual box from its measured map, torque at the input shaft",
+        Component::BoxMap => {
+            "loss of the whole manual box from its measured map, torque at the input shaft"
+        }
     }
 }
 
@@ -334,6 +466,10 @@ impl FlagCount {
 
     /// Names and numbers of those that occurred.
     pub fn named(&self) -> impl Iterator<Item = (&'static str, usize)> {
-        Flags::NAMES.iter().zip(self.0).filter(|(_, n)| *n > 0).map(|((_, name), n)| (*name, n))
+        Flags::NAMES
+            .iter()
+            .zip(self.0)
+            .filter(|(_, n)| *n > 0)
+            .map(|((_, name), n)| (*name, n))
     }
 }

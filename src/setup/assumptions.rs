@@ -10,8 +10,14 @@ use crate::config::KeyInfo;
 
 /// Statuses in the order in which a reader should worry about them.
 const STATUSES: [(&str, &str); 4] = [
-    ("assumed", "nobody measured it here; a judgement, with its reason"),
-    ("fitted", "chosen so that the model meets a measured statement"),
+    (
+        "assumed",
+        "nobody measured it here; a judgement, with its reason",
+    ),
+    (
+        "fitted",
+        "chosen so that the model meets a measured statement",
+    ),
     ("derived", "follows from sources by calculation"),
     ("source", "printed or published"),
 ];
@@ -43,15 +49,30 @@ fn counts(text: &mut String, files: &[File]) {
     text.push_str("| file | assumed | fitted | derived | source | default |\n|---|---:|---:|---:|---:|---:|\n");
     for file in files {
         let _ = write!(text, "| {} |", file.name);
-        for status in STATUSES.iter().map(|(status, _)| *status).chain(["default"]) {
-            let _ = write!(text, " {} |", file.keys.iter().filter(|info| info.status == status).count());
+        for status in STATUSES
+            .iter()
+            .map(|(status, _)| *status)
+            .chain(["default"])
+        {
+            let _ = write!(
+                text,
+                " {} |",
+                file.keys
+                    .iter()
+                    .filter(|info| info.status == status)
+                    .count()
+            );
         }
         text.push('\n');
     }
 }
 
 fn of_file(text: &mut String, file: &File) {
-    let title = file.keys.iter().find(|info| info.key.ends_with("title")).map_or("", |info| &info.value);
+    let title = file
+        .keys
+        .iter()
+        .find(|info| info.key.ends_with("title"))
+        .map_or("", |info| &info.value);
     let kind = match file.kind {
         Kind::Vehicle => "Vehicle",
         Kind::Lubricant => "Lubricant",
@@ -59,9 +80,16 @@ fn of_file(text: &mut String, file: &File) {
     };
     let _ = writeln!(text, "\n## {kind} `{}`: {title}", file.name);
     for (status, _) in STATUSES {
-        let keys: Vec<&KeyInfo> = file.keys.iter().filter(|info| info.status == status && !info.key.ends_with("title")).collect();
+        let keys: Vec<&KeyInfo> = file
+            .keys
+            .iter()
+            .filter(|info| info.status == status && !info.key.ends_with("title"))
+            .collect();
         if !keys.is_empty() {
-            let _ = writeln!(text, "\n### {status}\n\n| key | value | source | note | meaning |\n|---|---|---|---|---|");
+            let _ = writeln!(
+                text,
+                "\n### {status}\n\n| key | value | source | note | meaning |\n|---|---|---|---|---|"
+            );
         }
         for info in keys {
             let value = value(info);
@@ -79,14 +107,21 @@ fn of_file(text: &mut String, file: &File) {
 }
 
 fn defaults(text: &mut String, files: &[File]) {
-    text.push_str("\n## Program defaults\n\nValues of keys that at least one embedded file leaves out.\n");
+    text.push_str(
+        "\n## Program defaults\n\nValues of keys that at least one embedded file leaves out.\n",
+    );
     text.push_str("\n| key | value | meaning |\n|---|---|---|\n");
     let mut seen = BTreeSet::new();
     for file in files {
         for info in file.keys.iter().filter(|info| info.status == "default") {
             let key = file.full_key(&info.key);
             if seen.insert(key.clone()) {
-                let _ = writeln!(text, "| `{key}` | {} | {} |", cell(&value(info)), cell(&info.doc));
+                let _ = writeln!(
+                    text,
+                    "| `{key}` | {} | {} |",
+                    cell(&value(info)),
+                    cell(&info.doc)
+                );
             }
         }
     }
@@ -97,14 +132,25 @@ fn of_equations(text: &mut String) {
     let fitted = |e: &Equation| !is_assumed(e) && e.status.contains("fitted");
     group(text, "with an assumed part", equations().filter(is_assumed));
     group(text, "with a fitted part", equations().filter(fitted));
-    group(text, "source or derived", equations().filter(|e| !is_assumed(e) && !fitted(e)));
+    group(
+        text,
+        "source or derived",
+        equations().filter(|e| !is_assumed(e) && !fitted(e)),
+    );
 }
 
 fn group(text: &mut String, title: &str, list: impl Iterator<Item = Equation>) {
-    let _ = writeln!(text, "\n### {title}\n\n| label | statement | status | file |\n|---|---|---|---|");
+    let _ = writeln!(
+        text,
+        "\n### {title}\n\n| label | statement | status | file |\n|---|---|---|---|"
+    );
     for e in list {
         // Statements come out of a Markdown table: their bars are escaped already.
-        let _ = writeln!(text, "| {} | {} | {} | `src/{}` |", e.label, e.statement, e.status, e.file);
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | `src/{}` |",
+            e.label, e.statement, e.status, e.file
+        );
     }
 }
 
@@ -134,9 +180,14 @@ mod tests {
     #[test]
     fn the_committed_book_is_up_to_date() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/assumptions.md");
-        let committed = std::fs::read_to_string(path).unwrap_or_default().replace("\r\n", "\n");
+        let committed = std::fs::read_to_string(path)
+            .unwrap_or_default()
+            .replace("\r\n", "\n");
         let same = committed == book();
-        assert!(same, "docs/assumptions.md is out of date: cargo run -- assumptions > docs/assumptions.md");
+        assert!(
+            same,
+            "docs/assumptions.md is out of date: cargo run -- assumptions > docs/assumptions.md"
+        );
     }
 
     #[test]
@@ -144,7 +195,11 @@ mod tests {
         let book = book();
         for file in catalogue::files() {
             for info in file.keys.iter().filter(|info| info.status == "assumed") {
-                assert!(book.contains(&format!("| `{}` |", info.key)), "{}", info.key);
+                assert!(
+                    book.contains(&format!("| `{}` |", info.key)),
+                    "{}",
+                    info.key
+                );
             }
         }
         for label in ["SI-2", "TH-4", "EN-1"] {

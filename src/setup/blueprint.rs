@@ -63,13 +63,31 @@ impl Blueprint {
     ///
     /// # Errors
     /// All problems of the files and of the overrides.
-    pub fn load(word: &str, option: &str, options: &Options) -> Result<(Blueprint, Setup), Vec<Problem>> {
+    pub fn load(
+        word: &str,
+        option: &str,
+        options: &Options,
+    ) -> Result<(Blueprint, Setup), Vec<Problem>> {
         let inputs = Inputs::gather(word, option, options)?;
         let setup = inputs.read()?;
-        let known =
-            |info: &KeyInfo| KeyInfo { value: info.value.clone(), si: info.si, allowed: info.allowed.clone(), ..KeyInfo::default() };
-        let keys = setup.keys.iter().map(|info| (info.key.clone(), known(info))).collect();
-        Ok((Blueprint { inputs: Arc::new(inputs), keys }, setup))
+        let known = |info: &KeyInfo| KeyInfo {
+            value: info.value.clone(),
+            si: info.si,
+            allowed: info.allowed.clone(),
+            ..KeyInfo::default()
+        };
+        let keys = setup
+            .keys
+            .iter()
+            .map(|info| (info.key.clone(), known(info)))
+            .collect();
+        Ok((
+            Blueprint {
+                inputs: Arc::new(inputs),
+                keys,
+            },
+            setup,
+        ))
     }
 
     /// Finds a number by its dotted key, as `--set` has it (`lubricant.` and `engine_oil.` for the fluids). The files may leave it at its
@@ -79,8 +97,15 @@ impl Blueprint {
     /// What `--set` would say of an unknown key; a problem for a key that holds no single number.
     pub fn slot(&self, key: &str) -> Result<Slot, Problem> {
         let key = key.trim();
-        let file = FLUIDS.iter().position(|prefix| key.starts_with(prefix)).map_or(0, |k| k + 1);
-        let own = if file == 0 { key } else { key.strip_prefix(FLUIDS[file - 1]).unwrap_or(key) };
+        let file = FLUIDS
+            .iter()
+            .position(|prefix| key.starts_with(prefix))
+            .map_or(0, |k| k + 1);
+        let own = if file == 0 {
+            key
+        } else {
+            key.strip_prefix(FLUIDS[file - 1]).unwrap_or(key)
+        };
         let (info, foreign) = match self.keys.get(key) {
             Some(info) => (info.clone(), false),
             None => (self.elsewhere(key, own, file)?, true),
@@ -92,32 +117,55 @@ impl Blueprint {
             None => return Err(no_number(key, info)),
         };
         let path = own.split('.').map(|name| name.trim().into()).collect();
-        Ok(Slot { key: key.into(), file, path, base, allowed: info.allowed.into(), foreign })
+        Ok(Slot {
+            key: key.into(),
+            file,
+            path,
+            base,
+            allowed: info.allowed.into(),
+            foreign,
+        })
     }
 
     /// A key that the unchanged files do not ask for.
     fn elsewhere(&self, key: &str, own: &str, file: usize) -> Result<KeyInfo, Problem> {
         let unset = |problem: Problem| Problem {
-            place: Place { file: format!("--set {key}"), ..Place::default() },
+            place: Place {
+                file: format!("--set {key}"),
+                ..Place::default()
+            },
             value: String::new(),
             ..problem
         };
         if let Some(document) = &self.inputs.files[0].document
-            && let Some(stranger) = other_box::strangers(document, &[format!("{key}=0")], &self.inputs.frame.name).pop()
+            && let Some(stranger) =
+                other_box::strangers(document, &[format!("{key}=0")], &self.inputs.frame.name).pop()
         {
             return Err(unset(stranger));
         }
-        let mut documents = self.inputs.files.each_ref().map(|input| input.document.clone());
+        let mut documents = self
+            .inputs
+            .files
+            .each_ref()
+            .map(|input| input.document.clone());
         if let Some(document) = &mut documents[file] {
             document.reach(own).map_err(unset)?;
         }
-        let readers = documents.each_ref().map(|document| document.as_ref().map(Reader::new));
+        let readers = documents
+            .each_ref()
+            .map(|document| document.as_ref().map(Reader::new));
         let _ = self.inputs.frame.assemble(&readers);
-        let known = readers[file].as_ref().map(Reader::known).unwrap_or_default();
+        let known = readers[file]
+            .as_ref()
+            .map(Reader::known)
+            .unwrap_or_default();
         if let Some(info) = known.into_iter().find(|info| info.key == own) {
             return Ok(info);
         }
-        let problems = changed(&self.inputs, &[(file, own.to_owned(), 0.0)]).read().err().unwrap_or_default();
+        let problems = changed(&self.inputs, &[(file, own.to_owned(), 0.0)])
+            .read()
+            .err()
+            .unwrap_or_default();
         let problem = problems.into_iter().find(|problem| problem.key == own);
         Err(unset(problem.unwrap_or_else(|| Problem {
             key: key.to_owned(),
@@ -129,20 +177,43 @@ impl Blueprint {
     /// A thread's own copy of the files, unchanged.
     #[must_use]
     pub fn bench(&self) -> Bench {
-        let empty = Document::parse("", "").unwrap_or_else(|_| unreachable!("no text has no mistakes"));
-        let drafts = self.inputs.files.each_ref().map(|input| Draft::new(input.document.as_ref().unwrap_or(&empty)));
-        Bench { inputs: Arc::clone(&self.inputs), drafts, misfits: Vec::new(), foreign: Vec::new(), checked: Vec::new() }
+        let empty =
+            Document::parse("", "").unwrap_or_else(|_| unreachable!("no text has no mistakes"));
+        let drafts = self
+            .inputs
+            .files
+            .each_ref()
+            .map(|input| Draft::new(input.document.as_ref().unwrap_or(&empty)));
+        Bench {
+            inputs: Arc::clone(&self.inputs),
+            drafts,
+            misfits: Vec::new(),
+            foreign: Vec::new(),
+            checked: Vec::new(),
+        }
     }
 }
 
 /// Whether what a key allows is a range of numbers: neither a text nor a choice nor a list.
 fn is_number(allowed: &str) -> bool {
-    !["text", "true or false", "one of ", "rows of ", "a list", "a number, a list"].iter().any(|other| allowed.starts_with(other))
+    ![
+        "text",
+        "true or false",
+        "one of ",
+        "rows of ",
+        "a list",
+        "a number, a list",
+    ]
+    .iter()
+    .any(|other| allowed.starts_with(other))
 }
 
 fn no_number(key: &str, info: KeyInfo) -> Problem {
     Problem {
-        place: Place { file: format!("--set {key}"), ..Place::default() },
+        place: Place {
+            file: format!("--set {key}"),
+            ..Place::default()
+        },
         key: key.to_owned(),
         value: info.value,
         allowed: info.allowed,
@@ -155,9 +226,19 @@ fn no_number(key: &str, info: KeyInfo) -> Problem {
 fn changed(inputs: &Inputs, numbers: &[(usize, String, f64)]) -> Inputs {
     let mut files = inputs.files.clone();
     for (file, key, number) in numbers {
-        let Input { document: Some(document), problems } = &mut files[*file] else { continue };
+        let Input {
+            document: Some(document),
+            problems,
+        } = &mut files[*file]
+        else {
+            continue;
+        };
         // TOML has its own word for what is no number.
-        let text = if number.is_nan() { "nan".to_owned() } else { number.to_string() };
+        let text = if number.is_nan() {
+            "nan".to_owned()
+        } else {
+            number.to_string()
+        };
         if let Err(mut problem) = document.set(&format!("{key}={text}")) {
             if *file > 0 {
                 problem.place.file = format!("--set {}{key}={text}", FLUIDS[*file - 1]);
@@ -216,12 +297,19 @@ impl Bench {
         if !self.misfits.is_empty() {
             return rejected(self.misfits.len());
         }
-        let readers = self.drafts.each_ref().map(|draft| Some(Reader::silent(draft.document())));
+        let readers = self
+            .drafts
+            .each_ref()
+            .map(|draft| Some(Reader::silent(draft.document())));
         let setup = match self.inputs.frame.assemble(&readers) {
             Ok(setup) => setup,
             Err(problems) => return rejected(problems.len()),
         };
-        let found = readers.into_iter().flatten().map(|reader| reader.finish().err().map_or(0, |problems| problems.len())).sum();
+        let found = readers
+            .into_iter()
+            .flatten()
+            .map(|reader| reader.finish().err().map_or(0, |problems| problems.len()))
+            .sum();
         if found > 0 {
             return rejected(found);
         }
@@ -241,9 +329,26 @@ impl Bench {
     /// an ordinary reading.
     #[must_use]
     pub fn problems(&self) -> Vec<Problem> {
-        let of_file = |(file, draft): (usize, &Draft)| draft.numbers().map(|(key, number)| (file, key, number)).collect::<Vec<_>>();
-        let misfits = self.misfits.iter().map(|(slot, number)| (slot.file, slot.path.join("."), *number));
-        let numbers: Vec<_> = self.drafts.iter().enumerate().flat_map(of_file).chain(misfits).collect();
-        changed(&self.inputs, &numbers).read().err().unwrap_or_default()
+        let of_file = |(file, draft): (usize, &Draft)| {
+            draft
+                .numbers()
+                .map(|(key, number)| (file, key, number))
+                .collect::<Vec<_>>()
+        };
+        let misfits = self
+            .misfits
+            .iter()
+            .map(|(slot, number)| (slot.file, slot.path.join("."), *number));
+        let numbers: Vec<_> = self
+            .drafts
+            .iter()
+            .enumerate()
+            .flat_map(of_file)
+            .chain(misfits)
+            .collect();
+        changed(&self.inputs, &numbers)
+            .read()
+            .err()
+            .unwrap_or_default()
     }
 }

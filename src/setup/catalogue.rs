@@ -33,17 +33,35 @@ impl File {
     /// Key as `--set` and `explain` have it.
     #[must_use]
     pub fn full_key(&self, key: &str) -> String {
-        if self.kind == Kind::Lubricant { format!("{OIL}{key}") } else { key.to_owned() }
+        if self.kind == Kind::Lubricant {
+            format!("{OIL}{key}")
+        } else {
+            key.to_owned()
+        }
     }
 }
 
 /// All embedded files: vehicles, lubricants, rigs.
 #[must_use]
 pub fn files() -> Vec<File> {
-    let vehicles = embedded_vehicles().iter().map(|(name, text)| (*name, *text, Kind::Vehicle));
-    let lubricants = embedded_lubricants().iter().map(|(name, text)| (*name, *text, Kind::Lubricant));
-    let rigs = embedded_rigs().iter().map(|(name, text)| (*name, *text, Kind::Rig));
-    vehicles.chain(lubricants).chain(rigs).map(|(name, text, kind)| File { name, kind, keys: keys(name, text, kind, &[]) }).collect()
+    let vehicles = embedded_vehicles()
+        .iter()
+        .map(|(name, text)| (*name, *text, Kind::Vehicle));
+    let lubricants = embedded_lubricants()
+        .iter()
+        .map(|(name, text)| (*name, *text, Kind::Lubricant));
+    let rigs = embedded_rigs()
+        .iter()
+        .map(|(name, text)| (*name, *text, Kind::Rig));
+    vehicles
+        .chain(lubricants)
+        .chain(rigs)
+        .map(|(name, text, kind)| File {
+            name,
+            kind,
+            keys: keys(name, text, kind, &[]),
+        })
+        .collect()
 }
 
 /// Every key of any vehicle, lubricant or rig, those of the transmission oil with [`OIL`]; without values. They are the same in every
@@ -65,7 +83,12 @@ fn gathered() -> Vec<KeyInfo> {
     let mut known: Vec<KeyInfo> = Vec::new();
     let mut seen = BTreeSet::new();
     for file in files() {
-        let text = file.kind.embedded().iter().find(|(name, _)| *name == file.name).map_or("", |(_, text)| text);
+        let text = file
+            .kind
+            .embedded()
+            .iter()
+            .find(|(name, _)| *name == file.name)
+            .map_or("", |(_, text)| text);
         let mut queue = VecDeque::from([Vec::new()]);
         let mut tried = BTreeSet::new();
         while let Some(sets) = queue.pop_front() {
@@ -79,7 +102,13 @@ fn gathered() -> Vec<KeyInfo> {
                 let key = file.full_key(&info.key);
                 if seen.insert(key.clone()) {
                     let (unit, allowed, doc) = (info.unit, info.allowed, info.doc);
-                    known.push(KeyInfo { key, unit, allowed, doc, ..KeyInfo::default() });
+                    known.push(KeyInfo {
+                        key,
+                        unit,
+                        allowed,
+                        doc,
+                        ..KeyInfo::default()
+                    });
                 }
             }
         }
@@ -89,7 +118,10 @@ fn gathered() -> Vec<KeyInfo> {
 
 /// The words from which a key's value is chosen.
 fn options(info: &KeyInfo) -> impl Iterator<Item = &str> {
-    info.allowed.strip_prefix("one of ").into_iter().flat_map(|list| list.split(", "))
+    info.allowed
+        .strip_prefix("one of ")
+        .into_iter()
+        .flat_map(|list| list.split(", "))
 }
 
 /// Keys that reading a text asks for, whatever problems there are: an option without its keys has many.
@@ -106,7 +138,13 @@ fn keys(name: &str, text: &str, kind: Kind, sets: &[String]) -> Vec<KeyInfo> {
         (Kind::Vehicle, Some(oil)) => {
             let root = reader.root();
             drop(head(&root, name));
-            drop(parts(&root, &Disk::default(), [oil.clone(), oil], Formulation::default(), name.to_owned()));
+            drop(parts(
+                &root,
+                &Disk::default(),
+                [oil.clone(), oil],
+                Formulation::default(),
+                name.to_owned(),
+            ));
         }
         (Kind::Rig, _) => drop(Conditions::read(&reader.root())),
         (Kind::Vehicle, None) => {}
@@ -117,7 +155,9 @@ fn keys(name: &str, text: &str, kind: Kind, sets: &[String]) -> Vec<KeyInfo> {
 /// Any checked fluid: which one has no influence on the keys of a vehicle.
 fn oil() -> Option<Lubricant> {
     let (name, _) = embedded_lubricants().first()?;
-    super::load_lubricant(name, "", &[], "").ok().map(|(oil, _)| oil)
+    super::load_lubricant(name, "", &[], "")
+        .ok()
+        .map(|(oil, _)| oil)
 }
 
 #[cfg(test)]
@@ -144,8 +184,12 @@ mod tests {
     #[test]
     fn the_catalogue_holds_what_loading_reports() {
         for file in files().iter().filter(|file| file.kind == Kind::Vehicle) {
-            let setup = super::super::load(file.name, "", &super::super::Options::default()).unwrap();
-            let own = setup.keys.iter().filter(|k| !k.key.starts_with(OIL) && !k.key.starts_with(ENGINE_OIL));
+            let setup =
+                super::super::load(file.name, "", &super::super::Options::default()).unwrap();
+            let own = setup
+                .keys
+                .iter()
+                .filter(|k| !k.key.starts_with(OIL) && !k.key.starts_with(ENGINE_OIL));
             assert_eq!(own.cloned().collect::<Vec<_>>(), file.keys, "{}", file.name);
         }
     }

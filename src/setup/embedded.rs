@@ -4,9 +4,18 @@
 #[must_use]
 pub fn embedded_vehicles() -> &'static [(&'static str, &'static str)] {
     &[
-        ("mondeo_20_5mt", include_str!("../../vehicles/mondeo_20_5mt.toml")),
-        ("rover_216_5mt", include_str!("../../vehicles/rover_216_5mt.toml")),
-        ("rover_216_cvt", include_str!("../../vehicles/rover_216_cvt.toml")),
+        (
+            "mondeo_20_5mt",
+            include_str!("../../vehicles/mondeo_20_5mt.toml"),
+        ),
+        (
+            "rover_216_5mt",
+            include_str!("../../vehicles/rover_216_5mt.toml"),
+        ),
+        (
+            "rover_216_cvt",
+            include_str!("../../vehicles/rover_216_cvt.toml"),
+        ),
     ]
 }
 
@@ -14,12 +23,27 @@ pub fn embedded_vehicles() -> &'static [(&'static str, &'static str)] {
 #[must_use]
 pub fn embedded_lubricants() -> &'static [(&'static str, &'static str)] {
     &[
-        ("cvtf_ezl799_class", include_str!("../../lubricants/cvtf_ezl799_class.toml")),
+        (
+            "cvtf_ezl799_class",
+            include_str!("../../lubricants/cvtf_ezl799_class.toml"),
+        ),
         ("dexron_ii", include_str!("../../lubricants/dexron_ii.toml")),
-        ("dexron_iii", include_str!("../../lubricants/dexron_iii.toml")),
-        ("gear_75w80", include_str!("../../lubricants/gear_75w80.toml")),
-        ("engine_5w30", include_str!("../../lubricants/engine_5w30.toml")),
-        ("engine_10w40", include_str!("../../lubricants/engine_10w40.toml")),
+        (
+            "dexron_iii",
+            include_str!("../../lubricants/dexron_iii.toml"),
+        ),
+        (
+            "gear_75w80",
+            include_str!("../../lubricants/gear_75w80.toml"),
+        ),
+        (
+            "engine_5w30",
+            include_str!("../../lubricants/engine_5w30.toml"),
+        ),
+        (
+            "engine_10w40",
+            include_str!("../../lubricants/engine_10w40.toml"),
+        ),
     ]
 }
 

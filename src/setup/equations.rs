@@ -62,7 +62,9 @@ const SOURCES: &[(&str, &str)] = &[
 
 /// All equations.
 pub fn equations() -> impl Iterator<Item = Equation> {
-    SOURCES.iter().flat_map(|(file, text)| text.lines().filter_map(|line| equation(file, line)))
+    SOURCES
+        .iter()
+        .flat_map(|(file, text)| text.lines().filter_map(|line| equation(file, line)))
 }
 
 /// The equation of that label.
@@ -74,7 +76,10 @@ pub fn by_label(label: &str) -> Option<Equation> {
 /// The equations whose labels a text names in brackets, as in "displacement (PU-1, PU-4)".
 pub fn cited(text: &str) -> Vec<Equation> {
     let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'));
-    words.filter(|word| is_label(word)).filter_map(by_label).collect()
+    words
+        .filter(|word| is_label(word))
+        .filter_map(by_label)
+        .collect()
 }
 
 fn is_label(word: &str) -> bool {
@@ -95,14 +100,22 @@ fn equation(file: &'static str, line: &'static str) -> Option<Equation> {
         rest = &rest[end + 1..];
     }
     match cells.as_slice() {
-        [label, statement, status] if is_label(label) => Some(Equation { label, statement, status, file }),
+        [label, statement, status] if is_label(label) => Some(Equation {
+            label,
+            statement,
+            status,
+            file,
+        }),
         _ => None,
     }
 }
 
 /// The first bar that is none of the cell's own.
 fn bar(text: &str) -> Option<usize> {
-    text.bytes().enumerate().find(|(at, byte)| *byte == b'|' && !text[..*at].ends_with('\\')).map(|(at, _)| at)
+    text.bytes()
+        .enumerate()
+        .find(|(at, byte)| *byte == b'|' && !text[..*at].ends_with('\\'))
+        .map(|(at, _)| at)
 }
 
 /// Source files below a folder, as paths relative to it.
@@ -130,7 +143,11 @@ mod tests {
         for file in files.iter().filter(|file| !file.ends_with("equations.rs")) {
             let text = std::fs::read_to_string(folder.join(file)).unwrap();
             let listed = SOURCES.iter().any(|(name, _)| name == file);
-            assert_eq!(text.contains("\n//! | label | statement | status |"), listed, "{file}");
+            assert_eq!(
+                text.contains("\n//! | label | statement | status |"),
+                listed,
+                "{file}"
+            );
         }
     }
 
@@ -139,8 +156,16 @@ mod tests {
         let all: Vec<Equation> = equations().collect();
         assert!(all.len() > 80, "{}", all.len());
         for (k, equation) in all.iter().enumerate() {
-            assert!(all[..k].iter().all(|other| other.label != equation.label), "{}", equation.label);
-            assert!(!equation.status.is_empty() && !equation.statement.is_empty(), "{}", equation.label);
+            assert!(
+                all[..k].iter().all(|other| other.label != equation.label),
+                "{}",
+                equation.label
+            );
+            assert!(
+                !equation.status.is_empty() && !equation.statement.is_empty(),
+                "{}",
+                equation.label
+            );
         }
         assert!(by_label("LE-3").unwrap().statement.contains("in - out"));
         assert_eq!(cited("displacement (PU-1, PU-4)").len(), 2);

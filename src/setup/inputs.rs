@@ -57,7 +57,12 @@ impl Inputs {
     ///
     /// # Errors
     /// As there.
-    pub fn of_text(file: &str, text: &str, files: Box<dyn Files>, options: &Options) -> Result<Self, Vec<Problem>> {
+    pub fn of_text(
+        file: &str,
+        text: &str,
+        files: Box<dyn Files>,
+        options: &Options,
+    ) -> Result<Self, Vec<Problem>> {
         let mut document = Document::parse(file, text)?;
         let name = stem(file.strip_prefix("embedded:").unwrap_or(file));
         let folder = Path::new(file).parent().unwrap_or(Path::new(""));
@@ -66,30 +71,61 @@ impl Inputs {
             return Err(strangers); // set all the same, they would call for a whole box
         }
         let own = |key: &str| (!FLUIDS.iter().any(|f| key.starts_with(f))).then(|| key.to_owned());
-        let problems = apply(&mut document, &options.set, own).err().unwrap_or_default();
-        let Head { fluid, engine_oil, .. } = head(&Reader::silent(&document).root(), "");
+        let problems = apply(&mut document, &options.set, own)
+            .err()
+            .unwrap_or_default();
+        let Head {
+            fluid, engine_oil, ..
+        } = head(&Reader::silent(&document).root(), "");
         let mut words = [String::new(), String::new()];
-        let asked = [(fluid, &options.lubricant, "--lubricant"), (engine_oil, &options.engine_oil, "--engine-oil")];
+        let asked = [
+            (fluid, &options.lubricant, "--lubricant"),
+            (engine_oil, &options.engine_oil, "--engine-oil"),
+        ];
         let mut fluids = [Input::default(), Input::default()];
         for (k, (own, asked, option)) in asked.into_iter().enumerate() {
             // A path in the vehicle file is relative to that file, one on the command line to the current folder.
-            let beside = if is_path(&own) { folder.join(&own).to_string_lossy().into_owned() } else { own };
+            let beside = if is_path(&own) {
+                folder.join(&own).to_string_lossy().into_owned()
+            } else {
+                own
+            };
             let option = if asked.is_some() { option } else { file };
             words[k] = asked.clone().unwrap_or(beside);
             fluids[k] = match fluid_document(&words[k], option, &options.set, FLUIDS[k]) {
-                Ok(document) => Input { document: Some(document), problems: Vec::new() },
-                Err(problems) => Input { document: None, problems },
+                Ok(document) => Input {
+                    document: Some(document),
+                    problems: Vec::new(),
+                },
+                Err(problems) => Input {
+                    document: None,
+                    problems,
+                },
             };
         }
         let [oil, engine_oil] = fluids;
-        let vehicle = Input { document: Some(document), problems };
-        let frame = Frame { name, fluids: words.map(|word| stem(&word)), files: Shelf::new(files), formulation: options.formulation };
-        Ok(Inputs { frame: Arc::new(frame), files: [vehicle, oil, engine_oil] })
+        let vehicle = Input {
+            document: Some(document),
+            problems,
+        };
+        let frame = Frame {
+            name,
+            fluids: words.map(|word| stem(&word)),
+            files: Shelf::new(files),
+            formulation: options.formulation,
+        };
+        Ok(Inputs {
+            frame: Arc::new(frame),
+            files: [vehicle, oil, engine_oil],
+        })
     }
 
     /// The same car with other documents.
     pub fn with_files(&self, files: [Input; 3]) -> Self {
-        Inputs { frame: Arc::clone(&self.frame), files }
+        Inputs {
+            frame: Arc::clone(&self.frame),
+            files,
+        }
     }
 
     /// Reads and checks the car.
@@ -107,7 +143,9 @@ impl Inputs {
                 (0, Some(reader)) => reader.finish(),
                 (_, Some(reader)) => fluid_keys(reader, FLUIDS[k - 1]),
                 // A fluid that the vehicle does not name is missing there already.
-                (_, None) if !problems.is_empty() && self.frame.fluids[k - 1].is_empty() => continue,
+                (_, None) if !problems.is_empty() && self.frame.fluids[k - 1].is_empty() => {
+                    continue;
+                }
                 (_, None) => Ok(Vec::new()),
             };
             match answer {
@@ -117,7 +155,11 @@ impl Inputs {
             problems.extend(input.problems.iter().cloned());
         }
         let setup = assembled?;
-        if problems.is_empty() { Ok(Setup { keys, ..setup }) } else { Err(problems) }
+        if problems.is_empty() {
+            Ok(Setup { keys, ..setup })
+        } else {
+            Err(problems)
+        }
     }
 }
 
@@ -128,18 +170,39 @@ impl Frame {
     /// Not for what is wrong with the car.
     pub fn assemble(&self, readers: &[Option<Reader<'_>>; 3]) -> Result<Setup, Vec<Problem>> {
         let [vehicle, oil, engine_oil] = readers;
-        let Some(vehicle) = vehicle else { return Err(Vec::new()) };
+        let Some(vehicle) = vehicle else {
+            return Err(Vec::new());
+        };
         let root = vehicle.root();
-        let Head { title, baselines, .. } = head(&root, &self.name);
+        let Head {
+            title, baselines, ..
+        } = head(&root, &self.name);
         let fluid = |reader: &Option<Reader>, k: usize| match reader {
             Some(reader) => Ok(lubricant::load(&reader.root(), &self.fluids[k])),
             // Some fluid, so that the reading goes on.
             None => load_lubricant("cvtf_ezl799_class", "", &[], "").map(|found| found.0),
         };
         let fluids = [fluid(oil, 0)?, fluid(engine_oil, 1)?];
-        let (road_load, car) = parts(&root, &self.files, fluids, self.formulation, self.name.clone());
-        let baselines = baselines.split(',').map(|b| b.trim().to_owned()).filter(|b| !b.is_empty()).collect();
-        Ok(Setup { name: self.name.clone(), title, baselines, road_load, car, keys: Vec::new() })
+        let (road_load, car) = parts(
+            &root,
+            &self.files,
+            fluids,
+            self.formulation,
+            self.name.clone(),
+        );
+        let baselines = baselines
+            .split(',')
+            .map(|b| b.trim().to_owned())
+            .filter(|b| !b.is_empty())
+            .collect();
+        Ok(Setup {
+            name: self.name.clone(),
+            title,
+            baselines,
+            road_load,
+            car,
+            keys: Vec::new(),
+        })
     }
 }
 
@@ -147,10 +210,18 @@ impl Frame {
 ///
 /// # Errors
 /// All problems of the file's text and of the overrides' form.
-pub(super) fn fluid_document(word: &str, option: &str, sets: &[String], prefix: &str) -> Result<Document, Vec<Problem>> {
+pub(super) fn fluid_document(
+    word: &str,
+    option: &str,
+    sets: &[String],
+    prefix: &str,
+) -> Result<Document, Vec<Problem>> {
     let (file, text, _) = text_of(word, Kind::Lubricant, option)?;
     let mut document = Document::parse(&file, &text)?;
-    apply(&mut document, sets, |key| key.strip_prefix(prefix).map(str::to_owned)).map_err(|problems| as_given(problems, prefix))?;
+    apply(&mut document, sets, |key| {
+        key.strip_prefix(prefix).map(str::to_owned)
+    })
+    .map_err(|problems| as_given(problems, prefix))?;
     Ok(document)
 }
 
@@ -159,8 +230,16 @@ pub(super) fn fluid_document(word: &str, option: &str, sets: &[String], prefix: 
 /// # Errors
 /// All problems.
 pub(super) fn fluid_keys(reader: Reader, prefix: &str) -> Result<Vec<KeyInfo>, Vec<Problem>> {
-    let keys = reader.finish().map_err(|problems| as_given(problems, prefix))?;
-    Ok(keys.into_iter().map(|k| KeyInfo { key: format!("{prefix}{}", k.key), ..k }).collect())
+    let keys = reader
+        .finish()
+        .map_err(|problems| as_given(problems, prefix))?;
+    Ok(keys
+        .into_iter()
+        .map(|k| KeyInfo {
+            key: format!("{prefix}{}", k.key),
+            ..k
+        })
+        .collect())
 }
 
 /// Problems of overrides of a fluid, with the option as the user wrote it: the fluid's own keys have no prefix.
@@ -174,10 +253,20 @@ fn as_given(mut problems: Vec<Problem>, prefix: &str) -> Vec<Problem> {
 }
 
 /// Applies those overrides whose key `pick` accepts (and may rename).
-fn apply(document: &mut Document, sets: &[String], pick: impl Fn(&str) -> Option<String>) -> Result<(), Vec<Problem>> {
+fn apply(
+    document: &mut Document,
+    sets: &[String],
+    pick: impl Fn(&str) -> Option<String>,
+) -> Result<(), Vec<Problem>> {
     let assignments = sets.iter().filter_map(|set| pick(set));
-    let problems: Vec<Problem> = assignments.filter_map(|assignment| document.set(&assignment).err()).collect();
-    if problems.is_empty() { Ok(()) } else { Err(problems) }
+    let problems: Vec<Problem> = assignments
+        .filter_map(|assignment| document.set(&assignment).err())
+        .collect();
+    if problems.is_empty() {
+        Ok(())
+    } else {
+        Err(problems)
+    }
 }
 
 /// What the `[vehicle]` table says.
@@ -192,7 +281,11 @@ pub(super) fn head(root: &Section, name: &str) -> Head {
     let head = root.table("vehicle");
     Head {
         title: head.text_or("title", name, "name for people"),
-        baselines: head.text_or("baselines", "", "names of the baseline vehicles, comma separated"),
+        baselines: head.text_or(
+            "baselines",
+            "",
+            "names of the baseline vehicles, comma separated",
+        ),
         fluid: head.text("transmission_oil", "name of the transmission oil"),
         engine_oil: head.text("engine_oil", "name of the engine oil"),
     }
@@ -207,13 +300,21 @@ pub(super) fn parts(
 ) -> (RoadLoadInput, Car) {
     let road_load = vehicle::load(&root.table("road_load"));
     let engine = engine::load(&root.table("engine"), files);
-    let (kind, section) = root.choose("transmission", &["cvt", "manual"], None, "kind of transmission");
+    let (kind, section) = root.choose(
+        "transmission",
+        &["cvt", "manual"],
+        None,
+        "kind of transmission",
+    );
     let (transmission, belt_heat_share) = if kind == "cvt" {
         let cvt = cvt::load(&section, files, &engine, &oil, formulation);
         let share = cvt.belt_heat_share;
         (Transmission::Cvt(Box::new(cvt)), share)
     } else {
-        (Transmission::Manual(Box::new(manual::load(&section, files))), 0.0)
+        (
+            Transmission::Manual(Box::new(manual::load(&section, files))),
+            0.0,
+        )
     };
     let network = thermal::load(&root.table("thermal"), kind == "cvt", &oil);
     let car = Car {

@@ -39,11 +39,17 @@ pub trait Files: std::fmt::Debug + Send + Sync {
     /// # Errors
     /// As there.
     fn fetch(&self, path: &str) -> Result<Vec<u8>, Refused> {
-        self.read(path).map_err(|why| Refused::Unreadable(std::io::Error::other(why)))
+        self.read(path)
+            .map_err(|why| Refused::Unreadable(std::io::Error::other(why)))
     }
 
     /// What `make` makes of a file of a kind. Whoever reads the same car again and again keeps it and calls `make` once only.
-    fn table(&self, _kind: &'static str, _file: &str, make: &mut dyn FnMut() -> Option<Arc<tables::Table>>) -> Option<Arc<tables::Table>> {
+    fn table(
+        &self,
+        _kind: &'static str,
+        _file: &str,
+        make: &mut dyn FnMut() -> Option<Arc<tables::Table>>,
+    ) -> Option<Arc<tables::Table>> {
         make()
     }
 }
@@ -128,7 +134,12 @@ impl Setup {
 }
 
 fn at_ambient(car: Car, road_load: &RoadLoadInput, ambient_k: f64) -> Car {
-    Car { road_load: road_load.at(ambient_k), full_load_factor: road_load.full_load_factor(), ambient_k, ..car }
+    Car {
+        road_load: road_load.at(ambient_k),
+        full_load_factor: road_load.full_load_factor(),
+        ambient_k,
+        ..car
+    }
 }
 
 /// Kinds of input file.
@@ -170,39 +181,67 @@ pub fn is_path(word: &str) -> bool {
 ///
 /// # Errors
 /// Unknown name (with the near ones), unreadable path, binary or empty file.
-pub fn text_of(word: &str, kind: Kind, option: &str) -> Result<(String, String, Disk), Vec<Problem>> {
+pub fn text_of(
+    word: &str,
+    kind: Kind,
+    option: &str,
+) -> Result<(String, String, Disk), Vec<Problem>> {
     if !is_path(word) {
         if let Some((name, text)) = kind.embedded().iter().find(|(n, _)| *n == word) {
-            return Ok((format!("embedded:{name}.toml"), (*text).to_owned(), Disk::default()));
+            return Ok((
+                format!("embedded:{name}.toml"),
+                (*text).to_owned(),
+                Disk::default(),
+            ));
         }
         return Err(vec![unknown_name(word, kind, option)]);
     }
     let path = std::path::Path::new(word);
     // What no option names stands in a file, whose author may be a stranger.
     let by_user = option.starts_with("--") || option == "FILE";
-    let read = if by_user { bounded::read(path, bounded::TOML) } else { bounded::read_file(path, bounded::TOML) };
+    let read = if by_user {
+        bounded::read(path, bounded::TOML)
+    } else {
+        bounded::read_file(path, bounded::TOML)
+    };
     let bytes = read.map_err(|error| vec![unreadable(word, option, &error)])?;
-    let folder = path.parent().map(std::path::Path::to_path_buf).unwrap_or_default();
+    let folder = path
+        .parent()
+        .map(std::path::Path::to_path_buf)
+        .unwrap_or_default();
     Ok((word.to_owned(), decode(word, &bytes)?, Disk { folder }))
 }
 
 fn unknown_name(word: &str, kind: Kind, option: &str) -> Problem {
     let names: Vec<&str> = kind.embedded().iter().map(|(n, _)| *n).collect();
     let close = near(word, names.iter().copied());
-    let hint = if close.is_empty() { String::new() } else { format!("did you mean {}? ", close.join(", ")) };
+    let hint = if close.is_empty() {
+        String::new()
+    } else {
+        format!("did you mean {}? ", close.join(", "))
+    };
     Problem {
-        place: Place { file: option.to_owned(), ..Place::default() },
+        place: Place {
+            file: option.to_owned(),
+            ..Place::default()
+        },
         key: option.to_owned(),
         value: word.to_owned(),
         allowed: format!("{}, or the path of a TOML file", names.join(", ")),
         message: format!("there is no {} named `{word}`", kind.word()),
-        hint: format!("{hint}`cvtcycle list {}s` shows all; a path needs a / or an ending", kind.word()),
+        hint: format!(
+            "{hint}`cvtcycle list {}s` shows all; a path needs a / or an ending",
+            kind.word()
+        ),
     }
 }
 
 fn unreadable(word: &str, option: &str, why: &Refused) -> Problem {
     Problem {
-        place: Place { file: option.to_owned(), ..Place::default() },
+        place: Place {
+            file: option.to_owned(),
+            ..Place::default()
+        },
         key: option.to_owned(),
         value: word.to_owned(),
         allowed: why.allowed("a readable file"),
@@ -212,18 +251,33 @@ fn unreadable(word: &str, option: &str, why: &Refused) -> Problem {
 }
 
 fn stem(word: &str) -> String {
-    std::path::Path::new(word).file_stem().map_or_else(|| word.to_owned(), |s| s.to_string_lossy().into_owned())
+    std::path::Path::new(word)
+        .file_stem()
+        .map_or_else(|| word.to_owned(), |s| s.to_string_lossy().into_owned())
 }
 
 /// Reads and checks a lubricant.
 ///
 /// # Errors
 /// All problems of the file and of the overrides that go to it.
-pub fn load_lubricant(word: &str, option: &str, sets: &[String], prefix: &str) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
-    read_document(&inputs::fluid_document(word, option, sets, prefix)?, word, prefix)
+pub fn load_lubricant(
+    word: &str,
+    option: &str,
+    sets: &[String],
+    prefix: &str,
+) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
+    read_document(
+        &inputs::fluid_document(word, option, sets, prefix)?,
+        word,
+        prefix,
+    )
 }
 
-fn read_document(document: &Document, word: &str, prefix: &str) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
+fn read_document(
+    document: &Document,
+    word: &str,
+    prefix: &str,
+) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
     let reader = Reader::new(document);
     let lubricant = lubricant::load(&reader.root(), &stem(word));
     Ok((lubricant, inputs::fluid_keys(reader, prefix)?))
@@ -242,7 +296,12 @@ pub fn load(word: &str, option: &str, options: &Options) -> Result<Setup, Vec<Pr
 ///
 /// # Errors
 /// As there.
-pub fn read(file: &str, text: &str, files: Box<dyn Files>, options: &Options) -> Result<Setup, Vec<Problem>> {
+pub fn read(
+    file: &str,
+    text: &str,
+    files: Box<dyn Files>,
+    options: &Options,
+) -> Result<Setup, Vec<Problem>> {
     inputs::Inputs::of_text(file, text, files, options)?.read()
 }
 

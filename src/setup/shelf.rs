@@ -19,7 +19,10 @@ pub(super) struct Shelf {
 
 impl Shelf {
     pub fn new(files: Box<dyn Files>) -> Self {
-        Shelf { files, tables: Mutex::default() }
+        Shelf {
+            files,
+            tables: Mutex::default(),
+        }
     }
 }
 
@@ -32,13 +35,21 @@ impl Files for Shelf {
         self.files.fetch(path)
     }
 
-    fn table(&self, kind: &'static str, file: &str, make: &mut dyn FnMut() -> Option<Arc<Table>>) -> Option<Arc<Table>> {
+    fn table(
+        &self,
+        kind: &'static str,
+        file: &str,
+        make: &mut dyn FnMut() -> Option<Arc<Table>>,
+    ) -> Option<Arc<Table>> {
         let mut tables = self.tables.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(table) = tables.get(file).and_then(|kinds| kinds.get(kind)) {
             return Some(Arc::clone(table));
         }
         let table = make()?;
-        tables.entry(file.to_owned()).or_default().insert(kind, Arc::clone(&table));
+        tables
+            .entry(file.to_owned())
+            .or_default()
+            .insert(kind, Arc::clone(&table));
         Some(table)
     }
 }

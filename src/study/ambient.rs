@@ -62,11 +62,16 @@ pub struct WarmUp {
 /// The axes of a study that is such a matrix: ambient temperatures and starts, in this order.
 fn axes(frame: &Frame) -> Option<(Vec<f64>, Vec<String>)> {
     let plan = &frame.outline.plan;
-    let [ambient, start] = &plan.factors[..] else { return None };
+    let [ambient, start] = &plan.factors[..] else {
+        return None;
+    };
     if plan.design != Design::Grid || ambient.key != "ambient_degc" || start.key != "start" {
         return None;
     }
-    let (FactorValues::List(degc), FactorValues::List(starts)) = (&ambient.values, &start.values) else { return None };
+    let (FactorValues::List(degc), FactorValues::List(starts)) = (&ambient.values, &start.values)
+    else {
+        return None;
+    };
     let number = |value: &FactorValue| match value {
         FactorValue::Number(x) => Some(*x),
         FactorValue::Word(_) => None,
@@ -75,7 +80,10 @@ fn axes(frame: &Frame) -> Option<(Vec<f64>, Vec<String>)> {
         FactorValue::Number(x) => format!("{x} degC"),
         FactorValue::Word(word) => word.to_string(),
     };
-    Some((degc.iter().map(number).collect::<Option<_>>()?, starts.iter().map(word).collect()))
+    Some((
+        degc.iter().map(number).collect::<Option<_>>()?,
+        starts.iter().map(word).collect(),
+    ))
 }
 
 /// The matrix of a study; none if it is something else.
@@ -83,17 +91,34 @@ fn axes(frame: &Frame) -> Option<(Vec<f64>, Vec<String>)> {
 /// # Errors
 /// A part that cannot be read.
 pub fn matrix(frame: &Frame) -> Result<Option<Matrix>, Problem> {
-    let Some((ambient_degc, starts)) = axes(frame) else { return Ok(None) };
+    let Some((ambient_degc, starts)) = axes(frame) else {
+        return Ok(None);
+    };
     let outline = frame.outline;
     let cars = outline.cars.len();
     // Points run over the starts first: the last factor of a grid is the fastest.
     let by = |column: &str, car: usize| -> Result<Vec<Vec<f64>>, Problem> {
         let numbers = frame.all_numbers(column, car)?;
-        let at = |start: usize, ambient: usize| numbers.get(ambient * starts.len() + start).copied().unwrap_or(f64::NAN);
-        Ok((0..starts.len()).map(|s| (0..ambient_degc.len()).map(|a| at(s, a)).collect()).collect())
+        let at = |start: usize, ambient: usize| {
+            numbers
+                .get(ambient * starts.len() + start)
+                .copied()
+                .unwrap_or(f64::NAN)
+        };
+        Ok((0..starts.len())
+            .map(|s| (0..ambient_degc.len()).map(|a| at(s, a)).collect())
+            .collect())
     };
-    let all = |column: &str, from: usize| (from..cars).map(|car| by(column, car)).collect::<Result<Vec<_>, _>>();
-    let mut fuel = vec![FuelPart { name: "total".into(), l_per_100km: all(FUEL, 0)?, excess_percent: all(EXCESS, 1)? }];
+    let all = |column: &str, from: usize| {
+        (from..cars)
+            .map(|car| by(column, car))
+            .collect::<Result<Vec<_>, _>>()
+    };
+    let mut fuel = vec![FuelPart {
+        name: "total".into(),
+        l_per_100km: all(FUEL, 0)?,
+        excess_percent: all(EXCESS, 1)?,
+    }];
     for phase in &outline.phases {
         fuel.push(FuelPart {
             name: phase.clone(),
@@ -102,12 +127,23 @@ pub fn matrix(frame: &Frame) -> Result<Option<Matrix>, Problem> {
         });
     }
     let mut ends = Vec::new();
-    for (name, column) in
-        [("transmission sump", "end_transmission_sump_degc"), ("engine oil", "end_engine_oil_degc"), ("coolant", "end_coolant_degc")]
-    {
-        ends.push(EndPart { name: name.into(), degc: all(column, 0)? });
+    for (name, column) in [
+        ("transmission sump", "end_transmission_sump_degc"),
+        ("engine oil", "end_engine_oil_degc"),
+        ("coolant", "end_coolant_degc"),
+    ] {
+        ends.push(EndPart {
+            name: name.into(),
+            degc: all(column, 0)?,
+        });
     }
-    Ok(Some(Matrix { cars: outline.cars.clone(), starts, ambient_degc, fuel, ends }))
+    Ok(Some(Matrix {
+        cars: outline.cars.clone(),
+        starts,
+        ambient_degc,
+        fuel,
+        ends,
+    }))
 }
 
 /// Warm-up of every run, where the study has kept traces.
@@ -118,16 +154,34 @@ pub fn warm_ups(frame: &Frame, matrix: &Matrix) -> Result<Vec<WarmUp>, Problem> 
     let mut list: Vec<WarmUp> = Vec::new();
     let columns = ["time_s", "transmission_sump_degc", "engine_oil_degc"];
     frame.each_trace(&columns, |points, cars, values| {
-        let [super::table::Values::Number(time), super::table::Values::Number(sump), super::table::Values::Number(oil)] = values else {
+        let [
+            super::table::Values::Number(time),
+            super::table::Values::Number(sump),
+            super::table::Values::Number(oil),
+        ] = values
+        else {
             return;
         };
         for k in 0..points.len() {
             let point = usize::try_from(points[k]).unwrap_or(0);
-            let car = matrix.cars.iter().position(|name| **name == *cars[k]).unwrap_or(0);
+            let car = matrix
+                .cars
+                .iter()
+                .position(|name| **name == *cars[k])
+                .unwrap_or(0);
             let (ambient, start) = (point / matrix.starts.len(), point % matrix.starts.len());
-            let same = list.last().is_some_and(|run| (run.car, run.start, run.ambient) == (car, start, ambient));
+            let same = list
+                .last()
+                .is_some_and(|run| (run.car, run.start, run.ambient) == (car, start, ambient));
             if !same {
-                list.push(WarmUp { car, start, ambient, time_s: Vec::new(), sump_degc: Vec::new(), engine_oil_degc: Vec::new() });
+                list.push(WarmUp {
+                    car,
+                    start,
+                    ambient,
+                    time_s: Vec::new(),
+                    sump_degc: Vec::new(),
+                    engine_oil_degc: Vec::new(),
+                });
             }
             if let Some(run) = list.last_mut() {
                 run.time_s.push(time[k]);

@@ -11,8 +11,8 @@ use super::frame::{Frame, Status};
 use super::outputs::EXCESS;
 use super::plan::{Design, FactorValue};
 use super::statistics::{
-    Blocks, Bootstrap, Groups, RankSensitivity, Share, SobolIndices, Summary, Tornado, TornadoInput, group_means, rank_sensitivity,
-    sobol_convergence, tornado,
+    Blocks, Bootstrap, Groups, RankSensitivity, Share, SobolIndices, Summary, Tornado,
+    TornadoInput, group_means, rank_sensitivity, sobol_convergence, tornado,
 };
 use crate::config::Problem;
 
@@ -134,10 +134,17 @@ pub fn answer(frame: &Frame) -> Result<Answer, Problem> {
         title: outline.title.clone(),
         question: outline.question.clone(),
         points: outline.points,
-        points_done: frame.status(0).filter(|status| *status != Status::Missing).count() as u64,
+        points_done: frame
+            .status(0)
+            .filter(|status| *status != Status::Missing)
+            .count() as u64,
         cars: outline.cars.clone(),
         runs: ended(frame)?,
-        described: if is_saltelli(frame) { "samples A and B" } else { "all points" },
+        described: if is_saltelli(frame) {
+            "samples A and B"
+        } else {
+            "all points"
+        },
         comparisons,
         outputs,
         matrix: matrix(frame)?,
@@ -152,7 +159,9 @@ fn is_saltelli(frame: &Frame) -> bool {
 fn described(frame: &Frame) -> Vec<bool> {
     let factors = frame.outline.plan.factors.len();
     let mixed = is_saltelli(frame);
-    (0..frame.outline.points).map(|point| !mixed || matches!(saltelli_role(factors, point).1, Role::A | Role::B)).collect()
+    (0..frame.outline.points)
+        .map(|point| !mixed || matches!(saltelli_role(factors, point).1, Role::A | Role::B))
+        .collect()
 }
 
 /// The numbers of a car that are described: of points that are independent draws.
@@ -165,19 +174,34 @@ pub fn described_numbers(frame: &Frame, output: &str, car: usize) -> Result<Vec<
 
 /// The numbers of the described points of which runs are there.
 fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
-    numbers.iter().zip(rows).filter(|(_, described)| **described).map(|(x, _)| *x).collect()
+    numbers
+        .iter()
+        .zip(rows)
+        .filter(|(_, described)| **described)
+        .map(|(x, _)| *x)
+        .collect()
 }
 
 fn ended(frame: &Frame) -> Result<Ended, Problem> {
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
     for car in 0..frame.outline.cars.len() {
-        if !frame.status(car).any(|status| matches!(status, Status::Failed | Status::NotRun)) {
+        if !frame
+            .status(car)
+            .any(|status| matches!(status, Status::Failed | Status::NotRun))
+        {
             continue;
         }
         for (reason, status) in frame.words("reason", car)?.iter().zip(frame.status(car)) {
-            for one in reason.split("; ").filter(|_| matches!(status, Status::Failed | Status::NotRun)) {
+            for one in reason
+                .split("; ")
+                .filter(|_| matches!(status, Status::Failed | Status::NotRun))
+            {
                 // Of a failed check the name alone: what follows differs from run to run.
-                let word = if status == Status::Failed { one.split(' ').next().unwrap_or_default() } else { one };
+                let word = if status == Status::Failed {
+                    one.split(' ').next().unwrap_or_default()
+                } else {
+                    one
+                };
                 *reasons.entry(word.to_owned()).or_default() += 1;
             }
         }
@@ -197,9 +221,15 @@ fn ended(frame: &Frame) -> Result<Ended, Problem> {
 const MOST_RANKED: usize = 1 << 16;
 
 /// The values of a factor at the first points, as the design has them. They need no table: a design is a function of the point.
-fn values(frame: &Frame, factor: usize, points: usize) -> impl Iterator<Item = Option<FactorValue>> {
+fn values(
+    frame: &Frame,
+    factor: usize,
+    points: usize,
+) -> impl Iterator<Item = Option<FactorValue>> {
     let plan = &frame.outline.plan;
-    (0..points as u64).map(move |point| plan.factors[factor].value(plan.design.level(&plan.factors, point, factor)))
+    (0..points as u64).map(move |point| {
+        plan.factors[factor].value(plan.design.level(&plan.factors, point, factor))
+    })
 }
 
 /// Numbers of a factor.
@@ -216,7 +246,9 @@ fn words(frame: &Frame, factor: usize, points: usize) -> Vec<Arc<str>> {
     let mut known: Vec<(FactorValue, Arc<str>)> = Vec::new();
     let empty: Arc<str> = "".into();
     let mut word = |value: Option<FactorValue>| {
-        let Some(value) = value else { return empty.clone() };
+        let Some(value) = value else {
+            return empty.clone();
+        };
         if let Some((_, text)) = known.iter().find(|(other, _)| *other == value) {
             return text.clone();
         }
@@ -227,7 +259,12 @@ fn words(frame: &Frame, factor: usize, points: usize) -> Vec<Arc<str>> {
     values(frame, factor, points).map(&mut word).collect()
 }
 
-fn output(frame: &Frame, rows: &[bool], (name, unit): (&str, &str), car: usize) -> Result<OutputAnswer, Problem> {
+fn output(
+    frame: &Frame,
+    rows: &[bool],
+    (name, unit): (&str, &str),
+    car: usize,
+) -> Result<OutputAnswer, Problem> {
     let outline = frame.outline;
     let plan = &outline.plan;
     let numbers_of = frame.numbers(name, car)?;
@@ -245,19 +282,28 @@ fn output(frame: &Frame, rows: &[bool], (name, unit): (&str, &str), car: usize) 
         Design::Saltelli { .. } => answer.sobol = sobol(&numbers_of, plan.factors.len()),
         Design::OneAtATime { .. } => answer.tornado = Some(of_tornado(frame, &numbers_of)),
         _ => {
-            let as_words = |f: &usize| super::cars::is_words(&plan.factors[*f]) || plan.design == Design::Grid;
-            let (levels, drawn): (Vec<usize>, Vec<usize>) = (0..plan.factors.len()).partition(as_words);
+            let as_words =
+                |f: &usize| super::cars::is_words(&plan.factors[*f]) || plan.design == Design::Grid;
+            let (levels, drawn): (Vec<usize>, Vec<usize>) =
+                (0..plan.factors.len()).partition(as_words);
             if !drawn.is_empty() {
                 let points = numbers_of.len().min(MOST_RANKED);
-                let columns: Vec<Vec<f64>> = drawn.iter().map(|&f| numbers(frame, f, points)).collect();
+                let columns: Vec<Vec<f64>> =
+                    drawn.iter().map(|&f| numbers(frame, f, points)).collect();
                 let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
                 answer.rank = Some(Ranked {
-                    factors: drawn.iter().map(|&f| plan.factors[f].name.clone()).collect(),
+                    factors: drawn
+                        .iter()
+                        .map(|&f| plan.factors[f].name.clone())
+                        .collect(),
                     of: rank_sensitivity(&columns, &numbers_of[..points]),
                 });
             }
             for f in levels {
-                answer.levels.push((plan.factors[f].name.clone(), group_means(&words(frame, f, numbers_of.len()), &numbers_of)));
+                answer.levels.push((
+                    plan.factors[f].name.clone(),
+                    group_means(&words(frame, f, numbers_of.len()), &numbers_of),
+                ));
             }
         }
     }
@@ -267,22 +313,41 @@ fn output(frame: &Frame, rows: &[bool], (name, unit): (&str, &str), car: usize) 
 /// Splits the points of a Saltelli design into its blocks.
 fn sobol(numbers: &[f64], factors: usize) -> Vec<SobolIndices> {
     let width = factors + 2;
-    let column = |k: usize| numbers.iter().skip(k).step_by(width).copied().collect::<Vec<f64>>();
+    let column = |k: usize| {
+        numbers
+            .iter()
+            .skip(k)
+            .step_by(width)
+            .copied()
+            .collect::<Vec<f64>>()
+    };
     let columns: Vec<Vec<f64>> = (0..width).map(column).collect();
-    let blocks = Blocks { a: &columns[0], b: &columns[1], ab: columns[2..].iter().map(Vec::as_slice).collect() };
+    let blocks = Blocks {
+        a: &columns[0],
+        b: &columns[1],
+        ab: columns[2..].iter().map(Vec::as_slice).collect(),
+    };
     sobol_convergence(&blocks, Bootstrap::default())
 }
 
 /// Point 0 is the base; the others follow factor by factor.
 fn of_tornado(frame: &Frame, numbers: &[f64]) -> Tornado {
     let plan = &frame.outline.plan;
-    let mut inputs: Vec<TornadoInput> =
-        plan.factors.iter().map(|factor| TornadoInput { name: factor.name.clone(), entries: Vec::new() }).collect();
+    let mut inputs: Vec<TornadoInput> = plan
+        .factors
+        .iter()
+        .map(|factor| TornadoInput {
+            name: factor.name.clone(),
+            entries: Vec::new(),
+        })
+        .collect();
     for (point, number) in (0_u64..).zip(numbers).skip(1) {
         for (f, factor) in plan.factors.iter().enumerate() {
             let level = plan.design.level(&plan.factors, point, f);
             if let Some(value) = factor.value(level) {
-                inputs[f].entries.push((label(&value, &factor.unit), *number));
+                inputs[f]
+                    .entries
+                    .push((label(&value, &factor.unit), *number));
             }
         }
     }
@@ -294,10 +359,22 @@ fn label(value: &FactorValue, unit: &str) -> String {
     match value {
         FactorValue::Word(word) => word.to_string(),
         FactorValue::Number(x) => {
-            let digits = if x.abs() > 0.0 { (3 - x.abs().log10().floor() as i32).clamp(0, 12) } else { 0 };
+            let digits = if x.abs() > 0.0 {
+                (3 - x.abs().log10().floor() as i32).clamp(0, 12)
+            } else {
+                0
+            };
             let text = format!("{x:.*}", usize::try_from(digits).unwrap_or(0));
-            let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-            if unit.is_empty() || unit == "-" { text.to_owned() } else { format!("{text} {unit}") }
+            let text = if text.contains('.') {
+                text.trim_end_matches('0').trim_end_matches('.')
+            } else {
+                &text
+            };
+            if unit.is_empty() || unit == "-" {
+                text.to_owned()
+            } else {
+                format!("{text} {unit}")
+            }
         }
     }
 }

@@ -91,7 +91,10 @@ impl StudyCar {
         match (self.bindings[factor], value) {
             (Binding::Words { stride }, Some(value)) => {
                 let text = text(value);
-                words(of).iter().position(|word| *word == text).map_or(0, |k| (k + 1) * stride)
+                words(of)
+                    .iter()
+                    .position(|word| *word == text)
+                    .map_or(0, |k| (k + 1) * stride)
             }
             _ => 0,
         }
@@ -99,7 +102,10 @@ impl StudyCar {
 
     /// A variant, made when it is first asked for; its problems if its words do not go together.
     pub(super) fn variant(&self, index: usize, factors: &[Factor]) -> Result<&Variant, &[Problem]> {
-        self.variants[index].get_or_init(|| self.make(index, factors)).as_ref().map_err(Vec::as_slice)
+        self.variants[index]
+            .get_or_init(|| self.make(index, factors))
+            .as_ref()
+            .map_err(Vec::as_slice)
     }
 
     /// The unchanged car, and the baselines that its file names.
@@ -115,24 +121,44 @@ impl StudyCar {
 
     /// The unchanged car in every combination of words that goes together.
     pub(super) fn setups<'s>(&'s self, factors: &'s [Factor]) -> impl Iterator<Item = &'s Setup> {
-        (0..self.variants.len()).filter_map(|index| self.variant(index, factors).ok()).map(|variant| &variant.setup)
+        (0..self.variants.len())
+            .filter_map(|index| self.variant(index, factors).ok())
+            .map(|variant| &variant.setup)
     }
 
     fn make(&self, index: usize, factors: &[Factor]) -> Result<Variant, Vec<Problem>> {
         let options = self.options_of(index, factors);
         let (blueprint, setup) = Blueprint::load(&self.word, super::prepare::VEHICLE, &options)?;
-        let mut variant = Variant { blueprint, slots: Vec::with_capacity(factors.len()), unknown: Vec::new(), setup };
+        let mut variant = Variant {
+            blueprint,
+            slots: Vec::with_capacity(factors.len()),
+            unknown: Vec::new(),
+            setup,
+        };
         for (index, (factor, binding)) in factors.iter().zip(&self.bindings).enumerate() {
-            let found = matches!(binding, Binding::Number(_)).then(|| variant.blueprint.slot(&factor.key)).transpose();
+            let found = matches!(binding, Binding::Number(_))
+                .then(|| variant.blueprint.slot(&factor.key))
+                .transpose();
             variant.slots.push(found.unwrap_or_else(|problem| {
                 let place = factor.place.clone();
                 let message = format!("{}: {}", self.name, problem.message);
                 // A plan has its own word for whose value it is.
                 let hint = match problem.hint.split_once(ABOUT_SET) {
-                    Some((hint, _)) => format!("{hint}; `cars = \"baselines\"` varies the baselines alone"),
+                    Some((hint, _)) => {
+                        format!("{hint}; `cars = \"baselines\"` varies the baselines alone")
+                    }
                     None => problem.hint.clone(),
                 };
-                variant.unknown.push((index, Problem { place, key: factor.key.clone(), message, hint, ..problem }));
+                variant.unknown.push((
+                    index,
+                    Problem {
+                        place,
+                        key: factor.key.clone(),
+                        message,
+                        hint,
+                        ..problem
+                    },
+                ));
                 None
             }));
         }
@@ -142,13 +168,22 @@ impl StudyCar {
     fn options_of(&self, index: usize, factors: &[Factor]) -> Options {
         let mut options = self.options.clone();
         for (factor, binding) in factors.iter().zip(&self.bindings) {
-            let Binding::Words { stride } = binding else { continue };
+            let Binding::Words { stride } = binding else {
+                continue;
+            };
             let words = words(factor);
-            let Some(word) = (index / stride % (words.len() + 1)).checked_sub(1).map(|k| words[k].to_string()) else { continue };
+            let Some(word) = (index / stride % (words.len() + 1))
+                .checked_sub(1)
+                .map(|k| words[k].to_string())
+            else {
+                continue;
+            };
             match factor.key.as_str() {
                 "lubricant" => options.lubricant = Some(word),
                 "engine_oil" => options.engine_oil = Some(word),
-                "formulation" => options.formulation = formulation(&word).unwrap_or(options.formulation),
+                "formulation" => {
+                    options.formulation = formulation(&word).unwrap_or(options.formulation)
+                }
                 key => options.set.push(format!("{key}={word}")),
             }
         }
@@ -157,7 +192,10 @@ impl StudyCar {
 }
 
 fn formulation(word: &str) -> Option<Formulation> {
-    Formulation::NAMES.iter().find(|(name, _)| *name == word).map(|(_, formulation)| *formulation)
+    Formulation::NAMES
+        .iter()
+        .find(|(name, _)| *name == word)
+        .map(|(_, formulation)| *formulation)
 }
 
 /// What the plan says for all runs, of one car.
@@ -191,7 +229,9 @@ fn binding(factor: &Factor, subject: bool, stride: usize) -> Binding {
 /// Whether a factor's values are words, or numbers mixed with words.
 pub(super) fn is_words(factor: &Factor) -> bool {
     match &factor.values {
-        FactorValues::List(list) => list.iter().any(|value| matches!(value, FactorValue::Word(_))),
+        FactorValues::List(list) => list
+            .iter()
+            .any(|value| matches!(value, FactorValue::Word(_))),
         FactorValues::Distribution(_) => false,
     }
 }
@@ -218,7 +258,10 @@ fn too_many(factor: &Factor) -> Problem {
         place: factor.place.clone(),
         key: factor.key.clone(),
         allowed: format!("at most {MOST_VARIANTS} combinations of words of one car"),
-        message: format!("with `{}` the words of the factors have too many combinations", factor.key),
+        message: format!(
+            "with `{}` the words of the factors have too many combinations",
+            factor.key
+        ),
         hint: "give fewer words, or split the plan".into(),
         ..Problem::default()
     }

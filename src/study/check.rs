@@ -17,8 +17,15 @@ pub(super) fn factor(plan: &Plan, index: usize, cars: &[StudyCar], problems: &mu
         }
     }
     if !reached && !cars.is_empty() {
-        let problem = at(factor, None, "the study has no baseline, so no car has this factor");
-        problems.push(Problem { hint: "name baselines, or give `cars = \"subject\"`".into(), ..problem });
+        let problem = at(
+            factor,
+            None,
+            "the study has no baseline, so no car has this factor",
+        );
+        problems.push(Problem {
+            hint: "name baselines, or give `cars = \"subject\"`".into(),
+            ..problem
+        });
     }
 }
 
@@ -34,9 +41,19 @@ pub(super) fn resolved(acts: Acts, base: f64, number: f64) -> f64 {
 fn numbers(plan: &Plan, index: usize, car: &StudyCar, acts: Acts, problems: &mut Vec<Problem>) {
     let factor = &plan.factors[index];
     // The car itself has been checked before.
-    let Ok(variant) = car.variant(0, &plan.factors) else { return };
-    problems.extend(variant.unknown.iter().filter(|(unknown, _)| *unknown == index).map(|(_, problem)| problem.clone()));
-    let Some(slot) = &variant.slots[index] else { return };
+    let Ok(variant) = car.variant(0, &plan.factors) else {
+        return;
+    };
+    problems.extend(
+        variant
+            .unknown
+            .iter()
+            .filter(|(unknown, _)| *unknown == index)
+            .map(|(_, problem)| problem.clone()),
+    );
+    let Some(slot) = &variant.slots[index] else {
+        return;
+    };
     let mut bench = variant.blueprint.bench();
     for (entry, number) in extremes(plan, index) {
         let value = resolved(acts, slot.base(), number);
@@ -52,10 +69,20 @@ fn numbers(plan: &Plan, index: usize, car: &StudyCar, acts: Acts, problems: &mut
 }
 
 /// Whether a value that is not possible by itself is so with some value of another factor: then it is for the points to tell.
-fn goes_with_another(plan: &Plan, index: usize, car: &StudyCar, variant: &Variant, value: f64) -> bool {
+fn goes_with_another(
+    plan: &Plan,
+    index: usize,
+    car: &StudyCar,
+    variant: &Variant,
+    value: f64,
+) -> bool {
     let mut bench = variant.blueprint.bench();
     let mut possible = |other: usize, number: f64| {
-        let (Some(slot), Some(beside), Binding::Number(acts)) = (&variant.slots[index], &variant.slots[other], car.bindings[other]) else {
+        let (Some(slot), Some(beside), Binding::Number(acts)) = (
+            &variant.slots[index],
+            &variant.slots[other],
+            car.bindings[other],
+        ) else {
             return false;
         };
         bench.reset();
@@ -65,21 +92,40 @@ fn goes_with_another(plan: &Plan, index: usize, car: &StudyCar, variant: &Varian
     };
     let others = (0..plan.factors.len()).filter(|other| *other != index);
     others
-        .flat_map(|other| extremes(plan, other).into_iter().map(move |(_, number)| (other, number)))
+        .flat_map(|other| {
+            extremes(plan, other)
+                .into_iter()
+                .map(move |(_, number)| (other, number))
+        })
         .any(|(other, number)| possible(other, number))
 }
 
-fn of_value(factor: &Factor, entry: Option<usize>, car: &StudyCar, number: f64, value: f64, problem: Problem) -> Problem {
+fn of_value(
+    factor: &Factor,
+    entry: Option<usize>,
+    car: &StudyCar,
+    number: f64,
+    value: f64,
+    problem: Problem,
+) -> Problem {
     let by = match factor.acts {
         Acts::Value => String::new(),
         Acts::Scale => format!(", the file's value times {number},"),
         Acts::Offset => format!(", the file's value and {number},"),
     };
     let unit = super::prepare::key_unit(&factor.key);
-    let unit = if unit == "-" { unit.replace('-', "") } else { format!(" {unit}") };
-    let tail = matches!(factor.values, FactorValues::Distribution(Distribution::Normal { .. } | Distribution::Lognormal { .. }));
+    let unit = if unit == "-" {
+        unit.replace('-', "")
+    } else {
+        format!(" {unit}")
+    };
+    let tail = matches!(
+        factor.values,
+        FactorValues::Distribution(Distribution::Normal { .. } | Distribution::Lognormal { .. })
+    );
     let hint = if tail && problem.hint.is_empty() {
-        "the distribution has no ends: cut it with truncated_normal, or give a smaller spread".to_owned()
+        "the distribution has no ends: cut it with truncated_normal, or give a smaller spread"
+            .to_owned()
     } else {
         problem.hint
     };
@@ -88,7 +134,10 @@ fn of_value(factor: &Factor, entry: Option<usize>, car: &StudyCar, number: f64, 
         key: factor.key.clone(),
         value: number.to_string(),
         allowed: problem.allowed,
-        message: format!("{}: {value}{unit}{by} is not possible: {}", car.name, problem.message),
+        message: format!(
+            "{}: {value}{unit}{by} is not possible: {}",
+            car.name, problem.message
+        ),
         hint,
     }
 }
@@ -96,7 +145,9 @@ fn of_value(factor: &Factor, entry: Option<usize>, car: &StudyCar, number: f64, 
 fn variants(plan: &Plan, index: usize, car: &StudyCar, stride: usize, problems: &mut Vec<Problem>) {
     let factor = &plan.factors[index];
     for (k, word) in words(factor).iter().enumerate() {
-        let Err(found) = car.variant((k + 1) * stride, &plan.factors) else { continue };
+        let Err(found) = car.variant((k + 1) * stride, &plan.factors) else {
+            continue;
+        };
         for problem in found {
             problems.push(Problem {
                 place: if problem.place.line > 0 && !problem.place.file.starts_with("--set") {
@@ -125,18 +176,41 @@ fn extremes(plan: &Plan, index: usize) -> Vec<(Option<usize>, f64)> {
         }
         FactorValues::Distribution(distribution) => {
             let (low, high) = distribution.support();
-            let tails = if low.is_finite() && high.is_finite() { None } else { Some(plan.design.share_span(&plan.factors, index)) };
-            let (low, high) = tails.map_or((low, high), |(low, high)| (distribution.inverse_cdf(low), distribution.inverse_cdf(high)));
+            let tails = if low.is_finite() && high.is_finite() {
+                None
+            } else {
+                Some(plan.design.share_span(&plan.factors, index))
+            };
+            let (low, high) = tails.map_or((low, high), |(low, high)| {
+                (
+                    distribution.inverse_cdf(low),
+                    distribution.inverse_cdf(high),
+                )
+            });
             vec![(None, low), (None, high)]
         }
     }
 }
 
 fn at(factor: &Factor, entry: Option<usize>, message: &str) -> Problem {
-    Problem { place: place(factor, entry), key: factor.key.clone(), message: message.to_owned(), ..Problem::default() }
+    Problem {
+        place: place(factor, entry),
+        key: factor.key.clone(),
+        message: message.to_owned(),
+        ..Problem::default()
+    }
 }
 
 fn place(factor: &Factor, entry: Option<usize>) -> Place {
-    let key = if matches!(factor.values, FactorValues::Distribution(_)) { "distribution" } else { "values" };
-    entry.map_or_else(|| factor.places.of(key), |entry| factor.places.nth(key, entry)).clone()
+    let key = if matches!(factor.values, FactorValues::Distribution(_)) {
+        "distribution"
+    } else {
+        "values"
+    };
+    entry
+        .map_or_else(
+            || factor.places.of(key),
+            |entry| factor.places.nth(key, entry),
+        )
+        .clone()
 }

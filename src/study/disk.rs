@@ -25,8 +25,18 @@ impl<'a> DirSink<'a> {
 impl Sink for DirSink<'_> {
     fn write(&self, part: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem> {
         let index = usize::try_from(part).unwrap_or(usize::MAX);
-        let trace = trace.map(|rows| PartTable { name: TRACES, columns: &self.study.trace_columns, rows, metadata: &[] });
-        let runs = PartTable { name: RUNS, columns: &self.study.columns, rows: runs, metadata: &[] };
+        let trace = trace.map(|rows| PartTable {
+            name: TRACES,
+            columns: &self.study.trace_columns,
+            rows,
+            metadata: &[],
+        });
+        let runs = PartTable {
+            name: RUNS,
+            columns: &self.study.columns,
+            rows: runs,
+            metadata: &[],
+        };
         let tables: Vec<PartTable> = trace.into_iter().chain([runs]).collect();
         self.dir.write_part(index, &tables)
     }
@@ -38,10 +48,14 @@ impl TableSource for store::Study {
     }
 
     fn columns(&self, part: u64, names: &[&str]) -> Result<Vec<Values>, Problem> {
-        self.part(usize::try_from(part).unwrap_or(usize::MAX), RUNS)?.read(names).map(|rows| rows.values)
+        self.part(usize::try_from(part).unwrap_or(usize::MAX), RUNS)?
+            .read(names)
+            .map(|rows| rows.values)
     }
 
     fn traces(&self, part: u64, names: &[&str]) -> Result<Vec<Values>, Problem> {
-        self.part(usize::try_from(part).unwrap_or(usize::MAX), TRACES)?.read(names).map(|rows| rows.values)
+        self.part(usize::try_from(part).unwrap_or(usize::MAX), TRACES)?
+            .read(names)
+            .map(|rows| rows.values)
     }
 }

@@ -90,8 +90,13 @@ impl Study {
 
     fn trace_rows_per_point(&self) -> u64 {
         let rows = |car: &super::cars::StudyCar| {
-            let automatic = car.setups(&self.plan.factors).any(|setup| setup.transmission().is_cvt());
-            let steps = self.cycles.iter().map(|cycle| cycle.trace_for(automatic).step_count(self.plan.base.dt_s));
+            let automatic = car
+                .setups(&self.plan.factors)
+                .any(|setup| setup.transmission().is_cvt());
+            let steps = self
+                .cycles
+                .iter()
+                .map(|cycle| cycle.trace_for(automatic).step_count(self.plan.base.dt_s));
             steps.max().unwrap_or(0) as u64
         };
         self.cars.iter().map(rows).sum()
@@ -102,21 +107,48 @@ impl Study {
     ///
     /// # Errors
     /// The sink's problem.
-    pub fn execute(&self, done: &BTreeSet<u64>, sink: &dyn Sink, watcher: &dyn Watcher) -> Result<End, Problem> {
+    pub fn execute(
+        &self,
+        done: &BTreeSet<u64>,
+        sink: &dyn Sink,
+        watcher: &dyn Watcher,
+    ) -> Result<End, Problem> {
         let left = (0..self.parts()).filter(|part| !done.contains(part));
-        let papers = Papers { left: Box::new(left), points: (0, 0..0), pieces: BTreeMap::new(), spare: Vec::new() };
+        let papers = Papers {
+            left: Box::new(left),
+            points: (0, 0..0),
+            pieces: BTreeMap::new(),
+            spare: Vec::new(),
+        };
         let chunk = (self.points_per_part() / CHUNKS).max(LEAST_CHUNK);
-        let desk = Desk { study: self, trace_rows: self.trace_rows_per_point(), chunk, papers: Mutex::new(papers) };
+        let desk = Desk {
+            study: self,
+            trace_rows: self.trace_rows_per_point(),
+            chunk,
+            papers: Mutex::new(papers),
+        };
         // One part waits while another is written: enough that no thread is idle, little enough that memory stays flat.
         let (send, receive) = sync_channel::<Part>(1);
         std::thread::scope(|scope| {
             let desk = &desk;
-            let writer = scope.spawn(move || receive.into_iter().try_for_each(|part| part.write(sink, desk)));
+            let writer = scope.spawn(move || {
+                receive
+                    .into_iter()
+                    .try_for_each(|part| part.write(sink, desk))
+            });
             let ends = rayon::broadcast(|_| self.work(desk, &Out { sink, send: &send }, watcher));
             drop(send);
-            let written = writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            let written = writer
+                .join()
+                .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             let ends: Vec<End> = ends.into_iter().collect::<Result<_, _>>()?;
-            written.map(|()| if ends.contains(&End::Stopped) { End::Stopped } else { End::Complete })
+            written.map(|()| {
+                if ends.contains(&End::Stopped) {
+                    End::Stopped
+                } else {
+                    End::Complete
+                }
+            })
         })
     }
 
@@ -129,7 +161,9 @@ impl Study {
                 desk.clear();
                 return Ok(End::Stopped);
             };
-            let Some(pieces) = desk.give(part, from, piece) else { continue };
+            let Some(pieces) = desk.give(part, from, piece) else {
+                continue;
+            };
             let taken = out.put(self.whole(part, pieces, desk), desk);
             if !matches!(taken, Ok(true)) {
                 desk.clear();
@@ -140,9 +174,16 @@ impl Study {
     }
 
     /// Drives some points; nothing if the watcher has stopped it.
-    fn piece(&self, points: Range<u64>, trace_rows: u64, worker: &mut Worker, watcher: &dyn Watcher) -> Option<Piece> {
+    fn piece(
+        &self,
+        points: Range<u64>,
+        trace_rows: u64,
+        worker: &mut Worker,
+        watcher: &dyn Watcher,
+    ) -> Option<Piece> {
         let count = points.end - points.start;
-        let rows_of = |per_point: u64| usize::try_from(count.saturating_mul(per_point)).unwrap_or(0);
+        let rows_of =
+            |per_point: u64| usize::try_from(count.saturating_mul(per_point)).unwrap_or(0);
         let filler = Filler::new(self);
         let mut runs = Rows::with_capacity(&self.columns, rows_of(self.cars.len() as u64));
         let mut traces = Traces::new(self, || rows_of(trace_rows));
@@ -150,10 +191,18 @@ impl Study {
             if watcher.stopped() {
                 return None;
             }
-            filler.push(point, &self.point(point, worker, traces.as_mut()), &mut runs);
+            filler.push(
+                point,
+                &self.point(point, worker, traces.as_mut()),
+                &mut runs,
+            );
             watcher.advance(self.cars.len() as u64);
         }
-        Some(Piece { points: count, runs, traces: traces.map(Traces::into_rows) })
+        Some(Piece {
+            points: count,
+            runs,
+            traces: traces.map(Traces::into_rows),
+        })
     }
 
     /// Puts the pieces of a part together, in order.
@@ -162,7 +211,8 @@ impl Study {
         let mut runs = Rows::with_capacity(&self.columns, rows(|piece| piece.runs.len()));
         let trace_rows = rows(|piece| piece.traces.as_ref().map_or(0, Rows::len));
         let new = || Rows::with_capacity(&self.trace_columns, trace_rows);
-        let mut traces = (!self.traces.is_empty()).then(|| desk.papers().spare.pop().unwrap_or_else(new));
+        let mut traces =
+            (!self.traces.is_empty()).then(|| desk.papers().spare.pop().unwrap_or_else(new));
         for piece in pieces {
             runs.append(piece.runs);
             if let (Some(traces), Some(rows)) = (&mut traces, piece.traces) {
@@ -260,7 +310,10 @@ impl<'s> Desk<'s> {
         if pieces.values().map(|piece| piece.points).sum::<u64>() < points.end - points.start {
             return None;
         }
-        papers.pieces.remove(&part).map(|pieces| pieces.into_values().collect())
+        papers
+            .pieces
+            .remove(&part)
+            .map(|pieces| pieces.into_values().collect())
     }
 
     /// Nothing is left to take.

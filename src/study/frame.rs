@@ -51,7 +51,11 @@ impl<'a> Frame<'a> {
     /// # Errors
     /// A part that cannot be read.
     pub fn new(outline: &'a Outline, source: &'a dyn TableSource) -> Result<Self, Problem> {
-        let mut frame = Frame { outline, source, status: Vec::new() };
+        let mut frame = Frame {
+            outline,
+            source,
+            status: Vec::new(),
+        };
         let mut status = vec![Status::Missing; frame.cells()];
         frame.each("status", |at, values| {
             if let Values::Text(words) = values {
@@ -69,14 +73,19 @@ impl<'a> Frame<'a> {
     }
 
     fn cells(&self) -> usize {
-        usize::try_from(self.outline.points).unwrap_or(usize::MAX).saturating_mul(self.outline.cars.len())
+        usize::try_from(self.outline.points)
+            .unwrap_or(usize::MAX)
+            .saturating_mul(self.outline.cars.len())
     }
 
     fn each(&self, name: &str, mut f: impl FnMut(usize, Values)) -> Result<(), Problem> {
-        let per_part = usize::try_from(self.outline.points_per_part).unwrap_or(usize::MAX) * self.outline.cars.len();
+        let per_part = usize::try_from(self.outline.points_per_part).unwrap_or(usize::MAX)
+            * self.outline.cars.len();
         for part in self.source.parts() {
             let values = self.source.columns(part, &[name])?;
-            let at = usize::try_from(part).unwrap_or(usize::MAX).saturating_mul(per_part);
+            let at = usize::try_from(part)
+                .unwrap_or(usize::MAX)
+                .saturating_mul(per_part);
             if let (Some(values), true) = (values.into_iter().next(), at < self.cells()) {
                 f(at, values);
             }
@@ -88,7 +97,11 @@ impl<'a> Frame<'a> {
     ///
     /// # Errors
     /// A part that cannot be read.
-    pub fn each_trace(&self, names: &[&str], mut f: impl FnMut(&[i64], &[Arc<str>], &[Values])) -> Result<(), Problem> {
+    pub fn each_trace(
+        &self,
+        names: &[&str],
+        mut f: impl FnMut(&[i64], &[Arc<str>], &[Values]),
+    ) -> Result<(), Problem> {
         let wanted: Vec<&str> = ["point", "vehicle"].iter().chain(names).copied().collect();
         for part in self.source.parts() {
             let values = self.source.traces(part, &wanted)?;
@@ -107,7 +120,11 @@ impl<'a> Frame<'a> {
 
     /// How the runs of a car ended, by point.
     pub fn status(&self, car: usize) -> impl Iterator<Item = Status> {
-        self.status.iter().skip(car).step_by(self.outline.cars.len()).copied()
+        self.status
+            .iter()
+            .skip(car)
+            .step_by(self.outline.cars.len())
+            .copied()
     }
 
     /// A number of a car at each point; NaN where its run was not ok (or, for what compares it with the subject, the subject's was not).
@@ -128,17 +145,21 @@ impl<'a> Frame<'a> {
 
     fn numbers_where(&self, name: &str, car: usize, only_ok: bool) -> Result<Vec<f64>, Problem> {
         let cars = self.outline.cars.len();
-        let mut numbers = vec![f64::NAN; usize::try_from(self.outline.points).unwrap_or(usize::MAX)];
+        let mut numbers =
+            vec![f64::NAN; usize::try_from(self.outline.points).unwrap_or(usize::MAX)];
         let compares = name.starts_with("subject_excess_");
         self.each(name, |at, values| {
-            let Values::Number(cells) = values else { return };
+            let Values::Number(cells) = values else {
+                return;
+            };
             for (k, x) in cells.into_iter().enumerate().skip(car).step_by(cars) {
                 let cell = at + k;
                 if cell >= self.status.len() {
                     break; // more rows than the study has points
                 }
                 let subject = cell / cars * cars;
-                let good = self.status[cell] == Status::Ok && (!compares || self.status[subject] == Status::Ok);
+                let good = self.status[cell] == Status::Ok
+                    && (!compares || self.status[subject] == Status::Ok);
                 if good || !only_ok {
                     numbers[cell / cars] = x;
                 }

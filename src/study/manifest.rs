@@ -49,7 +49,11 @@ impl Study {
     /// Names of the tables of a part, in the order in which they are written.
     fn tables(&self) -> Vec<String> {
         let traces = (!self.traces.is_empty()).then_some(TRACES);
-        traces.into_iter().chain([RUNS]).map(str::to_owned).collect()
+        traces
+            .into_iter()
+            .chain([RUNS])
+            .map(str::to_owned)
+            .collect()
     }
 
     fn base(&self) -> Value {
@@ -71,12 +75,19 @@ impl Study {
 
     /// Every value of a car that no factor changes, as it was resolved, with its status.
     fn car_values(&self, car: &super::cars::StudyCar) -> Value {
-        let Ok(variant) = car.variant(0, &self.plan.factors) else { return Value::Null };
+        let Ok(variant) = car.variant(0, &self.plan.factors) else {
+            return Value::Null;
+        };
         let setup = &variant.setup;
         let values: serde_json::Map<String, Value> = setup
             .keys
             .iter()
-            .map(|info| (info.key.clone(), json!({"value": info.value, "unit": info.unit, "status": info.status})))
+            .map(|info| {
+                (
+                    info.key.clone(),
+                    json!({"value": info.value, "unit": info.unit, "status": info.status}),
+                )
+            })
             .collect();
         json!({
             "name": &*car.name,
@@ -93,7 +104,10 @@ impl Study {
 }
 
 fn columns(columns: &[Column]) -> Vec<Value> {
-    columns.iter().map(|column| json!({"name": column.name, "unit": column.unit, "doc": column.doc})).collect()
+    columns
+        .iter()
+        .map(|column| json!({"name": column.name, "unit": column.unit, "doc": column.doc}))
+        .collect()
 }
 
 fn design(design: &Design) -> Value {
@@ -142,7 +156,10 @@ fn entry(value: &FactorValue) -> Value {
 /// SHA-256 in hexadecimal.
 #[must_use]
 pub fn hash(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    Sha256::digest(bytes)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
 }
 
 /// A value as indented JSON with a line end.

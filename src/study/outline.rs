@@ -32,7 +32,11 @@ impl Outline {
     /// Of a study that is ready to run.
     #[must_use]
     pub fn of(study: &Study) -> Self {
-        let columns: Vec<(String, String)> = study.columns.iter().map(|c| (c.name.clone(), c.unit.clone())).collect();
+        let columns: Vec<(String, String)> = study
+            .columns
+            .iter()
+            .map(|c| (c.name.clone(), c.unit.clone()))
+            .collect();
         Outline {
             title: study.plan.title.clone(),
             question: study.plan.question.clone(),
@@ -51,25 +55,50 @@ impl Outline {
     /// # Errors
     /// What is wrong with the manifest, in words.
     pub fn read(manifest: &Value, file: &str, plan: &str) -> Result<Self, String> {
-        let text = |key: &str| manifest[key].as_str().map(str::to_owned).ok_or_else(|| missing(key));
+        let text = |key: &str| {
+            manifest[key]
+                .as_str()
+                .map(str::to_owned)
+                .ok_or_else(|| missing(key))
+        };
         let number = |key: &str| manifest[key].as_u64().ok_or_else(|| missing(key));
         let schema = number("schema")?;
         if schema != u64::from(super::manifest::SCHEMA) {
-            return Err(format!("it has schema {schema}; this program reads schema {}", super::manifest::SCHEMA));
+            return Err(format!(
+                "it has schema {schema}; this program reads schema {}",
+                super::manifest::SCHEMA
+            ));
         }
-        let mut plan =
-            Plan::read(file, plan).map_err(|problems| problems.iter().map(|p| p.message.clone()).collect::<Vec<_>>().join("; "))?;
+        let mut plan = Plan::read(file, plan).map_err(|problems| {
+            problems
+                .iter()
+                .map(|p| p.message.clone())
+                .collect::<Vec<_>>()
+                .join("; ")
+        })?;
         plan.design = design(&manifest["design"]).ok_or_else(|| missing("design"))?;
         // The tables are as large as the plan says, so a damaged number here would ask for any amount of memory.
         let (points, points_per_part) = (number("points")?, number("points_per_part")?);
-        if plan.design.points(&plan.factors) != Some(points) || !(1..=points.max(1)).contains(&points_per_part) {
+        if plan.design.points(&plan.factors) != Some(points)
+            || !(1..=points.max(1)).contains(&points_per_part)
+        {
             return Err("its number of points is not that of its plan".to_owned());
         }
-        let strings =
-            |value: &Value| value.as_array().map(|list| list.iter().filter_map(|v| v.as_str().map(str::to_owned)).collect::<Vec<_>>());
+        let strings = |value: &Value| {
+            value.as_array().map(|list| {
+                list.iter()
+                    .filter_map(|v| v.as_str().map(str::to_owned))
+                    .collect::<Vec<_>>()
+            })
+        };
         let field = |value: &Value, key: &str| value[key].as_str().unwrap_or_default().to_owned();
-        let columns = manifest["columns"].as_array().ok_or_else(|| missing("columns"))?;
-        let columns: Vec<(String, String)> = columns.iter().map(|c| (field(c, "name"), field(c, "unit"))).collect();
+        let columns = manifest["columns"]
+            .as_array()
+            .ok_or_else(|| missing("columns"))?;
+        let columns: Vec<(String, String)> = columns
+            .iter()
+            .map(|c| (field(c, "name"), field(c, "unit")))
+            .collect();
         let cars = manifest["cars"].as_array().ok_or_else(|| missing("cars"))?;
         let names = strings(&manifest["analyse"]).ok_or_else(|| missing("analyse"))?;
         Ok(Outline {
@@ -105,11 +134,25 @@ fn design(value: &Value) -> Option<Design> {
     let (samples, seed) = (value["samples"].as_u64(), value["seed"].as_u64());
     Some(match value["kind"].as_str()? {
         "grid" => Design::Grid,
-        "one_at_a_time" => Design::OneAtATime { quantile: value["quantile"].as_f64()? },
-        "latin_hypercube" => Design::LatinHypercube { samples: samples?, seed: seed? },
-        "sobol" => Design::Sobol { samples: samples?, seed: seed? },
-        "monte_carlo" => Design::MonteCarlo { samples: samples?, seed: seed? },
-        "saltelli" => Design::Saltelli { samples: samples?, seed: seed? },
+        "one_at_a_time" => Design::OneAtATime {
+            quantile: value["quantile"].as_f64()?,
+        },
+        "latin_hypercube" => Design::LatinHypercube {
+            samples: samples?,
+            seed: seed?,
+        },
+        "sobol" => Design::Sobol {
+            samples: samples?,
+            seed: seed?,
+        },
+        "monte_carlo" => Design::MonteCarlo {
+            samples: samples?,
+            seed: seed?,
+        },
+        "saltelli" => Design::Saltelli {
+            samples: samples?,
+            seed: seed?,
+        },
         _ => return None,
     })
 }

@@ -64,10 +64,23 @@ struct DrivenCar {
 
 impl Study {
     /// Drives a point; the rows of its runs go into `traces`, if they are kept.
-    pub(super) fn point(&self, point: u64, worker: &mut Worker, mut traces: Option<&mut Traces>) -> Vec<PointRun> {
+    pub(super) fn point(
+        &self,
+        point: u64,
+        worker: &mut Worker,
+        mut traces: Option<&mut Traces>,
+    ) -> Vec<PointRun> {
         let mut levels = std::mem::take(&mut worker.levels);
-        self.plan.design.levels(&self.plan.factors, point, &mut levels);
-        let values: Vec<Option<FactorValue>> = self.plan.factors.iter().zip(&levels).map(|(factor, level)| factor.value(*level)).collect();
+        self.plan
+            .design
+            .levels(&self.plan.factors, point, &mut levels);
+        let values: Vec<Option<FactorValue>> = self
+            .plan
+            .factors
+            .iter()
+            .zip(&levels)
+            .map(|(factor, level)| factor.value(*level))
+            .collect();
         worker.levels = levels;
         let mut subject: Option<RunSummary> = None;
         let mut runs = Vec::with_capacity(self.cars.len());
@@ -75,7 +88,13 @@ impl Study {
             if let Some(traces) = &mut traces {
                 traces.begin(point, car);
             }
-            let (run, summary) = self.car((k, car), &values, worker, subject.as_ref(), traces.as_deref_mut());
+            let (run, summary) = self.car(
+                (k, car),
+                &values,
+                worker,
+                subject.as_ref(),
+                traces.as_deref_mut(),
+            );
             if k == 0 {
                 subject = summary;
             }
@@ -93,13 +112,22 @@ impl Study {
         traces: Option<&mut Traces>,
     ) -> (PointRun, Option<RunSummary>) {
         let cycle = self.cycle_of(car, values);
-        let mut run = PointRun { status: Status::Ok, factors: Vec::new(), numbers: Vec::new() };
+        let mut run = PointRun {
+            status: Status::Ok,
+            factors: Vec::new(),
+            numbers: Vec::new(),
+        };
         let driven = match self.build(k, car, values, worker, &mut run.factors) {
             Ok(setup) => {
                 let conditions = self.conditions(car, values);
                 let cycle = &self.cycles[cycle];
                 let outcome = match traces {
-                    Some(traces) => drive_into(&setup, cycle, &conditions, Some(&mut |rows| traces.push(cycle, rows))),
+                    Some(traces) => drive_into(
+                        &setup,
+                        cycle,
+                        &conditions,
+                        Some(&mut |rows| traces.push(cycle, rows)),
+                    ),
                     None => drive_into(&setup, cycle, &conditions, None),
                 };
                 DrivenCar { setup, outcome }
@@ -110,12 +138,23 @@ impl Study {
                 return (run, None);
             }
         };
-        let settings = Settings { formulation: self.formulation_word(car, values), ..Settings::default() };
-        let named = Driven { name: &car.name, setup: &driven.setup, outcome: &driven.outcome };
+        let settings = Settings {
+            formulation: self.formulation_word(car, values),
+            ..Settings::default()
+        };
+        let named = Driven {
+            name: &car.name,
+            setup: &driven.setup,
+            outcome: &driven.outcome,
+        };
         let summary = run_summary(&self.cycles[cycle], &car.role, &settings, &named);
         run.status = status(&summary);
         let excess = subject.map(|subject| compare(subject, &summary));
-        run.numbers = self.outputs.iter().map(|output| output.number(&summary, excess.as_ref())).collect();
+        run.numbers = self
+            .outputs
+            .iter()
+            .map(|output| output.number(&summary, excess.as_ref()))
+            .collect();
         (run, Some(summary))
     }
 
@@ -129,17 +168,28 @@ impl Study {
         factors: &mut Vec<Option<FactorValue>>,
     ) -> Result<Setup, String> {
         let all = &self.plan.factors;
-        let index = all.iter().zip(values).enumerate().map(|(f, (factor, value))| car.weight(f, factor, value.as_ref())).sum();
+        let index = all
+            .iter()
+            .zip(values)
+            .enumerate()
+            .map(|(f, (factor, value))| car.weight(f, factor, value.as_ref()))
+            .sum();
         let variant = car.variant(index, all);
         for (f, value) in values.iter().enumerate() {
-            let slot = variant.as_ref().ok().and_then(|variant| variant.slots[f].as_ref());
+            let slot = variant
+                .as_ref()
+                .ok()
+                .and_then(|variant| variant.slots[f].as_ref());
             factors.push(self.resolve(f, car, value.as_ref(), slot.map(Slot::base)));
         }
         let variant = variant.map_err(reason)?;
         if let Some((_, problem)) = variant.unknown.first() {
             return Err(reason(std::slice::from_ref(problem)));
         }
-        let bench = worker.benches.entry((k, index)).or_insert_with(|| variant.blueprint.bench());
+        let bench = worker
+            .benches
+            .entry((k, index))
+            .or_insert_with(|| variant.blueprint.bench());
         bench.reset();
         for ((slot, value), given) in variant.slots.iter().zip(factors.iter()).zip(values) {
             // What the design leaves alone is not put in again: a file may well not give it.
@@ -151,7 +201,13 @@ impl Study {
     }
 
     /// What a factor's value has become in a car, or the car's own where the design leaves it; none where the factor does not reach it.
-    fn resolve(&self, f: usize, car: &StudyCar, value: Option<&FactorValue>, base: Option<f64>) -> Option<FactorValue> {
+    fn resolve(
+        &self,
+        f: usize,
+        car: &StudyCar,
+        value: Option<&FactorValue>,
+        base: Option<f64>,
+    ) -> Option<FactorValue> {
         let number = |acts, base: f64| match value {
             Some(FactorValue::Number(x)) => FactorValue::Number(resolved(acts, base, *x)),
             Some(word) => word.clone(),
@@ -162,7 +218,9 @@ impl Study {
             Binding::Number(acts) => base.map(|base| number(acts, base)),
             Binding::Ambient => Some(number(Acts::Value, self.plan.base.ambient_degc)),
             Binding::Step => Some(number(Acts::Value, self.plan.base.dt_s)),
-            Binding::Start | Binding::Cycle | Binding::Words { .. } => value.cloned().or_else(|| self.own_word(f, car)),
+            Binding::Start | Binding::Cycle | Binding::Words { .. } => {
+                value.cloned().or_else(|| self.own_word(f, car))
+            }
         }
     }
 
@@ -176,23 +234,42 @@ impl Study {
             "lubricant" => setup.oils().0.name.clone(),
             "engine_oil" => setup.oils().1.name.clone(),
             "formulation" => name_of(base.formulation).to_owned(),
-            key => setup.keys.iter().find(|info| info.key == key)?.value.clone(),
+            key => setup
+                .keys
+                .iter()
+                .find(|info| info.key == key)?
+                .value
+                .clone(),
         };
         Some(FactorValue::Word(word.into()))
     }
 
     /// The value of a run option at this point, if a factor gives it to this car.
-    fn option<'v>(&self, key: &str, car: &StudyCar, values: &'v [Option<FactorValue>]) -> Option<&'v FactorValue> {
-        let index = (0..values.len()).find(|&f| self.plan.factors[f].key == key && car.bindings[f] != Binding::Not)?;
+    fn option<'v>(
+        &self,
+        key: &str,
+        car: &StudyCar,
+        values: &'v [Option<FactorValue>],
+    ) -> Option<&'v FactorValue> {
+        let index = (0..values.len())
+            .find(|&f| self.plan.factors[f].key == key && car.bindings[f] != Binding::Not)?;
         values[index].as_ref()
     }
 
     /// Index of the cycle: the plan's comes first, then those of the factor's list.
     fn cycle_of(&self, car: &StudyCar, values: &[Option<FactorValue>]) -> usize {
-        let Some(value) = self.option("cycle", car, values) else { return 0 };
+        let Some(value) = self.option("cycle", car, values) else {
+            return 0;
+        };
         let word = text(value);
-        let factor = self.plan.factors.iter().find(|factor| factor.key == "cycle");
-        factor.and_then(|factor| words(factor).iter().position(|other| *other == word)).map_or(0, |k| k + 1)
+        let factor = self
+            .plan
+            .factors
+            .iter()
+            .find(|factor| factor.key == "cycle");
+        factor
+            .and_then(|factor| words(factor).iter().position(|other| *other == word))
+            .map_or(0, |k| k + 1)
     }
 
     fn conditions(&self, car: &StudyCar, values: &[Option<FactorValue>]) -> Conditions {
@@ -218,7 +295,9 @@ impl Study {
     }
 
     fn formulation_word(&self, car: &StudyCar, values: &[Option<FactorValue>]) -> String {
-        let word = self.option("formulation", car, values).map(|value| text(value).to_string());
+        let word = self
+            .option("formulation", car, values)
+            .map(|value| text(value).to_string());
         word.unwrap_or_else(|| name_of(self.plan.base.formulation).to_owned())
     }
 }
@@ -228,7 +307,9 @@ fn start(word: &str) -> Start {
         "soak" => Start::Soak,
         "warm" => Start::Warm,
         // The plan has checked that it is a number.
-        degc => degc.parse().map_or(Start::Soak, |degc: f64| Start::At(degc + ZERO_DEGC_K)),
+        degc => degc
+            .parse()
+            .map_or(Start::Soak, |degc: f64| Start::At(degc + ZERO_DEGC_K)),
     }
 }
 
@@ -242,26 +323,32 @@ fn status(summary: &RunSummary) -> Status {
     if reasons.is_empty() {
         return Status::Ok;
     }
-    let told = reasons.iter().map(|name| match (name.as_str(), &summary.worst_deficit) {
-        ("missed_trace", Some(worst)) => format!(
-            "missed_trace for {:.0} s, worst {:.1} kW at {:.0} s in {}",
-            summary.trace_missed_s,
-            worst.power_w / 1e3,
-            worst.at_s,
-            worst.phase
-        ),
-        (name, _) => match summary.flags_s.get(name) {
-            Some(s) => format!("{name} for {s:.0} s"),
-            None => name.to_owned(),
-        },
-    });
+    let told = reasons
+        .iter()
+        .map(|name| match (name.as_str(), &summary.worst_deficit) {
+            ("missed_trace", Some(worst)) => format!(
+                "missed_trace for {:.0} s, worst {:.1} kW at {:.0} s in {}",
+                summary.trace_missed_s,
+                worst.power_w / 1e3,
+                worst.at_s,
+                worst.phase
+            ),
+            (name, _) => match summary.flags_s.get(name) {
+                Some(s) => format!("{name} for {s:.0} s"),
+                None => name.to_owned(),
+            },
+        });
     Status::Failed(told.collect::<Vec<_>>().join("; "))
 }
 
 /// Problems in one line.
 fn reason(problems: &[Problem]) -> String {
     let told = problems.iter().map(|problem| {
-        let allowed = if problem.allowed.is_empty() { String::new() } else { format!(" (allowed: {})", problem.allowed) };
+        let allowed = if problem.allowed.is_empty() {
+            String::new()
+        } else {
+            format!(" (allowed: {})", problem.allowed)
+        };
         format!("{}{allowed}", problem.message)
     });
     let text = told.collect::<Vec<_>>().join("; ");
@@ -282,16 +369,37 @@ struct Words {
 
 impl<'s> Filler<'s> {
     pub fn new(study: &'s Study) -> Self {
-        Filler { study, words: Words { empty: "".into(), ok: "ok".into() } }
+        Filler {
+            study,
+            words: Words {
+                empty: "".into(),
+                ok: "ok".into(),
+            },
+        }
     }
 
     /// Appends the runs of a point.
     pub fn push(&self, point: u64, runs: &[PointRun], rows: &mut Rows) {
         for (car, run) in self.study.cars.iter().zip(runs) {
-            let word = |text: &str| if text.is_empty() { self.words.empty.clone() } else { Arc::from(text) };
-            let status = if run.status == Status::Ok { self.words.ok.clone() } else { word(run.status.word()) };
+            let word = |text: &str| {
+                if text.is_empty() {
+                    self.words.empty.clone()
+                } else {
+                    Arc::from(text)
+                }
+            };
+            let status = if run.status == Status::Ok {
+                self.words.ok.clone()
+            } else {
+                word(run.status.word())
+            };
             let mut columns = rows.values.iter_mut();
-            let head = [car.name.clone(), car.role.clone(), status, word(run.status.reason())];
+            let head = [
+                car.name.clone(),
+                car.role.clone(),
+                status,
+                word(run.status.reason()),
+            ];
             if let Some(Values::Count(cells)) = columns.next() {
                 cells.push(i64::try_from(point).unwrap_or(i64::MAX));
             }

@@ -55,12 +55,21 @@ impl Study {
     /// # Errors
     /// All problems.
     pub fn prepare(plan: Plan) -> Result<Self, Vec<Problem>> {
-        let folder = Path::new(&plan.file).parent().filter(|_| is_path(&plan.file)).map(Path::to_path_buf).unwrap_or_default();
+        let folder = Path::new(&plan.file)
+            .parent()
+            .filter(|_| is_path(&plan.file))
+            .map(Path::to_path_buf)
+            .unwrap_or_default();
         let mut problems = Vec::new();
         let cars = cars(&plan, &folder, &mut problems);
         let cycles = cycles(&plan, &folder, &mut problems);
         let Some(points) = plan.design.points(&plan.factors) else {
-            problems.push(of_plan(&plan, "design", "the design has more points than can be counted", "give fewer values"));
+            problems.push(of_plan(
+                &plan,
+                "design",
+                "the design has more points than can be counted",
+                "give fewer values",
+            ));
             return Err(problems);
         };
         for index in 0..plan.factors.len() {
@@ -77,10 +86,29 @@ impl Study {
         columns.append(&mut heads);
         columns.extend(outputs.iter().map(|o| o.column.clone()));
         let traces = traces(&plan, &cars, &parts);
-        let trace_columns = if traces.is_empty() { Vec::new() } else { trace_columns(&traces) };
-        let study = Study { plan, points, cars, cycles, phases, columns, trace_columns, factor_columns, outputs, traces };
+        let trace_columns = if traces.is_empty() {
+            Vec::new()
+        } else {
+            trace_columns(&traces)
+        };
+        let study = Study {
+            plan,
+            points,
+            cars,
+            cycles,
+            phases,
+            columns,
+            trace_columns,
+            factor_columns,
+            outputs,
+            traces,
+        };
         let unknown = study.unknown_analysed();
-        if unknown.is_empty() { Ok(study) } else { Err(unknown) }
+        if unknown.is_empty() {
+            Ok(study)
+        } else {
+            Err(unknown)
+        }
     }
 
     /// Number of runs.
@@ -91,7 +119,9 @@ impl Study {
 
     /// Names of the numbers of a row that can be analysed.
     pub fn output_names(&self) -> impl Iterator<Item = &str> {
-        self.outputs.iter().map(|output| output.column.name.as_str())
+        self.outputs
+            .iter()
+            .map(|output| output.column.name.as_str())
     }
 
     /// Names of the numbers that are analysed: those of the plan, or else the fuels and the subject's excess, by phase as well.
@@ -102,8 +132,13 @@ impl Study {
         }
         let phases = || self.phases.iter();
         let fuels = std::iter::once(FUEL.to_owned()).chain(phases().map(|phase| phase_fuel(phase)));
-        let excess = std::iter::once(EXCESS.to_owned()).chain(phases().map(|phase| phase_excess(phase)));
-        if self.cars.len() > 1 { fuels.chain(excess).collect() } else { fuels.collect() }
+        let excess =
+            std::iter::once(EXCESS.to_owned()).chain(phases().map(|phase| phase_excess(phase)));
+        if self.cars.len() > 1 {
+            fuels.chain(excess).collect()
+        } else {
+            fuels.collect()
+        }
     }
 
     /// Index of a column of the table of runs.
@@ -114,13 +149,30 @@ impl Study {
 
     fn unknown_analysed(&self) -> Vec<Problem> {
         let known: Vec<&str> = self.output_names().collect();
-        let unknown = self.plan.analyse.iter().filter(|name| !known.contains(&name.as_str()));
+        let unknown = self
+            .plan
+            .analyse
+            .iter()
+            .filter(|name| !known.contains(&name.as_str()));
         unknown
             .map(|name| {
                 let close = crate::config::near(name, known.iter().copied());
-                let hint = if close.is_empty() { String::new() } else { format!("did you mean {}? ", close.join(", ")) };
-                let problem = of_plan(&self.plan, "analyse", &format!("there is no number named `{name}` in a run's row"), "");
-                Problem { value: name.clone(), hint: format!("{hint}docs/plan_format.md names them"), ..problem }
+                let hint = if close.is_empty() {
+                    String::new()
+                } else {
+                    format!("did you mean {}? ", close.join(", "))
+                };
+                let problem = of_plan(
+                    &self.plan,
+                    "analyse",
+                    &format!("there is no number named `{name}` in a run's row"),
+                    "",
+                );
+                Problem {
+                    value: name.clone(),
+                    hint: format!("{hint}docs/plan_format.md names them"),
+                    ..problem
+                }
             })
             .collect()
     }
@@ -149,7 +201,11 @@ pub(super) fn of_plan(plan: &Plan, key: &str, message: &str, hint: &str) -> Prob
 
 /// A file that the plan names, seen from the current directory.
 pub(super) fn beside(folder: &Path, word: &str) -> String {
-    if is_path(word) { folder.join(word).to_string_lossy().into_owned() } else { word.to_owned() }
+    if is_path(word) {
+        folder.join(word).to_string_lossy().into_owned()
+    } else {
+        word.to_owned()
+    }
 }
 
 /// A car's file as the study cites it.
@@ -160,7 +216,10 @@ fn cars(plan: &Plan, folder: &Path, problems: &mut Vec<Problem>) -> Vec<StudyCar
     let named = match &plan.base.baselines {
         Some(list) => list.iter().map(|name| beside(folder, name)).collect(),
         // Names in the vehicle's file are relative to that file.
-        None => own.iter().map(|name| beside(Path::new(&subject).parent().unwrap_or(Path::new("")), name)).collect::<Vec<_>>(),
+        None => own
+            .iter()
+            .map(|name| beside(Path::new(&subject).parent().unwrap_or(Path::new("")), name))
+            .collect::<Vec<_>>(),
     };
     for word in named {
         add(&word, "baselines", false, plan, &mut cars, problems);
@@ -169,11 +228,23 @@ fn cars(plan: &Plan, folder: &Path, problems: &mut Vec<Problem>) -> Vec<StudyCar
 }
 
 /// Adds a car, and gives the baselines that its file names.
-fn add(word: &str, key: &str, subject: bool, plan: &Plan, cars: &mut Vec<StudyCar>, problems: &mut Vec<Problem>) -> Vec<String> {
-    let stem = Path::new(word).file_stem().map_or_else(|| word.to_owned(), |s| s.to_string_lossy().into_owned());
+fn add(
+    word: &str,
+    key: &str,
+    subject: bool,
+    plan: &Plan,
+    cars: &mut Vec<StudyCar>,
+    problems: &mut Vec<Problem>,
+) -> Vec<String> {
+    let stem = Path::new(word)
+        .file_stem()
+        .map_or_else(|| word.to_owned(), |s| s.to_string_lossy().into_owned());
     let name = unique(&stem, cars);
     let made = StudyCar::new(&name, word, subject, plan).map_err(|problem| vec![problem]);
-    match made.and_then(|car| car.check_base(&plan.factors).map(|baselines| (car, baselines))) {
+    match made.and_then(|car| {
+        car.check_base(&plan.factors)
+            .map(|baselines| (car, baselines))
+    }) {
         Ok((car, baselines)) => {
             cars.push(car);
             baselines
@@ -187,7 +258,11 @@ fn add(word: &str, key: &str, subject: bool, plan: &Plan, cars: &mut Vec<StudyCa
 
 /// A problem of what the plan names, with the plan's file where it has no better place.
 fn in_plan(plan: &Plan, key: &str, problem: Problem) -> Problem {
-    let place = if problem.place.file == VEHICLE { of_plan(plan, key, "", "").place } else { problem.place.clone() };
+    let place = if problem.place.file == VEHICLE {
+        of_plan(plan, key, "", "").place
+    } else {
+        problem.place.clone()
+    };
     Problem { place, ..problem }
 }
 
@@ -196,7 +271,10 @@ fn unique(name: &str, cars: &[StudyCar]) -> String {
     if !taken(name) {
         return name.to_owned();
     }
-    (2..).map(|n| format!("{name}_{n}")).find(|name| !taken(name)).unwrap_or_default()
+    (2..)
+        .map(|n| format!("{name}_{n}"))
+        .find(|name| !taken(name))
+        .unwrap_or_default()
 }
 
 /// The plan's cycle, or those of its factor.
@@ -204,20 +282,32 @@ fn cycles(plan: &Plan, folder: &Path, problems: &mut Vec<Problem>) -> Vec<Cycle>
     let factor = plan.factors.iter().find(|factor| factor.key == "cycle");
     let words: Vec<Arc<str>> = factor.map_or_else(Vec::new, super::cars::words);
     let mut list = Vec::new();
-    for (k, word) in std::iter::once(Arc::from(plan.base.cycle.as_str())).chain(words).enumerate() {
+    for (k, word) in std::iter::once(Arc::from(plan.base.cycle.as_str()))
+        .chain(words)
+        .enumerate()
+    {
         match cycle::find("cycle", &beside(folder, &word)) {
             Ok(cycle) => list.push(cycle),
             Err(found) => {
-                let place = factor.filter(|_| k > 0).map(|factor| factor.places.nth("values", k - 1).clone());
+                let place = factor
+                    .filter(|_| k > 0)
+                    .map(|factor| factor.places.nth("values", k - 1).clone());
                 let place = place.unwrap_or_else(|| of_plan(plan, "cycle", "", "").place);
                 // What is wrong within a file stands there, with a line or without.
-                problems.extend(found.into_iter().map(|problem| match problem.place.file.as_str() {
-                    "cycle" if is_path(&word) => {
-                        Problem { place: place.clone(), hint: "a path in a plan begins at the plan's folder".into(), ..problem }
-                    }
-                    "cycle" => Problem { place: place.clone(), ..problem },
-                    _ => problem,
-                }));
+                problems.extend(found.into_iter().map(
+                    |problem| match problem.place.file.as_str() {
+                        "cycle" if is_path(&word) => Problem {
+                            place: place.clone(),
+                            hint: "a path in a plan begins at the plan's folder".into(),
+                            ..problem
+                        },
+                        "cycle" => Problem {
+                            place: place.clone(),
+                            ..problem
+                        },
+                        _ => problem,
+                    },
+                ));
             }
         }
     }
@@ -248,16 +338,32 @@ fn parts(cars: &[StudyCar], plan: &Plan) -> Vec<Component> {
             found.extend(components(setup.transmission()));
         }
     }
-    Component::ALL.into_iter().filter(|component| found.contains(component)).collect()
+    Component::ALL
+        .into_iter()
+        .filter(|component| found.contains(component))
+        .collect()
 }
 
 fn head_columns() -> Vec<Column> {
-    let column = |name: &str, kind: Kind, doc: &str| Column { name: name.into(), unit: String::new(), doc: doc.into(), kind };
+    let column = |name: &str, kind: Kind, doc: &str| Column {
+        name: name.into(),
+        unit: String::new(),
+        doc: doc.into(),
+        kind,
+    };
     vec![
-        column("point", Kind::Count, "number of the point of the design, from 0; all cars of a point share its draw"),
+        column(
+            "point",
+            Kind::Count,
+            "number of the point of the design, from 0; all cars of a point share its draw",
+        ),
         column("vehicle", Kind::Text, "name of the car"),
         column("role", Kind::Text, "subject or baseline"),
-        column("status", Kind::Text, "ok, failed (it ran, but a check failed) or not_run (the values do not go together)"),
+        column(
+            "status",
+            Kind::Text,
+            "ok, failed (it ran, but a check failed) or not_run (the values do not go together)",
+        ),
         column("reason", Kind::Text, "what failed; empty for ok"),
     ]
 }
@@ -266,7 +372,11 @@ fn factor_columns(plan: &Plan) -> (Vec<FactorColumn>, Vec<Column>) {
     let mut list: Vec<FactorColumn> = Vec::new();
     let mut heads: Vec<Column> = Vec::new();
     for (index, factor) in plan.factors.iter().enumerate() {
-        let kind = if is_words(factor) { Kind::Text } else { Kind::Number };
+        let kind = if is_words(factor) {
+            Kind::Text
+        } else {
+            Kind::Number
+        };
         if let Some(k) = heads.iter().position(|head| head.name == factor.key) {
             list[k].factors.push(index);
             if kind == Kind::Text {
@@ -274,10 +384,25 @@ fn factor_columns(plan: &Plan) -> (Vec<FactorColumn>, Vec<Column>) {
             }
             continue;
         }
-        list.push(FactorColumn { factors: vec![index], kind });
-        let unit = if kind == Kind::Text { String::new() } else { key_unit(&factor.key) };
-        let doc = format!("{} in this run; empty for a car that it does not reach", factor.name);
-        heads.push(Column { name: factor.key.clone(), unit, doc, kind });
+        list.push(FactorColumn {
+            factors: vec![index],
+            kind,
+        });
+        let unit = if kind == Kind::Text {
+            String::new()
+        } else {
+            key_unit(&factor.key)
+        };
+        let doc = format!(
+            "{} in this run; empty for a car that it does not reach",
+            factor.name
+        );
+        heads.push(Column {
+            name: factor.key.clone(),
+            unit,
+            doc,
+            kind,
+        });
     }
     for (head, column) in heads.iter_mut().zip(&list) {
         head.kind = column.kind;
@@ -292,8 +417,18 @@ pub(super) fn key_unit(key: &str) -> String {
 
 /// Trace columns that are kept.
 fn traces(plan: &Plan, cars: &[StudyCar], parts: &[Component]) -> Vec<&'static columns::Column> {
-    let any = |cvt: bool| cars.iter().flat_map(|car| car.setups(&plan.factors)).any(|setup| setup.transmission().is_cvt() == cvt);
-    let of = |cvt: bool| if any(cvt) { columns_for(cvt, parts) } else { Vec::new() };
+    let any = |cvt: bool| {
+        cars.iter()
+            .flat_map(|car| car.setups(&plan.factors))
+            .any(|setup| setup.transmission().is_cvt() == cvt)
+    };
+    let of = |cvt: bool| {
+        if any(cvt) {
+            columns_for(cvt, parts)
+        } else {
+            Vec::new()
+        }
+    };
     let (cvt, manual) = (of(true), of(false));
     let has = |list: &[&columns::Column], name: &str| list.iter().any(|column| column.name == name);
     let wanted = |name: &str| match &plan.keep {
@@ -301,7 +436,10 @@ fn traces(plan: &Plan, cars: &[StudyCar], parts: &[Component]) -> Vec<&'static c
         Keep::Columns(names) => names.iter().any(|wanted| wanted == name),
         Keep::Everything => has(&cvt, name) || has(&manual, name),
     };
-    columns::COLUMNS.iter().filter(|column| wanted(column.name)).collect()
+    columns::COLUMNS
+        .iter()
+        .filter(|column| wanted(column.name))
+        .collect()
 }
 
 fn trace_columns(traces: &[&'static columns::Column]) -> Vec<Column> {
@@ -313,7 +451,12 @@ fn trace_columns(traces: &[&'static columns::Column]) -> Vec<Column> {
             "gear" | "iterations" => Kind::Count,
             _ => Kind::Number,
         };
-        Column { name: column.name.into(), unit: column.unit.into(), doc: column.doc.into(), kind }
+        Column {
+            name: column.name.into(),
+            unit: column.unit.into(),
+            doc: column.doc.into(),
+            kind,
+        }
     }));
     list
 }

@@ -86,7 +86,12 @@ impl Rows {
     /// No rows yet, with room for a number of them.
     #[must_use]
     pub fn with_capacity(columns: &[Column], rows: usize) -> Self {
-        Rows { values: columns.iter().map(|column| Values::with_capacity(column.kind, rows)).collect() }
+        Rows {
+            values: columns
+                .iter()
+                .map(|column| Values::with_capacity(column.kind, rows))
+                .collect(),
+        }
     }
 
     /// Drops all rows and keeps the room.

@@ -43,7 +43,11 @@ impl<'s> Traces<'s> {
 
     /// Appends rows of a run through a cycle.
     pub fn push(&mut self, cycle: &Cycle, rows: &[Row]) {
-        let phases = if cycle.phases.is_empty() { std::slice::from_ref(&cycle.name) } else { &cycle.phases };
+        let phases = if cycle.phases.is_empty() {
+            std::slice::from_ref(&cycle.name)
+        } else {
+            &cycle.phases
+        };
         let mut columns = self.rows.values.iter_mut();
         if let Some(Values::Count(cells)) = columns.next() {
             cells.resize(cells.len() + rows.len(), self.point);
@@ -54,8 +58,13 @@ impl<'s> Traces<'s> {
         for (column, cells) in self.columns.iter().zip(columns) {
             match cells {
                 Values::Number(cells) => (column.numbers)(rows, cells),
-                Values::Count(cells) => cells.extend(rows.iter().map(|row| count((column.get)(row)))),
-                Values::Text(cells) => cells.extend(rows.iter().map(|row| shared((column.get)(row), phases, &mut self.words))),
+                Values::Count(cells) => {
+                    cells.extend(rows.iter().map(|row| count((column.get)(row))))
+                }
+                Values::Text(cells) => cells.extend(
+                    rows.iter()
+                        .map(|row| shared((column.get)(row), phases, &mut self.words)),
+                ),
             }
         }
     }

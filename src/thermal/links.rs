@@ -41,7 +41,8 @@ impl Links {
         let belt_pivot = 1.0 / (own[BELT] + self.sump_belt);
         let (to_oil, to_belt) = (oil * oil_pivot, self.sump_belt * belt_pivot);
         let coolant = own[COOLANT] + metal + exchanger + oil * own[ENGINE_OIL] * oil_pivot;
-        let sump = own[SUMP] + exchanger + self.sump_metal + self.sump_belt * own[BELT] * belt_pivot;
+        let sump =
+            own[SUMP] + exchanger + self.sump_metal + self.sump_belt * own[BELT] * belt_pivot;
         let coolant_right = right[COOLANT] + to_oil * right[ENGINE_OIL];
         let sump_right = right[SUMP] + to_belt * right[BELT];
         // Coolant, then sump, then metal.
@@ -51,8 +52,10 @@ impl Links {
         let sump_metal = self.sump_metal + sump_share * metal;
         let sump_right = sump_right + sump_share * coolant_right;
         let share = sump_metal * sump_pivot;
-        let metal_pivot = own[METAL] + metal + self.sump_metal - metal * metal_share - sump_metal * share;
-        let metal_k = (right[METAL] + metal_share * coolant_right + share * sump_right) / metal_pivot;
+        let metal_pivot =
+            own[METAL] + metal + self.sump_metal - metal * metal_share - sump_metal * share;
+        let metal_k =
+            (right[METAL] + metal_share * coolant_right + share * sump_right) / metal_pivot;
         let sump_k = sump_right * sump_pivot + share * metal_k;
         let coolant_k = coolant_right * coolant_pivot + sump_share * sump_k + metal_share * metal_k;
         let oil_k = right[ENGINE_OIL] * oil_pivot + to_oil * coolant_k;

@@ -113,7 +113,9 @@ impl Heat {
     /// All nodes at one temperature.
     #[must_use]
     pub fn uniform(temp_k: f64) -> Self {
-        Heat { node_k: [temp_k; NODES] }
+        Heat {
+            node_k: [temp_k; NODES],
+        }
     }
 }
 
@@ -175,7 +177,13 @@ impl Now {
     /// Conductance of each node to its air, W/K; the radiator's slope is kept apart.
     #[inline]
     fn air_w_k(&self) -> [f64; NODES] {
-        [self.block_air_w_k, self.pan_air_w_k, self.cooler_w_k, self.case_air_w_k, 0.0]
+        [
+            self.block_air_w_k,
+            self.pan_air_w_k,
+            self.cooler_w_k,
+            self.case_air_w_k,
+            0.0,
+        ]
     }
 
     /// Heat from each node to its air at the beginning of the step, W, that of the radiator included.
@@ -214,15 +222,25 @@ impl Network {
         let open = held((coolant_k - self.thermostat_from_k) / width, 0.0, 1.0);
         let over = coolant_k - input.ambient_k;
         // A coolant that is colder than the air warms towards it: with the opening held, the step ends between the two (TH-9).
-        let slope = if open > 0.0 && open < 1.0 && over > 0.0 { full * (open + over / width) } else { full * open };
+        let slope = if open > 0.0 && open < 1.0 && over > 0.0 {
+            full * (open + over / width)
+        } else {
+            full * open
+        };
         (full * open * over, slope) // TH-2
     }
 
     #[inline(always)]
     fn cooler(&self, sump_k: f64, input: &HeatInput) -> (f64, f64) {
-        let Some(c) = &self.cooler else { return (0.0, 0.0) };
+        let Some(c) = &self.cooler else {
+            return (0.0, 0.0);
+        };
         let flow = c.flow_share * input.oil_flow_m3_s;
-        let flow = if flow < c.highest_m3_s { flow } else { c.highest_m3_s };
+        let flow = if flow < c.highest_m3_s {
+            flow
+        } else {
+            c.highest_m3_s
+        };
         let carried = flow * input.oil_volume_heat_j_m3k;
         let open = held((sump_k - c.bypass_below_k) / 2.0, 0.0, 1.0);
         if carried <= 0.0 || open <= 0.0 {
@@ -247,7 +265,13 @@ impl Network {
                 coolant_oil: stirred * self.coolant_oil_w_k,
                 coolant_metal: self.bell_housing_w_k,
                 coolant_sump: if self.exchanger_w_k > 0.0 {
-                    stirred * self.exchanger_w_k * ramp(t[COOLANT], self.exchanger_opens_k, self.exchanger_opens_k + 5.0) // TH-7
+                    stirred
+                        * self.exchanger_w_k
+                        * ramp(
+                            t[COOLANT],
+                            self.exchanger_opens_k,
+                            self.exchanger_opens_k + 5.0,
+                        ) // TH-7
                 } else {
                     0.0
                 },
@@ -276,7 +300,9 @@ impl Network {
         let capacity_w_k = self.capacity_j_k.map(|capacity| capacity * per_s);
         let mut rise = self.rise_k(&now, t, input, &capacity_w_k);
         // Only beyond the end of the thermostat's ramp can both be: the step was too long for its slope.
-        if now.radiator.0 + now.radiator.1 * rise[COOLANT] < 0.0 && t[COOLANT] + rise[COOLANT] > input.ambient_k {
+        if now.radiator.0 + now.radiator.1 * rise[COOLANT] < 0.0
+            && t[COOLANT] + rise[COOLANT] > input.ambient_k
+        {
             now.radiator = (0.0, 0.0); // TH-9
             rise = self.rise_shut_k(&now, t, input, &capacity_w_k);
         }
@@ -289,12 +315,24 @@ impl Network {
             to_air_w += air_w[i] + air_w_k[i] * rise[i];
         }
         let (cooler_in_k, cooler_out_k) = self.cooler_ends(&now, node_k[SUMP], input.ambient_k);
-        HeatStep { heat: Heat { node_k }, stored_w, to_air_w, cooler_in_k, cooler_out_k }
+        HeatStep {
+            heat: Heat { node_k },
+            stored_w,
+            to_air_w,
+            cooler_in_k,
+            cooler_out_k,
+        }
     }
 
     /// Rise of the nodes within the step, K (TH-5).
     #[inline(always)]
-    fn rise_k(&self, now: &Now, t: &[f64; NODES], input: &HeatInput, capacity_w_k: &[f64; NODES]) -> [f64; NODES] {
+    fn rise_k(
+        &self,
+        now: &Now,
+        t: &[f64; NODES],
+        input: &HeatInput,
+        capacity_w_k: &[f64; NODES],
+    ) -> [f64; NODES] {
         let (air_w_k, air_w) = (now.air_w_k(), now.air_w(t, input.ambient_k));
         let mut right = now.links.flows_w(t);
         let mut own = *capacity_w_k;
@@ -313,7 +351,13 @@ impl Network {
     /// The same for the rare step in which the thermostat shuts (TH-9), kept out of the way of the others.
     #[cold]
     #[inline(never)]
-    fn rise_shut_k(&self, now: &Now, t: &[f64; NODES], input: &HeatInput, capacity_w_k: &[f64; NODES]) -> [f64; NODES] {
+    fn rise_shut_k(
+        &self,
+        now: &Now,
+        t: &[f64; NODES],
+        input: &HeatInput,
+        capacity_w_k: &[f64; NODES],
+    ) -> [f64; NODES] {
         self.rise_k(now, t, input, capacity_w_k)
     }
 
@@ -322,7 +366,11 @@ impl Network {
         if self.cooler.is_none() {
             return (f64::NAN, f64::NAN);
         }
-        let effect = if now.cooler_flow_w_k > 0.0 { now.cooler_w_k / now.cooler_flow_w_k } else { 0.0 };
+        let effect = if now.cooler_flow_w_k > 0.0 {
+            now.cooler_w_k / now.cooler_flow_w_k
+        } else {
+            0.0
+        };
         (sump_k, sump_k - effect * (sump_k - ambient_k))
     }
 }

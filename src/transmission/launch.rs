@@ -15,7 +15,13 @@ use crate::numeric::{exp, ramp};
 /// Launch device as the driveline sees it; torques at the box's input shaft, Nm, speeds rad/s.
 pub trait Launch: std::fmt::Debug + Send + Sync {
     /// Engine speed that goes with a transmitted torque, never below idle nor below the input shaft (LC-1, LC-5).
-    fn engine_speed_rad_s(&self, torque_nm: f64, input_speed_rad_s: f64, idle_rad_s: f64, coupled: bool) -> f64;
+    fn engine_speed_rad_s(
+        &self,
+        torque_nm: f64,
+        input_speed_rad_s: f64,
+        idle_rad_s: f64,
+        coupled: bool,
+    ) -> f64;
     /// Whether, once coupled, it holds engine and input shaft together without slip (LC-5).
     fn holds(&self, input_speed_rad_s: f64, idle_rad_s: f64) -> bool {
         input_speed_rad_s >= self.holds_from_rad_s(idle_rad_s)
@@ -50,7 +56,13 @@ const ROUND_RAD_S: f64 = 20.944;
 
 impl Launch for FrictionClutch {
     #[inline]
-    fn engine_speed_rad_s(&self, torque_nm: f64, input_speed_rad_s: f64, idle_rad_s: f64, coupled: bool) -> f64 {
+    fn engine_speed_rad_s(
+        &self,
+        torque_nm: f64,
+        input_speed_rad_s: f64,
+        idle_rad_s: f64,
+        coupled: bool,
+    ) -> f64 {
         let locked = LOCKED_OVER_IDLE * idle_rad_s;
         if coupled && self.holds(input_speed_rad_s, idle_rad_s) {
             return input_speed_rad_s;
@@ -58,14 +70,23 @@ impl Launch for FrictionClutch {
         let above = torque_nm - self.creep_nm;
         let mut speed = idle_rad_s;
         if above > 0.0 {
-            let lift = if self.engage_rad_s > idle_rad_s { self.engage_rad_s - idle_rad_s } else { 0.0 };
-            speed +=
-                lift * (1.0 - exp(-above / CREEP_WIDTH_NM)) + (above / self.gain_nm_s2 + ROUND_RAD_S * ROUND_RAD_S).sqrt() - ROUND_RAD_S; // LC-1
+            let lift = if self.engage_rad_s > idle_rad_s {
+                self.engage_rad_s - idle_rad_s
+            } else {
+                0.0
+            };
+            speed += lift * (1.0 - exp(-above / CREEP_WIDTH_NM))
+                + (above / self.gain_nm_s2 + ROUND_RAD_S * ROUND_RAD_S).sqrt()
+                - ROUND_RAD_S; // LC-1
         }
         if speed <= input_speed_rad_s {
             return input_speed_rad_s;
         }
-        let slips = if coupled { 1.0 - ramp(input_speed_rad_s, idle_rad_s, locked) } else { 1.0 };
+        let slips = if coupled {
+            1.0 - ramp(input_speed_rad_s, idle_rad_s, locked)
+        } else {
+            1.0
+        };
         input_speed_rad_s + slips * (speed - input_speed_rad_s) // LC-5
     }
 
@@ -82,7 +103,11 @@ impl Launch for FrictionClutch {
     #[inline]
     fn overrun_share(&self, input_speed_rad_s: f64, idle_rad_s: f64) -> f64 {
         let from = 1.1 * idle_rad_s;
-        let to = if self.release_rad_s > from { self.release_rad_s } else { from };
+        let to = if self.release_rad_s > from {
+            self.release_rad_s
+        } else {
+            from
+        };
         ramp(input_speed_rad_s, from, to + 0.2 * idle_rad_s) // LC-3
     }
 }
@@ -93,7 +118,12 @@ mod tests {
 
     fn clutch() -> FrictionClutch {
         let rpm = std::f64::consts::PI / 30.0;
-        FrictionClutch { engage_rad_s: 1000.0 * rpm, gain_nm_s2: 2.1e-5 / rpm / rpm, creep_nm: 5.0, release_rad_s: 1000.0 * rpm }
+        FrictionClutch {
+            engage_rad_s: 1000.0 * rpm,
+            gain_nm_s2: 2.1e-5 / rpm / rpm,
+            creep_nm: 5.0,
+            release_rad_s: 1000.0 * rpm,
+        }
     }
 
     #[test]
@@ -120,7 +150,13 @@ mod tests {
     #[test]
     fn creep_vanishes_at_idle_speed_and_overrun_share_stays_in_bounds() {
         let c = clutch();
-        assert!((c.creep_torque_nm(0.0, 89.0) - 5.0).abs() < 1e-12 && c.creep_torque_nm(89.0, 89.0).abs() < 1e-12);
-        assert!(c.overrun_share(89.0, 89.0).abs() < 1e-12 && (c.overrun_share(200.0, 89.0) - 1.0).abs() < 1e-12);
+        assert!(
+            (c.creep_torque_nm(0.0, 89.0) - 5.0).abs() < 1e-12
+                && c.creep_torque_nm(89.0, 89.0).abs() < 1e-12
+        );
+        assert!(
+            c.overrun_share(89.0, 89.0).abs() < 1e-12
+                && (c.overrun_share(200.0, 89.0) - 1.0).abs() < 1e-12
+        );
     }
 }

@@ -36,7 +36,13 @@ impl LossMap {
     /// Torque loss at the input shaft, Nm, never negative, and whether the point lies within the map.
     #[must_use]
     pub fn loss_nm(&self, p: &MapPoint) -> (f64, bool) {
-        let (loss, inside) = self.grid.at([p.ratio, p.input_speed_rad_s, p.torque_nm, p.pressure_pa, p.oil_k]);
+        let (loss, inside) = self.grid.at([
+            p.ratio,
+            p.input_speed_rad_s,
+            p.torque_nm,
+            p.pressure_pa,
+            p.oil_k,
+        ]);
         (if loss > 0.0 { loss } else { 0.0 }, inside)
     }
 }

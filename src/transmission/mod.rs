@@ -162,7 +162,10 @@ impl Transmission {
     pub fn start(&self, around: &Surroundings) -> DriveState {
         match self {
             Transmission::Cvt(cvt) => cvt.start(around),
-            Transmission::Manual(manual) => DriveState { belt: None, past: manual.start(around) },
+            Transmission::Manual(manual) => DriveState {
+                belt: None,
+                past: manual.start(around),
+            },
         }
     }
 

@@ -5,7 +5,10 @@ pub const COMMON: (&str, &str) = ("common", include_str!("../../validation/commo
 
 macro_rules! chapter {
     ($name:literal) => {
-        ($name, include_str!(concat!("../../validation/", $name, ".toml")))
+        (
+            $name,
+            include_str!(concat!("../../validation/", $name, ".toml")),
+        )
     };
 }
 

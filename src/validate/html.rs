@@ -64,11 +64,18 @@ fn chapters(report: &Report) -> Vec<Chapter> {
             names.push(&judged.row.chapter);
         }
     }
-    names.iter().enumerate().map(|(k, name)| chapter(report, k, name)).collect()
+    names
+        .iter()
+        .enumerate()
+        .map(|(k, name)| chapter(report, k, name))
+        .collect()
 }
 
 fn chapter(report: &Report, k: usize, name: &str) -> Chapter {
-    let own = report.rows.iter().filter(|judged| judged.row.chapter == name);
+    let own = report
+        .rows
+        .iter()
+        .filter(|judged| judged.row.chapter == name);
     Chapter {
         title: chapter_title(name),
         anchor: format!("part-{}", k + 1),

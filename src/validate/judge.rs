@@ -50,7 +50,11 @@ impl Judged {
     /// How far it is off, in widths of its tolerance.
     #[must_use]
     pub fn off(&self) -> Option<f64> {
-        off(self.computed.as_ref()?, self.row.printed?, self.row.tolerance_widths)
+        off(
+            self.computed.as_ref()?,
+            self.row.printed?,
+            self.row.tolerance_widths,
+        )
     }
 }
 
@@ -82,13 +86,20 @@ impl Report {
     /// Rows with a verdict.
     #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
-        self.rows.iter().filter(|row| row.verdict == verdict).count()
+        self.rows
+            .iter()
+            .filter(|row| row.verdict == verdict)
+            .count()
     }
 
     /// What the rows that nothing was fitted to say.
     #[must_use]
     pub fn held_out(&self) -> HeldOut {
-        let rows: Vec<&Judged> = self.rows.iter().filter(|row| row.row.is_held_out()).collect();
+        let rows: Vec<&Judged> = self
+            .rows
+            .iter()
+            .filter(|row| row.row.is_held_out())
+            .collect();
         let agrees = |row: &&&Judged| row.verdict == Verdict::Agrees;
         let mut off: Vec<f64> = rows.iter().filter_map(|row| row.off()).collect();
         off.sort_by(f64::total_cmp);
@@ -103,7 +114,11 @@ impl Report {
             agree: rows.iter().filter(agrees).count(),
             numbers: off.len(),
             median_off,
-            numbers_agree: rows.iter().filter(|row| row.off().is_some()).filter(agrees).count(),
+            numbers_agree: rows
+                .iter()
+                .filter(|row| row.off().is_some())
+                .filter(agrees)
+                .count(),
         }
     }
 
@@ -117,8 +132,15 @@ impl Report {
 ///
 /// # Errors
 /// Sources whose vehicle cannot be loaded, rows that cannot be computed.
-pub fn judge(files: &[File], subject: &Subject, wanted: impl Fn(&Row) -> bool) -> Result<Report, Vec<Problem>> {
-    let cars = FromFiles { subject, setups: RefCell::default() };
+pub fn judge(
+    files: &[File],
+    subject: &Subject,
+    wanted: impl Fn(&Row) -> bool,
+) -> Result<Report, Vec<Problem>> {
+    let cars = FromFiles {
+        subject,
+        setups: RefCell::default(),
+    };
     let store = Store::new(&cars);
     let mut problems = Vec::new();
     // Once for all: what is wrong with the subject is no problem of a file.
@@ -128,11 +150,21 @@ pub fn judge(files: &[File], subject: &Subject, wanted: impl Fn(&Row) -> bool) -
     }
     cars.conditions(None)?;
     for source in files.iter().flat_map(|file| &file.sources) {
-        let loaded = cars.setup(Some(source)).and_then(|_| cars.conditions(Some(source)));
+        let loaded = cars
+            .setup(Some(source))
+            .and_then(|_| cars.conditions(Some(source)));
         if let Err(found) = loaded {
             for problem in found.iter() {
-                let place = if problem.place.line > 0 { problem.place.clone() } else { source.place.clone() };
-                let problem = Problem { place, message: format!("source `{}`: {}", source.name, problem.message), ..problem.clone() };
+                let place = if problem.place.line > 0 {
+                    problem.place.clone()
+                } else {
+                    source.place.clone()
+                };
+                let problem = Problem {
+                    place,
+                    message: format!("source `{}`: {}", source.name, problem.message),
+                    ..problem.clone()
+                };
                 if !problems.contains(&problem) {
                     problems.push(problem);
                 }
@@ -152,7 +184,14 @@ pub fn judge(files: &[File], subject: &Subject, wanted: impl Fn(&Row) -> bool) -
             }
         }
     }
-    if problems.is_empty() { Ok(Report { subject: subject.clone(), rows }) } else { Err(problems) }
+    if problems.is_empty() {
+        Ok(Report {
+            subject: subject.clone(),
+            rows,
+        })
+    } else {
+        Err(problems)
+    }
 }
 
 /// A car, or what is wrong with its files.
@@ -167,13 +206,24 @@ struct FromFiles<'a> {
 impl FromFiles<'_> {
     fn options(&self, source: Option<&Source>) -> Options {
         let own = source.is_none_or(|source| source.vehicle.is_none());
-        let subject_set = if own { self.subject.set.as_slice() } else { &[] };
-        let source_set = source.map(|source| source.set.as_slice()).unwrap_or_default();
+        let subject_set = if own {
+            self.subject.set.as_slice()
+        } else {
+            &[]
+        };
+        let source_set = source
+            .map(|source| source.set.as_slice())
+            .unwrap_or_default();
         let lubricant = source.and_then(|source| source.lubricant.clone());
         Options {
             lubricant: lubricant.or_else(|| self.subject.lubricant.clone().filter(|_| own)),
             engine_oil: None,
-            set: subject_set.iter().chain(source_set).filter(|set| !set.starts_with(PREFIX)).cloned().collect(),
+            set: subject_set
+                .iter()
+                .chain(source_set)
+                .filter(|set| !set.starts_with(PREFIX))
+                .cloned()
+                .collect(),
             formulation: source.map(|source| source.formulation).unwrap_or_default(),
         }
     }
@@ -181,14 +231,23 @@ impl FromFiles<'_> {
 
 impl Cars for FromFiles<'_> {
     fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Vec<Problem>> {
-        let vehicle = source.and_then(|source| source.vehicle.as_deref()).unwrap_or(&self.subject.vehicle);
+        let vehicle = source
+            .and_then(|source| source.vehicle.as_deref())
+            .unwrap_or(&self.subject.vehicle);
         let options = self.options(source);
         let key = format!("{vehicle} {options:?}");
-        once(&self.setups, key, || load(vehicle, "vehicle", &options).map(Rc::new))
+        once(&self.setups, key, || {
+            load(vehicle, "vehicle", &options).map(Rc::new)
+        })
     }
 
-    fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>> {
-        let own = source.map(|source| source.set.as_slice()).unwrap_or_default();
+    fn conditions(
+        &self,
+        source: Option<&Source>,
+    ) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>> {
+        let own = source
+            .map(|source| source.set.as_slice())
+            .unwrap_or_default();
         let sets: Vec<String> = self.subject.set.iter().chain(own).cloned().collect();
         Conditions::load(&sets)
     }
@@ -203,13 +262,37 @@ fn judged(view: &View, file: &File, row: &Row) -> Result<Judged, Problem> {
         ..Problem::default()
     };
     view.begin();
-    let computed = row.compute.as_ref().map(|expr| compute(expr, view)).transpose().map_err(|why| problem("compute", why))?;
+    let computed = row
+        .compute
+        .as_ref()
+        .map(|expr| compute(expr, view))
+        .transpose()
+        .map_err(|why| problem("compute", why))?;
     let (left_out, outside) = view.noted();
-    let cause = row.cause.as_ref().map(|cause| compute(&cause.compute, view)).transpose().map_err(|why| problem("cause.compute", why))?;
+    let cause = row
+        .cause
+        .as_ref()
+        .map(|cause| compute(&cause.compute, view))
+        .transpose()
+        .map_err(|why| problem("cause.compute", why))?;
     let verdict = match (&computed, row.printed) {
-        (Some(computed), Some(printed)) => verdict(computed, printed, row.tolerance_widths, !row.fitted_to.is_empty()),
+        (Some(computed), Some(printed)) => verdict(
+            computed,
+            printed,
+            row.tolerance_widths,
+            !row.fitted_to.is_empty(),
+        ),
         _ => Verdict::NotComparable,
     };
     let moved = row.recorded.is_some_and(|recorded| recorded != verdict);
-    Ok(Judged { row: row.clone(), file: file.name.clone(), computed, verdict, moved, cause, left_out, outside })
+    Ok(Judged {
+        row: row.clone(),
+        file: file.name.clone(),
+        computed,
+        verdict,
+        moved,
+        cause,
+        left_out,
+        outside,
+    })
 }

@@ -12,12 +12,22 @@ pub struct FileNames<'a> {
 
 impl Names for FileNames<'_> {
     fn sources(&self) -> Vec<&str> {
-        self.sources.iter().map(|source| source.name.as_str()).collect()
+        self.sources
+            .iter()
+            .map(|source| source.name.as_str())
+            .collect()
     }
 
     fn columns(&self, source: usize, totals: bool) -> Vec<&'static str> {
-        let kind = self.sources.get(source).map_or(Kind::Vehicle, |source| source.kind);
-        if totals && kind != Kind::Run { Vec::new() } else { tables::columns(kind, totals) }
+        let kind = self
+            .sources
+            .get(source)
+            .map_or(Kind::Vehicle, |source| source.kind);
+        if totals && kind != Kind::Run {
+            Vec::new()
+        } else {
+            tables::columns(kind, totals)
+        }
     }
 
     fn keys(&self) -> &[String] {

@@ -167,7 +167,9 @@ pub fn text_of(computed: &Computed) -> String {
     match computed {
         Computed::Number(x) => short(*x),
         Computed::Range(low, high) => format!("{} to {}", short(*low), short(*high)),
-        Computed::Truth(holds, behind) => format!("{}: {behind}", if *holds { "yes" } else { "no" }),
+        Computed::Truth(holds, behind) => {
+            format!("{}: {behind}", if *holds { "yes" } else { "no" })
+        }
     }
 }
 
@@ -183,7 +185,11 @@ pub fn cause_text(judged: &Judged) -> String {
     let Some((cause, computed)) = judged.row.cause.as_ref().zip(judged.cause.as_ref()) else {
         return String::new();
     };
-    let unit = if cause.unit == "-" { String::new() } else { format!(" {}", cause.unit) };
+    let unit = if cause.unit == "-" {
+        String::new()
+    } else {
+        format!(" {}", cause.unit)
+    };
     format!("Cause: {} = {}{unit}", cause.what, text_of(computed))
 }
 
@@ -203,10 +209,16 @@ pub fn notes(judged: &Judged) -> Vec<String> {
         notes.push(format!("{} points at gross slip left out", judged.left_out));
     }
     if judged.outside > 0 {
-        notes.push(format!("{} points outside the validity of a model", judged.outside));
+        notes.push(format!(
+            "{} points outside the validity of a model",
+            judged.outside
+        ));
     }
     if judged.moved {
-        notes.push(format!("recorded: {}", row.recorded.map_or("", Verdict::word)));
+        notes.push(format!(
+            "recorded: {}",
+            row.recorded.map_or("", Verdict::word)
+        ));
     }
     notes.retain(|note| !note.trim().is_empty());
     notes

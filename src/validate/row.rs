@@ -110,19 +110,43 @@ pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File
     let keys = catalogue::known_names();
     let mut problems = Vec::new();
     let lent = file(common.0, common.1, &Lent::default(), keys, &mut problems);
-    let lent = Lent { tolerances: lent.tolerances, sources: lent.sources };
-    let read: Vec<File> = files.iter().map(|(name, text)| file(name, text, &lent, keys, &mut problems)).collect();
+    let lent = Lent {
+        tolerances: lent.tolerances,
+        sources: lent.sources,
+    };
+    let read: Vec<File> = files
+        .iter()
+        .map(|(name, text)| file(name, text, &lent, keys, &mut problems))
+        .collect();
     let mut seen: HashMap<&str, &Row> = HashMap::new();
-    for row in read.iter().flat_map(|file| &file.rows).filter(|row| !row.id.is_empty()) {
+    for row in read
+        .iter()
+        .flat_map(|file| &file.rows)
+        .filter(|row| !row.id.is_empty())
+    {
         let first = *seen.entry(&row.id).or_insert(row);
         if !std::ptr::eq(first, row) {
-            let message = format!("the id `{}` was used before, in {} line {}", row.id, first.id_place.file, first.id_place.line);
+            let message = format!(
+                "the id `{}` was used before, in {} line {}",
+                row.id, first.id_place.file, first.id_place.line
+            );
             let (place, value) = (row.id_place.clone(), row.id.clone());
-            let twice = Problem { place, key: "id".into(), value, message, hint: "ids are unique".into(), ..Problem::default() };
+            let twice = Problem {
+                place,
+                key: "id".into(),
+                value,
+                message,
+                hint: "ids are unique".into(),
+                ..Problem::default()
+            };
             append(&mut problems, vec![twice]);
         }
     }
-    if problems.is_empty() { Ok(read) } else { Err(problems) }
+    if problems.is_empty() {
+        Ok(read)
+    } else {
+        Err(problems)
+    }
 }
 
 /// What the common file lends.
@@ -133,7 +157,12 @@ struct Lent {
 }
 
 fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec<Problem>) -> File {
-    let mut read = File { name: name.to_owned(), tolerances: Vec::new(), sources: Vec::new(), rows: Vec::new() };
+    let mut read = File {
+        name: name.to_owned(),
+        tolerances: Vec::new(),
+        sources: Vec::new(),
+        rows: Vec::new(),
+    };
     let mut document = match Document::parse(name, text) {
         Ok(document) => document,
         Err(found) => {
@@ -147,11 +176,31 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec
     read.tolerances = tolerances(&root.table("tolerances"));
     read.sources = source::read(&root.table("sources"), &lent.sources);
     if let Err(found) = reader.finish() {
-        let hint = |p: &Problem| if p.key == "row" { "rows are written as [[row]]".to_owned() } else { p.hint.clone() };
-        append(problems, found.into_iter().map(|p| Problem { hint: hint(&p), ..p }).collect());
+        let hint = |p: &Problem| {
+            if p.key == "row" {
+                "rows are written as [[row]]".to_owned()
+            } else {
+                p.hint.clone()
+            }
+        };
+        append(
+            problems,
+            found
+                .into_iter()
+                .map(|p| Problem {
+                    hint: hint(&p),
+                    ..p
+                })
+                .collect(),
+        );
     }
     // A path in a file is relative to that file.
-    for named in read.sources.iter_mut().flat_map(|source| [&mut source.vehicle, &mut source.lubricant]).flatten() {
+    for named in read
+        .sources
+        .iter_mut()
+        .flat_map(|source| [&mut source.vehicle, &mut source.lubricant])
+        .flatten()
+    {
         if is_path(named)
             && let Some(folder) = std::path::Path::new(name).parent()
         {
@@ -160,13 +209,32 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec
     }
     read.tolerances.extend(lent.tolerances.iter().cloned());
     read.sources.extend(lent.sources.iter().cloned());
-    let head = Head { tolerances: &read.tolerances, names: FileNames { sources: &read.sources, keys } };
+    let head = Head {
+        tolerances: &read.tolerances,
+        names: FileNames {
+            sources: &read.sources,
+            keys,
+        },
+    };
     for document in &rows {
         let reader = Reader::new(document);
         let row = head.row(&reader.root());
         if let Err(found) = reader.finish() {
-            let of = if row.id.is_empty() { String::new() } else { format!("row {}: ", row.id) };
-            let named = |p: Problem| if p.not_shown().is_some() { p } else { Problem { message: format!("{of}{}", p.message), ..p } };
+            let of = if row.id.is_empty() {
+                String::new()
+            } else {
+                format!("row {}: ", row.id)
+            };
+            let named = |p: Problem| {
+                if p.not_shown().is_some() {
+                    p
+                } else {
+                    Problem {
+                        message: format!("{of}{}", p.message),
+                        ..p
+                    }
+                }
+            };
             append(problems, found.into_iter().map(named).collect());
         }
         read.rows.push(row);
@@ -178,10 +246,23 @@ fn tolerances(all: &Section) -> Vec<Tolerance> {
     let width = Bound::closed(0.0, 1e9);
     let one = |name: &str| {
         let s = all.table(name);
-        let absolute = s.optional_number("width", width, "width on both sides, in the unit of the row");
-        let relative = s.optional_number("share", Bound::closed(0.0, 10.0), "width as a share of the printed number");
+        let absolute = s.optional_number(
+            "width",
+            width,
+            "width on both sides, in the unit of the row",
+        );
+        let relative = s.optional_number(
+            "share",
+            Bound::closed(0.0, 10.0),
+            "width as a share of the printed number",
+        );
         if s.exists() && absolute.is_some() == relative.is_some() {
-            s.complain("width", "width or share", &format!("tolerance `{name}` needs either `width` or `share`"), "give one of them");
+            s.complain(
+                "width",
+                "width or share",
+                &format!("tolerance `{name}` needs either `width` or `share`"),
+                "give one of them",
+            );
         }
         Tolerance {
             name: name.to_owned(),
@@ -203,10 +284,22 @@ struct Head<'a> {
 impl Head<'_> {
     fn row(&self, s: &Section) -> Row {
         let id = s.text("id", "identifier, unique over all files");
-        let chapter = s.text("chapter", "chapter of the thesis, or a word for the user's own rows");
+        let chapter = s.text(
+            "chapter",
+            "chapter of the thesis, or a word for the user's own rows",
+        );
         let mechanism = mechanism(s);
-        let kind = s.word_or("kind", &KINDS, "N", "N number, O order or sign, C constant, L quoted from others, X record only").to_owned();
-        let compute_text = s.optional_text("compute", "how it is computed").unwrap_or_default();
+        let kind = s
+            .word_or(
+                "kind",
+                &KINDS,
+                "N",
+                "N number, O order or sign, C constant, L quoted from others, X record only",
+            )
+            .to_owned();
+        let compute_text = s
+            .optional_text("compute", "how it is computed")
+            .unwrap_or_default();
         let compute = self.expression(s, "compute", &compute_text);
         let unit = s.text_or("unit", "-", "unit of printed and computed numbers");
         let broken = compute.is_none() && !compute_text.trim().is_empty();
@@ -217,7 +310,11 @@ impl Head<'_> {
         let row = Row {
             id,
             id_place: s.place("id"),
-            place: s.place(if compute_text.is_empty() { "id" } else { "compute" }),
+            place: s.place(if compute_text.is_empty() {
+                "id"
+            } else {
+                "compute"
+            }),
             chapter,
             mechanism,
             what: s.text("what", "what is compared"),
@@ -248,36 +345,74 @@ impl Head<'_> {
         match parse(text, &self.names) {
             Ok(expr) => Some(expr),
             Err(faults) => {
-                faults.into_iter().for_each(|fault| s.report_problem(within(s.place(key), key, text, fault)));
+                faults
+                    .into_iter()
+                    .for_each(|fault| s.report_problem(within(s.place(key), key, text, fault)));
                 None
             }
         }
     }
 
-    fn tolerance(&self, s: &Section, printed: Option<Printed>, unit: &str, broken: bool) -> (String, [f64; 2]) {
+    fn tolerance(
+        &self,
+        s: &Section,
+        printed: Option<Printed>,
+        unit: &str,
+        broken: bool,
+    ) -> (String, [f64; 2]) {
         let name = s.optional_text("tolerance", "name of a tolerance at the head of the file");
         let Some(Printed::Range(low, high)) = printed else {
             if name.is_some() && !broken {
-                s.complain("tolerance", "", "an order or sign has no tolerance", "remove it");
+                s.complain(
+                    "tolerance",
+                    "",
+                    "an order or sign has no tolerance",
+                    "remove it",
+                );
             }
             return (String::new(), [0.0; 2]);
         };
         let known: Vec<&str> = self.tolerances.iter().map(|t| t.name.as_str()).collect();
         let Some(name) = name else {
-            s.complain("tolerance", &known.join(", "), "missing key `tolerance`", "name a tolerance of the head of the file");
+            s.complain(
+                "tolerance",
+                &known.join(", "),
+                "missing key `tolerance`",
+                "name a tolerance of the head of the file",
+            );
             return (String::new(), [0.0; 2]);
         };
         let Some(found) = self.tolerances.iter().find(|t| t.name == name) else {
             let close = near(&name, known.iter().copied());
-            let hint = if close.is_empty() { String::new() } else { format!("did you mean {}?", close.join(" or ")) };
-            s.complain("tolerance", &known.join(", "), &format!("there is no tolerance `{name}`"), &hint);
+            let hint = if close.is_empty() {
+                String::new()
+            } else {
+                format!("did you mean {}?", close.join(" or "))
+            };
+            s.complain(
+                "tolerance",
+                &known.join(", "),
+                &format!("there is no tolerance `{name}`"),
+                &hint,
+            );
             return (name, [0.0; 2]);
         };
         if found.unit != "-" && found.unit != unit {
             let message = format!("tolerance `{name}` is in {}, the row in {unit}", found.unit);
-            s.complain("tolerance", "the same unit", &message, "use another tolerance");
+            s.complain(
+                "tolerance",
+                "the same unit",
+                &message,
+                "use another tolerance",
+            );
         }
-        let width = |end: f64| if end.is_finite() { found.absolute + found.relative * end.abs() } else { found.absolute };
+        let width = |end: f64| {
+            if end.is_finite() {
+                found.absolute + found.relative * end.abs()
+            } else {
+                found.absolute
+            }
+        };
         (name, [width(low), width(high)])
     }
 
@@ -285,8 +420,17 @@ impl Head<'_> {
         let keys = s.texts("fitted_to", "parameters that were fitted to this number");
         for key in keys.iter().filter(|key| !self.names.keys.contains(key)) {
             let close = near(key, self.names.keys.iter().map(String::as_str));
-            let hint = if close.is_empty() { String::new() } else { format!("did you mean {}?", close.join(" or ")) };
-            s.complain("fitted_to", "keys of a vehicle or lubricant", &format!("there is no parameter `{key}`"), &hint);
+            let hint = if close.is_empty() {
+                String::new()
+            } else {
+                format!("did you mean {}?", close.join(" or "))
+            };
+            s.complain(
+                "fitted_to",
+                "keys of a vehicle or lubricant",
+                &format!("there is no parameter `{key}`"),
+                &hint,
+            );
         }
         keys
     }
@@ -312,15 +456,33 @@ const GRAMMAR: &str = "docs/validation_format.md shows what an expression may ho
 /// A fault in an expression as a problem at its place.
 pub fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
     // The place is exact where the text stands on one line as it is.
-    let quoted: String = place.line_text.chars().skip(place.column.saturating_sub(1)).collect();
-    let plain = quoted.strip_prefix(['"', '\'']).is_some_and(|rest| rest.starts_with(text));
-    let place = if plain { Place { column: place.column + 1 + fault.at, width: fault.width, ..place } } else { place };
+    let quoted: String = place
+        .line_text
+        .chars()
+        .skip(place.column.saturating_sub(1))
+        .collect();
+    let plain = quoted
+        .strip_prefix(['"', '\''])
+        .is_some_and(|rest| rest.starts_with(text));
+    let place = if plain {
+        Place {
+            column: place.column + 1 + fault.at,
+            width: fault.width,
+            ..place
+        }
+    } else {
+        place
+    };
     Problem {
         place,
         key: key.to_owned(),
         value: fault.word,
         allowed: String::new(),
         message: format!("`{key}`: {}", fault.message),
-        hint: if fault.hint.is_empty() { GRAMMAR.to_owned() } else { fault.hint },
+        hint: if fault.hint.is_empty() {
+            GRAMMAR.to_owned()
+        } else {
+            fault.hint
+        },
     }
 }

@@ -20,7 +20,12 @@ pub enum Verdict {
 
 impl Verdict {
     /// All of them.
-    pub const ALL: [Verdict; 4] = [Verdict::Agrees, Verdict::Fit, Verdict::Differs, Verdict::NotComparable];
+    pub const ALL: [Verdict; 4] = [
+        Verdict::Agrees,
+        Verdict::Fit,
+        Verdict::Differs,
+        Verdict::NotComparable,
+    ];
 
     /// Words as in the files.
     pub const WORDS: [&'static str; 4] = ["agrees", "fit", "differs", "not comparable"];
@@ -52,8 +57,12 @@ pub enum Printed {
 pub fn verdict(computed: &Computed, printed: Printed, widths: [f64; 2], fitted: bool) -> Verdict {
     let agrees = match (computed, printed) {
         (Computed::Truth(holds, _), Printed::Truth(wanted)) => *holds == wanted,
-        (Computed::Number(x), Printed::Range(low, high)) => within(*x, *x, low - widths[0], high + widths[1]),
-        (Computed::Range(from, to), Printed::Range(low, high)) => within(*from, *to, low - widths[0], high + widths[1]),
+        (Computed::Number(x), Printed::Range(low, high)) => {
+            within(*x, *x, low - widths[0], high + widths[1])
+        }
+        (Computed::Range(from, to), Printed::Range(low, high)) => {
+            within(*from, *to, low - widths[0], high + widths[1])
+        }
         _ => false,
     };
     match (agrees, fitted) {
@@ -67,10 +76,20 @@ pub fn verdict(computed: &Computed, printed: Printed, widths: [f64; 2], fitted: 
 /// agrees; of a range its worse end. None for orders and signs, and where the tolerance has no width.
 #[must_use]
 pub fn off(computed: &Computed, printed: Printed, widths: [f64; 2]) -> Option<f64> {
-    let Printed::Range(low, high) = printed else { return None };
+    let Printed::Range(low, high) = printed else {
+        return None;
+    };
     let one = |x: f64| {
-        let (beyond, width) = if x < low { (low - x, widths[0]) } else { (x - high, widths[1]) };
-        if beyond <= 0.0 { Some(0.0) } else { (width > 0.0).then(|| beyond / width) }
+        let (beyond, width) = if x < low {
+            (low - x, widths[0])
+        } else {
+            (x - high, widths[1])
+        };
+        if beyond <= 0.0 {
+            Some(0.0)
+        } else {
+            (width > 0.0).then(|| beyond / width)
+        }
     };
     match computed {
         Computed::Number(x) => one(*x),
@@ -106,14 +125,54 @@ mod tests {
         let printed = Printed::Range(8.5, 13.0);
         assert_eq!(v(Computed::Number(8.0), printed, false), Verdict::Agrees);
         assert_eq!(v(Computed::Number(7.99), printed, false), Verdict::Differs);
-        assert_eq!(v(Computed::Range(8.2, 13.4), printed, false), Verdict::Agrees);
-        assert_eq!(v(Computed::Range(8.2, 13.6), printed, false), Verdict::Differs);
-        assert_eq!(v(Computed::Range(7.9, 13.0), printed, true), Verdict::Differs);
+        assert_eq!(
+            v(Computed::Range(8.2, 13.4), printed, false),
+            Verdict::Agrees
+        );
+        assert_eq!(
+            v(Computed::Range(8.2, 13.6), printed, false),
+            Verdict::Differs
+        );
+        assert_eq!(
+            v(Computed::Range(7.9, 13.0), printed, true),
+            Verdict::Differs
+        );
         assert_eq!(v(Computed::Range(9.0, 13.0), printed, true), Verdict::Fit);
-        assert_eq!(v(Computed::Number(1e9), Printed::Range(3.0, f64::INFINITY), false), Verdict::Agrees);
-        assert_eq!(v(Computed::Number(f64::NAN), printed, false), Verdict::Differs);
-        assert_eq!(v(Computed::Truth(true, String::new()), Printed::Truth(true), true), Verdict::Fit);
-        assert_eq!(v(Computed::Truth(false, String::new()), Printed::Truth(true), false), Verdict::Differs);
-        assert_eq!(v(Computed::Truth(false, String::new()), Printed::Truth(false), false), Verdict::Agrees);
+        assert_eq!(
+            v(
+                Computed::Number(1e9),
+                Printed::Range(3.0, f64::INFINITY),
+                false
+            ),
+            Verdict::Agrees
+        );
+        assert_eq!(
+            v(Computed::Number(f64::NAN), printed, false),
+            Verdict::Differs
+        );
+        assert_eq!(
+            v(
+                Computed::Truth(true, String::new()),
+                Printed::Truth(true),
+                true
+            ),
+            Verdict::Fit
+        );
+        assert_eq!(
+            v(
+                Computed::Truth(false, String::new()),
+                Printed::Truth(true),
+                false
+            ),
+            Verdict::Differs
+        );
+        assert_eq!(
+            v(
+                Computed::Truth(false, String::new()),
+                Printed::Truth(false),
+                false
+            ),
+            Verdict::Agrees
+        );
     }
 }

@@ -80,41 +80,141 @@ const FRICTION: Bound = Bound::closed(0.0, 0.5);
 
 /// Settings of the bench.
 pub const BENCH: [Axis; 9] = [
-    ("ratio", Bound::closed(0.2, 20.0), true, "belt ratio I = R_sec / R_pri, or the number of a gear"),
-    ("speed_rpm", Bound::closed(1.0, 20_000.0), true, "speed of the input shaft"),
+    (
+        "ratio",
+        Bound::closed(0.2, 20.0),
+        true,
+        "belt ratio I = R_sec / R_pri, or the number of a gear",
+    ),
+    (
+        "speed_rpm",
+        Bound::closed(1.0, 20_000.0),
+        true,
+        "speed of the input shaft",
+    ),
     ("temp_degc", TEMP, true, "oil in the sump"),
-    ("torque_nm", TORQUE, false, "torque at the output shaft; 0 if absent"),
-    ("throttle", Bound::closed(0.0, 1.0), false, "throttle that the clamp law sees; 0 if absent"),
-    ("pressure_bar", PRESSURE, false, "secondary pressure; the clamp law's if absent"),
-    ("pressure_factor", Bound::closed(0.1, 3.0), false, "factor on the clamp law's pressure; 1 if absent"),
-    ("belt_degc", TEMP, false, "belt and spray; in steady state over the sump if absent"),
-    ("belt_above_sump_k", Bound::closed(-100.0, 100.0), false, "belt and spray above the sump, in place of belt_degc"),
+    (
+        "torque_nm",
+        TORQUE,
+        false,
+        "torque at the output shaft; 0 if absent",
+    ),
+    (
+        "throttle",
+        Bound::closed(0.0, 1.0),
+        false,
+        "throttle that the clamp law sees; 0 if absent",
+    ),
+    (
+        "pressure_bar",
+        PRESSURE,
+        false,
+        "secondary pressure; the clamp law's if absent",
+    ),
+    (
+        "pressure_factor",
+        Bound::closed(0.1, 3.0),
+        false,
+        "factor on the clamp law's pressure; 1 if absent",
+    ),
+    (
+        "belt_degc",
+        TEMP,
+        false,
+        "belt and spray; in steady state over the sump if absent",
+    ),
+    (
+        "belt_above_sump_k",
+        Bound::closed(-100.0, 100.0),
+        false,
+        "belt and spray above the sump, in place of belt_degc",
+    ),
 ];
 
 const BELT: [Axis; 9] = [
-    ("ratio", Bound::closed(0.2, 5.0), true, "belt ratio I = R_sec / R_pri"),
+    (
+        "ratio",
+        Bound::closed(0.2, 5.0),
+        true,
+        "belt ratio I = R_sec / R_pri",
+    ),
     ("speed_rpm", SPEED, true, "speed of the primary"),
     ("pressure_bar", PRESSURE, true, "secondary pressure"),
-    ("belt_degc", TEMP, false, "belt; 85 degC without lift-off if absent"),
-    ("band_friction", FRICTION, false, "band friction at 85 degC; the fluid's, 0.13 in the printed forms, if absent"),
-    ("segment_friction", FRICTION, false, "segment friction; the fluid's, 0.125 or 0.13 in the printed forms, if absent"),
-    ("on_stop", Bound::closed(0.0, 1.0), false, "1: the primary leans on its end stop, 0: it deflects; the vehicle's ramp if absent"),
-    ("band_speed_share", Bound::closed(-0.5, 0.5), false, "adopted band speed from the mean, over the range of required speeds"),
+    (
+        "belt_degc",
+        TEMP,
+        false,
+        "belt; 85 degC without lift-off if absent",
+    ),
+    (
+        "band_friction",
+        FRICTION,
+        false,
+        "band friction at 85 degC; the fluid's, 0.13 in the printed forms, if absent",
+    ),
+    (
+        "segment_friction",
+        FRICTION,
+        false,
+        "segment friction; the fluid's, 0.125 or 0.13 in the printed forms, if absent",
+    ),
+    (
+        "on_stop",
+        Bound::closed(0.0, 1.0),
+        false,
+        "1: the primary leans on its end stop, 0: it deflects; the vehicle's ramp if absent",
+    ),
+    (
+        "band_speed_share",
+        Bound::closed(-0.5, 0.5),
+        false,
+        "adopted band speed from the mean, over the range of required speeds",
+    ),
     ("torque_nm", TORQUE, true, "torque at the secondary pulley"),
 ];
 
 const RUN: [Axis; 3] = [
     ("ambient_degc", AMBIENT, false, "ambient; 25 degC if absent"),
-    ("start_degc", Bound::closed(-40.0, 150.0), false, "all temperatures at the start, in place of `start`"),
-    ("dt_s", Bound::closed(0.01, 10.0), false, "longest step; 1 s if absent"),
+    (
+        "start_degc",
+        Bound::closed(-40.0, 150.0),
+        false,
+        "all temperatures at the start, in place of `start`",
+    ),
+    (
+        "dt_s",
+        Bound::closed(0.01, 10.0),
+        false,
+        "longest step; 1 s if absent",
+    ),
 ];
 
-const TRANSIENT: [Axis; 1] = [("ratio", Bound::closed(0.2, 5.0), true, "belt ratio I = R_sec / R_pri")];
+const TRANSIENT: [Axis; 1] = [(
+    "ratio",
+    Bound::closed(0.2, 5.0),
+    true,
+    "belt ratio I = R_sec / R_pri",
+)];
 
 const STRIP_DOWN: [Axis; 3] = [
-    ("ratio", Bound::closed(0.2, 5.0), false, "belt ratio; the rig's own two if absent"),
-    ("speed_rpm", Bound::closed(1.0, 20_000.0), false, "input speed; the rig's own if absent"),
-    ("temp_degc", TEMP, false, "oil in the sump; the rig's own if absent"),
+    (
+        "ratio",
+        Bound::closed(0.2, 5.0),
+        false,
+        "belt ratio; the rig's own two if absent",
+    ),
+    (
+        "speed_rpm",
+        Bound::closed(1.0, 20_000.0),
+        false,
+        "input speed; the rig's own if absent",
+    ),
+    (
+        "temp_degc",
+        TEMP,
+        false,
+        "oil in the sump; the rig's own if absent",
+    ),
 ];
 
 const FLUID: [Axis; 1] = [("temp_degc", TEMP, true, "temperature of the fluid")];
@@ -144,8 +244,14 @@ pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
         let before = waiting.len();
         waiting.retain(|name| {
             let section = sources.table(name);
-            let like = section.optional_text("like", "source that this one continues").unwrap_or_default();
-            let base = done.iter().chain(common).find(|source| source.name == like).cloned();
+            let like = section
+                .optional_text("like", "source that this one continues")
+                .unwrap_or_default();
+            let base = done
+                .iter()
+                .chain(common)
+                .find(|source| source.name == like)
+                .cloned();
             if base.is_none() && !like.is_empty() {
                 return true;
             }
@@ -157,7 +263,11 @@ pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
         }
         if waiting.len() == before {
             for name in waiting {
-                let known: Vec<&str> = done.iter().chain(common).map(|source| source.name.as_str()).collect();
+                let known: Vec<&str> = done
+                    .iter()
+                    .chain(common)
+                    .map(|source| source.name.as_str())
+                    .collect();
                 let hint = format!("known sources: {}", known.join(", "));
                 sources.table(name).complain(
                     "like",
@@ -187,10 +297,20 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
         return empty(name, Kind::Vehicle);
     };
     let old = base.unwrap_or_else(|| empty(name, kind));
-    let formulations: Vec<&'static str> = Formulation::NAMES.iter().map(|(name, _)| *name).collect();
+    let formulations: Vec<&'static str> =
+        Formulation::NAMES.iter().map(|(name, _)| *name).collect();
     let formulation = if s.has("formulation") {
-        let word = s.word_or("formulation", &formulations, "smooth", "reading of the belt model");
-        Formulation::NAMES.iter().find(|(name, _)| *name == word).map(|(_, f)| *f).unwrap_or_default()
+        let word = s.word_or(
+            "formulation",
+            &formulations,
+            "smooth",
+            "reading of the belt model",
+        );
+        Formulation::NAMES
+            .iter()
+            .find(|(name, _)| *name == word)
+            .map(|(_, f)| *f)
+            .unwrap_or_default()
     } else {
         old.formulation
     };
@@ -198,23 +318,47 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
         name: name.to_owned(),
         place: s.place(if s.has("set") { "set" } else { "source" }),
         kind,
-        vehicle: s.optional_text("vehicle", "vehicle; the one being validated if absent").or(old.vehicle),
-        lubricant: s.optional_text("lubricant", "transmission oil in place of the vehicle's").or(old.lubricant),
-        set: old.set.into_iter().chain(s.texts("set", "overrides KEY=VALUE of the vehicle and its fluids")).collect(),
+        vehicle: s
+            .optional_text("vehicle", "vehicle; the one being validated if absent")
+            .or(old.vehicle),
+        lubricant: s
+            .optional_text("lubricant", "transmission oil in place of the vehicle's")
+            .or(old.lubricant),
+        set: old
+            .set
+            .into_iter()
+            .chain(s.texts("set", "overrides KEY=VALUE of the vehicle and its fluids"))
+            .collect(),
         formulation,
         ..old
     };
     for (key, bound, needed, doc) in axes(kind) {
         let given = s.grid(key, *bound, doc);
-        let Some(slot) = source.axes.iter_mut().find(|(name, _)| name == key) else { continue };
+        let Some(slot) = source.axes.iter_mut().find(|(name, _)| name == key) else {
+            continue;
+        };
         slot.1 = given.or_else(|| slot.1.take());
         if *needed && slot.1.as_ref().is_none_or(Vec::is_empty) {
-            s.complain(key, &bound.in_unit(unit_of(key)), &format!("source `{name}` has no `{key}`"), "give a number, a list or a range");
+            s.complain(
+                key,
+                &bound.in_unit(unit_of(key)),
+                &format!("source `{name}` has no `{key}`"),
+                "give a number, a list or a range",
+            );
         }
     }
-    let count = source.axes.iter().map(|(_, list)| list.as_ref().map_or(1, Vec::len)).fold(1_usize, usize::saturating_mul);
+    let count = source
+        .axes
+        .iter()
+        .map(|(_, list)| list.as_ref().map_or(1, Vec::len))
+        .fold(1_usize, usize::saturating_mul);
     if count > MOST_POINTS {
-        s.complain("source", &format!("up to {MOST_POINTS} points"), &format!("source `{name}` has {count} points"), "use wider steps");
+        s.complain(
+            "source",
+            &format!("up to {MOST_POINTS} points"),
+            &format!("source `{name}` has {count} points"),
+            "use wider steps",
+        );
     }
     match kind {
         Kind::Bench => bench(s, &mut source),
@@ -232,12 +376,25 @@ fn kind(s: &Section, base: Option<&Source>) -> Option<Kind> {
         }
         if s.exists() {
             let words = Kind::NAMES.map(|(name, _)| name);
-            s.complain("source", &words.join(", "), "the source does not say what it computes", "add, for example, `source = \"bench\"`");
+            s.complain(
+                "source",
+                &words.join(", "),
+                "the source does not say what it computes",
+                "add, for example, `source = \"bench\"`",
+            );
         }
         return None;
     }
-    let word = s.word_or("source", &Kind::NAMES.map(|(name, _)| name), "", "what the source computes");
-    Kind::NAMES.iter().find(|(name, _)| *name == word).map(|(_, kind)| *kind)
+    let word = s.word_or(
+        "source",
+        &Kind::NAMES.map(|(name, _)| name),
+        "",
+        "what the source computes",
+    );
+    Kind::NAMES
+        .iter()
+        .find(|(name, _)| *name == word)
+        .map(|(_, kind)| *kind)
 }
 
 /// A source of a kind with nothing set.
@@ -267,8 +424,17 @@ fn bench(s: &Section, source: &mut Source) {
         return;
     }
     source.without = s.texts("without", "parts that are not in the box");
-    for part in source.without.iter().filter(|part| !PARTS.contains(&part.as_str())) {
-        s.complain("without", &PARTS.join(", "), &format!("there is no part `{part}`"), "");
+    for part in source
+        .without
+        .iter()
+        .filter(|part| !PARTS.contains(&part.as_str()))
+    {
+        s.complain(
+            "without",
+            &PARTS.join(", "),
+            &format!("there is no part `{part}`"),
+            "",
+        );
     }
 }
 
@@ -277,18 +443,29 @@ fn run(s: &Section, source: &mut Source) {
         source.cycle = s.text_or("cycle", "", "name of an embedded cycle or constant_V");
     }
     if s.has("points") {
-        let columns = [("time_s", Bound::closed(0.0, 1e5)), ("speed_kmh", Bound::closed(0.0, 300.0))];
+        let columns = [
+            ("time_s", Bound::closed(0.0, 1e5)),
+            ("speed_kmh", Bound::closed(0.0, 300.0)),
+        ];
         source.points = s.rows("points", &columns, "times and speeds in place of a cycle");
     }
     if s.has("start") {
-        source.start = s.word_or("start", &["soak", "warm"], "soak", "temperatures at the start").to_owned();
+        source.start = s
+            .word_or(
+                "start",
+                &["soak", "warm"],
+                "soak",
+                "temperatures at the start",
+            )
+            .to_owned();
     }
     if s.has("phase") {
         source.phase = s.text_or("phase", "", "group of phases that counts");
     }
     match cycle(source) {
         Err(why) if !source.points.is_empty() => {
-            let hint = "times rise by up to 3600 s, speeds are 0 to 300 km/h and change by up to 12 m/s2";
+            let hint =
+                "times rise by up to 3600 s, speeds are 0 to 300 km/h and change by up to 12 m/s2";
             s.complain("points", "rows [time s, speed km/h] of a cycle", &why, hint);
         }
         Err(why) => {
@@ -301,9 +478,18 @@ fn run(s: &Section, source: &mut Source) {
             s.complain("cycle", "the name of an embedded cycle, or constant_V with V in km/h, above 0 and up to 300", &why, &hint);
         }
         Ok(cycle) => {
-            let groups: Vec<String> = cycle.phase_groups().into_iter().map(|(name, _)| name).collect();
+            let groups: Vec<String> = cycle
+                .phase_groups()
+                .into_iter()
+                .map(|(name, _)| name)
+                .collect();
             if !source.phase.is_empty() && !groups.contains(&source.phase) {
-                s.complain("phase", &groups.join(", "), &format!("the cycle has no phase `{}`", source.phase), "");
+                s.complain(
+                    "phase",
+                    &groups.join(", "),
+                    &format!("the cycle has no phase `{}`", source.phase),
+                    "",
+                );
             }
         }
     }
@@ -315,10 +501,17 @@ fn run(s: &Section, source: &mut Source) {
 /// There is no such cycle.
 pub fn cycle(source: &Source) -> Result<Cycle, String> {
     if !source.points.is_empty() {
-        let rows: Vec<String> = source.points.iter().map(|row| format!("{},{}\n", row[0], row[1] * 3.6)).collect();
+        let rows: Vec<String> = source
+            .points
+            .iter()
+            .map(|row| format!("{},{}\n", row[0], row[1] * 3.6))
+            .collect();
         let text = format!("time_s,speed_kmh\n{}", rows.concat());
-        return read_csv("points.csv", text.as_bytes())
-            .map_err(|problems| problems.first().map_or_else(String::new, |problem| problem.message.clone()));
+        return read_csv("points.csv", text.as_bytes()).map_err(|problems| {
+            problems
+                .first()
+                .map_or_else(String::new, |problem| problem.message.clone())
+        });
     }
     if let Some(constant) = constant_speed(&source.cycle) {
         return constant.map_err(|problem| problem.message);
@@ -336,18 +529,25 @@ impl Source {
     /// Values of an axis in SI units.
     #[must_use]
     pub fn axis_or_none(&self, key: &str) -> Option<Vec<f64>> {
-        self.axes.iter().find(|(name, _)| *name == key).and_then(|(_, list)| list.clone())
+        self.axes
+            .iter()
+            .find(|(name, _)| *name == key)
+            .and_then(|(_, list)| list.clone())
     }
 
     /// Start temperature in K, where one is given.
     #[must_use]
     pub fn start_k(&self) -> Option<f64> {
-        self.axis_or_none("start_degc").and_then(|list| list.first().copied())
+        self.axis_or_none("start_degc")
+            .and_then(|list| list.first().copied())
     }
 
     /// Ambient temperature, K.
     #[must_use]
     pub fn ambient_k(&self) -> f64 {
-        self.axis("ambient_degc", 25.0 + ZERO_DEGC_K).first().copied().unwrap_or(25.0 + ZERO_DEGC_K)
+        self.axis("ambient_degc", 25.0 + ZERO_DEGC_K)
+            .first()
+            .copied()
+            .unwrap_or(25.0 + ZERO_DEGC_K)
     }
 }

@@ -25,11 +25,18 @@ pub trait Cars {
     ///
     /// # Errors
     /// What is wrong with its values.
-    fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>>;
+    fn conditions(
+        &self,
+        source: Option<&Source>,
+    ) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>>;
 }
 
 /// The value for a key, made once.
-pub fn once<K: Eq + Hash, T: Clone>(map: &RefCell<HashMap<K, T>>, key: K, make: impl FnOnce() -> T) -> T {
+pub fn once<K: Eq + Hash, T: Clone>(
+    map: &RefCell<HashMap<K, T>>,
+    key: K,
+    make: impl FnOnce() -> T,
+) -> T {
     if let Some(found) = map.borrow().get(&key) {
         return found.clone();
     }
@@ -48,7 +55,11 @@ pub struct Store<'a> {
 impl<'a> Store<'a> {
     /// With nothing computed yet.
     pub fn new(cars: &'a dyn Cars) -> Self {
-        Store { cars, runs: RefCell::default(), tables: RefCell::default() }
+        Store {
+            cars,
+            runs: RefCell::default(),
+            tables: RefCell::default(),
+        }
     }
 
     /// The table of a source, or of its totals.
@@ -56,19 +67,36 @@ impl<'a> Store<'a> {
     /// # Errors
     /// Why it cannot be computed.
     pub fn table(&self, source: &Source, totals: bool) -> Result<Rc<Table>, String> {
-        let bare = Source { name: String::new(), place: Place::default(), ..source.clone() };
-        once(&self.tables, format!("{totals} {bare:?}"), || self.compute(&bare, totals).map(Rc::new))
+        let bare = Source {
+            name: String::new(),
+            place: Place::default(),
+            ..source.clone()
+        };
+        once(&self.tables, format!("{totals} {bare:?}"), || {
+            self.compute(&bare, totals).map(Rc::new)
+        })
     }
 
     fn compute(&self, source: &Source, totals: bool) -> Result<Table, String> {
-        let setup = self.cars.setup(Some(source)).map_err(|problems| refused(&problems))?;
+        let setup = self
+            .cars
+            .setup(Some(source))
+            .map_err(|problems| refused(&problems))?;
         if source.kind != Kind::Run {
-            let (conditions, _) = self.cars.conditions(Some(source)).map_err(|_| "the rig's conditions cannot be read".to_owned())?;
+            let (conditions, _) = self
+                .cars
+                .conditions(Some(source))
+                .map_err(|_| "the rig's conditions cannot be read".to_owned())?;
             return tables::table(source, &setup, &conditions);
         }
         // Phases of the same run share it.
-        let whole = Source { phase: String::new(), ..source.clone() };
-        let driven = once(&self.runs, format!("{whole:?}"), || Rc::new(tables::drive(&whole, &setup)));
+        let whole = Source {
+            phase: String::new(),
+            ..source.clone()
+        };
+        let driven = once(&self.runs, format!("{whole:?}"), || {
+            Rc::new(tables::drive(&whole, &setup))
+        });
         match driven.as_ref() {
             Ok(driven) => tables::of_run(source, driven, totals),
             Err(why) => Err(why.clone()),
@@ -77,7 +105,10 @@ impl<'a> Store<'a> {
 }
 
 fn refused(problems: &[Problem]) -> String {
-    let first = problems.first().map(|problem| format!(": {}", problem.message)).unwrap_or_default();
+    let first = problems
+        .first()
+        .map(|problem| format!(": {}", problem.message))
+        .unwrap_or_default();
     format!("its vehicle cannot be loaded{first}")
 }
 
@@ -92,7 +123,12 @@ pub struct View<'a> {
 impl<'a> View<'a> {
     /// With the sources that the expressions count from 0.
     pub fn new(store: &'a Store<'a>, sources: &'a [Source]) -> Self {
-        View { store, sources, left_out: Cell::default(), outside: Cell::default() }
+        View {
+            store,
+            sources,
+            left_out: Cell::default(),
+            outside: Cell::default(),
+        }
     }
 
     /// Forgets what was noted.
@@ -110,19 +146,36 @@ impl<'a> View<'a> {
 impl Tables for View<'_> {
     fn table(&self, source: usize, totals: bool) -> Result<Rc<Table>, String> {
         let spec = self.sources.get(source).ok_or("no such source")?;
-        self.store.table(spec, totals).map_err(|why| format!("source `{}`: {why}", spec.name))
+        self.store
+            .table(spec, totals)
+            .map_err(|why| format!("source `{}`: {why}", spec.name))
     }
 
     fn key(&self, source: Option<usize>, path: &str, item: Option<usize>) -> Result<f64, String> {
         let spec = source.and_then(|k| self.sources.get(k));
         if path.starts_with(PREFIX) {
-            let (_, keys) = self.store.cars.conditions(spec).map_err(|_| "the rig's conditions cannot be read".to_owned())?;
-            let info = keys.iter().find(|info| info.key == path).ok_or_else(|| format!("the rig has no `{path}`"))?;
-            return number_of(info, item).ok_or_else(|| format!("`{path}` is no number here: {}", info.value));
+            let (_, keys) = self
+                .store
+                .cars
+                .conditions(spec)
+                .map_err(|_| "the rig's conditions cannot be read".to_owned())?;
+            let info = keys
+                .iter()
+                .find(|info| info.key == path)
+                .ok_or_else(|| format!("the rig has no `{path}`"))?;
+            return number_of(info, item)
+                .ok_or_else(|| format!("`{path}` is no number here: {}", info.value));
         }
-        let setup = self.store.cars.setup(spec).map_err(|_| "the vehicle cannot be loaded".to_owned())?;
-        let info =
-            setup.keys.iter().find(|info| info.key == path).ok_or_else(|| format!("the vehicle `{}` has no `{path}`", setup.name))?;
+        let setup = self
+            .store
+            .cars
+            .setup(spec)
+            .map_err(|_| "the vehicle cannot be loaded".to_owned())?;
+        let info = setup
+            .keys
+            .iter()
+            .find(|info| info.key == path)
+            .ok_or_else(|| format!("the vehicle `{}` has no `{path}`", setup.name))?;
         number_of(info, item).ok_or_else(|| format!("`{path}` is no number here: {}", info.value))
     }
 

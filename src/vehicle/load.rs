@@ -20,14 +20,23 @@ impl RoadLoadInput {
     /// Coefficients in force at an ambient temperature, K.
     #[must_use]
     pub fn at(&self, ambient_k: f64) -> RoadLoad {
-        let ambient = Ambient { temp_k: ambient_k, altitude_m: self.altitude_m };
-        self.base.for_ambient(self.surface, &ambient, self.rolling_per_k)
+        let ambient = Ambient {
+            temp_k: ambient_k,
+            altitude_m: self.altitude_m,
+        };
+        self.base
+            .for_ambient(self.surface, &ambient, self.rolling_per_k)
     }
 
     /// Full-load factor of altitude, (p/p_0)^1.2.
     #[must_use]
     pub fn full_load_factor(&self) -> f64 {
-        Ambient { temp_k: REFERENCE_K, altitude_m: self.altitude_m }.pressure_ratio().powf(1.2)
+        Ambient {
+            temp_k: REFERENCE_K,
+            altitude_m: self.altitude_m,
+        }
+        .pressure_ratio()
+        .powf(1.2)
     }
 }
 
@@ -66,10 +75,24 @@ pub fn load(s: &Section) -> RoadLoadInput {
         "dynamometer",
         "dynamometer: fixed coefficients; road: air and rolling follow ambient (RL-2); for the road give body or coast-down coefficients, since the R83 table has most of the rolling in f2",
     );
-    let payload = s.number_or("payload_kg", Bound::closed(0.0, 5000.0), 0.0, "load added to the mass (RL-1)");
-    let rotating =
-        s.number_or("rotating_factor", Bound::closed(0.0, 0.2), 0.015, "rotating inertia of wheels and output side over mass (RL-1)");
-    let altitude_m = s.number_or("altitude_m", Bound::closed(-500.0, 5000.0), 0.0, "altitude of the road (RL-4, EN-5)");
+    let payload = s.number_or(
+        "payload_kg",
+        Bound::closed(0.0, 5000.0),
+        0.0,
+        "load added to the mass (RL-1)",
+    );
+    let rotating = s.number_or(
+        "rotating_factor",
+        Bound::closed(0.0, 0.2),
+        0.015,
+        "rotating inertia of wheels and output side over mass (RL-1)",
+    );
+    let altitude_m = s.number_or(
+        "altitude_m",
+        Bound::closed(-500.0, 5000.0),
+        0.0,
+        "altitude of the road (RL-4, EN-5)",
+    );
     let (kind, form) = s.choose(
         "form",
         &["coefficients", "body", "r83"],
@@ -83,7 +106,11 @@ pub fn load(s: &Section) -> RoadLoadInput {
     };
     let mass_kg = mass + payload;
     // Rolling resistance grows with the load that the tyres carry; on rollers with fixed coefficients it does not.
-    let f0_n = if surface == "road" { f0 * mass_kg / mass } else { f0 };
+    let f0_n = if surface == "road" {
+        f0 * mass_kg / mass
+    } else {
+        f0
+    };
     RoadLoadInput {
         base: RoadLoad {
             f0_n,
@@ -91,9 +118,17 @@ pub fn load(s: &Section) -> RoadLoadInput {
             f2_n_per_m_s2: f2,
             mass_kg,
             inertia_kg: mass_kg * (1.0 + rotating),
-            wheel_radius_m: s.number("wheel_radius_m", Bound::closed(0.15, 0.6), "dynamic tyre radius"),
+            wheel_radius_m: s.number(
+                "wheel_radius_m",
+                Bound::closed(0.15, 0.6),
+                "dynamic tyre radius",
+            ),
         },
-        surface: if surface == "road" { Surface::Road } else { Surface::Dynamometer },
+        surface: if surface == "road" {
+            Surface::Road
+        } else {
+            Surface::Dynamometer
+        },
         rolling_per_k: s.number_or(
             "rolling_per_k",
             Bound::closed(0.0, 0.03),
@@ -105,28 +140,58 @@ pub fn load(s: &Section) -> RoadLoadInput {
 }
 
 fn mass(s: &Section) -> f64 {
-    s.number("mass_kg", Bound::closed(200.0, 5000.0), "inertia mass without payload (RL-1)")
+    s.number(
+        "mass_kg",
+        Bound::closed(200.0, 5000.0),
+        "inertia mass without payload (RL-1)",
+    )
 }
 
 fn coefficients(s: &Section, form: &Section) -> (f64, f64, f64, f64) {
     (
         mass(s),
         form.number("f0_n", Bound::closed(0.0, 2000.0), "constant part (RL-1)"),
-        form.number_or("f1_n_per_kmh", Bound::closed(0.0, 50.0), 0.0, "part linear in speed (RL-1)"),
-        form.number("f2_n_per_kmh2", Bound::closed(0.0, 1.0), "part quadratic in speed, per (km/h)2 (RL-1)"),
+        form.number_or(
+            "f1_n_per_kmh",
+            Bound::closed(0.0, 50.0),
+            0.0,
+            "part linear in speed (RL-1)",
+        ),
+        form.number(
+            "f2_n_per_kmh2",
+            Bound::closed(0.0, 1.0),
+            "part quadratic in speed, per (km/h)2 (RL-1)",
+        ),
     )
 }
 
 fn body(s: &Section, form: &Section) -> (f64, f64, f64, f64) {
     let mass = mass(s);
     let drag = form.number("drag_coefficient", Bound::closed(0.1, 1.5), "c_d (RL-3)");
-    let area = form.number("frontal_area_m2", Bound::closed(0.5, 6.0), "frontal area (RL-3)");
-    let rolling = form.number("rolling_coefficient", Bound::closed(0.002, 0.05), "c_r (RL-3)");
-    (mass, mass * GRAVITY_M_S2 * rolling, 0.0, 0.5 * 1.204 * drag * area) // RL-3, air at 20 degC and sea level
+    let area = form.number(
+        "frontal_area_m2",
+        Bound::closed(0.5, 6.0),
+        "frontal area (RL-3)",
+    );
+    let rolling = form.number(
+        "rolling_coefficient",
+        Bound::closed(0.002, 0.05),
+        "c_r (RL-3)",
+    );
+    (
+        mass,
+        mass * GRAVITY_M_S2 * rolling,
+        0.0,
+        0.5 * 1.204 * drag * area,
+    ) // RL-3, air at 20 degC and sea level
 }
 
 fn r83(form: &Section) -> (f64, f64, f64, f64) {
-    let reference = form.number("reference_mass_kg", Bound::closed(200.0, 5000.0), "unladen mass + 100 kg; picks the class of UN R83");
+    let reference = form.number(
+        "reference_mass_kg",
+        Bound::closed(200.0, 5000.0),
+        "unladen mass + 100 kg; picks the class of UN R83",
+    );
     let row = R83.iter().find(|r| reference <= r.0).unwrap_or(&R83[0]);
     (row.1, row.2, 0.0, row.3 * 12.96)
 }
@@ -139,8 +204,8 @@ mod tests {
     #[test]
     fn val_r83_rows_give_the_published_force() {
         let f80 = [
-            171.0, 185.0, 194.0, 203.0, 212.0, 221.0, 230.0, 252.0, 270.0, 284.0, 302.0, 315.0, 329.0, 338.0, 351.0, 365.0, 378.0, 387.0,
-            396.0, 405.0, 423.0, 441.0,
+            171.0, 185.0, 194.0, 203.0, 212.0, 221.0, 230.0, 252.0, 270.0, 284.0, 302.0, 315.0,
+            329.0, 338.0, 351.0, 365.0, 378.0, 387.0, 396.0, 405.0, 423.0, 441.0,
         ];
         for (row, want) in R83.iter().zip(f80) {
             let got = row.2 + 6400.0 * row.3;

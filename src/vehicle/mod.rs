@@ -101,14 +101,20 @@ impl RoadLoad {
     /// Mean power of a motion with a constant part of force `c`, W.
     #[inline]
     fn power_w(&self, c: f64, motion: &Motion) -> f64 {
-        c * motion.speed_m_s + self.f1_n_per_m_s * motion.square_m2_s2 + self.f2_n_per_m_s2 * motion.cube_m3_s3 // RL-5
+        c * motion.speed_m_s
+            + self.f1_n_per_m_s * motion.square_m2_s2
+            + self.f2_n_per_m_s2 * motion.cube_m3_s3 // RL-5
     }
 
     /// Speed at which the force is zero, m/s; NaN if there is none.
     #[inline]
     fn zero_force_speed(&self, c: f64) -> f64 {
         let (f1, f2) = (self.f1_n_per_m_s, self.f2_n_per_m_s2);
-        if f2 > 0.0 { -2.0 * c / (f1 + (f1 * f1 - 4.0 * f2 * c).sqrt()) } else { -c / f1 }
+        if f2 > 0.0 {
+            -2.0 * c / (f1 + (f1 * f1 - 4.0 * f2 * c).sqrt())
+        } else {
+            -c / f1
+        }
     }
 
     /// What a step demands of the wheels (RL-1, RL-5).
@@ -147,10 +153,18 @@ impl RoadLoad {
                 let first_s = (zero - v0) / step.motion.accel_m_s2;
                 let first = self.power_w(c, &Motion::between(v0, zero, first_s)) * first_s;
                 let second = whole_j - first;
-                return if first > second { (first, second) } else { (second, first) };
+                return if first > second {
+                    (first, second)
+                } else {
+                    (second, first)
+                };
             }
         }
-        if whole_j >= 0.0 { (whole_j, 0.0) } else { (0.0, whole_j) }
+        if whole_j >= 0.0 {
+            (whole_j, 0.0)
+        } else {
+            (0.0, whole_j)
+        }
     }
 }
 
@@ -172,10 +186,13 @@ mod tests {
     fn work(automatic: bool, dt: f64) -> (f64, f64) {
         let cycle = crate::cycle::embedded("ece15_eudc").expect("embedded");
         let car = rover();
-        cycle.trace_for(automatic).steps(dt).fold((0.0, 0.0), |(p, n), s| {
-            let w = car.wheel(&s);
-            (p + w.positive_j, n + w.negative_j)
-        })
+        cycle
+            .trace_for(automatic)
+            .steps(dt)
+            .fold((0.0, 0.0), |(p, n), s| {
+                let w = car.wheel(&s);
+                (p + w.positive_j, n + w.negative_j)
+            })
     }
 
     /// Outside truth: the project's independent calculation, within 1e-4, at any step.
@@ -193,16 +210,27 @@ mod tests {
     /// Colder air is denser and tyres roll harder; a dynamometer does not know.
     #[test]
     fn cold_road_drags_more() {
-        let cold = Ambient { temp_k: 263.15, altitude_m: 0.0 };
+        let cold = Ambient {
+            temp_k: 263.15,
+            altitude_m: 0.0,
+        };
         let road = rover().for_ambient(Surface::Road, &cold, 0.00864);
         assert!(road.f0_n > 1.2 * 6.3 && road.f2_n_per_m_s2 > 1.1 * rover().f2_n_per_m_s2);
-        assert_eq!(rover().for_ambient(Surface::Dynamometer, &cold, 0.00864), rover());
+        assert_eq!(
+            rover().for_ambient(Surface::Dynamometer, &cold, 0.00864),
+            rover()
+        );
     }
 
     /// Standard atmosphere: 0.7942 of the density at 2260 m by the isothermal part, pressure 898.7 hPa at 1000 m.
     #[test]
     fn val_standard_atmosphere() {
-        let p = Ambient { temp_k: 288.15, altitude_m: 1000.0 }.pressure_ratio() * 1013.25;
+        let p = Ambient {
+            temp_k: 288.15,
+            altitude_m: 1000.0,
+        }
+        .pressure_ratio()
+            * 1013.25;
         assert!((p - 898.75).abs() < 0.1, "{p}");
     }
 }

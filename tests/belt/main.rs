@@ -1,7 +1,11 @@
 //! `belt`: the real program against the golden tables, and what it makes of good and bad tables.
 //!
 //! Truth of the `val_` tests: tables of an independent program that transcribes the thesis's Appendix C statement by statement.
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests; differences are printed for the book")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "helpers of tests; differences are printed for the book"
+)]
 
 mod files;
 mod golden;
@@ -19,7 +23,13 @@ const EDGES: &str = include_str!("../golden/belt_edge_points.csv");
 const NAMES: &str = "ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm";
 
 fn program(words: &[&str], input: &[u8]) -> Output {
-    Command::cargo_bin("cvtcycle").unwrap().env("NO_COLOR", "1").args(words).write_stdin(input).output().unwrap()
+    Command::cargo_bin("cvtcycle")
+        .unwrap()
+        .env("NO_COLOR", "1")
+        .args(words)
+        .write_stdin(input)
+        .output()
+        .unwrap()
 }
 
 fn belt(input: &[u8], more: &[&str]) -> Output {

@@ -25,12 +25,18 @@ impl Table {
     }
 
     pub fn cell(&self, row: usize, name: &str) -> &str {
-        let column = self.names.iter().position(|known| known == name).unwrap_or_else(|| panic!("no column {name}"));
+        let column = self
+            .names
+            .iter()
+            .position(|known| known == name)
+            .unwrap_or_else(|| panic!("no column {name}"));
         &self.rows[row][column]
     }
 
     pub fn number(&self, row: usize, name: &str) -> f64 {
-        self.cell(row, name).parse().unwrap_or_else(|_| panic!("{name}: {}", self.cell(row, name)))
+        self.cell(row, name)
+            .parse()
+            .unwrap_or_else(|_| panic!("{name}: {}", self.cell(row, name)))
     }
 }
 
@@ -54,5 +60,9 @@ pub fn spread(numbers: impl Iterator<Item = f64>) -> [f64; 3] {
     sorted.sort_by(f64::total_cmp);
     let count = sorted.len();
     let place = (0.95 * count as f64).ceil() as usize - 1;
-    [sorted.iter().sum::<f64>() / count as f64, sorted[place], sorted[count - 1]]
+    [
+        sorted.iter().sum::<f64>() / count as f64,
+        sorted[place],
+        sorted[count - 1],
+    ]
 }

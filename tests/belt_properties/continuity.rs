@@ -18,7 +18,13 @@ struct Jump {
 }
 
 /// Follows the larger difference of one value; its size at last and where it lies.
-fn descend(f: &dyn Fn(f64) -> [f64; COUNT], k: usize, mut a: (f64, f64), mut b: (f64, f64), done: f64) -> (f64, f64) {
+fn descend(
+    f: &dyn Fn(f64) -> [f64; COUNT],
+    k: usize,
+    mut a: (f64, f64),
+    mut b: (f64, f64),
+    done: f64,
+) -> (f64, f64) {
     for _ in 0..HALVINGS {
         if (b.1 - a.1).abs() <= done {
             break;
@@ -47,7 +53,11 @@ fn jumps(f: &dyn Fn(f64) -> [f64; COUNT], from: f64, to: f64, n: u32) -> (Vec<Ju
             largest[k] = largest[k].max((b - a).abs());
             let (size, place) = descend(f, k, (x(i - 1), a), (x(i), b), done);
             if size > done || !size.is_finite() {
-                found.push(Jump { name: NAMES[k], x: place, size });
+                found.push(Jump {
+                    name: NAMES[k],
+                    x: place,
+                    size,
+                });
             }
         }
     }
@@ -73,7 +83,11 @@ impl Sweep<'_> {
             (self.side)(&state(x), &(self.point)(x))
         });
         let on_side = on_side.count();
-        assert!(0 < on_side && on_side < n as usize + 1, "{}: the sweep does not cross the change of regime ({on_side})", self.name);
+        assert!(
+            0 < on_side && on_side < n as usize + 1,
+            "{}: the sweep does not cross the change of regime ({on_side})",
+            self.name
+        );
         let f = |x: f64| values(&state(x));
         let (found, coarse) = jumps(&f, from, to, n);
         assert!(found.is_empty(), "{}: {found:?}", self.name);
@@ -94,7 +108,10 @@ impl Sweep<'_> {
             }
             last = now;
         }
-        panic!("{}: of {NAMES:?} only {smooth:?} shrink with the step, last {last:?}", self.name);
+        panic!(
+            "{}: of {NAMES:?} only {smooth:?} shrink with the step, last {last:?}",
+            self.name
+        );
     }
 }
 
@@ -111,8 +128,14 @@ fn largest(f: &dyn Fn(f64) -> [f64; COUNT], from: f64, to: f64, n: u32) -> [f64;
 }
 
 /// Torque, clamp and speed of the sweeps: coasting, no load, part load, near and beyond the capacity of a weak clamp.
-const LOADS: [(f64, f64, f64); 6] =
-    [(-60.0, 10e3, 2000.0), (0.0, 10e3, 0.0), (0.0, 20e3, 4000.0), (40.0, 20e3, 2000.0), (150.0, 35e3, 6500.0), (120.0, 6e3, 2500.0)];
+const LOADS: [(f64, f64, f64); 6] = [
+    (-60.0, 10e3, 2000.0),
+    (0.0, 10e3, 0.0),
+    (0.0, 20e3, 4000.0),
+    (40.0, 20e3, 2000.0),
+    (150.0, 35e3, 6500.0),
+    (120.0, 6e3, 2500.0),
+];
 /// Ratios: both ends, unity and its neighbours, the stop's ramp.
 const RATIOS: [f64; 9] = [0.4137, 0.5, 0.9, 0.999, 1.0, 1.004, 1.5, 2.35, 2.4169];
 
@@ -120,10 +143,27 @@ const RATIOS: [f64; 9] = [0.4137, 0.5, 0.9, 0.999, 1.0, 1.004, 1.5, 2.35, 2.4169
 fn across_unity_and_the_end_stop() {
     let belt = thesis_belt(Formulation::Smooth);
     for (torque_nm, clamp_n, rpm) in LOADS {
-        for (at, (from, to)) in [(1.0, (0.9, 1.1)), (2.30, (2.25, 2.35)), (2.417, (2.38, 2.46)), (1.2, (0.35, 3.0))] {
-            let point = |ratio: f64| Point { torque_nm, clamp_n, rpm, ..Point::plain(ratio) };
+        for (at, (from, to)) in [
+            (1.0, (0.9, 1.1)),
+            (2.30, (2.25, 2.35)),
+            (2.417, (2.38, 2.46)),
+            (1.2, (0.35, 3.0)),
+        ] {
+            let point = |ratio: f64| Point {
+                torque_nm,
+                clamp_n,
+                rpm,
+                ..Point::plain(ratio)
+            };
             let name = format!("ratio across {at} at {torque_nm} Nm, {clamp_n} N, {rpm} rpm");
-            Sweep { name, belt: &belt, point: &point, range: (from, to), side: &|_, p| p.ratio < at }.check();
+            Sweep {
+                name,
+                belt: &belt,
+                point: &point,
+                range: (from, to),
+                side: &|_, p| p.ratio < at,
+            }
+            .check();
         }
     }
 }
@@ -134,18 +174,54 @@ fn across_the_breakpoint() {
     let belt = thesis_belt(Formulation::Smooth);
     for ratio in RATIOS {
         for (_, clamp_n, rpm) in LOADS {
-            let plain = Point { clamp_n, rpm, ..Point::plain(ratio) };
+            let plain = Point {
+                clamp_n,
+                rpm,
+                ..Point::plain(ratio)
+            };
             let middle = plain.breakpoint_nm(&belt);
-            let point = |t: f64| Point { torque_nm: middle + t, ..plain };
+            let point = |t: f64| Point {
+                torque_nm: middle + t,
+                ..plain
+            };
             let name = format!("torque across C_x = 0 at ratio {ratio}, {clamp_n} N, {rpm} rpm");
-            Sweep { name, belt: &belt, point: &point, range: (-31.0, 30.0), side: &|s, _| s.tension.compression_n < 0.0 }.check();
+            Sweep {
+                name,
+                belt: &belt,
+                point: &point,
+                range: (-31.0, 30.0),
+                side: &|s, _| s.tension.compression_n < 0.0,
+            }
+            .check();
         }
     }
-    let by_clamp = |clamp_n: f64| Point { clamp_n, torque_nm: 60.0, ..Point::plain(2.2) };
+    let by_clamp = |clamp_n: f64| Point {
+        clamp_n,
+        torque_nm: 60.0,
+        ..Point::plain(2.2)
+    };
     let below = |s: &BeltState, _: &Point| s.tension.compression_n < 0.0;
-    Sweep { name: "clamp across C_x = 0".into(), belt: &belt, point: &by_clamp, range: (10e3, 50e3), side: &below }.check();
-    let by_friction = |mu_band: f64| Point { mu_band, torque_nm: 60.0, ..Point::plain(2.2) };
-    Sweep { name: "band friction across C_x = 0".into(), belt: &belt, point: &by_friction, range: (0.0, 0.2), side: &below }.check();
+    Sweep {
+        name: "clamp across C_x = 0".into(),
+        belt: &belt,
+        point: &by_clamp,
+        range: (10e3, 50e3),
+        side: &below,
+    }
+    .check();
+    let by_friction = |mu_band: f64| Point {
+        mu_band,
+        torque_nm: 60.0,
+        ..Point::plain(2.2)
+    };
+    Sweep {
+        name: "band friction across C_x = 0".into(),
+        belt: &belt,
+        point: &by_friction,
+        range: (0.0, 0.2),
+        side: &below,
+    }
+    .check();
 }
 
 #[test]
@@ -153,10 +229,22 @@ fn across_zero_torque_from_overrun_to_drive() {
     let belt = thesis_belt(Formulation::Smooth);
     for ratio in RATIOS {
         for (_, clamp_n, rpm) in LOADS {
-            let point = |torque_nm: f64| Point { torque_nm, clamp_n, rpm, ..Point::plain(ratio) };
+            let point = |torque_nm: f64| Point {
+                torque_nm,
+                clamp_n,
+                rpm,
+                ..Point::plain(ratio)
+            };
             let side = |_: &BeltState, p: &Point| p.torque_nm < 0.0;
             let name = format!("torque across zero at ratio {ratio}, {clamp_n} N, {rpm} rpm");
-            Sweep { name, belt: &belt, point: &point, range: (-40.0, 41.0), side: &side }.check();
+            Sweep {
+                name,
+                belt: &belt,
+                point: &point,
+                range: (-40.0, 41.0),
+                side: &side,
+            }
+            .check();
         }
     }
 }
@@ -166,10 +254,24 @@ fn across_standstill() {
     let belt = thesis_belt(Formulation::Smooth);
     for ratio in [0.4137, 0.999, 1.0, 2.35, 2.4169] {
         for (torque_nm, clamp_n, _) in LOADS {
-            let point = |rpm: f64| Point { torque_nm, clamp_n, rpm, ..Point::plain(ratio) };
+            let point = |rpm: f64| Point {
+                torque_nm,
+                clamp_n,
+                rpm,
+                ..Point::plain(ratio)
+            };
             for range in [(-10.0, 11.0), (-1000.0, 7000.0)] {
-                let name = format!("speed across standstill at ratio {ratio}, {torque_nm} Nm, {clamp_n} N");
-                Sweep { name, belt: &belt, point: &point, range, side: &|_, p| p.rpm < 0.0 }.check();
+                let name = format!(
+                    "speed across standstill at ratio {ratio}, {torque_nm} Nm, {clamp_n} N"
+                );
+                Sweep {
+                    name,
+                    belt: &belt,
+                    point: &point,
+                    range,
+                    side: &|_, p| p.rpm < 0.0,
+                }
+                .check();
             }
         }
     }
@@ -183,23 +285,62 @@ fn into_gross_slip() {
     let held = |s: &BeltState, _: &Point| s.slip.held;
     for ratio in RATIOS {
         for (clamp_n, rpm) in [(750.0, 0.0), (6e3, 2000.0), (20e3, 6000.0)] {
-            let point = |torque_nm: f64| Point { torque_nm, clamp_n, rpm, ..Point::plain(ratio) };
+            let point = |torque_nm: f64| Point {
+                torque_nm,
+                clamp_n,
+                rpm,
+                ..Point::plain(ratio)
+            };
             let capacity = point(0.0).state(&belt).capacity_nm;
             for (name, reach, side) in [
-                ("over capacity", 1.2 * capacity, &slips as &dyn Fn(&BeltState, &Point) -> bool),
+                (
+                    "over capacity",
+                    1.2 * capacity,
+                    &slips as &dyn Fn(&BeltState, &Point) -> bool,
+                ),
                 ("over the bound of slip", 3.0 * capacity + 300.0, &held),
             ] {
                 let name = format!("torque {name} at ratio {ratio}, {clamp_n} N, {rpm} rpm");
-                Sweep { name, belt: &belt, point: &point, range: (-reach, reach), side }.check();
+                Sweep {
+                    name,
+                    belt: &belt,
+                    point: &point,
+                    range: (-reach, reach),
+                    side,
+                }
+                .check();
             }
         }
         for torque_nm in [-50.0, 100.0] {
-            let point = |clamp_n: f64| Point { torque_nm, clamp_n, ..Point::plain(ratio) };
+            let point = |clamp_n: f64| Point {
+                torque_nm,
+                clamp_n,
+                ..Point::plain(ratio)
+            };
             let name = format!("clamp from nothing at ratio {ratio}, {torque_nm} Nm");
-            Sweep { name, belt: &belt, point: &point, range: (0.0, 50e3), side: &held }.check();
-            let point = |mu_segment: f64| Point { torque_nm, clamp_n: 8e3, mu_segment, ..Point::plain(ratio) };
+            Sweep {
+                name,
+                belt: &belt,
+                point: &point,
+                range: (0.0, 50e3),
+                side: &held,
+            }
+            .check();
+            let point = |mu_segment: f64| Point {
+                torque_nm,
+                clamp_n: 8e3,
+                mu_segment,
+                ..Point::plain(ratio)
+            };
             let name = format!("segment friction from nothing at ratio {ratio}, {torque_nm} Nm");
-            Sweep { name, belt: &belt, point: &point, range: (0.0, 0.2), side: &held }.check();
+            Sweep {
+                name,
+                belt: &belt,
+                point: &point,
+                range: (0.0, 0.2),
+                side: &held,
+            }
+            .check();
         }
     }
 }
@@ -211,12 +352,25 @@ fn across_the_held_contact_area() {
     for ratio in [0.4137, 0.7, 1.0, 1.5, 2.4169] {
         for sign in [1.0, -1.0] {
             let radius = BeltAtRatio::new(&belt, ratio).geometry.secondary_radius_m;
-            let plain = Point { clamp_n: 45e3, ..Point::plain(ratio) };
+            let plain = Point {
+                clamp_n: 45e3,
+                ..Point::plain(ratio)
+            };
             let middle = plain.breakpoint_nm(&belt);
-            let point = |cx: f64| Point { torque_nm: middle + sign * cx * radius, ..plain };
+            let point = |cx: f64| Point {
+                torque_nm: middle + sign * cx * radius,
+                ..plain
+            };
             let side = |s: &BeltState, _: &Point| s.tension.compression_n.abs() < 4492.0;
             let name = format!("C_x across 4492 N at ratio {ratio}, sign {sign}");
-            Sweep { name, belt: &belt, point: &point, range: (2000.0, 9000.0), side: &side }.check();
+            Sweep {
+                name,
+                belt: &belt,
+                point: &point,
+                range: (2000.0, 9000.0),
+                side: &side,
+            }
+            .check();
         }
     }
 }
@@ -225,26 +379,66 @@ fn across_the_held_contact_area() {
 /// jumps and nowhere else. AppendixC lifts to +30 N, so it jumps at -30 N; Chapter8 keeps the sign, so it jumps at zero.
 #[test]
 fn thesis_readings_jump_only_at_their_printed_limit_of_compression() {
-    for (f, place_n) in [(Formulation::AppendixC, -30.0), (Formulation::Chapter8, 0.0)] {
+    for (f, place_n) in [
+        (Formulation::AppendixC, -30.0),
+        (Formulation::Chapter8, 0.0),
+    ] {
         let belt = thesis_belt(f);
         let mut seen = 0;
         for ratio in RATIOS {
             for (torque_nm, clamp_n, rpm) in LOADS {
-                let by_torque = |torque_nm: f64| Point { torque_nm, clamp_n, rpm, ..Point::plain(ratio) };
-                let by_ratio = |r: f64| Point { torque_nm, clamp_n, rpm, ..Point::plain(r) };
-                let by_clamp = |clamp_n: f64| Point { torque_nm, clamp_n, rpm, ..Point::plain(ratio) };
-                let sweeps = [(&by_torque as &dyn Fn(f64) -> Point, -300.0, 301.0), (&by_ratio, 0.35, 3.0), (&by_clamp, 0.0, 50e3)];
+                let by_torque = |torque_nm: f64| Point {
+                    torque_nm,
+                    clamp_n,
+                    rpm,
+                    ..Point::plain(ratio)
+                };
+                let by_ratio = |r: f64| Point {
+                    torque_nm,
+                    clamp_n,
+                    rpm,
+                    ..Point::plain(r)
+                };
+                let by_clamp = |clamp_n: f64| Point {
+                    torque_nm,
+                    clamp_n,
+                    rpm,
+                    ..Point::plain(ratio)
+                };
+                let sweeps = [
+                    (&by_torque as &dyn Fn(f64) -> Point, -300.0, 301.0),
+                    (&by_ratio, 0.35, 3.0),
+                    (&by_clamp, 0.0, 50e3),
+                ];
                 for (point, from, to) in sweeps {
                     for jump in jumps(&|x| values(&point(x).state(&belt)), from, to, 150).0 {
                         let p = point(jump.x);
                         let cx = p.state(&belt).tension.compression_n;
-                        assert!((cx - place_n).abs() < 0.1, "{f:?} {} jumps by {} at C_x = {cx}: {p:?}", jump.name, jump.size);
-                        assert!(["slip loss", "slip", "primary slip", "secondary slip", "input torque"].contains(&jump.name), "{jump:?}");
+                        assert!(
+                            (cx - place_n).abs() < 0.1,
+                            "{f:?} {} jumps by {} at C_x = {cx}: {p:?}",
+                            jump.name,
+                            jump.size
+                        );
+                        assert!(
+                            [
+                                "slip loss",
+                                "slip",
+                                "primary slip",
+                                "secondary slip",
+                                "input torque"
+                            ]
+                            .contains(&jump.name),
+                            "{jump:?}"
+                        );
                         seen += 1;
                     }
                 }
             }
         }
-        assert!(seen > 20, "{f:?}: the limit of compression shows {seen} times");
+        assert!(
+            seen > 20,
+            "{f:?}: the limit of compression shows {seen} times"
+        );
     }
 }

@@ -17,18 +17,28 @@ mod monotone;
 mod scaling;
 
 use cvtcycle::lubricant::BandFriction;
-use cvtcycle::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state};
+use cvtcycle::transmission::cvt::variator::{
+    Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state,
+};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 /// rpm to rad/s.
 pub const RPM: f64 = std::f64::consts::PI / 30.0;
 /// All formulations under the rules of driving.
-pub const ALL: [Formulation; 3] = [Formulation::Smooth, Formulation::AppendixC, Formulation::Chapter8];
+pub const ALL: [Formulation; 3] = [
+    Formulation::Smooth,
+    Formulation::AppendixC,
+    Formulation::Chapter8,
+];
 
 /// Random points, the same ones in every run.
 pub fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2001), ..ProptestConfig::with_cases(cases) }
+    ProptestConfig {
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(2001),
+        ..ProptestConfig::with_cases(cases)
+    }
 }
 
 /// The belt of the thesis (Appendix C) with the shipped smoothing.
@@ -76,7 +86,16 @@ pub struct Point {
 impl Point {
     /// Warm oil, 30 Nm, 2000 rpm, 20 bar or so.
     pub fn plain(ratio: f64) -> Self {
-        Point { ratio, rpm: 2000.0, torque_nm: 30.0, clamp_n: 20e3, mu_band: 0.13, mu_segment: 0.125, mu_flank: 0.13, film_share: 0.2 }
+        Point {
+            ratio,
+            rpm: 2000.0,
+            torque_nm: 30.0,
+            clamp_n: 20e3,
+            mu_band: 0.13,
+            mu_segment: 0.125,
+            mu_flank: 0.13,
+            film_share: 0.2,
+        }
     }
 
     pub fn load(&self) -> BeltLoad {
@@ -84,7 +103,10 @@ impl Point {
             primary_speed_rad_s: self.rpm * RPM,
             output_torque_nm: self.torque_nm,
             secondary_clamp_n: self.clamp_n,
-            band: BandFriction { mu: self.mu_band, film_share: self.film_share },
+            band: BandFriction {
+                mu: self.mu_band,
+                film_share: self.film_share,
+            },
             eta_pa_s: 0.02,
             film_thickness_m: 1.5e-6,
             segment_friction: self.mu_segment,
@@ -101,14 +123,26 @@ impl Point {
         let at = BeltAtRatio::new(belt, self.ratio);
         let g = at.geometry;
         let v = self.rpm * RPM * g.primary_radius_m;
-        let pull = 2.0 * self.clamp_n * at.thrust_ratio * belt.tan_wedge + g.primary_wrap_rad * belt.mass_kg_m * v * v;
+        let pull = 2.0 * self.clamp_n * at.thrust_ratio * belt.tan_wedge
+            + g.primary_wrap_rad * belt.mass_kg_m * v * v;
         (self.ratio.ln() / belt.unity_width).tanh() * self.mu_band * pull * g.secondary_radius_m
     }
 }
 
 /// What must be finite and continuous, with names.
-pub const NAMES: [&str; 11] =
-    ["band", "film", "slip loss", "wedge", "penetration", "slip", "primary slip", "secondary slip", "input torque", "C_x", "dT"];
+pub const NAMES: [&str; 11] = [
+    "band",
+    "film",
+    "slip loss",
+    "wedge",
+    "penetration",
+    "slip",
+    "primary slip",
+    "secondary slip",
+    "input torque",
+    "C_x",
+    "dT",
+];
 
 pub fn values(s: &BeltState) -> [f64; NAMES.len()] {
     let (t, slip) = (&s.tension, &s.slip);
@@ -146,10 +180,28 @@ pub fn any_point() -> impl Strategy<Value = Point> {
     let torque = prop_oneof![1 => Just(0.0), 6 => -400.0..400.0f64];
     let speeds_forces = (any_ratio(), zero_to(7000.0), torque, zero_to(50e3));
     let frictions = (zero_to(0.2), zero_to(0.2), zero_to(0.2), zero_to(1.0));
-    (speeds_forces, frictions, 0..6u8).prop_map(|((ratio, rpm, torque_nm, clamp_n), (mu_band, mu_segment, mu_flank, film_share), seat)| {
-        let p = Point { ratio, rpm, torque_nm, clamp_n, mu_band, mu_segment, mu_flank, film_share };
-        if seat == 0 { Point { torque_nm: p.breakpoint_nm(&thesis_belt(Formulation::Smooth)), ..p } } else { p }
-    })
+    (speeds_forces, frictions, 0..6u8).prop_map(
+        |((ratio, rpm, torque_nm, clamp_n), (mu_band, mu_segment, mu_flank, film_share), seat)| {
+            let p = Point {
+                ratio,
+                rpm,
+                torque_nm,
+                clamp_n,
+                mu_band,
+                mu_segment,
+                mu_flank,
+                film_share,
+            };
+            if seat == 0 {
+                Point {
+                    torque_nm: p.breakpoint_nm(&thesis_belt(Formulation::Smooth)),
+                    ..p
+                }
+            } else {
+                p
+            }
+        },
+    )
 }
 
 /// One of the three formulations.
@@ -159,5 +211,9 @@ pub fn any_formulation() -> impl Strategy<Value = Formulation> {
 
 /// A property with its place in words.
 pub fn hold(good: bool, said: impl FnOnce() -> String) -> Result<(), TestCaseError> {
-    if good { Ok(()) } else { Err(TestCaseError::fail(said())) }
+    if good {
+        Ok(())
+    } else {
+        Err(TestCaseError::fail(said()))
+    }
 }

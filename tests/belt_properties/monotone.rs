@@ -10,7 +10,9 @@ fn pair(from: f64, to: f64) -> impl Strategy<Value = (f64, f64)> {
 /// `b` is not below `a`; where the cause is at work it is above it.
 fn rises(name: &str, a: f64, b: f64, strictly: bool) -> Result<(), TestCaseError> {
     let rounding = 1e-12 * (a.abs() + b.abs());
-    hold(if strictly { b > a } else { b >= a - rounding }, || format!("{name} goes from {a} to {b}"))
+    hold(if strictly { b > a } else { b >= a - rounding }, || {
+        format!("{name} goes from {a} to {b}")
+    })
 }
 
 proptest! {

@@ -63,7 +63,10 @@ fn belt(b: &Belt, u: &Units, width: f64) -> Belt {
 }
 
 fn same(name: &str, now: f64, was: f64, factor: f64, scale: f64) -> Result<(), TestCaseError> {
-    hold((now - was * factor).abs() <= 1e-6 * scale * factor.abs(), || format!("{name}: {was} becomes {now}, factor {factor}"))
+    hold(
+        (now - was * factor).abs() <= 1e-6 * scale * factor.abs(),
+        || format!("{name}: {was} becomes {now}, factor {factor}"),
+    )
 }
 
 /// Everything that does not look at SL-3.
@@ -73,24 +76,72 @@ fn check_forces(now: &BeltState, was: &BeltState, u: &Units) -> Result<(), TestC
     let scale = o.primary_shoulder_n + o.secondary_shoulder_n;
     same("C_x", t.compression_n, o.compression_n, u.force, scale)?;
     same("dT", t.step_n, o.step_n, u.force, scale)?;
-    same("Q_p", t.primary_shoulder_n, o.primary_shoulder_n, u.force, scale)?;
-    same("Q_s", t.secondary_shoulder_n, o.secondary_shoulder_n, u.force, scale)?;
+    same(
+        "Q_p",
+        t.primary_shoulder_n,
+        o.primary_shoulder_n,
+        u.force,
+        scale,
+    )?;
+    same(
+        "Q_s",
+        t.secondary_shoulder_n,
+        o.secondary_shoulder_n,
+        u.force,
+        scale,
+    )?;
     for (k, (a, b)) in values(now).iter().zip(values(was)).enumerate() {
         if ["band", "film", "wedge", "penetration"].contains(&NAMES[k]) {
             same(NAMES[k], *a, b, torque, b)?;
         }
     }
-    same("capacity", now.capacity_nm, was.capacity_nm, torque, was.capacity_nm)
+    same(
+        "capacity",
+        now.capacity_nm,
+        was.capacity_nm,
+        torque,
+        was.capacity_nm,
+    )
 }
 
 /// Slip and all that follows from it.
 fn check_slip(now: &BeltState, was: &BeltState, u: &Units) -> Result<(), TestCaseError> {
     let scale = was.slip.primary.abs() + was.slip.secondary.abs() + 1e-9;
-    same("primary slip", now.slip.primary, was.slip.primary, 1.0, scale)?;
-    same("secondary slip", now.slip.secondary, was.slip.secondary, 1.0, scale)?;
-    same("slip loss", now.slip_nm, was.slip_nm, u.length * u.force, was.slip_nm + 1e-6)?;
-    same("segments", now.slip.active_segments, was.slip.active_segments, 1.0, was.slip.active_segments)?;
-    same("input torque", now.input_torque_nm, was.input_torque_nm, u.length * u.force, was.input_torque_nm.abs() + was.loss_nm())
+    same(
+        "primary slip",
+        now.slip.primary,
+        was.slip.primary,
+        1.0,
+        scale,
+    )?;
+    same(
+        "secondary slip",
+        now.slip.secondary,
+        was.slip.secondary,
+        1.0,
+        scale,
+    )?;
+    same(
+        "slip loss",
+        now.slip_nm,
+        was.slip_nm,
+        u.length * u.force,
+        was.slip_nm + 1e-6,
+    )?;
+    same(
+        "segments",
+        now.slip.active_segments,
+        was.slip.active_segments,
+        1.0,
+        was.slip.active_segments,
+    )?;
+    same(
+        "input torque",
+        now.input_torque_nm,
+        was.input_torque_nm,
+        u.length * u.force,
+        was.input_torque_nm.abs() + was.loss_nm(),
+    )
 }
 
 fn log_range(factor: f64) -> impl Strategy<Value = f64> {
@@ -98,7 +149,11 @@ fn log_range(factor: f64) -> impl Strategy<Value = f64> {
 }
 
 fn any_units() -> impl Strategy<Value = Units> {
-    (log_range(5.0), log_range(20.0), log_range(20.0)).prop_map(|(length, force, time)| Units { length, force, time })
+    (log_range(5.0), log_range(20.0), log_range(20.0)).prop_map(|(length, force, time)| Units {
+        length,
+        force,
+        time,
+    })
 }
 
 proptest! {

@@ -2,7 +2,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use cvtcycle::calibrate::solve::{End, Fit, Options, Residuals, Unwatched, Watcher, fit, leave_out, uncertainty, words};
+use cvtcycle::calibrate::solve::{
+    End, Fit, Options, Residuals, Unwatched, Watcher, fit, leave_out, uncertainty, words,
+};
 
 use super::{Model, ONCE, curve, fitted, near, parameter};
 
@@ -15,44 +17,89 @@ fn rooted(truth: [f64; 2], most: f64) -> impl Residuals {
         if v[1] > most {
             return Err(format!("no operating point above b = {most}"));
         }
-        Ok(X.iter().map(|x| (f(v[0], v[1], *x) - f(truth[0], truth[1], *x)) / 0.1).collect())
+        Ok(X.iter()
+            .map(|x| (f(v[0], v[1], *x) - f(truth[0], truth[1], *x)) / 0.1)
+            .collect())
     })
 }
 
 #[test]
 fn steps_into_failing_regions_are_refused() {
-    let parameters = [parameter("a", 9.0, [0.0, 10.0]), parameter("b", 0.1, [0.0, 10.0])];
+    let parameters = [
+        parameter("a", 9.0, [0.0, 10.0]),
+        parameter("b", 0.1, [0.0, 10.0]),
+    ];
     let found = fitted(&rooted([1.02, 1.9], 2.0), &parameters);
     assert_eq!(found.end, End::Converged);
-    assert!(near(found.values[0], 1.02, 1e-6) && near(found.values[1], 1.9, 1e-6), "{found:?}");
+    assert!(
+        near(found.values[0], 1.02, 1e-6) && near(found.values[1], 1.9, 1e-6),
+        "{found:?}"
+    );
 }
 
 #[test]
 fn a_minimum_beyond_the_failing_edge_is_no_convergence() {
-    let parameters = [parameter("a", 2.0, [0.0, 10.0]), parameter("b", 0.1, [0.0, 10.0])];
+    let parameters = [
+        parameter("a", 2.0, [0.0, 10.0]),
+        parameter("b", 0.1, [0.0, 10.0]),
+    ];
     let found = fitted(&rooted([2.0, 3.0], 2.0), &parameters);
-    assert_eq!((found.end, found.starts[0].failure.as_deref()), (End::NoProgress, Some("no operating point above b = 2")));
-    assert!(found.values[1] > 1.5 && found.values[1] <= 2.0 && found.cost < found_cost(&[2.0, 0.1]), "{found:?}");
+    assert_eq!(
+        (found.end, found.starts[0].failure.as_deref()),
+        (End::NoProgress, Some("no operating point above b = 2"))
+    );
+    assert!(
+        found.values[1] > 1.5 && found.values[1] <= 2.0 && found.cost < found_cost(&[2.0, 0.1]),
+        "{found:?}"
+    );
 }
 
 fn found_cost(values: &[f64]) -> f64 {
-    rooted([2.0, 3.0], 2.0).at(values).expect("inside").iter().map(|r| r * r).sum()
+    rooted([2.0, 3.0], 2.0)
+        .at(values)
+        .expect("inside")
+        .iter()
+        .map(|r| r * r)
+        .sum()
 }
 
 #[test]
 fn starts_that_fail_say_why_and_the_others_go_on() {
-    let parameters = [parameter("a", 0.5, [0.0, 10.0]), parameter("b", 5.0, [0.0, 10.0])];
+    let parameters = [
+        parameter("a", 0.5, [0.0, 10.0]),
+        parameter("b", 5.0, [0.0, 10.0]),
+    ];
     let options = Options { starts: 12, ..ONCE };
-    let found = fit(&rooted([3.0, 1.0], 2.0), &parameters, &options, &Unwatched).expect("some start");
+    let found =
+        fit(&rooted([3.0, 1.0], 2.0), &parameters, &options, &Unwatched).expect("some start");
     let first = &found.starts[0];
-    assert_eq!((first.end, first.failure.as_deref(), first.evaluations), (End::NoProgress, Some("no operating point above b = 2"), 1));
-    assert!(first.cost.is_infinite() && found.best != 0 && near(found.values[0], 3.0, 1e-6), "{found:?}");
-    let numbers = found.starts.iter().map(|start| start.evaluations).sum::<usize>();
+    assert_eq!(
+        (first.end, first.failure.as_deref(), first.evaluations),
+        (End::NoProgress, Some("no operating point above b = 2"), 1)
+    );
+    assert!(
+        first.cost.is_infinite() && found.best != 0 && near(found.values[0], 3.0, 1e-6),
+        "{found:?}"
+    );
+    let numbers = found
+        .starts
+        .iter()
+        .map(|start| start.evaluations)
+        .sum::<usize>();
     assert!(numbers <= found.evaluations && found.evaluations <= numbers + 12);
 
-    let refused = fit(&rooted([3.0, 1.0], -1.0), &parameters, &Options { starts: 3, ..ONCE }, &Unwatched).expect_err("fails everywhere");
+    let refused = fit(
+        &rooted([3.0, 1.0], -1.0),
+        &parameters,
+        &Options { starts: 3, ..ONCE },
+        &Unwatched,
+    )
+    .expect_err("fails everywhere");
     assert_eq!((refused.reasons.len(), refused.starts.len()), (3, 3));
-    assert_eq!(refused.reasons[0], "start 1 at a = 0.5, b = 5: no operating point above b = -1");
+    assert_eq!(
+        refused.reasons[0],
+        "start 1 at a = 0.5, b = 5: no operating point above b = -1"
+    );
 }
 
 #[test]
@@ -60,23 +107,57 @@ fn answers_that_are_no_numbers_and_parameters_that_are_none() {
     let short = Model(3, |_: &[f64]| Ok(vec![1.0; 2]));
     let infinite = Model(2, |_: &[f64]| Ok(vec![1.0, f64::INFINITY]));
     let good = [parameter("a", 1.0, [0.0, 2.0])];
-    let why = |model: &dyn Residuals| fit(model, &good, &ONCE, &Unwatched).expect_err("no answer").to_string();
-    assert_eq!(why(&short), "start 1 at a = 1: the model gives 2 residuals in place of 3");
+    let why = |model: &dyn Residuals| {
+        fit(model, &good, &ONCE, &Unwatched)
+            .expect_err("no answer")
+            .to_string()
+    };
+    assert_eq!(
+        why(&short),
+        "start 1 at a = 1: the model gives 2 residuals in place of 3"
+    );
     assert_eq!(why(&infinite), "start 1 at a = 1: residual 2 is inf");
-    let mut bad = vec![parameter("a", f64::NAN, [2.0, 1.0]), parameter("b", 1.0, [0.0, f64::INFINITY])];
+    let mut bad = vec![
+        parameter("a", f64::NAN, [2.0, 1.0]),
+        parameter("b", 1.0, [0.0, f64::INFINITY]),
+    ];
     bad[1].prior = Some(cvtcycle::calibrate::solve::Prior { mean: 1.0, sd: 0.0 });
-    assert_eq!(fit(&short, &bad, &ONCE, &Unwatched).expect_err("bad").reasons.len(), 4);
-    assert_eq!(fit(&Model(0, |_: &[f64]| Ok(vec![])), &[], &ONCE, &Unwatched).expect_err("nothing").reasons.len(), 2);
+    assert_eq!(
+        fit(&short, &bad, &ONCE, &Unwatched)
+            .expect_err("bad")
+            .reasons
+            .len(),
+        4
+    );
+    assert_eq!(
+        fit(&Model(0, |_: &[f64]| Ok(vec![])), &[], &ONCE, &Unwatched)
+            .expect_err("nothing")
+            .reasons
+            .len(),
+        2
+    );
 }
 
 fn wave() -> impl Residuals {
     let x: Vec<f64> = (0..25).map(|i| 0.3 * f64::from(i)).collect();
-    let y = x.iter().map(|x| 1.5 * (2.3 * x).sin() + 0.01 * (7.0 * x).cos()).collect();
+    let y = x
+        .iter()
+        .map(|x| 1.5 * (2.3 * x).sin() + 0.01 * (7.0 * x).cos())
+        .collect();
     curve(x, y, 0.05, |v, x| v[0] * (v[1] * x).sin())
 }
 
 fn wave_fit(options: &Options) -> Fit {
-    fit(&wave(), &[parameter("height", 1.0, [0.1, 5.0]), parameter("pulse", 4.5, [0.5, 6.0])], options, &Unwatched).expect("a fit")
+    fit(
+        &wave(),
+        &[
+            parameter("height", 1.0, [0.1, 5.0]),
+            parameter("pulse", 4.5, [0.5, 6.0]),
+        ],
+        options,
+        &Unwatched,
+    )
+    .expect("a fit")
 }
 
 #[test]
@@ -84,19 +165,28 @@ fn several_starts_find_the_better_minimum() {
     let (one, many) = (wave_fit(&ONCE), wave_fit(&Options { starts: 16, ..ONCE }));
     assert_eq!(one.end, End::Converged);
     assert_eq!(many.starts[0], one.starts[0]);
-    assert!(many.best != 0 && many.cost < 0.01 * one.cost && near(many.values[1], 2.3, 1e-2), "{one:?} {many:?}");
+    assert!(
+        many.best != 0 && many.cost < 0.01 * one.cost && near(many.values[1], 2.3, 1e-2),
+        "{one:?} {many:?}"
+    );
 }
 
 #[test]
 fn the_same_on_any_number_of_threads() {
     let options = Options { starts: 7, ..ONCE };
     let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("a pool");
         pool.install(|| format!("{:?}", wave_fit(&options)))
     };
     let alone = on(1);
     assert!([2, 3, 8].into_iter().all(|threads| on(threads) == alone));
-    assert_ne!(format!("{:?}", wave_fit(&Options { seed: 2, ..options })), alone);
+    assert_ne!(
+        format!("{:?}", wave_fit(&Options { seed: 2, ..options })),
+        alone
+    );
 }
 
 struct Patience(AtomicUsize, usize);
@@ -113,59 +203,133 @@ impl Watcher for Patience {
 
 #[test]
 fn who_stops_keeps_the_best_so_far_and_limits_hold() {
-    let parameters = [parameter("a", 9.0, [0.0, 10.0]), parameter("b", 0.1, [0.0, 1.9])];
+    let parameters = [
+        parameter("a", 9.0, [0.0, 10.0]),
+        parameter("b", 0.1, [0.0, 1.9]),
+    ];
     let model = rooted([1.5, 1.9], 2.0);
     let watched = |most| {
         let watcher = Patience(AtomicUsize::new(0), most);
-        (fit(&model, &parameters, &ONCE, &watcher), watcher.0.into_inner())
+        (
+            fit(&model, &parameters, &ONCE, &watcher),
+            watcher.0.into_inner(),
+        )
     };
     let (whole, seen) = watched(usize::MAX);
     let whole = whole.expect("a fit");
     assert_eq!((whole.evaluations, whole.end), (seen, End::Converged));
     let (stopped, seen) = watched(14);
     let stopped = stopped.expect("the best so far");
-    assert!(stopped.end == End::Stopped && (14..=16).contains(&seen), "{seen} {stopped:?}");
-    assert!(whole.cost < stopped.cost && stopped.cost < fitted_cost(&model), "{stopped:?}");
+    assert!(
+        stopped.end == End::Stopped && (14..=16).contains(&seen),
+        "{seen} {stopped:?}"
+    );
+    assert!(
+        whole.cost < stopped.cost && stopped.cost < fitted_cost(&model),
+        "{stopped:?}"
+    );
     // Without derivatives nothing is claimed.
     let worth = uncertainty(&stopped, &parameters);
-    assert!(stopped.jacobian.iter().all(|slope| slope.is_nan()) && worth.standard_error == [None, None] && worth.dead.is_empty());
-    assert!(words(&stopped, &parameters).iter().all(|sentence| sentence.contains("no derivative")));
+    assert!(
+        stopped.jacobian.iter().all(|slope| slope.is_nan())
+            && worth.standard_error == [None, None]
+            && worth.dead.is_empty()
+    );
+    assert!(
+        words(&stopped, &parameters)
+            .iter()
+            .all(|sentence| sentence.contains("no derivative"))
+    );
     assert!(watched(0).0.is_err());
 
-    let few = fit(&model, &parameters, &Options { most_evaluations: 12, ..ONCE }, &Unwatched).expect("the best so far");
+    let few = fit(
+        &model,
+        &parameters,
+        &Options {
+            most_evaluations: 12,
+            ..ONCE
+        },
+        &Unwatched,
+    )
+    .expect("the best so far");
     assert_eq!(few.end, End::OutOfEvaluations);
     let mut before = f64::INFINITY;
     for most_evaluations in 1..60 {
-        let limited = wave_fit(&Options { most_evaluations, ..ONCE });
-        let within = limited.starts[0].evaluations <= most_evaluations + if limited.end == End::Converged { 4 } else { 0 };
-        assert!(limited.cost <= before && within, "{most_evaluations}: {limited:?}");
+        let limited = wave_fit(&Options {
+            most_evaluations,
+            ..ONCE
+        });
+        let within = limited.starts[0].evaluations
+            <= most_evaluations + if limited.end == End::Converged { 4 } else { 0 };
+        assert!(
+            limited.cost <= before && within,
+            "{most_evaluations}: {limited:?}"
+        );
         before = limited.cost;
     }
 }
 
 fn fitted_cost(model: &dyn Residuals) -> f64 {
-    model.at(&[9.0, 0.1]).expect("the start").iter().map(|r| r * r).sum()
+    model
+        .at(&[9.0, 0.1])
+        .expect("the start")
+        .iter()
+        .map(|r| r * r)
+        .sum()
 }
 
 #[test]
 fn groups_left_out_are_predicted_as_by_a_fit_by_hand() {
-    let y: Vec<f64> = X.iter().map(|x| 1.5 * (-0.6 * x).exp() + 0.03 * (9.0 * x).sin()).collect();
+    let y: Vec<f64> = X
+        .iter()
+        .map(|x| 1.5 * (-0.6 * x).exp() + 0.03 * (9.0 * x).sin())
+        .collect();
     let f = |v: &[f64], x: f64| v[0] * (-v[1] * x).exp();
-    let parameters = [parameter("A", 1.0, [0.1, 10.0]), parameter("k", 1.0, [0.01, 5.0])];
+    let parameters = [
+        parameter("A", 1.0, [0.1, 10.0]),
+        parameter("k", 1.0, [0.01, 5.0]),
+    ];
     let model = curve(X.to_vec(), y.clone(), 0.02, f);
     let groups = [4, 4, 1, 1, 1, 7, 7, 7, 7];
     let solution = fitted(&model, &parameters);
     let folds = leave_out(&model, &parameters, &groups, &solution, &ONCE, &Unwatched);
-    assert_eq!(folds.iter().map(|fold| fold.group).collect::<Vec<_>>(), [1, 4, 7]);
+    assert_eq!(
+        folds.iter().map(|fold| fold.group).collect::<Vec<_>>(),
+        [1, 4, 7]
+    );
     for fold in folds {
-        let (kept, left): (Vec<usize>, Vec<usize>) = (0..X.len()).partition(|&i| groups[i] != fold.group);
+        let (kept, left): (Vec<usize>, Vec<usize>) =
+            (0..X.len()).partition(|&i| groups[i] != fold.group);
         let of = |all: &[f64], which: &[usize]| which.iter().map(|&i| all[i]).collect::<Vec<_>>();
         let by_hand = fitted(&curve(of(&X, &kept), of(&y, &kept), 0.02, f), &parameters);
-        assert!(by_hand.values.iter().zip(&fold.values).all(|(a, b)| near(*a, *b, 1e-6)), "{:?} {fold:?}", by_hand.values);
-        assert!((by_hand.values[0] - solution.values[0]).abs() > 1e-3, "the fold matters");
-        let want: Vec<f64> = left.iter().map(|&i| (f(&by_hand.values, X[i]) - y[i]) / 0.02).collect();
-        assert_eq!((fold.end, fold.failure, fold.residuals.len()), (End::Converged, None, want.len()));
-        assert!(want.iter().zip(&fold.residuals).all(|(a, b)| (a - b).abs() < 1e-4), "{want:?} {:?}", fold.residuals);
+        assert!(
+            by_hand
+                .values
+                .iter()
+                .zip(&fold.values)
+                .all(|(a, b)| near(*a, *b, 1e-6)),
+            "{:?} {fold:?}",
+            by_hand.values
+        );
+        assert!(
+            (by_hand.values[0] - solution.values[0]).abs() > 1e-3,
+            "the fold matters"
+        );
+        let want: Vec<f64> = left
+            .iter()
+            .map(|&i| (f(&by_hand.values, X[i]) - y[i]) / 0.02)
+            .collect();
+        assert_eq!(
+            (fold.end, fold.failure, fold.residuals.len()),
+            (End::Converged, None, want.len())
+        );
+        assert!(
+            want.iter()
+                .zip(&fold.residuals)
+                .all(|(a, b)| (a - b).abs() < 1e-4),
+            "{want:?} {:?}",
+            fold.residuals
+        );
     }
     let only = leave_out(&model, &parameters, &[3; 9], &solution, &ONCE, &Unwatched);
     assert!(only.len() == 1 && only[0].residuals.is_empty() && only[0].failure.is_some());

@@ -21,19 +21,43 @@ impl<F: Fn(&[f64]) -> Result<Vec<f64>, String> + Sync> Residuals for Model<F> {
 }
 
 /// (f(values, x) - y) / sd at each x.
-fn curve(x: Vec<f64>, y: Vec<f64>, sd: f64, f: impl Fn(&[f64], f64) -> f64 + Sync) -> impl Residuals {
-    Model(x.len(), move |values: &[f64]| Ok(x.iter().zip(&y).map(|(x, y)| (f(values, *x) - y) / sd).collect()))
+fn curve(
+    x: Vec<f64>,
+    y: Vec<f64>,
+    sd: f64,
+    f: impl Fn(&[f64], f64) -> f64 + Sync,
+) -> impl Residuals {
+    Model(x.len(), move |values: &[f64]| {
+        Ok(x.iter()
+            .zip(&y)
+            .map(|(x, y)| (f(values, *x) - y) / sd)
+            .collect())
+    })
 }
 
 fn parameter(name: &str, start: f64, [low, high]: [f64; 2]) -> Parameter {
-    Parameter { name: name.into(), start, low, high, prior: None }
+    Parameter {
+        name: name.into(),
+        start,
+        low,
+        high,
+        prior: None,
+    }
 }
 
 fn with_prior(parameter: Parameter, mean: f64, sd: f64) -> Parameter {
-    Parameter { prior: Some(Prior { mean, sd }), ..parameter }
+    Parameter {
+        prior: Some(Prior { mean, sd }),
+        ..parameter
+    }
 }
 
-const ONCE: Options = Options { starts: 1, seed: 1, most_evaluations: 2000, tolerance: 1e-10 };
+const ONCE: Options = Options {
+    starts: 1,
+    seed: 1,
+    most_evaluations: 2000,
+    tolerance: 1e-10,
+};
 
 fn fitted(model: &dyn Residuals, parameters: &[Parameter]) -> Fit {
     fit(model, parameters, &ONCE, &Unwatched).expect("a fit")

@@ -18,18 +18,35 @@ fn holds(truth: &Certified, f: fn(&[f64], f64) -> f64) {
     let (y, x): (Vec<f64>, Vec<f64>) = truth.data.iter().copied().unzip();
     let model = curve(x, y, truth.residual_sd, f);
     for starts in truth.starts {
-        let parameters: Vec<_> = starts.iter().zip(truth.bounds).map(|(start, bounds)| parameter("b", *start, *bounds)).collect();
+        let parameters: Vec<_> = starts
+            .iter()
+            .zip(truth.bounds)
+            .map(|(start, bounds)| parameter("b", *start, *bounds))
+            .collect();
         let found = fitted(&model, &parameters);
         let worth = uncertainty(&found, &parameters);
         assert_eq!(found.end, End::Converged);
         for (k, (value, deviation)) in truth.values.iter().zip(truth.deviations).enumerate() {
             let error = worth.standard_error[k].expect("identified");
             // Derivatives are differences, so a minimum is met to a small part of what it is known by.
-            assert!((found.values[k] - value).abs() <= 1e-4 * deviation, "b{} from {starts:?}: {} {value}", k + 1, found.values[k]);
-            assert!(near(error, *deviation, 2e-4), "sd of b{} from {starts:?}: {error} {deviation}", k + 1);
+            assert!(
+                (found.values[k] - value).abs() <= 1e-4 * deviation,
+                "b{} from {starts:?}: {} {value}",
+                k + 1,
+                found.values[k]
+            );
+            assert!(
+                near(error, *deviation, 2e-4),
+                "sd of b{} from {starts:?}: {error} {deviation}",
+                k + 1
+            );
         }
         assert_eq!(worth.degrees_of_freedom, truth.data.len() - starts.len());
-        assert!(worth.reduced_chi2.is_some_and(|chi2| near(chi2, 1.0, 1e-8)), "{:?}", worth.reduced_chi2);
+        assert!(
+            worth.reduced_chi2.is_some_and(|chi2| near(chi2, 1.0, 1e-8)),
+            "{:?}",
+            worth.reduced_chi2
+        );
     }
 }
 
@@ -82,10 +99,22 @@ fn val_mgh09() {
         residual_sd: 6.627_923_655_1e-3,
         starts: &[&[0.25, 0.39, 0.415, 0.39]],
         bounds: &[[0.0, 5.0]; 4],
-        values: &[1.928_069_345_8e-1, 1.912_823_287_3e-1, 1.230_565_069_3e-1, 1.360_623_306_8e-1],
-        deviations: &[1.143_531_222_7e-2, 1.963_322_091_1e-1, 8.084_203_123_2e-2, 9.002_554_230_8e-2],
+        values: &[
+            1.928_069_345_8e-1,
+            1.912_823_287_3e-1,
+            1.230_565_069_3e-1,
+            1.360_623_306_8e-1,
+        ],
+        deviations: &[
+            1.143_531_222_7e-2,
+            1.963_322_091_1e-1,
+            8.084_203_123_2e-2,
+            9.002_554_230_8e-2,
+        ],
     };
-    holds(&truth, |b, x| b[0] * (x * x + x * b[1]) / (x * x + x * b[2] + b[3]));
+    holds(&truth, |b, x| {
+        b[0] * (x * x + x * b[1]) / (x * x + x * b[2] + b[3])
+    });
 }
 
 #[rustfmt::skip]
@@ -103,8 +132,19 @@ fn val_thurber() {
     let truth = Certified {
         data: &THURBER,
         residual_sd: 1.371_460_078_4e1,
-        starts: &[&[1000.0, 1000.0, 400.0, 40.0, 0.7, 0.3, 0.03], &[1300.0, 1500.0, 500.0, 75.0, 1.0, 0.4, 0.05]],
-        bounds: &[[500.0, 3000.0], [500.0, 3000.0], [100.0, 1500.0], [1.0, 300.0], [0.1, 3.0], [0.05, 2.0], [0.001, 0.3]],
+        starts: &[
+            &[1000.0, 1000.0, 400.0, 40.0, 0.7, 0.3, 0.03],
+            &[1300.0, 1500.0, 500.0, 75.0, 1.0, 0.4, 0.05],
+        ],
+        bounds: &[
+            [500.0, 3000.0],
+            [500.0, 3000.0],
+            [100.0, 1500.0],
+            [1.0, 300.0],
+            [0.1, 3.0],
+            [0.05, 2.0],
+            [0.001, 0.3],
+        ],
         values: &[
             1.288_139_680_0e3,
             1.491_079_253_5e3,

@@ -32,7 +32,15 @@ pub struct Setting {
 
 impl Default for Setting {
     fn default() -> Self {
-        Setting { ratio: 1.0, wheel_rad_s: 30.0, wheel_nm: 0.0, sump_degc: 60.0, belt_degc: 70.0, engine_degc: 90.0, coupled: true }
+        Setting {
+            ratio: 1.0,
+            wheel_rad_s: 30.0,
+            wheel_nm: 0.0,
+            sump_degc: 60.0,
+            belt_degc: 70.0,
+            engine_degc: 90.0,
+            coupled: true,
+        }
     }
 }
 
@@ -82,7 +90,12 @@ impl Bench {
     /// Solves one step at given temperatures of the nodes.
     pub fn solve_at(&self, s: &Setting, heat: &Heat) -> Drive {
         let car = &self.car;
-        let engine = car.engine.at(heat.node_k[COOLANT], heat.node_k[ENGINE_OIL], &car.engine_oil, 1.0);
+        let engine = car.engine.at(
+            heat.node_k[COOLANT],
+            heat.node_k[ENGINE_OIL],
+            &car.engine_oil,
+            1.0,
+        );
         let wheel = WheelDemand {
             speed_m_s: s.wheel_rad_s * car.road_load.wheel_radius_m,
             wheel_rad_s: s.wheel_rad_s,

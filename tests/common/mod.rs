@@ -1,5 +1,9 @@
 //! What the model tests share: loading cars, driving cycles, and steps that are set up by hand.
-#![allow(dead_code, clippy::print_stdout, reason = "each test crate uses a part of it; tests print the numbers they found")]
+#![allow(
+    dead_code,
+    clippy::print_stdout,
+    reason = "each test crate uses a part of it; tests print the numbers they found"
+)]
 
 pub mod bench_step;
 pub mod range;
@@ -21,7 +25,10 @@ pub const ZERO: f64 = 273.15;
 
 /// A shipped vehicle with overrides, or the problems as the user would see them.
 pub fn try_car(name: &str, sets: &[String]) -> Result<Setup, String> {
-    let options = Options { set: sets.to_vec(), ..Options::default() };
+    let options = Options {
+        set: sets.to_vec(),
+        ..Options::default()
+    };
     load(name, "--vehicle", &options).map_err(|problems| render(&problems, false))
 }
 
@@ -42,17 +49,30 @@ pub fn cycle(name: &str) -> Cycle {
 /// A hill: 8 % up from a standing start, over the top and 6 % down again, driven at up to 70 km/h.
 pub fn hill() -> Cycle {
     let text = "time_s,speed_kmh,grade_percent\n0,0,0\n5,0,8\n20,40,8\n80,60,8\n110,70,8\n140,50,-6\n200,60,-6\n215,0,0\n225,0,0\n";
-    read_csv("hill.csv", text.as_bytes()).unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
+    read_csv("hill.csv", text.as_bytes())
+        .unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
 }
 
 /// Conditions of a run with a step of 1 s.
 pub fn at(ambient_degc: f64, start: Start) -> Conditions {
-    Conditions { ambient_k: ambient_degc + ZERO, start, max_dt_s: 1.0, keep_rows: false }
+    Conditions {
+        ambient_k: ambient_degc + ZERO,
+        start,
+        max_dt_s: 1.0,
+        keep_rows: false,
+    }
 }
 
 /// A run after a soak, rows kept.
 pub fn soak_rows(setup: &Setup, cycle: &Cycle, ambient_degc: f64) -> Outcome {
-    drive(setup, cycle, &Conditions { keep_rows: true, ..at(ambient_degc, Start::Soak) })
+    drive(
+        setup,
+        cycle,
+        &Conditions {
+            keep_rows: true,
+            ..at(ambient_degc, Start::Soak)
+        },
+    )
 }
 
 /// Fuel of a run, kg.

@@ -10,7 +10,11 @@ use super::kinds::{made_file, told_by};
 pub fn data(kind: &str, case: &str) -> Option<Vec<Problem>> {
     let (folder, name) = case.rsplit_once('/').unwrap();
     let way = kind.trim_start_matches("calibration_");
-    let about = if way == "points" { "sd = 0.1" } else { "source = \"cold\"" };
+    let about = if way == "points" {
+        "sd = 0.1"
+    } else {
+        "source = \"cold\""
+    };
     let plan = format!(
         "[calibration]\nvehicle = \"rover_216_cvt\"\n[sources.cold]\nsource = \"run\"\n[[parameter]]\n\
          key = \"transmission.cvt.pump.displacement_cc_rev\"\nlow = 5\nhigh = 20\n[[data]]\nfrom = \"a test\"\n{way} = \"{name}\"\n{about}\n"
@@ -22,24 +26,50 @@ pub fn data(kind: &str, case: &str) -> Option<Vec<Problem>> {
 pub fn ran(case: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let command = ["calibrate", "--quiet", "--threads", "1", case, "--out"];
-    let output = assert_cmd::Command::cargo_bin("cvtcycle").unwrap().args(command).arg(folder.path()).output().unwrap();
+    let output = assert_cmd::Command::cargo_bin("cvtcycle")
+        .unwrap()
+        .args(command)
+        .arg(folder.path())
+        .output()
+        .unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
     if case.contains("no_answer") {
         assert_eq!(output.status.code(), Some(2), "{case}: {told}");
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "{case}");
+        assert_eq!(
+            std::fs::read_dir(folder.path()).unwrap().count(),
+            0,
+            "{case}"
+        );
         return told;
     }
     assert_eq!(output.status.code(), Some(1), "{case}: {told}");
     let text = std::fs::read_to_string(folder.path().join("calibration.json")).unwrap();
     let outcome: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(outcome["converged"], !told.contains("did not converge"), "{case}");
+    assert_eq!(
+        outcome["converged"],
+        !told.contains("did not converge"),
+        "{case}"
+    );
     let best = outcome["parameters"][0]["value"].as_f64().unwrap();
     let key = outcome["parameters"][0]["name"].as_str().unwrap();
     let fitted = folder.path().join("rover_216_cvt_fitted.toml");
     let setup = setup::load(fitted.to_str().unwrap(), "", &Options::default()).unwrap();
-    let written: f64 = setup.keys.iter().find(|info| info.key == key).unwrap().value.parse().unwrap();
-    assert!((written - best).abs() <= 1e-6 * best.abs(), "{case}: {written} in place of {best}");
-    assert!(outcome["cost_after"].as_f64().unwrap() <= outcome["cost_before"].as_f64().unwrap(), "{case}");
+    let written: f64 = setup
+        .keys
+        .iter()
+        .find(|info| info.key == key)
+        .unwrap()
+        .value
+        .parse()
+        .unwrap();
+    assert!(
+        (written - best).abs() <= 1e-6 * best.abs(),
+        "{case}: {written} in place of {best}"
+    );
+    assert!(
+        outcome["cost_after"].as_f64().unwrap() <= outcome["cost_before"].as_f64().unwrap(),
+        "{case}"
+    );
     told
 }
 
@@ -56,9 +86,15 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
         ("old_line_ends.csv", b"time_s,total_nm\r1,2\r"),
     ];
     let open = |path: &str, _: &[u8]| told_by(data(kind, path));
-    let mut all: Vec<(String, String)> = files.into_iter().map(|(name, bytes)| made_file(name, bytes, open)).collect();
+    let mut all: Vec<(String, String)> = files
+        .into_iter()
+        .map(|(name, bytes)| made_file(name, bytes, open))
+        .collect();
     if kind == "calibration_points" {
-        let text = format!("ratio,speed_rpm,temp_degc,total_nm\n{}", "1,2000,80,5\n".repeat(125_001));
+        let text = format!(
+            "ratio,speed_rpm,temp_degc,total_nm\n{}",
+            "1,2000,80,5\n".repeat(125_001)
+        );
         all.push(made_file("too_many_values.csv", text.as_bytes(), open));
     }
     if kind == "calibration_trace" {
@@ -70,12 +106,30 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
 }
 
 fn plans() -> Vec<(String, String)> {
-    let named = |name: &str, word: &str| (format!("made_{name}"), told_by(calibrate::open(word, "PLAN").err()));
-    let mut all =
-        vec![named("no_such_name.toml", "rover_216_transmision"), named("no_such_file.toml", "tests/diagnostics/calibration/nowhere.toml")];
-    let binary: [(&str, &[u8]); 4] =
-        [("empty.toml", b""), ("utf16.toml", b"\xff\xfe[\0c\0"), ("binary.toml", b"PK\x03\x04\0\x9f"), ("latin1.toml", b"# \xe9\n")];
+    let named = |name: &str, word: &str| {
+        (
+            format!("made_{name}"),
+            told_by(calibrate::open(word, "PLAN").err()),
+        )
+    };
+    let mut all = vec![
+        named("no_such_name.toml", "rover_216_transmision"),
+        named(
+            "no_such_file.toml",
+            "tests/diagnostics/calibration/nowhere.toml",
+        ),
+    ];
+    let binary: [(&str, &[u8]); 4] = [
+        ("empty.toml", b""),
+        ("utf16.toml", b"\xff\xfe[\0c\0"),
+        ("binary.toml", b"PK\x03\x04\0\x9f"),
+        ("latin1.toml", b"# \xe9\n"),
+    ];
     let open = |path: &str, _: &[u8]| told_by(calibrate::open(path, "PLAN").err());
-    all.extend(binary.into_iter().map(|(name, bytes)| made_file(name, bytes, open)));
+    all.extend(
+        binary
+            .into_iter()
+            .map(|(name, bytes)| made_file(name, bytes, open)),
+    );
     all
 }

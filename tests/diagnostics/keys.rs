@@ -13,7 +13,9 @@ use cvtcycle::setup::{Kind, Options, catalogue, load, load_lubricant};
 use super::kinds::written;
 
 /// Kinds of mistake, as they are counted.
-const SORTS: [&str; 8] = ["low", "high", "nan", "type", "word", "missing", "misspelt", "twice"];
+const SORTS: [&str; 8] = [
+    "low", "high", "nan", "type", "word", "missing", "misspelt", "twice",
+];
 
 /// A file with one key a line.
 #[derive(Clone)]
@@ -33,9 +35,21 @@ struct Text {
 
 impl Plain {
     fn new(kind: Kind, keys: &[KeyInfo]) -> Self {
-        let mut plain = Plain { kind, tables: BTreeMap::new() };
-        let chosen = |info: &KeyInfo| keys.iter().any(|other| other.key.starts_with(&format!("{}.{}.", info.key, info.value)));
-        for info in keys.iter().filter(|info| !info.value.is_empty() && !chosen(info)) {
+        let mut plain = Plain {
+            kind,
+            tables: BTreeMap::new(),
+        };
+        let chosen = |info: &KeyInfo| {
+            keys.iter().any(|other| {
+                other
+                    .key
+                    .starts_with(&format!("{}.{}.", info.key, info.value))
+            })
+        };
+        for info in keys
+            .iter()
+            .filter(|info| !info.value.is_empty() && !chosen(info))
+        {
             plain.set(&info.key, written(info));
         }
         plain
@@ -51,9 +65,13 @@ impl Plain {
     /// Takes everything at and under a key away.
     fn clear(&mut self, key: &str) {
         let under = format!("{key}.");
-        self.tables.retain(|table, _| table != key && !table.starts_with(&under));
+        self.tables
+            .retain(|table, _| table != key && !table.starts_with(&under));
         let (table, name) = key.rsplit_once('.').unwrap_or(("", key));
-        self.tables.entry(table.to_owned()).or_default().retain(|(other, _)| other != name);
+        self.tables
+            .entry(table.to_owned())
+            .or_default()
+            .retain(|(other, _)| other != name);
     }
 
     /// The text, with `lines` in place of a key's own.
@@ -72,9 +90,18 @@ impl Plain {
                 line = out.len() + 1;
                 out.extend(lines.iter().cloned());
             }
-            out.extend(entries.iter().filter(|(other, _)| table != of || other != name).map(|(key, value)| format!("{key} = {value}")));
+            out.extend(
+                entries
+                    .iter()
+                    .filter(|(other, _)| table != of || other != name)
+                    .map(|(key, value)| format!("{key} = {value}")),
+            );
         }
-        Text { text: out.join("\n") + "\n", line, header }
+        Text {
+            text: out.join("\n") + "\n",
+            line,
+            header,
+        }
     }
 
     fn problems(&self, text: &str, path: &str) -> Vec<Problem> {
@@ -97,12 +124,19 @@ impl Plain {
     /// Every key that reading it asks for.
     fn keys(&self, path: &str) -> Vec<KeyInfo> {
         let text = self.text("", &[]).text;
-        assert!(self.problems(&text, path).is_empty(), "{:#?}\n{text}", self.problems(&text, path));
+        assert!(
+            self.problems(&text, path).is_empty(),
+            "{:#?}\n{text}",
+            self.problems(&text, path)
+        );
         match self.kind {
             Kind::Vehicle => {
                 let keys = load(path, "", &Options::default()).unwrap().keys;
                 keys.into_iter()
-                    .filter(|info| !info.key.starts_with(catalogue::OIL) && !info.key.starts_with(catalogue::ENGINE_OIL))
+                    .filter(|info| {
+                        !info.key.starts_with(catalogue::OIL)
+                            && !info.key.starts_with(catalogue::ENGINE_OIL)
+                    })
                     .collect()
             }
             Kind::Lubricant => load_lubricant(path, "", &[], "").unwrap().1,
@@ -121,7 +155,11 @@ impl Plain {
         plain.clear(key);
         // As the table of an option; a word alone where that is none.
         plain.tables.insert(format!("{key}.{option}"), Vec::new());
-        if plain.problems(&plain.text("", &[]).text, path).iter().any(|problem| problem.message.contains("is a table without `value`")) {
+        if plain
+            .problems(&plain.text("", &[]).text, path)
+            .iter()
+            .any(|problem| problem.message.contains("is a table without `value`"))
+        {
             plain.clear(key);
             plain.set(key, format!("{option:?}"));
         }
@@ -137,7 +175,10 @@ impl Plain {
                 plain.set(&problem.key, sample(&problem)?);
             }
         }
-        plain.problems(&plain.text("", &[]).text, path).is_empty().then_some(plain)
+        plain
+            .problems(&plain.text("", &[]).text, path)
+            .is_empty()
+            .then_some(plain)
     }
 }
 
@@ -147,16 +188,32 @@ fn sample(missing: &Problem) -> Option<String> {
         return Some("\"si_1900_bsfc\"".to_owned());
     }
     let (low, high) = numbers(&missing.allowed)?;
-    Some(format!("{:?}", if high.is_finite() { 0.5 * (low + high) } else { low + 1.0 }))
+    Some(format!(
+        "{:?}",
+        if high.is_finite() {
+            0.5 * (low + high)
+        } else {
+            low + 1.0
+        }
+    ))
 }
 
 /// Lowest and highest number of a range in words.
 fn numbers(allowed: &str) -> Option<(f64, f64)> {
-    let range = allowed.rsplit("each ").next()?.trim_start_matches("integer ").trim_start_matches("from ");
-    let found: Vec<f64> = range.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let range = allowed
+        .rsplit("each ")
+        .next()?
+        .trim_start_matches("integer ")
+        .trim_start_matches("from ");
+    let found: Vec<f64> = range
+        .split_whitespace()
+        .filter_map(|word| word.parse().ok())
+        .collect();
     match (range, found.as_slice()) {
         (_, [low, high, ..]) => Some((*low, *high)),
-        (range, [low]) if range.starts_with("above") || range.starts_with("at least") => Some((*low, f64::INFINITY)),
+        (range, [low]) if range.starts_with("above") || range.starts_with("at least") => {
+            Some((*low, f64::INFINITY))
+        }
         (range, [high]) if range.starts_with("at most") => Some((f64::NEG_INFINITY, *high)),
         _ => None,
     }
@@ -173,10 +230,19 @@ fn bad_values(info: &KeyInfo) -> Vec<(&'static str, String)> {
         format!("[{}]", [&[value], rest.as_slice()].concat().join(", "))
     };
     let is_list = allowed.contains("each ");
-    if let Some((low, high)) = numbers(allowed).filter(|_| !allowed.starts_with("rows of ") && !allowed.starts_with("one of ")) {
-        let mut add = |sort, value: String| list.push((sort, if is_list { within(&value) } else { value }));
+    if let Some((low, high)) = numbers(allowed)
+        .filter(|_| !allowed.starts_with("rows of ") && !allowed.starts_with("one of "))
+    {
+        let mut add =
+            |sort, value: String| list.push((sort, if is_list { within(&value) } else { value }));
         let integer = allowed.starts_with("integer");
-        let number = |x: f64| if integer { format!("{x}") } else { format!("{x:?}") };
+        let number = |x: f64| {
+            if integer {
+                format!("{x}")
+            } else {
+                format!("{x:?}")
+            }
+        };
         if low.is_finite() {
             add("low", number(low - 1.0));
         }
@@ -187,7 +253,11 @@ fn bad_values(info: &KeyInfo) -> Vec<(&'static str, String)> {
             add("nan", "nan".to_owned());
         }
     }
-    let of_another_type = if allowed == "text" || allowed.starts_with("one of ") { "12" } else { "\"many\"" };
+    let of_another_type = if allowed == "text" || allowed.starts_with("one of ") {
+        "12"
+    } else {
+        "\"many\""
+    };
     list.push(("type", of_another_type.to_owned()));
     if allowed.starts_with("one of ") {
         list.push(("word", "\"zebra\"".to_owned()));
@@ -197,8 +267,14 @@ fn bad_values(info: &KeyInfo) -> Vec<(&'static str, String)> {
 
 /// Keys whose mistakes are told with more than one problem: key and reason.
 const SEVERAL: [(&str, &str); 2] = [
-    ("transmission", "whether there is a belt is then not known: the thermal keys of one are missing"),
-    ("transmission.manual.overall_ratios", "how many gears there are is then not known: the shift speeds seem too many"),
+    (
+        "transmission",
+        "whether there is a belt is then not known: the thermal keys of one are missing",
+    ),
+    (
+        "transmission.manual.overall_ratios",
+        "how many gears there are is then not known: the shift speeds seem too many",
+    ),
 ];
 
 struct Tried<'p> {
@@ -227,19 +303,34 @@ impl Tried<'_> {
             return;
         }
         let [problem] = problems.as_slice() else {
-            let told: Vec<String> = problems.iter().map(|p| format!("    {}: {}", p.place.line, p.message)).collect();
-            self.wrong.push(format!("{} {sort} {lines:?}: {} problems\n{}", info.key, problems.len(), told.join("\n")));
+            let told: Vec<String> = problems
+                .iter()
+                .map(|p| format!("    {}: {}", p.place.line, p.message))
+                .collect();
+            self.wrong.push(format!(
+                "{} {sort} {lines:?}: {} problems\n{}",
+                info.key,
+                problems.len(),
+                told.join("\n")
+            ));
             return;
         };
         let lacks = check(problem, &text);
         if !lacks.is_empty() {
-            self.wrong.push(format!("{} {sort} {lines:?}: {}: {problem:?}", info.key, lacks.join(", ")));
+            self.wrong.push(format!(
+                "{} {sort} {lines:?}: {}: {problem:?}",
+                info.key,
+                lacks.join(", ")
+            ));
         }
     }
 
     fn key(&mut self, plain: &Plain, info: &KeyInfo) {
         let name = info.key.rsplit('.').next().unwrap();
-        let is_choice = plain.tables.keys().any(|table| table.starts_with(&format!("{}.", info.key)));
+        let is_choice = plain
+            .tables
+            .keys()
+            .any(|table| table.starts_with(&format!("{}.", info.key)));
         // An option that is chosen by its table may be named by a word instead.
         let mut bare = plain.clone();
         if is_choice {
@@ -247,23 +338,51 @@ impl Tried<'_> {
         }
         for (sort, value) in bad_values(info) {
             let line = format!("{name} = {value}");
-            let item = value.trim_start_matches('[').split([',', ']']).next().unwrap().to_owned();
-            let column = line.chars().count() - line.split_once("= ").unwrap().1.trim_start_matches('[').chars().count() + 1;
-            self.one(sort, &bare, info, std::slice::from_ref(&line), |problem, text| {
-                let place = (problem.place.line, problem.place.column) == (text.line, column) && problem.place.line_text == line;
-                let told = problem.message.contains(&info.key) || problem.place.line_text.starts_with(name);
-                // A message of a type says itself what is wanted, where that is all.
-                let range = problem.allowed == info.allowed || info.allowed.contains(&problem.allowed) && !problem.allowed.is_empty();
-                let said = sort == "type" && problem.message.contains(&format!("expected {}", info.allowed));
-                let all = [
-                    (place, "place"),
-                    (problem.key == info.key && told, "key"),
-                    (problem.value == item, "value"),
-                    (range || said, "range"),
-                    (sort != "word" || !problem.hint.is_empty(), "hint"),
-                ];
-                all.iter().filter(|(good, _)| !good).map(|(_, what)| *what).collect()
-            });
+            let item = value
+                .trim_start_matches('[')
+                .split([',', ']'])
+                .next()
+                .unwrap()
+                .to_owned();
+            let column = line.chars().count()
+                - line
+                    .split_once("= ")
+                    .unwrap()
+                    .1
+                    .trim_start_matches('[')
+                    .chars()
+                    .count()
+                + 1;
+            self.one(
+                sort,
+                &bare,
+                info,
+                std::slice::from_ref(&line),
+                |problem, text| {
+                    let place = (problem.place.line, problem.place.column) == (text.line, column)
+                        && problem.place.line_text == line;
+                    let told = problem.message.contains(&info.key)
+                        || problem.place.line_text.starts_with(name);
+                    // A message of a type says itself what is wanted, where that is all.
+                    let range = problem.allowed == info.allowed
+                        || info.allowed.contains(&problem.allowed) && !problem.allowed.is_empty();
+                    let said = sort == "type"
+                        && problem
+                            .message
+                            .contains(&format!("expected {}", info.allowed));
+                    let all = [
+                        (place, "place"),
+                        (problem.key == info.key && told, "key"),
+                        (problem.value == item, "value"),
+                        (range || said, "range"),
+                        (sort != "word" || !problem.hint.is_empty(), "hint"),
+                    ];
+                    all.iter()
+                        .filter(|(good, _)| !good)
+                        .map(|(_, what)| *what)
+                        .collect()
+                },
+            );
         }
         if !plain.has(&info.key) {
             return;
@@ -271,8 +390,14 @@ impl Tried<'_> {
         let own = format!("{name} = {}", plain.value(&info.key));
         let twice = [own.clone(), own.clone()];
         self.one("twice", plain, info, &twice, |problem, text| {
-            let all = [(problem.place.line == text.line + 1, "place"), (problem.hint.contains("remove one"), "hint")];
-            all.iter().filter(|(good, _)| !good).map(|(_, what)| *what).collect()
+            let all = [
+                (problem.place.line == text.line + 1, "place"),
+                (problem.hint.contains("remove one"), "hint"),
+            ];
+            all.iter()
+                .filter(|(good, _)| !good)
+                .map(|(_, what)| *what)
+                .collect()
         });
         if info.status == "choice" {
             return;
@@ -282,29 +407,51 @@ impl Tried<'_> {
             self.one("missing", plain, info, &[], |problem, text| {
                 let all = [
                     (problem.place.line == text.header, "place"),
-                    (problem.key == info.key && problem.message == format!("missing key `{}`", info.key), "key"),
+                    (
+                        problem.key == info.key
+                            && problem.message == format!("missing key `{}`", info.key),
+                        "key",
+                    ),
                     (!problem.allowed.is_empty(), "range"),
                     (problem.hint.starts_with(&format!("add `{name} = ")), "hint"),
                 ];
-                all.iter().filter(|(good, _)| !good).map(|(_, what)| *what).collect()
+                all.iter()
+                    .filter(|(good, _)| !good)
+                    .map(|(_, what)| *what)
+                    .collect()
             });
         }
         let misspelt = format!("{name}x");
-        self.one("misspelt", plain, info, &[own.replacen(name, &misspelt, 1)], |problem, text| {
-            let all = [
-                ((problem.place.line, problem.place.column) == (text.line, 1), "place"),
-                (problem.key == format!("{}x", info.key), "key"),
-                (problem.hint.contains(name), "hint"),
-            ];
-            all.iter().filter(|(good, _)| !good).map(|(_, what)| *what).collect()
-        });
+        self.one(
+            "misspelt",
+            plain,
+            info,
+            &[own.replacen(name, &misspelt, 1)],
+            |problem, text| {
+                let all = [
+                    (
+                        (problem.place.line, problem.place.column) == (text.line, 1),
+                        "place",
+                    ),
+                    (problem.key == format!("{}x", info.key), "key"),
+                    (problem.hint.contains(name), "hint"),
+                ];
+                all.iter()
+                    .filter(|(good, _)| !good)
+                    .map(|(_, what)| *what)
+                    .collect()
+            },
+        );
     }
 }
 
 impl Plain {
     fn value(&self, key: &str) -> &str {
         let (table, name) = key.rsplit_once('.').unwrap_or(("", key));
-        self.tables.get(table).and_then(|entries| entries.iter().find(|(other, _)| other == name)).map_or("", |(_, value)| value)
+        self.tables
+            .get(table)
+            .and_then(|entries| entries.iter().find(|(other, _)| other == name))
+            .map_or("", |(_, value)| value)
     }
 
     fn has(&self, key: &str) -> bool {
@@ -315,18 +462,41 @@ impl Plain {
 pub fn check() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bad.toml").to_str().unwrap().to_owned();
-    let mut tried = Tried { path: &path, counts: BTreeMap::new(), wrong: Vec::new(), several: BTreeSet::new() };
+    let mut tried = Tried {
+        path: &path,
+        counts: BTreeMap::new(),
+        wrong: Vec::new(),
+        several: BTreeSet::new(),
+    };
     let mut seen: BTreeSet<String> = BTreeSet::new();
     let mut options: BTreeSet<String> = BTreeSet::new();
-    let mut waiting: Vec<Plain> = catalogue::files().iter().rev().map(|file| Plain::new(file.kind, &file.keys)).collect();
+    let mut waiting: Vec<Plain> = catalogue::files()
+        .iter()
+        .rev()
+        .map(|file| Plain::new(file.kind, &file.keys))
+        .collect();
     while let Some(plain) = waiting.pop() {
-        let prefix = if plain.kind == Kind::Lubricant { catalogue::OIL } else { "" };
+        let prefix = if plain.kind == Kind::Lubricant {
+            catalogue::OIL
+        } else {
+            ""
+        };
         for info in plain.keys(&path) {
-            let words: Vec<&str> = info.allowed.strip_prefix("one of ").into_iter().flat_map(|words| words.split(", ")).collect();
-            for word in words.iter().filter(|word| info.key != "transmission" && **word != info.value) {
+            let words: Vec<&str> = info
+                .allowed
+                .strip_prefix("one of ")
+                .into_iter()
+                .flat_map(|words| words.split(", "))
+                .collect();
+            for word in words
+                .iter()
+                .filter(|word| info.key != "transmission" && **word != info.value)
+            {
                 if options.insert(format!("{prefix}{} {word}", info.key)) {
                     let other = plain.with_option(&info.key, word, &path);
-                    waiting.push(other.unwrap_or_else(|| panic!("{} = {word}: no good file", info.key)));
+                    waiting.push(
+                        other.unwrap_or_else(|| panic!("{} = {word}: no good file", info.key)),
+                    );
                 }
             }
             if seen.insert(format!("{prefix}{}", info.key)) {
@@ -334,12 +504,37 @@ pub fn check() {
             }
         }
     }
-    let unseen: Vec<String> = catalogue::known_names().iter().filter(|key| !seen.contains(*key)).cloned().collect();
+    let unseen: Vec<String> = catalogue::known_names()
+        .iter()
+        .filter(|key| !seen.contains(*key))
+        .cloned()
+        .collect();
     let wrong = tried.wrong.join("\n");
-    assert!(wrong.is_empty(), "{} of {:?}\n{wrong}", tried.wrong.len(), tried.counts);
-    assert_eq!(tried.several.len(), SEVERAL.len(), "an exception is no longer needed: {:?}", tried.several);
+    assert!(
+        wrong.is_empty(),
+        "{} of {:?}\n{wrong}",
+        tried.wrong.len(),
+        tried.counts
+    );
+    assert_eq!(
+        tried.several.len(),
+        SEVERAL.len(),
+        "an exception is no longer needed: {:?}",
+        tried.several
+    );
     assert!(unseen.is_empty(), "keys never tried: {unseen:?}");
-    assert!(SORTS.iter().all(|sort| tried.counts.get(sort).is_some_and(|count| *count >= 5)), "{:?}", tried.counts);
+    assert!(
+        SORTS
+            .iter()
+            .all(|sort| tried.counts.get(sort).is_some_and(|count| *count >= 5)),
+        "{:?}",
+        tried.counts
+    );
     let mistakes: usize = tried.counts.values().sum();
-    assert!(seen.len() > 220 && mistakes > 1300, "{} keys, {:?}", seen.len(), tried.counts);
+    assert!(
+        seen.len() > 220 && mistakes > 1300,
+        "{} keys, {:?}",
+        seen.len(),
+        tried.counts
+    );
 }

@@ -46,7 +46,9 @@ pub fn told(kind: &str, case: &str) -> String {
     }
     let problems = match kind {
         "calibration" => calibrate::open(case, "PLAN").err(),
-        "calibration_points" | "calibration_trace" | "calibration_scalars" => calibration::data(kind, case),
+        "calibration_points" | "calibration_trace" | "calibration_scalars" => {
+            calibration::data(kind, case)
+        }
         "vehicle" => return vehicle(case, &String::from_utf8(bytes).unwrap()),
         "rig" => rig(case, &String::from_utf8(bytes).unwrap()),
         "lubricant" => setup::load_lubricant(case, "--lubricant", &[], "").err(),
@@ -66,12 +68,25 @@ fn rows(case: &str, bytes: &[u8]) -> Option<Vec<Problem>> {
         Ok(text) => text,
         Err(problems) => return Some(problems),
     };
-    validate::read(("embedded:common.toml", validate::COMMON.1), &[(case.to_owned(), text)]).err()
+    validate::read(
+        ("embedded:common.toml", validate::COMMON.1),
+        &[(case.to_owned(), text)],
+    )
+    .err()
 }
 
 fn points(case: &str) -> String {
-    let output = assert_cmd::Command::cargo_bin("cvtcycle").unwrap().args(["belt", "--points", case]).output().unwrap();
-    assert_eq!(output.status.code(), Some(2), "{case}: {}", String::from_utf8_lossy(&output.stdout));
+    let output = assert_cmd::Command::cargo_bin("cvtcycle")
+        .unwrap()
+        .args(["belt", "--points", case])
+        .output()
+        .unwrap();
+    assert_eq!(
+        output.status.code(),
+        Some(2),
+        "{case}: {}",
+        String::from_utf8_lossy(&output.stdout)
+    );
     assert!(output.stdout.is_empty(), "{case}");
     String::from_utf8(output.stderr).unwrap()
 }
@@ -83,18 +98,32 @@ fn map(case: &str, name: &str) -> Option<Vec<Problem>> {
         Some("box") => ("rover_216_5mt", "transmission.manual.maps.box"),
         _ => ("rover_216_cvt", "transmission.cvt.maps.belt"),
     };
-    setup::load(vehicle, "--vehicle", &Options { set: vec![format!("{key}={case}")], ..Options::default() }).err()
+    setup::load(
+        vehicle,
+        "--vehicle",
+        &Options {
+            set: vec![format!("{key}={case}")],
+            ..Options::default()
+        },
+    )
+    .err()
 }
 
 fn vehicle(case: &str, text: &str) -> String {
-    let base = setup::load(base(text), "--vehicle", &Options::default()).unwrap_or_else(|problems| panic!("{problems:?}"));
-    let own = base.keys.iter().filter(|info| !info.key.starts_with("lubricant.") && !info.key.starts_with("engine_oil."));
+    let base = setup::load(base(text), "--vehicle", &Options::default())
+        .unwrap_or_else(|problems| panic!("{problems:?}"));
+    let own = base
+        .keys
+        .iter()
+        .filter(|info| !info.key.starts_with("lubricant.") && !info.key.starts_with("engine_oil."));
     // A folder of its own: what the file names is looked for beside it.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("car.toml");
     std::fs::write(&path, completed(text, own)).unwrap();
     let path = path.to_str().unwrap();
-    let problems = setup::load(path, "--vehicle", &Options::default()).err().unwrap_or_default();
+    let problems = setup::load(path, "--vehicle", &Options::default())
+        .err()
+        .unwrap_or_default();
     within(case, text, &problems);
     render(&problems, false).replace(path, case)
 }
@@ -114,21 +143,47 @@ fn rig(case: &str, text: &str) -> Option<Vec<Problem>> {
 
 /// What is told stands in the bad file itself: the shipped file below it has its own reasons to change.
 fn within(case: &str, text: &str, problems: &[Problem]) {
-    let beyond: Vec<&Problem> = problems.iter().filter(|problem| problem.place.line > text.lines().count()).collect();
-    assert!(beyond.is_empty(), "{case}: write these lines into the bad file, too: {beyond:#?}");
+    let beyond: Vec<&Problem> = problems
+        .iter()
+        .filter(|problem| problem.place.line > text.lines().count())
+        .collect();
+    assert!(
+        beyond.is_empty(),
+        "{case}: write these lines into the bad file, too: {beyond:#?}"
+    );
 }
 
 fn base(text: &str) -> &str {
-    text.lines().next().and_then(|line| line.strip_prefix("# on ")).unwrap_or("rover_216_cvt")
+    text.lines()
+        .next()
+        .and_then(|line| line.strip_prefix("# on "))
+        .unwrap_or("rover_216_cvt")
 }
 
 /// The bad lines, and below them all keys that they do not touch.
 fn completed<'k>(text: &str, keys: impl Iterator<Item = &'k KeyInfo>) -> String {
-    let given: Vec<&str> = text.lines().filter_map(|line| line.trim_start_matches("#without ").split(['=', ' ']).next()).collect();
+    let given: Vec<&str> = text
+        .lines()
+        .filter_map(|line| {
+            line.trim_start_matches("#without ")
+                .split(['=', ' '])
+                .next()
+        })
+        .collect();
     let under = |key: &str, table: &str| !table.is_empty() && key.starts_with(&format!("{table}."));
-    let touched = |key: &str| given.iter().any(|own| key == *own || under(key, own) || under(own, key));
+    let touched = |key: &str| {
+        given
+            .iter()
+            .any(|own| key == *own || under(key, own) || under(own, key))
+    };
     let keys: Vec<&KeyInfo> = keys.filter(|info| !touched(&info.key)).collect();
-    let chosen = |info: &KeyInfo| keys.iter().any(|other| other.key.starts_with(&format!("{}.{}.", info.key, info.value)));
+    let chosen = |info: &KeyInfo| {
+        keys.iter().any(|other| {
+            other
+                .key
+                .starts_with(&format!("{}.{}.", info.key, info.value))
+        })
+    };
     let mut whole = text.to_owned();
     for info in &keys {
         if !info.value.is_empty() && !chosen(info) {
@@ -141,7 +196,11 @@ fn completed<'k>(text: &str, keys: impl Iterator<Item = &'k KeyInfo>) -> String 
 /// A value as it stands in a file.
 pub fn written(info: &KeyInfo) -> String {
     let is_text = info.allowed == "text" || info.allowed.starts_with("one of ");
-    if is_text { format!("{:?}", info.value) } else { info.value.clone() }
+    if is_text {
+        format!("{:?}", info.value)
+    } else {
+        info.value.clone()
+    }
 }
 
 /// Bad files that are too large to be kept, or that hold every column of a trace: name and what is told.
@@ -150,18 +209,31 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
         "trace" => traces(),
         "plan" => {
             let plan = |design: &str, factors: usize, values: &str| {
-                let factor = |k: usize| format!("[[factor]]\nkey = \"a.b{k}\"\nvalues = {values}\n");
-                format!("[study.design.{design}\n{}", (0..factors).map(factor).collect::<String>())
+                let factor =
+                    |k: usize| format!("[[factor]]\nkey = \"a.b{k}\"\nvalues = {values}\n");
+                format!(
+                    "[study.design.{design}\n{}",
+                    (0..factors).map(factor).collect::<String>()
+                )
             };
-            let told = |name: &str, text: String| (format!("made_{name}"), told_by(Plan::read(name, &text).err()));
+            let told = |name: &str, text: String| {
+                (
+                    format!("made_{name}"),
+                    told_by(Plan::read(name, &text).err()),
+                )
+            };
             vec![
-                told("too_many_factors.toml", plan("sobol]\nsamples = 4", 257, "[0, 1]")),
+                told(
+                    "too_many_factors.toml",
+                    plan("sobol]\nsamples = 4", 257, "[0, 1]"),
+                ),
                 told("too_many_points.toml", plan("grid]", 32, "[0, 1, 2, 3]")),
             ]
         }
         "cycle" => {
-            let text: String =
-                std::iter::once("time_s,speed_kmh\n".to_owned()).chain((0..=2_000_000).map(|k| format!("{k},0\n"))).collect();
+            let text: String = std::iter::once("time_s,speed_kmh\n".to_owned())
+                .chain((0..=2_000_000).map(|k| format!("{k},0\n")))
+                .collect();
             let read = |path: &str, bytes: &[u8]| told_by(cycle::read_csv(path, bytes).err());
             let columns = format!("time_s,speed_kmh{}\n0,0\n", ",".repeat(999));
             let line = format!("time_s,speed_kmh\n0,0\n1,{}\n", "1".repeat(1 << 20));
@@ -172,26 +244,49 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
             ]
         }
         "lubricant" => {
-            let read = |path: &str, _: &[u8]| told_by(setup::load_lubricant(path, "--lubricant", &[], "").err());
+            let read = |path: &str, _: &[u8]| {
+                told_by(setup::load_lubricant(path, "--lubricant", &[], "").err())
+            };
             vec![
-                made_file("too_many_tables.toml", "[a]\n".repeat(20_001).as_bytes(), read),
-                made_file("too_many_keys.toml", "a = 1\n".repeat(100_001).as_bytes(), read),
+                made_file(
+                    "too_many_tables.toml",
+                    "[a]\n".repeat(20_001).as_bytes(),
+                    read,
+                ),
+                made_file(
+                    "too_many_keys.toml",
+                    "a = 1\n".repeat(100_001).as_bytes(),
+                    read,
+                ),
                 made_file("too_large.toml", &[b'#'; (1 << 20) + 1], read),
             ]
         }
         "map" => {
             let text = format!("ratio,torque_loss_nm\n{}", "1,1\n".repeat(1_000_001));
-            vec![made_file("belt_too_many_rows.csv", text.as_bytes(), |path, _| told_by(map(path, "belt_")))]
+            vec![made_file(
+                "belt_too_many_rows.csv",
+                text.as_bytes(),
+                |path, _| told_by(map(path, "belt_")),
+            )]
         }
         _ if kind.starts_with("calibration") => calibration::made(kind),
         "points" => {
-            let text = format!("ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm\n{}", "1".repeat(1 << 21));
-            vec![made_file("long_line.csv", text.as_bytes(), |path, _| points(path))]
+            let text = format!(
+                "ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm\n{}",
+                "1".repeat(1 << 21)
+            );
+            vec![made_file("long_line.csv", text.as_bytes(), |path, _| {
+                points(path)
+            })]
         }
         "cover" => {
             let text = b"logo = \"logo.png\"\n";
             vec![made_file("large_logo.toml", text, |path, _| {
-                std::fs::write(path.replace("large_logo.toml", "logo.png"), vec![0; 500_001]).unwrap();
+                std::fs::write(
+                    path.replace("large_logo.toml", "logo.png"),
+                    vec![0; 500_001],
+                )
+                .unwrap();
                 told_by(Cover::read(path).err())
             })]
         }
@@ -204,18 +299,29 @@ pub fn told_by(problems: Option<Vec<Problem>>) -> String {
 }
 
 /// Writes a file into a folder of its own, reads it, and leaves the folder out of what is told.
-pub fn made_file(name: &str, bytes: &[u8], read: impl Fn(&str, &[u8]) -> String) -> (String, String) {
+pub fn made_file(
+    name: &str,
+    bytes: &[u8],
+    read: impl Fn(&str, &[u8]) -> String,
+) -> (String, String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name).to_str().unwrap().to_owned();
     std::fs::write(&path, bytes).unwrap();
     let text = read(&path, bytes);
-    (format!("made_{name}"), text.replace(&format!("{}/", folder.path().to_str().unwrap()), ""))
+    (
+        format!("made_{name}"),
+        text.replace(&format!("{}/", folder.path().to_str().unwrap()), ""),
+    )
 }
 
 /// Traces that are wrong in one way each; their columns are those that the program writes.
 fn traces() -> Vec<(String, String)> {
     use cvtcycle::results::columns::{COLUMNS, Scope};
-    let names: Vec<&str> = COLUMNS.iter().filter(|column| column.scope != Scope::Cvt).map(|column| column.name).collect();
+    let names: Vec<&str> = COLUMNS
+        .iter()
+        .filter(|column| column.scope != Scope::Cvt)
+        .map(|column| column.name)
+        .collect();
     let row = |time: &str, dt: &str, flags: &str, other: &str| {
         let cell = |name: &&str| match *name {
             "time_s" => time.to_owned(),
@@ -230,18 +336,37 @@ fn traces() -> Vec<(String, String)> {
     let one = |name: &str, lines: &[String]| {
         let text = lines.join("\n") + "\n";
         let path = format!("made_{name}.csv");
-        (path.clone(), told_by(History::read_csv(&path, text.as_bytes()).err()))
+        (
+            path.clone(),
+            told_by(History::read_csv(&path, text.as_bytes()).err()),
+        )
     };
     let good = row("1", "1", "", "0");
     vec![
-        one("good_but_twice", &[format!("{head},time_s"), format!("{good},1")]),
+        one(
+            "good_but_twice",
+            &[format!("{head},time_s"), format!("{good},1")],
+        ),
         one("no_rows", std::slice::from_ref(&head)),
-        one("missing_column", &[head.replace("dt_s,", ""), good.replacen("1,", "", 1)]),
-        one("time_falls", &[head.clone(), good.clone(), row("0.5", "1", "", "0")]),
+        one(
+            "missing_column",
+            &[head.replace("dt_s,", ""), good.replacen("1,", "", 1)],
+        ),
+        one(
+            "time_falls",
+            &[head.clone(), good.clone(), row("0.5", "1", "", "0")],
+        ),
         one("no_length", &[head.clone(), row("1", "0", "", "0")]),
         one("empty_time", &[head.clone(), row("", "1", "", "0")]),
         one("bad_number", &[head.clone(), row("1", "fast", "", "0")]),
-        one("unknown_flag", &[head.clone(), row("1", "1", "hurry", "0"), row("2", "1", "overrun|", "0")]),
+        one(
+            "unknown_flag",
+            &[
+                head.clone(),
+                row("1", "1", "hurry", "0"),
+                row("2", "1", "overrun|", "0"),
+            ],
+        ),
         one("short_row", &[head.clone(), "1,2,3".to_owned()]),
         one("too_many_phases", &many_phases(head, &good)),
     ]
@@ -249,13 +374,23 @@ fn traces() -> Vec<(String, String)> {
 
 /// A trace with a phase for every step.
 fn many_phases(head: String, row: &str) -> Vec<String> {
-    let row = |k: usize| row.replacen("1,", &format!("{k},"), 1).replacen(",all", &format!(",phase {k}"), 1);
+    let row = |k: usize| {
+        row.replacen("1,", &format!("{k},"), 1)
+            .replacen(",all", &format!(",phase {k}"), 1)
+    };
     std::iter::once(head).chain((1..=201).map(row)).collect()
 }
 
 /// Every bad plan of the plan reader's own test, with the whole text: name and text.
 pub fn plans_of_the_reader() -> impl Iterator<Item = (String, String)> {
     let plans = include_str!("../plans/bad.txt").split("====\n").skip(1);
-    let text: String = plans.map(|plan| render(&Plan::read("bad.txt", plan).err().unwrap_or_default(), false) + "\n").collect();
+    let text: String = plans
+        .map(|plan| {
+            render(
+                &Plan::read("bad.txt", plan).err().unwrap_or_default(),
+                false,
+            ) + "\n"
+        })
+        .collect();
     std::iter::once(("all_of_bad.txt".to_owned(), text))
 }

@@ -14,7 +14,10 @@ const MARKS: [&str; 4] = [".complain(", "Complaint::new(", "Problem {", "Fault {
 
 /// Files that make no such problems, or not of a user's input file: path and reason.
 const OUTSIDE: [(&str, &str); OUTSIDE_COUNT] = [
-    ("src/calibrate/solve/descend.rs", "the search: tests/calibrate_solve"),
+    (
+        "src/calibrate/solve/descend.rs",
+        "the search: tests/calibrate_solve",
+    ),
     ("src/cli/belt/sink.rs", "output"),
     ("src/cli/explain.rs", "words of the command line"),
     ("src/cli/losses/plan.rs", "options"),
@@ -31,7 +34,10 @@ const OUTSIDE: [(&str, &str); OUTSIDE_COUNT] = [
     ("src/cycle/constant.rs", "words of options"),
     ("src/results/file.rs", "output"),
     ("src/results/files.rs", "output"),
-    ("src/review/compare.rs", "directories that the program wrote"),
+    (
+        "src/review/compare.rs",
+        "directories that the program wrote",
+    ),
     ("src/review/found.rs", "directories that the program wrote"),
     ("src/setup/mod.rs", "words of options"),
     ("src/setup/other_box.rs", "overrides"),
@@ -40,32 +46,107 @@ const OUTSIDE: [(&str, &str); OUTSIDE_COUNT] = [
     ("src/study/store/dir.rs", "files that the program wrote"),
     ("src/study/store/history.rs", "files that the program wrote"),
     ("src/study/store/mod.rs", "files that the program wrote"),
-    ("src/study/store/parquet_read.rs", "files that the program wrote"),
-    ("src/validate/judge.rs", "what only computing shows: tests/validate.rs"),
+    (
+        "src/study/store/parquet_read.rs",
+        "files that the program wrote",
+    ),
+    (
+        "src/validate/judge.rs",
+        "what only computing shows: tests/validate.rs",
+    ),
 ];
 const OUTSIDE_COUNT: usize = 28;
 
 /// Files that make sentences and no problems: what they say is passed on by a reader.
-const PASSED_ON: [&str; 4] = ["src/numeric/curve.rs", "src/numeric/grid.rs", "src/lubricant/viscosity.rs", "src/engine/fuel.rs"];
+const PASSED_ON: [&str; 4] = [
+    "src/numeric/curve.rs",
+    "src/numeric/grid.rs",
+    "src/lubricant/viscosity.rs",
+    "src/engine/fuel.rs",
+];
 
 /// Sentences without a bad file: file, beginning of the sentence and reason.
 const EXCUSED: [(&str, &str, &str); EXCUSED_COUNT] = [
-    ("src/rig/points/lines.rs", "cannot read on: ", "needs a failing disk"),
-    ("src/rig/points/lines.rs", "check the file and its disk", "needs a failing disk"),
-    ("src/rig/points/model.rs", "this belt does not fit", "of the vehicle, which is refused before"),
-    ("src/rig/points/model.rs", "check length_m of the belt", "of the vehicle, which is refused before"),
-    ("src/config/reader.rs", "`{path}` is a table, not a value", "overrides only: src/config/tests.rs"),
-    ("src/engine/load.rs", "a combination of speed and load stands twice", "setup/map_csv.rs says it before, with the line"),
-    ("src/lubricant/viscosity.rs", "viscosity must be above", "the ranges of the keys lie above it"),
-    ("src/numeric/curve.rs", "a curve takes finite numbers only", "the ranges of the keys keep others out"),
-    ("src/numeric/curve.rs", "a curve takes at most", "src/numeric/curve.rs has its test"),
-    ("src/numeric/grid.rs", "the {} rows do not fill", "setup/map_csv.rs says it before, with the line"),
-    ("src/numeric/grid.rs", "the combination {x:?}", "setup/map_csv.rs says it before, with the line"),
-    ("src/results/history/read.rs", "the trace has too many steps", "a file of 140 MB; as Parquet in tests/limits"),
-    ("src/setup/tables.rs", "every combination of the columns'", "setup/map_csv.rs says it before, with the line"),
-    ("src/setup/tables.rs", "a full grid", "setup/map_csv.rs says it before, with the line"),
-    ("src/study/prepare.rs", "give fewer values", "the plan's reader says it before"),
-    ("src/validate/expr/calls.rs", "a function", "a fallback that nothing reaches"),
+    (
+        "src/rig/points/lines.rs",
+        "cannot read on: ",
+        "needs a failing disk",
+    ),
+    (
+        "src/rig/points/lines.rs",
+        "check the file and its disk",
+        "needs a failing disk",
+    ),
+    (
+        "src/rig/points/model.rs",
+        "this belt does not fit",
+        "of the vehicle, which is refused before",
+    ),
+    (
+        "src/rig/points/model.rs",
+        "check length_m of the belt",
+        "of the vehicle, which is refused before",
+    ),
+    (
+        "src/config/reader.rs",
+        "`{path}` is a table, not a value",
+        "overrides only: src/config/tests.rs",
+    ),
+    (
+        "src/engine/load.rs",
+        "a combination of speed and load stands twice",
+        "setup/map_csv.rs says it before, with the line",
+    ),
+    (
+        "src/lubricant/viscosity.rs",
+        "viscosity must be above",
+        "the ranges of the keys lie above it",
+    ),
+    (
+        "src/numeric/curve.rs",
+        "a curve takes finite numbers only",
+        "the ranges of the keys keep others out",
+    ),
+    (
+        "src/numeric/curve.rs",
+        "a curve takes at most",
+        "src/numeric/curve.rs has its test",
+    ),
+    (
+        "src/numeric/grid.rs",
+        "the {} rows do not fill",
+        "setup/map_csv.rs says it before, with the line",
+    ),
+    (
+        "src/numeric/grid.rs",
+        "the combination {x:?}",
+        "setup/map_csv.rs says it before, with the line",
+    ),
+    (
+        "src/results/history/read.rs",
+        "the trace has too many steps",
+        "a file of 140 MB; as Parquet in tests/limits",
+    ),
+    (
+        "src/setup/tables.rs",
+        "every combination of the columns'",
+        "setup/map_csv.rs says it before, with the line",
+    ),
+    (
+        "src/setup/tables.rs",
+        "a full grid",
+        "setup/map_csv.rs says it before, with the line",
+    ),
+    (
+        "src/study/prepare.rs",
+        "give fewer values",
+        "the plan's reader says it before",
+    ),
+    (
+        "src/validate/expr/calls.rs",
+        "a function",
+        "a fallback that nothing reaches",
+    ),
 ];
 const EXCUSED_COUNT: usize = 16;
 
@@ -91,7 +172,18 @@ const MAKERS: [&str; 17] = [
 ];
 
 /// Names whose texts are parts of a complaint.
-const NAMES: [&str; 10] = ["message", "allowed", "hint", "complaint", "why", "what", "form", "wanted", "one_of", "twice"];
+const NAMES: [&str; 10] = [
+    "message",
+    "allowed",
+    "hint",
+    "complaint",
+    "why",
+    "what",
+    "form",
+    "wanted",
+    "one_of",
+    "twice",
+];
 
 /// A text literal that is part of a complaint.
 #[derive(Debug)]
@@ -118,10 +210,17 @@ pub fn check(said: &[String]) {
         }
         for sentence in sentences(code) {
             count += 1;
-            let excuse = EXCUSED.iter().position(|(file, text, _)| *file == name && sentence.text.starts_with(text));
+            let excuse = EXCUSED
+                .iter()
+                .position(|(file, text, _)| *file == name && sentence.text.starts_with(text));
             match (excuse, said.iter().any(|text| is_in(&sentence.text, text))) {
                 (Some(excuse), false) => excused[excuse] += 1,
-                (None, false) => wrong += &format!("{name}:{}: no bad file shows {:?}\n", sentence.line, sentence.text),
+                (None, false) => {
+                    wrong += &format!(
+                        "{name}:{}: no bad file shows {:?}\n",
+                        sentence.line, sentence.text
+                    )
+                }
                 (_, true) => {}
             }
         }
@@ -153,13 +252,15 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 /// Whether the fixed parts of a sentence stand in a text, one after the other.
 fn is_in(sentence: &str, text: &str) -> bool {
     let mut rest = text;
-    parts(sentence).iter().all(|part| match rest.find(part.as_str()) {
-        Some(at) => {
-            rest = &rest[at + part.len()..];
-            true
-        }
-        None => false,
-    })
+    parts(sentence)
+        .iter()
+        .all(|part| match rest.find(part.as_str()) {
+            Some(at) => {
+                rest = &rest[at + part.len()..];
+                true
+            }
+            None => false,
+        })
 }
 
 /// The fixed parts of a format text.
@@ -217,9 +318,17 @@ fn sentences(code: &str) -> Vec<Sentence> {
         }
         if letter == '"' {
             let (length, literal, lines) = literal(&text[at..]);
-            let said = open.iter().any(|bracket| bracket.says || MAKERS.contains(&bracket.name.as_str()));
-            if said && literal.trim().contains(' ') && parts(&literal).iter().any(|part| part.trim().len() > 2) {
-                found.push(Sentence { line, text: literal });
+            let said = open
+                .iter()
+                .any(|bracket| bracket.says || MAKERS.contains(&bracket.name.as_str()));
+            if said
+                && literal.trim().contains(' ')
+                && parts(&literal).iter().any(|part| part.trim().len() > 2)
+            {
+                found.push(Sentence {
+                    line,
+                    text: literal,
+                });
             }
             line += lines;
             at += length;
@@ -251,7 +360,11 @@ fn take(open: &mut Vec<Bracket>, word: &mut String, sign: char, next: char) {
             // Brackets of a pattern belong to it.
             let pattern = here.pattern;
             let name = std::mem::take(word);
-            open.push(Bracket { name, says: false, pattern });
+            open.push(Bracket {
+                name,
+                says: false,
+                pattern,
+            });
             return;
         }
         ')' | ']' | '}' => {
@@ -279,7 +392,11 @@ fn take(open: &mut Vec<Bracket>, word: &mut String, sign: char, next: char) {
 /// Length of a letter in quotes; 1 for the mark of a lifetime.
 fn quoted_letter(text: &[char]) -> usize {
     match (text.get(1), text.get(2)) {
-        (Some('\\'), _) => text.iter().skip(3).position(|c| *c == '\'').map_or(1, |at| at + 4),
+        (Some('\\'), _) => text
+            .iter()
+            .skip(3)
+            .position(|c| *c == '\'')
+            .map_or(1, |at| at + 4),
         (_, Some('\'')) => 3,
         _ => 1,
     }
@@ -316,8 +433,21 @@ fn sentences_are_found_where_complaints_are_made() {
     let code = "fn f(s: &'static str) -> X {\n    let (message, hint) = match x {\n        'a' => (\"one {x} two\", \"three four\"),\n    };\n    \
                 s.number(\"k\", \"no complaint here\");\n    // complain(\"not this one\")\n    s.complain(\"k\", \"a b\", &format!(\"c \\\"d\\\" {{e}}\"));\n    \
                 let other = \"not this\";\n    Problem { hint: \"g h\".into() };\n    if x { hint = \"i j\"; }\n}\n";
-    let found: Vec<String> = sentences(code).into_iter().map(|sentence| sentence.text).collect();
-    assert_eq!(found, ["one {x} two", "three four", "a b", "c \"d\" {{e}}", "g h", "i j"]);
+    let found: Vec<String> = sentences(code)
+        .into_iter()
+        .map(|sentence| sentence.text)
+        .collect();
+    assert_eq!(
+        found,
+        [
+            "one {x} two",
+            "three four",
+            "a b",
+            "c \"d\" {{e}}",
+            "g h",
+            "i j"
+        ]
+    );
     assert_eq!(sentences(code)[3].line, 7);
     assert!(is_in("one {x} two", "say one 3 two") && !is_in("one {x} two", "two one"));
     assert!(is_in("{{e}} {}", "{e} 3"));

@@ -9,13 +9,30 @@ use cvtcycle::simulate::{State, simulate};
 fn effort(name: &str, cycle_name: &str, degc: f64) -> (u32, u16, f64) {
     let setup = car(name, &[]);
     let car = setup.car(degc + ZERO);
-    let cycle = if cycle_name == "hill" { hill() } else { cycle(cycle_name) };
+    let cycle = if cycle_name == "hill" {
+        hill()
+    } else {
+        cycle(cycle_name)
+    };
     let mut keep = Keep::default();
-    simulate(&car, cycle.trace_for(car.transmission.is_cvt()), 1.0, State::at(car.ambient_k), &mut keep);
+    simulate(
+        &car,
+        cycle.trace_for(car.transmission.is_cvt()),
+        1.0,
+        State::at(car.ambient_k),
+        &mut keep,
+    );
     let rows = &keep.rows;
     let most = rows.iter().map(|r| r.iterations).max().unwrap();
-    let left = rows.iter().map(|r| r.solve_residual).fold(0.0, |a: f64, b| if b > a { b } else { a });
-    (rows.iter().map(|r| u32::from(r.iterations)).sum(), most, left)
+    let left = rows
+        .iter()
+        .map(|r| r.solve_residual)
+        .fold(0.0, |a: f64, b| if b > a { b } else { a });
+    (
+        rows.iter().map(|r| u32::from(r.iterations)).sum(),
+        most,
+        left,
+    )
 }
 
 #[test]

@@ -6,27 +6,46 @@ use cvtcycle::engine::{BsfcMap, FuelModel, Willans};
 const BAR: f64 = 1e5;
 
 fn line() -> Willans {
-    Willans { a: 0.4851, b: 0.01193, c: -0.00065, a2: -0.00385, l: 2.39882, l2: 0.00286 }
+    Willans {
+        a: 0.4851,
+        b: 0.01193,
+        c: -0.00065,
+        a2: -0.00385,
+        l: 2.39882,
+        l2: 0.00286,
+    }
 }
 
 /// WI-1 and WI-2 with the root found by bisection of the balance itself.
 #[test]
 fn val_willans_root_of_its_balance() {
     let w = line();
-    for (cm, brake, friction) in [(3.0, 1.0, 2.5), (9.0, 8.0, 2.6), (14.0, 4.0, 4.0), (2.0, -2.0, 2.4)] {
+    for (cm, brake, friction) in [
+        (3.0, 1.0, 2.5),
+        (9.0, 8.0, 2.6),
+        (14.0, 4.0, 4.0),
+        (2.0, -2.0, 2.4),
+    ] {
         let b = w.a + w.b * cm + w.c * cm * cm;
         let balance = |f: f64| w.a2 * f * f + b * f - (friction + brake);
         let (mut low, mut high) = (0.0, -b / (2.0 * w.a2));
         for _ in 0..200 {
             let middle = 0.5 * (low + high);
-            if balance(middle) < 0.0 { low = middle } else { high = middle }
+            if balance(middle) < 0.0 {
+                low = middle
+            } else {
+                high = middle
+            }
         }
         let p = FuelModel::Willans(w).fuel_mep(cm, 200.0, brake * BAR, friction * BAR);
         same(p.fuel_pa, 0.5 * (low + high) * BAR);
         same(p.indicated_pa, (brake + friction) * BAR);
         assert!(!p.outside);
     }
-    same(FuelModel::Willans(w).hot_friction_pa(9.0), (2.39882 + 0.00286 * 81.0) * BAR);
+    same(
+        FuelModel::Willans(w).hot_friction_pa(9.0),
+        (2.39882 + 0.00286 * 81.0) * BAR,
+    );
 }
 
 /// Beyond the turning point fuel is held there and the point is flagged; so is an efficiency outside 0.05 to 1.
@@ -39,8 +58,19 @@ fn val_willans_bounds() {
     same(p.fuel_pa, 2.0 * need / b * BAR);
     same(p.indicated_pa, need * BAR);
     assert!(p.outside);
-    for (a, held, outside) in [(0.02, 0.05, true), (0.05, 0.05, false), (1.0, 1.0, false), (1.4, 1.0, true)] {
-        let w = Willans { a, b: 0.0, c: 0.0, a2: 0.0, ..line() };
+    for (a, held, outside) in [
+        (0.02, 0.05, true),
+        (0.05, 0.05, false),
+        (1.0, 1.0, false),
+        (1.4, 1.0, true),
+    ] {
+        let w = Willans {
+            a,
+            b: 0.0,
+            c: 0.0,
+            a2: 0.0,
+            ..line()
+        };
         let p = FuelModel::Willans(w).fuel_mep(5.0, 200.0, 2.0 * BAR, BAR);
         same(p.fuel_pa, 3.0 / held * BAR);
         assert_eq!(p.outside, outside, "a = {a}");
@@ -95,12 +125,18 @@ fn val_map_by_hand() {
 fn val_cold_map_and_work_of_nothing() {
     let model = FuelModel::Map(map());
     let hot = model.hot_friction_pa(6.0);
-    let (cold, loaded) = (model.fuel_mep(6.0, 150.0, 2.2 * BAR, hot + 1.5 * BAR), model.fuel_mep(6.0, 150.0, 3.7 * BAR, hot));
+    let (cold, loaded) = (
+        model.fuel_mep(6.0, 150.0, 2.2 * BAR, hot + 1.5 * BAR),
+        model.fuel_mep(6.0, 150.0, 3.7 * BAR, hot),
+    );
     same(cold.fuel_pa, loaded.fuel_pa);
     same(cold.indicated_pa, loaded.indicated_pa);
     let cut = model.fuel_mep(6.0, 150.0, -2.0 * BAR, 2.0 * BAR);
     assert!(cut.fuel_pa == 0.0 && cut.indicated_pa == 0.0 && !cut.outside);
-    let greedy = FuelModel::Map(BsfcMap { fuel_pa: vec![vec![5.0 * BAR, 6.0 * BAR, 7.0 * BAR]; 3], ..map() });
+    let greedy = FuelModel::Map(BsfcMap {
+        fuel_pa: vec![vec![5.0 * BAR, 6.0 * BAR, 7.0 * BAR]; 3],
+        ..map()
+    });
     let p = greedy.fuel_mep(6.0, 150.0, 8.0 * BAR, hot);
     same(p.fuel_pa, 8.0 * BAR + hot);
     assert!(p.outside);
@@ -108,7 +144,11 @@ fn val_cold_map_and_work_of_nothing() {
     for (miss, outside) in [(0.9, false), (1.1, true)] {
         let need = 4.0 * BAR + hot;
         let edge = need - miss * (1e-6 * need + 1e-3);
-        let p = FuelModel::Map(BsfcMap { fuel_pa: vec![vec![edge; 3]; 3], ..map() }).fuel_mep(6.0, 150.0, 4.0 * BAR, hot);
+        let p = FuelModel::Map(BsfcMap {
+            fuel_pa: vec![vec![edge; 3]; 3],
+            ..map()
+        })
+        .fuel_mep(6.0, 150.0, 4.0 * BAR, hot);
         assert_eq!(p.outside, outside, "{miss}");
         same(p.fuel_pa, need);
     }
@@ -118,17 +158,33 @@ fn val_cold_map_and_work_of_nothing() {
 #[test]
 fn val_rows_make_a_map() {
     let row = |speed: f64, bar: f64, g_kwh: f64| (speed, bar * BAR, g_kwh / 3.6e9);
-    let good = [row(300.0, 6.0, 260.0), row(100.0, 2.0, 400.0), row(100.0, 6.0, 270.0), row(300.0, 2.0, 390.0)];
+    let good = [
+        row(300.0, 6.0, 260.0),
+        row(100.0, 2.0, 400.0),
+        row(100.0, 6.0, 270.0),
+        row(300.0, 2.0, 390.0),
+    ];
     let map = BsfcMap::from_rows(&good, 43e6).unwrap();
-    assert_eq!((map.speed_rad_s.as_slice(), map.bmep_pa.as_slice()), (&[100.0, 300.0][..], &[2.0 * BAR, 6.0 * BAR][..]));
-    for (i, j, bar, g_kwh) in [(0, 0, 2.0, 400.0), (0, 1, 6.0, 270.0), (1, 0, 2.0, 390.0), (1, 1, 6.0, 260.0)] {
+    assert_eq!(
+        (map.speed_rad_s.as_slice(), map.bmep_pa.as_slice()),
+        (&[100.0, 300.0][..], &[2.0 * BAR, 6.0 * BAR][..])
+    );
+    for (i, j, bar, g_kwh) in [
+        (0, 0, 2.0, 400.0),
+        (0, 1, 6.0, 270.0),
+        (1, 0, 2.0, 390.0),
+        (1, 1, 6.0, 260.0),
+    ] {
         same(map.fuel_pa[i][j], g_kwh / 3.6e9 * bar * BAR * 43e6);
     }
     // Neighbours in the ninth digit are one value, in the eighth they are two.
     let mut close = good;
     close[2].0 = 100.0 * (1.0 + 0.9e-9);
     close[0].1 = 6.0 * BAR * (1.0 - 0.9e-9);
-    assert_eq!(BsfcMap::from_rows(&close, 43e6).unwrap().fuel_pa[0].len(), 2);
+    assert_eq!(
+        BsfcMap::from_rows(&close, 43e6).unwrap().fuel_pa[0].len(),
+        2
+    );
     close[2].0 = 100.0 * (1.0 + 2e-9);
     assert!(BsfcMap::from_rows(&close, 43e6).is_err());
     let refused = |rows: &[(f64, f64, f64)]| BsfcMap::from_rows(rows, 43e6).unwrap_err();
@@ -138,7 +194,12 @@ fn val_rows_make_a_map() {
     let mut twice = good;
     twice[3] = good[1];
     assert!(refused(&twice).contains("twice"));
-    let level = [good[1], good[3], row(100.0, 4.0, 200.0), row(300.0, 4.0, 260.0)];
+    let level = [
+        good[1],
+        good[3],
+        row(100.0, 4.0, 200.0),
+        row(300.0, 4.0, 260.0),
+    ];
     assert!(refused(&level).contains("rise with load"));
     let falling = [good[1], good[3], row(100.0, 6.0, 100.0), good[0]];
     assert!(refused(&falling).contains("rise with load"));
@@ -148,7 +209,8 @@ fn val_rows_make_a_map() {
 #[test]
 fn an_efficiency_above_one_at_the_bend_is_refused() {
     let line = |a: f64, b: f64, c: f64| {
-        let sets = [("a", a), ("b", b), ("c", c)].map(|(key, x)| format!("engine.model.willans.{key}={x}"));
+        let sets = [("a", a), ("b", b), ("c", c)]
+            .map(|(key, x)| format!("engine.model.willans.{key}={x}"));
         crate::common::try_car("rover_216_cvt", &sets).map(|setup| {
             let e = setup.engine();
             e.piston_m_s(e.highest_rad_s)
@@ -156,7 +218,14 @@ fn an_efficiency_above_one_at_the_bend_is_refused() {
     };
     let fastest = line(0.5, 0.0, 0.0).unwrap();
     let at = |v: f64, c: f64| 0.7 + 0.05 * v + c * v * v;
-    assert!(at(12.5, -0.002) > 1.0 && at(fastest, -0.002) < 1.0 && fastest > 12.5, "{fastest}");
+    assert!(
+        at(12.5, -0.002) > 1.0 && at(fastest, -0.002) < 1.0 && fastest > 12.5,
+        "{fastest}"
+    );
     assert!(line(0.7, 0.05, -0.002).unwrap_err().contains("12.5 m/s"));
-    assert!(line(0.7, 0.05, -0.004).is_ok() && line(0.7, 0.01, 0.0).is_ok() && line(0.7, 0.03, 0.0).is_err());
+    assert!(
+        line(0.7, 0.05, -0.004).is_ok()
+            && line(0.7, 0.01, 0.0).is_ok()
+            && line(0.7, 0.03, 0.0).is_err()
+    );
 }

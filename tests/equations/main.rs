@@ -2,7 +2,12 @@
 //! standard library's functions, against what the program computes: inside each regime and on both sides of each of its bounds.
 //!
 //! Truth: the labelled statements, and arithmetic. A changed sign, factor, exponent, bound or constant fails here (docs/mutation.md).
-#![allow(clippy::unwrap_used, clippy::float_cmp, clippy::too_many_lines, reason = "tests; some equalities hold to the last bit")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    clippy::too_many_lines,
+    reason = "tests; some equalities hold to the last bit"
+)]
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -26,11 +31,17 @@ mod spin;
 /// Equal to rounding: two ways of one sum.
 #[track_caller]
 pub fn same(got: f64, want: f64) {
-    assert!((got - want).abs() <= 1e-11 * want.abs() + 1e-13, "{got} instead of {want}");
+    assert!(
+        (got - want).abs() <= 1e-11 * want.abs() + 1e-13,
+        "{got} instead of {want}"
+    );
 }
 
 /// Equal but for `share`.
 #[track_caller]
 pub fn near(got: f64, want: f64, share: f64) {
-    assert!((got - want).abs() <= share * want.abs(), "{got} instead of {want}");
+    assert!(
+        (got - want).abs() <= share * want.abs(),
+        "{got} instead of {want}"
+    );
 }

@@ -28,8 +28,16 @@ pub fn manual() -> Manual {
         churning_exponent: 0.2,
         reference_m2_s: 12.9e-6,
         neutral_share: 0.5,
-        shifts: ShiftSpeeds { up_m_s: vec![4.2, 9.7, 13.9, 19.4], down_m_s: vec![3.0, 7.0, 11.0, 15.0] },
-        launch: Arc::new(FrictionClutch { engage_rad_s: 105.0, gain_nm_s2: 0.0019, creep_nm: 0.0, release_rad_s: 90.0 }),
+        shifts: ShiftSpeeds {
+            up_m_s: vec![4.2, 9.7, 13.9, 19.4],
+            down_m_s: vec![3.0, 7.0, 11.0, 15.0],
+        },
+        launch: Arc::new(FrictionClutch {
+            engage_rad_s: 105.0,
+            gain_nm_s2: 0.0019,
+            creep_nm: 0.0,
+            release_rad_s: 90.0,
+        }),
         map: None,
     }
 }
@@ -38,12 +46,20 @@ pub fn manual() -> Manual {
 #[test]
 fn val_box_by_hand() {
     let m = manual();
-    for (speed, nu) in [(50.0, 12.9e-6), (209.439_510_239_319_5, 12.9e-6), (400.0, 300e-6)] {
+    for (speed, nu) in [
+        (50.0, 12.9e-6),
+        (209.439_510_239_319_5, 12.9e-6),
+        (400.0, 300e-6),
+    ] {
         for out in [-30.0, 0.0, 80.0] {
             let (n, thick) = (speed / (2000.0 * PI / 30.0), nu / 12.9e-6);
             let plain = 0.12 * (n * thick).powf(2.0 / 3.0);
             let bearing = 2.0 * plain / (1.0 + (1.0 + 4.0 * plain * speed / 150.0).sqrt());
-            let mesh = if out >= 0.0 { out / 0.97 - out } else { out * 0.97 - out };
+            let mesh = if out >= 0.0 {
+                out / 0.97 - out
+            } else {
+                out * 0.97 - out
+            };
             let want = [
                 (Component::GearMesh, mesh),
                 (Component::Bearing, bearing),
@@ -139,19 +155,26 @@ fn solve(car: &Car, s: &Step) -> (Drive, DriveState) {
         engine_off: s.engine_off,
     };
     let mut state = car.transmission.start(&around);
-    (state.past.gear, state.past.engine_rad_s, state.past.coupled) = (s.before_gear, s.before_rad_s, s.coupled);
+    (state.past.gear, state.past.engine_rad_s, state.past.coupled) =
+        (s.before_gear, s.before_rad_s, s.coupled);
     let drive = car.transmission.solve(&around, &mut state);
     (drive, state)
 }
 
 fn box_of(car: &Car) -> &Manual {
-    let Transmission::Manual(manual) = &car.transmission else { panic!("a manual box") };
+    let Transmission::Manual(manual) = &car.transmission else {
+        panic!("a manual box")
+    };
     manual
 }
 
 /// Losses without load at an input speed, Nm: seal, bearing, churning.
 fn spin(m: &Manual, speed: f64, nu: f64) -> f64 {
-    m.part_losses_nm(1, speed, 0.0, nu, 320.0).0.iter().map(|p| p.1).sum()
+    m.part_losses_nm(1, speed, 0.0, nu, 320.0)
+        .0
+        .iter()
+        .map(|p| p.1)
+        .sum()
 }
 
 /// A step in gear against MB-1, LC-1 to LC-4 and the bounds of the engine. Answers with what bound it: 0 demand, 1 least, 2 full load.
@@ -162,25 +185,52 @@ fn check(car: &Car, s: &Step, d: &Drive, gear: u8) -> usize {
     let nu = car.oil.kinematic_m2_s(k);
     assert_eq!(d.gear, gear, "{place}");
     let input = m.overall[usize::from(gear) - 1] * s.wheel_rad_s;
-    let (output, w, idle, power) = (d.output_w / input, d.engine_rad_s, engine.idle_rad_s, s.wheel_nm * s.wheel_rad_s);
+    let (output, w, idle, power) = (
+        d.output_w / input,
+        d.engine_rad_s,
+        engine.idle_rad_s,
+        s.wheel_nm * s.wheel_rad_s,
+    );
     let (parts, _) = m.part_losses_nm(gear, input, output, nu, k);
-    let tight = |got: f64, want: f64| assert!((got - want).abs() <= 1e-8 * (1.0 + want.abs()), "{got} instead of {want}: {place}");
+    let tight = |got: f64, want: f64| {
+        assert!(
+            (got - want).abs() <= 1e-8 * (1.0 + want.abs()),
+            "{got} instead of {want}: {place}"
+        )
+    };
     for (part, nm) in parts {
         tight(d.loss_w[part as usize], nm * input);
     }
     let input_nm = output + parts.iter().map(|p| p.1).sum::<f64>();
     tight(d.shaft_nm, input_nm);
-    tight(d.loss_w[Component::LaunchClutch as usize], input_nm * (w - input)); // LC-4
+    tight(
+        d.loss_w[Component::LaunchClutch as usize],
+        input_nm * (w - input),
+    ); // LC-4
     let pace = car.engine.inertia_torque_nm / car.engine.inertia_kg_m2 * s.dt_s;
-    let reach = |wanted: f64| if wanted > input { wanted.clamp(s.before_rad_s - pace, s.before_rad_s + pace).max(input) } else { input };
+    let reach = |wanted: f64| {
+        if wanted > input {
+            wanted
+                .clamp(s.before_rad_s - pace, s.before_rad_s + pace)
+                .max(input)
+        } else {
+            input
+        }
+    };
     let speed = |nm: f64| reach(m.launch.engine_speed_rad_s(nm, input, idle, s.coupled));
     let demand_nm = power / input;
-    let demanded = demand_nm + m.part_losses_nm(gear, input, demand_nm, nu, k).0.iter().map(|p| p.1).sum::<f64>();
+    let demanded = demand_nm
+        + m.part_losses_nm(gear, input, demand_nm, nu, k)
+            .0
+            .iter()
+            .map(|p| p.1)
+            .sum::<f64>();
     let first = speed(demanded);
     let least = if input < idle {
         m.launch.creep_torque_nm(input, idle)
     } else {
-        -m.launch.overrun_share(input, idle) * (engine.drag_nm(first) + engine.accessories_nm(first))
+        -m.launch.overrun_share(input, idle)
+            * (engine.drag_nm(first) + engine.accessories_nm(first))
     };
     let most = engine.full_load_nm(first) - engine.accessories_nm(first);
     let bind = if demanded < least {
@@ -211,12 +261,18 @@ fn check(car: &Car, s: &Step, d: &Drive, gear: u8) -> usize {
     near(d.throttle + 1.0, share.clamp(0.0, 1.0) + 1.0, 1e-9);
     for (flag, want) in [
         (Flags::MISSED_TRACE, bind == 2),
-        (Flags::CLUTCH_SLIPPING, w > input * (1.0 + 1e-9) && input_nm > 0.0),
+        (
+            Flags::CLUTCH_SLIPPING,
+            w > input * (1.0 + 1e-9) && input_nm > 0.0,
+        ),
         (Flags::CLUTCH_OPEN, false),
         (Flags::OVERRUN, input_nm < 0.0),
         (Flags::NOT_CONVERGED, false),
         (Flags::OVERSPEED, w > car.engine.highest_rad_s),
-        (Flags::OUTSIDE_VALIDITY, !(-40.0..=160.0).contains(&s.degc) || share > FULL),
+        (
+            Flags::OUTSIDE_VALIDITY,
+            !(-40.0..=160.0).contains(&s.degc) || share > FULL,
+        ),
         (Flags::ENGINE_OFF, false),
     ] {
         assert_eq!(d.flags.contains(flag), want, "{flag:?}: {place}");
@@ -233,16 +289,39 @@ fn val_steps_in_gear_from_their_parts() {
         for gear in 1..=5 {
             for wheel_rad_s in [0.5, 4.0, 7.5, 9.0, 25.0, 60.0, 130.0, 260.0] {
                 for wheel_nm in [-600.0, -60.0, -5.0, 5.0, 60.0, 300.0, 2400.0] {
-                    for (degc, coupled, dt_s) in [(60.0, true, 30.0), (-15.0, false, 30.0), (165.0, false, 0.05), (-45.0, true, 0.05)] {
-                        let s = Step { command: Some(GearCommand::InGear(gear)), wheel_rad_s, wheel_nm, degc, coupled, dt_s, ..STEP };
+                    for (degc, coupled, dt_s) in [
+                        (60.0, true, 30.0),
+                        (-15.0, false, 30.0),
+                        (165.0, false, 0.05),
+                        (-45.0, true, 0.05),
+                    ] {
+                        let s = Step {
+                            command: Some(GearCommand::InGear(gear)),
+                            wheel_rad_s,
+                            wheel_nm,
+                            degc,
+                            coupled,
+                            dt_s,
+                            ..STEP
+                        };
                         let (d, _) = solve(&car, &s);
-                        let lower = box_of(&car).overall.get(usize::from(gear).wrapping_sub(2)).map(|r| r * wheel_rad_s);
+                        let lower = box_of(&car)
+                            .overall
+                            .get(usize::from(gear).wrapping_sub(2))
+                            .map(|r| r * wheel_rad_s);
                         if d.gear != gear {
                             // MB-5: a lower gear where the one in force lacks torque, and the engine bears its speed.
-                            assert!(d.gear < gear && lower.is_some_and(|w| w < car.engine.highest_rad_s), "{s:?}");
+                            assert!(
+                                d.gear < gear
+                                    && lower.is_some_and(|w| w < car.engine.highest_rad_s),
+                                "{s:?}"
+                            );
                             let here = box_of(&car).overall[usize::from(d.gear) - 1] * wheel_rad_s;
                             assert!(here < car.engine.highest_rad_s);
-                            let above = Step { command: Some(GearCommand::InGear(d.gear)), ..s };
+                            let above = Step {
+                                command: Some(GearCommand::InGear(d.gear)),
+                                ..s
+                            };
                             assert_eq!(solve(&car, &above).0.gear, d.gear);
                         } else if d.flags.contains(Flags::MISSED_TRACE) {
                             assert!(lower.is_none_or(|w| w >= car.engine.highest_rad_s), "{s:?}");
@@ -260,11 +339,25 @@ fn val_steps_in_gear_from_their_parts() {
 #[test]
 fn an_engine_too_weak_to_idle_is_flagged() {
     let mut car = car(CARS[1], &[]).car(293.15);
-    let s = Step { wheel_rad_s: 0.0, wheel_nm: 0.0, dt_s: 9.0, ..STEP };
+    let s = Step {
+        wheel_rad_s: 0.0,
+        wheel_nm: 0.0,
+        dt_s: 9.0,
+        ..STEP
+    };
     let (d, _) = solve(&car, &s);
     let k = s.degc + ZERO;
-    let nm = d.shaft_nm + car.engine.at(k, k, &car.engine_oil, 1.0).accessories_nm(d.engine_rad_s);
-    for (share, want) in [(1.0 + 1e-4, true), (1.04, true), (1.0 + 1e-6, false), (0.5, false)] {
+    let nm = d.shaft_nm
+        + car
+            .engine
+            .at(k, k, &car.engine_oil, 1.0)
+            .accessories_nm(d.engine_rad_s);
+    for (share, want) in [
+        (1.0 + 1e-4, true),
+        (1.04, true),
+        (1.0 + 1e-6, false),
+        (0.5, false),
+    ] {
         car.engine.full_load = cvtcycle::numeric::Curve::constant(nm / share);
         let (d, _) = solve(&car, &s);
         near(d.throttle, share.min(1.0), 1e-12);
@@ -280,8 +373,19 @@ fn val_commands_of_gears() {
     let (m, k) = (box_of(&car), 40.0 + ZERO);
     let idle = car.engine.at(k, k, &car.engine_oil, 1.0).idle_rad_s;
     let run = |s: Step| solve(&car, &s);
-    for (command, gear) in [(InGear(3), 3), (Change(4), 4), (InGear(9), 5), (InGear(5), 5), (InGear(6), 5)] {
-        let (d, state) = run(Step { command: Some(command), before_gear: 1, wheel_rad_s: 60.0, ..STEP });
+    for (command, gear) in [
+        (InGear(3), 3),
+        (Change(4), 4),
+        (InGear(9), 5),
+        (InGear(5), 5),
+        (InGear(6), 5),
+    ] {
+        let (d, state) = run(Step {
+            command: Some(command),
+            before_gear: 1,
+            wheel_rad_s: 60.0,
+            ..STEP
+        });
         assert_eq!((d.gear, state.past.gear), (gear, gear), "{command:?}");
         assert!(!d.flags.contains(Flags::CLUTCH_OPEN) && state.past.coupled && !state.past.stood);
     }
@@ -289,44 +393,151 @@ fn val_commands_of_gears() {
     let open = |s: Step, gear: u8| {
         let (d, state) = run(s);
         let input = m.overall[usize::from(gear) - 1] * s.wheel_rad_s;
-        assert!(d.flags.contains(Flags::CLUTCH_OPEN) && d.gear == gear && !state.past.coupled && d.shaft_nm == 0.0, "{s:?} {d:?}");
+        assert!(
+            d.flags.contains(Flags::CLUTCH_OPEN)
+                && d.gear == gear
+                && !state.past.coupled
+                && d.shaft_nm == 0.0,
+            "{s:?} {d:?}"
+        );
         same(d.output_w, -spin(m, input, nu) * input);
         same(d.brake_w, d.output_w - s.wheel_nm * s.wheel_rad_s);
         let lost: f64 = d.loss_w.iter().sum();
         same(lost, -d.output_w);
         let pace = car.engine.inertia_torque_nm / car.engine.inertia_kg_m2 * s.dt_s;
-        same(d.engine_rad_s, idle.clamp(s.before_rad_s - pace, s.before_rad_s + pace));
+        same(
+            d.engine_rad_s,
+            idle.clamp(s.before_rad_s - pace, s.before_rad_s + pace),
+        );
         assert_eq!(state.past.gear, gear);
     };
     for dt_s in [0.02, 5.0] {
-        open(Step { command: Some(Declutched(3)), wheel_nm: -200.0, dt_s, ..STEP }, 3);
-        open(Step { command: Some(Declutched(9)), wheel_nm: -200.0, dt_s, ..STEP }, 5);
-        open(Step { command: Some(Declutched(5)), wheel_nm: -200.0, dt_s, ..STEP }, 5);
-        open(Step { command: Some(Neutral), wheel_nm: -200.0, dt_s, ..STEP }, 2);
-        open(Step { command: Some(Neutral), wheel_nm: -200.0, dt_s, before_gear: 0, ..STEP }, 5);
-        open(Step { command: Some(Change(0)), wheel_nm: -200.0, dt_s, ..STEP }, 5);
-        open(Step { command: Some(InGear(0)), wheel_nm: -200.0, dt_s, ..STEP }, 5);
+        open(
+            Step {
+                command: Some(Declutched(3)),
+                wheel_nm: -200.0,
+                dt_s,
+                ..STEP
+            },
+            3,
+        );
+        open(
+            Step {
+                command: Some(Declutched(9)),
+                wheel_nm: -200.0,
+                dt_s,
+                ..STEP
+            },
+            5,
+        );
+        open(
+            Step {
+                command: Some(Declutched(5)),
+                wheel_nm: -200.0,
+                dt_s,
+                ..STEP
+            },
+            5,
+        );
+        open(
+            Step {
+                command: Some(Neutral),
+                wheel_nm: -200.0,
+                dt_s,
+                ..STEP
+            },
+            2,
+        );
+        open(
+            Step {
+                command: Some(Neutral),
+                wheel_nm: -200.0,
+                dt_s,
+                before_gear: 0,
+                ..STEP
+            },
+            5,
+        );
+        open(
+            Step {
+                command: Some(Change(0)),
+                wheel_nm: -200.0,
+                dt_s,
+                ..STEP
+            },
+            5,
+        );
+        open(
+            Step {
+                command: Some(InGear(0)),
+                wheel_nm: -200.0,
+                dt_s,
+                ..STEP
+            },
+            5,
+        );
     }
     // Declutched, but the wheels would need power: in gear after all, the first where none was engaged.
-    assert_eq!(run(Step { command: Some(Declutched(3)), wheel_nm: 50.0, ..STEP }).0.gear, 3);
-    let (d, _) = run(Step { command: Some(Change(0)), wheel_nm: 5.0, wheel_rad_s: 12.0, ..STEP });
+    assert_eq!(
+        run(Step {
+            command: Some(Declutched(3)),
+            wheel_nm: 50.0,
+            ..STEP
+        })
+        .0
+        .gear,
+        3
+    );
+    let (d, _) = run(Step {
+        command: Some(Change(0)),
+        wheel_nm: 5.0,
+        wheel_rad_s: 12.0,
+        ..STEP
+    });
     assert!(d.gear == 1 && !d.flags.contains(Flags::CLUTCH_OPEN));
     // At rest with a gear demanded: nothing turns but the engine.
-    let (d, state) = run(Step { command: Some(InGear(2)), wheel_rad_s: 0.0, wheel_nm: 0.0, ..STEP });
-    assert!(d.flags.contains(Flags::CLUTCH_OPEN) && d.loss_w.iter().all(|w| *w == 0.0) && state.past.stood && !state.past.coupled);
+    let (d, state) = run(Step {
+        command: Some(InGear(2)),
+        wheel_rad_s: 0.0,
+        wheel_nm: 0.0,
+        ..STEP
+    });
+    assert!(
+        d.flags.contains(Flags::CLUTCH_OPEN)
+            && d.loss_w.iter().all(|w| *w == 0.0)
+            && state.past.stood
+            && !state.past.coupled
+    );
     // Neutral at rest: the engine turns a share of the box.
     for command in [Some(Neutral), None] {
-        let (d, state) = run(Step { command, wheel_rad_s: 0.0, wheel_nm: 0.0, dt_s: 5.0, ..STEP });
+        let (d, state) = run(Step {
+            command,
+            wheel_rad_s: 0.0,
+            wheel_nm: 0.0,
+            dt_s: 5.0,
+            ..STEP
+        });
         same(d.engine_rad_s, idle);
         let nm = m.neutral_share * spin(m, idle, nu);
         same(d.shaft_nm, nm);
         same(d.loss_w.iter().sum::<f64>(), nm * idle);
-        assert!(d.gear == 0 && state.past.gear == 2 && !state.past.coupled && state.past.stood && d.output_w == 0.0);
+        assert!(
+            d.gear == 0
+                && state.past.gear == 2
+                && !state.past.coupled
+                && state.past.stood
+                && d.output_w == 0.0
+        );
     }
     // The driver's own gears, and the clutch below 1.05 idle when slowing down.
     for wheel_rad_s in [6.0, 16.0, 30.0, 60.0, 90.0] {
         for wheel_nm in [-30.0, 0.0, 40.0] {
-            let s = Step { wheel_rad_s, wheel_nm, dt_s: 5.0, ..STEP };
+            let s = Step {
+                wheel_rad_s,
+                wheel_nm,
+                dt_s: 5.0,
+                ..STEP
+            };
             let gear = m.shifts.for_speed(0.28 * wheel_rad_s, 2, 5);
             let input = m.overall[usize::from(gear) - 1] * wheel_rad_s;
             let (d, _) = run(s);
@@ -341,11 +552,28 @@ fn val_commands_of_gears() {
     }
     let edge = |share: f64| {
         let r = m.overall[1] * 1.0;
-        run(Step { wheel_rad_s: share * idle / r, wheel_nm: -60.0, before_gear: 2, ..STEP }).0.flags.contains(Flags::CLUTCH_OPEN)
+        run(Step {
+            wheel_rad_s: share * idle / r,
+            wheel_nm: -60.0,
+            before_gear: 2,
+            ..STEP
+        })
+        .0
+        .flags
+        .contains(Flags::CLUTCH_OPEN)
     };
     assert!(edge(1.04) && !edge(1.06));
     // Engine off.
-    let (d, state) = run(Step { engine_off: true, before_rad_s: 300.0, ..STEP });
-    assert!(d.flags.contains(Flags::ENGINE_OFF) && d.engine_rad_s == 0.0 && state.past.stood && !state.past.coupled);
+    let (d, state) = run(Step {
+        engine_off: true,
+        before_rad_s: 300.0,
+        ..STEP
+    });
+    assert!(
+        d.flags.contains(Flags::ENGINE_OFF)
+            && d.engine_rad_s == 0.0
+            && state.past.stood
+            && !state.past.coupled
+    );
     same(state.past.engine_rad_s, idle);
 }

@@ -46,7 +46,11 @@ fn val_pump_by_hand() {
             let p = pump(kind);
             let s = p.state(&p.at(eta), w, pa, need);
             let against = share * (pa + 0.8e5) + (1.0 - share) * 1.5e5;
-            let viscous = heated(15_000.0 * 0.01 * (eta / 0.01f64).powf(0.9) * w * 1.6e-6, w, 900.0);
+            let viscous = heated(
+                15_000.0 * 0.01 * (eta / 0.01f64).powf(0.9) * w * 1.6e-6,
+                w,
+                900.0,
+            );
             same(s.torque_nm, 1.6e-6 * 1.07 * against + viscous + 0.11);
             same(s.flow_m3_s, flow);
             same(s.working_m3_s, drawn(share * flow));
@@ -54,9 +58,16 @@ fn val_pump_by_hand() {
         }
     }
     // A pump that draws nothing works with all it has.
-    for kind in [PumpKind::Fixed, PumpKind::DualCavity { share: 0.5 }, PumpKind::Variable { least: 0.2 }] {
+    for kind in [
+        PumpKind::Fixed,
+        PumpKind::DualCavity { share: 0.5 },
+        PumpKind::Variable { least: 0.2 },
+    ] {
         let p = pump(kind);
-        same(p.state(&p.at(eta), 0.0, pa, 1e-5).torque_nm, 1.6e-6 * 1.07 * (pa + 0.8e5) + 0.11);
+        same(
+            p.state(&p.at(eta), 0.0, pa, 1e-5).torque_nm,
+            1.6e-6 * 1.07 * (pa + 0.8e5) + 0.11,
+        );
     }
 }
 
@@ -96,12 +107,23 @@ fn val_shafts_by_hand() {
     for ratio in [0.6, 1.0, 3.0, 40.0f64] {
         let now = s.at(11e-6 * ratio);
         for w in [0.0, 90.0, 300.0] {
-            same(now.shaft_nm(w), 0.97 + heated(7e-4 * ratio.powf(0.75) * w, w, 400.0));
-            same(s.drive_nm(&now, w), 1.2 * (-w / 210.0).exp() + heated(0.29 * ratio.powf(0.72), w, 300.0));
+            same(
+                now.shaft_nm(w),
+                0.97 + heated(7e-4 * ratio.powf(0.75) * w, w, 400.0),
+            );
+            same(
+                s.drive_nm(&now, w),
+                1.2 * (-w / 210.0).exp() + heated(0.29 * ratio.powf(0.72), w, 300.0),
+            );
         }
         same(now.clutch_nm, (0.25 * ratio.powf(0.55)).min(0.5));
     }
-    for (out, want) in [(30.0, 31.0 / 0.98), (-0.5, 0.5 / 0.98), (-1.0, 0.0), (-40.0, -39.0 * 0.98)] {
+    for (out, want) in [
+        (30.0, 31.0 / 0.98),
+        (-0.5, 0.5 / 0.98),
+        (-1.0, 0.0),
+        (-40.0, -39.0 * 0.98),
+    ] {
         same(s.secondary_torque_nm(1.0, out), want);
     }
 }

@@ -9,7 +9,12 @@ use crate::{ends, made, same};
 /// Gives every file below a directory a time of last change.
 fn dated(dir: &Path, time: SystemTime) {
     for path in crate::tree(dir).keys() {
-        File::options().write(true).open(dir.join(path)).unwrap().set_modified(time).unwrap();
+        File::options()
+            .write(true)
+            .open(dir.join(path))
+            .unwrap()
+            .set_modified(time)
+            .unwrap();
     }
 }
 
@@ -18,7 +23,10 @@ fn dated(dir: &Path, time: SystemTime) {
 #[test]
 fn files_from_the_future_are_resumed_and_replaced() {
     let now = SystemTime::now();
-    for time in [now + Duration::from_secs(80 * 365 * 86_400), SystemTime::UNIX_EPOCH + Duration::from_secs(400 * 86_400)] {
+    for time in [
+        now + Duration::from_secs(80 * 365 * 86_400),
+        SystemTime::UNIX_EPOCH + Duration::from_secs(400 * 86_400),
+    ] {
         let dir = made();
         let path = dir.path();
         ends(path, "study plan.toml --quiet --out whole", 0);
@@ -29,7 +37,11 @@ fn files_from_the_future_are_resumed_and_replaced() {
         dated(&path.join("made_study"), time);
         ends(path, "study plan.toml --quiet --force --out made_study", 0);
         same(&path.join("made_study"), &path.join("whole"));
-        ends(path, "run --cycle minute.csv --sensitivity never --quiet --out made_run --force", 0);
+        ends(
+            path,
+            "run --cycle minute.csv --sensitivity never --quiet --out made_run --force",
+            0,
+        );
         ends(path, "report made_run --quiet", 0);
         dated(path, time);
         ends(path, "report made_run --quiet --force", 0);
@@ -45,8 +57,14 @@ fn nobody_asks_what_time_it_is() {
     let mut sources = 0;
     for (path, bytes) in crate::tree(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
         let text = String::from_utf8_lossy(&bytes);
-        let asks = ["SystemTime", "UNIX_EPOCH", ".modified("].iter().any(|word| text.contains(word));
-        assert!(!asks || ASKS.iter().any(|(known, _)| path == Path::new(known)), "{}", path.display());
+        let asks = ["SystemTime", "UNIX_EPOCH", ".modified("]
+            .iter()
+            .any(|word| text.contains(word));
+        assert!(
+            !asks || ASKS.iter().any(|(known, _)| path == Path::new(known)),
+            "{}",
+            path.display()
+        );
         sources += usize::from(path.extension().is_some_and(|ending| ending == "rs"));
     }
     assert!(sources > 100);

@@ -43,10 +43,25 @@ fn bare_and_foreign_environments_change_nothing() {
     let dir = made();
     let surroundings: [&[(&str, &str)]; 5] = [
         &[],
-        &[("LC_ALL", "de_DE.UTF-8"), ("LANG", "de_DE.UTF-8"), ("LC_NUMERIC", "de_DE.UTF-8"), ("LANGUAGE", "de")],
+        &[
+            ("LC_ALL", "de_DE.UTF-8"),
+            ("LANG", "de_DE.UTF-8"),
+            ("LC_NUMERIC", "de_DE.UTF-8"),
+            ("LANGUAGE", "de"),
+        ],
         &[("LC_ALL", "C"), ("TERM", "")],
-        &[("HOME", "/nonexistent"), ("TERM", "dumb"), ("COLUMNS", "20"), ("TZ", "Asia/Kathmandu")],
-        &[("PATH", ""), ("USER", "\u{fc}"), ("PWD", "/nonexistent"), ("XDG_CONFIG_HOME", "/nonexistent")],
+        &[
+            ("HOME", "/nonexistent"),
+            ("TERM", "dumb"),
+            ("COLUMNS", "20"),
+            ("TZ", "Asia/Kathmandu"),
+        ],
+        &[
+            ("PATH", ""),
+            ("USER", "\u{fc}"),
+            ("PWD", "/nonexistent"),
+            ("XDG_CONFIG_HOME", "/nonexistent"),
+        ],
     ];
     for line in LINES {
         let report = dir.path().join("r.html");
@@ -54,11 +69,24 @@ fn bare_and_foreign_environments_change_nothing() {
         let page = fs::read(&report).unwrap_or_default();
         for list in surroundings {
             let mut command = Command::new(bin());
-            command.current_dir(dir.path()).env_clear().envs(list.iter().copied()).args(words(line)).stdin(Stdio::null());
+            command
+                .current_dir(dir.path())
+                .env_clear()
+                .envs(list.iter().copied())
+                .args(words(line))
+                .stdin(Stdio::null());
             let output = command.output().unwrap();
-            assert_eq!(output.status.code(), Some(0), "{line} {list:?}: {}", stderr(&output));
+            assert_eq!(
+                output.status.code(),
+                Some(0),
+                "{line} {list:?}: {}",
+                stderr(&output)
+            );
             assert!(output.stdout == plain, "{line} {list:?}");
-            assert!(fs::read(&report).unwrap_or_default() == page, "{line} {list:?}");
+            assert!(
+                fs::read(&report).unwrap_or_default() == page,
+                "{line} {list:?}"
+            );
         }
     }
 }
@@ -67,20 +95,47 @@ fn bare_and_foreign_environments_change_nothing() {
 #[test]
 fn no_folder_for_temporary_files_is_told() {
     let dir = folder();
-    let output = program(dir.path(), &words("study plan.toml --quiet")).env("TMPDIR", "/nonexistent").output().unwrap();
+    let output = program(dir.path(), &words("study plan.toml --quiet"))
+        .env("TMPDIR", "/nonexistent")
+        .output()
+        .unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-    assert!(stderr(&output).contains("temporary") && stderr(&output).contains("--out"), "{}", stderr(&output));
-    let output = program(dir.path(), &words("study plan.toml --quiet --out o")).env("TMPDIR", "/nonexistent").output().unwrap();
+    assert!(
+        stderr(&output).contains("temporary") && stderr(&output).contains("--out"),
+        "{}",
+        stderr(&output)
+    );
+    let output = program(dir.path(), &words("study plan.toml --quiet --out o"))
+        .env("TMPDIR", "/nonexistent")
+        .output()
+        .unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 }
 
 /// A current folder that is gone is no reason to fail for what needs none.
 #[test]
 fn a_folder_that_is_gone_is_told_or_not_needed() {
-    for (line, code) in [("run --quiet", 0), ("list cycles", 0), ("run --cycle minute.csv", 2), ("run --quiet --out o", 2)] {
-        let script = format!("mkdir gone && cd gone && rmdir ../gone && exec '{}' {line}", bin().display());
+    for (line, code) in [
+        ("run --quiet", 0),
+        ("list cycles", 0),
+        ("run --cycle minute.csv", 2),
+        ("run --quiet --out o", 2),
+    ] {
+        let script = format!(
+            "mkdir gone && cd gone && rmdir ../gone && exec '{}' {line}",
+            bin().display()
+        );
         let dir = folder();
-        let output = Command::new("sh").args(["-c", &script]).current_dir(dir.path()).output().unwrap();
-        assert_eq!(output.status.code(), Some(code), "{line}: {}", stderr(&output));
+        let output = Command::new("sh")
+            .args(["-c", &script])
+            .current_dir(dir.path())
+            .output()
+            .unwrap();
+        assert_eq!(
+            output.status.code(),
+            Some(code),
+            "{line}: {}",
+            stderr(&output)
+        );
     }
 }

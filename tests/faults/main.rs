@@ -5,7 +5,12 @@
 //! Full and read-only places are small file systems in memory, mounted for the child alone; where that is not allowed those tests say that
 //! they are skipped, and fail if CVTCYCLE_REQUIRE_FULL_DISK is set.
 #![cfg(target_os = "linux")]
-#![allow(missing_docs, clippy::unwrap_used, clippy::print_stderr, reason = "helpers of tests; a test that is skipped says so")]
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "helpers of tests; a test that is skipped says so"
+)]
 
 mod clock;
 mod environment;
@@ -23,7 +28,8 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 use tree::{same, tree};
 
-const CYCLE: &str = "time_s,speed_kmh,phase\n0,0,town\n4,0,town\n14,32,town\n24,32,town\n34,0,road\n60,60,road\n";
+const CYCLE: &str =
+    "time_s,speed_kmh,phase\n0,0,town\n4,0,town\n14,32,town\n24,32,town\n34,0,road\n60,60,road\n";
 const PLAN: &str = "[study]\ntitle = \"t\"\nbaselines = [\"rover_216_5mt\"]\ncycle = \"minute.csv\"\nkeep = [\"time_s\", \"gear\"]\n\
     [study.design.monte_carlo]\nsamples = 120\n[[factor]]\nkey = \"engine.electrical_w\"\ncars = \"all\"\nstatus = \"assumed\"\n\
     distribution.uniform = { low = 100, high = 500 }\n";
@@ -67,34 +73,57 @@ fn stderr(output: &Output) -> String {
 /// Runs a command that must end with a code.
 fn ends(dir: &Path, line: &str, code: i32) -> Output {
     let output = program(dir, &words(line)).output().unwrap();
-    assert_eq!(output.status.code(), Some(code), "{line}: {}", stderr(&output));
+    assert_eq!(
+        output.status.code(),
+        Some(code),
+        "{line}: {}",
+        stderr(&output)
+    );
     output
 }
 
 /// A folder with a cycle, a plan and points.
 fn folder() -> TempDir {
     let dir = tempfile::tempdir().unwrap();
-    for (name, text) in [("minute.csv", CYCLE), ("plan.toml", PLAN), ("points.csv", POINTS)] {
+    for (name, text) in [
+        ("minute.csv", CYCLE),
+        ("plan.toml", PLAN),
+        ("points.csv", POINTS),
+    ] {
         fs::write(dir.path().join(name), text).unwrap();
     }
     let rows: Vec<&str> = POINTS.lines().collect();
-    fs::write(dir.path().join("many.csv"), format!("{}\n{}", rows[0], format!("{}\n", rows[1]).repeat(2000))).unwrap();
+    fs::write(
+        dir.path().join("many.csv"),
+        format!("{}\n{}", rows[0], format!("{}\n", rows[1]).repeat(2000)),
+    )
+    .unwrap();
     dir
 }
 
 /// The same with a finished run and a finished study in it.
 fn made() -> TempDir {
     let dir = folder();
-    ends(dir.path(), "run --cycle minute.csv --sensitivity never --quiet --out made_run", 0);
+    ends(
+        dir.path(),
+        "run --cycle minute.csv --sensitivity never --quiet --out made_run",
+        0,
+    );
     ends(dir.path(), "study plan.toml --quiet --out made_study", 0);
     dir
 }
 
 /// Runs a script with its own mounts in a folder; false where that is not allowed.
 fn with_mounts(dir: &Path, script: &str) -> bool {
-    let status = Command::new("unshare").args(["-rm", "sh", "-c", script]).current_dir(dir).status();
+    let status = Command::new("unshare")
+        .args(["-rm", "sh", "-c", script])
+        .current_dir(dir)
+        .status();
     let done = status.is_ok_and(|status| status.success());
-    assert!(done || std::env::var_os("CVTCYCLE_REQUIRE_FULL_DISK").is_none(), "no small file system can be mounted here");
+    assert!(
+        done || std::env::var_os("CVTCYCLE_REQUIRE_FULL_DISK").is_none(),
+        "no small file system can be mounted here"
+    );
     if !done {
         eprintln!("skipped: no small file system can be mounted here");
     }

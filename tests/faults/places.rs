@@ -7,10 +7,14 @@ use crate::{WRITERS, bin, ends, folder, made, program, stderr, tree, with_mounts
 
 /// Runs every writing command with its output in `place`; of each: code, what it said, and the files that are left.
 fn script(place: &str, options: &str, before: &str) -> String {
-    let mut text = format!("mkdir {place} && mount -t tmpfs -o {options} none {place} || exit 77\n{before}\n");
+    let mut text =
+        format!("mkdir {place} && mount -t tmpfs -o {options} none {place} || exit 77\n{before}\n");
     for (k, line) in WRITERS.iter().enumerate() {
         let line = line.replace("OUT", &format!("{place}/out"));
-        text += &format!("'{}' {line} 2>told.{k} >printed.{k}; echo $? >code.{k}; find {place} -type f >left.{k}\n", bin().display());
+        text += &format!(
+            "'{}' {line} 2>told.{k} >printed.{k}; echo $? >code.{k}; find {place} -type f >left.{k}\n",
+            bin().display()
+        );
     }
     text + "exit 0\n"
 }
@@ -22,7 +26,10 @@ fn text(dir: &Path, name: &str, k: usize) -> String {
 fn refused(dir: &Path, k: usize, reason: &str) {
     let (line, told) = (WRITERS[k], text(dir, "told", k));
     assert_eq!(text(dir, "code", k).trim(), "2", "{line}: {told}");
-    assert!(told.contains(reason) && told.contains("= help: "), "{line}: {told}");
+    assert!(
+        told.contains(reason) && told.contains("= help: "),
+        "{line}: {told}"
+    );
     assert_eq!(text(dir, "printed", k), "", "{line}");
     assert_eq!(text(dir, "left", k), "", "{line} left something");
 }
@@ -49,7 +56,12 @@ fn a_full_disk_does_not_cost_the_earlier_run() {
         bin().display()
     );
     if with_mounts(dir.path(), &script) {
-        assert_eq!(text(dir.path(), "code", 0).trim(), "2", "{}", text(dir.path(), "told", 0));
+        assert_eq!(
+            text(dir.path(), "code", 0).trim(),
+            "2",
+            "{}",
+            text(dir.path(), "told", 0)
+        );
         crate::same(&dir.path().join("before"), &dir.path().join("after"));
     }
 }
@@ -58,7 +70,14 @@ fn a_full_disk_does_not_cost_the_earlier_run() {
 #[test]
 fn a_read_only_place_is_refused() {
     let dir = made();
-    if with_mounts(dir.path(), &script("locked", "size=4m", "mount -o remount,ro none locked || exit 77")) {
+    if with_mounts(
+        dir.path(),
+        &script(
+            "locked",
+            "size=4m",
+            "mount -o remount,ro none locked || exit 77",
+        ),
+    ) {
         (0..WRITERS.len()).for_each(|k| refused(dir.path(), k, "Read-only file system"));
     }
 }
@@ -84,11 +103,31 @@ fn a_read_only_home_and_folder_are_enough_to_read() {
 fn a_limit_to_the_size_of_files_leaves_nothing_behind() {
     let dir = made();
     for (k, line) in WRITERS.iter().enumerate() {
-        let command = format!("trap '' XFSZ; ulimit -f 2; exec '{}' {}", bin().display(), line.replace("OUT", "limited"));
-        let output = std::process::Command::new("bash").args(["-c", &command]).current_dir(dir.path()).output().unwrap();
-        let left: Vec<_> = tree(dir.path()).into_keys().filter(|path| path.to_string_lossy().contains("limited")).collect();
-        assert_eq!((output.status.code(), left.len()), (Some(2), 0), "{k} {line}: {} {left:?}", stderr(&output));
-        assert!(stderr(&output).contains("File too large"), "{line}: {}", stderr(&output));
+        let command = format!(
+            "trap '' XFSZ; ulimit -f 2; exec '{}' {}",
+            bin().display(),
+            line.replace("OUT", "limited")
+        );
+        let output = std::process::Command::new("bash")
+            .args(["-c", &command])
+            .current_dir(dir.path())
+            .output()
+            .unwrap();
+        let left: Vec<_> = tree(dir.path())
+            .into_keys()
+            .filter(|path| path.to_string_lossy().contains("limited"))
+            .collect();
+        assert_eq!(
+            (output.status.code(), left.len()),
+            (Some(2), 0),
+            "{k} {line}: {} {left:?}",
+            stderr(&output)
+        );
+        assert!(
+            stderr(&output).contains("File too large"),
+            "{line}: {}",
+            stderr(&output)
+        );
     }
 }
 
@@ -102,7 +141,11 @@ fn impossible_places_are_refused_with_code_2() {
             let line = line.replace("OUT", place);
             let output = program(dir.path(), &crate::words(&line)).output().unwrap();
             assert_eq!(output.status.code(), Some(2), "{line}: {}", stderr(&output));
-            assert!(output.stdout.is_empty() && stderr(&output).contains("--out"), "{line}: {}", stderr(&output));
+            assert!(
+                output.stdout.is_empty() && stderr(&output).contains("--out"),
+                "{line}: {}",
+                stderr(&output)
+            );
         }
     }
     assert_eq!(tree(dir.path()), before);

@@ -38,11 +38,20 @@ fn a_full_standard_output_is_told() {
     let dir = made();
     for line in PRINTERS {
         let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
-        let output = program(dir.path(), &words(line)).stdout(full).output().unwrap();
+        let output = program(dir.path(), &words(line))
+            .stdout(full)
+            .output()
+            .unwrap();
         assert_eq!(output.status.code(), Some(2), "{line}: {}", stderr(&output));
-        assert!(stderr(&output).contains("standard output: cannot write: No space left"), "{line}: {}", stderr(&output));
+        assert!(
+            stderr(&output).contains("standard output: cannot write: No space left"),
+            "{line}: {}",
+            stderr(&output)
+        );
     }
-    assert!(dir.path().join("again/summary.json").is_file() && dir.path().join("again.csv").is_file());
+    assert!(
+        dir.path().join("again/summary.json").is_file() && dir.path().join("again.csv").is_file()
+    );
 }
 
 /// `| head -1`, and a reader that is gone before anything comes: no error, nothing said.
@@ -51,7 +60,11 @@ fn a_reader_that_has_seen_enough_is_no_error() {
     let dir = made();
     for line in PRINTERS {
         for reads in [true, false] {
-            let mut child = program(dir.path(), &words(line)).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+            let mut child = program(dir.path(), &words(line))
+                .stdout(Stdio::piped())
+                .stderr(Stdio::piped())
+                .spawn()
+                .unwrap();
             let mut out = BufReader::with_capacity(16, child.stdout.take().unwrap());
             let mut first = String::new();
             if reads {
@@ -60,7 +73,11 @@ fn a_reader_that_has_seen_enough_is_no_error() {
             }
             drop(out);
             let output = child.wait_with_output().unwrap();
-            assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""), "{line}");
+            assert_eq!(
+                (output.status.code(), stderr(&output).as_str()),
+                (Some(0), ""),
+                "{line}"
+            );
         }
     }
 }
@@ -69,9 +86,17 @@ fn a_reader_that_has_seen_enough_is_no_error() {
 #[test]
 fn closed_streams_are_no_error() {
     let dir = made();
-    for (line, code) in PRINTERS.iter().map(|line| (*line, 0)).chain([("run --cycle nowhere.csv", 2), ("belt", 2)]) {
+    for (line, code) in PRINTERS
+        .iter()
+        .map(|line| (*line, 0))
+        .chain([("run --cycle nowhere.csv", 2), ("belt", 2)])
+    {
         let command = format!("exec '{}' {line} <&- >&- 2>&-", bin().display());
-        let status = Command::new("sh").args(["-c", &command]).current_dir(dir.path()).status().unwrap();
+        let status = Command::new("sh")
+            .args(["-c", &command])
+            .current_dir(dir.path())
+            .status()
+            .unwrap();
         assert_eq!(status.code(), Some(code), "{line}");
     }
 }
@@ -80,11 +105,22 @@ fn closed_streams_are_no_error() {
 #[test]
 fn a_full_or_closed_standard_error_does_not_change_the_code() {
     let dir = made();
-    for (line, code) in [("run --cycle nowhere.csv", 2), ("study plan.toml", 0), ("run --cycle us06 --set road_load.mass_kg=3500", 1)] {
+    for (line, code) in [
+        ("run --cycle nowhere.csv", 2),
+        ("study plan.toml", 0),
+        ("run --cycle us06 --set road_load.mass_kg=3500", 1),
+    ] {
         let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
-        let output = program(dir.path(), &words(line)).stderr(full).output().unwrap();
+        let output = program(dir.path(), &words(line))
+            .stderr(full)
+            .output()
+            .unwrap();
         assert_eq!(output.status.code(), Some(code), "{line}");
-        let mut child = program(dir.path(), &words(line)).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut child = program(dir.path(), &words(line))
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
         drop(child.stderr.take());
         assert_eq!(child.wait().unwrap().code(), Some(code), "{line}");
     }

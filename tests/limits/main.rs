@@ -39,19 +39,37 @@ pub fn sparse(path: &Path, bytes: u64) {
 
 /// Runs the program in a folder with that much memory beyond its own, MiB; a run without an end is ended.
 pub fn within(dir: &Path, mib: u64, line: &str) -> Output {
-    let script = format!("ulimit -v {}; exec \"$0\" {line}", (PROGRAM_MIB + mib) * 1024);
+    let script = format!(
+        "ulimit -v {}; exec \"$0\" {line}",
+        (PROGRAM_MIB + mib) * 1024
+    );
     let program = assert_cmd::cargo::cargo_bin("cvtcycle");
     let mut command = assert_cmd::Command::new("sh");
     // One thread: each has a stack and an arena of its own in the address space.
-    command.current_dir(dir).env("RAYON_NUM_THREADS", "1").env("MALLOC_ARENA_MAX", "1").arg("-c").arg(script).arg(program);
-    command.timeout(std::time::Duration::from_secs(120)).output().unwrap()
+    command
+        .current_dir(dir)
+        .env("RAYON_NUM_THREADS", "1")
+        .env("MALLOC_ARENA_MAX", "1")
+        .arg("-c")
+        .arg(script)
+        .arg(program);
+    command
+        .timeout(std::time::Duration::from_secs(120))
+        .output()
+        .unwrap()
 }
 
 /// What the program says to bad input, which it must refuse.
 pub fn refused(dir: &Path, mib: u64, line: &str) -> String {
     let output = within(dir, mib, line);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{line}: {:?}\n{}", output.status, told.chars().take(2000).collect::<String>());
+    assert_eq!(
+        output.status.code(),
+        Some(2),
+        "{line}: {:?}\n{}",
+        output.status,
+        told.chars().take(2000).collect::<String>()
+    );
     told
 }
 

@@ -39,17 +39,25 @@ fn brackets_and_keys_nested_without_end_are_one_problem() {
     let dir = folder();
     let path = vec!["a"; 40].join(".");
     let few = vec!["a"; 16].join(".");
-    let levels = |depth: usize, open: &str, close: &str| format!("x = {}1{}\n", open.repeat(depth), close.repeat(depth));
+    let levels = |depth: usize, open: &str, close: &str| {
+        format!("x = {}1{}\n", open.repeat(depth), close.repeat(depth))
+    };
     let texts = [
         (filled("x = ", "[", ""), "recur"),
         (filled("x = ", "{a=", ""), "too many tables"),
         (format!("x = {}", "[ { a = ".repeat(50)), "recur"),
         (filled("", "a.", "a = 1"), "too many names"),
         (filled("[", "a.", "a]"), "too many names"),
-        (filled("x = [", &format!("{{{path} = 1}},"), "]"), "too many names"),
+        (
+            filled("x = [", &format!("{{{path} = 1}},"), "]"),
+            "too many names",
+        ),
         (levels(79, "[", "]"), "nested too deep"),
         (levels(79, &format!("{{{few} = "), "}"), "nested too deep"),
-        (format!("[{few}]\n{}", levels(70, &format!("{{{few} = "), "}")), "nested too deep"),
+        (
+            format!("[{few}]\n{}", levels(70, &format!("{{{few} = "), "}")),
+            "nested too deep",
+        ),
     ];
     for (text, words) in texts {
         fs::write(dir.path().join("big.toml"), &text).unwrap();
@@ -65,11 +73,20 @@ fn tables_without_end_are_one_problem() {
         filled("", "[[factor]]\n", ""),
         filled("x = [", "{},", "]"),
         filled("x = [", "{a=1},", "]"),
-        filled("x = [", &format!("{{{} = 1}},", vec!["a"; 16].join(".")), "]"),
+        filled(
+            "x = [",
+            &format!("{{{} = 1}},", vec!["a"; 16].join(".")),
+            "]",
+        ),
         numbered(|k| format!("k{k}.a = 1\n")),
     ] {
         fs::write(dir.path().join("big.toml"), &text).unwrap();
-        refused_once(dir.path(), TOML_MIB, VEHICLE, &["the file has too many tables", "up to 20000 tables"]);
+        refused_once(
+            dir.path(),
+            TOML_MIB,
+            VEHICLE,
+            &["the file has too many tables", "up to 20000 tables"],
+        );
     }
 }
 
@@ -78,22 +95,39 @@ fn as_many_keys_values_and_mistakes_as_fit_are_told_in_bounded_memory() {
     let dir = folder();
     for (text, words) in [
         // Each unknown key is compared with the known ones.
-        (numbered(|k| format!("k{k} = 1\n")), "more problems are not shown"),
-        (filled("", "a = 1 # the same key again\n", ""), "more problems are not shown"),
+        (
+            numbered(|k| format!("k{k} = 1\n")),
+            "more problems are not shown",
+        ),
+        (
+            filled("", "a = 1 # the same key again\n", ""),
+            "more problems are not shown",
+        ),
         (filled("", "=\n", ""), "too many keys"),
         ("=\n".repeat(100_000), "more problems are not shown"),
         (filled("", "a\n", ""), "more problems are not shown"),
         (filled("a = 1", " b b b b b = 1", ""), "not valid TOML"),
         (filled("x = [", "1,", "]"), "unknown key `x`"),
         (filled("x = [", "[1],", "]"), "unknown key `x`"),
-        (filled("[engine.full_load]\nrows = [", "[1,\"x\"],", "]"), "problems in big.toml"),
+        (
+            filled("[engine.full_load]\nrows = [", "[1,\"x\"],", "]"),
+            "problems in big.toml",
+        ),
         (filled("", "a", " = 1"), "unknown key"),
         (filled("x = \"", "b", "\""), "unknown key `x`"),
-        (filled("[vehicle]\ntransmission_oil = \"", "b", "\""), "there is no lubricant named"),
+        (
+            filled("[vehicle]\ntransmission_oil = \"", "b", "\""),
+            "there is no lubricant named",
+        ),
         (filled("#", "b", "\n[vehicle]\n"), "missing key"),
     ] {
         let told = told(dir.path(), &text, VEHICLE);
-        assert!(told.contains(words), "{:.40}...: no {words:?} in\n{:.3000}", text, told);
+        assert!(
+            told.contains(words),
+            "{:.40}...: no {words:?} in\n{:.3000}",
+            text,
+            told
+        );
     }
 }
 
@@ -101,17 +135,38 @@ fn as_many_keys_values_and_mistakes_as_fit_are_told_in_bounded_memory() {
 fn lists_of_tables_without_end_are_told_in_bounded_memory() {
     let dir = folder();
     // Below the bound for tables, each item with problems of its own.
-    let many = |head: &str, item: &str| format!("{head}{}", item.repeat((20_000 - 10) / item.matches(['[', '{']).count().max(1) / 2));
+    let many = |head: &str, item: &str| {
+        format!(
+            "{head}{}",
+            item.repeat((20_000 - 10) / item.matches(['[', '{']).count().max(1) / 2)
+        )
+    };
     for (text, line) in [
         (many("", "[[factor]]\n"), "study big.toml --out nowhere"),
-        (many("[study]\n", "[[factor]]\nkey = \"a\"\n"), "study big.toml --out nowhere"),
-        (many("[calibration]\n", "[[parameter]]\n"), "calibrate big.toml --out nowhere"),
-        (many("[calibration]\n", "[[data]]\n"), "calibrate big.toml --out nowhere"),
+        (
+            many("[study]\n", "[[factor]]\nkey = \"a\"\n"),
+            "study big.toml --out nowhere",
+        ),
+        (
+            many("[calibration]\n", "[[parameter]]\n"),
+            "calibrate big.toml --out nowhere",
+        ),
+        (
+            many("[calibration]\n", "[[data]]\n"),
+            "calibrate big.toml --out nowhere",
+        ),
         (many("", "[[row]]\n"), "validate --rows big.toml"),
-        (many("", "[[row]]\nid = \"x\"\n"), "validate --rows big.toml"),
+        (
+            many("", "[[row]]\nid = \"x\"\n"),
+            "validate --rows big.toml",
+        ),
     ] {
         let told = told(dir.path(), &text, line);
-        assert!(told.contains("more problems are not shown"), "{line}: {:.2000}", told);
+        assert!(
+            told.contains("more problems are not shown"),
+            "{line}: {:.2000}",
+            told
+        );
     }
     assert!(!dir.path().join("nowhere").exists());
 }
@@ -119,19 +174,34 @@ fn lists_of_tables_without_end_are_told_in_bounded_memory() {
 #[test]
 fn a_table_of_nothing_but_mistakes_is_told_in_bounded_memory() {
     let dir = folder();
-    let big = |head: &str, row: &str| fs::write(dir.path().join("big.csv"), head.to_owned() + &row.repeat((16 << 20) / row.len())).unwrap();
+    let big = |head: &str, row: &str| {
+        fs::write(
+            dir.path().join("big.csv"),
+            head.to_owned() + &row.repeat((16 << 20) / row.len()),
+        )
+        .unwrap()
+    };
     let cycle = "run --cycle big.csv --baseline none";
     let map = "run --cycle short.csv --baseline none --set transmission.cvt.maps.belt=big.csv";
     let data = "calibrate calibration.toml --out nowhere";
     for (head, row, line, mib) in [
         ("time_s,speed_kmh\n", "x,y\n", cycle, 400),
         ("time_s,speed_kmh\n", "\"\n", cycle, 400),
-        ("ratio,input_speed_rpm,output_torque_nm,torque_loss_nm\n", "x,,,\n", map, 400),
+        (
+            "ratio,input_speed_rpm,output_torque_nm,torque_loss_nm\n",
+            "x,,,\n",
+            map,
+            400,
+        ),
         ("ratio,speed_rpm,total_nm\n", "x,y,z\n", data, 400),
     ] {
         big(head, row);
         let told = refused(dir.path(), mib, line);
-        assert!(told.contains("more problems are not shown"), "{line}: {:.2000}", told);
+        assert!(
+            told.contains("more problems are not shown"),
+            "{line}: {:.2000}",
+            told
+        );
     }
     // One line of column names, as long as a line may be, and rows of nothing but commas.
     let mut names = String::new();
@@ -142,7 +212,14 @@ fn a_table_of_nothing_but_mistakes_is_told_in_bounded_memory() {
     for line in [cycle, map, data] {
         refused_once(dir.path(), 200, line, &["column names", "up to 1000"]);
     }
-    big("time_s,speed_kmh\n", &format!("{}\n", ",".repeat((1 << 20) - 2)));
+    big(
+        "time_s,speed_kmh\n",
+        &format!("{}\n", ",".repeat((1 << 20) - 2)),
+    );
     let told = refused(dir.path(), 200, cycle);
-    assert!(told.contains("this row has 1048575 values"), "{:.2000}", told);
+    assert!(
+        told.contains("this row has 1048575 values"),
+        "{:.2000}",
+        told
+    );
 }

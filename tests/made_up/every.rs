@@ -1,5 +1,8 @@
 //! The plots of every kind of run.
-use cvtcycle::report::{FuelMap, Picture, PlotRun, driveline, fuel_bars, losses, operating_points, pressure, temperatures};
+use cvtcycle::report::{
+    FuelMap, Picture, PlotRun, driveline, fuel_bars, losses, operating_points, pressure,
+    temperatures,
+};
 use cvtcycle::results::columns::columns_for;
 use cvtcycle::results::{Component, History, Row};
 
@@ -31,7 +34,14 @@ pub fn every_plot() -> Vec<(String, Picture)> {
         engine_torque_nm: f64::NEG_INFINITY,
         ..Row::default()
     };
-    let huge = Row { time_s: 1e300, dt_s: 1e300, speed_m_s: 1e300, coolant_k: -1e305, loss_w: [1e290; Component::COUNT], ..Row::default() };
+    let huge = Row {
+        time_s: 1e300,
+        dt_s: 1e300,
+        speed_m_s: 1e300,
+        coolant_k: -1e305,
+        loss_w: [1e290; Component::COUNT],
+        ..Row::default()
+    };
     let mut still = rows(40, 1.0, true);
     still.iter_mut().for_each(|row| row.time_s = 5.0);
     let cases = [
@@ -49,13 +59,29 @@ pub fn every_plot() -> Vec<(String, Picture)> {
     for (name, cvt, rows) in &cases {
         let full = history(*cvt, rows, &phases);
         let plain = run(name, &full);
-        plots.extend(all(&plain).into_iter().map(|(plot, picture)| (format!("{name}: {plot}"), picture)));
+        plots.extend(
+            all(&plain)
+                .into_iter()
+                .map(|(plot, picture)| (format!("{name}: {plot}"), picture)),
+        );
         let bare = History::of(rows, &columns_for(*cvt, &[]), &[]);
         let group_fuel = vec![("<odd> & so on".into(), f64::NAN), ("total".into(), 0.0)];
-        let bare = PlotRun { history: &bare, fuel_map: None, group_fuel, ..plain };
-        plots.extend(all(&bare).into_iter().map(|(plot, picture)| (format!("{name} bare: {plot}"), picture)));
+        let bare = PlotRun {
+            history: &bare,
+            fuel_map: None,
+            group_fuel,
+            ..plain
+        };
+        plots.extend(
+            all(&bare)
+                .into_iter()
+                .map(|(plot, picture)| (format!("{name} bare: {plot}"), picture)),
+        );
     }
-    let (a, b) = (history(true, &cases[0].2, &phases), history(false, &cases[1].2, &phases));
+    let (a, b) = (
+        history(true, &cases[0].2, &phases),
+        history(false, &cases[1].2, &phases),
+    );
     let runs = [run("cvt", &a), run("manual", &b), run(odd, &a)];
     plots.push(("three runs".into(), fuel_bars(&runs)));
     plots.push(("no runs".into(), fuel_bars(&[])));
@@ -63,9 +89,20 @@ pub fn every_plot() -> Vec<(String, Picture)> {
     let many: Vec<PlotRun> = names.iter().map(|name| run(name, &a)).collect();
     plots.push(("twelve runs".into(), fuel_bars(&many[..12])));
     plots.push(("forty runs".into(), fuel_bars(&many)));
-    plots.push(("no steps at all".into(), driveline(&run("", &History::default()))));
-    let broken = FuelMap { speed_rad_s: vec![100.0, 200.0], torque_nm: vec![1.0], bsfc_kg_j: vec![vec![]], full_load_nm: vec![f64::NAN] };
-    let odd_map = PlotRun { fuel_map: Some(broken), ..run("odd map", &a) };
+    plots.push((
+        "no steps at all".into(),
+        driveline(&run("", &History::default())),
+    ));
+    let broken = FuelMap {
+        speed_rad_s: vec![100.0, 200.0],
+        torque_nm: vec![1.0],
+        bsfc_kg_j: vec![vec![]],
+        full_load_nm: vec![f64::NAN],
+    };
+    let odd_map = PlotRun {
+        fuel_map: Some(broken),
+        ..run("odd map", &a)
+    };
     plots.push(("odd map".into(), operating_points(&odd_map)));
     plots
 }

@@ -14,14 +14,21 @@ pub fn single(k: usize) -> Residual {
     let size = if unit == "degC" { 60.0 } else { 9.0 };
     let (truth, sd) = (size * (1.0 + 0.4 * noise(k)), 0.04 * size);
     let range = k % 5 == 4;
-    let from = if range { truth - sd } else { truth + sd * noise(k + 7) };
+    let from = if range {
+        truth - sd
+    } else {
+        truth + sd * noise(k + 7)
+    };
     let low = Some(from);
     let high = match (range, k % 10) {
         (true, 9) => None,
         (true, _) => Some(truth + 2.0 * sd),
         _ => low,
     };
-    let (before, after) = (truth * 1.2 + sd * noise(k + 900), truth + 0.5 * sd * noise(k + 90));
+    let (before, after) = (
+        truth * 1.2 + sd * noise(k + 900),
+        truth + 0.5 * sd * noise(k + 90),
+    );
     let left_out = truth + 2.0 * sd * noise(k + 123);
     let of = |x: f64| if range { 0.0 } else { (x - from) / sd };
     Residual {
@@ -77,7 +84,10 @@ pub fn of_trace(k: usize, column: &str) -> Residual {
 
 const KEYS: [(&str, &str); 4] = [
     ("transmission.cvt.pump.displacement_cc_rev", "cc/rev"),
-    ("transmission.cvt.final_drive.viscous_loss_at_reference_conditions_nm", "Nm"),
+    (
+        "transmission.cvt.final_drive.viscous_loss_at_reference_conditions_nm",
+        "Nm",
+    ),
     ("lubricant.friction.band", "-"),
     ("thermal.spray_w_k", "W/K"),
 ];
@@ -86,9 +96,17 @@ const KEYS: [(&str, &str); 4] = [
 pub fn parameter(k: usize) -> Parameter {
     let (key, unit) = KEYS[k % KEYS.len()];
     let dead = k == 3;
-    let key = if k < KEYS.len() { key.to_owned() } else { format!("{key}_{k}") };
+    let key = if k < KEYS.len() {
+        key.to_owned()
+    } else {
+        format!("{key}_{k}")
+    };
     Parameter {
-        name: if k == 4 { "common error of group 0".to_owned() } else { key },
+        name: if k == 4 {
+            "common error of group 0".to_owned()
+        } else {
+            key
+        },
         is_key: k != 4,
         unit: unit.to_owned(),
         file_value: 9.0,
@@ -97,7 +115,11 @@ pub fn parameter(k: usize) -> Parameter {
         low: 4.0,
         high: 12.0,
         prior: (k.is_multiple_of(2)).then_some([9.5, 1.0]),
-        prior_status: if k.is_multiple_of(2) { "assumed".to_owned() } else { String::new() },
+        prior_status: if k.is_multiple_of(2) {
+            "assumed".to_owned()
+        } else {
+            String::new()
+        },
         source: "made up".to_owned(),
         prior_share: (k.is_multiple_of(2)).then_some(0.044),
         at_bound: (k == 2).then_some("high"),
@@ -109,15 +131,33 @@ pub fn parameter(k: usize) -> Parameter {
 pub fn of(residuals: Vec<Residual>, parameters: usize) -> Outcome {
     let all: Vec<Parameter> = (0..parameters).map(parameter).collect();
     let known = |i: usize, j: usize| !all[i].is_dead && !all[j].is_dead;
-    let r = |i: usize, j: usize| if i == j { 1.0 } else { noise(7 * i.min(j) + i.max(j)) };
-    let matrix = |scale: f64| (0..parameters).map(|i| (0..parameters).map(|j| known(i, j).then(|| scale * r(i, j))).collect()).collect();
+    let r = |i: usize, j: usize| {
+        if i == j {
+            1.0
+        } else {
+            noise(7 * i.min(j) + i.max(j))
+        }
+    };
+    let matrix = |scale: f64| {
+        (0..parameters)
+            .map(|i| {
+                (0..parameters)
+                    .map(|j| known(i, j).then(|| scale * r(i, j)))
+                    .collect()
+            })
+            .collect()
+    };
     let mut names: Vec<String> = residuals.iter().map(|r| r.fold.clone()).collect();
     names.dedup();
     let folds = names.into_iter().enumerate().map(|(k, name)| Fold {
         observations: residuals.iter().filter(|r| r.fold == name).count(),
         fitted_rms_sd: 0.61,
         predicted_rms_sd: (k != 2).then_some(1.43),
-        end: if k == 2 { "no answer at the start".to_owned() } else { "converged".to_owned() },
+        end: if k == 2 {
+            "no answer at the start".to_owned()
+        } else {
+            "converged".to_owned()
+        },
         name,
     });
     Outcome {
@@ -137,20 +177,32 @@ pub fn of(residuals: Vec<Residual>, parameters: usize) -> Outcome {
         chi2_probability: Some(0.62),
         correlation: matrix(1.0),
         covariance: matrix(0.044),
-        directions: vec![Direction { singular_value: 0.0, weights: vec![0.5; parameters] }],
-        not_identified: vec!["pump.displacement_cc_rev and pressure in low: only their product".to_owned()],
+        directions: vec![Direction {
+            singular_value: 0.0,
+            weights: vec![0.5; parameters],
+        }],
+        not_identified: vec![
+            "pump.displacement_cc_rev and pressure in low: only their product".to_owned(),
+        ],
         folds: folds.collect(),
         starts: (0..4)
             .map(|k| Start {
                 from: vec![9.0; parameters],
                 to: vec![8.2; parameters],
                 cost: (k != 3).then_some(if k == 2 { 44.0 } else { 41.0 }),
-                end: if k == 3 { "no answer at the start".to_owned() } else { "converged".to_owned() },
+                end: if k == 3 {
+                    "no answer at the start".to_owned()
+                } else {
+                    "converged".to_owned()
+                },
                 evaluations: 310,
             })
             .collect(),
         evaluations: 1240,
-        warnings: vec!["transmission.x lies at its high bound: widen it, or ask why the data want more.".to_owned()],
+        warnings: vec![
+            "transmission.x lies at its high bound: widen it, or ask why the data want more."
+                .to_owned(),
+        ],
         parameters: all,
         residuals,
     }
@@ -165,7 +217,9 @@ pub fn every() -> Vec<(&'static str, Outcome)> {
     }
     let mut no_folds = of(singles(12), 3);
     no_folds.folds.clear();
-    no_folds.residuals.iter_mut().for_each(|r| (r.left_out, r.left_out_sd, r.before, r.before_sd) = (None, None, None, None));
+    no_folds.residuals.iter_mut().for_each(|r| {
+        (r.left_out, r.left_out_sd, r.before, r.before_sd) = (None, None, None, None)
+    });
     let mut odd = of(singles(6), 4);
     for r in &mut odd.residuals {
         (r.after, r.after_sd, r.sd) = (f64::NAN, f64::INFINITY, 0.0);

@@ -4,7 +4,12 @@
 //! of units, and the stated order of the method; and from other ways to the same number (a dense solver, a matrix exponential, Simpson's rule).
 //! A car that the reader refuses is not a case. Cars and cycles come from fixed seeds, so that a run can be repeated; every test prints how
 //! many cases it saw.
-#![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "tests stop at the first surprise and say what they saw")]
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "tests stop at the first surprise and say what they saw"
+)]
 
 #[path = "../common/mod.rs"]
 mod common;

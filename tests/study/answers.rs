@@ -32,19 +32,48 @@ fn plan(design: &str) -> String {
 fn rows(file: &Path) -> Vec<BTreeMap<String, String>> {
     let text = fs::read_to_string(file).unwrap();
     let mut reader = csv::Reader::from_reader(text.trim_start_matches('\u{feff}').as_bytes());
-    let names: Vec<String> = reader.headers().unwrap().iter().map(|name| name.split(" [").next().unwrap().to_owned()).collect();
-    reader.records().map(|row| names.iter().cloned().zip(row.unwrap().iter().map(str::to_owned)).collect()).collect()
+    let names: Vec<String> = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(|name| name.split(" [").next().unwrap().to_owned())
+        .collect();
+    reader
+        .records()
+        .map(|row| {
+            names
+                .iter()
+                .cloned()
+                .zip(row.unwrap().iter().map(str::to_owned))
+                .collect()
+        })
+        .collect()
 }
 
 fn number(row: &BTreeMap<String, String>, name: &str) -> f64 {
-    row[name].parse().unwrap_or_else(|_| panic!("{name}: `{}`", row[name]))
+    row[name]
+        .parse()
+        .unwrap_or_else(|_| panic!("{name}: `{}`", row[name]))
 }
 
 /// A finished study: what it printed, and the exported rows of the subject.
 fn studied(dir: &Path, words: &[&str]) -> (String, Vec<BTreeMap<String, String>>) {
-    let printed = ends(dir, &[&["study", "plan.toml", "--out", "out"], words].concat(), 0);
-    ends(dir, &["study", "export", "out", "--out", "rows.csv", "--quiet", "--force"], 0);
-    let own = rows(&dir.join("rows.csv")).into_iter().filter(|row| row["vehicle"] == CVT).collect();
+    let printed = ends(
+        dir,
+        &[&["study", "plan.toml", "--out", "out"], words].concat(),
+        0,
+    );
+    ends(
+        dir,
+        &[
+            "study", "export", "out", "--out", "rows.csv", "--quiet", "--force",
+        ],
+        0,
+    );
+    let own = rows(&dir.join("rows.csv"))
+        .into_iter()
+        .filter(|row| row["vehicle"] == CVT)
+        .collect();
     (String::from_utf8(printed.stdout).unwrap(), own)
 }
 
@@ -59,14 +88,21 @@ fn reported(dir: &Path) -> String {
 fn val_blocks_of_saltelli() {
     let dir = folder(&plan("[study.design.saltelli]\nsamples = 32\nseed = 3\n"));
     let (printed, own) = studied(dir.path(), &[]);
-    let keys = ["transmission.cvt.pump.displacement_cc_rev", "engine.electrical_w", "start"];
+    let keys = [
+        "transmission.cvt.pump.displacement_cc_rev",
+        "engine.electrical_w",
+        "start",
+    ];
     assert_eq!(own.len(), 32 * (keys.len() + 2));
     let factors = |row: &BTreeMap<String, String>| keys.map(|key| row[key].clone());
     let all: Vec<f64> = own.iter().map(|row| number(row, FUEL)).collect();
     let centre = all.iter().sum::<f64>() / all.len() as f64;
     let samples: Vec<_> = own.chunks_exact(keys.len() + 2).collect();
     let y = |row: &BTreeMap<String, String>| number(row, FUEL) - centre;
-    let both: Vec<f64> = samples.iter().flat_map(|block| [y(&block[0]), y(&block[1])]).collect();
+    let both: Vec<f64> = samples
+        .iter()
+        .flat_map(|block| [y(&block[0]), y(&block[1])])
+        .collect();
     let mean = both.iter().sum::<f64>() / 64.0;
     let variance = both.iter().map(|f| f * f).sum::<f64>() / 64.0 - mean * mean;
     let file = rows(&dir.path().join("out/sobol_indices.csv"));
@@ -81,27 +117,60 @@ fn val_blocks_of_saltelli() {
             first += y(&block[1]) * step / 32.0;
             total += step * step / 32.0;
         }
-        let told =
-            |row: &&BTreeMap<String, String>| row["factor"] == name && row["car"] == CVT && row["output"] == FUEL && row["samples"] == "32";
+        let told = |row: &&BTreeMap<String, String>| {
+            row["factor"] == name
+                && row["car"] == CVT
+                && row["output"] == FUEL
+                && row["samples"] == "32"
+        };
         let row = file.iter().find(told).unwrap();
-        for (column, want) in [("first", first / variance), ("total", total / (2.0 * variance))] {
+        for (column, want) in [
+            ("first", first / variance),
+            ("total", total / (2.0 * variance)),
+        ] {
             let got = number(row, column);
-            assert!((got - want).abs() < 1e-9, "{name}: {column} {got}, by hand {want}");
+            assert!(
+                (got - want).abs() < 1e-9,
+                "{name}: {column} {got}, by hand {want}"
+            );
             let shown = format!("{want:.3}");
-            let line = printed.lines().skip_while(|line| !line.starts_with("What moves headline")).find(|line| line.contains(name));
-            assert!(line.unwrap().contains(shown.trim_start_matches('-')), "{shown} is not in {line:?}");
+            let line = printed
+                .lines()
+                .skip_while(|line| !line.starts_with("What moves headline"))
+                .find(|line| line.contains(name));
+            assert!(
+                line.unwrap().contains(shown.trim_start_matches('-')),
+                "{shown} is not in {line:?}"
+            );
         }
-        assert!(number(row, "first_low95") <= number(row, "first") && number(row, "total") <= number(row, "total_high95"));
+        assert!(
+            number(row, "first_low95") <= number(row, "first")
+                && number(row, "total") <= number(row, "total_high95")
+        );
     }
     // The most important one is named first in the answer.
     assert!(printed.contains("most is decided by start ("), "{printed}");
-    assert!(printed.contains("Which of them moves the fuel?") && printed.contains("Saltelli's blocks of 32 samples, seed 3"));
+    assert!(
+        printed.contains("Which of them moves the fuel?")
+            && printed.contains("Saltelli's blocks of 32 samples, seed 3")
+    );
     let page = reported(dir.path());
-    assert!(page.contains("total share of the variance") && page.contains("Which of them moves the fuel?"), "{page}");
+    assert!(
+        page.contains("total share of the variance")
+            && page.contains("Which of them moves the fuel?"),
+        "{page}"
+    );
     // Read again later, the answer is the same.
     let again = ends(dir.path(), &["study", "show", "out"], 0);
     let again = String::from_utf8(again.stdout).unwrap();
-    let answer = |text: &str| text[text.find("Answer").unwrap()..].split("\nFiles written").next().unwrap().trim_end().to_owned();
+    let answer = |text: &str| {
+        text[text.find("Answer").unwrap()..]
+            .split("\nFiles written")
+            .next()
+            .unwrap()
+            .trim_end()
+            .to_owned()
+    };
     assert_eq!(answer(&again), answer(&printed));
 }
 
@@ -116,21 +185,52 @@ fn val_one_at_a_time() {
     for (k, name) in ["pump", "current", "start"].into_iter().enumerate() {
         let [low, high] = [1, 2].map(|end| number(&own[2 * k + end], FUEL));
         let swing = high.max(low).max(base) - low.min(high).min(base);
-        let row = file.iter().find(|row| row["factor"] == name && row["car"] == CVT && row["output"] == FUEL).unwrap();
-        for (column, want) in [("base", base), ("output_at_low", low), ("output_at_high", high), ("swing", swing)] {
-            assert!((number(row, column) - want).abs() < 1e-12, "{name}: {column}");
+        let row = file
+            .iter()
+            .find(|row| row["factor"] == name && row["car"] == CVT && row["output"] == FUEL)
+            .unwrap();
+        for (column, want) in [
+            ("base", base),
+            ("output_at_low", low),
+            ("output_at_high", high),
+            ("swing", swing),
+        ] {
+            assert!(
+                (number(row, column) - want).abs() < 1e-12,
+                "{name}: {column}"
+            );
         }
         widths.push((swing, name));
-        let line = printed.lines().skip_while(|line| !line.starts_with("What moves headline")).find(|line| line.contains(name)).unwrap();
-        assert!(line.ends_with(&format!("{swing:.3}")), "{swing} is not at the end of {line}");
+        let line = printed
+            .lines()
+            .skip_while(|line| !line.starts_with("What moves headline"))
+            .find(|line| line.contains(name))
+            .unwrap();
+        assert!(
+            line.ends_with(&format!("{swing:.3}")),
+            "{swing} is not at the end of {line}"
+        );
     }
     assert!(reported(dir.path()).contains("swing in percentage points"));
     // Uniform from 7 to 11: the quantiles 0.05 and 0.95 are 7.2 and 10.8.
-    let pump: Vec<f64> = own[1..3].iter().map(|row| number(row, "transmission.cvt.pump.displacement_cc_rev")).collect();
-    assert!((pump[0] - 7.2).abs() < 1e-9 && (pump[1] - 10.8).abs() < 1e-9, "{pump:?}");
+    let pump: Vec<f64> = own[1..3]
+        .iter()
+        .map(|row| number(row, "transmission.cvt.pump.displacement_cc_rev"))
+        .collect();
+    assert!(
+        (pump[0] - 7.2).abs() < 1e-9 && (pump[1] - 10.8).abs() < 1e-9,
+        "{pump:?}"
+    );
     widths.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let order: Vec<&str> = file.iter().filter(|row| row["car"] == CVT && row["output"] == FUEL).map(|row| row["factor"].as_str()).collect();
-    assert_eq!(order, widths.iter().map(|(_, name)| *name).collect::<Vec<_>>());
+    let order: Vec<&str> = file
+        .iter()
+        .filter(|row| row["car"] == CVT && row["output"] == FUEL)
+        .map(|row| row["factor"].as_str())
+        .collect();
+    assert_eq!(
+        order,
+        widths.iter().map(|(_, name)| *name).collect::<Vec<_>>()
+    );
 }
 
 /// Truth: means of the rows by word.
@@ -138,16 +238,35 @@ fn val_one_at_a_time() {
 fn val_words_of_a_grid_are_told_by_group() {
     let factor = "[[factor]]\nkey = \"lubricant\"\nname = \"oil\"\nvalues = [\"dexron_ii\", \"cvtf_ezl799_class\"]\n\
         [[factor]]\nkey = \"ambient_degc\"\nname = \"air\"\nvalues = [-20, 0, 20]\n";
-    let dir = folder(&format!("{}\n[study.design.grid]\n{factor}", HEAD.replace("ambient_degc = -10\n", "")));
+    let dir = folder(&format!(
+        "{}\n[study.design.grid]\n{factor}",
+        HEAD.replace("ambient_degc = -10\n", "")
+    ));
     let (printed, own) = studied(dir.path(), &[]);
     assert_eq!(own.len(), 6);
     for oil in ["dexron_ii", "cvtf_ezl799_class"] {
-        let fuels: Vec<f64> = own.iter().filter(|row| row["lubricant"] == oil).map(|row| number(row, FUEL)).collect();
+        let fuels: Vec<f64> = own
+            .iter()
+            .filter(|row| row["lubricant"] == oil)
+            .map(|row| number(row, FUEL))
+            .collect();
         let mean = fuels.iter().sum::<f64>() / 3.0;
         let of = |f: fn(f64, f64) -> f64| fuels.iter().copied().reduce(f).unwrap();
-        let line = printed.lines().skip_while(|line| !line.starts_with("What moves headline")).find(|line| line.contains(oil)).unwrap();
+        let line = printed
+            .lines()
+            .skip_while(|line| !line.starts_with("What moves headline"))
+            .find(|line| line.contains(oil))
+            .unwrap();
         let cells: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
-        assert_eq!(cells[1..], ["3".to_owned(), format!("{mean:.3}"), format!("{:.3}", of(f64::min)), format!("{:.3}", of(f64::max))]);
+        assert_eq!(
+            cells[1..],
+            [
+                "3".to_owned(),
+                format!("{mean:.3}"),
+                format!("{:.3}", of(f64::min)),
+                format!("{:.3}", of(f64::max))
+            ]
+        );
     }
 }
 
@@ -156,20 +275,57 @@ fn val_words_of_a_grid_are_told_by_group() {
 fn another_draw_than_the_plans() {
     let dir = folder(&plan("[study.design.saltelli]\nsamples = 32\nseed = 3\n"));
     let (printed, own) = studied(dir.path(), &["--samples", "4", "--seed", "9"]);
-    assert!(own.len() == 20 && printed.contains("Saltelli's blocks of 4 samples, seed 9"), "{printed}");
+    assert!(
+        own.len() == 20 && printed.contains("Saltelli's blocks of 4 samples, seed 9"),
+        "{printed}"
+    );
     let (_, other) = studied(dir.path(), &["--samples", "4", "--force"]);
     assert!(other[0]["engine.electrical_w"] != own[0]["engine.electrical_w"]);
     for (design, words, code, told) in [
-        ("[study.design.saltelli]\nsamples = 32\n", &["--samples", "1"][..], 2, "out of range"),
-        ("[study.design.saltelli]\nsamples = 32\n", &["--samples", "100000"], 2, "65536"),
-        ("[study.design.one_at_a_time]\n", &["--seed", "2"], 2, "draws nothing"),
-        ("[study.design.latin_hypercube]\nsamples = 3\n", &["--samples", "5"], 0, ""),
-        ("[study.design.sobol]\nsamples = 4\n", &["--samples", "8"], 0, ""),
-        ("[study.design.monte_carlo]\nsamples = 3\n", &["--seed", "5"], 0, ""),
+        (
+            "[study.design.saltelli]\nsamples = 32\n",
+            &["--samples", "1"][..],
+            2,
+            "out of range",
+        ),
+        (
+            "[study.design.saltelli]\nsamples = 32\n",
+            &["--samples", "100000"],
+            2,
+            "65536",
+        ),
+        (
+            "[study.design.one_at_a_time]\n",
+            &["--seed", "2"],
+            2,
+            "draws nothing",
+        ),
+        (
+            "[study.design.latin_hypercube]\nsamples = 3\n",
+            &["--samples", "5"],
+            0,
+            "",
+        ),
+        (
+            "[study.design.sobol]\nsamples = 4\n",
+            &["--samples", "8"],
+            0,
+            "",
+        ),
+        (
+            "[study.design.monte_carlo]\nsamples = 3\n",
+            &["--seed", "5"],
+            0,
+            "",
+        ),
     ] {
         fs::write(dir.path().join("plan.toml"), plan(design)).unwrap();
         let output = ends(dir.path(), &[&["study", "plan.toml"], words].concat(), code);
-        assert!(stderr(&output).contains(told), "{told} is not in {}", stderr(&output));
+        assert!(
+            stderr(&output).contains(told),
+            "{told} is not in {}",
+            stderr(&output)
+        );
         assert_eq!(output.stdout.is_empty(), code == 2);
     }
     assert!(stderr(&ends(dir.path(), &["study"], 2)).contains("no plan is named"));
@@ -185,13 +341,32 @@ fn an_unfinished_study_can_be_shown() {
     fs::remove_file(out.join("results.sha256")).unwrap();
     fs::remove_file(out.join("parts/part_00001.sha256")).unwrap();
     let words = String::from_utf8(ends(dir.path(), &["study", "show", "out"], 0).stdout).unwrap();
-    let line = words.lines().find(|line| line.starts_with("not finished")).unwrap_or_else(|| panic!("{words}"));
-    assert!(line.contains(&format!("{} of {all} parts", all - 1)) && line.contains("of 400 points"), "{line}");
+    let line = words
+        .lines()
+        .find(|line| line.starts_with("not finished"))
+        .unwrap_or_else(|| panic!("{words}"));
+    assert!(
+        line.contains(&format!("{} of {all} parts", all - 1)) && line.contains("of 400 points"),
+        "{line}"
+    );
     // The mean is that of the rows which are there.
-    ends(dir.path(), &["study", "export", "out", "--out", "rows.csv", "--force"], 1);
-    let own: Vec<f64> =
-        rows(&dir.path().join("rows.csv")).iter().filter(|row| row["vehicle"] == CVT).map(|row| number(row, FUEL)).collect();
+    ends(
+        dir.path(),
+        &["study", "export", "out", "--out", "rows.csv", "--force"],
+        1,
+    );
+    let own: Vec<f64> = rows(&dir.path().join("rows.csv"))
+        .iter()
+        .filter(|row| row["vehicle"] == CVT)
+        .map(|row| number(row, FUEL))
+        .collect();
     let mean = format!("{:.3}", own.iter().sum::<f64>() / own.len() as f64);
-    let line = words.lines().find(|line| line.trim_start().starts_with(FUEL)).unwrap();
-    assert!(own.len() < 400 && line.contains(&mean), "{mean} is not in {line}");
+    let line = words
+        .lines()
+        .find(|line| line.trim_start().starts_with(FUEL))
+        .unwrap();
+    assert!(
+        own.len() < 400 && line.contains(&mean),
+        "{mean} is not in {line}"
+    );
 }

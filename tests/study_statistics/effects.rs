@@ -7,9 +7,18 @@ use rand_pcg::Pcg64;
 /// Columns of the golden table to one decimal, which ties many of its values.
 fn columns() -> Vec<Vec<f64>> {
     let table = include_str!("../golden/sobol_outputs.csv");
-    let rows: Vec<Vec<f64>> =
-        table.lines().skip(1).map(|l| l.split(',').map(|c| (c.parse::<f64>().unwrap() * 10.0).round() / 10.0).collect()).collect();
-    (0..5).map(|k| rows.iter().map(|row| row[k]).collect()).collect()
+    let rows: Vec<Vec<f64>> = table
+        .lines()
+        .skip(1)
+        .map(|l| {
+            l.split(',')
+                .map(|c| (c.parse::<f64>().unwrap() * 10.0).round() / 10.0)
+                .collect()
+        })
+        .collect();
+    (0..5)
+        .map(|k| rows.iter().map(|row| row[k]).collect())
+        .collect()
 }
 
 /// The truth is scipy 1.17 (`spearmanr`) and least squares of numpy 2.4 on `rankdata`, of AB_1 against A, B and AB_3.
@@ -18,20 +27,42 @@ fn val_ranks_as_in_scipy() {
     let c = columns();
     let found = rank_sensitivity(&[&c[0], &c[1], &c[4]], &c[2]);
     let truth = [
-        (0.4681928029426349, -0.11323125853589067, [-0.4841824778800534, 0.2577199608082721]),
-        (0.19881828905129106, 0.19762831206746062, [-0.002408927769612823, 0.39766555190453406]),
-        (0.5974347267761683, 0.6927780179677697, [0.32184567689797516, 1.0637103590375643]),
+        (
+            0.4681928029426349,
+            -0.11323125853589067,
+            [-0.4841824778800534, 0.2577199608082721],
+        ),
+        (
+            0.19881828905129106,
+            0.19762831206746062,
+            [-0.002408927769612823, 0.39766555190453406],
+        ),
+        (
+            0.5974347267761683,
+            0.6927780179677697,
+            [0.32184567689797516, 1.0637103590375643],
+        ),
     ];
-    assert!((found.r_squared - 0.4001677084398163).abs() < 1e-10 && found.n == 64 && found.missing == 0);
+    assert!(
+        (found.r_squared - 0.4001677084398163).abs() < 1e-10 && found.n == 64 && found.missing == 0
+    );
     for (factor, (rho, b, [low, high])) in found.factors.iter().zip(truth) {
         let [l, h] = factor.regression.interval95.unwrap();
-        for (found, truth) in [(factor.spearman.value, rho), (factor.regression.value, b), (l, low), (h, high)] {
+        for (found, truth) in [
+            (factor.spearman.value, rho),
+            (factor.regression.value, b),
+            (l, low),
+            (h, high),
+        ] {
             assert!((found - truth).abs() < 1e-10, "{found} against {truth}");
         }
     }
     // By hand: atanh 0.46819 = 0.50772; sqrt((1 + 0.21920 / 2) / 61) = 0.134872; 1.96 of it 0.264344; tanh of both ends.
     let [low, high] = found.factors[0].spearman.interval95.unwrap();
-    assert!((low - 0.2387).abs() < 2e-4 && (high - 0.6480).abs() < 2e-4, "{low} {high}");
+    assert!(
+        (low - 0.2387).abs() < 2e-4 && (high - 0.6480).abs() < 2e-4,
+        "{low} {high}"
+    );
 }
 
 #[test]
@@ -42,11 +73,17 @@ fn ranks_see_the_order_alone() {
     let falling: Vec<f64> = y.iter().map(|y| -y).collect();
     for (y, sign) in [(&y, 1.0), (&falling, -1.0)] {
         let found = rank_sensitivity(&[&x, &flat], y);
-        assert!((found.factors[0].spearman.value - sign).abs() < 1e-12 && (found.r_squared - 1.0).abs() < 1e-12);
+        assert!(
+            (found.factors[0].spearman.value - sign).abs() < 1e-12
+                && (found.r_squared - 1.0).abs() < 1e-12
+        );
         assert!((found.factors[0].regression.value - sign).abs() < 1e-12);
         let [low, high] = found.factors[0].spearman.interval95.unwrap();
         assert!(low <= sign && sign <= high && high <= 1.0 && low >= -1.0);
-        assert!(found.factors[1].spearman.value.is_nan() && found.factors[1].regression.interval95.is_none());
+        assert!(
+            found.factors[1].spearman.value.is_nan()
+                && found.factors[1].regression.interval95.is_none()
+        );
     }
 }
 
@@ -65,14 +102,22 @@ fn gaps_twins_and_too_few_rows() {
     let short = rank_sensitivity(&[&x[..30]], &y[..39]);
     assert_eq!((short.n, short.missing), (30, 9));
     let few = rank_sensitivity(&[&[1.0, 2.0], &[2.0, 1.0]], &[1.0, 2.0]);
-    assert!(few.r_squared.is_nan() && few.factors[0].spearman.interval95.is_none() && (few.factors[0].spearman.value - 1.0).abs() < 1e-12);
+    assert!(
+        few.r_squared.is_nan()
+            && few.factors[0].spearman.interval95.is_none()
+            && (few.factors[0].spearman.value - 1.0).abs() < 1e-12
+    );
     assert!(rank_sensitivity(&[], &[1.0]).factors.is_empty());
     let constant = rank_sensitivity(&[&x], &[3.0; 40]);
     assert!(constant.factors[0].spearman.value.is_nan() && constant.r_squared.is_nan());
 }
 
 fn holds(estimate: &Estimate, truth: f64) -> usize {
-    usize::from(estimate.interval95.is_some_and(|[low, high]| low <= truth && truth <= high))
+    usize::from(
+        estimate
+            .interval95
+            .is_some_and(|[low, high]| low <= truth && truth <= high),
+    )
 }
 
 /// Two normal numbers of correlation r have the rank correlation 6/pi asin(r/2), a third without relation has 0.
@@ -83,10 +128,16 @@ fn val_intervals_of_rank_correlations_hold_the_truth_in_about_95_of_100() {
     let mut hits = [0; 3];
     for seed in 0..seeds {
         let mut random = Pcg64::seed_from_u64(900 + seed as u64);
-        let mut normal = || (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt() * (std::f64::consts::TAU * random.random::<f64>()).cos();
+        let mut normal = || {
+            (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt()
+                * (std::f64::consts::TAU * random.random::<f64>()).cos()
+        };
         let x: Vec<f64> = (0..150).map(|_| normal()).collect();
         let z: Vec<f64> = (0..150).map(|_| normal()).collect();
-        let y: Vec<f64> = x.iter().map(|x| r * x + (1.0 - r * r).sqrt() * normal()).collect();
+        let y: Vec<f64> = x
+            .iter()
+            .map(|x| r * x + (1.0 - r * r).sqrt() * normal())
+            .collect();
         let found = rank_sensitivity(&[&x, &z], &y);
         hits[0] += holds(&found.factors[0].spearman, truth);
         hits[1] += holds(&found.factors[1].spearman, 0.0);
@@ -101,9 +152,16 @@ fn val_intervals_of_rank_correlations_hold_the_truth_in_about_95_of_100() {
 fn means_of_words_and_of_a_grid() {
     let words = ["b", "a", "b", "a", "c"];
     let found = group_means(&words, &[3.0, 1.0, 5.0, f64::NAN, f64::NAN]);
-    let shape: Vec<_> = found.groups.iter().map(|g| (g.label.as_str(), g.n, g.missing)).collect();
+    let shape: Vec<_> = found
+        .groups
+        .iter()
+        .map(|g| (g.label.as_str(), g.n, g.missing))
+        .collect();
     assert_eq!(shape, [("b", 2, 0), ("a", 1, 1), ("c", 0, 1)]);
-    assert_eq!((found.groups[0].mean, found.groups[1].mean, found.range), (4.0, 1.0, 3.0));
+    assert_eq!(
+        (found.groups[0].mean, found.groups[1].mean, found.range),
+        (4.0, 1.0, 3.0)
+    );
     // t(1) = 12.706, sd = sqrt 2: 12.706 either way.
     assert!((found.groups[0].mean_interval95.unwrap()[1] - 16.7062).abs() < 1e-4);
     assert!(found.groups[1].mean_interval95.is_none() && found.groups[2].mean.is_nan());
@@ -113,9 +171,22 @@ fn means_of_words_and_of_a_grid() {
     // A grid of y = 2 i + k^2: effects of i are 2 apart, those of k 0, 1, 4; each takes its part of the variance.
     let grid: Vec<(i32, i32)> = (0..3).flat_map(|i| (0..3).map(move |k| (i, k))).collect();
     let y: Vec<f64> = grid.iter().map(|(i, k)| f64::from(2 * i + k * k)).collect();
-    let [first, second] = [0, 1].map(|f| group_means(&grid.iter().map(|g| [g.0, g.1][f].to_string()).collect::<Vec<_>>(), &y));
-    let means = |g: &cvtcycle::study::statistics::Groups| g.groups.iter().map(|g| g.mean).collect::<Vec<_>>();
-    assert!((means(&first)[1] - means(&first)[0] - 2.0).abs() < 1e-12 && (first.range - 4.0).abs() < 1e-12);
+    let [first, second] = [0, 1].map(|f| {
+        group_means(
+            &grid
+                .iter()
+                .map(|g| [g.0, g.1][f].to_string())
+                .collect::<Vec<_>>(),
+            &y,
+        )
+    });
+    let means = |g: &cvtcycle::study::statistics::Groups| {
+        g.groups.iter().map(|g| g.mean).collect::<Vec<_>>()
+    };
+    assert!(
+        (means(&first)[1] - means(&first)[0] - 2.0).abs() < 1e-12
+            && (first.range - 4.0).abs() < 1e-12
+    );
     assert!((means(&second)[2] - means(&second)[0] - 4.0).abs() < 1e-12);
     assert!((first.eta_squared + second.eta_squared - 1.0).abs() < 1e-12);
     assert!(group_means(&words, &[0.1; 5]).eta_squared.is_nan());
@@ -123,7 +194,10 @@ fn means_of_words_and_of_a_grid() {
 }
 
 fn factor(name: &str, entries: &[(&str, f64)]) -> TornadoInput {
-    TornadoInput { name: name.to_owned(), entries: entries.iter().map(|(l, y)| ((*l).to_owned(), *y)).collect() }
+    TornadoInput {
+        name: name.to_owned(),
+        entries: entries.iter().map(|(l, y)| ((*l).to_owned(), *y)).collect(),
+    }
 }
 
 #[test]
@@ -134,17 +208,25 @@ fn a_tornado_is_sorted_by_what_each_factor_moves() {
             factor("lost", &[("1", f64::NAN), ("2", f64::NAN)]),
             factor("small", &[("0.1", 7.1), ("0.2", 6.9)]),
             factor("one side", &[("cold", 7.5), ("hot", 7.25)]),
-            factor("list", &[("a", 7.0), ("b", 6.8), ("c", f64::NAN), ("d", 7.9)]),
+            factor(
+                "list",
+                &[("a", 7.0), ("b", 6.8), ("c", f64::NAN), ("d", 7.9)],
+            ),
             factor("one left", &[("x", f64::NAN), ("y", 6.5)]),
             factor("single", &[("z", 6.4)]),
         ],
     );
     let order: Vec<_> = found.bars.iter().map(|b| b.name.as_str()).collect();
-    assert_eq!(order, ["list", "single", "one side", "one left", "small", "lost"]);
+    assert_eq!(
+        order,
+        ["list", "single", "one side", "one left", "small", "lost"]
+    );
     let ends = |name: &str| {
         let bar = found.bars.iter().find(|b| b.name == name).unwrap();
-        let end =
-            |e: &Option<cvtcycle::study::statistics::TornadoEnd>| e.as_ref().map(|e| (e.label.clone(), (e.effect * 1e6).round() / 1e6));
+        let end = |e: &Option<cvtcycle::study::statistics::TornadoEnd>| {
+            e.as_ref()
+                .map(|e| (e.label.clone(), (e.effect * 1e6).round() / 1e6))
+        };
         (end(&bar.low), end(&bar.high), bar.missing)
     };
     let some = |label: &str, effect: f64| Some((label.to_owned(), effect));
@@ -155,7 +237,14 @@ fn a_tornado_is_sorted_by_what_each_factor_moves() {
     assert_eq!(ends("one left"), (None, some("y", -0.5), 1));
     assert_eq!(ends("single"), (some("z", -0.6), None, 0));
     assert_eq!(ends("lost"), (None, None, 2));
-    assert!((found.bars[2].swing - 0.5).abs() < 1e-12, "the bar begins at the base");
+    assert!(
+        (found.bars[2].swing - 0.5).abs() < 1e-12,
+        "the bar begins at the base"
+    );
     assert!(found.bars[5].swing.is_nan());
-    assert!(tornado(f64::NAN, &[factor("a", &[("1", 2.0)])]).bars[0].swing.is_nan());
+    assert!(
+        tornado(f64::NAN, &[factor("a", &[("1", 2.0)])]).bars[0]
+            .swing
+            .is_nan()
+    );
 }

@@ -27,7 +27,12 @@ pub fn ishigami() -> Known {
         let z: Vec<f64> = x.iter().map(|u| PI * (2.0 * u - 1.0)).collect();
         z[0].sin() + a * z[1].sin().powi(2) + b * z[2].powi(4) * z[0].sin()
     };
-    Known { name: "Ishigami", of: Box::new(of), first: vec![v1 / v, v2 / v, 0.0], total: vec![(v1 + v13) / v, v2 / v, v13 / v] }
+    Known {
+        name: "Ishigami",
+        of: Box::new(of),
+        first: vec![v1 / v, v2 / v, 0.0],
+        total: vec![(v1 + v13) / v, v2 / v, v13 / v],
+    }
 }
 
 /// The product of (|4 x - 2| + a) / (1 + a) of Sobol, eight factors.
@@ -38,7 +43,12 @@ pub fn sobol_g() -> Known {
     let v = all - 1.0;
     Known {
         name: "g",
-        of: Box::new(move |x: &[f64]| x.iter().zip(a).map(|(x, a)| ((4.0 * x - 2.0).abs() + a) / (1.0 + a)).product()),
+        of: Box::new(move |x: &[f64]| {
+            x.iter()
+                .zip(a)
+                .map(|(x, a)| ((4.0 * x - 2.0).abs() + a) / (1.0 + a))
+                .product()
+        }),
         first: part.iter().map(|p| p / v).collect(),
         total: part.iter().map(|p| p * all / (1.0 + p) / v).collect(),
     }
@@ -49,7 +59,12 @@ pub fn additive() -> Known {
     let c = [3.0, 2.0, 1.0, 0.0];
     let share: Vec<f64> = c.iter().map(|c| c * c / 14.0).collect();
     let of = move |x: &[f64]| 100.0 + x.iter().zip(c).map(|(x, c)| x * c).sum::<f64>();
-    Known { name: "additive", of: Box::new(of), first: share.clone(), total: share }
+    Known {
+        name: "additive",
+        of: Box::new(of),
+        first: share.clone(),
+        total: share,
+    }
 }
 
 /// Outputs by column: A, B, AB_1 ...
@@ -57,7 +72,11 @@ pub struct Outputs(pub Vec<Vec<f64>>);
 
 impl Outputs {
     pub fn blocks(&self) -> Blocks<'_> {
-        Blocks { a: &self.0[0], b: &self.0[1], ab: self.0[2..].iter().map(Vec::as_slice).collect() }
+        Blocks {
+            a: &self.0[0],
+            b: &self.0[1],
+            ab: self.0[2..].iter().map(Vec::as_slice).collect(),
+        }
     }
 
     /// From points of 2 d numbers: those of A, then those of B.
@@ -80,13 +99,23 @@ impl Outputs {
     /// An Owen-scrambled Sobol sequence.
     pub fn sobol(known: &Known, n: u32, seed: u32) -> Self {
         let d = known.first.len() as u32;
-        Self::of(known, (0..n).map(|i| (0..2 * d).map(|k| f64::from(sobol_burley::sample(i, k, seed))).collect()))
+        Self::of(
+            known,
+            (0..n).map(|i| {
+                (0..2 * d)
+                    .map(|k| f64::from(sobol_burley::sample(i, k, seed)))
+                    .collect()
+            }),
+        )
     }
 
     /// Independent draws.
     pub fn random(known: &Known, n: usize, seed: u64) -> Self {
         let mut random = Pcg64::seed_from_u64(seed);
         let d = known.first.len();
-        Self::of(known, (0..n).map(|_| (0..2 * d).map(|_| random.random::<f64>()).collect()))
+        Self::of(
+            known,
+            (0..n).map(|_| (0..2 * d).map(|_| random.random::<f64>()).collect()),
+        )
     }
 }

@@ -20,12 +20,28 @@ fn a_study_begins_in_a_new_or_empty_directory_with_manifest_and_plan() {
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("a").join("b");
     drop(StudyDir::create(&path, &manifest(2), PLAN, false).unwrap());
-    assert_eq!(files(&path).keys().collect::<Vec<_>>(), [".lock", "plan.toml", "study.json"]);
+    assert_eq!(
+        files(&path).keys().collect::<Vec<_>>(),
+        [".lock", "plan.toml", "study.json"]
+    );
     assert_eq!(files(&path)["plan.toml"], PLAN);
     let study = Study::open(&path).unwrap();
-    assert_eq!((study.manifest()["seed"].as_i64(), study.plan().unwrap()), (Some(7), PLAN.to_vec()));
-    assert_eq!((study.status().present, study.status().expected, study.status().finished), (0, 2, false));
-    assert_eq!((study.rows("runs").unwrap(), study.heads("runs").unwrap()), (0, Vec::new()));
+    assert_eq!(
+        (study.manifest()["seed"].as_i64(), study.plan().unwrap()),
+        (Some(7), PLAN.to_vec())
+    );
+    assert_eq!(
+        (
+            study.status().present,
+            study.status().expected,
+            study.status().finished
+        ),
+        (0, 2, false)
+    );
+    assert_eq!(
+        (study.rows("runs").unwrap(), study.heads("runs").unwrap()),
+        (0, Vec::new())
+    );
 }
 
 #[test]
@@ -34,7 +50,10 @@ fn files_of_something_else_and_earlier_studies_are_not_written_over() {
     fs::write(dir.path().join("notes.txt"), "mine").unwrap();
     for force in [false, true] {
         let said = refused(&dir, force);
-        assert!(said.contains("something else: notes.txt") && said.contains("empty directory"), "{said}");
+        assert!(
+            said.contains("something else: notes.txt") && said.contains("empty directory"),
+            "{said}"
+        );
     }
     assert_eq!(files(dir.path()).keys().collect::<Vec<_>>(), ["notes.txt"]);
     let run = TempDir::new().unwrap();
@@ -44,10 +63,17 @@ fn files_of_something_else_and_earlier_studies_are_not_written_over() {
     whole(study.path(), 1);
     let before = files(study.path());
     let said = refused(&study, false);
-    assert!(said.contains("holds a study") && said.contains("--resume") && said.contains("--force"), "{said}");
+    assert!(
+        said.contains("holds a study") && said.contains("--resume") && said.contains("--force"),
+        "{said}"
+    );
     // Nor does a run take the directory of a study, though both have a summary.
     let problem = OutputDir::create(study.path(), true).unwrap_err();
-    assert!(problem.message.contains("something else"), "{}", problem.message);
+    assert!(
+        problem.message.contains("something else"),
+        "{}",
+        problem.message
+    );
     assert_eq!(files(study.path()), before);
 }
 
@@ -64,10 +90,23 @@ fn force_removes_parts_and_results_of_the_earlier_study_and_nothing_else() {
     // A list that somebody has changed leads out of the directory, and to what must stay.
     let list = fs::read_to_string(path.join("results.sha256")).unwrap();
     let sum = &list[..64];
-    fs::write(path.join("results.sha256"), format!("{list}{sum}  ../victim.svg\n{sum}  study.json\n{sum}  parts\n")).unwrap();
+    fs::write(
+        path.join("results.sha256"),
+        format!("{list}{sum}  ../victim.svg\n{sum}  study.json\n{sum}  parts\n"),
+    )
+    .unwrap();
     let dir = StudyDir::create(&path, &manifest(2), PLAN, true).unwrap();
     let left: Vec<String> = files(&path).into_keys().collect();
-    assert_eq!(left, [".lock", "notes.csv", "parts/mine.csv", "plan.toml", "study.json"]);
+    assert_eq!(
+        left,
+        [
+            ".lock",
+            "notes.csv",
+            "parts/mine.csv",
+            "plan.toml",
+            "study.json"
+        ]
+    );
     assert_eq!(fs::read_to_string(victim).unwrap(), "keep");
     assert_eq!(dir.missing(), [0, 1]);
     assert_eq!(files(&path)["study.json"], manifest(2));
@@ -78,14 +117,24 @@ fn only_one_process_writes_a_study_and_others_may_read() {
     let dir = TempDir::new().unwrap();
     let first = StudyDir::create(dir.path(), &manifest(2), PLAN, false).unwrap();
     write_part(&first, 0);
-    for second in
-        [StudyDir::resume(dir.path(), &manifest(2), PLAN).unwrap_err(), StudyDir::create(dir.path(), &manifest(2), PLAN, true).unwrap_err()]
-    {
-        assert!(second.message.contains("another process is writing"), "{}", second.message);
+    for second in [
+        StudyDir::resume(dir.path(), &manifest(2), PLAN).unwrap_err(),
+        StudyDir::create(dir.path(), &manifest(2), PLAN, true).unwrap_err(),
+    ] {
+        assert!(
+            second.message.contains("another process is writing"),
+            "{}",
+            second.message
+        );
     }
     assert_eq!(Study::open(dir.path()).unwrap().present(), [0]);
     drop(first);
-    assert_eq!(StudyDir::resume(dir.path(), &manifest(2), PLAN).unwrap().missing(), [1]);
+    assert_eq!(
+        StudyDir::resume(dir.path(), &manifest(2), PLAN)
+            .unwrap()
+            .missing(),
+        [1]
+    );
 }
 
 #[test]
@@ -102,15 +151,32 @@ fn a_manifest_that_leads_astray_is_refused() {
     for layout in layouts {
         let dir = TempDir::new().unwrap();
         let bytes = json!({ "layout": layout }).to_string().into_bytes();
-        assert!(StudyDir::create(dir.path(), &bytes, PLAN, false).is_err(), "{layout}");
+        assert!(
+            StudyDir::create(dir.path(), &bytes, PLAN, false).is_err(),
+            "{layout}"
+        );
         assert!(files(dir.path()).is_empty());
         fs::write(dir.path().join("study.json"), &bytes).unwrap();
         let problem = Study::open(dir.path()).unwrap_err();
-        assert!(problem.place.file.ends_with("study.json") && problem.message.contains("damaged"), "{layout}: {}", problem.message);
+        assert!(
+            problem.place.file.ends_with("study.json") && problem.message.contains("damaged"),
+            "{layout}: {}",
+            problem.message
+        );
     }
     let none = TempDir::new().unwrap();
-    assert!(Study::open(none.path()).unwrap_err().message.contains("no study in"));
-    assert!(Study::open(none.path().join("nowhere")).unwrap_err().message.contains("no study in"));
+    assert!(
+        Study::open(none.path())
+            .unwrap_err()
+            .message
+            .contains("no study in")
+    );
+    assert!(
+        Study::open(none.path().join("nowhere"))
+            .unwrap_err()
+            .message
+            .contains("no study in")
+    );
 }
 
 #[test]
@@ -119,13 +185,35 @@ fn results_have_plain_names_and_need_all_parts() {
     let study = StudyDir::create(dir.path(), &manifest(2), PLAN, false).unwrap();
     write_part(&study, 1);
     let problem = study.finish(&results()).unwrap_err();
-    assert!(problem.message.contains("1 of 2 parts are missing") && problem.hint.contains("--resume"), "{}", problem.message);
+    assert!(
+        problem.message.contains("1 of 2 parts are missing") && problem.hint.contains("--resume"),
+        "{}",
+        problem.message
+    );
     write_part(&study, 0);
     assert!(study.is_complete());
-    for name in ["../x.svg", "a/b.svg", "study.json", "plan.toml", ".lock", "", "results.sha256"] {
-        assert!(study.finish(&[(name.to_owned(), Vec::new())]).is_err(), "{name}");
+    for name in [
+        "../x.svg",
+        "a/b.svg",
+        "study.json",
+        "plan.toml",
+        ".lock",
+        "",
+        "results.sha256",
+    ] {
+        assert!(
+            study.finish(&[(name.to_owned(), Vec::new())]).is_err(),
+            "{name}"
+        );
     }
-    assert!(study.finish(&[("a.svg".to_owned(), Vec::new()), ("A.svg".to_owned(), Vec::new())]).is_err());
+    assert!(
+        study
+            .finish(&[
+                ("a.svg".to_owned(), Vec::new()),
+                ("A.svg".to_owned(), Vec::new())
+            ])
+            .is_err()
+    );
     assert_eq!(files(dir.path()).len(), 3 + 2 * 5);
     let paths = study.finish(&results()).unwrap();
     assert!(paths.iter().all(|path| path.is_file()) && paths[0].ends_with("summary.json"));

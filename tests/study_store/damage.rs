@@ -31,7 +31,12 @@ fn a_part_with_any_byte_changed_or_cut_off_is_noticed() {
     let noticed = |bytes: &[u8], what: String| {
         fs::write(&path, bytes).unwrap();
         let problem = read(dir.path()).expect_err(&what);
-        assert!(problem.place.file.ends_with("runs_00000.parquet") && problem.message.contains("damaged"), "{what}: {}", problem.message);
+        assert!(
+            problem.place.file.ends_with("runs_00000.parquet")
+                && problem.message.contains("damaged"),
+            "{what}: {}",
+            problem.message
+        );
         assert!(problem.hint.contains("--resume"));
     };
     for at in 0..good.len() {
@@ -42,18 +47,30 @@ fn a_part_with_any_byte_changed_or_cut_off_is_noticed() {
     }
     noticed(&[&good[..], b"x"].concat(), "longer".to_owned());
     fs::remove_file(&path).unwrap();
-    assert!(read(dir.path()).unwrap_err().place.file.ends_with("runs_00000.parquet"));
+    assert!(
+        read(dir.path())
+            .unwrap_err()
+            .place
+            .file
+            .ends_with("runs_00000.parquet")
+    );
     fs::write(&path, &good).unwrap();
     assert_eq!(read(dir.path()), Ok(3));
     let mark = dir.path().join("parts/part_00000.sha256");
     let list = fs::read_to_string(&mark).unwrap();
-    let line = list.lines().position(|line| line.ends_with("runs_00000.parquet")).unwrap();
+    let line = list
+        .lines()
+        .position(|line| line.ends_with("runs_00000.parquet"))
+        .unwrap();
     let start: usize = list.lines().take(line).map(|line| line.len() + 1).sum();
     for at in start..start + 66 {
         let mut bytes = list.clone().into_bytes();
         bytes[at] ^= 1;
         fs::write(&mark, &bytes).unwrap();
-        assert!(read(dir.path()).unwrap_err().message.contains("damaged"), "{at}");
+        assert!(
+            read(dir.path()).unwrap_err().message.contains("damaged"),
+            "{at}"
+        );
     }
 }
 
@@ -64,8 +81,15 @@ fn one_column_over_all_parts() {
     let study = Study::open(dir.path()).unwrap();
     assert_eq!(study.rows("runs").unwrap(), 3 + 4 + 5 + 6);
     let all = study.read("runs", &["fuel_l_per_100km"]).unwrap();
-    let wanted: Vec<f64> =
-        (0..4).flat_map(|part| if let Values::Number(x) = &rows(part).values[2] { x.clone() } else { Vec::new() }).collect();
+    let wanted: Vec<f64> = (0..4)
+        .flat_map(|part| {
+            if let Values::Number(x) = &rows(part).values[2] {
+                x.clone()
+            } else {
+                Vec::new()
+            }
+        })
+        .collect();
     assert_eq!(all.values, [Values::Number(wanted)]);
     let mut order = Vec::new();
     study
@@ -76,8 +100,17 @@ fn one_column_over_all_parts() {
         .unwrap();
     assert_eq!(order, [(0, 3), (1, 4), (2, 5), (3, 6)]);
     let problem = study.read("walks", &["run"]).unwrap_err();
-    assert!(problem.message.contains("no table `walks`, only trace, runs"), "{}", problem.message);
-    assert_eq!(study.part(0, "runs").unwrap().metadata()[0], ("cvtcycle.part".to_owned(), "x".to_owned()));
+    assert!(
+        problem
+            .message
+            .contains("no table `walks`, only trace, runs"),
+        "{}",
+        problem.message
+    );
+    assert_eq!(
+        study.part(0, "runs").unwrap().metadata()[0],
+        ("cvtcycle.part".to_owned(), "x".to_owned())
+    );
 }
 
 #[test]
@@ -87,21 +120,44 @@ fn a_part_that_cannot_be_written_leaves_nothing_and_the_others_stay() {
     write_part(&study, 0);
     let before = files(dir.path());
     let (columns, rows) = (heads(), rows(1));
-    let table = |name| PartTable { name, columns: &columns[..2], rows: &rows, metadata: &[] };
+    let table = |name| PartTable {
+        name,
+        columns: &columns[..2],
+        rows: &rows,
+        metadata: &[],
+    };
     // Rows that do not fit stand for any error in the middle of a file.
-    let problem = study.write_part(1, &[table("trace"), table("runs")]).unwrap_err();
-    assert!(problem.message.contains("cannot write trace_00001.parquet") && problem.hint.contains("--resume"), "{problem:?}");
+    let problem = study
+        .write_part(1, &[table("trace"), table("runs")])
+        .unwrap_err();
+    assert!(
+        problem.message.contains("cannot write trace_00001.parquet")
+            && problem.hint.contains("--resume"),
+        "{problem:?}"
+    );
     assert_eq!(files(dir.path()), before);
     assert_eq!(study.missing(), [1, 2]);
     // A folder in the way of the last file: those before it are there, the part is not.
     fs::create_dir(dir.path().join("parts/part_00001.sha256")).unwrap();
-    let whole = |name| PartTable { columns: &columns, ..table(name) };
-    assert!(study.write_part(1, &[whole("trace"), whole("runs")]).is_err());
+    let whole = |name| PartTable {
+        columns: &columns,
+        ..table(name)
+    };
+    assert!(
+        study
+            .write_part(1, &[whole("trace"), whole("runs")])
+            .is_err()
+    );
     assert_eq!(study.missing(), [1, 2]);
     assert!(files(dir.path()).keys().all(|name| !name.contains(".tmp")));
     fs::remove_dir(dir.path().join("parts/part_00001.sha256")).unwrap();
     drop(study);
-    assert_eq!(StudyDir::resume(dir.path(), &manifest(3), PLAN).unwrap().missing(), [1, 2]);
+    assert_eq!(
+        StudyDir::resume(dir.path(), &manifest(3), PLAN)
+            .unwrap()
+            .missing(),
+        [1, 2]
+    );
 }
 
 /// The lists can be checked without this program.
@@ -111,10 +167,18 @@ fn lists_of_checksums_are_those_of_sha256sum() {
     whole(dir.path(), 1);
     for (folder, list) in [("", "results.sha256"), ("parts", "part_00000.sha256")] {
         let folder = dir.path().join(folder);
-        let Ok(output) = std::process::Command::new("sha256sum").args(["--check", "--strict", list]).current_dir(&folder).output() else {
+        let Ok(output) = std::process::Command::new("sha256sum")
+            .args(["--check", "--strict", list])
+            .current_dir(&folder)
+            .output()
+        else {
             eprintln!("sha256sum is not on this machine: not checked");
             return;
         };
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
     }
 }

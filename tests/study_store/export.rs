@@ -29,7 +29,10 @@ fn to(name: &str) -> (TempDir, PathBuf) {
     whole(&study, PARTS);
     let file = dir.path().join(name);
     let exported = exported(&study, "runs", &file).unwrap();
-    assert_eq!((exported.rows, exported.status.is_complete()), (3 + 4 + 5, true));
+    assert_eq!(
+        (exported.rows, exported.status.is_complete()),
+        (3 + 4 + 5, true)
+    );
     (dir, file)
 }
 
@@ -44,7 +47,10 @@ fn cells() -> Vec<Vec<String>> {
         };
         rows.values.iter().map(cell).collect::<Vec<_>>()
     };
-    (0..PARTS).map(rows).flat_map(|rows| (0..rows.len()).map(|k| row(&rows, k)).collect::<Vec<_>>()).collect()
+    (0..PARTS)
+        .map(rows)
+        .flat_map(|rows| (0..rows.len()).map(|k| row(&rows, k)).collect::<Vec<_>>())
+        .collect()
 }
 
 #[test]
@@ -52,9 +58,18 @@ fn csv_has_units_in_its_header_and_all_rows() {
     let (_dir, file) = to("runs.csv");
     let text = fs::read(&file).unwrap();
     let mut reader = csv::Reader::from_reader(&text[..]);
-    let header = ["run", "vehicle", "fuel_l_per_100km [L/100 km]", "transmission.cvt.belt.band_offset_mm [mm]", "reason"];
+    let header = [
+        "run",
+        "vehicle",
+        "fuel_l_per_100km [L/100 km]",
+        "transmission.cvt.belt.band_offset_mm [mm]",
+        "reason",
+    ];
     assert_eq!(reader.headers().unwrap(), &header[..]);
-    let found: Vec<Vec<String>> = reader.records().map(|record| record.unwrap().iter().map(str::to_owned).collect()).collect();
+    let found: Vec<Vec<String>> = reader
+        .records()
+        .map(|record| record.unwrap().iter().map(str::to_owned).collect())
+        .collect();
     assert_eq!(found, cells());
 }
 
@@ -64,13 +79,30 @@ fn a_byte_order_mark_stands_where_a_letter_is_beyond_ascii() {
     for (name, word, marked) in [("plain", "a", false), ("umlaut", "Öl", true)] {
         let columns = [head("word", "", Kind::Text)];
         let path = dir.path().join(name);
-        let study = StudyDir::create(&path, &manifest_of(1, &["runs"], false), PLAN, false).unwrap();
-        let rows = Rows { values: vec![Values::Text(vec!["x".into(), word.into()])] };
-        study.write_part(0, &[PartTable { name: "runs", columns: &columns, rows: &rows, metadata: &[] }]).unwrap();
+        let study =
+            StudyDir::create(&path, &manifest_of(1, &["runs"], false), PLAN, false).unwrap();
+        let rows = Rows {
+            values: vec![Values::Text(vec!["x".into(), word.into()])],
+        };
+        study
+            .write_part(
+                0,
+                &[PartTable {
+                    name: "runs",
+                    columns: &columns,
+                    rows: &rows,
+                    metadata: &[],
+                }],
+            )
+            .unwrap();
         exported(&path, "runs", &path.join("out.csv")).unwrap();
         let bytes = fs::read(path.join("out.csv")).unwrap();
         assert_eq!(bytes.starts_with(b"\xEF\xBB\xBFword\n"), marked, "{name}");
-        assert!(String::from_utf8(bytes).unwrap().ends_with(&format!("x\n{word}\n")));
+        assert!(
+            String::from_utf8(bytes)
+                .unwrap()
+                .ends_with(&format!("x\n{word}\n"))
+        );
     }
 }
 
@@ -80,13 +112,26 @@ fn parquet_has_a_row_group_a_part_and_the_manifest() {
     let (dir, file) = to("runs.parquet");
     let bytes = fs::read(&file).unwrap();
     let groups = SerializedFileReader::new(File::open(&file).unwrap()).unwrap();
-    let sizes: Vec<i64> = groups.metadata().row_groups().iter().map(|group| group.num_rows()).collect();
+    let sizes: Vec<i64> = groups
+        .metadata()
+        .row_groups()
+        .iter()
+        .map(|group| group.num_rows())
+        .collect();
     assert_eq!(sizes, [3, 4, 5]);
     let table = ParquetFile::open(&file, &sha256(&bytes)).unwrap();
     assert_eq!(table.columns(), heads());
-    let manifest = table.metadata().into_iter().find(|(key, _)| key == "cvtcycle.manifest").unwrap().1;
+    let manifest = table
+        .metadata()
+        .into_iter()
+        .find(|(key, _)| key == "cvtcycle.manifest")
+        .unwrap()
+        .1;
     assert_eq!(manifest.into_bytes(), super::manifest(PARTS));
-    let all = Study::open(dir.path().join("study")).unwrap().read("runs", &["run", "reason", "vehicle"]).unwrap();
+    let all = Study::open(dir.path().join("study"))
+        .unwrap()
+        .read("runs", &["run", "reason", "vehicle"])
+        .unwrap();
     assert_eq!(table.read(&["run", "reason", "vehicle"]).unwrap(), all);
 }
 
@@ -94,7 +139,11 @@ fn parquet_has_a_row_group_a_part_and_the_manifest() {
 fn inside(file: &Path, name: &str) -> String {
     let mut archive = zip::ZipArchive::new(File::open(file).unwrap()).unwrap();
     let mut text = String::new();
-    archive.by_name(name).unwrap().read_to_string(&mut text).unwrap();
+    archive
+        .by_name(name)
+        .unwrap()
+        .read_to_string(&mut text)
+        .unwrap();
     text
 }
 
@@ -102,11 +151,24 @@ fn inside(file: &Path, name: &str) -> String {
 fn sheet(file: &Path, name: &str) -> Vec<(String, bool, String)> {
     let text = inside(file, name);
     let document = roxmltree::Document::parse(&text).unwrap();
-    assert!(!document.descendants().any(|node| node.has_tag_name("f")), "a formula");
-    let cells = document.descendants().filter(|node| node.tag_name().name() == "c");
+    assert!(
+        !document.descendants().any(|node| node.has_tag_name("f")),
+        "a formula"
+    );
+    let cells = document
+        .descendants()
+        .filter(|node| node.tag_name().name() == "c");
     let cell = |node: roxmltree::Node| {
-        let text: String = node.descendants().filter(roxmltree::Node::is_text).filter_map(|text| text.text()).collect();
-        (node.attribute("r").unwrap().to_owned(), node.attribute("t").is_none(), text)
+        let text: String = node
+            .descendants()
+            .filter(roxmltree::Node::is_text)
+            .filter_map(|text| text.text())
+            .collect();
+        (
+            node.attribute("r").unwrap().to_owned(),
+            node.attribute("t").is_none(),
+            text,
+        )
     };
     cells.map(cell).collect()
 }
@@ -116,8 +178,19 @@ fn a_workbook_has_numbers_as_numbers_and_words_as_words() {
     let (dir, file) = to("runs.xlsx");
     let found = sheet(&file, "xl/worksheets/sheet1.xml");
     let mut wanted: Vec<(String, bool, String)> = Vec::new();
-    let header = ["run", "vehicle", "fuel_l_per_100km [L/100 km]", "transmission.cvt.belt.band_offset_mm [mm]", "reason"];
-    wanted.extend(header.iter().zip("ABCDE".chars()).map(|(name, letter)| (format!("{letter}1"), false, (*name).to_owned())));
+    let header = [
+        "run",
+        "vehicle",
+        "fuel_l_per_100km [L/100 km]",
+        "transmission.cvt.belt.band_offset_mm [mm]",
+        "reason",
+    ];
+    wanted.extend(
+        header
+            .iter()
+            .zip("ABCDE".chars())
+            .map(|(name, letter)| (format!("{letter}1"), false, (*name).to_owned())),
+    );
     for (k, row) in cells().into_iter().enumerate() {
         for ((cell, letter), head) in row.into_iter().zip("ABCDE".chars()).zip(heads()) {
             if !cell.is_empty() {
@@ -126,16 +199,25 @@ fn a_workbook_has_numbers_as_numbers_and_words_as_words() {
         }
     }
     assert_eq!(found, wanted);
-    assert!(
-        inside(&file, "xl/worksheets/sheet1.xml")
-            .contains("<pane ySplit=\"1\" topLeftCell=\"A2\" activePane=\"bottomLeft\" state=\"frozen\"/>")
-    );
+    assert!(inside(&file, "xl/worksheets/sheet1.xml").contains(
+        "<pane ySplit=\"1\" topLeftCell=\"A2\" activePane=\"bottomLeft\" state=\"frozen\"/>"
+    ));
     assert!(inside(&file, "xl/workbook.xml").contains("<sheet name=\"runs\""));
     let meanings = sheet(&file, "xl/worksheets/sheet2.xml");
-    assert!(meanings.contains(&("C4".to_owned(), false, "what fuel_l_per_100km is".to_owned())), "{meanings:?}");
+    assert!(
+        meanings.contains(&(
+            "C4".to_owned(),
+            false,
+            "what fuel_l_per_100km is".to_owned()
+        )),
+        "{meanings:?}"
+    );
     let again = dir.path().join("again.xlsx");
     exported(&dir.path().join("study"), "runs", &again).unwrap();
-    assert!(fs::read(&file).unwrap() == fs::read(&again).unwrap(), "another workbook of the same study");
+    assert!(
+        fs::read(&file).unwrap() == fs::read(&again).unwrap(),
+        "another workbook of the same study"
+    );
 }
 
 #[test]
@@ -145,16 +227,44 @@ fn what_excel_cannot_hold_is_refused_before_anything_is_written() {
     let columns = [head("run", "", Kind::Count)];
     let study = StudyDir::create(&path, &manifest_of(2, &["runs"], false), PLAN, false).unwrap();
     for (part, n) in [(0, 1_000_000), (1, 48_576)] {
-        let rows = Rows { values: vec![Values::Count(vec![7; n])] };
-        study.write_part(part, &[PartTable { name: "runs", columns: &columns, rows: &rows, metadata: &[] }]).unwrap();
+        let rows = Rows {
+            values: vec![Values::Count(vec![7; n])],
+        };
+        study
+            .write_part(
+                part,
+                &[PartTable {
+                    name: "runs",
+                    columns: &columns,
+                    rows: &rows,
+                    metadata: &[],
+                }],
+            )
+            .unwrap();
     }
     let problem = exported(&path, "runs", &dir.path().join("runs.xlsx")).unwrap_err();
-    assert!(problem.message.contains("1048575 rows") && problem.message.contains("1048576 rows"), "{}", problem.message);
-    assert!(problem.hint.contains(".csv or .parquet"), "{}", problem.hint);
-    let mut names: Vec<_> = fs::read_dir(dir.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert!(
+        problem.message.contains("1048575 rows") && problem.message.contains("1048576 rows"),
+        "{}",
+        problem.message
+    );
+    assert!(
+        problem.hint.contains(".csv or .parquet"),
+        "{}",
+        problem.hint
+    );
+    let mut names: Vec<_> = fs::read_dir(dir.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
     names.sort();
     assert_eq!(names, ["study"]);
-    assert_eq!(exported(&path, "runs", &dir.path().join("runs.parquet")).unwrap().rows, 1_048_576);
+    assert_eq!(
+        exported(&path, "runs", &dir.path().join("runs.parquet"))
+            .unwrap()
+            .rows,
+        1_048_576
+    );
 }
 
 #[test]
@@ -163,11 +273,23 @@ fn the_ending_says_the_format_and_a_partial_study_is_exported_as_far_as_it_is() 
     let path = dir.path().join("study");
     let study = StudyDir::create(&path, &manifest(PARTS), PLAN, false).unwrap();
     let problem = exported(&path, "runs", &dir.path().join("a.csv")).unwrap_err();
-    assert!(problem.message.contains("no rows yet"), "{}", problem.message);
+    assert!(
+        problem.message.contains("no rows yet"),
+        "{}",
+        problem.message
+    );
     write_part(&study, 1);
     for ending in ["csv", "CSV", "parquet", "xlsx"] {
         let exported = exported(&path, "trace", &dir.path().join(format!("a.{ending}"))).unwrap();
-        assert_eq!((exported.rows, exported.status.present, exported.status.is_complete()), (4, 1, false), "{ending}");
+        assert_eq!(
+            (
+                exported.rows,
+                exported.status.present,
+                exported.status.is_complete()
+            ),
+            (4, 1, false),
+            "{ending}"
+        );
     }
     for name in ["a", "a.xls", "a.csv.gz", "csv"] {
         let problem = Format::of(Path::new(name)).unwrap_err();
@@ -177,7 +299,12 @@ fn the_ending_says_the_format_and_a_partial_study_is_exported_as_far_as_it_is() 
     fs::write(&spoiled, "no").unwrap();
     for ending in ["csv", "parquet", "xlsx"] {
         let to = dir.path().join(format!("b.{ending}"));
-        assert!(exported(&path, "trace", &to).unwrap_err().message.contains("damaged"));
+        assert!(
+            exported(&path, "trace", &to)
+                .unwrap_err()
+                .message
+                .contains("damaged")
+        );
         assert!(!to.exists());
     }
 }

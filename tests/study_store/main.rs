@@ -21,7 +21,12 @@ use serde_json::json;
 const PLAN: &[u8] = b"title = \"test\"\n";
 
 fn head(name: &str, unit: &str, kind: Kind) -> Column {
-    Column { name: name.to_owned(), unit: unit.to_owned(), doc: format!("what {name} is"), kind }
+    Column {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        doc: format!("what {name} is"),
+        kind,
+    }
 }
 
 /// Heads of a small table, with a name with dots and one with letters beyond ASCII.
@@ -44,16 +49,36 @@ fn rows(part: usize) -> Rows {
         values: vec![
             Values::Count((0..n).map(run).collect()),
             Values::Text((0..n).map(|k| text(["cvt", "5mt"][k % 2])).collect()),
-            Values::Number((0..n).map(|k| 7.0 + 0.1 * k as f64 + part as f64 / 3.0).collect()),
-            Values::Number((0..n).map(|k| if k % 3 == 1 { f64::NAN } else { 2.4 }).collect()),
-            Values::Text((0..n).map(|k| text(if k == 2 { "gross slip, \"at once\"\n=1+1" } else { "" })).collect()),
+            Values::Number(
+                (0..n)
+                    .map(|k| 7.0 + 0.1 * k as f64 + part as f64 / 3.0)
+                    .collect(),
+            ),
+            Values::Number(
+                (0..n)
+                    .map(|k| if k % 3 == 1 { f64::NAN } else { 2.4 })
+                    .collect(),
+            ),
+            Values::Text(
+                (0..n)
+                    .map(|k| {
+                        text(if k == 2 {
+                            "gross slip, \"at once\"\n=1+1"
+                        } else {
+                            ""
+                        })
+                    })
+                    .collect(),
+            ),
         ],
     }
 }
 
 fn manifest_of(parts: usize, tables: &[&str], csv: bool) -> Vec<u8> {
     let layout = json!({ "parts": parts, "tables": tables, "csv": csv });
-    json!({ "program": "cvtcycle 0.1.0", "seed": 7, "layout": layout, "plan": "title = 1\n" }).to_string().into_bytes()
+    json!({ "program": "cvtcycle 0.1.0", "seed": 7, "layout": layout, "plan": "title = 1\n" })
+        .to_string()
+        .into_bytes()
 }
 
 /// Manifest of a study with two tables a part, as Parquet and CSV.
@@ -63,14 +88,24 @@ fn manifest(parts: usize) -> Vec<u8> {
 
 fn write_part(dir: &StudyDir, part: usize) {
     let (columns, rows) = (heads(), rows(part));
-    let table = |name| PartTable { name, columns: &columns, rows: &rows, metadata: &[("cvtcycle.part", "x")] };
-    dir.write_part(part, &[table("trace"), table("runs")]).unwrap();
+    let table = |name| PartTable {
+        name,
+        columns: &columns,
+        rows: &rows,
+        metadata: &[("cvtcycle.part", "x")],
+    };
+    dir.write_part(part, &[table("trace"), table("runs")])
+        .unwrap();
 }
 
 fn results() -> Vec<(String, Vec<u8>)> {
-    [("summary.json", "{}\n"), ("statistics.json", "{\"a\": 1}\n"), ("tornado.svg", "<svg/>\n")]
-        .map(|(name, text)| (name.to_owned(), text.as_bytes().to_vec()))
-        .to_vec()
+    [
+        ("summary.json", "{}\n"),
+        ("statistics.json", "{\"a\": 1}\n"),
+        ("tornado.svg", "<svg/>\n"),
+    ]
+    .map(|(name, text)| (name.to_owned(), text.as_bytes().to_vec()))
+    .to_vec()
 }
 
 /// A whole study in a directory.
@@ -87,7 +122,11 @@ fn files(path: &Path) -> BTreeMap<String, Vec<u8>> {
         let entry = entry.unwrap();
         let name = entry.file_name().into_string().unwrap();
         if entry.path().is_dir() {
-            found.extend(files(&entry.path()).into_iter().map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
+            found.extend(
+                files(&entry.path())
+                    .into_iter()
+                    .map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)),
+            );
         } else {
             found.insert(name, fs::read(entry.path()).unwrap());
         }

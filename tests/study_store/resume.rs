@@ -18,12 +18,28 @@ type Spoil = fn(&Path);
 /// The files of a study in the order in which they appear.
 fn order() -> Vec<String> {
     let part = |k: usize| {
-        let names = ["trace_N.parquet", "trace_N.csv", "runs_N.parquet", "runs_N.csv", "part_N.sha256"];
+        let names = [
+            "trace_N.parquet",
+            "trace_N.csv",
+            "runs_N.parquet",
+            "runs_N.csv",
+            "part_N.sha256",
+        ];
         names.map(|name| format!("parts/{}", name.replace('N', &format!("{k:05}"))))
     };
     let before = [".lock", "study.json", "plan.toml"].map(str::to_owned);
-    let after = ["statistics.json", "tornado.svg", "summary.json", "results.sha256"].map(str::to_owned);
-    before.into_iter().chain((0..PARTS).flat_map(part)).chain(after).collect()
+    let after = [
+        "statistics.json",
+        "tornado.svg",
+        "summary.json",
+        "results.sha256",
+    ]
+    .map(str::to_owned);
+    before
+        .into_iter()
+        .chain((0..PARTS).flat_map(part))
+        .chain(after)
+        .collect()
 }
 
 fn finish(path: &Path) -> Vec<usize> {
@@ -52,7 +68,11 @@ fn wherever_it_was_killed_a_study_is_finished_to_the_same_bytes() {
             fs::write(dir.path().join(format!("{folder}.cvtcycle-x7.tmp")), "half").unwrap();
         }
         let parts = (there.saturating_sub(3) / 5).min(PARTS);
-        assert_eq!(finish(dir.path()), (parts..PARTS).collect::<Vec<_>>(), "{there}");
+        assert_eq!(
+            finish(dir.path()),
+            (parts..PARTS).collect::<Vec<_>>(),
+            "{there}"
+        );
         assert_eq!(files(dir.path()), all, "{there}");
     }
 }
@@ -92,7 +112,14 @@ fn a_part_that_is_not_whole_is_computed_again() {
         }),
         ("part_00001.sha256", |path| {
             let text = fs::read_to_string(path).unwrap();
-            fs::write(path, text.lines().take(3).map(|line| format!("{line}\n")).collect::<String>()).unwrap();
+            fs::write(
+                path,
+                text.lines()
+                    .take(3)
+                    .map(|line| format!("{line}\n"))
+                    .collect::<String>(),
+            )
+            .unwrap();
         }),
     ];
     for (name, spoil) in spoil {
@@ -118,32 +145,54 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
     whole(dir.path(), PARTS);
     let all = files(dir.path());
     let said = refused(dir.path(), |m| m["program"] = "cvtcycle 9.9.9".into());
-    assert!(said.contains("`program` is \"cvtcycle 0.1.0\" there and \"cvtcycle 9.9.9\" now") && said.contains("--force"), "{said}");
+    assert!(
+        said.contains("`program` is \"cvtcycle 0.1.0\" there and \"cvtcycle 9.9.9\" now")
+            && said.contains("--force"),
+        "{said}"
+    );
     assert!(!said.contains("more values"), "{said}");
     let said = refused(dir.path(), |m| m["plan"] = "title = 2\n".into());
-    assert!(said.contains("`plan, line 1` is `title = 1` there and `title = 2` now"), "{said}");
+    assert!(
+        said.contains("`plan, line 1` is `title = 1` there and `title = 2` now"),
+        "{said}"
+    );
     let said = refused(dir.path(), |m| {
         m["layout"]["csv"] = false.into();
         m["seed"] = 8.into();
         m["plan"] = "".into();
     });
-    assert!(said.contains("`seed` is 7 there and 8 now (and 2 more values)"), "{said}");
+    assert!(
+        said.contains("`seed` is 7 there and 8 now (and 2 more values)"),
+        "{said}"
+    );
     // A plan that is another one is told by its line, not by what follows from it.
     let mut other: Value = serde_json::from_slice(&manifest(PARTS)).unwrap();
     other["plan_sha256"] = "abc".into();
-    let problem = StudyDir::resume(dir.path(), other.to_string().as_bytes(), b"title = \"test\"\nseed = 8\n").unwrap_err();
+    let problem = StudyDir::resume(
+        dir.path(),
+        other.to_string().as_bytes(),
+        b"title = \"test\"\nseed = 8\n",
+    )
+    .unwrap_err();
     let line = "`plan.toml, line 2` is no such line there and `seed = 8` now (and one more value)";
     assert!(problem.message.contains(line), "{}", problem.message);
     let spaced = [manifest(PARTS), b"\n".to_vec()].concat();
     let problem = StudyDir::resume(dir.path(), &spaced, PLAN).unwrap_err();
-    assert!(problem.message.contains("another form"), "{}", problem.message);
+    assert!(
+        problem.message.contains("another form"),
+        "{}",
+        problem.message
+    );
     assert_eq!(files(dir.path()), all);
     fs::write(dir.path().join("study.json"), b"{\"a\": ").unwrap();
     assert!(refused(dir.path(), |_| {}).contains("damaged"));
     let empty = TempDir::new().unwrap();
     for path in [empty.path().to_path_buf(), empty.path().join("nowhere")] {
         let said = refused(&path, |_| {});
-        assert!(said.contains("no study in") && said.contains("leave --resume out"), "{said}");
+        assert!(
+            said.contains("no study in") && said.contains("leave --resume out"),
+            "{said}"
+        );
     }
     assert!(files(empty.path()).is_empty());
 }
@@ -154,7 +203,9 @@ fn a_plan_that_was_lost_or_changed_is_put_back() {
     whole(dir.path(), PARTS);
     for spoiled in [None, Some("title = \"mine\"\n")] {
         let path = dir.path().join("plan.toml");
-        spoiled.map_or_else(|| fs::remove_file(&path), |text| fs::write(&path, text)).unwrap();
+        spoiled
+            .map_or_else(|| fs::remove_file(&path), |text| fs::write(&path, text))
+            .unwrap();
         assert_eq!(finish(dir.path()), [0_usize; 0]);
         assert_eq!(fs::read(&path).unwrap(), PLAN);
     }

@@ -3,12 +3,24 @@
 use super::reference::{At, HIGH, LOW, RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
 use cvtcycle::lubricant::{BandFriction, ZERO_DEGC_K};
-use cvtcycle::transmission::cvt::variator::{Belt, BeltState, Formulation, Geometry, sliding_speed_m_s};
+use cvtcycle::transmission::cvt::variator::{
+    Belt, BeltState, Formulation, Geometry, sliding_speed_m_s,
+};
 
 const TORQUE: &str = "Output torque at the secondary [Nm]";
 const LOSS: &str = "Loss at the primary shaft [Nm]";
-const LOW_AT: At = At { ratio: LOW, rpm: 2000.0, output_nm: 0.0, bar: 30.0 };
-const HIGH_AT: At = At { ratio: HIGH, rpm: 3000.0, output_nm: 0.0, bar: 11.0 };
+const LOW_AT: At = At {
+    ratio: LOW,
+    rpm: 2000.0,
+    output_nm: 0.0,
+    bar: 30.0,
+};
+const HIGH_AT: At = At {
+    ratio: HIGH,
+    rpm: 3000.0,
+    output_nm: 0.0,
+    bar: 11.0,
+};
 
 /// All of them, by file name.
 pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
@@ -26,14 +38,24 @@ pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
 }
 
 /// The belt's answers over output torque.
-fn over_torque(r: &Reference, belt: &Belt, name: &str, at: At, to: f64, part: impl Fn(&BeltState) -> f64) -> Line {
-    sweep(name, 0.0, to, 160, |t| part(&r.boundary(belt, At { output_nm: t, ..at })))
+fn over_torque(
+    r: &Reference,
+    belt: &Belt,
+    name: &str,
+    at: At,
+    to: f64,
+    part: impl Fn(&BeltState) -> f64,
+) -> Line {
+    sweep(name, 0.0, to, 160, |t| {
+        part(&r.boundary(belt, At { output_nm: t, ..at }))
+    })
 }
 
 fn losses(r: &Reference) -> String {
     let belt = r.belt(Formulation::Smooth);
     let panel = |heading: &str, at: At, to: f64| {
-        let line = |name: &str, part: fn(&BeltState) -> f64| over_torque(r, &belt, name, at, to, part);
+        let line =
+            |name: &str, part: fn(&BeltState) -> f64| over_torque(r, &belt, name, at, to, part);
         let lines = vec![
             line("all of the belt", |s| s.loss_nm()),
             line("bands", |s| s.band_nm),
@@ -48,7 +70,10 @@ fn losses(r: &Reference) -> String {
         "formulation smooth, belt at 85 degC, boundary friction",
         "Loss torque of bands, slip, wedging and penetration and their sum against output torque in low and high ratio.",
         "",
-        vec![panel("I = 2.417, 2000 rpm, 30 bar", LOW_AT, 200.0), panel("I = 0.5, 3000 rpm, 11 bar", HIGH_AT, 60.0)],
+        vec![
+            panel("I = 2.417, 2000 rpm, 30 bar", LOW_AT, 200.0),
+            panel("I = 0.5, 3000 rpm, 11 bar", HIGH_AT, 60.0),
+        ],
     )
 }
 
@@ -58,8 +83,14 @@ fn geometry(r: &Reference) -> String {
         let (from, to) = (r.cvt().ratio.high, r.cvt().ratio.low);
         sweep(name, from, to, 120, |i| part(&Geometry::new(i, x, l)))
     };
-    let radii = vec![line("primary", |g| 1e3 * g.primary_radius_m), line("secondary", |g| 1e3 * g.secondary_radius_m)];
-    let wraps = vec![line("primary", |g| g.primary_wrap_rad.to_degrees()), line("secondary", |g| g.secondary_wrap_rad.to_degrees())];
+    let radii = vec![
+        line("primary", |g| 1e3 * g.primary_radius_m),
+        line("secondary", |g| 1e3 * g.secondary_radius_m),
+    ];
+    let wraps = vec![
+        line("primary", |g| g.primary_wrap_rad.to_degrees()),
+        line("secondary", |g| g.secondary_wrap_rad.to_degrees()),
+    ];
     let ratio = "Belt ratio I [-]";
     plot(
         "Radii and wrap angles",
@@ -67,8 +98,16 @@ fn geometry(r: &Reference) -> String {
         "Running radii and wrap angles of both pulleys over the belt ratio.",
         "",
         vec![
-            axes("Running radius at the rocking edge", ratio, "Radius [mm]", radii),
-            LinePanel { with_y: vec![], ..axes("Wrap angle", ratio, "Angle [deg]", wraps) },
+            axes(
+                "Running radius at the rocking edge",
+                ratio,
+                "Radius [mm]",
+                radii,
+            ),
+            LinePanel {
+                with_y: vec![],
+                ..axes("Wrap angle", ratio, "Angle [deg]", wraps)
+            },
         ],
     )
 }
@@ -78,9 +117,13 @@ fn tension(r: &Reference) -> String {
     let panel = |heading: &str, at: At, to: f64| {
         let at_ratio = Geometry::new(at.ratio, belt.centre_distance_m, belt.length_m);
         let lines = vec![
-            over_torque(r, &belt, "segment compression C_x", at, to, |s| s.tension.compression_n),
+            over_torque(r, &belt, "segment compression C_x", at, to, |s| {
+                s.tension.compression_n
+            }),
             over_torque(r, &belt, "tension step dT", at, to, |s| s.tension.step_n),
-            over_torque(r, &belt, "mean band tension", at, to, |s| s.tension.mean_tension_n(&at_ratio)),
+            over_torque(r, &belt, "mean band tension", at, to, |s| {
+                s.tension.mean_tension_n(&at_ratio)
+            }),
         ];
         axes(heading, TORQUE, "Force [N]", lines)
     };
@@ -89,23 +132,41 @@ fn tension(r: &Reference) -> String {
         "formulation smooth, band friction 0.13",
         "Segment compression, tension step and mean band tension against output torque; compression crosses zero in low ratio.",
         "",
-        vec![panel("I = 2.417, 2000 rpm, 30 bar", LOW_AT, 200.0), panel("I = 0.5, 3000 rpm, 11 bar", HIGH_AT, 60.0)],
+        vec![
+            panel("I = 2.417, 2000 rpm, 30 bar", LOW_AT, 200.0),
+            panel("I = 0.5, 3000 rpm, 11 bar", HIGH_AT, 60.0),
+        ],
     )
 }
 
 fn bands(r: &Reference) -> String {
     let (high, low) = (r.cvt().ratio.high, r.cvt().ratio.low);
     let line = |mm: f64| {
-        let belt = Belt { band_offset_m: mm * 1e-3, ..r.belt(Formulation::Smooth) };
-        let at = |ratio: f64| At { ratio, rpm: 2500.0, output_nm: 20.0, bar: 20.0 };
-        sweep(&format!("offset {mm} mm"), high, low, 300, |i| r.boundary(&belt, at(i)).band_nm)
+        let belt = Belt {
+            band_offset_m: mm * 1e-3,
+            ..r.belt(Formulation::Smooth)
+        };
+        let at = |ratio: f64| At {
+            ratio,
+            rpm: 2500.0,
+            output_nm: 20.0,
+            bar: 20.0,
+        };
+        sweep(&format!("offset {mm} mm"), high, low, 300, |i| {
+            r.boundary(&belt, at(i)).band_nm
+        })
     };
     plot(
         "Band loss against ratio",
         "2500 rpm, 20 bar, 20 Nm at the secondary, boundary friction",
         "Loss torque of the bands against belt ratio for three band offsets; zero at ratio one.",
         "",
-        vec![axes("", "Belt ratio I [-]", LOSS, vec![line(3.0), line(2.0), line(1.0)])],
+        vec![axes(
+            "",
+            "Belt ratio I [-]",
+            LOSS,
+            vec![line(3.0), line(2.0), line(1.0)],
+        )],
     )
 }
 
@@ -114,14 +175,27 @@ const SPEEDS: [f64; 3] = [1000.0, 2000.0, 4000.0];
 
 fn film_friction(r: &Reference, belt: &Belt, ratio: f64, rpm: f64, degc: f64) -> BandFriction {
     let k = degc + ZERO_DEGC_K;
-    r.oil().friction.band(k, r.oil().dynamic_pa_s(k), sliding_speed_m_s(belt, ratio, rpm * RPM))
+    r.oil().friction.band(
+        k,
+        r.oil().dynamic_pa_s(k),
+        sliding_speed_m_s(belt, ratio, rpm * RPM),
+    )
 }
 
 fn film(r: &Reference) -> String {
     let belt = r.belt(Formulation::Smooth);
-    let mu = |ratio: f64, rpm: f64| sweep(&format!("{rpm:.0} rpm"), -20.0, 120.0, 140, |t| film_friction(r, &belt, ratio, rpm, t).mu);
+    let mu = |ratio: f64, rpm: f64| {
+        sweep(&format!("{rpm:.0} rpm"), -20.0, 120.0, 140, |t| {
+            film_friction(r, &belt, ratio, rpm, t).mu
+        })
+    };
     let panel = |heading: &str, ratio: f64| {
-        axes(heading, "Belt temperature [degC]", "Coefficient of band friction [-]", SPEEDS.map(|n| mu(ratio, n)).to_vec())
+        axes(
+            heading,
+            "Belt temperature [degC]",
+            "Coefficient of band friction [-]",
+            SPEEDS.map(|n| mu(ratio, n)).to_vec(),
+        )
     };
     plot(
         "Band friction with the oil film",
@@ -137,31 +211,61 @@ fn film_loss(r: &Reference) -> String {
     let loss = |ratio: f64, bar: f64, rpm: f64| {
         sweep(&format!("{rpm:.0} rpm"), -20.0, 120.0, 140, |t| {
             let band = film_friction(r, &belt, ratio, rpm, t);
-            let s = r.with_friction(&belt, At { ratio, rpm, output_nm: 0.0, bar }, band, t);
+            let s = r.with_friction(
+                &belt,
+                At {
+                    ratio,
+                    rpm,
+                    output_nm: 0.0,
+                    bar,
+                },
+                band,
+                t,
+            );
             s.band_nm + s.film_nm
         })
     };
-    let panel =
-        |heading: &str, ratio: f64, bar: f64| axes(heading, "Belt temperature [degC]", LOSS, SPEEDS.map(|n| loss(ratio, bar, n)).to_vec());
+    let panel = |heading: &str, ratio: f64, bar: f64| {
+        axes(
+            heading,
+            "Belt temperature [degC]",
+            LOSS,
+            SPEEDS.map(|n| loss(ratio, bar, n)).to_vec(),
+        )
+    };
     plot(
         "Loss of bands and film",
         "no torque; LU-4 and FI-1 as shipped",
         "Sum of band and film loss against belt temperature at three speeds, in low ratio at 30 bar and in high ratio at 11 bar.",
         "",
-        vec![panel("I = 2.417, 30 bar", LOW, 30.0), panel("I = 0.5, 11 bar", HIGH, 11.0)],
+        vec![
+            panel("I = 2.417, 30 bar", LOW, 30.0),
+            panel("I = 0.5, 11 bar", HIGH, 11.0),
+        ],
     )
 }
 
 fn slip(r: &Reference) -> String {
     let belt = r.belt(Formulation::Smooth);
     let line = |ratio: f64, bar: f64, to: f64| {
-        let at = At { ratio, rpm: 2000.0, output_nm: 0.0, bar };
-        let mut line = over_torque(r, &belt, &format!("{bar:.0} bar"), at, to, |s| 100.0 * s.slip_total);
+        let at = At {
+            ratio,
+            rpm: 2000.0,
+            output_nm: 0.0,
+            bar,
+        };
+        let mut line = over_torque(r, &belt, &format!("{bar:.0} bar"), at, to, |s| {
+            100.0 * s.slip_total
+        });
         // Beyond capacity the bound holds: nothing to show.
-        line.points.retain(|&(t, slip)| slip < 6.0 && !r.boundary(&belt, At { output_nm: t, ..at }).gross_slip);
+        line.points.retain(|&(t, slip)| {
+            slip < 6.0 && !r.boundary(&belt, At { output_nm: t, ..at }).gross_slip
+        });
         line
     };
-    let low = [15.0, 20.0, 25.0, 30.0, 35.0].map(|bar| line(LOW, bar, 250.0)).to_vec();
+    let low = [15.0, 20.0, 25.0, 30.0, 35.0]
+        .map(|bar| line(LOW, bar, 250.0))
+        .to_vec();
     let high = [10.0, 12.0].map(|bar| line(HIGH, bar, 90.0)).to_vec();
     let y = "Slip of both pulleys [%]";
     plot(
@@ -169,36 +273,63 @@ fn slip(r: &Reference) -> String {
         "2000 rpm, band friction 0.13, segment friction 0.125; ends where slip is gross or above 6 %",
         "Total slip against output torque at several secondary pressures in low and high ratio.",
         "",
-        vec![axes("I = 2.417", TORQUE, y, low), axes("I = 0.5", TORQUE, y, high)],
+        vec![
+            axes("I = 2.417", TORQUE, y, low),
+            axes("I = 0.5", TORQUE, y, high),
+        ],
     )
 }
 
 fn deflection(r: &Reference) -> String {
     let belt = r.belt(Formulation::Smooth);
     // Without an end stop within reach the primary gives way in low as elsewhere.
-    let free = Belt { stop_from_ratio: 9.0, stop_to_ratio: 10.0, ..belt.clone() };
-    let line = |name: &str, belt: &Belt, ratio: f64, part: fn(&BeltState) -> f64| {
-        let at = At { ratio, rpm: 2000.0, output_nm: 0.0, bar: 0.0 };
-        sweep(name, 5.0, 40.0, 70, |bar| part(&r.boundary(belt, At { bar, ..at })))
+    let free = Belt {
+        stop_from_ratio: 9.0,
+        stop_to_ratio: 10.0,
+        ..belt.clone()
     };
-    let lines = |ratio: f64| vec![line("wedging", &belt, ratio, |s| s.wedge_nm), line("penetration", &belt, ratio, |s| s.penetration_nm)];
+    let line = |name: &str, belt: &Belt, ratio: f64, part: fn(&BeltState) -> f64| {
+        let at = At {
+            ratio,
+            rpm: 2000.0,
+            output_nm: 0.0,
+            bar: 0.0,
+        };
+        sweep(name, 5.0, 40.0, 70, |bar| {
+            part(&r.boundary(belt, At { bar, ..at }))
+        })
+    };
+    let lines = |ratio: f64| {
+        vec![
+            line("wedging", &belt, ratio, |s| s.wedge_nm),
+            line("penetration", &belt, ratio, |s| s.penetration_nm),
+        ]
+    };
     let mut low = lines(LOW);
     low.push(line("wedging without end stop", &free, LOW, |s| s.wedge_nm));
-    low.push(line("penetration without end stop", &free, LOW, |s| s.penetration_nm));
+    low.push(line("penetration without end stop", &free, LOW, |s| {
+        s.penetration_nm
+    }));
     let x = "Secondary pressure [bar]";
     plot(
         "Losses of pulley deflection against pressure",
         "formulation smooth; independent of speed and torque",
         "Wedge and penetration loss of both pulleys against secondary pressure, in low ratio with and without the primary's end stop and in high ratio.",
         "",
-        vec![axes("I = 2.417", x, LOSS, low), axes("I = 0.5", x, LOSS, lines(HIGH))],
+        vec![
+            axes("I = 2.417", x, LOSS, low),
+            axes("I = 0.5", x, LOSS, lines(HIGH)),
+        ],
     )
 }
 
 fn formulations(r: &Reference) -> String {
     let all = Formulation::NAMES.map(|(name, f)| (name, r.belt(f)));
     let panel = |heading: &str, at: At, to: f64| {
-        let lines = all.iter().map(|(name, belt)| over_torque(r, belt, name, at, to, |s| s.loss_nm())).collect();
+        let lines = all
+            .iter()
+            .map(|(name, belt)| over_torque(r, belt, name, at, to, |s| s.loss_nm()))
+            .collect();
         axes(heading, TORQUE, LOSS, lines)
     };
     plot(
@@ -206,6 +337,16 @@ fn formulations(r: &Reference) -> String {
         "under the rules of driving (TE-6, SL-8, real segment count), boundary friction",
         "Belt loss against output torque in the formulations smooth, appendix_c and chapter_8, in low and high ratio.",
         "",
-        vec![panel("I = 2.417, 2000 rpm, 30 bar", LOW_AT, 200.0), panel("I = 0.5, 4000 rpm, 11 bar", At { rpm: 4000.0, ..HIGH_AT }, 60.0)],
+        vec![
+            panel("I = 2.417, 2000 rpm, 30 bar", LOW_AT, 200.0),
+            panel(
+                "I = 0.5, 4000 rpm, 11 bar",
+                At {
+                    rpm: 4000.0,
+                    ..HIGH_AT
+                },
+                60.0,
+            ),
+        ],
     )
 }

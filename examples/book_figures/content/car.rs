@@ -25,9 +25,17 @@ fn viscosity(r: &Reference) -> String {
     let (oil, engine_oil) = r.cvt_car.oils();
     let gear_oil = r.manual_car.oils().0;
     let lines = |from: f64, to: f64| -> Vec<Line> {
-        [(oil, "CVT fluid"), (engine_oil, "engine oil"), (gear_oil, "gear oil")]
-            .map(|(oil, name)| sweep(name, from, to, 120, |t| 1e6 * oil.kinematic_m2_s(t + ZERO_DEGC_K)))
-            .to_vec()
+        [
+            (oil, "CVT fluid"),
+            (engine_oil, "engine oil"),
+            (gear_oil, "gear oil"),
+        ]
+        .map(|(oil, name)| {
+            sweep(name, from, to, 120, |t| {
+                1e6 * oil.kinematic_m2_s(t + ZERO_DEGC_K)
+            })
+        })
+        .to_vec()
     };
     let (x, y) = ("Temperature [degC]", "Kinematic viscosity [mm\u{b2}/s]");
     plot(
@@ -35,18 +43,27 @@ fn viscosity(r: &Reference) -> String {
         "LU-1 through the values at 40 and 100 degC",
         "Kinematic viscosity of CVT fluid, engine oil and gear oil against temperature, cold and warm.",
         "",
-        vec![axes("Cold", x, y, lines(-10.0, 40.0)), axes("Warm", x, y, lines(40.0, 120.0))],
+        vec![
+            axes("Cold", x, y, lines(-10.0, 40.0)),
+            axes("Warm", x, y, lines(40.0, 120.0)),
+        ],
     )
 }
 
 fn engine(r: &Reference) -> String {
     let car = r.cvt_car.car(293.15);
-    let now = |degc: f64| car.engine.at(degc + ZERO_DEGC_K, degc + ZERO_DEGC_K, &car.engine_oil, 1.0);
+    let now = |degc: f64| {
+        car.engine
+            .at(degc + ZERO_DEGC_K, degc + ZERO_DEGC_K, &car.engine_oil, 1.0)
+    };
     let hot = now(90.0);
     let fuel = |rpm: f64| {
         let w = rpm * RPM;
-        let mut line = sweep(&format!("{rpm:.0} rpm"), 2.0, 145.0, 143, |t| 3.6e9 * hot.burn(w, t).fuel_kg_s / (t * w));
-        line.points.retain(|&(t, g)| t <= hot.full_load_nm(w) && g < 900.0);
+        let mut line = sweep(&format!("{rpm:.0} rpm"), 2.0, 145.0, 143, |t| {
+            3.6e9 * hot.burn(w, t).fuel_kg_s / (t * w)
+        });
+        line.points
+            .retain(|&(t, g)| t <= hot.full_load_nm(w) && g < 900.0);
         line
     };
     let factor = |name: &str, part: &dyn Fn(f64) -> f64| sweep(name, -20.0, 100.0, 120, part);
@@ -54,7 +71,9 @@ fn engine(r: &Reference) -> String {
     let cold = vec![
         factor("friction over hot friction", &|t| now(t).friction_factor),
         factor("fuel over stoichiometric fuel", &|t| now(t).enrichment),
-        factor("idle speed over hot idle speed", &|t| now(t).idle_rad_s / idle_hot),
+        factor("idle speed over hot idle speed", &|t| {
+            now(t).idle_rad_s / idle_hot
+        }),
     ];
     plot(
         "Fuel consumption and what the cold adds",
@@ -64,7 +83,12 @@ fn engine(r: &Reference) -> String {
         vec![
             LinePanel {
                 with_y: vec![200.0],
-                ..axes("Hot", "Crankshaft torque [Nm]", "Fuel [g/kWh]", [1500.0, 2500.0, 4000.0].map(fuel).to_vec())
+                ..axes(
+                    "Hot",
+                    "Crankshaft torque [Nm]",
+                    "Fuel [g/kWh]",
+                    [1500.0, 2500.0, 4000.0].map(fuel).to_vec(),
+                )
             },
             axes("Cold", "Temperature [degC]", "Factor [-]", cold),
         ],
@@ -75,7 +99,10 @@ fn road_load(r: &Reference) -> String {
     let base = r.cvt_car.road_load.base;
     let rolling = r.cvt_car.road_load.rolling_per_k;
     let force = |name: &str, surface: Surface, degc: f64| {
-        let ambient = Ambient { temp_k: degc + ZERO_DEGC_K, altitude_m: 0.0 };
+        let ambient = Ambient {
+            temp_k: degc + ZERO_DEGC_K,
+            altitude_m: 0.0,
+        };
         let load = base.for_ambient(surface, &ambient, rolling);
         sweep(name, 0.0, 130.0, 130, |kmh| {
             let v = kmh / 3.6;
@@ -98,7 +125,12 @@ fn road_load(r: &Reference) -> String {
 
 fn warm_up(r: &Reference) -> Result<String, String> {
     let cycle = cycle::embedded("ece15_eudc").ok_or("no such cycle: ece15_eudc")?;
-    let conditions = Conditions { ambient_k: 263.15, start: Start::Soak, max_dt_s: 1.0, keep_rows: true };
+    let conditions = Conditions {
+        ambient_k: 263.15,
+        start: Start::Soak,
+        max_dt_s: 1.0,
+        keep_rows: true,
+    };
     let rows = drive(&r.cvt_car, &cycle, &conditions).rows;
     let names = [
         (COOLANT, "coolant and block"),
@@ -110,11 +142,27 @@ fn warm_up(r: &Reference) -> Result<String, String> {
     let lines = names
         .map(|(node, name)| {
             let at = |row: &cvtcycle::results::Row| {
-                [row.coolant_k, row.engine_oil_k, row.sump_k, row.metal_k, row.belt_spray_k][node] - ZERO_DEGC_K
+                [
+                    row.coolant_k,
+                    row.engine_oil_k,
+                    row.sump_k,
+                    row.metal_k,
+                    row.belt_spray_k,
+                ][node]
+                    - ZERO_DEGC_K
             };
             let start = (0.0, conditions.ambient_k - ZERO_DEGC_K);
-            let points = std::iter::once(start).chain(rows.iter().step_by(4).map(|row| (row.time_s / 60.0, at(row)))).collect();
-            Line { name: name.to_owned(), points }
+            let points = std::iter::once(start)
+                .chain(
+                    rows.iter()
+                        .step_by(4)
+                        .map(|row| (row.time_s / 60.0, at(row))),
+                )
+                .collect();
+            Line {
+                name: name.to_owned(),
+                points,
+            }
         })
         .to_vec();
     Ok(plot(
@@ -129,12 +177,26 @@ fn warm_up(r: &Reference) -> Result<String, String> {
 fn maps(r: &Reference) -> Result<String, String> {
     let pump = r.cvt().pump;
     let eta = r.oil().dynamic_pa_s(80.0 + ZERO_DEGC_K);
-    let model = |bar: f64| pump.state(&pump.at(eta), 2000.0 * RPM, bar * 1e5, 0.0).torque_nm * (1.0 + 0.15 * (0.2 * bar).sin());
+    let model = |bar: f64| {
+        pump.state(&pump.at(eta), 2000.0 * RPM, bar * 1e5, 0.0)
+            .torque_nm
+            * (1.0 + 0.15 * (0.2 * bar).sin())
+    };
     let points = [8.0, 14.0, 22.0, 32.0];
-    let rows: Vec<_> = points.iter().map(|&bar| ([0.0, 0.0, 0.0, bar * 1e5, 0.0], model(bar))).collect();
+    let rows: Vec<_> = points
+        .iter()
+        .map(|&bar| ([0.0, 0.0, 0.0, bar * 1e5, 0.0], model(bar)))
+        .collect();
     let map = LossMap::new(Grid::from_rows(&rows)?);
-    let read =
-        |bar: f64| map.loss_nm(&MapPoint { ratio: 1.0, input_speed_rad_s: 200.0, torque_nm: 0.0, pressure_pa: bar * 1e5, oil_k: 353.15 });
+    let read = |bar: f64| {
+        map.loss_nm(&MapPoint {
+            ratio: 1.0,
+            input_speed_rad_s: 200.0,
+            torque_nm: 0.0,
+            pressure_pa: bar * 1e5,
+            oil_k: 353.15,
+        })
+    };
     let inside = |bar: f64| if read(bar).1 { read(bar).0 } else { f64::NAN };
     let outside = |bar: f64| if read(bar).1 { f64::NAN } else { read(bar).0 };
     let lines = vec![
@@ -147,6 +209,11 @@ fn maps(r: &Reference) -> Result<String, String> {
         "one axis of a torque-loss map; invented curve",
         "An invented loss curve, the piecewise linear reading of a map with four points, and the values held outside it.",
         "",
-        vec![axes("", "Secondary pressure [bar]", "Torque loss [Nm]", lines)],
+        vec![axes(
+            "",
+            "Secondary pressure [bar]",
+            "Torque loss [Nm]",
+            lines,
+        )],
     ))
 }

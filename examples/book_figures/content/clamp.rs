@@ -7,7 +7,10 @@ use cvtcycle::transmission::cvt::variator::{BeltAtRatio, Formulation};
 
 /// All of them, by file name.
 pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
-    vec![("ratio_variogram", variogram(r)), ("clamping_map", clamp_map(r))]
+    vec![
+        ("ratio_variogram", variogram(r)),
+        ("clamping_map", clamp_map(r)),
+    ]
 }
 
 fn demand(r: &Reference, share: f64) -> RatioDemand {
@@ -72,24 +75,54 @@ fn variogram(r: &Reference) -> String {
 fn clamp_map(r: &Reference) -> String {
     let cvt = r.cvt();
     let belt = r.belt(Formulation::Smooth);
-    let ClampLaw::Map(map) = &cvt.clamp else { return String::new() };
+    let ClampLaw::Map(map) = &cvt.clamp else {
+        return String::new();
+    };
     let bar = |ratio: f64, rpm: f64, throttle: f64, degc: f64| {
         let radius_factor = cvt.radius_factor(&BeltAtRatio::new(&belt, ratio));
-        let pa = map.pressure_pa(&ClampSignals { throttle, engine_rad_s: rpm * RPM, oil_k: degc + 273.15, radius_factor });
+        let pa = map.pressure_pa(&ClampSignals {
+            throttle,
+            engine_rad_s: rpm * RPM,
+            oil_k: degc + 273.15,
+            radius_factor,
+        });
         pa.clamp(cvt.floor_pa, cvt.cap_pa) / 1e5
     };
     let (high, low) = (cvt.ratio.high, cvt.ratio.low);
     let throttles = [0.0, 0.25, 0.5, 1.0];
-    let over_ratio: Vec<Line> =
-        throttles.iter().map(|&u| sweep(&format!("throttle {:.0} %", 100.0 * u), high, low, 200, |i| bar(i, 2500.0, u, 80.0))).collect();
-    let over_speed: Vec<Line> =
-        throttles.iter().map(|&u| sweep(&format!("throttle {:.0} %", 100.0 * u), 800.0, 4000.0, 200, |n| bar(1.5, n, u, 80.0))).collect();
+    let over_ratio: Vec<Line> = throttles
+        .iter()
+        .map(|&u| {
+            sweep(
+                &format!("throttle {:.0} %", 100.0 * u),
+                high,
+                low,
+                200,
+                |i| bar(i, 2500.0, u, 80.0),
+            )
+        })
+        .collect();
+    let over_speed: Vec<Line> = throttles
+        .iter()
+        .map(|&u| {
+            sweep(
+                &format!("throttle {:.0} %", 100.0 * u),
+                800.0,
+                4000.0,
+                200,
+                |n| bar(1.5, n, u, 80.0),
+            )
+        })
+        .collect();
     let y = "Secondary pressure [bar]";
     plot(
         "Clamp map of the Rover",
         "PC-1 and PC-2 between floor and cap, oil at 80 degC",
         "Secondary pressure against belt ratio and against engine speed at four throttle openings.",
         "",
-        vec![axes("2500 rpm", "Belt ratio I [-]", y, over_ratio), axes("I = 1.5", "Engine speed [rpm]", y, over_speed)],
+        vec![
+            axes("2500 rpm", "Belt ratio I [-]", y, over_ratio),
+            axes("I = 1.5", "Engine speed [rpm]", y, over_speed),
+        ],
     )
 }

@@ -39,7 +39,14 @@ const fn line(
     bounds: &'static str,
     measured: &'static str,
 ) -> Line {
-    Line { name, parts, soaked: false, carries, bounds, measured }
+    Line {
+        name,
+        parts,
+        soaked: false,
+        carries,
+        bounds,
+        measured,
+    }
 }
 
 const FEW: &str = "25 to 95 degC; a few totals from -5 to 10";
@@ -72,13 +79,29 @@ const CVT: [Line; 8] = [
     },
     line(
         "slip, wedging, penetration",
-        &[Component::BeltSlip, Component::BeltWedge, Component::BeltPenetration],
+        &[
+            Component::BeltSlip,
+            Component::BeltWedge,
+            Component::BeltPenetration,
+        ],
         "pressure (PC-1), no viscosity",
         "pressure cap",
         FEW,
     ),
-    line("pump", &[Component::Pump], "pressure, and viscosity (PU-1)", "heat of its gaps (FH-1); flow by its inlet (PU-5)", FEW),
-    line("input shaft", &[Component::InputShaft], "power of viscosity (IS-1)", "heat of its films (FH-1)", FEW),
+    line(
+        "pump",
+        &[Component::Pump],
+        "pressure, and viscosity (PU-1)",
+        "heat of its gaps (FH-1); flow by its inlet (PU-5)",
+        FEW,
+    ),
+    line(
+        "input shaft",
+        &[Component::InputShaft],
+        "power of viscosity (IS-1)",
+        "heat of its films (FH-1)",
+        FEW,
+    ),
     line(
         "reverse clutch",
         &[Component::ClutchDrag],
@@ -86,45 +109,100 @@ const CVT: [Line; 8] = [
         "`cap_nm`: the film between plates ruptures",
         "about 0.5 Nm below 25 degC",
     ),
-    line("final drive", &[Component::FinalDrive], "power of viscosity (FD-1)", "heat of its films (FH-1)", FEW),
+    line(
+        "final drive",
+        &[Component::FinalDrive],
+        "power of viscosity (FD-1)",
+        "heat of its films (FH-1)",
+        FEW,
+    ),
 ];
 
 const MANUAL: [Line; 3] = [
-    line("manual: bearings", &[Component::Bearing], "power 2/3 of viscosity (MB-3)", "heat of their films (FH-1)", NEVER),
-    line("manual: churning", &[Component::Churning], "power 0.2 of viscosity (MB-4)", "the small power: the sump itself is sheared", NEVER),
-    line("manual: seals", &[Component::Seal], "power 0.15 of viscosity (MB-2)", "the small power", NEVER),
+    line(
+        "manual: bearings",
+        &[Component::Bearing],
+        "power 2/3 of viscosity (MB-3)",
+        "heat of their films (FH-1)",
+        NEVER,
+    ),
+    line(
+        "manual: churning",
+        &[Component::Churning],
+        "power 0.2 of viscosity (MB-4)",
+        "the small power: the sump itself is sheared",
+        NEVER,
+    ),
+    line(
+        "manual: seals",
+        &[Component::Seal],
+        "power 0.15 of viscosity (MB-2)",
+        "the small power",
+        NEVER,
+    ),
 ];
 
 fn car(name: &str, sets: &[&str]) -> Result<Setup, String> {
     let set = sets.iter().map(|s| (*s).to_owned()).collect();
-    load(name, "--vehicle", &Options { set, ..Options::default() }).map_err(|problems| render(&problems, false))
+    load(
+        name,
+        "--vehicle",
+        &Options {
+            set,
+            ..Options::default()
+        },
+    )
+    .map_err(|problems| render(&problems, false))
 }
 
 /// The bench in overdrive or fifth gear at 2000 rpm without load.
 fn point(ratio: f64, degc: f64, soaked: bool) -> BenchPoint {
     let sump_k = degc + ZERO_DEGC_K;
-    BenchPoint { ratio, input_rad_s: SPEED, sump_k, belt_k: soaked.then_some(sump_k), ..BenchPoint::default() }
+    BenchPoint {
+        ratio,
+        input_rad_s: SPEED,
+        sump_k,
+        belt_k: soaked.then_some(sump_k),
+        ..BenchPoint::default()
+    }
 }
 
 /// Lines of one car, at its `ratio`, with the sum of those that are not soaked.
-fn lines(text: &mut String, name: &str, unbound: &[&str], ratio: f64, lines: &[Line]) -> Result<(), String> {
+fn lines(
+    text: &mut String,
+    name: &str,
+    unbound: &[&str],
+    ratio: f64,
+    lines: &[Line],
+) -> Result<(), String> {
     let shipped = Bench::new(&car(name, &[])?);
     let unbound = Bench::new(&car(name, unbound)?);
     let mut sums = [0.0; AT.len() + 1];
     for of in lines {
         let loss = |bench: &Bench, degc: f64| {
             let answer = bench.solve(&point(ratio, degc, of.soaked));
-            of.parts.iter().map(|part| answer.part_nm(*part)).sum::<f64>()
+            of.parts
+                .iter()
+                .map(|part| answer.part_nm(*part))
+                .sum::<f64>()
         };
         let _ = write!(text, "| {} | {} | {} |", of.name, of.carries, of.bounds);
         let last = loss(&unbound, AT[AT.len() - 1]);
-        for (sum, nm) in sums.iter_mut().zip(AT.map(|degc| loss(&shipped, degc)).into_iter().chain([last])) {
+        for (sum, nm) in sums.iter_mut().zip(
+            AT.map(|degc| loss(&shipped, degc))
+                .into_iter()
+                .chain([last]),
+        ) {
             let _ = write!(text, " {nm:.2} |");
             *sum += if of.soaked { 0.0 } else { nm };
         }
         let _ = writeln!(text, " {} |", of.measured);
     }
-    let total = if name.ends_with("cvt") { "CVT, all of these" } else { "manual, all of these" };
+    let total = if name.ends_with("cvt") {
+        "CVT, all of these"
+    } else {
+        "manual, all of these"
+    };
     let cells: Vec<String> = sums.iter().map(|nm| format!("{nm:.2}")).collect();
     let _ = writeln!(text, "| {total} | | | {} | |", cells.join(" | "));
     Ok(())
@@ -146,7 +224,10 @@ pub fn table() -> Result<String, String> {
     let car = cvt.car(ZERO_DEGC_K);
     let drag = AT.map(|degc| {
         let k = degc + ZERO_DEGC_K;
-        format!("{:.1}", car.engine.at(k, k, &car.engine_oil, 1.0).drag_nm(SPEED))
+        format!(
+            "{:.1}",
+            car.engine.at(k, k, &car.engine_oil, 1.0).drag_nm(SPEED)
+        )
     });
     let _ = writeln!(
         text,

@@ -19,8 +19,20 @@ pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
         w = SIZE.0,
         h = SIZE.1
     );
-    path(&mut svg, &Geometry::new(r.cvt().ratio.low, x, l), (110.0, 150.0), x, "low");
-    path(&mut svg, &Geometry::new(r.cvt().ratio.high, x, l), (610.0, 150.0), x, "high");
+    path(
+        &mut svg,
+        &Geometry::new(r.cvt().ratio.low, x, l),
+        (110.0, 150.0),
+        x,
+        "low",
+    );
+    path(
+        &mut svg,
+        &Geometry::new(r.cvt().ratio.high, x, l),
+        (610.0, 150.0),
+        x,
+        "high",
+    );
     svg.push_str("</svg>\n");
     vec![("geometry_path", svg)]
 }
@@ -46,9 +58,10 @@ fn path(svg: &mut String, g: &Geometry, centre: (f64, f64), distance_m: f64, nam
         w = cy + qy,
         d = cy + py
     );
-    for (x, r, label, radius, wrap) in
-        [(cx, rp, "R_p", g.primary_radius_m, g.primary_wrap_rad), (sx, rs, "R_s", g.secondary_radius_m, g.secondary_wrap_rad)]
-    {
+    for (x, r, label, radius, wrap) in [
+        (cx, rp, "R_p", g.primary_radius_m, g.primary_wrap_rad),
+        (sx, rs, "R_s", g.secondary_radius_m, g.secondary_wrap_rad),
+    ] {
         let a: f64 = if label == "R_p" { 2.6 } else { 0.55 };
         let (ex, ey) = (x + r * a.cos(), cy - r * a.sin());
         let _ = writeln!(

@@ -25,15 +25,39 @@ pub struct Page {
 const CVT: &str = "rover_216_cvt";
 
 const fn page(stem: &'static str, keys: &'static [&'static str]) -> Page {
-    Page { stem, vehicle: CVT, keys }
+    Page {
+        stem,
+        vehicle: CVT,
+        keys,
+    }
 }
 
 /// Pages of mechanisms in the order of the book.
 pub const PAGES: [Page; 23] = [
-    page("belt", &["transmission.cvt.variator.half_wedge_deg", "transmission.cvt.variator.primary_piston_cm2"]),
-    page("geometry", &["transmission.cvt.belt.length_m", "transmission.cvt.ratio.low", "transmission.cvt.ratio.high"]),
+    page(
+        "belt",
+        &[
+            "transmission.cvt.variator.half_wedge_deg",
+            "transmission.cvt.variator.primary_piston_cm2",
+        ],
+    ),
+    page(
+        "geometry",
+        &[
+            "transmission.cvt.belt.length_m",
+            "transmission.cvt.ratio.low",
+            "transmission.cvt.ratio.high",
+        ],
+    ),
     page("tension", &["transmission.cvt.variator.half_wedge_deg"]),
-    page("bands", &["transmission.cvt.belt.band_count", "transmission.cvt.belt.band_thickness_mm", "transmission.cvt.belt.band_width_mm"]),
+    page(
+        "bands",
+        &[
+            "transmission.cvt.belt.band_count",
+            "transmission.cvt.belt.band_thickness_mm",
+            "transmission.cvt.belt.band_width_mm",
+        ],
+    ),
     page("film", &["transmission.cvt.belt.band_offset_mm"]),
     page("slip", &[]),
     page("deflection", &["transmission.cvt.variator.half_wedge_deg"]),
@@ -44,9 +68,16 @@ pub const PAGES: [Page; 23] = [
     page("final_drive", &["transmission.cvt.final_drive_ratio"]),
     page("launch", &["transmission.cvt.launch"]),
     page("ratio_control", &["transmission.cvt.ratio."]),
-    page("pressure", &["transmission.cvt.clamp", "transmission.cvt.pressure."]),
+    page(
+        "pressure",
+        &["transmission.cvt.clamp", "transmission.cvt.pressure."],
+    ),
     page("solve", &["transmission"]),
-    Page { stem: "manual", vehicle: "rover_216_5mt", keys: &["transmission.manual."] },
+    Page {
+        stem: "manual",
+        vehicle: "rover_216_5mt",
+        keys: &["transmission.manual."],
+    },
     page("lubricant", &["lubricant.", "engine_oil."]),
     page("engine", &["engine."]),
     page("road_load", &["road_load."]),
@@ -79,7 +110,10 @@ pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
 /// A line through `f` at `count` + 1 places from `low` to `high`.
 fn sweep(name: &str, low: f64, high: f64, count: u32, f: impl Fn(f64) -> f64) -> Line {
     let at = |i: u32| low + (high - low) * f64::from(i) / f64::from(count);
-    Line { name: name.to_owned(), points: (0..=count).map(|i| (at(i), f(at(i)))).collect() }
+    Line {
+        name: name.to_owned(),
+        points: (0..=count).map(|i| (at(i), f(at(i)))).collect(),
+    }
 }
 
 /// Points under a name; lines of the same name look the same in every pair of axes.
@@ -101,24 +135,41 @@ struct LinePanel {
 
 /// One pair of axes with its titles; its vertical axis takes in zero.
 fn axes(heading: &str, x: &'static str, y: &'static str, lines: Vec<Line>) -> LinePanel {
-    LinePanel { heading: heading.to_owned(), x, y, with_y: vec![0.0], lines }
+    LinePanel {
+        heading: heading.to_owned(),
+        x,
+        y,
+        with_y: vec![0.0],
+        lines,
+    }
 }
 
 /// A named plot.
 fn plot(title: &str, subject: &str, desc: &str, legend: &str, panels: Vec<LinePanel>) -> String {
     let mut names: Vec<String> = Vec::new();
-    for line in panels.iter().flat_map(|panel| &panel.lines).filter(|line| !line.name.is_empty()) {
+    for line in panels
+        .iter()
+        .flat_map(|panel| &panel.lines)
+        .filter(|line| !line.name.is_empty())
+    {
         if !names.contains(&line.name) {
             names.push(line.name.clone());
         }
     }
-    let look = |name: &str| Look { index: names.iter().position(|other| other == name).unwrap_or(0), dotted: false };
+    let look = |name: &str| Look {
+        index: names.iter().position(|other| other == name).unwrap_or(0),
+        dotted: false,
+    };
     let panel = |of: LinePanel| ChartPanel {
         heading: of.heading,
         x_title: of.x,
         y_title: of.y,
         with_y: of.with_y,
-        series: of.lines.into_iter().map(|line| (look(&line.name), line.points)).collect(),
+        series: of
+            .lines
+            .into_iter()
+            .map(|line| (look(&line.name), line.points))
+            .collect(),
         stacked: false,
     };
     let text = |s: &str| s.to_owned();
@@ -129,7 +180,10 @@ fn plot(title: &str, subject: &str, desc: &str, legend: &str, panels: Vec<LinePa
         panels: panels.into_iter().map(panel).collect(),
         own_x: true,
         legend: text(legend),
-        names: names.iter().map(|name| (look(name), name.clone())).collect(),
+        names: names
+            .iter()
+            .map(|name| (look(name), name.clone()))
+            .collect(),
         ..Chart::default()
     });
     picture.svg

@@ -33,45 +33,76 @@ fn nu(r: &Reference, degc: f64) -> f64 {
 fn pump(r: &Reference) -> String {
     let torque = |pump: &Pump, rpm: f64, bar: f64, degc: f64| {
         let (pa, eta) = (bar * 1e5, eta(r, degc));
-        pump.state(&pump.at(eta), rpm * RPM, pa, pump.steady_need_m3_s(pa, eta)).torque_nm
+        pump.state(&pump.at(eta), rpm * RPM, pa, pump.steady_need_m3_s(pa, eta))
+            .torque_nm
     };
     let fixed = r.cvt().pump;
-    let states = [(1000.0, 80.0), (3000.0, 80.0), (1000.0, 25.0), (3000.0, 25.0)];
-    let over_pressure: Vec<Line> =
-        states.iter().map(|&(n, t)| sweep(&format!("{n:.0} rpm, {t:.0} degC"), 0.0, 40.0, 80, |p| torque(&fixed, n, p, t))).collect();
+    let states = [
+        (1000.0, 80.0),
+        (3000.0, 80.0),
+        (1000.0, 25.0),
+        (3000.0, 25.0),
+    ];
+    let over_pressure: Vec<Line> = states
+        .iter()
+        .map(|&(n, t)| {
+            sweep(&format!("{n:.0} rpm, {t:.0} degC"), 0.0, 40.0, 80, |p| {
+                torque(&fixed, n, p, t)
+            })
+        })
+        .collect();
     plot(
         "Pump torque against pressure",
         "fixed displacement of the Rover (PU-1)",
         "Torque at the pump shaft against secondary pressure at two speeds and two oil temperatures.",
         "",
-        vec![axes("", "Secondary pressure [bar]", "Pump torque [Nm]", over_pressure)],
+        vec![axes(
+            "",
+            "Secondary pressure [bar]",
+            "Pump torque [Nm]",
+            over_pressure,
+        )],
     )
 }
 
 fn flow(r: &Reference) -> String {
     let kinds = [
         ("fixed", PumpKind::Fixed),
-        ("two cavities, share 0.5", PumpKind::DualCavity { share: 0.5 }),
+        (
+            "two cavities, share 0.5",
+            PumpKind::DualCavity { share: 0.5 },
+        ),
         ("variable, least 0.25", PumpKind::Variable { least: 0.25 }),
     ];
     let eta = eta(r, 80.0);
     let pa = 20e5;
     let state = |kind: PumpKind, rpm: f64| {
-        let pump = Pump { kind, ..r.cvt().pump };
+        let pump = Pump {
+            kind,
+            ..r.cvt().pump
+        };
         pump.state(&pump.at(eta), rpm * RPM, pa, pump.steady_need_m3_s(pa, eta))
     };
     let over = |part: &dyn Fn(PumpKind, f64) -> f64| -> Vec<Line> {
-        kinds.iter().map(|&(name, kind)| sweep(name, 500.0, 4000.0, 140, |n| part(kind, n))).collect()
+        kinds
+            .iter()
+            .map(|&(name, kind)| sweep(name, 500.0, 4000.0, 140, |n| part(kind, n)))
+            .collect()
     };
     let mut flows = over(&|kind, n| LITRES_MIN * state(kind, n).working_m3_s);
-    flows.push(sweep("need without shift", 500.0, 4000.0, 2, |_| LITRES_MIN * r.cvt().pump.steady_need_m3_s(pa, eta)));
+    flows.push(sweep("need without shift", 500.0, 4000.0, 2, |_| {
+        LITRES_MIN * r.cvt().pump.steady_need_m3_s(pa, eta)
+    }));
     let torques = over(&|kind, n| state(kind, n).torque_nm);
     plot(
         "Fixed, dual-cavity and variable pump",
         "20 bar, oil at 80 degC, no shift (PU-2, PU-4)",
         "Flow that works against pressure and torque of three kinds of pump against speed.",
         "",
-        vec![axes("Working flow", SPEED, "Flow [l/min]", flows), axes("Torque", SPEED, "Pump torque [Nm]", torques)],
+        vec![
+            axes("Working flow", SPEED, "Flow [l/min]", flows),
+            axes("Torque", SPEED, "Pump torque [Nm]", torques),
+        ],
     )
 }
 
@@ -79,14 +110,21 @@ fn input_shaft(r: &Reference) -> String {
     let spin = r.cvt().spin;
     let line = |degc: f64| {
         let now = spin.at(nu(r, degc));
-        sweep(&format!("{degc:.0} degC"), 1000.0, 4000.0, 60, |n| now.shaft_nm(n * RPM))
+        sweep(&format!("{degc:.0} degC"), 1000.0, 4000.0, 60, |n| {
+            now.shaft_nm(n * RPM)
+        })
     };
     plot(
         "Input shaft torque",
         "fluid of the Rover (IS-1)",
         "Input shaft torque against engine speed at four oil temperatures.",
         "",
-        vec![axes("", SPEED, "Torque [Nm]", [25.0, 50.0, 75.0, 95.0].map(line).to_vec())],
+        vec![axes(
+            "",
+            SPEED,
+            "Torque [Nm]",
+            [25.0, 50.0, 75.0, 95.0].map(line).to_vec(),
+        )],
     )
 }
 
@@ -98,7 +136,12 @@ fn reverse_clutch(r: &Reference) -> String {
         "fluid of the Rover (CD-1)",
         "Drag of the open reverse clutch against oil temperature.",
         "",
-        vec![axes("", "Oil temperature [degC]", "Torque [Nm]", vec![drag])],
+        vec![axes(
+            "",
+            "Oil temperature [degC]",
+            "Torque [Nm]",
+            vec![drag],
+        )],
     )
 }
 
@@ -121,7 +164,10 @@ fn final_drive(r: &Reference) -> String {
         "FD-1 and FD-2, fluid of the Rover; 0 degC is extrapolated",
         "No-load torque of the final drive, divided by the belt ratio, against input speed at four oil temperatures in low and high ratio.",
         "",
-        vec![axes("I = 2.417", x, y, lines(2.4169, 1000.0)), axes("I = 0.5", x, y, lines(0.5, 1750.0))],
+        vec![
+            axes("I = 2.417", x, y, lines(2.4169, 1000.0)),
+            axes("I = 0.5", x, y, lines(0.5, 1750.0)),
+        ],
     )
 }
 
@@ -129,7 +175,9 @@ fn launch(r: &Reference) -> String {
     let launch = &r.cvt().launch;
     let idle = r.cvt_car.car(298.15).engine.idle_hot_rad_s;
     let line = |rpm: f64, coupled: bool, name: &str| {
-        sweep(name, 0.0, 100.0, 200, |t| launch.engine_speed_rad_s(t, rpm * RPM, idle, coupled) / RPM)
+        sweep(name, 0.0, 100.0, 200, |t| {
+            launch.engine_speed_rad_s(t, rpm * RPM, idle, coupled) / RPM
+        })
     };
     let speeds = vec![
         line(0.0, false, "shaft below idle, opening or closing"),
@@ -137,10 +185,16 @@ fn launch(r: &Reference) -> String {
         line(1300.0, true, "shaft at 1300 rpm, locked"),
     ];
     let shares = vec![
-        sweep("creep torque over its value at rest", 0.0, 1500.0, 300, |n| {
-            launch.creep_torque_nm(n * RPM, idle) / launch.creep_torque_nm(0.0, idle)
+        sweep(
+            "creep torque over its value at rest",
+            0.0,
+            1500.0,
+            300,
+            |n| launch.creep_torque_nm(n * RPM, idle) / launch.creep_torque_nm(0.0, idle),
+        ),
+        sweep("share of overrun torque carried", 0.0, 1500.0, 300, |n| {
+            launch.overrun_share(n * RPM, idle)
         }),
-        sweep("share of overrun torque carried", 0.0, 1500.0, 300, |n| launch.overrun_share(n * RPM, idle)),
     ];
     plot(
         "Launch clutch",
@@ -148,8 +202,21 @@ fn launch(r: &Reference) -> String {
         "Engine speed against clutch torque while slipping and locked; creep torque and overrun share against input shaft speed.",
         "",
         vec![
-            LinePanel { with_y: vec![800.0], ..axes("Engine speed", "Clutch torque [Nm]", "Engine speed [rpm]", speeds) },
-            axes("Creeping and letting go", "Input shaft speed [rpm]", "Share [-]", shares),
+            LinePanel {
+                with_y: vec![800.0],
+                ..axes(
+                    "Engine speed",
+                    "Clutch torque [Nm]",
+                    "Engine speed [rpm]",
+                    speeds,
+                )
+            },
+            axes(
+                "Creeping and letting go",
+                "Input shaft speed [rpm]",
+                "Share [-]",
+                shares,
+            ),
         ],
     )
 }
@@ -160,19 +227,38 @@ fn manual(r: &Reference) -> String {
     let loss = |n: f64, degc: f64, wanted: &[Component]| {
         let k = degc + ZERO_DEGC_K;
         let (parts, _) = box_.part_losses_nm(3, n * RPM, 0.0, oil.kinematic_m2_s(k), k);
-        parts.iter().filter(|(part, _)| wanted.contains(part)).map(|(_, nm)| nm).sum::<f64>()
+        parts
+            .iter()
+            .filter(|(part, _)| wanted.contains(part))
+            .map(|(_, nm)| nm)
+            .sum::<f64>()
     };
     let all = [Component::Seal, Component::Bearing, Component::Churning];
-    let sum = |degc: f64| sweep(&format!("sum, {degc:.0} degC"), 500.0, 5000.0, 90, |n| loss(n, degc, &all));
-    let part = |name: &str, part: Component| sweep(name, 500.0, 5000.0, 90, |n| loss(n, 80.0, &[part]));
-    let published = sweep("published, hot", 500.0, 5000.0, 2, |n| 0.925 + 0.000_407 * n);
+    let sum = |degc: f64| {
+        sweep(&format!("sum, {degc:.0} degC"), 500.0, 5000.0, 90, |n| {
+            loss(n, degc, &all)
+        })
+    };
+    let part =
+        |name: &str, part: Component| sweep(name, 500.0, 5000.0, 90, |n| loss(n, 80.0, &[part]));
+    let published = sweep("published, hot", 500.0, 5000.0, 2, |n| {
+        0.925 + 0.000_407 * n
+    });
     let y = "Torque at the input shaft [Nm]";
-    let parts = vec![part("seals", all[0]), part("bearings", all[1]), part("churning", all[2]), published];
+    let parts = vec![
+        part("seals", all[0]),
+        part("bearings", all[1]),
+        part("churning", all[2]),
+        published,
+    ];
     plot(
         "Manual box at no load",
         "gear oil of the sister car (MB-2 to MB-4)",
         "Sum of seal, bearing and churning torque against speed at three temperatures, and the parts at 80 degC beside the published line.",
         "",
-        vec![axes("Sum", SPEED, y, [-10.0, 25.0, 80.0].map(sum).to_vec()), axes("Parts at 80 degC", SPEED, y, parts)],
+        vec![
+            axes("Sum", SPEED, y, [-10.0, 25.0, 80.0].map(sum).to_vec()),
+            axes("Parts at 80 degC", SPEED, y, parts),
+        ],
     )
 }

@@ -5,7 +5,9 @@ use cvtcycle::lubricant::{BandFriction, Lubricant, ZERO_DEGC_K};
 use cvtcycle::setup::{Options, Setup, load};
 use cvtcycle::transmission::Transmission;
 use cvtcycle::transmission::cvt::Cvt;
-use cvtcycle::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state};
+use cvtcycle::transmission::cvt::variator::{
+    Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state,
+};
 use cvtcycle::transmission::manual::Manual;
 
 /// rad/s in one rpm.
@@ -36,7 +38,10 @@ pub struct At {
 impl Reference {
     /// Reads the cars.
     pub fn load() -> Result<Self, String> {
-        Ok(Reference { cvt_car: car("rover_216_cvt")?, manual_car: car("rover_216_5mt")? })
+        Ok(Reference {
+            cvt_car: car("rover_216_cvt")?,
+            manual_car: car("rover_216_5mt")?,
+        })
     }
 
     /// The CVT of the reference car.
@@ -62,16 +67,33 @@ impl Reference {
 
     /// The belt in a reading of the thesis.
     pub fn belt(&self, formulation: Formulation) -> Belt {
-        Belt { formulation, ..self.cvt().belt.clone() }
+        Belt {
+            formulation,
+            ..self.cvt().belt.clone()
+        }
     }
 
     /// The belt with boundary friction on the bands (no film), at 85 degC.
     pub fn boundary(&self, belt: &Belt, at: At) -> BeltState {
-        self.with_friction(belt, at, BandFriction { mu: self.oil().friction.band, film_share: 0.0 }, 85.0)
+        self.with_friction(
+            belt,
+            at,
+            BandFriction {
+                mu: self.oil().friction.band,
+                film_share: 0.0,
+            },
+            85.0,
+        )
     }
 
     /// The belt with a band friction and temperature.
-    pub fn with_friction(&self, belt: &Belt, at: At, band: BandFriction, belt_degc: f64) -> BeltState {
+    pub fn with_friction(
+        &self,
+        belt: &Belt,
+        at: At,
+        band: BandFriction,
+        belt_degc: f64,
+    ) -> BeltState {
         let friction = &self.oil().friction;
         let cvt = self.cvt();
         belt_state(

@@ -26,13 +26,24 @@ pub fn labelled(page: &str) -> Vec<Labelled> {
     let mut list = Vec::new();
     let mut lines = page.lines();
     while let Some(line) = lines.next() {
-        let Some((label, rest)) = line.strip_prefix("**").and_then(|l| l.split_once("** (")) else { continue };
-        let Some((status, _)) = rest.split_once(')') else { continue };
+        let Some((label, rest)) = line.strip_prefix("**").and_then(|l| l.split_once("** (")) else {
+            continue;
+        };
+        let Some((status, _)) = rest.split_once(')') else {
+            continue;
+        };
         if label.len() < 4 || label.as_bytes()[2] != b'-' {
             continue;
         }
-        let next = lines.clone().take_while(|l| !l.starts_with("**") && !l.starts_with('#')).any(|l| l.starts_with("$$"));
-        list.push(Labelled { label: label.to_owned(), status: status.to_owned(), displayed: next });
+        let next = lines
+            .clone()
+            .take_while(|l| !l.starts_with("**") && !l.starts_with('#'))
+            .any(|l| l.starts_with("$$"));
+        list.push(Labelled {
+            label: label.to_owned(),
+            status: status.to_owned(),
+            displayed: next,
+        });
     }
     list
 }
@@ -42,10 +53,17 @@ pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
     let mut files = Vec::new();
     for page in &PAGES {
         let path = source.join(format!("{}.md", page.stem));
-        let text = std::fs::read_to_string(&path).map_err(|why| format!("{}: {why}", path.display()))?;
+        let text =
+            std::fs::read_to_string(&path).map_err(|why| format!("{}: {why}", path.display()))?;
         let labels = labelled(&text);
-        files.push((format!("generated/labels_{}.md", page.stem), label_table(&labels)));
-        files.push((format!("generated/values_{}.md", page.stem), value_table(page, &labels)?));
+        files.push((
+            format!("generated/labels_{}.md", page.stem),
+            label_table(&labels),
+        ));
+        files.push((
+            format!("generated/values_{}.md", page.stem),
+            value_table(page, &labels)?,
+        ));
     }
     files.push(("generated/labels_all.md".to_owned(), index(source)?));
     Ok(files)
@@ -53,14 +71,30 @@ pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
 
 /// Every label with its page, in the order of the book.
 fn index(source: &Path) -> Result<String, String> {
-    let mut text = MADE_FROM_HEADS.to_owned() + "\n| label | page | statement in the code | status |\n|---|---|---|---|\n";
-    for stem in PAGES.iter().map(|page| page.stem).chain(["cold", "rigs", "studies"]) {
+    let mut text = MADE_FROM_HEADS.to_owned()
+        + "\n| label | page | statement in the code | status |\n|---|---|---|---|\n";
+    for stem in PAGES
+        .iter()
+        .map(|page| page.stem)
+        .chain(["cold", "rigs", "studies"])
+    {
         let path = source.join(format!("{stem}.md"));
-        let page = std::fs::read_to_string(&path).map_err(|why| format!("{}: {why}", path.display()))?;
-        let title = page.lines().next().unwrap_or_default().trim_start_matches("# ");
+        let page =
+            std::fs::read_to_string(&path).map_err(|why| format!("{}: {why}", path.display()))?;
+        let title = page
+            .lines()
+            .next()
+            .unwrap_or_default()
+            .trim_start_matches("# ");
         for e in labelled(&page).iter().filter_map(|l| by_label(&l.label)) {
             // Writing into a String cannot fail, here and below.
-            let _ = writeln!(text, "| [{0}]({stem}.md#{0}) | {title} | {1} | {2} |", e.label, plain(e.statement), plain(e.status));
+            let _ = writeln!(
+                text,
+                "| [{0}]({stem}.md#{0}) | {title} | {1} | {2} |",
+                e.label,
+                plain(e.statement),
+                plain(e.status)
+            );
         }
     }
     Ok(text)
@@ -68,20 +102,34 @@ fn index(source: &Path) -> Result<String, String> {
 
 /// Keys of the page's vehicle that belong to it.
 pub fn keys(page: &Page, labels: &[Labelled]) -> Result<Vec<KeyInfo>, String> {
-    let setup = load(page.vehicle, "--vehicle", &Options::default()).map_err(|problems| render(&problems, false))?;
+    let setup = load(page.vehicle, "--vehicle", &Options::default())
+        .map_err(|problems| render(&problems, false))?;
     let named = |key: &str| {
-        page.keys
-            .iter()
-            .any(|k| key == *k || (k.ends_with('.') && key.starts_with(k)) || key.starts_with(&format!("{k}.")) && *k != "transmission")
+        page.keys.iter().any(|k| {
+            key == *k
+                || (k.ends_with('.') && key.starts_with(k))
+                || key.starts_with(&format!("{k}.")) && *k != "transmission"
+        })
     };
-    let of_page = |info: &KeyInfo| cited(&info.doc).iter().any(|e| labels.iter().any(|l| l.label == e.label));
+    let of_page = |info: &KeyInfo| {
+        cited(&info.doc)
+            .iter()
+            .any(|e| labels.iter().any(|l| l.label == e.label))
+    };
     // The engine oil lends no friction to the belt: its keys of that kind would only confuse.
     let useful = |key: &str| !key.starts_with("engine_oil.friction");
-    Ok(setup.keys.into_iter().filter(|info| useful(&info.key) && (named(&info.key) || of_page(info))).collect())
+    Ok(setup
+        .keys
+        .into_iter()
+        .filter(|info| useful(&info.key) && (named(&info.key) || of_page(info)))
+        .collect())
 }
 
 fn value_table(page: &Page, labels: &[Labelled]) -> Result<String, String> {
-    let mut text = format!("<!-- Written by `cargo run --release --example book_figures` from vehicle `{}`. -->\n", page.vehicle);
+    let mut text = format!(
+        "<!-- Written by `cargo run --release --example book_figures` from vehicle `{}`. -->\n",
+        page.vehicle
+    );
     let keys = keys(page, labels)?;
     if keys.is_empty() {
         text += "\nNo values of its own.\n";
@@ -89,8 +137,21 @@ fn value_table(page: &Page, labels: &[Labelled]) -> Result<String, String> {
     }
     text += "\n| key | value | status | source | meaning |\n|---|---|---|---|---|\n";
     for info in &keys {
-        let source = [info.source.as_str(), info.note.as_str()].iter().filter(|s| !s.is_empty()).copied().collect::<Vec<_>>().join("; ");
-        let _ = writeln!(text, "| `{}` | {} | {} | {} | {} |", info.key, cell(&value(info)), info.status, cell(&source), cell(&info.doc));
+        let source = [info.source.as_str(), info.note.as_str()]
+            .iter()
+            .filter(|s| !s.is_empty())
+            .copied()
+            .collect::<Vec<_>>()
+            .join("; ");
+        let _ = writeln!(
+            text,
+            "| `{}` | {} | {} | {} | {} |",
+            info.key,
+            cell(&value(info)),
+            info.status,
+            cell(&source),
+            cell(&info.doc)
+        );
     }
     Ok(text)
 }
@@ -106,7 +167,14 @@ fn label_table(labels: &[Labelled]) -> String {
         match by_label(label) {
             Some(e) => {
                 // Bars are escaped in the heads already.
-                let _ = writeln!(text, "| {} | {} | {} | `src/{}` |", e.label, plain(e.statement), plain(e.status), e.file);
+                let _ = writeln!(
+                    text,
+                    "| {} | {} | {} | `src/{}` |",
+                    e.label,
+                    plain(e.statement),
+                    plain(e.status),
+                    e.file
+                );
             }
             None => {
                 let _ = writeln!(text, "| {label} | not in the code | | |");
@@ -118,7 +186,10 @@ fn label_table(labels: &[Labelled]) -> String {
 
 /// Text whose underlines, stars and angles are no Markdown.
 fn plain(text: &str) -> String {
-    text.replace('_', "\\_").replace('*', "\\*").replace('<', "&lt;").replace('$', "\\$")
+    text.replace('_', "\\_")
+        .replace('*', "\\*")
+        .replace('<', "&lt;")
+        .replace('$', "\\$")
 }
 
 fn cell(text: &str) -> String {

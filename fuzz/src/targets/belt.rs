@@ -7,7 +7,9 @@ use cvtcycle::rig::points::NUMBERS;
 use cvtcycle::setup::{self, Options};
 use cvtcycle::transmission::Transmission;
 use cvtcycle::transmission::cvt::variator::point::belt_point;
-use cvtcycle::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, Formulation, belt_capacity_nm, belt_losses, belt_state};
+use cvtcycle::transmission::cvt::variator::{
+    Belt, BeltAtRatio, BeltLoad, Formulation, belt_capacity_nm, belt_losses, belt_state,
+};
 
 use super::csv::table_of_points;
 use super::range::range;
@@ -18,7 +20,9 @@ pub fn belt(data: &[u8]) {
     let way = bytes.byte();
     let formulation = Formulation::NAMES[usize::from(way >> 1) % Formulation::NAMES.len()].1;
     if way % 2 == 0 {
-        within_memory(data.len(), || any_numbers(Bytes(&data[data.len().min(1)..]), formulation));
+        within_memory(data.len(), || {
+            any_numbers(Bytes(&data[data.len().min(1)..]), formulation)
+        });
     } else {
         numbers_in_range(bytes, formulation);
     }
@@ -26,15 +30,21 @@ pub fn belt(data: &[u8]) {
 
 /// The belt and the load of the shipped car.
 fn shipped() -> (Belt, BeltLoad) {
-    let setup = setup::load("rover_216_cvt", "--vehicle", &Options::default()).unwrap_or_else(|_| panic!("the shipped car"));
-    let Transmission::Cvt(cvt) = setup.transmission() else { panic!("a car with a belt") };
+    let setup = setup::load("rover_216_cvt", "--vehicle", &Options::default())
+        .unwrap_or_else(|_| panic!("the shipped car"));
+    let Transmission::Cvt(cvt) = setup.transmission() else {
+        panic!("a car with a belt")
+    };
     let (oil, _) = setup.oils();
     let belt_k = ZERO_DEGC_K + 85.0;
     let load = BeltLoad {
         primary_speed_rad_s: 200.0,
         output_torque_nm: 60.0,
         secondary_clamp_n: 20_000.0,
-        band: BandFriction { mu: oil.friction.band, film_share: 0.3 },
+        band: BandFriction {
+            mu: oil.friction.band,
+            film_share: 0.3,
+        },
         eta_pa_s: oil.dynamic_pa_s(belt_k),
         film_thickness_m: oil.friction.film_thickness_m,
         segment_friction: oil.friction.segment,
@@ -49,7 +59,11 @@ fn moved(value: &mut f64, bytes: &mut Bytes) {
         0 => {}
         1 => *value *= (f64::from(bytes.byte()) - 128.0) / 32.0,
         2 => *value *= (f64::from(bytes.byte()) - 128.0).exp2(),
-        _ => *value = Some(bytes.number()).filter(|x| x.is_finite()).unwrap_or(f64::MAX),
+        _ => {
+            *value = Some(bytes.number())
+                .filter(|x| x.is_finite())
+                .unwrap_or(f64::MAX)
+        }
     }
 }
 
@@ -97,7 +111,11 @@ fn any_numbers(mut bytes: Bytes, formulation: Formulation) {
     let at = BeltAtRatio::new(&belt, ratio);
     let point = belt_point(&belt, &at, &load);
     let share = bytes.share() * 2.0 - 1.0;
-    let answers = (point.with_band_speed(&belt, share), belt_state(&belt, &at, &load), belt_losses(&belt, &at, &load));
+    let answers = (
+        point.with_band_speed(&belt, share),
+        belt_state(&belt, &at, &load),
+        belt_losses(&belt, &at, &load),
+    );
     let capacity_nm = belt_capacity_nm(&belt, &at, &load);
     std::hint::black_box((answers, capacity_nm));
 }
@@ -107,7 +125,9 @@ fn numbers_in_range(mut bytes: Bytes, formulation: Formulation) {
     let mut names = String::new();
     let mut row = String::new();
     for number in &NUMBERS {
-        let Some((low, high)) = range(&number.allowed.to_string()) else { continue };
+        let Some((low, high)) = range(&number.allowed.to_string()) else {
+            continue;
+        };
         let share = bytes.share();
         let value = low + share * (high - low);
         let value = if number.whole { value.round() } else { value };

@@ -25,12 +25,20 @@ fn told<T>(answer: Result<T, Vec<Problem>>) -> Option<T> {
 
 pub fn cycle(data: &[u8]) {
     within_memory(data.len(), || {
-        let Some(cycle) = told(read_csv("fuzz.csv", data)) else { return };
+        let Some(cycle) = told(read_csv("fuzz.csv", data)) else {
+            return;
+        };
         for automatic in [false, true] {
             let trace = cycle.trace_for(automatic);
             let (duration_s, distance_m) = (trace.duration_s(), trace.distance_m());
-            assert!(duration_s.is_finite() && duration_s > 0.0, "a cycle of {duration_s} s");
-            assert!(distance_m.is_finite() && distance_m >= 0.0, "a cycle of {distance_m} m");
+            assert!(
+                duration_s.is_finite() && duration_s > 0.0,
+                "a cycle of {duration_s} s"
+            );
+            assert!(
+                distance_m.is_finite() && distance_m >= 0.0,
+                "a cycle of {distance_m} m"
+            );
         }
     });
 }
@@ -54,7 +62,9 @@ pub fn map(data: &[u8]) {
         (1, "transmission.manual.maps.box=fuzz.csv"),
     ];
     static CARS: OnceLock<[&'static str; 2]> = OnceLock::new();
-    let Some((which, rest)) = data.split_first() else { return };
+    let Some((which, rest)) = data.split_first() else {
+        return;
+    };
     let cars = CARS.get_or_init(|| {
         ["rover_216_cvt", "rover_216_5mt"].map(|name| {
             let found = embedded_vehicles().iter().find(|(known, _)| *known == name);
@@ -62,9 +72,19 @@ pub fn map(data: &[u8]) {
         })
     });
     let (car, set) = USERS[usize::from(*which) % USERS.len()];
-    let options = Options { set: vec![set.to_owned()], ..Options::default() };
+    let options = Options {
+        set: vec![set.to_owned()],
+        ..Options::default()
+    };
     let bytes: Arc<[u8]> = rest.into();
-    within_memory(rest.len(), || told(setup::read("fuzz.toml", cars[car], Box::new(Only(Arc::clone(&bytes))), &options)));
+    within_memory(rest.len(), || {
+        told(setup::read(
+            "fuzz.toml",
+            cars[car],
+            Box::new(Only(Arc::clone(&bytes))),
+            &options,
+        ))
+    });
 }
 
 /// Looks at every row that a table of belt points gives.
@@ -87,12 +107,22 @@ impl Take for Look {
         ];
         if row.formulation == Formulation::Smooth {
             for loss in losses.into_iter().flatten() {
-                assert!(loss >= 0.0 && loss.is_finite(), "a loss of {loss} Nm in {row:?}");
+                assert!(
+                    loss >= 0.0 && loss.is_finite(),
+                    "a loss of {loss} Nm in {row:?}"
+                );
             }
             let sum: f64 = losses.into_iter().flatten().sum();
-            assert!((row.point.loss_nm - sum).abs() <= 1e-9 * (1.0 + sum), "parts add up to {sum} Nm in {row:?}");
+            assert!(
+                (row.point.loss_nm - sum).abs() <= 1e-9 * (1.0 + sum),
+                "parts add up to {sum} Nm in {row:?}"
+            );
         } else if row.point.status == PointStatus::Ok {
-            assert!(row.point.loss_nm.is_finite(), "a loss of {} Nm in {row:?}", row.point.loss_nm);
+            assert!(
+                row.point.loss_nm.is_finite(),
+                "a loss of {} Nm in {row:?}",
+                row.point.loss_nm
+            );
         }
         Ok(())
     }
@@ -100,7 +130,8 @@ impl Take for Look {
 
 /// The belt of the shipped car.
 fn belt_model() -> Model {
-    let setup = setup::load("rover_216_cvt", "--vehicle", &Options::default()).unwrap_or_else(|_| panic!("the shipped car"));
+    let setup = setup::load("rover_216_cvt", "--vehicle", &Options::default())
+        .unwrap_or_else(|_| panic!("the shipped car"));
     Model::new(&setup, 0.0).unwrap_or_else(|| panic!("a car with a belt"))
 }
 
@@ -110,18 +141,29 @@ pub fn table_of_points(text: &[u8], formulation: Formulation) {
     let mut model = Some(MODEL.with(Model::clone));
     within_memory(text.len(), || {
         let mut look = Look(false);
-        let job = Job { model: model.take(), formulation, rows: &mut look };
+        let job = Job {
+            model: model.take(),
+            formulation,
+            rows: &mut look,
+        };
         told(points::read("fuzz.csv", text, job))
     });
 }
 
 pub fn points(data: &[u8]) {
-    let Some((which, rest)) = data.split_first() else { return };
-    table_of_points(rest, Formulation::NAMES[usize::from(*which) % Formulation::NAMES.len()].1);
+    let Some((which, rest)) = data.split_first() else {
+        return;
+    };
+    table_of_points(
+        rest,
+        Formulation::NAMES[usize::from(*which) % Formulation::NAMES.len()].1,
+    );
 }
 
 pub fn measured(data: &[u8]) {
-    let Some((which, rest)) = data.split_first() else { return };
+    let Some((which, rest)) = data.split_first() else {
+        return;
+    };
     let form = Form::ALL[usize::from(*which) % Form::ALL.len()];
     within_memory(rest.len(), || told(data::check(form, "fuzz.csv", rest)));
 }

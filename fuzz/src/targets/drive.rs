@@ -18,14 +18,56 @@ use super::{Bytes, within_memory};
 /// Cars, and the words that make other parts of them: fuel model, clamping, pump, thrust ratio, cooler, fluids.
 const CARS: [(&str, &[&str]); 10] = [
     ("rover_216_cvt", &[]),
-    ("rover_216_cvt", &["transmission.cvt.clamp=map", "engine.model.bsfc_map.file=si_1900_bsfc"]),
-    ("rover_216_cvt", &["transmission.cvt.clamp=torque_following", "transmission.cvt.pump.kind=dual_cavity"]),
-    ("rover_216_cvt", &["transmission.cvt.clamp=slip_limited", "transmission.cvt.pump.kind=variable"]),
-    ("rover_216_cvt", &["transmission.cvt.belt.thrust_ratio=[[0.4, 1.2], [1, 1.1], [2.5, 0.9]]", "thermal.cooler.bypassed=true"]),
-    ("rover_216_cvt", &["transmission.cvt.variator.compensated=false", "thermal.transmission.exchanger_w_k=120"]),
-    ("rover_216_cvt", &["vehicle.transmission_oil=dexron_iii", "thermal.cooler.bypass_below_degc=20"]),
+    (
+        "rover_216_cvt",
+        &[
+            "transmission.cvt.clamp=map",
+            "engine.model.bsfc_map.file=si_1900_bsfc",
+        ],
+    ),
+    (
+        "rover_216_cvt",
+        &[
+            "transmission.cvt.clamp=torque_following",
+            "transmission.cvt.pump.kind=dual_cavity",
+        ],
+    ),
+    (
+        "rover_216_cvt",
+        &[
+            "transmission.cvt.clamp=slip_limited",
+            "transmission.cvt.pump.kind=variable",
+        ],
+    ),
+    (
+        "rover_216_cvt",
+        &[
+            "transmission.cvt.belt.thrust_ratio=[[0.4, 1.2], [1, 1.1], [2.5, 0.9]]",
+            "thermal.cooler.bypassed=true",
+        ],
+    ),
+    (
+        "rover_216_cvt",
+        &[
+            "transmission.cvt.variator.compensated=false",
+            "thermal.transmission.exchanger_w_k=120",
+        ],
+    ),
+    (
+        "rover_216_cvt",
+        &[
+            "vehicle.transmission_oil=dexron_iii",
+            "thermal.cooler.bypass_below_degc=20",
+        ],
+    ),
     ("rover_216_5mt", &[]),
-    ("rover_216_5mt", &["engine.model.bsfc_map.file=si_1900_bsfc", "road_load.surface=road"]),
+    (
+        "rover_216_5mt",
+        &[
+            "engine.model.bsfc_map.file=si_1900_bsfc",
+            "road_load.surface=road",
+        ],
+    ),
     ("mondeo_20_5mt", &[]),
 ];
 
@@ -41,9 +83,13 @@ struct Car {
 }
 
 fn car((name, words): (&str, &[&str])) -> Car {
-    let options = Options { set: words.iter().map(|word| (*word).to_owned()).collect(), ..Options::default() };
+    let options = Options {
+        set: words.iter().map(|word| (*word).to_owned()).collect(),
+        ..Options::default()
+    };
     let loaded = Blueprint::load(name, "--vehicle", &options);
-    let (blueprint, base) = loaded.unwrap_or_else(|problems| panic!("{name} {words:?}: {}", problems[0].message));
+    let (blueprint, base) =
+        loaded.unwrap_or_else(|problems| panic!("{name} {words:?}: {}", problems[0].message));
     let slot = |info: &KeyInfo| {
         info.si?;
         let (low, high) = range(&info.allowed)?;
@@ -52,7 +98,10 @@ fn car((name, words): (&str, &[&str])) -> Car {
         Some((slot, low, high, base, info.allowed.starts_with("integer")))
     };
     let slots = base.keys.iter().filter_map(slot).collect();
-    Car { bench: blueprint.bench(), slots }
+    Car {
+        bench: blueprint.bench(),
+        slots,
+    }
 }
 
 /// Whether cars and cycles are printed, for whoever looks into an input: `CVTCYCLE_FUZZ_TELL=1`.
@@ -85,7 +134,9 @@ fn setup(car: &mut Car, bytes: &mut Bytes) -> Option<Setup> {
         match car.bench.build() {
             Ok(setup) => {
                 if tells() {
-                    changes.iter().for_each(|(place, number)| eprintln!("--set {}={number:?}", car.slots[*place].0.key()));
+                    changes.iter().for_each(|(place, number)| {
+                        eprintln!("--set {}={number:?}", car.slots[*place].0.key())
+                    });
                 }
                 return Some(setup);
             }
@@ -97,10 +148,25 @@ fn setup(car: &mut Car, bytes: &mut Bytes) -> Option<Setup> {
 
 fn cycle(bytes: &mut Bytes) -> Option<Cycle> {
     let mut text = String::from("time_s,speed_kmh,grade,engine_off\n");
-    let (mut time_s, mut kmh) = (0.0, if bytes.one_in(4) { 100.0 * bytes.share() } else { 0.0 });
+    let (mut time_s, mut kmh) = (
+        0.0,
+        if bytes.one_in(4) {
+            100.0 * bytes.share()
+        } else {
+            0.0
+        },
+    );
     for _ in 0..=usize::from(bytes.byte()) % LEGS {
-        let grade = if bytes.one_in(4) { 0.2 * bytes.share() - 0.1 } else { 0.0 };
-        let next = if bytes.one_in(4) { 0.0 } else { 140.0 * bytes.share() };
+        let grade = if bytes.one_in(4) {
+            0.2 * bytes.share() - 0.1
+        } else {
+            0.0
+        };
+        let next = if bytes.one_in(4) {
+            0.0
+        } else {
+            140.0 * bytes.share()
+        };
         let engine_off = u8::from(kmh <= 0.0 && next <= 0.0 && bytes.one_in(2));
         let _ = writeln!(text, "{time_s},{kmh},{grade},{engine_off}");
         time_s += 0.25 + 12.0 * bytes.share() * bytes.share();
@@ -119,12 +185,27 @@ struct Look;
 
 impl Recorder for Look {
     fn record(&mut self, row: &Row, terms: &Terms) {
-        assert!(terms.power_error() <= 1e-9 && terms.heat_error() <= 1e-9, "ledgers {terms:?} in {row:?}");
+        assert!(
+            terms.power_error() <= 1e-9 && terms.heat_error() <= 1e-9,
+            "ledgers {terms:?} in {row:?}"
+        );
         for component in Component::ALL {
             let loss = row.loss_w[component as usize];
-            assert!(loss >= 0.0 && loss.is_finite(), "{} loses {loss} W in {row:?}", component.name());
+            assert!(
+                loss >= 0.0 && loss.is_finite(),
+                "{} loses {loss} W in {row:?}",
+                component.name()
+            );
         }
-        for x in [row.fuel_kg_s, row.brake_w, row.deficit_w, row.exhaust_w, row.engine_heat_w, row.engine_speed_rad_s, row.throttle] {
+        for x in [
+            row.fuel_kg_s,
+            row.brake_w,
+            row.deficit_w,
+            row.exhaust_w,
+            row.engine_heat_w,
+            row.engine_speed_rad_s,
+            row.throttle,
+        ] {
             assert!(x >= 0.0 && x.is_finite(), "{x} in {row:?}");
         }
         for k in [row.coolant_k, row.engine_oil_k, row.sump_k] {
@@ -155,16 +236,37 @@ pub fn drive_car(data: &[u8]) {
         let car = made[which].get_or_insert_with(|| car(CARS[which]));
         within_memory(data.len(), || {
             let mut bytes = Bytes(bytes.0);
-            let Some(cycle) = cycle(&mut bytes) else { return };
-            let Some(setup) = setup(car, &mut bytes) else { return };
+            let Some(cycle) = cycle(&mut bytes) else {
+                return;
+            };
+            let Some(setup) = setup(car, &mut bytes) else {
+                return;
+            };
             let trace = cycle.trace_for(setup.transmission().is_cvt());
-            let start_k = if let Start::At(temp_k) = conditions.start { temp_k } else { conditions.ambient_k };
-            simulate(&setup.car(conditions.ambient_k), trace, conditions.max_dt_s, State::at(start_k), &mut Look);
+            let start_k = if let Start::At(temp_k) = conditions.start {
+                temp_k
+            } else {
+                conditions.ambient_k
+            };
+            simulate(
+                &setup.car(conditions.ambient_k),
+                trace,
+                conditions.max_dt_s,
+                State::at(start_k),
+                &mut Look,
+            );
             // The way of the command, with its start and its sums.
             if matches!(conditions.start, Start::Warm) {
                 let outcome = drive(&setup, &cycle, &conditions);
-                let fuel_kg: f64 = outcome.rows.iter().map(|row| row.fuel_kg_s * row.dt_s).sum();
-                assert!(fuel_kg.is_finite() && fuel_kg >= 0.0, "{fuel_kg} kg of fuel");
+                let fuel_kg: f64 = outcome
+                    .rows
+                    .iter()
+                    .map(|row| row.fuel_kg_s * row.dt_s)
+                    .sum();
+                assert!(
+                    fuel_kg.is_finite() && fuel_kg >= 0.0,
+                    "{fuel_kg} kg of fuel"
+                );
             }
         });
     });

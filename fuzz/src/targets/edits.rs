@@ -89,8 +89,14 @@ fn edit(lines: &mut Vec<String>, bytes: &mut Bytes) {
             lines.swap(at, with);
         }
         6 => {
-            let key = lines[other(bytes, lines)].split('=').next().unwrap_or_default().to_owned();
-            let rest = lines[at].split_once('=').map_or(String::new(), |(_, rest)| format!("={rest}"));
+            let key = lines[other(bytes, lines)]
+                .split('=')
+                .next()
+                .unwrap_or_default()
+                .to_owned();
+            let rest = lines[at]
+                .split_once('=')
+                .map_or(String::new(), |(_, rest)| format!("={rest}"));
             lines[at] = key + &rest;
         }
         7 => {
@@ -105,7 +111,9 @@ fn edit(lines: &mut Vec<String>, bytes: &mut Bytes) {
         }
         _ => {
             // Deep or long, from a few bytes.
-            let unit = bytes.of(&["[", "{a=", "a.", "(", "1,", "\"", "[[a]]\n", "-", "a=1\n", "{"]);
+            let unit = bytes.of(&[
+                "[", "{a=", "a.", "(", "1,", "\"", "[[a]]\n", "-", "a=1\n", "{",
+            ]);
             let count = usize::from(bytes.short()) % 3000;
             set_value(&mut lines[at], &unit.repeat(count));
         }
@@ -114,7 +122,10 @@ fn edit(lines: &mut Vec<String>, bytes: &mut Bytes) {
 
 /// The nearest end of a character at or before a byte.
 fn floor(line: &str, at: usize) -> usize {
-    (0..=at.min(line.len())).rev().find(|at| line.is_char_boundary(*at)).unwrap_or(0)
+    (0..=at.min(line.len()))
+        .rev()
+        .find(|at| line.is_char_boundary(*at))
+        .unwrap_or(0)
 }
 
 fn set_value(line: &mut String, value: &str) {

@@ -59,7 +59,11 @@ pub fn run(name: &str, data: &[u8]) {
 fn within_memory<T>(input_len: usize, mut read: impl FnMut() -> T) -> T {
     let mut answer = None;
     let counted = allocation_counter::measure(|| answer = Some(read()));
-    assert!(counted.bytes_max <= most_bytes(input_len), "{} bytes held for an input of {input_len}", counted.bytes_max);
+    assert!(
+        counted.bytes_max <= most_bytes(input_len),
+        "{} bytes held for an input of {input_len}",
+        counted.bytes_max
+    );
     answer.unwrap_or_else(|| unreachable!("the closure has run"))
 }
 

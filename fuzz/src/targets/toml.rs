@@ -14,9 +14,17 @@ const SHORT: usize = 4000;
 
 type Texts = OnceLock<Vec<&'static str>>;
 
-fn texts(cell: &'static Texts, shipped: &'static [(&'static str, &'static str)]) -> &'static [&'static str] {
+fn texts(
+    cell: &'static Texts,
+    shipped: &'static [(&'static str, &'static str)],
+) -> &'static [&'static str] {
     let times = |text: &str| if text.len() <= SHORT { 8 } else { 1 };
-    cell.get_or_init(|| shipped.iter().flat_map(|(_, text)| std::iter::repeat_n(*text, times(text))).collect())
+    cell.get_or_init(|| {
+        shipped
+            .iter()
+            .flat_map(|(_, text)| std::iter::repeat_n(*text, times(text)))
+            .collect()
+    })
 }
 
 /// What a reader of a text does with bytes; every refusal is put into words as a user would see it.
@@ -41,7 +49,14 @@ fn told(refused: Option<Vec<Problem>>) {
 pub fn vehicle(data: &[u8]) {
     static SHIPPED: Texts = OnceLock::new();
     let text = edits::text(data, texts(&SHIPPED, embedded_vehicles()));
-    read(&text, |text| setup::read("fuzz.toml", text, Box::new(Disk::default()), &Options::default()));
+    read(&text, |text| {
+        setup::read(
+            "fuzz.toml",
+            text,
+            Box::new(Disk::default()),
+            &Options::default(),
+        )
+    });
 }
 
 pub fn lubricant(data: &[u8]) {
@@ -64,10 +79,19 @@ pub fn calibration_plan(data: &[u8]) {
 
 /// Overrides of a shipped car: the first byte chooses it.
 pub fn overrides(data: &[u8]) {
-    let Some((which, rest)) = data.split_first() else { return };
+    let Some((which, rest)) = data.split_first() else {
+        return;
+    };
     let vehicles = embedded_vehicles();
     let (name, _) = vehicles[usize::from(*which) % vehicles.len()];
-    let Ok(text) = std::str::from_utf8(rest) else { return };
-    let options = Options { set: text.lines().map(str::to_owned).collect(), ..Options::default() };
-    within_memory(rest.len(), || told(setup::load(name, "--vehicle", &options).err()));
+    let Ok(text) = std::str::from_utf8(rest) else {
+        return;
+    };
+    let options = Options {
+        set: text.lines().map(str::to_owned).collect(),
+        ..Options::default()
+    };
+    within_memory(rest.len(), || {
+        told(setup::load(name, "--vehicle", &options).err())
+    });
 }

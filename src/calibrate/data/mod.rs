@@ -45,7 +45,11 @@ pub fn check(form: Form, file: &str, bytes: &[u8]) -> Result<usize, Vec<Problem>
         Form::Trace => trace::read(file, bytes, &tables::columns(Kind::Run, false)),
         Form::Scalars => scalars::read(file, bytes, &tables::columns(Kind::Run, true), None),
     };
-    if problems.is_empty() { Ok(sheet.map_or(0, |sheet| sheet.rows.len())) } else { Err(problems) }
+    if problems.is_empty() {
+        Ok(sheet.map_or(0, |sheet| sheet.rows.len()))
+    } else {
+        Err(problems)
+    }
 }
 
 /// Reads a file that a plan names, relative to the plan.
@@ -59,24 +63,54 @@ pub(super) fn bytes_of(path: &str, place: &Place, key: &str) -> Result<Vec<u8>, 
         let value = path.to_owned();
         let place = place.clone();
         let allowed = error.allowed("a readable CSV file");
-        vec![Problem { place, key: key.to_owned(), value, allowed, message, hint: hint.into() }]
+        vec![Problem {
+            place,
+            key: key.to_owned(),
+            value,
+            allowed,
+            message,
+            hint: hint.into(),
+        }]
     })
 }
 
 /// A column that nobody knows.
 pub(super) fn unknown(name: &str, known: &[&str], what: &str) -> Complaint {
     if name.trim().is_empty() {
-        return Complaint::new("this column has no name", what, "remove the comma or name the column");
+        return Complaint::new(
+            "this column has no name",
+            what,
+            "remove the comma or name the column",
+        );
     }
     let close = near(name, known.iter().copied());
     // What is meant may be there with its unit.
-    let unit: Vec<&str> = known.iter().copied().filter(|full| full.strip_prefix(name).is_some_and(|rest| rest.starts_with('_'))).collect();
+    let unit: Vec<&str> = known
+        .iter()
+        .copied()
+        .filter(|full| {
+            full.strip_prefix(name)
+                .is_some_and(|rest| rest.starts_with('_'))
+        })
+        .collect();
     if let [full] = unit.as_slice() {
-        return Complaint::new("this column has no unit", format!("`{full}`"), format!("if it is in that unit, name it {full}"));
+        return Complaint::new(
+            "this column has no unit",
+            format!("`{full}`"),
+            format!("if it is in that unit, name it {full}"),
+        );
     }
     if !unit.is_empty() {
-        return Complaint::new("this column has no unit", unit.join(", "), "name it by its unit");
+        return Complaint::new(
+            "this column has no unit",
+            unit.join(", "),
+            "name it by its unit",
+        );
     }
-    let hint = if close.is_empty() { "remove it or rename it".to_owned() } else { format!("did you mean {}?", close.join(" or ")) };
+    let hint = if close.is_empty() {
+        "remove it or rename it".to_owned()
+    } else {
+        format!("did you mean {}?", close.join(" or "))
+    };
     Complaint::new("there is no such column", what, hint)
 }

@@ -12,7 +12,10 @@ pub(crate) const SD: &str = "sd_";
 
 /// Columns of the bench that can be measured.
 fn measurable() -> Vec<&'static str> {
-    bench::columns().into_iter().filter(|name| !BENCH.iter().any(|(key, ..)| key == name)).collect()
+    bench::columns()
+        .into_iter()
+        .filter(|name| !BENCH.iter().any(|(key, ..)| key == name))
+        .collect()
 }
 
 /// Reads points as far as they can be understood, and all problems of the file.
@@ -20,7 +23,13 @@ pub(crate) fn read(file: &str, bytes: &[u8]) -> (Option<Sheet>, Vec<Problem>) {
     let measurable = measurable();
     let settings: Vec<&str> = BENCH.iter().map(|(key, ..)| *key).collect();
     let known = |name: &str| {
-        let column = |range, may_be_empty| Ok(Column { name: name.to_owned(), range: Some(range), may_be_empty });
+        let column = |range, may_be_empty| {
+            Ok(Column {
+                name: name.to_owned(),
+                range: Some(range),
+                may_be_empty,
+            })
+        };
         if let Some((_, range, required, _)) = BENCH.iter().find(|(key, ..)| *key == name) {
             return column(*range, !*required);
         }
@@ -32,12 +41,25 @@ pub(crate) fn read(file: &str, bytes: &[u8]) -> (Option<Sheet>, Vec<Problem>) {
             return column(range, true);
         }
         let all: Vec<&str> = settings.iter().chain(&measurable).copied().collect();
-        Err(unknown(measured, &all, "settings and columns of the bench: docs/calibration.md lists them"))
+        Err(unknown(
+            measured,
+            &all,
+            "settings and columns of the bench: docs/calibration.md lists them",
+        ))
     };
-    let required: Vec<&str> = BENCH.iter().filter(|(_, _, required, _)| *required).map(|(key, ..)| *key).collect();
+    let required: Vec<&str> = BENCH
+        .iter()
+        .filter(|(_, _, required, _)| *required)
+        .map(|(key, ..)| *key)
+        .collect();
     let measured = |name: &str| measurable.contains(&name);
     let example = "total_nm: the torque loss at the input shaft";
-    let rules = Rules { known: &known, required: &required, is_measured: Some(&measured), example };
+    let rules = Rules {
+        known: &known,
+        required: &required,
+        is_measured: Some(&measured),
+        example,
+    };
     let (sheet, problems) = sheet::read(file, bytes, &rules);
     (sheet, problems.finish())
 }
@@ -45,15 +67,30 @@ pub(crate) fn read(file: &str, bytes: &[u8]) -> (Option<Sheet>, Vec<Problem>) {
 /// Names of the measured columns of a sheet, and their indices.
 pub(crate) fn measured(sheet: &Sheet) -> Vec<(usize, &str)> {
     let measurable = measurable();
-    let named = sheet.columns.iter().enumerate().map(|(k, column)| (k, column.name.as_str()));
-    named.filter(|(_, name)| measurable.contains(name)).collect()
+    let named = sheet
+        .columns
+        .iter()
+        .enumerate()
+        .map(|(k, column)| (k, column.name.as_str()));
+    named
+        .filter(|(_, name)| measurable.contains(name))
+        .collect()
 }
 
 /// The setting of the bench of each row.
 pub(crate) fn points(sheet: &Sheet, parts: Parts) -> Vec<BenchPoint> {
     let column = |key: &str| sheet.find(key);
-    let keys =
-        ["ratio", "speed_rpm", "temp_degc", "torque_nm", "throttle", "pressure_bar", "pressure_factor", "belt_degc", "belt_above_sump_k"];
+    let keys = [
+        "ratio",
+        "speed_rpm",
+        "temp_degc",
+        "torque_nm",
+        "throttle",
+        "pressure_bar",
+        "pressure_factor",
+        "belt_degc",
+        "belt_above_sump_k",
+    ];
     let columns = keys.map(column);
     (0..sheet.rows.len())
         .map(|row| {

@@ -28,19 +28,31 @@ impl Candidate<'_> {
     pub fn answer(&self) -> Result<Answer, String> {
         let plan = self.model.plan;
         let store = Store::new(self);
-        let views: Vec<View> = plan.views.iter().map(|sources| View::new(&store, sources)).collect();
+        let views: Vec<View> = plan
+            .views
+            .iter()
+            .map(|sources| View::new(&store, sources))
+            .collect();
         let benches: RefCell<HashMap<usize, Rc<Table>>> = RefCell::default();
         let times = tables::columns(Kind::Run, false);
         let transient_times = tables::columns(Kind::Transient, false);
         let time = times.iter().position(|name| *name == "time_s").unwrap_or(0);
-        let transient_time = transient_times.iter().position(|name| *name == "time_s").unwrap_or(0);
-        let mut answer = Answer { computed: Vec::new(), doubtful: Vec::new() };
+        let transient_time = transient_times
+            .iter()
+            .position(|name| *name == "time_s")
+            .unwrap_or(0);
+        let mut answer = Answer {
+            computed: Vec::new(),
+            doubtful: Vec::new(),
+        };
         for observation in &plan.observations {
             let (computed, doubtful) = match &observation.what_computed {
                 What::Expression { view, expr } => {
                     let view = &views[*view];
                     view.begin();
-                    match compute(expr, view).map_err(|why| format!("{}: {why}", observation.label))? {
+                    match compute(expr, view)
+                        .map_err(|why| format!("{}: {why}", observation.label))?
+                    {
                         Computed::Number(x) => (x, view.noted().0 + view.noted().1),
                         _ => (f64::NAN, 0),
                     }
@@ -51,19 +63,36 @@ impl Candidate<'_> {
                         None => Rc::new(self.bench(*bench)?),
                     };
                     benches.borrow_mut().insert(*bench, Rc::clone(&table));
-                    let flag = |list: &[bool]| usize::from(list.get(*row).copied().unwrap_or(false));
-                    (table.columns[*column][*row], flag(&table.gross) + flag(&table.outside))
+                    let flag =
+                        |list: &[bool]| usize::from(list.get(*row).copied().unwrap_or(false));
+                    (
+                        table.columns[*column][*row],
+                        flag(&table.gross) + flag(&table.outside),
+                    )
                 }
-                What::Trace { run, column, time_s } => {
+                What::Trace {
+                    run,
+                    column,
+                    time_s,
+                } => {
                     let source = &plan.runs[*run];
                     let table = store.table(source, false)?;
-                    let time = if source.kind == Kind::Run { time } else { transient_time };
+                    let time = if source.kind == Kind::Run {
+                        time
+                    } else {
+                        transient_time
+                    };
                     between(&table, [time, *column], *time_s)
                 }
-                What::Total { run, column } => (store.table(&plan.runs[*run], true)?.columns[*column][0], 0),
+                What::Total { run, column } => {
+                    (store.table(&plan.runs[*run], true)?.columns[*column][0], 0)
+                }
             };
             if !computed.is_finite() {
-                return Err(format!("{}: the model has no number there", observation.label));
+                return Err(format!(
+                    "{}: the model has no number there",
+                    observation.label
+                ));
             }
             answer.computed.push(computed);
             answer.doubtful.push(doubtful);
@@ -73,7 +102,9 @@ impl Candidate<'_> {
 
     fn bench(&self, index: usize) -> Result<Table, String> {
         let bench = &self.model.plan.benches[index];
-        let setup = self.setup(Some(&bench.source)).map_err(|problems| first(&problems))?;
+        let setup = self
+            .setup(Some(&bench.source))
+            .map_err(|problems| first(&problems))?;
         tables::bench::of_points(&bench.points, &setup)
     }
 
@@ -100,7 +131,10 @@ impl Candidate<'_> {
 }
 
 fn first(problems: &[Problem]) -> String {
-    problems.first().map_or_else(|| "the car is refused".to_owned(), |problem| problem.message.clone())
+    problems.first().map_or_else(
+        || "the car is refused".to_owned(),
+        |problem| problem.message.clone(),
+    )
 }
 
 /// Rounding of a time, s.
@@ -109,7 +143,9 @@ const SLACK_S: f64 = 1e-6;
 /// A column at a time, straight between the rows; its first or last value outside of them, the last one as doubtful.
 fn between(table: &Table, [time, column]: [usize; 2], time_s: f64) -> (f64, usize) {
     let (times, values) = (&table.columns[time], &table.columns[column]);
-    let Some(last) = times.len().checked_sub(1) else { return (f64::NAN, 0) };
+    let Some(last) = times.len().checked_sub(1) else {
+        return (f64::NAN, 0);
+    };
     let after = times.partition_point(|t| *t < time_s).min(last);
     let flag = |list: &[bool]| usize::from(list.get(after).copied().unwrap_or(false));
     // A test that is over says nothing of later times.
@@ -117,8 +153,15 @@ fn between(table: &Table, [time, column]: [usize; 2], time_s: f64) -> (f64, usiz
     let doubtful = flag(&table.gross) + flag(&table.outside) + beyond;
     let before = after.saturating_sub(1);
     let width = times[after] - times[before];
-    let share = if width > 0.0 { ((time_s - times[before]) / width).clamp(0.0, 1.0) } else { 1.0 };
-    (values[before] + share * (values[after] - values[before]), doubtful)
+    let share = if width > 0.0 {
+        ((time_s - times[before]) / width).clamp(0.0, 1.0)
+    } else {
+        1.0
+    };
+    (
+        values[before] + share * (values[after] - values[before]),
+        doubtful,
+    )
 }
 
 impl Cars for Candidate<'_> {
@@ -129,11 +172,21 @@ impl Cars for Candidate<'_> {
         }
         let kind = self.model.by_options.get(&name).copied().unwrap_or(0);
         let built = once(&self.built, kind, || self.build(kind));
-        built.map_err(|message| vec![Problem { message, ..Problem::default() }])
+        built.map_err(|message| {
+            vec![Problem {
+                message,
+                ..Problem::default()
+            }]
+        })
     }
 
-    fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>> {
-        let own = source.map(|source| source.set.as_slice()).unwrap_or_default();
+    fn conditions(
+        &self,
+        source: Option<&Source>,
+    ) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>> {
+        let own = source
+            .map(|source| source.set.as_slice())
+            .unwrap_or_default();
         let sets: Vec<String> = self.model.plan.set.iter().chain(own).cloned().collect();
         match self.model.conditions.get(&sets.join("\n")) {
             Some(found) => Ok(found.clone()),

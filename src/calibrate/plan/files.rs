@@ -29,10 +29,14 @@ pub(super) fn read(s: &Section, way: &str, around: &Around, found: &mut Found) {
     let word = s.text(way, "CSV file, relative to the plan");
     if word.is_empty() {
         // What else stands here is not looked at.
-        s.names().into_iter().for_each(|key| drop(s.written(key, "", "")));
+        s.names()
+            .into_iter()
+            .for_each(|key| drop(s.written(key, "", "")));
         return;
     }
-    let folder = std::path::Path::new(around.file).parent().unwrap_or(std::path::Path::new(""));
+    let folder = std::path::Path::new(around.file)
+        .parent()
+        .unwrap_or(std::path::Path::new(""));
     let path = folder.join(&word).to_string_lossy().into_owned();
     let bytes = match bytes_of(&path, &s.place(way), way) {
         Ok(bytes) => bytes,
@@ -47,7 +51,10 @@ pub(super) fn read(s: &Section, way: &str, around: &Around, found: &mut Found) {
             return;
         }
     };
-    found.made.files.push((path.clone(), format!("{:x}", HexOf(Sha256::digest(&bytes).as_slice()))));
+    found.made.files.push((
+        path.clone(),
+        format!("{:x}", HexOf(Sha256::digest(&bytes).as_slice())),
+    ));
     match way {
         "points" => of_points(s, &path, &bytes, found),
         "trace" => of_trace(s, (&path, &bytes), around, found),
@@ -65,17 +72,31 @@ impl std::fmt::LowerHex for HexOf<'_> {
 }
 
 fn report(s: &Section, problems: Vec<Problem>) {
-    problems.into_iter().for_each(|problem| s.report_problem(problem));
+    problems
+        .into_iter()
+        .for_each(|problem| s.report_problem(problem));
 }
 
 /// Standard deviations by column: `sd = 0.5` for every column (under no name), a table `sd_by_column` for single ones.
 fn sds(s: &Section) -> Vec<(String, f64)> {
-    let every = s.optional_number("sd", Bound::positive(), "standard deviation of every column, in its unit");
+    let every = s.optional_number(
+        "sd",
+        Bound::positive(),
+        "standard deviation of every column, in its unit",
+    );
     let table = s.table("sd_by_column");
     let own = table.names().into_iter().map(|name| {
         // The unit is that of the column: no conversion.
-        let sd = table.written(name, "above 0", "standard deviation, in the unit of the column");
-        (name.to_owned(), sd.and_then(|written| written.number("", Bound::positive())).unwrap_or(f64::NAN))
+        let sd = table.written(
+            name,
+            "above 0",
+            "standard deviation, in the unit of the column",
+        );
+        (
+            name.to_owned(),
+            sd.and_then(|written| written.number("", Bound::positive()))
+                .unwrap_or(f64::NAN),
+        )
     });
     own.chain(every.map(|sd| (String::new(), sd))).collect()
 }
@@ -88,7 +109,12 @@ struct Deviations {
 impl Deviations {
     fn of(&self, sheet: &Sheet, row: usize, name: &str) -> Option<f64> {
         let own = sheet.number(row, sheet.find(&format!("{SD}{name}")));
-        let named = |wanted: &str| self.given.iter().find(|(key, _)| key == wanted).map(|(_, sd)| *sd);
+        let named = |wanted: &str| {
+            self.given
+                .iter()
+                .find(|(key, _)| key == wanted)
+                .map(|(_, sd)| *sd)
+        };
         own.or_else(|| named(name)).or_else(|| named(""))
     }
 
@@ -99,19 +125,35 @@ impl Deviations {
         for (name, _) in &self.given {
             if !strange && !name.is_empty() && !measured.iter().any(|(_, column)| column == name) {
                 let close = near(name, measured.iter().map(|(_, column)| *column));
-                let hint = if close.is_empty() { "remove it".to_owned() } else { format!("did you mean {}?", close.join(" or ")) };
-                s.table("sd_by_column").complain(name, "measured columns of the file", &format!("the file measures no `{name}`"), &hint);
+                let hint = if close.is_empty() {
+                    "remove it".to_owned()
+                } else {
+                    format!("did you mean {}?", close.join(" or "))
+                };
+                s.table("sd_by_column").complain(
+                    name,
+                    "measured columns of the file",
+                    &format!("the file measures no `{name}`"),
+                    &hint,
+                );
             }
         }
         for (k, name) in measured {
             let beside = sheet.find(&format!("{SD}{name}"));
-            let lacks =
-                |row: &usize| sheet.number(*row, Some(*k)).is_some() && !sheet.is_bad(*row, beside) && self.of(sheet, *row, name).is_none();
+            let lacks = |row: &usize| {
+                sheet.number(*row, Some(*k)).is_some()
+                    && !sheet.is_bad(*row, beside)
+                    && self.of(sheet, *row, name).is_none()
+            };
             let without = (0..sheet.rows.len()).find(lacks);
             if let Some(row) = without {
                 let message = format!("{name} has no standard deviation here");
                 let hint = format!("add a column {SD}{name}, or `sd` to the [[data]] of the plan");
-                s.report_problem(sheet.problem(row, *k, Complaint::new(message, "a standard deviation", hint)));
+                s.report_problem(sheet.problem(
+                    row,
+                    *k,
+                    Complaint::new(message, "a standard deviation", hint),
+                ));
             }
         }
     }
@@ -124,14 +166,26 @@ fn bench_of(s: &Section) -> Source {
     own.lubricant = s.optional_text("lubricant", "transmission oil in place of the vehicle's");
     own.set = s.texts("set", "overrides KEY=VALUE of the car on the bench");
     own.without = s.texts("without", "parts that are not in the box");
-    for part in own.without.iter().filter(|part| !PARTS.contains(&part.as_str())) {
-        s.complain("without", &PARTS.join(", "), &format!("there is no part `{part}`"), "");
+    for part in own
+        .without
+        .iter()
+        .filter(|part| !PARTS.contains(&part.as_str()))
+    {
+        s.complain(
+            "without",
+            &PARTS.join(", "),
+            &format!("there is no part `{part}`"),
+            "",
+        );
     }
     own
 }
 
 fn fold_by(s: &Section) -> Option<String> {
-    s.optional_text("fold_by", "column whose values divide the points into folds")
+    s.optional_text(
+        "fold_by",
+        "column whose values divide the points into folds",
+    )
 }
 
 fn of_points(s: &Section, path: &str, bytes: &[u8], found: &mut Found) {
@@ -144,15 +198,31 @@ fn of_points(s: &Section, path: &str, bytes: &[u8], found: &mut Found) {
     deviations.check(s, &sheet, &measured);
     let fold_column = fold_by.as_deref().map(|name| (name, sheet.find(name)));
     if let Some((name, None)) = fold_column {
-        let columns: Vec<&str> = sheet.columns.iter().map(|column| column.name.as_str()).filter(|name| !name.is_empty()).collect();
-        s.complain("fold_by", &columns.join(", "), &format!("the file has no column `{name}`"), "name one of the file's columns");
+        let columns: Vec<&str> = sheet
+            .columns
+            .iter()
+            .map(|column| column.name.as_str())
+            .filter(|name| !name.is_empty())
+            .collect();
+        s.complain(
+            "fold_by",
+            &columns.join(", "),
+            &format!("the file has no column `{name}`"),
+            "name one of the file's columns",
+        );
     }
     let names = tables::bench::columns();
     for row in 0..sheet.rows.len() {
         for (k, name) in &measured {
-            let Some(value) = sheet.number(row, Some(*k)) else { continue };
+            let Some(value) = sheet.number(row, Some(*k)) else {
+                continue;
+            };
             let sd = deviations.of(&sheet, row, name).unwrap_or(f64::NAN);
-            let what = What::Point { bench: 0, row, column: names.iter().position(|column| column == name).unwrap_or(0) };
+            let what = What::Point {
+                bench: 0,
+                row,
+                column: names.iter().position(|column| column == name).unwrap_or(0),
+            };
             let about = About {
                 label: format!("{name}, line {}", sheet.rows[row].line),
                 what: setting(&sheet, row),
@@ -163,18 +233,37 @@ fn of_points(s: &Section, path: &str, bytes: &[u8], found: &mut Found) {
             (*name).clone_into(&mut observed.column);
             found.observations.push(observed);
             if let Some((name, Some(column))) = fold_column {
-                let level = sheet.number(row, Some(column)).map_or_else(|| "-".to_owned(), |x| x.to_string());
+                let level = sheet
+                    .number(row, Some(column))
+                    .map_or_else(|| "-".to_owned(), |x| x.to_string());
                 found.folds.push(format!("{name} {level}"));
             }
         }
     }
-    found.made.benches.push(BenchPoints { points: points::points(&sheet, tables::bench::parts(&own)), source: own });
+    found.made.benches.push(BenchPoints {
+        points: points::points(&sheet, tables::bench::parts(&own)),
+        source: own,
+    });
 }
 
 /// The setting of a row in words.
 fn setting(sheet: &Sheet, row: usize) -> String {
-    let word = |key: &str| sheet.number(row, sheet.find(key)).map(|x| format!("{key} {x}"));
-    ["ratio", "speed_rpm", "temp_degc", "torque_nm", "pressure_bar"].into_iter().filter_map(word).collect::<Vec<_>>().join(", ")
+    let word = |key: &str| {
+        sheet
+            .number(row, sheet.find(key))
+            .map(|x| format!("{key} {x}"))
+    };
+    [
+        "ratio",
+        "speed_rpm",
+        "temp_degc",
+        "torque_nm",
+        "pressure_bar",
+    ]
+    .into_iter()
+    .filter_map(word)
+    .collect::<Vec<_>>()
+    .join(", ")
 }
 
 /// The source that a trace or totals belong to.
@@ -183,9 +272,22 @@ fn source_of(s: &Section, way: &str, around: &Around) -> Option<Source> {
         return None;
     }
     let name = s.text("source", "source of the plan that was measured");
-    let kinds: &[Kind] = if way == "trace" { &[Kind::Run, Kind::Transient] } else { &[Kind::Run] };
-    let fitting = || around.sources.iter().filter(|source| kinds.contains(&source.kind)).map(|source| source.name.as_str());
-    let source = around.sources.iter().find(|source| source.name == name && kinds.contains(&source.kind));
+    let kinds: &[Kind] = if way == "trace" {
+        &[Kind::Run, Kind::Transient]
+    } else {
+        &[Kind::Run]
+    };
+    let fitting = || {
+        around
+            .sources
+            .iter()
+            .filter(|source| kinds.contains(&source.kind))
+            .map(|source| source.name.as_str())
+    };
+    let source = around
+        .sources
+        .iter()
+        .find(|source| source.name == name && kinds.contains(&source.kind));
     if source.is_none() && !name.is_empty() {
         let all: Vec<&str> = fitting().collect();
         let close = near(&name, fitting());
@@ -194,13 +296,26 @@ fn source_of(s: &Section, way: &str, around: &Around) -> Option<Source> {
         } else {
             format!("did you mean {}?", close.join(" or "))
         };
-        s.complain("source", &all.join(", "), &format!("there is no such source `{name}` for a {way} file"), &hint);
+        s.complain(
+            "source",
+            &all.join(", "),
+            &format!("there is no such source `{name}` for a {way} file"),
+            &hint,
+        );
     }
     if let Some(source) = source.filter(|source| source.kind == Kind::Transient)
-        && let Some(count) = source.axis_or_none("ratio").map(|list| list.len()).filter(|count| *count > 1)
+        && let Some(count) = source
+            .axis_or_none("ratio")
+            .map(|list| list.len())
+            .filter(|count| *count > 1)
     {
         let message = format!("source `{name}` is {count} tests, one at each ratio");
-        s.complain("source", "a source of one test", &message, "write a source with one `ratio`, continuing it with `like`");
+        s.complain(
+            "source",
+            "a source of one test",
+            &message,
+            "write a source with one `ratio`, continuing it with `like`",
+        );
         return None;
     }
     source.cloned()
@@ -211,8 +326,13 @@ fn of_trace(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found: &
     let apart_s = apart_s(s);
     let source = source_of(s, "trace", around);
     // Without a source a column of any is as good as known.
-    let kinds = source.as_ref().map_or(vec![Kind::Run, Kind::Transient], |source| vec![source.kind]);
-    let names: Vec<&'static str> = kinds.into_iter().flat_map(|kind| tables::columns(kind, false)).collect();
+    let kinds = source
+        .as_ref()
+        .map_or(vec![Kind::Run, Kind::Transient], |source| vec![source.kind]);
+    let names: Vec<&'static str> = kinds
+        .into_iter()
+        .flat_map(|kind| tables::columns(kind, false))
+        .collect();
     let (sheet, problems) = trace::read(path, bytes, &names);
     report(s, problems);
     let Some(sheet) = sheet else { return };
@@ -223,19 +343,36 @@ fn of_trace(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found: &
     let duration_s = at(sheet.rows.len().saturating_sub(1)) - at(0);
     let Some(source) = source else { return };
     if let Some(end_s) = end_of(&source) {
-        let late: Vec<usize> = (0..sheet.rows.len()).filter(|row| at(*row) > end_s).collect();
+        let late: Vec<usize> = (0..sheet.rows.len())
+            .filter(|row| at(*row) > end_s)
+            .collect();
         if let Some(first) = late.first() {
-            let message = format!("this time is beyond the end of the cycle{}", trace::and_more(late.len()));
+            let message = format!(
+                "this time is beyond the end of the cycle{}",
+                trace::and_more(late.len())
+            );
             let hint = "cut the trace, or name the cycle that was driven";
-            s.report_problem(sheet.problem(*first, time.unwrap_or(0), Complaint::new(message, format!("up to {end_s} s"), hint)));
+            s.report_problem(sheet.problem(
+                *first,
+                time.unwrap_or(0),
+                Complaint::new(message, format!("up to {end_s} s"), hint),
+            ));
         }
     }
     for (k, name) in &measured {
-        let rows: Vec<usize> = (0..sheet.rows.len()).filter(|row| sheet.number(*row, Some(*k)).is_some()).collect();
-        let independent = if apart_s > 0.0 { duration_s / apart_s + 1.0 } else { f64::INFINITY };
+        let rows: Vec<usize> = (0..sheet.rows.len())
+            .filter(|row| sheet.number(*row, Some(*k)).is_some())
+            .collect();
+        let independent = if apart_s > 0.0 {
+            duration_s / apart_s + 1.0
+        } else {
+            f64::INFINITY
+        };
         let wider = (rows.len() as f64 / independent).max(1.0).sqrt();
         for row in rows {
-            let Some(value) = sheet.number(row, Some(*k)) else { continue };
+            let Some(value) = sheet.number(row, Some(*k)) else {
+                continue;
+            };
             let sd = deviations.of(&sheet, row, name).unwrap_or(f64::NAN);
             let column = names.iter().position(|column| column == name).unwrap_or(0);
             let about = About {
@@ -244,7 +381,11 @@ fn of_trace(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found: &
                 unit: unit_of(name).to_owned(),
                 place: sheet.place(row, *k),
             };
-            let what = What::Trace { run: 0, column, time_s: at(row) };
+            let what = What::Trace {
+                run: 0,
+                column,
+                time_s: at(row),
+            };
             let mut observed = observation(about, Measured::Value(value), sd, what);
             observed.weight_sd = sd * wider;
             (*name).clone_into(&mut observed.column);
@@ -256,7 +397,12 @@ fn of_trace(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found: &
 
 fn apart_s(s: &Section) -> f64 {
     let doc = "time after which two values of a trace are independent";
-    s.number_or("independent_every_s", Bound::closed(0.0, 1e5), INDEPENDENT_S, doc)
+    s.number_or(
+        "independent_every_s",
+        Bound::closed(0.0, 1e5),
+        INDEPENDENT_S,
+        doc,
+    )
 }
 
 /// End of a run's cycle, s.
@@ -265,29 +411,65 @@ fn end_of(source: &Source) -> Option<f64> {
         return None;
     }
     let cycle = source::cycle(source).ok()?;
-    cycle.trace_for(true).steps(1.0).map(|step| step.time_s).reduce(f64::max)
+    cycle
+        .trace_for(true)
+        .steps(1.0)
+        .map(|step| step.time_s)
+        .reduce(f64::max)
 }
 
 fn of_scalars(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found: &mut Found) {
     let source = source_of(s, "scalars", around);
     let names = tables::columns(Kind::Run, true);
-    let cycle = source.as_ref().and_then(|source| source::cycle(source).ok());
-    let phases = cycle.map(|cycle| cycle.phase_groups().into_iter().map(|(name, _)| name).collect::<Vec<String>>());
+    let cycle = source
+        .as_ref()
+        .and_then(|source| source::cycle(source).ok());
+    let phases = cycle.map(|cycle| {
+        cycle
+            .phase_groups()
+            .into_iter()
+            .map(|(name, _)| name)
+            .collect::<Vec<String>>()
+    });
     let (sheet, problems) = scalars::read(path, bytes, &names, phases.as_deref());
     report(s, problems);
-    let (Some(source), Some(sheet)) = (source, sheet) else { return };
+    let (Some(source), Some(sheet)) = (source, sheet) else {
+        return;
+    };
     let find = |name: &str| sheet.find(name);
     for row in 0..sheet.rows.len() {
-        let (quantity, phase) = (sheet.word(row, find("quantity")).to_owned(), sheet.word(row, find("phase")).to_owned());
-        let (Some(value), Some(sd)) = (sheet.number(row, find("value")), sheet.number(row, find("sd"))) else { continue };
-        let what = What::Total { run: found.made.runs.len(), column: names.iter().position(|name| *name == quantity).unwrap_or(0) };
-        let label = if phase.is_empty() { quantity.clone() } else { format!("{quantity}, {phase}") };
-        let about =
-            About { label, what: String::new(), unit: quantity_unit(&quantity), place: sheet.place(row, find("value").unwrap_or(0)) };
+        let (quantity, phase) = (
+            sheet.word(row, find("quantity")).to_owned(),
+            sheet.word(row, find("phase")).to_owned(),
+        );
+        let (Some(value), Some(sd)) = (
+            sheet.number(row, find("value")),
+            sheet.number(row, find("sd")),
+        ) else {
+            continue;
+        };
+        let what = What::Total {
+            run: found.made.runs.len(),
+            column: names.iter().position(|name| *name == quantity).unwrap_or(0),
+        };
+        let label = if phase.is_empty() {
+            quantity.clone()
+        } else {
+            format!("{quantity}, {phase}")
+        };
+        let about = About {
+            label,
+            what: String::new(),
+            unit: quantity_unit(&quantity),
+            place: sheet.place(row, find("value").unwrap_or(0)),
+        };
         let mut observed = observation(about, Measured::Value(value), sd, what);
         observed.column = quantity;
         found.observations.push(observed);
-        found.made.runs.push(Source { phase, ..source.clone() });
+        found.made.runs.push(Source {
+            phase,
+            ..source.clone()
+        });
     }
 }
 

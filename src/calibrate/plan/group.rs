@@ -46,23 +46,56 @@ pub(super) fn read(document: &Document, around: &Around) -> Result<Found, Vec<Pr
     let reader = Reader::new(document);
     let s = reader.root();
     let ways: Vec<&str> = WAYS.into_iter().filter(|way| s.has(way)).collect();
-    let name = s.text_or("name", ways.first().copied().unwrap_or("data"), "name of the group");
-    let common_sd = s.optional_number("common_sd", Bound::positive(), "standard deviation of an error that all have in common");
-    let group = Group { name: name.clone(), from: s.text("from", "where the data come from"), common_sd, place: s.place("name") };
-    let fold = s.text_or("fold", &name, "name of the fold: groups of one fold are left out together");
-    let mut found = Found { group: Some(group), ..Found::default() };
+    let name = s.text_or(
+        "name",
+        ways.first().copied().unwrap_or("data"),
+        "name of the group",
+    );
+    let common_sd = s.optional_number(
+        "common_sd",
+        Bound::positive(),
+        "standard deviation of an error that all have in common",
+    );
+    let group = Group {
+        name: name.clone(),
+        from: s.text("from", "where the data come from"),
+        common_sd,
+        place: s.place("name"),
+    };
+    let fold = s.text_or(
+        "fold",
+        &name,
+        "name of the fold: groups of one fold are left out together",
+    );
+    let mut found = Found {
+        group: Some(group),
+        ..Found::default()
+    };
     match ways.as_slice() {
         ["rows"] => rows(&s, around, &mut found),
         ["compute"] => statement(&s, around, &mut found),
         [way] => files::read(&s, way, around, &mut found),
         [] => {
             let hint = "give `rows`, `compute`, `points`, `trace` or `scalars`";
-            s.report_problem(problem(&s.place("rows"), "", &WAYS.join(", "), "the group has no data".to_owned(), hint));
+            s.report_problem(problem(
+                &s.place("rows"),
+                "",
+                &WAYS.join(", "),
+                "the group has no data".to_owned(),
+                hint,
+            ));
         }
         [.., last] => {
-            s.complain(last, "one of them", &format!("{} stand together", ways.join(" and ")), "write a [[data]] for each");
+            s.complain(
+                last,
+                "one of them",
+                &format!("{} stand together", ways.join(" and ")),
+                "write a [[data]] for each",
+            );
             // Which keys belong to it is not known.
-            s.names().into_iter().for_each(|key| drop(s.written(key, "", "")));
+            s.names()
+                .into_iter()
+                .for_each(|key| drop(s.written(key, "", "")));
         }
     }
     if found.folds.is_empty() {
@@ -74,14 +107,25 @@ pub(super) fn read(document: &Document, around: &Around) -> Result<Found, Vec<Pr
             let hint = match ways[0] {
                 "rows" => "name at least one row; `cvtcycle validate` lists them",
                 "compute" => "write an expression over the sources; docs/validation_format.md",
-                _ => "name a CSV file, relative to the plan, and fill the cells of what was measured",
+                _ => {
+                    "name a CSV file, relative to the plan, and fill the cells of what was measured"
+                }
             };
             let message = "there is no measured number in it".to_owned();
-            let nothing = problem(&place, ways[0], "at least one measured number", message, hint);
+            let nothing = problem(
+                &place,
+                ways[0],
+                "at least one measured number",
+                message,
+                hint,
+            );
             Err(vec![told(nothing, &name, around.file)])
         }
         Ok(_) => Ok(found),
-        Err(problems) => Err(problems.into_iter().map(|p| told(p, &name, around.file)).collect()),
+        Err(problems) => Err(problems
+            .into_iter()
+            .map(|p| told(p, &name, around.file))
+            .collect()),
     }
 }
 
@@ -100,25 +144,53 @@ fn told(problem: Problem, name: &str, plan: &str) -> Problem {
 
 /// The standard deviation that a whole group has: `sd`, or a share of what was measured.
 fn sd_of(s: &Section) -> impl Fn(f64) -> f64 {
-    let absolute = s.optional_number("sd", Bound::positive(), "standard deviation, in the unit of the data");
-    let share = s.optional_number("sd_share", Bound::positive(), "standard deviation as a share of the measured number");
+    let absolute = s.optional_number(
+        "sd",
+        Bound::positive(),
+        "standard deviation, in the unit of the data",
+    );
+    let share = s.optional_number(
+        "sd_share",
+        Bound::positive(),
+        "standard deviation as a share of the measured number",
+    );
     match (absolute, share) {
-        (Some(_), Some(_)) => s.complain("sd_share", "`sd` or `sd_share`", "`sd` beside `sd_share`", "keep one of them"),
+        (Some(_), Some(_)) => s.complain(
+            "sd_share",
+            "`sd` or `sd_share`",
+            "`sd` beside `sd_share`",
+            "keep one of them",
+        ),
         (None, None) => {
             let hint = "how far may a repeated measurement be off? give that as `sd`";
-            s.complain("sd", "`sd` or `sd_share`", "the data have no standard deviation", hint);
+            s.complain(
+                "sd",
+                "`sd` or `sd_share`",
+                "the data have no standard deviation",
+                hint,
+            );
         }
         _ => {}
     }
-    move |x: f64| absolute.or(share.map(|share| share * x.abs())).unwrap_or(f64::NAN)
+    move |x: f64| {
+        absolute
+            .or(share.map(|share| share * x.abs()))
+            .unwrap_or(f64::NAN)
+    }
 }
 
 /// Reports a share of a number of 0, which leaves no standard deviation.
 fn share_of_nothing(s: &Section, what: &str, size: f64) {
     // Just 0: a small number has a small deviation, as was asked for.
     if s.has("sd_share") && size.abs() < f64::MIN_POSITIVE {
-        let message = format!("{what} is 0, or a range about 0: no share of it is a standard deviation");
-        s.complain("sd_share", "for numbers other than 0", &message, "give `sd` in the unit of the data");
+        let message =
+            format!("{what} is 0, or a range about 0: no share of it is a standard deviation");
+        s.complain(
+            "sd_share",
+            "for numbers other than 0",
+            &message,
+            "give `sd` in the unit of the data",
+        );
     }
 }
 
@@ -126,12 +198,20 @@ fn share_of_nothing(s: &Section, what: &str, size: f64) {
 fn rows(s: &Section, around: &Around, found: &mut Found) {
     let ids = s.texts("rows", "identifiers of validation rows");
     let sd = sd_of(s);
-    let all = || around.rows.iter().flat_map(|file| file.rows.iter().map(move |row| (file, row)));
+    let all = || {
+        around
+            .rows
+            .iter()
+            .flat_map(|file| file.rows.iter().map(move |row| (file, row)))
+    };
     for id in ids {
         let place = at_item(s.place("rows"), &format!("{id:?}"));
         let complain = |message: String, hint: &str| {
             let value = format!("{id:?}");
-            s.report_problem(Problem { value, ..problem(&place, "rows", "rows that compute a number", message, hint) });
+            s.report_problem(Problem {
+                value,
+                ..problem(&place, "rows", "rows that compute a number", message, hint)
+            });
         };
         let Some((file, row)) = all().find(|(_, row)| row.id == id) else {
             let close = near(&id, all().map(|(_, row)| row.id.as_str()));
@@ -151,14 +231,21 @@ fn rows(s: &Section, around: &Around, found: &mut Found) {
             continue;
         };
         if expr.gives() != Gives::Number {
-            complain(format!("row {id} computes a range"), "write its ends as `compute = \"min(...)\"` and `\"max(...)\"`");
+            complain(
+                format!("row {id} computes a range"),
+                "write its ends as `compute = \"min(...)\"` and `\"max(...)\"`",
+            );
             continue;
         }
         if found.rows.contains(&id) {
             complain(format!("row {id} stands twice"), "remove one");
             continue;
         }
-        let measured = if low < high { Measured::Within(low, high) } else { Measured::Value(low) };
+        let measured = if low < high {
+            Measured::Within(low, high)
+        } else {
+            Measured::Value(low)
+        };
         // Of a range the end that the print gives counts.
         let size = if low.is_finite() && high.is_finite() {
             f64::midpoint(low, high)
@@ -170,8 +257,21 @@ fn rows(s: &Section, around: &Around, found: &mut Found) {
         share_of_nothing(s, &format!("row {id}"), size);
         found.views.push(Some(file.sources.clone()));
         let view = found.views.len() - 1;
-        let about = About { label: id.clone(), what: row.what.clone(), unit: row.unit.clone(), place };
-        found.observations.push(observation(about, measured, sd(size), What::Expression { view, expr: Arc::new(expr.clone()) }));
+        let about = About {
+            label: id.clone(),
+            what: row.what.clone(),
+            unit: row.unit.clone(),
+            place,
+        };
+        found.observations.push(observation(
+            about,
+            measured,
+            sd(size),
+            What::Expression {
+                view,
+                expr: Arc::new(expr.clone()),
+            },
+        ));
         found.rows.push(id);
     }
 }
@@ -185,40 +285,88 @@ pub(super) struct About {
 }
 
 /// An observation of the group that is read.
-pub(super) fn observation(about: About, measured: Measured, sd: f64, what_computed: What) -> Observation {
-    let About { label, what, unit, place } = about;
-    Observation { group: 0, fold: 0, label, what, column: String::new(), unit, measured, sd, weight_sd: sd, what_computed, place }
+pub(super) fn observation(
+    about: About,
+    measured: Measured,
+    sd: f64,
+    what_computed: What,
+) -> Observation {
+    let About {
+        label,
+        what,
+        unit,
+        place,
+    } = about;
+    Observation {
+        group: 0,
+        fold: 0,
+        label,
+        what,
+        column: String::new(),
+        unit,
+        measured,
+        sd,
+        weight_sd: sd,
+        what_computed,
+        place,
+    }
 }
 
 /// An expression of the plan's own.
 fn statement(s: &Section, around: &Around, found: &mut Found) {
-    let text = s.text("compute", "expression over the sources; docs/validation_format.md");
+    let text = s.text(
+        "compute",
+        "expression over the sources; docs/validation_format.md",
+    );
     let unit = s.text_or("unit", "-", "unit of measured and computed numbers");
     let meaning = s.text_or("what", "", "what it is");
     let any = Bound::any();
     let value = s.optional_number("value", any, "measured number");
-    let (low, high) = (s.optional_number("low", any, "least measured number"), s.optional_number("high", any, "largest measured number"));
+    let (low, high) = (
+        s.optional_number("low", any, "least measured number"),
+        s.optional_number("high", any, "largest measured number"),
+    );
     let measured = match (value, low, high) {
         (Some(x), None, None) => Measured::Value(x),
         (None, None, None) => {
-            s.complain("value", "value, or low and high", "nothing was measured", "add `value`, or `low` and `high`");
+            s.complain(
+                "value",
+                "value, or low and high",
+                "nothing was measured",
+                "add `value`, or `low` and `high`",
+            );
             Measured::Value(f64::NAN)
         }
         (Some(_), ..) => {
-            s.complain("value", "value, or low and high", "`value` beside `low` or `high`", "keep one of the forms");
+            s.complain(
+                "value",
+                "value, or low and high",
+                "`value` beside `low` or `high`",
+                "keep one of the forms",
+            );
             Measured::Value(f64::NAN)
         }
         (None, low, high) => {
-            let (low, high) = (low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY));
+            let (low, high) = (
+                low.unwrap_or(f64::NEG_INFINITY),
+                high.unwrap_or(f64::INFINITY),
+            );
             if low > high {
-                s.complain("low", "at most `high`", "`low` is above `high`", "swap them");
+                s.complain(
+                    "low",
+                    "at most `high`",
+                    "`low` is above `high`",
+                    "swap them",
+                );
             }
             Measured::Within(low, high)
         }
     };
     let size = match measured {
         Measured::Value(x) => x,
-        Measured::Within(low, high) if low.is_finite() && high.is_finite() => f64::midpoint(low, high),
+        Measured::Within(low, high) if low.is_finite() && high.is_finite() => {
+            f64::midpoint(low, high)
+        }
         Measured::Within(low, high) => {
             if low.is_finite() {
                 low
@@ -229,26 +377,55 @@ fn statement(s: &Section, around: &Around, found: &mut Found) {
     };
     let sd = sd_of(s)(size);
     share_of_nothing(s, "the number", size);
-    let Some(expr) = expression(s, &text, around) else { return };
+    let Some(expr) = expression(s, &text, around) else {
+        return;
+    };
     if expr.gives() != Gives::Number {
-        let hint = "write a range as `min(...)` and `max(...)`, an order as a difference with `low = 0`";
-        s.complain("compute", "a number", "`compute` gives no single number", hint);
+        let hint =
+            "write a range as `min(...)` and `max(...)`, an order as a difference with `low = 0`";
+        s.complain(
+            "compute",
+            "a number",
+            "`compute` gives no single number",
+            hint,
+        );
         return;
     }
     found.views.push(None);
     let label = s.text_or("name", "", "name of the group");
-    let about = About { label, what: meaning, unit, place: s.place("compute") };
-    found.observations.push(observation(about, measured, sd, What::Expression { view: 0, expr: Arc::new(expr) }));
+    let about = About {
+        label,
+        what: meaning,
+        unit,
+        place: s.place("compute"),
+    };
+    found.observations.push(observation(
+        about,
+        measured,
+        sd,
+        What::Expression {
+            view: 0,
+            expr: Arc::new(expr),
+        },
+    ));
 }
 
 fn expression(s: &Section, text: &str, around: &Around) -> Option<Expr> {
     if text.trim().is_empty() {
         return None;
     }
-    match parse(text, &FileNames { sources: around.sources, keys: around.keys }) {
+    match parse(
+        text,
+        &FileNames {
+            sources: around.sources,
+            keys: around.keys,
+        },
+    ) {
         Ok(expr) => Some(expr),
         Err(faults) => {
-            faults.into_iter().for_each(|fault| s.report_problem(within(s.place("compute"), "compute", text, fault)));
+            faults.into_iter().for_each(|fault| {
+                s.report_problem(within(s.place("compute"), "compute", text, fault))
+            });
             None
         }
     }

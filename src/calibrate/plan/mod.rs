@@ -221,6 +221,19 @@ pub(crate) fn at_item(mut place: Place, text: &str) -> Place {
 }
 
 /// A problem of a plan at a place.
-pub(crate) fn problem(place: &Place, key: &str, allowed: &str, message: String, hint: &str) -> Problem {
-    Problem { place: place.clone(), key: key.to_owned(), allowed: allowed.to_owned(), message, hint: hint.to_owned(), ..Problem::default() }
+pub(crate) fn problem(
+    place: &Place,
+    key: &str,
+    allowed: &str,
+    message: String,
+    hint: &str,
+) -> Problem {
+    Problem {
+        place: place.clone(),
+        key: key.to_owned(),
+        allowed: allowed.to_owned(),
+        message,
+        hint: hint.to_owned(),
+        ..Problem::default()
+    }
 }

@@ -5,7 +5,9 @@ use std::sync::OnceLock;
 use super::group::{self, Around, Found};
 use super::{Plan, Search, What, parameter, problem};
 use crate::calibrate::embedded_calibrations;
-use crate::config::{Bound, Document, Place, Problem, Reader, Section, append, bounded, decode, near};
+use crate::config::{
+    Bound, Document, Place, Problem, Reader, Section, append, bounded, decode, near,
+};
 use crate::setup::{catalogue, is_path};
 use crate::validate::source::{self, Source};
 use crate::validate::{COMMON, File, embedded_rows};
@@ -22,7 +24,11 @@ pub fn load(word: &str, option: &str) -> Result<Plan, Vec<Problem>> {
 }
 
 fn sound((plan, problems): (Plan, Vec<Problem>)) -> Result<Plan, Vec<Problem>> {
-    if problems.is_empty() { Ok(plan) } else { Err(problems) }
+    if problems.is_empty() {
+        Ok(plan)
+    } else {
+        Err(problems)
+    }
 }
 
 /// As [`load`], but what can be understood of a bad plan is given beside its problems, so that more can be said of it.
@@ -31,22 +37,46 @@ fn sound((plan, problems): (Plan, Vec<Problem>)) -> Result<Plan, Vec<Problem>> {
 /// What leaves nothing to be understood: an unknown name, an unreadable path, a text that is no TOML.
 pub fn gather(word: &str, option: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> {
     let wrong = |allowed: String, message: String, hint: String| {
-        let place = Place { file: option.to_owned(), ..Place::default() };
-        vec![Problem { place, key: option.to_owned(), value: word.to_owned(), allowed, message, hint }]
+        let place = Place {
+            file: option.to_owned(),
+            ..Place::default()
+        };
+        vec![Problem {
+            place,
+            key: option.to_owned(),
+            value: word.to_owned(),
+            allowed,
+            message,
+            hint,
+        }]
     };
     if is_path(word) {
         let bytes = bounded::read(word, bounded::TOML).map_err(|error| {
             let hint = error.hint("check the path and its permissions");
-            wrong(error.allowed("a readable file"), format!("cannot read `{word}`: {error}"), hint.into())
+            wrong(
+                error.allowed("a readable file"),
+                format!("cannot read `{word}`: {error}"),
+                hint.into(),
+            )
         })?;
         return partly(word, &decode(word, &bytes)?);
     }
-    if let Some((name, text)) = embedded_calibrations().iter().find(|(name, _)| *name == word) {
+    if let Some((name, text)) = embedded_calibrations()
+        .iter()
+        .find(|(name, _)| *name == word)
+    {
         return partly(&format!("embedded:{name}.toml"), text);
     }
-    let names: Vec<&str> = embedded_calibrations().iter().map(|(name, _)| *name).collect();
+    let names: Vec<&str> = embedded_calibrations()
+        .iter()
+        .map(|(name, _)| *name)
+        .collect();
     let close = near(word, names.iter().copied());
-    let question = if close.is_empty() { String::new() } else { format!("did you mean {}? ", close.join(" or ")) };
+    let question = if close.is_empty() {
+        String::new()
+    } else {
+        format!("did you mean {}? ", close.join(" or "))
+    };
     Err(wrong(
         format!("{}, or the path of a TOML file", names.join(", ")),
         format!("there is no calibration named `{word}`"),
@@ -64,7 +94,10 @@ pub fn read(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
 
 fn partly(file: &str, text: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> {
     let mut document = Document::parse(file, text)?;
-    let (parameters, data) = (document.take_tables("parameter"), document.take_tables("data"));
+    let (parameters, data) = (
+        document.take_tables("parameter"),
+        document.take_tables("data"),
+    );
     let rows = shipped_rows().as_ref().map_err(Clone::clone)?;
     let reader = Reader::new(&document);
     let root = reader.root();
@@ -74,14 +107,30 @@ fn partly(file: &str, text: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> 
     sources.extend(common.iter().cloned());
     let mut plan = head_of(&head, file, text);
     let exists = head.exists();
-    let mut problems: Vec<Problem> = reader.finish().err().unwrap_or_default().into_iter().map(fitting).collect();
-    let hinted = |problems: &[Problem], word: &str| problems.iter().any(|problem| problem.hint.contains(word));
+    let mut problems: Vec<Problem> = reader
+        .finish()
+        .err()
+        .unwrap_or_default()
+        .into_iter()
+        .map(fitting)
+        .collect();
+    let hinted = |problems: &[Problem], word: &str| {
+        problems.iter().any(|problem| problem.hint.contains(word))
+    };
     if !exists && !hinted(&problems, "[calibration]") {
         let hint = "add [calibration] with the vehicle that is fitted";
-        problems.push(problem(&plan.place, "calibration", "a table", "the plan has no [calibration]".to_owned(), hint));
+        problems.push(problem(
+            &plan.place,
+            "calibration",
+            "a table",
+            "the plan has no [calibration]".to_owned(),
+            hint,
+        ));
     }
     // What is written in another way is there all the same.
-    let parameters_written = parameters.len().max(usize::from(hinted(&problems, "[[parameter]]")));
+    let parameters_written = parameters
+        .len()
+        .max(usize::from(hinted(&problems, "[[parameter]]")));
     let data_written = data.len().max(usize::from(hinted(&problems, "[[data]]")));
     for document in &parameters {
         match parameter::read(document) {
@@ -90,7 +139,12 @@ fn partly(file: &str, text: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> 
         }
     }
     relative(&mut sources, file);
-    let around = Around { sources: &sources, keys: catalogue::known_names(), rows, file };
+    let around = Around {
+        sources: &sources,
+        keys: catalogue::known_names(),
+        rows,
+        file,
+    };
     plan.views.push(sources.clone());
     for document in &data {
         match group::read(document, &around) {
@@ -103,14 +157,22 @@ fn partly(file: &str, text: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> 
         }
     }
     let sound = problems.is_empty();
-    append(&mut problems, clashes(&plan, [parameters_written, data_written], sound));
+    append(
+        &mut problems,
+        clashes(&plan, [parameters_written, data_written], sound),
+    );
     Ok((plan, problems))
 }
 
 /// The rows that the program carries: the same for every plan, read once.
 fn shipped_rows() -> &'static Result<Vec<File>, Vec<Problem>> {
     static ROWS: OnceLock<Result<Vec<File>, Vec<Problem>>> = OnceLock::new();
-    let texts = || embedded_rows().iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect::<Vec<_>>();
+    let texts = || {
+        embedded_rows()
+            .iter()
+            .map(|(name, text)| ((*name).to_owned(), (*text).to_owned()))
+            .collect::<Vec<_>>()
+    };
     ROWS.get_or_init(|| crate::validate::read(COMMON, &texts()))
 }
 
@@ -119,14 +181,24 @@ fn common_sources() -> &'static Result<Vec<Source>, Vec<Problem>> {
     static COMMON_SOURCES: OnceLock<Result<Vec<Source>, Vec<Problem>>> = OnceLock::new();
     COMMON_SOURCES.get_or_init(|| {
         let files = crate::validate::read(COMMON, &[(String::new(), String::new())])?;
-        Ok(files.into_iter().next_back().map(|file| file.sources).unwrap_or_default())
+        Ok(files
+            .into_iter()
+            .next_back()
+            .map(|file| file.sources)
+            .unwrap_or_default())
     })
 }
 
 /// A path in a plan is relative to that plan.
 fn relative(sources: &mut [Source], file: &str) {
-    let Some(folder) = std::path::Path::new(file).parent() else { return };
-    for named in sources.iter_mut().flat_map(|source| [&mut source.vehicle, &mut source.lubricant]).flatten() {
+    let Some(folder) = std::path::Path::new(file).parent() else {
+        return;
+    };
+    for named in sources
+        .iter_mut()
+        .flat_map(|source| [&mut source.vehicle, &mut source.lubricant])
+        .flatten()
+    {
         if is_path(named) {
             *named = folder.join(&*named).to_string_lossy().into_owned();
         }
@@ -136,25 +208,58 @@ fn relative(sources: &mut [Source], file: &str) {
 fn head_of(s: &Section, file: &str, text: &str) -> Plan {
     let integer = |key: &str, range, default, doc: &str| s.integer_or(key, range, default, doc);
     let search = Search {
-        starts: usize::try_from(integer("starts", 1..=MOST_STARTS, 4, "number of starts; the first one is at the values of the files"))
-            .unwrap_or(1),
+        starts: usize::try_from(integer(
+            "starts",
+            1..=MOST_STARTS,
+            4,
+            "number of starts; the first one is at the values of the files",
+        ))
+        .unwrap_or(1),
         seed: integer("seed", 0..=i64::MAX, 1, "seed of the other starts").unsigned_abs(),
-        most_evaluations: usize::try_from(integer("most_evaluations", 1..=1_000_000, 5000, "most evaluations of a start")).unwrap_or(1),
-        tolerance: s.number_or("tolerance", Bound::closed(1e-14, 1e-2), 1e-8, "relative change at which a start ends"),
-        leave_out: s.boolean_or("leave_out", true, "whether each fold is predicted by a fit to the others"),
+        most_evaluations: usize::try_from(integer(
+            "most_evaluations",
+            1..=1_000_000,
+            5000,
+            "most evaluations of a start",
+        ))
+        .unwrap_or(1),
+        tolerance: s.number_or(
+            "tolerance",
+            Bound::closed(1e-14, 1e-2),
+            1e-8,
+            "relative change at which a start ends",
+        ),
+        leave_out: s.boolean_or(
+            "leave_out",
+            true,
+            "whether each fold is predicted by a fit to the others",
+        ),
     };
-    let vehicle = s.text_or("vehicle", "rover_216_cvt", "vehicle whose values are fitted");
+    let vehicle = s.text_or(
+        "vehicle",
+        "rover_216_cvt",
+        "vehicle whose values are fitted",
+    );
     let within = |word: String| {
-        let folder = std::path::Path::new(file).parent().filter(|_| is_path(&word));
-        folder.map_or_else(|| word.clone(), |folder| folder.join(&word).to_string_lossy().into_owned())
+        let folder = std::path::Path::new(file)
+            .parent()
+            .filter(|_| is_path(&word));
+        folder.map_or_else(
+            || word.clone(),
+            |folder| folder.join(&word).to_string_lossy().into_owned(),
+        )
     };
     Plan {
         file: file.to_owned(),
         text: text.to_owned(),
         title: s.text_or("title", &stem(file), "name for people"),
         vehicle: within(vehicle),
-        lubricant: s.optional_text("lubricant", "transmission oil in place of the vehicle's").map(within),
-        engine_oil: s.optional_text("engine_oil", "engine oil in place of the vehicle's").map(within),
+        lubricant: s
+            .optional_text("lubricant", "transmission oil in place of the vehicle's")
+            .map(within),
+        engine_oil: s
+            .optional_text("engine_oil", "engine oil in place of the vehicle's")
+            .map(within),
         set: s.texts("set", "overrides KEY=VALUE, held during the fit"),
         search,
         parameters: Vec::new(),
@@ -173,19 +278,34 @@ fn head_of(s: &Section, file: &str, text: &str) -> Plan {
 
 fn stem(file: &str) -> String {
     let name = file.strip_prefix("embedded:").unwrap_or(file);
-    std::path::Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned())
+    std::path::Path::new(name).file_stem().map_or_else(
+        || name.to_owned(),
+        |stem| stem.to_string_lossy().into_owned(),
+    )
 }
 
 /// A problem without hints that fit vehicle files only.
 fn fitting(problem: Problem) -> Problem {
-    const TABLES: [(&str, &str); 4] =
-        [("calibration", "[calibration]"), ("sources", "[sources.NAME]"), ("parameter", "[[parameter]]"), ("data", "[[data]]")];
-    let meant = near(&problem.key, TABLES.iter().map(|(key, _)| *key)).first().copied().unwrap_or(problem.key.as_str());
-    let table = TABLES.iter().find(|(key, _)| *key == meant && problem.message.starts_with("unknown"));
+    const TABLES: [(&str, &str); 4] = [
+        ("calibration", "[calibration]"),
+        ("sources", "[sources.NAME]"),
+        ("parameter", "[[parameter]]"),
+        ("data", "[[data]]"),
+    ];
+    let meant = near(&problem.key, TABLES.iter().map(|(key, _)| *key))
+        .first()
+        .copied()
+        .unwrap_or(problem.key.as_str());
+    let table = TABLES
+        .iter()
+        .find(|(key, _)| *key == meant && problem.message.starts_with("unknown"));
     let hint = match table {
         Some((key, header)) if *key == problem.key => format!("it is written as {header}"),
         Some((_, header)) => format!("did you mean {header}?"),
-        None => problem.hint.split_once(", or choose with --set").map_or(problem.hint.clone(), |(hint, _)| hint.to_owned()),
+        None => problem
+            .hint
+            .split_once(", or choose with --set")
+            .map_or(problem.hint.clone(), |(hint, _)| hint.to_owned()),
     };
     Problem { hint, ..problem }
 }
@@ -199,7 +319,10 @@ fn join(plan: &mut Plan, found: Found) {
         match view {
             None => places.push(0),
             Some(sources) => {
-                let known = plan.views[views..].iter().position(|other| same(other, &sources)).map(|k| views + k);
+                let known = plan.views[views..]
+                    .iter()
+                    .position(|other| same(other, &sources))
+                    .map(|k| views + k);
                 places.push(known.unwrap_or(plan.views.len()));
                 if known.is_none() {
                     plan.views.push(sources);
@@ -210,10 +333,14 @@ fn join(plan: &mut Plan, found: Found) {
     let group = plan.groups.len();
     for (mut observation, fold) in found.observations.into_iter().zip(found.folds) {
         observation.group = group;
-        observation.fold = plan.folds.iter().position(|name| *name == fold).unwrap_or_else(|| {
-            plan.folds.push(fold);
-            plan.folds.len() - 1
-        });
+        observation.fold = plan
+            .folds
+            .iter()
+            .position(|name| *name == fold)
+            .unwrap_or_else(|| {
+                plan.folds.push(fold);
+                plan.folds.len() - 1
+            });
         match &mut observation.what_computed {
             What::Expression { view, .. } => *view = places[*view],
             What::Point { bench, .. } => *bench += benches,
@@ -230,7 +357,10 @@ fn join(plan: &mut Plan, found: Found) {
 
 /// Whether two lists of sources are those of the same file.
 fn same(a: &[Source], b: &[Source]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.name == b.name && a.place == b.place)
+    a.len() == b.len()
+        && a.iter()
+            .zip(b)
+            .all(|(a, b)| a.name == b.name && a.place == b.place)
 }
 
 /// What is wrong between the parts, `[parameters, groups]` being how many were written.
@@ -255,27 +385,60 @@ fn clashes(plan: &Plan, [parameters, groups]: [usize; 2], sound: bool) -> Vec<Pr
         ));
     }
     for (k, free) in plan.parameters.iter().enumerate() {
-        if let Some(first) = plan.parameters[..k].iter().find(|other| other.key == free.key) {
-            let message = format!("`{}` is free twice, first in line {}", free.key, first.place.line);
+        if let Some(first) = plan.parameters[..k]
+            .iter()
+            .find(|other| other.key == free.key)
+        {
+            let message = format!(
+                "`{}` is free twice, first in line {}",
+                free.key, first.place.line
+            );
             problems.push(problem(&free.place, "key", "", message, "remove one"));
         }
     }
     for (k, group) in plan.groups.iter().enumerate() {
-        if let Some(first) = plan.groups[..k].iter().find(|other| other.name == group.name) {
-            let message = format!("the name `{}` was used before, by the data in line {}", group.name, first.place.line);
-            problems.push(problem(&group.place, "name", "", message, "give each [[data]] a `name` of its own"));
+        if let Some(first) = plan.groups[..k]
+            .iter()
+            .find(|other| other.name == group.name)
+        {
+            let message = format!(
+                "the name `{}` was used before, by the data in line {}",
+                group.name, first.place.line
+            );
+            problems.push(problem(
+                &group.place,
+                "name",
+                "",
+                message,
+                "give each [[data]] a `name` of its own",
+            ));
         }
     }
     for (k, id) in plan.rows.iter().enumerate() {
         if plan.rows[..k].contains(id) {
             // Observations of rows bear their identifiers.
-            let place = plan.observations.iter().rfind(|o| o.label == *id).map_or(&plan.place, |o| &o.place);
+            let place = plan
+                .observations
+                .iter()
+                .rfind(|o| o.label == *id)
+                .map_or(&plan.place, |o| &o.place);
             let hint = "a number counts once: remove it from one of them";
-            problems.push(problem(place, "rows", "", format!("row {id} is used by two groups"), hint));
+            problems.push(problem(
+                place,
+                "rows",
+                "",
+                format!("row {id} is used by two groups"),
+                hint,
+            ));
         }
     }
     // Too few data to say anything, with all that is known beside them.
-    let known = plan.observations.len() + plan.parameters.iter().filter(|free| free.prior.is_some()).count();
+    let known = plan.observations.len()
+        + plan
+            .parameters
+            .iter()
+            .filter(|free| free.prior.is_some())
+            .count();
     if sound && groups > 0 && known < parameters {
         let message = format!(
             "too few data: measured numbers {}, priors {}, parameters {parameters}",

@@ -23,7 +23,11 @@ pub(super) struct Ask<'a> {
 
 impl<'a> Ask<'a> {
     pub fn new(model: &'a dyn Residuals, watcher: &'a dyn Watcher) -> Ask<'a> {
-        Ask { model, watcher, count: AtomicUsize::new(0) }
+        Ask {
+            model,
+            watcher,
+            count: AtomicUsize::new(0),
+        }
     }
 
     pub fn evaluations(&self) -> usize {
@@ -40,7 +44,11 @@ impl<'a> Ask<'a> {
         let rows = answer.map_err(Refusal::Model)?;
         // CA-1
         if rows.len() != self.model.count() {
-            return Err(Refusal::Model(format!("the model gives {} residuals in place of {}", rows.len(), self.model.count())));
+            return Err(Refusal::Model(format!(
+                "the model gives {} residuals in place of {}",
+                rows.len(),
+                self.model.count()
+            )));
         }
         match rows.iter().position(|r| !r.is_finite()) {
             Some(i) => Err(Refusal::Model(format!("residual {} is {}", i + 1, rows[i]))),

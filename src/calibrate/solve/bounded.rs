@@ -22,14 +22,22 @@ pub(super) fn outer(parameter: &Parameter, u: f64) -> f64 {
     let (low, high) = (parameter.low, parameter.high);
     let (sine, cosine) = (0.5 * u).sin_cos();
     // From the nearer bound, so that both are met exactly.
-    let x = if sine.abs() < cosine.abs() { low + (high - low) * sine * sine } else { high - (high - low) * cosine * cosine }; // CA-2
+    let x = if sine.abs() < cosine.abs() {
+        low + (high - low) * sine * sine
+    } else {
+        high - (high - low) * cosine * cosine
+    }; // CA-2
     x.clamp(low, high)
 }
 
 /// The variable of a value inside the bounds (CA-2).
 pub(super) fn inner(parameter: &Parameter, x: f64) -> f64 {
-    let below = ((x - parameter.low) / parameter.range()).clamp(0.0, 1.0).sqrt();
-    let above = ((parameter.high - x) / parameter.range()).clamp(0.0, 1.0).sqrt();
+    let below = ((x - parameter.low) / parameter.range())
+        .clamp(0.0, 1.0)
+        .sqrt();
+    let above = ((parameter.high - x) / parameter.range())
+        .clamp(0.0, 1.0)
+        .sqrt();
     2.0 * below.atan2(above) // CA-2
 }
 
@@ -57,14 +65,27 @@ mod tests {
 
     #[test]
     fn there_and_back_and_the_slope_between() {
-        let p = Parameter { name: "p".into(), start: 0.0, low: -2.0, high: 5.0, prior: None };
+        let p = Parameter {
+            name: "p".into(),
+            start: 0.0,
+            low: -2.0,
+            high: 5.0,
+            prior: None,
+        };
         for x in [-2.0, -1.999_999, -1.0, 0.0, 1.5, 4.0, 4.999_999, 5.0] {
             let u = inner(&p, x);
-            assert!((outer(&p, u) - x).abs() < 1e-14 && (0.0..=std::f64::consts::PI).contains(&u), "{x} {u}");
+            assert!(
+                (outer(&p, u) - x).abs() < 1e-14 && (0.0..=std::f64::consts::PI).contains(&u),
+                "{x} {u}"
+            );
             let h = 1e-5;
             for u in [u, -u] {
                 let change = (outer(&p, u + h) - outer(&p, u - h)) / (2.0 * h);
-                assert!((slope(&p, u, x) - change).abs() < 1e-8, "{x} {u}: {change} {}", slope(&p, u, x));
+                assert!(
+                    (slope(&p, u, x) - change).abs() < 1e-8,
+                    "{x} {u}: {change} {}",
+                    slope(&p, u, x)
+                );
             }
         }
         // Any number lies inside.
@@ -73,8 +94,22 @@ mod tests {
 
     #[test]
     fn starts_move_inside_by_a_hundredth() {
-        let p = Parameter { name: "p".into(), start: 0.0, low: 0.0, high: 10.0, prior: None };
-        for (x, want) in [(-3.0, 0.1), (0.0, 0.1), (1e-9, 0.1), (1e-6, 1e-6), (5.0, 5.0), (10.0, 9.9), (99.0, 9.9)] {
+        let p = Parameter {
+            name: "p".into(),
+            start: 0.0,
+            low: 0.0,
+            high: 10.0,
+            prior: None,
+        };
+        for (x, want) in [
+            (-3.0, 0.1),
+            (0.0, 0.1),
+            (1e-9, 0.1),
+            (1e-6, 1e-6),
+            (5.0, 5.0),
+            (10.0, 9.9),
+            (99.0, 9.9),
+        ] {
             assert!((inside(&p, x) - want).abs() < 1e-15, "{x}");
         }
     }

@@ -58,7 +58,11 @@ struct Problem<'a> {
 
 impl Problem<'_> {
     fn values(&self) -> Vec<f64> {
-        self.parameters.iter().zip(&self.u).map(|(p, u)| bounded::outer(p, *u)).collect()
+        self.parameters
+            .iter()
+            .zip(&self.u)
+            .map(|(p, u)| bounded::outer(p, *u))
+            .collect()
     }
 
     /// Rows of the data, of the priors, and zeros up to one for each parameter.
@@ -68,7 +72,12 @@ impl Problem<'_> {
     }
 
     fn stacked(&self, point: &Point) -> DVector<f64> {
-        let rows = point.rows.iter().copied().chain(prior_residuals(self.parameters, &point.values)).chain(std::iter::repeat(0.0));
+        let rows = point
+            .rows
+            .iter()
+            .copied()
+            .chain(prior_residuals(self.parameters, &point.values))
+            .chain(std::iter::repeat(0.0));
         DVector::from_iterator(self.height(), rows.take(self.height()))
     }
 
@@ -105,7 +114,12 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        let known = self.seen.borrow().here.as_ref().map(|point| self.stacked(point));
+        let known = self
+            .seen
+            .borrow()
+            .here
+            .as_ref()
+            .map(|point| self.stacked(point));
         if known.is_some() {
             return known;
         }
@@ -113,7 +127,10 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
             return None;
         }
         let values = self.values();
-        let point = self.ask.at(&values).map(|rows| Point::new(self.parameters, values, rows));
+        let point = self
+            .ask
+            .at(&values)
+            .map(|rows| Point::new(self.parameters, values, rows));
         match point {
             Ok(point) if point.cost.is_finite() => {
                 let stacked = self.stacked(&point);
@@ -129,7 +146,11 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
                 None
             }
             refused => {
-                let why = if let Err(Refusal::Model(why)) = refused { why } else { "the sum of squares is not finite".into() };
+                let why = if let Err(Refusal::Model(why)) = refused {
+                    why
+                } else {
+                    "the sum of squares is not finite".into()
+                };
                 self.seen.borrow_mut().refused = Some(why);
                 Some(DVector::from_element(self.height(), REFUSED))
             }
@@ -142,7 +163,10 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
             self.seen.borrow_mut().halt = Some(End::OutOfEvaluations);
             return None;
         }
-        let data = match slope::matrix(slope::columns(self.ask, self.parameters, &point.values, &point.rows), point.rows.len()) {
+        let data = match slope::matrix(
+            slope::columns(self.ask, self.parameters, &point.values, &point.rows),
+            point.rows.len(),
+        ) {
             Ok(data) => data,
             Err(refusal) => {
                 self.halted(refusal);
@@ -157,7 +181,9 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
                 stacked[(row, k)] = 1.0 / prior.sd;
                 row += 1;
             }
-            stacked.column_mut(k).scale_mut(bounded::slope(p, *u, point.values[k]));
+            stacked
+                .column_mut(k)
+                .scale_mut(bounded::slope(p, *u, point.values[k]));
         }
         self.seen.borrow_mut().jacobian = Some((point.values, data));
         Some(stacked)
@@ -166,18 +192,44 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
 
 /// One descent; the best point is never worse than where it began.
 fn down(ask: &Ask, parameters: &[Parameter], options: &Options, from: Point) -> (Seen, End) {
-    let u = DVector::from_iterator(parameters.len(), parameters.iter().zip(&from.values).map(|(p, x)| bounded::inner(p, *x)));
-    let seen = RefCell::new(Seen { best: from.clone(), here: Some(from), jacobian: None, halt: None, refused: None });
-    let problem = Problem { ask, parameters, most_evaluations: options.most_evaluations, u, seen };
+    let u = DVector::from_iterator(
+        parameters.len(),
+        parameters
+            .iter()
+            .zip(&from.values)
+            .map(|(p, x)| bounded::inner(p, *x)),
+    );
+    let seen = RefCell::new(Seen {
+        best: from.clone(),
+        here: Some(from),
+        jacobian: None,
+        halt: None,
+        refused: None,
+    });
+    let problem = Problem {
+        ask,
+        parameters,
+        most_evaluations: options.most_evaluations,
+        u,
+        seen,
+    };
     let tolerance = options.tolerance.max(LEAST_TOLERANCE);
-    let solver = LevenbergMarquardt::new().with_ftol(tolerance).with_xtol(tolerance).with_gtol(tolerance).with_stepbound(FIRST_STEP);
+    let solver = LevenbergMarquardt::new()
+        .with_ftol(tolerance)
+        .with_xtol(tolerance)
+        .with_gtol(tolerance)
+        .with_stepbound(FIRST_STEP);
     // The limit is kept here, where the evaluations of Jacobians are counted too.
-    let patience = options.most_evaluations.clamp(1, usize::MAX / (parameters.len() + 2));
+    let patience = options
+        .most_evaluations
+        .clamp(1, usize::MAX / (parameters.len() + 2));
     let (problem, report) = solver.with_patience(patience).minimize(problem);
     let seen = problem.seen.into_inner();
     let end = seen.halt.unwrap_or(match report.termination {
         // The steps became short because the model failed at the ends of all longer ones.
-        TerminationReason::Converged { ftol: false, .. } if seen.refused.is_some() => End::NoProgress,
+        TerminationReason::Converged { ftol: false, .. } if seen.refused.is_some() => {
+            End::NoProgress
+        }
         reason if reason.was_successful() => End::Converged,
         TerminationReason::LostPatience => End::OutOfEvaluations,
         _ => End::NoProgress,
@@ -186,13 +238,24 @@ fn down(ask: &Ask, parameters: &[Parameter], options: &Options, from: Point) -> 
 }
 
 /// Onto bounds and off them (CA-8): the point from which to go on, `None` where no bound asks for it.
-fn at_bounds(ask: &Ask, parameters: &[Parameter], point: &Point, jacobian: &DMatrix<f64>) -> Result<Option<Point>, Refusal> {
+fn at_bounds(
+    ask: &Ask,
+    parameters: &[Parameter],
+    point: &Point,
+    jacobian: &DMatrix<f64>,
+) -> Result<Option<Point>, Refusal> {
     let mut found: Option<Point> = None;
     let uphill = jacobian.tr_mul(&DVector::from_column_slice(&point.rows));
     for (k, p) in parameters.iter().enumerate() {
         let x = point.values[k];
-        let uphill = uphill[k] + p.prior.map_or(0.0, |prior| (x - prior.mean) / (prior.sd * prior.sd));
-        let (bound, inwards) = if x - p.low <= p.high - x { (p.low, 1.0) } else { (p.high, -1.0) };
+        let uphill = uphill[k]
+            + p.prior
+                .map_or(0.0, |prior| (x - prior.mean) / (prior.sd * prior.sd));
+        let (bound, inwards) = if x - p.low <= p.high - x {
+            (p.low, 1.0)
+        } else {
+            (p.high, -1.0)
+        };
         let share = (x - bound).abs() / p.range();
         let onto = uphill * inwards > 0.0 && 0.0 < share && share <= NEAR;
         let off = uphill * inwards < 0.0 && share <= ON_BOUND;
@@ -200,7 +263,11 @@ fn at_bounds(ask: &Ask, parameters: &[Parameter], point: &Point, jacobian: &DMat
             continue;
         }
         let mut values = found.as_ref().unwrap_or(point).values.clone();
-        values[k] = if onto { bound } else { bound + inwards * OFF * p.range() }; // CA-8
+        values[k] = if onto {
+            bound
+        } else {
+            bound + inwards * OFF * p.range()
+        }; // CA-8
         match ask.at(&values) {
             Ok(rows) => {
                 let moved = Point::new(parameters, values, rows);
@@ -216,15 +283,32 @@ fn at_bounds(ask: &Ask, parameters: &[Parameter], point: &Point, jacobian: &DMat
 }
 
 /// From a start to the best point that it leads to.
-pub(super) fn descend(ask: &Ask, parameters: &[Parameter], options: &Options, from: Vec<f64>) -> Descent {
+pub(super) fn descend(
+    ask: &Ask,
+    parameters: &[Parameter],
+    options: &Options,
+    from: Vec<f64>,
+) -> Descent {
     let nothing = |end, why: String| {
         let evaluations = ask.evaluations();
-        let start = Start { from: from.clone(), to: from.clone(), cost: f64::INFINITY, end, evaluations, failure: Some(why) };
+        let start = Start {
+            from: from.clone(),
+            to: from.clone(),
+            cost: f64::INFINITY,
+            end,
+            evaluations,
+            failure: Some(why),
+        };
         Descent { start, best: None }
     };
     let first = match ask.at(&from) {
         Ok(rows) => Point::new(parameters, from.clone(), rows),
-        Err(Refusal::Stopped) => return nothing(End::Stopped, "stopped before the model gave an answer".into()),
+        Err(Refusal::Stopped) => {
+            return nothing(
+                End::Stopped,
+                "stopped before the model gave an answer".into(),
+            );
+        }
         Err(Refusal::Model(why)) => return nothing(End::NoProgress, why),
     };
     if !first.cost.is_finite() {
@@ -236,15 +320,28 @@ pub(super) fn descend(ask: &Ask, parameters: &[Parameter], options: &Options, fr
         let (seen, end) = down(ask, parameters, options, next);
         if seen.best.cost <= best.cost {
             best = seen.best;
-            jacobian = seen.jacobian.filter(|(values, _)| *values == best.values).map(|(_, jacobian)| jacobian);
+            jacobian = seen
+                .jacobian
+                .filter(|(values, _)| *values == best.values)
+                .map(|(_, jacobian)| jacobian);
         }
         let failure = seen.refused.filter(|_| end == End::NoProgress);
         round += 1;
-        if round == DESCENTS || end != End::Converged || ask.evaluations() >= options.most_evaluations {
+        if round == DESCENTS
+            || end != End::Converged
+            || ask.evaluations() >= options.most_evaluations
+        {
             break (end, failure);
         }
-        let known =
-            jacobian.take().map_or_else(|| slope::matrix(slope::columns(ask, parameters, &best.values, &best.rows), best.rows.len()), Ok);
+        let known = jacobian.take().map_or_else(
+            || {
+                slope::matrix(
+                    slope::columns(ask, parameters, &best.values, &best.rows),
+                    best.rows.len(),
+                )
+            },
+            Ok,
+        );
         match known.and_then(|known| Ok((at_bounds(ask, parameters, &best, &known)?, known))) {
             Ok((Some(moved), _)) => next = moved,
             Ok((None, known)) => {
@@ -255,8 +352,18 @@ pub(super) fn descend(ask: &Ask, parameters: &[Parameter], options: &Options, fr
             Err(Refusal::Model(_)) => break (end, failure),
         }
     };
-    let start = Start { from, to: best.values.clone(), cost: best.cost, end, evaluations: ask.evaluations(), failure };
-    Descent { start, best: Some((best, jacobian)) }
+    let start = Start {
+        from,
+        to: best.values.clone(),
+        cost: best.cost,
+        end,
+        evaluations: ask.evaluations(),
+        failure,
+    };
+    Descent {
+        start,
+        best: Some((best, jacobian)),
+    }
 }
 
 #[cfg(test)]
@@ -278,11 +385,31 @@ mod tests {
 
     #[test]
     fn off_a_bound_from_which_the_cost_falls() {
-        let options = Options { starts: 1, seed: 0, most_evaluations: 200, tolerance: 1e-10 };
+        let options = Options {
+            starts: 1,
+            seed: 0,
+            most_evaluations: 200,
+            tolerance: 1e-10,
+        };
         for on_bound in [0.0, 10.0] {
-            let parameters = [Parameter { name: "p".into(), start: on_bound, low: 0.0, high: 10.0, prior: None }];
-            let start = descend(&Ask::new(&Parabola, &Unwatched), &parameters, &options, vec![on_bound]).start;
-            assert!((start.to[0] - 3.0).abs() < 1e-6 && start.end == End::Converged, "{start:?}");
+            let parameters = [Parameter {
+                name: "p".into(),
+                start: on_bound,
+                low: 0.0,
+                high: 10.0,
+                prior: None,
+            }];
+            let start = descend(
+                &Ask::new(&Parabola, &Unwatched),
+                &parameters,
+                &options,
+                vec![on_bound],
+            )
+            .start;
+            assert!(
+                (start.to[0] - 3.0).abs() < 1e-6 && start.end == End::Converged,
+                "{start:?}"
+            );
         }
     }
 }

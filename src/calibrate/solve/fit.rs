@@ -13,22 +13,56 @@ use super::{End, Failure, Fit, Options, Parameter, Residuals, Watcher, slope};
 ///
 /// # Errors
 /// What is wrong with the parameters (all at once), or why no start gave an answer.
-pub fn fit(model: &dyn Residuals, parameters: &[Parameter], options: &Options, watcher: &dyn Watcher) -> Result<Fit, Failure> {
+pub fn fit(
+    model: &dyn Residuals,
+    parameters: &[Parameter],
+    options: &Options,
+    watcher: &dyn Watcher,
+) -> Result<Fit, Failure> {
     let reasons = wrong(model, parameters);
     if !reasons.is_empty() {
-        return Err(Failure { reasons, starts: Vec::new() });
+        return Err(Failure {
+            reasons,
+            starts: Vec::new(),
+        });
     }
     let from = starts(parameters, options.starts, options.seed);
-    let descents: Vec<_> = from.into_par_iter().map(|from| descend(&Ask::new(model, watcher), parameters, options, from)).collect();
-    let mut evaluations = descents.iter().map(|descent| descent.start.evaluations).sum();
-    let (starts, points): (Vec<_>, Vec<_>) = descents.into_iter().map(|descent| (descent.start, descent.best)).unzip();
-    let found = points.into_iter().enumerate().filter_map(|(i, point)| point.map(|point| (i, point)));
-    let Some((best, (point, jacobian))) = found.min_by(|(_, (a, _)), (_, (b, _))| a.cost.total_cmp(&b.cost)) else {
+    let descents: Vec<_> = from
+        .into_par_iter()
+        .map(|from| descend(&Ask::new(model, watcher), parameters, options, from))
+        .collect();
+    let mut evaluations = descents
+        .iter()
+        .map(|descent| descent.start.evaluations)
+        .sum();
+    let (starts, points): (Vec<_>, Vec<_>) = descents
+        .into_iter()
+        .map(|descent| (descent.start, descent.best))
+        .unzip();
+    let found = points
+        .into_iter()
+        .enumerate()
+        .filter_map(|(i, point)| point.map(|point| (i, point)));
+    let Some((best, (point, jacobian))) =
+        found.min_by(|(_, (a, _)), (_, (b, _))| a.cost.total_cmp(&b.cost))
+    else {
         let reason = |(i, start): (usize, &super::Start)| {
-            let values = parameters.iter().zip(&start.from).map(|(p, x)| format!("{} = {x}", p.name)).collect::<Vec<_>>().join(", ");
-            format!("start {} at {values}: {}", i + 1, start.failure.as_deref().unwrap_or("no answer"))
+            let values = parameters
+                .iter()
+                .zip(&start.from)
+                .map(|(p, x)| format!("{} = {x}", p.name))
+                .collect::<Vec<_>>()
+                .join(", ");
+            format!(
+                "start {} at {values}: {}",
+                i + 1,
+                start.failure.as_deref().unwrap_or("no answer")
+            )
         };
-        return Err(Failure { reasons: starts.iter().enumerate().map(reason).collect(), starts });
+        return Err(Failure {
+            reasons: starts.iter().enumerate().map(reason).collect(),
+            starts,
+        });
     };
     let end = starts[best].end;
     let jacobian = jacobian.unwrap_or_else(|| {
@@ -42,7 +76,17 @@ pub fn fit(model: &dyn Residuals, parameters: &[Parameter], options: &Options, w
         slope::matrix_with_gaps(columns, point.rows.len())
     });
     let prior_residuals = prior_residuals(parameters, &point.values);
-    Ok(Fit { values: point.values, residuals: point.rows, prior_residuals, cost: point.cost, jacobian, starts, best, end, evaluations })
+    Ok(Fit {
+        values: point.values,
+        residuals: point.rows,
+        prior_residuals,
+        cost: point.cost,
+        jacobian,
+        starts,
+        best,
+        end,
+        evaluations,
+    })
 }
 
 /// What is wrong with what was asked for.
@@ -56,13 +100,25 @@ fn wrong(model: &dyn Residuals, parameters: &[Parameter]) -> Vec<String> {
     }
     for p in parameters {
         if !(p.low.is_finite() && p.high.is_finite() && p.low < p.high && p.range().is_finite()) {
-            wrong.push(format!("{}: bounds are {} and {}; both must be finite, the low one below the high one", p.name, p.low, p.high));
+            wrong.push(format!(
+                "{}: bounds are {} and {}; both must be finite, the low one below the high one",
+                p.name, p.low, p.high
+            ));
         }
         if !p.start.is_finite() {
-            wrong.push(format!("{}: the start is {}; it must be finite", p.name, p.start));
+            wrong.push(format!(
+                "{}: the start is {}; it must be finite",
+                p.name, p.start
+            ));
         }
-        if let Some(prior) = p.prior.filter(|prior| !(prior.mean.is_finite() && prior.sd.is_finite() && prior.sd > 0.0)) {
-            wrong.push(format!("{}: the prior is {} with sd {}; both must be finite, the sd above 0", p.name, prior.mean, prior.sd));
+        if let Some(prior) = p
+            .prior
+            .filter(|prior| !(prior.mean.is_finite() && prior.sd.is_finite() && prior.sd > 0.0))
+        {
+            wrong.push(format!(
+                "{}: the prior is {} with sd {}; both must be finite, the sd above 0",
+                p.name, prior.mean, prior.sd
+            ));
         }
     }
     wrong

@@ -38,8 +38,17 @@ impl Residuals for Without<'_> {
 
     fn at(&self, values: &[f64]) -> Result<Vec<f64>, String> {
         let all = self.model.at(values)?;
-        let wrong = || format!("the model gives {} residuals in place of {}", all.len(), self.model.count());
-        self.kept.iter().map(|&i| all.get(i).copied().ok_or_else(wrong)).collect()
+        let wrong = || {
+            format!(
+                "the model gives {} residuals in place of {}",
+                all.len(),
+                self.model.count()
+            )
+        };
+        self.kept
+            .iter()
+            .map(|&i| all.get(i).copied().ok_or_else(wrong))
+            .collect()
     }
 }
 
@@ -59,23 +68,56 @@ pub fn leave_out(
     let mut all: Vec<usize> = (0..model.count()).map(of).collect();
     all.sort_unstable();
     all.dedup();
-    let parameters: Vec<Parameter> = parameters.iter().zip(&solution.values).map(|(p, x)| Parameter { start: *x, ..p.clone() }).collect();
-    let options = Options { starts: 1, ..*options };
+    let parameters: Vec<Parameter> = parameters
+        .iter()
+        .zip(&solution.values)
+        .map(|(p, x)| Parameter {
+            start: *x,
+            ..p.clone()
+        })
+        .collect();
+    let options = Options {
+        starts: 1,
+        ..*options
+    };
     let fold = |group: usize| {
-        let without = Without { model, kept: (0..model.count()).filter(|i| of(*i) != group).collect() };
-        let none = |values, end, failure| Fold { group, values, residuals: Vec::new(), end, failure: Some(failure) };
+        let without = Without {
+            model,
+            kept: (0..model.count()).filter(|i| of(*i) != group).collect(),
+        };
+        let none = |values, end, failure| Fold {
+            group,
+            values,
+            residuals: Vec::new(),
+            end,
+            failure: Some(failure),
+        };
         let fitted = match fit(&without, &parameters, &options, watcher) {
             Ok(fitted) => fitted,
             Err(failure) => {
-                let end = failure.starts.first().map_or(End::NoProgress, |start| start.end);
+                let end = failure
+                    .starts
+                    .first()
+                    .map_or(End::NoProgress, |start| start.end);
                 return none(solution.values.clone(), end, failure.to_string());
             }
         };
         match Ask::new(model, watcher).at(&fitted.values) {
             Ok(rows) => {
-                let residuals = rows.into_iter().enumerate().filter(|(i, _)| of(*i) == group).map(|(_, r)| r).collect(); // CA-19
+                let residuals = rows
+                    .into_iter()
+                    .enumerate()
+                    .filter(|(i, _)| of(*i) == group)
+                    .map(|(_, r)| r)
+                    .collect(); // CA-19
                 let failure = fitted.starts[fitted.best].failure.clone();
-                Fold { group, values: fitted.values, residuals, end: fitted.end, failure }
+                Fold {
+                    group,
+                    values: fitted.values,
+                    residuals,
+                    end: fitted.end,
+                    failure,
+                }
             }
             Err(Refusal::Stopped) => none(fitted.values, End::Stopped, "stopped".into()),
             Err(Refusal::Model(why)) => none(fitted.values, fitted.end, why),

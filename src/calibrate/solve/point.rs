@@ -24,5 +24,9 @@ impl Point {
 
 /// (value - mean) / sd of the parameters that have a prior.
 pub(super) fn prior_residuals(parameters: &[Parameter], values: &[f64]) -> Vec<f64> {
-    parameters.iter().zip(values).filter_map(|(p, x)| p.prior.map(|prior| (x - prior.mean) / prior.sd)).collect()
+    parameters
+        .iter()
+        .zip(values)
+        .filter_map(|(p, x)| p.prior.map(|prior| (x - prior.mean) / prior.sd))
+        .collect()
 }

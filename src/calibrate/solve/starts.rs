@@ -14,8 +14,11 @@ const REACH: f64 = 2.0;
 
 fn region(parameter: &Parameter) -> [f64; 2] {
     let bounds = [parameter.low, parameter.high];
-    let Some(prior) = parameter.prior else { return bounds };
-    let near = [prior.mean - REACH * prior.sd, prior.mean + REACH * prior.sd].map(|x| x.clamp(parameter.low, parameter.high));
+    let Some(prior) = parameter.prior else {
+        return bounds;
+    };
+    let near = [prior.mean - REACH * prior.sd, prior.mean + REACH * prior.sd]
+        .map(|x| x.clamp(parameter.low, parameter.high));
     if near[0] < near[1] { near } else { bounds }
 }
 
@@ -24,7 +27,12 @@ pub(super) fn starts(parameters: &[Parameter], number: usize, seed: u64) -> Vec<
     let others = number.saturating_sub(1);
     let mut draw = Pcg64::seed_from_u64(seed);
     let mut uniform = || (draw.next_u64() >> 12) as f64 / (1_u64 << 52) as f64;
-    let mut all = vec![parameters.iter().map(|p| bounded::inside(p, p.start)).collect::<Vec<_>>()];
+    let mut all = vec![
+        parameters
+            .iter()
+            .map(|p| bounded::inside(p, p.start))
+            .collect::<Vec<_>>(),
+    ];
     all.resize(others + 1, Vec::with_capacity(parameters.len()));
     for parameter in parameters {
         let mut order: Vec<usize> = (0..others).collect();
@@ -47,7 +55,13 @@ mod tests {
 
     #[test]
     fn one_value_in_each_part_of_the_region_and_another_seed_elsewhere() {
-        let parameter = |low, high, prior| Parameter { name: "p".into(), start: 1.0, low, high, prior };
+        let parameter = |low, high, prior| Parameter {
+            name: "p".into(),
+            start: 1.0,
+            low,
+            high,
+            prior,
+        };
         let prior = |mean, sd| Some(Prior { mean, sd });
         let parameters = [
             parameter(0.0, 10.0, None),
@@ -59,7 +73,10 @@ mod tests {
         let all = starts(&parameters, 9, 7);
         assert_eq!((all.len(), &all[0]), (9, &vec![1.0; 4]));
         for (k, [low, high]) in regions.into_iter().enumerate() {
-            let mut parts: Vec<usize> = all[1..].iter().map(|start| ((start[k] - low) / (high - low) * 8.0) as usize).collect();
+            let mut parts: Vec<usize> = all[1..]
+                .iter()
+                .map(|start| ((start[k] - low) / (high - low) * 8.0) as usize)
+                .collect();
             parts.sort_unstable();
             assert_eq!(parts, (0..8).collect::<Vec<_>>(), "{k}");
         }

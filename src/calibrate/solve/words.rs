@@ -28,7 +28,13 @@ const WHOLE: f64 = 0.03;
 /// Scale of each parameter's changes, and whether it is the value (CA-16).
 pub(super) fn relative_scales(fit: &Fit, parameters: &[Parameter]) -> (Vec<f64>, Vec<bool>) {
     let is_nothing = |x: f64| x.abs() <= f64::MIN_POSITIVE;
-    let scale = |(p, x): (&Parameter, &f64)| if is_nothing(p.start) || is_nothing(*x) { (p.range(), false) } else { (*x, true) }; // CA-16
+    let scale = |(p, x): (&Parameter, &f64)| {
+        if is_nothing(p.start) || is_nothing(*x) {
+            (p.range(), false)
+        } else {
+            (*x, true)
+        }
+    }; // CA-16
     parameters.iter().zip(&fit.values).map(scale).unzip()
 }
 
@@ -50,9 +56,19 @@ pub fn words(fit: &Fit, parameters: &[Parameter]) -> Vec<String> {
     for (k, column) in fit.jacobian.column_iter().enumerate() {
         let name = &parameters[k].name;
         if column.iter().any(|slope| !slope.is_finite()) {
-            said.push((k, format!("{name}: no derivative at the solution, so the data say nothing of it there")));
+            said.push((
+                k,
+                format!(
+                    "{name}: no derivative at the solution, so the data say nothing of it there"
+                ),
+            ));
         } else if dead.contains(&k) {
-            said.push((k, format!("{name} is not identified by these data: it moves no residual at the solution")));
+            said.push((
+                k,
+                format!(
+                    "{name} is not identified by these data: it moves no residual at the solution"
+                ),
+            ));
         } else {
             looked_at.push(k);
         }
@@ -61,29 +77,56 @@ pub fn words(fit: &Fit, parameters: &[Parameter]) -> Vec<String> {
     for group in together(&unknown.projector) {
         let sentence = if let [one] = group[..] {
             let k = looked_at[one];
-            alone(&parameters[k], unknown.deviation[one], scales[k], relative[k])
+            alone(
+                &parameters[k],
+                unknown.deviation[one],
+                scales[k],
+                relative[k],
+            )
         } else {
-            let names: Vec<&str> = group.iter().map(|&i| parameters[looked_at[i]].name.as_str()).collect();
-            combined(&names, &block(&unknown.projector, &group), group.iter().all(|&i| relative[looked_at[i]]))
+            let names: Vec<&str> = group
+                .iter()
+                .map(|&i| parameters[looked_at[i]].name.as_str())
+                .collect();
+            combined(
+                &names,
+                &block(&unknown.projector, &group),
+                group.iter().all(|&i| relative[looked_at[i]]),
+            )
         };
         let trades = sentence.contains("trade against");
         said.push((looked_at[group[0]], sentence));
         if group.len() > 2 && trades {
-            let members: Vec<usize> = group.iter().map(|&i| looked_at[i]).filter(|&k| relative[k]).collect();
-            said.extend(alike(fit, parameters, &members, &scales).into_iter().map(|sentence| (looked_at[group[0]], sentence)));
+            let members: Vec<usize> = group
+                .iter()
+                .map(|&i| looked_at[i])
+                .filter(|&k| relative[k])
+                .collect();
+            said.extend(
+                alike(fit, parameters, &members, &scales)
+                    .into_iter()
+                    .map(|sentence| (looked_at[group[0]], sentence)),
+            );
         }
     }
     said.sort_by_key(|(k, _)| *k);
     said.into_iter().map(|(_, sentence)| sentence).collect()
 }
 
-fn unknown(fit: &Fit, parameters: &[Parameter], looked_at: &[usize], (scales, relative): (&[f64], &[bool])) -> Unknown {
+fn unknown(
+    fit: &Fit,
+    parameters: &[Parameter],
+    looked_at: &[usize],
+    (scales, relative): (&[f64], &[bool]),
+) -> Unknown {
     let n = looked_at.len();
     let (values, v_t) = singular(&scaled(&fit.jacobian, looked_at, scales));
     let largest = values.iter().copied().fold(0.0, f64::max);
     // A unit step in the scale of a parameter, as a share of its range, and of its value if that is its scale.
-    let reach =
-        |i: usize| (scales[looked_at[i]].abs() / parameters[looked_at[i]].range()).max(if relative[looked_at[i]] { 1.0 } else { 0.0 });
+    let reach = |i: usize| {
+        (scales[looked_at[i]].abs() / parameters[looked_at[i]].range())
+            .max(if relative[looked_at[i]] { 1.0 } else { 0.0 })
+    };
     let (mut projector, mut variance) = (DMatrix::zeros(n, n), vec![0.0; n]);
     for (s, v) in values.iter().zip(v_t.row_iter()) {
         let null = *s <= NOISE * largest;
@@ -96,16 +139,22 @@ fn unknown(fit: &Fit, parameters: &[Parameter], looked_at: &[usize], (scales, re
             *variance += if null { f64::INFINITY } else { (v / s).powi(2) };
         }
     }
-    Unknown { projector, deviation: variance.into_iter().map(f64::sqrt).collect() }
+    Unknown {
+        projector,
+        deviation: variance.into_iter().map(f64::sqrt).collect(),
+    }
 }
 
 /// Parameters that belong together (CA-18), each group and the groups in ascending order.
 fn together(projector: &DMatrix<f64>) -> Vec<Vec<usize>> {
-    let members: Vec<usize> = (0..projector.nrows()).filter(|&k| projector[(k, k)] > LEAST_WEIGHT * LEAST_WEIGHT).collect();
+    let members: Vec<usize> = (0..projector.nrows())
+        .filter(|&k| projector[(k, k)] > LEAST_WEIGHT * LEAST_WEIGHT)
+        .collect();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for k in members {
-        let (linked, mut others): (Vec<_>, Vec<_>) =
-            groups.into_iter().partition(|group| group.iter().any(|&l| projector[(k, l)].abs() > LEAST_LINK));
+        let (linked, mut others): (Vec<_>, Vec<_>) = groups
+            .into_iter()
+            .partition(|group| group.iter().any(|&l| projector[(k, l)].abs() > LEAST_LINK));
         let mut group: Vec<usize> = linked.into_iter().flatten().chain([k]).collect();
         group.sort_unstable();
         others.push(group);
@@ -125,8 +174,14 @@ fn alone(parameter: &Parameter, deviation: f64, scale: f64, relative: bool) -> S
         return format!("{name} is not identified by these data");
     }
     let of_range = deviation * scale.abs() / parameter.range();
-    let of_value = if relative { format!("{deviation:.2} of its value, ") } else { String::new() };
-    format!("{name} is not identified by these data: its standard deviation is {of_value}{of_range:.2} of its range")
+    let of_value = if relative {
+        format!("{deviation:.2} of its value, ")
+    } else {
+        String::new()
+    };
+    format!(
+        "{name} is not identified by these data: its standard deviation is {of_value}{of_range:.2} of its range"
+    )
 }
 
 /// Pairs of a large group that act alike (CA-20).
@@ -138,9 +193,15 @@ fn alike(fit: &Fit, parameters: &[Parameter], members: &[usize], scales: &[f64])
             let (a, b) = (columns.column(i), columns.column(j));
             let cosine = a.dot(&b) / (a.norm() * b.norm());
             if cosine.abs() >= ALIKE {
-                let names = [parameters[members[i]].name.as_str(), parameters[members[j]].name.as_str()];
+                let names = [
+                    parameters[members[i]].name.as_str(),
+                    parameters[members[j]].name.as_str(),
+                ];
                 let known = power_product(&names, &[a.norm(), b.norm() * cosine.signum()]);
-                said.push(format!("{} and {} act alike: nearly only {known} is known", names[0], names[1]));
+                said.push(format!(
+                    "{} and {} act alike: nearly only {known} is known",
+                    names[0], names[1]
+                ));
             }
         }
     }
@@ -156,26 +217,52 @@ fn combined(names: &[&str], projector: &DMatrix<f64>, relative: bool) -> String 
     }
     if unknown + 1 < all || !relative {
         let known = all - unknown;
-        let combinations = if known == 1 { "combination of them is" } else { "combinations of them are" };
+        let combinations = if known == 1 {
+            "combination of them is"
+        } else {
+            "combinations of them are"
+        };
         return format!("{list} trade against each other: only {known} {combinations} known");
     }
     let eigen = projector.clone().symmetric_eigen();
-    let w: Vec<f64> = eigen.eigenvectors.column(eigen.eigenvalues.imin()).iter().copied().collect();
+    let w: Vec<f64> = eigen
+        .eigenvectors
+        .column(eigen.eigenvalues.imin())
+        .iter()
+        .copied()
+        .collect();
     let known = power_product(names, &w);
     format!("{list}: only {known} is known")
 }
 
 /// A product of powers in words, the largest power being 1.
 fn power_product(names: &[&str], w: &[f64]) -> String {
-    let largest = w.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() * (1.0 + WHOLE) { b } else { a });
+    let largest = w.iter().copied().fold(0.0, |a: f64, b| {
+        if b.abs() > a.abs() * (1.0 + WHOLE) {
+            b
+        } else {
+            a
+        }
+    });
     let powers: Vec<f64> = w.iter().map(|w| w / largest).collect();
     let whole = |p: f64, one: f64| (p - one).abs() <= WHOLE;
     match powers[..] {
         [a, b] if whole(a, 1.0) && whole(b, 1.0) => "their product".to_string(),
         [a, b] if whole(a * b, -1.0) => "their ratio".to_string(),
         _ => {
-            let power = |(name, p): (&&str, &f64)| if whole(*p, 1.0) { (*name).to_string() } else { format!("{name}^{p:.2}") };
-            names.iter().zip(&powers).map(power).collect::<Vec<_>>().join(" x ")
+            let power = |(name, p): (&&str, &f64)| {
+                if whole(*p, 1.0) {
+                    (*name).to_string()
+                } else {
+                    format!("{name}^{p:.2}")
+                }
+            };
+            names
+                .iter()
+                .zip(&powers)
+                .map(power)
+                .collect::<Vec<_>>()
+                .join(" x ")
         }
     }
 }

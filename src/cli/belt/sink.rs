@@ -5,7 +5,9 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 
 use cvtcycle::config::Problem;
 use cvtcycle::results::file::OutputFile;
-use cvtcycle::rig::points::{CASE, FLAGS, FORMULATION, NUMBERS, OUTPUTS, STATUS, Solved, Take, name, output_names};
+use cvtcycle::rig::points::{
+    CASE, FLAGS, FORMULATION, NUMBERS, OUTPUTS, STATUS, Solved, Take, name, output_names,
+};
 use tempfile::{SpooledTempFile, spooled_tempfile};
 
 use crate::cli::answer::problem;
@@ -28,8 +30,12 @@ impl Place {
 
     fn put(&mut self, text: &str) -> Result<(), Vec<Problem>> {
         match self {
-            Place::File(file) => file.write_all(text.as_bytes()).map_err(|error| vec![file.cannot_write(&error)]),
-            Place::Spool(spool) => spool.write_all(text.as_bytes()).map_err(|error| vec![unspooled(&error)]),
+            Place::File(file) => file
+                .write_all(text.as_bytes())
+                .map_err(|error| vec![file.cannot_write(&error)]),
+            Place::Spool(spool) => spool
+                .write_all(text.as_bytes())
+                .map_err(|error| vec![unspooled(&error)]),
         }
     }
 }
@@ -46,7 +52,11 @@ pub struct Offer {
 impl Offer {
     /// CSV to the file if there is one, else to standard output unless `json` goes there.
     pub fn new(file: Option<OutputFile>, json: bool) -> Self {
-        Offer { file, json, sink: None }
+        Offer {
+            file,
+            json,
+            sink: None,
+        }
     }
 }
 
@@ -57,7 +67,9 @@ impl Take for Offer {
     }
 
     fn put(&mut self, case: &str, row: &Solved) -> Result<(), Vec<Problem>> {
-        self.sink.as_mut().map_or(Ok(()), |sink| sink.put(case, row))
+        self.sink
+            .as_mut()
+            .map_or(Ok(()), |sink| sink.put(case, row))
     }
 }
 
@@ -74,8 +86,18 @@ pub struct Sink {
 impl Sink {
     fn new(file: Option<OutputFile>, json: bool, with_case: bool) -> Result<Self, Vec<Problem>> {
         let csv = file.map(|file| Place::File(Box::new(file)));
-        let csv = if csv.is_none() && !json { Some(Place::spool()) } else { csv };
-        let mut sink = Sink { csv, json: json.then(Place::spool), with_case, rows: 0, line: String::new() };
+        let csv = if csv.is_none() && !json {
+            Some(Place::spool())
+        } else {
+            csv
+        };
+        let mut sink = Sink {
+            csv,
+            json: json.then(Place::spool),
+            with_case,
+            rows: 0,
+            line: String::new(),
+        };
         if let Some(csv) = &mut sink.csv {
             let names: Vec<&str> = output_names(with_case).collect();
             csv.put(&(names.join(",") + "\n"))?;
@@ -92,7 +114,8 @@ impl Sink {
         }
         if let Some(json) = &mut self.json {
             self.line.clear();
-            self.line.push_str(if self.rows == 0 { "\n" } else { ",\n" });
+            self.line
+                .push_str(if self.rows == 0 { "\n" } else { ",\n" });
             json_line(&mut self.line, self.with_case.then_some(case), row);
             json.put(&self.line)?;
         }
@@ -101,7 +124,10 @@ impl Sink {
     }
 
     /// Gives the file its name and sends the rest to standard output, JSON after its `head` (an object without rows).
-    pub fn finish(self, head: &serde_json::Map<String, serde_json::Value>) -> Result<(), Vec<Problem>> {
+    pub fn finish(
+        self,
+        head: &serde_json::Map<String, serde_json::Value>,
+    ) -> Result<(), Vec<Problem>> {
         match self.csv {
             Some(Place::File(file)) => drop(file.commit().map_err(|problem| vec![problem])?),
             Some(Place::Spool(spool)) => send(spool, "", "")?,
@@ -147,7 +173,11 @@ fn csv_line(line: &mut String, case: Option<&str>, row: &Solved) {
 fn json_line(line: &mut String, case: Option<&str>, row: &Solved) {
     line.push('{');
     if let Some(case) = case {
-        let _ = write!(line, "\"{CASE}\":{},", serde_json::Value::from(case.replace("\"\"", "\"")));
+        let _ = write!(
+            line,
+            "\"{CASE}\":{},",
+            serde_json::Value::from(case.replace("\"\"", "\""))
+        );
     }
     let _ = write!(line, "\"{FORMULATION}\":\"{}\"", name(row.formulation));
     let given = NUMBERS.iter().map(|number| number.name).zip(row.numbers);
@@ -160,19 +190,31 @@ fn json_line(line: &mut String, case: Option<&str>, row: &Solved) {
         }
     }
     let flags: Vec<&str> = row.flags.names().collect();
-    let _ = write!(line, ",\"{STATUS}\":\"{}\",\"{FLAGS}\":{}}}", row.point.status.name(), serde_json::Value::from(flags));
+    let _ = write!(
+        line,
+        ",\"{STATUS}\":\"{}\",\"{FLAGS}\":{}}}",
+        row.point.status.name(),
+        serde_json::Value::from(flags)
+    );
 }
 
 /// A number in the fewest digits that read back to the same; -0 as 0, what is none as `NaN`.
 fn push(line: &mut String, number: f64) {
     let number = number + 0.0;
     let plain = (1e-5..1e15).contains(&number.abs()) || number.abs() <= 0.0 || !number.is_finite();
-    let _ = if plain { write!(line, "{number}") } else { write!(line, "{number:e}") };
+    let _ = if plain {
+        write!(line, "{number}")
+    } else {
+        write!(line, "{number:e}")
+    };
 }
 
 /// Sends what was kept aside to standard output.
 fn send(spool: BufWriter<SpooledTempFile>, before: &str, after: &str) -> Result<(), Vec<Problem>> {
-    let kept = spool.into_inner().map_err(io::IntoInnerError::into_error).and_then(|mut kept| kept.seek(SeekFrom::Start(0)).map(|_| kept));
+    let kept = spool
+        .into_inner()
+        .map_err(io::IntoInnerError::into_error)
+        .and_then(|mut kept| kept.seek(SeekFrom::Start(0)).map(|_| kept));
     let mut kept = kept.map_err(|error| vec![unspooled(&error)])?;
     stream::to_stdout(|out| {
         out.write_all(before.as_bytes())?;
@@ -183,5 +225,9 @@ fn send(spool: BufWriter<SpooledTempFile>, before: &str, after: &str) -> Result<
 
 fn unspooled(error: &io::Error) -> Problem {
     let hint = "the table is kept aside until it is complete: free some space there, or write to a file with --out";
-    problem("standard output", &format!("cannot write in the folder of temporary files: {error}"), hint)
+    problem(
+        "standard output",
+        &format!("cannot write in the folder of temporary files: {error}"),
+        hint,
+    )
 }

@@ -36,14 +36,20 @@ impl Progress {
             How::Nothing
         } else if std::io::stderr().is_terminal() {
             let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-            let style = ProgressStyle::with_template("{spinner} {human_pos} evaluations  {elapsed}  Ctrl-C keeps the best so far");
+            let style = ProgressStyle::with_template(
+                "{spinner} {human_pos} evaluations  {elapsed}  Ctrl-C keeps the best so far",
+            );
             spinner.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
             spinner.enable_steady_tick(Duration::from_millis(200));
             How::Spinner(spinner)
         } else {
             How::Lines(Mutex::new(begun))
         };
-        Progress { how, done: AtomicU64::new(0), begun }
+        Progress {
+            how,
+            done: AtomicU64::new(0),
+            begun,
+        }
     }
 
     /// Takes the spinner away.
@@ -62,10 +68,15 @@ impl Watcher for Progress {
             How::Spinner(spinner) => spinner.inc(1),
             How::Lines(last) => {
                 // Whoever comes while another prints has nothing to add.
-                let Ok(mut last) = last.try_lock() else { return };
+                let Ok(mut last) = last.try_lock() else {
+                    return;
+                };
                 if last.elapsed() >= EVERY {
                     *last = Instant::now();
-                    let text = format!("cvtcycle: {done} evaluations, {:.0} s\n", self.begun.elapsed().as_secs_f64());
+                    let text = format!(
+                        "cvtcycle: {done} evaluations, {:.0} s\n",
+                        self.begun.elapsed().as_secs_f64()
+                    );
                     // Where standard error is gone there is nobody to tell.
                     drop(std::io::stderr().write_all(text.as_bytes()));
                 }

@@ -26,9 +26,19 @@ pub fn answer(outcome: &Outcome, paint: Paint) -> String {
         }
     };
     section("What the fit is worth", worth(outcome));
-    section("Warnings", outcome.warnings.iter().map(|said| lines(said, "  ! ")).collect());
+    section(
+        "Warnings",
+        outcome
+            .warnings
+            .iter()
+            .map(|said| lines(said, "  ! "))
+            .collect(),
+    );
     section("Parameters", parameters(outcome));
-    section("Data, root mean square of the residuals in standard deviations", groups(outcome));
+    section(
+        "Data, root mean square of the residuals in standard deviations",
+        groups(outcome),
+    );
     section("Folds left out", folds(outcome));
     section("Largest residuals", largest(outcome));
     section("What the data do not tell", unknown(outcome));
@@ -54,15 +64,29 @@ fn lines(sentence: &str, mark: &str) -> String {
         }
     }
     let blank = " ".repeat(mark.chars().count());
-    done.iter().enumerate().map(|(k, line)| format!("{}{line}\n", if k == 0 { mark } else { &blank })).collect()
+    done.iter()
+        .enumerate()
+        .map(|(k, line)| format!("{}{line}\n", if k == 0 { mark } else { &blank }))
+        .collect()
 }
 
 fn head(o: &Outcome, paint: Paint) -> String {
     let mut text = format!("{}  {}\n", paint.heading(&o.title), o.plan);
-    let (data, free) = (count(o.residuals.len(), "observation"), count(o.parameters.len(), "parameter"));
-    text += &format!("{}: {free} fitted to {data}; {} after {}\n", o.vehicle, o.end, count(o.evaluations, "evaluation"));
+    let (data, free) = (
+        count(o.residuals.len(), "observation"),
+        count(o.parameters.len(), "parameter"),
+    );
+    text += &format!(
+        "{}: {free} fitted to {data}; {} after {}\n",
+        o.vehicle,
+        o.end,
+        count(o.evaluations, "evaluation")
+    );
     if !o.converged {
-        text += &format!("{}\n", paint.bad("not converged: the values are those of the best point so far, no minimum"));
+        text += &format!(
+            "{}\n",
+            paint.bad("not converged: the values are those of the best point so far, no minimum")
+        );
     }
     text
 }
@@ -80,8 +104,16 @@ fn worth(o: &Outcome) -> String {
     let (left_out, predicted) = of(o.residuals.iter().map(|r| r.left_out_sd));
     let mut grid = Grid::new("lrl").indented();
     grid.row(["root mean square of the residuals", "in sd", ""]);
-    grid.row(["with the files' values".to_owned(), fixed(before, 2), String::new()]);
-    grid.row(["fitted".to_owned(), fixed(after, 2), "to the same data: no evidence that the model is right".to_owned()]);
+    grid.row([
+        "with the files' values".to_owned(),
+        fixed(before, 2),
+        String::new(),
+    ]);
+    grid.row([
+        "fitted".to_owned(),
+        fixed(after, 2),
+        "to the same data: no evidence that the model is right".to_owned(),
+    ]);
     let how = match predicted {
         0 => "no fold was left out".to_owned(),
         n if n < all => format!("of {n} observations; the others could not be predicted"),
@@ -89,7 +121,9 @@ fn worth(o: &Outcome) -> String {
     };
     grid.row(["predicted".to_owned(), fixed(left_out, 2), how]);
     let mut text = grid.text();
-    let chance = o.chi2_probability.map_or_else(String::new, |p| format!(", probability of more by chance {}", probability(p)));
+    let chance = o.chi2_probability.map_or_else(String::new, |p| {
+        format!(", probability of more by chance {}", probability(p))
+    });
     let sums = format!(
         "sum of squares {} with the files' values, {} fitted ({} of it the data's), {}{chance}",
         sum(o.cost_before),
@@ -108,16 +142,29 @@ fn worth(o: &Outcome) -> String {
 
 /// A sum of squares: small ones with more decimals.
 fn sum(x: Option<f64>) -> String {
-    fixed(x, if x.is_some_and(|x| x.abs() < 10.0) { 3 } else { 1 })
+    fixed(
+        x,
+        if x.is_some_and(|x| x.abs() < 10.0) {
+            3
+        } else {
+            1
+        },
+    )
 }
 
 fn probability(p: f64) -> String {
-    if p < 0.001 && p > 0.0 { format!("{p:.0e}") } else { fixed(p, 3) }
+    if p < 0.001 && p > 0.0 {
+        format!("{p:.0e}")
+    } else {
+        fixed(p, 3)
+    }
 }
 
 /// A number with as many decimals as its error leaves meaningful: two digits of the error.
 pub(super) fn to_error(x: f64, error: Option<f64>) -> String {
-    let scale = error.filter(|e| *e > 0.0 && e.is_finite()).unwrap_or(x.abs() / 100.0);
+    let scale = error
+        .filter(|e| *e > 0.0 && e.is_finite())
+        .unwrap_or(x.abs() / 100.0);
     if !x.is_finite() || scale <= 0.0 {
         return fixed(x, 0);
     }
@@ -139,7 +186,10 @@ fn short(key: &str) -> String {
     }
     let mut ends = key.match_indices('.').map(|(at, _)| &key[at + 1..]);
     let last = key.rsplit('.').next().unwrap_or(key);
-    format!("…{}", ends.find(|end| end.chars().count() < KEY).unwrap_or(last))
+    format!(
+        "…{}",
+        ends.find(|end| end.chars().count() < KEY).unwrap_or(last)
+    )
 }
 
 fn parameters(o: &Outcome) -> String {
@@ -149,24 +199,44 @@ fn parameters(o: &Outcome) -> String {
     let shortened: Vec<String> = o.parameters.iter().map(|p| short(&p.name)).collect();
     // An empty last column, for the last one would be wrapped.
     let mut grid = Grid::new("lrrrllrll").indented();
-    grid.row(["parameter", "file", "fitted", "+-", "unit", "prior", "share", "bound", ""]);
+    grid.row([
+        "parameter",
+        "file",
+        "fitted",
+        "+-",
+        "unit",
+        "prior",
+        "share",
+        "bound",
+        "",
+    ]);
     for (p, name) in o.parameters.iter().zip(&shortened) {
         let alone = shortened.iter().filter(|other| *other == name).count() == 1;
-        let prior =
-            p.prior.map_or_else(|| NONE.to_owned(), |[mean, sd]| format!("{} +- {}", to_error(mean, Some(sd)), to_error(sd, Some(sd))));
+        let prior = p.prior.map_or_else(
+            || NONE.to_owned(),
+            |[mean, sd]| format!("{} +- {}", to_error(mean, Some(sd)), to_error(sd, Some(sd))),
+        );
         grid.row([
             if alone { name.clone() } else { p.name.clone() },
             to_error(p.file_value, p.standard_error),
             to_error(p.value, p.standard_error),
-            p.standard_error.map_or_else(|| NONE.to_owned(), |e| to_error(e, Some(e))),
+            p.standard_error
+                .map_or_else(|| NONE.to_owned(), |e| to_error(e, Some(e))),
             p.unit.clone(),
             prior,
-            p.prior_share.map_or_else(|| NONE.to_owned(), |share| format!("{} %", fixed(100.0 * share, 0))),
+            p.prior_share.map_or_else(
+                || NONE.to_owned(),
+                |share| format!("{} %", fixed(100.0 * share, 0)),
+            ),
             p.at_bound.unwrap_or_default().to_owned(),
             String::new(),
         ]);
     }
-    let cut = if shortened.iter().any(|name| name.starts_with('…')) { " … stands for the beginning of a key." } else { "" };
+    let cut = if shortened.iter().any(|name| name.starts_with('…')) {
+        " … stands for the beginning of a key."
+    } else {
+        ""
+    };
     let words = format!(
         "+-: standard error from the given deviations. share: variance after the fit over that of the prior; near 100 % the data say nothing.{cut}"
     );
@@ -174,7 +244,11 @@ fn parameters(o: &Outcome) -> String {
 }
 
 fn cut(text: &str, most: usize) -> String {
-    if text.chars().count() <= most { text.to_owned() } else { text.chars().take(most - 1).collect::<String>() + "…" }
+    if text.chars().count() <= most {
+        text.to_owned()
+    } else {
+        text.chars().take(most - 1).collect::<String>() + "…"
+    }
 }
 
 fn groups(o: &Outcome) -> String {
@@ -191,39 +265,85 @@ fn groups(o: &Outcome) -> String {
     grid.row(["group", "n", "files", "fitted", "predicted"]);
     for name in names {
         let own = || o.residuals.iter().filter(|r| r.group == name);
-        let numbers = [of(own().map(|r| r.before_sd)), of(own().map(|r| Some(r.after_sd))), of(own().map(|r| r.left_out_sd))];
+        let numbers = [
+            of(own().map(|r| r.before_sd)),
+            of(own().map(|r| Some(r.after_sd))),
+            of(own().map(|r| r.left_out_sd)),
+        ];
         let cells = numbers.map(|(x, _)| fixed(x, 2));
-        grid.row([cut(name, NAME), own().count().to_string()].into_iter().chain(cells));
+        grid.row(
+            [cut(name, NAME), own().count().to_string()]
+                .into_iter()
+                .chain(cells),
+        );
     }
     grid.text()
 }
 
 /// The folds, where they are not the groups or one of them failed.
 fn folds(o: &Outcome) -> String {
-    let is_group = |name: &str| o.residuals.iter().filter(|r| r.fold == name || r.group == name).all(|r| r.fold == r.group);
-    if o.folds.iter().all(|fold| is_group(&fold.name) && fold.end == "converged") {
+    let is_group = |name: &str| {
+        o.residuals
+            .iter()
+            .filter(|r| r.fold == name || r.group == name)
+            .all(|r| r.fold == r.group)
+    };
+    if o.folds
+        .iter()
+        .all(|fold| is_group(&fold.name) && fold.end == "converged")
+    {
         return String::new();
     }
     let mut grid = Grid::new("lrrrl").indented();
     grid.row(["fold", "n", "fitted", "predicted", "the fit without it"]);
     for fold in &o.folds {
-        let numbers = [fixed(fold.fitted_rms_sd, 2), fixed(fold.predicted_rms_sd, 2)];
-        grid.row([cut(&fold.name, NAME), fold.observations.to_string()].into_iter().chain(numbers).chain([cut(&fold.end, NAME)]));
+        let numbers = [
+            fixed(fold.fitted_rms_sd, 2),
+            fixed(fold.predicted_rms_sd, 2),
+        ];
+        grid.row(
+            [cut(&fold.name, NAME), fold.observations.to_string()]
+                .into_iter()
+                .chain(numbers)
+                .chain([cut(&fold.end, NAME)]),
+        );
     }
     grid.text()
 }
 
 fn largest(o: &Outcome) -> String {
-    let mut worst: Vec<&Residual> = o.residuals.iter().filter(|r| r.after_sd.is_finite()).collect();
+    let mut worst: Vec<&Residual> = o
+        .residuals
+        .iter()
+        .filter(|r| r.after_sd.is_finite())
+        .collect();
     if worst.is_empty() {
         return String::new();
     }
     worst.sort_by(|a, b| b.after_sd.abs().total_cmp(&a.after_sd.abs()));
     let mut grid = Grid::new("rrrrll").indented();
-    grid.row(["fitted, sd", "predicted, sd", "measured", "computed", "unit", "observation"]);
+    grid.row([
+        "fitted, sd",
+        "predicted, sd",
+        "measured",
+        "computed",
+        "unit",
+        "observation",
+    ]);
     for r in worst.into_iter().take(TOLD) {
-        let what = if r.what.is_empty() { r.label.clone() } else { format!("{}: {}", r.label, r.what) };
-        grid.row([signed(r.after_sd, 2), signed(r.left_out_sd, 2), measured(r), to_error(r.after, Some(r.sd)), r.unit.clone(), what]);
+        let what = if r.what.is_empty() {
+            r.label.clone()
+        } else {
+            format!("{}: {}", r.label, r.what)
+        };
+        grid.row([
+            signed(r.after_sd, 2),
+            signed(r.left_out_sd, 2),
+            measured(r),
+            to_error(r.after, Some(r.sd)),
+            r.unit.clone(),
+            what,
+        ]);
     }
     grid.text()
 }
@@ -241,19 +361,47 @@ fn measured(r: &Residual) -> String {
 
 fn unknown(o: &Outcome) -> String {
     let rest = o.not_identified.len().saturating_sub(UNKNOWN);
-    let more = if rest > 0 { format!("  and {rest} more: `not_identified` of --json\n") } else { String::new() };
-    o.not_identified.iter().take(UNKNOWN).map(|said| lines(said, "  - ")).collect::<String>() + &more
+    let more = if rest > 0 {
+        format!("  and {rest} more: `not_identified` of --json\n")
+    } else {
+        String::new()
+    };
+    o.not_identified
+        .iter()
+        .take(UNKNOWN)
+        .map(|said| lines(said, "  - "))
+        .collect::<String>()
+        + &more
 }
 
 fn starts(o: &Outcome) -> String {
     if o.starts.is_empty() {
         return String::new();
     }
-    let same = |cost: Option<f64>| cost.is_some_and(|cost| cost <= o.cost_after * (1.0 + SAME_COST) + 1e-9);
+    let same = |cost: Option<f64>| {
+        cost.is_some_and(|cost| cost <= o.cost_after * (1.0 + SAME_COST) + 1e-9)
+    };
     let reached = o.starts.iter().filter(|start| same(start.cost)).count();
-    let mut text = format!("  {reached} of {} reached the same least sum of squares, {}\n", o.starts.len(), fixed(o.cost_after, 3));
-    for (k, start) in o.starts.iter().enumerate().filter(|(_, start)| !same(start.cost)) {
-        text += &lines(&format!("start {}: sum of squares {}; {}", k + 1, fixed(start.cost, 3), start.end), "  ");
+    let mut text = format!(
+        "  {reached} of {} reached the same least sum of squares, {}\n",
+        o.starts.len(),
+        fixed(o.cost_after, 3)
+    );
+    for (k, start) in o
+        .starts
+        .iter()
+        .enumerate()
+        .filter(|(_, start)| !same(start.cost))
+    {
+        text += &lines(
+            &format!(
+                "start {}: sum of squares {}; {}",
+                k + 1,
+                fixed(start.cost, 3),
+                start.end
+            ),
+            "  ",
+        );
     }
     text
 }

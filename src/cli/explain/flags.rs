@@ -3,26 +3,53 @@
 use cvtcycle::results::Flags;
 
 const MEANINGS: [(Flags, &str); Flags::NAMES.len()] = [
-    (Flags::MISSED_TRACE, "the car cannot follow the trace: engine at full load, torque missing; exit code 1"),
-    (Flags::GROSS_SLIP, "belt torque above what the clamping force carries; slip is held at its bound"),
-    (Flags::LOW_CLAMP, "clamp safety factor (torque capacity over torque) below 1"),
-    (Flags::FLOW_LIMITED, "the pump's flow does not cover leakage, lubrication and shift flow"),
-    (Flags::OUTSIDE_VALIDITY, "an input left the validity range of a model or of a measured map"),
-    (Flags::RATIO_LIMIT, "the belt ratio stands at one of its limits"),
+    (
+        Flags::MISSED_TRACE,
+        "the car cannot follow the trace: engine at full load, torque missing; exit code 1",
+    ),
+    (
+        Flags::GROSS_SLIP,
+        "belt torque above what the clamping force carries; slip is held at its bound",
+    ),
+    (
+        Flags::LOW_CLAMP,
+        "clamp safety factor (torque capacity over torque) below 1",
+    ),
+    (
+        Flags::FLOW_LIMITED,
+        "the pump's flow does not cover leakage, lubrication and shift flow",
+    ),
+    (
+        Flags::OUTSIDE_VALIDITY,
+        "an input left the validity range of a model or of a measured map",
+    ),
+    (
+        Flags::RATIO_LIMIT,
+        "the belt ratio stands at one of its limits",
+    ),
     (Flags::CLUTCH_SLIPPING, "the launch clutch slips"),
     (Flags::CLUTCH_OPEN, "the launch clutch is open"),
     (Flags::OVERRUN, "the wheels drive the transmission"),
     (Flags::FUEL_CUT, "fuel is cut off in overrun"),
     (Flags::ENGINE_OFF, "the engine is switched off (soak)"),
-    (Flags::NOT_CONVERGED, "the implicit solve stopped at its iteration bound above its tolerance; exit code 1"),
-    (Flags::LAUNCH_NOT_IN_LOW, "the car pulls away in another ratio than low"),
+    (
+        Flags::NOT_CONVERGED,
+        "the implicit solve stopped at its iteration bound above its tolerance; exit code 1",
+    ),
+    (
+        Flags::LAUNCH_NOT_IN_LOW,
+        "the car pulls away in another ratio than low",
+    ),
     (Flags::OVERSPEED, "engine speed above its limit"),
 ];
 
 /// Name and meaning of a flag.
 pub fn meaning(name: &str) -> Option<(&'static str, &'static str)> {
     let (flag, name) = Flags::NAMES.iter().find(|(_, known)| *known == name)?;
-    MEANINGS.iter().find(|(known, _)| known == flag).map(|(_, words)| (*name, *words))
+    MEANINGS
+        .iter()
+        .find(|(known, _)| known == flag)
+        .map(|(_, words)| (*name, *words))
 }
 
 #[cfg(test)]

@@ -29,7 +29,11 @@ pub struct Written {
 impl Written {
     /// The files, one a line.
     pub fn text(&self) -> String {
-        let lines: Vec<String> = self.paths.iter().map(|path| format!("  {}\n", path.display())).collect();
+        let lines: Vec<String> = self
+            .paths
+            .iter()
+            .map(|path| format!("  {}\n", path.display()))
+            .collect();
         format!("\nFiles written\n{}{}", lines.concat(), self.note)
     }
 
@@ -38,12 +42,19 @@ impl Written {
         if self.left_over.is_empty() {
             return String::new();
         }
-        format!("cvtcycle: left from an earlier run and not replaced: {}\n", self.left_over.join(", "))
+        format!(
+            "cvtcycle: left from an earlier run and not replaced: {}\n",
+            self.left_over.join(", ")
+        )
     }
 }
 
 /// Writes all rows as CSV.
-pub fn write_csv(out: &mut dyn Write, columns: &[LossColumn], rows: impl Iterator<Item = LossRow>) -> io::Result<()> {
+pub fn write_csv(
+    out: &mut dyn Write,
+    columns: &[LossColumn],
+    rows: impl Iterator<Item = LossRow>,
+) -> io::Result<()> {
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     writeln!(out, "{}", names.join(","))?;
     let mut line = String::new();
@@ -81,14 +92,30 @@ fn head(plan: &Plan) -> serde_json::Value {
 }
 
 /// Writes the JSON object, its points one a line.
-pub fn write_json(out: &mut dyn Write, plan: &Plan, rows: impl Iterator<Item = LossRow>) -> io::Result<()> {
+pub fn write_json(
+    out: &mut dyn Write,
+    plan: &Plan,
+    rows: impl Iterator<Item = LossRow>,
+) -> io::Result<()> {
     let head = serde_json::to_string_pretty(&head(plan))?;
     // The closing brace of the head comes after the points.
-    write!(out, "{},\n  \"points\": [", head.trim_end().trim_end_matches('}').trim_end())?;
+    write!(
+        out,
+        "{},\n  \"points\": [",
+        head.trim_end().trim_end_matches('}').trim_end()
+    )?;
     for (k, row) in rows.enumerate() {
-        let point: serde_json::Map<String, serde_json::Value> =
-            plan.columns.iter().map(|column| (column.name.clone(), json_value(column.value(&row)))).collect();
-        write!(out, "{}\n    {}", if k > 0 { "," } else { "" }, serde_json::Value::Object(point))?;
+        let point: serde_json::Map<String, serde_json::Value> = plan
+            .columns
+            .iter()
+            .map(|column| (column.name.clone(), json_value(column.value(&row))))
+            .collect();
+        write!(
+            out,
+            "{}\n    {}",
+            if k > 0 { "," } else { "" },
+            serde_json::Value::Object(point)
+        )?;
     }
     out.write_all(b"\n  ]\n}\n")
 }
@@ -100,7 +127,11 @@ fn json_value(value: Value) -> serde_json::Value {
         Value::Count(n) => n.into(),
         Value::Text(word) => word.into(),
         Value::Flags(flags) => {
-            let names: Vec<&str> = Flags::NAMES.iter().filter(|(flag, _)| flags.contains(*flag)).map(|(_, name)| *name).collect();
+            let names: Vec<&str> = Flags::NAMES
+                .iter()
+                .filter(|(flag, _)| flags.contains(*flag))
+                .map(|(_, name)| *name)
+                .collect();
             names.into()
         }
     }
@@ -141,5 +172,9 @@ pub fn write_map(
 /// Gives the files their names.
 pub fn commit(dir: OutputDir) -> Result<Written, Problem> {
     let left_over = dir.left_over();
-    Ok(Written { paths: dir.commit()?, left_over, note: String::new() })
+    Ok(Written {
+        paths: dir.commit()?,
+        left_over,
+        note: String::new(),
+    })
 }

@@ -12,25 +12,52 @@ const LEAST_ON_MAP: usize = 3;
 /// Most panels of one picture.
 const MOST_PANELS: usize = 12;
 /// Which axes a picture takes first.
-const ORDER: [Axis; 7] = [Axis::Speed, Axis::Torque, Axis::Sump, Axis::Pressure, Axis::Throttle, Axis::Belt, Axis::Ratio];
+const ORDER: [Axis; 7] = [
+    Axis::Speed,
+    Axis::Torque,
+    Axis::Sump,
+    Axis::Pressure,
+    Axis::Throttle,
+    Axis::Belt,
+    Axis::Ratio,
+];
 
 /// Pictures with their file names; none for a single point.
 pub fn plots(plan: &Plan) -> Vec<(String, String)> {
     let varied = plan.grid.varied();
     let gears = |axis: &Axis| *axis == Axis::Ratio && !plan.is_cvt();
-    let on_map: Vec<Axis> =
-        ORDER.into_iter().filter(|axis| varied.contains(axis) && plan.grid.of(*axis).len() >= LEAST_ON_MAP && !gears(axis)).collect();
+    let on_map: Vec<Axis> = ORDER
+        .into_iter()
+        .filter(|axis| {
+            varied.contains(axis) && plan.grid.of(*axis).len() >= LEAST_ON_MAP && !gears(axis)
+        })
+        .collect();
     let rows: Vec<LossRow> = plan.grid.rows(&plan.bench).collect();
     match (on_map.as_slice(), varied.is_empty()) {
         ([x, rest @ ..], _) if !rest.is_empty() => {
             // The axis with most values, so that few panels are needed; of equals the first.
-            let y = rest.iter().rev().max_by_key(|axis| plan.grid.of(**axis).len());
+            let y = rest
+                .iter()
+                .rev()
+                .max_by_key(|axis| plan.grid.of(**axis).len());
             maps(plan, &Layout::new(plan, &rows, *x, y.copied()))
         }
-        ([x, ..], _) => vec![("losses_stacked.svg".to_owned(), stack(plan, &Layout::new(plan, &rows, *x, None)))],
+        ([x, ..], _) => vec![(
+            "losses_stacked.svg".to_owned(),
+            stack(plan, &Layout::new(plan, &rows, *x, None)),
+        )],
         ([], false) => {
-            let x = ORDER.into_iter().filter(|axis| varied.contains(axis)).max_by_key(|axis| plan.grid.of(*axis).len());
-            vec![("losses_stacked.svg".to_owned(), stack(plan, &Layout::new(plan, &rows, x.unwrap_or(Axis::Ratio), None)))]
+            let x = ORDER
+                .into_iter()
+                .filter(|axis| varied.contains(axis))
+                .max_by_key(|axis| plan.grid.of(*axis).len());
+            vec![(
+                "losses_stacked.svg".to_owned(),
+                stack(
+                    plan,
+                    &Layout::new(plan, &rows, x.unwrap_or(Axis::Ratio), None),
+                ),
+            )]
         }
         ([], true) => Vec::new(),
     }
@@ -53,11 +80,25 @@ struct Layout<'a> {
 impl<'a> Layout<'a> {
     fn new(plan: &Plan, rows: &'a [LossRow], x: Axis, y: Option<Axis>) -> Self {
         let along = |axis: Axis| x == axis || y == Some(axis);
-        let others: Vec<Axis> = plan.grid.varied().into_iter().filter(|axis| !along(*axis)).collect();
-        let fixed: Vec<Axis> = Axis::ALL.into_iter().filter(|axis| !along(*axis) && !others.contains(axis)).collect();
-        let key = |row: &LossRow| others.iter().map(|axis| row.asked[*axis as usize].to_bits()).collect::<Vec<u64>>();
+        let others: Vec<Axis> = plan
+            .grid
+            .varied()
+            .into_iter()
+            .filter(|axis| !along(*axis))
+            .collect();
+        let fixed: Vec<Axis> = Axis::ALL
+            .into_iter()
+            .filter(|axis| !along(*axis) && !others.contains(axis))
+            .collect();
+        let key = |row: &LossRow| {
+            others
+                .iter()
+                .map(|axis| row.asked[*axis as usize].to_bits())
+                .collect::<Vec<u64>>()
+        };
         // In the order of the grid, each combination once.
-        let mut groups: std::collections::BTreeMap<Vec<u64>, usize> = std::collections::BTreeMap::new();
+        let mut groups: std::collections::BTreeMap<Vec<u64>, usize> =
+            std::collections::BTreeMap::new();
         let mut gathered: Vec<Vec<&LossRow>> = Vec::new();
         for row in rows {
             let place = *groups.entry(key(row)).or_insert(gathered.len());
@@ -72,9 +113,16 @@ impl<'a> Layout<'a> {
             let (x, y) = (x as usize, y.map(|y| y as usize));
             let mut list = list;
             list.sort_by(|a, b| {
-                a.asked[x].total_cmp(&b.asked[x]).then(y.map_or(std::cmp::Ordering::Equal, |y| a.asked[y].total_cmp(&b.asked[y])))
+                a.asked[x]
+                    .total_cmp(&b.asked[x])
+                    .then(y.map_or(std::cmp::Ordering::Equal, |y| {
+                        a.asked[y].total_cmp(&b.asked[y])
+                    }))
             });
-            let rows = list.chunk_by(|a, b| a.asked[x].to_bits() == b.asked[x].to_bits()).map(<[&LossRow]>::to_vec).collect();
+            let rows = list
+                .chunk_by(|a, b| a.asked[x].to_bits() == b.asked[x].to_bits())
+                .map(<[&LossRow]>::to_vec)
+                .collect();
             Panel { title, rows }
         });
         let values = |axis: Axis| {
@@ -82,11 +130,20 @@ impl<'a> Layout<'a> {
             values.sort_by(f64::total_cmp);
             values
         };
-        let mut subject = format!("{}: {}", plan.setup.name, held(plan, &plan.grid.at(0), &fixed));
+        let mut subject = format!(
+            "{}: {}",
+            plan.setup.name,
+            held(plan, &plan.grid.at(0), &fixed)
+        );
         if count > MOST_PANELS {
             subject += &format!(" (first {MOST_PANELS} of {count} combinations)");
         }
-        Layout { x: (x, values(x)), y: y.map(|y| (y, values(y))), panels: panels.collect(), subject }
+        Layout {
+            x: (x, values(x)),
+            y: y.map(|y| (y, values(y))),
+            panels: panels.collect(),
+            subject,
+        }
     }
 }
 
@@ -96,12 +153,23 @@ fn sum(row: &LossRow, parts: &[Component]) -> f64 {
 
 /// One map of the total and one of each group of components.
 fn maps(plan: &Plan, layout: &Layout) -> Vec<(String, String)> {
-    let Some((y_axis, y)) = &layout.y else { return Vec::new() };
+    let Some((y_axis, y)) = &layout.y else {
+        return Vec::new();
+    };
     let cvt = plan.is_cvt();
-    let total = ("All losses".to_owned(), bench_components(plan.setup.transmission()));
+    let total = (
+        "All losses".to_owned(),
+        bench_components(plan.setup.transmission()),
+    );
     let all = [total].into_iter().chain(groups(plan));
     all.map(|(name, parts)| {
-        let values = |panel: &Panel| panel.rows.iter().map(|column| column.iter().map(|row| sum(row, &parts)).collect()).collect();
+        let values = |panel: &Panel| {
+            panel
+                .rows
+                .iter()
+                .map(|column| column.iter().map(|row| sum(row, &parts)).collect())
+                .collect()
+        };
         let title = if name == "All losses" {
             "Torque loss of the transmission".to_owned()
         } else {
@@ -113,9 +181,17 @@ fn maps(plan: &Plan, layout: &Layout) -> Vec<(String, String)> {
             value: "Loss [Nm]",
             x: (layout.x.0.title(cvt), &layout.x.1),
             y: (y_axis.title(cvt), y),
-            panels: layout.panels.iter().map(|panel| (panel.title.clone(), values(panel))).collect(),
+            panels: layout
+                .panels
+                .iter()
+                .map(|panel| (panel.title.clone(), values(panel)))
+                .collect(),
         };
-        let file = if name == "All losses" { "total".to_owned() } else { name.to_lowercase().replace(' ', "_") };
+        let file = if name == "All losses" {
+            "total".to_owned()
+        } else {
+            name.to_lowercase().replace(' ', "_")
+        };
         (format!("losses_{file}.svg"), map_figure(&figure))
     })
     .collect()
@@ -124,8 +200,19 @@ fn maps(plan: &Plan, layout: &Layout) -> Vec<(String, String)> {
 /// All components stacked over one axis.
 fn stack(plan: &Plan, layout: &Layout) -> String {
     let components = bench_components(plan.setup.transmission());
-    let values = |panel: &Panel, component: Component| panel.rows.iter().map(|column| column[0].answer.part_nm(component)).collect();
-    let panels = layout.panels.iter().map(|panel| (panel.title.clone(), components.iter().map(|c| values(panel, *c)).collect()));
+    let values = |panel: &Panel, component: Component| {
+        panel
+            .rows
+            .iter()
+            .map(|column| column[0].answer.part_nm(component))
+            .collect()
+    };
+    let panels = layout.panels.iter().map(|panel| {
+        (
+            panel.title.clone(),
+            components.iter().map(|c| values(panel, *c)).collect(),
+        )
+    });
     stack_figure(&StackFigure {
         title: "Torque losses of the transmission",
         subject: &layout.subject,

@@ -9,7 +9,9 @@ use cvtcycle::lubricant::ZERO_DEGC_K;
 use cvtcycle::results::Flags;
 use cvtcycle::results::files::OutputDir;
 use cvtcycle::rig::transmission::conditions::{OIL, PREFIX, TORQUE};
-use cvtcycle::rig::transmission::{self as rig, Conditions, Loop, Plan, SteadyPoint, StripDown, TwoBoxes};
+use cvtcycle::rig::transmission::{
+    self as rig, Conditions, Loop, Plan, SteadyPoint, StripDown, TwoBoxes,
+};
 use cvtcycle::rig::{Bench, BenchAnswer, solvable_ratios};
 use cvtcycle::setup::{self, Options, Setup};
 use cvtcycle::transmission::Transmission;
@@ -138,14 +140,28 @@ pub fn answer(args: &Args, context: Context) -> Reply {
         None => Written::default(),
     };
     let code = if failed.is_empty() { 0 } else { FAILED };
-    let told: String = failed.iter().map(|line| format!("cvtcycle: {line}\n")).collect();
+    let told: String = failed
+        .iter()
+        .map(|line| format!("cvtcycle: {line}\n"))
+        .collect();
     if args.json || args.quiet {
         let stdout = if args.json { json } else { String::new() };
-        return Ok(Answer { stdout, stderr: told + &written.left_over_text(), code });
+        return Ok(Answer {
+            stdout,
+            stderr: told + &written.left_over_text(),
+            code,
+        });
     }
-    let checks: String = failed.iter().map(|line| context.paint.bad(line) + "\n").collect();
+    let checks: String = failed
+        .iter()
+        .map(|line| context.paint.bad(line) + "\n")
+        .collect();
     let stdout = text::tables(&job, &found, context.paint) + &checks + &written.text();
-    Ok(Answer { stdout, stderr: written.left_over_text(), code })
+    Ok(Answer {
+        stdout,
+        stderr: written.left_over_text(),
+        code,
+    })
 }
 
 fn run(job: &Job) -> Found {
@@ -163,7 +179,11 @@ fn run(job: &Job) -> Found {
         found.strip_down = rig::strip_down(&bench, c, plan);
     }
     if wanted(Test::Transient) {
-        found.loops = plan.ratios.iter().map(|ratio| rig::transient(&bench, c, *ratio)).collect();
+        found.loops = plan
+            .ratios
+            .iter()
+            .map(|ratio| rig::transient(&bench, c, *ratio))
+            .collect();
     }
     if wanted(Test::SecondBox) {
         found.second_box = rig::second_box(&bench, c, plan);
@@ -174,59 +194,119 @@ fn run(job: &Job) -> Found {
 fn job(args: &Args) -> Result<Job, Vec<Problem>> {
     let mut problems = Problems::default();
     let test = problems.take(inputs::word("--test", &args.test, &TESTS));
-    let formulation = problems.take(inputs::word("--formulation", &args.formulation, &Formulation::NAMES));
-    let (of_rig, of_vehicle): (Vec<String>, Vec<String>) = args.set.iter().cloned().partition(|set| set.starts_with(PREFIX));
-    let options =
-        Options { lubricant: args.lubricant.clone(), set: of_vehicle, formulation: formulation.unwrap_or_default(), ..Options::default() };
+    let formulation = problems.take(inputs::word(
+        "--formulation",
+        &args.formulation,
+        &Formulation::NAMES,
+    ));
+    let (of_rig, of_vehicle): (Vec<String>, Vec<String>) = args
+        .set
+        .iter()
+        .cloned()
+        .partition(|set| set.starts_with(PREFIX));
+    let options = Options {
+        lubricant: args.lubricant.clone(),
+        set: of_vehicle,
+        formulation: formulation.unwrap_or_default(),
+        ..Options::default()
+    };
     let setup = problems.take(setup::load(&args.vehicle, "--vehicle", &options));
-    if setup.as_ref().is_some_and(|setup| !setup.transmission().is_cvt()) {
+    if setup
+        .as_ref()
+        .is_some_and(|setup| !setup.transmission().is_cvt())
+    {
         problems.add(manual(&args.vehicle));
     }
-    let conditions = problems.take(Conditions::load(&of_rig)).map(|(conditions, _)| conditions);
+    let conditions = problems
+        .take(Conditions::load(&of_rig))
+        .map(|(conditions, _)| conditions);
     let plan = plan(args, conditions.as_ref(), &mut problems);
     if let (Some(setup), Some(plan)) = (&setup, &plan) {
         beyond_the_belt(setup, plan, &mut problems);
     }
-    let out = args.out.as_ref().map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
+    let out = args
+        .out
+        .as_ref()
+        .map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
     let out = out.and_then(|dir| problems.take(dir));
     problems.finish()?;
     match (test, setup, conditions, plan) {
-        (Some(test), Some(setup), Some(conditions), Some(plan)) => {
-            Ok(Job { test, setup, conditions, plan, formulation: args.formulation.clone(), set: args.set.clone(), out })
-        }
+        (Some(test), Some(setup), Some(conditions), Some(plan)) => Ok(Job {
+            test,
+            setup,
+            conditions,
+            plan,
+            formulation: args.formulation.clone(),
+            set: args.set.clone(),
+            out,
+        }),
         _ => unreachable!("what is missing has left a problem"),
     }
 }
 
 fn manual(vehicle: &str) -> Problem {
     let hint = format!("`cvtcycle losses --vehicle {vehicle}` shows the losses of a manual box");
-    bad_value("--vehicle", vehicle, "a vehicle with a CVT", format!("`{vehicle}` has a manual box"), hint)
+    bad_value(
+        "--vehicle",
+        vehicle,
+        "a vehicle with a CVT",
+        format!("`{vehicle}` has a manual box"),
+        hint,
+    )
 }
 
 /// Ratios that a belt of this length cannot run at.
 fn beyond_the_belt(setup: &Setup, plan: &Plan, problems: &mut Problems) {
-    let Transmission::Cvt(cvt) = setup.transmission() else { return };
+    let Transmission::Cvt(cvt) = setup.transmission() else {
+        return;
+    };
     let (low, high) = solvable_ratios(&cvt.belt);
-    for ratio in plan.ratios.iter().filter(|ratio| !(low..=high).contains(*ratio)) {
-        let hint = "check the belt's length and the centre distance, or choose other ratios with --ratio".to_owned();
+    for ratio in plan
+        .ratios
+        .iter()
+        .filter(|ratio| !(low..=high).contains(*ratio))
+    {
+        let hint =
+            "check the belt's length and the centre distance, or choose other ratios with --ratio"
+                .to_owned();
         let message = format!("the belt does not fit around the pulleys at ratio {ratio}");
-        problems.add(bad_value("--ratio", &ratio.to_string(), &format!("{low} to {high} with this belt"), message, hint));
+        problems.add(bad_value(
+            "--ratio",
+            &ratio.to_string(),
+            &format!("{low} to {high} with this belt"),
+            message,
+            hint,
+        ));
     }
 }
 
 /// The rig's points with those of the options; none where the rig's own could not be read.
 fn plan(args: &Args, conditions: Option<&Conditions>, problems: &mut Problems) -> Option<Plan> {
     let mut list = |option: &str, text: &Option<String>, bound: Bound, suffix: &str| {
-        let read = text.as_ref().map(|text| values(option, text, bound, suffix));
-        read.and_then(|read| problems.take(read)).map(|list| list.into_iter().map(|x| to_si(suffix, x)).collect::<Vec<f64>>())
+        let read = text
+            .as_ref()
+            .map(|text| values(option, text, bound, suffix));
+        read.and_then(|read| problems.take(read)).map(|list| {
+            list.into_iter()
+                .map(|x| to_si(suffix, x))
+                .collect::<Vec<f64>>()
+        })
     };
     let speeds_rad_s = list("--speed", &args.speed, SPEED, "_rpm");
     let oil_k = list("--temp", &args.temp, OIL, "_degc");
     let torques_nm = list("--torque", &args.torque, TORQUE, "_nm");
-    let words: Vec<(&str, f64)> = conditions.iter().flat_map(|c| [("low", c.low_ratio), ("high", c.high_ratio)]).collect();
-    let ratios = args.ratio.as_ref().map(|text| values_or_words("--ratio", text, RATIO, "", &words));
+    let words: Vec<(&str, f64)> = conditions
+        .iter()
+        .flat_map(|c| [("low", c.low_ratio), ("high", c.high_ratio)])
+        .collect();
+    let ratios = args
+        .ratio
+        .as_ref()
+        .map(|text| values_or_words("--ratio", text, RATIO, "", &words));
     // With bad conditions the words mean nothing, and that has been told.
-    let ratios = ratios.filter(|_| conditions.is_some()).and_then(|read| problems.take(read));
+    let ratios = ratios
+        .filter(|_| conditions.is_some())
+        .and_then(|read| problems.take(read));
     let own = Plan::of(conditions?);
     Some(Plan {
         ratios: ratios.unwrap_or(own.ratios),
@@ -240,9 +320,16 @@ impl Found {
     /// Every operating point that was solved.
     fn answers(&self) -> impl Iterator<Item = &BenchAnswer> {
         let steady = self.steady.iter().chain(&self.loaded).map(|p| &p.answer);
-        let boxes = self.second_box.iter().flat_map(|t| [&t.first.answer, &t.second.answer]);
+        let boxes = self
+            .second_box
+            .iter()
+            .flat_map(|t| [&t.first.answer, &t.second.answer]);
         let stages = self.strip_down.iter().flat_map(|s| &s.stages);
-        let moments = self.loops.iter().flat_map(|l| &l.moments).map(|m| &m.answer);
+        let moments = self
+            .loops
+            .iter()
+            .flat_map(|l| &l.moments)
+            .map(|m| &m.answer);
         steady.chain(boxes).chain(stages).chain(moments)
     }
 
@@ -257,18 +344,26 @@ fn failures(job: &Job, found: &Found) -> Vec<String> {
     let mut failed = Vec::new();
     let unsolved = found.flagged(Flags::NOT_CONVERGED);
     if unsolved > 0 {
-        failed.push(format!("check failed: {unsolved} operating points without a solution"));
+        failed.push(format!(
+            "check failed: {unsolved} operating points without a solution"
+        ));
     }
     for l in &found.loops {
         let name = job.conditions.ratio_name(l.ratio);
         if !l.complete {
-            let (start, end) = (job.conditions.transient.start_k - ZERO_DEGC_K, job.conditions.transient.end_k - ZERO_DEGC_K);
+            let (start, end) = (
+                job.conditions.transient.start_k - ZERO_DEGC_K,
+                job.conditions.transient.end_k - ZERO_DEGC_K,
+            );
             failed
                 .push(format!("check failed: the transient at {name} comes to rest on its way from {start:.0} to {end:.0} degC and back"));
         }
         let balanced = l.energy.error().abs() <= ENERGY;
         if !balanced {
-            failed.push(format!("check failed: heat of the transient at {name} does not balance: {:.0e} of it", l.energy.error()));
+            failed.push(format!(
+                "check failed: heat of the transient at {name} does not balance: {:.0e} of it",
+                l.energy.error()
+            ));
         }
     }
     failed

@@ -29,7 +29,12 @@ pub struct Args {
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Offering(inputs::vehicles), hide_possible_values = true)]
     vehicle: String,
     /// Belt ratio: a number, `low` (the car's) or `high` (0.5, the rig's)
-    #[arg(long, value_name = "R|low|high", default_value = "low,high", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "R|low|high",
+        default_value = "low,high",
+        allow_hyphen_values = true
+    )]
     ratio: String,
     /// Secondary pressure, bar [default: 15..35:5 above ratio 1, 10..12:0.5 below]
     #[arg(long, value_name = "BAR", allow_hyphen_values = true)]
@@ -38,13 +43,23 @@ pub struct Args {
     #[arg(long, value_name = "RPM", allow_hyphen_values = true)]
     speed: Option<String>,
     /// Belt temperature, degC
-    #[arg(long, value_name = "DEGC", default_value = "85", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "DEGC",
+        default_value = "85",
+        allow_hyphen_values = true
+    )]
     temp: String,
     /// Torque at the secondary pulley, Nm [default: from 0 to past what the belt carries]
     #[arg(long, value_name = "NM", allow_hyphen_values = true)]
     torque: Option<String>,
     /// Pulses a turn of the shafts' speed pick-ups, for the counting resolution; not printed for this rig (60 on the first one, 4.2.4)
-    #[arg(long, value_name = "N", default_value = "60", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "60",
+        allow_hyphen_values = true
+    )]
     pulses: String,
     /// Transmission oil
     #[arg(long, value_name = "NAME|FILE.toml", value_parser = Offering(inputs::lubricants), hide_possible_values = true)]
@@ -103,6 +118,12 @@ pub fn answer(args: &Args, context: Context) -> Reply {
         stdout = text::tables(&plan, &curves, context.paint);
         stdout += &written.as_ref().map_or_else(String::new, Written::text);
     }
-    let stderr = written.as_ref().map_or_else(String::new, Written::left_over_text);
-    Ok(Answer { stdout, stderr, code: 0 })
+    let stderr = written
+        .as_ref()
+        .map_or_else(String::new, Written::left_over_text);
+    Ok(Answer {
+        stdout,
+        stderr,
+        code: 0,
+    })
 }

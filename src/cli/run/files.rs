@@ -23,8 +23,11 @@ pub enum TraceFormat {
 
 impl TraceFormat {
     /// Words of the command line.
-    pub const NAMES: [(&'static str, TraceFormat); 3] =
-        [("csv", TraceFormat::Csv), ("parquet", TraceFormat::Parquet), ("both", TraceFormat::Both)];
+    pub const NAMES: [(&'static str, TraceFormat); 3] = [
+        ("csv", TraceFormat::Csv),
+        ("parquet", TraceFormat::Parquet),
+        ("both", TraceFormat::Both),
+    ];
 }
 
 /// What was written, and what an earlier run left beside it.
@@ -38,7 +41,10 @@ impl Written {
     /// Gives all files of a directory their names.
     pub fn commit(dir: OutputDir) -> Result<Self, Problem> {
         let left_over = dir.left_over();
-        Ok(Written { paths: dir.commit()?, left_over })
+        Ok(Written {
+            paths: dir.commit()?,
+            left_over,
+        })
     }
 
     /// The files, one a line.
@@ -46,7 +52,11 @@ impl Written {
         if self.paths.is_empty() {
             return String::new();
         }
-        let lines: Vec<String> = self.paths.iter().map(|path| format!("  {}\n", path.display())).collect();
+        let lines: Vec<String> = self
+            .paths
+            .iter()
+            .map(|path| format!("  {}\n", path.display()))
+            .collect();
         format!("\nFiles written\n{}", lines.concat())
     }
 
@@ -55,7 +65,10 @@ impl Written {
         if self.left_over.is_empty() {
             return String::new();
         }
-        format!("cvtcycle: left from an earlier run and not replaced: {}\n", self.left_over.join(", "))
+        format!(
+            "cvtcycle: left from an earlier run and not replaced: {}\n",
+            self.left_over.join(", ")
+        )
     }
 }
 
@@ -69,23 +82,48 @@ pub fn write(
     driven: &[Driven],
 ) -> Result<Written, Problem> {
     dir.write("summary.json", |out| out.write_all(json.as_bytes()))?;
-    let phases = if cycle.phases.is_empty() { std::slice::from_ref(&cycle.name) } else { &cycle.phases };
-    let columns = |car: &Driven| columns_for(car.setup.transmission().is_cvt(), &components(car.setup.transmission()));
-    let histories: Vec<History> = driven.iter().map(|car| History::of(&car.outcome.rows, &columns(car), phases)).collect();
+    let phases = if cycle.phases.is_empty() {
+        std::slice::from_ref(&cycle.name)
+    } else {
+        &cycle.phases
+    };
+    let columns = |car: &Driven| {
+        columns_for(
+            car.setup.transmission().is_cvt(),
+            &components(car.setup.transmission()),
+        )
+    };
+    let histories: Vec<History> = driven
+        .iter()
+        .map(|car| History::of(&car.outcome.rows, &columns(car), phases))
+        .collect();
     let mut runs = Vec::new();
     for ((car, run), history) in driven.iter().zip(&summary.runs).zip(&histories) {
         let (rows, columns) = (&car.outcome.rows, columns(car));
         if format != TraceFormat::Parquet {
-            dir.write(&format!("trace_{}.csv", car.name), |out| write_trace(out, &columns, rows, phases))?;
+            dir.write(&format!("trace_{}.csv", car.name), |out| {
+                write_trace(out, &columns, rows, phases)
+            })?;
         }
         if format != TraceFormat::Csv {
-            dir.write(&format!("trace_{}.parquet", car.name), |out| write_trace_parquet(out, &columns, rows, phases))?;
+            dir.write(&format!("trace_{}.parquet", car.name), |out| {
+                write_trace_parquet(out, &columns, rows, phases)
+            })?;
         }
-        let plot = PlotRun { name: car.name, history, fuel_map: Some(fuel_map(car.setup)), group_fuel: group_fuel(run) };
+        let plot = PlotRun {
+            name: car.name,
+            history,
+            fuel_map: Some(fuel_map(car.setup)),
+            group_fuel: group_fuel(run),
+        };
         write_plots(&mut dir, &plot)?;
         runs.push(plot);
     }
-    put(&mut dir, "fuel_comparison.svg", &report::fuel_bars(&runs).svg)?;
+    put(
+        &mut dir,
+        "fuel_comparison.svg",
+        &report::fuel_bars(&runs).svg,
+    )?;
     Written::commit(dir)
 }
 
@@ -97,7 +135,9 @@ fn write_plots(dir: &mut OutputDir, run: &PlotRun) -> Result<(), Problem> {
     plots.push(("temperatures", report::temperatures(run)));
     plots.push(("losses", report::losses(run)));
     plots.push(("operating_points", report::operating_points(run)));
-    plots.into_iter().try_for_each(|(kind, picture)| put(dir, &format!("{kind}_{}.svg", run.name), &picture.svg))
+    plots
+        .into_iter()
+        .try_for_each(|(kind, picture)| put(dir, &format!("{kind}_{}.svg", run.name), &picture.svg))
 }
 
 fn put(dir: &mut OutputDir, name: &str, text: &str) -> Result<(), Problem> {
@@ -109,7 +149,11 @@ fn group_fuel(run: &RunSummary) -> Vec<(String, f64)> {
     let mut groups: Vec<(String, f64)> = Vec::new();
     // A cycle of one group is its own total.
     if run.phases.len() > 1 {
-        groups.extend(run.phases.iter().map(|p| (p.name.clone(), number(p.fuel_l_per_100km))));
+        groups.extend(
+            run.phases
+                .iter()
+                .map(|p| (p.name.clone(), number(p.fuel_l_per_100km))),
+        );
     }
     groups.push(("total".to_owned(), number(run.fuel_l_per_100km)));
     if let Some(weighted) = run.weighted_fuel_l_per_100km {

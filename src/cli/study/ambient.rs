@@ -21,10 +21,20 @@ Examples:
 With --out: ambient_fuel.svg, ambient_penalty.svg, warm_up_soak.svg and warm_up_warm.svg beside the tables of all runs and traces.")]
 pub struct Args {
     /// Ambient temperatures, degC, separated by commas
-    #[arg(long, value_name = "DEGC,...", default_value = "-10,0,10,25,40", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "DEGC,...",
+        default_value = "-10,0,10,25,40",
+        allow_hyphen_values = true
+    )]
     ambient: String,
     /// Starts, separated by commas: `soak`, `warm`, or temperatures in degC
-    #[arg(long, value_name = "START,...", default_value = "soak,warm", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "START,...",
+        default_value = "soak,warm",
+        allow_hyphen_values = true
+    )]
     start: String,
     /// Cycle: a name, constant_V (V in km/h, 600 s), or a CSV file
     #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Offering(inputs::cycles), hide_possible_values = true)]
@@ -52,12 +62,24 @@ pub struct Args {
 }
 
 /// Columns of the traces that the warm-up pictures need.
-const TRACES: [&str; 6] = ["time_s", "speed_kmh", "transmission_sump_degc", "belt_spray_degc", "engine_oil_degc", "coolant_degc"];
+const TRACES: [&str; 6] = [
+    "time_s",
+    "speed_kmh",
+    "transmission_sump_degc",
+    "belt_spray_degc",
+    "engine_oil_degc",
+    "coolant_degc",
+];
 
 /// Runs the command: the matrix is a plan like any other.
 pub fn answer(args: &Args, context: Context) -> Reply {
     let text = plan_text(args);
-    let plan = Plan::read(PLAN, &text).map_err(|problems| problems.into_iter().map(|p| as_option(p, args)).collect::<Vec<_>>())?;
+    let plan = Plan::read(PLAN, &text).map_err(|problems| {
+        problems
+            .into_iter()
+            .map(|p| as_option(p, args))
+            .collect::<Vec<_>>()
+    })?;
     let reply = common::run(plan, &args.common, context);
     reply.map_err(|problems| problems.into_iter().map(|p| as_option(p, args)).collect())
 }
@@ -76,11 +98,18 @@ fn plan_text(args: &Args) -> String {
     };
     line("vehicle", quoted(&args.vehicle));
     if !args.baseline.is_empty() {
-        let named: Vec<&String> = args.baseline.iter().filter(|name| *name != "none").collect();
+        let named: Vec<&String> = args
+            .baseline
+            .iter()
+            .filter(|name| *name != "none")
+            .collect();
         line("baselines", list(&named));
     }
     line("cycle", quoted(&args.cycle));
-    for (key, value) in [("lubricant", &args.lubricant), ("engine_oil", &args.engine_oil)] {
+    for (key, value) in [
+        ("lubricant", &args.lubricant),
+        ("engine_oil", &args.engine_oil),
+    ] {
         if let Some(value) = value {
             line(key, quoted(value));
         }
@@ -93,7 +122,13 @@ fn plan_text(args: &Args) -> String {
     if args.common.out.is_some() {
         line("keep", list(&TRACES));
     }
-    let numbers = |words: &str| words.split(',').map(|word| number_or_word(word.trim())).collect::<Vec<_>>().join(", ");
+    let numbers = |words: &str| {
+        words
+            .split(',')
+            .map(|word| number_or_word(word.trim()))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
     text + &format!(
         "\n[study.design.grid]\n\n[[factor]]\nkey = \"ambient_degc\"\nname = \"ambient\"\nvalues = [{}]\n\n[[factor]]\nkey = \"start\"\nvalues = [{}]\n",
         numbers(&args.ambient),
@@ -123,7 +158,11 @@ fn as_option(mut problem: Problem, args: &Args) -> Problem {
     if problem.place.file != PLAN {
         return problem;
     }
-    let factor = |key: &str| problem.key == key || problem.key.contains(key) || problem.message.contains(&format!("`{key}`"));
+    let factor = |key: &str| {
+        problem.key == key
+            || problem.key.contains(key)
+            || problem.message.contains(&format!("`{key}`"))
+    };
     let option = match problem.key.as_str() {
         "study.vehicle" | "vehicle" => "--vehicle",
         "study.baselines" | "baselines" => "--baseline",
@@ -136,14 +175,19 @@ fn as_option(mut problem: Problem, args: &Args) -> Problem {
         _ if factor("start") => "--start",
         // The factors' own lines of the plan: ambient comes first.
         _ => {
-            if problem.place.line_text.contains("soak") || problem.place.line_text.contains(&args.start) {
+            if problem.place.line_text.contains("soak")
+                || problem.place.line_text.contains(&args.start)
+            {
                 "--start"
             } else {
                 "--ambient"
             }
         }
     };
-    problem.place = cvtcycle::config::Place { file: option.to_owned(), ..cvtcycle::config::Place::default() };
+    problem.place = cvtcycle::config::Place {
+        file: option.to_owned(),
+        ..cvtcycle::config::Place::default()
+    };
     option.clone_into(&mut problem.key);
     problem
 }

@@ -28,7 +28,13 @@ pub struct Common {
     #[arg(long, requires = "out")]
     pub force: bool,
     /// Format of the tables in the --out directory
-    #[arg(long, value_enum, value_name = "FORMAT", default_value = "parquet", requires = "out")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "FORMAT",
+        default_value = "parquet",
+        requires = "out"
+    )]
     pub format: Format,
     /// Threads, 1 to 1024 [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -62,7 +68,12 @@ pub fn run(plan: Plan, common: &Common, context: Context) -> Reply {
     // Without --out the parts go the same way, to a directory that is gone afterwards.
     let temporary = match &common.out {
         Some(_) => None,
-        None => Some(tempfile::Builder::new().prefix("cvtcycle-study-").tempdir().map_err(|e| vec![no_room(&e)])?),
+        None => Some(
+            tempfile::Builder::new()
+                .prefix("cvtcycle-study-")
+                .tempdir()
+                .map_err(|e| vec![no_room(&e)])?,
+        ),
     };
     let path = match (&common.out, &temporary) {
         (Some(path), _) => path.clone(),
@@ -87,22 +98,46 @@ fn agreed(study: &Study, common: &Common) -> Result<(), Vec<Problem>> {
     if runs <= most || common.yes {
         return Ok(());
     }
-    let message = format!("the study has {runs} runs ({} points, {} cars), more than {most}", study.points, study.cars.len());
+    let message = format!(
+        "the study has {runs} runs ({} points, {} cars), more than {most}",
+        study.points,
+        study.cars.len()
+    );
     let hint = "run it with --yes, give fewer values or samples, or raise `most_runs` in the plan";
-    Err(vec![Problem { allowed: format!("at most {most} runs without --yes"), ..problem(&study.plan.file, &message, hint) }])
+    Err(vec![Problem {
+        allowed: format!("at most {most} runs without --yes"),
+        ..problem(&study.plan.file, &message, hint)
+    }])
 }
 
 fn no_room(error: &std::io::Error) -> Problem {
-    problem("--out", &format!("cannot create a temporary directory: {error}"), "name a directory with --out")
+    problem(
+        "--out",
+        &format!("cannot create a temporary directory: {error}"),
+        "name a directory with --out",
+    )
 }
 
 fn execute(study: &Study, dir: &StudyDir, common: &Common) -> Result<End, Vec<Problem>> {
     let threads = common.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|e| vec![problem("--threads", &format!("cannot start threads: {e}"), "give fewer")])?;
-    let missing: std::collections::BTreeSet<u64> = dir.missing().into_iter().map(|part| part as u64).collect();
-    let done = (0..study.parts()).filter(|part| !missing.contains(part)).collect();
-    let left: u64 = missing.iter().map(|part| study.part_points(*part)).map(|points| points.end - points.start).sum();
+    let pool = pool.map_err(|e| {
+        vec![problem(
+            "--threads",
+            &format!("cannot start threads: {e}"),
+            "give fewer",
+        )]
+    })?;
+    let missing: std::collections::BTreeSet<u64> =
+        dir.missing().into_iter().map(|part| part as u64).collect();
+    let done = (0..study.parts())
+        .filter(|part| !missing.contains(part))
+        .collect();
+    let left: u64 = missing
+        .iter()
+        .map(|part| study.part_points(*part))
+        .map(|points| points.end - points.start)
+        .sum();
     let progress = Progress::new(left * study.cars.len() as u64, common.quiet);
     let end = pool.install(|| study.execute(&done, &DirSink::new(study, dir), &progress));
     progress.finish();
@@ -115,7 +150,9 @@ fn finish(study: &Study, dir: &StudyDir, common: &Common, context: Context) -> R
     let study = StudyFound::of(outline, found).map_err(|problem| vec![problem])?;
     let mut reply = reply(&study, common.json, common.quiet, context)?;
     if common.out.is_some() {
-        let written = dir.finish(&results::files(&study)?).map_err(|problem| vec![problem])?;
+        let written = dir
+            .finish(&results::files(&study)?)
+            .map_err(|problem| vec![problem])?;
         if !common.json && !common.quiet {
             reply.stdout += &text::written(dir.path(), &written);
         }
@@ -127,19 +164,43 @@ fn finish(study: &Study, dir: &StudyDir, common: &Common, context: Context) -> R
 pub fn reply(study: &StudyFound, json: bool, quiet: bool, context: Context) -> Reply {
     let failed = study.answer.runs.failed + study.answer.runs.not_run > 0;
     let code = if failed { FAILED } else { 0 };
-    let told = if failed { text::failures(&study.answer) } else { String::new() };
+    let told = if failed {
+        text::failures(&study.answer)
+    } else {
+        String::new()
+    };
     if json || quiet {
-        let stdout = if json { json_text(&study.answer)? } else { String::new() };
-        return Ok(Answer { stdout, stderr: told, code });
+        let stdout = if json {
+            json_text(&study.answer)?
+        } else {
+            String::new()
+        };
+        return Ok(Answer {
+            stdout,
+            stderr: told,
+            code,
+        });
     }
-    Ok(Answer { stdout: text::answer(study, context.paint), stderr: told, code })
+    Ok(Answer {
+        stdout: text::answer(study, context.paint),
+        stderr: told,
+        code,
+    })
 }
 
 fn stopped(study: &Study, dir: &StudyDir, common: &Common) -> Answer {
     let whole = study.parts() - dir.missing().len() as u64;
     let kept = match &common.out {
-        Some(_) => format!("{whole} of {} parts are kept in {}; --resume goes on", study.parts(), dir.path().display()),
+        Some(_) => format!(
+            "{whole} of {} parts are kept in {}; --resume goes on",
+            study.parts(),
+            dir.path().display()
+        ),
         None => "nothing is kept, as there was no --out".to_owned(),
     };
-    Answer { stderr: format!("cvtcycle: stopped: {kept}\n"), code: INTERRUPTED, ..Answer::default() }
+    Answer {
+        stderr: format!("cvtcycle: stopped: {kept}\n"),
+        code: INTERRUPTED,
+        ..Answer::default()
+    }
 }

@@ -12,7 +12,10 @@ pub struct Table {
 impl Table {
     /// With its column names.
     pub fn new(heads: &[&str]) -> Self {
-        let mut table = Table { writer: csv::Writer::from_writer(Vec::new()), rows: 0 };
+        let mut table = Table {
+            writer: csv::Writer::from_writer(Vec::new()),
+            rows: 0,
+        };
         table.row(heads.iter().map(|head| (*head).to_owned()).collect());
         table.rows = 0;
         table
@@ -29,13 +32,21 @@ impl Table {
     /// The file, if it has rows.
     pub fn file(self, name: &str) -> Option<(String, Vec<u8>)> {
         let rows = self.rows;
-        self.writer.into_inner().ok().filter(|_| rows > 0).map(|bytes| (name.to_owned(), bytes))
+        self.writer
+            .into_inner()
+            .ok()
+            .filter(|_| rows > 0)
+            .map(|bytes| (name.to_owned(), bytes))
     }
 }
 
 /// Shortest text that reads back to the same number; empty for none.
 pub fn number(x: f64) -> String {
-    if x.is_finite() { format!("{}", x + 0.0) } else { String::new() }
+    if x.is_finite() {
+        format!("{}", x + 0.0)
+    } else {
+        String::new()
+    }
 }
 
 fn ends(interval: Option<[f64; 2]>) -> [String; 2] {
@@ -49,20 +60,59 @@ fn estimate(e: &Estimate) -> [String; 3] {
 
 /// Every table that the answer has something for.
 pub fn all(answer: &Answer, outline: &Outline) -> Vec<(String, Vec<u8>)> {
-    let names: Vec<&str> = outline.plan.factors.iter().map(|factor| factor.name.as_str()).collect();
-    [statistics(answer), sobol(answer, &names), tornado(answer), ranks(answer), levels(answer)].into_iter().flatten().collect()
+    let names: Vec<&str> = outline
+        .plan
+        .factors
+        .iter()
+        .map(|factor| factor.name.as_str())
+        .collect();
+    [
+        statistics(answer),
+        sobol(answer, &names),
+        tornado(answer),
+        ranks(answer),
+        levels(answer),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 fn statistics(answer: &Answer) -> Option<(String, Vec<u8>)> {
     let quantiles: Vec<String> = QUANTILES.iter().map(|p| format!("quantile_{p}")).collect();
-    let mut heads = vec!["output", "unit", "car", "n", "missing", "mean", "mean_low95", "mean_high95", "sd", "min", "max"];
+    let mut heads = vec![
+        "output",
+        "unit",
+        "car",
+        "n",
+        "missing",
+        "mean",
+        "mean_low95",
+        "mean_high95",
+        "sd",
+        "min",
+        "max",
+    ];
     heads.extend(quantiles.iter().map(String::as_str));
     let mut table = Table::new(&heads);
     for output in &answer.outputs {
         let s = &output.summary;
         let [low, high] = ends(s.mean_interval95);
-        let mut row = vec![output.output.clone(), output.unit.clone(), output.car.clone(), s.n.to_string(), s.missing.to_string()];
-        row.extend([number(s.mean), low, high, number(s.sd), number(s.min), number(s.max)]);
+        let mut row = vec![
+            output.output.clone(),
+            output.unit.clone(),
+            output.car.clone(),
+            s.n.to_string(),
+            s.missing.to_string(),
+        ];
+        row.extend([
+            number(s.mean),
+            low,
+            high,
+            number(s.sd),
+            number(s.min),
+            number(s.max),
+        ]);
         row.extend(s.quantiles.iter().map(|q| number(q.value)));
         table.row(row);
     }
@@ -70,12 +120,28 @@ fn statistics(answer: &Answer) -> Option<(String, Vec<u8>)> {
 }
 
 fn sobol(answer: &Answer, names: &[&str]) -> Option<(String, Vec<u8>)> {
-    let heads = ["output", "car", "samples", "factor", "first", "first_low95", "first_high95", "total", "total_low95", "total_high95"];
+    let heads = [
+        "output",
+        "car",
+        "samples",
+        "factor",
+        "first",
+        "first_low95",
+        "first_high95",
+        "total",
+        "total_low95",
+        "total_high95",
+    ];
     let mut table = Table::new(&heads);
     for output in &answer.outputs {
         for indices in &output.sobol {
             for (name, factor) in names.iter().zip(&indices.factors) {
-                let mut row = vec![output.output.clone(), output.car.clone(), indices.samples.to_string(), (*name).to_owned()];
+                let mut row = vec![
+                    output.output.clone(),
+                    output.car.clone(),
+                    indices.samples.to_string(),
+                    (*name).to_owned(),
+                ];
                 row.extend(estimate(&factor.first));
                 row.extend(estimate(&factor.total));
                 table.row(row);
@@ -86,15 +152,36 @@ fn sobol(answer: &Answer, names: &[&str]) -> Option<(String, Vec<u8>)> {
 }
 
 fn tornado(answer: &Answer) -> Option<(String, Vec<u8>)> {
-    let heads = ["output", "unit", "car", "base", "factor", "low", "output_at_low", "high", "output_at_high", "swing"];
+    let heads = [
+        "output",
+        "unit",
+        "car",
+        "base",
+        "factor",
+        "low",
+        "output_at_low",
+        "high",
+        "output_at_high",
+        "swing",
+    ];
     let mut table = Table::new(&heads);
     for output in &answer.outputs {
-        let Some(tornado) = &output.tornado else { continue };
+        let Some(tornado) = &output.tornado else {
+            continue;
+        };
         for bar in &tornado.bars {
             let end = |end: &Option<cvtcycle::study::statistics::TornadoEnd>| {
-                end.as_ref().map_or([String::new(), String::new()], |end| [end.label.clone(), number(end.output)])
+                end.as_ref().map_or([String::new(), String::new()], |end| {
+                    [end.label.clone(), number(end.output)]
+                })
             };
-            let mut row = vec![output.output.clone(), output.unit.clone(), output.car.clone(), number(tornado.base), bar.name.clone()];
+            let mut row = vec![
+                output.output.clone(),
+                output.unit.clone(),
+                output.car.clone(),
+                number(tornado.base),
+                bar.name.clone(),
+            ];
             row.extend(end(&bar.low));
             row.extend(end(&bar.high));
             row.push(number(bar.swing));
@@ -122,7 +209,13 @@ fn ranks(answer: &Answer) -> Option<(String, Vec<u8>)> {
     for output in &answer.outputs {
         let Some(rank) = &output.rank else { continue };
         for (name, factor) in rank.factors.iter().zip(&rank.of.factors) {
-            let mut row = vec![output.output.clone(), output.car.clone(), rank.of.n.to_string(), number(rank.of.r_squared), name.clone()];
+            let mut row = vec![
+                output.output.clone(),
+                output.car.clone(),
+                rank.of.n.to_string(),
+                number(rank.of.r_squared),
+                name.clone(),
+            ];
             row.extend(estimate(&factor.spearman));
             row.extend(estimate(&factor.regression));
             table.row(row);
@@ -132,11 +225,19 @@ fn ranks(answer: &Answer) -> Option<(String, Vec<u8>)> {
 }
 
 fn levels(answer: &Answer) -> Option<(String, Vec<u8>)> {
-    let mut table = Table::new(&["output", "unit", "car", "factor", "level", "n", "missing", "mean", "sd", "min", "max"]);
+    let mut table = Table::new(&[
+        "output", "unit", "car", "factor", "level", "n", "missing", "mean", "sd", "min", "max",
+    ]);
     for output in &answer.outputs {
         for (factor, groups) in &output.levels {
             for group in &groups.groups {
-                let mut row = vec![output.output.clone(), output.unit.clone(), output.car.clone(), factor.clone(), group.label.clone()];
+                let mut row = vec![
+                    output.output.clone(),
+                    output.unit.clone(),
+                    output.car.clone(),
+                    factor.clone(),
+                    group.label.clone(),
+                ];
                 row.extend([group.n.to_string(), group.missing.to_string()]);
                 row.extend([group.mean, group.sd, group.min, group.max].map(number));
                 table.row(row);

@@ -54,12 +54,26 @@ fn written(args: &Args) -> Result<Answer, cvtcycle::config::Problem> {
     let format = Format::of(&args.out)?;
     let study = store::Study::open(&args.dir)?;
     let mut out = OutputFile::create(&args.out, args.force)?;
-    let table = if args.table == Table::Runs { RUNS } else { TRACES };
+    let table = if args.table == Table::Runs {
+        RUNS
+    } else {
+        TRACES
+    };
     let exported = export(&study, table, format, &mut out)?;
     let path = out.commit()?;
     let whole = exported.status.is_complete();
-    let stdout = if args.quiet { String::new() } else { format!("{} rows in {}\n", exported.rows, path.display()) };
-    let partial =
-        format!("cvtcycle: the study is not finished: {} of {} parts are in the file\n", exported.status.present, exported.status.expected);
-    Ok(Answer { stdout, stderr: if whole { String::new() } else { partial }, code: if whole { 0 } else { FAILED } })
+    let stdout = if args.quiet {
+        String::new()
+    } else {
+        format!("{} rows in {}\n", exported.rows, path.display())
+    };
+    let partial = format!(
+        "cvtcycle: the study is not finished: {} of {} parts are in the file\n",
+        exported.status.present, exported.status.expected
+    );
+    Ok(Answer {
+        stdout,
+        stderr: if whole { String::new() } else { partial },
+        code: if whole { 0 } else { FAILED },
+    })
 }

@@ -46,9 +46,16 @@ impl Progress {
             How::Bar(bar)
         } else {
             let now = Instant::now();
-            How::Lines(Mutex::new(Lines { begun: now, last: now }))
+            How::Lines(Mutex::new(Lines {
+                begun: now,
+                last: now,
+            }))
         };
-        Progress { how, done: AtomicU64::new(0), runs }
+        Progress {
+            how,
+            done: AtomicU64::new(0),
+            runs,
+        }
     }
 
     /// Takes the bar away.
@@ -60,26 +67,36 @@ impl Progress {
 
     fn line(&self, lines: &Mutex<Lines>, done: u64) {
         // Whoever comes while another prints has nothing to add.
-        let Ok(mut lines) = lines.try_lock() else { return };
+        let Ok(mut lines) = lines.try_lock() else {
+            return;
+        };
         if lines.last.elapsed() < EVERY {
             return;
         }
         lines.last = Instant::now();
         let rate = done as f64 / lines.begun.elapsed().as_secs_f64();
         let left = (self.runs.saturating_sub(done)) as f64 / rate;
-        let text = format!("cvtcycle: {done} of {} runs, {rate:.0} runs/s, {left:.0} s left\n", self.runs);
+        let text = format!(
+            "cvtcycle: {done} of {} runs, {rate:.0} runs/s, {left:.0} s left\n",
+            self.runs
+        );
         // Where standard error is gone there is nobody to tell.
         drop(std::io::stderr().write_all(text.as_bytes()));
     }
 }
 
 fn style() -> ProgressStyle {
-    let style = ProgressStyle::with_template("{bar:30} {percent}%  {human_pos} of {human_len} runs  {rate}  {eta} left");
+    let style = ProgressStyle::with_template(
+        "{bar:30} {percent}%  {human_pos} of {human_len} runs  {rate}  {eta} left",
+    );
     let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-    style.with_key("rate", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-        // Writing into a bar's text cannot fail.
-        let _ = write!(out, "{:.0} runs/s", state.per_sec());
-    })
+    style.with_key(
+        "rate",
+        |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+            // Writing into a bar's text cannot fail.
+            let _ = write!(out, "{:.0} runs/s", state.per_sec());
+        },
+    )
 }
 
 impl Watcher for Progress {

@@ -24,8 +24,18 @@ pub fn answer(study: &StudyFound, paint: Paint) -> String {
     if !answer.comparisons.is_empty() {
         text += &format!("\n{}\n", paint.heading("Answer"));
         let drawn = outline.plan.design.is_sampled();
-        text.extend(answer.comparisons.iter().map(|comparison| compared(comparison, answer, drawn)));
-        text.extend(answer.comparisons.iter().filter_map(|comparison| decided(comparison, answer, outline)));
+        text.extend(
+            answer
+                .comparisons
+                .iter()
+                .map(|comparison| compared(comparison, answer, drawn)),
+        );
+        text.extend(
+            answer
+                .comparisons
+                .iter()
+                .filter_map(|comparison| decided(comparison, answer, outline)),
+        );
     }
     text += &format!("\n{}\n{}", paint.heading("Outputs"), outputs(answer));
     text + &factors(answer, outline, paint)
@@ -40,11 +50,17 @@ fn head(study: &StudyFound, paint: Paint) -> String {
     let runs = &answer.runs;
     let design = design(outline);
     let count = outline.points * outline.cars.len() as u64;
-    text += &format!("{design}; {} points, {count} runs of {}\n", answer.points, outline.cars.join(", "));
+    text += &format!(
+        "{design}; {} points, {count} runs of {}\n",
+        answer.points,
+        outline.cars.join(", ")
+    );
     let (there, all) = study.parts();
     if there < all {
-        text +=
-            &format!("not finished: {there} of {all} parts, {} of {} points; what follows is theirs\n", answer.points_done, answer.points);
+        text += &format!(
+            "not finished: {there} of {all} parts, {} of {} points; what follows is theirs\n",
+            answer.points_done, answer.points
+        );
     }
     let bad = runs.failed + runs.not_run;
     if bad > 0 {
@@ -69,7 +85,9 @@ fn design(outline: &Outline) -> String {
         Design::LatinHypercube { seed, .. } => sampled("Latin hypercube", seed),
         Design::Sobol { seed, .. } => sampled("Sobol sequence", seed),
         Design::MonteCarlo { seed, .. } => sampled("Monte Carlo", seed),
-        Design::Saltelli { samples, seed } => sampled(&format!("Saltelli's blocks of {samples} samples"), seed),
+        Design::Saltelli { samples, seed } => {
+            sampled(&format!("Saltelli's blocks of {samples} samples"), seed)
+        }
     }
 }
 
@@ -111,25 +129,50 @@ fn compared(of: &Comparison, answer: &Answer, drawn: bool) -> String {
 
 /// Which factors decide the excess over a baseline.
 fn decided(of: &Comparison, answer: &Answer, outline: &Outline) -> Option<String> {
-    let output = answer.outputs.iter().find(|o| o.output == cvtcycle::study::outputs::EXCESS && o.car == of.baseline)?;
+    let output = answer
+        .outputs
+        .iter()
+        .find(|o| o.output == cvtcycle::study::outputs::EXCESS && o.car == of.baseline)?;
     let ranked = ranked(output, outline)?;
-    let first: Vec<String> = ranked.iter().take(3).map(|(name, share)| format!("{name} ({})", fixed(Some(*share), 2))).collect();
+    let first: Vec<String> = ranked
+        .iter()
+        .take(3)
+        .map(|(name, share)| format!("{name} ({})", fixed(Some(*share), 2)))
+        .collect();
     let measure = match (&output.tornado, output.sobol.is_empty()) {
         (Some(_), _) => "swing, points",
         (None, false) => "share of the variance, with interactions",
         _ => "rank correlation",
     };
-    Some(format!("Over {} most is decided by {} [{measure}].\n", of.baseline, first.join(", ")))
+    Some(format!(
+        "Over {} most is decided by {} [{measure}].\n",
+        of.baseline,
+        first.join(", ")
+    ))
 }
 
 /// Factors with the measure of the design, the strongest first.
 fn ranked(output: &OutputAnswer, outline: &Outline) -> Option<Vec<(String, f64)>> {
     let mut list: Vec<(String, f64)> = if let Some(indices) = output.sobol.last() {
-        outline.plan.factors.iter().zip(&indices.factors).map(|(factor, i)| (factor.name.clone(), i.total.value)).collect()
+        outline
+            .plan
+            .factors
+            .iter()
+            .zip(&indices.factors)
+            .map(|(factor, i)| (factor.name.clone(), i.total.value))
+            .collect()
     } else if let Some(tornado) = &output.tornado {
-        tornado.bars.iter().map(|bar| (bar.name.clone(), bar.swing)).collect()
+        tornado
+            .bars
+            .iter()
+            .map(|bar| (bar.name.clone(), bar.swing))
+            .collect()
     } else if let Some(rank) = &output.rank {
-        rank.factors.iter().zip(&rank.of.factors).map(|(name, f)| (name.clone(), f.spearman.value)).collect()
+        rank.factors
+            .iter()
+            .zip(&rank.of.factors)
+            .map(|(name, f)| (name.clone(), f.spearman.value))
+            .collect()
     } else {
         return None;
     };
@@ -145,10 +188,28 @@ fn outputs(answer: &Answer) -> String {
     for output in &answer.outputs {
         let s = &output.summary;
         let figures = |x: f64| fixed(Some(x), 3);
-        let name = if output.output == last { "" } else { &output.output };
+        let name = if output.output == last {
+            ""
+        } else {
+            &output.output
+        };
         let unit = if name.is_empty() { "" } else { &output.unit };
-        let cells = [figures(s.mean), figures(s.sd), figures(s.quantile(0.05)), figures(s.quantile(0.95))];
-        grid.row([name.to_owned(), unit.to_owned(), output.car.clone(), s.n.to_string()].into_iter().chain(cells));
+        let cells = [
+            figures(s.mean),
+            figures(s.sd),
+            figures(s.quantile(0.05)),
+            figures(s.quantile(0.95)),
+        ];
+        grid.row(
+            [
+                name.to_owned(),
+                unit.to_owned(),
+                output.car.clone(),
+                s.n.to_string(),
+            ]
+            .into_iter()
+            .chain(cells),
+        );
         last = &output.output;
     }
     grid.text()
@@ -159,12 +220,21 @@ fn factors(answer: &Answer, outline: &Outline, paint: Paint) -> String {
     let mut text = String::new();
     let shown = |o: &&OutputAnswer| {
         o.output == cvtcycle::study::outputs::EXCESS
-            || answer.outputs.first().is_some_and(|first| first.output == o.output && first.car == o.car)
+            || answer
+                .outputs
+                .first()
+                .is_some_and(|first| first.output == o.output && first.car == o.car)
     };
     for output in answer.outputs.iter().filter(shown) {
         let table = table(output, outline);
         if !table.is_empty() {
-            text += &format!("\n{}\n{table}", paint.heading(&format!("What moves {} ({}), {}", output.output, output.unit, output.car)));
+            text += &format!(
+                "\n{}\n{table}",
+                paint.heading(&format!(
+                    "What moves {} ({}), {}",
+                    output.output, output.unit, output.car
+                ))
+            );
         }
     }
     text
@@ -179,9 +249,17 @@ fn table(output: &OutputAnswer, outline: &Outline) -> String {
         grid.row(["factor", "low", "effect", "high", "effect", "swing"]);
         for bar in &tornado.bars {
             let end = |end: &Option<cvtcycle::study::statistics::TornadoEnd>| {
-                end.as_ref().map_or(["-".to_owned(), "-".to_owned()], |end| [end.label.clone(), signed(Some(end.effect), 3)])
+                end.as_ref()
+                    .map_or(["-".to_owned(), "-".to_owned()], |end| {
+                        [end.label.clone(), signed(Some(end.effect), 3)]
+                    })
             };
-            let cells = [vec![bar.name.clone()], end(&bar.low).to_vec(), end(&bar.high).to_vec(), vec![fixed(Some(bar.swing), 3)]];
+            let cells = [
+                vec![bar.name.clone()],
+                end(&bar.low).to_vec(),
+                end(&bar.high).to_vec(),
+                vec![fixed(Some(bar.swing), 3)],
+            ];
             grid.row(cells.concat());
         }
         return format!("  base {}\n{}", fixed(Some(tornado.base), 3), grid.text());
@@ -189,12 +267,22 @@ fn table(output: &OutputAnswer, outline: &Outline) -> String {
     let mut text = String::new();
     if let Some(rank) = &output.rank {
         let mut list: Vec<_> = rank.factors.iter().zip(&rank.of.factors).collect();
-        list.sort_by(|a, b| b.1.spearman.value.abs().total_cmp(&a.1.spearman.value.abs()));
+        list.sort_by(|a, b| {
+            b.1.spearman
+                .value
+                .abs()
+                .total_cmp(&a.1.spearman.value.abs())
+        });
         let mut grid = Grid::new("lrrr").indented();
         grid.row(["factor", "rank correlation", "from", "to"]);
         for (name, factor) in list.into_iter().take(TOLD) {
             let [low, high] = factor.spearman.interval95.unwrap_or([f64::NAN; 2]);
-            grid.row([name.clone(), signed(Some(factor.spearman.value), 2), signed(Some(low), 2), signed(Some(high), 2)]);
+            grid.row([
+                name.clone(),
+                signed(Some(factor.spearman.value), 2),
+                signed(Some(low), 2),
+                signed(Some(high), 2),
+            ]);
         }
         text += &grid.text();
     }
@@ -215,13 +303,36 @@ fn table(output: &OutputAnswer, outline: &Outline) -> String {
     text
 }
 
-fn sobol(output: &OutputAnswer, outline: &Outline, indices: &cvtcycle::study::statistics::SobolIndices) -> String {
-    let Some(ranked) = ranked(output, outline) else { return "  the output does not vary\n".to_owned() };
+fn sobol(
+    output: &OutputAnswer,
+    outline: &Outline,
+    indices: &cvtcycle::study::statistics::SobolIndices,
+) -> String {
+    let Some(ranked) = ranked(output, outline) else {
+        return "  the output does not vary\n".to_owned();
+    };
     let mut grid = Grid::new("lrrrr").indented();
-    grid.row(["factor", "first order", "95 % interval", "total", "95 % interval"]);
-    let span = |e: Option<[f64; 2]>| e.map_or("-".to_owned(), |[a, b]| format!("{} .. {}", fixed(Some(a), 3), fixed(Some(b), 3)));
+    grid.row([
+        "factor",
+        "first order",
+        "95 % interval",
+        "total",
+        "95 % interval",
+    ]);
+    let span = |e: Option<[f64; 2]>| {
+        e.map_or("-".to_owned(), |[a, b]| {
+            format!("{} .. {}", fixed(Some(a), 3), fixed(Some(b), 3))
+        })
+    };
     for (name, _) in ranked.iter().take(TOLD) {
-        let Some(k) = outline.plan.factors.iter().position(|factor| factor.name == *name) else { continue };
+        let Some(k) = outline
+            .plan
+            .factors
+            .iter()
+            .position(|factor| factor.name == *name)
+        else {
+            continue;
+        };
         let f = &indices.factors[k];
         grid.row([
             name.clone(),
@@ -232,16 +343,33 @@ fn sobol(output: &OutputAnswer, outline: &Outline, indices: &cvtcycle::study::st
         ]);
     }
     let rest = ranked.len().saturating_sub(TOLD);
-    let more = if rest > 0 { format!("  {rest} more factors have a smaller total index\n") } else { String::new() };
-    format!("{}{more}  sum of first-order indices {}\n", grid.text(), fixed(Some(indices.sum_first.value), 3))
+    let more = if rest > 0 {
+        format!("  {rest} more factors have a smaller total index\n")
+    } else {
+        String::new()
+    };
+    format!(
+        "{}{more}  sum of first-order indices {}\n",
+        grid.text(),
+        fixed(Some(indices.sum_first.value), 3)
+    )
 }
 
 /// A word on standard error about runs that failed.
 pub fn failures(answer: &Answer) -> String {
     let runs = &answer.runs;
-    let told: Vec<String> = runs.reasons.iter().take(5).map(|(reason, count)| format!("  {count} x {reason}\n")).collect();
+    let told: Vec<String> = runs
+        .reasons
+        .iter()
+        .take(5)
+        .map(|(reason, count)| format!("  {count} x {reason}\n"))
+        .collect();
     let more = runs.reasons.len().saturating_sub(5);
-    let more = if more > 0 { format!("  and {more} other reasons\n") } else { String::new() };
+    let more = if more > 0 {
+        format!("  and {more} other reasons\n")
+    } else {
+        String::new()
+    };
     format!(
         "cvtcycle: {} of {} runs failed; each stands in the table with its reason\n{}{more}",
         runs.failed + runs.not_run,
@@ -252,6 +380,14 @@ pub fn failures(answer: &Answer) -> String {
 
 /// Where the files are.
 pub fn written(dir: &Path, files: &[PathBuf]) -> String {
-    let names: Vec<String> = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy().into_owned()).collect();
-    format!("\nFiles written in {}\n  parts/  {}\n", dir.display(), names.join("  "))
+    let names: Vec<String> = files
+        .iter()
+        .filter_map(|file| file.file_name())
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect();
+    format!(
+        "\nFiles written in {}\n  parts/  {}\n",
+        dir.display(),
+        names.join("  ")
+    )
 }

@@ -1,6 +1,8 @@
 //! A report as tables for people.
 
-use cvtcycle::validate::{Judged, Report, Verdict, chapter_title, computed_text, notes_line, unit_text};
+use cvtcycle::validate::{
+    Judged, Report, Verdict, chapter_title, computed_text, notes_line, unit_text,
+};
 
 use crate::cli::colour::Paint;
 use crate::cli::grid::Grid;
@@ -13,23 +15,53 @@ pub fn tables(report: &Report, paint: Paint) -> String {
             chapters.push(&judged.row.chapter);
         }
     }
-    let mut text = format!("{}  {}\n", paint.heading("Printed numbers against the program"), report.subject.vehicle);
-    text.extend(report.subject.set.iter().map(|set| format!("--set {set}\n")));
+    let mut text = format!(
+        "{}  {}\n",
+        paint.heading("Printed numbers against the program"),
+        report.subject.vehicle
+    );
+    text.extend(
+        report
+            .subject
+            .set
+            .iter()
+            .map(|set| format!("--set {set}\n")),
+    );
     for name in chapters {
-        let rows: Vec<&Judged> = report.rows.iter().filter(|judged| judged.row.chapter == name).collect();
-        text += &format!("\n{}\n{}", paint.heading(&chapter_title(name)), chapter(&rows));
+        let rows: Vec<&Judged> = report
+            .rows
+            .iter()
+            .filter(|judged| judged.row.chapter == name)
+            .collect();
+        text += &format!(
+            "\n{}\n{}",
+            paint.heading(&chapter_title(name)),
+            chapter(&rows)
+        );
     }
     text += &format!("\n{}\n{}", paint.heading("Rows by verdict"), counts(report));
-    text += &format!("\n{}\n{}", paint.heading("Held out: rows that no calibration uses, constants aside"), held_out(report));
+    text += &format!(
+        "\n{}\n{}",
+        paint.heading("Held out: rows that no calibration uses, constants aside"),
+        held_out(report)
+    );
     let moved = moved(report);
-    if moved.is_empty() { text } else { text + &paint.bad(moved.trim_end()) + "\n" }
+    if moved.is_empty() {
+        text
+    } else {
+        text + &paint.bad(moved.trim_end()) + "\n"
+    }
 }
 
 /// Longest text in a narrow column; longer ones are cut and stand in full in the other forms.
 const NARROW: usize = 20;
 
 fn cut(text: &str, most: usize) -> String {
-    if text.chars().count() <= most { text.to_owned() } else { text.chars().take(most - 1).collect::<String>() + "…" }
+    if text.chars().count() <= most {
+        text.to_owned()
+    } else {
+        text.chars().take(most - 1).collect::<String>() + "…"
+    }
 }
 
 fn chapter(rows: &[&Judged]) -> String {
@@ -37,7 +69,11 @@ fn chapter(rows: &[&Judged]) -> String {
     grid.row(["row", "verdict", "printed", "computed", "unit", "what"]);
     for judged in rows {
         let row = &judged.row;
-        let verdict = if judged.moved { format!("{} !", judged.verdict.word()) } else { judged.verdict.word().to_owned() };
+        let verdict = if judged.moved {
+            format!("{} !", judged.verdict.word())
+        } else {
+            judged.verdict.word().to_owned()
+        };
         grid.row([
             row.id.clone(),
             verdict,
@@ -48,7 +84,9 @@ fn chapter(rows: &[&Judged]) -> String {
         ]);
     }
     let mut text = grid.indented().text();
-    let shown = rows.iter().filter(|judged| judged.verdict == Verdict::Differs || judged.moved || judged.left_out + judged.outside > 0);
+    let shown = rows.iter().filter(|judged| {
+        judged.verdict == Verdict::Differs || judged.moved || judged.left_out + judged.outside > 0
+    });
     let mut list = Grid::new("ll");
     let mut some = false;
     for judged in shown {
@@ -80,9 +118,15 @@ fn held_out(report: &Report) -> String {
     grid.row(["rows".to_owned(), found.rows.to_string()]);
     grid.row(["agree".to_owned(), found.agree.to_string()]);
     grid.row(["numbers among them".to_owned(), found.numbers.to_string()]);
-    grid.row(["numbers that agree".to_owned(), found.numbers_agree.to_string()]);
+    grid.row([
+        "numbers that agree".to_owned(),
+        found.numbers_agree.to_string(),
+    ]);
     if let Some(median) = found.median_off {
-        grid.row(["median distance from what is printed, in tolerances".to_owned(), format!("{median:.2}")]);
+        grid.row([
+            "median distance from what is printed, in tolerances".to_owned(),
+            format!("{median:.2}"),
+        ]);
     }
     grid.indented().text()
 }

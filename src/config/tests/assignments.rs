@@ -8,7 +8,10 @@ fn an_assignment_goes_before_the_file() {
     let (si, keys) = belt(&with(&text, &[&format!("{key} = 2")]));
     assert!((si - 0.002).abs() < 1e-15);
     assert_eq!(keys.unwrap()[0].status, "set");
-    let (_, keys) = belt(&with("", &[&format!("{key}={{ value = 2, status = \"source\" }}")]));
+    let (_, keys) = belt(&with(
+        "",
+        &[&format!("{key}={{ value = 2, status = \"source\" }}")],
+    ));
     assert_eq!(keys.unwrap()[0].status, "set");
     let problem = only(belt(&with(&text, &[&format!("{key}=2,5")])).1);
     assert_eq!(problem.place.file, format!("--set {key}=2,5"));
@@ -28,13 +31,21 @@ fn an_assignment_to_an_unknown_key_names_the_whole_path() {
     let text = format!("{HEAD}band_offset_mm = 3");
     for (assignment, message) in [
         ("belt.band_ofset_mm=2", "unknown key `belt.band_ofset_mm`"),
-        ("transmission.cvt.belt.band_ofset_mm=2", "unknown key `transmission.cvt.belt.band_ofset_mm`"),
+        (
+            "transmission.cvt.belt.band_ofset_mm=2",
+            "unknown key `transmission.cvt.belt.band_ofset_mm`",
+        ),
         ("belt.band_offset_mm=2", "unknown key"),
         ("band_offset_m=0.002", "wrong unit"),
     ] {
         let problem = only(belt(&with(&text, &[assignment])).1);
         assert!(problem.message.contains(message), "{problem:?}");
-        assert!(problem.hint.contains("`transmission.cvt.belt.band_offset_mm`"), "{problem:?}");
+        assert!(
+            problem
+                .hint
+                .contains("`transmission.cvt.belt.band_offset_mm`"),
+            "{problem:?}"
+        );
         assert_eq!(problem.place.file, format!("--set {assignment}"));
     }
 }
@@ -61,7 +72,18 @@ fn what_is_no_assignment_is_refused() {
 
 #[test]
 fn a_word_for_a_table_that_is_no_choice() {
-    let problem = only(belt(&with(&format!("{HEAD}band_offset_mm = 3"), &["transmission.cvt=belt"])).1);
-    assert!(problem.message.contains("`transmission.cvt` is a table, not a value"), "{problem:?}");
+    let problem = only(
+        belt(&with(
+            &format!("{HEAD}band_offset_mm = 3"),
+            &["transmission.cvt=belt"],
+        ))
+        .1,
+    );
+    assert!(
+        problem
+            .message
+            .contains("`transmission.cvt` is a table, not a value"),
+        "{problem:?}"
+    );
     assert_eq!(problem.place.file, "--set transmission.cvt=belt");
 }

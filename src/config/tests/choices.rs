@@ -4,7 +4,10 @@ use super::*;
 const CLAMPS: [&str; 2] = ["torque_following", "map"];
 
 /// Chooses a clamp, reads the pressure of the map if chosen, and ends the session.
-fn clamp(document: &Document, default: Option<&'static str>) -> (&'static str, Result<Vec<KeyInfo>, Vec<Problem>>) {
+fn clamp(
+    document: &Document,
+    default: Option<&'static str>,
+) -> (&'static str, Result<Vec<KeyInfo>, Vec<Problem>>) {
     let reader = Reader::new(document);
     let (option, section) = reader.root().choose("clamp", &CLAMPS, default, "Clamping");
     assert_eq!(section.path(), format!("clamp.{option}"));
@@ -24,9 +27,22 @@ fn check(cases: &[Case<'_>]) {
     for (text, sets, option, status) in cases {
         let (found, keys) = clamp(&with(text, sets), Some("torque_following"));
         let keys = keys.unwrap_or_else(|problems| panic!("{text} {sets:?}: {problems:#?}"));
-        let KeyInfo { key, value, status: said, .. } = &keys[0];
-        assert_eq!((found, value.as_str()), (*option, *option), "{text} {sets:?}");
-        assert_eq!((key.as_str(), said.as_str()), ("clamp", *status), "{text} {sets:?}");
+        let KeyInfo {
+            key,
+            value,
+            status: said,
+            ..
+        } = &keys[0];
+        assert_eq!(
+            (found, value.as_str()),
+            (*option, *option),
+            "{text} {sets:?}"
+        );
+        assert_eq!(
+            (key.as_str(), said.as_str()),
+            ("clamp", *status),
+            "{text} {sets:?}"
+        );
     }
 }
 
@@ -74,17 +90,53 @@ fn the_file_still_fills_the_option_named_by_an_assignment() {
 fn a_choice_that_is_none() {
     for (text, sets, message, line) in [
         ("", &[][..], "missing key `clamp`", 0),
-        (BOTH, &[], "`torque_following` (line 1) and `map` (line 3)", 3),
+        (
+            BOTH,
+            &[],
+            "`torque_following` (line 1) and `map` (line 3)",
+            3,
+        ),
         ("clamp = \"mapp\"", &[], "`mapp` is not known", 1),
-        ("clamp = 3", &[], "expected the name of an option or its table, found an integer", 1),
-        ("[clamp]\nmap = 3", &[], "expected a table, found an integer", 2),
+        (
+            "clamp = 3",
+            &[],
+            "expected the name of an option or its table, found an integer",
+            1,
+        ),
+        (
+            "[clamp]\nmap = 3",
+            &[],
+            "expected a table, found an integer",
+            2,
+        ),
         ("", &["clamp=mapp"], "`mapp` is not known", 0),
-        (BOTH, &["clamp=map", "clamp.torque_following.safety=2"], "two options", 0),
-        ("", &["clamp.map.pressure_bar=1", "clamp.torque_following.safety=2"], "two options", 0),
-        ("[clamp.mapp]\npressure_bar = 20\n", &[], "unknown table `clamp.mapp`", 1),
+        (
+            BOTH,
+            &["clamp=map", "clamp.torque_following.safety=2"],
+            "two options",
+            0,
+        ),
+        (
+            "",
+            &[
+                "clamp.map.pressure_bar=1",
+                "clamp.torque_following.safety=2",
+            ],
+            "two options",
+            0,
+        ),
+        (
+            "[clamp.mapp]\npressure_bar = 20\n",
+            &[],
+            "unknown table `clamp.mapp`",
+            1,
+        ),
     ] {
         let problem = only(clamp(&with(text, sets), None).1);
-        assert!(problem.message.contains(message), "{text} {sets:?}: {problem:#?}");
+        assert!(
+            problem.message.contains(message),
+            "{text} {sets:?}: {problem:#?}"
+        );
         assert_eq!(problem.place.line, line, "{text} {sets:?}");
     }
     let hint = only(clamp(&document("clamp = \"mapp\""), None).1).hint;
@@ -94,6 +146,9 @@ fn a_choice_that_is_none() {
 #[test]
 fn after_a_failed_choice_nothing_is_missing() {
     let problem = only(clamp(&document("clamp = \"zebra\""), Some("map")).1);
-    assert!(problem.message.contains("`zebra` is not known"), "{problem:?}");
+    assert!(
+        problem.message.contains("`zebra` is not known"),
+        "{problem:?}"
+    );
     assert_eq!(problem.hint, "write one of torque_following, map");
 }

@@ -6,7 +6,12 @@ use super::*;
 fn read(reader: &Reader) -> String {
     let root = reader.root();
     let belt = root.table("belt");
-    let (option, clamp) = root.choose("clamp", &["map", "slip", "torque"], Some("map"), "clamp law");
+    let (option, clamp) = root.choose(
+        "clamp",
+        &["map", "slip", "torque"],
+        Some("map"),
+        "clamp law",
+    );
     let numbers = (
         belt.number("offset_mm", Bound::closed(0.0, 20.0), "offset"),
         belt.number_or("width_mm", Bound::positive(), 25.0, "width"),
@@ -16,7 +21,14 @@ fn read(reader: &Reader) -> String {
     );
     let others = (
         root.numbers("radii_mm", Bound::positive(), 1..=3, "radii"),
-        root.rows("points", &[("temp_degc", Bound::any()), ("share", Bound::closed(0.0, 1.0))], "points"),
+        root.rows(
+            "points",
+            &[
+                ("temp_degc", Bound::any()),
+                ("share", Bound::closed(0.0, 1.0)),
+            ],
+            "points",
+        ),
         root.word_or("fluid", &["old", "new"], "new", "fluid"),
         root.boolean_or("warm", true, "warm"),
         root.text("title", "title"),
@@ -33,14 +45,27 @@ const GOOD: &str = "title = 'x'\nradii_mm = [1, 2]\npoints = [[1, 0.5], [2, 0.6]
 fn silent_readings_find_the_same() {
     let bad = "title = 1\nradii_mm = []\npoints = [[1, 2], [1]]\nfluid = 'odl'\nwarm = 0\nspeed_rpm = '3'\nnames = [1]\nclamp = 'amp'\n\
         belt = { offset_mm = { status = 'assumed' }, width_mm = -1, bands = 1.5, gap_mm = 'x' }\n";
-    for (text, faults) in [(GOOD, 0), (bad, 13), ("", 3), ("belt = 1\n[clamp.map]\n[clamp.slip]\n", 4)] {
+    for (text, faults) in [
+        (GOOD, 0),
+        (bad, 13),
+        ("", 3),
+        ("belt = 1\n[clamp.map]\n[clamp.slip]\n", 4),
+    ] {
         let document = document(text);
         let (ordinary, silent) = (Reader::new(&document), Reader::silent(&document));
         let same = read(&ordinary) == read(&silent);
         assert!(same, "{text}");
-        assert_eq!(ordinary.finish().err().map_or(0, |problems| problems.len()), faults, "{text}");
+        assert_eq!(
+            ordinary.finish().err().map_or(0, |problems| problems.len()),
+            faults,
+            "{text}"
+        );
         assert!(silent.known().is_empty());
-        assert_eq!(silent.finish().err().map_or(0, |problems| problems.len()), faults, "{text}");
+        assert_eq!(
+            silent.finish().err().map_or(0, |problems| problems.len()),
+            faults,
+            "{text}"
+        );
     }
 }
 
@@ -54,7 +79,13 @@ fn drafts_are_what_assignments_make() {
     let base = document(GOOD);
     let mut draft = Draft::new(&base);
     let unchanged = read(&Reader::silent(&base));
-    let numbers = [("belt.offset_mm", 4.5), ("belt.bands", 7.0), ("belt.gap_mm", 0.1), ("clamp.torque.safety", 2.0), ("warm", -1.0)];
+    let numbers = [
+        ("belt.offset_mm", 4.5),
+        ("belt.bands", 7.0),
+        ("belt.gap_mm", 0.1),
+        ("clamp.torque.safety", 2.0),
+        ("warm", -1.0),
+    ];
     for count in 0..=numbers.len() {
         for round in [1.0, 1.25] {
             let mut assigned = base.clone();
@@ -67,11 +98,20 @@ fn drafts_are_what_assignments_make() {
             assert!(count == 0 || read(&Reader::silent(draft.document())) != unchanged);
         }
         let kept: Vec<(String, f64)> = draft.numbers().collect();
-        assert_eq!(kept, numbers[..count].iter().map(|(key, number)| ((*key).to_string(), number * 1.25)).collect::<Vec<_>>());
+        assert_eq!(
+            kept,
+            numbers[..count]
+                .iter()
+                .map(|(key, number)| ((*key).to_string(), number * 1.25))
+                .collect::<Vec<_>>()
+        );
         draft.reset();
         assert_eq!(read(&Reader::silent(draft.document())), unchanged);
         assert_eq!(draft.numbers().count(), 0);
     }
-    assert!(!draft.set(&path("belt.offset_mm.x"), 1.0), "a value is in the way");
+    assert!(
+        !draft.set(&path("belt.offset_mm.x"), 1.0),
+        "a value is in the way"
+    );
     assert_eq!(read(&Reader::silent(draft.document())), unchanged);
 }

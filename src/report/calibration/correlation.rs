@@ -23,8 +23,13 @@ const HEAD: f64 = 20.0;
 const KEY: f64 = 52.0;
 const SLICES: usize = 40;
 /// From -1 over 0 to 1: blue, white, brown, which the colour-blind tell apart, and the darker the stronger.
-const DIVERGING: [(f64, f64, f64); 5] =
-    [(5.0, 80.0, 150.0), (125.0, 180.0, 220.0), (247.0, 247.0, 247.0), (243.0, 175.0, 105.0), (160.0, 72.0, 5.0)];
+const DIVERGING: [(f64, f64, f64); 5] = [
+    (5.0, 80.0, 150.0),
+    (125.0, 180.0, 220.0),
+    (247.0, 247.0, 247.0),
+    (243.0, 175.0, 105.0),
+    (160.0, 72.0, 5.0),
+];
 /// Ink on light cells: no text colour of the page, for the cells keep their colours where a dark page turns those around.
 const ON_LIGHT: &str = "#111111";
 const ON_DARK: &str = "#ffffff";
@@ -34,11 +39,17 @@ const ON_DARK: &str = "#ffffff";
 pub fn correlation_plot(outcome: &Outcome) -> Picture {
     let count = outcome.parameters.len();
     let n = count.min(MOST);
-    let mut table = PictureTable::new(&[("Parameter", ""), ("Other parameter", ""), ("Correlation", "")]);
+    let mut table = PictureTable::new(&[
+        ("Parameter", ""),
+        ("Other parameter", ""),
+        ("Correlation", ""),
+    ]);
     let mut notes =
         vec!["Columns bear the numbers of the rows. Crossed out: not known, for the data do not tell the parameter.".to_owned()];
     if n < count {
-        notes.push(format!("The first {n} of {count} parameters; correlation.csv has all."));
+        notes.push(format!(
+            "The first {n} of {count} parameters; correlation.csv has all."
+        ));
     }
     table.note = notes.join(" ");
     let names = NAMES[usize::from(n > FEW)];
@@ -47,18 +58,44 @@ pub fn correlation_plot(outcome: &Outcome) -> Picture {
     let bottom = top + n as f64 * size;
     let (strip, wide) = ((MARGIN, bottom + 14.0), RIGHT - MARGIN);
     let tall = strip.1 + KEY + foot_height(std::iter::empty(), wide, &notes);
-    let mut figure = Figure::new((WIDTH, tall), MARGIN, "Correlation of the parameters", &subject(outcome), &describe(outcome));
+    let mut figure = Figure::new(
+        (WIDTH, tall),
+        MARGIN,
+        "Correlation of the parameters",
+        &subject(outcome),
+        &describe(outcome),
+    );
     for (i, p) in outcome.parameters.iter().take(n).enumerate() {
         let middle_y = top + (i as f64 + 0.5) * size;
         // Names of rows that are lower than a line of text would run into each other.
         let every = (13.0 / size).ceil().max(1.0) as usize;
         if i.is_multiple_of(every) {
             let y = middle_y + 4.0;
-            key(&mut figure, (left - 30.0, y), names - 36.0, "class=\"row\"", &p.name);
-            figure.text((left - 7.0, y), TEXT, Anchor::End, "font-weight=\"bold\"", INK, &(i + 1).to_string());
+            key(
+                &mut figure,
+                (left - 30.0, y),
+                names - 36.0,
+                "class=\"row\"",
+                &p.name,
+            );
+            figure.text(
+                (left - 7.0, y),
+                TEXT,
+                Anchor::End,
+                "font-weight=\"bold\"",
+                INK,
+                &(i + 1).to_string(),
+            );
             let x = left + (i as f64 + 0.5) * size;
             if size >= text_width("00", TEXT) {
-                figure.text((x, top - 6.0), TEXT, Anchor::Middle, "font-weight=\"bold\"", INK, &(i + 1).to_string());
+                figure.text(
+                    (x, top - 6.0),
+                    TEXT,
+                    Anchor::Middle,
+                    "font-weight=\"bold\"",
+                    INK,
+                    &(i + 1).to_string(),
+                );
             }
         }
         for j in 0..n {
@@ -73,18 +110,42 @@ pub fn correlation_plot(outcome: &Outcome) -> Picture {
             draw(&mut figure, rect, r, i == j, row);
         }
     }
-    let frame = Rect { left, right: left + n as f64 * size, top, bottom };
-    figure.rect(frame, &format!("class=\"plot\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"3\""));
+    let frame = Rect {
+        left,
+        right: left + n as f64 * size,
+        top,
+        bottom,
+    };
+    figure.rect(
+        frame,
+        &format!("class=\"plot\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"3\""),
+    );
     colour_key(&mut figure, strip);
     for (k, line) in notes.iter().enumerate() {
         let at = (MARGIN, strip.1 + KEY + 11.0 + 20.0 * k as f64);
-        figure.text(at, TEXT, Anchor::Start, "", super::super::figure::QUIET, &middle(line, TEXT, wide));
+        figure.text(
+            at,
+            TEXT,
+            Anchor::Start,
+            "",
+            super::super::figure::QUIET,
+            &middle(line, TEXT, wide),
+        );
     }
-    Picture { svg: figure.finish(), table }
+    Picture {
+        svg: figure.finish(),
+        table,
+    }
 }
 
 fn correlation(outcome: &Outcome, i: usize, j: usize) -> Option<f64> {
-    outcome.correlation.get(i)?.get(j).copied().flatten().filter(|r| r.is_finite())
+    outcome
+        .correlation
+        .get(i)?
+        .get(j)
+        .copied()
+        .flatten()
+        .filter(|r| r.is_finite())
 }
 
 fn cells(outcome: &Outcome, i: usize, j: usize) -> Vec<String> {
@@ -105,8 +166,14 @@ fn draw(figure: &mut Figure, rect: Rect, r: Option<f64>, own: bool, row: Option<
         Some(r) => colour(r),
         None => "none".to_owned(),
     };
-    figure.rect(rect, &format!("class=\"cell\" fill=\"{fill}\" stroke=\"#dedede\" stroke-width=\"1\"{of_row}"));
-    let (x, y) = (0.5 * (rect.left + rect.right), 0.5 * (rect.top + rect.bottom));
+    figure.rect(
+        rect,
+        &format!("class=\"cell\" fill=\"{fill}\" stroke=\"#dedede\" stroke-width=\"1\"{of_row}"),
+    );
+    let (x, y) = (
+        0.5 * (rect.left + rect.right),
+        0.5 * (rect.top + rect.bottom),
+    );
     match r {
         _ if own => {}
         Some(r) if r.abs() >= STRONG && rect.right - rect.left >= HOLDS => {
@@ -115,40 +182,86 @@ fn draw(figure: &mut Figure, rect: Rect, r: Option<f64>, own: bool, row: Option<
             figure.text((x, y + 4.0), TEXT, Anchor::Middle, "", ink, &text);
         }
         Some(_) => {}
-        None => {
-            figure.line((rect.left + 3.0, rect.bottom - 3.0), (rect.right - 3.0, rect.top + 3.0), "stroke=\"#8c8c8c\" stroke-width=\"3\"")
-        }
+        None => figure.line(
+            (rect.left + 3.0, rect.bottom - 3.0),
+            (rect.right - 3.0, rect.top + 3.0),
+            "stroke=\"#8c8c8c\" stroke-width=\"3\"",
+        ),
     }
 }
 
 fn colour_key(figure: &mut Figure, (left, top): (f64, f64)) {
     figure.open("legend");
-    figure.text((left, top + TEXT), TEXT, Anchor::Start, "", INK, "Correlation [-]");
-    let strip = Rect { left: left + 8.0, right: left + 268.0, top: top + 17.0, bottom: top + 29.0 };
+    figure.text(
+        (left, top + TEXT),
+        TEXT,
+        Anchor::Start,
+        "",
+        INK,
+        "Correlation [-]",
+    );
+    let strip = Rect {
+        left: left + 8.0,
+        right: left + 268.0,
+        top: top + 17.0,
+        bottom: top + 29.0,
+    };
     let place = |share: f64| strip.left + (strip.right - strip.left) * share;
     for k in 0..SLICES {
-        let slice = Rect { left: place(k as f64 / SLICES as f64), right: place((k + 1) as f64 / SLICES as f64), ..strip };
+        let slice = Rect {
+            left: place(k as f64 / SLICES as f64),
+            right: place((k + 1) as f64 / SLICES as f64),
+            ..strip
+        };
         let fill = colour(2.0 * (k as f64 + 0.5) / SLICES as f64 - 1.0);
-        figure.rect(slice, &format!("fill=\"{fill}\" shape-rendering=\"crispEdges\""));
+        figure.rect(
+            slice,
+            &format!("fill=\"{fill}\" shape-rendering=\"crispEdges\""),
+        );
     }
-    figure.rect(strip, &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\""));
+    figure.rect(
+        strip,
+        &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\""),
+    );
     for r in [-1.0, -0.5, 0.0, 0.5, 1.0] {
         let x = place(0.5 + 0.5 * r);
-        figure.line((x, strip.bottom), (x, strip.bottom + 3.0), &format!("stroke=\"{INK}\" stroke-width=\"3\""));
-        figure.text((x, strip.bottom + 15.0), TEXT, Anchor::Middle, "", INK, &cell(r, 0.1));
+        figure.line(
+            (x, strip.bottom),
+            (x, strip.bottom + 3.0),
+            &format!("stroke=\"{INK}\" stroke-width=\"3\""),
+        );
+        figure.text(
+            (x, strip.bottom + 15.0),
+            TEXT,
+            Anchor::Middle,
+            "",
+            INK,
+            &cell(r, 0.1),
+        );
     }
     figure.close();
 }
 
 fn describe(outcome: &Outcome) -> String {
     let n = outcome.parameters.len();
-    let mut pairs: Vec<(f64, usize, usize)> =
-        (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).filter_map(|(i, j)| Some((correlation(outcome, i, j)?, i, j))).collect();
+    let mut pairs: Vec<(f64, usize, usize)> = (0..n)
+        .flat_map(|i| (0..i).map(move |j| (i, j)))
+        .filter_map(|(i, j)| Some((correlation(outcome, i, j)?, i, j)))
+        .collect();
     pairs.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     let told = |(r, i, j): &(f64, usize, usize)| {
-        format!("{} with {}: {}", outcome.parameters[*i].name, outcome.parameters[*j].name, cell(*r, 0.01))
+        format!(
+            "{} with {}: {}",
+            outcome.parameters[*i].name,
+            outcome.parameters[*j].name,
+            cell(*r, 0.01)
+        )
     };
     let list: Vec<String> = pairs.iter().take(12).map(told).collect();
-    let words = if list.is_empty() { "None is known".to_owned() } else { list.join("; ") };
+    let words = if list.is_empty() {
+        "None is known".to_owned()
+    } else {
+        list.join("; ")
+    };
     format!("Correlation of the fitted parameters, the strongest first. {words}.")
 }

@@ -55,7 +55,13 @@ pub fn calibration_pictures(outcome: &Outcome) -> Vec<(String, Picture)> {
 fn subject(outcome: &Outcome) -> String {
     let (data, free) = (outcome.residuals.len(), outcome.parameters.len());
     let s = |n: usize| if n == 1 { "" } else { "s" };
-    format!("{}: {}, {data} observation{}, {free} parameter{}", outcome.title, outcome.vehicle, s(data), s(free))
+    format!(
+        "{}: {}, {data} observation{}, {free} parameter{}",
+        outcome.title,
+        outcome.vehicle,
+        s(data),
+        s(free)
+    )
 }
 
 /// Names of the groups in the order of the data.
@@ -80,7 +86,9 @@ fn shown(outcome: &Outcome) -> (Vec<usize>, Option<String>) {
     let traced = all.iter().filter(|r| r.time_s.is_some()).count();
     let single = all.len() - traced;
     // Traces first: their neighbours look alike.
-    let of_traces = traced.div_ceil(MOST_SHOWN.saturating_sub(single).max(MOST_SHOWN / 2)).max(1);
+    let of_traces = traced
+        .div_ceil(MOST_SHOWN.saturating_sub(single).max(MOST_SHOWN / 2))
+        .max(1);
     let of_single = single.div_ceil(MOST_SHOWN).max(1);
     let names = groups(outcome);
     let (mut counts, mut kept) = ([0_usize; 2], Vec::new());
@@ -94,16 +102,28 @@ fn shown(outcome: &Outcome) -> (Vec<usize>, Option<String>) {
         }
     }
     let left = all.len() - kept.len();
-    let note = (left > 0).then(|| format!("{} of {} observations are shown; residuals.csv has all.", kept.len(), all.len()));
+    let note = (left > 0).then(|| {
+        format!(
+            "{} of {} observations are shown; residuals.csv has all.",
+            kept.len(),
+            all.len()
+        )
+    });
     (kept, note)
 }
 
 /// Writes a name that ends at a place. Keys begin alike: one that is too wide loses its beginning, and shows whole under the pointer.
 fn key(figure: &mut Figure, at: (f64, f64), width: f64, attributes: &str, name: &str) {
     let size = super::study::text::SIZE;
-    let mut ends = name.char_indices().map(|(at, _)| format!("\u{2026}{}", &name[at..]));
-    let short =
-        if text_width(name, size) <= width { name.to_owned() } else { ends.find(|end| text_width(end, size) <= width).unwrap_or_default() };
+    let mut ends = name
+        .char_indices()
+        .map(|(at, _)| format!("\u{2026}{}", &name[at..]));
+    let short = if text_width(name, size) <= width {
+        name.to_owned()
+    } else {
+        ends.find(|end| text_width(end, size) <= width)
+            .unwrap_or_default()
+    };
     if short != name {
         figure.raw(&format!("<g><title>{}</title>", escape(name)));
     }
@@ -125,12 +145,20 @@ fn unit(unit: &str) -> &str {
 
 /// What tells an observation from the others.
 fn label(r: &Residual) -> String {
-    if r.what.is_empty() { r.label.clone() } else { format!("{}: {}", r.label, r.what) }
+    if r.what.is_empty() {
+        r.label.clone()
+    } else {
+        format!("{}: {}", r.label, r.what)
+    }
 }
 
 /// A number of an observation for a cell, with three digits of its standard deviation.
 fn in_sd(x: Option<f64>, r: &Residual) -> String {
-    let scale = if r.sd > 0.0 && r.sd.is_finite() { r.sd } else { 1.0 };
+    let scale = if r.sd > 0.0 && r.sd.is_finite() {
+        r.sd
+    } else {
+        1.0
+    };
     x.map_or_else(String::new, |x| cell(x, round_step(scale / 200.0)))
 }
 
@@ -142,5 +170,8 @@ fn measured_cells(r: &Residual) -> [String; 2] {
 /// Whether a group has an error in common, and the sentence that has to go with computed numbers then.
 fn common_note(outcome: &Outcome) -> Option<String> {
     let common = outcome.parameters.iter().any(|p| !p.is_key);
-    common.then(|| "Computed numbers are without the common error of a group; residuals are with it.".to_owned())
+    common.then(|| {
+        "Computed numbers are without the common error of a group; residuals are with it."
+            .to_owned()
+    })
 }

@@ -33,7 +33,11 @@ const FEW: f64 = 40.0;
 const MOST_NAMED: usize = 24;
 
 const MARKS: [(usize, &str); 3] = [(0, BEFORE), (0, AFTER), (3, LEFT_OUT)];
-const KEYS: [&str; 3] = ["With the files' values", "Fitted", "Predicted: fitted without its fold"];
+const KEYS: [&str; 3] = [
+    "With the files' values",
+    "Fitted",
+    "Predicted: fitted without its fold",
+];
 
 /// One line of the picture; a group of one observation has no name above it, only a line.
 enum Line<'a> {
@@ -50,7 +54,8 @@ struct Pitch {
 
 impl Pitch {
     fn of(lines: &[Line]) -> Self {
-        let count = |wanted: fn(&Line) -> bool| lines.iter().filter(|line| wanted(line)).count() as f64;
+        let count =
+            |wanted: fn(&Line) -> bool| lines.iter().filter(|line| wanted(line)).count() as f64;
         let headings = count(|line| matches!(line, Line::Group(_)));
         let alone = count(|line| matches!(line, Line::Alone));
         let traced = count(|line| matches!(line, Line::Observation(r, _) if r.time_s.is_some()));
@@ -58,7 +63,10 @@ impl Pitch {
         let dense = if traced > FEW { DENSE } else { ROW };
         let room = TALL - HEADING * headings - SEAM * alone;
         let single_pitch = ((room - dense * traced).max(0.3 * room) / single.max(1.0)).min(ROW);
-        Pitch { single: single_pitch, traced: ((room - single_pitch * single) / traced.max(1.0)).min(dense) }
+        Pitch {
+            single: single_pitch,
+            traced: ((room - single_pitch * single) / traced.max(1.0)).min(dense),
+        }
     }
 
     fn height(&self, line: &Line) -> f64 {
@@ -84,10 +92,17 @@ pub fn residuals_plot(outcome: &Outcome) -> Picture {
         (&format!("Fitted, {sds}"), ""),
         (&format!("Predicted, {sds}"), ""),
     ]);
-    let lines = lines(outcome, kept.iter().map(|k| &outcome.residuals[*k]).map(|r| (r, table.push(cells(r)))));
+    let lines = lines(
+        outcome,
+        kept.iter()
+            .map(|k| &outcome.residuals[*k])
+            .map(|r| (r, table.push(cells(r)))),
+    );
     let axis = axis(&lines);
     let predicted = outcome.residuals.iter().any(|r| r.left_out_sd.is_some());
-    let mut notes = vec!["Grey band: two standard deviations. Within a measured range the residual is 0.".to_owned()];
+    let mut notes = vec![
+        "Grey band: two standard deviations. Within a measured range the residual is 0.".to_owned(),
+    ];
     let beyond = lines.iter().filter(|line| matches!(line, Line::Observation(r, _) if r.before_sd.is_some_and(|x| off(&axis, x)))).count();
     if beyond > 0 {
         notes.push(format!("Triangles at the edge: {beyond} residuals with the files' values lie beyond it; the table has them."));
@@ -95,31 +110,71 @@ pub fn residuals_plot(outcome: &Outcome) -> Picture {
     notes.extend(thinned);
     table.note = notes.join(" ");
     let keys = if predicted { 3 } else { 2 };
-    let entries: Vec<(Mark, &str)> = (0..keys).map(|k| (Mark::Point(Symbol::plain(MARKS[k].0, MARKS[k].1), k > 0), KEYS[k])).collect();
+    let entries: Vec<(Mark, &str)> = (0..keys)
+        .map(|k| {
+            (
+                Mark::Point(Symbol::plain(MARKS[k].0, MARKS[k].1), k > 0),
+                KEYS[k],
+            )
+        })
+        .collect();
     let pitch = Pitch::of(&lines);
     let left = MARGIN + NAMES;
-    let rect =
-        Rect { left, right: RIGHT, top: TOP, bottom: TOP + 6.0 + lines.iter().map(|line| pitch.height(line)).sum::<f64>().max(60.0) };
+    let rect = Rect {
+        left,
+        right: RIGHT,
+        top: TOP,
+        bottom: TOP
+            + 6.0
+            + lines
+                .iter()
+                .map(|line| pitch.height(line))
+                .sum::<f64>()
+                .max(60.0),
+    };
     let (end, wide) = ((MARGIN, rect.bottom + BELOW + 8.0), RIGHT - MARGIN);
     let tall = end.1 + foot_height(KEYS[..keys].iter().copied(), wide, &notes);
-    let mut figure = Figure::new((WIDTH, tall), MARGIN, "Residuals", &subject(outcome), &describe(outcome));
+    let mut figure = Figure::new(
+        (WIDTH, tall),
+        MARGIN,
+        "Residuals",
+        &subject(outcome),
+        &describe(outcome),
+    );
     let panel = frame(&mut figure, rect, axis);
     draw(&mut figure, &panel, &lines, &pitch);
     panel.outline(&mut figure);
     foot(&mut figure, end, wide, entries, &notes);
-    Picture { svg: figure.finish(), table }
+    Picture {
+        svg: figure.finish(),
+        table,
+    }
 }
 
 /// Observations by group; where there are not too many groups, each has its name above it, unless it has one observation only.
-fn lines<'a>(outcome: &Outcome, rows: impl Iterator<Item = (&'a Residual, usize)>) -> Vec<Line<'a>> {
-    let size = |name: &str| outcome.residuals.iter().filter(|other| other.group == name).count();
+fn lines<'a>(
+    outcome: &Outcome,
+    rows: impl Iterator<Item = (&'a Residual, usize)>,
+) -> Vec<Line<'a>> {
+    let size = |name: &str| {
+        outcome
+            .residuals
+            .iter()
+            .filter(|other| other.group == name)
+            .count()
+    };
     let names = groups(outcome);
-    let named = names.len() <= 3 * MOST_NAMED && names.into_iter().filter(|name| size(name) > 1).count() <= MOST_NAMED;
+    let named = names.len() <= 3 * MOST_NAMED
+        && names.into_iter().filter(|name| size(name) > 1).count() <= MOST_NAMED;
     let mut lines: Vec<Line> = Vec::new();
     let mut last = "";
     for (r, row) in rows {
         if named && r.group != last {
-            lines.push(if size(&r.group) > 1 { Line::Group(&r.group) } else { Line::Alone });
+            lines.push(if size(&r.group) > 1 {
+                Line::Group(&r.group)
+            } else {
+                Line::Alone
+            });
         }
         last = &r.group;
         lines.push(Line::Observation(r, row));
@@ -129,7 +184,14 @@ fn lines<'a>(outcome: &Outcome, rows: impl Iterator<Item = (&'a Residual, usize)
 
 fn cells(r: &Residual) -> Vec<String> {
     let number = |x: Option<f64>| x.map_or_else(String::new, |x| cell(x, 0.01));
-    vec![r.group.clone(), label(r), r.fold.clone(), number(r.before_sd), number(Some(r.after_sd)), number(r.left_out_sd)]
+    vec![
+        r.group.clone(),
+        label(r),
+        r.fold.clone(),
+        number(r.before_sd),
+        number(Some(r.after_sd)),
+        number(r.left_out_sd),
+    ]
 }
 
 fn off(axis: &Axis, x: f64) -> bool {
@@ -137,10 +199,25 @@ fn off(axis: &Axis, x: f64) -> bool {
 }
 
 fn axis(lines: &[Line]) -> Axis {
-    let observations = || lines.iter().filter_map(|line| if let Line::Observation(r, _) = line { Some(*r) } else { None });
-    let fitted = observations().flat_map(|r| [Some(r.after_sd), r.left_out_sd]).flatten();
+    let observations = || {
+        lines.iter().filter_map(|line| {
+            if let Line::Observation(r, _) = line {
+                Some(*r)
+            } else {
+                None
+            }
+        })
+    };
+    let fitted = observations()
+        .flat_map(|r| [Some(r.after_sd), r.left_out_sd])
+        .flatten();
     let (low, high) = range(fitted.chain([-BAND * 1.25, BAND * 1.25])).unwrap_or((-BAND, BAND));
-    let (least, most) = range(observations().filter_map(|r| r.before_sd).chain([low, high])).unwrap_or((low, high));
+    let (least, most) = range(
+        observations()
+            .filter_map(|r| r.before_sd)
+            .chain([low, high]),
+    )
+    .unwrap_or((low, high));
     let limit = CLIP * low.abs().max(high.abs());
     let (low, high) = (least.max(-limit), most.min(limit));
     let room = 0.03 * (high - low);
@@ -152,9 +229,23 @@ fn frame(figure: &mut Figure, rect: Rect, x: Axis) -> Panel {
     // Rows have names in place of numbers.
     y.ticks.clear();
     let panel = Panel::draw(figure, rect, x, y, true);
-    let band = Rect { left: panel.px(-BAND).max(rect.left), right: panel.px(BAND).min(rect.right), ..rect };
-    figure.rect(band, "class=\"band\" fill=\"#777777\" fill-opacity=\"0.16\" stroke=\"none\"");
-    panel.line(figure, &[(0.0, 0.0), (0.0, 1.0)], Stroke { width: 1.4, ..CONTEXT });
+    let band = Rect {
+        left: panel.px(-BAND).max(rect.left),
+        right: panel.px(BAND).min(rect.right),
+        ..rect
+    };
+    figure.rect(
+        band,
+        "class=\"band\" fill=\"#777777\" fill-opacity=\"0.16\" stroke=\"none\"",
+    );
+    panel.line(
+        figure,
+        &[(0.0, 0.0), (0.0, 1.0)],
+        Stroke {
+            width: 1.4,
+            ..CONTEXT
+        },
+    );
     panel
 }
 
@@ -165,7 +256,11 @@ fn draw(figure: &mut Figure, panel: &Panel, lines: &[Line], pitches: &Pitch) {
     for line in lines {
         let pitch = pitches.height(line);
         if !matches!(line, Line::Observation(..)) {
-            figure.line((MARGIN, top + 1.0), (rect.right, top + 1.0), "stroke=\"#dedede\" stroke-width=\"3\"");
+            figure.line(
+                (MARGIN, top + 1.0),
+                (rect.right, top + 1.0),
+                "stroke=\"#dedede\" stroke-width=\"3\"",
+            );
         }
         match line {
             Line::Alone => {}
@@ -178,9 +273,21 @@ fn draw(figure: &mut Figure, panel: &Panel, lines: &[Line], pitches: &Pitch) {
                 let y = top + 0.5 * pitch;
                 if y + 4.0 - last >= APART {
                     last = y + 4.0;
-                    text(figure, (MARGIN, last), &format!("class=\"row\" data-row=\"{row}\""), QUIET, &label(r));
+                    text(
+                        figure,
+                        (MARGIN, last),
+                        &format!("class=\"row\" data-row=\"{row}\""),
+                        QUIET,
+                        &label(r),
+                    );
                 }
-                marks(figure, panel, r, (*row, y), ((0.3 * pitch).clamp(1.6, 3.6), pitch));
+                marks(
+                    figure,
+                    panel,
+                    r,
+                    (*row, y),
+                    ((0.3 * pitch).clamp(1.6, 3.6), pitch),
+                );
             }
         }
         top += pitch;
@@ -200,13 +307,20 @@ fn text(figure: &mut Figure, at: (f64, f64), attributes: &str, colour: &str, nam
     }
 }
 
-fn marks(figure: &mut Figure, panel: &Panel, r: &Residual, (row, y): (usize, f64), (radius, pitch): (f64, f64)) {
+fn marks(
+    figure: &mut Figure,
+    panel: &Panel,
+    r: &Residual,
+    (row, y): (usize, f64),
+    (radius, pitch): (f64, f64),
+) {
     let of_row = format!("data-row=\"{row}\"");
     let [before, after, left_out] = MARKS.map(|(shape, colour)| Symbol::plain(shape, colour));
     let at = |x: f64| panel.px(x.clamp(panel.x.low, panel.x.high));
     if let Some(x) = r.before_sd.filter(|x| x.is_finite()) {
         if pitch > 8.0 && r.after_sd.is_finite() {
-            let paint = format!("stroke=\"{BEFORE}\" stroke-width=\"2\" stroke-opacity=\"0.5\" {of_row}");
+            let paint =
+                format!("stroke=\"{BEFORE}\" stroke-width=\"2\" stroke-opacity=\"0.5\" {of_row}");
             figure.line((at(x), y), (at(r.after_sd), y), &paint);
         }
         if off(&panel.x, x) {
@@ -232,7 +346,9 @@ fn edge(figure: &mut Figure, (x, y): (f64, f64), right: bool, size: f64, attribu
     }
     path.close();
     let data = path.finish();
-    figure.raw(&format!("<path d=\"{data}\" fill=\"{BEFORE}\" stroke=\"none\" {attributes}/>"));
+    figure.raw(&format!(
+        "<path d=\"{data}\" fill=\"{BEFORE}\" stroke=\"none\" {attributes}/>"
+    ));
 }
 
 fn describe(outcome: &Outcome) -> String {

@@ -19,33 +19,56 @@ pub(super) fn table(chart: &Chart) -> (PictureTable, Vec<String>) {
             quantities.push(title);
         }
     }
-    let mut table = PictureTable { columns: quantities.iter().map(|title| split(title)).collect(), ..PictureTable::default() };
+    let mut table = PictureTable {
+        columns: quantities.iter().map(|title| split(title)).collect(),
+        ..PictureTable::default()
+    };
     let mut places = Vec::new();
     for panel in &chart.panels {
         let first = table.columns.len();
         places.push(first);
-        table.columns.extend(panel.series.iter().map(|(look, _)| column(chart, panel, *look)));
+        table.columns.extend(
+            panel
+                .series
+                .iter()
+                .map(|(look, _)| column(chart, panel, *look)),
+        );
     }
     let mut every = 1;
     for (k, title) in quantities.iter().enumerate() {
-        let own: Vec<(&ChartPanel, usize)> =
-            chart.panels.iter().zip(places.iter().copied()).filter(|(panel, _)| chart.x_title(panel) == *title).collect();
+        let own: Vec<(&ChartPanel, usize)> = chart
+            .panels
+            .iter()
+            .zip(places.iter().copied())
+            .filter(|(panel, _)| chart.x_title(panel) == *title)
+            .collect();
         every = every.max(rows(&mut table, k, &own));
     }
     if every > 1 {
         table.note = format!("One row in {every} is listed; lines are drawn from all.");
     }
-    let drawn =
-        |(panel, first): (&ChartPanel, &usize)| (*first..*first + panel.series.len()).map(|k| k.to_string()).collect::<Vec<_>>().join(" ");
+    let drawn = |(panel, first): (&ChartPanel, &usize)| {
+        (*first..*first + panel.series.len())
+            .map(|k| k.to_string())
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
     let columns = chart.panels.iter().zip(&places).map(drawn).collect();
     (table, columns)
 }
 
 /// Adds the rows of panels over one quantity, each with its first column; one in so many as are returned.
 fn rows(table: &mut PictureTable, place: usize, panels: &[(&ChartPanel, usize)]) -> usize {
-    let series = || panels.iter().flat_map(|(panel, first)| panel.series.iter().zip(*first..));
+    let series = || {
+        panels
+            .iter()
+            .flat_map(|(panel, first)| panel.series.iter().zip(*first..))
+    };
     // Adding zero turns a negative zero into a plain one, its equal.
-    let mut xs: Vec<f64> = series().flat_map(|((_, points), _)| points.iter().map(|p| p.0 + 0.0)).filter(|x| x.is_finite()).collect();
+    let mut xs: Vec<f64> = series()
+        .flat_map(|((_, points), _)| points.iter().map(|p| p.0 + 0.0))
+        .filter(|x| x.is_finite())
+        .collect();
     xs.sort_by(f64::total_cmp);
     xs.dedup_by(|a, b| a.total_cmp(b).is_eq());
     let width = table.columns.len();
@@ -70,7 +93,10 @@ fn rows(table: &mut PictureTable, place: usize, panels: &[(&ChartPanel, usize)])
 
 /// "Torque loss [Nm]" as name and unit; `-` is none.
 fn split(title: &'static str) -> (String, &'static str) {
-    match title.strip_suffix(']').and_then(|rest| rest.rsplit_once(" [")) {
+    match title
+        .strip_suffix(']')
+        .and_then(|rest| rest.rsplit_once(" ["))
+    {
         Some((name, unit)) => (name.to_owned(), if unit == "-" { "" } else { unit }),
         None => (title.to_owned(), ""),
     }
@@ -79,21 +105,58 @@ fn split(title: &'static str) -> (String, &'static str) {
 /// Name and unit of the column of a line: what tells it from the others.
 fn column(chart: &Chart, panel: &ChartPanel, look: super::Look) -> (String, &'static str) {
     let (quantity, unit) = split(panel.y_title);
-    let name = chart.names.iter().find(|(other, _)| *other == look).map_or("", |(_, name)| name.as_str());
-    let alike = chart.panels.iter().filter(|other| other.heading == panel.heading).count() > 1;
-    let parts = [panel.heading.as_str(), if alike || name.is_empty() && panel.heading.is_empty() { &quantity } else { "" }, name];
-    (parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(": "), unit)
+    let name = chart
+        .names
+        .iter()
+        .find(|(other, _)| *other == look)
+        .map_or("", |(_, name)| name.as_str());
+    let alike = chart
+        .panels
+        .iter()
+        .filter(|other| other.heading == panel.heading)
+        .count()
+        > 1;
+    let parts = [
+        panel.heading.as_str(),
+        if alike || name.is_empty() && panel.heading.is_empty() {
+            &quantity
+        } else {
+            ""
+        },
+        name,
+    ];
+    (
+        parts
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join(": "),
+        unit,
+    )
 }
 
 /// About a five-hundredth of what values span: what the eye could tell apart in the drawing.
 fn step_of(values: impl Iterator<Item = f64>) -> f64 {
-    let Some((low, high)) = range(values) else { return 1.0 };
+    let Some((low, high)) = range(values) else {
+        return 1.0;
+    };
     let size = low.abs().max(high.abs());
-    if high - low > 1e-9 * size { round_step((high - low) / 500.0) } else { round_step((size / 1000.0).max(1e-300)) }
+    if high - low > 1e-9 * size {
+        round_step((high - low) / 500.0)
+    } else {
+        round_step((size / 1000.0).max(1e-300))
+    }
 }
 
 /// A step with as few decimals as tell all values exactly, or else that of [`step_of`].
 fn exact_step(values: &[f64]) -> f64 {
-    let exact = |step: &f64| values.iter().all(|x| ((x / step).round() * step - x).abs() <= 1e-9 * x.abs().max(*step));
-    [1.0, 0.1, 0.01, 0.001].into_iter().find(exact).unwrap_or_else(|| step_of(values.iter().copied()))
+    let exact = |step: &f64| {
+        values
+            .iter()
+            .all(|x| ((x / step).round() * step - x).abs() <= 1e-9 * x.abs().max(*step))
+    };
+    [1.0, 0.1, 0.01, 0.001]
+        .into_iter()
+        .find(exact)
+        .unwrap_or_else(|| step_of(values.iter().copied()))
 }

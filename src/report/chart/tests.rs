@@ -1,36 +1,111 @@
 use super::*;
 
 fn lone(points: &[(f64, f64)]) -> ChartPanel {
-    ChartPanel { y_title: "Force [N]", series: vec![(Look::default(), points.to_vec())], ..ChartPanel::default() }
+    ChartPanel {
+        y_title: "Force [N]",
+        series: vec![(Look::default(), points.to_vec())],
+        ..ChartPanel::default()
+    }
 }
 
 fn of(panels: Vec<ChartPanel>) -> Chart {
-    let names = vec![(Look::default(), "a".to_owned()), (Look { index: 1, dotted: false }, "b".to_owned())];
-    Chart { title: "t".to_owned(), x_title: "Speed [rpm]", panels, names, ..Chart::default() }
+    let names = vec![
+        (Look::default(), "a".to_owned()),
+        (
+            Look {
+                index: 1,
+                dotted: false,
+            },
+            "b".to_owned(),
+        ),
+    ];
+    Chart {
+        title: "t".to_owned(),
+        x_title: "Speed [rpm]",
+        panels,
+        names,
+        ..Chart::default()
+    }
 }
 
 #[test]
 fn a_table_has_a_column_for_each_line_and_a_row_for_each_place() {
     let mut first = lone(&[(1000.0, 1.0), (2000.0, 2.5)]);
     first.heading = "cold".to_owned();
-    first.series.push((Look { index: 1, dotted: false }, vec![(2000.0, f64::NAN), (3000.0, 4.0)]));
-    let second = ChartPanel { heading: "warm".to_owned(), ..lone(&[(1000.0, -0.5)]) };
+    first.series.push((
+        Look {
+            index: 1,
+            dotted: false,
+        },
+        vec![(2000.0, f64::NAN), (3000.0, 4.0)],
+    ));
+    let second = ChartPanel {
+        heading: "warm".to_owned(),
+        ..lone(&[(1000.0, -0.5)])
+    };
     let picture = chart(&of(vec![first, second]));
-    let columns: Vec<(&str, &str)> = picture.table.columns.iter().map(|(name, unit)| (name.as_str(), *unit)).collect();
-    assert_eq!(columns, [("Speed", "rpm"), ("cold: a", "N"), ("cold: b", "N"), ("warm: a", "N")]);
-    let rows: Vec<Vec<&str>> = picture.table.rows.iter().map(|row| row.iter().map(String::as_str).collect()).collect();
-    assert_eq!(rows, [vec!["1000", "1.000", "", "\u{2212}0.5000"], vec!["2000", "2.500", "", ""], vec!["3000", "", "4.000", ""]]);
-    assert!(picture.svg.contains("data-x0=\"1000.0\" data-x1=\"3000.0\""), "{}", picture.svg);
-    assert!(picture.svg.contains("data-columns=\"1 2\"") && picture.svg.contains("data-columns=\"3\""));
+    let columns: Vec<(&str, &str)> = picture
+        .table
+        .columns
+        .iter()
+        .map(|(name, unit)| (name.as_str(), *unit))
+        .collect();
+    assert_eq!(
+        columns,
+        [
+            ("Speed", "rpm"),
+            ("cold: a", "N"),
+            ("cold: b", "N"),
+            ("warm: a", "N")
+        ]
+    );
+    let rows: Vec<Vec<&str>> = picture
+        .table
+        .rows
+        .iter()
+        .map(|row| row.iter().map(String::as_str).collect())
+        .collect();
+    assert_eq!(
+        rows,
+        [
+            vec!["1000", "1.000", "", "\u{2212}0.5000"],
+            vec!["2000", "2.500", "", ""],
+            vec!["3000", "", "4.000", ""]
+        ]
+    );
+    assert!(
+        picture
+            .svg
+            .contains("data-x0=\"1000.0\" data-x1=\"3000.0\""),
+        "{}",
+        picture.svg
+    );
+    assert!(
+        picture.svg.contains("data-columns=\"1 2\"") && picture.svg.contains("data-columns=\"3\"")
+    );
 }
 
 #[test]
 fn panels_over_other_quantities_have_columns_of_their_own() {
-    let own = ChartPanel { x_title: "Pressure [bar]", ..lone(&[(10.0, 3.0)]) };
+    let own = ChartPanel {
+        x_title: "Pressure [bar]",
+        ..lone(&[(10.0, 3.0)])
+    };
     let picture = chart(&of(vec![lone(&[(1000.0, 1.0)]), own]));
     assert_eq!(picture.table.columns.len(), 4);
-    assert_eq!(picture.table.rows.iter().map(|row| row[1].as_str()).collect::<Vec<_>>(), ["", "10"]);
-    assert!(!picture.svg.contains("data-x0"), "no column is the axis of both");
+    assert_eq!(
+        picture
+            .table
+            .rows
+            .iter()
+            .map(|row| row[1].as_str())
+            .collect::<Vec<_>>(),
+        ["", "10"]
+    );
+    assert!(
+        !picture.svg.contains("data-x0"),
+        "no column is the axis of both"
+    );
 }
 
 #[test]
@@ -44,15 +119,29 @@ fn long_tables_are_thinned_and_say_so() {
 #[test]
 fn lines_that_turn_back_keep_their_way_and_gaps_stay_gaps() {
     let back = chart(&of(vec![lone(&[(0.0, 0.0), (10.0, 1.0), (5.0, 2.0)])]));
-    assert_eq!(back.svg.matches("stroke-width=\"8.8\"").count(), 2, "the line and its entry");
-    let gap = chart(&of(vec![lone(&[(0.0, 0.0), (1.0, 1.0), (2.0, f64::NAN), (3.0, 1.0), (4.0, 0.0)])]));
+    assert_eq!(
+        back.svg.matches("stroke-width=\"8.8\"").count(),
+        2,
+        "the line and its entry"
+    );
+    let gap = chart(&of(vec![lone(&[
+        (0.0, 0.0),
+        (1.0, 1.0),
+        (2.0, f64::NAN),
+        (3.0, 1.0),
+        (4.0, 0.0),
+    ])]));
     assert_eq!(gap.svg.matches("class=\"series\"").count(), 2);
     assert!(!gap.svg.contains("NaN"));
 }
 
 #[test]
 fn nothing_to_draw_is_still_a_picture() {
-    for empty in [Chart::default(), of(vec![ChartPanel::default()]), of(vec![lone(&[(f64::NAN, 1.0)])])] {
+    for empty in [
+        Chart::default(),
+        of(vec![ChartPanel::default()]),
+        of(vec![lone(&[(f64::NAN, 1.0)])]),
+    ] {
         let picture = chart(&empty);
         assert!(picture.svg.ends_with("</svg>\n") && !picture.svg.contains("inf"));
     }

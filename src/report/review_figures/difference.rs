@@ -1,6 +1,10 @@
 //! What changed between two runs, term by term: the terms add up to the difference of fuel.
-use super::bar_rows::{PITCH, at_end, axis_with_room, bar, label_room, left_for, name, rows_panel, tall};
-use super::{TOP, Term, WIDTH, component_words, energy, grouped, remark, remark_lines, sound, term_fill};
+use super::bar_rows::{
+    PITCH, at_end, axis_with_room, bar, label_room, left_for, name, rows_panel, tall,
+};
+use super::{
+    TOP, Term, WIDTH, component_words, energy, grouped, remark, remark_lines, sound, term_fill,
+};
 use crate::report::figure::{Figure, INK, QUIET};
 use crate::report::panel::BELOW;
 use crate::report::style::component_fill;
@@ -43,13 +47,25 @@ impl DifferenceTerm {
     /// A component of the transmission.
     #[must_use]
     pub fn of(component: Component, a_kj: f64, b_kj: f64) -> Self {
-        DifferenceTerm { name: component_words(component), component: Some(component), term: Term::Other, a_kj, b_kj }
+        DifferenceTerm {
+            name: component_words(component),
+            component: Some(component),
+            term: Term::Other,
+            a_kj,
+            b_kj,
+        }
     }
 
     /// A term of the ledger.
     #[must_use]
     pub fn term(name: &str, term: Term, a_kj: f64, b_kj: f64) -> Self {
-        DifferenceTerm { name: name.to_owned(), component: None, term, a_kj, b_kj }
+        DifferenceTerm {
+            name: name.to_owned(),
+            component: None,
+            term,
+            a_kj,
+            b_kj,
+        }
     }
 }
 
@@ -71,8 +87,13 @@ impl Difference {
     }
 
     fn left_over(&self) -> (f64, f64) {
-        let sum = |of: fn(&DifferenceTerm) -> f64| self.terms.iter().map(|term| sound(of(term))).sum::<f64>();
-        (sound(self.fuel_kj.0) - sum(|term| term.a_kj), sound(self.fuel_kj.1) - sum(|term| term.b_kj))
+        let sum = |of: fn(&DifferenceTerm) -> f64| {
+            self.terms.iter().map(|term| sound(of(term))).sum::<f64>()
+        };
+        (
+            sound(self.fuel_kj.0) - sum(|term| term.a_kj),
+            sound(self.fuel_kj.1) - sum(|term| term.b_kj),
+        )
     }
 }
 
@@ -88,11 +109,22 @@ pub fn difference_bars(of: &Difference) -> Picture {
     let below = TOP + tall(rows) + BELOW + 8.0;
     let size = (WIDTH, below + 14.0 * lines.len() as f64 + 8.0);
     let subject = format!("A: {}; B: {}", of.a, of.b);
-    let mut figure = Figure::new(size, 14.0, "Difference of energies, B \u{2212} A", &subject, &describe(of));
+    let mut figure = Figure::new(
+        size,
+        14.0,
+        "Difference of energies, B \u{2212} A",
+        &subject,
+        &describe(of),
+    );
     let parts = parts(&mut figure, of, incomplete.then_some(left_over));
     let changes = parts.iter().map(|part| sound(part.b_kj) - sound(part.a_kj));
     let left = left_for(parts.iter().map(|part| part.name.as_str()));
-    let words = |part: &Part| label(sound(part.b_kj) - sound(part.a_kj), of.litres(part.a_kj, part.b_kj).2);
+    let words = |part: &Part| {
+        label(
+            sound(part.b_kj) - sound(part.a_kj),
+            of.litres(part.a_kj, part.b_kj).2,
+        )
+    };
     let room = label_room(parts.iter().map(words));
     let axis = axis_with_room("B \u{2212} A over the cycle [kJ]", left, changes, room);
     let panel = rows_panel(&mut figure, (left, TOP), rows, axis, true);
@@ -108,24 +140,48 @@ pub fn difference_bars(of: &Difference) -> Picture {
     let mut table = PictureTable::new(&columns);
     table.note = explain(of);
     let zero = panel.px(0.0);
-    figure.line((zero, panel.rect.top), (zero, panel.rect.bottom), &format!("stroke=\"{INK}\" stroke-width=\"4\""));
+    figure.line(
+        (zero, panel.rect.top),
+        (zero, panel.rect.bottom),
+        &format!("stroke=\"{INK}\" stroke-width=\"4\""),
+    );
     for (row, part) in parts.iter().enumerate() {
         let change = sound(part.b_kj) - sound(part.a_kj);
         let (a, b, litres) = of.litres(part.a_kj, part.b_kj);
         let kj = [part.a_kj, part.b_kj, change].map(|kj| cell(kj, 0.01));
         let fuel = [a, b, litres].map(|l| cell(l, 0.0001));
-        let at = table.push([part.name.clone()].into_iter().chain(kj).chain(fuel).collect());
+        let at = table.push(
+            [part.name.clone()]
+                .into_iter()
+                .chain(kj)
+                .chain(fuel)
+                .collect(),
+        );
         if part.sum {
             let y = panel.rect.top + 2.0 + PITCH * row as f64;
-            figure.line((14.0, y), (panel.rect.right, y), &format!("stroke=\"{QUIET}\" stroke-width=\"3\""));
+            figure.line(
+                (14.0, y),
+                (panel.rect.right, y),
+                &format!("stroke=\"{QUIET}\" stroke-width=\"3\""),
+            );
         }
         name(&mut figure, &panel, row, &part.name, part.sum);
         bar(&mut figure, &panel, row, (0.0, change), &part.paint, at);
-        at_end(&mut figure, &panel, row, change, part.sum, &label(change, litres));
+        at_end(
+            &mut figure,
+            &panel,
+            row,
+            change,
+            part.sum,
+            &label(change, litres),
+        );
     }
     panel.outline(&mut figure);
     remark(&mut figure, (14.0, below), &lines);
-    Picture { svg: figure.finish(), table }
+    Picture {
+        svg: figure.finish(),
+        table,
+    }
 }
 
 fn parts(figure: &mut Figure, of: &Difference, left_over: Option<(f64, f64)>) -> Vec<Part> {
@@ -135,25 +191,51 @@ fn parts(figure: &mut Figure, of: &Difference, left_over: Option<(f64, f64)>) ->
             Some(component) => component_fill(figure, "difference", component),
             None => term_fill(term.term).to_owned(),
         };
-        parts.push(Part { name: term.name.clone(), paint, a_kj: term.a_kj, b_kj: term.b_kj, sum: false });
+        parts.push(Part {
+            name: term.name.clone(),
+            paint,
+            a_kj: term.a_kj,
+            b_kj: term.b_kj,
+            sum: false,
+        });
     }
     if let Some((a_kj, b_kj)) = left_over {
         let paint = term_fill(Term::Other).to_owned();
-        parts.push(Part { name: "Not accounted for".to_owned(), paint, a_kj, b_kj, sum: false });
+        parts.push(Part {
+            name: "Not accounted for".to_owned(),
+            paint,
+            a_kj,
+            b_kj,
+            sum: false,
+        });
     }
     let (a_kj, b_kj) = of.fuel_kj;
-    parts.push(Part { name: "Fuel: sum of all".to_owned(), paint: INK.to_owned(), a_kj, b_kj, sum: true });
+    parts.push(Part {
+        name: "Fuel: sum of all".to_owned(),
+        paint: INK.to_owned(),
+        a_kj,
+        b_kj,
+        sum: true,
+    });
     parts
 }
 
 /// A plus sign before what is more than nothing as it is written.
 fn signed(text: String, value: f64) -> String {
-    if value > 0.0 && text.contains(|c: char| ('1'..='9').contains(&c)) { format!("+{text}") } else { text }
+    if value > 0.0 && text.contains(|c: char| ('1'..='9').contains(&c)) {
+        format!("+{text}")
+    } else {
+        text
+    }
 }
 
 fn label(kj: f64, litres: f64) -> String {
     let energy = signed(energy(kj), kj);
-    if litres.is_finite() { format!("{energy}, {} L/100 km", signed(grouped(litres, 3), litres)) } else { energy }
+    if litres.is_finite() {
+        format!("{energy}, {} L/100 km", signed(grouped(litres, 3), litres))
+    } else {
+        energy
+    }
 }
 
 fn explain(of: &Difference) -> String {
@@ -171,10 +253,21 @@ fn explain(of: &Difference) -> String {
 }
 
 fn describe(of: &Difference) -> String {
-    let told = |name: &str, a: f64, b: f64| format!("{name} {}", label(sound(b) - sound(a), of.litres(a, b).2));
-    let mut list: Vec<String> = of.terms.iter().map(|term| told(&term.name, term.a_kj, term.b_kj)).collect();
+    let told = |name: &str, a: f64, b: f64| {
+        format!("{name} {}", label(sound(b) - sound(a), of.litres(a, b).2))
+    };
+    let mut list: Vec<String> = of
+        .terms
+        .iter()
+        .map(|term| told(&term.name, term.a_kj, term.b_kj))
+        .collect();
     list.push(told("fuel", of.fuel_kj.0, of.fuel_kj.1));
-    format!("Difference of run B, {}, to run A, {}, by term: {}.", of.b, of.a, list.join("; "))
+    format!(
+        "Difference of run B, {}, to run A, {}, by term: {}.",
+        of.b,
+        of.a,
+        list.join("; ")
+    )
 }
 
 #[cfg(test)]
@@ -197,7 +290,10 @@ mod tests {
             ],
             ..Difference::default()
         };
-        two.fuel_kj = (two.terms.iter().map(|t| t.a_kj).sum(), two.terms.iter().map(|t| t.b_kj).sum());
+        two.fuel_kj = (
+            two.terms.iter().map(|t| t.a_kj).sum(),
+            two.terms.iter().map(|t| t.b_kj).sum(),
+        );
         two
     }
 
@@ -209,9 +305,16 @@ mod tests {
         let (fuel, terms) = picture.table.rows.split_last().expect("rows");
         for column in 1..7 {
             let sum: f64 = terms.iter().map(|row| numbers(&row[column])).sum();
-            assert!((sum - numbers(&fuel[column])).abs() < 0.03, "column {column}: {sum} {}", fuel[column]);
+            assert!(
+                (sum - numbers(&fuel[column])).abs() < 0.03,
+                "column {column}: {sum} {}",
+                fuel[column]
+            );
         }
-        let (a, b) = (of.fuel_kj.0 / 32_000.0 / 11.0 * 100.0, of.fuel_kj.1 / 31_500.0 / 10.9 * 100.0);
+        let (a, b) = (
+            of.fuel_kj.0 / 32_000.0 / 11.0 * 100.0,
+            of.fuel_kj.1 / 31_500.0 / 10.9 * 100.0,
+        );
         assert!((numbers(&fuel[6]) - (b - a)).abs() < 1e-4);
         let exact: f64 = of.terms.iter().map(|t| of.litres(t.a_kj, t.b_kj).2).sum();
         assert!((exact - (b - a)).abs() < 1e-12);
@@ -222,13 +325,24 @@ mod tests {
         let picture = difference_bars(&two());
         let doc = roxmltree::Document::parse(&picture.svg).expect("well-formed");
         let edges = |row: &str| {
-            let bar =
-                doc.descendants().find(|n| n.attribute("class") == Some("bar") && n.attribute("data-row") == Some(row)).expect("a bar");
-            let number = |key: &str| bar.attribute(key).and_then(|x| x.parse::<f64>().ok()).expect("a number");
+            let bar = doc
+                .descendants()
+                .find(|n| {
+                    n.attribute("class") == Some("bar") && n.attribute("data-row") == Some(row)
+                })
+                .expect("a bar");
+            let number = |key: &str| {
+                bar.attribute(key)
+                    .and_then(|x| x.parse::<f64>().ok())
+                    .expect("a number")
+            };
             (number("x"), number("x") + number("width"))
         };
         let (heat, band) = (edges("0"), edges("2"));
-        assert!((heat.1 - band.0).abs() <= 1.0, "both begin at zero: {heat:?} {band:?}");
+        assert!(
+            (heat.1 - band.0).abs() <= 1.0,
+            "both begin at zero: {heat:?} {band:?}"
+        );
         assert!(((band.1 - band.0) / (heat.1 - heat.0) - 1.305).abs() < 0.01);
         assert!(picture.svg.contains("+130 kJ") || picture.svg.contains("+131 kJ"));
     }
@@ -240,12 +354,28 @@ mod tests {
         assert!(difference_bars(&of).svg.contains("Not accounted for"));
         assert!(!difference_bars(&two()).svg.contains("Not accounted for"));
         check(&difference_bars(&Difference::default()));
-        let same = Difference { terms: vec![DifferenceTerm::of(Component::Seal, 5.0, 5.0)], fuel_kj: (5.0, 5.0), ..two() };
+        let same = Difference {
+            terms: vec![DifferenceTerm::of(Component::Seal, 5.0, 5.0)],
+            fuel_kj: (5.0, 5.0),
+            ..two()
+        };
         check(&difference_bars(&same));
-        let broken =
-            Difference { terms: vec![DifferenceTerm::term(&"n".repeat(99), Term::Other, f64::NAN, 1e9)], fuel_kj: (0.0, 1e9), ..two() };
+        let broken = Difference {
+            terms: vec![DifferenceTerm::term(
+                &"n".repeat(99),
+                Term::Other,
+                f64::NAN,
+                1e9,
+            )],
+            fuel_kj: (0.0, 1e9),
+            ..two()
+        };
         check(&difference_bars(&broken));
-        let falls = Difference { terms: vec![DifferenceTerm::of(Component::Seal, 9.0, 5.0)], fuel_kj: (9.0, 5.0), ..two() };
+        let falls = Difference {
+            terms: vec![DifferenceTerm::of(Component::Seal, 9.0, 5.0)],
+            fuel_kj: (9.0, 5.0),
+            ..two()
+        };
         check(&difference_bars(&falls));
     }
 }

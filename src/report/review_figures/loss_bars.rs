@@ -32,32 +32,89 @@ const GAP: f64 = 16.0;
 pub fn loss_by_component(cars: &[CarLosses]) -> Picture {
     let subject = match cars {
         [car] => car.name.clone(),
-        _ => format!("{} cars, one scale; components in the order of the power flow", cars.len()),
+        _ => format!(
+            "{} cars, one scale; components in the order of the power flow",
+            cars.len()
+        ),
     };
-    let panels: f64 = cars.iter().map(|car| HEADING + tall(car.losses_kj.len()) + GAP).sum();
+    let panels: f64 = cars
+        .iter()
+        .map(|car| HEADING + tall(car.losses_kj.len()) + GAP)
+        .sum();
     let height = TOP + panels.max(HEADING + tall(1) + GAP) - GAP + BELOW + 8.0;
-    let mut figure = Figure::new((WIDTH, height), 14.0, "Transmission losses by component", &subject, &describe(cars));
-    let mut table = PictureTable::new(&[("car", ""), ("component", ""), ("energy", "kJ"), ("share of the transmission's loss", "%")]);
-    let values: Vec<f64> = cars.iter().flat_map(|car| car.losses_kj.iter().map(|(_, kj)| sound(*kj))).collect();
-    let words: Vec<String> = cars.iter().flat_map(|car| car.losses_kj.iter().map(|(c, _)| component_words(*c))).collect();
+    let mut figure = Figure::new(
+        (WIDTH, height),
+        14.0,
+        "Transmission losses by component",
+        &subject,
+        &describe(cars),
+    );
+    let mut table = PictureTable::new(&[
+        ("car", ""),
+        ("component", ""),
+        ("energy", "kJ"),
+        ("share of the transmission's loss", "%"),
+    ]);
+    let values: Vec<f64> = cars
+        .iter()
+        .flat_map(|car| car.losses_kj.iter().map(|(_, kj)| sound(*kj)))
+        .collect();
+    let words: Vec<String> = cars
+        .iter()
+        .flat_map(|car| car.losses_kj.iter().map(|(c, _)| component_words(*c)))
+        .collect();
     let left = left_for(words.iter().map(String::as_str));
-    let labels = cars.iter().flat_map(|car| car.losses_kj.iter().map(|(_, kj)| label(*kj, car.total_kj())));
+    let labels = cars.iter().flat_map(|car| {
+        car.losses_kj
+            .iter()
+            .map(|(_, kj)| label(*kj, car.total_kj()))
+    });
     let room = label_room(labels);
-    let axis = axis_with_room("Energy lost over the cycle [kJ]", left, values.into_iter(), room);
+    let axis = axis_with_room(
+        "Energy lost over the cycle [kJ]",
+        left,
+        values.into_iter(),
+        room,
+    );
     let mut top = TOP;
     for (k, car) in cars.iter().enumerate() {
         let total = car.total_kj();
         let heading = format!("{}: {} in all", fit(&car.name, 12.0, 500.0), energy(total));
-        figure.text((left, top + 15.0), 12.0, Anchor::Start, "font-weight=\"bold\"", INK, &heading);
+        figure.text(
+            (left, top + 15.0),
+            12.0,
+            Anchor::Start,
+            "font-weight=\"bold\"",
+            INK,
+            &heading,
+        );
         top += HEADING;
-        let panel = rows_panel(&mut figure, (left, top), car.losses_kj.len(), axis.clone(), k + 1 == cars.len());
+        let panel = rows_panel(
+            &mut figure,
+            (left, top),
+            car.losses_kj.len(),
+            axis.clone(),
+            k + 1 == cars.len(),
+        );
         for (row, (component, kj)) in car.losses_kj.iter().enumerate() {
             let words = component_words(*component);
-            let at = table.push(vec![car.name.clone(), words.clone(), cell(*kj, 0.01), cell(100.0 * kj / total, 0.01)]);
+            let at = table.push(vec![
+                car.name.clone(),
+                words.clone(),
+                cell(*kj, 0.01),
+                cell(100.0 * kj / total, 0.01),
+            ]);
             let paint = component_fill(&mut figure, "parts", *component);
             name(&mut figure, &panel, row, &words, false);
             bar(&mut figure, &panel, row, (0.0, sound(*kj)), &paint, at);
-            at_end(&mut figure, &panel, row, sound(*kj), false, &label(*kj, total));
+            at_end(
+                &mut figure,
+                &panel,
+                row,
+                sound(*kj),
+                false,
+                &label(*kj, total),
+            );
         }
         if car.losses_kj.is_empty() {
             panel.empty(&mut figure);
@@ -68,22 +125,44 @@ pub fn loss_by_component(cars: &[CarLosses]) -> Picture {
     if cars.is_empty() {
         rows_panel(&mut figure, (left, top + HEADING), 1, axis, true).empty(&mut figure);
     }
-    Picture { svg: figure.finish(), table }
+    Picture {
+        svg: figure.finish(),
+        table,
+    }
 }
 
 fn label(kj: f64, total: f64) -> String {
     let share = percent(kj, total);
-    if share.is_empty() { energy(kj) } else { format!("{}, {share}", energy(kj)) }
+    if share.is_empty() {
+        energy(kj)
+    } else {
+        format!("{}, {share}", energy(kj))
+    }
 }
 
 fn describe(cars: &[CarLosses]) -> String {
     let told = |car: &CarLosses| {
         let total = car.total_kj();
-        let part = |(c, kj): &(Component, f64)| format!("{} {} {}", component_words(*c).to_lowercase(), energy(*kj), percent(*kj, total));
+        let part = |(c, kj): &(Component, f64)| {
+            format!(
+                "{} {} {}",
+                component_words(*c).to_lowercase(),
+                energy(*kj),
+                percent(*kj, total)
+            )
+        };
         let parts: Vec<String> = car.losses_kj.iter().map(part).collect();
-        format!("{}: {} in all; {}", car.name, energy(total), parts.join(", "))
+        format!(
+            "{}: {} in all; {}",
+            car.name,
+            energy(total),
+            parts.join(", ")
+        )
     };
-    format!("Energy lost by component over the cycle. {}.", cars.iter().map(told).collect::<Vec<_>>().join(". "))
+    format!(
+        "Energy lost by component over the cycle. {}.",
+        cars.iter().map(told).collect::<Vec<_>>().join(". ")
+    )
 }
 
 #[cfg(test)]
@@ -92,7 +171,10 @@ mod tests {
     use super::*;
 
     fn car(name: &str, losses: &[(Component, f64)]) -> CarLosses {
-        CarLosses { name: name.to_owned(), losses_kj: losses.to_vec() }
+        CarLosses {
+            name: name.to_owned(),
+            losses_kj: losses.to_vec(),
+        }
     }
 
     #[test]
@@ -100,27 +182,52 @@ mod tests {
         let cars = [
             car(
                 "one",
-                &[(Component::Pump, 550.0), (Component::BeltBand, 400.0), (Component::BeltFilm, 0.01), (Component::FinalDrive, 0.0)],
+                &[
+                    (Component::Pump, 550.0),
+                    (Component::BeltBand, 400.0),
+                    (Component::BeltFilm, 0.01),
+                    (Component::FinalDrive, 0.0),
+                ],
             ),
-            car(&"long & odd <name> ".repeat(12), &[(Component::Churning, 275.0)]),
+            car(
+                &"long & odd <name> ".repeat(12),
+                &[(Component::Churning, 275.0)],
+            ),
         ];
         let picture = loss_by_component(&cars);
         check(&picture);
         let doc = roxmltree::Document::parse(&picture.svg).expect("well-formed");
         let width = |row: &str| {
-            let bar = doc.descendants().find(|n| n.attribute("class") == Some("bar") && n.attribute("data-row") == Some(row));
-            bar.and_then(|n| n.attribute("width")).and_then(|w| w.parse::<f64>().ok()).unwrap_or(0.0)
+            let bar = doc.descendants().find(|n| {
+                n.attribute("class") == Some("bar") && n.attribute("data-row") == Some(row)
+            });
+            bar.and_then(|n| n.attribute("width"))
+                .and_then(|w| w.parse::<f64>().ok())
+                .unwrap_or(0.0)
         };
-        assert!((width("0") / width("4") - 2.0).abs() < 0.01, "one scale for all cars");
+        assert!(
+            (width("0") / width("4") - 2.0).abs() < 0.01,
+            "one scale for all cars"
+        );
         assert!((width("0") / width("1") - 550.0 / 400.0).abs() < 0.01);
-        let shares: f64 = picture.table.rows[..4].iter().map(|row| numbers(&row[3])).sum();
+        let shares: f64 = picture.table.rows[..4]
+            .iter()
+            .map(|row| numbers(&row[3]))
+            .sum();
         assert!((shares - 100.0).abs() < 0.03);
         assert_eq!(picture.table.rows[4][3], "100.00");
     }
 
     #[test]
     fn nothing_or_broken_numbers_are_still_pictures() {
-        for cars in [vec![], vec![car("", &[])], vec![car("x", &[(Component::Seal, f64::NAN), (Component::Bearing, 0.0)])]] {
+        for cars in [
+            vec![],
+            vec![car("", &[])],
+            vec![car(
+                "x",
+                &[(Component::Seal, f64::NAN), (Component::Bearing, 0.0)],
+            )],
+        ] {
             check(&loss_by_component(&cars));
         }
     }

@@ -39,7 +39,12 @@ const MINUS: char = '\u{2212}';
 fn component_words(component: Component) -> String {
     let words = component.name().replace('_', " ");
     let mut letters = words.chars();
-    letters.next().map(|c| c.to_ascii_uppercase()).into_iter().chain(letters).collect()
+    letters
+        .next()
+        .map(|c| c.to_ascii_uppercase())
+        .into_iter()
+        .chain(letters)
+        .collect()
 }
 
 /// A plain decimal with groups of three digits and a true minus sign; `decimals` after the point.
@@ -58,7 +63,14 @@ fn grouped(value: f64, decimals: usize) -> String {
         out.push(digit);
     }
     let zero = !text.contains(|c: char| ('1'..='9').contains(&c));
-    format!("{}{out}{rest}", if value < 0.0 && !zero { MINUS.to_string() } else { String::new() })
+    format!(
+        "{}{out}{rest}",
+        if value < 0.0 && !zero {
+            MINUS.to_string()
+        } else {
+            String::new()
+        }
+    )
 }
 
 /// An energy given in kJ, as a label: MJ from 100 MJ on, with three digits at least where it is small.
@@ -77,7 +89,9 @@ fn percent(part: f64, whole: f64) -> String {
     let share = 100.0 * part / whole;
     match share {
         s if !s.is_finite() => String::new(),
-        s if s.abs() < 0.05 && s.abs() > 0.0 => format!("{}0.1 %", if s < 0.0 { "> \u{2212}" } else { "< " }),
+        s if s.abs() < 0.05 && s.abs() > 0.0 => {
+            format!("{}0.1 %", if s < 0.0 { "> \u{2212}" } else { "< " })
+        }
         s => format!("{} %", grouped(s, 1)),
     }
 }
@@ -105,7 +119,14 @@ fn remark_lines(text: &str, width: f64) -> Vec<String> {
 /// Writes a remark in small quiet letters with its first line below `at`.
 fn remark(figure: &mut Figure, at: (f64, f64), lines: &[String]) {
     for (k, line) in lines.iter().enumerate() {
-        figure.text((at.0, at.1 + 12.0 + 14.0 * k as f64), 11.0, Anchor::Start, "", QUIET, line);
+        figure.text(
+            (at.0, at.1 + 12.0 + 14.0 * k as f64),
+            11.0,
+            Anchor::Start,
+            "",
+            QUIET,
+            line,
+        );
     }
 }
 
@@ -155,10 +176,21 @@ mod tests {
     #[test]
     fn numbers_are_written_once_and_plainly() {
         assert_eq!(energy(27199.14), "27\u{2009}199 kJ");
-        assert_eq!([energy(562.15), energy(14.04), energy(-0.822), energy(0.0)], ["562 kJ", "14.0 kJ", "\u{2212}0.82 kJ", "0.0 kJ"]);
-        assert_eq!([energy(123_456.0), energy(-9999.4), energy(f64::NAN)], ["123.5 MJ", "\u{2212}9999 kJ", "\u{2013} kJ"]);
         assert_eq!(
-            [percent(1.0, 4.0), percent(1e-9, 1.0), percent(-1e-9, 1.0), percent(0.0, 1.0)],
+            [energy(562.15), energy(14.04), energy(-0.822), energy(0.0)],
+            ["562 kJ", "14.0 kJ", "\u{2212}0.82 kJ", "0.0 kJ"]
+        );
+        assert_eq!(
+            [energy(123_456.0), energy(-9999.4), energy(f64::NAN)],
+            ["123.5 MJ", "\u{2212}9999 kJ", "\u{2013} kJ"]
+        );
+        assert_eq!(
+            [
+                percent(1.0, 4.0),
+                percent(1e-9, 1.0),
+                percent(-1e-9, 1.0),
+                percent(0.0, 1.0)
+            ],
             ["25.0 %", "< 0.1 %", "> \u{2212}0.1 %", "0.0 %"]
         );
         assert_eq!(percent(1.0, 0.0), "");

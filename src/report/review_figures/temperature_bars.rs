@@ -50,25 +50,70 @@ const REMARK: &str = "Within one cycle oil temperature and phase go together: co
 #[must_use]
 pub fn loss_by_temperature(of: &LossTrace) -> Picture {
     let (bins, left_out_s) = bins(of);
-    let names: Vec<String> = of.losses_w.iter().map(|(c, _)| component_words(*c)).collect();
+    let names: Vec<String> = of
+        .losses_w
+        .iter()
+        .map(|(c, _)| component_words(*c))
+        .collect();
     let lines = remark_lines(REMARK, WIDTH - PLOT_LEFT - 20.0);
     let strip_top = TOP + TALL + GAP;
     let legend_top = strip_top + STRIP + BELOW + 8.0;
-    let remark_top = legend_top + below_height(names.iter().map(String::as_str), WIDTH - PLOT_LEFT - 20.0, "") + 4.0;
+    let remark_top = legend_top
+        + below_height(
+            names.iter().map(String::as_str),
+            WIDTH - PLOT_LEFT - 20.0,
+            "",
+        )
+        + 4.0;
     let size = (WIDTH, remark_top + 14.0 * lines.len() as f64 + 8.0);
-    let mut figure = Figure::new(size, PLOT_LEFT, "Transmission losses against oil temperature", &of.subject, &describe(&bins));
-    let (low, high) = range(bins.iter().flat_map(|bin| [bin.low_degc, bin.high_degc])).unwrap_or((0.0, 1.0));
+    let mut figure = Figure::new(
+        size,
+        PLOT_LEFT,
+        "Transmission losses against oil temperature",
+        &of.subject,
+        &describe(&bins),
+    );
+    let (low, high) =
+        range(bins.iter().flat_map(|bin| [bin.low_degc, bin.high_degc])).unwrap_or((0.0, 1.0));
     let x = Axis::exact("Oil temperature in the sump [\u{b0}C]", low, high, 10);
-    let watts = Axis::round("Mean loss power [W]", bins.iter().map(|bin| bin.joule.iter().sum::<f64>() / bin.seconds).chain([0.0]), 7);
-    let time = Axis::round("Time [s]", bins.iter().map(|bin| bin.seconds).chain([0.0]), 3);
-    let rect = |top: f64, tall: f64| Rect { left: PLOT_LEFT, right: PLOT_RIGHT, top, bottom: top + tall };
+    let watts = Axis::round(
+        "Mean loss power [W]",
+        bins.iter()
+            .map(|bin| bin.joule.iter().sum::<f64>() / bin.seconds)
+            .chain([0.0]),
+        7,
+    );
+    let time = Axis::round(
+        "Time [s]",
+        bins.iter().map(|bin| bin.seconds).chain([0.0]),
+        3,
+    );
+    let rect = |top: f64, tall: f64| Rect {
+        left: PLOT_LEFT,
+        right: PLOT_RIGHT,
+        top,
+        bottom: top + tall,
+    };
     let upper = Panel::draw(&mut figure, rect(TOP, TALL), x.clone(), watts, false);
     let lower = Panel::draw(&mut figure, rect(strip_top, STRIP), x, time, true);
-    let paints: Vec<String> = of.losses_w.iter().map(|(c, _)| component_fill(&mut figure, "warm", *c)).collect();
+    let paints: Vec<String> = of
+        .losses_w
+        .iter()
+        .map(|(c, _)| component_fill(&mut figure, "warm", *c))
+        .collect();
     let mut table = table(&names, left_out_s);
     for bin in &bins {
-        let mut cells = vec![cell(bin.low_degc, 1.0), cell(bin.high_degc, 1.0), cell(bin.seconds, 0.1)];
-        cells.extend(bin.joule.iter().chain([&bin.joule.iter().sum()]).map(|joule| cell(joule / bin.seconds, 0.1)));
+        let mut cells = vec![
+            cell(bin.low_degc, 1.0),
+            cell(bin.high_degc, 1.0),
+            cell(bin.seconds, 0.1),
+        ];
+        cells.extend(
+            bin.joule
+                .iter()
+                .chain([&bin.joule.iter().sum()])
+                .map(|joule| cell(joule / bin.seconds, 0.1)),
+        );
         let row = table.push(cells);
         let mut base = 0.0;
         for (joule, paint) in bin.joule.iter().zip(&paints) {
@@ -85,14 +130,35 @@ pub fn loss_by_temperature(of: &LossTrace) -> Picture {
         panel.outline(&mut figure);
     }
     let entries: Vec<_> = paints.into_iter().map(Mark::Fill).zip(names).collect();
-    legend_below(&mut figure, (PLOT_LEFT, legend_top), WIDTH - PLOT_LEFT - 20.0, "", &entries);
+    legend_below(
+        &mut figure,
+        (PLOT_LEFT, legend_top),
+        WIDTH - PLOT_LEFT - 20.0,
+        "",
+        &entries,
+    );
     remark(&mut figure, (PLOT_LEFT, remark_top), &lines);
-    Picture { svg: figure.finish(), table }
+    Picture {
+        svg: figure.finish(),
+        table,
+    }
 }
 
-fn column(figure: &mut Figure, panel: &Panel, bin: &Bin, (from, to): (f64, f64), paint: &str, row: usize) {
+fn column(
+    figure: &mut Figure,
+    panel: &Panel,
+    bin: &Bin,
+    (from, to): (f64, f64),
+    paint: &str,
+    row: usize,
+) {
     if to > from {
-        let rect = Rect { left: panel.px(bin.low_degc), right: panel.px(bin.high_degc), top: panel.py(to), bottom: panel.py(from) };
+        let rect = Rect {
+            left: panel.px(bin.low_degc),
+            right: panel.px(bin.high_degc),
+            top: panel.py(to),
+            bottom: panel.py(from),
+        };
         figure.rect(rect, &format!("class=\"bar\" data-row=\"{row}\" fill=\"{paint}\" stroke=\"{INK}\" stroke-width=\"1\""));
     }
 }
@@ -101,35 +167,61 @@ fn column(figure: &mut Figure, panel: &Panel, bin: &Bin, (from, to): (f64, f64),
 fn bins(of: &LossTrace) -> (Vec<Bin>, f64) {
     let moved = |i: &usize| {
         let at = |list: &[f64]| list.get(*i).copied().unwrap_or(f64::NAN);
-        at(of.speed_kmh) > STANDS_KMH && at(of.sump_degc).is_finite() && at(of.seconds) > 0.0 && at(of.seconds).is_finite()
+        at(of.speed_kmh) > STANDS_KMH
+            && at(of.sump_degc).is_finite()
+            && at(of.seconds) > 0.0
+            && at(of.seconds).is_finite()
     };
     let steps: Vec<usize> = (0..of.seconds.len()).filter(moved).collect();
-    let Some((low, high)) = range(steps.iter().map(|i| of.sump_degc[*i])) else { return (Vec::new(), 0.0) };
-    let size = if high - low > MOST_BINS * BIN_K { round_step((high - low) / (MOST_BINS - 1.0)).max(BIN_K) } else { BIN_K };
+    let Some((low, high)) = range(steps.iter().map(|i| of.sump_degc[*i])) else {
+        return (Vec::new(), 0.0);
+    };
+    let size = if high - low > MOST_BINS * BIN_K {
+        round_step((high - low) / (MOST_BINS - 1.0)).max(BIN_K)
+    } else {
+        BIN_K
+    };
     let first = (low / size).floor();
     let count = ((high / size).floor() - first) as usize + 1;
     let edge = |k: usize| (first + k as f64) * size;
-    let mut bins: Vec<Bin> =
-        (0..count).map(|k| Bin { low_degc: edge(k), high_degc: edge(k + 1), seconds: 0.0, joule: vec![0.0; of.losses_w.len()] }).collect();
+    let mut bins: Vec<Bin> = (0..count)
+        .map(|k| Bin {
+            low_degc: edge(k),
+            high_degc: edge(k + 1),
+            seconds: 0.0,
+            joule: vec![0.0; of.losses_w.len()],
+        })
+        .collect();
     for i in steps {
-        let Some(bin) = bins.get_mut(((of.sump_degc[i] / size).floor() - first) as usize) else { continue };
+        let Some(bin) = bins.get_mut(((of.sump_degc[i] / size).floor() - first) as usize) else {
+            continue;
+        };
         bin.seconds += of.seconds[i];
         for (sum, (_, watts)) in bin.joule.iter_mut().zip(&of.losses_w) {
             *sum += watts.get(i).map_or(0.0, |w| sound(*w).max(0.0)) * of.seconds[i];
         }
     }
-    let left_out = bins.iter().map(|bin| bin.seconds).filter(|s| *s < LEAST_S).sum();
+    let left_out = bins
+        .iter()
+        .map(|bin| bin.seconds)
+        .filter(|s| *s < LEAST_S)
+        .sum();
     bins.retain(|bin| bin.seconds >= LEAST_S);
     (bins, left_out)
 }
 
 fn table(names: &[String], left_out_s: f64) -> PictureTable {
     let mut table = PictureTable::new(&[("from", "\u{b0}C"), ("to", "\u{b0}C"), ("time", "s")]);
-    table.columns.extend(names.iter().map(|name| (name.clone(), "W")));
+    table
+        .columns
+        .extend(names.iter().map(|name| (name.clone(), "W")));
     table.columns.push(("all".to_owned(), "W"));
     table.note = format!("Means over the time in which the car moved. {REMARK}");
     if left_out_s > 0.0 {
-        table.note += &format!(" Bins of less than {LEAST_S} s are left out, {} s in all.", number(left_out_s, 0.1));
+        table.note += &format!(
+            " Bins of less than {LEAST_S} s are left out, {} s in all.",
+            number(left_out_s, 0.1)
+        );
     }
     table
 }
@@ -137,9 +229,17 @@ fn table(names: &[String], left_out_s: f64) -> PictureTable {
 fn describe(bins: &[Bin]) -> String {
     let told = |bin: &Bin| {
         let watts = number(bin.joule.iter().sum::<f64>() / bin.seconds, 1.0);
-        format!("{} to {} \u{b0}C {watts} W in {} s", number(bin.low_degc, 1.0), number(bin.high_degc, 1.0), number(bin.seconds, 1.0))
+        format!(
+            "{} to {} \u{b0}C {watts} W in {} s",
+            number(bin.low_degc, 1.0),
+            number(bin.high_degc, 1.0),
+            number(bin.seconds, 1.0)
+        )
     };
-    format!("Mean loss power while the car moved, by sump temperature: {}. {REMARK}", bins.iter().map(told).collect::<Vec<_>>().join("; "))
+    format!(
+        "Mean loss power while the car moved, by sump temperature: {}. {REMARK}",
+        bins.iter().map(told).collect::<Vec<_>>().join("; ")
+    )
 }
 
 #[cfg(test)]
@@ -153,12 +253,32 @@ mod tests {
         let sump = [-7.0, -6.0, -2.0, 12.0, 21.0, 24.9];
         let speed = [10.0, 20.0, 0.0, 30.0, 40.0, 50.0];
         let (pump, drive) = ([100.0, 400.0, 900.0, 9e9, 50.0, 85.0], [10.0; 6]);
-        let losses_w = vec![(Component::Pump, &pump[..]), (Component::FinalDrive, &drive[..])];
-        let trace = LossTrace { subject: "<a & b>".to_owned(), seconds: &seconds, sump_degc: &sump, speed_kmh: &speed, losses_w };
+        let losses_w = vec![
+            (Component::Pump, &pump[..]),
+            (Component::FinalDrive, &drive[..]),
+        ];
+        let trace = LossTrace {
+            subject: "<a & b>".to_owned(),
+            seconds: &seconds,
+            sump_degc: &sump,
+            speed_kmh: &speed,
+            losses_w,
+        };
         let picture = loss_by_temperature(&trace);
         check(&picture);
-        let rows: Vec<Vec<f64>> = picture.table.rows.iter().map(|row| row.iter().map(|cell| numbers(cell)).collect()).collect();
-        assert_eq!(rows, [[-10.0, -5.0, 3.0, 300.0, 10.0, 310.0], [20.0, 25.0, 7.0, 70.0, 10.0, 80.0]]);
+        let rows: Vec<Vec<f64>> = picture
+            .table
+            .rows
+            .iter()
+            .map(|row| row.iter().map(|cell| numbers(cell)).collect())
+            .collect();
+        assert_eq!(
+            rows,
+            [
+                [-10.0, -5.0, 3.0, 300.0, 10.0, 310.0],
+                [20.0, 25.0, 7.0, 70.0, 10.0, 80.0]
+            ]
+        );
         assert!(picture.table.note.contains("0.5 s in all") && picture.svg.contains("go together"));
     }
 
@@ -167,7 +287,13 @@ mod tests {
         let sump: Vec<f64> = (0..400).map(|k| -40.0 + 0.5 * f64::from(k)).collect();
         let (ones, speed) = (vec![1.0; 400], vec![30.0; 400]);
         let losses_w = vec![(Component::Churning, &ones[..])];
-        let trace = LossTrace { seconds: &ones, sump_degc: &sump, speed_kmh: &speed, losses_w, ..LossTrace::default() };
+        let trace = LossTrace {
+            seconds: &ones,
+            sump_degc: &sump,
+            speed_kmh: &speed,
+            losses_w,
+            ..LossTrace::default()
+        };
         let picture = loss_by_temperature(&trace);
         check(&picture);
         assert!(picture.table.rows.len() <= 20 && picture.table.rows.len() > 5);

@@ -4,7 +4,9 @@ use super::tables::{clean, oil_degc, rpm};
 use crate::lubricant::ZERO_DEGC_K;
 use crate::report::chart::{Chart, ChartPanel, Look, Points, chart};
 use crate::rig::BenchPoint;
-use crate::rig::transmission::{Branch, Conditions, Loop, Piece, Stage, SteadyPoint, StripDown, TwoBoxes};
+use crate::rig::transmission::{
+    Branch, Conditions, Loop, Piece, Stage, SteadyPoint, StripDown, TwoBoxes,
+};
 
 /// File name and SVG text.
 pub type Picture = (String, String);
@@ -30,11 +32,18 @@ impl Subject<'_> {
     /// "low ratio, I = 2.417".
     fn ratio(&self, ratio: f64) -> String {
         let name = self.conditions.ratio_name(ratio);
-        if name == format!("{ratio}") { format!("I = {ratio}") } else { format!("{name} ratio, I = {ratio}") }
+        if name == format!("{ratio}") {
+            format!("I = {ratio}")
+        } else {
+            format!("{name} ratio, I = {ratio}")
+        }
     }
 
     fn file(&self, kind: &str, ratio: f64) -> String {
-        format!("{kind}_{}.svg", self.conditions.ratio_name(ratio).replace('.', "_"))
+        format!(
+            "{kind}_{}.svg",
+            self.conditions.ratio_name(ratio).replace('.', "_")
+        )
     }
 }
 
@@ -54,24 +63,47 @@ fn same(a: f64, b: f64) -> bool {
 }
 
 fn line(index: usize) -> Look {
-    Look { index, dotted: false }
+    Look {
+        index,
+        dotted: false,
+    }
 }
 
 fn degrees(temps: &[f64]) -> Vec<(Look, String)> {
-    temps.iter().enumerate().map(|(k, t)| (line(k), format!("{t} \u{b0}C"))).collect()
+    temps
+        .iter()
+        .enumerate()
+        .map(|(k, t)| (line(k), format!("{t} \u{b0}C")))
+        .collect()
 }
 
 /// A line a temperature against speed.
-fn by_temperature<T>(rows: &[T], set: fn(&T) -> &BenchPoint, ratio: f64, y: impl Fn(&T) -> f64) -> Vec<(Look, Points)> {
+fn by_temperature<T>(
+    rows: &[T],
+    set: fn(&T) -> &BenchPoint,
+    ratio: f64,
+    y: impl Fn(&T) -> f64,
+) -> Vec<(Look, Points)> {
     let line_at = |t: f64| {
-        let here = rows.iter().filter(|r| same(set(r).ratio, ratio) && same(oil_degc(set(r)), t));
+        let here = rows
+            .iter()
+            .filter(|r| same(set(r).ratio, ratio) && same(oil_degc(set(r)), t));
         here.map(|r| (rpm(set(r)), y(r))).collect::<Points>()
     };
-    distinct(rows, |r| oil_degc(set(r))).into_iter().enumerate().map(|(k, t)| (line(k), line_at(t))).collect()
+    distinct(rows, |r| oil_degc(set(r)))
+        .into_iter()
+        .enumerate()
+        .map(|(k, t)| (line(k), line_at(t)))
+        .collect()
 }
 
 fn panel(heading: &str, y_title: &'static str, series: Vec<(Look, Points)>) -> ChartPanel {
-    ChartPanel { heading: heading.to_owned(), y_title, series, ..ChartPanel::default() }
+    ChartPanel {
+        heading: heading.to_owned(),
+        y_title,
+        series,
+        ..ChartPanel::default()
+    }
 }
 
 fn words(what: &str, names: &[(Look, String)]) -> String {
@@ -91,9 +123,16 @@ fn against_speed(
     let picture = chart(&Chart {
         title: title.to_owned(),
         subject: subject.of(ratio, ""),
-        description: words(&format!("{title} against input speed, a line for each temperature of the bulk oil"), &names),
+        description: words(
+            &format!("{title} against input speed, a line for each temperature of the bulk oil"),
+            &names,
+        ),
         x_title: SPEED,
-        panels: vec![panel("", y_title, by_temperature(rows, |r| &r.set, ratio, y))],
+        panels: vec![panel(
+            "",
+            y_title,
+            by_temperature(rows, |r| &r.set, ratio, y),
+        )],
         legend: "Bulk oil".to_owned(),
         names,
         ..Chart::default()
@@ -106,9 +145,21 @@ fn against_speed(
 pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
     let mut pictures = Vec::new();
     for ratio in distinct(rows, |r| r.set.ratio) {
-        pictures.push(against_speed(rows, subject, ratio, ("steady_loss", "Torque loss without load", LOSS), |r| r.answer.total_nm()));
-        let pressure = ("steady_pressure", "Secondary pressure without load", PRESSURE);
-        pictures.push(against_speed(rows, subject, ratio, pressure, |r| r.answer.secondary_pa / 1e5));
+        pictures.push(against_speed(
+            rows,
+            subject,
+            ratio,
+            ("steady_loss", "Torque loss without load", LOSS),
+            |r| r.answer.total_nm(),
+        ));
+        let pressure = (
+            "steady_pressure",
+            "Secondary pressure without load",
+            PRESSURE,
+        );
+        pictures.push(against_speed(rows, subject, ratio, pressure, |r| {
+            r.answer.secondary_pa / 1e5
+        }));
     }
     pictures
 }
@@ -117,16 +168,32 @@ pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
 #[must_use]
 pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
     let torques = distinct(rows, |r| r.set.output_nm);
-    let names: Vec<(Look, String)> = torques.iter().enumerate().map(|(k, t)| (line(k), format!("{t} Nm"))).collect();
+    let names: Vec<(Look, String)> = torques
+        .iter()
+        .enumerate()
+        .map(|(k, t)| (line(k), format!("{t} Nm")))
+        .collect();
     let of_ratio = |ratio: f64| {
-        let on =
-            move |r: &&SteadyPoint, t: f64, nm: f64| same(r.set.ratio, ratio) && same(oil_degc(&r.set), t) && same(r.set.output_nm, nm);
-        let lines = |t: f64| {
-            let at = |nm: f64| rows.iter().filter(move |r| on(r, t, nm)).map(|r| (rpm(&r.set), r.answer.total_nm())).collect();
-            torques.iter().enumerate().map(|(k, nm)| (line(k), at(*nm))).collect()
+        let on = move |r: &&SteadyPoint, t: f64, nm: f64| {
+            same(r.set.ratio, ratio) && same(oil_degc(&r.set), t) && same(r.set.output_nm, nm)
         };
-        let panels =
-            distinct(rows, |r| oil_degc(&r.set)).into_iter().map(|t| panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, lines(t))).collect();
+        let lines = |t: f64| {
+            let at = |nm: f64| {
+                rows.iter()
+                    .filter(move |r| on(r, t, nm))
+                    .map(|r| (rpm(&r.set), r.answer.total_nm()))
+                    .collect()
+            };
+            torques
+                .iter()
+                .enumerate()
+                .map(|(k, nm)| (line(k), at(*nm)))
+                .collect()
+        };
+        let panels = distinct(rows, |r| oil_degc(&r.set))
+            .into_iter()
+            .map(|t| panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, lines(t)))
+            .collect();
         let picture = chart(&Chart {
             title: "Torque loss under load".to_owned(),
             subject: subject.of(ratio, ""),
@@ -143,28 +210,50 @@ pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
         });
         (subject.file("loaded_loss", ratio), picture.svg)
     };
-    distinct(rows, |r| r.set.ratio).into_iter().map(of_ratio).collect()
+    distinct(rows, |r| r.set.ratio)
+        .into_iter()
+        .map(of_ratio)
+        .collect()
 }
 
 /// Torque loss against bulk oil temperature, warming and cooling (Figs 5-5 and 5-6).
 #[must_use]
 pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
-    let names = vec![(line(1), "Warming by its own losses".to_owned()), (line(2), "Cooling by the rig's cooler".to_owned())];
+    let names = vec![
+        (line(1), "Warming by its own losses".to_owned()),
+        (line(2), "Cooling by the rig's cooler".to_owned()),
+    ];
     let speed = clean(subject.conditions.transient.speed_rad_s * 30.0 / std::f64::consts::PI);
     let picture = |l: &Loop| {
         let on = |branch: Branch, y: fn(&crate::rig::transmission::Moment) -> f64| {
-            l.moments.iter().filter(|m| m.branch == branch).map(|m| (m.sump_k - ZERO_DEGC_K, y(m))).collect::<Points>()
+            l.moments
+                .iter()
+                .filter(|m| m.branch == branch)
+                .map(|m| (m.sump_k - ZERO_DEGC_K, y(m)))
+                .collect::<Points>()
         };
-        let both = |y| vec![(line(1), on(Branch::Warming, y)), (line(2), on(Branch::Cooling, y))];
+        let both = |y| {
+            vec![
+                (line(1), on(Branch::Warming, y)),
+                (line(2), on(Branch::Cooling, y)),
+            ]
+        };
         let picture = chart(&Chart {
             title: "Temperature transient without load".to_owned(),
             subject: subject.of(l.ratio, &format!(", {speed} rpm")),
-            description: words("Torque loss, and below it belt temperature, against bulk oil temperature", &names),
+            description: words(
+                "Torque loss, and below it belt temperature, against bulk oil temperature",
+                &names,
+            ),
             x_title: "Bulk oil [\u{b0}C]",
             panels: vec![
                 panel("Complete box", LOSS, both(|m| m.answer.total_nm())),
                 panel("Belt alone", LOSS, both(|m| m.answer.belt_nm())),
-                panel("Belt and spray", "Temperature [\u{b0}C]", both(|m| m.answer.belt_k - ZERO_DEGC_K)),
+                panel(
+                    "Belt and spray",
+                    "Temperature [\u{b0}C]",
+                    both(|m| m.answer.belt_k - ZERO_DEGC_K),
+                ),
             ],
             names: names.clone(),
             ..Chart::default()
@@ -177,27 +266,52 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
 /// Torque loss of both boxes against speed, a panel a temperature (Figs 5-7 to 5-14).
 #[must_use]
 pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
-    let names = vec![(line(0), "First box".to_owned()), (line(1), "Second box".to_owned())];
+    let names = vec![
+        (line(0), "First box".to_owned()),
+        (line(1), "Second box".to_owned()),
+    ];
     let picture = |ratio: f64| {
         let on = |t: f64, y: fn(&TwoBoxes) -> f64| {
-            let here = rows.iter().filter(|r| same(r.first.set.ratio, ratio) && same(oil_degc(&r.first.set), t));
+            let here = rows
+                .iter()
+                .filter(|r| same(r.first.set.ratio, ratio) && same(oil_degc(&r.first.set), t));
             here.map(|r| (rpm(&r.first.set), y(r))).collect::<Points>()
         };
-        let lines = |t: f64| vec![(line(0), on(t, |r| r.first.answer.total_nm())), (line(1), on(t, |r| r.second.answer.total_nm()))];
+        let lines = |t: f64| {
+            vec![
+                (line(0), on(t, |r| r.first.answer.total_nm())),
+                (line(1), on(t, |r| r.second.answer.total_nm())),
+            ]
+        };
         let temps = distinct(rows, |r| oil_degc(&r.first.set));
         let picture = chart(&Chart {
             title: "Torque loss of two boxes without load".to_owned(),
-            subject: subject.of(ratio, &format!(", pressure of the second {} of the first", subject.conditions.pressure.second_box)),
-            description: words("Torque loss against input speed, a panel for each temperature of the bulk oil", &names),
+            subject: subject.of(
+                ratio,
+                &format!(
+                    ", pressure of the second {} of the first",
+                    subject.conditions.pressure.second_box
+                ),
+            ),
+            description: words(
+                "Torque loss against input speed, a panel for each temperature of the bulk oil",
+                &names,
+            ),
             x_title: SPEED,
-            panels: temps.into_iter().map(|t| panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, lines(t))).collect(),
+            panels: temps
+                .into_iter()
+                .map(|t| panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, lines(t)))
+                .collect(),
             same_y: true,
             names: names.clone(),
             ..Chart::default()
         });
         (subject.file("second_box", ratio), picture.svg)
     };
-    distinct(rows, |r| r.first.set.ratio).into_iter().map(picture).collect()
+    distinct(rows, |r| r.first.set.ratio)
+        .into_iter()
+        .map(picture)
+        .collect()
 }
 
 /// The strip-down: stages (Figs 5-17 to 5-27), contributions (5-33 to 5-40), components (5-41 to 5-45).
@@ -205,9 +319,18 @@ pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
 pub fn strip_down(rows: &[StripDown], subject: &Subject) -> Vec<Picture> {
     let mut pictures = Vec::new();
     for ratio in distinct(rows, |r| r.set.ratio) {
-        pictures.push((subject.file("strip_down", ratio), stages(rows, subject, ratio)));
-        pictures.push((subject.file("contributions", ratio), contributions(rows, subject, ratio)));
-        pictures.push((subject.file("components", ratio), components(rows, subject, ratio)));
+        pictures.push((
+            subject.file("strip_down", ratio),
+            stages(rows, subject, ratio),
+        ));
+        pictures.push((
+            subject.file("contributions", ratio),
+            contributions(rows, subject, ratio),
+        ));
+        pictures.push((
+            subject.file("components", ratio),
+            components(rows, subject, ratio),
+        ));
     }
     pictures
 }
@@ -237,9 +360,22 @@ fn stages(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
     let mut panels = Vec::new();
     for stage in Stage::ALL {
         let words = stage_words(stage);
-        panels.push(panel(words, LOSS, by_temperature(rows, |r| &r.set, ratio, |r| r.stage(stage).total_nm())));
+        panels.push(panel(
+            words,
+            LOSS,
+            by_temperature(rows, |r| &r.set, ratio, |r| r.stage(stage).total_nm()),
+        ));
         if stage != Stage::PumpRemoved {
-            panels.push(panel(words, PRESSURE, by_temperature(rows, |r| &r.set, ratio, |r| r.stage(stage).secondary_pa / 1e5)));
+            panels.push(panel(
+                words,
+                PRESSURE,
+                by_temperature(
+                    rows,
+                    |r| &r.set,
+                    ratio,
+                    |r| r.stage(stage).secondary_pa / 1e5,
+                ),
+            ));
         }
     }
     chart(&Chart {
@@ -259,14 +395,32 @@ fn stages(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
 }
 
 fn contributions(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
-    let names: Vec<(Look, String)> = Piece::ALL.iter().enumerate().map(|(k, p)| (line(k), piece_words(*p).to_owned())).collect();
+    let names: Vec<(Look, String)> = Piece::ALL
+        .iter()
+        .enumerate()
+        .map(|(k, p)| (line(k), piece_words(*p).to_owned()))
+        .collect();
     let layers = |t: f64| {
-        let here = || rows.iter().filter(move |r| same(r.set.ratio, ratio) && same(oil_degc(&r.set), t));
-        let of = |piece: Piece| here().map(|r| (rpm(&r.set), r.piece(piece).corrected_nm)).collect::<Points>();
-        Piece::ALL.iter().enumerate().map(|(k, piece)| (line(k), of(*piece))).collect()
+        let here = || {
+            rows.iter()
+                .filter(move |r| same(r.set.ratio, ratio) && same(oil_degc(&r.set), t))
+        };
+        let of = |piece: Piece| {
+            here()
+                .map(|r| (rpm(&r.set), r.piece(piece).corrected_nm))
+                .collect::<Points>()
+        };
+        Piece::ALL
+            .iter()
+            .enumerate()
+            .map(|(k, piece)| (line(k), of(*piece)))
+            .collect()
     };
     let temps = distinct(rows, |r| oil_degc(&r.set));
-    let of = |t: f64| ChartPanel { stacked: true, ..panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, layers(t)) };
+    let of = |t: f64| ChartPanel {
+        stacked: true,
+        ..panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, layers(t))
+    };
     chart(&Chart {
         title: "Contributions to the torque loss, from the strip-down".to_owned(),
         subject: subject.of(ratio, ", corrected for pressure"),
@@ -284,18 +438,40 @@ fn contributions(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
 fn components(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
     let temps = distinct(rows, |r| oil_degc(&r.set));
     let mut names = degrees(&temps);
-    names.extend(temps.iter().enumerate().map(|(index, t)| (Look { index, dotted: true }, format!("{t} \u{b0}C, true"))));
+    names.extend(temps.iter().enumerate().map(|(index, t)| {
+        (
+            Look {
+                index,
+                dotted: true,
+            },
+            format!("{t} \u{b0}C, true"),
+        )
+    }));
     let lines = |piece: Piece| {
         let mut lines = by_temperature(rows, |r| &r.set, ratio, |r| r.piece(piece).corrected_nm);
         let own = by_temperature(rows, |r| &r.set, ratio, |r| r.piece(piece).true_nm);
-        lines.extend(own.into_iter().map(|(look, points)| (Look { dotted: true, ..look }, points)));
+        lines.extend(own.into_iter().map(|(look, points)| {
+            (
+                Look {
+                    dotted: true,
+                    ..look
+                },
+                points,
+            )
+        }));
         lines
     };
-    let of = |piece: Piece| ChartPanel { with_y: vec![0.0], ..panel(piece_words(piece), LOSS, lines(piece)) };
+    let of = |piece: Piece| ChartPanel {
+        with_y: vec![0.0],
+        ..panel(piece_words(piece), LOSS, lines(piece))
+    };
     chart(&Chart {
         title: "Components from the strip-down, beside those of the model".to_owned(),
         subject: subject.of(ratio, ", corrected for pressure"),
-        description: words("Loss of each component against input speed; dotted: its own loss in the complete box", &names),
+        description: words(
+            "Loss of each component against input speed; dotted: its own loss in the complete box",
+            &names,
+        ),
         x_title: SPEED,
         panels: Piece::ALL.into_iter().map(of).collect(),
         legend: "Bulk oil".to_owned(),

@@ -36,12 +36,20 @@ pub struct Shown<'a> {
 impl Shown<'_> {
     /// Title of an axis of this output, or of something else of its unit.
     fn axis(&self, what: &str) -> String {
-        if self.unit.is_empty() { what.to_owned() } else { format!("{what} [{}]", self.sign()) }
+        if self.unit.is_empty() {
+            what.to_owned()
+        } else {
+            format!("{what} [{}]", self.sign())
+        }
     }
 
     /// The unit after a number.
     fn after(&self) -> String {
-        if matches!(self.unit, "" | "-") { String::new() } else { format!("\u{a0}{}", self.sign().replace(' ', "\u{a0}")) }
+        if matches!(self.unit, "" | "-") {
+            String::new()
+        } else {
+            format!("\u{a0}{}", self.sign().replace(' ', "\u{a0}"))
+        }
     }
 
     /// The unit as it is written.
@@ -61,7 +69,9 @@ pub(super) fn sign(unit: &str) -> &str {
 
 /// Name and unit of a column; a unit that no output of the program has is part of the name.
 fn column(name: String, unit: &str) -> (String, &'static str) {
-    const KNOWN: [&str; 11] = ["L/100 km", "%", "g/km", "km", "s", "g", "kJ", "\u{b0}C", "rpm", "bar", "Nm"];
+    const KNOWN: [&str; 11] = [
+        "L/100 km", "%", "g/km", "km", "s", "g", "kJ", "\u{b0}C", "rpm", "bar", "Nm",
+    ];
     match (unit, KNOWN.into_iter().find(|known| *known == sign(unit))) {
         ("" | "-", _) => (name, ""),
         (_, Some(known)) => (name, known),
@@ -72,7 +82,9 @@ fn column(name: String, unit: &str) -> (String, &'static str) {
 /// The words with a capital first letter.
 fn capital(words: &str) -> String {
     let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
 }
 
 /// The two ends of an interval as cells; empty without one.

@@ -30,7 +30,10 @@ pub(super) struct Frame<'a> {
 
 /// Left edge of the plotting area beside names, pixels.
 fn left_of<'n>(names: impl Iterator<Item = &'n str>) -> f64 {
-    let widest = names.map(|name| text_width(name, SIZE)).fold(0.0, f64::max).min(NAMES);
+    let widest = names
+        .map(|name| text_width(name, SIZE))
+        .fold(0.0, f64::max)
+        .min(NAMES);
     (MARGIN + widest + 10.0).max(LEFT + 8.0)
 }
 
@@ -50,9 +53,17 @@ impl Rows {
     pub fn new(frame: Frame, paints: impl FnOnce(&mut Figure) -> Vec<Mark>) -> Self {
         let left = left_of(frame.names.iter().copied());
         let rows = frame.names.len().max(2) as f64;
-        let rect = Rect { left, top: TOP, right: RIGHT, bottom: TOP + rows * ROW + 6.0 };
+        let rect = Rect {
+            left,
+            top: TOP,
+            right: RIGHT,
+            bottom: TOP + rows * ROW + 6.0,
+        };
         let (below, wide) = ((MARGIN, rect.bottom + BELOW + 8.0), RIGHT - MARGIN);
-        let size = (WIDTH, below.1 + foot_height(frame.entries.into_iter(), wide, &frame.notes));
+        let size = (
+            WIDTH,
+            below.1 + foot_height(frame.entries.into_iter(), wide, &frame.notes),
+        );
         let mut figure = Figure::new(size, MARGIN, &frame.title, frame.subject, &frame.desc);
         let mut y = Axis::exact("", 0.0, 1.0, 2);
         // Rows have names in place of numbers.
@@ -61,9 +72,22 @@ impl Rows {
         let marks = paints(&mut figure);
         for (k, row) in frame.names.iter().enumerate() {
             let at = (left - 8.0, middle_of(&panel, k) + 4.0);
-            name(&mut figure, at, Side::Left, (SIZE, left - 8.0 - 8.0), &format!("class=\"row\" data-row=\"{k}\""), row);
+            name(
+                &mut figure,
+                at,
+                Side::Left,
+                (SIZE, left - 8.0 - 8.0),
+                &format!("class=\"row\" data-row=\"{k}\""),
+                row,
+            );
         }
-        foot(&mut figure, below, wide, marks.into_iter().zip(frame.entries).collect(), &frame.notes);
+        foot(
+            &mut figure,
+            below,
+            wide,
+            marks.into_iter().zip(frame.entries).collect(),
+            &frame.notes,
+        );
         if frame.names.is_empty() {
             panel.empty(&mut figure);
         }
@@ -79,24 +103,42 @@ impl Rows {
     pub fn mark(&mut self, x: f64) {
         let (x, rect) = (self.panel.px(x), self.panel.rect);
         if rect.left <= x && x <= rect.right {
-            self.figure.line((x, rect.top), (x, rect.bottom), &format!("stroke=\"{INK}\" stroke-width=\"4\""));
+            self.figure.line(
+                (x, rect.top),
+                (x, rect.bottom),
+                &format!("stroke=\"{INK}\" stroke-width=\"4\""),
+            );
         }
     }
 
     /// A bar of a row of the table from one value to another between two heights; none where a value is not finite.
-    pub fn bar(&mut self, row: usize, (from, to): (f64, f64), (top, bottom): (f64, f64), paint: &str) {
+    pub fn bar(
+        &mut self,
+        row: usize,
+        (from, to): (f64, f64),
+        (top, bottom): (f64, f64),
+        paint: &str,
+    ) {
         if !from.is_finite() || !to.is_finite() {
             return;
         }
         let (a, b) = (self.panel.px(from), self.panel.px(to));
-        let rect = Rect { left: a.min(b), right: a.max(b), top, bottom };
+        let rect = Rect {
+            left: a.min(b),
+            right: a.max(b),
+            top,
+            bottom,
+        };
         self.figure.rect(rect, &format!("class=\"bar\" data-row=\"{row}\" fill=\"{paint}\" stroke=\"{INK}\" stroke-width=\"2\""));
     }
 
     /// An interval with end marks, on a pale line that shows it on dark fills too.
     pub fn whisker(&mut self, row: usize, [low, high]: [f64; 2], y: f64) {
         let (a, b) = (self.panel.px(low), self.panel.px(high));
-        for paint in ["stroke=\"#ffffff\" stroke-width=\"9\"", "class=\"interval\" stroke=\"#000000\" stroke-width=\"5\""] {
+        for paint in [
+            "stroke=\"#ffffff\" stroke-width=\"9\"",
+            "class=\"interval\" stroke=\"#000000\" stroke-width=\"5\"",
+        ] {
             let paint = format!("{paint} data-row=\"{row}\"");
             self.figure.line((a, y), (b, y), &paint);
             for x in [a, b] {
@@ -108,7 +150,10 @@ impl Rows {
     /// The picture with its numbers.
     pub fn finish(mut self, table: PictureTable) -> Picture {
         self.panel.outline(&mut self.figure);
-        Picture { svg: self.figure.finish(), table }
+        Picture {
+            svg: self.figure.finish(),
+            table,
+        }
     }
 }
 

@@ -21,7 +21,11 @@ pub(in crate::report) fn middle(text: &str, size: f64, width: f64) -> String {
         let end: String = all[all.len() - tail..].iter().collect();
         format!("{}\u{2026}{}", begin.trim_end(), end.trim_start())
     };
-    (0..all.len()).rev().map(cut).find(|short| text_width(short, size) <= width).unwrap_or_else(|| "\u{2026}".to_owned())
+    (0..all.len())
+        .rev()
+        .map(cut)
+        .find(|short| text_width(short, size) <= width)
+        .unwrap_or_else(|| "\u{2026}".to_owned())
 }
 
 /// The text in as many lines as it takes, broken between words; a word that is too long is cut in its middle.
@@ -30,7 +34,9 @@ pub(in crate::report) fn lines(text: &str, size: f64, width: f64) -> Vec<String>
     // Not at spaces that bind.
     for word in text.split(' ').filter(|word| !word.is_empty()) {
         match lines.last_mut() {
-            Some(line) if text_width(line, size) + text_width(&format!(" {word}"), size) <= width => {
+            Some(line)
+                if text_width(line, size) + text_width(&format!(" {word}"), size) <= width =>
+            {
                 line.push(' ');
                 line.push_str(word);
             }
@@ -38,7 +44,10 @@ pub(in crate::report) fn lines(text: &str, size: f64, width: f64) -> Vec<String>
         }
     }
     // They have done their work.
-    lines.into_iter().map(|line| line.replace('\u{a0}', " ")).collect()
+    lines
+        .into_iter()
+        .map(|line| line.replace('\u{a0}', " "))
+        .collect()
 }
 
 /// Where a name goes.
@@ -53,7 +62,14 @@ pub(in crate::report) enum Side {
 }
 
 /// Writes a name cut to a width; what was cut away shows under the pointer.
-pub(in crate::report) fn name(figure: &mut Figure, at: (f64, f64), side: Side, (size, width): (f64, f64), attributes: &str, text: &str) {
+pub(in crate::report) fn name(
+    figure: &mut Figure,
+    at: (f64, f64),
+    side: Side,
+    (size, width): (f64, f64),
+    attributes: &str,
+    text: &str,
+) {
     let short = middle(text, size, width);
     let cut = short != text;
     if cut {
@@ -88,17 +104,25 @@ const MARK: f64 = 40.0;
 /// Columns of a legend and their width: as many as fit.
 fn columns<'n>(names: impl Iterator<Item = &'n str>, width: f64) -> (usize, f64) {
     let room = NAME.min(width - MARK);
-    let widest = names.map(|name| text_width(&middle(name, SIZE, room), SIZE)).fold(0.0, f64::max);
+    let widest = names
+        .map(|name| text_width(&middle(name, SIZE, room), SIZE))
+        .fold(0.0, f64::max);
     // A little wider than the text, lest the legend breaks the line.
     let wide = MARK + widest + 2.0;
-    (((width + GUTTER) / (wide + GUTTER)).floor().max(1.0) as usize, wide)
+    (
+        ((width + GUTTER) / (wide + GUTTER)).floor().max(1.0) as usize,
+        wide,
+    )
 }
 
 /// Draws a legend in columns, line by line; names are cut in their middle.
 fn entries(figure: &mut Figure, (left, top): (f64, f64), width: f64, entries: Vec<(Mark, &str)>) {
     let (columns, wide) = columns(entries.iter().map(|(_, name)| *name), width);
     for (k, (mark, name)) in entries.into_iter().enumerate() {
-        let at = (left + (k % columns) as f64 * (wide + GUTTER), top + ENTRY * (k / columns) as f64);
+        let at = (
+            left + (k % columns) as f64 * (wide + GUTTER),
+            top + ENTRY * (k / columns) as f64,
+        );
         let short = middle(name, SIZE, NAME.min(width - MARK));
         let cut = short != name;
         if cut {
@@ -112,14 +136,24 @@ fn entries(figure: &mut Figure, (left, top): (f64, f64), width: f64, entries: Ve
 }
 
 /// Draws a legend and below it notes, both below the plots.
-pub(in crate::report) fn foot(figure: &mut Figure, (left, top): (f64, f64), width: f64, marks: Vec<(Mark, &str)>, told: &[String]) {
+pub(in crate::report) fn foot(
+    figure: &mut Figure,
+    (left, top): (f64, f64),
+    width: f64,
+    marks: Vec<(Mark, &str)>,
+    told: &[String],
+) {
     let below = top + entries_height(marks.iter().map(|(_, name)| *name), width);
     entries(figure, (left, top), width, marks);
     notes(figure, (left, below), width, told);
 }
 
 /// Height of such a foot, pixels.
-pub(in crate::report) fn foot_height<'n>(names: impl Iterator<Item = &'n str> + Clone, width: f64, told: &[String]) -> f64 {
+pub(in crate::report) fn foot_height<'n>(
+    names: impl Iterator<Item = &'n str> + Clone,
+    width: f64,
+    told: &[String],
+) -> f64 {
     entries_height(names, width) + notes_height(told, width) + 6.0
 }
 
@@ -133,7 +167,10 @@ fn entries_height<'n>(names: impl Iterator<Item = &'n str> + Clone, width: f64) 
 
 /// Height of notes of a width, pixels.
 fn notes_height(notes: &[String], width: f64) -> f64 {
-    notes.iter().map(|note| LINE * lines(note, SIZE, width).len() as f64 + 5.0).sum()
+    notes
+        .iter()
+        .map(|note| LINE * lines(note, SIZE, width).len() as f64 + 5.0)
+        .sum()
 }
 
 /// Writes notes below each other from a corner; each begins a little apart from the one before.
@@ -152,14 +189,22 @@ pub(in crate::report) fn value(x: f64, spread: f64) -> String {
     if !x.is_finite() {
         return "not known".to_owned();
     }
-    let scale = if spread.is_finite() && spread > 1e-12 * x.abs() { spread } else { x.abs().max(1e-300) };
+    let scale = if spread.is_finite() && spread > 1e-12 * x.abs() {
+        spread
+    } else {
+        x.abs().max(1e-300)
+    };
     number(x, round_step(scale / 200.0))
 }
 
 /// A share of 0 to 1 in percent, with a decimal; more where it is close to an end.
 pub(in crate::report) fn percent(share: f64) -> String {
     let off = share.min(1.0 - share);
-    if share.is_finite() && off > 0.0 && off < 0.001 { format!("{:.3}", 100.0 * share) } else { format!("{:.1}", 100.0 * share) }
+    if share.is_finite() && off > 0.0 && off < 0.001 {
+        format!("{:.3}", 100.0 * share)
+    } else {
+        format!("{:.1}", 100.0 * share)
+    }
 }
 
 #[cfg(test)]
@@ -171,11 +216,21 @@ mod tests {
         assert_eq!(middle("friction", 11.0, 500.0), "friction");
         let long = "lubricant.traction.friction_coefficient_at_40_degc";
         let short = middle(long, 11.0, 150.0);
-        assert!(short.starts_with("lubri") && short.ends_with("degc") && short.contains('\u{2026}'), "{short}");
+        assert!(
+            short.starts_with("lubri") && short.ends_with("degc") && short.contains('\u{2026}'),
+            "{short}"
+        );
         assert!(text_width(&short, 11.0) <= 150.0 && short.chars().count() > 15);
         assert_eq!(middle(long, 11.0, 0.0), "\u{2026}");
         assert_eq!(
-            middle("\u{e9}\u{1f697}\u{e9}\u{1f697}\u{e9}\u{1f697}\u{e9}", 11.0, 40.0).chars().filter(|c| *c == '\u{2026}').count(),
+            middle(
+                "\u{e9}\u{1f697}\u{e9}\u{1f697}\u{e9}\u{1f697}\u{e9}",
+                11.0,
+                40.0
+            )
+            .chars()
+            .filter(|c| *c == '\u{2026}')
+            .count(),
             1
         );
     }
@@ -195,6 +250,13 @@ mod tests {
         assert_eq!(value(-0.5, 0.0), "\u{2212}0.500");
         assert_eq!(value(1234.0, 800.0), "1234");
         assert_eq!(value(f64::NAN, 1.0), "not known");
-        assert_eq!((percent(0.934_2).as_str(), percent(0.999_7).as_str(), percent(1.0).as_str()), ("93.4", "99.970", "100.0"));
+        assert_eq!(
+            (
+                percent(0.934_2).as_str(),
+                percent(0.999_7).as_str(),
+                percent(1.0).as_str()
+            ),
+            ("93.4", "99.970", "100.0")
+        );
     }
 }

@@ -51,9 +51,17 @@ impl History {
         };
         let history = rows(&header, lines, &mut problems);
         if history.is_empty() && problems.is_empty() {
-            problems.file(Complaint::new("the file has column names and no rows", "at least one row", AGAIN));
+            problems.file(Complaint::new(
+                "the file has column names and no rows",
+                "at least one row",
+                AGAIN,
+            ));
         }
-        if problems.is_empty() { Ok(history) } else { Err(problems.finish()) }
+        if problems.is_empty() {
+            Ok(history)
+        } else {
+            Err(problems.finish())
+        }
     }
 }
 
@@ -62,43 +70,87 @@ fn header<'t>(line: Line<'t>, problems: &mut Problems) -> Option<Header<'t>> {
     let fields = problems.names(line)?;
     let columns = known(fields.iter().map(|field| field.text));
     if columns.is_empty() {
-        problems
-            .line(line, "", || Complaint::new("this is no trace of cvtcycle: it has none of its columns", "time_s,dt_s,phase,...", AGAIN));
+        problems.line(line, "", || {
+            Complaint::new(
+                "this is no trace of cvtcycle: it has none of its columns",
+                "time_s,dt_s,phase,...",
+                AGAIN,
+            )
+        });
         return None;
     }
     for own in missing(&columns) {
         problems.line(line, own.name, || {
-            Complaint::new(format!("the column {} is missing", own.name), format!("with {}: {}", own.name, own.doc), AGAIN)
+            Complaint::new(
+                format!("the column {} is missing", own.name),
+                format!("with {}: {}", own.name, own.doc),
+                AGAIN,
+            )
         });
     }
-    let numbers: Vec<&str> = columns.iter().filter(|column| is_number(column)).map(|column| column.name).collect();
+    let numbers: Vec<&str> = columns
+        .iter()
+        .filter(|column| is_number(column))
+        .map(|column| column.name)
+        .collect();
     let mut uses = Vec::new();
     for (k, field) in fields.iter().enumerate() {
         let known = column(field.text).is_some();
         if known && fields[..k].iter().any(|other| other.text == field.text) {
-            problems.value(line, *field, field.text, || Complaint::new(format!("the column {} is there twice", field.text), "once", AGAIN));
+            problems.value(line, *field, field.text, || {
+                Complaint::new(
+                    format!("the column {} is there twice", field.text),
+                    "once",
+                    AGAIN,
+                )
+            });
         }
-        uses.push(match (field.text, numbers.iter().position(|name| *name == field.text)) {
-            (_, Some(index)) => Use::Number(index),
-            ("phase", None) => Use::Phase,
-            ("flags", None) => Use::Flags,
-            _ => Use::Nothing,
-        });
+        uses.push(
+            match (
+                field.text,
+                numbers.iter().position(|name| *name == field.text),
+            ) {
+                (_, Some(index)) => Use::Number(index),
+                ("phase", None) => Use::Phase,
+                ("flags", None) => Use::Flags,
+                _ => Use::Nothing,
+            },
+        );
     }
     let at = |name: &str| numbers.iter().position(|own| *own == name);
     let (time, dt) = (at("time_s"), at("dt_s"));
-    Some(Header { names: fields.iter().map(|field| field.text).collect(), uses, numbers: numbers.len(), time, dt })
+    Some(Header {
+        names: fields.iter().map(|field| field.text).collect(),
+        uses,
+        numbers: numbers.len(),
+        time,
+        dt,
+    })
 }
 
-fn rows<'t>(header: &Header, lines: impl Iterator<Item = Line<'t>>, problems: &mut Problems) -> History {
-    let mut history =
-        History::empty(&known(header.names.iter().copied()).into_iter().filter(|column| is_number(column)).collect::<Vec<_>>());
+fn rows<'t>(
+    header: &Header,
+    lines: impl Iterator<Item = Line<'t>>,
+    problems: &mut Problems,
+) -> History {
+    let mut history = History::empty(
+        &known(header.names.iter().copied())
+            .into_iter()
+            .filter(|column| is_number(column))
+            .collect::<Vec<_>>(),
+    );
     let mut fields: Vec<Field> = Vec::new();
     let mut before_s = f64::NAN;
     let mut numbers = vec![f64::NAN; header.numbers];
     for line in lines {
         if history.len() == MOST_STEPS {
-            problems.line(line, "", || Complaint::new("the trace has too many steps", format!("up to {MOST_STEPS}"), SHORTER));
+            problems.line(line, "", || {
+                Complaint::new(
+                    "the trace has too many steps",
+                    format!("up to {MOST_STEPS}"),
+                    SHORTER,
+                )
+            });
             break;
         }
         if !problems.split(line, header.names.len(), &mut fields) {
@@ -139,7 +191,13 @@ fn rows<'t>(header: &Header, lines: impl Iterator<Item = Line<'t>>, problems: &m
 /// What is wrong where nearly every step has a phase of its own.
 pub(crate) fn too_many_phases(history: &History) -> Option<Complaint> {
     let message = "there are too many phases";
-    (history.phases().len() > MOST_PHASES).then(|| Complaint::new(message, format!("up to {MOST_PHASES} different names"), AGAIN))
+    (history.phases().len() > MOST_PHASES).then(|| {
+        Complaint::new(
+            message,
+            format!("up to {MOST_PHASES} different names"),
+            AGAIN,
+        )
+    })
 }
 
 /// What a number has to be.
@@ -154,12 +212,16 @@ enum Least {
 fn number(line: Line, field: Field, name: &str, least: Least, problems: &mut Problems) -> f64 {
     if field.text.is_empty() {
         if let Least::Above(_) = least {
-            problems.value(line, field, name, || Complaint::new("the cell is empty", "a number", AGAIN));
+            problems.value(line, field, name, || {
+                Complaint::new("the cell is empty", "a number", AGAIN)
+            });
         }
         return f64::NAN;
     }
     let Some(number) = field.text.parse::<f64>().ok().filter(|x| x.is_finite()) else {
-        problems.value(line, field, name, || Complaint::new("this is no number", NUMBER, AGAIN));
+        problems.value(line, field, name, || {
+            Complaint::new("this is no number", NUMBER, AGAIN)
+        });
         return f64::NAN;
     };
     if let Least::Above(low) = least
@@ -181,15 +243,25 @@ fn number(line: Line, field: Field, name: &str, least: Least, problems: &mut Pro
 /// A word, with the quotes in it as they were before it was written.
 fn word(line: Line, field: Field) -> String {
     let quoted = line.text[..field.start].ends_with('"');
-    if quoted { field.text.replace("\"\"", "\"") } else { field.text.to_owned() }
+    if quoted {
+        field.text.replace("\"\"", "\"")
+    } else {
+        field.text.to_owned()
+    }
 }
 
 fn flags_in(line: Line, field: Field, problems: &mut Problems) -> Flags {
     flags_of(field.text).unwrap_or_else(|word| {
         let names: Vec<&str> = Flags::NAMES.iter().map(|(_, name)| *name).collect();
         let hint = format!("known are {}", names.join(", "));
-        let message = if word.is_empty() { "a flag without a name".to_owned() } else { format!("the flag `{word}` is unknown") };
-        problems.value(line, field, "flags", || Complaint::new(message, FLAGS, hint));
+        let message = if word.is_empty() {
+            "a flag without a name".to_owned()
+        } else {
+            format!("the flag `{word}` is unknown")
+        };
+        problems.value(line, field, "flags", || {
+            Complaint::new(message, FLAGS, hint)
+        });
         Flags::default()
     })
 }

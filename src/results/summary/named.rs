@@ -12,7 +12,10 @@ impl Named {
     /// The number of that name, if it is there and was computed.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<f64> {
-        self.0.iter().find(|(other, _)| other == name).and_then(|(_, value)| *value)
+        self.0
+            .iter()
+            .find(|(other, _)| other == name)
+            .and_then(|(_, value)| *value)
     }
 
     /// Names and numbers in order.
@@ -23,7 +26,11 @@ impl Named {
 
 impl<'a> FromIterator<(&'a str, Option<f64>)> for Named {
     fn from_iter<I: IntoIterator<Item = (&'a str, Option<f64>)>>(list: I) -> Self {
-        Named(list.into_iter().map(|(name, value)| (name.to_owned(), value)).collect())
+        Named(
+            list.into_iter()
+                .map(|(name, value)| (name.to_owned(), value))
+                .collect(),
+        )
     }
 }
 

@@ -37,10 +37,16 @@ pub fn car_energy(car: &Car) -> CarEnergy {
 pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
     let term = |car: &Car, name: &str| car.run.ledger_kj.get(name).unwrap_or(0.0);
     let fuel = subject.run.fuel_energy_kj - baseline.run.fuel_energy_kj;
-    let mut parts: Vec<(&str, f64)> = TERMS.iter().map(|(name, words)| (*words, term(subject, name) - term(baseline, name))).collect();
+    let mut parts: Vec<(&str, f64)> = TERMS
+        .iter()
+        .map(|(name, words)| (*words, term(subject, name) - term(baseline, name)))
+        .collect();
     parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let told: Vec<String> =
-        parts.iter().filter(|(_, kj)| kj.abs() >= 0.5).map(|(words, kj)| format!("{words} {}", Quantity::Energy.signed(*kj))).collect();
+    let told: Vec<String> = parts
+        .iter()
+        .filter(|(_, kj)| kj.abs() >= 0.5)
+        .map(|(words, kj)| format!("{words} {}", Quantity::Energy.signed(*kj)))
+        .collect();
     let distances = (subject.run.distance_km - baseline.run.distance_km).abs();
     let drive = if distances > 0.0005 {
         format!(
@@ -51,7 +57,12 @@ pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
     } else {
         String::new()
     };
-    format!("Against {} the fuel's energy differs by {}: {}.{drive}", baseline.run.vehicle, Quantity::Energy.signed(fuel), told.join(", "))
+    format!(
+        "Against {} the fuel's energy differs by {}: {}.{drive}",
+        baseline.run.vehicle,
+        Quantity::Energy.signed(fuel),
+        told.join(", ")
+    )
 }
 
 pub(super) fn section(cars: &[Car]) -> Section {
@@ -64,22 +75,52 @@ pub(super) fn section(cars: &[Car]) -> Section {
     for car in cars {
         let (name, energy) = (&car.run.vehicle, car_energy(car));
         section.blocks.push(Block::Heading(car.run.title.clone()));
-        section.figure(format!("energy_flow_{name}"), format!("Energy of {name} from the fuel to the road."), energy_flow(&energy));
-        let caption = format!("The same, enlarged: from the flywheel of {name} through each part of the transmission to the wheels.");
-        section.figure(format!("transmission_flow_{name}"), caption, transmission_flow(&energy));
+        section.figure(
+            format!("energy_flow_{name}"),
+            format!("Energy of {name} from the fuel to the road."),
+            energy_flow(&energy),
+        );
+        let caption = format!(
+            "The same, enlarged: from the flywheel of {name} through each part of the transmission to the wheels."
+        );
+        section.figure(
+            format!("transmission_flow_{name}"),
+            caption,
+            transmission_flow(&energy),
+        );
     }
     section
 }
 
 fn balance(cars: &[Car]) -> Table {
-    let columns = cars.iter().flat_map(|car| [(car.run.vehicle.clone(), "kJ".to_owned()), ("of fuel".to_owned(), "%".to_owned())]);
+    let columns = cars.iter().flat_map(|car| {
+        [
+            (car.run.vehicle.clone(), "kJ".to_owned()),
+            ("of fuel".to_owned(), "%".to_owned()),
+        ]
+    });
     let mut table = Table::of_numbers("Energy balance", "Term", columns);
     let cells = |of: &dyn Fn(&Car) -> Option<f64>| -> Vec<String> {
-        cars.iter().flat_map(|car| [Quantity::Energy.bare(of(car)), percent(of(car), car.run.fuel_energy_kj)]).collect()
+        cars.iter()
+            .flat_map(|car| {
+                [
+                    Quantity::Energy.bare(of(car)),
+                    percent(of(car), car.run.fuel_energy_kj),
+                ]
+            })
+            .collect()
     };
     for (term, words) in TERMS {
-        table.row([words.to_owned()].into_iter().chain(cells(&|car| car.run.ledger_kj.get(term))));
+        table.row(
+            [words.to_owned()]
+                .into_iter()
+                .chain(cells(&|car| car.run.ledger_kj.get(term))),
+        );
     }
-    table.strong_row(["fuel".to_owned()].into_iter().chain(cells(&|car| Some(car.run.fuel_energy_kj))));
+    table.strong_row(
+        ["fuel".to_owned()]
+            .into_iter()
+            .chain(cells(&|car| Some(car.run.fuel_energy_kj))),
+    );
     table
 }

@@ -37,20 +37,40 @@ impl Car<'_> {
     /// Losses of the transmission that the run tells, kJ, in the order of the power flow.
     #[must_use]
     pub fn losses_kj(&self) -> Vec<(Component, f64)> {
-        Component::ALL.iter().filter_map(|c| Some((*c, self.run.loss_kj.get(c.name())?))).collect()
+        Component::ALL
+            .iter()
+            .filter_map(|c| Some((*c, self.run.loss_kj.get(c.name())?)))
+            .collect()
     }
 }
 
 /// The cars of a run, the subject first.
 #[must_use]
 pub fn cars(found: &RunFound) -> Vec<Car<'_>> {
-    let record = |name: &str| found.record.as_ref()?.cars.iter().find(|car| car.name == name);
+    let record = |name: &str| {
+        found
+            .record
+            .as_ref()?
+            .cars
+            .iter()
+            .find(|car| car.name == name)
+    };
     let car = |(run, history)| -> Car<'_> {
         let run: &RunSummary = run;
         let history: &Option<History> = history;
-        Car { run, record: record(&run.vehicle), history: history.as_ref() }
+        Car {
+            run,
+            record: record(&run.vehicle),
+            history: history.as_ref(),
+        }
     };
-    found.summary.runs.iter().zip(&found.histories).map(car).collect()
+    found
+        .summary
+        .runs
+        .iter()
+        .zip(&found.histories)
+        .map(car)
+        .collect()
 }
 
 /// The report of a run.
@@ -61,16 +81,26 @@ pub fn document(found: &RunFound) -> Result<Document, Problem> {
     let cars = cars(found);
     let mut document = Document {
         title: title(&found.summary),
-        subtitle: format!("{}; {}", cycle_title(&found.summary, found.record.as_ref()), conditions_line(&found.summary)),
+        subtitle: format!(
+            "{}; {}",
+            cycle_title(&found.summary, found.record.as_ref()),
+            conditions_line(&found.summary)
+        ),
         warnings: found.missing.clone(),
         ..Document::default()
     };
-    let mut sections = vec![answer::section(found, &cars), conditions::section(found, &cars)];
+    let mut sections = vec![
+        answer::section(found, &cars),
+        conditions::section(found, &cars),
+    ];
     sections.extend(figures::sections(found, &cars));
     for (k, beside) in found.studies.iter().enumerate() {
         let mut section = study::section(beside)?;
         // Of several studies of a kind the first keeps the plain name.
-        if sections.iter().any(|other: &Section| other.id == section.id) {
+        if sections
+            .iter()
+            .any(|other: &Section| other.id == section.id)
+        {
             section.id = format!("{}-{k}", section.id);
         }
         document.warnings.extend(unfinished(beside));
@@ -87,7 +117,12 @@ pub fn document(found: &RunFound) -> Result<Document, Problem> {
 #[must_use]
 pub fn unfinished(study: &StudyFound) -> Option<String> {
     let (there, all) = study.parts();
-    (there < all).then(|| format!("the study in {} is not finished: {there} of {all} parts", study.path.display()))
+    (there < all).then(|| {
+        format!(
+            "the study in {} is not finished: {there} of {all} parts",
+            study.path.display()
+        )
+    })
 }
 
 fn title(summary: &Summary) -> String {
@@ -102,7 +137,10 @@ fn title(summary: &Summary) -> String {
 /// The cycle as people call it.
 #[must_use]
 pub fn cycle_title(summary: &Summary, record: Option<&Record>) -> String {
-    record.map(|r| r.cycle.title.clone()).filter(|title| !title.is_empty()).unwrap_or_else(|| words(&summary.cycle))
+    record
+        .map(|r| r.cycle.title.clone())
+        .filter(|title| !title.is_empty())
+        .unwrap_or_else(|| words(&summary.cycle))
 }
 
 /// The start in words.
@@ -118,5 +156,9 @@ pub fn start_line(summary: &Summary) -> String {
 /// Ambient and start in words.
 #[must_use]
 pub fn conditions_line(summary: &Summary) -> String {
-    format!("ambient {}, {}", degc(summary.ambient_degc), start_line(summary))
+    format!(
+        "ambient {}, {}",
+        degc(summary.ambient_degc),
+        start_line(summary)
+    )
 }

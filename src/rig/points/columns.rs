@@ -16,7 +16,12 @@ pub struct Number {
 
 impl Number {
     const fn new(name: &'static str, allowed: Bound, unit: &'static str) -> Self {
-        Number { name, allowed, unit, whole: false }
+        Number {
+            name,
+            allowed,
+            unit,
+            whole: false,
+        }
     }
 }
 
@@ -41,15 +46,33 @@ pub const NUMBERS: [Number; 12] = [
     // What the belt can run at is the model's to say.
     Number::new("ratio", Bound::any(), ""),
     Number::new("input_speed_rpm", Bound::closed(0.0, 100_000.0), "rpm"),
-    Number::new("secondary_pressure_bar", Bound::closed(0.0, 10_000.0), "bar"),
-    Number::new("output_torque_nm", Bound::closed(-100_000.0, 100_000.0), "Nm"),
+    Number::new(
+        "secondary_pressure_bar",
+        Bound::closed(0.0, 10_000.0),
+        "bar",
+    ),
+    Number::new(
+        "output_torque_nm",
+        Bound::closed(-100_000.0, 100_000.0),
+        "Nm",
+    ),
     Number::new("pulley_half_angle_deg", Bound::closed(1.0, 45.0), "degrees"),
     Number::new("wedge_half_angle_deg", Bound::closed(1.0, 45.0), "degrees"),
     Number::new("band_offset_mm", Bound::closed(0.0, 50.0), "mm"),
     Number::new("band_friction", Bound::closed(0.0, 0.5), ""),
     Number::new("segment_friction", Bound::closed(0.01, 1.0), ""),
-    Number { name: "band_count", allowed: Bound::closed(1.0, 100.0), unit: "", whole: true },
-    Number { name: "primary_on_stop", allowed: Bound::closed(0.0, 1.0), unit: "", whole: true },
+    Number {
+        name: "band_count",
+        allowed: Bound::closed(1.0, 100.0),
+        unit: "",
+        whole: true,
+    },
+    Number {
+        name: "primary_on_stop",
+        allowed: Bound::closed(0.0, 1.0),
+        unit: "",
+        whole: true,
+    },
     Number::new("belt_temp_degc", Bound::closed(-60.0, 200.0), "degC"),
 ];
 
@@ -76,15 +99,21 @@ pub const OUTPUTS: [Output; 31] = [
     ("primary_clamp_n", |p| p.tension.primary_clamp_n),
     ("secondary_clamp_n", |p| p.tension.secondary_clamp_n),
     ("primary_shoulder_force_n", |p| p.tension.primary_shoulder_n),
-    ("secondary_shoulder_force_n", |p| p.tension.secondary_shoulder_n),
+    ("secondary_shoulder_force_n", |p| {
+        p.tension.secondary_shoulder_n
+    }),
     ("band_tension_1_n", |p| p.band_tension_n[0]),
     ("band_tension_2_n", |p| p.band_tension_n[1]),
     ("band_tension_step_n", |p| p.tension.step_n),
     ("segment_compression_n", |p| p.tension.compression_n),
     ("band_1_travel_m_per_rev", |p| p.band_travel_m[0]),
     ("band_i_travel_m_per_rev", |p| p.band_travel_m[1]),
-    ("band_loss_primary_nm", |p| p.band_loss_nm[0] + p.film_loss_nm[0]),
-    ("band_loss_secondary_nm", |p| p.band_loss_nm[1] + p.film_loss_nm[1]),
+    ("band_loss_primary_nm", |p| {
+        p.band_loss_nm[0] + p.film_loss_nm[0]
+    }),
+    ("band_loss_secondary_nm", |p| {
+        p.band_loss_nm[1] + p.film_loss_nm[1]
+    }),
     ("active_segments", |p| p.active_segments),
     ("gap_slip_m_s", |p| p.gap_slip_m_s),
     ("idle_slip_m_s", |p| p.idle_slip_m_s),
@@ -96,7 +125,9 @@ pub const OUTPUTS: [Output; 31] = [
     ("wedge_loss_primary_nm", |p| p.wedge_loss_nm[0]),
     ("wedge_loss_secondary_nm", |p| p.wedge_loss_nm[1]),
     ("penetration_loss_primary_nm", |p| p.penetration_loss_nm[0]),
-    ("penetration_loss_secondary_nm", |p| p.penetration_loss_nm[1]),
+    ("penetration_loss_secondary_nm", |p| {
+        p.penetration_loss_nm[1]
+    }),
     ("belt_loss_nm", |p| p.loss_nm),
 ];
 
@@ -140,7 +171,9 @@ fn computed() -> impl Iterator<Item = &'static str> {
 }
 
 fn read() -> impl Iterator<Item = &'static str> {
-    [CASE, FORMULATION].into_iter().chain(NUMBERS.iter().map(|number| number.name))
+    [CASE, FORMULATION]
+        .into_iter()
+        .chain(NUMBERS.iter().map(|number| number.name))
 }
 
 /// Names of the columns of the output, in their order.
@@ -159,36 +192,68 @@ impl Header {
     pub fn read(line: Line<'_>, problems: &mut Problems<'_>) -> Option<Self> {
         if line.text.contains('\r') {
             let message = "the lines end with a carriage return alone";
-            problems.file(Complaint::new(message, "lines that end with LF or CR LF", "save it with the line ends of today"));
+            problems.file(Complaint::new(
+                message,
+                "lines that end with LF or CR LF",
+                "save it with the line ends of today",
+            ));
             return None;
         }
         let fields = problems.names(line)?;
         if fields.iter().all(|field| field.text.parse::<f64>().is_ok()) {
             let hint = "put the names above the numbers: ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm";
-            problems.line(line, "", || Complaint::new("the first line has numbers and no column names", "", hint));
+            problems.line(line, "", || {
+                Complaint::new("the first line has numbers and no column names", "", hint)
+            });
             return None;
         }
-        let mut header = Header { columns: Vec::with_capacity(fields.len()) };
+        let mut header = Header {
+            columns: Vec::with_capacity(fields.len()),
+        };
         for field in fields {
             let column = header.column(line, field, problems);
             header.columns.push(column);
         }
-        for number in NUMBERS.iter().take(REQUIRED).filter(|number| !header.names().any(|name| name == number.name)) {
+        for number in NUMBERS
+            .iter()
+            .take(REQUIRED)
+            .filter(|number| !header.names().any(|name| name == number.name))
+        {
             problems.line(line, number.name, || {
-                let allowed = NUMBERS.iter().take(REQUIRED).map(|number| number.name).collect::<Vec<_>>().join(", ");
-                Complaint::new(format!("the column {} is missing", number.name), allowed, "add it; the unit is in the name")
+                let allowed = NUMBERS
+                    .iter()
+                    .take(REQUIRED)
+                    .map(|number| number.name)
+                    .collect::<Vec<_>>()
+                    .join(", ");
+                Complaint::new(
+                    format!("the column {} is missing", number.name),
+                    allowed,
+                    "add it; the unit is in the name",
+                )
             });
         }
         Some(header)
     }
 
-    fn column(&self, line: Line<'_>, field: Field<'_>, problems: &mut Problems<'_>) -> Option<Column> {
+    fn column(
+        &self,
+        line: Line<'_>,
+        field: Field<'_>,
+        problems: &mut Problems<'_>,
+    ) -> Option<Column> {
         let Some(column) = Column::of(field.text) else {
             problems.value(line, field, field.text, || unknown(field.text));
             return None;
         };
         if self.columns.contains(&Some(column)) {
-            let twice = || Complaint::new("this column stands here twice", "each column once", "remove one of them");
+            let twice = || {
+                Complaint::new(
+                    "this column stands here twice",
+                    "each column once",
+                    "remove one of them",
+                )
+            };
             problems.value(line, field, column.name(), twice);
         }
         Some(column)
@@ -204,15 +269,32 @@ impl Header {
 
     /// Columns of the input that are computed and not read.
     pub fn ignored(&self) -> Vec<&'static str> {
-        self.columns.iter().flatten().filter(|column| matches!(column, Column::Output(_))).map(|column| column.name()).collect()
+        self.columns
+            .iter()
+            .flatten()
+            .filter(|column| matches!(column, Column::Output(_)))
+            .map(|column| column.name())
+            .collect()
     }
 }
 
 fn unknown(name: &str) -> Complaint {
     if name.is_empty() {
-        return Complaint::new("this column has no name", "", "remove the comma or name the column");
+        return Complaint::new(
+            "this column has no name",
+            "",
+            "remove the comma or name the column",
+        );
     }
     let names = near(name, read());
-    let hint = if names.is_empty() { "remove it or rename it".to_owned() } else { format!("did you mean {}?", names.join(" or ")) };
-    Complaint::new("there is no such column", read().collect::<Vec<_>>().join(", "), hint)
+    let hint = if names.is_empty() {
+        "remove it or rename it".to_owned()
+    } else {
+        format!("did you mean {}?", names.join(" or "))
+    };
+    Complaint::new(
+        "there is no such column",
+        read().collect::<Vec<_>>().join(", "),
+        hint,
+    )
 }

@@ -28,18 +28,38 @@ impl Given<'_> {
 }
 
 /// Reads the fields of a line that has as many as the header, and says whether all are good.
-pub fn read<'t>(line: Line<'t>, fields: &[Field<'t>], header: &Header, problems: &mut Problems<'_>) -> (Given<'t>, bool) {
+pub fn read<'t>(
+    line: Line<'t>,
+    fields: &[Field<'t>],
+    header: &Header,
+    problems: &mut Problems<'_>,
+) -> (Given<'t>, bool) {
     let mut given = Given::default();
     let mut good = true;
     for (&field, column) in fields.iter().zip(&header.columns) {
         match column {
             Some(Column::Case) => given.case = field.text,
             Some(Column::Formulation) if !field.text.is_empty() => {
-                given.formulation = formulation(&Cell { line, key: FORMULATION, field }, problems);
+                given.formulation = formulation(
+                    &Cell {
+                        line,
+                        key: FORMULATION,
+                        field,
+                    },
+                    problems,
+                );
                 good &= given.formulation.is_some();
             }
             Some(Column::Number(place)) if !field.text.is_empty() || *place < REQUIRED => {
-                given.numbers[*place] = number(*place, &Cell { line, key: NUMBERS[*place].name, field }, problems);
+                given.numbers[*place] = number(
+                    *place,
+                    &Cell {
+                        line,
+                        key: NUMBERS[*place].name,
+                        field,
+                    },
+                    problems,
+                );
                 good &= given.numbers[*place].is_some();
             }
             _ => {}
@@ -50,13 +70,24 @@ pub fn read<'t>(line: Line<'t>, fields: &[Field<'t>], header: &Header, problems:
 
 fn formulation(cell: &Cell<'_>, problems: &mut Problems<'_>) -> Option<Formulation> {
     let text = cell.field.text;
-    let found = Formulation::NAMES.iter().find(|(name, _)| *name == text).map(|(_, formulation)| *formulation);
+    let found = Formulation::NAMES
+        .iter()
+        .find(|(name, _)| *name == text)
+        .map(|(_, formulation)| *formulation);
     if found.is_none() {
         problems.cell(cell, || {
             let names = Formulation::NAMES.map(|(name, _)| name);
             let close = near(text, names.into_iter());
-            let hint = if close.is_empty() { String::new() } else { format!("did you mean {}?", close.join(" or ")) };
-            Complaint::new("this formulation is not known", format!("one of {}", names.join(", ")), hint)
+            let hint = if close.is_empty() {
+                String::new()
+            } else {
+                format!("did you mean {}?", close.join(" or "))
+            };
+            Complaint::new(
+                "this formulation is not known",
+                format!("one of {}", names.join(", ")),
+                hint,
+            )
         });
     }
     found
@@ -74,14 +105,30 @@ fn number(place: usize, cell: &Cell<'_>, problems: &mut Problems<'_>) -> Option<
     }
     problems.cell(cell, || {
         let (message, hint) = match parsed {
-            Ok(value) if value.is_nan() => ("this is not a number", "fill the gap or remove the row"),
-            Ok(value) if value.is_infinite() => ("this is not a finite number", "fill the gap or remove the row"),
-            Ok(value) if column.allowed.contains(value) => ("this is not a whole number", "write it without decimals"),
+            Ok(value) if value.is_nan() => {
+                ("this is not a number", "fill the gap or remove the row")
+            }
+            Ok(value) if value.is_infinite() => (
+                "this is not a finite number",
+                "fill the gap or remove the row",
+            ),
+            Ok(value) if column.allowed.contains(value) => {
+                ("this is not a whole number", "write it without decimals")
+            }
             Ok(_) if column.unit.is_empty() => ("this value is out of range", ""),
-            Ok(_) => ("this value is out of range", "the unit is in the column's name"),
+            Ok(_) => (
+                "this value is out of range",
+                "the unit is in the column's name",
+            ),
             Err(_) if text.is_empty() => ("the value is missing", "fill the gap or remove the row"),
-            Err(_) if text.contains(',') => ("this is not a number", "write a decimal point: 12.5 and not 12,5"),
-            Err(_) => ("this is not a number", "write the bare number; the unit is in the column's name"),
+            Err(_) if text.contains(',') => (
+                "this is not a number",
+                "write a decimal point: 12.5 and not 12,5",
+            ),
+            Err(_) => (
+                "this is not a number",
+                "write the bare number; the unit is in the column's name",
+            ),
         };
         let allowed = match (place, column.whole) {
             (ON_STOP, _) => "1 (no deflection), 0 (full deflection) or nothing".to_owned(),

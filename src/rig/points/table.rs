@@ -68,24 +68,40 @@ impl Counts {
 
     /// Name of every status with its number of points.
     pub fn by_status(&self) -> impl Iterator<Item = (&'static str, u64)> {
-        PointStatus::ALL.into_iter().map(PointStatus::name).zip(self.status)
+        PointStatus::ALL
+            .into_iter()
+            .map(PointStatus::name)
+            .zip(self.status)
     }
 
     /// Name of every flag with its number of points.
     pub fn by_flag(&self) -> impl Iterator<Item = (&'static str, u64)> {
-        PointFlags::NAMES.into_iter().map(|(name, _)| name).zip(self.flags)
+        PointFlags::NAMES
+            .into_iter()
+            .map(|(name, _)| name)
+            .zip(self.flags)
     }
 
     /// The counts in words, after the name of the file that holds the rows.
     #[must_use]
     pub fn text(&self, out: &str) -> String {
         let some = |counts: &mut dyn Iterator<Item = (&'static str, u64)>| {
-            let words: Vec<String> = counts.filter(|(_, count)| *count > 0).map(|(name, count)| format!("{count} {name}")).collect();
-            if words.is_empty() { "none".to_owned() } else { words.join(", ") }
+            let words: Vec<String> = counts
+                .filter(|(_, count)| *count > 0)
+                .map(|(name, count)| format!("{count} {name}"))
+                .collect();
+            if words.is_empty() {
+                "none".to_owned()
+            } else {
+                words.join(", ")
+            }
         };
         let (status, flags) = (some(&mut self.by_status()), some(&mut self.by_flag()));
         let noun = if self.points == 1 { "point" } else { "points" };
-        format!("{out}: {} {noun}: {status}\nflagged: {flags}\n", self.points)
+        format!(
+            "{out}: {} {noun}: {status}\nflagged: {flags}\n",
+            self.points
+        )
     }
 }
 
@@ -101,10 +117,18 @@ struct Table<'f, 't> {
 /// # Errors
 /// All problems of the table, or why a row could not be taken.
 pub fn read(file: &str, reader: impl BufRead, job: Job<'_>) -> Result<Done, Vec<Problem>> {
-    let mut table = Table { found: Problems::new(file), job, counts: Counts::default() };
+    let mut table = Table {
+        found: Problems::new(file),
+        job,
+        counts: Counts::default(),
+    };
     let ignored = table.read(Lines::new(reader))?;
     let Table { found, counts, .. } = table;
-    if found.is_empty() { Ok(Done { counts, ignored }) } else { Err(found.finish()) }
+    if found.is_empty() {
+        Ok(Done { counts, ignored })
+    } else {
+        Err(found.finish())
+    }
 }
 
 impl Table<'_, '_> {
@@ -112,7 +136,11 @@ impl Table<'_, '_> {
     fn read(&mut self, mut lines: Lines<impl BufRead>) -> Result<Vec<&'static str>, Vec<Problem>> {
         let header = match lines.next() {
             None => {
-                self.found.file(Complaint::new("the file is empty", "", "it needs a line of column names and at least one row"));
+                self.found.file(Complaint::new(
+                    "the file is empty",
+                    "",
+                    "it needs a line of column names and at least one row",
+                ));
                 None
             }
             Some(Err(broken)) => {
@@ -139,7 +167,11 @@ impl Table<'_, '_> {
             }
         }
         if self.counts.points == 0 {
-            self.found.file(Complaint::new("the file has column names and no rows", "at least one row", ""));
+            self.found.file(Complaint::new(
+                "the file has column names and no rows",
+                "at least one row",
+                "",
+            ));
         }
         Ok(header.ignored())
     }
@@ -155,7 +187,10 @@ impl Table<'_, '_> {
         };
         let found = &mut self.found;
         let mut complain = |(place, complaint): (usize, Complaint)| {
-            let at = header.columns.iter().position(|column| *column == Some(Column::Number(place)));
+            let at = header
+                .columns
+                .iter()
+                .position(|column| *column == Some(Column::Number(place)));
             let key = NUMBERS[place].name;
             match at.and_then(|at| fields.get(at)) {
                 Some(&field) => found.cell(&Cell { line, key, field }, || complaint),

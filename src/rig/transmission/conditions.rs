@@ -6,7 +6,10 @@ use crate::config::{Bound, Document, KeyInfo, Problem, Reader, Section};
 pub const PREFIX: &str = "rig.";
 
 /// The embedded file: name and text.
-pub const FILE: (&str, &str) = ("rig_transmission", include_str!("../../../rigs/transmission.toml"));
+pub const FILE: (&str, &str) = (
+    "rig_transmission",
+    include_str!("../../../rigs/transmission.toml"),
+);
 
 /// Most speeds of one test.
 const MOST_SPEEDS: f64 = 400.0;
@@ -27,8 +30,12 @@ impl Speeds {
     #[must_use]
     pub fn list(&self) -> Vec<f64> {
         // A thousandth of a step for what was lost in rounding.
-        let count = ((self.to_rad_s - self.from_rad_s) / self.step_rad_s + 1e-3).floor().clamp(0.0, MOST_SPEEDS) as u32;
-        (0..=count).map(|k| self.from_rad_s + f64::from(k) * self.step_rad_s).collect()
+        let count = ((self.to_rad_s - self.from_rad_s) / self.step_rad_s + 1e-3)
+            .floor()
+            .clamp(0.0, MOST_SPEEDS) as u32;
+        (0..=count)
+            .map(|k| self.from_rad_s + f64::from(k) * self.step_rad_s)
+            .collect()
     }
 }
 
@@ -127,7 +134,11 @@ impl Conditions {
             let speeds = Speeds {
                 from_rad_s: speed.number(from, rpm, &format!("lowest input speed in {what} ratio")),
                 to_rad_s: speed.number(to, rpm, &format!("highest input speed in {what} ratio")),
-                step_rad_s: speed.number("step_rpm", Bound::closed(25.0, 4000.0), "step of the input speed"),
+                step_rad_s: speed.number(
+                    "step_rpm",
+                    Bound::closed(25.0, 4000.0),
+                    "step of the input speed",
+                ),
             };
             if speeds.from_rad_s > speeds.to_rad_s {
                 speed.complain(
@@ -146,14 +157,36 @@ impl Conditions {
             high_ratio: ratio.number("high", of_ratio, "belt ratio of the tests in high"),
             low_speeds: step("low_from_rpm", "low_to_rpm", "low"),
             high_speeds: step("high_from_rpm", "high_to_rpm", "high"),
-            oil_k: root.table("oil").numbers("temps_degc", OIL, 1..=20, "temperatures of the bulk oil in the steady tests"),
-            torques_nm: load.numbers("torques_nm", TORQUE, 1..=40, "torques at the output shaft in the loaded tests"),
-            throttle: load.number("throttle_percent", Bound::closed(0.0, 100.0), "throttle that the clamp law sees"),
+            oil_k: root.table("oil").numbers(
+                "temps_degc",
+                OIL,
+                1..=20,
+                "temperatures of the bulk oil in the steady tests",
+            ),
+            torques_nm: load.numbers(
+                "torques_nm",
+                TORQUE,
+                1..=40,
+                "torques at the output shaft in the loaded tests",
+            ),
+            throttle: load.number(
+                "throttle_percent",
+                Bound::closed(0.0, 100.0),
+                "throttle that the clamp law sees",
+            ),
             pressure: pressure(&root.table("pressure")),
             transient: transient(&root.table("transient")),
-            room_k: root.table("room").number("temp_degc", Bound::closed(-40.0, 60.0), "air around the box"),
+            room_k: root.table("room").number(
+                "temp_degc",
+                Bound::closed(-40.0, 60.0),
+                "air around the box",
+            ),
             cooler: cooler(&root.table("cooler")),
-            transducer_nm: root.table("transducer").number("error_nm", Bound::closed(0.0, 10.0), "error of the torque transducer"),
+            transducer_nm: root.table("transducer").number(
+                "error_nm",
+                Bound::closed(0.0, 10.0),
+                "error of the torque transducer",
+            ),
         }
     }
 
@@ -173,7 +206,11 @@ impl Conditions {
     /// Speeds at which a ratio is tested: the short range in the rig's high ratio and beyond, the long one else.
     #[must_use]
     pub fn speeds(&self, ratio: f64) -> Speeds {
-        if ratio <= self.high_ratio { self.high_speeds } else { self.low_speeds }
+        if ratio <= self.high_ratio {
+            self.high_speeds
+        } else {
+            self.low_speeds
+        }
     }
 }
 
@@ -184,7 +221,11 @@ pub const TORQUE: Bound = Bound::closed(-100.0, 1000.0);
 
 fn pressure(s: &Section) -> PressureFactors {
     let factor = |key: &str, what: &str| {
-        s.number(key, Bound::closed(0.5, 1.5), &format!("secondary pressure {what}, over that of the complete box"))
+        s.number(
+            key,
+            Bound::closed(0.5, 1.5),
+            &format!("secondary pressure {what}, over that of the complete box"),
+        )
     };
     PressureFactors {
         final_drive_removed: factor("final_drive_removed", "with the final drive removed"),
@@ -196,8 +237,16 @@ fn pressure(s: &Section) -> PressureFactors {
 
 fn transient(s: &Section) -> TransientTest {
     let test = TransientTest {
-        speed_rad_s: s.number("speed_rpm", Bound::closed(500.0, 8000.0), "input speed of the transients"),
-        start_k: s.number("start_degc", OIL, "everything at the start, and the sump when cooling ends"),
+        speed_rad_s: s.number(
+            "speed_rpm",
+            Bound::closed(500.0, 8000.0),
+            "input speed of the transients",
+        ),
+        start_k: s.number(
+            "start_degc",
+            OIL,
+            "everything at the start, and the sump when cooling ends",
+        ),
         end_k: s.number("end_degc", OIL, "sump when the warm-up ends"),
     };
     if test.end_k - test.start_k < 5.0 {
@@ -213,9 +262,21 @@ fn transient(s: &Section) -> TransientTest {
 
 fn cooler(s: &Section) -> RigCooler {
     RigCooler {
-        flow_m3_s: s.number("flow_l_min", Bound::open_low(0.0, 100.0), "oil flow through the rig's cooler (RT-2)"),
-        conductance_w_k: s.number("conductance_w_k", Bound::open_low(0.0, 20_000.0), "conductance of the rig's cooler (RT-2)"),
-        coolant_k: s.number("coolant_degc", Bound::closed(-60.0, 60.0), "coolant of the rig's cooler (RT-2)"),
+        flow_m3_s: s.number(
+            "flow_l_min",
+            Bound::open_low(0.0, 100.0),
+            "oil flow through the rig's cooler (RT-2)",
+        ),
+        conductance_w_k: s.number(
+            "conductance_w_k",
+            Bound::open_low(0.0, 20_000.0),
+            "conductance of the rig's cooler (RT-2)",
+        ),
+        coolant_k: s.number(
+            "coolant_degc",
+            Bound::closed(-60.0, 60.0),
+            "coolant of the rig's cooler (RT-2)",
+        ),
     }
 }
 
@@ -226,19 +287,44 @@ mod tests {
     #[test]
     fn speeds_hold_both_ends() {
         let (c, keys) = Conditions::load(&[]).unwrap();
-        let rpm = |s: Speeds| s.list().iter().map(|w| (w * 30.0 / std::f64::consts::PI).round()).collect::<Vec<_>>();
+        let rpm = |s: Speeds| {
+            s.list()
+                .iter()
+                .map(|w| (w * 30.0 / std::f64::consts::PI).round())
+                .collect::<Vec<_>>()
+        };
         let low = rpm(c.low_speeds);
         assert_eq!((low.len(), low[0], low[12]), (13, 1000.0, 4000.0));
         assert_eq!(rpm(c.high_speeds).len(), 10);
-        assert!(keys.iter().all(|k| k.key.starts_with(PREFIX) && !k.status.is_empty() && !k.doc.is_empty()), "{keys:?}");
+        assert!(
+            keys.iter()
+                .all(|k| k.key.starts_with(PREFIX) && !k.status.is_empty() && !k.doc.is_empty()),
+            "{keys:?}"
+        );
     }
 
     #[test]
     fn every_problem_of_an_override_is_told() {
-        let sets = ["rig.transient.end_degc=10", "rig.ratio.low=9", "rig.speed.stepp_rpm=3", "road_load.mass_kg=3"].map(str::to_owned);
+        let sets = [
+            "rig.transient.end_degc=10",
+            "rig.ratio.low=9",
+            "rig.speed.stepp_rpm=3",
+            "road_load.mass_kg=3",
+        ]
+        .map(str::to_owned);
         let problems = Conditions::load(&sets).unwrap_err();
         assert_eq!(problems.len(), 3, "{problems:#?}");
-        assert!(problems.iter().all(|p| p.key.starts_with("rig.") && p.place.file.starts_with("--set rig.")), "{problems:#?}");
-        assert!(problems.iter().any(|p| p.hint.contains("rig.speed.step_rpm")), "{problems:#?}");
+        assert!(
+            problems
+                .iter()
+                .all(|p| p.key.starts_with("rig.") && p.place.file.starts_with("--set rig.")),
+            "{problems:#?}"
+        );
+        assert!(
+            problems
+                .iter()
+                .any(|p| p.hint.contains("rig.speed.step_rpm")),
+            "{problems:#?}"
+        );
     }
 }

@@ -20,13 +20,20 @@ impl Plan {
     /// The rig's own points.
     #[must_use]
     pub fn of(c: &Conditions) -> Self {
-        Plan { ratios: vec![c.low_ratio, c.high_ratio], speeds_rad_s: None, oil_k: c.oil_k.clone(), torques_nm: c.torques_nm.clone() }
+        Plan {
+            ratios: vec![c.low_ratio, c.high_ratio],
+            speeds_rad_s: None,
+            oil_k: c.oil_k.clone(),
+            torques_nm: c.torques_nm.clone(),
+        }
     }
 
     /// Input speeds at a ratio, rad/s.
     #[must_use]
     pub fn speeds(&self, c: &Conditions, ratio: f64) -> Vec<f64> {
-        self.speeds_rad_s.clone().unwrap_or_else(|| c.speeds(ratio).list())
+        self.speeds_rad_s
+            .clone()
+            .unwrap_or_else(|| c.speeds(ratio).list())
     }
 
     /// Every point without load, by ratio, then temperature, then speed.
@@ -34,13 +41,16 @@ impl Plan {
         self.ratios.iter().flat_map(move |&ratio| {
             let speeds = self.speeds(c, ratio);
             self.oil_k.iter().flat_map(move |&sump_k| {
-                speeds.clone().into_iter().map(move |input_rad_s| BenchPoint {
-                    ratio,
-                    input_rad_s,
-                    sump_k,
-                    throttle: c.throttle,
-                    ..BenchPoint::default()
-                })
+                speeds
+                    .clone()
+                    .into_iter()
+                    .map(move |input_rad_s| BenchPoint {
+                        ratio,
+                        input_rad_s,
+                        sump_k,
+                        throttle: c.throttle,
+                        ..BenchPoint::default()
+                    })
             })
         })
     }
@@ -56,7 +66,10 @@ pub struct SteadyPoint {
 }
 
 fn solved(bench: &Bench, set: BenchPoint) -> SteadyPoint {
-    SteadyPoint { set, answer: bench.solve(&set) }
+    SteadyPoint {
+        set,
+        answer: bench.solve(&set),
+    }
 }
 
 /// The maps without load, by ratio, then temperature, then speed.
@@ -111,7 +124,14 @@ pub fn second_box(bench: &Bench, c: &Conditions, plan: &Plan) -> Vec<TwoBoxes> {
     let factor = c.pressure.second_box;
     let both = |p: BenchPoint| TwoBoxes {
         first: solved(bench, p),
-        second: solved(bench, BenchPoint { pressure_factor: factor, parts: Parts::ALL, ..p }), // RT-6
+        second: solved(
+            bench,
+            BenchPoint {
+                pressure_factor: factor,
+                parts: Parts::ALL,
+                ..p
+            },
+        ), // RT-6
     };
     plan.points(c).map(both).collect()
 }

@@ -34,7 +34,13 @@ pub enum Stage {
 
 impl Stage {
     /// All stages in order.
-    pub const ALL: [Stage; 5] = [Stage::Complete, Stage::FinalDriveRemoved, Stage::BeltRemoved, Stage::ClutchRemoved, Stage::PumpRemoved];
+    pub const ALL: [Stage; 5] = [
+        Stage::Complete,
+        Stage::FinalDriveRemoved,
+        Stage::BeltRemoved,
+        Stage::ClutchRemoved,
+        Stage::PumpRemoved,
+    ];
 
     /// Name as in files.
     #[must_use]
@@ -50,7 +56,12 @@ impl Stage {
 
     fn parts(self) -> Parts {
         let stage = self as usize;
-        Parts { final_drive: stage < 1, belt: stage < 2, reverse_clutch: stage < 3, pump: stage < 4 }
+        Parts {
+            final_drive: stage < 1,
+            belt: stage < 2,
+            reverse_clutch: stage < 3,
+            pump: stage < 4,
+        }
     }
 
     fn factor(self, c: &Conditions) -> f64 {
@@ -81,7 +92,13 @@ pub enum Piece {
 
 impl Piece {
     /// All pieces in the order of the power flow.
-    pub const ALL: [Piece; 5] = [Piece::Pump, Piece::InputShaft, Piece::Clutch, Piece::Belt, Piece::FinalDrive];
+    pub const ALL: [Piece; 5] = [
+        Piece::Pump,
+        Piece::InputShaft,
+        Piece::Clutch,
+        Piece::Belt,
+        Piece::FinalDrive,
+    ];
 
     /// Name as in files.
     #[must_use]
@@ -165,32 +182,60 @@ impl StripDown {
 /// The sequence at all points without load. None without a CVT on the bench.
 #[must_use]
 pub fn strip_down(bench: &Bench, c: &Conditions, plan: &Plan) -> Vec<StripDown> {
-    let Some(cvt) = bench.cvt() else { return Vec::new() };
+    let Some(cvt) = bench.cvt() else {
+        return Vec::new();
+    };
     let displacement_m3_rad = cvt.pump.displacement_m3_rad;
-    plan.points(c).map(|set| sequence(bench, c, set, displacement_m3_rad)).collect()
+    plan.points(c)
+        .map(|set| sequence(bench, c, set, displacement_m3_rad))
+        .collect()
 }
 
 fn sequence(bench: &Bench, c: &Conditions, set: BenchPoint, displacement_m3_rad: f64) -> StripDown {
     let at = |stage: Stage, ratio: f64| {
-        bench.solve(&BenchPoint { ratio, parts: stage.parts(), pressure_factor: stage.factor(c), ..set }) // RT-6
+        bench.solve(&BenchPoint {
+            ratio,
+            parts: stage.parts(),
+            pressure_factor: stage.factor(c),
+            ..set
+        }) // RT-6
     };
     // After the belt is out, nothing but the pressure knows of the ratio: the clutch is tested in low only (RT-4).
-    let ratio_of = |stage: Stage| if (stage as usize) < Stage::ClutchRemoved as usize { set.ratio } else { c.low_ratio };
+    let ratio_of = |stage: Stage| {
+        if (stage as usize) < Stage::ClutchRemoved as usize {
+            set.ratio
+        } else {
+            c.low_ratio
+        }
+    };
     let stages = Stage::ALL.map(|stage| at(stage, ratio_of(stage)));
     let [complete, no_drive, no_belt, no_clutch, shaft] = &stages;
     let low_no_belt = at(Stage::BeltRemoved, c.low_ratio);
     // The belt at the pressure of the second test, but with the final drive's torque.
-    let between = bench.solve(&BenchPoint { pressure_pa: Some(no_drive.secondary_pa), ..set });
+    let between = bench.solve(&BenchPoint {
+        pressure_pa: Some(no_drive.secondary_pa),
+        ..set
+    });
     let by_pressure_nm = complete.belt_nm() - between.belt_nm(); // RT-5
     let by_torque_nm = between.belt_nm() - no_drive.belt_nm(); // RT-5
     let difference = |before: &BenchAnswer, after: &BenchAnswer| {
         let raw = before.total_nm() - after.total_nm();
-        (raw, raw - displacement_m3_rad * (before.secondary_pa - after.secondary_pa)) // RT-3
+        (
+            raw,
+            raw - displacement_m3_rad * (before.secondary_pa - after.secondary_pa),
+        ) // RT-3
     };
-    let (final_drive, belt, clutch) = (difference(complete, no_drive), difference(no_drive, no_belt), difference(&low_no_belt, no_clutch));
+    let (final_drive, belt, clutch) = (
+        difference(complete, no_drive),
+        difference(no_drive, no_belt),
+        difference(&low_no_belt, no_clutch),
+    );
     let shaft_nm = shaft.total_nm();
     let pump = no_belt.total_nm() - clutch.1 - shaft_nm;
-    let pump = (pump, pump + displacement_m3_rad * (complete.secondary_pa - no_belt.secondary_pa)); // RT-4
+    let pump = (
+        pump,
+        pump + displacement_m3_rad * (complete.secondary_pa - no_belt.secondary_pa),
+    ); // RT-4
     let found = Piece::ALL.map(|piece| {
         let (found, sign) = match piece {
             Piece::Pump => (pump, 0.0),

@@ -100,19 +100,34 @@ impl Loop {
     /// Anything on a branch at a sump temperature.
     #[must_use]
     pub fn at(&self, branch: Branch, sump_k: f64, of: impl Fn(&Moment) -> f64) -> Option<f64> {
-        let cooling = self.moments.partition_point(|m| m.branch == Branch::Warming);
-        let on = if branch == Branch::Warming { &self.moments[..cooling] } else { &self.moments[cooling..] };
+        let cooling = self
+            .moments
+            .partition_point(|m| m.branch == Branch::Warming);
+        let on = if branch == Branch::Warming {
+            &self.moments[..cooling]
+        } else {
+            &self.moments[cooling..]
+        };
         // Where the sump goes one way only, the first pair around the temperature is found by bisection.
         let from = if self.monotone {
             let rising = branch == Branch::Warming;
-            on.partition_point(|m| if rising { m.sump_k < sump_k } else { m.sump_k > sump_k }).saturating_sub(1)
+            on.partition_point(|m| {
+                if rising {
+                    m.sump_k < sump_k
+                } else {
+                    m.sump_k > sump_k
+                }
+            })
+            .saturating_sub(1)
         } else {
             0
         };
         on[from..].windows(2).find_map(|w| {
             let (a, b) = (w[0].sump_k, w[1].sump_k);
             let share = (sump_k - a) / (b - a);
-            (0.0..=1.0).contains(&share).then(|| of(&w[0]) + share * (of(&w[1]) - of(&w[0])))
+            (0.0..=1.0)
+                .contains(&share)
+                .then(|| of(&w[0]) + share * (of(&w[1]) - of(&w[0])))
         })
     }
 
@@ -128,22 +143,48 @@ impl Loop {
     #[must_use]
     pub fn meeting_k(&self, near_nm: f64) -> Option<f64> {
         let gaps = self.gaps();
-        let widest = gaps.iter().enumerate().max_by(|a, b| a.1.1.total_cmp(&b.1.1)).map(|(k, _)| k)?;
-        gaps[..=widest].iter().rev().find(|(_, gap)| *gap <= near_nm).map(|(k, _)| *k)
+        let widest = gaps
+            .iter()
+            .enumerate()
+            .max_by(|a, b| a.1.1.total_cmp(&b.1.1))
+            .map(|(k, _)| k)?;
+        gaps[..=widest]
+            .iter()
+            .rev()
+            .find(|(_, gap)| *gap <= near_nm)
+            .map(|(k, _)| *k)
     }
 
     /// Largest gap between the branches, Nm, and where, K.
     #[must_use]
     pub fn widest(&self) -> Option<(f64, f64)> {
-        self.gaps().into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, gap)| (gap, k))
+        self.gaps()
+            .into_iter()
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(k, gap)| (gap, k))
     }
 
     /// Sump temperature, K, and gap, Nm, at every half kelvin that both branches come by.
     fn gaps(&self) -> Vec<(f64, f64)> {
-        let from = self.moments.iter().map(|m| m.sump_k).fold(f64::INFINITY, f64::min);
-        let to = self.moments.iter().map(|m| m.sump_k).fold(f64::NEG_INFINITY, f64::max);
-        let count = if to > from { ((to - from) / 0.5).ceil() as u32 } else { 0 };
-        (0..=count).map(|k| from + 0.5 * f64::from(k)).filter_map(|k| Some((k, self.gap_nm(k)?))).collect()
+        let from = self
+            .moments
+            .iter()
+            .map(|m| m.sump_k)
+            .fold(f64::INFINITY, f64::min);
+        let to = self
+            .moments
+            .iter()
+            .map(|m| m.sump_k)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let count = if to > from {
+            ((to - from) / 0.5).ceil() as u32
+        } else {
+            0
+        };
+        (0..=count)
+            .map(|k| from + 0.5 * f64::from(k))
+            .filter_map(|k| Some((k, self.gap_nm(k)?)))
+            .collect()
     }
 }
 
@@ -181,23 +222,50 @@ struct Running<'a> {
 pub fn transient(bench: &Bench, conditions: &Conditions, ratio: f64) -> Loop {
     let test = &conditions.transient;
     let heat = Heat::uniform(test.start_k);
-    let mut running = Running { bench, conditions, network: on_the_rig(&bench.car().network), ratio, heat, time_s: 0.0 };
+    let mut running = Running {
+        bench,
+        conditions,
+        network: on_the_rig(&bench.car().network),
+        ratio,
+        heat,
+        time_s: 0.0,
+    };
     // The engine's nodes stay at room temperature: nothing leads to them.
-    (running.heat.node_k[COOLANT], running.heat.node_k[ENGINE_OIL]) = (conditions.room_k, conditions.room_k);
-    let mut result = Loop { ratio, moments: Vec::new(), energy: LoopEnergy::default(), complete: true, monotone: true };
-    for (branch, until_k) in [(Branch::Warming, test.end_k), (Branch::Cooling, test.start_k)] {
+    (
+        running.heat.node_k[COOLANT],
+        running.heat.node_k[ENGINE_OIL],
+    ) = (conditions.room_k, conditions.room_k);
+    let mut result = Loop {
+        ratio,
+        moments: Vec::new(),
+        energy: LoopEnergy::default(),
+        complete: true,
+        monotone: true,
+    };
+    for (branch, until_k) in [
+        (Branch::Warming, test.end_k),
+        (Branch::Cooling, test.start_k),
+    ] {
         let began = running.time_s;
         loop {
             let moment = running.moment(branch);
             result.moments.push(moment);
-            let there = if branch == Branch::Warming { moment.sump_k >= until_k } else { moment.sump_k <= until_k };
+            let there = if branch == Branch::Warming {
+                moment.sump_k >= until_k
+            } else {
+                moment.sump_k <= until_k
+            };
             if there || running.time_s - began >= LONGEST_S {
                 result.complete &= there;
                 break;
             }
             running.step(&moment, &mut result.energy);
             let (before, after) = (moment.sump_k, running.heat.node_k[SUMP]);
-            result.monotone &= if branch == Branch::Warming { before < after } else { before > after };
+            result.monotone &= if branch == Branch::Warming {
+                before < after
+            } else {
+                before > after
+            };
         }
     }
     result
@@ -214,7 +282,13 @@ impl Running<'_> {
             belt_k: Some(t[BELT]),
             ..BenchPoint::default()
         };
-        Moment { time_s: self.time_s, branch, sump_k: t[SUMP], metal_k: t[METAL], answer: self.bench.solve(&point) }
+        Moment {
+            time_s: self.time_s,
+            branch,
+            sump_k: t[SUMP],
+            metal_k: t[METAL],
+            answer: self.bench.solve(&point),
+        }
     }
 
     fn step(&mut self, moment: &Moment, energy: &mut LoopEnergy) {
@@ -222,8 +296,13 @@ impl Running<'_> {
         let w = self.conditions.transient.speed_rad_s;
         let loss_w: [f64; Component::COUNT] = moment.answer.loss_nm.map(|nm| nm * w);
         let mut power_w = loss_heat_w(car, &loss_w);
-        let oil_volume_heat_j_m3k = car.oil.density_kg_m3(moment.sump_k) * car.oil.heat_capacity_j_kgk(moment.sump_k);
-        let to_cooler_w = if moment.branch == Branch::Cooling { self.cooler_w(moment.sump_k, oil_volume_heat_j_m3k) } else { 0.0 };
+        let oil_volume_heat_j_m3k =
+            car.oil.density_kg_m3(moment.sump_k) * car.oil.heat_capacity_j_kgk(moment.sump_k);
+        let to_cooler_w = if moment.branch == Branch::Cooling {
+            self.cooler_w(moment.sump_k, oil_volume_heat_j_m3k)
+        } else {
+            0.0
+        };
         power_w[SUMP] -= to_cooler_w;
         let step = self.network.advance(
             &self.heat,
@@ -250,6 +329,8 @@ impl Running<'_> {
     fn cooler_w(&self, sump_k: f64, oil_volume_heat_j_m3k: f64) -> f64 {
         let cooler = &self.conditions.cooler;
         let carried_w_k = cooler.flow_m3_s * oil_volume_heat_j_m3k;
-        carried_w_k * (1.0 - (-cooler.conductance_w_k / carried_w_k).exp()) * (sump_k - cooler.coolant_k) // RT-2
+        carried_w_k
+            * (1.0 - (-cooler.conductance_w_k / carried_w_k).exp())
+            * (sump_k - cooler.coolant_k) // RT-2
     }
 }

@@ -22,7 +22,9 @@ use crate::lubricant::{Lubricant, VALID_K};
 use crate::setup::Setup;
 use crate::transmission::Transmission;
 use crate::transmission::cvt::Cvt;
-use crate::transmission::cvt::variator::{BeltAtRatio, BeltLoad, BeltState, Geometry, belt_state, sliding_speed_m_s};
+use crate::transmission::cvt::variator::{
+    BeltAtRatio, BeltLoad, BeltState, Geometry, belt_state, sliding_speed_m_s,
+};
 
 /// Largest torque at the secondary pulley, Nm (Table 6-1).
 pub const MOST_OUTPUT_NM: f64 = 400.0;
@@ -106,12 +108,21 @@ impl RigFlags {
     /// Names of what is set, joined by `|`.
     #[must_use]
     pub fn text(self) -> String {
-        let names: Vec<&str> = Self::NAMES.iter().filter(|(flag, _)| self.contains(*flag)).map(|(_, name)| *name).collect();
+        let names: Vec<&str> = Self::NAMES
+            .iter()
+            .filter(|(flag, _)| self.contains(*flag))
+            .map(|(_, name)| *name)
+            .collect();
         names.join("|")
     }
 
     fn new(on: [bool; 6]) -> Self {
-        RigFlags(on.iter().enumerate().map(|(bit, on)| u8::from(*on) << bit).sum())
+        RigFlags(
+            on.iter()
+                .enumerate()
+                .map(|(bit, on)| u8::from(*on) << bit)
+                .sum(),
+        )
     }
 }
 
@@ -164,7 +175,10 @@ impl VariatorRow {
     /// Slip speeds at the pulleys, m/s.
     #[must_use]
     pub fn slip_m_s(&self) -> [f64; 2] {
-        self.slip_speeds([self.geometry.primary_radius_m, self.geometry.secondary_radius_m])
+        self.slip_speeds([
+            self.geometry.primary_radius_m,
+            self.geometry.secondary_radius_m,
+        ])
     }
 
     /// Slip speeds with the radii of zero torque, m/s.
@@ -175,7 +189,10 @@ impl VariatorRow {
 
     fn slip_speeds(&self, radius_m: [f64; 2]) -> [f64; 2] {
         let [w_p, w_s] = self.shaft_rad_s;
-        [radius_m[0] * w_p - self.belt_m_s, self.belt_m_s - radius_m[1] * w_s] // RV-3
+        [
+            radius_m[0] * w_p - self.belt_m_s,
+            self.belt_m_s - radius_m[1] * w_s,
+        ] // RV-3
     }
 }
 
@@ -184,7 +201,10 @@ impl VariatorRig {
     #[must_use]
     pub fn new(setup: &Setup) -> Option<Self> {
         match setup.transmission() {
-            Transmission::Cvt(cvt) => Some(VariatorRig { cvt: (**cvt).clone(), oil: setup.oils().0.clone() }),
+            Transmission::Cvt(cvt) => Some(VariatorRig {
+                cvt: (**cvt).clone(),
+                oil: setup.oils().0.clone(),
+            }),
             Transmission::Manual(_) => None,
         }
     }
@@ -199,12 +219,19 @@ impl VariatorRig {
     fn load(&self, held: &Held, output_nm: f64, slip: f64) -> BeltLoad {
         let eta_pa_s = self.oil.dynamic_pa_s(held.belt_k);
         let film = self.cvt.belt.formulation.has_film();
-        let sliding = if film { sliding_speed_m_s(&self.cvt.belt, held.ratio, held.input_rad_s) } else { 0.0 };
+        let sliding = if film {
+            sliding_speed_m_s(&self.cvt.belt, held.ratio, held.input_rad_s)
+        } else {
+            0.0
+        };
         let friction = &self.oil.friction;
         BeltLoad {
             primary_speed_rad_s: held.input_rad_s,
             output_torque_nm: output_nm,
-            secondary_clamp_n: self.cvt.secondary_clamp_n(held.pressure_pa, held.input_rad_s * (1.0 - slip) / held.ratio),
+            secondary_clamp_n: self.cvt.secondary_clamp_n(
+                held.pressure_pa,
+                held.input_rad_s * (1.0 - slip) / held.ratio,
+            ),
             band: friction.band(held.belt_k, eta_pa_s, sliding),
             eta_pa_s,
             film_thickness_m: friction.film_thickness_m,
@@ -216,7 +243,11 @@ impl VariatorRig {
     fn state(&self, held: &Held, at: &BeltAtRatio, output_nm: f64) -> BeltState {
         let mut state = belt_state(&self.cvt.belt, at, &self.load(held, output_nm, 0.0));
         for _ in 0..PASSES {
-            let next = belt_state(&self.cvt.belt, at, &self.load(held, output_nm, state.slip_total));
+            let next = belt_state(
+                &self.cvt.belt,
+                at,
+                &self.load(held, output_nm, state.slip_total),
+            );
             let still = (next.slip_total - state.slip_total).abs() <= 1e-14;
             state = next;
             if still {
@@ -255,8 +286,15 @@ impl VariatorRig {
     /// Where the rig's reading has its zero: slip is taken to be none at zero torque (RV-4).
     fn zero(&self, held: &Held, at: &BeltAtRatio) -> Zero {
         let ratio = held.ratio / (1.0 - self.state(held, at, 0.0).slip_total);
-        let g = Geometry::new(ratio, self.cvt.belt.centre_distance_m, self.cvt.belt.length_m);
-        Zero { ratio, radius_m: [g.primary_radius_m, g.secondary_radius_m] }
+        let g = Geometry::new(
+            ratio,
+            self.cvt.belt.centre_distance_m,
+            self.cvt.belt.length_m,
+        );
+        Zero {
+            ratio,
+            radius_m: [g.primary_radius_m, g.secondary_radius_m],
+        }
     }
 
     /// Rows of a curve at given torques.
@@ -264,7 +302,10 @@ impl VariatorRig {
     pub fn rows(&self, held: &Held, output_nm: &[f64]) -> Vec<VariatorRow> {
         let at = BeltAtRatio::new(&self.cvt.belt, held.ratio);
         let zero = self.zero(held, &at);
-        output_nm.iter().map(|torque| self.row(held, &at, &zero, *torque)).collect()
+        output_nm
+            .iter()
+            .map(|torque| self.row(held, &at, &zero, *torque))
+            .collect()
     }
 
     /// Torque at which the compression between segments changes sign, Nm at the secondary (RV-5); negative in high ratio.
@@ -279,7 +320,8 @@ impl VariatorRig {
             let g = &at.geometry;
             let v = held.input_rad_s * g.primary_radius_m;
             let primary_n = load.secondary_clamp_n * at.thrust_ratio;
-            let pull = 2.0 * primary_n * belt.tan_wedge + g.primary_wrap_rad * belt.mass_kg_m * v * v;
+            let pull =
+                2.0 * primary_n * belt.tan_wedge + g.primary_wrap_rad * belt.mass_kg_m * v * v;
             torque = -at.direction * g.secondary_radius_m * load.band.mu * pull; // RV-5
         }
         torque

@@ -104,8 +104,14 @@ pub fn curve_numbers(s: &CurveSummary, r: &Resolution) -> Vec<(&'static str, f64
         ("gate_segments", r.segments),
         ("gate_primary_turns", r.turns[0]),
         ("gate_secondary_turns", r.turns[1]),
-        ("slip_per_primary_pulse_percent", 100.0 * r.slip_per_pulse[0]),
-        ("slip_per_secondary_pulse_percent", 100.0 * r.slip_per_pulse[1]),
+        (
+            "slip_per_primary_pulse_percent",
+            100.0 * r.slip_per_pulse[0],
+        ),
+        (
+            "slip_per_secondary_pulse_percent",
+            100.0 * r.slip_per_pulse[1],
+        ),
         ("belt_speed_per_segment_percent", 100.0 * r.belt_per_segment),
     ]
 }

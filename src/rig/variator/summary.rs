@@ -45,17 +45,29 @@ impl VariatorRig {
         let slip = |torque: f64| self.rows(held, &[torque])[0].belt.slip_total;
         let breakpoint_nm = self.breakpoint_nm(held);
         let capacity_nm = self.rows(held, &[0.0])[0].belt.capacity_nm;
-        let from = if breakpoint_nm > 0.0 { breakpoint_nm } else { 0.0 };
+        let from = if breakpoint_nm > 0.0 {
+            breakpoint_nm
+        } else {
+            0.0
+        };
         let scan = |low: f64, high: f64| -> Vec<VariatorRow> {
-            let torques: Vec<f64> = (0..=POINTS).map(|i| low + (high - low) * f64::from(i) / f64::from(POINTS)).collect();
+            let torques: Vec<f64> = (0..=POINTS)
+                .map(|i| low + (high - low) * f64::from(i) / f64::from(POINTS))
+                .collect();
             self.rows(held, &torques)
         };
         let within = scan(0.0, capacity_nm.min(MOST_OUTPUT_NM));
         let fine: Vec<&VariatorRow> = within.iter().filter(|row| row.flags.is_fine()).collect();
-        let most = fine.iter().max_by(|a, b| a.belt.slip_total.total_cmp(&b.belt.slip_total));
-        let most_of = |get: fn(&VariatorRow) -> f64| fine.iter().map(|row| get(row)).fold(f64::NAN, f64::max);
+        let most = fine
+            .iter()
+            .max_by(|a, b| a.belt.slip_total.total_cmp(&b.belt.slip_total));
+        let most_of =
+            |get: fn(&VariatorRow) -> f64| fine.iter().map(|row| get(row)).fold(f64::NAN, f64::max);
         let line = |to: f64| {
-            let points: Vec<(f64, f64)> = scan(from, to).iter().map(|row| (row.output_nm, row.belt.slip_total)).collect();
+            let points: Vec<(f64, f64)> = scan(from, to)
+                .iter()
+                .map(|row| (row.output_nm, row.belt.slip_total))
+                .collect();
             determination(&points)
         };
         let three_percent_nm = crossing(from, capacity_nm, |torque| slip(torque) - THREE_PERCENT);
@@ -64,14 +76,29 @@ impl VariatorRig {
             breakpoint_nm,
             capacity_nm,
             slip_at_zero: slip(0.0),
-            slip_at_breakpoint: if breakpoint_nm > 0.0 { slip(breakpoint_nm) } else { f64::NAN },
+            slip_at_breakpoint: if breakpoint_nm > 0.0 {
+                slip(breakpoint_nm)
+            } else {
+                f64::NAN
+            },
             slip_at_capacity: slip(capacity_nm),
             most_slip: most.map_or(f64::NAN, |row| row.belt.slip_total),
             most_slip_nm: most.map_or(f64::NAN, |row| row.output_nm),
-            most_slip_m_s: [most_of(|row| row.slip_m_s()[0]), most_of(|row| row.slip_m_s()[1])],
+            most_slip_m_s: [
+                most_of(|row| row.slip_m_s()[0]),
+                most_of(|row| row.slip_m_s()[1]),
+            ],
             three_percent_nm,
-            three_percent_m_s: if three_percent_nm.is_nan() { [f64::NAN; 2] } else { self.rows(held, &[three_percent_nm])[0].slip_m_s() },
-            measured_r2: if three_percent_nm.is_nan() { f64::NAN } else { line(three_percent_nm) },
+            three_percent_m_s: if three_percent_nm.is_nan() {
+                [f64::NAN; 2]
+            } else {
+                self.rows(held, &[three_percent_nm])[0].slip_m_s()
+            },
+            measured_r2: if three_percent_nm.is_nan() {
+                f64::NAN
+            } else {
+                line(three_percent_nm)
+            },
             capacity_r2: line(capacity_nm),
         }
     }
@@ -98,7 +125,8 @@ fn determination(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
     let mean = |get: fn(&(f64, f64)) -> f64| points.iter().map(get).sum::<f64>() / n;
     let (mx, my) = (mean(|p| p.0), mean(|p| p.1));
-    let sum = |f: &dyn Fn(f64, f64) -> f64| points.iter().map(|(x, y)| f(x - mx, y - my)).sum::<f64>();
+    let sum =
+        |f: &dyn Fn(f64, f64) -> f64| points.iter().map(|(x, y)| f(x - mx, y - my)).sum::<f64>();
     let (sxy, sxx, syy) = (sum(&|x, y| x * y), sum(&|x, _| x * x), sum(&|_, y| y * y));
     sxy * sxy / (sxx * syy)
 }
@@ -125,9 +153,19 @@ impl Resolution {
     #[must_use]
     pub fn new(row: &VariatorRow, belt_length_m: f64, segment_m: f64, pulses: f64) -> Self {
         let belt_turns = row.held.ratio > 1.0;
-        let gate_s = if belt_turns { 100.0 * belt_length_m / row.belt_m_s } else { 10.0 };
-        let turns = row.shaft_rad_s.map(|w| w * gate_s / (2.0 * std::f64::consts::PI));
-        let segments = if belt_turns { f64::NAN } else { row.belt_m_s * gate_s / segment_m };
+        let gate_s = if belt_turns {
+            100.0 * belt_length_m / row.belt_m_s
+        } else {
+            10.0
+        };
+        let turns = row
+            .shaft_rad_s
+            .map(|w| w * gate_s / (2.0 * std::f64::consts::PI));
+        let segments = if belt_turns {
+            f64::NAN
+        } else {
+            row.belt_m_s * gate_s / segment_m
+        };
         Resolution {
             gate_s,
             belt_turns,

@@ -33,7 +33,9 @@ fn scatter(x: u64) -> u64 {
 
 /// 64 bits that depend on every bit of the seed, the purpose, the point and the factor.
 pub(super) fn mix(seed: u64, purpose: Purpose, point: u64, factor: u64) -> u64 {
-    [purpose as u64, point, factor].into_iter().fold(scatter(seed), |hash, word| scatter(hash ^ scatter(word))) // DE-1
+    [purpose as u64, point, factor]
+        .into_iter()
+        .fold(scatter(seed), |hash, word| scatter(hash ^ scatter(word))) // DE-1
 }
 
 /// Uniform within 0 and 1, both excluded (DE-2).
@@ -53,7 +55,11 @@ pub(super) fn permute(x: u64, n: u64, key: u64) -> u64 {
             break;
         }
     }
-    if n > 1 && x < 2 { x ^ (scatter(!key) & 1) } else { x } // DE-9
+    if n > 1 && x < 2 {
+        x ^ (scatter(!key) & 1)
+    } else {
+        x
+    } // DE-9
 }
 
 /// One-to-one map of the numbers of `2 half` bits (DE-3).
@@ -84,7 +90,12 @@ mod tests {
     /// Truth: all orders of a few are equally likely. The bounds are the 99.9 % quantiles of chi-squared for 5, 23, 119 and 719.
     #[test]
     fn val_small_permutations_are_equally_likely() {
-        for (n, orders, bound) in [(3_u64, 6.0, 20.5), (4, 24.0, 49.7), (5, 120.0, 173.6), (6, 720.0, 844.0)] {
+        for (n, orders, bound) in [
+            (3_u64, 6.0, 20.5),
+            (4, 24.0, 49.7),
+            (5, 120.0, 173.6),
+            (6, 720.0, 844.0),
+        ] {
             let tries = 48_000_u32;
             let mut counts = std::collections::BTreeMap::new();
             for seed in 0..tries {
@@ -94,7 +105,10 @@ mod tests {
             }
             let expected = f64::from(tries) / orders;
             assert_eq!(counts.len(), orders as usize);
-            let chi2: f64 = counts.values().map(|&count| (f64::from(count) - expected).powi(2) / expected).sum();
+            let chi2: f64 = counts
+                .values()
+                .map(|&count| (f64::from(count) - expected).powi(2) / expected)
+                .sum();
             assert!(chi2 < bound, "n {n}: chi2 {chi2}");
         }
     }
@@ -104,7 +118,14 @@ mod tests {
     fn val_scatter_is_splitmix64() {
         let state = |k: u64| 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(k);
         let outputs: Vec<u64> = (0..3).map(|k| scatter(state(k))).collect();
-        assert_eq!(outputs, [0xe220_a839_7b1d_cdaf, 0x6e78_9e6a_a1b9_65f4, 0x06c4_5d18_8009_454f]);
+        assert_eq!(
+            outputs,
+            [
+                0xe220_a839_7b1d_cdaf,
+                0x6e78_9e6a_a1b9_65f4,
+                0x06c4_5d18_8009_454f
+            ]
+        );
     }
 
     #[test]

@@ -69,9 +69,15 @@ impl Design {
     #[must_use]
     pub fn points(&self, factors: &[Factor]) -> Option<u64> {
         match *self {
-            Design::Grid => factors.iter().try_fold(1_u64, |points, factor| points.checked_mul(self.entries(factor))),
-            Design::OneAtATime { .. } => factors.iter().try_fold(1_u64, |points, factor| points.checked_add(self.entries(factor))),
-            Design::LatinHypercube { samples, .. } | Design::Sobol { samples, .. } | Design::MonteCarlo { samples, .. } => Some(samples),
+            Design::Grid => factors.iter().try_fold(1_u64, |points, factor| {
+                points.checked_mul(self.entries(factor))
+            }),
+            Design::OneAtATime { .. } => factors.iter().try_fold(1_u64, |points, factor| {
+                points.checked_add(self.entries(factor))
+            }),
+            Design::LatinHypercube { samples, .. }
+            | Design::Sobol { samples, .. }
+            | Design::MonteCarlo { samples, .. } => Some(samples),
             Design::Saltelli { samples, .. } => samples.checked_mul(factors.len() as u64 + 2),
         }
     }
@@ -85,25 +91,43 @@ impl Design {
         let column = factor as u64;
         match *self {
             Design::Grid => {
-                let faster = factors.iter().skip(factor + 1).fold(1_u64, |radix, other| radix.saturating_mul(self.entries(other)));
-                factors.get(factor).map_or(Level::Base, |factor| factor.entry(point / faster % self.entries(factor), 0.5)) // DE-5
+                let faster = factors.iter().skip(factor + 1).fold(1_u64, |radix, other| {
+                    radix.saturating_mul(self.entries(other))
+                });
+                factors.get(factor).map_or(Level::Base, |factor| {
+                    factor.entry(point / faster % self.entries(factor), 0.5)
+                }) // DE-5
             }
             Design::OneAtATime { quantile } => {
-                let before = factors.iter().take(factor).fold(1_u64, |sum, other| sum.saturating_add(self.entries(other)));
-                let at = point.checked_sub(before).zip(factors.get(factor)).filter(|(entry, factor)| *entry < self.entries(factor));
+                let before = factors
+                    .iter()
+                    .take(factor)
+                    .fold(1_u64, |sum, other| sum.saturating_add(self.entries(other)));
+                let at = point
+                    .checked_sub(before)
+                    .zip(factors.get(factor))
+                    .filter(|(entry, factor)| *entry < self.entries(factor));
                 at.map_or(Level::Base, |(entry, factor)| factor.entry(entry, quantile))
             }
             Design::LatinHypercube { samples, seed } => {
                 let stratum = permute(point, samples, mix(seed, Purpose::Stratum, 0, column));
-                let jitter = ((uniform(seed, Purpose::Jitter, point, column) * JITTER).floor() + 0.5) / JITTER;
+                let jitter = ((uniform(seed, Purpose::Jitter, point, column) * JITTER).floor()
+                    + 0.5)
+                    / JITTER;
                 Level::Share((stratum as f64 + jitter) / samples as f64) // DE-6
             }
             Design::Sobol { seed, .. } => Level::Share(sobol(point, factor, seed)),
-            Design::MonteCarlo { seed, .. } => Level::Share(uniform(seed, Purpose::MonteCarlo, point, column)),
+            Design::MonteCarlo { seed, .. } => {
+                Level::Share(uniform(seed, Purpose::MonteCarlo, point, column))
+            }
             Design::Saltelli { seed, .. } => {
                 let (sample, role) = saltelli_role(factors.len(), point);
                 let from_b = role == Role::B || role == Role::AB(factor);
-                Level::Share(sobol(sample, factor + if from_b { factors.len() } else { 0 }, seed)) // DE-8
+                Level::Share(sobol(
+                    sample,
+                    factor + if from_b { factors.len() } else { 0 },
+                    seed,
+                )) // DE-8
             }
         }
     }
@@ -150,8 +174,11 @@ impl Design {
     /// thousand passes.
     #[must_use]
     pub fn share_span(&self, factors: &[Factor], factor: usize) -> (f64, f64) {
-        let span =
-            |shares: &mut dyn Iterator<Item = f64>| shares.fold((1.0_f64, 0.0_f64), |(low, high), share| (low.min(share), high.max(share)));
+        let span = |shares: &mut dyn Iterator<Item = f64>| {
+            shares.fold((1.0_f64, 0.0_f64), |(low, high), share| {
+                (low.min(share), high.max(share))
+            })
+        };
         let share = |point: u64, column: usize| match self.level(factors, point, column) {
             Level::Share(share) => share,
             Level::Base | Level::Entry(_) => 0.5,
@@ -161,9 +188,16 @@ impl Design {
             Design::OneAtATime { quantile } => return (quantile, 1.0 - quantile),
             Design::Saltelli { samples, .. } => {
                 let block = factors.len() as u64 + 2;
-                return span(&mut (0..samples).flat_map(|sample| [share(sample * block, factor), share(sample * block + 1, factor)]));
+                return span(&mut (0..samples).flat_map(|sample| {
+                    [
+                        share(sample * block, factor),
+                        share(sample * block + 1, factor),
+                    ]
+                }));
             }
-            Design::LatinHypercube { samples, .. } | Design::Sobol { samples, .. } | Design::MonteCarlo { samples, .. } => samples,
+            Design::LatinHypercube { samples, .. }
+            | Design::Sobol { samples, .. }
+            | Design::MonteCarlo { samples, .. } => samples,
         };
         if samples <= LOOKED_THROUGH {
             return span(&mut (0..samples).map(|point| share(point, factor)));
@@ -178,7 +212,9 @@ impl Factor {
     fn entry(&self, entry: u64, quantile: f64) -> Level {
         match &self.values {
             FactorValues::List(_) => Level::Entry(entry as usize),
-            FactorValues::Distribution(_) => Level::Share(if entry == 0 { quantile } else { 1.0 - quantile }),
+            FactorValues::Distribution(_) => {
+                Level::Share(if entry == 0 { quantile } else { 1.0 - quantile })
+            }
         }
     }
 }
@@ -187,5 +223,9 @@ impl Factor {
 fn sobol(sample: u64, dimension: usize, seed: u64) -> f64 {
     // The crate's seeds have 32 bits; its index 16.
     let seed = mix(seed, Purpose::Sobol, 0, 0) as u32;
-    f64::from(sobol_burley::sample((sample % MOST_SOBOL_SAMPLES) as u32, dimension as u32, seed)) + HALF_STEP // DE-7
+    f64::from(sobol_burley::sample(
+        (sample % MOST_SOBOL_SAMPLES) as u32,
+        dimension as u32,
+        seed,
+    )) + HALF_STEP // DE-7
 }

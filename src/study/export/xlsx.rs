@@ -42,16 +42,30 @@ impl<W: Write> XlsxTable<W> {
     /// Whatever `out` reports.
     pub fn new(out: W, name: &str, columns: &[Column]) -> io::Result<Self> {
         let error = Rc::new(RefCell::new(None));
-        let zip = ZipWriter::new_stream(FirstError { out, error: error.clone() });
+        let zip = ZipWriter::new_stream(FirstError {
+            out,
+            error: error.clone(),
+        });
         let letters = (0..columns.len()).map(column_letters).collect();
-        let mut table = XlsxTable { zip, error, columns: columns.to_vec(), letters, row: 0, text: String::new(), bytes: 0 };
+        let mut table = XlsxTable {
+            zip,
+            error,
+            columns: columns.to_vec(),
+            letters,
+            row: 0,
+            text: String::new(),
+            bytes: 0,
+        };
         let name: String = name.chars().take(31).collect();
         for (file, text) in frame(&name) {
             table.entry(file, &text)?;
         }
         table.meanings()?;
         table.entry("xl/worksheets/sheet1.xml", &sheet_head(columns.len(), true))?;
-        let header: Vec<String> = columns.iter().map(|column| Header::Units.of(column)).collect();
+        let header: Vec<String> = columns
+            .iter()
+            .map(|column| Header::Units.of(column))
+            .collect();
         table.header(&header)?;
         Ok(table)
     }
@@ -66,7 +80,9 @@ impl<W: Write> XlsxTable<W> {
             for (k, values) in rows.values.iter().enumerate() {
                 match values {
                     Values::Number(numbers) => self.number(k, numbers[row]),
-                    Values::Count(counts) if counts[row].unsigned_abs() <= EXACT => self.raw(k, &counts[row].to_string()),
+                    Values::Count(counts) if counts[row].unsigned_abs() <= EXACT => {
+                        self.raw(k, &counts[row].to_string())
+                    }
                     Values::Count(counts) => self.word(k, &counts[row].to_string(), 0)?,
                     Values::Text(words) => self.word(k, &words[row], 0)?,
                 }
@@ -97,7 +113,10 @@ impl<W: Write> XlsxTable<W> {
         self.header(&["column", "unit", "meaning"].map(str::to_owned))?;
         for column in self.columns.clone() {
             self.begin_row();
-            for (k, text) in [&column.name, &column.unit, &column.doc].into_iter().enumerate() {
+            for (k, text) in [&column.name, &column.unit, &column.doc]
+                .into_iter()
+                .enumerate()
+            {
                 self.word(k, text, 0)?;
             }
             self.end_row()?;
@@ -116,7 +135,9 @@ impl<W: Write> XlsxTable<W> {
 
     fn entry(&mut self, name: &str, text: &str) -> io::Result<()> {
         // No times: the same table gives the same bytes.
-        let options = SimpleFileOptions::default().last_modified_time(zip::DateTime::default()).unix_permissions(0o644);
+        let options = SimpleFileOptions::default()
+            .last_modified_time(zip::DateTime::default())
+            .unix_permissions(0o644);
         self.zip.start_file(name, options)?;
         self.bytes = 0;
         self.put(text)
@@ -126,7 +147,10 @@ impl<W: Write> XlsxTable<W> {
     fn put(&mut self, text: &str) -> io::Result<()> {
         self.bytes += text.len();
         if self.bytes > MOST_BYTES {
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, "the table is too large for a workbook: its sheet would have 4 GiB"));
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "the table is too large for a workbook: its sheet would have 4 GiB",
+            ));
         }
         self.zip.write_all(text.as_bytes())?;
         self.error.take().map_or(Ok(()), |error| {
@@ -153,7 +177,11 @@ impl<W: Write> XlsxTable<W> {
 
     /// Where a cell stands, `AB12`.
     fn place(&self, column: usize) -> String {
-        let letters = self.letters.get(column).cloned().unwrap_or_else(|| column_letters(column));
+        let letters = self
+            .letters
+            .get(column)
+            .cloned()
+            .unwrap_or_else(|| column_letters(column));
         format!("{letters}{}", self.row)
     }
 
@@ -175,12 +203,17 @@ impl<W: Write> XlsxTable<W> {
             return Ok(());
         }
         if word.encode_utf16().count() > MOST_LETTERS {
-            let message = format!("a cell of Excel holds at most {MOST_LETTERS} letters, one of row {} has more", self.row);
+            let message = format!(
+                "a cell of Excel holds at most {MOST_LETTERS} letters, one of row {} has more",
+                self.row
+            );
             return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
         }
         let place = self.place(column);
-        self.text +=
-            &format!("<c r=\"{place}\" s=\"{style}\" t=\"inlineStr\"><is><t xml:space=\"preserve\">{}</t></is></c>", escaped(word));
+        self.text += &format!(
+            "<c r=\"{place}\" s=\"{style}\" t=\"inlineStr\"><is><t xml:space=\"preserve\">{}</t></is></c>",
+            escaped(word)
+        );
         Ok(())
     }
 }
@@ -205,7 +238,9 @@ impl<W: Write> FirstError<W> {
 
 impl<W: Write> Write for FirstError<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        Ok(self.guard(bytes.len(), |out| out.write_all(bytes).map(|()| bytes.len())))
+        Ok(self.guard(bytes.len(), |out| {
+            out.write_all(bytes).map(|()| bytes.len())
+        }))
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -221,13 +256,28 @@ mod tests {
     use std::io::ErrorKind;
 
     fn columns() -> Vec<Column> {
-        let head = |name: &str, kind| Column { name: name.to_owned(), unit: "mm".to_owned(), doc: "a < b & c".to_owned(), kind };
-        vec![head("count", Kind::Count), head("number", Kind::Number), head("word", Kind::Text)]
+        let head = |name: &str, kind| Column {
+            name: name.to_owned(),
+            unit: "mm".to_owned(),
+            doc: "a < b & c".to_owned(),
+            kind,
+        };
+        vec![
+            head("count", Kind::Count),
+            head("number", Kind::Number),
+            head("word", Kind::Text),
+        ]
     }
 
     fn rows(word: &str) -> Rows {
         let numbers: Vec<f64> = (0..200).map(|k| f64::from(k).sqrt()).collect();
-        Rows { values: vec![Values::Count(vec![i64::MAX; 200]), Values::Number(numbers), Values::Text(vec![word.into(); 200])] }
+        Rows {
+            values: vec![
+                Values::Count(vec![i64::MAX; 200]),
+                Values::Number(numbers),
+                Values::Text(vec![word.into(); 200]),
+            ],
+        }
     }
 
     fn write(out: impl Write, word: &str) -> io::Result<()> {
@@ -259,7 +309,12 @@ mod tests {
         let mut whole = Vec::new();
         write(&mut whole, "a").expect("room enough");
         for room in 0..whole.len() {
-            assert_eq!(write(Small(room), "a").map_err(|error| error.kind()), Err(ErrorKind::StorageFull), "{room} of {}", whole.len());
+            assert_eq!(
+                write(Small(room), "a").map_err(|error| error.kind()),
+                Err(ErrorKind::StorageFull),
+                "{room} of {}",
+                whole.len()
+            );
         }
         assert!(write(Small(whole.len()), "a").is_ok());
     }

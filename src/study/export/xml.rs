@@ -11,7 +11,11 @@ const DECLARATION: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\
 
 /// Everything around the sheets, by the name of its file.
 pub fn frame(name: &str) -> Vec<(&'static str, String)> {
-    let sheet = |k: u8| format!("<Override PartName=\"/xl/worksheets/sheet{k}.xml\" ContentType=\"{SHEET_TYPE}.worksheet+xml\"/>");
+    let sheet = |k: u8| {
+        format!(
+            "<Override PartName=\"/xl/worksheets/sheet{k}.xml\" ContentType=\"{SHEET_TYPE}.worksheet+xml\"/>"
+        )
+    };
     let types = format!(
         "{DECLARATION}<Types xmlns=\"{PACKAGE}/content-types\">\
          <Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>\
@@ -21,10 +25,15 @@ pub fn frame(name: &str) -> Vec<(&'static str, String)> {
         sheet(1),
         sheet(2)
     );
-    let relation =
-        |id: u8, kind: &str, target: &str| format!("<Relationship Id=\"rId{id}\" Type=\"{RELATIONS}/{kind}\" Target=\"{target}\"/>");
-    let relations =
-        |inner: &[String]| format!("{DECLARATION}<Relationships xmlns=\"{PACKAGE}/relationships\">{}</Relationships>", inner.concat());
+    let relation = |id: u8, kind: &str, target: &str| {
+        format!("<Relationship Id=\"rId{id}\" Type=\"{RELATIONS}/{kind}\" Target=\"{target}\"/>")
+    };
+    let relations = |inner: &[String]| {
+        format!(
+            "{DECLARATION}<Relationships xmlns=\"{PACKAGE}/relationships\">{}</Relationships>",
+            inner.concat()
+        )
+    };
     let workbook = format!(
         "{DECLARATION}<workbook {MAIN} xmlns:r=\"{RELATIONS}\"><bookViews><workbookView/></bookViews><sheets>\
          <sheet name=\"{}\" sheetId=\"1\" r:id=\"rId1\"/><sheet name=\"{MEANINGS}\" sheetId=\"2\" r:id=\"rId2\"/></sheets></workbook>",
@@ -47,7 +56,10 @@ pub fn frame(name: &str) -> Vec<(&'static str, String)> {
     ];
     vec![
         ("[Content_Types].xml", types),
-        ("_rels/.rels", relations(&[relation(1, "officeDocument", "xl/workbook.xml")])),
+        (
+            "_rels/.rels",
+            relations(&[relation(1, "officeDocument", "xl/workbook.xml")]),
+        ),
         ("xl/workbook.xml", workbook),
         ("xl/_rels/workbook.xml.rels", relations(&inside)),
         ("xl/styles.xml", styles),
@@ -97,7 +109,10 @@ pub fn escaped(text: &str) -> String {
 }
 
 fn looks_escaped(bytes: &[u8]) -> bool {
-    bytes.len() >= 7 && bytes.starts_with(b"_x") && bytes[6] == b'_' && bytes[2..6].iter().all(u8::is_ascii_hexdigit)
+    bytes.len() >= 7
+        && bytes.starts_with(b"_x")
+        && bytes[6] == b'_'
+        && bytes[2..6].iter().all(u8::is_ascii_hexdigit)
 }
 
 #[cfg(test)]
@@ -106,14 +121,23 @@ mod tests {
 
     #[test]
     fn columns_are_lettered_as_in_excel() {
-        let found: Vec<String> = [0, 25, 26, 51, 701, 702, 16_383].into_iter().map(column_letters).collect();
+        let found: Vec<String> = [0, 25, 26, 51, 701, 702, 16_383]
+            .into_iter()
+            .map(column_letters)
+            .collect();
         assert_eq!(found, ["A", "Z", "AA", "AZ", "ZZ", "AAA", "XFD"]);
     }
 
     #[test]
     fn letters_that_xml_cannot_hold_are_escaped_as_excel_does() {
-        assert_eq!(escaped("a<b & \"c\">\n"), "a&lt;b &amp; &quot;c&quot;&gt;\n");
-        assert_eq!(escaped("\u{1}\r\u{FFFF}é\u{1F697}"), "_x0001__x000D__xFFFF_é\u{1F697}");
+        assert_eq!(
+            escaped("a<b & \"c\">\n"),
+            "a&lt;b &amp; &quot;c&quot;&gt;\n"
+        );
+        assert_eq!(
+            escaped("\u{1}\r\u{FFFF}é\u{1F697}"),
+            "_x0001__x000D__xFFFF_é\u{1F697}"
+        );
         assert_eq!(escaped("_x0041_ _x00_ _"), "_x005F_x0041_ _x00_ _");
     }
 }

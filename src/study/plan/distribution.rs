@@ -26,7 +26,12 @@ impl Distribution {
     pub fn inverse_cdf(&self, u: f64) -> f64 {
         match *self {
             Distribution::Normal { mean, sd } => mean + sd * standard(u), // PD-1
-            Distribution::TruncatedNormal { mean, sd, low, high } => {
+            Distribution::TruncatedNormal {
+                mean,
+                sd,
+                low,
+                high,
+            } => {
                 let z = between((low - mean) / sd, (high - mean) / sd, u);
                 within(mean + sd * z, low, high)
             }
@@ -40,7 +45,10 @@ impl Distribution {
                 };
                 within(x, low, high)
             }
-            Distribution::Lognormal { median, geometric_sd } => median * (geometric_sd.ln() * standard(u)).exp(), // PD-5
+            Distribution::Lognormal {
+                median,
+                geometric_sd,
+            } => median * (geometric_sd.ln() * standard(u)).exp(), // PD-5
         }
     }
 
@@ -74,7 +82,13 @@ impl Distribution {
     pub fn expected_span(&self, points: u64) -> (f64, f64) {
         let u = 0.5 / points.max(1) as f64;
         let (low, high) = self.support();
-        let or = |end: f64, u: f64| if end.is_finite() { end } else { self.inverse_cdf(u) };
+        let or = |end: f64, u: f64| {
+            if end.is_finite() {
+                end
+            } else {
+                self.inverse_cdf(u)
+            }
+        };
         match self {
             // Zero is an end that is never reached.
             Distribution::Lognormal { .. } => (self.inverse_cdf(u), self.inverse_cdf(1.0 - u)),
@@ -86,16 +100,26 @@ impl Distribution {
     fn moments(&self) -> (f64, f64) {
         match *self {
             Distribution::Normal { mean, sd } => (mean, sd),
-            Distribution::TruncatedNormal { mean, sd, low, high } => {
+            Distribution::TruncatedNormal {
+                mean,
+                sd,
+                low,
+                high,
+            } => {
                 let (m, s) = cut_moments((low - mean) / sd, (high - mean) / sd);
                 (mean + sd * m, sd * s)
             }
-            Distribution::Uniform { low, high } => (low + 0.5 * (high - low), (high - low) / 12.0_f64.sqrt()), // PD-3
+            Distribution::Uniform { low, high } => {
+                (low + 0.5 * (high - low), (high - low) / 12.0_f64.sqrt())
+            } // PD-3
             Distribution::Triangular { low, mode, high } => {
                 let (m, w) = (mode - low, high - low); // PD-4
                 (low + (m + w) / 3.0, ((m * m + w * w - m * w) / 18.0).sqrt())
             }
-            Distribution::Lognormal { median, geometric_sd } => {
+            Distribution::Lognormal {
+                median,
+                geometric_sd,
+            } => {
                 let s2 = geometric_sd.ln().powi(2);
                 let mean = median * (0.5 * s2).exp(); // PD-5
                 (mean, mean * s2.exp_m1().sqrt())
@@ -107,14 +131,22 @@ impl Distribution {
 /// z(u) of the standard normal distribution; the upper half from the lower one, so that the two mirror each other (PD-1).
 fn standard(u: f64) -> f64 {
     let normal = Normal::standard();
-    if u > 0.5 { -normal.inverse_cdf(1.0 - u) } else { normal.inverse_cdf(u) }
+    if u > 0.5 {
+        -normal.inverse_cdf(1.0 - u)
+    } else {
+        normal.inverse_cdf(u)
+    }
 }
 
 /// Share of the standard normal distribution between two ends.
 pub(super) fn mass(a: f64, b: f64) -> f64 {
     let normal = Normal::standard();
     // The side with the smaller probabilities keeps its digits.
-    if a > 0.0 { normal.cdf(-a) - normal.cdf(-b) } else { normal.cdf(b) - normal.cdf(a) }
+    if a > 0.0 {
+        normal.cdf(-a) - normal.cdf(-b)
+    } else {
+        normal.cdf(b) - normal.cdf(a)
+    }
 }
 
 /// z at a share u of the standard normal distribution between two ends (PD-2).
@@ -140,8 +172,16 @@ fn cut_moments(a: f64, b: f64) -> (f64, f64) {
         (0.5 * (peak - z) * (peak + z)).exp()
     };
     let sum = |f: &dyn Fn(f64) -> f64| {
-        let weight = |i: u32| if i == 0 || i == INTERVALS { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
-        (0..=INTERVALS).map(|i| weight(i) * f(f64::from(i) * step)).sum::<f64>()
+        let weight = |i: u32| {
+            if i == 0 || i == INTERVALS {
+                1.0
+            } else {
+                f64::from(2 + 2 * (i % 2))
+            }
+        };
+        (0..=INTERVALS)
+            .map(|i| weight(i) * f(f64::from(i) * step))
+            .sum::<f64>()
     };
     let whole = sum(&density); // PD-6
     let mean = sum(&|t| t * density(t)) / whole;

@@ -8,9 +8,18 @@ use crate::setup::is_path;
 #[must_use]
 pub fn embedded_plans() -> &'static [(&'static str, &'static str)] {
     &[
-        ("oil_at_minus_10", include_str!("../../../plans/oil_at_minus_10.toml")),
-        ("pump_and_offset", include_str!("../../../plans/pump_and_offset.toml")),
-        ("uncertainty_rover", include_str!("../../../plans/uncertainty_rover.toml")),
+        (
+            "oil_at_minus_10",
+            include_str!("../../../plans/oil_at_minus_10.toml"),
+        ),
+        (
+            "pump_and_offset",
+            include_str!("../../../plans/pump_and_offset.toml"),
+        ),
+        (
+            "uncertainty_rover",
+            include_str!("../../../plans/uncertainty_rover.toml"),
+        ),
     ]
 }
 
@@ -20,13 +29,27 @@ pub fn embedded_plans() -> &'static [(&'static str, &'static str)] {
 /// Unknown name (with the near ones), unreadable path, binary or empty file.
 pub(super) fn text_of(word: &str, option: &str) -> Result<(String, String), Vec<Problem>> {
     let problem = |allowed: String, message: String, hint: String| {
-        let place = Place { file: option.to_owned(), ..Place::default() };
-        vec![Problem { place, key: option.to_owned(), value: word.to_owned(), allowed, message, hint }]
+        let place = Place {
+            file: option.to_owned(),
+            ..Place::default()
+        };
+        vec![Problem {
+            place,
+            key: option.to_owned(),
+            value: word.to_owned(),
+            allowed,
+            message,
+            hint,
+        }]
     };
     if is_path(word) {
         let bytes = bounded::read(word, bounded::TOML).map_err(|error| {
             let hint = error.hint("check the path and its permissions");
-            problem(error.allowed("a readable file"), format!("cannot read `{word}`: {error}"), hint.into())
+            problem(
+                error.allowed("a readable file"),
+                format!("cannot read `{word}`: {error}"),
+                hint.into(),
+            )
         })?;
         return Ok((word.to_owned(), decode(word, &bytes)?));
     }
@@ -38,6 +61,8 @@ pub(super) fn text_of(word: &str, option: &str) -> Result<(String, String), Vec<
     Err(problem(
         format!("{}, or the path of a TOML file", names.join(", ")),
         format!("there is no plan named `{word}`"),
-        format!("{question} a path needs a / or an ending").trim().to_owned(),
+        format!("{question} a path needs a / or an ending")
+            .trim()
+            .to_owned(),
     ))
 }

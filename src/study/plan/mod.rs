@@ -109,7 +109,15 @@ pub struct Factor {
 }
 
 /// Factors that are no keys of a file. They are of all cars, but for the lubricant.
-pub const RUN_OPTIONS: [&str; 7] = ["ambient_degc", "start", "cycle", "lubricant", "engine_oil", "dt_s", "formulation"];
+pub const RUN_OPTIONS: [&str; 7] = [
+    "ambient_degc",
+    "start",
+    "cycle",
+    "lubricant",
+    "engine_oil",
+    "dt_s",
+    "formulation",
+];
 
 /// The cars that a factor changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -241,7 +249,10 @@ impl Plan {
             }
             FactorValues::Distribution(distribution) => {
                 let (low, high) = self.design.share_span(&self.factors, factor);
-                Some((distribution.inverse_cdf(low), distribution.inverse_cdf(high)))
+                Some((
+                    distribution.inverse_cdf(low),
+                    distribution.inverse_cdf(high),
+                ))
             }
         }
     }
@@ -258,7 +269,9 @@ impl Factor {
                 let entry = (share * list.len() as f64) as usize;
                 list.get(entry.min(list.len().saturating_sub(1))).cloned()
             }
-            (FactorValues::Distribution(distribution), Level::Share(share)) => Some(FactorValue::Number(distribution.inverse_cdf(share))),
+            (FactorValues::Distribution(distribution), Level::Share(share)) => {
+                Some(FactorValue::Number(distribution.inverse_cdf(share)))
+            }
             (FactorValues::Distribution(_), Level::Entry(_)) => None,
         }
     }

@@ -33,7 +33,11 @@ pub(super) fn bound(option: &str) -> Option<Bound> {
 
 /// A key that ends in the unit of an option's numbers.
 pub(super) fn quantity(option: &str) -> &str {
-    if option == "start" { "start_degc" } else { option }
+    if option == "start" {
+        "start_degc"
+    } else {
+        option
+    }
 }
 
 /// What an option allows, in words.
@@ -43,9 +47,18 @@ pub(super) fn allowed(option: &str) -> String {
         ("start", Some(numbers)) => format!("{}, or {numbers}", STARTS.join(", ")),
         (_, Some(numbers)) => numbers,
         ("formulation", None) => Formulation::NAMES.map(|(name, _)| name).join(", "),
-        ("cycle", None) => "a name of `cvtcycle list cycles`, constant_V with V in km/h, or the path of a CSV file".to_owned(),
-        ("vehicle", None) => format!("{}, or the path of a TOML file", names(embedded_vehicles()).join(", ")),
-        _ => format!("{}, or the path of a TOML file", names(embedded_lubricants()).join(", ")),
+        ("cycle", None) => {
+            "a name of `cvtcycle list cycles`, constant_V with V in km/h, or the path of a CSV file"
+                .to_owned()
+        }
+        ("vehicle", None) => format!(
+            "{}, or the path of a TOML file",
+            names(embedded_vehicles()).join(", ")
+        ),
+        _ => format!(
+            "{}, or the path of a TOML file",
+            names(embedded_lubricants()).join(", ")
+        ),
     }
 }
 
@@ -54,10 +67,16 @@ pub(super) fn value(option: &str, written: &Written) -> Option<FactorValue> {
     if let Some(bound) = bound(option)
         && (option != "start" || written.is_number())
     {
-        return written.number(quantity(option), bound).map(FactorValue::Number);
+        return written
+            .number(quantity(option), bound)
+            .map(FactorValue::Number);
     }
     let Some(word) = written.word() else {
-        written.wrong_type(if option == "start" { "soak, warm or a number" } else { "text" });
+        written.wrong_type(if option == "start" {
+            "soak, warm or a number"
+        } else {
+            "text"
+        });
         return None;
     };
     let known: Vec<&str> = match option {
@@ -81,7 +100,9 @@ fn unknown(option: &str, word: &str, known: &[&str]) -> Option<String> {
         && !cycle::is_csv(word)
         && let Some(constant) = cycle::constant_speed(word)
     {
-        return constant.err().map(|problem| format!("`{word}`: {}", problem.message));
+        return constant
+            .err()
+            .map(|problem| format!("`{word}`: {}", problem.message));
     }
     if known.contains(&word) || (names_file && is_path(word)) {
         return None;
@@ -90,13 +111,19 @@ fn unknown(option: &str, word: &str, known: &[&str]) -> Option<String> {
         "engine_oil" => "lubricant",
         other => other,
     };
-    Some(if names_file { format!("there is no {kind} named `{word}`") } else { format!("`{word}` is not known for `{option}`") })
+    Some(if names_file {
+        format!("there is no {kind} named `{word}`")
+    } else {
+        format!("`{word}` is not known for `{option}`")
+    })
 }
 
 fn hint(option: &str, word: &str, known: &[&str]) -> String {
     let question = did_you_mean(word, known.iter().copied(), "");
     match option {
-        "start" if word.trim().parse::<f64>().is_ok() => format!("write {} without quotes", word.trim()),
+        "start" if word.trim().parse::<f64>().is_ok() => {
+            format!("write {} without quotes", word.trim())
+        }
         "vehicle" if word == "none" => "write baselines = []".to_owned(),
         "cycle" if word.starts_with("constant_") => "write, for example, constant_90".to_owned(),
         "start" | "formulation" => question,
@@ -106,9 +133,17 @@ fn hint(option: &str, word: &str, known: &[&str]) -> String {
 }
 
 /// Question for the known names that are like the given one; `otherwise` without such.
-pub(super) fn did_you_mean<'a>(word: &str, known: impl Iterator<Item = &'a str>, otherwise: &str) -> String {
+pub(super) fn did_you_mean<'a>(
+    word: &str,
+    known: impl Iterator<Item = &'a str>,
+    otherwise: &str,
+) -> String {
     let close = near(word, known);
-    if close.is_empty() { otherwise.to_owned() } else { format!("did you mean {}?", close.join(" or ")) }
+    if close.is_empty() {
+        otherwise.to_owned()
+    } else {
+        format!("did you mean {}?", close.join(" or "))
+    }
 }
 
 fn names(embedded: &'static [(&'static str, &'static str)]) -> Vec<&'static str> {

@@ -13,7 +13,10 @@ impl Places {
     /// Those of a table that stands at `whole`.
     #[must_use]
     pub fn new(whole: Place) -> Self {
-        Places { whole, known: Vec::new() }
+        Places {
+            whole,
+            known: Vec::new(),
+        }
     }
 
     /// Where a key's value stands, such as `design`, `values` or `distribution.low`; the table itself where the key is not given.
@@ -25,7 +28,8 @@ impl Places {
     /// Where an item of a list stands, counted from 0; the whole value where it is no list, such as a range.
     #[must_use]
     pub fn nth(&self, key: &str, item: usize) -> &Place {
-        self.find(&item_name(key, item)).unwrap_or_else(|| self.of(key))
+        self.find(&item_name(key, item))
+            .unwrap_or_else(|| self.of(key))
     }
 
     /// Notes a place.
@@ -46,7 +50,10 @@ impl Places {
     }
 
     fn find(&self, key: &str) -> Option<&Place> {
-        self.known.iter().find(|(known, _)| known == key).map(|(_, place)| place)
+        self.known
+            .iter()
+            .find(|(known, _)| known == key)
+            .map(|(_, place)| place)
     }
 }
 

@@ -13,7 +13,9 @@ pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
     let mut document = Document::parse(file, text)?;
     let tables = document.take_tables("factor");
     let (mut plan, mut problems) = head(&document, file, text);
-    let design_is_read = !problems.iter().any(|problem| problem.key == "study" || problem.key.starts_with("study.design"));
+    let design_is_read = !problems
+        .iter()
+        .any(|problem| problem.key == "study" || problem.key.starts_with("study.design"));
     for table in &tables {
         match factor::read(table) {
             Ok(factor) => plan.factors.push(factor),
@@ -22,7 +24,10 @@ pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
     }
     append(&mut problems, design::clashes(&plan.factors));
     if design_is_read && !has_other_factors(&problems) {
-        append(&mut problems, design::limits(&plan.design, tables.len(), &plan.factors, &plan.places));
+        append(
+            &mut problems,
+            design::limits(&plan.design, tables.len(), &plan.factors, &plan.places),
+        );
     }
     if problems.is_empty() {
         problems = design::reach(&plan);
@@ -30,13 +35,21 @@ pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
     if problems.is_empty() {
         return Ok(plan);
     }
-    problems.sort_by_key(|problem| (problem.not_shown().is_some(), problem.place.line, problem.place.column));
+    problems.sort_by_key(|problem| {
+        (
+            problem.not_shown().is_some(),
+            problem.place.line,
+            problem.place.column,
+        )
+    });
     Err(problems)
 }
 
 /// Whether factors are written in a way that gives none.
 fn has_other_factors(problems: &[Problem]) -> bool {
-    problems.iter().any(|problem| problem.key.starts_with("factor"))
+    problems
+        .iter()
+        .any(|problem| problem.key.starts_with("factor"))
 }
 
 fn head(document: &Document, file: &str, text: &str) -> (Plan, Vec<Problem>) {
@@ -54,7 +67,14 @@ fn head(document: &Document, file: &str, text: &str) -> (Plan, Vec<Problem>) {
         design,
         keep: keep(&s),
         analyse: analyse(&s, &mut places),
-        most_runs: s.integer_or("most_runs", 1..=i64::MAX, MOST_RUNS, "number of runs above which --yes is needed").unsigned_abs(),
+        most_runs: s
+            .integer_or(
+                "most_runs",
+                1..=i64::MAX,
+                MOST_RUNS,
+                "number of runs above which --yes is needed",
+            )
+            .unsigned_abs(),
         places,
     };
     let problems = reader.finish().err().unwrap_or_default();
@@ -73,7 +93,10 @@ fn fitting(problem: Problem) -> Problem {
 
 fn stem(file: &str) -> String {
     let name = file.strip_prefix("embedded:").unwrap_or(file);
-    std::path::Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned())
+    std::path::Path::new(name).file_stem().map_or_else(
+        || name.to_owned(),
+        |stem| stem.to_string_lossy().into_owned(),
+    )
 }
 
 fn base(s: &Section, places: &mut Places) -> Base {
@@ -90,7 +113,9 @@ fn base(s: &Section, places: &mut Places) -> Base {
     let engine_oil = get("engine_oil", "engine oil of all cars");
     let step = get("dt_s", "longest time step");
     let formulation = get("formulation", "reading of the belt model");
-    let text = |value: Option<FactorValue>, default: &str| value.map_or_else(|| default.to_owned(), |value| value.to_string());
+    let text = |value: Option<FactorValue>, default: &str| {
+        value.map_or_else(|| default.to_owned(), |value| value.to_string())
+    };
     let number = |value: Option<FactorValue>, default: f64| match value {
         Some(FactorValue::Number(x)) => x,
         _ => default,
@@ -104,28 +129,61 @@ fn base(s: &Section, places: &mut Places) -> Base {
         start: text(start, "soak"),
         lubricant: lubricant.map(|value| value.to_string()),
         engine_oil: engine_oil.map(|value| value.to_string()),
-        set: assignments(s, "set", "overrides KEY=VALUE of the car in question", places),
+        set: assignments(
+            s,
+            "set",
+            "overrides KEY=VALUE of the car in question",
+            places,
+        ),
         set_all: assignments(s, "set_all", "overrides KEY=VALUE of all cars", places),
         dt_s: number(step, 1.0),
-        formulation: Formulation::NAMES.iter().find(|(name, _)| *name == formulation).map_or(Formulation::Smooth, |(_, f)| *f),
+        formulation: Formulation::NAMES
+            .iter()
+            .find(|(name, _)| *name == formulation)
+            .map_or(Formulation::Smooth, |(_, f)| *f),
     }
 }
 
 /// Items of a list, with their places noted; none if the key is absent or no list.
-fn items<'r>(s: &Section<'r>, key: &str, what: &str, doc: &str, places: &mut Places) -> Option<Vec<Written<'r>>> {
+fn items<'r>(
+    s: &Section<'r>,
+    key: &str,
+    what: &str,
+    doc: &str,
+    places: &mut Places,
+) -> Option<Vec<Written<'r>>> {
     let written = s.written(key, what, doc)?;
     places.add(key, written.place());
     let items = written.items();
     match &items {
-        Some(items) => items.iter().enumerate().for_each(|(k, item)| places.add_item(key, k, item.place())),
-        None => written.complain(what, &format!("`study.{key}` is no list"), &format!("write {key} = [{}]", written.text())),
+        Some(items) => items
+            .iter()
+            .enumerate()
+            .for_each(|(k, item)| places.add_item(key, k, item.place())),
+        None => written.complain(
+            what,
+            &format!("`study.{key}` is no list"),
+            &format!("write {key} = [{}]", written.text()),
+        ),
     }
     items
 }
 
 fn baselines(s: &Section, places: &mut Places) -> Option<Vec<String>> {
-    let items = items(s, "baselines", "a list of vehicles", "cars to compare with; [] for none", places)?;
-    Some(items.iter().filter_map(|item| options::value("vehicle", item)).map(|value| value.to_string()).collect())
+    let items = items(
+        s,
+        "baselines",
+        "a list of vehicles",
+        "cars to compare with; [] for none",
+        places,
+    )?;
+    Some(
+        items
+            .iter()
+            .filter_map(|item| options::value("vehicle", item))
+            .map(|value| value.to_string())
+            .collect(),
+    )
 }
 
 /// Assignments `KEY=VALUE`, checked as such.
@@ -140,7 +198,11 @@ fn assignments(s: &Section, key: &str, doc: &str, places: &mut Places) -> Vec<St
         let set = Document::parse("", "").map_or(Ok(()), |mut empty| empty.set(assignment));
         match set {
             Ok(()) => good.push(assignment.to_owned()),
-            Err(problem) => item.complain("KEY=VALUE", &problem.message, "write, for example, \"road_load.mass_kg=1250\""),
+            Err(problem) => item.complain(
+                "KEY=VALUE",
+                &problem.message,
+                "write, for example, \"road_load.mass_kg=1250\"",
+            ),
         }
     }
     good
@@ -158,7 +220,11 @@ fn keep(s: &Section) -> Keep {
         (Some(word), None) => {
             let columns = format!("write keep = [{}] for columns", written.text());
             let hint = options::did_you_mean(word, ["summary", "everything"].into_iter(), &columns);
-            written.complain(what, &format!("`{word}` is not known for `study.keep`"), &hint);
+            written.complain(
+                what,
+                &format!("`{word}` is not known for `study.keep`"),
+                &hint,
+            );
             Keep::Summary
         }
         (None, None) => {
@@ -170,7 +236,11 @@ fn keep(s: &Section) -> Keep {
 
 fn columns(whole: &Written, items: &[Written], what: &str) -> Vec<String> {
     if items.is_empty() {
-        whole.complain(what, "`study.keep` is an empty list", "write keep = \"summary\"");
+        whole.complain(
+            what,
+            "`study.keep` is an empty list",
+            "write keep = \"summary\"",
+        );
     }
     let mut found: Vec<String> = Vec::new();
     for item in items {
@@ -179,10 +249,22 @@ fn columns(whole: &Written, items: &[Written], what: &str) -> Vec<String> {
             continue;
         };
         if !COLUMNS.iter().any(|column| column.name == word) {
-            let hint = options::did_you_mean(word, COLUMNS.iter().map(|column| column.name), "the trace of `run --out` shows all");
-            item.complain("columns of the trace", &format!("the trace has no column `{word}`"), &hint);
+            let hint = options::did_you_mean(
+                word,
+                COLUMNS.iter().map(|column| column.name),
+                "the trace of `run --out` shows all",
+            );
+            item.complain(
+                "columns of the trace",
+                &format!("the trace has no column `{word}`"),
+                &hint,
+            );
         } else if found.iter().any(|other| other == word) {
-            item.complain("", &format!("`{word}` stands twice in `study.keep`"), "remove one");
+            item.complain(
+                "",
+                &format!("`{word}` stands twice in `study.keep`"),
+                "remove one",
+            );
         } else {
             found.push(word.to_owned());
         }
@@ -192,13 +274,24 @@ fn columns(whole: &Written, items: &[Written], what: &str) -> Vec<String> {
 
 /// Columns to analyse; their names are known only when the runs are.
 fn analyse(s: &Section, places: &mut Places) -> Vec<String> {
-    let items = items(s, "analyse", "a list of columns of the results", "columns that are analysed", places).unwrap_or_default();
+    let items = items(
+        s,
+        "analyse",
+        "a list of columns of the results",
+        "columns that are analysed",
+        places,
+    )
+    .unwrap_or_default();
     let mut found: Vec<String> = Vec::new();
     for item in items {
         match item.word() {
             None => item.wrong_type("the name of a column"),
             Some(word) if found.iter().any(|other| other == word) => {
-                item.complain("", &format!("`{word}` stands twice in `study.analyse`"), "remove one");
+                item.complain(
+                    "",
+                    &format!("`{word}` stands twice in `study.analyse`"),
+                    "remove one",
+                );
             }
             Some(word) => found.push(word.to_owned()),
         }

@@ -11,7 +11,13 @@ pub(super) const WAYS: [&str; 3] = ["values", "range", "distribution"];
 /// Message for a factor without any of them.
 pub(super) const NONE: &str = "the factor has no values";
 /// Distributions.
-const DISTRIBUTIONS: [&str; 5] = ["normal", "truncated_normal", "uniform", "triangular", "lognormal"];
+const DISTRIBUTIONS: [&str; 5] = [
+    "normal",
+    "truncated_normal",
+    "uniform",
+    "triangular",
+    "lognormal",
+];
 /// Most values of a range.
 const MOST_IN_RANGE: i64 = 10_000;
 /// Least share of a normal distribution that has to lie between the ends at which it is cut off.
@@ -33,7 +39,9 @@ impl Of<'_> {
     fn quantity(&self) -> &str {
         match self.acts {
             Acts::Scale => "",
-            Acts::Value | Acts::Offset => options::quantity(self.key.rsplit('.').next().unwrap_or_default()),
+            Acts::Value | Acts::Offset => {
+                options::quantity(self.key.rsplit('.').next().unwrap_or_default())
+            }
         }
     }
 
@@ -53,42 +61,76 @@ pub(super) fn read(s: &Section, of: Of, places: &mut Places) -> Option<FactorVal
     match given.as_slice() {
         [_] => list.or(range).or(distribution),
         [] => {
-            s.complain("values", one_of, NONE, "add values = [...], range = { ... } or [factor.distribution.NAME]");
+            s.complain(
+                "values",
+                one_of,
+                NONE,
+                "add values = [...], range = { ... } or [factor.distribution.NAME]",
+            );
             None
         }
         [first, .., last] => {
-            s.complain(last, one_of, &format!("`{last}` beside `{first}`"), "keep one of them");
+            s.complain(
+                last,
+                one_of,
+                &format!("`{last}` beside `{first}`"),
+                "keep one of them",
+            );
             None
         }
     }
 }
 
 fn list(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
-    let written = s.written("values", "a list of numbers or words", "values, each for itself")?;
+    let written = s.written(
+        "values",
+        "a list of numbers or words",
+        "values, each for itself",
+    )?;
     places.add("values", written.place());
     let Some(items) = written.items() else {
-        written.complain("a list", "`values` is no list", &format!("write values = [{}]", written.text()));
+        written.complain(
+            "a list",
+            "`values` is no list",
+            &format!("write values = [{}]", written.text()),
+        );
         return None;
     };
     if items.is_empty() {
         written.complain("a list of at least one value", "`values` is empty", "");
         return None;
     }
-    items.iter().enumerate().for_each(|(k, item)| places.add_item("values", k, item.place()));
+    items
+        .iter()
+        .enumerate()
+        .for_each(|(k, item)| places.add_item("values", k, item.place()));
     let read: Vec<Option<FactorValue>> = items.iter().map(|item| value(item, of)).collect();
     let mut values = read.into_iter().collect::<Option<Vec<FactorValue>>>()?;
     let is_number = |value: &FactorValue| matches!(value, FactorValue::Number(_));
     if !values.iter().all(is_number) {
         if of.key == "start" {
-            values.iter_mut().for_each(|value| *value = FactorValue::Word(Arc::from(value.to_string())));
-        } else if let Some(k) = values.iter().position(|value| is_number(value) != is_number(&values[0])) {
-            items[k].complain("numbers alone, or none", "`values` has numbers beside other values", "make two factors of it");
+            values
+                .iter_mut()
+                .for_each(|value| *value = FactorValue::Word(Arc::from(value.to_string())));
+        } else if let Some(k) = values
+            .iter()
+            .position(|value| is_number(value) != is_number(&values[0]))
+        {
+            items[k].complain(
+                "numbers alone, or none",
+                "`values` has numbers beside other values",
+                "make two factors of it",
+            );
             return None;
         }
     }
     for (k, value) in values.iter().enumerate() {
         if values[..k].contains(value) {
-            items[k].complain("", &format!("`{value}` stands twice in `values`"), "remove one");
+            items[k].complain(
+                "",
+                &format!("`{value}` stands twice in `values`"),
+                "remove one",
+            );
             return None;
         }
     }
@@ -101,7 +143,9 @@ fn value(item: &Written, of: Of) -> Option<FactorValue> {
         return options::value(of.key, item);
     }
     if item.is_number() {
-        return item.number(of.quantity(), Bound::any()).map(FactorValue::Number);
+        return item
+            .number(of.quantity(), Bound::any())
+            .map(FactorValue::Number);
     }
     let Some(word) = item.word() else {
         if item.is_table() {
@@ -112,8 +156,16 @@ fn value(item: &Written, of: Of) -> Option<FactorValue> {
     };
     // Such a word would become what it looks like when it is put into the car's file.
     if word.trim().is_empty() || toml::from_str::<toml::Table>(&format!("x = {word}")).is_ok() {
-        let hint = if word.trim().is_empty() { String::new() } else { format!("write {} without quotes", word.trim()) };
-        item.complain("a number, a word or a list", &format!("{} is no word", item.text()), &hint);
+        let hint = if word.trim().is_empty() {
+            String::new()
+        } else {
+            format!("write {} without quotes", word.trim())
+        };
+        item.complain(
+            "a number, a word or a list",
+            &format!("{} is no word", item.text()),
+            &hint,
+        );
         return None;
     }
     Some(FactorValue::Word(Arc::from(word)))
@@ -131,38 +183,77 @@ fn range(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
         return None;
     }
     let end = |key: &str, doc: &str| match table.written(key, &of.bound().to_string(), doc) {
-        Some(written) => written.number(of.quantity(), of.bound()).unwrap_or(f64::NAN),
+        Some(written) => written
+            .number(of.quantity(), of.bound())
+            .unwrap_or(f64::NAN),
         None => table.number(key, of.bound(), doc),
     };
     let (from, to) = (end("from", "first value"), end("to", "last value"));
-    let step = table.optional_number("step", Bound::positive(), "distance of the values; the last one may be nearer");
-    let count = table.integer_or("count", 2..=MOST_IN_RANGE, 2, "number of values, with both ends");
+    let step = table.optional_number(
+        "step",
+        Bound::positive(),
+        "distance of the values; the last one may be nearer",
+    );
+    let count = table.integer_or(
+        "count",
+        2..=MOST_IN_RANGE,
+        2,
+        "number of values, with both ends",
+    );
     let count = table.has("count").then_some(count);
     if from >= to {
-        table.complain("to", &format!("above {from}"), "the range ends before it begins", "swap `from` and `to`");
+        table.complain(
+            "to",
+            &format!("above {from}"),
+            "the range ends before it begins",
+            "swap `from` and `to`",
+        );
         return None;
     }
     let numbers = match (count, step) {
         (Some(count), None) => evenly(from, to, count),
         (None, Some(step)) if (to - from) / step >= MOST_IN_RANGE as f64 => {
-            table.complain("step", &format!("up to {MOST_IN_RANGE} values"), "the range has too many values", "take a larger step");
+            table.complain(
+                "step",
+                &format!("up to {MOST_IN_RANGE} values"),
+                "the range has too many values",
+                "take a larger step",
+            );
             return None;
         }
         (None, Some(step)) => stepwise(from, to, step),
         (Some(_), Some(_)) => {
-            table.complain("step", "count or step", "`step` beside `count`", "keep one of them");
+            table.complain(
+                "step",
+                "count or step",
+                "`step` beside `count`",
+                "keep one of them",
+            );
             return None;
         }
         (None, None) => {
-            table.complain("count", "count or step", "the range has neither `count` nor `step`", "add count = 5 or a step");
+            table.complain(
+                "count",
+                "count or step",
+                "the range has neither `count` nor `step`",
+                "add count = 5 or a step",
+            );
             return None;
         }
     };
     if numbers.windows(2).any(|pair| pair[0] >= pair[1]) {
-        table.complain("to", "", "the values lie too near to each other to be told apart", "widen the range, or take fewer values");
+        table.complain(
+            "to",
+            "",
+            "the values lie too near to each other to be told apart",
+            "widen the range, or take fewer values",
+        );
         return None;
     }
-    numbers.iter().all(|x| x.is_finite()).then(|| numbers.into_iter().map(FactorValue::Number).collect())
+    numbers
+        .iter()
+        .all(|x| x.is_finite())
+        .then(|| numbers.into_iter().map(FactorValue::Number).collect())
 }
 
 fn evenly(from: f64, to: f64, count: i64) -> Vec<f64> {
@@ -175,7 +266,9 @@ fn stepwise(from: f64, to: f64, step: f64) -> Vec<f64> {
     if !(from + to + step).is_finite() {
         return vec![f64::NAN];
     }
-    let inner = (1..).map(|k: u32| clean(from + step * f64::from(k))).take_while(|x| *x < to - 1e-9 * step);
+    let inner = (1..)
+        .map(|k: u32| clean(from + step * f64::from(k)))
+        .take_while(|x| *x < to - 1e-9 * step);
     [from].into_iter().chain(inner).chain([to]).collect()
 }
 
@@ -187,7 +280,12 @@ fn clean(x: f64) -> f64 {
 /// Complains about numbers for an option that takes words.
 fn words_only(s: &Section, of: Of, way: &str) {
     if options::is_option(of.key) && options::bound(of.key).is_none() {
-        s.complain(way, &options::allowed(of.key), &format!("`{}` takes words, not numbers", of.key), "give them as values = [...]");
+        s.complain(
+            way,
+            &options::allowed(of.key),
+            &format!("`{}` takes words, not numbers", of.key),
+            "give them as values = [...]",
+        );
     }
 }
 
@@ -196,7 +294,12 @@ fn distribution(s: &Section, of: Of, places: &mut Places) -> Option<Distribution
         let _ = s.table("distribution"); // for the hints of mistyped keys
         return None;
     }
-    let (name, t) = s.choose("distribution", &DISTRIBUTIONS, None, "how the values are distributed");
+    let (name, t) = s.choose(
+        "distribution",
+        &DISTRIBUTIONS,
+        None,
+        "how the values are distributed",
+    );
     places.add("distribution", s.place("distribution"));
     words_only(s, of, "distribution");
     let mut number = |key: &str, bound: Bound, doc: &str| {
@@ -205,14 +308,20 @@ fn distribution(s: &Section, of: Of, places: &mut Places) -> Option<Distribution
     };
     let any = Bound::any();
     let found = match name {
-        "normal" => Distribution::Normal { mean: number("mean", any, "mean"), sd: number("sd", Bound::positive(), "standard deviation") },
+        "normal" => Distribution::Normal {
+            mean: number("mean", any, "mean"),
+            sd: number("sd", Bound::positive(), "standard deviation"),
+        },
         "truncated_normal" => Distribution::TruncatedNormal {
             mean: number("mean", any, "mean before the cut"),
             sd: number("sd", Bound::positive(), "standard deviation before the cut"),
             low: number("low", any, "least value"),
             high: number("high", any, "largest value"),
         },
-        "uniform" => Distribution::Uniform { low: number("low", any, "least value"), high: number("high", any, "largest value") },
+        "uniform" => Distribution::Uniform {
+            low: number("low", any, "least value"),
+            high: number("high", any, "largest value"),
+        },
         "triangular" => Distribution::Triangular {
             low: number("low", any, "least value"),
             mode: number("mode", any, "most likely value"),
@@ -236,18 +345,36 @@ fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
         Distribution::Normal { mean, sd } => {
             if acts == Acts::Scale && sd > 0.5 * mean {
                 let allowed = format!("up to {}, half of the mean", 0.5 * mean);
-                t.complain("sd", &allowed, "the factors of a scale would reach zero", "use lognormal or truncated_normal");
+                t.complain(
+                    "sd",
+                    &allowed,
+                    "the factors of a scale would reach zero",
+                    "use lognormal or truncated_normal",
+                );
             }
             not_too_narrow(t, mean, sd) && !(acts == Acts::Scale && sd > 0.5 * mean)
         }
-        Distribution::TruncatedNormal { mean, sd, low, high } => {
+        Distribution::TruncatedNormal {
+            mean,
+            sd,
+            low,
+            high,
+        } => {
             if !(not_too_narrow(t, mean, sd) && ends(t, low, high)) {
                 return false;
             }
             let left = mass((low - mean) / sd, (high - mean) / sd);
             if left < LEAST_LEFT {
-                let message = format!("only {:.2} % of the normal distribution lie between `low` and `high`", 100.0 * left);
-                t.complain("low", "at least 1 %", &message, "move the mean, or use uniform or triangular");
+                let message = format!(
+                    "only {:.2} % of the normal distribution lie between `low` and `high`",
+                    100.0 * left
+                );
+                t.complain(
+                    "low",
+                    "at least 1 %",
+                    &message,
+                    "move the mean, or use uniform or triangular",
+                );
             }
             left >= LEAST_LEFT
         }
@@ -255,27 +382,50 @@ fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
         Distribution::Triangular { low, mode, high } => {
             let fits = ends(t, low, high);
             if fits && (mode < low || mode > high) {
-                t.complain("mode", &format!("{low} to {high}"), "the most likely value lies outside `low` to `high`", "");
+                t.complain(
+                    "mode",
+                    &format!("{low} to {high}"),
+                    "the most likely value lies outside `low` to `high`",
+                    "",
+                );
             }
             fits && low <= mode && mode <= high
         }
-        Distribution::Lognormal { median, geometric_sd } => median.is_finite() && geometric_sd.is_finite(),
+        Distribution::Lognormal {
+            median,
+            geometric_sd,
+        } => median.is_finite() && geometric_sd.is_finite(),
     }
 }
 
 fn not_too_narrow(t: &Section, mean: f64, sd: f64) -> bool {
     if sd < LEAST_SPREAD * mean.abs() {
         let message = "the standard deviation is so small that nothing varies";
-        t.complain("sd", &format!("at least {:e}", LEAST_SPREAD * mean.abs()), message, "");
+        t.complain(
+            "sd",
+            &format!("at least {:e}", LEAST_SPREAD * mean.abs()),
+            message,
+            "",
+        );
     }
     sd >= LEAST_SPREAD * mean.abs()
 }
 
 fn ends(t: &Section, low: f64, high: f64) -> bool {
     if low >= high {
-        t.complain("high", &format!("above {low}"), "`high` is not above `low`", "");
+        t.complain(
+            "high",
+            &format!("above {low}"),
+            "`high` is not above `low`",
+            "",
+        );
     } else if (high - low).is_infinite() {
-        t.complain("high", "a finite distance from `low`", "`low` and `high` are too far apart", "");
+        t.complain(
+            "high",
+            "a finite distance from `low`",
+            "`low` and `high` are too far apart",
+            "",
+        );
     }
     low < high && (high - low).is_finite()
 }

@@ -55,19 +55,43 @@ impl Summary {
     #[must_use]
     pub fn of(values: &[f64]) -> Self {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
-        let Moments { n, missing, mean, sd, min, max, mean_interval95 } = Moments::of(values.iter().copied());
+        let Moments {
+            n,
+            missing,
+            mean,
+            sd,
+            min,
+            max,
+            mean_interval95,
+        } = Moments::of(values.iter().copied());
         sorted.sort_unstable_by(f64::total_cmp);
         let quantile = |p: f64| {
             let interval95 = quantile_ranks(n, p).map(|at| at.and_then(|i| sorted.get(i).copied()));
-            Quantile { p, value: quantile_of_sorted(&sorted, p), interval95 }
+            Quantile {
+                p,
+                value: quantile_of_sorted(&sorted, p),
+                interval95,
+            }
         };
-        Summary { n, missing, mean, sd, min, max, quantiles: QUANTILES.map(quantile).to_vec(), mean_interval95 }
+        Summary {
+            n,
+            missing,
+            mean,
+            sd,
+            min,
+            max,
+            quantiles: QUANTILES.map(quantile).to_vec(),
+            mean_interval95,
+        }
     }
 
     /// The quantile at one of [`QUANTILES`]; NaN at any other probability.
     #[must_use]
     pub fn quantile(&self, p: f64) -> f64 {
-        self.quantiles.iter().find(|q| (q.p - p).abs() < 1e-9).map_or(f64::NAN, |q| q.value)
+        self.quantiles
+            .iter()
+            .find(|q| (q.p - p).abs() < 1e-9)
+            .map_or(f64::NAN, |q| q.value)
     }
 }
 
@@ -91,18 +115,36 @@ impl Moments {
         let count = n as f64;
         let rough = finite().sum::<f64>() / count;
         let mean = rough + finite().map(|x| x - rough).sum::<f64>() / count; // DS-1
-        let (sum, squares) = finite().map(|x| x - mean).fold((0.0, 0.0), |(s, q), d| (s + d, q + d * d));
-        let sd = if n < 2 { f64::NAN } else { ((squares - sum * sum / count).max(0.0) / (count - 1.0)).sqrt() }; // DS-1
-        let (min, max) = finite().fold((f64::NAN, f64::NAN), |(low, high), x| (x.min(low), x.max(high)));
+        let (sum, squares) = finite()
+            .map(|x| x - mean)
+            .fold((0.0, 0.0), |(s, q), d| (s + d, q + d * d));
+        let sd = if n < 2 {
+            f64::NAN
+        } else {
+            ((squares - sum * sum / count).max(0.0) / (count - 1.0)).sqrt()
+        }; // DS-1
+        let (min, max) = finite().fold((f64::NAN, f64::NAN), |(low, high), x| {
+            (x.min(low), x.max(high))
+        });
         let half = student_975(count - 1.0) * sd / count.sqrt(); // DS-2
-        Moments { n, missing, mean, sd, min, max, mean_interval95: half.is_finite().then_some([mean - half, mean + half]) }
+        Moments {
+            n,
+            missing,
+            mean,
+            sd,
+            min,
+            max,
+            mean_interval95: half.is_finite().then_some([mean - half, mean + half]),
+        }
     }
 }
 
 /// Quantile of ascending finite values by DS-3; NaN of none.
 #[must_use]
 pub fn quantile_of_sorted(sorted: &[f64], p: f64) -> f64 {
-    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let Some(last) = sorted.len().checked_sub(1) else {
+        return f64::NAN;
+    };
     let h = last as f64 * p.clamp(0.0, 1.0); // DS-3, counted from 0
     let k = (h.floor() as usize).min(last);
     let (low, high) = (sorted[k], sorted[(k + 1).min(last)]);
@@ -129,8 +171,17 @@ impl Share {
     #[must_use]
     pub fn of(values: &[f64], holds: impl Fn(f64) -> bool) -> Self {
         let n = values.iter().filter(|x| x.is_finite()).count();
-        let k = values.iter().filter(|x| x.is_finite() && holds(**x)).count();
-        Share { k, n, missing: values.len() - n, share: k as f64 / n as f64, interval95: clopper_pearson(k, n) }
+        let k = values
+            .iter()
+            .filter(|x| x.is_finite() && holds(**x))
+            .count();
+        Share {
+            k,
+            n,
+            missing: values.len() - n,
+            share: k as f64 / n as f64,
+            interval95: clopper_pearson(k, n),
+        }
     }
 
     /// The share of the values above zero: of a difference, in how many pairs the first one has more. Equal ones are not more.
@@ -143,6 +194,14 @@ impl Share {
 /// Differences of pairs, subject - baseline; NaN where one of the two is missing. The longer column's rest has no partner.
 #[must_use]
 pub fn difference(subject: &[f64], baseline: &[f64]) -> Vec<f64> {
-    let at = |column: &[f64], i: usize| column.get(i).copied().filter(|x| x.is_finite()).unwrap_or(f64::NAN);
-    (0..subject.len().max(baseline.len())).map(|i| at(subject, i) - at(baseline, i)).collect()
+    let at = |column: &[f64], i: usize| {
+        column
+            .get(i)
+            .copied()
+            .filter(|x| x.is_finite())
+            .unwrap_or(f64::NAN)
+    };
+    (0..subject.len().max(baseline.len()))
+        .map(|i| at(subject, i) - at(baseline, i))
+        .collect()
 }

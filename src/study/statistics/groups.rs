@@ -49,25 +49,61 @@ pub fn group_means<S: AsRef<str>>(levels: &[S], output: &[f64]) -> Groups {
     let mut names: Vec<&str> = Vec::new();
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for (level, y) in levels.iter().zip(output) {
-        let at = names.iter().position(|name| *name == level.as_ref()).unwrap_or_else(|| {
-            names.push(level.as_ref());
-            rows.push(Vec::new());
-            names.len() - 1
-        });
+        let at = names
+            .iter()
+            .position(|name| *name == level.as_ref())
+            .unwrap_or_else(|| {
+                names.push(level.as_ref());
+                rows.push(Vec::new());
+                names.len() - 1
+            });
         rows[at].push(*y);
     }
     let group = |(name, values): (&&str, &Vec<f64>)| {
-        let Moments { n, missing, mean, sd, min, max, mean_interval95 } = Moments::of(values.iter().copied());
-        Group { label: (*name).to_owned(), n, missing, mean, sd, min, max, mean_interval95 }
+        let Moments {
+            n,
+            missing,
+            mean,
+            sd,
+            min,
+            max,
+            mean_interval95,
+        } = Moments::of(values.iter().copied());
+        Group {
+            label: (*name).to_owned(),
+            n,
+            missing,
+            mean,
+            sd,
+            min,
+            max,
+            mean_interval95,
+        }
     };
     let groups: Vec<Group> = names.iter().zip(&rows).map(group).collect();
     let all = Moments::of(rows.iter().flatten().copied());
     let told = || groups.iter().filter(|g| g.n > 0);
-    let between: f64 = told().map(|g| g.n as f64 * (g.mean - all.mean).powi(2)).sum();
+    let between: f64 = told()
+        .map(|g| g.n as f64 * (g.mean - all.mean).powi(2))
+        .sum();
     let within = all.sd.powi(2) * (all.n as f64 - 1.0);
     // Of a constant only rounding is left of both.
-    let eta_squared = if all.max > all.min { (between / within).min(1.0) } else { f64::NAN }; // GR-1
-    let (low, high) = told().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), g| (g.mean.min(l), g.mean.max(h)));
-    let range = if told().count() > 1 { high - low } else { f64::NAN };
-    Groups { groups, range, eta_squared }
+    let eta_squared = if all.max > all.min {
+        (between / within).min(1.0)
+    } else {
+        f64::NAN
+    }; // GR-1
+    let (low, high) = told().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), g| {
+        (g.mean.min(l), g.mean.max(h))
+    });
+    let range = if told().count() > 1 {
+        high - low
+    } else {
+        f64::NAN
+    };
+    Groups {
+        groups,
+        range,
+        eta_squared,
+    }
 }

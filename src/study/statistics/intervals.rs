@@ -23,7 +23,9 @@ pub(super) fn student_975(freedom: f64) -> f64 {
     if freedom > MANY {
         let z = NORMAL_975;
         let first = (z.powi(3) + z) / (4.0 * freedom);
-        return z + first + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * freedom * freedom); // IV-1
+        return z
+            + first
+            + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * freedom * freedom); // IV-1
     }
     StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |t| t.inverse_cdf(1.0 - TAIL)) // IV-1
 }
@@ -31,16 +33,26 @@ pub(super) fn student_975(freedom: f64) -> f64 {
 /// Where the probability of `k` of `n` lies; 0 to 1 of nothing.
 pub(super) fn clopper_pearson(k: usize, n: usize) -> [f64; 2] {
     let (k, rest) = (k as f64, n.saturating_sub(k) as f64);
-    let at = |a: f64, b: f64, p: f64, none: f64| Beta::new(a, b).map_or(none, |beta| beta.inverse_cdf(p));
+    let at = |a: f64, b: f64, p: f64, none: f64| {
+        Beta::new(a, b).map_or(none, |beta| beta.inverse_cdf(p))
+    };
     // No Beta has a shape of 0: none or all of n leave the end open, at 0 or at 1.
-    [at(k, rest + 1.0, TAIL, 0.0), at(k + 1.0, rest, 1.0 - TAIL, 1.0)] // IV-2
+    [
+        at(k, rest + 1.0, TAIL, 0.0),
+        at(k + 1.0, rest, 1.0 - TAIL, 1.0),
+    ] // IV-2
 }
 
 /// Indices, from 0, of the two of `n` ordered values between which the quantile `p` lies; `None` where no value is far enough out.
 pub(super) fn quantile_ranks(n: usize, p: f64) -> [Option<usize>; 2] {
-    let Ok(below) = Binomial::new(p, n as u64) else { return [None; 2] };
+    let Ok(below) = Binomial::new(p, n as u64) else {
+        return [None; 2];
+    };
     // `inverse_cdf(q)` is the least x with P(K <= x) >= q: IV-3 asks for l = x at 0.025 and u = x + 1 at 0.975, counted from 1.
-    let (lower, upper) = (below.inverse_cdf(TAIL) as usize, below.inverse_cdf(1.0 - TAIL) as usize); // IV-3
+    let (lower, upper) = (
+        below.inverse_cdf(TAIL) as usize,
+        below.inverse_cdf(1.0 - TAIL) as usize,
+    ); // IV-3
     [lower.checked_sub(1), (upper < n).then_some(upper)]
 }
 
@@ -51,10 +63,19 @@ mod tests {
     #[test]
     fn val_student_and_clopper_pearson_as_in_scipy() {
         // scipy 1.17: stats.t.ppf(0.975, nu); stats.beta.ppf.
-        let t = [(1.0, 12.706_204_736_175), (10.0, 2.228_138_851_986), (1e3, 1.962_339_080_826), (1e4, 1.960_201_239_891)];
+        let t = [
+            (1.0, 12.706_204_736_175),
+            (10.0, 2.228_138_851_986),
+            (1e3, 1.962_339_080_826),
+            (1e4, 1.960_201_239_891),
+        ];
         let far = [(1e5, 1.959_987_707_535), (1e7, 1.959_964_221_767)];
         for (nu, truth) in t.into_iter().chain(far) {
-            assert!((student_975(nu) - truth).abs() < 2e-9, "{nu}: {}", student_975(nu));
+            assert!(
+                (student_975(nu) - truth).abs() < 2e-9,
+                "{nu}: {}",
+                student_975(nu)
+            );
         }
         assert!(student_975(0.0).is_nan());
         // The two branches meet.
@@ -67,12 +88,21 @@ mod tests {
         ];
         for (k, n, truth) in shares {
             let ends = clopper_pearson(k, n);
-            assert!(ends.iter().zip(truth).all(|(a, b)| (a - b).abs() < 1e-10), "{k} of {n}: {ends:?}");
+            assert!(
+                ends.iter().zip(truth).all(|(a, b)| (a - b).abs() < 1e-10),
+                "{k} of {n}: {ends:?}"
+            );
         }
         // By hand: none of n ends at 1 - 0.025^(1/n), all of n begins at 0.025^(1/n).
         let end = 1.0 - TAIL.powf(0.1);
-        assert!(clopper_pearson(0, 10)[0].abs() < 1e-300 && (clopper_pearson(0, 10)[1] - end).abs() < 1e-9);
-        assert!((clopper_pearson(10, 10)[0] - (1.0 - end)).abs() < 1e-9 && (clopper_pearson(10, 10)[1] - 1.0).abs() < 1e-300);
+        assert!(
+            clopper_pearson(0, 10)[0].abs() < 1e-300
+                && (clopper_pearson(0, 10)[1] - end).abs() < 1e-9
+        );
+        assert!(
+            (clopper_pearson(10, 10)[0] - (1.0 - end)).abs() < 1e-9
+                && (clopper_pearson(10, 10)[1] - 1.0).abs() < 1e-300
+        );
         let [low, high] = clopper_pearson(0, 0);
         assert!(low.abs() < 1e-300 && (high - 1.0).abs() < 1e-300);
     }
@@ -81,7 +111,11 @@ mod tests {
     fn ranks_leave_out_at_most_a_fortieth_on_each_side_and_no_less_than_needed() {
         for n in [5_usize, 10, 37, 150, 1000] {
             for p in [0.025, 0.25, 0.5, 0.95] {
-                let cdf = |below: usize| below.checked_sub(1).map_or(0.0, |k| Binomial::new(p, n as u64).unwrap().cdf(k as u64));
+                let cdf = |below: usize| {
+                    below
+                        .checked_sub(1)
+                        .map_or(0.0, |k| Binomial::new(p, n as u64).unwrap().cdf(k as u64))
+                };
                 let [lower, upper] = quantile_ranks(n, p);
                 // l - 1 = index from 0.
                 let l = lower.map_or(0, |i| i + 1);

@@ -30,5 +30,8 @@ pub struct Estimate {
 
 impl Estimate {
     /// Neither a value nor an interval.
-    pub const NONE: Estimate = Estimate { value: f64::NAN, interval95: None };
+    pub const NONE: Estimate = Estimate {
+        value: f64::NAN,
+        interval95: None,
+    };
 }

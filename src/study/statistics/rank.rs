@@ -47,25 +47,49 @@ pub struct RankSensitivity {
 /// Rank correlation and rank regression of an output on factors that are numbers. Where a column is shorter, its values are missing.
 #[must_use]
 pub fn rank_sensitivity(factors: &[&[f64]], output: &[f64]) -> RankSensitivity {
-    let all = factors.iter().map(|x| x.len()).max().unwrap_or(0).max(output.len());
+    let all = factors
+        .iter()
+        .map(|x| x.len())
+        .max()
+        .unwrap_or(0)
+        .max(output.len());
     let told = |column: &[f64], i: usize| column.get(i).is_some_and(|x| x.is_finite());
-    let kept: Vec<usize> = (0..all).filter(|&i| told(output, i) && factors.iter().all(|x| told(x, i))).collect();
+    let kept: Vec<usize> = (0..all)
+        .filter(|&i| told(output, i) && factors.iter().all(|x| told(x, i)))
+        .collect();
     let n = kept.len();
-    let standard = |column: &[f64]| standardized(&ranks(&kept.iter().map(|&i| column[i]).collect::<Vec<_>>()));
+    let standard =
+        |column: &[f64]| standardized(&ranks(&kept.iter().map(|&i| column[i]).collect::<Vec<_>>()));
     let y = standard(output);
     let x: Vec<Option<Vec<f64>>> = factors.par_iter().map(|column| standard(column)).collect();
-    let rho = |x: &Option<Vec<f64>>| x.as_ref().zip(y.as_ref()).map_or(f64::NAN, |(x, y)| dot(x, y).clamp(-1.0, 1.0)); // RK-1
+    let rho = |x: &Option<Vec<f64>>| {
+        x.as_ref()
+            .zip(y.as_ref())
+            .map_or(f64::NAN, |(x, y)| dot(x, y).clamp(-1.0, 1.0))
+    }; // RK-1
     let rho: Vec<f64> = x.iter().map(rho).collect();
     let varied: Vec<usize> = (0..x.len()).filter(|&i| !rho[i].is_nan()).collect();
     let columns: Vec<&Vec<f64>> = varied.iter().filter_map(|&i| x[i].as_ref()).collect();
     let with_output = DVector::from_iterator(varied.len(), varied.iter().map(|&i| rho[i]));
-    let (r_squared, found) = regression(&columns, &with_output, n).unwrap_or((f64::NAN, vec![Estimate::NONE; varied.len()]));
+    let (r_squared, found) = regression(&columns, &with_output, n)
+        .unwrap_or((f64::NAN, vec![Estimate::NONE; varied.len()]));
     let mut regression = vec![Estimate::NONE; x.len()];
     for (i, estimate) in varied.into_iter().zip(found) {
         regression[i] = estimate;
     }
-    let factor = |(rho, regression)| RankFactor { spearman: Estimate { value: rho, interval95: fisher(rho, n) }, regression };
-    RankSensitivity { n, missing: all - n, r_squared, factors: rho.into_iter().zip(regression).map(factor).collect() }
+    let factor = |(rho, regression)| RankFactor {
+        spearman: Estimate {
+            value: rho,
+            interval95: fisher(rho, n),
+        },
+        regression,
+    };
+    RankSensitivity {
+        n,
+        missing: all - n,
+        r_squared,
+        factors: rho.into_iter().zip(regression).map(factor).collect(),
+    }
 }
 
 /// Ranks from 1; equal values share the mean of theirs.
@@ -96,17 +120,31 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// R2 and coefficients with intervals; `None` where there are too few rows or the factors are not independent.
 fn regression(x: &[&Vec<f64>], rho: &DVector<f64>, n: usize) -> Option<(f64, Vec<Estimate>)> {
-    let freedom = n.checked_sub(x.len() + 1).filter(|f| *f > 0 && !x.is_empty())? as f64;
-    let pairs: Vec<f64> = (0..x.len() * x.len()).into_par_iter().map(|k| dot(x[k / x.len()], x[k % x.len()])).collect();
-    let inverse = DMatrix::from_vec(x.len(), x.len(), pairs).cholesky()?.inverse();
-    if !inverse.diagonal().iter().all(|inflation| *inflation <= MOST_INFLATION) {
+    let freedom = n
+        .checked_sub(x.len() + 1)
+        .filter(|f| *f > 0 && !x.is_empty())? as f64;
+    let pairs: Vec<f64> = (0..x.len() * x.len())
+        .into_par_iter()
+        .map(|k| dot(x[k / x.len()], x[k % x.len()]))
+        .collect();
+    let inverse = DMatrix::from_vec(x.len(), x.len(), pairs)
+        .cholesky()?
+        .inverse();
+    if !inverse
+        .diagonal()
+        .iter()
+        .all(|inflation| *inflation <= MOST_INFLATION)
+    {
         return None;
     }
     let b = &inverse * rho; // RK-3
     let r_squared = b.dot(rho).clamp(0.0, 1.0); // RK-3
     let estimate = |i: usize| {
         let half = student_975(freedom) * ((1.0 - r_squared) * inverse[(i, i)] / freedom).sqrt(); // RK-4
-        Estimate { value: b[i], interval95: Some([b[i] - half, b[i] + half]) }
+        Estimate {
+            value: b[i],
+            interval95: Some([b[i] - half, b[i] + half]),
+        }
     };
     Some((r_squared, (0..x.len()).map(estimate).collect()))
 }

@@ -51,7 +51,10 @@ pub struct Bootstrap {
 
 impl Default for Bootstrap {
     fn default() -> Self {
-        Bootstrap { resamples: 1000, seed: 1 }
+        Bootstrap {
+            resamples: 1000,
+            seed: 1,
+        }
     }
 }
 
@@ -85,11 +88,21 @@ pub struct SobolIndices {
 #[must_use]
 pub fn sobol_indices(blocks: &Blocks, bootstrap: Bootstrap) -> SobolIndices {
     let table = Table::new(blocks);
-    let Some(point) = table.indices(None) else { return table.without_indices() };
-    let drawn: Vec<Indices> =
-        (0..bootstrap.resamples).into_par_iter().filter_map(|k| table.indices(Some(&table.draw(bootstrap.seed, k)))).collect();
-    let estimate = |of: &(dyn Fn(&Indices) -> f64 + Sync)| Estimate { value: of(&point), interval95: percentile(&drawn, of) };
-    let factor = |i: usize| FactorIndices { first: estimate(&|d| d.first[i]), total: estimate(&|d| d.total[i]) };
+    let Some(point) = table.indices(None) else {
+        return table.without_indices();
+    };
+    let drawn: Vec<Indices> = (0..bootstrap.resamples)
+        .into_par_iter()
+        .filter_map(|k| table.indices(Some(&table.draw(bootstrap.seed, k))))
+        .collect();
+    let estimate = |of: &(dyn Fn(&Indices) -> f64 + Sync)| Estimate {
+        value: of(&point),
+        interval95: percentile(&drawn, of),
+    };
+    let factor = |i: usize| FactorIndices {
+        first: estimate(&|d| d.first[i]),
+        total: estimate(&|d| d.total[i]),
+    };
     SobolIndices {
         samples: table.samples,
         missing: table.missing,
@@ -104,21 +117,35 @@ pub fn sobol_indices(blocks: &Blocks, bootstrap: Bootstrap) -> SobolIndices {
 #[must_use]
 pub fn sobol_convergence(blocks: &Blocks, bootstrap: Bootstrap) -> Vec<SobolIndices> {
     let all = blocks.samples();
-    [16, 8, 4, 2, 1].into_iter().map(|part| all / part).filter(|n| *n >= 2).map(|n| sobol_indices(&blocks.first(n), bootstrap)).collect()
+    [16, 8, 4, 2, 1]
+        .into_iter()
+        .map(|part| all / part)
+        .filter(|n| *n >= 2)
+        .map(|n| sobol_indices(&blocks.first(n), bootstrap))
+        .collect()
 }
 
 impl<'a> Blocks<'a> {
     /// Number of samples, with and without outputs.
     #[must_use]
     pub fn samples(&self) -> usize {
-        self.ab.iter().chain([&self.a, &self.b]).map(|column| column.len()).max().unwrap_or(0)
+        self.ab
+            .iter()
+            .chain([&self.a, &self.b])
+            .map(|column| column.len())
+            .max()
+            .unwrap_or(0)
     }
 
     /// The first samples of a design.
     #[must_use]
     pub fn first(&self, samples: usize) -> Self {
         let cut = |column: &'a [f64]| &column[..samples.min(column.len())];
-        Blocks { a: cut(self.a), b: cut(self.b), ab: self.ab.iter().map(|column| cut(column)).collect() }
+        Blocks {
+            a: cut(self.a),
+            b: cut(self.b),
+            ab: self.ab.iter().map(|column| cut(column)).collect(),
+        }
     }
 }
 
@@ -141,12 +168,20 @@ struct Indices {
 
 impl Table {
     fn new(blocks: &Blocks) -> Self {
-        let columns: Vec<&[f64]> = [blocks.a, blocks.b].into_iter().chain(blocks.ab.iter().copied()).collect();
+        let columns: Vec<&[f64]> = [blocks.a, blocks.b]
+            .into_iter()
+            .chain(blocks.ab.iter().copied())
+            .collect();
         let (all, width) = (blocks.samples(), columns.len());
         let mut rows = Vec::with_capacity(all * width);
         for i in 0..all {
             let start = rows.len();
-            rows.extend(columns.iter().filter_map(|column| column.get(i)).filter(|y| y.is_finite()));
+            rows.extend(
+                columns
+                    .iter()
+                    .filter_map(|column| column.get(i))
+                    .filter(|y| y.is_finite()),
+            );
             if rows.len() < start + width {
                 rows.truncate(start);
             }
@@ -156,13 +191,20 @@ impl Table {
         let largest = rows.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
         rows.iter_mut().for_each(|y| *y -= centre); // SO-1
         let constant = (64.0 * f64::EPSILON * largest).powi(2);
-        Table { rows, factors: width - 2, samples, missing: all - samples, constant }
+        Table {
+            rows,
+            factors: width - 2,
+            samples,
+            missing: all - samples,
+            constant,
+        }
     }
 
     /// How often each sample stands in a resample.
     fn draw(&self, seed: u64, resample: usize) -> Vec<u32> {
         // Every resample has its own generator, so that no thread's draws depend on another's. The factor spreads the seeds out.
-        let mut random = Pcg64::seed_from_u64(seed ^ (resample as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let mut random =
+            Pcg64::seed_from_u64(seed ^ (resample as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
         let mut counts = vec![0; self.samples];
         for _ in 0..self.samples {
             let at = random.random_range(0..self.samples as u64);
@@ -196,14 +238,24 @@ impl Table {
             return None;
         }
         let centre = all / (n * (d + 2) as f64); // SO-1, of these samples
-        let first = sums.iter().map(|s| (s[0] - centre * s[1]) / n / variance).collect(); // SO-3
+        let first = sums
+            .iter()
+            .map(|s| (s[0] - centre * s[1]) / n / variance)
+            .collect(); // SO-3
         let total = sums.iter().map(|s| s[2] / n / (2.0 * variance)).collect(); // SO-4
-        Some(Indices { first, total, variance })
+        Some(Indices {
+            first,
+            total,
+            variance,
+        })
     }
 
     /// What there is to say of a constant, or of too few samples.
     fn without_indices(&self) -> SobolIndices {
-        let none = FactorIndices { first: Estimate::NONE, total: Estimate::NONE };
+        let none = FactorIndices {
+            first: Estimate::NONE,
+            total: Estimate::NONE,
+        };
         SobolIndices {
             samples: self.samples,
             missing: self.missing,

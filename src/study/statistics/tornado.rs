@@ -60,27 +60,58 @@ pub struct Tornado {
 pub fn tornado(base: f64, factors: &[TornadoInput]) -> Tornado {
     let mut bars: Vec<TornadoBar> = factors.iter().map(|factor| bar(base, factor)).collect();
     // A stable sort: equal swings stay in the order of the plan.
-    bars.sort_by(|a, b| a.swing.is_nan().cmp(&b.swing.is_nan()).then(b.swing.total_cmp(&a.swing)));
+    bars.sort_by(|a, b| {
+        a.swing
+            .is_nan()
+            .cmp(&b.swing.is_nan())
+            .then(b.swing.total_cmp(&a.swing))
+    });
     Tornado { base, bars }
 }
 
 fn bar(base: f64, factor: &TornadoInput) -> TornadoBar {
-    let end = |(label, output): &(String, f64)| TornadoEnd { label: label.clone(), output: *output, effect: output - base }; // TO-1
-    let told: Vec<&(String, f64)> = factor.entries.iter().filter(|(_, output)| (output - base).is_finite()).collect();
+    let end = |(label, output): &(String, f64)| TornadoEnd {
+        label: label.clone(),
+        output: *output,
+        effect: output - base,
+    }; // TO-1
+    let told: Vec<&(String, f64)> = factor
+        .entries
+        .iter()
+        .filter(|(_, output)| (output - base).is_finite())
+        .collect();
     let missing = factor.entries.len() - told.len();
     let (low, high) = if let [a, b] = factor.entries.as_slice() {
         let kept = |e: &(String, f64)| (e.1 - base).is_finite().then(|| end(e));
         (kept(a), kept(b))
     } else if let [one] = told[..] {
         // On the side to which it goes.
-        if one.1 < base { (Some(end(one)), None) } else { (None, Some(end(one))) }
+        if one.1 < base {
+            (Some(end(one)), None)
+        } else {
+            (None, Some(end(one)))
+        }
     } else {
         let by_output = |a: &&&(String, f64), b: &&&(String, f64)| a.1.total_cmp(&b.1);
         // The first of equal ones on both sides.
-        (told.iter().min_by(by_output).map(|e| end(e)), told.iter().rev().max_by(by_output).map(|e| end(e)))
+        (
+            told.iter().min_by(by_output).map(|e| end(e)),
+            told.iter().rev().max_by(by_output).map(|e| end(e)),
+        )
     };
     let effects = || low.iter().chain(&high).map(|end| end.effect);
     let swing = effects().fold(0.0, f64::max) - effects().fold(0.0, f64::min); // TO-1
-    let swing = if effects().next().is_none() { f64::NAN } else { swing };
-    TornadoBar { name: factor.name.clone(), low, high, swing, values: factor.entries.len(), missing }
+    let swing = if effects().next().is_none() {
+        f64::NAN
+    } else {
+        swing
+    };
+    TornadoBar {
+        name: factor.name.clone(),
+        low,
+        high,
+        swing,
+        values: factor.entries.len(),
+        missing,
+    }
 }

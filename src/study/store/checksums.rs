@@ -41,7 +41,10 @@ pub struct Summing<W> {
 impl<W: Write> Summing<W> {
     /// Nothing yet.
     pub fn new(out: W) -> Self {
-        Summing { out, hasher: Sha256::new() }
+        Summing {
+            out,
+            hasher: Sha256::new(),
+        }
     }
 
     /// The checksum.
@@ -88,7 +91,12 @@ impl Checksums {
         let text = std::str::from_utf8(bytes).ok()?;
         let lines = text.strip_suffix('\n')?.split('\n');
         lines
-            .map(|line| Some((line.get(66..).filter(|name| !name.is_empty())?.to_owned(), sum_in(line)?)))
+            .map(|line| {
+                Some((
+                    line.get(66..).filter(|name| !name.is_empty())?.to_owned(),
+                    sum_in(line)?,
+                ))
+            })
             .collect::<Option<_>>()
             .map(Checksums)
     }
@@ -100,16 +108,26 @@ impl Checksums {
 
     /// The checksum of a file.
     pub fn get(&self, name: &str) -> Option<&Sum> {
-        self.0.iter().find(|(other, _)| other == name).map(|(_, sum)| sum)
+        self.0
+            .iter()
+            .find(|(other, _)| other == name)
+            .map(|(_, sum)| sum)
     }
 }
 
 /// The checksum at the beginning of a line, with the two spaces behind it.
 fn sum_in(line: &str) -> Option<Sum> {
-    let digits = line.get(..64).filter(|_| line.get(64..66) == Some("  "))?.as_bytes();
+    let digits = line
+        .get(..64)
+        .filter(|_| line.get(64..66) == Some("  "))?
+        .as_bytes();
     let mut sum = Sum::default();
     for (byte, pair) in sum.iter_mut().zip(digits.chunks_exact(2)) {
-        let digit = |d: u8| char::from(d).to_digit(16).filter(|_| !d.is_ascii_uppercase());
+        let digit = |d: u8| {
+            char::from(d)
+                .to_digit(16)
+                .filter(|_| !d.is_ascii_uppercase())
+        };
         *byte = u8::try_from(16 * digit(pair[0])? + digit(pair[1])?).ok()?;
     }
     Some(sum)
@@ -130,7 +148,10 @@ mod tests {
 
     #[test]
     fn a_list_that_was_cut_off_or_changed_is_none_or_another() {
-        let list = Checksums(vec![("a".to_owned(), sha256(b"1")), ("b ü".to_owned(), sha256(b"2"))]);
+        let list = Checksums(vec![
+            ("a".to_owned(), sha256(b"1")),
+            ("b ü".to_owned(), sha256(b"2")),
+        ]);
         let text = list.text();
         for end in 0..text.len() {
             // Cut at the end of a line it is a list without the later files, which then are missed.

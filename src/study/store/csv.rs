@@ -20,7 +20,11 @@ impl Header {
     /// The text over a column.
     #[must_use]
     pub fn of(self, column: &Column) -> String {
-        if self == Header::Names || column.unit.is_empty() { column.name.clone() } else { format!("{} [{}]", column.name, column.unit) }
+        if self == Header::Names || column.unit.is_empty() {
+            column.name.clone()
+        } else {
+            format!("{} [{}]", column.name, column.unit)
+        }
     }
 }
 
@@ -39,8 +43,12 @@ impl<W: Write> CsvTable<W> {
     /// Whatever `out` reports.
     pub fn new(out: W, columns: &[Column], header: Header) -> io::Result<Self> {
         let mut out = csv::Writer::from_writer(out);
-        out.write_record(columns.iter().map(|column| header.of(column))).map_err(csv_error)?;
-        Ok(CsvTable { out, columns: columns.to_vec() })
+        out.write_record(columns.iter().map(|column| header.of(column)))
+            .map_err(csv_error)?;
+        Ok(CsvTable {
+            out,
+            columns: columns.to_vec(),
+        })
     }
 
     /// Writes some rows.
@@ -54,7 +62,9 @@ impl<W: Write> CsvTable<W> {
             for values in &rows.values {
                 text.clear();
                 match values {
-                    Values::Number(numbers) => push_value(&mut text, Value::Number(numbers[row]), &[]),
+                    Values::Number(numbers) => {
+                        push_value(&mut text, Value::Number(numbers[row]), &[])
+                    }
                     Values::Count(counts) => text += &counts[row].to_string(),
                     Values::Text(words) => text += &words[row],
                 }

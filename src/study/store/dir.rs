@@ -18,7 +18,9 @@ use super::parquet::write_parquet;
 use super::read::{Study, is_whole, marked_parts};
 use crate::config::Problem;
 use crate::config::bounded::{self, Refused};
-use crate::results::files::{Created, check_directory, failed, list, names_in, problem, sync_directory, temporary_in};
+use crate::results::files::{
+    Created, check_directory, failed, list, names_in, problem, sync_directory, temporary_in,
+};
 use crate::study::table::{Column, Rows};
 
 /// A piece of a table: the rows of one part.
@@ -50,17 +52,32 @@ impl StudyDir {
     ///
     /// # Errors
     /// A problem of `--out` that says what is in the way; nothing has then changed, unless the disk failed halfway.
-    pub fn create(path: impl AsRef<Path>, manifest: &[u8], plan: &[u8], force: bool) -> Result<Self, Problem> {
+    pub fn create(
+        path: impl AsRef<Path>,
+        manifest: &[u8],
+        plan: &[u8],
+        force: bool,
+    ) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         let layout = layout_of(&path, manifest)?;
         check_directory(&path)?;
-        let mut created =
-            Created::new(&path).map_err(|error| failed(&path, &format!("cannot create directory {}", path.display()), &error))?;
+        let mut created = Created::new(&path).map_err(|error| {
+            failed(
+                &path,
+                &format!("cannot create directory {}", path.display()),
+                &error,
+            )
+        })?;
         check_contents(&path, force)?;
         let lock = lock(&path)?;
         // Once more: another process may have begun a study just before the lock.
         let earlier = check_contents(&path, force)?;
-        let dir = StudyDir { path, layout, whole: Mutex::default(), _lock: lock };
+        let dir = StudyDir {
+            path,
+            layout,
+            whole: Mutex::default(),
+            _lock: lock,
+        };
         // Better to learn now than after the first part that nothing can be written here.
         let begun = dir.begin(manifest, plan, earlier);
         if begun.is_err() && !earlier {
@@ -81,7 +98,10 @@ impl StudyDir {
     pub fn resume(path: impl AsRef<Path>, manifest: &[u8], plan: &[u8]) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         let layout = layout_of(&path, manifest)?;
-        let stored = || bounded::read_file(path.join(MANIFEST), bounded::RECORD).map_err(|error| no_study(&path, error));
+        let stored = || {
+            bounded::read_file(path.join(MANIFEST), bounded::RECORD)
+                .map_err(|error| no_study(&path, error))
+        };
         // Looked for before the lock, which would leave its file in a directory of something else.
         stored()?;
         let lock = lock(&path)?;
@@ -89,13 +109,29 @@ impl StudyDir {
         if stored != manifest {
             return Err(other_settings(&path, (&stored, manifest), plan));
         }
-        let dir = StudyDir { path, layout, whole: Mutex::default(), _lock: lock };
-        let same_plan = bounded::read_file(dir.path.join(PLAN), bounded::TOML).is_ok_and(|text| text == plan);
+        let dir = StudyDir {
+            path,
+            layout,
+            whole: Mutex::default(),
+            _lock: lock,
+        };
+        let same_plan =
+            bounded::read_file(dir.path.join(PLAN), bounded::TOML).is_ok_and(|text| text == plan);
         let parts = names::parts_folder(&dir.path);
-        let prepared = fs::create_dir_all(&parts).and_then(|()| remove_temporary(&dir.path)).and_then(|()| remove_temporary(&parts));
-        let prepared = prepared.and_then(|()| if same_plan { Ok(()) } else { dir.put_bytes(PLAN, plan).map(drop) });
+        let prepared = fs::create_dir_all(&parts)
+            .and_then(|()| remove_temporary(&dir.path))
+            .and_then(|()| remove_temporary(&parts));
+        let prepared = prepared.and_then(|()| {
+            if same_plan {
+                Ok(())
+            } else {
+                dir.put_bytes(PLAN, plan).map(drop)
+            }
+        });
         prepared.map_err(|error| dir.cannot_write("the study", &error))?;
-        for index in marked_parts(&dir.path, &dir.layout).map_err(|error| dir.cannot_write("the parts", &error))? {
+        for index in marked_parts(&dir.path, &dir.layout)
+            .map_err(|error| dir.cannot_write("the parts", &error))?
+        {
             if is_whole(&dir.path, &dir.layout, index) {
                 dir.whole().insert(index);
             } else {
@@ -123,7 +159,9 @@ impl StudyDir {
     #[must_use]
     pub fn missing(&self) -> Vec<usize> {
         let whole = self.whole();
-        (0..self.layout.parts).filter(|index| !whole.contains(index)).collect()
+        (0..self.layout.parts)
+            .filter(|index| !whole.contains(index))
+            .collect()
     }
 
     /// Whether all parts are there.
@@ -137,10 +175,17 @@ impl StudyDir {
     /// # Errors
     /// A problem of `--out` with the words of the operating system. Parts that are whole stay, and the study can be resumed.
     pub fn write_part(&self, index: usize, tables: &[PartTable]) -> Result<(), Problem> {
-        let fits =
-            tables.len() == self.layout.tables.len() && tables.iter().zip(&self.layout.tables).all(|(table, name)| table.name == name);
+        let fits = tables.len() == self.layout.tables.len()
+            && tables
+                .iter()
+                .zip(&self.layout.tables)
+                .all(|(table, name)| table.name == name);
         if index >= self.layout.parts || !fits {
-            return Err(problem(&self.path, &format!("part {index} is not one of the study's layout"), ""));
+            return Err(problem(
+                &self.path,
+                &format!("part {index} is not one of the study's layout"),
+                "",
+            ));
         }
         let parts = names::parts_folder(&self.path);
         let mut list = Checksums::default();
@@ -151,7 +196,10 @@ impl StudyDir {
                     "csv" => write_csv(out, table.columns, table.rows),
                     _ => write_parquet(out, table.columns, table.rows, table.metadata),
                 });
-                list.0.push((name.clone(), written.map_err(|error| self.cannot_write(&name, &error))?));
+                list.0.push((
+                    name.clone(),
+                    written.map_err(|error| self.cannot_write(&name, &error))?,
+                ));
             }
         }
         let mark = names::part_mark(index);
@@ -170,22 +218,40 @@ impl StudyDir {
     pub fn finish(&self, files: &[(String, Vec<u8>)]) -> Result<Vec<PathBuf>, Problem> {
         let missing = self.missing().len();
         if missing > 0 {
-            let message =
-                format!("the study in {} is not complete: {missing} of {} parts are missing", self.path.display(), self.layout.parts);
+            let message = format!(
+                "the study in {} is not complete: {missing} of {} parts are missing",
+                self.path.display(),
+                self.layout.parts
+            );
             return Err(problem(&self.path, &message, "continue it with --resume"));
         }
-        let twice = |k: usize, name: &str| files[..k].iter().any(|(other, _)| other.eq_ignore_ascii_case(name));
-        if let Some((_, (name, _))) = files.iter().enumerate().find(|(k, (name, _))| !names::is_result(name) || twice(*k, name)) {
-            return Err(problem(&self.path, &format!("`{name}` cannot be the name of a result"), ""));
+        let twice = |k: usize, name: &str| {
+            files[..k]
+                .iter()
+                .any(|(other, _)| other.eq_ignore_ascii_case(name))
+        };
+        if let Some((_, (name, _))) = files
+            .iter()
+            .enumerate()
+            .find(|(k, (name, _))| !names::is_result(name) || twice(*k, name))
+        {
+            return Err(problem(
+                &self.path,
+                &format!("`{name}` cannot be the name of a result"),
+                "",
+            ));
         }
         let mut order: Vec<_> = files.iter().collect();
         order.sort_by_key(|(name, _)| name == SUMMARY);
         let mut list = Checksums::default();
         for (name, bytes) in order {
-            let sum = self.put_bytes(name, bytes).map_err(|error| self.cannot_write(name, &error))?;
+            let sum = self
+                .put_bytes(name, bytes)
+                .map_err(|error| self.cannot_write(name, &error))?;
             list.0.push((name.clone(), sum));
         }
-        self.put_bytes(RESULTS, list.text().as_bytes()).map_err(|error| self.cannot_write(RESULTS, &error))?;
+        self.put_bytes(RESULTS, list.text().as_bytes())
+            .map_err(|error| self.cannot_write(RESULTS, &error))?;
         Ok(files.iter().map(|(name, _)| self.path.join(name)).collect())
     }
 
@@ -212,7 +278,10 @@ impl StudyDir {
             self.put_bytes(MANIFEST, manifest)
         });
         // From here on it is a study, which --resume can take up.
-        written.and_then(|_| self.put_bytes(PLAN, plan)).map(drop).map_err(|error| self.cannot_write("the study", &error))
+        written
+            .and_then(|_| self.put_bytes(PLAN, plan))
+            .map(drop)
+            .map_err(|error| self.cannot_write("the study", &error))
     }
 
     /// A file in the directory itself.
@@ -223,12 +292,19 @@ impl StudyDir {
     }
 
     fn cannot_write(&self, name: &str, error: &io::Error) -> Problem {
-        let problem = failed(&self.path, &format!("cannot write {name} in {}", self.path.display()), error);
+        let problem = failed(
+            &self.path,
+            &format!("cannot write {name} in {}", self.path.display()),
+            error,
+        );
         let hint = match error.kind() {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
                 "parts that are whole are kept; make room and continue with --resume".to_owned()
             }
-            _ => format!("parts that are whole are kept and --resume continues them; {}", problem.hint),
+            _ => format!(
+                "parts that are whole are kept and --resume continues them; {}",
+                problem.hint
+            ),
         };
         Problem { hint, ..problem }
     }
@@ -236,14 +312,24 @@ impl StudyDir {
 
 fn layout_of(path: &Path, manifest: &[u8]) -> Result<Layout, Problem> {
     let parsed = serde_json::from_slice::<Value>(manifest).ok();
-    parsed.as_ref().and_then(Layout::of).ok_or_else(|| problem(path, "the study has no manifest with a layout", ""))
+    parsed
+        .as_ref()
+        .and_then(Layout::of)
+        .ok_or_else(|| problem(path, "the study has no manifest with a layout", ""))
 }
 
 /// Whether the directory holds an earlier study. Refuses what is not to be written over.
 fn check_contents(path: &Path, force: bool) -> Result<bool, Problem> {
-    let mut found = names_in(path).map_err(|error| failed(path, &format!("cannot read directory {}", path.display()), &error))?;
+    let mut found = names_in(path).map_err(|error| {
+        failed(
+            path,
+            &format!("cannot read directory {}", path.display()),
+            &error,
+        )
+    })?;
     // What is left of a study that never began.
-    let empty = |folder: PathBuf| fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
+    let empty =
+        |folder: PathBuf| fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
     found.retain(|name| name != LOCK && !(name == PARTS && empty(names::parts_folder(path))));
     let earlier = found.iter().any(|name| name == MANIFEST);
     if found.is_empty() || (earlier && force) {
@@ -252,7 +338,11 @@ fn check_contents(path: &Path, force: bool) -> Result<bool, Problem> {
     let name = path.display();
     Err(if earlier {
         let message = format!("{name} holds a study: {}", list(&found));
-        problem(path, &message, "continue it with --resume, replace it with --force, or choose another name")
+        problem(
+            path,
+            &message,
+            "continue it with --resume, replace it with --force, or choose another name",
+        )
     } else {
         let message = format!("{name} holds files of something else: {}", list(&found));
         problem(path, &message, "choose another name, or an empty directory")
@@ -270,29 +360,54 @@ fn no_study(path: &Path, error: Refused) -> Problem {
     let message = format!("cannot read {MANIFEST} in {}", path.display());
     match error {
         Refused::Unreadable(error) => failed(path, &message, &error),
-        refused => Problem { allowed: refused.allowed(""), ..problem(path, &format!("{message}: {refused}"), refused.hint("")) },
+        refused => Problem {
+            allowed: refused.allowed(""),
+            ..problem(path, &format!("{message}: {refused}"), refused.hint(""))
+        },
     }
 }
 
 fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Problem {
     let hint = "resume it with the same plan, files and program, or begin anew with --force or in another directory";
     let name = path.display();
-    let (Ok(stored), Ok(now)) = (serde_json::from_slice(stored), serde_json::from_slice(now)) else {
-        return problem(path, &format!("{MANIFEST} in {name} is damaged"), "begin the study anew with --force or in another directory");
+    let (Ok(stored), Ok(now)) = (serde_json::from_slice(stored), serde_json::from_slice(now))
+    else {
+        return problem(
+            path,
+            &format!("{MANIFEST} in {name} is damaged"),
+            "begin the study anew with --force or in another directory",
+        );
     };
     let mut found = differences(&stored, &now);
     // The line of the plan says more than what follows from it.
-    if let Some(stored) = bounded::read_file(path.join(PLAN), bounded::TOML).ok().filter(|stored| stored != plan) {
-        found.insert(0, lines(PLAN, &String::from_utf8_lossy(&stored), &String::from_utf8_lossy(plan)));
+    if let Some(stored) = bounded::read_file(path.join(PLAN), bounded::TOML)
+        .ok()
+        .filter(|stored| stored != plan)
+    {
+        found.insert(
+            0,
+            lines(
+                PLAN,
+                &String::from_utf8_lossy(&stored),
+                &String::from_utf8_lossy(plan),
+            ),
+        );
     }
     let Some(first) = found.first() else {
-        return problem(path, &format!("{MANIFEST} in {name} was written in another form"), hint);
+        return problem(
+            path,
+            &format!("{MANIFEST} in {name} was written in another form"),
+            hint,
+        );
     };
     let more = match found.len() - 1 {
         0 => String::new(),
         1 => " (and one more value)".to_owned(),
         n => format!(" (and {n} more values)"),
     };
-    let message = format!("the study in {name} is another one: `{}` is {} there and {} now{more}", first.path, first.stored, first.now);
+    let message = format!(
+        "the study in {name} is another one: `{}` is {} there and {} now{more}",
+        first.path, first.stored, first.now
+    );
     problem(path, &message, hint)
 }

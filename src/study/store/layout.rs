@@ -25,18 +25,32 @@ impl Layout {
     pub fn of(manifest: &Value) -> Option<Self> {
         let layout: Layout = serde_json::from_value(manifest.get("layout")?.clone()).ok()?;
         let tables = &layout.tables;
-        let unlike = tables.iter().enumerate().all(|(k, name)| is_table(name) && !tables[..k].contains(name));
+        let unlike = tables
+            .iter()
+            .enumerate()
+            .all(|(k, name)| is_table(name) && !tables[..k].contains(name));
         (layout.parts <= MOST_PARTS && !tables.is_empty() && unlike).then_some(layout)
     }
 
     /// Endings of the files of each table.
     pub(super) fn endings(&self) -> &'static [&'static str] {
-        if self.csv { &["parquet", "csv"] } else { &["parquet"] }
+        if self.csv {
+            &["parquet", "csv"]
+        } else {
+            &["parquet"]
+        }
     }
 
     /// Names of the files of a part, without its mark.
     pub(super) fn files(&self, index: usize) -> Vec<String> {
         let endings = self.endings();
-        self.tables.iter().flat_map(|table| endings.iter().map(move |ending| part_file(table, index, ending))).collect()
+        self.tables
+            .iter()
+            .flat_map(|table| {
+                endings
+                    .iter()
+                    .map(move |ending| part_file(table, index, ending))
+            })
+            .collect()
     }
 }

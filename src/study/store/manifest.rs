@@ -28,7 +28,11 @@ fn compare(path: &str, stored: Option<&Value>, now: Option<&Value>, found: &mut 
         (Some(Value::Object(a)), Some(Value::Object(b))) => {
             let new = b.keys().filter(|key| !a.contains_key(*key));
             for key in a.keys().chain(new) {
-                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+                let path = if path.is_empty() {
+                    key.clone()
+                } else {
+                    format!("{path}.{key}")
+                };
                 compare(&path, a.get(key), b.get(key), found);
             }
         }
@@ -37,11 +41,17 @@ fn compare(path: &str, stored: Option<&Value>, now: Option<&Value>, found: &mut 
                 compare(&format!("{path}[{k}]"), a.get(k), b.get(k), found);
             }
         }
-        (Some(Value::String(a)), Some(Value::String(b))) if a != b && (a.contains('\n') || b.contains('\n')) => {
+        (Some(Value::String(a)), Some(Value::String(b)))
+            if a != b && (a.contains('\n') || b.contains('\n')) =>
+        {
             found.push(lines(path, a, b));
         }
         (a, b) if a == b => {}
-        (a, b) => found.push(Difference { path: path.to_owned(), stored: shown(a), now: shown(b) }),
+        (a, b) => found.push(Difference {
+            path: path.to_owned(),
+            stored: shown(a),
+            now: shown(b),
+        }),
     }
 }
 
@@ -53,12 +63,32 @@ pub fn lines(path: &str, stored: &str, now: &str) -> Difference {
         match (a.next(), b.next()) {
             (Some(x), Some(y)) if x == y => line += 1,
             (None, None) => {
-                let end = |text: &str| if text.contains('\r') { "with carriage returns" } else { "other line ends" }.to_owned();
-                return Difference { path: path.to_owned(), stored: end(stored), now: end(now) };
+                let end = |text: &str| {
+                    if text.contains('\r') {
+                        "with carriage returns"
+                    } else {
+                        "other line ends"
+                    }
+                    .to_owned()
+                };
+                return Difference {
+                    path: path.to_owned(),
+                    stored: end(stored),
+                    now: end(now),
+                };
             }
             (x, y) => {
-                let quoted = |line: Option<&str>| line.map_or_else(|| "no such line".to_owned(), |line| cut(&format!("`{line}`")));
-                return Difference { path: format!("{path}, line {line}"), stored: quoted(x), now: quoted(y) };
+                let quoted = |line: Option<&str>| {
+                    line.map_or_else(
+                        || "no such line".to_owned(),
+                        |line| cut(&format!("`{line}`")),
+                    )
+                };
+                return Difference {
+                    path: format!("{path}, line {line}"),
+                    stored: quoted(x),
+                    now: quoted(y),
+                };
             }
         }
     }
@@ -69,7 +99,11 @@ fn shown(value: Option<&Value>) -> String {
 }
 
 fn cut(text: &str) -> String {
-    if text.chars().count() <= LONGEST { text.to_owned() } else { text.chars().take(LONGEST).chain("...".chars()).collect() }
+    if text.chars().count() <= LONGEST {
+        text.to_owned()
+    } else {
+        text.chars().take(LONGEST).chain("...".chars()).collect()
+    }
 }
 
 #[cfg(test)]
@@ -78,7 +112,10 @@ mod tests {
     use serde_json::json;
 
     fn first(stored: &Value, now: &Value) -> (String, String, String) {
-        let found = differences(stored, now).into_iter().next().expect("a difference");
+        let found = differences(stored, now)
+            .into_iter()
+            .next()
+            .expect("a difference");
         (found.path, found.stored, found.now)
     }
 
@@ -95,15 +132,39 @@ mod tests {
             other
         };
         assert_eq!(differences(&base, &base), []);
-        assert_eq!(first(&base, &with("program", json!("cvtcycle 0.2.0"))), words("program", "\"cvtcycle 0.1.0\"", "\"cvtcycle 0.2.0\""));
-        assert_eq!(first(&base, &with("plan", json!("a = 1\nb = 3\n"))), words("plan, line 2", "`b = 2`", "`b = 3`"));
-        assert_eq!(first(&base, &with("plan", json!("a = 1\n"))), words("plan, line 2", "`b = 2`", "no such line"));
-        assert_eq!(first(&base, &with("plan", json!("a = 1\r\nb = 2\r\n"))), words("plan", "other line ends", "with carriage returns"));
-        assert_eq!(first(&base, &with("cars", json!([{ "mass_kg": 1095.0 }]))), words("cars[0].mass_kg", "1100.0", "1095.0"));
-        assert_eq!(first(&base, &with("cars", json!([]))), words("cars[0]", "{\"mass_kg\":1100.0}", "absent"));
-        assert_eq!(first(&base, &with("new", json!(null))), words("new", "absent", "null"));
+        assert_eq!(
+            first(&base, &with("program", json!("cvtcycle 0.2.0"))),
+            words("program", "\"cvtcycle 0.1.0\"", "\"cvtcycle 0.2.0\"")
+        );
+        assert_eq!(
+            first(&base, &with("plan", json!("a = 1\nb = 3\n"))),
+            words("plan, line 2", "`b = 2`", "`b = 3`")
+        );
+        assert_eq!(
+            first(&base, &with("plan", json!("a = 1\n"))),
+            words("plan, line 2", "`b = 2`", "no such line")
+        );
+        assert_eq!(
+            first(&base, &with("plan", json!("a = 1\r\nb = 2\r\n"))),
+            words("plan", "other line ends", "with carriage returns")
+        );
+        assert_eq!(
+            first(&base, &with("cars", json!([{ "mass_kg": 1095.0 }]))),
+            words("cars[0].mass_kg", "1100.0", "1095.0")
+        );
+        assert_eq!(
+            first(&base, &with("cars", json!([]))),
+            words("cars[0]", "{\"mass_kg\":1100.0}", "absent")
+        );
+        assert_eq!(
+            first(&base, &with("new", json!(null))),
+            words("new", "absent", "null")
+        );
         let long = json!("x".repeat(200));
-        assert_eq!(first(&base, &with("seed", long)).2.chars().count(), LONGEST + 3);
+        assert_eq!(
+            first(&base, &with("seed", long)).2.chars().count(),
+            LONGEST + 3
+        );
         let both = json!({ "seed": 8, "plan": "a = 1\nb = 2\n", "cars": [], "program": 0 });
         assert_eq!(differences(&base, &both).len(), 3);
     }

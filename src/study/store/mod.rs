@@ -50,7 +50,10 @@ use crate::config::{Place, Problem};
 /// A problem of a file or directory of a study.
 fn file_problem(path: &Path, message: impl Display, hint: &str) -> Problem {
     Problem {
-        place: Place { file: path.display().to_string(), ..Place::default() },
+        place: Place {
+            file: path.display().to_string(),
+            ..Place::default()
+        },
         value: path.display().to_string(),
         message: message.to_string(),
         hint: hint.to_owned(),
@@ -66,6 +69,16 @@ fn check_shape(columns: &[Column], rows: &Rows) -> io::Result<()> {
         Values::Text(_) => Kind::Text,
     };
     let fits = columns.len() == rows.values.len()
-        && columns.iter().zip(&rows.values).all(|(column, values)| column.kind == kind(values) && values.len() == rows.len());
-    if fits { Ok(()) } else { Err(io::Error::new(io::ErrorKind::InvalidInput, "rows do not fit under the heads of their table")) }
+        && columns
+            .iter()
+            .zip(&rows.values)
+            .all(|(column, values)| column.kind == kind(values) && values.len() == rows.len());
+    if fits {
+        Ok(())
+    } else {
+        Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "rows do not fit under the heads of their table",
+        ))
+    }
 }

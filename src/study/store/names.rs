@@ -44,7 +44,11 @@ pub fn part_mark(index: usize) -> String {
 
 /// The part of which a file is the mark.
 pub fn marked_part(name: &str) -> Option<usize> {
-    let digits = name.strip_prefix(MARK)?.strip_prefix('_')?.strip_suffix(MARK_ENDING)?.strip_suffix('.')?;
+    let digits = name
+        .strip_prefix(MARK)?
+        .strip_prefix('_')?
+        .strip_suffix(MARK_ENDING)?
+        .strip_suffix('.')?;
     let index = digits.parse().ok()?;
     // No second spelling of a number.
     (part_mark(index) == name).then_some(index)
@@ -52,9 +56,16 @@ pub fn marked_part(name: &str) -> Option<usize> {
 
 /// Whether a name is that of a file of some part.
 pub fn is_part_file(name: &str) -> bool {
-    let Some((stem, ending)) = name.rsplit_once('.') else { return false };
-    let Some((table, digits)) = stem.rsplit_once('_') else { return false };
-    ENDINGS.contains(&ending) && is_word(table) && digits.len() >= 5 && digits.bytes().all(|b| b.is_ascii_digit())
+    let Some((stem, ending)) = name.rsplit_once('.') else {
+        return false;
+    };
+    let Some((table, digits)) = stem.rsplit_once('_') else {
+        return false;
+    };
+    ENDINGS.contains(&ending)
+        && is_word(table)
+        && digits.len() >= 5
+        && digits.bytes().all(|b| b.is_ascii_digit())
 }
 
 /// Whether a name can be that of a table: small letters, digits and `_`, and not that of the marks.
@@ -63,14 +74,22 @@ pub fn is_table(name: &str) -> bool {
 }
 
 fn is_word(name: &str) -> bool {
-    (1..=40).contains(&name.len()) && name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
+    (1..=40).contains(&name.len())
+        && name
+            .bytes()
+            .all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
 }
 
 /// Whether a name can be that of a result: plain, and none of the study's own files.
 pub fn is_result(name: &str) -> bool {
     let plain = Path::new(name).file_name().is_some_and(|last| last == name);
-    let own = [MANIFEST, PLAN, PARTS, RESULTS].iter().any(|own| own.eq_ignore_ascii_case(name));
-    plain && !own && !name.starts_with('.') && !name.contains(|c: char| "/\\:".contains(c) || c.is_control())
+    let own = [MANIFEST, PLAN, PARTS, RESULTS]
+        .iter()
+        .any(|own| own.eq_ignore_ascii_case(name));
+    plain
+        && !own
+        && !name.starts_with('.')
+        && !name.contains(|c: char| "/\\:".contains(c) || c.is_control())
 }
 
 #[cfg(test)]
@@ -81,20 +100,48 @@ mod tests {
     fn numbers_of_parts_read_back() {
         for index in [0, 7, 99_999, 100_000, 1_234_567] {
             assert_eq!(marked_part(&part_mark(index)), Some(index));
-            assert!(is_part_file(&part_mark(index)) && is_part_file(&part_file("runs", index, "csv")));
+            assert!(
+                is_part_file(&part_mark(index)) && is_part_file(&part_file("runs", index, "csv"))
+            );
         }
-        for wrong in ["part_7.sha256", "part_000007.sha256", "part_+0007.sha256", "part_.sha256", "runs_00007.sha256", "part_00007.sha256x"]
-        {
+        for wrong in [
+            "part_7.sha256",
+            "part_000007.sha256",
+            "part_+0007.sha256",
+            "part_.sha256",
+            "runs_00007.sha256",
+            "part_00007.sha256x",
+        ] {
             assert_eq!(marked_part(wrong), None, "{wrong}");
         }
-        for other in ["notes.csv", "my_2024.csv", "Runs_00000.csv", "runs_00000.txt", "00000.csv"] {
+        for other in [
+            "notes.csv",
+            "my_2024.csv",
+            "Runs_00000.csv",
+            "runs_00000.txt",
+            "00000.csv",
+        ] {
             assert!(!is_part_file(other), "{other}");
         }
     }
 
     #[test]
     fn names_stay_inside_the_directory() {
-        for bad in ["", ".", "..", "../a.svg", "a/b.svg", "a\\b", "C:x", "/etc/x", "study.json", "Study.json", "parts", ".lock", "a\nb"] {
+        for bad in [
+            "",
+            ".",
+            "..",
+            "../a.svg",
+            "a/b.svg",
+            "a\\b",
+            "C:x",
+            "/etc/x",
+            "study.json",
+            "Study.json",
+            "parts",
+            ".lock",
+            "a\nb",
+        ] {
             assert!(!is_result(bad), "{bad}");
         }
         assert!(is_result("statistics.json") && is_result("überblick 1.svg"));

@@ -41,15 +41,30 @@ impl<W: Write + Send> ParquetTable<W> {
     ///
     /// # Errors
     /// Whatever `out` reports; [`io::ErrorKind::InvalidInput`] for rows of another table, without columns, or with two of one name.
-    pub fn new(out: W, columns: &[Column], metadata: &[(&str, &str)], first: &Rows) -> io::Result<Self> {
+    pub fn new(
+        out: W,
+        columns: &[Column],
+        metadata: &[(&str, &str)],
+        first: &Rows,
+    ) -> io::Result<Self> {
         check_shape(columns, first)?;
         let mut names = HashSet::new();
         if columns.is_empty() || !columns.iter().all(|column| names.insert(&column.name)) {
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, "a table needs columns, each with a name of its own"));
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "a table needs columns, each with a name of its own",
+            ));
         }
         let schema = schema(columns).map_err(io_error)?;
-        let file = SerializedFileWriter::new(out, Arc::new(schema), Arc::new(properties(columns, metadata, first)));
-        Ok(ParquetTable { file: file.map_err(io_error)?, columns: columns.to_vec() })
+        let file = SerializedFileWriter::new(
+            out,
+            Arc::new(schema),
+            Arc::new(properties(columns, metadata, first)),
+        );
+        Ok(ParquetTable {
+            file: file.map_err(io_error)?,
+            columns: columns.to_vec(),
+        })
     }
 
     /// Writes some rows as a row group; none are no group.
@@ -78,7 +93,12 @@ impl<W: Write + Send> ParquetTable<W> {
 ///
 /// # Errors
 /// Those of [`ParquetTable`].
-pub fn write_parquet<W: Write + Send>(out: W, columns: &[Column], rows: &Rows, metadata: &[(&str, &str)]) -> io::Result<()> {
+pub fn write_parquet<W: Write + Send>(
+    out: W,
+    columns: &[Column],
+    rows: &Rows,
+    metadata: &[(&str, &str)],
+) -> io::Result<()> {
     let mut table = ParquetTable::new(out, columns, metadata, rows)?;
     table.write(rows)?;
     table.finish()
@@ -90,16 +110,23 @@ fn schema(columns: &[Column]) -> Result<Type, ParquetError> {
         let field = match column.kind {
             Kind::Number => of(Physical::DOUBLE).with_repetition(Repetition::OPTIONAL),
             Kind::Count => of(Physical::INT64).with_repetition(Repetition::REQUIRED),
-            Kind::Text => of(Physical::BYTE_ARRAY).with_repetition(Repetition::OPTIONAL).with_logical_type(Some(LogicalType::String)),
+            Kind::Text => of(Physical::BYTE_ARRAY)
+                .with_repetition(Repetition::OPTIONAL)
+                .with_logical_type(Some(LogicalType::String)),
         };
         field.build().map(Arc::new)
     };
     let fields = columns.iter().map(field).collect::<Result<Vec<_>, _>>()?;
-    Type::group_type_builder("schema").with_fields(fields).build()
+    Type::group_type_builder("schema")
+        .with_fields(fields)
+        .build()
 }
 
 fn properties(columns: &[Column], metadata: &[(&str, &str)], first: &Rows) -> WriterProperties {
-    let mut pairs: Vec<KeyValue> = metadata.iter().map(|(key, value)| KeyValue::new((*key).to_owned(), (*value).to_owned())).collect();
+    let mut pairs: Vec<KeyValue> = metadata
+        .iter()
+        .map(|(key, value)| KeyValue::new((*key).to_owned(), (*value).to_owned()))
+        .collect();
     pairs.push(KeyValue::new(COLUMNS_KEY.to_owned(), heads(columns)));
     let mut builder = WriterProperties::builder()
         .set_created_by(CREATED_BY.to_owned())
@@ -158,7 +185,9 @@ struct Mixed(u64);
 
 impl Hasher for Mixed {
     fn write(&mut self, bytes: &[u8]) {
-        bytes.iter().for_each(|byte| self.write_u64(u64::from(*byte)));
+        bytes
+            .iter()
+            .for_each(|byte| self.write_u64(u64::from(*byte)));
     }
 
     fn write_u64(&mut self, bits: u64) {
@@ -172,10 +201,14 @@ impl Hasher for Mixed {
     }
 }
 
-fn write_group<W: Write + Send>(file: &mut SerializedFileWriter<W>, rows: &Rows) -> Result<(), ParquetError> {
+fn write_group<W: Write + Send>(
+    file: &mut SerializedFileWriter<W>,
+    rows: &Rows,
+) -> Result<(), ParquetError> {
     let mut group = file.next_row_group()?;
     for values in &rows.values {
-        let missing = || ParquetError::General("fewer columns in the file than in the table".to_owned());
+        let missing =
+            || ParquetError::General("fewer columns in the file than in the table".to_owned());
         let mut column = group.next_column()?.ok_or_else(missing)?;
         write_column(&mut column, values)?;
         column.close()?;
@@ -191,24 +224,46 @@ fn write_column(column: &mut SerializedColumnWriter, values: &Values) -> Result<
             // Adding zero takes the sign from minus zero and changes nothing else. Where every number is there, none is looked at alone.
             let all = there.iter().all(|there| *there > 0);
             let plain = numbers.iter().map(|x| x + 0.0);
-            let numbers: Vec<f64> = if all { plain.collect() } else { plain.filter(|x| x.is_finite()).collect() };
-            column.typed::<DoubleType>().write_batch(&numbers, Some(&there), None)?;
+            let numbers: Vec<f64> = if all {
+                plain.collect()
+            } else {
+                plain.filter(|x| x.is_finite()).collect()
+            };
+            column
+                .typed::<DoubleType>()
+                .write_batch(&numbers, Some(&there), None)?;
         }
         Values::Count(counts) => {
-            column.typed::<Int64Type>().write_batch(counts, None, None)?;
+            column
+                .typed::<Int64Type>()
+                .write_batch(counts, None, None)?;
         }
         Values::Text(words) => {
-            let there: Vec<i16> = words.iter().map(|word| i16::from(!word.is_empty())).collect();
+            let there: Vec<i16> = words
+                .iter()
+                .map(|word| i16::from(!word.is_empty()))
+                .collect();
             let mut known: HashMap<&str, ByteArray> = HashMap::new();
-            let mut bytes = |word| known.entry(word).or_insert_with(|| ByteArray::from(word)).clone();
+            let mut bytes = |word| {
+                known
+                    .entry(word)
+                    .or_insert_with(|| ByteArray::from(word))
+                    .clone()
+            };
             let mut last: Option<(&Arc<str>, ByteArray)> = None;
             // Most words are the one before, often the very same.
             let mut next = |word| match &last {
                 Some((before, bytes)) if Arc::ptr_eq(before, word) => bytes.clone(),
                 _ => last.insert((word, bytes(&**word))).1.clone(),
             };
-            let words: Vec<ByteArray> = words.iter().filter(|word| !word.is_empty()).map(&mut next).collect();
-            column.typed::<ByteArrayType>().write_batch(&words, Some(&there), None)?;
+            let words: Vec<ByteArray> = words
+                .iter()
+                .filter(|word| !word.is_empty())
+                .map(&mut next)
+                .collect();
+            column
+                .typed::<ByteArrayType>()
+                .write_batch(&words, Some(&there), None)?;
         }
     }
     Ok(())

@@ -21,7 +21,8 @@ use crate::config::bounded::{self, Refused};
 use crate::study::table::{Column, Kind, Rows, Values};
 
 /// What helps with a damaged file.
-pub(super) const MEND: &str = "a study computes its damaged parts anew when it is continued with --resume";
+pub(super) const MEND: &str =
+    "a study computes its damaged parts anew when it is continued with --resume";
 
 /// Most rows of a file: a part has 50 000 rows of traces and those of one more point, of which each car may have as many as a trace.
 const MOST_ROWS: u64 = 16_000_000;
@@ -45,24 +46,43 @@ impl ParquetFile {
     pub fn open(path: &Path, sum: &Sum) -> Result<Self, Problem> {
         let file = bounded::open_file(path).map_err(|error| unreadable(path, &error))?;
         if sum_of(&file).map_err(|error| unreadable(path, &error.into()))? != *sum {
-            return Err(file_problem(path, "the file is damaged: its checksum is not that of what was written", MEND));
+            return Err(file_problem(
+                path,
+                "the file is damaged: its checksum is not that of what was written",
+                MEND,
+            ));
         }
         Self::open_known(path, file)
     }
 
     /// Opens a file whose bytes are known to be those that were written.
     pub(super) fn open_known(path: &Path, mut file: File) -> Result<Self, Problem> {
-        let damaged = || file_problem(path, "the file is damaged: it is shorter than it says, or longer than any of this program", MEND);
+        let damaged = || {
+            file_problem(
+                path,
+                "the file is damaged: it is shorter than it says, or longer than any of this program",
+                MEND,
+            )
+        };
         if !is_short(&mut file).map_err(|error| unreadable(path, &error.into()))? {
             return Err(damaged());
         }
-        let bytes = file.metadata().map_err(|error| unreadable(path, &error.into()))?.len();
-        let file = SerializedFileReader::new(file).map_err(|error| unreadable(path, &io_error(error).into()))?;
+        let bytes = file
+            .metadata()
+            .map_err(|error| unreadable(path, &error.into()))?
+            .len();
+        let file = SerializedFileReader::new(file)
+            .map_err(|error| unreadable(path, &io_error(error).into()))?;
         if !fits(&file, bytes) {
             return Err(damaged());
         }
-        let columns = heads(&file).ok_or_else(|| file_problem(path, "the file is no table of this program", ""))?;
-        Ok(ParquetFile { path: path.to_path_buf(), file, columns })
+        let columns = heads(&file)
+            .ok_or_else(|| file_problem(path, "the file is no table of this program", ""))?;
+        Ok(ParquetFile {
+            path: path.to_path_buf(),
+            file,
+            columns,
+        })
     }
 
     /// Heads of its columns.
@@ -81,7 +101,11 @@ impl ParquetFile {
     #[must_use]
     pub fn metadata(&self) -> Vec<(String, String)> {
         let pairs = self.file.metadata().file_metadata().key_value_metadata();
-        pairs.into_iter().flatten().map(|pair| (pair.key.clone(), pair.value.clone().unwrap_or_default())).collect()
+        pairs
+            .into_iter()
+            .flatten()
+            .map(|pair| (pair.key.clone(), pair.value.clone().unwrap_or_default()))
+            .collect()
     }
 
     /// All rows of some columns, in the order of the names.
@@ -92,8 +116,13 @@ impl ParquetFile {
         let mut values = Vec::with_capacity(names.len());
         for name in names {
             let found = self.columns.iter().position(|column| column.name == *name);
-            let index = found.ok_or_else(|| file_problem(&self.path, format!("the table has no column `{name}`"), ""))?;
-            values.push(self.column(index).map_err(|error| unreadable(&self.path, &io_error(error).into()))?);
+            let index = found.ok_or_else(|| {
+                file_problem(&self.path, format!("the table has no column `{name}`"), "")
+            })?;
+            values.push(
+                self.column(index)
+                    .map_err(|error| unreadable(&self.path, &io_error(error).into()))?,
+            );
         }
         Ok(Rows { values })
     }
@@ -109,7 +138,9 @@ impl ParquetFile {
                 (Values::Number(into), ColumnReader::DoubleColumnReader(reader)) => {
                     each(reader, room, |x| into.push(x.copied().unwrap_or(f64::NAN)))?;
                 }
-                (Values::Count(into), ColumnReader::Int64ColumnReader(reader)) => each(reader, room, |n| into.extend(n))?,
+                (Values::Count(into), ColumnReader::Int64ColumnReader(reader)) => {
+                    each(reader, room, |n| into.extend(n))?
+                }
                 (Values::Text(into), ColumnReader::ByteArrayColumnReader(reader)) => {
                     let mut wrong = None;
                     each(reader, room, |bytes| match word(bytes, &mut words) {
@@ -118,10 +149,20 @@ impl ParquetFile {
                     })?;
                     wrong.map_or(Ok(()), Err)?;
                 }
-                _ => return Err(ParquetError::General("a column is not of the kind that its head says".to_owned())),
+                _ => {
+                    return Err(ParquetError::General(
+                        "a column is not of the kind that its head says".to_owned(),
+                    ));
+                }
             }
         }
-        if values.len() == total { Ok(values) } else { Err(ParquetError::General("a column is shorter than the table".to_owned())) }
+        if values.len() == total {
+            Ok(values)
+        } else {
+            Err(ParquetError::General(
+                "a column is shorter than the table".to_owned(),
+            ))
+        }
     }
 }
 
@@ -144,16 +185,28 @@ fn fits(file: &SerializedFileReader<File>, bytes: u64) -> bool {
     let metadata = file.metadata();
     let rows = u64::try_from(metadata.file_metadata().num_rows());
     let within = |column: &ColumnChunkMetaData| {
-        let start = column.dictionary_page_offset().unwrap_or(column.data_page_offset());
-        let end =
-            u64::try_from(start).ok().zip(u64::try_from(column.compressed_size()).ok()).and_then(|(start, size)| start.checked_add(size));
+        let start = column
+            .dictionary_page_offset()
+            .unwrap_or(column.data_page_offset());
+        let end = u64::try_from(start)
+            .ok()
+            .zip(u64::try_from(column.compressed_size()).ok())
+            .and_then(|(start, size)| start.checked_add(size));
         end.is_some_and(|end| end <= bytes)
     };
-    rows.is_ok_and(|rows| rows <= MOST_ROWS) && metadata.row_groups().iter().all(|group| group.columns().iter().all(within))
+    rows.is_ok_and(|rows| rows <= MOST_ROWS)
+        && metadata
+            .row_groups()
+            .iter()
+            .all(|group| group.columns().iter().all(within))
 }
 
 /// Hands on every cell of a column in a row group, none where it is null; `room` is how many there may be.
-fn each<T: DataType>(mut reader: ColumnReaderImpl<T>, mut room: usize, mut cell: impl FnMut(Option<&T::T>)) -> Result<(), ParquetError> {
+fn each<T: DataType>(
+    mut reader: ColumnReaderImpl<T>,
+    mut room: usize,
+    mut cell: impl FnMut(Option<&T::T>),
+) -> Result<(), ParquetError> {
     /// Cells at a time.
     const BATCH: usize = 8192;
     let (mut there, mut values) = (Vec::new(), Vec::new());
@@ -165,7 +218,9 @@ fn each<T: DataType>(mut reader: ColumnReaderImpl<T>, mut room: usize, mut cell:
             return Ok(());
         }
         // A few bytes can stand for any number of equal cells.
-        room = room.checked_sub(records).ok_or_else(|| ParquetError::General("a column is longer than the table".to_owned()))?;
+        room = room
+            .checked_sub(records)
+            .ok_or_else(|| ParquetError::General("a column is longer than the table".to_owned()))?;
         if there.is_empty() {
             values.iter().for_each(|value| cell(Some(value)));
             continue;
@@ -178,7 +233,10 @@ fn each<T: DataType>(mut reader: ColumnReaderImpl<T>, mut room: usize, mut cell:
 }
 
 /// A cell as a word; words that come again share their memory.
-fn word(bytes: Option<&ByteArray>, known: &mut HashSet<Arc<str>>) -> Result<Arc<str>, ParquetError> {
+fn word(
+    bytes: Option<&ByteArray>,
+    known: &mut HashSet<Arc<str>>,
+) -> Result<Arc<str>, ParquetError> {
     let text = bytes.map_or(Ok(""), ByteArray::as_utf8)?;
     if let Some(word) = known.get(text) {
         return Ok(word.clone());
@@ -191,11 +249,22 @@ fn word(bytes: Option<&ByteArray>, known: &mut HashSet<Arc<str>>) -> Result<Arc<
 /// The heads in the metadata; none if there are none or they are not those of the file's columns.
 fn heads(file: &SerializedFileReader<File>) -> Option<Vec<Column>> {
     let metadata = file.metadata().file_metadata();
-    let pair = metadata.key_value_metadata()?.iter().find(|pair| pair.key == COLUMNS_KEY)?;
+    let pair = metadata
+        .key_value_metadata()?
+        .iter()
+        .find(|pair| pair.key == COLUMNS_KEY)?;
     let heads: Value = serde_json::from_str(pair.value.as_ref()?).ok()?;
-    let columns = heads.as_array()?.iter().map(head).collect::<Option<Vec<_>>>()?;
+    let columns = heads
+        .as_array()?
+        .iter()
+        .map(head)
+        .collect::<Option<Vec<_>>>()?;
     let schema = metadata.schema_descr().columns();
-    let same = schema.len() == columns.len() && schema.iter().zip(&columns).all(|(found, head)| found.name() == head.name);
+    let same = schema.len() == columns.len()
+        && schema
+            .iter()
+            .zip(&columns)
+            .all(|(found, head)| found.name() == head.name);
     same.then_some(columns)
 }
 
@@ -207,10 +276,22 @@ fn head(head: &Value) -> Option<Column> {
         "text" => Kind::Text,
         _ => return None,
     };
-    Some(Column { name: text("name")?, unit: text("unit")?, doc: text("doc")?, kind })
+    Some(Column {
+        name: text("name")?,
+        unit: text("unit")?,
+        doc: text("doc")?,
+        kind,
+    })
 }
 
 pub(super) fn unreadable(path: &Path, error: &Refused) -> Problem {
-    let hint = if error.kind() == io::ErrorKind::NotFound { MEND } else { error.hint("check the file and its permissions") };
-    Problem { allowed: error.allowed(""), ..file_problem(path, format!("cannot read the file: {error}"), hint) }
+    let hint = if error.kind() == io::ErrorKind::NotFound {
+        MEND
+    } else {
+        error.hint("check the file and its permissions")
+    };
+    Problem {
+        allowed: error.allowed(""),
+        ..file_problem(path, format!("cannot read the file: {error}"), hint)
+    }
 }

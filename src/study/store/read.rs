@@ -54,19 +54,36 @@ impl Study {
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         let file = path.join(MANIFEST);
-        let bytes = bounded::read_file(&file, bounded::RECORD).map_err(|error| match error.kind() {
-            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
-                let message = format!("there is no study in {}: it has no {MANIFEST}", path.display());
-                file_problem(&path, message, "name the directory that was given to --out of `cvtcycle study`")
-            }
-            _ => unreadable(&file, &error),
-        })?;
+        let bytes =
+            bounded::read_file(&file, bounded::RECORD).map_err(|error| match error.kind() {
+                io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
+                    let message = format!(
+                        "there is no study in {}: it has no {MANIFEST}",
+                        path.display()
+                    );
+                    file_problem(
+                        &path,
+                        message,
+                        "name the directory that was given to --out of `cvtcycle study`",
+                    )
+                }
+                _ => unreadable(&file, &error),
+            })?;
         let parsed = serde_json::from_slice::<Value>(&bytes).ok();
-        let known = parsed.and_then(|manifest| Layout::of(&manifest).map(|layout| (manifest, layout)));
-        let (manifest, layout) = known.ok_or_else(|| file_problem(&file, "the manifest of the study is damaged", ""))?;
-        let mut present = marked_parts(&path, &layout).map_err(|error| unreadable(&names::parts_folder(&path), &error.into()))?;
+        let known =
+            parsed.and_then(|manifest| Layout::of(&manifest).map(|layout| (manifest, layout)));
+        let (manifest, layout) =
+            known.ok_or_else(|| file_problem(&file, "the manifest of the study is damaged", ""))?;
+        let mut present = marked_parts(&path, &layout)
+            .map_err(|error| unreadable(&names::parts_folder(&path), &error.into()))?;
         present.sort_unstable();
-        Ok(Study { path, manifest, layout, present, known: Mutex::default() })
+        Ok(Study {
+            path,
+            manifest,
+            layout,
+            present,
+            known: Mutex::default(),
+        })
     }
 
     /// Where it is.
@@ -106,7 +123,11 @@ impl Study {
     #[must_use]
     pub fn status(&self) -> Status {
         let finished = Checksums::read(&self.path.join(RESULTS)).is_some();
-        Status { present: self.present.len(), expected: self.layout.parts, finished }
+        Status {
+            present: self.present.len(),
+            expected: self.layout.parts,
+            finished,
+        }
     }
 
     /// One table of a part.
@@ -118,7 +139,10 @@ impl Study {
         let name = names::part_file(table, index, "parquet");
         let path = folder.join(&name);
         if !self.layout.tables.iter().any(|other| other == table) {
-            let message = format!("the study has no table `{table}`, only {}", self.layout.tables.join(", "));
+            let message = format!(
+                "the study has no table `{table}`, only {}",
+                self.layout.tables.join(", ")
+            );
             return Err(file_problem(&self.path, message, ""));
         }
         let file = bounded::open_file(&path).map_err(|error| unreadable(&path, &error))?;
@@ -126,9 +150,15 @@ impl Study {
         if !known.contains(&name) {
             let list = Checksums::read(&folder.join(names::part_mark(index)));
             let right = list.as_ref().and_then(|list| list.get(&name));
-            let right = right.ok_or_else(|| file_problem(&path, "the list of checksums of this part is damaged", MEND))?;
+            let right = right.ok_or_else(|| {
+                file_problem(&path, "the list of checksums of this part is damaged", MEND)
+            })?;
             if sum_of(&file).map_err(|error| unreadable(&path, &error.into()))? != *right {
-                return Err(file_problem(&path, "the file is damaged: its checksum is not that of what was written", MEND));
+                return Err(file_problem(
+                    &path,
+                    "the file is damaged: its checksum is not that of what was written",
+                    MEND,
+                ));
             }
             known.insert(name);
         }
@@ -141,7 +171,9 @@ impl Study {
     /// # Errors
     /// Those of [`Study::part`].
     pub fn heads(&self, table: &str) -> Result<Vec<Column>, Problem> {
-        self.present.first().map_or(Ok(Vec::new()), |&index| self.part(index, table).map(|file| file.columns().to_vec()))
+        self.present.first().map_or(Ok(Vec::new()), |&index| {
+            self.part(index, table).map(|file| file.columns().to_vec())
+        })
     }
 
     /// Number of rows of a table in all parts that are there.
@@ -149,15 +181,25 @@ impl Study {
     /// # Errors
     /// Those of [`Study::part`].
     pub fn rows(&self, table: &str) -> Result<u64, Problem> {
-        self.present.iter().map(|&index| self.part(index, table).map(|file| file.rows())).sum()
+        self.present
+            .iter()
+            .map(|&index| self.part(index, table).map(|file| file.rows()))
+            .sum()
     }
 
     /// Hands on some columns of a table part by part, in the order of the parts; only one part is in memory at a time.
     ///
     /// # Errors
     /// Those of [`Study::part`], for a column that is not there, and those of `f`.
-    pub fn for_each(&self, table: &str, names: &[&str], mut f: impl FnMut(usize, Rows) -> Result<(), Problem>) -> Result<(), Problem> {
-        self.present.iter().try_for_each(|&index| f(index, self.part(index, table)?.read(names)?))
+    pub fn for_each(
+        &self,
+        table: &str,
+        names: &[&str],
+        mut f: impl FnMut(usize, Rows) -> Result<(), Problem>,
+    ) -> Result<(), Problem> {
+        self.present
+            .iter()
+            .try_for_each(|&index| f(index, self.part(index, table)?.read(names)?))
     }
 
     /// Some columns of a table over all parts that are there. Of the table nothing else is in memory.
@@ -169,7 +211,11 @@ impl Study {
         self.for_each(table, names, |_, part| {
             match &mut all {
                 None => all = Some(part),
-                Some(all) => all.values.iter_mut().zip(part.values).for_each(|(all, part)| append(all, part)),
+                Some(all) => all
+                    .values
+                    .iter_mut()
+                    .zip(part.values)
+                    .for_each(|(all, part)| append(all, part)),
             }
             Ok(())
         })?;
@@ -195,7 +241,10 @@ pub(super) fn marked_parts(study: &Path, layout: &Layout) -> io::Result<Vec<usiz
     };
     let mut found = Vec::new();
     for entry in entries {
-        found.extend(names::marked_part(&entry?.file_name().to_string_lossy()).filter(|index| *index < layout.parts));
+        found.extend(
+            names::marked_part(&entry?.file_name().to_string_lossy())
+                .filter(|index| *index < layout.parts),
+        );
     }
     Ok(found)
 }
@@ -203,9 +252,13 @@ pub(super) fn marked_parts(study: &Path, layout: &Layout) -> io::Result<Vec<usiz
 /// Whether all files of a part are there, with the checksums in its mark.
 pub(super) fn is_whole(study: &Path, layout: &Layout, index: usize) -> bool {
     let folder = names::parts_folder(study);
-    let Some(list) = Checksums::read(&folder.join(names::part_mark(index))) else { return false };
+    let Some(list) = Checksums::read(&folder.join(names::part_mark(index))) else {
+        return false;
+    };
     let as_written = |name: &String| {
-        let sum = bounded::open_file(folder.join(name)).ok().and_then(|file| sum_of(&file).ok());
+        let sum = bounded::open_file(folder.join(name))
+            .ok()
+            .and_then(|file| sum_of(&file).ok());
         sum.is_some() && sum.as_ref() == list.get(name)
     };
     layout.files(index).iter().all(as_written)

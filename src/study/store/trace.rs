@@ -58,8 +58,18 @@ impl TraceColumns {
             match ((column.get)(row), values) {
                 (Value::Number(x), Values::Number(into)) => into.push(x),
                 (Value::Count(n), Values::Count(into)) => into.push(i64::from(n)),
-                (Value::Phase(k), Values::Text(into)) => into.push(self.phases.get(usize::from(k)).unwrap_or(&self.empty).clone()),
-                (Value::Flags(flags), Values::Text(into)) => into.push(self.words.entry(flags.0).or_insert_with(|| word(flags)).clone()),
+                (Value::Phase(k), Values::Text(into)) => into.push(
+                    self.phases
+                        .get(usize::from(k))
+                        .unwrap_or(&self.empty)
+                        .clone(),
+                ),
+                (Value::Flags(flags), Values::Text(into)) => into.push(
+                    self.words
+                        .entry(flags.0)
+                        .or_insert_with(|| word(flags))
+                        .clone(),
+                ),
                 (Value::Text(text), Values::Text(into)) => into.push(Arc::from(text)),
                 (_, _) => debug_assert!(false, "{} is not of the kind of its head", column.name),
             }
@@ -87,7 +97,8 @@ pub fn write_trace_parquet<W: Write + Send>(
     let mut trace = TraceColumns::new(columns, phases);
     let mut turned = |rows: &[Row]| {
         let mut turned = Rows::with_capacity(trace.heads(), rows.len());
-        rows.iter().for_each(|row| trace.push(&mut turned.values, row));
+        rows.iter()
+            .for_each(|row| trace.push(&mut turned.values, row));
         turned
     };
     let mut groups = rows.chunks(GROUP);

@@ -15,15 +15,23 @@ pub(super) fn standstill(step: &Step, past: &mut Past) -> Drive {
     let (cvt, engine) = (step.cvt, step.around.engine);
     let idle = engine.idle_rad_s;
     let creep = cvt.launch.creep_torque_nm(0.0, idle);
-    let w = held(idle, past.engine_rad_s - step.pace_rad_s, past.engine_rad_s + step.pace_rad_s);
+    let w = held(
+        idle,
+        past.engine_rad_s - step.pace_rad_s,
+        past.engine_rad_s + step.pace_rad_s,
+    );
     let mut throttle = past.throttle;
-    let (mut pa, mut pump_nm, mut shaft_nm, mut share, mut left, mut count) = (0.0, 0.0, 0.0, 0.0, f64::INFINITY, 0);
+    let (mut pa, mut pump_nm, mut shaft_nm, mut share, mut left, mut count) =
+        (0.0, 0.0, 0.0, 0.0, f64::INFINITY, 0);
     let mut inside = true;
     let mut flow_limited = false;
     let mut oil_flow_m3_s = 0.0;
     while left > TOLERANCE && count < MOST_EVALUATIONS {
         let signals = step.signals(throttle, w);
-        let load = || BeltLoad { output_torque_nm: creep * step.at.geometry.ratio, ..step.load };
+        let load = || BeltLoad {
+            output_torque_nm: creep * step.at.geometry.ratio,
+            ..step.load
+        };
         pa = cvt.pressure_pa(&signals, step.at, load, 0.0);
         let (pump, shaft) = step.pump_and_shaft(w, pa, &mut inside);
         (pump_nm, shaft_nm) = (pump.torque_nm, shaft);
@@ -34,7 +42,10 @@ pub(super) fn standstill(step: &Step, past: &mut Past) -> Drive {
         throttle = next;
         count += 1;
     }
-    let clamped = BeltLoad { secondary_clamp_n: cvt.secondary_clamp_n(pa, 0.0), ..step.load };
+    let clamped = BeltLoad {
+        secondary_clamp_n: cvt.secondary_clamp_n(pa, 0.0),
+        ..step.load
+    };
     let capacity = belt_capacity_nm(&cvt.belt, step.at, &clamped);
     let mut drive = Drive {
         engine_rad_s: w,
@@ -44,7 +55,11 @@ pub(super) fn standstill(step: &Step, past: &mut Past) -> Drive {
         primary_pa: primary_pa(step, pa),
         secondary_pa: pa,
         slip: 0.0,
-        clamp_safety: if creep > 0.0 { capacity / (creep * step.at.geometry.ratio) } else { f64::INFINITY },
+        clamp_safety: if creep > 0.0 {
+            capacity / (creep * step.at.geometry.ratio)
+        } else {
+            f64::INFINITY
+        },
         oil_flow_m3_s,
         residual: left,
         iterations: count,
@@ -108,11 +123,18 @@ pub(super) fn finish(step: &Step, p: &Point, past: &mut Past, outcome: Outcome) 
             drive.lose(Component::BeltPenetration, p.belt.penetration_nm * wp);
         }
     }
-    drive.lose(Component::FinalDrive, (p.secondary_nm - g.output_nm) * step.secondary_rad_s);
+    drive.lose(
+        Component::FinalDrive,
+        (p.secondary_nm - g.output_nm) * step.secondary_rad_s,
+    );
     drive.lose(Component::ClutchDrag, p.clutch_nm * wp);
     drive.lose(Component::Pump, p.pump_nm * we);
     drive.lose(Component::InputShaft, p.shaft_nm * we);
-    let slipping_nm = if p.primary_nm > 0.0 { p.primary_nm } else { 0.0 };
+    let slipping_nm = if p.primary_nm > 0.0 {
+        p.primary_nm
+    } else {
+        0.0
+    };
     drive.lose(Component::LaunchClutch, slipping_nm * (we - wp)); // LC-4, CV-6
     if outcome.bind == Bind::Demand {
         drive.output_w = step.around.wheel.power_w;
@@ -121,18 +143,28 @@ pub(super) fn finish(step: &Step, p: &Point, past: &mut Past, outcome: Outcome) 
     }
     let flags = &mut drive.flags;
     flags.set(Flags::MISSED_TRACE, outcome.bind == Bind::FullLoad);
-    flags.set(Flags::GROSS_SLIP, p.belt.gross_slip && p.belt_map_nm.is_none());
+    flags.set(
+        Flags::GROSS_SLIP,
+        p.belt.gross_slip && p.belt_map_nm.is_none(),
+    );
     flags.set(Flags::LOW_CLAMP, p.belt.capacity_nm < p.secondary_nm.abs());
     flags.set(Flags::FLOW_LIMITED, p.flow_limited || step.shift_held);
-    flags.set(Flags::CLUTCH_SLIPPING, we > wp * (1.0 + 1e-9) && p.primary_nm > 0.0);
+    flags.set(
+        Flags::CLUTCH_SLIPPING,
+        we > wp * (1.0 + 1e-9) && p.primary_nm > 0.0,
+    );
     flags.set(Flags::CLUTCH_OPEN, outcome.bind == Bind::Least && wp < idle);
     flags.set(Flags::OVERRUN, p.primary_nm < 0.0);
     flags.set(Flags::NOT_CONVERGED, !converged(outcome.left));
-    flags.set(Flags::LAUNCH_NOT_IN_LOW, past.stood && step.at.geometry.ratio < 0.99 * step.cvt.ratio.low);
+    flags.set(
+        Flags::LAUNCH_NOT_IN_LOW,
+        past.stood && step.at.geometry.ratio < 0.99 * step.cvt.ratio.low,
+    );
     let share = (p.flywheel_nm + step.around.engine.accessories_nm(we)) / p.full_load_nm;
     common_flags(step, &mut drive, p.inside_maps && share <= FULL);
     let loss_nm = drive.shaft_nm - g.output_nm / step.at.geometry.ratio;
-    past.trend.push(step.around.wheel.accel_m_s2, g.slip, loss_nm);
+    past.trend
+        .push(step.around.wheel.accel_m_s2, g.slip, loss_nm);
     remember(past, &drive, false);
     past.coupled = p.locked || we <= wp * (1.0 + 1e-4);
     drive
@@ -144,8 +176,14 @@ fn common_flags(step: &Step, drive: &mut Drive, inside_maps: bool) {
     drive.flags.set(Flags::OUTSIDE_VALIDITY, !valid);
     let ratio = step.at.geometry.ratio;
     let limits = &step.cvt.ratio;
-    drive.flags.set(Flags::RATIO_LIMIT, ratio <= limits.high * (1.0 + 1e-9) || ratio >= limits.low * (1.0 - 1e-9));
-    drive.flags.set(Flags::OVERSPEED, drive.engine_rad_s > step.around.engine.engine.highest_rad_s);
+    drive.flags.set(
+        Flags::RATIO_LIMIT,
+        ratio <= limits.high * (1.0 + 1e-9) || ratio >= limits.low * (1.0 - 1e-9),
+    );
+    drive.flags.set(
+        Flags::OVERSPEED,
+        drive.engine_rad_s > step.around.engine.engine.highest_rad_s,
+    );
 }
 
 fn remember(past: &mut Past, drive: &Drive, stood: bool) {

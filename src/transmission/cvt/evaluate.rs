@@ -105,7 +105,11 @@ impl Point {
     pub(super) fn moved(&self) -> f64 {
         let g = &self.guess;
         let mut most = (g.pressure_pa / self.next_pressure_pa - 1.0).abs();
-        let engine = if self.locked { 0.0 } else { (g.engine_rad_s / self.next_engine_rad_s - 1.0).abs() };
+        let engine = if self.locked {
+            0.0
+        } else {
+            (g.engine_rad_s / self.next_engine_rad_s - 1.0).abs()
+        };
         for d in [(g.slip - self.slip_guessed).abs(), engine] {
             most = if d > most { d } else { most };
         }
@@ -114,7 +118,11 @@ impl Point {
 
     /// The guess that follows without a secant.
     pub(super) fn next(&self) -> Guess {
-        Guess { engine_rad_s: self.next_engine_rad_s, pressure_pa: self.next_pressure_pa, ..self.guess }
+        Guess {
+            engine_rad_s: self.next_engine_rad_s,
+            pressure_pa: self.next_pressure_pa,
+            ..self.guess
+        }
     }
 }
 
@@ -122,7 +130,11 @@ impl Point {
 /// clutch whose engine is still running down from a higher speed can neither give nor take energy.
 #[inline]
 fn engine_side_nm(primary_nm: f64, primary_rad_s: f64, engine_rad_s: f64) -> f64 {
-    if primary_nm < 0.0 { primary_nm * primary_rad_s / engine_rad_s } else { primary_nm }
+    if primary_nm < 0.0 {
+        primary_nm * primary_rad_s / engine_rad_s
+    } else {
+        primary_nm
+    }
 }
 
 /// Which condition fixes the output torque.
@@ -137,7 +149,14 @@ pub(super) enum Bind {
 }
 
 impl Step<'_> {
-    pub(super) fn mapped(&self, map: Option<&LossMap>, speed: f64, torque: f64, pa: f64, inside: &mut bool) -> Option<f64> {
+    pub(super) fn mapped(
+        &self,
+        map: Option<&LossMap>,
+        speed: f64,
+        torque: f64,
+        pa: f64,
+        inside: &mut bool,
+    ) -> Option<f64> {
         let map = map?;
         let (loss, ok) = map.loss_nm(&MapPoint {
             ratio: self.at.geometry.ratio,
@@ -152,14 +171,23 @@ impl Step<'_> {
 
     /// Pump and input shaft at an engine speed and pressure: torques Nm by model or map, and the pump's flow.
     #[inline(always)]
-    pub(super) fn pump_and_shaft(&self, engine_rad_s: f64, pa: f64, inside: &mut bool) -> (PumpState, f64) {
+    pub(super) fn pump_and_shaft(
+        &self,
+        engine_rad_s: f64,
+        pa: f64,
+        inside: &mut bool,
+    ) -> (PumpState, f64) {
         let pump = &self.cvt.pump;
         let need = pump.need_m3_s(pa, self.leakage_m3_s_pa) + self.shift_flow_m3_s;
         let mut state = pump.state(&self.pump, engine_rad_s, pa, need);
         let mut shaft_nm = self.spin.shaft_nm(engine_rad_s);
         if let Some(maps) = self.maps {
-            state.torque_nm = self.mapped(maps.pump.as_ref(), engine_rad_s, 0.0, pa, inside).unwrap_or(state.torque_nm);
-            shaft_nm = self.mapped(maps.input_shaft.as_ref(), engine_rad_s, 0.0, pa, inside).unwrap_or(shaft_nm);
+            state.torque_nm = self
+                .mapped(maps.pump.as_ref(), engine_rad_s, 0.0, pa, inside)
+                .unwrap_or(state.torque_nm);
+            shaft_nm = self
+                .mapped(maps.input_shaft.as_ref(), engine_rad_s, 0.0, pa, inside)
+                .unwrap_or(shaft_nm);
         }
         (state, shaft_nm)
     }
@@ -173,22 +201,63 @@ impl Step<'_> {
     /// What final drive and clutch take, and the belt if a map stands for it.
     #[inline]
     fn part_torques(&self, g: &Guess, primary_rad_s: f64) -> PartTorques {
-        let secondary = self.cvt.spin.secondary_torque_nm(self.drive_nm, g.output_nm);
-        let models = PartTorques { secondary, clutch: self.spin.clutch_nm, belt_map: None, inside_maps: true };
+        let secondary = self
+            .cvt
+            .spin
+            .secondary_torque_nm(self.drive_nm, g.output_nm);
+        let models = PartTorques {
+            secondary,
+            clutch: self.spin.clutch_nm,
+            belt_map: None,
+            inside_maps: true,
+        };
         match self.maps {
             None => models,
             Some(maps) => self.mapped_torques(maps, g, primary_rad_s, models),
         }
     }
 
-    fn mapped_torques(&self, maps: &CvtMaps, g: &Guess, primary_rad_s: f64, models: PartTorques) -> PartTorques {
+    fn mapped_torques(
+        &self,
+        maps: &CvtMaps,
+        g: &Guess,
+        primary_rad_s: f64,
+        models: PartTorques,
+    ) -> PartTorques {
         let (pa, mut inside) = (g.pressure_pa, true);
         let secondary = self
-            .mapped(maps.final_drive.as_ref(), primary_rad_s, g.output_nm, pa, &mut inside)
-            .map_or(models.secondary, |loss| g.output_nm + loss * primary_rad_s / self.secondary_rad_s);
-        let belt_map = self.mapped(maps.belt.as_ref(), primary_rad_s, secondary, pa, &mut inside);
-        let clutch = self.mapped(maps.clutch_drag.as_ref(), primary_rad_s, 0.0, pa, &mut inside).unwrap_or(models.clutch);
-        PartTorques { secondary, clutch, belt_map, inside_maps: inside }
+            .mapped(
+                maps.final_drive.as_ref(),
+                primary_rad_s,
+                g.output_nm,
+                pa,
+                &mut inside,
+            )
+            .map_or(models.secondary, |loss| {
+                g.output_nm + loss * primary_rad_s / self.secondary_rad_s
+            });
+        let belt_map = self.mapped(
+            maps.belt.as_ref(),
+            primary_rad_s,
+            secondary,
+            pa,
+            &mut inside,
+        );
+        let clutch = self
+            .mapped(
+                maps.clutch_drag.as_ref(),
+                primary_rad_s,
+                0.0,
+                pa,
+                &mut inside,
+            )
+            .unwrap_or(models.clutch);
+        PartTorques {
+            secondary,
+            clutch,
+            belt_map,
+            inside_maps: inside,
+        }
     }
 
     /// Works out a guess, in place: a point is large.
@@ -198,8 +267,12 @@ impl Step<'_> {
     pub(super) fn evaluate(&self, g: &Guess, bind: Bind, point: &mut Point) {
         let (cvt, engine, pa) = (self.cvt, self.around.engine, g.pressure_pa);
         let belt_rad_s = self.primary_rad_s(g.slip);
-        let PartTorques { secondary: secondary_nm, clutch: clutch_nm, belt_map: belt_map_nm, mut inside_maps } =
-            self.part_torques(g, belt_rad_s);
+        let PartTorques {
+            secondary: secondary_nm,
+            clutch: clutch_nm,
+            belt_map: belt_map_nm,
+            mut inside_maps,
+        } = self.part_torques(g, belt_rad_s);
         let load = || BeltLoad {
             primary_speed_rad_s: belt_rad_s,
             output_torque_nm: secondary_nm,
@@ -207,11 +280,13 @@ impl Step<'_> {
             ..self.load
         };
         let belt = belt_losses(&cvt.belt, self.at, &load());
-        let (slip, belt_nm) = belt_map_nm.map_or((belt.slip_total, belt.sum_nm()), |loss| (0.0, loss));
+        let (slip, belt_nm) =
+            belt_map_nm.map_or((belt.slip_total, belt.sum_nm()), |loss| (0.0, loss));
         let primary_rad_s = self.primary_rad_s(slip);
         let locked = self.locked(primary_rad_s);
         // VA-1 with the slip in force, so that the power balance holds for this iterate exactly.
-        let primary_nm = secondary_nm * ((1.0 - slip) * self.at.prepared.per_ratio) + belt_nm + clutch_nm;
+        let primary_nm =
+            secondary_nm * ((1.0 - slip) * self.at.prepared.per_ratio) + belt_nm + clutch_nm;
         // Never slower than the primary, and the same while locked, so that the clutch cannot give energy back.
         let engine_rad_s = if locked {
             primary_rad_s
@@ -224,19 +299,28 @@ impl Step<'_> {
         };
         let (pump, shaft_nm) = self.pump_and_shaft(engine_rad_s, pa, &mut inside_maps);
         let spin_nm = pump.torque_nm + shaft_nm;
-        let flywheel_nm = |primary_nm: f64| engine_side_nm(primary_nm, primary_rad_s, engine_rad_s) + spin_nm; // CV-2, CV-6
+        let flywheel_nm =
+            |primary_nm: f64| engine_side_nm(primary_nm, primary_rad_s, engine_rad_s) + spin_nm; // CV-2, CV-6
         let asked_nm = match bind {
             Bind::Demand => primary_nm,
             Bind::Least => self.least_primary_nm(primary_rad_s, engine_rad_s, spin_nm),
             Bind::FullLoad => self.most_primary_nm(engine_rad_s, spin_nm),
         };
-        let next_engine_rad_s = if locked || bind == Bind::Demand { engine_rad_s } else { self.free_engine_rad_s(asked_nm, primary_rad_s) };
+        let next_engine_rad_s = if locked || bind == Bind::Demand {
+            engine_rad_s
+        } else {
+            self.free_engine_rad_s(asked_nm, primary_rad_s)
+        };
         let crank_nm = flywheel_nm(asked_nm) + engine.accessories_nm(next_engine_rad_s);
         let full_load_nm = engine.full_load_nm(next_engine_rad_s);
         let throttle = held(crank_nm / full_load_nm, 0.0, 1.0);
         let signals = self.signals(throttle, next_engine_rad_s);
         *point = Point {
-            guess: Guess { engine_rad_s, slip, ..*g },
+            guess: Guess {
+                engine_rad_s,
+                slip,
+                ..*g
+            },
             slip_guessed: g.slip,
             next_engine_rad_s,
             next_pressure_pa: cvt.pressure_pa(&signals, self.at, load, self.secondary_rad_s),
@@ -267,13 +351,31 @@ impl Step<'_> {
 
     /// Engine speed over a slipping launch device, within what the engine's inertia lets it reach.
     fn free_engine_rad_s(&self, primary_nm: f64, primary_rad_s: f64) -> f64 {
-        let wanted = self.cvt.launch.engine_speed_rad_s(primary_nm, primary_rad_s, self.around.engine.idle_rad_s, self.coupled);
-        let limited = held(wanted, self.engine_before - self.pace_rad_s, self.engine_before + self.pace_rad_s);
-        if limited > primary_rad_s { limited } else { primary_rad_s }
+        let wanted = self.cvt.launch.engine_speed_rad_s(
+            primary_nm,
+            primary_rad_s,
+            self.around.engine.idle_rad_s,
+            self.coupled,
+        );
+        let limited = held(
+            wanted,
+            self.engine_before - self.pace_rad_s,
+            self.engine_before + self.pace_rad_s,
+        );
+        if limited > primary_rad_s {
+            limited
+        } else {
+            primary_rad_s
+        }
     }
 
     /// Least primary torque that the engine and the launch device leave to the belt, Nm, with pump and shaft taking `spin_nm` (CV-3).
-    pub(super) fn least_primary_nm(&self, primary_rad_s: f64, engine_rad_s: f64, spin_nm: f64) -> f64 {
+    pub(super) fn least_primary_nm(
+        &self,
+        primary_rad_s: f64,
+        engine_rad_s: f64,
+        spin_nm: f64,
+    ) -> f64 {
         let engine = self.around.engine;
         let idle = engine.idle_rad_s;
         if primary_rad_s < idle {
@@ -282,7 +384,9 @@ impl Step<'_> {
         // A slipping clutch whose engine is faster cannot take torque from the belt; faded in, so that the solve sees no step.
         let together = 1.0 - ramp(engine_rad_s / primary_rad_s, 1.0, 1.02);
         let share = self.cvt.launch.overrun_share(primary_rad_s, idle);
-        -together * share * (engine.drag_nm(engine_rad_s) + engine.accessories_nm(engine_rad_s) + spin_nm)
+        -together
+            * share
+            * (engine.drag_nm(engine_rad_s) + engine.accessories_nm(engine_rad_s) + spin_nm)
     }
 
     pub(super) fn most_primary_nm(&self, engine_rad_s: f64, spin_nm: f64) -> f64 {
@@ -291,6 +395,11 @@ impl Step<'_> {
     }
 
     pub(super) fn signals(&self, throttle: f64, engine_rad_s: f64) -> ClampSignals {
-        ClampSignals { throttle, engine_rad_s, oil_k: self.around.heat.node_k[SUMP], radius_factor: self.radius_factor }
+        ClampSignals {
+            throttle,
+            engine_rad_s,
+            oil_k: self.around.heat.node_k[SUMP],
+            radius_factor: self.radius_factor,
+        }
     }
 }

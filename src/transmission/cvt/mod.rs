@@ -55,7 +55,15 @@ impl CvtMaps {
     #[must_use]
     #[inline]
     pub fn any(&self) -> bool {
-        [&self.belt, &self.pump, &self.input_shaft, &self.clutch_drag, &self.final_drive].iter().any(|map| map.is_some())
+        [
+            &self.belt,
+            &self.pump,
+            &self.input_shaft,
+            &self.clutch_drag,
+            &self.final_drive,
+        ]
+        .iter()
+        .any(|map| map.is_some())
     }
 }
 
@@ -108,7 +116,9 @@ impl Cvt {
     #[must_use]
     #[inline]
     pub fn secondary_clamp_n(&self, pressure_pa: f64, secondary_rad_s: f64) -> f64 {
-        pressure_pa * self.secondary_piston_m2 + self.spring_n + self.centrifugal_n_s2 * secondary_rad_s * secondary_rad_s
+        pressure_pa * self.secondary_piston_m2
+            + self.spring_n
+            + self.centrifugal_n_s2 * secondary_rad_s * secondary_rad_s
     }
 
     /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
@@ -125,7 +135,9 @@ impl Cvt {
             secondary_rad_s: secondary,
             power_w: around.wheel.power_w,
             rated_w: around.engine.engine.rated_w,
-            full_load_rad_s: self.full_load_route.at(around.wheel.power_w / self.ratio.route_efficiency),
+            full_load_rad_s: self
+                .full_load_route
+                .at(around.wheel.power_w / self.ratio.route_efficiency),
             ratio_before: self.ratio.low,
             flow_down_per_s: 0.0,
             flow_up_per_s: 0.0,
@@ -150,13 +162,22 @@ impl Cvt {
             coupled: primary > idle,
             stood: secondary <= 0.0,
         };
-        DriveState { belt: Some(BeltAtRatio::new(&self.belt, ratio)), past }
+        DriveState {
+            belt: Some(BeltAtRatio::new(&self.belt, ratio)),
+            past,
+        }
     }
 
     /// Pressure that the clamp law asks for, Pa (PC-1 to PC-4), within floor and cap; `load` is asked by the laws that look at the belt.
     #[must_use]
     #[inline(always)]
-    pub fn pressure_pa(&self, signals: &ClampSignals, at: &BeltAtRatio, load: impl FnOnce() -> BeltLoad, secondary_rad_s: f64) -> f64 {
+    pub fn pressure_pa(
+        &self,
+        signals: &ClampSignals,
+        at: &BeltAtRatio,
+        load: impl FnOnce() -> BeltLoad,
+        secondary_rad_s: f64,
+    ) -> f64 {
         let wanted = match &self.clamp {
             ClampLaw::Map(map) => map.pressure_pa(signals),
             law => self.belt_pressure_pa(law, at, &load(), secondary_rad_s),
@@ -172,34 +193,81 @@ impl Cvt {
 
     /// Pressure of the laws that look at the belt (PC-3, PC-4).
     #[inline(never)]
-    fn belt_pressure_pa(&self, law: &ClampLaw, at: &BeltAtRatio, load: &BeltLoad, secondary_rad_s: f64) -> f64 {
+    fn belt_pressure_pa(
+        &self,
+        law: &ClampLaw,
+        at: &BeltAtRatio,
+        load: &BeltLoad,
+        secondary_rad_s: f64,
+    ) -> f64 {
         match law {
             ClampLaw::Map(_) => f64::NAN, // looks at the engine only
-            ClampLaw::TorqueFollowing { safety, least_torque_nm } => {
-                self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s)
-            }
-            ClampLaw::SlipLimited { slip, safety, least_torque_nm } => {
-                let least = self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s);
+            ClampLaw::TorqueFollowing {
+                safety,
+                least_torque_nm,
+            } => self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s),
+            ClampLaw::SlipLimited {
+                slip,
+                safety,
+                least_torque_nm,
+            } => {
+                let least =
+                    self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s);
                 self.slip_pressure_pa(*slip, least, at, load, secondary_rad_s)
             }
         }
     }
 
-    fn torque_pressure_pa(&self, safety: f64, least_nm: f64, at: &BeltAtRatio, load: &BeltLoad, secondary_rad_s: f64) -> f64 {
+    fn torque_pressure_pa(
+        &self,
+        safety: f64,
+        least_nm: f64,
+        at: &BeltAtRatio,
+        load: &BeltLoad,
+        secondary_rad_s: f64,
+    ) -> f64 {
         let torque = load.output_torque_nm.abs();
         let torque = if torque > least_nm { torque } else { least_nm };
-        let mu = self.belt.formulation.segment_friction(load.segment_friction);
-        let weaker = if at.thrust_ratio < 1.0 { at.thrust_ratio } else { 1.0 };
-        let force = safety * torque * self.belt.cos_wedge / (2.0 * mu * at.geometry.secondary_radius_m * weaker); // PC-3
+        let mu = self
+            .belt
+            .formulation
+            .segment_friction(load.segment_friction);
+        let weaker = if at.thrust_ratio < 1.0 {
+            at.thrust_ratio
+        } else {
+            1.0
+        };
+        let force = safety * torque * self.belt.cos_wedge
+            / (2.0 * mu * at.geometry.secondary_radius_m * weaker); // PC-3
         (force - self.secondary_clamp_n(0.0, secondary_rad_s)) / self.secondary_piston_m2
     }
 
-    fn slip_pressure_pa(&self, limit: f64, least_pa: f64, at: &BeltAtRatio, load: &BeltLoad, secondary_rad_s: f64) -> f64 {
+    fn slip_pressure_pa(
+        &self,
+        limit: f64,
+        least_pa: f64,
+        at: &BeltAtRatio,
+        load: &BeltLoad,
+        secondary_rad_s: f64,
+    ) -> f64 {
         let slip = |pa: f64| {
             let force = self.secondary_clamp_n(pa, secondary_rad_s);
-            belt_state(&self.belt, at, &BeltLoad { secondary_clamp_n: force, ..*load }).slip_total.abs()
+            belt_state(
+                &self.belt,
+                at,
+                &BeltLoad {
+                    secondary_clamp_n: force,
+                    ..*load
+                },
+            )
+            .slip_total
+            .abs()
         };
-        let floor = if least_pa > self.floor_pa { least_pa } else { self.floor_pa };
+        let floor = if least_pa > self.floor_pa {
+            least_pa
+        } else {
+            self.floor_pa
+        };
         if floor >= self.cap_pa || slip(floor) <= limit {
             return floor;
         }
@@ -215,9 +283,20 @@ impl Cvt {
             }
             best = if now < best.0 { (now, k) } else { best };
         }
-        let (low, high) = (at_step(best.1.saturating_sub(1)), at_step(if best.1 < SLIP_STEPS { best.1 + 1 } else { SLIP_STEPS }));
+        let (low, high) = (
+            at_step(best.1.saturating_sub(1)),
+            at_step(if best.1 < SLIP_STEPS {
+                best.1 + 1
+            } else {
+                SLIP_STEPS
+            }),
+        );
         let least = least_of(low, high, slip);
-        if slip(least) <= limit { bisect(low, least, |pa| slip(pa) > limit) } else { least } // PC-4
+        if slip(least) <= limit {
+            bisect(low, least, |pa| slip(pa) > limit)
+        } else {
+            least
+        } // PC-4
     }
 
     /// Solves one step (CV-1 to CV-5).

@@ -15,7 +15,10 @@ fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
     let slope = g.secondary_radius_slope_m();
     let primary = (g.secondary_radius_m - slope) / g.ratio;
     let travel = 2.0 * cvt.belt.tan_wedge;
-    (cvt.secondary_piston_m2 * travel * slope, cvt.primary_piston_m2 * travel * primary)
+    (
+        cvt.secondary_piston_m2 * travel * slope,
+        cvt.primary_piston_m2 * travel * primary,
+    )
 }
 
 /// What the shift reckons with: leakage and inlet for the pump's free flow, efficiency for the full-load route.
@@ -35,17 +38,25 @@ struct Shift {
 
 fn shift(cvt: &Cvt, around: &Surroundings, past: &Past, before: &Geometry, route: Route) -> Shift {
     if around.wheel.wheel_rad_s <= 0.0 {
-        return Shift { ratio: before.ratio, flow_m3_s: 0.0, held: false }; // RC-4
+        return Shift {
+            ratio: before.ratio,
+            flow_m3_s: 0.0,
+            held: false,
+        }; // RC-4
     }
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
-    let drawn = route.pump.drawn_m3_s(cvt.pump.displacement_m3_rad * past.engine_rad_s);
+    let drawn = route
+        .pump
+        .drawn_m3_s(cvt.pump.displacement_m3_rad * past.engine_rad_s);
     let free = drawn - cvt.pump.need_m3_s(past.secondary_pa, route.leakage_m3_s_pa);
     let free = if free > 0.0 { free } else { 0.0 };
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive * around.wheel.wheel_rad_s,
         power_w: around.wheel.power_w,
         rated_w: around.engine.engine.rated_w,
-        full_load_rad_s: cvt.full_load_route.at(around.wheel.power_w / (route.efficiency * around.engine.full_load_factor)),
+        full_load_rad_s: cvt
+            .full_load_route
+            .at(around.wheel.power_w / (route.efficiency * around.engine.full_load_factor)),
         ratio_before: before.ratio,
         flow_down_per_s: free / down_m3, // RC-5
         flow_up_per_s: free / up_m3,     // RC-5
@@ -53,8 +64,16 @@ fn shift(cvt: &Cvt, around: &Surroundings, past: &Past, before: &Geometry, route
         dt_s: around.dt_s,
     };
     let (ratio, change, held) = cvt.ratio.step(&demand);
-    let volume = if change > 0.0 { down_m3 * change } else { -up_m3 * change };
-    Shift { ratio, flow_m3_s: volume / around.dt_s, held }
+    let volume = if change > 0.0 {
+        down_m3 * change
+    } else {
+        -up_m3 * change
+    };
+    Shift {
+        ratio,
+        flow_m3_s: volume / around.dt_s,
+        held,
+    }
 }
 
 /// Powers and exponentials of a step.
@@ -87,7 +106,15 @@ impl Powers {
             cvt.low_radius_m / at.geometry.primary_radius_m,
         ]);
         let [shaft, clutch, drive] = cvt.spin.exponents(spin);
-        let [shaft, clutch, drive, fall, viscous_factor, radius_factor, film] = exp_each([
+        let [
+            shaft,
+            clutch,
+            drive,
+            fall,
+            viscous_factor,
+            radius_factor,
+            film,
+        ] = exp_each([
             shaft,
             clutch,
             drive,
@@ -98,7 +125,13 @@ impl Powers {
         ]);
         let spin = cvt.spin.with_powers([shaft, clutch, drive]);
         let drive_nm = cvt.spin.drive_with_fall_nm(&spin, b.secondary_rad_s, fall);
-        Powers { spin, drive_nm, viscous_factor, radius_factor, film: if films { film } else { 0.0 } }
+        Powers {
+            spin,
+            drive_nm,
+            viscous_factor,
+            radius_factor,
+            film: if films { film } else { 0.0 },
+        }
     }
 }
 
@@ -114,20 +147,47 @@ pub(super) fn prepare<'a>(
 ) -> Step<'a> {
     let (oil, friction) = (around.oil, &around.oil.friction);
     let (sump_k, belt_k) = (around.heat.node_k[SUMP], around.heat.node_k[BELT]);
-    let locked_from_rad_s = if past.coupled { cvt.launch.holds_from_rad_s(around.engine.idle_rad_s) } else { f64::INFINITY };
+    let locked_from_rad_s = if past.coupled {
+        cvt.launch.holds_from_rad_s(around.engine.idle_rad_s)
+    } else {
+        f64::INFINITY
+    };
     let [nu_sump, nu_belt] = oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]);
     let eta_sump = nu_sump * oil.density_kg_m3(sump_k);
     let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
     let leakage_m3_s_pa = cvt.pump.leakage_now_m3_s_pa(eta_sump);
     let inlet = cvt.pump.with_factor(eta_sump, 1.0);
-    let Shift { ratio, flow_m3_s, held } = shift(cvt, around, past, before, Route { leakage_m3_s_pa, pump: inlet, efficiency });
+    let Shift {
+        ratio,
+        flow_m3_s,
+        held,
+    } = shift(
+        cvt,
+        around,
+        past,
+        before,
+        Route {
+            leakage_m3_s_pa,
+            pump: inlet,
+            efficiency,
+        },
+    );
     if ratio.to_bits() != belt.geometry.ratio.to_bits() {
         *belt = BeltAtRatio::new(&cvt.belt, ratio);
     }
     let at = &*belt;
     let secondary_rad_s = cvt.final_drive * around.wheel.wheel_rad_s;
-    let sliding = if cvt.belt.formulation.has_film() { sliding_speed_m_s(&cvt.belt, ratio, ratio * secondary_rad_s) } else { 0.0 };
-    let bases = Bases { nu_m2_s: nu_sump, eta_pa_s: eta_sump, film_load: friction.film_load(eta_belt, sliding), secondary_rad_s };
+    let sliding = if cvt.belt.formulation.has_film() {
+        sliding_speed_m_s(&cvt.belt, ratio, ratio * secondary_rad_s)
+    } else {
+        0.0
+    };
+    let bases = Bases {
+        nu_m2_s: nu_sump,
+        eta_pa_s: eta_sump,
+        film_load: friction.film_load(eta_belt, sliding),
+        secondary_rad_s,
+    };
     let powers = Powers::new(cvt, at, friction.lift_exponent, &bases);
     let engine = around.engine.engine;
     Step {
@@ -136,7 +196,10 @@ pub(super) fn prepare<'a>(
         secondary_rad_s,
         drive_nm: powers.drive_nm,
         spin: powers.spin,
-        pump: PumpNow { viscous_factor: powers.viscous_factor, ..inlet },
+        pump: PumpNow {
+            viscous_factor: powers.viscous_factor,
+            ..inlet
+        },
         leakage_m3_s_pa,
         load: BeltLoad {
             primary_speed_rad_s: 0.0,

@@ -129,7 +129,10 @@ impl Pump {
     #[must_use]
     #[inline]
     pub fn at(&self, eta_pa_s: f64) -> PumpNow {
-        self.with_factor(eta_pa_s, exp(self.viscous_exponent * ln(eta_pa_s / ETA_REFERENCE_PA_S)))
+        self.with_factor(
+            eta_pa_s,
+            exp(self.viscous_exponent * ln(eta_pa_s / ETA_REFERENCE_PA_S)),
+        )
     }
 
     /// The same with the factor (eta/eta_r)^m of PU-1 known.
@@ -137,23 +140,38 @@ impl Pump {
     #[inline]
     pub fn with_factor(&self, eta_pa_s: f64, viscous_factor: f64) -> PumpNow {
         let drop_pa_s_m3 = self.inlet_pa_s_m3 * eta_pa_s / ETA_REFERENCE_PA_S;
-        PumpNow { viscous_factor, per_inlet_m3_s: drop_pa_s_m3 / INLET_DEPRESSION_PA } // PU-5
+        PumpNow {
+            viscous_factor,
+            per_inlet_m3_s: drop_pa_s_m3 / INLET_DEPRESSION_PA,
+        } // PU-5
     }
 
     /// Share of the displacement that works against pressure (PU-4), from the flow that all of it draws.
     fn share(&self, need_m3_s: f64, drawn_m3_s: f64) -> f64 {
-        let wanted = if drawn_m3_s > 0.0 { need_m3_s / drawn_m3_s } else { 1.0 };
+        let wanted = if drawn_m3_s > 0.0 {
+            need_m3_s / drawn_m3_s
+        } else {
+            1.0
+        };
         match self.kind {
             PumpKind::Fixed => 1.0,
-            PumpKind::DualCavity { share } => share + (1.0 - share) * smooth_ramp(wanted, 0.85 * share, share), // PU-4
-            PumpKind::Variable { least } => held(wanted, least, 1.0),                                           // PU-4
+            PumpKind::DualCavity { share } => {
+                share + (1.0 - share) * smooth_ramp(wanted, 0.85 * share, share)
+            } // PU-4
+            PumpKind::Variable { least } => held(wanted, least, 1.0), // PU-4
         }
     }
 
     /// Torque and flow (PU-1, PU-4).
     #[must_use]
     #[inline(always)]
-    pub fn state(&self, now: &PumpNow, speed_rad_s: f64, secondary_pa: f64, need_m3_s: f64) -> PumpState {
+    pub fn state(
+        &self,
+        now: &PumpNow,
+        speed_rad_s: f64,
+        secondary_pa: f64,
+        need_m3_s: f64,
+    ) -> PumpState {
         let flow = self.displacement_m3_rad * speed_rad_s;
         let drawn = now.drawn_m3_s(flow);
         let (share, working) = if self.kind == PumpKind::Fixed {
@@ -162,11 +180,22 @@ impl Pump {
             let share = self.share(need_m3_s, drawn);
             (share, now.drawn_m3_s(share * flow))
         };
-        let pressure = share * (secondary_pa + self.line_drop_pa) + (1.0 - share) * self.residual_pa; // PU-4
-        let viscous = self.viscous * ETA_REFERENCE_PA_S * now.viscous_factor * speed_rad_s * self.displacement_m3_rad;
-        let torque =
-            self.displacement_m3_rad * (1.0 + self.friction) * pressure + self.heating.torque_nm(viscous, speed_rad_s) + self.constant_nm; // PU-1
-        PumpState { torque_nm: torque, flow_m3_s: flow, working_m3_s: working, flow_limited: need_m3_s > drawn }
+        let pressure =
+            share * (secondary_pa + self.line_drop_pa) + (1.0 - share) * self.residual_pa; // PU-4
+        let viscous = self.viscous
+            * ETA_REFERENCE_PA_S
+            * now.viscous_factor
+            * speed_rad_s
+            * self.displacement_m3_rad;
+        let torque = self.displacement_m3_rad * (1.0 + self.friction) * pressure
+            + self.heating.torque_nm(viscous, speed_rad_s)
+            + self.constant_nm; // PU-1
+        PumpState {
+            torque_nm: torque,
+            flow_m3_s: flow,
+            working_m3_s: working,
+            flow_limited: need_m3_s > drawn,
+        }
     }
 }
 
@@ -195,15 +224,28 @@ mod tests {
     #[test]
     fn val_displacement_times_pressure() {
         let p = pump(PumpKind::Fixed);
-        assert!((p.state(&p.at(ETA_REFERENCE_PA_S), 0.0, 35e5, 0.0).torque_nm - 5.459).abs() < 1e-3);
+        assert!(
+            (p.state(&p.at(ETA_REFERENCE_PA_S), 0.0, 35e5, 0.0).torque_nm - 5.459).abs() < 1e-3
+        );
     }
 
     #[test]
     fn smaller_displacement_at_work_costs_less_but_never_nothing() {
         let need = 8e-3 / 60.0;
-        let t = |kind| pump(kind).state(&pump(kind).at(ETA_REFERENCE_PA_S), 300.0, 20e5, need).torque_nm;
-        let (fixed, dual, variable) = (t(PumpKind::Fixed), t(PumpKind::DualCavity { share: 0.5 }), t(PumpKind::Variable { least: 0.2 }));
-        assert!(variable < dual && dual < fixed && variable > 0.0, "{fixed} {dual} {variable}");
+        let t = |kind| {
+            pump(kind)
+                .state(&pump(kind).at(ETA_REFERENCE_PA_S), 300.0, 20e5, need)
+                .torque_nm
+        };
+        let (fixed, dual, variable) = (
+            t(PumpKind::Fixed),
+            t(PumpKind::DualCavity { share: 0.5 }),
+            t(PumpKind::Variable { least: 0.2 }),
+        );
+        assert!(
+            variable < dual && dual < fixed && variable > 0.0,
+            "{fixed} {dual} {variable}"
+        );
     }
 
     #[test]
@@ -218,15 +260,34 @@ mod tests {
     #[test]
     fn val_thick_oil_fills_no_more_than_the_air_pushes_in() {
         let litre_min = 1e-3 / 60.0;
-        let p = Pump { inlet_pa_s_m3: 0.0003e5 / litre_min, ..pump(PumpKind::Fixed) };
+        let p = Pump {
+            inlet_pa_s_m3: 0.0003e5 / litre_min,
+            ..pump(PumpKind::Fixed)
+        };
         let cold = p.at(3.0);
         assert!((1.0 / cold.per_inlet_m3_s / litre_min - 7.78).abs() < 0.01);
         let need = 9.0 * litre_min;
-        let (fast, warm) = (p.state(&cold, 400.0, 20e5, need), p.state(&p.at(ETA_REFERENCE_PA_S), 400.0, 20e5, need));
-        assert!(fast.flow_limited && fast.working_m3_s < 7.78 * litre_min && fast.working_m3_s > 7.7 * litre_min);
+        let (fast, warm) = (
+            p.state(&cold, 400.0, 20e5, need),
+            p.state(&p.at(ETA_REFERENCE_PA_S), 400.0, 20e5, need),
+        );
+        assert!(
+            fast.flow_limited
+                && fast.working_m3_s < 7.78 * litre_min
+                && fast.working_m3_s > 7.7 * litre_min
+        );
         assert!(!warm.flow_limited && (warm.working_m3_s / warm.flow_m3_s - 1.0).abs() < 1e-7);
         // The torque loses nothing: the chamber is filled from the outlet.
-        let unbounded = Pump { inlet_pa_s_m3: 0.0, ..p };
-        assert_eq!(fast.torque_nm.to_bits(), unbounded.state(&unbounded.at(3.0), 400.0, 20e5, need).torque_nm.to_bits());
+        let unbounded = Pump {
+            inlet_pa_s_m3: 0.0,
+            ..p
+        };
+        assert_eq!(
+            fast.torque_nm.to_bits(),
+            unbounded
+                .state(&unbounded.at(3.0), 400.0, 20e5, need)
+                .torque_nm
+                .to_bits()
+        );
     }
 }

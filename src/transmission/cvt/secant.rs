@@ -58,7 +58,11 @@ impl Series {
     #[inline]
     fn push(&mut self, value: f64) {
         let first = value - self.value;
-        *self = Series { value, first, second: first - self.first };
+        *self = Series {
+            value,
+            first,
+            second: first - self.first,
+        };
     }
 }
 
@@ -66,19 +70,33 @@ impl Trend {
     /// Slip and loss torque in Nm to begin a step with: those of the step before, carried on where the car is driven alike.
     #[inline]
     pub(super) fn onward(&self, accel_m_s2: f64) -> (f64, f64) {
-        let alike = if (accel_m_s2 - self.accel_m_s2).abs() < ALIKE_M_S2 { self.alike } else { 0 };
+        let alike = if (accel_m_s2 - self.accel_m_s2).abs() < ALIKE_M_S2 {
+            self.alike
+        } else {
+            0
+        };
         (self.slip.onward(alike), self.loss.onward(alike))
     }
 
     /// Takes a step at standstill: nothing slips, and what follows is not like it.
     pub(super) fn stand(&mut self) {
-        *self = Trend { loss: Series { value: self.loss.value, ..Series::default() }, ..Trend::default() };
+        *self = Trend {
+            loss: Series {
+                value: self.loss.value,
+                ..Series::default()
+            },
+            ..Trend::default()
+        };
     }
 
     /// Takes a solved step.
     #[inline]
     pub(super) fn push(&mut self, accel_m_s2: f64, slip: f64, loss_nm: f64) {
-        self.alike = if (accel_m_s2 - self.accel_m_s2).abs() < ALIKE_M_S2 { self.alike.saturating_add(1) } else { 0 };
+        self.alike = if (accel_m_s2 - self.accel_m_s2).abs() < ALIKE_M_S2 {
+            self.alike.saturating_add(1)
+        } else {
+            0
+        };
         self.accel_m_s2 = accel_m_s2;
         self.slip.push(slip);
         self.loss.push(loss_nm);
@@ -88,7 +106,11 @@ impl Trend {
 impl Default for Slopes {
     /// Before anything is known: pressure acts on nothing, torque passes without loss.
     fn default() -> Self {
-        Slopes { pressure: 0.0, slip_per_pa: 0.0, torque: 1.0 }
+        Slopes {
+            pressure: 0.0,
+            slip_per_pa: 0.0,
+            torque: 1.0,
+        }
     }
 }
 
@@ -98,7 +120,11 @@ impl Slopes {
     pub(super) fn learn(&mut self, before: &Guess, before_next_pa: f64, now: &Point) {
         let step_pa = now.guess.pressure_pa - before.pressure_pa;
         if step_pa.abs() > SECANT_FROM_PA {
-            self.pressure = held((now.next_pressure_pa - before_next_pa) / step_pa, -MOST_GAIN, MOST_GAIN);
+            self.pressure = held(
+                (now.next_pressure_pa - before_next_pa) / step_pa,
+                -MOST_GAIN,
+                MOST_GAIN,
+            );
             if now.guess.output_nm.to_bits() == before.output_nm.to_bits() {
                 let most = MOST_SLIP_GAIN * now.guess.slip.abs() / now.guess.pressure_pa;
                 self.slip_per_pa = held((now.guess.slip - before.slip) / step_pa, -most, most);
@@ -125,7 +151,11 @@ pub(super) struct TorqueSecant {
 
 impl TorqueSecant {
     pub fn new(ratio: f64, first_nm: f64) -> Self {
-        TorqueSecant { ratio, allowed_nm: first_nm.abs(), last: None }
+        TorqueSecant {
+            ratio,
+            allowed_nm: first_nm.abs(),
+            last: None,
+        }
     }
 
     /// Next output torque after an evaluation, and whether it moves no more for the bound
@@ -140,7 +170,11 @@ impl TorqueSecant {
         self.last = Some((x, miss_nm));
         let slope = if plain { 1.0 } else { slopes.torque };
         let carried = 1.05 * now.belt.capacity_nm;
-        let carried = if carried > self.allowed_nm { carried } else { self.allowed_nm };
+        let carried = if carried > self.allowed_nm {
+            carried
+        } else {
+            self.allowed_nm
+        };
         let next = held(x - miss_nm * self.ratio / slope, -carried, carried); // CV-5
         (next, (next - x).abs() <= 1e-9 * carried)
     }
@@ -159,10 +193,16 @@ mod tests {
             trend.push(0.5, slip(f64::from(k)), 2.0 * slip(f64::from(k)));
         }
         let (next_slip, next_nm) = trend.onward(0.5);
-        assert!((next_slip / slip(4.0) - 1.0).abs() < 1e-12 && (next_nm / slip(4.0) - 2.0).abs() < 1e-12);
+        assert!(
+            (next_slip / slip(4.0) - 1.0).abs() < 1e-12
+                && (next_nm / slip(4.0) - 2.0).abs() < 1e-12
+        );
         assert!((trend.onward(0.6).0 / slip(3.0) - 1.0).abs() < 1e-15);
         trend.push(0.6, 0.02, 1.0);
-        assert!((trend.onward(0.6).0 - 0.02).abs() < 1e-15, "one step alone has no trend");
+        assert!(
+            (trend.onward(0.6).0 - 0.02).abs() < 1e-15,
+            "one step alone has no trend"
+        );
         trend.stand();
         let (slip, loss_nm) = trend.onward(0.6);
         assert!(slip.abs() < 1e-15 && (loss_nm - 1.0).abs() < 1e-15);

@@ -63,19 +63,37 @@ impl Step<'_> {
         let output_nm = self.around.wheel.power_w / self.secondary_rad_s;
         let engine = self.around.engine;
         let flywheel = output_nm / self.at.geometry.ratio + loss_nm;
-        let throttle = held((flywheel + engine.accessories_nm(engine_rad_s)) / engine.full_load_nm(engine_rad_s), 0.0, 1.0);
+        let throttle = held(
+            (flywheel + engine.accessories_nm(engine_rad_s)) / engine.full_load_nm(engine_rad_s),
+            0.0,
+            1.0,
+        );
         let signals = self.signals(throttle, engine_rad_s);
-        let load = || BeltLoad { output_torque_nm: output_nm, ..self.load };
+        let load = || BeltLoad {
+            output_torque_nm: output_nm,
+            ..self.load
+        };
         let pressure_pa = match &self.cvt.clamp {
             ClampLaw::SlipLimited { .. } => past.secondary_pa,
-            _ => self.cvt.pressure_pa(&signals, self.at, load, self.secondary_rad_s),
+            _ => self
+                .cvt
+                .pressure_pa(&signals, self.at, load, self.secondary_rad_s),
         };
-        Guess { output_nm, slip, engine_rad_s, pressure_pa }
+        Guess {
+            output_nm,
+            slip,
+            engine_rad_s,
+            pressure_pa,
+        }
     }
 
     fn first_engine_rad_s(&self, slip: f64) -> f64 {
         let primary = self.primary_rad_s(slip);
-        if self.locked(primary) || primary > self.engine_before { primary } else { self.engine_before }
+        if self.locked(primary) || primary > self.engine_before {
+            primary
+        } else {
+            self.engine_before
+        }
     }
 
     /// Output torque at which the engine's least torque is likely to bind: its drag with the losses that are expected, Nm.
@@ -102,23 +120,40 @@ impl Step<'_> {
             if let Some((before, before_next_pa)) = &last {
                 work.slopes.learn(before, *before_next_pa, point);
             }
-            let scale = if point.full_load_nm > 1.0 { point.full_load_nm } else { 1.0 };
+            let scale = if point.full_load_nm > 1.0 {
+                point.full_load_nm
+            } else {
+                1.0
+            };
             let damped = count > DAMPED_FROM;
             let mut next_nm = guess.output_nm;
             if bind != Bind::Demand {
                 let stopped;
                 (next_nm, stopped) = torque.next_nm(point, &mut work.slopes, damped);
                 let relative = point.miss_nm.abs() / scale;
-                work.left = if relative > work.left && !stopped { relative } else { work.left };
+                work.left = if relative > work.left && !stopped {
+                    relative
+                } else {
+                    work.left
+                };
             }
             let done = work.left <= TOLERANCE || count >= MOST_EVALUATIONS || work.left.is_nan();
-            if done || (may_leave && work.left < NEAR && self.called_for(point, CLEARLY * scale) != Bind::Demand) {
+            if done
+                || (may_leave
+                    && work.left < NEAR
+                    && self.called_for(point, CLEARLY * scale) != Bind::Demand)
+            {
                 work.count += count;
                 return;
             }
             last = Some((point.guess, point.next_pressure_pa));
-            let pressure_pa = held(work.slopes.pressure_pa(point), self.cvt.floor_pa, self.cvt.cap_pa); // CV-5
-            let slip = point.guess.slip + work.slopes.slip_per_pa * (pressure_pa - point.guess.pressure_pa);
+            let pressure_pa = held(
+                work.slopes.pressure_pa(point),
+                self.cvt.floor_pa,
+                self.cvt.cap_pa,
+            ); // CV-5
+            let slip = point.guess.slip
+                + work.slopes.slip_per_pa * (pressure_pa - point.guess.pressure_pa);
             guess = Guess {
                 output_nm: next_nm,
                 slip: self.possible(slip), // CV-5
@@ -126,7 +161,10 @@ impl Step<'_> {
                 pressure_pa,
             };
             if damped {
-                guess = guess.halfway(&Guess { slip: point.slip_guessed, ..point.guess });
+                guess = guess.halfway(&Guess {
+                    slip: point.slip_guessed,
+                    ..point.guess
+                });
             }
         }
     }
@@ -138,7 +176,10 @@ impl Step<'_> {
         let guess = self.first_guess(past);
         let demand_nm = guess.output_nm;
         if past.overrun && self.around.wheel.power_w < 0.0 {
-            let near = Guess { output_nm: self.likely_overrun_nm(past), ..guess };
+            let near = Guess {
+                output_nm: self.likely_overrun_nm(past),
+                ..guess
+            };
             self.run(&near, Bind::Least, false, work);
             if work.point.guess.output_nm > demand_nm {
                 return Some(Bind::Least);
@@ -157,7 +198,10 @@ impl Step<'_> {
             let from = work.point.next();
             self.run(&from, bind, false, work);
             let x = work.point.guess.output_nm;
-            if !may_leave || (bind == Bind::Least && x > demand_nm) || (bind == Bind::FullLoad && x < demand_nm) {
+            if !may_leave
+                || (bind == Bind::Least && x > demand_nm)
+                || (bind == Bind::FullLoad && x < demand_nm)
+            {
                 return Some(bind);
             }
             may_leave = false;
@@ -180,14 +224,25 @@ fn engine_off(around: &Surroundings, ratio: f64, past: &mut Past) -> Drive {
     past.engine_rad_s = around.engine.idle_rad_s; // the starter brings it back there
     past.stood = true;
     past.coupled = false;
-    let mut rest =
-        Drive { belt_ratio: ratio, secondary_pa: 0.0, primary_pa: 0.0, slip: 0.0, clamp_safety: f64::INFINITY, ..Drive::at_rest() };
+    let mut rest = Drive {
+        belt_ratio: ratio,
+        secondary_pa: 0.0,
+        primary_pa: 0.0,
+        slip: 0.0,
+        clamp_safety: f64::INFINITY,
+        ..Drive::at_rest()
+    };
     rest.flags.set(Flags::ENGINE_OFF, true);
     rest
 }
 
 /// Solves one step of the CVT; `belt` is the one at the ratio in force, and follows it.
-pub(super) fn solve(cvt: &Cvt, around: &Surroundings, belt: &mut BeltAtRatio, past: &mut Past) -> Drive {
+pub(super) fn solve(
+    cvt: &Cvt,
+    around: &Surroundings,
+    belt: &mut BeltAtRatio,
+    past: &mut Past,
+) -> Drive {
     let before = belt.geometry;
     if around.engine_off {
         return engine_off(around, before.ratio, past);
@@ -206,6 +261,15 @@ pub(super) fn solve(cvt: &Cvt, around: &Surroundings, belt: &mut BeltAtRatio, pa
         };
         past.slopes = work.slopes;
         past.overrun = bind == Bind::Least;
-        return finish(&step, &work.point, past, Outcome { bind, left: work.left, count: work.count });
+        return finish(
+            &step,
+            &work.point,
+            past,
+            Outcome {
+                bind,
+                left: work.left,
+                count: work.count,
+            },
+        );
     }
 }

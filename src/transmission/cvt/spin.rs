@@ -70,7 +70,11 @@ impl Spin {
     #[must_use]
     #[inline]
     pub fn exponents(&self, log_nu: f64) -> [f64; 3] {
-        [self.shaft_exponent * log_nu, self.clutch_exponent * log_nu, self.drive_exponent * log_nu]
+        [
+            self.shaft_exponent * log_nu,
+            self.clutch_exponent * log_nu,
+            self.drive_exponent * log_nu,
+        ]
     }
 
     /// The constants with the powers of viscosity known.
@@ -82,7 +86,11 @@ impl Spin {
             shaft_constant_nm: self.shaft_constant_nm,
             shaft_slope_nm_s: self.shaft_viscous_nm_s * shaft,
             shaft_heating: self.shaft_heating,
-            clutch_nm: if clutch_nm < self.clutch_cap_nm { clutch_nm } else { self.clutch_cap_nm }, // CD-1
+            clutch_nm: if clutch_nm < self.clutch_cap_nm {
+                clutch_nm
+            } else {
+                self.clutch_cap_nm
+            }, // CD-1
             drive_viscous_nm: self.drive_viscous_nm * drive,
         }
     }
@@ -91,7 +99,11 @@ impl Spin {
     #[must_use]
     #[inline]
     pub fn drive_nm(&self, now: &SpinNow, secondary_rad_s: f64) -> f64 {
-        self.drive_with_fall_nm(now, secondary_rad_s, exp(self.drive_fall_exponent(secondary_rad_s)))
+        self.drive_with_fall_nm(
+            now,
+            secondary_rad_s,
+            exp(self.drive_fall_exponent(secondary_rad_s)),
+        )
     }
 
     /// -n/n0 of FD-1.
@@ -105,7 +117,10 @@ impl Spin {
     #[must_use]
     #[inline]
     pub fn drive_with_fall_nm(&self, now: &SpinNow, secondary_rad_s: f64, fall: f64) -> f64 {
-        self.drive_boundary_nm * fall + self.drive_heating.torque_nm(now.drive_viscous_nm, secondary_rad_s) // FD-1
+        self.drive_boundary_nm * fall
+            + self
+                .drive_heating
+                .torque_nm(now.drive_viscous_nm, secondary_rad_s) // FD-1
     }
 
     /// Torque at the secondary shaft for a torque after the final drive, both at the secondary's speed, Nm (FD-2).
@@ -113,7 +128,12 @@ impl Spin {
     #[inline]
     pub fn secondary_torque_nm(&self, drive_nm: f64, output_nm: f64) -> f64 {
         let through = output_nm + drive_nm;
-        through * if through >= 0.0 { 1.0 / self.mesh_efficiency } else { self.mesh_efficiency } // FD-2
+        through
+            * if through >= 0.0 {
+                1.0 / self.mesh_efficiency
+            } else {
+                self.mesh_efficiency
+            } // FD-2
     }
 }
 
@@ -122,7 +142,10 @@ impl SpinNow {
     #[must_use]
     #[inline]
     pub fn shaft_nm(&self, speed_rad_s: f64) -> f64 {
-        self.shaft_constant_nm + self.shaft_heating.torque_nm(self.shaft_slope_nm_s * speed_rad_s, speed_rad_s) // IS-1
+        self.shaft_constant_nm
+            + self
+                .shaft_heating
+                .torque_nm(self.shaft_slope_nm_s * speed_rad_s, speed_rad_s) // IS-1
     }
 }
 
@@ -155,7 +178,10 @@ mod tests {
         let rpm = std::f64::consts::PI / 30.0;
         let low = spin().at(7.8e-6).shaft_nm(1000.0 * rpm);
         let high = spin().at(68e-6).shaft_nm(4000.0 * rpm);
-        assert!((0.9..1.2).contains(&low) && (1.8..2.3).contains(&high), "{low} {high}");
+        assert!(
+            (0.9..1.2).contains(&low) && (1.8..2.3).contains(&high),
+            "{low} {high}"
+        );
     }
 
     #[test]

@@ -74,7 +74,12 @@ struct Spin {
 
 impl Spin {
     fn mapped(loss_nm: f64) -> Self {
-        Spin { seal: 0.0, bearing: 0.0, churning: 0.0, map: loss_nm }
+        Spin {
+            seal: 0.0,
+            bearing: 0.0,
+            churning: 0.0,
+            map: loss_nm,
+        }
     }
 
     fn sum(&self) -> f64 {
@@ -92,11 +97,18 @@ impl Manual {
             return Spin::mapped(0.0);
         }
         let log = ln(nu_m2_s / self.reference_m2_s);
-        let [seal, bearing, churning] = [self.seal_exponent * log, 2.0 / 3.0 * (ln(n) + log), self.churning_exponent * log].map(exp);
+        let [seal, bearing, churning] = [
+            self.seal_exponent * log,
+            2.0 / 3.0 * (ln(n) + log),
+            self.churning_exponent * log,
+        ]
+        .map(exp);
         Spin {
-            seal: self.seal_nm * seal,                                                       // MB-2
-            bearing: self.bearing_heating.torque_nm(self.bearing_nm * bearing, speed_rad_s), // MB-3
-            churning: self.churning_nm * n * churning,                                       // MB-4
+            seal: self.seal_nm * seal, // MB-2
+            bearing: self
+                .bearing_heating
+                .torque_nm(self.bearing_nm * bearing, speed_rad_s), // MB-3
+            churning: self.churning_nm * n * churning, // MB-4
             map: 0.0,
         }
     }
@@ -104,8 +116,17 @@ impl Manual {
     /// State at the beginning of a cycle.
     #[must_use]
     pub fn start(&self, around: &Surroundings) -> Past {
-        let gear = if around.wheel.wheel_rad_s > 0.0 { self.shifts.for_speed(around.wheel.speed_m_s, 1, self.overall.len()) } else { 0 };
-        let input = if gear > 0 { self.overall[usize::from(gear) - 1] * around.wheel.wheel_rad_s } else { 0.0 };
+        let gear = if around.wheel.wheel_rad_s > 0.0 {
+            self.shifts
+                .for_speed(around.wheel.speed_m_s, 1, self.overall.len())
+        } else {
+            0
+        };
+        let input = if gear > 0 {
+            self.overall[usize::from(gear) - 1] * around.wheel.wheel_rad_s
+        } else {
+            0.0
+        };
         let idle = around.engine.idle_rad_s;
         Past {
             gear,
@@ -125,12 +146,18 @@ impl Manual {
         let count = self.overall.len();
         match around.gear {
             Some(GearCommand::Change(g)) => GearCommand::InGear(g),
-            Some(GearCommand::InGear(g)) if usize::from(g) > count => GearCommand::InGear(count as u8),
-            Some(GearCommand::Declutched(g)) if usize::from(g) > count => GearCommand::Declutched(count as u8),
+            Some(GearCommand::InGear(g)) if usize::from(g) > count => {
+                GearCommand::InGear(count as u8)
+            }
+            Some(GearCommand::Declutched(g)) if usize::from(g) > count => {
+                GearCommand::Declutched(count as u8)
+            }
             Some(command) => command,
             None if around.wheel.wheel_rad_s <= 0.0 => GearCommand::Neutral,
             None => {
-                let gear = self.shifts.for_speed(around.wheel.speed_m_s, state.gear, count);
+                let gear = self
+                    .shifts
+                    .for_speed(around.wheel.speed_m_s, state.gear, count);
                 let input = self.overall[usize::from(gear) - 1] * around.wheel.wheel_rad_s;
                 if around.wheel.power_w <= 0.0 && input < 1.05 * around.engine.idle_rad_s {
                     GearCommand::Declutched(gear)
@@ -155,19 +182,35 @@ impl Manual {
         let nu = around.oil.kinematic_m2_s(around.heat.node_k[SUMP]);
         let command = self.command(around, state);
         let mut drive = match command {
-            GearCommand::InGear(gear) | GearCommand::Change(gear) if around.wheel.wheel_rad_s > 0.0 && gear > 0 => {
+            GearCommand::InGear(gear) | GearCommand::Change(gear)
+                if around.wheel.wheel_rad_s > 0.0 && gear > 0 =>
+            {
                 self.engaged(around, state, gear, nu)
             }
-            GearCommand::Neutral if around.wheel.wheel_rad_s <= 0.0 => self.neutral(around, state, nu),
-            GearCommand::Declutched(gear) | GearCommand::InGear(gear) | GearCommand::Change(gear) => self.coasting(around, state, gear, nu),
+            GearCommand::Neutral if around.wheel.wheel_rad_s <= 0.0 => {
+                self.neutral(around, state, nu)
+            }
+            GearCommand::Declutched(gear)
+            | GearCommand::InGear(gear)
+            | GearCommand::Change(gear) => self.coasting(around, state, gear, nu),
             GearCommand::Neutral => self.coasting(around, state, state.gear, nu),
         };
-        drive.flags.set(Flags::OVERSPEED, drive.engine_rad_s > around.engine.engine.highest_rad_s);
+        drive.flags.set(
+            Flags::OVERSPEED,
+            drive.engine_rad_s > around.engine.engine.highest_rad_s,
+        );
         let crank_nm = drive.shaft_nm + around.engine.accessories_nm(drive.engine_rad_s);
         let share = crank_nm / around.engine.full_load_nm(drive.engine_rad_s);
         drive.throttle = held(share, 0.0, 1.0);
-        drive.flags.set(Flags::OUTSIDE_VALIDITY, !VALID_K.contains(&around.heat.node_k[SUMP]) || share > FULL);
-        state.gear = if drive.gear > 0 { drive.gear } else { state.gear };
+        drive.flags.set(
+            Flags::OUTSIDE_VALIDITY,
+            !VALID_K.contains(&around.heat.node_k[SUMP]) || share > FULL,
+        );
+        state.gear = if drive.gear > 0 {
+            drive.gear
+        } else {
+            state.gear
+        };
         state.engine_rad_s = drive.engine_rad_s;
         let turning = drive.gear > 0 && !drive.flags.contains(Flags::CLUTCH_OPEN);
         state.coupled = turning && !drive.flags.contains(Flags::CLUTCH_SLIPPING);
@@ -179,7 +222,11 @@ impl Manual {
     fn free_engine_rad_s(around: &Surroundings, state: &Past) -> f64 {
         let e = around.engine;
         let pace = e.engine.inertia_torque_nm / e.engine.inertia_kg_m2 * around.dt_s;
-        held(e.idle_rad_s, state.engine_rad_s - pace, state.engine_rad_s + pace)
+        held(
+            e.idle_rad_s,
+            state.engine_rad_s - pace,
+            state.engine_rad_s + pace,
+        )
     }
 
     /// Losses of the unloaded box: the model's, or the map's at no torque.
@@ -193,24 +240,40 @@ impl Manual {
     /// Declutched, unless the car would then slow down more than it should: the driver lets the clutch slip in that gear or a lower one.
     fn coasting(&self, around: &Surroundings, state: &Past, gear: u8, nu: f64) -> Drive {
         let drive = self.declutched(around, state, gear, nu);
-        if drive.deficit_w > 0.0 { self.engaged(around, state, gear.max(1), nu) } else { drive }
+        if drive.deficit_w > 0.0 {
+            self.engaged(around, state, gear.max(1), nu)
+        } else {
+            drive
+        }
     }
 
     fn neutral(&self, around: &Surroundings, state: &Past, nu: f64) -> Drive {
         let w = Self::free_engine_rad_s(around, state);
         let spin = self.unloaded(around, 1, w, nu);
         let share = self.neutral_share;
-        let mut drive = Drive { engine_rad_s: w, shaft_nm: share * spin.sum(), ..Drive::at_rest() };
+        let mut drive = Drive {
+            engine_rad_s: w,
+            shaft_nm: share * spin.sum(),
+            ..Drive::at_rest()
+        };
         self.lose_spin(&mut drive, &spin, share * w);
         drive
     }
 
     /// Clutch open, the wheels turn the box in `gear` (0: its highest), the engine idles.
     fn declutched(&self, around: &Surroundings, state: &Past, gear: u8, nu: f64) -> Drive {
-        let gear = if gear == 0 { self.overall.len() as u8 } else { gear };
+        let gear = if gear == 0 {
+            self.overall.len() as u8
+        } else {
+            gear
+        };
         let input = self.overall[usize::from(gear) - 1] * around.wheel.wheel_rad_s;
         let spin = self.unloaded(around, gear, input, nu);
-        let mut drive = Drive { engine_rad_s: Self::free_engine_rad_s(around, state), gear, ..Drive::at_rest() };
+        let mut drive = Drive {
+            engine_rad_s: Self::free_engine_rad_s(around, state),
+            gear,
+            ..Drive::at_rest()
+        };
         drive.flags.set(Flags::CLUTCH_OPEN, true);
         if input > 0.0 {
             let output_nm = -spin.sum();
@@ -230,15 +293,34 @@ impl Manual {
     /// The engaged box at a speed and an oil temperature.
     #[inline]
     fn turning(&self, gear: u8, input_rad_s: f64, nu_m2_s: f64, oil_k: f64) -> Turning<'_> {
-        let spin = if self.map.is_some() { Spin::mapped(0.0) } else { self.spin(input_rad_s, nu_m2_s) };
-        Turning { manual: self, gear, input_rad_s, oil_k, spin }
+        let spin = if self.map.is_some() {
+            Spin::mapped(0.0)
+        } else {
+            self.spin(input_rad_s, nu_m2_s)
+        };
+        Turning {
+            manual: self,
+            gear,
+            input_rad_s,
+            oil_k,
+            spin,
+        }
     }
 
     /// Losses of the engaged box by component, Nm at the input shaft, for an output torque referred to the input (MB-1 to MB-4), and
     /// whether a map, if there is one, holds the point.
     #[must_use]
-    pub fn part_losses_nm(&self, gear: u8, input_rad_s: f64, output_nm: f64, nu_m2_s: f64, oil_k: f64) -> ([(Component, f64); 5], bool) {
-        let (spin, mesh, inside) = self.turning(gear, input_rad_s, nu_m2_s, oil_k).losses(output_nm);
+    pub fn part_losses_nm(
+        &self,
+        gear: u8,
+        input_rad_s: f64,
+        output_nm: f64,
+        nu_m2_s: f64,
+        oil_k: f64,
+    ) -> ([(Component, f64); 5], bool) {
+        let (spin, mesh, inside) = self
+            .turning(gear, input_rad_s, nu_m2_s, oil_k)
+            .losses(output_nm);
         let parts = [
             (Component::GearMesh, mesh),
             (Component::Bearing, spin.bearing),
@@ -253,9 +335,17 @@ impl Manual {
         let mut gear = gear;
         loop {
             let drive = self.in_gear(around, state, gear, nu);
-            let next = self.overall.get(usize::from(gear).wrapping_sub(2)).map(|r| r * around.wheel.wheel_rad_s);
+            let next = self
+                .overall
+                .get(usize::from(gear).wrapping_sub(2))
+                .map(|r| r * around.wheel.wheel_rad_s);
             match next {
-                Some(speed) if drive.flags.contains(Flags::MISSED_TRACE) && speed < around.engine.engine.highest_rad_s => gear -= 1,
+                Some(speed)
+                    if drive.flags.contains(Flags::MISSED_TRACE)
+                        && speed < around.engine.engine.highest_rad_s =>
+                {
+                    gear -= 1
+                }
                 _ => return drive,
             }
         }
@@ -271,10 +361,16 @@ impl Manual {
         let (mut spin, mut mesh, mut inside) = turning.losses(output_nm);
         let mut input_nm = output_nm + spin.sum() + mesh; // MB-1
         let speed = |torque: f64| {
-            let wanted = self.launch.engine_speed_rad_s(torque, input, idle, state.coupled);
+            let wanted = self
+                .launch
+                .engine_speed_rad_s(torque, input, idle, state.coupled);
             let pace = engine.engine.inertia_torque_nm / engine.engine.inertia_kg_m2 * around.dt_s;
             let limited = held(wanted, state.engine_rad_s - pace, state.engine_rad_s + pace);
-            if limited > input && wanted > input { limited } else { input }
+            if limited > input && wanted > input {
+                limited
+            } else {
+                input
+            }
         };
         let mut w = speed(input_nm);
         let least = if input < idle {
@@ -290,7 +386,11 @@ impl Manual {
         } else {
             None
         };
-        let mut drive = Drive { gear, iterations: 1, ..Drive::at_rest() };
+        let mut drive = Drive {
+            gear,
+            iterations: 1,
+            ..Drive::at_rest()
+        };
         if let Some(torque) = bound {
             drive.flags.set(Flags::MISSED_TRACE, input_nm > most);
             (output_nm, drive.iterations) = turning.output_for(torque);
@@ -309,7 +409,10 @@ impl Manual {
         } else {
             drive.output_w = wheel.power_w;
         }
-        drive.flags.set(Flags::CLUTCH_SLIPPING, w > input * (1.0 + 1e-9) && input_nm > 0.0);
+        drive.flags.set(
+            Flags::CLUTCH_SLIPPING,
+            w > input * (1.0 + 1e-9) && input_nm > 0.0,
+        );
         drive.flags.set(Flags::OVERRUN, input_nm < 0.0);
         drive.flags.set(Flags::OUTSIDE_VALIDITY, !inside);
         drive.flags.set(Flags::NOT_CONVERGED, drive.residual > 1e-8);
@@ -335,7 +438,11 @@ impl Turning<'_> {
             return (Spin::mapped(loss), 0.0, inside);
         }
         let eta = self.manual.mesh_efficiency;
-        let mesh = if output_nm >= 0.0 { output_nm * (1.0 / eta - 1.0) } else { output_nm * (eta - 1.0) }; // MB-1
+        let mesh = if output_nm >= 0.0 {
+            output_nm * (1.0 / eta - 1.0)
+        } else {
+            output_nm * (eta - 1.0)
+        }; // MB-1
         (self.spin, mesh, true)
     }
 
@@ -357,8 +464,22 @@ impl Turning<'_> {
 }
 
 /// Loss of a measured map, whose torque axis is the input torque, for an output torque: T_in = T_out + loss(T_in) by fixed point.
-fn map_loss(map: &LossMap, gear: u8, input_speed_rad_s: f64, output_nm: f64, oil_k: f64) -> (f64, bool) {
-    let at = |torque_nm: f64| map.loss_nm(&MapPoint { ratio: f64::from(gear), input_speed_rad_s, torque_nm, pressure_pa: 0.0, oil_k });
+fn map_loss(
+    map: &LossMap,
+    gear: u8,
+    input_speed_rad_s: f64,
+    output_nm: f64,
+    oil_k: f64,
+) -> (f64, bool) {
+    let at = |torque_nm: f64| {
+        map.loss_nm(&MapPoint {
+            ratio: f64::from(gear),
+            input_speed_rad_s,
+            torque_nm,
+            pressure_pa: 0.0,
+            oil_k,
+        })
+    };
     let mut answer = at(output_nm);
     for _ in 0..8 {
         answer = at(output_nm + answer.0);
@@ -383,8 +504,16 @@ mod tests {
             churning_exponent: 0.2,
             reference_m2_s: 12.9e-6,
             neutral_share: 0.5,
-            shifts: ShiftSpeeds { up_m_s: vec![4.2, 9.7, 13.9, 19.4], down_m_s: vec![3.0, 7.0, 11.0, 15.0] },
-            launch: Arc::new(FrictionClutch { engage_rad_s: 105.0, gain_nm_s2: 0.0019, creep_nm: 0.0, release_rad_s: 90.0 }),
+            shifts: ShiftSpeeds {
+                up_m_s: vec![4.2, 9.7, 13.9, 19.4],
+                down_m_s: vec![3.0, 7.0, 11.0, 15.0],
+            },
+            launch: Arc::new(FrictionClutch {
+                engage_rad_s: 105.0,
+                gain_nm_s2: 0.0019,
+                creep_nm: 0.0,
+                release_rad_s: 90.0,
+            }),
             map: None,
         }
     }
@@ -396,7 +525,10 @@ mod tests {
         for rpm in [1000.0, 2000.0, 3000.0, 4000.0] {
             let got = m.spin(rpm * std::f64::consts::PI / 30.0, 12.9e-6).sum();
             let want = 0.925 + 0.000_407 * rpm;
-            assert!((got / want - 1.0).abs() < 0.05, "{rpm} rpm: {got:.3} instead of {want:.3}");
+            assert!(
+                (got / want - 1.0).abs() < 0.05,
+                "{rpm} rpm: {got:.3} instead of {want:.3}"
+            );
         }
     }
 

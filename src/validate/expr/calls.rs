@@ -44,14 +44,19 @@ impl Reduction {
     /// Whether it looks at a second column, and whether at a place or level.
     fn needs(self) -> (bool, bool) {
         match self {
-            Reduction::Slope | Reduction::R2 | Reduction::Rising | Reduction::Falling => (true, false),
+            Reduction::Slope | Reduction::R2 | Reduction::Rising | Reduction::Falling => {
+                (true, false)
+            }
             Reduction::Interp | Reduction::Cross => (true, true),
             _ => (false, false),
         }
     }
 
     fn name(self) -> &'static str {
-        REDUCTIONS.iter().find(|(_, kind)| *kind == self).map_or("", |(name, _)| name)
+        REDUCTIONS
+            .iter()
+            .find(|(_, kind)| *kind == self)
+            .map_or("", |(name, _)| name)
     }
 }
 
@@ -70,18 +75,32 @@ impl Parser<'_> {
             return self.reduction(*kind);
         }
         let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
-            let known: Vec<&str> =
-                REDUCTIONS.iter().map(|r| r.0).chain(FUNCTIONS.iter().map(|f| f.0)).chain(["key", "prev", "each", "span"]).collect();
+            let known: Vec<&str> = REDUCTIONS
+                .iter()
+                .map(|r| r.0)
+                .chain(FUNCTIONS.iter().map(|f| f.0))
+                .chain(["key", "prev", "each", "span"])
+                .collect();
             if REDUCTIONS.iter().any(|(known, _)| *known == name) {
-                return Err(Fault { hint: format!("write {name}(SOURCE: COLUMN)"), ..self.unexpected("the name of a source and `:`") });
+                return Err(Fault {
+                    hint: format!("write {name}(SOURCE: COLUMN)"),
+                    ..self.unexpected("the name of a source and `:`")
+                });
             }
             self.unknown(word, name, "the function", &known);
-            return Err(self.faults.pop().unwrap_or_else(|| self.unexpected("a function")));
+            return Err(self
+                .faults
+                .pop()
+                .unwrap_or_else(|| self.unexpected("a function")));
         };
         let list = self.arguments()?;
         let several = matches!(function, Function::Min | Function::Max);
         if (list.len() == 1) == several {
-            return Err(self.unexpected(if several { "more arguments, or `SOURCE:`" } else { "one argument" }));
+            return Err(self.unexpected(if several {
+                "more arguments, or `SOURCE:`"
+            } else {
+                "one argument"
+            }));
         }
         Ok(Expr::Call(*function, list))
     }
@@ -130,10 +149,22 @@ impl Parser<'_> {
     fn reduction(&mut self, kind: Reduction) -> Result<Expr, Fault> {
         let source = self.source()?;
         let known = source != usize::MAX;
-        let columns = if known { self.names.columns(source, kind == Reduction::Total) } else { Vec::new() };
+        let columns = if known {
+            self.names.columns(source, kind == Reduction::Total)
+        } else {
+            Vec::new()
+        };
         let before = self.faults.len();
         self.scopes.push(columns);
-        let mut parts = Reduce { kind, source, value: self.any_of()?, over: None, at: None, filter: None, by: Vec::new() };
+        let mut parts = Reduce {
+            kind,
+            source,
+            value: self.any_of()?,
+            over: None,
+            at: None,
+            filter: None,
+            by: Vec::new(),
+        };
         loop {
             if self.take_name("over") {
                 parts.over = Some(self.sum()?);
@@ -159,7 +190,10 @@ impl Parser<'_> {
                 (true, false) => ("VALUE over COLUMN", ", without `at`"),
                 _ => ("VALUE", ", without `over` and `at`"),
             };
-            return Err(Fault { hint: format!("write {}(SOURCE: {form}){without}", kind.name()), ..self.unexpected("another form") });
+            return Err(Fault {
+                hint: format!("write {}(SOURCE: {form}){without}", kind.name()),
+                ..self.unexpected("another form")
+            });
         }
         Ok(Expr::Reduce(Box::new(parts)))
     }
@@ -167,7 +201,11 @@ impl Parser<'_> {
     /// `key(PATH)`, `key(SOURCE: PATH)`, `key(SOURCE: PATH, INDEX)`.
     fn key(&mut self) -> Result<Expr, Fault> {
         let second = self.words.get(self.next + 1).map(|word| &word.what);
-        let source = if second == Some(&What::Sign(":")) { Some(self.source()?) } else { None };
+        let source = if second == Some(&What::Sign(":")) {
+            Some(self.source()?)
+        } else {
+            None
+        };
         let word = self.word();
         let What::Name(path) = &word.what else {
             return Err(self.unexpected("a key such as transmission.cvt.ratio.low"));

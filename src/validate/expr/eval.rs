@@ -51,7 +51,12 @@ pub struct Here<'a> {
 /// # Errors
 /// A sentence: no such row, no number.
 pub fn compute(expr: &Expr, tables: &dyn Tables) -> Result<Computed, String> {
-    let mut here = Here { tables, row: None, variables: Vec::new(), noting: true };
+    let mut here = Here {
+        tables,
+        row: None,
+        variables: Vec::new(),
+        noting: true,
+    };
     match expr.gives() {
         Gives::Number => Ok(Computed::Number(finite(here.eval(expr)?)?)),
         Gives::Truth => {
@@ -73,14 +78,22 @@ pub fn compute(expr: &Expr, tables: &dyn Tables) -> Result<Computed, String> {
                 }
                 _ => Vec::new(),
             };
-            let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (least(*x, l), most(*x, h)));
+            let (low, high) = values
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+                    (least(*x, l), most(*x, h))
+                });
             Ok(Computed::Range(finite(low)?, finite(high)?))
         }
     }
 }
 
 fn finite(x: f64) -> Result<f64, String> {
-    if x.is_finite() { Ok(x) } else { Err("the result is not a finite number".to_owned()) }
+    if x.is_finite() {
+        Ok(x)
+    } else {
+        Err("the result is not a finite number".to_owned())
+    }
 }
 
 /// The smaller number; NaN if one is NaN.
@@ -123,7 +136,8 @@ impl Here<'_> {
             Expr::And(list) => self.both(list, true)?,
             Expr::Or(list) => self.both(list, false)?,
             Expr::Call(function, list) => {
-                let values: Result<Vec<f64>, String> = list.iter().map(|part| self.eval(part)).collect();
+                let values: Result<Vec<f64>, String> =
+                    list.iter().map(|part| self.eval(part)).collect();
                 call(*function, &values?)
             }
             Expr::Reduce(r) => reduce(self, r)?,
@@ -148,7 +162,12 @@ impl Here<'_> {
         if self.row.is_none() && values.iter().any(|x| x.is_nan()) {
             return Err("a number of the comparison does not exist".to_owned());
         }
-        Ok(truth(values.windows(2).zip(orders).all(|(pair, order)| order.holds(pair[0], pair[1]))))
+        Ok(truth(
+            values
+                .windows(2)
+                .zip(orders)
+                .all(|(pair, order)| order.holds(pair[0], pair[1])),
+        ))
     }
 
     fn looped(&mut self, list: &[Expr], body: &Expr) -> Result<Vec<f64>, String> {
@@ -167,7 +186,10 @@ impl Here<'_> {
     fn behind(&mut self, expr: &Expr) -> String {
         match expr {
             Expr::Compare(list, orders) => {
-                let numbers: Vec<String> = list.iter().map(|part| self.eval(part).map_or_else(|_| "-".into(), short)).collect();
+                let numbers: Vec<String> = list
+                    .iter()
+                    .map(|part| self.eval(part).map_or_else(|_| "-".into(), short))
+                    .collect();
                 let mut text = numbers[0].clone();
                 for (order, number) in orders.iter().zip(&numbers[1..]) {
                     text += &format!(" {} {number}", order.sign());
@@ -256,8 +278,16 @@ pub fn short(x: f64) -> String {
     if !(1e-3..1e6).contains(&size) {
         return format!("{x:.3e}");
     }
-    let whole = if size >= 1.0 { size.log10().floor() as i32 + 1 } else { 0 };
+    let whole = if size >= 1.0 {
+        size.log10().floor() as i32 + 1
+    } else {
+        0
+    };
     let decimals = usize::try_from((4 - whole).clamp(0, 4)).unwrap_or(0);
     let text = format!("{x:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }

@@ -203,11 +203,17 @@ impl Expr {
     #[must_use]
     pub fn gives(&self) -> Gives {
         match self {
-            Expr::Compare(..) | Expr::And(_) | Expr::Or(_) | Expr::Not(_) | Expr::Loop(Loop::Each, ..) => Gives::Truth,
+            Expr::Compare(..)
+            | Expr::And(_)
+            | Expr::Or(_)
+            | Expr::Not(_)
+            | Expr::Loop(Loop::Each, ..) => Gives::Truth,
             Expr::Loop(Loop::Span, ..) => Gives::Range,
             Expr::Reduce(r) => match r.kind {
                 Reduction::Range => Gives::Range,
-                Reduction::All | Reduction::Any | Reduction::Rising | Reduction::Falling => Gives::Truth,
+                Reduction::All | Reduction::Any | Reduction::Rising | Reduction::Falling => {
+                    Gives::Truth
+                }
                 Reduction::Total => r.value.gives(),
                 _ => Gives::Number,
             },
@@ -217,7 +223,9 @@ impl Expr {
 
     /// Adds the sources that the expression looks at; none stands for the subject.
     pub fn sources(&self, found: &mut Vec<Option<usize>>) {
-        let all = |list: &[Expr], found: &mut Vec<Option<usize>>| list.iter().for_each(|part| part.sources(found));
+        let all = |list: &[Expr], found: &mut Vec<Option<usize>>| {
+            list.iter().for_each(|part| part.sources(found))
+        };
         match self {
             Expr::Number(_) | Expr::Column(_) | Expr::Variable(_) => {}
             Expr::Previous(inner) | Expr::Negate(inner) | Expr::Not(inner) => inner.sources(found),
@@ -225,11 +233,16 @@ impl Expr {
                 a.sources(found);
                 b.sources(found);
             }
-            Expr::Compare(list, _) | Expr::And(list) | Expr::Or(list) | Expr::Call(_, list) => all(list, found),
+            Expr::Compare(list, _) | Expr::And(list) | Expr::Or(list) | Expr::Call(_, list) => {
+                all(list, found)
+            }
             Expr::Reduce(r) => {
                 found.push(Some(r.source));
                 r.value.sources(found);
-                [&r.over, &r.at, &r.filter].into_iter().flatten().for_each(|part| part.sources(found));
+                [&r.over, &r.at, &r.filter]
+                    .into_iter()
+                    .flatten()
+                    .for_each(|part| part.sources(found));
                 all(&r.by, found);
             }
             Expr::Loop(_, list, body) => {

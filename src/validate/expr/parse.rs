@@ -36,20 +36,34 @@ pub struct Parser<'a> {
 /// All unknown names, or the first place that cannot be read.
 pub fn parse(text: &str, names: &dyn Names) -> Result<Expr, Vec<Fault>> {
     let words = words(text).map_err(|fault| vec![fault])?;
-    let mut parser = Parser { words, next: 0, names, scopes: Vec::new(), variables: Vec::new(), depth: 0, faults: Vec::new() };
-    let result = parser
-        .any_of()
-        .and_then(|expr| if parser.peek() == &What::End { Ok(expr) } else { Err(parser.unexpected("an operator or the end")) });
+    let mut parser = Parser {
+        words,
+        next: 0,
+        names,
+        scopes: Vec::new(),
+        variables: Vec::new(),
+        depth: 0,
+        faults: Vec::new(),
+    };
+    let result = parser.any_of().and_then(|expr| {
+        if parser.peek() == &What::End {
+            Ok(expr)
+        } else {
+            Err(parser.unexpected("an operator or the end"))
+        }
+    });
     match result {
-        Ok(expr) if parser.faults.is_empty() => lone_ranges(&expr, true).map(|()| expr).map_err(|message| {
-            vec![Fault {
-                at: 0,
-                width: text.chars().count().max(1),
-                word: text.to_owned(),
-                message,
-                hint: "use min(...) or max(...) within a larger expression".to_owned(),
-            }]
-        }),
+        Ok(expr) if parser.faults.is_empty() => {
+            lone_ranges(&expr, true).map(|()| expr).map_err(|message| {
+                vec![Fault {
+                    at: 0,
+                    width: text.chars().count().max(1),
+                    word: text.to_owned(),
+                    message,
+                    hint: "use min(...) or max(...) within a larger expression".to_owned(),
+                }]
+            })
+        }
         Ok(_) => Err(parser.faults),
         Err(fault) => Err(parser.faults.into_iter().chain([fault]).collect()),
     }
@@ -63,20 +77,38 @@ fn lone_ranges(expr: &Expr, top: bool) -> Result<(), String> {
     let parts: Vec<&Expr> = match expr {
         Expr::Previous(a) | Expr::Negate(a) | Expr::Not(a) | Expr::Loop(_, _, a) => vec![a],
         Expr::Binary(_, a, b) => vec![a, b],
-        Expr::Compare(list, _) | Expr::And(list) | Expr::Or(list) | Expr::Call(_, list) => list.iter().collect(),
-        Expr::Reduce(r) => [Some(&r.value), r.over.as_ref(), r.at.as_ref(), r.filter.as_ref()].into_iter().flatten().collect(),
+        Expr::Compare(list, _) | Expr::And(list) | Expr::Or(list) | Expr::Call(_, list) => {
+            list.iter().collect()
+        }
+        Expr::Reduce(r) => [
+            Some(&r.value),
+            r.over.as_ref(),
+            r.at.as_ref(),
+            r.filter.as_ref(),
+        ]
+        .into_iter()
+        .flatten()
+        .collect(),
         Expr::Number(_) | Expr::Column(_) | Expr::Variable(_) | Expr::Key(..) => Vec::new(),
     };
-    parts.into_iter().try_for_each(|part| lone_ranges(part, false))
+    parts
+        .into_iter()
+        .try_for_each(|part| lone_ranges(part, false))
 }
 
 impl Parser<'_> {
     pub(super) fn peek(&self) -> &What {
-        self.words.get(self.next).map_or(&What::End, |word| &word.what)
+        self.words
+            .get(self.next)
+            .map_or(&What::End, |word| &word.what)
     }
 
     pub(super) fn word(&self) -> Word {
-        self.words.get(self.next).cloned().unwrap_or(Word { what: What::End, at: 0, width: 1 })
+        self.words.get(self.next).cloned().unwrap_or(Word {
+            what: What::End,
+            at: 0,
+            width: 1,
+        })
     }
 
     pub(super) fn take(&mut self, sign: &str) -> bool {
@@ -92,7 +124,11 @@ impl Parser<'_> {
     }
 
     pub(super) fn need(&mut self, sign: &str) -> Result<(), Fault> {
-        if self.take(sign) { Ok(()) } else { Err(self.unexpected(&format!("`{sign}`"))) }
+        if self.take(sign) {
+            Ok(())
+        } else {
+            Err(self.unexpected(&format!("`{sign}`")))
+        }
     }
 
     pub(super) fn unexpected(&self, wanted: &str) -> Fault {
@@ -103,9 +139,19 @@ impl Parser<'_> {
             What::Sign(sign) => (*sign).to_owned(),
             What::End => String::new(),
         };
-        let found = if text.is_empty() { "the end".to_owned() } else { format!("`{text}`") };
+        let found = if text.is_empty() {
+            "the end".to_owned()
+        } else {
+            format!("`{text}`")
+        };
         let message = format!("expected {wanted}, found {found}");
-        Fault { at: word.at, width: word.width, word: text, message, hint: String::new() }
+        Fault {
+            at: word.at,
+            width: word.width,
+            word: text,
+            message,
+            hint: String::new(),
+        }
     }
 
     /// Notes an unknown name and goes on.
@@ -115,7 +161,15 @@ impl Parser<'_> {
         let hint = match (close.is_empty(), known.len()) {
             (false, _) => format!("did you mean {}?", quoted.join(" or ")),
             (true, 0) => String::new(),
-            (true, _) => format!("known here: {}", known.iter().take(40).copied().collect::<Vec<_>>().join(", ")),
+            (true, _) => format!(
+                "known here: {}",
+                known
+                    .iter()
+                    .take(40)
+                    .copied()
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            ),
         };
         self.faults.push(Fault {
             at: word.at,
@@ -129,14 +183,21 @@ impl Parser<'_> {
     pub(super) fn any_of(&mut self) -> Result<Expr, Fault> {
         self.depth += 1;
         if self.depth > DEEPEST {
-            return Err(Fault { message: "brackets nest too deep".to_owned(), ..self.unexpected("") });
+            return Err(Fault {
+                message: "brackets nest too deep".to_owned(),
+                ..self.unexpected("")
+            });
         }
         let mut list = vec![self.all_of()?];
         while self.take_name("or") {
             list.push(self.all_of()?);
         }
         self.depth -= 1;
-        Ok(if list.len() > 1 { Expr::Or(list) } else { list.remove(0) })
+        Ok(if list.len() > 1 {
+            Expr::Or(list)
+        } else {
+            list.remove(0)
+        })
     }
 
     fn all_of(&mut self) -> Result<Expr, Fault> {
@@ -144,7 +205,11 @@ impl Parser<'_> {
         while self.take_name("and") {
             list.push(self.compared()?);
         }
-        Ok(if list.len() > 1 { Expr::And(list) } else { list.remove(0) })
+        Ok(if list.len() > 1 {
+            Expr::And(list)
+        } else {
+            list.remove(0)
+        })
     }
 
     fn compared(&mut self) -> Result<Expr, Fault> {
@@ -153,7 +218,11 @@ impl Parser<'_> {
             denied = !denied;
         }
         let inner = self.chain()?;
-        Ok(if denied { Expr::Not(Box::new(inner)) } else { inner })
+        Ok(if denied {
+            Expr::Not(Box::new(inner))
+        } else {
+            inner
+        })
     }
 
     /// A chain of comparisons, or one sum.
@@ -164,7 +233,11 @@ impl Parser<'_> {
             orders.push(order);
             list.push(self.sum()?);
         }
-        Ok(if orders.is_empty() { list.remove(0) } else { Expr::Compare(list, orders) })
+        Ok(if orders.is_empty() {
+            list.remove(0)
+        } else {
+            Expr::Compare(list, orders)
+        })
     }
 
     fn order(&mut self) -> Option<Order> {
@@ -176,14 +249,25 @@ impl Parser<'_> {
             ("<", Order::Less),
             (">", Order::More),
         ];
-        orders.into_iter().find(|(sign, _)| self.take(sign)).map(|(_, order)| order)
+        orders
+            .into_iter()
+            .find(|(sign, _)| self.take(sign))
+            .map(|(_, order)| order)
     }
 
-    fn binary(&mut self, signs: &[&'static str], part: fn(&mut Self) -> Result<Expr, Fault>) -> Result<Expr, Fault> {
+    fn binary(
+        &mut self,
+        signs: &[&'static str],
+        part: fn(&mut Self) -> Result<Expr, Fault>,
+    ) -> Result<Expr, Fault> {
         let mut left = part(self)?;
         while let Some(sign) = signs.iter().find(|sign| self.take(sign)) {
             let right = part(self)?;
-            left = Expr::Binary(sign.chars().next().unwrap_or('+'), Box::new(left), Box::new(right));
+            left = Expr::Binary(
+                sign.chars().next().unwrap_or('+'),
+                Box::new(left),
+                Box::new(right),
+            );
         }
         Ok(left)
     }
@@ -203,7 +287,11 @@ impl Parser<'_> {
             minus = !minus;
         }
         let power = self.binary(&["^"], Self::atom)?;
-        Ok(if minus { Expr::Negate(Box::new(power)) } else { power })
+        Ok(if minus {
+            Expr::Negate(Box::new(power))
+        } else {
+            power
+        })
     }
 
     fn atom(&mut self) -> Result<Expr, Fault> {
@@ -245,9 +333,16 @@ impl Parser<'_> {
                 None => self.unknown(word, name, "the column", &columns),
             },
             None => {
-                let hint = "a name stands within a reduction such as max(SOURCE: COLUMN)".to_owned();
+                let hint =
+                    "a name stands within a reduction such as max(SOURCE: COLUMN)".to_owned();
                 let message = format!("`{name}` stands outside of any source");
-                self.faults.push(Fault { at: word.at, width: word.width, word: name.to_owned(), message, hint });
+                self.faults.push(Fault {
+                    at: word.at,
+                    width: word.width,
+                    word: name.to_owned(),
+                    message,
+                    hint,
+                });
             }
         }
         Expr::Number(f64::NAN)

@@ -23,10 +23,17 @@ pub fn reduce(here: &mut Here, r: &Reduce) -> Result<f64, String> {
             return Ok(0.0);
         }
         let gross = table.gross.iter().filter(|gross| **gross).count();
-        let left = if gross > 0 { format!("; {gross} rows of the source are at gross slip and left out") } else { String::new() };
+        let left = if gross > 0 {
+            format!("; {gross} rows of the source are at gross slip and left out")
+        } else {
+            String::new()
+        };
         return Err(format!("no row is left to look at{left}"));
     }
-    let conditional = matches!(r.kind, Reduction::Count | Reduction::Share | Reduction::All | Reduction::Any);
+    let conditional = matches!(
+        r.kind,
+        Reduction::Count | Reduction::Share | Reduction::All | Reduction::Any
+    );
     if !conditional && points.iter().any(|p| p.value.is_nan() || p.over.is_nan()) {
         return Err("a row has no number there".to_owned());
     }
@@ -44,13 +51,17 @@ fn of_points(kind: Reduction, mut points: Vec<Point>, at: f64) -> Result<f64, St
     Ok(match kind {
         Reduction::Min => values().fold(f64::INFINITY, least),
         Reduction::Max => values().fold(f64::NEG_INFINITY, most),
-        Reduction::Range | Reduction::Spread => values().fold(f64::NEG_INFINITY, most) - values().fold(f64::INFINITY, least),
+        Reduction::Range | Reduction::Spread => {
+            values().fold(f64::NEG_INFINITY, most) - values().fold(f64::INFINITY, least)
+        }
         Reduction::Sum => points.iter().map(|p| p.value * p.weight).sum(),
         Reduction::Mean => points.iter().map(|p| p.value * p.weight).sum::<f64>() / weight,
         Reduction::First => points[0].value,
         Reduction::Last => points[points.len() - 1].value,
         Reduction::One | Reduction::Total if points.len() == 1 => points[0].value,
-        Reduction::One | Reduction::Total => return Err(format!("{} rows where one was expected", points.len())),
+        Reduction::One | Reduction::Total => {
+            return Err(format!("{} rows where one was expected", points.len()));
+        }
         Reduction::Count => points.iter().filter(meets).count() as f64,
         Reduction::Share => points.iter().filter(meets).map(|p| p.weight).sum::<f64>() / weight,
         Reduction::All => f64::from(u8::from(points.iter().all(|p| p.value > 0.5))),
@@ -69,7 +80,12 @@ fn points(here: &mut Here, r: &Reduce, table: &Table) -> Result<Vec<Point>, Stri
     let (mut left_out, mut outside) = (0, 0);
     let rows = table.columns.first().map_or(0, Vec::len);
     for row in 0..rows {
-        let mut inner = Here { tables: here.tables, row: Some((table, row)), variables: here.variables.clone(), noting: here.noting };
+        let mut inner = Here {
+            tables: here.tables,
+            row: Some((table, row)),
+            variables: here.variables.clone(),
+            noting: here.noting,
+        };
         if let Some(filter) = &r.filter
             && inner.eval(filter)? <= 0.5
         {
@@ -83,7 +99,12 @@ fn points(here: &mut Here, r: &Reduce, table: &Table) -> Result<Vec<Point>, Stri
         let value = inner.eval(&r.value)?;
         let over = r.over.as_ref().map_or(Ok(0.0), |over| inner.eval(over))?;
         let group: Result<Vec<f64>, String> = r.by.iter().map(|by| inner.eval(by)).collect();
-        found.push(Point { value, over, weight: table.weight.get(row).copied().unwrap_or(1.0), group: group? });
+        found.push(Point {
+            value,
+            over,
+            weight: table.weight.get(row).copied().unwrap_or(1.0),
+            group: group?,
+        });
     }
     if here.noting {
         here.tables.left_out(left_out);
@@ -95,7 +116,10 @@ fn points(here: &mut Here, r: &Reduce, table: &Table) -> Result<Vec<Point>, Stri
 /// Slope and squared correlation of the regression line.
 fn regression(points: &[Point]) -> Result<(f64, f64), String> {
     let n = points.len() as f64;
-    let (mx, my) = (points.iter().map(|p| p.over).sum::<f64>() / n, points.iter().map(|p| p.value).sum::<f64>() / n);
+    let (mx, my) = (
+        points.iter().map(|p| p.over).sum::<f64>() / n,
+        points.iter().map(|p| p.value).sum::<f64>() / n,
+    );
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
     for p in points {
         let (dx, dy) = (p.over - mx, p.value - my);
@@ -109,7 +133,11 @@ fn regression(points: &[Point]) -> Result<(f64, f64), String> {
 
 fn sort(points: &mut [Point]) {
     let by_group = |a: &[f64], b: &[f64]| {
-        a.iter().zip(b).map(|(x, y)| x.total_cmp(y)).find(|order| order.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
+        a.iter()
+            .zip(b)
+            .map(|(x, y)| x.total_cmp(y))
+            .find(|order| order.is_ne())
+            .unwrap_or(std::cmp::Ordering::Equal)
     };
     points.sort_by(|a, b| by_group(&a.group, &b.group).then(a.over.total_cmp(&b.over)));
 }
@@ -117,7 +145,12 @@ fn sort(points: &mut [Point]) {
 /// Whether the value goes one way with `over` in every group: no step back, and somewhere a step.
 fn monotone(points: &mut [Point], sign: f64) -> Result<bool, String> {
     sort(points);
-    let same = |a: &Point, b: &Point| a.group.iter().zip(&b.group).all(|(x, y)| (x - y).abs() <= 1e-9 * most(x.abs(), y.abs()));
+    let same = |a: &Point, b: &Point| {
+        a.group
+            .iter()
+            .zip(&b.group)
+            .all(|(x, y)| (x - y).abs() <= 1e-9 * most(x.abs(), y.abs()))
+    };
     let size = points.iter().map(|p| p.value.abs()).fold(0.0, most);
     let (mut pairs, mut good, mut moved) = (0, true, false);
     for group in points.chunk_by(same) {
@@ -127,7 +160,11 @@ fn monotone(points: &mut [Point], sign: f64) -> Result<bool, String> {
             moved |= step > STILL * size;
         }
     }
-    if pairs == 0 { Err("rising and falling need two rows in a group".to_owned()) } else { Ok(good && moved) }
+    if pairs == 0 {
+        Err("rising and falling need two rows in a group".to_owned())
+    } else {
+        Ok(good && moved)
+    }
 }
 
 fn interp(points: &mut [Point], at: f64) -> Result<f64, String> {
@@ -135,7 +172,11 @@ fn interp(points: &mut [Point], at: f64) -> Result<f64, String> {
     for pair in points.windows(2) {
         let (a, b) = (&pair[0], &pair[1]);
         if a.over <= at && at <= b.over {
-            let share = if b.over > a.over { (at - a.over) / (b.over - a.over) } else { 0.0 };
+            let share = if b.over > a.over {
+                (at - a.over) / (b.over - a.over)
+            } else {
+                0.0
+            };
             return Ok(a.value + share * (b.value - a.value));
         }
     }
@@ -154,7 +195,10 @@ fn cross(points: &mut [Point], level: f64) -> Result<f64, String> {
             return Ok(pair[0].over + (pair[1].over - pair[0].over) * a / (a - b));
         }
     }
-    Err(format!("the value does not pass {} in these rows", short(level)))
+    Err(format!(
+        "the value does not pass {} in these rows",
+        short(level)
+    ))
 }
 
 /// The numbers behind a yes or no over rows.
@@ -167,12 +211,27 @@ pub fn behind(here: &mut Here, r: &Reduce) -> String {
     };
     match r.kind {
         Reduction::All | Reduction::Any => {
-            format!("{} of {} rows", points.iter().filter(|p| p.value > 0.5).count(), points.len())
+            format!(
+                "{} of {} rows",
+                points.iter().filter(|p| p.value > 0.5).count(),
+                points.len()
+            )
         }
         Reduction::Rising | Reduction::Falling => {
-            let ends = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (least(p.value, l), most(p.value, h)));
-            format!("{} to {} over {} rows", short(ends.0), short(ends.1), points.len())
+            let ends = points
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| {
+                    (least(p.value, l), most(p.value, h))
+                });
+            format!(
+                "{} to {} over {} rows",
+                short(ends.0),
+                short(ends.1),
+                points.len()
+            )
         }
-        _ => here.eval(&super::Expr::Reduce(Box::new(r.clone()))).map_or_else(|_| "-".to_owned(), short),
+        _ => here
+            .eval(&super::Expr::Reduce(Box::new(r.clone())))
+            .map_or_else(|_| "-".to_owned(), short),
     }
 }

@@ -31,13 +31,26 @@ impl Names for Fixed {
 impl Tables for Fixed {
     fn table(&self, source: usize, _: bool) -> Result<Rc<Table>, String> {
         // Two groups of y = 2 x + g, and one row at gross slip.
-        let columns = vec![vec![1.0, 2.0, 4.0, 1.0, 2.0, 9.0], vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![2.0, 4.0, 8.0, 3.0, 5.0, 99.0]];
+        let columns = vec![
+            vec![1.0, 2.0, 4.0, 1.0, 2.0, 9.0],
+            vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
+            vec![2.0, 4.0, 8.0, 3.0, 5.0, 99.0],
+        ];
         let gross = vec![false, false, false, false, false, true];
-        let trip = Table { columns: vec![vec![6.5]], weight: vec![1.0], ..Table::default() };
+        let trip = Table {
+            columns: vec![vec![6.5]],
+            weight: vec![1.0],
+            ..Table::default()
+        };
         Ok(Rc::new(if source == 1 {
             trip
         } else {
-            Table { columns, weight: vec![1.0, 1.0, 2.0, 1.0, 1.0, 1.0], gross, outside: Vec::new() }
+            Table {
+                columns,
+                weight: vec![1.0, 1.0, 2.0, 1.0, 1.0, 1.0],
+                gross,
+                outside: Vec::new(),
+            }
         }))
     }
 
@@ -53,7 +66,9 @@ impl Tables for Fixed {
 }
 
 fn fixed() -> Fixed {
-    Fixed { left_out: Cell::default() }
+    Fixed {
+        left_out: Cell::default(),
+    }
 }
 
 fn of(text: &str) -> Result<Computed, String> {
@@ -90,7 +105,11 @@ fn arithmetic_and_its_order() {
         ("abs(-4) + sqrt(9) + tan(45)", 8.0),
         ("key(belt.offset_mm) + key(low: belt.offset_mm, 2)", 5.0),
     ] {
-        assert!((number(text) - want).abs() < 1e-12, "{text}: {}", number(text));
+        assert!(
+            (number(text) - want).abs() < 1e-12,
+            "{text}: {}",
+            number(text)
+        );
     }
 }
 
@@ -115,7 +134,11 @@ fn reductions_over_rows() {
         ("total(trip: 2 * fuel)", 13.0),
         ("max(low: y where not g == 0)", 5.0),
     ] {
-        assert!((number(text) - want).abs() < 1e-12, "{text}: {}", number(text));
+        assert!(
+            (number(text) - want).abs() < 1e-12,
+            "{text}: {}",
+            number(text)
+        );
     }
 }
 
@@ -125,10 +148,19 @@ fn truths_ranges_and_loops() {
     assert!(truth("rising(low: y over x by g)") && !truth("falling(low: y over x by g)"));
     assert!(!truth("rising(low: y over x)") || truth("not 1 > 2"));
     assert!(truth("all(low: y >= 2)") && truth("any(low: y == 8)") && !truth("any(low: y == 99)"));
-    assert!(truth("each(t in 0, 1: min(low: y where g == t) >= 2)") && !truth("each(t in 0, 1: min(low: y where g == t) > 2)"));
+    assert!(
+        truth("each(t in 0, 1: min(low: y where g == t) >= 2)")
+            && !truth("each(t in 0, 1: min(low: y where g == t) > 2)")
+    );
     assert_eq!(of("range(low: y)"), Ok(Computed::Range(2.0, 8.0)));
-    assert_eq!(of("span(t in 0, 1: min(low: y where g == t))"), Ok(Computed::Range(2.0, 3.0)));
-    assert_eq!(of("max(low: y) > 7"), Ok(Computed::Truth(true, "8 > 7".to_owned())));
+    assert_eq!(
+        of("span(t in 0, 1: min(low: y where g == t))"),
+        Ok(Computed::Range(2.0, 3.0))
+    );
+    assert_eq!(
+        of("max(low: y) > 7"),
+        Ok(Computed::Truth(true, "8 > 7".to_owned()))
+    );
 }
 
 #[test]
@@ -151,7 +183,10 @@ fn what_cannot_be_computed_says_why() {
         ("one(low: y)", "5 rows where one was expected"),
         ("max(low: y where x > 5)", "no row is left"),
         ("max(low: y where x > 8)", "gross slip"),
-        ("cross(low: y over x at 50 where g == 0)", "does not pass 50"),
+        (
+            "cross(low: y over x at 50 where g == 0)",
+            "does not pass 50",
+        ),
         ("interp(low: y over x at 7 where g == 0)", "outside"),
         ("1 / 0", "not a finite number"),
         ("slope(low: y over x where x == 4)", "two different places"),
@@ -171,7 +206,10 @@ fn faults_have_their_place_and_a_hint() {
     let unknown = faults("max(lwo: y) + max(low: z) + min(low: gg)");
     let places: Vec<(usize, &str)> = unknown.iter().map(|f| (f.at, f.word.as_str())).collect();
     assert_eq!(places, [(4, "lwo"), (23, "z"), (37, "gg")]);
-    assert!(unknown[0].hint.contains("`low`") && unknown[1].hint.contains("known here: x, g, y"), "{unknown:?}");
+    assert!(
+        unknown[0].hint.contains("`low`") && unknown[1].hint.contains("known here: x, g, y"),
+        "{unknown:?}"
+    );
     for (text, message) in [
         ("max(low: y", "expected `)`"),
         ("mean(low y)", "the name of a source"),
@@ -188,7 +226,10 @@ fn faults_have_their_place_and_a_hint() {
         ("key(belt.offst_mm)", "not known"),
     ] {
         let found = faults(text);
-        assert!(found.iter().any(|f| f.message.contains(message)), "{text}: {found:?}");
+        assert!(
+            found.iter().any(|f| f.message.contains(message)),
+            "{text}: {found:?}"
+        );
     }
     assert!(faults(&"(".repeat(5000))[0].message.contains("too deep"));
     assert!(parse(&"-".repeat(5000), &fixed()).is_err());
@@ -197,6 +238,12 @@ fn faults_have_their_place_and_a_hint() {
 #[test]
 fn a_total_gives_what_its_value_gives() {
     let names = fixed();
-    assert_eq!(parse("total(trip: fuel)", &names).map(|e| e.gives()), Ok(Gives::Number));
-    assert_eq!(parse("total(trip: fuel) > 1", &names).map(|e| e.gives()), Ok(Gives::Truth));
+    assert_eq!(
+        parse("total(trip: fuel)", &names).map(|e| e.gives()),
+        Ok(Gives::Number)
+    );
+    assert_eq!(
+        parse("total(trip: fuel) > 1", &names).map(|e| e.gives()),
+        Ok(Gives::Truth)
+    );
 }

@@ -20,7 +20,9 @@ pub enum What {
 }
 
 /// Signs, longer ones first.
-const SIGNS: [&str; 15] = ["<=", ">=", "==", "<", ">", "+", "-", "*", "/", "^", "(", ")", ",", ":", "="];
+const SIGNS: [&str; 15] = [
+    "<=", ">=", "==", "<", ">", "+", "-", "*", "/", "^", "(", ")", ",", ":", "=",
+];
 
 /// Splits a text.
 ///
@@ -37,24 +39,43 @@ pub fn words(text: &str) -> Result<Vec<Word>, Fault> {
             at += 1;
             continue;
         }
-        let what = if c.is_ascii_digit() || (c == '.' && chars.get(at + 1).is_some_and(char::is_ascii_digit)) {
+        let what = if c.is_ascii_digit()
+            || (c == '.' && chars.get(at + 1).is_some_and(char::is_ascii_digit))
+        {
             at = number_end(&chars, at);
             let word: String = chars[start..at].iter().collect();
-            What::Number(word.parse().map_err(|_| fault(&chars, start, at, "is no number"))?)
+            What::Number(
+                word.parse()
+                    .map_err(|_| fault(&chars, start, at, "is no number"))?,
+            )
         } else if c.is_ascii_alphabetic() || c == '_' {
-            while at < chars.len() && (chars[at].is_ascii_alphanumeric() || chars[at] == '_' || chars[at] == '.') {
+            while at < chars.len()
+                && (chars[at].is_ascii_alphanumeric() || chars[at] == '_' || chars[at] == '.')
+            {
                 at += 1;
             }
             What::Name(chars[start..at].iter().collect())
         } else {
-            let sign = SIGNS.iter().find(|sign| sign.chars().enumerate().all(|(k, s)| chars.get(at + k) == Some(&s)));
+            let sign = SIGNS.iter().find(|sign| {
+                sign.chars()
+                    .enumerate()
+                    .all(|(k, s)| chars.get(at + k) == Some(&s))
+            });
             let sign = sign.ok_or_else(|| fault(&chars, at, at + 1, "has no meaning here"))?;
             at += sign.len();
             What::Sign(sign)
         };
-        found.push(Word { what, at: start, width: at - start });
+        found.push(Word {
+            what,
+            at: start,
+            width: at - start,
+        });
     }
-    found.push(Word { what: What::End, at: chars.len(), width: 1 });
+    found.push(Word {
+        what: What::End,
+        at: chars.len(),
+        width: 1,
+    });
     Ok(found)
 }
 
@@ -78,5 +99,11 @@ fn number_end(chars: &[char], mut at: usize) -> usize {
 
 fn fault(chars: &[char], start: usize, end: usize, what: &str) -> Fault {
     let word: String = chars[start..end].iter().collect();
-    Fault { at: start, width: end - start, message: format!("`{word}` {what}"), word, hint: String::new() }
+    Fault {
+        at: start,
+        width: end - start,
+        message: format!("`{word}` {what}"),
+        word,
+        hint: String::new(),
+    }
 }

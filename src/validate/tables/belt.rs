@@ -6,7 +6,9 @@ use crate::setup::Setup;
 use crate::transmission::Transmission;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::cvt::variator::point::PointStatus;
-use crate::transmission::cvt::variator::{Belt, BeltAtRatio, BeltLoad, BeltPoint, Formulation, Geometry, belt_point, sliding_speed_m_s};
+use crate::transmission::cvt::variator::{
+    Belt, BeltAtRatio, BeltLoad, BeltPoint, Formulation, Geometry, belt_point, sliding_speed_m_s,
+};
 use crate::validate::source::Source;
 
 /// Band friction of the printed forms, where none is given.
@@ -81,8 +83,15 @@ pub fn columns() -> Vec<&'static str> {
 pub fn fits(belt: &Belt, ratio: f64) -> Result<(), String> {
     let g = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
     let good = |x: f64| x.is_finite() && x > 0.0;
-    let runs = good(g.primary_radius_m) && good(g.secondary_radius_m) && good(g.strut_m) && good(g.primary_wrap_rad);
-    if runs { Ok(()) } else { Err(format!("the belt cannot run at ratio {ratio}")) }
+    let runs = good(g.primary_radius_m)
+        && good(g.secondary_radius_m)
+        && good(g.strut_m)
+        && good(g.primary_wrap_rad);
+    if runs {
+        Ok(())
+    } else {
+        Err(format!("the belt cannot run at ratio {ratio}"))
+    }
 }
 
 struct OneBelt<'a> {
@@ -96,7 +105,11 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
     let Transmission::Cvt(cvt) = setup.transmission() else {
         return Err("the vehicle has no belt".to_owned());
     };
-    let one = OneBelt { cvt, oil: setup.oils().0, formulation: source.formulation };
+    let one = OneBelt {
+        cvt,
+        oil: setup.oils().0,
+        formulation: source.formulation,
+    };
     let nan = |key: &str| source.axis_or_none(key).unwrap_or_else(|| vec![f64::NAN]);
     let axes = [
         nan("ratio"),
@@ -119,7 +132,14 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
         return Err("the printed forms are not defined at rest".to_owned());
     }
     let rows = combinations(&axes).into_iter().map(|x| (one.row(&x), 1.0));
-    Ok(from_rows(GROSS, rows, Marks { gross: Some(GROSS), outside: None }))
+    Ok(from_rows(
+        GROSS,
+        rows,
+        Marks {
+            gross: Some(GROSS),
+            outside: None,
+        },
+    ))
 }
 
 fn or(x: f64, other: f64) -> f64 {
@@ -132,14 +152,24 @@ impl OneBelt<'_> {
         let fluid = &self.oil.friction;
         let mu = or(x[4], if smooth { fluid.band } else { PRINTED_BAND });
         if x[3].is_nan() {
-            return BandFriction { mu, film_share: 0.0 };
+            return BandFriction {
+                mu,
+                film_share: 0.0,
+            };
         }
-        let sliding = if smooth { sliding_speed_m_s(&self.cvt.belt, x[0], x[1]) } else { 0.0 };
+        let sliding = if smooth {
+            sliding_speed_m_s(&self.cvt.belt, x[0], x[1])
+        } else {
+            0.0
+        };
         Friction { band: mu, ..*fluid }.band(belt_k, eta_pa_s, sliding)
     }
 
     fn row(&self, x: &[f64]) -> Vec<f64> {
-        let belt = Belt { formulation: self.formulation, ..self.cvt.belt.clone() };
+        let belt = Belt {
+            formulation: self.formulation,
+            ..self.cvt.belt.clone()
+        };
         let mut at = BeltAtRatio::new(&belt, x[0]);
         if !x[6].is_nan() {
             at.prepared.stop = 1.0 - x[6];
@@ -162,10 +192,27 @@ impl OneBelt<'_> {
             flank_friction: fluid.flank,
         };
         let point = belt_point(&belt, &at, &load);
-        let point = if x[7].is_nan() { point } else { point.with_band_speed(&belt, x[7]) };
+        let point = if x[7].is_nan() {
+            point
+        } else {
+            point.with_band_speed(&belt, x[7])
+        };
         let gross = truth(point.status != PointStatus::Ok);
-        let head = [x[0], rpm(x[1]), x[2] / 1e5, x[8], belt_k - ZERO_DEGC_K, or(x[7], 0.0), load.band.mu];
-        head.into_iter().chain(forces(&point)).chain(losses(&point)).chain(rest(&belt, &at, &load, &point)).chain([gross]).collect()
+        let head = [
+            x[0],
+            rpm(x[1]),
+            x[2] / 1e5,
+            x[8],
+            belt_k - ZERO_DEGC_K,
+            or(x[7], 0.0),
+            load.band.mu,
+        ];
+        head.into_iter()
+            .chain(forces(&point))
+            .chain(losses(&point))
+            .chain(rest(&belt, &at, &load, &point))
+            .chain([gross])
+            .collect()
     }
 }
 
@@ -226,7 +273,10 @@ fn rest(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, p: &BeltPoint) -> [f64; 
         p.capacity_nm,
         1e3 * at.prepared.arc_m[0],
         1e3 * at.prepared.arc_m[1],
-        1e3 * at.prepared.stop * g.primary_radius_m * t.primary_clamp_n * belt.primary_compliance_per_n,
+        1e3 * at.prepared.stop
+            * g.primary_radius_m
+            * t.primary_clamp_n
+            * belt.primary_compliance_per_n,
         1e3 * g.secondary_radius_m * t.secondary_clamp_n * belt.secondary_compliance_per_n,
         sliding,
         load.band.film_share,

@@ -98,7 +98,12 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
 /// Parts in the box.
 pub fn parts(source: &Source) -> Parts {
     let has = |part: &str| !source.without.iter().any(|other| other == part);
-    Parts { final_drive: has("final_drive"), belt: has("belt"), reverse_clutch: has("reverse_clutch"), pump: has("pump") }
+    Parts {
+        final_drive: has("final_drive"),
+        belt: has("belt"),
+        reverse_clutch: has("reverse_clutch"),
+        pump: has("pump"),
+    }
 }
 
 /// Solves points that were not made from axes.
@@ -107,23 +112,42 @@ pub fn parts(source: &Source) -> Parts {
 /// A sentence: a ratio or gear that the box does not have.
 pub fn of_points(points: &[BenchPoint], setup: &Setup) -> Result<Table, String> {
     let bench = Bench::new(setup);
-    fits(&bench, &points.iter().map(|point| point.ratio).collect::<Vec<f64>>())?;
+    fits(
+        &bench,
+        &points.iter().map(|point| point.ratio).collect::<Vec<f64>>(),
+    )?;
     Ok(solved(&bench, points.iter().copied()))
 }
 
 fn solved(bench: &Bench, points: impl Iterator<Item = BenchPoint>) -> Table {
     let rows = points.map(|point| (row(&point, &bench.solve(&point)), 1.0));
-    from_rows(GROSS, rows, Marks { gross: Some(GROSS), outside: Some(OUTSIDE) })
+    from_rows(
+        GROSS,
+        rows,
+        Marks {
+            gross: Some(GROSS),
+            outside: Some(OUTSIDE),
+        },
+    )
 }
 
 /// Whether the box has these ratios or gears.
 fn fits(bench: &Bench, ratios: &[f64]) -> Result<(), String> {
     match &bench.car().transmission {
-        Transmission::Cvt(cvt) => ratios.iter().try_for_each(|ratio| super::belt::fits(&cvt.belt, *ratio)),
+        Transmission::Cvt(cvt) => ratios
+            .iter()
+            .try_for_each(|ratio| super::belt::fits(&cvt.belt, *ratio)),
         Transmission::Manual(manual) => {
             let gears = manual.overall.len();
-            let good = |ratio: &f64| ratio.fract().abs() <= 0.0 && *ratio >= 1.0 && *ratio <= gears as f64;
-            if ratios.iter().all(good) { Ok(()) } else { Err(format!("the box has the gears 1 to {gears}: give one as `ratio`")) }
+            let good =
+                |ratio: &f64| ratio.fract().abs() <= 0.0 && *ratio >= 1.0 && *ratio <= gears as f64;
+            if ratios.iter().all(good) {
+                Ok(())
+            } else {
+                Err(format!(
+                    "the box has the gears 1 to {gears}: give one as `ratio`"
+                ))
+            }
         }
     }
 }
@@ -132,7 +156,11 @@ fn fits(bench: &Bench, ratios: &[f64]) -> Result<(), String> {
 pub fn row(p: &BenchPoint, a: &BenchAnswer) -> Vec<f64> {
     let input_w = a.input_nm * p.input_rad_s;
     let output_w = p.output_nm * a.output_rad_s;
-    let efficiency = if p.output_nm < 0.0 { input_w / output_w } else { output_w / input_w };
+    let efficiency = if p.output_nm < 0.0 {
+        input_w / output_w
+    } else {
+        output_w / input_w
+    };
     let head = [
         p.ratio,
         rpm(p.input_rad_s),
@@ -166,7 +194,10 @@ mod tests {
 
     #[test]
     fn columns_are_named_after_the_components() {
-        let names: Vec<String> = Component::ALL.iter().map(|c| format!("{}_nm", c.name())).collect();
+        let names: Vec<String> = Component::ALL
+            .iter()
+            .map(|c| format!("{}_nm", c.name()))
+            .collect();
         assert_eq!(COMPONENTS.to_vec(), names);
     }
 }

@@ -7,7 +7,13 @@ use crate::validate::source::Source;
 
 /// Names of the columns.
 pub fn columns() -> Vec<&'static str> {
-    vec!["temp_degc", "kinematic_mm2_s", "dynamic_mpa_s", "density_kg_m3", "heat_capacity_kj_kgk"]
+    vec![
+        "temp_degc",
+        "kinematic_mm2_s",
+        "dynamic_mpa_s",
+        "density_kg_m3",
+        "heat_capacity_kj_kgk",
+    ]
 }
 
 /// Computes all temperatures for the transmission oil.

@@ -48,14 +48,20 @@ pub fn table(source: &Source, setup: &Setup, conditions: &Conditions) -> Result<
 /// # Errors
 /// Never for phases that the cycle has.
 pub fn of_run(source: &Source, driven: &Driven, totals: bool) -> Result<Table, String> {
-    if totals { run::totals(source, driven) } else { Ok(run::trace(source, driven)) }
+    if totals {
+        run::totals(source, driven)
+    } else {
+        Ok(run::trace(source, driven))
+    }
 }
 
 /// Every combination of the values of some axes, the last axis running fastest.
 fn combinations(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
     axes.iter().fold(vec![Vec::new()], |rows, axis| {
         let with = |row: &Vec<f64>, x: f64| row.iter().copied().chain([x]).collect::<Vec<f64>>();
-        rows.iter().flat_map(|row| axis.iter().map(move |x| with(row, *x))).collect()
+        rows.iter()
+            .flat_map(|row| axis.iter().map(move |x| with(row, *x)))
+            .collect()
     })
 }
 
@@ -70,7 +76,10 @@ struct Marks {
 
 /// A table from rows of equal length.
 fn from_rows(count: usize, rows: impl Iterator<Item = (Vec<f64>, f64)>, marks: Marks) -> Table {
-    let mut table = Table { columns: vec![Vec::new(); count], ..Table::default() };
+    let mut table = Table {
+        columns: vec![Vec::new(); count],
+        ..Table::default()
+    };
     for (row, weight) in rows {
         table.gross.extend(marks.gross.map(|k| row[k] > 0.5));
         table.outside.extend(marks.outside.map(|k| row[k] > 0.5));

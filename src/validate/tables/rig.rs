@@ -43,7 +43,11 @@ pub fn strip_down_columns() -> Vec<&'static str> {
 }
 
 /// Warm-up and cooling at each ratio, a row a second.
-pub fn transients(source: &Source, setup: &Setup, conditions: &Conditions) -> Result<Table, String> {
+pub fn transients(
+    source: &Source,
+    setup: &Setup,
+    conditions: &Conditions,
+) -> Result<Table, String> {
     let bench = Bench::new(setup);
     let ratios = source.axis("ratio", conditions.low_ratio);
     cvt_only(&bench, &ratios)?;
@@ -59,16 +63,37 @@ pub fn transients(source: &Source, setup: &Setup, conditions: &Conditions) -> Re
                 ..BenchPoint::default()
             };
             let gap_nm = result.gap_nm(m.sump_k).unwrap_or(f64::NAN);
-            let head = [m.time_s, truth(m.branch == Branch::Cooling), m.metal_k - ZERO_DEGC_K, gap_nm];
-            rows.push((head.into_iter().chain(row(&point, &m.answer)).collect::<Vec<f64>>(), 1.0));
+            let head = [
+                m.time_s,
+                truth(m.branch == Branch::Cooling),
+                m.metal_k - ZERO_DEGC_K,
+                gap_nm,
+            ];
+            rows.push((
+                head.into_iter()
+                    .chain(row(&point, &m.answer))
+                    .collect::<Vec<f64>>(),
+                1.0,
+            ));
         }
     }
     let count = TRANSIENT.len() + bench::GROSS;
-    Ok(from_rows(count, rows.into_iter(), Marks { gross: Some(count), outside: Some(TRANSIENT.len() + bench::OUTSIDE) }))
+    Ok(from_rows(
+        count,
+        rows.into_iter(),
+        Marks {
+            gross: Some(count),
+            outside: Some(TRANSIENT.len() + bench::OUTSIDE),
+        },
+    ))
 }
 
 /// The box taken apart, a row a point.
-pub fn strip_downs(source: &Source, setup: &Setup, conditions: &Conditions) -> Result<Table, String> {
+pub fn strip_downs(
+    source: &Source,
+    setup: &Setup,
+    conditions: &Conditions,
+) -> Result<Table, String> {
     let bench = Bench::new(setup);
     let own = Plan::of(conditions);
     let plan = Plan {
@@ -78,17 +103,32 @@ pub fn strip_downs(source: &Source, setup: &Setup, conditions: &Conditions) -> R
         torques_nm: own.torques_nm,
     };
     cvt_only(&bench, &plan.ratios)?;
-    let rows = strip_down(&bench, conditions, &plan).into_iter().map(|found| {
-        let head = [found.set.ratio, rpm(found.set.input_rad_s), found.set.sump_k - ZERO_DEGC_K];
-        let pieces = Piece::ALL.map(|piece| found.piece(piece)).map(|f| [f.corrected_nm, f.true_nm, f.interaction_nm()]);
-        (head.into_iter().chain(pieces.into_iter().flatten()).collect(), 1.0)
-    });
+    let rows = strip_down(&bench, conditions, &plan)
+        .into_iter()
+        .map(|found| {
+            let head = [
+                found.set.ratio,
+                rpm(found.set.input_rad_s),
+                found.set.sump_k - ZERO_DEGC_K,
+            ];
+            let pieces = Piece::ALL
+                .map(|piece| found.piece(piece))
+                .map(|f| [f.corrected_nm, f.true_nm, f.interaction_nm()]);
+            (
+                head.into_iter()
+                    .chain(pieces.into_iter().flatten())
+                    .collect(),
+                1.0,
+            )
+        });
     Ok(from_rows(STRIP_DOWN.len(), rows, Marks::default()))
 }
 
 fn cvt_only(bench: &Bench, ratios: &[f64]) -> Result<(), String> {
     let cvt = bench.cvt().ok_or("the transmission rig is for a CVT")?;
-    ratios.iter().try_for_each(|ratio| super::belt::fits(&cvt.belt, *ratio))
+    ratios
+        .iter()
+        .try_for_each(|ratio| super::belt::fits(&cvt.belt, *ratio))
 }
 
 #[cfg(test)]
@@ -97,7 +137,9 @@ mod tests {
 
     #[test]
     fn columns_are_named_after_the_pieces() {
-        let named = Piece::ALL.iter().flat_map(|p| ["found", "true", "interaction"].map(|what| format!("{}_{what}_nm", p.name())));
+        let named = Piece::ALL.iter().flat_map(|p| {
+            ["found", "true", "interaction"].map(|what| format!("{}_{what}_nm", p.name()))
+        });
         assert_eq!(STRIP_DOWN[3..].to_vec(), named.collect::<Vec<String>>());
     }
 }

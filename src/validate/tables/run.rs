@@ -21,7 +21,14 @@ pub struct Driven {
 }
 
 /// Columns beside those of the trace.
-const MORE: [&str; 6] = ["moving", "coupled", "launch", "since_launch_s", "power_share", "transmission_loss_w"];
+const MORE: [&str; 6] = [
+    "moving",
+    "coupled",
+    "launch",
+    "since_launch_s",
+    "power_share",
+    "transmission_loss_w",
+];
 
 const TOTALS: [&str; 17] = [
     "fuel_l_per_100km",
@@ -65,7 +72,10 @@ const LOSSES: [&str; Component::COUNT] = [
 /// Names of the columns of the trace.
 pub fn columns() -> Vec<&'static str> {
     let trace = COLUMNS.iter().map(|column| column.name);
-    trace.chain(Flags::NAMES.iter().map(|(_, name)| *name)).chain(MORE).collect()
+    trace
+        .chain(Flags::NAMES.iter().map(|(_, name)| *name))
+        .chain(MORE)
+        .collect()
 }
 
 /// Names of the columns of the totals.
@@ -85,10 +95,22 @@ pub fn drive(source: &Source, setup: &Setup) -> Result<Driven, String> {
         _ => Start::Soak,
     };
     let max_dt_s = source.axis("dt_s", 1.0).first().copied().unwrap_or(1.0);
-    let conditions = Conditions { ambient_k: source.ambient_k(), start, max_dt_s, keep_rows: true };
+    let conditions = Conditions {
+        ambient_k: source.ambient_k(),
+        start,
+        max_dt_s,
+        keep_rows: true,
+    };
     let outcome = run::drive(setup, &cycle, &conditions);
     let engine = setup.car(source.ambient_k()).engine;
-    let number = |key: &str| setup.keys.iter().find(|info| info.key == key).and_then(|info| info.si).unwrap_or(f64::NAN);
+    let number = |key: &str| {
+        setup
+            .keys
+            .iter()
+            .find(|info| info.key == key)
+            .and_then(|info| info.si)
+            .unwrap_or(f64::NAN)
+    };
     Ok(Driven {
         cycle,
         outcome,
@@ -101,7 +123,11 @@ pub fn drive(source: &Source, setup: &Setup) -> Result<Driven, String> {
 /// Indices of the phases that count.
 fn phases(source: &Source, cycle: &Cycle) -> Vec<u16> {
     let groups = cycle.phase_groups();
-    groups.into_iter().filter(|(name, _)| source.phase.is_empty() || *name == source.phase).flat_map(|(_, list)| list).collect()
+    groups
+        .into_iter()
+        .filter(|(name, _)| source.phase.is_empty() || *name == source.phase)
+        .flat_map(|(_, list)| list)
+        .collect()
 }
 
 /// The trace of a run, weighted with the length of the steps.
@@ -122,16 +148,39 @@ pub fn trace(source: &Source, driven: &Driven) -> Table {
             rows.push((row(r, driven.rated_w, launch, since), r.dt_s));
         }
     }
-    let place = |flag: Flags| Flags::NAMES.iter().position(|(name, _)| *name == flag).map(|k| COLUMNS.len() + k);
-    let marks = Marks { gross: place(Flags::GROSS_SLIP), outside: place(Flags::OUTSIDE_VALIDITY) };
+    let place = |flag: Flags| {
+        Flags::NAMES
+            .iter()
+            .position(|(name, _)| *name == flag)
+            .map(|k| COLUMNS.len() + k)
+    };
+    let marks = Marks {
+        gross: place(Flags::GROSS_SLIP),
+        outside: place(Flags::OUTSIDE_VALIDITY),
+    };
     from_rows(columns().len(), rows.into_iter(), marks)
 }
 
 fn row(r: &Row, rated_w: f64, launch: f64, since_s: f64) -> Vec<f64> {
-    let coupled = !r.flags.contains(Flags::CLUTCH_SLIPPING) && !r.flags.contains(Flags::CLUTCH_OPEN);
-    let more = [truth(r.speed_m_s > 0.0), truth(coupled), launch, since_s, r.wheel_power_w / rated_w, r.loss_w.iter().sum::<f64>()];
+    let coupled =
+        !r.flags.contains(Flags::CLUTCH_SLIPPING) && !r.flags.contains(Flags::CLUTCH_OPEN);
+    let more = [
+        truth(r.speed_m_s > 0.0),
+        truth(coupled),
+        launch,
+        since_s,
+        r.wheel_power_w / rated_w,
+        r.loss_w.iter().sum::<f64>(),
+    ];
     let trace = COLUMNS.iter().map(|column| column.number(r));
-    trace.chain(Flags::NAMES.iter().map(|(flag, _)| truth(r.flags.contains(*flag)))).chain(more).collect()
+    trace
+        .chain(
+            Flags::NAMES
+                .iter()
+                .map(|(flag, _)| truth(r.flags.contains(*flag))),
+        )
+        .chain(more)
+        .collect()
 }
 
 /// The totals of a run as a table of one row. Temperatures and the missed trace are those of the whole run.
@@ -143,7 +192,10 @@ pub fn totals(source: &Source, driven: &Driven) -> Result<Table, String> {
     let sum = outcome.totals.over(&phases(source, &driven.cycle));
     let degc = |node: usize| outcome.end.node_k[node] - ZERO_DEGC_K;
     let km = sum.distance_m / 1e3;
-    let belt = crate::rig::BELT_PARTS.iter().map(|c| sum.loss_j[*c as usize]).sum::<f64>();
+    let belt = crate::rig::BELT_PARTS
+        .iter()
+        .map(|c| sum.loss_j[*c as usize])
+        .sum::<f64>();
     let head = [
         litres_per_100km(sum.fuel_kg, driven.fuel_density_kg_m3, sum.distance_m),
         sum.fuel_kg,
@@ -163,8 +215,15 @@ pub fn totals(source: &Source, driven: &Driven) -> Result<Table, String> {
         degc(BELT),
         outcome.totals.seconds(Flags::MISSED_TRACE),
     ];
-    let row: Vec<f64> = head.into_iter().chain(sum.loss_j.iter().map(|j| j / 1e3)).collect();
-    Ok(from_rows(row.len(), [(row, 1.0)].into_iter(), Marks::default()))
+    let row: Vec<f64> = head
+        .into_iter()
+        .chain(sum.loss_j.iter().map(|j| j / 1e3))
+        .collect();
+    Ok(from_rows(
+        row.len(),
+        [(row, 1.0)].into_iter(),
+        Marks::default(),
+    ))
 }
 
 #[cfg(test)]
@@ -173,7 +232,10 @@ mod tests {
 
     #[test]
     fn losses_are_named_after_the_components() {
-        let names: Vec<String> = Component::ALL.iter().map(|c| format!("{}_kj", c.name())).collect();
+        let names: Vec<String> = Component::ALL
+            .iter()
+            .map(|c| format!("{}_kj", c.name()))
+            .collect();
         assert_eq!(LOSSES.to_vec(), names);
     }
 

@@ -1,7 +1,9 @@
 //! The transmission rig's tests as one JSON object.
 
 use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::report::rig_transmission::tables::{json_rows, steady_columns, strip_columns, transient_columns, two_box_columns};
+use cvtcycle::report::rig_transmission::tables::{
+    json_rows, steady_columns, strip_columns, transient_columns, two_box_columns,
+};
 use cvtcycle::rig::transmission::{Branch, Loop, Moment, Piece};
 use serde_json::{Map, Value, json};
 
@@ -23,25 +25,48 @@ pub fn summary(job: &Job, found: &Found, failed: &[String]) -> Value {
             json!({ "ratio": ratio, "torque_loss_nm": range(&r.0), "secondary_pressure_bar": range(&r.1) })
         };
         let ranges: Vec<Value> = job.plan.ratios.iter().map(of).collect();
-        all.insert("steady".into(), json!({ "ranges": ranges, "points": json_rows(&steady_columns(), &found.steady) }));
+        all.insert(
+            "steady".into(),
+            json!({ "ranges": ranges, "points": json_rows(&steady_columns(), &found.steady) }),
+        );
     }
     if !found.loaded.is_empty() {
-        all.insert("loaded".into(), json!({ "points": json_rows(&steady_columns(), &found.loaded) }));
+        all.insert(
+            "loaded".into(),
+            json!({ "points": json_rows(&steady_columns(), &found.loaded) }),
+        );
     }
     if !found.strip_down.is_empty() {
-        let all_pieces = found.strip_down.iter().flat_map(|s| Piece::ALL.map(|p| s.piece(p).remainder_nm().abs()));
+        let all_pieces = found
+            .strip_down
+            .iter()
+            .flat_map(|s| Piece::ALL.map(|p| s.piece(p).remainder_nm().abs()));
         let largest = all_pieces.fold(0.0, |a, b| if b > a { b } else { a });
         let points = json_rows(&strip_columns(), &found.strip_down);
-        all.insert("strip_down".into(), json!({ "largest_remainder_nm": number(largest), "points": points }));
+        all.insert(
+            "strip_down".into(),
+            json!({ "largest_remainder_nm": number(largest), "points": points }),
+        );
     }
     if !found.loops.is_empty() {
-        all.insert("transient".into(), found.loops.iter().map(transient).collect());
+        all.insert(
+            "transient".into(),
+            found.loops.iter().map(transient).collect(),
+        );
     }
     if !found.second_box.is_empty() {
-        let differences = || found.second_box.iter().map(cvtcycle::rig::transmission::TwoBoxes::difference_nm);
+        let differences = || {
+            found
+                .second_box
+                .iter()
+                .map(cvtcycle::rig::transmission::TwoBoxes::difference_nm)
+        };
         let mean = differences().sum::<f64>() / found.second_box.len() as f64;
         let points = json_rows(&two_box_columns(), &found.second_box);
-        all.insert("second_box".into(), json!({ "mean_difference_nm": number(mean), "points": points }));
+        all.insert(
+            "second_box".into(),
+            json!({ "mean_difference_nm": number(mean), "points": points }),
+        );
     }
     all.insert("failed_checks".into(), json!(failed));
     Value::Object(all)

@@ -67,15 +67,26 @@ pub fn write_curves(out: &mut dyn Write, curves: &[Curve]) -> io::Result<()> {
 }
 
 fn number(x: f64) -> serde_json::Value {
-    if x.is_finite() { serde_json::json!(x + 0.0) } else { serde_json::Value::Null }
+    if x.is_finite() {
+        serde_json::json!(x + 0.0)
+    } else {
+        serde_json::Value::Null
+    }
 }
 
 /// Writes one JSON object, its points one a line.
 pub fn write_json(out: &mut dyn Write, plan: &Plan, curves: &[Curve]) -> io::Result<()> {
     let columns: Vec<serde_json::Value> =
         COLUMNS.iter().map(|column| serde_json::json!({ "name": column.name, "unit": column.unit, "meaning": column.doc })).collect();
-    let lines: Vec<serde_json::Map<String, serde_json::Value>> =
-        curves.iter().map(|curve| numbers(curve).into_iter().map(|(name, x)| (name.to_owned(), number(x))).collect()).collect();
+    let lines: Vec<serde_json::Map<String, serde_json::Value>> = curves
+        .iter()
+        .map(|curve| {
+            numbers(curve)
+                .into_iter()
+                .map(|(name, x)| (name.to_owned(), number(x)))
+                .collect()
+        })
+        .collect();
     let head = serde_json::json!({
         "schema": SCHEMA,
         "program": concat!("cvtcycle ", env!("CARGO_PKG_VERSION")),
@@ -92,7 +103,11 @@ pub fn write_json(out: &mut dyn Write, plan: &Plan, curves: &[Curve]) -> io::Res
     });
     let head = serde_json::to_string_pretty(&head)?;
     // The closing brace of the head comes after the points.
-    write!(out, "{},\n  \"points\": [", head.trim_end().trim_end_matches('}').trim_end())?;
+    write!(
+        out,
+        "{},\n  \"points\": [",
+        head.trim_end().trim_end_matches('}').trim_end()
+    )?;
     for (k, row) in curves.iter().flat_map(|curve| &curve.rows).enumerate() {
         write!(out, "{}\n    {}", if k > 0 { "," } else { "" }, point(row))?;
     }
@@ -103,7 +118,11 @@ fn point(row: &VariatorRow) -> serde_json::Value {
     let cells = COLUMNS.iter().map(|column| {
         let value = match (column.get)(row) {
             VariatorValue::Number(x) => number(x),
-            VariatorValue::Text(text) => text.split('|').filter(|name| !name.is_empty()).collect::<Vec<_>>().into(),
+            VariatorValue::Text(text) => text
+                .split('|')
+                .filter(|name| !name.is_empty())
+                .collect::<Vec<_>>()
+                .into(),
         };
         (column.name.to_owned(), value)
     });

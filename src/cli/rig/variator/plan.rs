@@ -4,7 +4,9 @@ use cvtcycle::config::{Bound, Problem, to_si};
 use cvtcycle::results::files::OutputDir;
 use cvtcycle::rig::losses::MOST_POINTS;
 use cvtcycle::rig::solvable_ratios;
-use cvtcycle::rig::variator::{CurveSummary, Held, MOST_RAD_S, Resolution, VariatorRig, VariatorRow};
+use cvtcycle::rig::variator::{
+    CurveSummary, Held, MOST_RAD_S, Resolution, VariatorRig, VariatorRow,
+};
 use cvtcycle::setup::{self, Options, Setup};
 use cvtcycle::transmission::cvt::variator::Formulation;
 
@@ -57,11 +59,17 @@ impl Plan {
         let summary = self.rig.summary(held);
         let rows = match &self.torque_nm {
             Some(torques) => self.rig.rows(held, torques),
-            None => self.rig.rows(held, &default_torques(held, summary.capacity_nm)),
+            None => self
+                .rig
+                .rows(held, &default_torques(held, summary.capacity_nm)),
         };
         let belt = &self.rig.cvt().belt;
         let idle = &self.rig.rows(held, &[0.0])[0];
-        Curve { summary, resolution: Resolution::new(idle, belt.length_m, belt.segment_thickness_m, self.pulses), rows }
+        Curve {
+            summary,
+            resolution: Resolution::new(idle, belt.length_m, belt.segment_thickness_m, self.pulses),
+            rows,
+        }
     }
 }
 
@@ -75,7 +83,11 @@ fn default_torques(held: &Held, capacity_nm: f64) -> Vec<f64> {
 /// Reads all arguments.
 pub fn plan(args: &Args) -> Result<Plan, Vec<Problem>> {
     let mut problems = Problems::default();
-    let formulation = problems.take(inputs::word("--formulation", &args.formulation, &Formulation::NAMES));
+    let formulation = problems.take(inputs::word(
+        "--formulation",
+        &args.formulation,
+        &Formulation::NAMES,
+    ));
     let options = Options {
         lubricant: args.lubricant.clone(),
         set: args.set.clone(),
@@ -86,20 +98,50 @@ pub fn plan(args: &Args) -> Result<Plan, Vec<Problem>> {
     let rig = setup.as_ref().and_then(VariatorRig::new);
     if setup.is_some() && rig.is_none() {
         let hint = "name a vehicle with a CVT, such as rover_216_cvt";
-        problems.add(problem("--vehicle", &format!("{} has a manual box, which has no variator", args.vehicle), hint));
+        problems.add(problem(
+            "--vehicle",
+            &format!("{} has a manual box, which has no variator", args.vehicle),
+            hint,
+        ));
     }
-    let limits = rig.as_ref().map_or((0.1, 10.0), |rig| solvable_ratios(&rig.cvt().belt));
+    let limits = rig
+        .as_ref()
+        .map_or((0.1, 10.0), |rig| solvable_ratios(&rig.cvt().belt));
     let low = rig.as_ref().map_or(2.4, |rig| rig.cvt().ratio.low);
     let words = [("low", low), ("high", HIGH)];
-    let ratios = problems.take(values_or_words("--ratio", &args.ratio, Bound::closed(limits.0, limits.1), "", &words));
-    let pressures = args.pressure.as_ref().map(|text| problems.take(values("--pressure", text, PRESSURE, "_bar")).unwrap_or_default());
-    let speeds = args.speed.as_ref().map(|text| problems.take(values("--speed", text, SPEED, "_rpm")).unwrap_or_default());
-    let temps = problems.take(values("--temp", &args.temp, TEMP, "_degc")).unwrap_or_default();
-    let torque_nm = args.torque.as_ref().map(|text| problems.take(values("--torque", text, TORQUE, "_nm")).unwrap_or_default());
+    let ratios = problems.take(values_or_words(
+        "--ratio",
+        &args.ratio,
+        Bound::closed(limits.0, limits.1),
+        "",
+        &words,
+    ));
+    let pressures = args.pressure.as_ref().map(|text| {
+        problems
+            .take(values("--pressure", text, PRESSURE, "_bar"))
+            .unwrap_or_default()
+    });
+    let speeds = args.speed.as_ref().map(|text| {
+        problems
+            .take(values("--speed", text, SPEED, "_rpm"))
+            .unwrap_or_default()
+    });
+    let temps = problems
+        .take(values("--temp", &args.temp, TEMP, "_degc"))
+        .unwrap_or_default();
+    let torque_nm = args.torque.as_ref().map(|text| {
+        problems
+            .take(values("--torque", text, TORQUE, "_nm"))
+            .unwrap_or_default()
+    });
     let pulses = problems.take(inputs::number("--pulses", &args.pulses, PULSES, ""));
     let ratios = ratios.unwrap_or_default();
-    let count = |list: &Option<Vec<f64>>, default: usize| list.as_ref().map_or(default, Vec::len) as f64;
-    let curves = ratios.len() as f64 * count(&pressures, LOW_BAR.len()) * count(&speeds, 1) * temps.len() as f64;
+    let count =
+        |list: &Option<Vec<f64>>, default: usize| list.as_ref().map_or(default, Vec::len) as f64;
+    let curves = ratios.len() as f64
+        * count(&pressures, LOW_BAR.len())
+        * count(&speeds, 1)
+        * temps.len() as f64;
     let points = curves * count(&torque_nm, 100);
     if points > MOST_POINTS as f64 {
         let message = format!("{curves:.0} curves with {points:.0} points");
@@ -111,26 +153,53 @@ pub fn plan(args: &Args) -> Result<Plan, Vec<Problem>> {
             "take larger steps or do it in parts".to_owned(),
         ));
     }
-    let out = args.out.as_ref().map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
+    let out = args
+        .out
+        .as_ref()
+        .map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
     let out = out.and_then(|dir| problems.take(dir));
     problems.finish()?;
-    let (Some(setup), Some(rig), Some(pulses)) = (setup, rig, pulses) else { unreachable!("what is missing has left a problem") };
+    let (Some(setup), Some(rig), Some(pulses)) = (setup, rig, pulses) else {
+        unreachable!("what is missing has left a problem")
+    };
     let held = held(&ratios, pressures.as_deref(), speeds.as_deref(), &temps);
-    Ok(Plan { setup, rig, formulation: args.formulation.clone(), set: args.set.clone(), held, torque_nm, pulses, out })
+    Ok(Plan {
+        setup,
+        rig,
+        formulation: args.formulation.clone(),
+        set: args.set.clone(),
+        held,
+        torque_nm,
+        pulses,
+        out,
+    })
 }
 
 /// Every combination, ratio outermost, pressure fastest.
-fn held(ratios: &[f64], pressures: Option<&[f64]>, speeds: Option<&[f64]>, temps: &[f64]) -> Vec<Held> {
+fn held(
+    ratios: &[f64],
+    pressures: Option<&[f64]>,
+    speeds: Option<&[f64]>,
+    temps: &[f64],
+) -> Vec<Held> {
     let mut list = Vec::new();
     for ratio in ratios {
         // No rig turns its secondary faster than its limit.
         let default_rad_s = to_si("_rpm", SPEED_RPM).min(MOST_RAD_S * ratio);
-        let speeds = speeds.map_or_else(|| vec![default_rad_s], |list| list.iter().map(|n| to_si("_rpm", *n)).collect());
+        let speeds = speeds.map_or_else(
+            || vec![default_rad_s],
+            |list| list.iter().map(|n| to_si("_rpm", *n)).collect(),
+        );
         let own: &[f64] = if *ratio > 1.0 { &LOW_BAR } else { &HIGH_BAR };
         for input_rad_s in speeds {
             for temp in temps {
                 for bar in pressures.unwrap_or(own) {
-                    list.push(Held { ratio: *ratio, pressure_pa: to_si("_bar", *bar), input_rad_s, belt_k: to_si("_degc", *temp) });
+                    list.push(Held {
+                        ratio: *ratio,
+                        pressure_pa: to_si("_bar", *bar),
+                        input_rad_s,
+                        belt_k: to_si("_degc", *temp),
+                    });
                 }
             }
         }

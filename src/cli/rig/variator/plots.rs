@@ -19,21 +19,58 @@ type Get = fn(&VariatorRow) -> f64;
 pub fn plots(plan: &Plan, curves: &[Curve]) -> Vec<(&'static str, String)> {
     let tests: Vec<&[Curve]> = curves.chunk_by(same_test).take(MOST_TESTS).collect();
     let lines = |title: &str, y: &str, get: Get, marked: bool| {
-        let panels = tests.iter().map(|test| by_pressure(test, y, get, marked)).collect();
-        curve_figure(&CurveFigure { title, subject: &subject(plan), x: X, panels })
+        let panels = tests
+            .iter()
+            .map(|test| by_pressure(test, y, get, marked))
+            .collect();
+        curve_figure(&CurveFigure {
+            title,
+            subject: &subject(plan),
+            x: X,
+            panels,
+        })
     };
     vec![
         ("radii.svg", radii(plan, &tests)),
-        ("slip.svg", lines("Belt slip", "Slip [%]", |r| 100.0 * r.belt.slip_total, true)),
-        ("slip_zeroed.svg", lines("Belt slip, zero at zero torque", "Slip reading [%]", |r| 100.0 * r.slip_zeroed(), true)),
-        ("primary_slip.svg", lines("Slip speed at the primary pulley", "Slip speed [m/s]", |r| r.slip_m_s()[0], true)),
-        ("secondary_slip.svg", lines("Slip speed at the secondary pulley", "Slip speed [m/s]", |r| r.slip_m_s()[1], true)),
+        (
+            "slip.svg",
+            lines("Belt slip", "Slip [%]", |r| 100.0 * r.belt.slip_total, true),
+        ),
+        (
+            "slip_zeroed.svg",
+            lines(
+                "Belt slip, zero at zero torque",
+                "Slip reading [%]",
+                |r| 100.0 * r.slip_zeroed(),
+                true,
+            ),
+        ),
+        (
+            "primary_slip.svg",
+            lines(
+                "Slip speed at the primary pulley",
+                "Slip speed [m/s]",
+                |r| r.slip_m_s()[0],
+                true,
+            ),
+        ),
+        (
+            "secondary_slip.svg",
+            lines(
+                "Slip speed at the secondary pulley",
+                "Slip speed [m/s]",
+                |r| r.slip_m_s()[1],
+                true,
+            ),
+        ),
     ]
 }
 
 /// Rows up to the slip that is drawn: the thesis's figures end at 3 %, and beyond gross slip there is a bound, not a result.
 fn carried(curve: &Curve) -> impl Iterator<Item = &VariatorRow> {
-    curve.rows.iter().filter(|row| row.belt.slip_total.abs() <= MOST_DRAWN && !row.flags.contains(RigFlags::GROSS_SLIP))
+    curve.rows.iter().filter(|row| {
+        row.belt.slip_total.abs() <= MOST_DRAWN && !row.flags.contains(RigFlags::GROSS_SLIP)
+    })
 }
 
 fn ascending(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
@@ -42,11 +79,20 @@ fn ascending(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 }
 
 fn points(curve: &Curve, get: Get) -> Vec<(f64, f64)> {
-    ascending(carried(curve).map(|row| (row.output_nm, get(row))).collect())
+    ascending(
+        carried(curve)
+            .map(|row| (row.output_nm, get(row)))
+            .collect(),
+    )
 }
 
 fn subject(plan: &Plan) -> String {
-    format!("{}, {}; drawn up to {} % slip", plan.setup.name, plan.formulation, 100.0 * MOST_DRAWN)
+    format!(
+        "{}, {}; drawn up to {} % slip",
+        plan.setup.name,
+        plan.formulation,
+        100.0 * MOST_DRAWN
+    )
 }
 
 /// One panel with a line for each pressure and its breakpoint marked where it lies on the line.
@@ -56,10 +102,13 @@ fn by_pressure(test: &[Curve], y: &str, get: Get, marked: bool) -> CurvePanel {
         .map(|curve| {
             let points = points(curve, get);
             let at = curve.summary.breakpoint_nm;
-            let mark = points.windows(2).find(|pair| pair[0].0 <= at && at <= pair[1].0).map(|pair| {
-                let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
-                (at, y0 + (y1 - y0) * (at - x0) / (x1 - x0))
-            });
+            let mark = points
+                .windows(2)
+                .find(|pair| pair[0].0 <= at && at <= pair[1].0)
+                .map(|pair| {
+                    let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
+                    (at, y0 + (y1 - y0) * (at - x0) / (x1 - x0))
+                });
             let bar = curve.summary.held.pressure_pa / 1e5;
             CurveSeries {
                 name: format!("{} bar", (bar * 1e6).round() / 1e6),
@@ -69,8 +118,18 @@ fn by_pressure(test: &[Curve], y: &str, get: Get, marked: bool) -> CurvePanel {
             }
         })
         .collect();
-    let marks = if series.iter().any(|s| !s.marked.is_empty()) { "Breakpoint".to_owned() } else { String::new() };
-    CurvePanel { title: test.first().map_or_else(String::new, test_name), y: y.to_owned(), with_zero: true, series, marks }
+    let marks = if series.iter().any(|s| !s.marked.is_empty()) {
+        "Breakpoint".to_owned()
+    } else {
+        String::new()
+    };
+    CurvePanel {
+        title: test.first().map_or_else(String::new, test_name),
+        y: y.to_owned(),
+        with_zero: true,
+        series,
+        marks,
+    }
 }
 
 /// Radii of both pulleys at the middle pressure of each test: as the geometry has them, and from the speeds.
@@ -92,17 +151,30 @@ fn radii(plan: &Plan, tests: &[&[Curve]]) -> String {
             marks: String::new(),
         };
         let primary = vec![
-            one("From belt and shaft speed", 1, |r| 1e3 * r.pulse_radius_m()[0]),
+            one("From belt and shaft speed", 1, |r| {
+                1e3 * r.pulse_radius_m()[0]
+            }),
             one("Geometric", 0, |r| 1e3 * r.geometry.primary_radius_m),
-            one("Geometric, zeroed at no torque", 2, |r| 1e3 * r.zero.radius_m[0]),
+            one("Geometric, zeroed at no torque", 2, |r| {
+                1e3 * r.zero.radius_m[0]
+            }),
         ];
         let secondary = vec![
-            one("From belt and shaft speed", 1, |r| 1e3 * r.pulse_radius_m()[1]),
+            one("From belt and shaft speed", 1, |r| {
+                1e3 * r.pulse_radius_m()[1]
+            }),
             one("Geometric", 0, |r| 1e3 * r.geometry.secondary_radius_m),
-            one("Geometric, zeroed at no torque", 2, |r| 1e3 * r.zero.radius_m[1]),
+            one("Geometric, zeroed at no torque", 2, |r| {
+                1e3 * r.zero.radius_m[1]
+            }),
         ];
         panels.push(panel("Primary", primary));
         panels.push(panel("Secondary", secondary));
     }
-    curve_figure(&CurveFigure { title: "Running radii, geometric and from speeds", subject: &subject(plan), x: X, panels })
+    curve_figure(&CurveFigure {
+        title: "Running radii, geometric and from speeds",
+        subject: &subject(plan),
+        x: X,
+        panels,
+    })
 }

@@ -9,7 +9,11 @@ use crate::cli::number::{fixed, percent, plain};
 
 /// A line a curve, and what the counters can resolve.
 pub fn tables(plan: &Plan, curves: &[Curve], paint: Paint) -> String {
-    let mut text = format!("{}  variator alone, {}\n", paint.heading(&plan.setup.name), plan.formulation);
+    let mut text = format!(
+        "{}  variator alone, {}\n",
+        paint.heading(&plan.setup.name),
+        plan.formulation
+    );
     for test in curves.chunk_by(same_test) {
         text += &one_test(test, paint);
     }
@@ -33,13 +37,31 @@ pub fn test_name(curve: &Curve) -> String {
     let rpm = held.input_rad_s * 30.0 / std::f64::consts::PI;
     let ratio = fixed(held.ratio, 3);
     let ratio = ratio.trim_end_matches('0').trim_end_matches('.');
-    format!("ratio {ratio}, {} rpm, belt {} \u{b0}C", fixed(rpm, 0), fixed(held.belt_k - 273.15, 1).trim_end_matches(".0"))
+    format!(
+        "ratio {ratio}, {} rpm, belt {} \u{b0}C",
+        fixed(rpm, 0),
+        fixed(held.belt_k - 273.15, 1).trim_end_matches(".0")
+    )
 }
 
 fn one_test(test: &[Curve], paint: Paint) -> String {
     let mut grid = Grid::new("rrrrrrrrrrr").indented();
-    grid.row(["", "break", "carried", "slip at", "at", "largest", "at", "3 % at", "primary", "secondary", "linear"]);
-    grid.row(["bar", "Nm", "Nm", "0 Nm %", "carried", "%", "Nm", "Nm", "m/s", "m/s", "R2"]);
+    grid.row([
+        "",
+        "break",
+        "carried",
+        "slip at",
+        "at",
+        "largest",
+        "at",
+        "3 % at",
+        "primary",
+        "secondary",
+        "linear",
+    ]);
+    grid.row([
+        "bar", "Nm", "Nm", "0 Nm %", "carried", "%", "Nm", "Nm", "m/s", "m/s", "R2",
+    ]);
     for curve in test {
         let s = &curve.summary;
         grid.row([
@@ -56,10 +78,18 @@ fn one_test(test: &[Curve], paint: Paint) -> String {
             fixed(s.measured_r2, 3),
         ]);
     }
-    let mut text = format!("\n{}\n\n{}", paint.heading(&test_name(&test[0])), grid.text());
+    let mut text = format!(
+        "\n{}\n\n{}",
+        paint.heading(&test_name(&test[0])),
+        grid.text()
+    );
     text += &format!("\n  {}\n", resolution(&test[0]));
     let flagged = flags(test);
-    if flagged.is_empty() { text } else { text + &format!("  flagged points: {flagged}\n") }
+    if flagged.is_empty() {
+        text
+    } else {
+        text + &format!("  flagged points: {flagged}\n")
+    }
 }
 
 fn resolution(curve: &Curve) -> String {
@@ -75,12 +105,27 @@ fn resolution(curve: &Curve) -> String {
         )
     };
     let pulse = |k: usize| percent(r.slip_per_pulse[k], 1.0, 4);
-    format!("{gate}; one pulse more of primary or secondary is {} or {} % of slip", pulse(0), pulse(1))
+    format!(
+        "{gate}; one pulse more of primary or secondary is {} or {} % of slip",
+        pulse(0),
+        pulse(1)
+    )
 }
 
 fn flags(test: &[Curve]) -> String {
     let total: usize = test.iter().map(|curve| curve.rows.len()).sum();
-    let count = |flag: RigFlags| test.iter().flat_map(|curve| &curve.rows).filter(|row| row.flags.contains(flag)).count();
-    let named = RigFlags::NAMES.iter().map(|(flag, name)| (name, count(*flag))).filter(|(_, n)| *n > 0);
-    named.map(|(name, n)| format!("{name} {n} of {total}")).collect::<Vec<_>>().join(", ")
+    let count = |flag: RigFlags| {
+        test.iter()
+            .flat_map(|curve| &curve.rows)
+            .filter(|row| row.flags.contains(flag))
+            .count()
+    };
+    let named = RigFlags::NAMES
+        .iter()
+        .map(|(flag, name)| (name, count(*flag)))
+        .filter(|(_, n)| *n > 0);
+    named
+        .map(|(name, n)| format!("{name} {n} of {total}"))
+        .collect::<Vec<_>>()
+        .join(", ")
 }

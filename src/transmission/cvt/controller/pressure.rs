@@ -71,11 +71,22 @@ impl MapLaw {
     #[must_use]
     #[inline(always)]
     pub fn pressure_pa(&self, s: &ClampSignals) -> f64 {
-        let rise = self.slow_factor + (1.0 - self.slow_factor) * ramp(s.engine_rad_s, self.slow_rad_s, self.full_rad_s);
+        let rise = self.slow_factor
+            + (1.0 - self.slow_factor) * ramp(s.engine_rad_s, self.slow_rad_s, self.full_rad_s);
         let over = s.engine_rad_s - self.full_rad_s;
-        let fallen = if over > 0.0 { rise - self.fall_s * over } else { rise };
-        let fast = if fallen > self.slow_factor || over <= 0.0 { fallen } else { self.slow_factor }; // PC-2
-        fast * (self.base_pa + self.throttle_pa * s.throttle) * s.radius_factor * (1.0 + self.cold_per_k * (353.15 - s.oil_k)) // PC-1
+        let fallen = if over > 0.0 {
+            rise - self.fall_s * over
+        } else {
+            rise
+        };
+        let fast = if fallen > self.slow_factor || over <= 0.0 {
+            fallen
+        } else {
+            self.slow_factor
+        }; // PC-2
+        fast * (self.base_pa + self.throttle_pa * s.throttle)
+            * s.radius_factor
+            * (1.0 + self.cold_per_k * (353.15 - s.oil_k)) // PC-1
     }
 }
 
@@ -99,13 +110,33 @@ mod tests {
     /// Thesis 3.7 in signs: more throttle, colder oil, faster engine and lower gear all raise pressure.
     #[test]
     fn val_signs_of_the_map() {
-        let s = ClampSignals { throttle: 0.2, engine_rad_s: 150.0, oil_k: 300.0, radius_factor: 0.5 };
+        let s = ClampSignals {
+            throttle: 0.2,
+            engine_rad_s: 150.0,
+            oil_k: 300.0,
+            radius_factor: 0.5,
+        };
         let p = law().pressure_pa(&s);
         assert!(law().pressure_pa(&ClampSignals { throttle: 0.3, ..s }) > p);
         assert!(law().pressure_pa(&ClampSignals { oil_k: 290.0, ..s }) > p);
-        assert!(law().pressure_pa(&ClampSignals { engine_rad_s: 160.0, ..s }) > p);
-        assert!(law().pressure_pa(&ClampSignals { radius_factor: 0.6, ..s }) > p);
-        let fast = |rad_s: f64| law().pressure_pa(&ClampSignals { engine_rad_s: rad_s, ..s });
+        assert!(
+            law().pressure_pa(&ClampSignals {
+                engine_rad_s: 160.0,
+                ..s
+            }) > p
+        );
+        assert!(
+            law().pressure_pa(&ClampSignals {
+                radius_factor: 0.6,
+                ..s
+            }) > p
+        );
+        let fast = |rad_s: f64| {
+            law().pressure_pa(&ClampSignals {
+                engine_rad_s: rad_s,
+                ..s
+            })
+        };
         assert!(fast(400.0) < fast(210.0) && fast(400.0) > 0.98 * fast(210.0));
     }
 }

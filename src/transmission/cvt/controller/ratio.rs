@@ -78,7 +78,11 @@ impl RatioControl {
         if share > 0.0 && d.full_load_rad_s > speed {
             speed = d.full_load_rad_s; // RC-3
         }
-        if speed < self.highest_rad_s { speed } else { self.highest_rad_s }
+        if speed < self.highest_rad_s {
+            speed
+        } else {
+            self.highest_rad_s
+        }
     }
 
     /// Ratio after the step and its change in ln I (RC-4, RC-5), and whether pump flow held it back.
@@ -88,24 +92,45 @@ impl RatioControl {
         if d.secondary_rad_s <= 0.0 {
             return (before, 0.0, false); // RC-4
         }
-        let wanted = held(self.target_rad_s(d) / d.secondary_rad_s, self.high, self.low);
-        let wanted = if !d.coupled && wanted < before { before } else { wanted }; // RC-6
+        let wanted = held(
+            self.target_rad_s(d) / d.secondary_rad_s,
+            self.high,
+            self.low,
+        );
+        let wanted = if !d.coupled && wanted < before {
+            before
+        } else {
+            wanted
+        }; // RC-6
         if wanted.to_bits() == before.to_bits() {
             return (before, 0.0, false);
         }
         let change = ln(wanted / before);
         let pace = held(before * d.secondary_rad_s / self.rate_speed_rad_s, 0.0, 1.0);
         let (mut up, mut down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
-        let short_of_flow = (change > 0.0 && d.flow_down_per_s < down && change > d.flow_down_per_s * d.dt_s)
-            || (change < 0.0 && d.flow_up_per_s < up && -change > d.flow_up_per_s * d.dt_s);
-        up = if d.flow_up_per_s < up { d.flow_up_per_s } else { up };
-        down = if d.flow_down_per_s < down { d.flow_down_per_s } else { down }; // RC-5
+        let short_of_flow =
+            (change > 0.0 && d.flow_down_per_s < down && change > d.flow_down_per_s * d.dt_s)
+                || (change < 0.0 && d.flow_up_per_s < up && -change > d.flow_up_per_s * d.dt_s);
+        up = if d.flow_up_per_s < up {
+            d.flow_up_per_s
+        } else {
+            up
+        };
+        down = if d.flow_down_per_s < down {
+            d.flow_down_per_s
+        } else {
+            down
+        }; // RC-5
         let (least, most) = (-up * d.dt_s, down * d.dt_s);
         if least <= change && change <= most {
             return (wanted, change, short_of_flow);
         }
         let change = held(change, least, most);
-        (held(before * exp(change), self.high, self.low), change, short_of_flow)
+        (
+            held(before * exp(change), self.high, self.low),
+            change,
+            short_of_flow,
+        )
     }
 }
 
@@ -160,7 +185,10 @@ mod tests {
         let c = control();
         let fast = c.step(&demand(400.0, 5e3, 1.0));
         assert!(((1.0 / fast.0).ln() - 0.35).abs() < 1e-9 && !fast.2);
-        let slow = c.step(&RatioDemand { flow_up_per_s: 0.1, ..demand(400.0, 5e3, 1.0) });
+        let slow = c.step(&RatioDemand {
+            flow_up_per_s: 0.1,
+            ..demand(400.0, 5e3, 1.0)
+        });
         assert!(((1.0 / slow.0).ln() - 0.1).abs() < 1e-9 && (slow.1 + 0.1).abs() < 1e-12 && slow.2);
     }
 }

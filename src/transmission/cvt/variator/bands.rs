@@ -27,18 +27,31 @@ pub struct BandLoss {
 #[must_use]
 pub fn slide_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
     let n = belt.band_count;
-    let slide = (1.0 / g.ratio - 1.0).abs() / 2.0 * (belt.band_offset_m + belt.band_thickness_m * (n - 1.0) / 2.0);
+    let slide = (1.0 / g.ratio - 1.0).abs() / 2.0
+        * (belt.band_offset_m + belt.band_thickness_m * (n - 1.0) / 2.0);
     let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
-    let least = if wraps[0] < wraps[1] { wraps[0] } else { wraps[1] };
-    wraps.map(|w| if belt.formulation.scales_band_force() { slide * least / w } else { slide }) // BT-4
+    let least = if wraps[0] < wraps[1] {
+        wraps[0]
+    } else {
+        wraps[1]
+    };
+    wraps.map(|w| {
+        if belt.formulation.scales_band_force() {
+            slide * least / w
+        } else {
+            slide
+        }
+    }) // BT-4
 }
 
 /// Film shear torque per share, viscosity and speed over film thickness, m4 (FI-1).
 #[must_use]
 pub fn film_m4(belt: &Belt, g: &Geometry) -> f64 {
-    let arcs = g.primary_radius_m * g.primary_wrap_rad + g.secondary_radius_m * g.secondary_wrap_rad;
+    let arcs =
+        g.primary_radius_m * g.primary_wrap_rad + g.secondary_radius_m * g.secondary_wrap_rad;
     let spread = (1.0 / g.ratio - 1.0) / 2.0;
-    let offsets = belt.band_offset_m * belt.band_offset_m + (belt.band_count - 1.0) * belt.band_thickness_m * belt.band_thickness_m;
+    let offsets = belt.band_offset_m * belt.band_offset_m
+        + (belt.band_count - 1.0) * belt.band_thickness_m * belt.band_thickness_m;
     belt.band_width_m * arcs * spread * spread * offsets
 }
 
@@ -49,7 +62,8 @@ pub fn film_m4(belt: &Belt, g: &Geometry) -> f64 {
 #[must_use]
 pub fn travel_m(belt: &Belt, g: &Geometry, speed_share: f64) -> [f64; 2] {
     let (p, s) = (1.0 / g.primary_radius_m, 1.0 / g.secondary_radius_m);
-    let turns = belt.length_m / 2.0 * (p + s) - 2.0 * std::f64::consts::PI + speed_share * belt.length_m * (p - s).abs();
+    let turns = belt.length_m / 2.0 * (p + s) - 2.0 * std::f64::consts::PI
+        + speed_share * belt.length_m * (p - s).abs();
     [belt.band_offset_m * turns, belt.band_thickness_m * turns] // BT-5
 }
 

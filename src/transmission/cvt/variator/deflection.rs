@@ -36,7 +36,11 @@ pub fn wedge_per_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
 /// 2 `R_p` / t, times depth over deflection (PE-1).
 #[must_use]
 pub fn penetration(belt: &Belt, g: &Geometry) -> f64 {
-    let depth = if belt.formulation.radial_penetration() { 0.5 / belt.tan_wedge } else { 1.0 };
+    let depth = if belt.formulation.radial_penetration() {
+        0.5 / belt.tan_wedge
+    } else {
+        1.0
+    };
     2.0 * g.primary_radius_m * depth / belt.segment_thickness_m
 }
 
@@ -49,18 +53,31 @@ pub fn deflection(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_flank: f64) -> 
 
 /// The same from the clamping forces, N, both pulleys side by side.
 #[inline(never)]
-fn clamped(belt: &Belt, at: &BeltAtRatio, primary_n: f64, secondary_n: f64, mu_flank: f64) -> Deflection {
+fn clamped(
+    belt: &Belt,
+    at: &BeltAtRatio,
+    primary_n: f64,
+    secondary_n: f64,
+    mu_flank: f64,
+) -> Deflection {
     let (g, prepared) = (&at.geometry, &at.prepared);
     let radius_m = [g.primary_radius_m, g.secondary_radius_m];
     let clamp_n = [primary_n, secondary_n];
     let friction_n = pair(|i| mu_flank * clamp_n[i] * prepared.normal_per_clamp[i]);
-    let compliance_per_n = [prepared.stop * belt.primary_compliance_per_n, belt.secondary_compliance_per_n]; // WE-4
+    let compliance_per_n = [
+        prepared.stop * belt.primary_compliance_per_n,
+        belt.secondary_compliance_per_n,
+    ]; // WE-4
     let delta_m = pair(|i| clamp_n[i] * (radius_m[i] * compliance_per_n[i])); // WE-1
     let chord_m2 = pair(|i| {
         let (r, q) = (radius_m[i], delta_m[i] * prepared.wedge_half_cot);
         q * ((r + r + q) * (r + r + q + q)).sqrt() // WE-2: sqrt(q (2R+q)) sqrt(2 (R+q) q)
     });
-    let wedge_n = if belt.formulation.own_wedge_force() { friction_n } else { [friction_n[0]; 2] };
+    let wedge_n = if belt.formulation.own_wedge_force() {
+        friction_n
+    } else {
+        [friction_n[0]; 2]
+    };
     let wedge_nm = pair(|i| prepared.wedge_per_m[i] * wedge_n[i] * chord_m2[i]); // WE-3
     let penetration_nm = pair(|i| prepared.penetration * friction_n[i] * delta_m[i]); // PE-1
     Deflection {

@@ -17,8 +17,11 @@ pub enum Formulation {
 
 impl Formulation {
     /// Names as on the command line.
-    pub const NAMES: [(&'static str, Formulation); 3] =
-        [("smooth", Formulation::Smooth), ("appendix_c", Formulation::AppendixC), ("chapter_8", Formulation::Chapter8)];
+    pub const NAMES: [(&'static str, Formulation); 3] = [
+        ("smooth", Formulation::Smooth),
+        ("appendix_c", Formulation::AppendixC),
+        ("chapter_8", Formulation::Chapter8),
+    ];
 
     /// Segment friction where the formulation prescribes it; the fluid's otherwise.
     #[must_use]
@@ -70,7 +73,11 @@ impl Formulation {
     #[must_use]
     #[inline]
     pub fn wedge_arcs(self) -> f64 {
-        if self == Formulation::Chapter8 { 2.0 } else { 1.0 }
+        if self == Formulation::Chapter8 {
+            2.0
+        } else {
+            1.0
+        }
     }
 
     /// Wedge force at the secondary from the secondary's own clamping.
@@ -91,7 +98,11 @@ impl Formulation {
     #[must_use]
     #[inline]
     pub fn wedge_tan(self, own: f64) -> f64 {
-        if self == Formulation::AppendixC { 11.0f64.to_radians().tan() } else { own }
+        if self == Formulation::AppendixC {
+            11.0f64.to_radians().tan()
+        } else {
+            own
+        }
     }
 
     /// Part of the primary's deflection left near its end stop, from the ramp's value (1 away from the stop).

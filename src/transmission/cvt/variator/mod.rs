@@ -141,18 +141,29 @@ pub struct Prepared {
 impl Prepared {
     fn new(belt: &Belt, g: &Geometry) -> Self {
         let pitch = belt.segment_thickness_m;
-        let arc_m = [g.primary_radius_m * g.primary_wrap_rad, g.secondary_radius_m * g.secondary_wrap_rad];
-        let least = if g.primary_wrap_rad < g.secondary_wrap_rad { g.primary_wrap_rad } else { g.secondary_wrap_rad };
+        let arc_m = [
+            g.primary_radius_m * g.primary_wrap_rad,
+            g.secondary_radius_m * g.secondary_wrap_rad,
+        ];
+        let least = if g.primary_wrap_rad < g.secondary_wrap_rad {
+            g.primary_wrap_rad
+        } else {
+            g.secondary_wrap_rad
+        };
         Prepared {
             arc_m,
             count: arc_m.map(|a| a / pitch),
             normal_per_clamp: arc_m.map(|a| 2.0 * pitch / (a * belt.cos_wedge)),
-            shoulder_per_step: [g.primary_radius_m, g.secondary_radius_m].map(|r| pitch / (r * least)),
-            band_gap_m_n: belt.length_m / (belt.youngs_pa * belt.band_area_m2() * g.primary_wrap_rad),
+            shoulder_per_step: [g.primary_radius_m, g.secondary_radius_m]
+                .map(|r| pitch / (r * least)),
+            band_gap_m_n: belt.length_m
+                / (belt.youngs_pa * belt.band_area_m2() * g.primary_wrap_rad),
             strut_gap_m_n: g.strut_m / (belt.youngs_pa * belt.strut_area_m2),
             slide_m: bands::slide_m(belt, g),
             film_m4: bands::film_m4(belt, g),
-            stop: belt.formulation.primary_stop(1.0 - ramp(g.ratio, belt.stop_from_ratio, belt.stop_to_ratio)), // WE-4
+            stop: belt
+                .formulation
+                .primary_stop(1.0 - ramp(g.ratio, belt.stop_from_ratio, belt.stop_to_ratio)), // WE-4
             wedge_half_cot: 0.5 / belt.formulation.wedge_tan(belt.tan_wedge),
             wedge_per_m: deflection::wedge_per_m(belt, g),
             penetration: deflection::penetration(belt, g),
@@ -178,7 +189,11 @@ impl BeltAtRatio {
         BeltAtRatio {
             geometry,
             prepared: Prepared::new(belt, &geometry),
-            direction: if steep.abs() < FULL_STEP { -steep.tanh() } else { -steep.signum() }, // TE-6
+            direction: if steep.abs() < FULL_STEP {
+                -steep.tanh()
+            } else {
+                -steep.signum()
+            }, // TE-6
             thrust_ratio: match &belt.thrust_ratio {
                 Some(curve) => curve.at(log),
                 None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
@@ -296,7 +311,11 @@ fn tension(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, direction: f64) -> Te
 /// Torque capacity at the secondary, Nm (VA-2).
 #[inline]
 fn capacity_nm(at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> f64 {
-    let weaker = if t.primary_clamp_n < t.secondary_clamp_n { t.primary_clamp_n } else { t.secondary_clamp_n };
+    let weaker = if t.primary_clamp_n < t.secondary_clamp_n {
+        t.primary_clamp_n
+    } else {
+        t.secondary_clamp_n
+    };
     weaker * mu_segment * at.prepared.capacity_m // VA-2
 }
 
@@ -314,7 +333,11 @@ struct Parts {
 fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
     let tension = tension(belt, at, load, at.direction);
     let mu_segment = belt.formulation.segment_friction(load.segment_friction);
-    let film = Film { share: load.band.film_share, eta_pa_s: load.eta_pa_s, thickness_m: load.film_thickness_m };
+    let film = Film {
+        share: load.band.film_share,
+        eta_pa_s: load.eta_pa_s,
+        thickness_m: load.film_thickness_m,
+    };
     Parts {
         slip: slip::slip(belt, at, &tension, mu_segment),
         bands: bands::band_loss(at, &tension, load.band.mu),
@@ -327,7 +350,14 @@ fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
 
 #[inline(always)]
 fn losses(load: &BeltLoad, parts: &Parts) -> BeltLosses {
-    let Parts { slip, bands, film_nm, deflection, capacity_nm, .. } = parts;
+    let Parts {
+        slip,
+        bands,
+        film_nm,
+        deflection,
+        capacity_nm,
+        ..
+    } = parts;
     BeltLosses {
         band_nm: bands.primary_nm + bands.secondary_nm,
         film_nm: *film_nm,
@@ -342,9 +372,19 @@ fn losses(load: &BeltLoad, parts: &Parts) -> BeltLosses {
 
 fn state(at: &BeltAtRatio, load: &BeltLoad, parts: &Parts) -> BeltState {
     let sums = losses(load, parts);
-    let BeltLosses { band_nm, film_nm, slip_nm, wedge_nm, penetration_nm, slip_total, capacity_nm, gross_slip } = sums;
+    let BeltLosses {
+        band_nm,
+        film_nm,
+        slip_nm,
+        wedge_nm,
+        penetration_nm,
+        slip_total,
+        capacity_nm,
+        gross_slip,
+    } = sums;
     BeltState {
-        input_torque_nm: load.output_torque_nm / at.geometry.ratio * (1.0 - slip_total) + sums.sum_nm(), // VA-1
+        input_torque_nm: load.output_torque_nm / at.geometry.ratio * (1.0 - slip_total)
+            + sums.sum_nm(), // VA-1
         tension: parts.tension,
         slip: parts.slip,
         slip_total,

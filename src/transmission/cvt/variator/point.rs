@@ -3,7 +3,10 @@
 use super::bands::{band_loss, travel_m};
 use super::deflection::{Deflection, deflection};
 use super::slip::{Contact, LARGEST_AREA_N};
-use super::{BandLoss, Belt, BeltAtRatio, BeltLoad, Formulation, Geometry, Tension, capacity_nm, parts, printed, state, tension};
+use super::{
+    BandLoss, Belt, BeltAtRatio, BeltLoad, Formulation, Geometry, Tension, capacity_nm, parts,
+    printed, state, tension,
+};
 use crate::lubricant::VALID_K;
 
 /// How the solution of a point ended.
@@ -19,7 +22,11 @@ pub enum PointStatus {
 
 impl PointStatus {
     /// All of them.
-    pub const ALL: [PointStatus; 3] = [PointStatus::Ok, PointStatus::GrossSlip, PointStatus::NoActiveArc];
+    pub const ALL: [PointStatus; 3] = [
+        PointStatus::Ok,
+        PointStatus::GrossSlip,
+        PointStatus::NoActiveArc,
+    ];
 
     /// Name as in the `status` column.
     #[must_use]
@@ -82,7 +89,10 @@ impl BeltPoint {
     /// smaller pulley's, -0.5 for the larger one's (BT-5).
     #[must_use]
     pub fn with_band_speed(self, belt: &Belt, speed_share: f64) -> Self {
-        BeltPoint { band_travel_m: travel_m(belt, &self.geometry, speed_share), ..self }
+        BeltPoint {
+            band_travel_m: travel_m(belt, &self.geometry, speed_share),
+            ..self
+        }
     }
 }
 
@@ -107,23 +117,54 @@ pub struct PointFlags(u16);
 impl PointFlags {
     /// Names in the order of the bits, with their meaning.
     pub const NAMES: [(&'static str, &'static str); 9] = [
-        ("outside_ratio_range", "the ratio is outside the vehicle's limits"),
-        ("above_capacity", "the torque is above what the clamping forces carry (VA-2)"),
-        ("gross_slip", "the belt slides as a whole; slip and losses mean nothing in the printed forms, slip is bounded in smooth"),
-        ("no_active_arc", "the bands' pull leaves the segments no grip; slip and belt loss are NaN"),
-        ("overrun", "the output torque is negative: outside what the thesis describes"),
-        ("above_pressure_cap", "the secondary pressure is above the vehicle's largest"),
-        ("below_pressure_floor", "the secondary pressure is below the vehicle's smallest"),
+        (
+            "outside_ratio_range",
+            "the ratio is outside the vehicle's limits",
+        ),
+        (
+            "above_capacity",
+            "the torque is above what the clamping forces carry (VA-2)",
+        ),
+        (
+            "gross_slip",
+            "the belt slides as a whole; slip and losses mean nothing in the printed forms, slip is bounded in smooth",
+        ),
+        (
+            "no_active_arc",
+            "the bands' pull leaves the segments no grip; slip and belt loss are NaN",
+        ),
+        (
+            "overrun",
+            "the output torque is negative: outside what the thesis describes",
+        ),
+        (
+            "above_pressure_cap",
+            "the secondary pressure is above the vehicle's largest",
+        ),
+        (
+            "below_pressure_floor",
+            "the secondary pressure is below the vehicle's smallest",
+        ),
         ("overspeed", "the input speed is above the engine's highest"),
-        ("outside_validity", "belt temperature outside the fluid's range, or segment compression beyond the fitted contact area (SL-3)"),
+        (
+            "outside_validity",
+            "belt temperature outside the fluid's range, or segment compression beyond the fitted contact area (SL-3)",
+        ),
     ];
 
     /// The flags of a point at a secondary pressure in Pa and a belt temperature in K.
     #[must_use]
-    pub fn new(point: &BeltPoint, load: &BeltLoad, pressure_pa: f64, belt_k: f64, limits: &PointLimits) -> Self {
+    pub fn new(
+        point: &BeltPoint,
+        load: &BeltLoad,
+        pressure_pa: f64,
+        belt_k: f64,
+        limits: &PointLimits,
+    ) -> Self {
         let ratio = point.geometry.ratio;
         let set = [
-            ratio < limits.ratio[0] * (1.0 - LIMIT_SLACK) || ratio > limits.ratio[1] * (1.0 + LIMIT_SLACK),
+            ratio < limits.ratio[0] * (1.0 - LIMIT_SLACK)
+                || ratio > limits.ratio[1] * (1.0 + LIMIT_SLACK),
             load.output_torque_nm.abs() > point.capacity_nm,
             point.status == PointStatus::GrossSlip,
             point.status == PointStatus::NoActiveArc,
@@ -133,7 +174,12 @@ impl PointFlags {
             load.primary_speed_rad_s > limits.highest_rad_s * (1.0 + 1e-9),
             !VALID_K.contains(&belt_k) || point.tension.compression_n.abs() > LARGEST_AREA_N,
         ];
-        PointFlags(set.iter().enumerate().map(|(bit, on)| u16::from(*on) << bit).sum())
+        PointFlags(
+            set.iter()
+                .enumerate()
+                .map(|(bit, on)| u16::from(*on) << bit)
+                .sum(),
+        )
     }
 
     /// Whether the flag of that place in [`PointFlags::NAMES`] is set.
@@ -144,7 +190,11 @@ impl PointFlags {
 
     /// Names of the flags that are set.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
-        Self::NAMES.iter().enumerate().filter(move |(place, _)| self.has(*place)).map(|(_, (name, _))| *name)
+        Self::NAMES
+            .iter()
+            .enumerate()
+            .filter(move |(place, _)| self.has(*place))
+            .map(|(_, (name, _))| *name)
     }
 }
 
@@ -154,7 +204,11 @@ impl PointFlags {
 /// and 0.13 in wedging and penetration.
 #[must_use]
 pub fn belt_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoint {
-    if belt.formulation == Formulation::Smooth { driving_point(belt, at, load) } else { printed_point(belt, at, load) }
+    if belt.formulation == Formulation::Smooth {
+        driving_point(belt, at, load)
+    } else {
+        printed_point(belt, at, load)
+    }
 }
 
 /// The point with the smooth rules, whatever the belt's formulation: the same numbers as [`super::belt_state`].
@@ -176,8 +230,17 @@ pub fn driving_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoin
         slip_m_s: [v * slip.primary, v * slip.secondary],
         slip_total: state.slip_total,
         capacity_nm: state.capacity_nm,
-        status: if state.gross_slip { PointStatus::GrossSlip } else { PointStatus::Ok },
-        ..without_slip(belt, at, load, (&parts.tension, &parts.bands, &parts.deflection))
+        status: if state.gross_slip {
+            PointStatus::GrossSlip
+        } else {
+            PointStatus::Ok
+        },
+        ..without_slip(
+            belt,
+            at,
+            load,
+            (&parts.tension, &parts.bands, &parts.deflection),
+        )
     }
 }
 
@@ -187,14 +250,20 @@ fn printed_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoint {
     let bands = band_loss(at, &tension, load.band.mu);
     let deflection = deflection(belt, at, &tension, printed::FLANK_FRICTION); // PR-5
     let bare = without_slip(belt, at, load, (&tension, &bands, &deflection));
-    let bare = BeltPoint { capacity_nm: capacity_nm(at, &tension, load.segment_friction), ..bare };
+    let bare = BeltPoint {
+        capacity_nm: capacity_nm(at, &tension, load.segment_friction),
+        ..bare
+    };
     let Some(slip) = printed::slip(&Contact::new(belt, at, &tension, load.segment_friction)) else {
         return bare;
     };
     let v = bare.belt_speed_m_s;
     let slip_total = slip.slip[0] + slip.slip[1];
     let sum = |pair: [f64; 2]| pair[0] + pair[1];
-    let loss_nm = sum(bare.band_loss_nm) + sum(slip.loss_nm) + sum(bare.wedge_loss_nm) + sum(bare.penetration_loss_nm);
+    let loss_nm = sum(bare.band_loss_nm)
+        + sum(slip.loss_nm)
+        + sum(bare.wedge_loss_nm)
+        + sum(bare.penetration_loss_nm);
     BeltPoint {
         slip_loss_nm: slip.loss_nm,
         loss_nm,
@@ -204,13 +273,22 @@ fn printed_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoint {
         idle_slip_m_s: v * slip.idle,
         slip_m_s: slip.slip.map(|share| v * share),
         slip_total,
-        status: if slip.gross { PointStatus::GrossSlip } else { PointStatus::Ok },
+        status: if slip.gross {
+            PointStatus::GrossSlip
+        } else {
+            PointStatus::Ok
+        },
         ..bare
     }
 }
 
 /// Everything but slip, which stays not a number.
-fn without_slip(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, of: (&Tension, &BandLoss, &Deflection)) -> BeltPoint {
+fn without_slip(
+    belt: &Belt,
+    at: &BeltAtRatio,
+    load: &BeltLoad,
+    of: (&Tension, &BandLoss, &Deflection),
+) -> BeltPoint {
     let (tension, bands, deflection) = of;
     let g = &at.geometry;
     let (mean, step) = (tension.mean_tension_n(g), tension.step_n.abs());
@@ -224,7 +302,10 @@ fn without_slip(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, of: (&Tension, &
         film_loss_nm: [0.0; 2],
         slip_loss_nm: [f64::NAN; 2],
         wedge_loss_nm: [deflection.wedge_primary_nm, deflection.wedge_secondary_nm],
-        penetration_loss_nm: [deflection.penetration_primary_nm, deflection.penetration_secondary_nm],
+        penetration_loss_nm: [
+            deflection.penetration_primary_nm,
+            deflection.penetration_secondary_nm,
+        ],
         loss_nm: f64::NAN,
         input_torque_nm: f64::NAN,
         active_segments: 0.0,

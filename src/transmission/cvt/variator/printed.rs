@@ -52,18 +52,34 @@ pub(super) fn slip(c: &Contact) -> Option<PrintedSlip> {
     let whole = (cx / grip).ceil();
     let k = if whole > 1.0 { whole } else { 1.0 }; // PR-2
     let (active, arc) = (k * pitch, prepared.arc_m[load]);
-    let e_segs = cx * (prepared.strut_gap_m_n + 0.5 * (active + prepared.arc_m[other]) / (belt.youngs_pa * printed_area_m2(cx))); // SL-2
+    let e_segs = cx
+        * (prepared.strut_gap_m_n
+            + 0.5 * (active + prepared.arc_m[other]) / (belt.youngs_pa * printed_area_m2(cx))); // SL-2
     let gap = (c.slack_m + e_segs) / (arc - active); // SL-5
     let pull = cx / k + shoulder; // PR-3
     let pull_other = cx / prepared.count[other] + sign * c.shoulder_n[other]; // PR-3
     let keeps_sign = inverted || f.signed_idle_slip();
     let idle_share = shoulder / pull;
     let other_share = pull_other / c.grip_n[other] / (pull / c.grip_n[load]);
-    let idle = gap * if keeps_sign { idle_share } else { idle_share.abs() }; // SL-6
+    let idle = gap
+        * if keeps_sign {
+            idle_share
+        } else {
+            idle_share.abs()
+        }; // SL-6
     let loaded = gap + idle;
-    let slip_other = loaded * if keeps_sign { other_share } else { other_share.abs() }; // SL-6
+    let slip_other = loaded
+        * if keeps_sign {
+            other_share
+        } else {
+            other_share.abs()
+        }; // SL-6
     let r = c.at.geometry.primary_radius_m;
-    let idle_loss = if f.counts_idle_arc() { (idle * shoulder * (prepared.count[load] - k)).abs() } else { 0.0 };
+    let idle_loss = if f.counts_idle_arc() {
+        (idle * shoulder * (prepared.count[load] - k)).abs()
+    } else {
+        0.0
+    };
     let mut loss_nm = [0.0; 2];
     loss_nm[load] = r * ((loaded * pull * k).abs() + idle_loss); // SL-7
     loss_nm[other] = r * (slip_other * pull_other * prepared.count[other]).abs(); // SL-7
@@ -72,5 +88,12 @@ pub(super) fn slip(c: &Contact) -> Option<PrintedSlip> {
         (true, true) => [slip_other, -loaded],
         (true, false) => [-slip_other, -loaded],
     };
-    Some(PrintedSlip { gap, idle, slip, loss_nm, active_segments: k, gross: active >= arc })
+    Some(PrintedSlip {
+        gap,
+        idle,
+        slip,
+        loss_nm,
+        active_segments: k,
+        gross: active >= arc,
+    })
 }

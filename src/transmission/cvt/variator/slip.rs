@@ -63,7 +63,11 @@ pub(super) fn printed_area_m2(compression_n: f64) -> f64 {
 #[inline]
 fn arc_area_m2(compression_n: f64) -> f64 {
     let c = compression_n;
-    printed_area_m2(if c < LARGEST_AREA_N { c } else { LARGEST_AREA_N })
+    printed_area_m2(if c < LARGEST_AREA_N {
+        c
+    } else {
+        LARGEST_AREA_N
+    })
 }
 
 /// What the slip equations of both branches look at; pairs are primary, secondary.
@@ -94,7 +98,10 @@ impl<'a> Contact<'a> {
             at,
             slack_m: t.primary_shoulder_n * prepared.band_gap_m_n + belt.initial_gap_m, // SL-1
             grip_n: [grip(t.primary_clamp_n, 0), grip(t.secondary_clamp_n, 1)],
-            shoulder_n: [t.step_n * prepared.shoulder_per_step[0], t.step_n * prepared.shoulder_per_step[1]],
+            shoulder_n: [
+                t.step_n * prepared.shoulder_per_step[0],
+                t.step_n * prepared.shoulder_per_step[1],
+            ],
             compression_n: belt.formulation.compression_n(t.compression_n),
         }
     }
@@ -118,7 +125,11 @@ struct Branches {
 fn branches(c: &Contact) -> Branches {
     let (belt, prepared, f) = (c.belt, &c.at.prepared, c.belt.formulation);
     let swapped = |of: [f64; 2]| [of[1], of[0]];
-    let (pitch, arc, arc_other) = (belt.segment_thickness_m, prepared.arc_m, swapped(prepared.arc_m));
+    let (pitch, arc, arc_other) = (
+        belt.segment_thickness_m,
+        prepared.arc_m,
+        swapped(prepared.arc_m),
+    );
     let cx = [c.compression_n, -c.compression_n].map(|x| if x > 0.0 { x } else { 0.0 });
     let shoulder = [c.shoulder_n[0], -c.shoulder_n[1]];
     let grip = pair(|i| {
@@ -126,7 +137,13 @@ fn branches(c: &Contact) -> Branches {
         if grip > floor { grip } else { floor }
     });
     let k = pair(|i| cx[i] / grip[i]); // SL-4
-    let segments = pair(|i| if k[i] < prepared.count[i] { k[i] } else { prepared.count[i] });
+    let segments = pair(|i| {
+        if k[i] < prepared.count[i] {
+            k[i]
+        } else {
+            prepared.count[i]
+        }
+    });
     let active = segments.map(|n| n * pitch);
     let arcs = pair(|i| 0.5 * (active[i] + arc_other[i]) / (belt.youngs_pa * arc_area_m2(cx[i])));
     let e_segs = pair(|i| cx[i] * (prepared.strut_gap_m_n + arcs[i])); // SL-2
@@ -135,28 +152,62 @@ fn branches(c: &Contact) -> Branches {
     let per_grip = c.grip_n.map(|n| 1.0 / n);
     let lambda = pair(|i| {
         let lambda = shoulder[i] * per_grip[i];
-        if lambda > LEAST_GRIP - 1.0 { lambda } else { LEAST_GRIP - 1.0 } // SL-10
+        if lambda > LEAST_GRIP - 1.0 {
+            lambda
+        } else {
+            LEAST_GRIP - 1.0
+        } // SL-10
     });
     // Conventional loading takes the magnitude: the larger of the number and its opposite.
     let turned = [if f.signed_idle_slip() { 1.0 } else { -1.0 }, 1.0];
-    let idle = pair(|i| gap[i] * if turned[i] * lambda[i] > lambda[i] { turned[i] * lambda[i] } else { lambda[i] }); // SL-6
+    let idle = pair(|i| {
+        gap[i]
+            * if turned[i] * lambda[i] > lambda[i] {
+                turned[i] * lambda[i]
+            } else {
+                lambda[i]
+            }
+    }); // SL-6
     let free = pair(|i| gap[i] + idle[i]); // not below zero (SL-10)
-    let loaded = pair(|i| if belt.slip_bound < free[i] { belt.slip_bound } else { free[i] }); // SL-9
-    let total_other = swapped([cx[1] - c.shoulder_n[0] * prepared.count[0], cx[0] + c.shoulder_n[1] * prepared.count[1]]);
+    let loaded = pair(|i| {
+        if belt.slip_bound < free[i] {
+            belt.slip_bound
+        } else {
+            free[i]
+        }
+    }); // SL-9
+    let total_other = swapped([
+        cx[1] - c.shoulder_n[0] * prepared.count[0],
+        cx[0] + c.shoulder_n[1] * prepared.count[1],
+    ]);
     let per_other = swapped(pair(|i| prepared.per_count[i] * per_grip[i]));
-    let other = pair(|i| held(loaded[i] * (total_other[i] * per_other[i]), -belt.slip_bound, belt.slip_bound)); // SL-9
+    let other = pair(|i| {
+        held(
+            loaded[i] * (total_other[i] * per_other[i]),
+            -belt.slip_bound,
+            belt.slip_bound,
+        )
+    }); // SL-9
     let r = c.at.geometry.primary_radius_m;
     let mut loaded_n = pair(|i| loaded[i] * c.grip_n[i] * segments[i]);
     if f.counts_idle_arc() {
-        let share = pair(|i| if loaded[i] < free[i] { loaded[i] / free[i] } else { 1.0 });
-        loaded_n = pair(|i| loaded_n[i] + (idle[i] * share[i] * shoulder[i]).abs() * (idle_arc[i] / pitch));
+        let share = pair(|i| {
+            if loaded[i] < free[i] {
+                loaded[i] / free[i]
+            } else {
+                1.0
+            }
+        });
+        loaded_n = pair(|i| {
+            loaded_n[i] + (idle[i] * share[i] * shoulder[i]).abs() * (idle_arc[i] / pitch)
+        });
     }
     Branches {
         loaded,
         other,
         free,
         gap,
-        loss_loaded_nm: pair(|i| r * loaded_n[i]),                      // SL-7
+        loss_loaded_nm: pair(|i| r * loaded_n[i]), // SL-7
         loss_other_nm: pair(|i| r * (other[i] * total_other[i]).abs()), // SL-7
         active_segments: k,
     }
@@ -178,9 +229,19 @@ pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip
         1.0 / (1.0 + exp(-2.0 * x))
     };
     let mix = |conventional: f64, inverted: f64| w * conventional + (1.0 - w) * inverted;
-    let other = if belt.formulation.flips_inverted_primary() { b.other[1] } else { -b.other[1] }; // SL-6
+    let other = if belt.formulation.flips_inverted_primary() {
+        b.other[1]
+    } else {
+        -b.other[1]
+    }; // SL-6
     let branch = usize::from(x < 0.0);
-    let gap = pair(|i| if b.free[i] > b.loaded[i] { b.gap[i] * (b.loaded[i] / b.free[i]) } else { b.gap[i] }); // SL-9
+    let gap = pair(|i| {
+        if b.free[i] > b.loaded[i] {
+            b.gap[i] * (b.loaded[i] / b.free[i])
+        } else {
+            b.gap[i]
+        }
+    }); // SL-9
     Slip {
         primary: mix(b.loaded[0], other),
         secondary: mix(b.other[0].abs(), -b.loaded[1]),

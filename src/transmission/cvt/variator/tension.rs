@@ -62,7 +62,11 @@ impl Tension {
         let z = input.output_torque_nm * input.per_secondary_m + s * mu * a;
         let c = mu * bp / 2.0;
         // The divisors are known before the torque is: nothing waits for a division.
-        let cx = z * if z >= 0.0 { 1.0 / (1.0 - s * c) } else { 1.0 / (1.0 + s * c) }; // TE-5
+        let cx = z * if z >= 0.0 {
+            1.0 / (1.0 - s * c)
+        } else {
+            1.0 / (1.0 + s * c)
+        }; // TE-5
         let q_p = a + cx.abs() * bp / 2.0; // TE-2
         Tension {
             primary_clamp_n: input.primary_clamp_n,

@@ -35,7 +35,10 @@ fn load(speed_rpm: f64, torque: f64, bar: f64, mu: f64) -> BeltLoad {
         primary_speed_rad_s: speed_rpm * std::f64::consts::PI / 30.0,
         output_torque_nm: torque,
         secondary_clamp_n: bar * 1e5 * 0.97190e-2 + 750.0,
-        band: BandFriction { mu, film_share: 0.0 },
+        band: BandFriction {
+            mu,
+            film_share: 0.0,
+        },
         eta_pa_s: 0.009,
         film_thickness_m: 0.5e-6,
         segment_friction: 0.125,
@@ -61,11 +64,21 @@ impl Golden<'_> {
 fn golden() -> Vec<Golden<'static>> {
     let text = include_str!("../../../../tests/golden/belt_points.csv");
     let names: Vec<&str> = text.lines().next().expect("header").split(',').collect();
-    text.lines().skip(1).map(|l| Golden { names: names.clone(), cells: l.split(',').collect() }).collect()
+    text.lines()
+        .skip(1)
+        .map(|l| Golden {
+            names: names.clone(),
+            cells: l.split(',').collect(),
+        })
+        .collect()
 }
 
 fn belt_of(row: &Golden) -> Belt {
-    let f = if row.text("formulation") == "appendix_c" { Formulation::AppendixC } else { Formulation::Chapter8 };
+    let f = if row.text("formulation") == "appendix_c" {
+        Formulation::AppendixC
+    } else {
+        Formulation::Chapter8
+    };
     let th = row.num("pulley_half_angle_deg").to_radians();
     let stop = row.num("primary_on_stop") > 0.5;
     let mut belt = thesis_belt(f);
@@ -88,10 +101,24 @@ fn belt_of(row: &Golden) -> Belt {
 fn driving_points_are_belt_states() {
     for (_, formulation) in Formulation::NAMES {
         let belt = thesis_belt(formulation);
-        for (ratio, torque, bar) in [(0.45, 10.0, 11.0), (1.0, -20.0, 20.0), (2.35, 60.0, 30.0), (0.8, 300.0, 15.0)] {
+        for (ratio, torque, bar) in [
+            (0.45, 10.0, 11.0),
+            (1.0, -20.0, 20.0),
+            (2.35, 60.0, 30.0),
+            (0.8, 300.0, 15.0),
+        ] {
             let at = BeltAtRatio::new(&belt, ratio);
-            let load = BeltLoad { band: BandFriction { mu: 0.12, film_share: 0.4 }, ..load(3000.0, torque, bar, 0.12) };
-            let (p, s) = (driving_point(&belt, &at, &load), belt_state(&belt, &at, &load));
+            let load = BeltLoad {
+                band: BandFriction {
+                    mu: 0.12,
+                    film_share: 0.4,
+                },
+                ..load(3000.0, torque, bar, 0.12)
+            };
+            let (p, s) = (
+                driving_point(&belt, &at, &load),
+                belt_state(&belt, &at, &load),
+            );
             assert_eq!(p.loss_nm.to_bits(), s.loss_nm().to_bits());
             assert_eq!(p.input_torque_nm.to_bits(), s.input_torque_nm.to_bits());
             assert_eq!(
@@ -106,12 +133,22 @@ fn driving_points_are_belt_states() {
                 (p.wedge_loss_nm, s.wedge_nm),
                 (p.penetration_loss_nm, s.penetration_nm),
             ] {
-                assert!((pair[0] + pair[1] - want).abs() <= 1e-12 * want, "{pair:?} {want}");
+                assert!(
+                    (pair[0] + pair[1] - want).abs() <= 1e-12 * want,
+                    "{pair:?} {want}"
+                );
             }
-            let loaded = if s.tension.compression_n > 0.0 { p.slip_m_s[0] } else { -p.slip_m_s[1] };
+            let loaded = if s.tension.compression_n > 0.0 {
+                p.slip_m_s[0]
+            } else {
+                -p.slip_m_s[1]
+            };
             // Away from C_x = 0 gap and idle slip are the loading pulley's slip, at its bound as well.
             if s.tension.compression_n.abs() > 1200.0 {
-                assert!((p.gap_slip_m_s + p.idle_slip_m_s - loaded).abs() <= 1e-12, "I {ratio}: {p:?}");
+                assert!(
+                    (p.gap_slip_m_s + p.idle_slip_m_s - loaded).abs() <= 1e-12,
+                    "I {ratio}: {p:?}"
+                );
             }
         }
     }
@@ -122,7 +159,10 @@ fn driving_points_are_belt_states() {
 #[test]
 fn printed_forms_rescale() {
     for formulation in [Formulation::AppendixC, Formulation::Chapter8] {
-        let small = Belt { primary_compliance_per_n: 1e-7, ..thesis_belt(formulation) };
+        let small = Belt {
+            primary_compliance_per_n: 1e-7,
+            ..thesis_belt(formulation)
+        };
         let large = Belt {
             centre_distance_m: 2.0 * small.centre_distance_m,
             length_m: 2.0 * small.length_m,
@@ -144,8 +184,18 @@ fn printed_forms_rescale() {
             secondary_clamp_n: 4.0 * one.secondary_clamp_n,
             ..one
         };
-        let (a, b) = (belt_point(&small, &at(&small), &one), belt_point(&large, &at(&large), &two));
-        let parts = |p: &BeltPoint| [p.band_loss_nm, p.wedge_loss_nm, p.penetration_loss_nm, [p.capacity_nm; 2]];
+        let (a, b) = (
+            belt_point(&small, &at(&small), &one),
+            belt_point(&large, &at(&large), &two),
+        );
+        let parts = |p: &BeltPoint| {
+            [
+                p.band_loss_nm,
+                p.wedge_loss_nm,
+                p.penetration_loss_nm,
+                [p.capacity_nm; 2],
+            ]
+        };
         for (x, y) in parts(&a).iter().flatten().zip(parts(&b).iter().flatten()) {
             assert!((y / x / 8.0 - 1.0).abs() < 1e-9, "{x} {y}");
         }
@@ -160,14 +210,26 @@ fn val_golden_points_slip() {
     let (mut count, mut sum2) = (0.0, 0.0);
     for row in golden() {
         let mu = row.num("segment_friction");
-        let plain = if row.text("formulation") == "appendix_c" { 0.125 } else { 0.13 };
-        if row.text("status") != "ok" || row.num("segment_compression_n").abs() < 600.0 || (mu - plain).abs() > 1e-9 {
+        let plain = if row.text("formulation") == "appendix_c" {
+            0.125
+        } else {
+            0.13
+        };
+        if row.text("status") != "ok"
+            || row.num("segment_compression_n").abs() < 600.0
+            || (mu - plain).abs() > 1e-9
+        {
             continue;
         }
         let mut belt = belt_of(&row);
         belt.slip_bound = 1.0;
         let at = BeltAtRatio::new(&belt, row.num("ratio"));
-        let l = load(row.num("input_speed_rpm"), row.num("output_torque_nm"), row.num("secondary_pressure_bar"), row.num("band_friction"));
+        let l = load(
+            row.num("input_speed_rpm"),
+            row.num("output_torque_nm"),
+            row.num("secondary_pressure_bar"),
+            row.num("band_friction"),
+        );
         let s = belt_state(&belt, &at, &l);
         let own = if s.tension.compression_n > 0.0 {
             at.geometry.primary_radius_m * at.geometry.primary_wrap_rad
@@ -179,7 +241,8 @@ fn val_golden_points_slip() {
         let tolerance = 2.0 / idle + 2.0 / row.num("active_segments") + 0.005;
         let want = row.num("slip_percent") / 100.0;
         // Gap and idle slip may nearly cancel: the tolerance belongs to the parts, not to their difference.
-        let parts = (row.num("gap_slip_m_s").abs() + row.num("idle_slip_m_s").abs()) / row.num("belt_speed_m_s");
+        let parts = (row.num("gap_slip_m_s").abs() + row.num("idle_slip_m_s").abs())
+            / row.num("belt_speed_m_s");
         assert!(
             (s.slip_total - want).abs() <= tolerance * (want.abs() + parts) + 5e-5,
             "case {} {}: slip {} instead of {want}",
@@ -208,7 +271,11 @@ fn val_breakpoint() {
     let belt = thesis_belt(Formulation::Smooth);
     let at = BeltAtRatio::new(&belt, 2.416);
     let s = belt_state(&belt, &at, &load(2000.0, 78.9, 30.0, 0.13));
-    assert!(s.tension.compression_n.abs() < 5.0, "{}", s.tension.compression_n);
+    assert!(
+        s.tension.compression_n.abs() < 5.0,
+        "{}",
+        s.tension.compression_n
+    );
 }
 
 /// Energy: input power minus output power is the sum of the losses, and no loss is negative, in drive and overrun, at every ratio.
@@ -223,7 +290,13 @@ fn losses_are_positive_and_close() {
                 let t = 5.0 * f64::from(j);
                 let l = load(rpm, t, 20.0, 0.11);
                 let s = belt_state(&belt, &at, &l);
-                for x in [s.band_nm, s.film_nm, s.slip_nm, s.wedge_nm, s.penetration_nm] {
+                for x in [
+                    s.band_nm,
+                    s.film_nm,
+                    s.slip_nm,
+                    s.wedge_nm,
+                    s.penetration_nm,
+                ] {
                     assert!(x >= 0.0 && x.is_finite(), "I {ratio} T {t}: {s:?}");
                 }
                 let w_in = l.primary_speed_rad_s;
@@ -240,8 +313,18 @@ fn losses_are_positive_and_close() {
 fn continuous_in_ratio_and_torque() {
     let belt = thesis_belt(Formulation::Smooth);
     let at_ratio = |r: f64, t: f64| {
-        let s = belt_state(&belt, &BeltAtRatio::new(&belt, r), &load(2000.0, t, 20.0, 0.13));
-        [s.band_nm, s.slip_nm, s.wedge_nm, s.penetration_nm, s.slip_total]
+        let s = belt_state(
+            &belt,
+            &BeltAtRatio::new(&belt, r),
+            &load(2000.0, t, 20.0, 0.13),
+        );
+        [
+            s.band_nm,
+            s.slip_nm,
+            s.wedge_nm,
+            s.penetration_nm,
+            s.slip_total,
+        ]
     };
     let largest = |step: f64, from: f64, to: f64, f: &dyn Fn(f64) -> [f64; 5]| {
         let n = ((to - from) / step).round() as usize;
@@ -260,14 +343,27 @@ fn continuous_in_ratio_and_torque() {
         let f = |r: f64| at_ratio(r, t);
         let (a, b) = (largest(1e-3, 0.42, 2.42, &f), largest(5e-4, 0.42, 2.42, &f));
         for k in 0..5 {
-            assert!(b[k] <= 0.55 * a[k] + 1e-12, "ratio sweep at {t} Nm, part {k}: {} then {}", a[k], b[k]);
+            assert!(
+                b[k] <= 0.55 * a[k] + 1e-12,
+                "ratio sweep at {t} Nm, part {k}: {} then {}",
+                a[k],
+                b[k]
+            );
         }
     }
     for r in [0.45, 0.999, 1.0, 1.02, 2.4] {
         let f = |t: f64| at_ratio(r, t);
-        let (a, b) = (largest(0.1, -300.0, 300.0, &f), largest(0.05, -300.0, 300.0, &f));
+        let (a, b) = (
+            largest(0.1, -300.0, 300.0, &f),
+            largest(0.05, -300.0, 300.0, &f),
+        );
         for k in 0..5 {
-            assert!(b[k] <= 0.6 * a[k] + 1e-12, "torque sweep at {r}, part {k}: {} then {}", a[k], b[k]);
+            assert!(
+                b[k] <= 0.6 * a[k] + 1e-12,
+                "torque sweep at {r}, part {k}: {} then {}",
+                a[k],
+                b[k]
+            );
         }
     }
 }
@@ -277,20 +373,47 @@ fn continuous_in_ratio_and_torque() {
 fn band_loss_is_linear_in_friction_force_at_rest() {
     let belt = thesis_belt(Formulation::Smooth);
     let at = BeltAtRatio::new(&belt, 0.45);
-    let a = belt_state(&belt, &at, &BeltLoad { secondary_clamp_n: 5000.0, ..load(0.0, 20.0, 1.0, 0.13) });
-    let b = belt_state(&belt, &at, &BeltLoad { secondary_clamp_n: 10000.0, ..load(0.0, 40.0, 1.0, 0.13) });
-    assert!((b.band_nm / a.band_nm - 2.0).abs() < 1e-9, "{} {}", a.band_nm, b.band_nm);
+    let a = belt_state(
+        &belt,
+        &at,
+        &BeltLoad {
+            secondary_clamp_n: 5000.0,
+            ..load(0.0, 20.0, 1.0, 0.13)
+        },
+    );
+    let b = belt_state(
+        &belt,
+        &at,
+        &BeltLoad {
+            secondary_clamp_n: 10000.0,
+            ..load(0.0, 40.0, 1.0, 0.13)
+        },
+    );
+    assert!(
+        (b.band_nm / a.band_nm - 2.0).abs() < 1e-9,
+        "{} {}",
+        a.band_nm,
+        b.band_nm
+    );
 }
 
 /// Printed: no relative speed at I = 1 (8.3); loss grows with clamping force.
 #[test]
 fn val_no_band_loss_at_unity_and_monotone_in_clamp() {
     let belt = thesis_belt(Formulation::Smooth);
-    let one = belt_state(&belt, &BeltAtRatio::new(&belt, 1.0), &load(2000.0, 30.0, 20.0, 0.13));
+    let one = belt_state(
+        &belt,
+        &BeltAtRatio::new(&belt, 1.0),
+        &load(2000.0, 30.0, 20.0, 0.13),
+    );
     assert!(one.band_nm.abs() < 1e-15);
     let mut last = 0.0;
     for bar in 5..40 {
-        let s = belt_state(&belt, &BeltAtRatio::new(&belt, 0.45), &load(2000.0, 10.0, f64::from(bar), 0.13));
+        let s = belt_state(
+            &belt,
+            &BeltAtRatio::new(&belt, 0.45),
+            &load(2000.0, 10.0, f64::from(bar), 0.13),
+        );
         assert!(s.loss_nm() > last);
         last = s.loss_nm();
     }
