@@ -340,7 +340,7 @@ fn the_plan_and_the_files_of_the_page_can_be_read() {
     );
 }
 
-/// `docs/regenerate` writes data and answer again where a model or a value of the vehicle has changed.
+/// `tools/docs` writes data and answer again where a model or a value of the vehicle has changed.
 #[test]
 fn the_example_says_what_is_committed() {
     let run = cvtcycle()

@@ -1,4 +1,4 @@
-//! `report`: the page says what the results say, and says what is missing. The page in a browser: tests/browser.
+//! `report`: the page says what the results say, and says what is missing. The page in a browser: tools/browser.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test may stop at once")]
 
 use std::fs;

@@ -1,6 +1,0 @@
-//! What the fuzzers run; `tests/fuzz_corpus.rs` of the program runs the same over the committed inputs.
-
-#![forbid(unsafe_code)]
-
-#[path = "targets/mod.rs"]
-pub mod targets;

@@ -1,0 +1,117 @@
+//! One function a target: any bytes in, a panic if the program does what it must not.
+//!
+//! | target | what the bytes are |
+//! |---|---|
+//! | `vehicle`, `lubricant`, `study_plan`, `calibration_plan` | a TOML file: the bytes themselves, or edits of a shipped file ([`edits`]) |
+//! | `overrides` | assignments of `--set`, one a line |
+//! | `cycle`, `map`, `points`, `measured`, `history` | a CSV file, after a byte that chooses the form where there are several |
+//! | `belt` | a belt and its operating point: any finite numbers, or a table row with numbers in their ranges |
+//! | `drive` | a valid car and a short cycle: numbers of a shipped car moved within what their keys allow |
+//!
+//! In all of them: no panic, and no more memory than [`most_bytes`] allows for the size of the input.
+
+mod belt;
+mod csv;
+mod drive;
+mod edits;
+#[path = "../../../../tests/common/range.rs"]
+mod range;
+mod toml;
+
+/// Does something with any bytes.
+pub type Target = fn(&[u8]);
+
+/// The targets by name.
+pub const TARGETS: [(&str, Target); 12] = [
+    ("vehicle", toml::vehicle),
+    ("lubricant", toml::lubricant),
+    ("study_plan", toml::study_plan),
+    ("calibration_plan", toml::calibration_plan),
+    ("overrides", toml::overrides),
+    ("cycle", csv::cycle),
+    ("map", csv::map),
+    ("points", csv::points),
+    ("measured", csv::measured),
+    ("history", csv::history),
+    ("belt", belt::belt),
+    ("drive", drive::drive_car),
+];
+
+/// Memory that reading an input of so many bytes may hold at any time, bytes: a constant for the program's own files, which it may read
+/// beside the input, and a multiple of the input for its values with their places.
+#[must_use]
+pub fn most_bytes(input_len: usize) -> u64 {
+    (16 << 20) + 1200 * input_len as u64
+}
+
+/// Runs a target.
+///
+/// # Panics
+/// If the program does what it must not do for any input; if there is no such target.
+pub fn run(name: &str, data: &[u8]) {
+    let Some((_, target)) = TARGETS.iter().find(|(known, _)| *known == name) else {
+        panic!("no target {name}");
+    };
+    target(data);
+}
+
+/// Reads an input of so many bytes and holds the reading to its memory.
+fn within_memory<T>(input_len: usize, mut read: impl FnMut() -> T) -> T {
+    let mut answer = None;
+    let counted = allocation_counter::measure(|| answer = Some(read()));
+    assert!(
+        counted.bytes_max <= most_bytes(input_len),
+        "{} bytes held for an input of {input_len}",
+        counted.bytes_max
+    );
+    answer.unwrap_or_else(|| unreachable!("the closure has run"))
+}
+
+/// Bytes taken from the front; zeros when there are no more.
+struct Bytes<'d>(&'d [u8]);
+
+impl<'d> Bytes<'d> {
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn take<const N: usize>(&mut self) -> [u8; N] {
+        let mut taken = [0; N];
+        let count = N.min(self.0.len());
+        taken[..count].copy_from_slice(&self.0[..count]);
+        self.0 = &self.0[count..];
+        taken
+    }
+
+    fn byte(&mut self) -> u8 {
+        self.take::<1>()[0]
+    }
+
+    /// Whether a byte is a multiple of `n`.
+    fn one_in(&mut self, n: u8) -> bool {
+        self.byte().is_multiple_of(n)
+    }
+
+    fn short(&mut self) -> u16 {
+        u16::from_le_bytes(self.take())
+    }
+
+    /// From 0 to 1.
+    fn share(&mut self) -> f64 {
+        f64::from(self.short()) / f64::from(u16::MAX)
+    }
+
+    /// Any number.
+    fn number(&mut self) -> f64 {
+        f64::from_le_bytes(self.take())
+    }
+
+    /// One of a list.
+    fn of<T: Copy>(&mut self, list: &[T]) -> T {
+        list[usize::from(self.short()) % list.len()]
+    }
+
+    fn rest(self) -> &'d [u8] {
+        self.0
+    }
+}

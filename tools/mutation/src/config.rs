@@ -1,0 +1,100 @@
+//! What is mutated and what is run: `tools/mutation/mutation.toml`.
+
+use serde::Deserialize;
+use std::path::Path;
+
+/// The file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Config {
+    /// Folders (with a final slash) and files whose code is changed.
+    pub mutate: Vec<String>,
+    /// Files among them that are left alone, each with its reason.
+    pub leave: Vec<Left>,
+    /// Files among them whose operators are changed and whose literals are not.
+    pub keep_literals: Vec<String>,
+    /// Test programs that may catch a mutant; `lib` is the unit tests.
+    pub tests: Vec<String>,
+    /// Tests that take longer are not run, s.
+    pub most_seconds: f64,
+    /// Beginnings of names, as `program::name`, of tests that are run however long they take.
+    pub always: Vec<String>,
+    /// Tests that are not run, each with its reason.
+    pub skip: Vec<Skipped>,
+}
+
+/// Something left alone.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Left {
+    /// A folder (with a final slash), a file, or the end of the names of several.
+    pub file: String,
+    /// Why.
+    pub because: String,
+}
+
+/// A test left out.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Skipped {
+    /// Program and beginning of the test's name: `lib::report::`.
+    pub test: String,
+    /// Why.
+    pub because: String,
+}
+
+impl Config {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// No file, no TOML, other keys.
+    pub fn read(root: &Path) -> Result<Self, String> {
+        let path = root.join("tools/mutation/mutation.toml");
+        let text =
+            std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let config: Self = toml::from_str(&text).map_err(|e| format!("{}: {e}", path.display()))?;
+        let reasons = config
+            .leave
+            .iter()
+            .map(|l| &l.because)
+            .chain(config.skip.iter().map(|s| &s.because));
+        if reasons.clone().any(|because| because.is_empty()) {
+            return Err(format!("{}: `because` is empty", path.display()));
+        }
+        Ok(config)
+    }
+
+    /// Whether a file of the repository is mutated.
+    #[must_use]
+    pub fn mutates(&self, file: &str) -> bool {
+        let named = |name: &str| {
+            if name.ends_with('/') {
+                file.starts_with(name)
+            } else {
+                file == name
+            }
+        };
+        let left = |name: &str| named(name) || file.ends_with(name);
+        file.ends_with(".rs")
+            && self.mutate.iter().any(|n| named(n))
+            && !self.leave.iter().any(|l| left(&l.file))
+    }
+
+    /// Whether the literals of a file stay.
+    #[must_use]
+    pub fn keeps_literals(&self, file: &str) -> bool {
+        self.keep_literals.iter().any(|end| file.ends_with(end))
+    }
+
+    /// Whether a test, as `program::name`, is quick enough.
+    #[must_use]
+    pub fn quick(&self, test: &str, seconds: f64) -> bool {
+        seconds <= self.most_seconds || self.always.iter().any(|a| test.starts_with(a))
+    }
+
+    /// Whether a test, as `program::name`, may be run.
+    #[must_use]
+    pub fn runs(&self, test: &str) -> bool {
+        !self.skip.iter().any(|s| test.starts_with(&s.test))
+    }
+}
