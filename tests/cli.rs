@@ -694,7 +694,12 @@ fn check_knows_the_plan_of_a_calibration() {
         )
     );
     // By its other tables, though the first is misspelt and a vehicle is named below it.
-    let bad = run(&["check", "tests/diagnostics/calibration/head_misspelt.toml"]);
+    let folder = tempfile::tempdir().unwrap();
+    let plan = folder.path().join("plan.toml");
+    let text =
+        "[calibratoin]\nvehicle = \"rover_216_cvt\"\n[[parameters]]\nlow = 5\n[[date]]\nsd = 0.1\n";
+    fs::write(&plan, text).unwrap();
+    let bad = run(&["check", plan.to_str().unwrap()]);
     assert_eq!((bad.status.code(), stdout(&bad).as_str()), (Some(2), ""));
     assert!(
         stderr(&bad).contains("did you mean [calibration]?"),

@@ -1,17 +1,20 @@
-//! The diagnostics corpus: bad input files and, beside each, the whole text that a user sees.
+//! The diagnostics corpus: bad input files, and after each the whole text that the program prints about it.
 //!
-//! `tests/diagnostics/KIND/NAME` is a bad file, `NAME.expected` what the program says about it, compared byte by byte. After a change of
-//! words that is meant: `CVTCYCLE_BLESS=1 cargo test --test diagnostics_corpus`, then read the difference.
+//! `tests/diagnostics/KIND.txt` holds both; the text is compared byte by byte. After an intended change of a message:
+//! `CVTCYCLE_BLESS=1 cargo test --test diagnostics_corpus`, then read the difference.
 //!
-//! | module | what it enforces |
+//! | module | what it does |
 //! |---|---|
-//! | `kinds`, `calibration` | how each kind of file is read |
+//! | `corpus` | reads and writes the files of the corpus |
+//! | `kinds`, `calibration` | read each kind of bad file |
 //! | `keys` | every key of every shipped file and of every option: too low, too high, nan, of another type, missing, misspelt, twice |
-//! | `sentences` | every sentence of a complaint in the source stands in an expected text |
+//! | `sentences` | every sentence of a message in the source is in an expected text |
 #![allow(clippy::unwrap_used, reason = "tests say what they found")]
 
 #[path = "diagnostics/calibrations.rs"]
 mod calibration;
+#[path = "diagnostics/corpus.rs"]
+mod corpus;
 #[path = "diagnostics/keys.rs"]
 mod keys;
 #[path = "diagnostics/kinds.rs"]
@@ -19,126 +22,123 @@ mod kinds;
 #[path = "diagnostics/sentences.rs"]
 mod sentences;
 
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// Ending of the expected texts.
-const EXPECTED: &str = ".expected";
+use corpus::{Case, FOLDER};
 
-/// Folder of the corpus from the package's own, in which tests run: it stands in the expected texts.
-const CORPUS: &str = "tests/diagnostics";
-
-fn files(folder: &Path) -> Vec<PathBuf> {
-    let mut list: Vec<PathBuf> = std::fs::read_dir(folder)
+/// All messages of the corpus, one problem each.
+fn messages() -> Vec<String> {
+    let cases = kinds::KINDS.iter().flat_map(|kind| corpus::cases(kind));
+    let texts: Vec<String> = cases.filter_map(|case| case.message).collect();
+    let blocks = texts
+        .iter()
+        .flat_map(|text| text.split("\n\n").map(str::to_owned));
+    let mut blocks: Vec<String> = blocks.collect();
+    // tests/config_diagnostics.rs checks what these files announce.
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(FOLDER);
+    let files = std::fs::read_dir(folder)
         .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|p| p.is_file())
-        .collect();
-    list.sort();
-    list
-}
-
-/// Bad files of a kind, seen from the package's folder, with forward slashes.
-fn cases(kind: &str) -> Vec<String> {
-    let folder = Path::new(CORPUS).join(kind);
-    let names = files(&folder)
-        .into_iter()
-        .map(|path| path.file_name().unwrap().to_str().unwrap().to_owned());
-    names
-        .filter(|name| !name.ends_with(EXPECTED) && !name.starts_with("logo."))
-        .map(|name| format!("{CORPUS}/{kind}/{name}"))
-        .collect()
-}
-
-/// All that the corpus makes the program say, problem by problem.
-fn said() -> Vec<String> {
-    let mut blocks = Vec::new();
-    for kind in kinds::KINDS {
-        for path in files(&Path::new(CORPUS).join(kind)) {
-            if path.to_str().unwrap().ends_with(EXPECTED) {
-                blocks.extend(
-                    std::fs::read_to_string(&path)
-                        .unwrap()
-                        .split("\n\n")
-                        .map(str::to_owned),
-                );
-            }
-        }
-    }
-    // The forms of TOML have a test of their own; what it announces is held there.
-    let announced = files(Path::new(CORPUS))
-        .into_iter()
-        .filter(|path| path.extension().is_some_and(|ending| ending == "toml"));
-    for path in announced {
+        .map(|entry| entry.unwrap().path());
+    for path in files.filter(|path| path.extension().is_some_and(|ending| ending == "toml")) {
         let text = std::fs::read_to_string(&path).unwrap();
-        blocks.extend(
-            text.lines()
-                .filter_map(|line| line.trim_start().strip_prefix("#~ "))
-                .map(str::to_owned),
-        );
+        let announced = text
+            .lines()
+            .filter_map(|line| line.trim_start().strip_prefix("#~ "));
+        blocks.extend(announced.map(str::to_owned));
     }
     blocks
 }
 
+/// Messages about the bad files that the tests make: name and text.
+fn made(kind: &str) -> Vec<(String, String)> {
+    let mut made = kinds::made(kind);
+    if kind == "plan" {
+        made.extend(kinds::plans_of_the_reader());
+    }
+    made
+}
+
 #[test]
-fn every_bad_file_is_told_as_expected() {
+fn every_bad_file_has_its_message() {
+    corpus::unpack();
     let bless = std::env::var_os("CVTCYCLE_BLESS").is_some();
     let mut wrong = String::new();
     let mut count = 0;
     for kind in kinds::KINDS {
-        let mut told: Vec<(String, String)> = cases(kind)
-            .into_iter()
-            .map(|case| (case.clone(), kinds::told(kind, &case)))
+        let mut cases = corpus::cases(kind);
+        let mut made = made(kind);
+        let missing: Vec<_> = made
+            .iter()
+            .filter(|(name, _)| !cases.iter().any(|case| case.name == *name))
             .collect();
-        told.extend(
-            kinds::made(kind)
-                .into_iter()
-                .map(|(name, text)| (format!("{CORPUS}/{kind}/{name}"), text)),
-        );
-        if kind == "plan" {
-            told.extend(
-                kinds::plans_of_the_reader()
-                    .map(|(name, text)| (format!("{CORPUS}/plan/{name}"), text)),
+        if bless {
+            cases.extend(missing.iter().map(|(name, _)| Case {
+                name: name.clone(),
+                ..Case::default()
+            }));
+            cases.sort_by(|a, b| a.name.cmp(&b.name));
+        } else {
+            wrong.extend(
+                missing
+                    .iter()
+                    .map(|(name, _)| format!("{kind}.txt: no case {name}\n")),
             );
         }
-        assert!(told.len() >= 2, "{kind}: {} cases", told.len());
-        let known: BTreeSet<String> = told
-            .iter()
-            .map(|(case, _)| format!("{case}{EXPECTED}"))
-            .collect();
-        let orphans = files(&Path::new(CORPUS).join(kind))
-            .into_iter()
-            .map(|path| path.to_str().unwrap().replace('\\', "/"));
-        for orphan in orphans.filter(|path| path.ends_with(EXPECTED) && !known.contains(path)) {
-            wrong += &format!("{orphan}: there is no such bad file\n");
-        }
-        for (case, text) in told {
+        for case in &mut cases {
+            let name = format!("{FOLDER}/{kind}/{}", case.name);
+            let text = if case.is_made() {
+                let at = made.iter().position(|(name, _)| *name == case.name);
+                at.map(|at| made.swap_remove(at).1)
+                    .unwrap_or_else(|| panic!("{name}: nothing makes it"))
+            } else if case.name.contains('/') {
+                // A data file, which a case names.
+                continue;
+            } else {
+                kinds::message(kind, &name)
+            };
             count += 1;
             if text.is_empty() {
-                wrong += &format!("{case}: accepted\n");
+                wrong += &format!("{name}: accepted\n");
             }
-            let path = format!("{case}{EXPECTED}");
-            let expected = std::fs::read_to_string(&path)
-                .unwrap_or_default()
-                .replace("\r\n", "\n");
-            if bless {
-                std::fs::write(&path, &text).unwrap();
-            } else if text != expected {
-                wrong += &format!("==== {case}, expected\n{expected}==== found\n{text}\n");
+            let expected = case.message.clone().unwrap_or_default();
+            if !bless && text != expected {
+                wrong += &format!("==== {name}, expected\n{expected}==== found\n{text}\n");
             }
+            case.message = Some(text);
+        }
+        assert!(cases.len() >= 2, "{kind}: {} cases", cases.len());
+        if bless {
+            std::fs::write(corpus::path(kind), corpus::format(&cases)).unwrap();
         }
     }
     assert!(wrong.is_empty(), "\n{wrong}");
     assert!(count > 130, "only {count} bad files");
 }
 
+/// Every file outside the texts has its message in them.
 #[test]
-fn every_message_says_what_is_allowed_or_what_to_do() {
+fn every_binary_file_is_a_case() {
+    for kind in kinds::KINDS {
+        let cases = corpus::cases(kind);
+        let folder = corpus::path(kind).with_extension("");
+        let entries = folder.is_dir().then(|| std::fs::read_dir(folder).unwrap());
+        for entry in entries.into_iter().flatten() {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            let known = cases
+                .iter()
+                .any(|case| case.name == name && case.input.is_empty());
+            assert!(known || name.starts_with("logo."), "{kind}/{name}");
+        }
+    }
+}
+
+#[test]
+fn every_message_has_the_allowed_values_or_help() {
     let leads_nowhere = |block: &&String| {
         block.starts_with("error") && !block.contains("allowed: ") && !block.contains("= help: ")
     };
-    let said = said();
-    let list: Vec<&str> = said
+    let messages = messages();
+    let list: Vec<&str> = messages
         .iter()
         .filter(leads_nowhere)
         .map(String::as_str)
@@ -147,14 +147,14 @@ fn every_message_says_what_is_allowed_or_what_to_do() {
         list.is_empty(),
         "{} of {}:\n{}",
         list.len(),
-        said.len(),
+        messages.len(),
         list.join("\n\n")
     );
 }
 
 #[test]
 fn every_sentence_of_the_source_has_a_bad_file() {
-    sentences::check(&said());
+    sentences::check(&messages());
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! How each kind of bad file is read, and what is then told.
+//! Reads each kind of bad file and returns the message.
 //!
 //! A bad vehicle and a bad rig file hold only what is wrong, as dotted keys: what they leave out is put below it, from the shipped file that
 //! their first line names (`# on NAME`), so that the lines of the bad file keep their numbers.
@@ -16,7 +16,7 @@ use cvtcycle::validate;
 
 use super::calibration;
 
-/// Folders of the corpus.
+/// Kinds of bad files.
 pub const KINDS: [&str; 14] = [
     "vehicle",
     "lubricant",
@@ -34,8 +34,8 @@ pub const KINDS: [&str; 14] = [
     "calibration_scalars",
 ];
 
-/// What the program says about a bad file; nothing if it takes it.
-pub fn told(kind: &str, case: &str) -> String {
+/// What the program prints about a bad file; nothing if it accepts it.
+pub fn message(kind: &str, case: &str) -> String {
     let bytes = std::fs::read(case).unwrap();
     let name = case.rsplit('/').next().unwrap();
     if kind == "points" {

@@ -196,8 +196,14 @@ pub fn check(said: &[String]) {
     let mut wrong = String::new();
     let mut excused = [0_usize; EXCUSED.len()];
     let mut count = 0;
-    for path in sources(Path::new("src")) {
-        let name = path.to_str().unwrap().replace('\\', "/");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for path in sources(&root.join("src")) {
+        let name = path
+            .strip_prefix(root)
+            .unwrap()
+            .to_str()
+            .unwrap()
+            .replace('\\', "/");
         let source = std::fs::read_to_string(&path).unwrap();
         let code = source.split("#[cfg(test)]").next().unwrap();
         let marked = MARKS.iter().any(|mark| code.contains(mark));

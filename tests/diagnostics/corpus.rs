@@ -1,0 +1,147 @@
+//! The files of the corpus. `tests/diagnostics/KIND.txt` holds the bad files of a kind, one after the other:
+//!
+//! ```text
+//! ======== NAME
+//! (the bad file)
+//! -------- message
+//! (what the program prints)
+//! ```
+//!
+//! Files that are no plain text (other encodings, other line ends) are in `tests/diagnostics/KIND/NAME`, and `KIND.txt` has their message
+//! only. A file named `made_...` is written by `kinds::made`; a file without a message is read by another one.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+const FILE: &str = "======== ";
+const MESSAGE: &str = "-------- message\n";
+
+/// Folder of the corpus in the package, and in the folder in which the program reads it.
+pub const FOLDER: &str = "tests/diagnostics";
+
+/// A part of `KIND.txt`.
+#[derive(Debug, Default, PartialEq)]
+pub struct Case {
+    pub name: String,
+    /// Text of the file; empty also where the file is elsewhere.
+    pub input: String,
+    pub message: Option<String>,
+}
+
+impl Case {
+    pub fn is_made(&self) -> bool {
+        self.name.starts_with("made_") || self.name == "all_of_bad.txt"
+    }
+}
+
+pub fn parse(text: &str) -> Vec<Case> {
+    let mut cases: Vec<Case> = Vec::new();
+    let mut in_message = false;
+    for line in text.split_inclusive('\n') {
+        if let Some(name) = line.strip_prefix(FILE) {
+            let name = name.trim_end().to_owned();
+            cases.push(Case {
+                name,
+                ..Case::default()
+            });
+            in_message = false;
+            continue;
+        }
+        let case = cases
+            .last_mut()
+            .expect("a file begins with the name of a case");
+        if line == MESSAGE {
+            case.message = Some(String::new());
+            in_message = true;
+        } else if in_message {
+            *case.message.get_or_insert_default() += line;
+        } else {
+            case.input += line;
+        }
+    }
+    cases
+}
+
+pub fn format(cases: &[Case]) -> String {
+    let text = |case: &Case| {
+        let message = case.message.as_ref().map(|text| MESSAGE.to_owned() + text);
+        format!(
+            "{FILE}{}\n{}{}",
+            case.name,
+            case.input,
+            message.unwrap_or_default()
+        )
+    };
+    cases.iter().map(text).collect()
+}
+
+/// Path of `KIND.txt`.
+pub fn path(kind: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join(FOLDER)
+        .join(kind)
+        .with_extension("txt")
+}
+
+/// The cases of a kind.
+pub fn cases(kind: &str) -> Vec<Case> {
+    parse(
+        &fs::read_to_string(path(kind))
+            .unwrap()
+            .replace("\r\n", "\n"),
+    )
+}
+
+/// Writes the files of all kinds below [`FOLDER`] in an empty folder and makes it the current one: messages hold these paths.
+pub fn unpack() {
+    static DONE: LazyLock<()> = LazyLock::new(|| {
+        let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("diagnostics_corpus");
+        if root.exists() {
+            fs::remove_dir_all(&root).unwrap();
+        }
+        for kind in super::kinds::KINDS {
+            let to = root.join(FOLDER).join(kind);
+            let write = |name: &str, bytes: &[u8]| {
+                let path = to.join(name);
+                fs::create_dir_all(path.parent().unwrap()).unwrap();
+                fs::write(path, bytes).unwrap();
+            };
+            for case in cases(kind).iter().filter(|case| !case.is_made()) {
+                write(&case.name, case.input.as_bytes());
+            }
+            let other = path(kind).with_extension("");
+            for entry in other
+                .is_dir()
+                .then(|| fs::read_dir(&other).unwrap())
+                .into_iter()
+                .flatten()
+            {
+                let path = entry.unwrap().path();
+                write(
+                    path.file_name().unwrap().to_str().unwrap(),
+                    &fs::read(&path).unwrap(),
+                );
+            }
+        }
+        std::env::set_current_dir(root).unwrap();
+    });
+    LazyLock::force(&DONE);
+}
+
+#[test]
+fn a_corpus_is_written_as_it_was_read() {
+    let text = "======== a.csv\nx\n-------- message\nerror: y\n\nerror: z\n======== data/b.csv\n1,2\n======== made_c\n-------- message\n";
+    let cases = parse(text);
+    assert_eq!(format(&cases), text);
+    assert_eq!(
+        (cases[0].input.as_str(), cases[0].message.as_deref()),
+        ("x\n", Some("error: y\n\nerror: z\n"))
+    );
+    assert_eq!(
+        (cases[1].name.as_str(), &cases[1].message),
+        ("data/b.csv", &None)
+    );
+    assert_eq!(cases[2].message.as_deref(), Some(""));
+    assert!(cases[2].is_made());
+}
