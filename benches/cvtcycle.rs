@@ -9,23 +9,23 @@
 
 use std::collections::BTreeSet;
 
+use cvtcycle::config::cycle::{Cycle, embedded, read_csv};
+use cvtcycle::config::setup::blueprint::Blueprint;
+use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{Problem, render};
-use cvtcycle::cycle::{Cycle, embedded, read_csv};
-use cvtcycle::lubricant::BandFriction;
-use cvtcycle::results::{Row, Terms};
-use cvtcycle::run::{Conditions, Start, drive};
-use cvtcycle::setup::blueprint::Blueprint;
-use cvtcycle::setup::{Options, Setup, load};
-use cvtcycle::simulate::{Car, Recorder, State, simulate};
+use cvtcycle::model::drive::{Car, Recorder, State, simulate};
+use cvtcycle::model::drive::{Conditions, Start, drive};
+use cvtcycle::model::fluid::BandFriction;
+use cvtcycle::model::road::WheelDemand;
+use cvtcycle::model::thermal::{Heat, HeatInput};
+use cvtcycle::model::transmission::cvt::variator::{
+    Belt, BeltAtRatio, BeltLoad, Formulation, belt_point, belt_state,
+};
+use cvtcycle::model::transmission::{DriveState, Surroundings, Transmission};
+use cvtcycle::output::{Row, Terms};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::table::Rows;
 use cvtcycle::study::{Sink, Study, Unwatched};
-use cvtcycle::thermal::{Heat, HeatInput};
-use cvtcycle::transmission::cvt::variator::{
-    Belt, BeltAtRatio, BeltLoad, Formulation, belt_point, belt_state,
-};
-use cvtcycle::transmission::{DriveState, Surroundings, Transmission};
-use cvtcycle::vehicle::WheelDemand;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 

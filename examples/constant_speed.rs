@@ -7,11 +7,11 @@
     reason = "an example is a program"
 )]
 
+use cvtcycle::config::cycle;
 use cvtcycle::config::render;
-use cvtcycle::cycle;
-use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::run::{Conditions, Start, drive, litres_per_100km};
-use cvtcycle::setup::{Options, load};
+use cvtcycle::config::setup::{Options, load};
+use cvtcycle::model::drive::{Conditions, Start, drive, litres_per_100km};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
 
 fn main() {
     // Warm: the same 600 s have just been driven.

@@ -3,9 +3,9 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
-use cvtcycle::cycle::{Cycle, embedded};
-use cvtcycle::run::{Conditions, Start, drive, litres_per_100km};
-use cvtcycle::setup::{Options, load};
+use cvtcycle::config::cycle::{Cycle, embedded};
+use cvtcycle::config::setup::{Options, load};
+use cvtcycle::model::drive::{Conditions, Start, drive, litres_per_100km};
 
 const GEAR_SETS: [(&str, &str); 4] = [
     ("shipped", "[13.45, 7.67, 5.25, 4.15, 3.33]"),

@@ -8,12 +8,12 @@
     reason = "an example is a program"
 )]
 
+use cvtcycle::config::cycle;
+use cvtcycle::config::setup::{Options, load};
 use cvtcycle::config::{Problem, render};
-use cvtcycle::cycle;
-use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::results::summary::{Driven, Settings, StartWord, Summary, summarise};
-use cvtcycle::run::{Conditions, Start, drive};
-use cvtcycle::setup::{Options, load};
+use cvtcycle::model::drive::{Conditions, Start, drive};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, summarise};
 
 const AMBIENT_DEGC: f64 = -10.0;
 

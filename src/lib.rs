@@ -1,24 +1,9 @@
 //! Drive-cycle losses and fuel of cars with a pushing-metal-V-belt CVT, cold and warm.
 //!
-//! The modules stand in the order in which data and power flow.
+//! One crate a layer, each of which uses only those above it in this list.
 
-pub mod config;
-pub mod numeric;
-pub mod cycle;
-pub mod lubricant;
-pub mod vehicle;
-pub mod transmission;
-pub mod engine;
-pub mod thermal;
-pub mod setup;
-pub mod simulate;
-pub mod run;
-pub mod results;
-pub mod sensitivity;
-pub mod provenance;
-pub mod rig;
-pub mod study;
-pub mod validate;
-pub mod calibrate;
-pub mod report;
-pub mod review;
+pub use cvtcycle_config as config;
+pub use cvtcycle_model as model;
+pub use cvtcycle_output as output;
+pub use cvtcycle_report as report;
+pub use cvtcycle_study as study;

@@ -3,8 +3,8 @@
 mod common;
 
 use common::{CARS, ZERO, car, cycle};
-use cvtcycle::results::{Row, Terms, Totals};
-use cvtcycle::simulate::{Recorder, State, simulate};
+use cvtcycle::model::drive::{Recorder, State, simulate};
+use cvtcycle::output::{Row, Terms, Totals};
 
 /// Keeps rows within a capacity that was reserved before.
 struct Reserved {

@@ -9,11 +9,11 @@ mod common;
 use std::collections::BTreeSet;
 
 use common::CARS;
+use cvtcycle::config::cycle::embedded;
+use cvtcycle::config::setup::blueprint::{Bench, Blueprint, Slot};
+use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{KeyInfo, Problem, render};
-use cvtcycle::cycle::embedded;
-use cvtcycle::run::{Conditions, Start, drive};
-use cvtcycle::setup::blueprint::{Bench, Blueprint, Slot};
-use cvtcycle::setup::{Options, Setup, load};
+use cvtcycle::model::drive::{Conditions, Start, drive};
 use proptest::prelude::*;
 
 const AMBIENT_K: f64 = 263.15;
@@ -42,7 +42,7 @@ fn text(setup: Setup) -> String {
         "{} {} {:?} {:?}",
         setup.name, setup.title, setup.baselines, setup.road_load
     );
-    format!("{names} {:?}", setup.into_car(AMBIENT_K))
+    format!("{names} {:?}", setup.vehicle.into_car(AMBIENT_K))
 }
 
 /// What the ordinary load makes of numbers beside the options.

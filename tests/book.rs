@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 
-use cvtcycle::setup::equations::{by_label, equations};
+use cvtcycle::config::setup::equations::{by_label, equations};
 
 #[allow(dead_code, reason = "the example uses all of it")]
 #[path = "../examples/book_figures/content/mod.rs"]
@@ -272,10 +272,10 @@ fn every_value_of_the_car_stands_on_a_page() {
                 .map(|info| info.key),
         );
     }
-    let setup = cvtcycle::setup::load(
+    let setup = cvtcycle::config::setup::load(
         "rover_216_cvt",
         "--vehicle",
-        &cvtcycle::setup::Options::default(),
+        &cvtcycle::config::setup::Options::default(),
     )
     .unwrap();
     let all = setup

@@ -11,15 +11,15 @@
 mod common;
 
 use common::{CARS, RPM, ZERO, at, car, cycle, larger};
+use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::render;
-use cvtcycle::cycle::Cycle;
-use cvtcycle::lubricant::Lubricant;
-use cvtcycle::results::{Component, Flags};
-use cvtcycle::rig::{Bench, BenchAnswer, BenchPoint};
-use cvtcycle::run::{Start, drive};
-use cvtcycle::setup::{Options, Setup, embedded_vehicles, load, load_lubricant};
-use cvtcycle::transmission::Transmission;
-use cvtcycle::transmission::cvt::Cvt;
+use cvtcycle::config::setup::{Options, Setup, embedded_vehicles, load, load_lubricant};
+use cvtcycle::model::bench::{Bench, BenchAnswer, BenchPoint};
+use cvtcycle::model::drive::{Start, drive};
+use cvtcycle::model::fluid::Lubricant;
+use cvtcycle::model::transmission::Transmission;
+use cvtcycle::model::transmission::cvt::Cvt;
+use cvtcycle::output::{Component, Flags};
 
 const CVT: &str = "rover_216_cvt";
 const MANUAL: &str = "rover_216_5mt";
@@ -115,13 +115,13 @@ fn val_files_without_the_keys_keep_the_power_laws() {
             oil.kinematic_m2_s(degc + ZERO),
             oil.dynamic_pa_s(degc + ZERO),
         );
-        let power = |m: f64, x: f64| cvtcycle::numeric::exp(m * cvtcycle::numeric::ln(x));
+        let power = |m: f64, x: f64| cvtcycle::model::math::exp(m * cvtcycle::model::math::ln(x));
         for w in [0.0, 100.0, 400.0] {
             let (s, now) = (&cvt.spin, cvt.spin.at(nu));
             let shaft = s.shaft_constant_nm
                 + s.shaft_viscous_nm_s * power(s.shaft_exponent, nu / 11e-6) * w;
             assert_eq!(now.shaft_nm(w).to_bits(), shaft.to_bits(), "{degc} degC");
-            let fall = cvtcycle::numeric::exp(-w / s.drive_scale_rad_s);
+            let fall = cvtcycle::model::math::exp(-w / s.drive_scale_rad_s);
             let final_drive = s.drive_boundary_nm * fall
                 + s.drive_viscous_nm * power(s.drive_exponent, nu / 11e-6);
             assert_eq!(

@@ -10,13 +10,13 @@ mod common;
 
 use common::bench_step::{Bench, Setting};
 use common::{CARS, Keep, ZERO, car, cycle, hill, larger, soak_rows};
-use cvtcycle::cycle::{Cycle, Step, names};
-use cvtcycle::results::{Component, Flags, Row, TERM_NAMES, Terms};
-use cvtcycle::run::{Conditions, Start, drive};
-use cvtcycle::setup::Setup;
-use cvtcycle::simulate::{State, simulate};
-use cvtcycle::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, METAL, NODES, SUMP};
-use cvtcycle::transmission::Transmission;
+use cvtcycle::config::cycle::{Cycle, Step, names};
+use cvtcycle::config::setup::Setup;
+use cvtcycle::model::drive::{Conditions, Start, drive};
+use cvtcycle::model::drive::{State, simulate};
+use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, METAL, NODES, SUMP};
+use cvtcycle::model::transmission::Transmission;
+use cvtcycle::output::{Component, Flags, Row, TERM_NAMES, Terms};
 
 const AMBIENTS: [f64; 2] = [-10.0, 25.0];
 

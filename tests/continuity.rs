@@ -11,9 +11,9 @@ mod common;
 
 use common::bench_step::{Bench, Setting};
 use common::{RPM, ZERO, car, component_names, larger};
-use cvtcycle::results::{Component, Flags};
-use cvtcycle::thermal::{COOLANT, Heat, HeatInput, SUMP};
-use cvtcycle::transmission::{Drive, Transmission};
+use cvtcycle::model::thermal::{COOLANT, Heat, HeatInput, SUMP};
+use cvtcycle::model::transmission::{Drive, Transmission};
+use cvtcycle::output::{Component, Flags};
 
 /// What must be continuous: losses W, engine speed rad/s, flywheel torque Nm, throttle, pressure bar, slip, output W, brake W, deficit W.
 const EXTRA: [&str; 9] = [
@@ -372,7 +372,7 @@ fn continuous_into_gross_slip() {
             .filter(|i| {
                 solve(f64::from(*i))
                     .flags
-                    .contains(cvtcycle::results::Flags::GROSS_SLIP)
+                    .contains(cvtcycle::output::Flags::GROSS_SLIP)
             })
             .count();
         // Half the step of the other sweeps: slip runs into its bound within 0.1 Nm.

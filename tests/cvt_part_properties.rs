@@ -10,11 +10,11 @@
 mod common;
 
 use common::{at, car, cycle, try_car};
-use cvtcycle::run::{Start, drive};
-use cvtcycle::transmission::cvt::pump::{Pump, PumpKind, PumpNow};
-use cvtcycle::transmission::cvt::spin::{NU_REFERENCE_M2_S, Spin};
-use cvtcycle::transmission::film_heating::FilmHeating;
-use cvtcycle::transmission::launch::{FrictionClutch, Launch};
+use cvtcycle::model::drive::{Start, drive};
+use cvtcycle::model::transmission::cvt::pump::{Pump, PumpKind, PumpNow};
+use cvtcycle::model::transmission::cvt::spin::{NU_REFERENCE_M2_S, Spin};
+use cvtcycle::model::transmission::film_heating::FilmHeating;
+use cvtcycle::model::transmission::launch::{FrictionClutch, Launch};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -245,7 +245,7 @@ proptest! {
     #[test]
     fn drags_rise_with_viscosity(spin in any_spin(), (a, b) in pair(1e-6, 5e-3), w in 0.0..1500.0f64) {
         let (thin, thick) = (spin.at(a), spin.at(b));
-        let drags = |now: &cvtcycle::transmission::cvt::spin::SpinNow| [now.shaft_nm(w), now.clutch_nm, spin.drive_nm(now, w)];
+        let drags = |now: &cvtcycle::model::transmission::cvt::spin::SpinNow| [now.shaft_nm(w), now.clutch_nm, spin.drive_nm(now, w)];
         for (x, y) in drags(&thin).iter().zip(drags(&thick)) {
             prop_assert!(x.is_finite() && *x >= 0.0 && y >= x * (1.0 - 1e-12), "{x} then {y}");
         }

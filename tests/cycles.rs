@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 
 use cvtcycle::config::Problem;
-use cvtcycle::cycle::{Cycle, GearCommand, Trace, Weighting, embedded, names, read_csv};
+use cvtcycle::config::cycle::{Cycle, GearCommand, Trace, Weighting, embedded, names, read_csv};
 use proptest::prelude::*;
 
 /// Rows of a CSV file as maps from column name to text.
@@ -219,7 +219,11 @@ fn driven(operations: &str) -> (Vec<f64>, Vec<GearCommand>) {
     (speeds, gears)
 }
 
-fn assert_driven(trace: &[cvtcycle::cycle::Interval], commands: &[GearCommand], operations: &str) {
+fn assert_driven(
+    trace: &[cvtcycle::config::cycle::Interval],
+    commands: &[GearCommand],
+    operations: &str,
+) {
     let (speeds, gears) = driven(operations);
     assert_eq!(commands, gears);
     for (interval, pair) in trace.iter().zip(speeds.windows(2)) {

@@ -4,11 +4,11 @@
 use std::fs;
 
 use cvtcycle::config::Problem;
-use cvtcycle::cycle::Cycle;
-use cvtcycle::results::columns::{COLUMNS, Value, columns_for};
-use cvtcycle::results::trace::write_trace;
-use cvtcycle::results::{Component, Flags, History, Row};
-use cvtcycle::run::components;
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::model::drive::components;
+use cvtcycle::output::columns::{COLUMNS, Value, columns_for};
+use cvtcycle::output::trace::write_trace;
+use cvtcycle::output::{Component, Flags, History, Row};
 use cvtcycle::study::store::{read_trace_parquet, write_trace_parquet};
 
 mod common;

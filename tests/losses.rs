@@ -10,13 +10,13 @@ use assert_cmd::Command;
 use common::bench_step::{Bench as StepBench, Setting};
 use common::{RPM, ZERO, car};
 use cvtcycle::config::render;
-use cvtcycle::results::columns::Value as Cell;
-use cvtcycle::results::{Component, Flags};
-use cvtcycle::rig::loss_table::{MapPart, write_map};
-use cvtcycle::rig::losses::{Axis, LossGrid, columns};
-use cvtcycle::rig::{BELT_PARTS, Bench, BenchPoint};
-use cvtcycle::setup::{Options, Setup, load};
-use cvtcycle::transmission::cvt::variator::Formulation;
+use cvtcycle::config::setup::{Options, Setup, load};
+use cvtcycle::model::bench::{BELT_PARTS, Bench, BenchPoint};
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::columns::Value as Cell;
+use cvtcycle::output::loss_table::{MapPart, write_map};
+use cvtcycle::output::losses::{Axis, LossGrid, columns};
+use cvtcycle::output::{Component, Flags};
 use serde_json::Value;
 
 fn run(words: &[&str]) -> Output {
@@ -671,7 +671,7 @@ fn maps_written_and_read_again() {
             grid.len() + 1
         );
         for k in 0..grid.len() {
-            let p = cvtcycle::rig::losses::bench_point(&grid.at(k));
+            let p = cvtcycle::output::losses::bench_point(&grid.at(k));
             let (model, map) = (part.loss_nm(&bench, &p), part_of_map(part, &again, &p));
             close(model, map, 1e-9, &format!("{name} {p:?}"));
         }
@@ -759,7 +759,7 @@ fn printed_forms() {
         Formulation::Chapter8,
     ]
     .map(at);
-    let segments = |a: &cvtcycle::rig::BenchAnswer| a.belt.unwrap().slip.active_segments;
+    let segments = |a: &cvtcycle::model::bench::BenchAnswer| a.belt.unwrap().slip.active_segments;
     assert!(segments(&smooth).fract() > 1e-9);
     for printed in [&appendix, &chapter] {
         assert!(segments(printed).fract().abs() < 1e-15 && segments(printed) >= 1.0);
@@ -769,7 +769,7 @@ fn printed_forms() {
     // Eq. 49 unscaled, both wedge arcs: the chapter loses more in bands.
     assert!(chapter.part_nm(Component::BeltBand) > appendix.part_nm(Component::BeltBand) + 0.3);
     // 0.02 % slip rms against integer k (physics.md 1).
-    let slip = |a: &cvtcycle::rig::BenchAnswer| a.belt.unwrap().slip_total;
+    let slip = |a: &cvtcycle::model::bench::BenchAnswer| a.belt.unwrap().slip_total;
     assert!(
         (slip(&smooth) - slip(&appendix)).abs() < 2e-3,
         "{} {}",

@@ -1,11 +1,11 @@
 //! Measured torque-loss maps in place of models, read from CSV files beside a vehicle file.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+use cvtcycle::config::cycle::embedded;
 use cvtcycle::config::render;
-use cvtcycle::cycle::embedded;
-use cvtcycle::results::Component;
-use cvtcycle::run::{Conditions, Outcome, Start, components, drive};
-use cvtcycle::setup::{Options, Setup, load};
+use cvtcycle::config::setup::{Options, Setup, load};
+use cvtcycle::model::drive::{Conditions, Outcome, Start, components, drive};
+use cvtcycle::output::Component;
 
 /// A vehicle file in its own folder with a map beside it; the overrides name the map.
 fn car(vehicle: &str, csv: &str, set: &str) -> Result<Setup, String> {

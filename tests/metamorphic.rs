@@ -10,10 +10,10 @@ mod common;
 
 use common::{CARS, ZERO, at, car, consumption, cycle, fuel_kg, hill, larger, try_car};
 use cvtcycle::config::KeyInfo;
-use cvtcycle::cycle::Cycle;
-use cvtcycle::results::{Component, Row};
-use cvtcycle::run::{Conditions, Start, drive};
-use cvtcycle::setup::Setup;
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::config::setup::Setup;
+use cvtcycle::model::drive::{Conditions, Start, drive};
+use cvtcycle::output::{Component, Row};
 
 /// Property: halving the step converges on the fuel of the finest step, within 0.2 % per second of step (+0.015 %); a step of 0.01 s still closes its books.
 #[test]

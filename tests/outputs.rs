@@ -9,10 +9,10 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use cvtcycle::results::columns::{COLUMNS, Value, column, columns_for};
-use cvtcycle::results::files::OutputDir;
-use cvtcycle::results::trace::write_trace;
-use cvtcycle::results::{Component, Flags, Row};
+use cvtcycle::output::columns::{COLUMNS, Value, column, columns_for};
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::trace::write_trace;
+use cvtcycle::output::{Component, Flags, Row};
 
 #[allow(dead_code, reason = "shared with other tests")]
 mod made_up;

@@ -10,9 +10,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::Arc;
 
-use cvtcycle::results::columns::columns_for;
-use cvtcycle::results::file::OutputFile;
-use cvtcycle::results::trace::write_trace;
+use cvtcycle::output::columns::columns_for;
+use cvtcycle::output::file::OutputFile;
+use cvtcycle::output::trace::write_trace;
 use cvtcycle::study::export::{Format, export};
 use cvtcycle::study::store::{
     PartTable, Study, StudyDir, write_csv, write_parquet, write_trace_parquet,
@@ -282,7 +282,7 @@ fn val_pyarrow_finds_the_cells_of_a_trace_and_of_an_export() {
             "gear" | "iterations" => Kind::Count,
             _ => Kind::Number,
         };
-        let head = |c: &&cvtcycle::results::columns::Column| Column {
+        let head = |c: &&cvtcycle::output::columns::Column| Column {
             name: c.name.into(),
             unit: c.unit.into(),
             doc: c.doc.into(),

@@ -5,8 +5,10 @@
     reason = "helpers and tables of tests"
 )]
 
-use cvtcycle::report::{Picture, bin_losses, fuel_bars, losses, operating_points, temperatures};
-use cvtcycle::results::{Flags, Row};
+use cvtcycle::output::{Flags, Row};
+use cvtcycle::report::charts::{
+    Picture, bin_losses, fuel_bars, losses, operating_points, temperatures,
+};
 
 #[allow(dead_code, reason = "shared with other tests")]
 mod made_up;

@@ -12,22 +12,22 @@ use std::path::Path;
 use assert_cmd::Command;
 use common::bench_step::{self, Setting};
 use common::{RPM, ZERO, car, larger};
-use cvtcycle::results::{Component, Flags};
-use cvtcycle::rig::transmission::{
+use cvtcycle::config::setup::{Options, load};
+use cvtcycle::model::bench::transmission::{
     Branch, Conditions, Loop, Piece, Plan, Stage, StripDown, loaded, on_the_rig, second_box,
     steady, strip_down, transient,
 };
-use cvtcycle::rig::{Bench, BenchPoint};
-use cvtcycle::setup::{Options, load};
-use cvtcycle::thermal::{Heat, HeatInput, METAL, SUMP};
-use cvtcycle::transmission::cvt::variator::Formulation;
+use cvtcycle::model::bench::{Bench, BenchPoint};
+use cvtcycle::model::thermal::{Heat, HeatInput, METAL, SUMP};
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::{Component, Flags};
 use serde_json::Value;
 
 const CAR: &str = "rover_216_cvt";
 
 fn rig(sets: &[&str]) -> Conditions {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    Conditions::load(&sets)
+    cvtcycle::config::rig::load(&sets)
         .unwrap_or_else(|p| panic!("{p:#?}"))
         .0
 }

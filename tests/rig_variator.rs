@@ -7,9 +7,9 @@ use std::process::Output;
 
 use assert_cmd::Command;
 use common::{RPM, ZERO, car};
-use cvtcycle::rig::variator::{Held, RigFlags, VariatorRig};
-use cvtcycle::setup::{Options, load};
-use cvtcycle::transmission::cvt::variator::{Formulation, Geometry};
+use cvtcycle::config::setup::{Options, load};
+use cvtcycle::model::bench::variator::{Held, RigFlags, VariatorRig};
+use cvtcycle::model::transmission::cvt::variator::{Formulation, Geometry};
 use serde_json::Value;
 
 /// The rig's high ratio.

@@ -1,12 +1,12 @@
 //! Plans of studies: every rule with a bad plan, the examples of the documentation, the plans that the program carries.
 #![allow(clippy::unwrap_used, reason = "tests say what they found")]
 
+use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{Problem, render};
-use cvtcycle::setup::{self, Options};
+use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::study::plan::{
     Acts, Cars, Design, Distribution, FactorValue, FactorValues, Keep, Plan, embedded_plans,
 };
-use cvtcycle::transmission::cvt::variator::Formulation;
 use proptest::prelude::*;
 
 fn good(text: &str) -> Plan {

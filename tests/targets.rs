@@ -9,11 +9,11 @@
 mod common;
 
 use common::{RPM, ZERO, at, car, consumption, cycle, larger, soak_rows};
-use cvtcycle::results::{Component, Flags, Row};
-use cvtcycle::rig::{Bench, BenchAnswer, BenchPoint};
-use cvtcycle::run::{Start, drive};
-use cvtcycle::setup::Setup;
-use cvtcycle::thermal::{ENGINE_OIL, SUMP};
+use cvtcycle::config::setup::Setup;
+use cvtcycle::model::bench::{Bench, BenchAnswer, BenchPoint};
+use cvtcycle::model::drive::{Start, drive};
+use cvtcycle::model::thermal::{ENGINE_OIL, SUMP};
+use cvtcycle::output::{Component, Flags, Row};
 
 fn kmh(row: &Row) -> f64 {
     row.speed_m_s * 3.6

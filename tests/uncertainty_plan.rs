@@ -10,9 +10,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use common::{at, cycle, try_car};
 use cvtcycle::config::KeyInfo;
-use cvtcycle::cycle::Cycle;
-use cvtcycle::results::Flags;
-use cvtcycle::run::{Start, drive, litres_per_100km};
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::model::drive::{Start, drive, litres_per_100km};
+use cvtcycle::output::Flags;
 
 const PLAN: &str = include_str!("../plans/uncertainty_rover.toml");
 const PAGE: &str = include_str!("../docs/uncertainty.md");

@@ -6,11 +6,11 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::PathBuf;
 
+use cvtcycle::config::setup::{self, Options, Setup};
 use cvtcycle::config::{Bound, Problem};
-use cvtcycle::results::file::OutputFile;
-use cvtcycle::rig::points::{self, Counts, Done, Job, Model};
-use cvtcycle::setup::{self, Options, Setup};
-use cvtcycle::transmission::cvt::variator::Formulation;
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::file::OutputFile;
+use cvtcycle::study::points::{self, Counts, Done, Job, Model};
 use serde_json::{Map, Value, json};
 
 use super::Context;

@@ -9,11 +9,11 @@ mod text;
 
 use std::path::PathBuf;
 
-use cvtcycle::calibrate::outcome::Outcome;
-use cvtcycle::calibrate::plan::Plan;
-use cvtcycle::calibrate::{calibrate, embedded_calibrations, open};
 use cvtcycle::config::Problem;
-use cvtcycle::results::files::OutputDir;
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::study::fit::outcome::Outcome;
+use cvtcycle::study::fit::plan::Plan;
+use cvtcycle::study::fit::{calibrate, embedded_calibrations, open};
 
 use super::Context;
 use super::answer::{Answer, FAILED, Reply, json_text, problem};

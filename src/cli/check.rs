@@ -1,9 +1,9 @@
 //! `check`: inputs without a run.
 
-use cvtcycle::calibrate::open;
+use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::config::{Problem, render};
-use cvtcycle::setup::{self, Kind, Options};
 use cvtcycle::study::Study;
+use cvtcycle::study::fit::open;
 use cvtcycle::study::plan::Plan;
 
 use super::Context;

@@ -3,11 +3,11 @@
 mod flags;
 mod text;
 
+use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
+use cvtcycle::config::setup::equations::{Equation, by_label, cited, equations};
 use cvtcycle::config::{KeyInfo, Problem, near};
-use cvtcycle::results::Flags;
-use cvtcycle::results::columns::{COLUMNS, Column, column};
-use cvtcycle::setup::catalogue::{self, ENGINE_OIL, File, OIL};
-use cvtcycle::setup::equations::{Equation, by_label, cited, equations};
+use cvtcycle::output::Flags;
+use cvtcycle::output::columns::{COLUMNS, Column, column};
 use serde_json::{Value, json};
 
 use super::Context;

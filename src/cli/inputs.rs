@@ -1,10 +1,10 @@
 //! Words of the command line to checked values. Problems are collected, never the first one only.
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
+use cvtcycle::config::cycle;
+pub use cvtcycle::config::cycle::{bytes, find as cycle, is_csv};
+use cvtcycle::config::setup::{self, is_path};
 use cvtcycle::config::{Bound, Place, Problem, near, unit_of};
-use cvtcycle::cycle;
-pub use cvtcycle::cycle::{bytes, find as cycle, is_csv};
-use cvtcycle::setup::{self, is_path};
 
 /// Takes any text, but lets completions offer the known names: unknown ones are reported with all other problems.
 #[derive(Clone, Copy, Debug)]

@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 use cvtcycle::config::Problem;
-use cvtcycle::cycle;
-use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::setup::{self, Options};
+use cvtcycle::config::cycle;
+use cvtcycle::config::setup::{self, Options};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
 use serde::Serialize;
 
 use super::Context;

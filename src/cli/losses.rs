@@ -8,9 +8,9 @@ mod text;
 use std::cell::RefCell;
 use std::io;
 
-use cvtcycle::rig::loss_table::{MapPart, write_map};
-use cvtcycle::rig::losses::{FlagCount, LossRow};
-use cvtcycle::transmission::cvt::variator::Formulation;
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::loss_table::{MapPart, write_map};
+use cvtcycle::output::losses::{FlagCount, LossRow};
 
 use super::Context;
 use super::answer::{Answer, FAILED, Reply};
@@ -175,7 +175,7 @@ fn map(
     args: &Args,
     plan: &Plan,
     part: MapPart,
-    out: Option<cvtcycle::results::files::OutputDir>,
+    out: Option<cvtcycle::output::files::OutputDir>,
 ) -> Reply {
     let write = |out: &mut dyn io::Write| write_map(out, &plan.bench, part, &plan.grid);
     let Some(mut dir) = out else {

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use cvtcycle::review::report;
-use cvtcycle::review::write::{Form, Target};
+use cvtcycle::report::report;
+use cvtcycle::report::write::{Form, Target};
 
 use super::answer::{Answer, FAILED, Reply, json_text};
 use super::inputs::{self, Offering};

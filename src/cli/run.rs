@@ -6,14 +6,14 @@ mod record;
 mod text;
 
 use cvtcycle::config::Bound;
-use cvtcycle::cycle::Cycle;
-use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::results::files::OutputDir;
-use cvtcycle::results::record::FILE;
-use cvtcycle::results::summary::{Driven, Settings, StartWord, Summary, name_of, summarise};
-use cvtcycle::run::{Conditions, Outcome, Start, drive};
-use cvtcycle::setup::AMBIENT;
-use cvtcycle::transmission::cvt::variator::Formulation;
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::config::setup::AMBIENT;
+use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::record::FILE;
+use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, name_of, summarise};
 
 use super::Context;
 use super::answer::{Answer, FAILED, Reply, json_text};

@@ -1,6 +1,6 @@
 //! What packagers and readers need: completions, manual pages, the book of assumptions.
 
-use cvtcycle::setup::assumptions::book;
+use cvtcycle::config::setup::assumptions::book;
 
 use super::answer::{Answer, Reply, problem};
 use super::inputs::did_you_mean;

@@ -1,11 +1,11 @@
 //! `show`: every value of a vehicle, lubricant or rig with its status and source, or what a cycle is made of.
 
 use clap::ValueEnum;
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::config::setup::assumptions::value;
+use cvtcycle::config::setup::catalogue;
+use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{KeyInfo, Problem};
-use cvtcycle::cycle::Cycle;
-use cvtcycle::setup::assumptions::value;
-use cvtcycle::setup::catalogue;
-use cvtcycle::setup::{self, Options};
 use serde::Serialize;
 
 use super::Context;
@@ -259,7 +259,7 @@ struct PhaseLine {
 
 fn cycle(args: &Args, cycle: &Cycle, context: Context) -> Reply {
     let (manual, automatic) = (cycle.trace_for(false), cycle.trace_for(true));
-    let km = |trace: &cvtcycle::cycle::Trace, phases: &[u16]| {
+    let km = |trace: &cvtcycle::config::cycle::Trace, phases: &[u16]| {
         phases
             .iter()
             .map(|phase| trace.phase_distance_m(*phase))

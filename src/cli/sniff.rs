@@ -1,9 +1,9 @@
 //! What a name or a file is: vehicle, lubricant, cycle, rig, calibration or study.
 
-use cvtcycle::calibrate::embedded_calibrations;
+use cvtcycle::config::cycle;
+use cvtcycle::config::setup::is_path;
 use cvtcycle::config::{Document, Problem, bounded, decode};
-use cvtcycle::cycle;
-use cvtcycle::setup::is_path;
+use cvtcycle::study::fit::embedded_calibrations;
 use cvtcycle::study::plan::embedded_plans;
 
 use super::inputs::{bad_value, bytes, did_you_mean, is_csv, lubricants, rigs, vehicles};

@@ -2,12 +2,12 @@
 
 mod text;
 
+use cvtcycle::config::setup;
 use cvtcycle::config::{Problem, bounded, decode};
-use cvtcycle::results::files::OutputDir;
-use cvtcycle::setup;
-use cvtcycle::validate::{
-    COMMON, File, MECHANISMS, Report, Row, Subject, csv, embedded_rows, json, judge, markdown,
-    page, read,
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::report::validation_page::page;
+use cvtcycle::study::check::{
+    COMMON, File, MECHANISMS, Report, Row, Subject, csv, embedded_rows, json, judge, markdown, read,
 };
 
 use super::Context;

@@ -1,6 +1,6 @@
 //! What a row asks for is what it gets, wherever it stands.
 
-use cvtcycle::transmission::cvt::variator::Geometry;
+use cvtcycle::model::transmission::cvt::variator::Geometry;
 
 use super::table::close;
 use super::{EDGES, NAMES, POINTS, belt, made, one, refused, text};

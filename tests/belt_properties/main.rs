@@ -16,8 +16,8 @@ mod limits;
 mod monotone;
 mod scaling;
 
-use cvtcycle::lubricant::BandFriction;
-use cvtcycle::transmission::cvt::variator::{
+use cvtcycle::model::fluid::BandFriction;
+use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state,
 };
 use proptest::prelude::*;

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use cvtcycle::calibrate::solve::{
+use cvtcycle::study::fit::solve::{
     End, Fit, Options, Residuals, Unwatched, Watcher, fit, leave_out, uncertainty, words,
 };
 
@@ -121,7 +121,7 @@ fn answers_that_are_no_numbers_and_parameters_that_are_none() {
         parameter("a", f64::NAN, [2.0, 1.0]),
         parameter("b", 1.0, [0.0, f64::INFINITY]),
     ];
-    bad[1].prior = Some(cvtcycle::calibrate::solve::Prior { mean: 1.0, sd: 0.0 });
+    bad[1].prior = Some(cvtcycle::study::fit::solve::Prior { mean: 1.0, sd: 0.0 });
     assert_eq!(
         fit(&short, &bad, &ONCE, &Unwatched)
             .expect_err("bad")

@@ -5,7 +5,7 @@ mod nist;
 mod unidentified;
 mod worth;
 
-use cvtcycle::calibrate::solve::{Fit, Options, Parameter, Prior, Residuals, Unwatched, fit};
+use cvtcycle::study::fit::solve::{Fit, Options, Parameter, Prior, Residuals, Unwatched, fit};
 
 /// A model that is a function.
 struct Model<F>(usize, F);

@@ -1,6 +1,6 @@
 //! Set-ups that the data do not identify are called so, with a solver's noise in the model.
 
-use cvtcycle::calibrate::solve::{End, Parameter, Residuals, uncertainty, words};
+use cvtcycle::study::fit::solve::{End, Parameter, Residuals, uncertainty, words};
 
 use super::{Model, fitted, parameter, with_prior};
 

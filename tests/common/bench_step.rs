@@ -1,13 +1,13 @@
 //! One step of a driveline, set up by hand: speeds, torques and temperatures as on a test bench, ratio held.
 
-use cvtcycle::cycle::GearCommand;
-use cvtcycle::setup::Setup;
-use cvtcycle::simulate::Car;
-use cvtcycle::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, METAL, SUMP};
-use cvtcycle::transmission::cvt::Cvt;
-use cvtcycle::transmission::cvt::variator::BeltAtRatio;
-use cvtcycle::transmission::{Drive, DriveState, Surroundings, Transmission};
-use cvtcycle::vehicle::WheelDemand;
+use cvtcycle::config::cycle::GearCommand;
+use cvtcycle::config::setup::Setup;
+use cvtcycle::model::drive::Car;
+use cvtcycle::model::road::WheelDemand;
+use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, METAL, SUMP};
+use cvtcycle::model::transmission::cvt::Cvt;
+use cvtcycle::model::transmission::cvt::variator::BeltAtRatio;
+use cvtcycle::model::transmission::{Drive, DriveState, Surroundings, Transmission};
 
 use super::ZERO;
 

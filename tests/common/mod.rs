@@ -8,12 +8,12 @@
 pub mod bench_step;
 pub mod range;
 
+use cvtcycle::config::cycle::{Cycle, constant_speed, embedded, read_csv};
 use cvtcycle::config::render;
-use cvtcycle::cycle::{Cycle, constant_speed, embedded, read_csv};
-use cvtcycle::results::{Component, Row, Terms};
-use cvtcycle::run::{Conditions, Outcome, Start, drive, litres_per_100km};
-use cvtcycle::setup::{Options, Setup, load};
-use cvtcycle::simulate::Recorder;
+use cvtcycle::config::setup::{Options, Setup, load};
+use cvtcycle::model::drive::Recorder;
+use cvtcycle::model::drive::{Conditions, Outcome, Start, drive, litres_per_100km};
+use cvtcycle::output::{Component, Row, Terms};
 
 /// Shipped vehicles.
 pub const CARS: [&str; 3] = ["rover_216_cvt", "rover_216_5mt", "mondeo_20_5mt"];

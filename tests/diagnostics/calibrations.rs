@@ -1,8 +1,8 @@
 //! Bad plans of calibrations, their bad data files, and sound plans whose fit does not end well.
 
-use cvtcycle::calibrate;
 use cvtcycle::config::Problem;
-use cvtcycle::setup::{self, Options};
+use cvtcycle::config::setup::{self, Options};
+use cvtcycle::study::fit;
 
 use super::kinds::{made_file, told_by};
 
@@ -19,7 +19,7 @@ pub fn data(kind: &str, case: &str) -> Option<Vec<Problem>> {
         "[calibration]\nvehicle = \"rover_216_cvt\"\n[sources.cold]\nsource = \"run\"\n[[parameter]]\n\
          key = \"transmission.cvt.pump.displacement_cc_rev\"\nlow = 5\nhigh = 20\n[[data]]\nfrom = \"a test\"\n{way} = \"{name}\"\n{about}\n"
     );
-    calibrate::plan::read(&format!("{folder}/plan.toml"), &plan).err()
+    fit::plan::read(&format!("{folder}/plan.toml"), &plan).err()
 }
 
 /// What a sound plan ends with whose fit is not: exit code 1, and yet all files are there, with the best point so far.
@@ -109,7 +109,7 @@ fn plans() -> Vec<(String, String)> {
     let named = |name: &str, word: &str| {
         (
             format!("made_{name}"),
-            told_by(calibrate::open(word, "PLAN").err()),
+            told_by(fit::open(word, "PLAN").err()),
         )
     };
     let mut all = vec![
@@ -125,7 +125,7 @@ fn plans() -> Vec<(String, String)> {
         ("binary.toml", b"PK\x03\x04\0\x9f"),
         ("latin1.toml", b"# \xe9\n"),
     ];
-    let open = |path: &str, _: &[u8]| told_by(calibrate::open(path, "PLAN").err());
+    let open = |path: &str, _: &[u8]| told_by(fit::open(path, "PLAN").err());
     all.extend(
         binary
             .into_iter()

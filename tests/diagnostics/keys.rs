@@ -6,9 +6,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use cvtcycle::config::setup::{Kind, Options, catalogue, load, load_lubricant};
 use cvtcycle::config::{Document, KeyInfo, Problem, Reader};
-use cvtcycle::rig::transmission::Conditions;
-use cvtcycle::setup::{Kind, Options, catalogue, load, load_lubricant};
 
 use super::kinds::written;
 
@@ -112,7 +111,7 @@ impl Plain {
             Kind::Rig => match Document::parse(path, text) {
                 Ok(document) => {
                     let reader = Reader::new(&document);
-                    let _ = Conditions::read(&reader.root());
+                    let _ = cvtcycle::config::rig::read(&reader.root());
                     reader.finish().err()
                 }
                 Err(problems) => Some(problems),
@@ -143,7 +142,7 @@ impl Plain {
             Kind::Rig => {
                 let document = Document::parse(path, &text).unwrap();
                 let reader = Reader::new(&document);
-                let _ = Conditions::read(&reader.root());
+                let _ = cvtcycle::config::rig::read(&reader.root());
                 reader.finish().unwrap()
             }
         }

@@ -3,16 +3,15 @@
 //! A bad vehicle and a bad rig file hold only what is wrong, as dotted keys: what they leave out is put below it, from the shipped file that
 //! their first line names (`# on NAME`), so that the lines of the bad file keep their numbers.
 
-use cvtcycle::calibrate;
+use cvtcycle::config::cycle;
+use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{Document, KeyInfo, Problem, Reader, render};
-use cvtcycle::cycle;
-use cvtcycle::results::History;
-use cvtcycle::review::cover::Cover;
-use cvtcycle::rig::transmission::Conditions;
-use cvtcycle::setup::{self, Options};
+use cvtcycle::output::History;
+use cvtcycle::report::cover::Cover;
 use cvtcycle::study::Study;
+use cvtcycle::study::check;
+use cvtcycle::study::fit;
 use cvtcycle::study::plan::Plan;
-use cvtcycle::validate;
 
 use super::calibration;
 
@@ -45,7 +44,7 @@ pub fn message(kind: &str, case: &str) -> String {
         return calibration::ran(case);
     }
     let problems = match kind {
-        "calibration" => calibrate::open(case, "PLAN").err(),
+        "calibration" => fit::open(case, "PLAN").err(),
         "calibration_points" | "calibration_trace" | "calibration_scalars" => {
             calibration::data(kind, case)
         }
@@ -68,8 +67,8 @@ fn rows(case: &str, bytes: &[u8]) -> Option<Vec<Problem>> {
         Ok(text) => text,
         Err(problems) => return Some(problems),
     };
-    validate::read(
-        ("embedded:common.toml", validate::COMMON.1),
+    check::read(
+        ("embedded:common.toml", check::COMMON.1),
         &[(case.to_owned(), text)],
     )
     .err()
@@ -129,13 +128,13 @@ fn vehicle(case: &str, text: &str) -> String {
 }
 
 fn rig(case: &str, text: &str) -> Option<Vec<Problem>> {
-    let (_, keys) = Conditions::load(&[]).unwrap();
+    let (_, keys) = cvtcycle::config::rig::load(&[]).unwrap();
     let document = match Document::parse(case, &completed(text, keys.iter())) {
         Ok(document) => document,
         Err(problems) => return Some(problems),
     };
     let reader = Reader::new(&document);
-    let _ = Conditions::read(&reader.root());
+    let _ = cvtcycle::config::rig::read(&reader.root());
     let problems = reader.finish().err().unwrap_or_default();
     within(case, text, &problems);
     Some(problems)
@@ -316,7 +315,7 @@ pub fn made_file(
 
 /// Traces that are wrong in one way each; their columns are those that the program writes.
 fn traces() -> Vec<(String, String)> {
-    use cvtcycle::results::columns::{COLUMNS, Scope};
+    use cvtcycle::output::columns::{COLUMNS, Scope};
     let names: Vec<&str> = COLUMNS
         .iter()
         .filter(|column| column.scope != Scope::Cvt)

@@ -3,9 +3,9 @@
 
 use crate::common::car;
 use crate::{near, same};
-use cvtcycle::lubricant::BandFriction;
-use cvtcycle::transmission::Transmission;
-use cvtcycle::transmission::cvt::variator::{
+use cvtcycle::model::fluid::BandFriction;
+use cvtcycle::model::transmission::Transmission;
+use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_losses, belt_state, driving_point,
     sliding_speed_m_s,
 };

@@ -2,14 +2,14 @@
 
 use crate::common::{CARS, ZERO, car};
 use crate::{near, same};
-use cvtcycle::lubricant::BandFriction;
-use cvtcycle::simulate::Car;
-use cvtcycle::thermal::{Heat, NODES};
-use cvtcycle::transmission::cvt::Cvt;
-use cvtcycle::transmission::cvt::controller::{ClampLaw, ClampSignals};
-use cvtcycle::transmission::cvt::variator::{BeltAtRatio, BeltLoad, belt_state};
-use cvtcycle::transmission::{DriveState, Surroundings, Transmission};
-use cvtcycle::vehicle::WheelDemand;
+use cvtcycle::model::drive::Car;
+use cvtcycle::model::fluid::BandFriction;
+use cvtcycle::model::road::WheelDemand;
+use cvtcycle::model::thermal::{Heat, NODES};
+use cvtcycle::model::transmission::cvt::Cvt;
+use cvtcycle::model::transmission::cvt::controller::{ClampLaw, ClampSignals};
+use cvtcycle::model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, belt_state};
+use cvtcycle::model::transmission::{DriveState, Surroundings, Transmission};
 
 fn shipped() -> Car {
     car(CARS[0], &[]).car(293.15)

@@ -1,8 +1,10 @@
 //! Ratio control RC-1 to RC-8, clamp map PC-1 and PC-2, launch clutch LC-1 to LC-5.
 
 use crate::same;
-use cvtcycle::transmission::cvt::controller::{ClampSignals, MapLaw, RatioControl, RatioDemand};
-use cvtcycle::transmission::launch::{FrictionClutch, Launch};
+use cvtcycle::model::transmission::cvt::controller::{
+    ClampSignals, MapLaw, RatioControl, RatioDemand,
+};
+use cvtcycle::model::transmission::launch::{FrictionClutch, Launch};
 
 fn control() -> RatioControl {
     RatioControl {

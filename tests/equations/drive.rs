@@ -4,20 +4,20 @@
 use crate::common::bench_step::{Bench, Setting};
 use crate::common::{RPM, ZERO, car};
 use crate::{near, same};
-use cvtcycle::cycle::GearCommand;
-use cvtcycle::engine::{EngineNow, FULL};
-use cvtcycle::numeric::{Curve, Grid};
-use cvtcycle::results::{Component, Flags};
-use cvtcycle::thermal::{Heat, NODES};
-use cvtcycle::transmission::cvt::Cvt;
-use cvtcycle::transmission::cvt::controller::{ClampLaw, ClampSignals, RatioDemand};
-use cvtcycle::transmission::cvt::pump::PumpKind;
-use cvtcycle::transmission::cvt::variator::{
+use cvtcycle::config::cycle::GearCommand;
+use cvtcycle::model::engine::{EngineNow, FULL};
+use cvtcycle::model::math::{Curve, Grid};
+use cvtcycle::model::road::WheelDemand;
+use cvtcycle::model::thermal::{Heat, NODES};
+use cvtcycle::model::transmission::cvt::Cvt;
+use cvtcycle::model::transmission::cvt::controller::{ClampLaw, ClampSignals, RatioDemand};
+use cvtcycle::model::transmission::cvt::pump::PumpKind;
+use cvtcycle::model::transmission::cvt::variator::{
     BeltAtRatio, BeltLoad, Geometry, belt_state, sliding_speed_m_s,
 };
-use cvtcycle::transmission::loss_map::LossMap;
-use cvtcycle::transmission::{Drive, DriveState, Surroundings, Transmission};
-use cvtcycle::vehicle::WheelDemand;
+use cvtcycle::model::transmission::loss_map::LossMap;
+use cvtcycle::model::transmission::{Drive, DriveState, Surroundings, Transmission};
+use cvtcycle::output::{Component, Flags};
 
 /// What fixes the output torque.
 #[derive(Clone, Copy, Debug, PartialEq)]

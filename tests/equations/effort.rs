@@ -3,7 +3,7 @@
 //! Truth of the counts: today's program, frozen; they fall when the solve gets better, and are then written down anew.
 
 use crate::common::{CARS, Keep, ZERO, car, cycle, hill};
-use cvtcycle::simulate::{State, simulate};
+use cvtcycle::model::drive::{State, simulate};
 
 /// Evaluations of the driveline over a cycle, the most in a row, and the largest residual.
 fn effort(name: &str, cycle_name: &str, degc: f64) -> (u32, u16, f64) {

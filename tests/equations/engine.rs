@@ -2,8 +2,8 @@
 
 use crate::common::{ZERO, car};
 use crate::same;
-use cvtcycle::engine::{Engine, EngineNow};
-use cvtcycle::setup::Setup;
+use cvtcycle::config::setup::Setup;
+use cvtcycle::model::engine::{Engine, EngineNow};
 use std::f64::consts::PI;
 
 fn engine() -> (Setup, Engine) {

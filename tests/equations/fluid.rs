@@ -2,7 +2,7 @@
 
 use crate::common::{ZERO, car};
 use crate::same;
-use cvtcycle::lubricant::{Friction, Lubricant, Viscosity};
+use cvtcycle::model::fluid::{Friction, Lubricant, Viscosity};
 
 fn friction() -> Friction {
     Friction {
@@ -129,7 +129,7 @@ fn val_band_friction_by_hand() {
 /// Ramps in both orders of their ends, and the step that equal ends make.
 #[test]
 fn val_ramps_by_hand() {
-    use cvtcycle::numeric::{held, ramp, smooth_ramp};
+    use cvtcycle::model::math::{held, ramp, smooth_ramp};
     for (x, from, to, want) in [
         (0.25, 0.0, 1.0, 0.25),
         (0.25, 1.0, 0.0, 0.75),
@@ -151,7 +151,7 @@ fn val_ramps_by_hand() {
 /// A curve of one point has its value everywhere; one of two points is straight between them, wherever they lie.
 #[test]
 fn val_curves_by_hand() {
-    let one = cvtcycle::numeric::Curve::constant(5.0);
+    let one = cvtcycle::model::math::Curve::constant(5.0);
     assert!(
         [-1e9, 0.0, 3.0, 1e9].iter().all(|x| one.at(*x) == 5.0)
             && one.at(f64::NAN).is_nan() == one.at(f64::NAN).is_nan()
@@ -160,7 +160,7 @@ fn val_curves_by_hand() {
         let points: Vec<(f64, f64)> = (0..9)
             .map(|i| (from + 10.0 * f64::from(i * i), f64::from(7 * i % 5)))
             .collect();
-        let curve = cvtcycle::numeric::Curve::new(&points).unwrap();
+        let curve = cvtcycle::model::math::Curve::new(&points).unwrap();
         for p in points.windows(2) {
             for share in [0.0, 0.25, 0.5, 0.99] {
                 let x = p[0].0 + share * (p[1].0 - p[0].0);

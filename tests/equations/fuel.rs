@@ -1,7 +1,10 @@
 //! Fuel: WI-1, WI-2, BM-1 to BM-3, and the bounds of both.
 
 use crate::same;
-use cvtcycle::engine::{BsfcMap, FuelModel, Willans};
+use cvtcycle::model::engine::{BsfcMap, FuelModel, Willans};
+
+/// Rubbing friction of the default line, which does not matter here.
+const FRICTION: (f64, f64) = (2.398_82, 0.002_86);
 
 const BAR: f64 = 1e5;
 
@@ -164,7 +167,7 @@ fn val_rows_make_a_map() {
         row(100.0, 6.0, 270.0),
         row(300.0, 2.0, 390.0),
     ];
-    let map = BsfcMap::from_rows(&good, 43e6).unwrap();
+    let map = BsfcMap::from_rows(&good, 43e6, FRICTION).unwrap();
     assert_eq!(
         (map.speed_rad_s.as_slice(), map.bmep_pa.as_slice()),
         (&[100.0, 300.0][..], &[2.0 * BAR, 6.0 * BAR][..])
@@ -182,12 +185,12 @@ fn val_rows_make_a_map() {
     close[2].0 = 100.0 * (1.0 + 0.9e-9);
     close[0].1 = 6.0 * BAR * (1.0 - 0.9e-9);
     assert_eq!(
-        BsfcMap::from_rows(&close, 43e6).unwrap().fuel_pa[0].len(),
+        BsfcMap::from_rows(&close, 43e6, FRICTION).unwrap().fuel_pa[0].len(),
         2
     );
     close[2].0 = 100.0 * (1.0 + 2e-9);
-    assert!(BsfcMap::from_rows(&close, 43e6).is_err());
-    let refused = |rows: &[(f64, f64, f64)]| BsfcMap::from_rows(rows, 43e6).unwrap_err();
+    assert!(BsfcMap::from_rows(&close, 43e6, FRICTION).is_err());
+    let refused = |rows: &[(f64, f64, f64)]| BsfcMap::from_rows(rows, 43e6, FRICTION).unwrap_err();
     for rows in [&good[..3], &good[1..3], &[good[1], good[3]][..], &[][..]] {
         assert!(refused(rows).contains("do not fill a grid"), "{rows:?}");
     }

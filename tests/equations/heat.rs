@@ -1,7 +1,7 @@
 //! Thermal network: TH-1 to TH-9 against a plain solution of the same step.
 
 use crate::same;
-use cvtcycle::thermal::{
+use cvtcycle::model::thermal::{
     BELT, COOLANT, Cooler, ENGINE_OIL, Heat, HeatInput, METAL, NODES, Network,
     SPRAY_REFERENCE_RAD_S, SUMP,
 };
@@ -295,10 +295,10 @@ fn a_cooler_is_open_where_nothing_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("car.toml");
     std::fs::write(&file, kept.join("\n")).unwrap();
-    let car = cvtcycle::setup::load(
+    let car = cvtcycle::config::setup::load(
         file.to_str().unwrap(),
         "--vehicle",
-        &cvtcycle::setup::Options::default(),
+        &cvtcycle::config::setup::Options::default(),
     )
     .unwrap()
     .car(293.15);

@@ -2,17 +2,17 @@
 
 use crate::common::{CARS, ZERO, car};
 use crate::{near, same};
-use cvtcycle::cycle::GearCommand;
-use cvtcycle::engine::{EngineNow, FULL};
-use cvtcycle::results::Component;
-use cvtcycle::results::Flags;
-use cvtcycle::simulate::Car;
-use cvtcycle::thermal::{Heat, NODES};
-use cvtcycle::transmission::film_heating::FilmHeating;
-use cvtcycle::transmission::launch::FrictionClutch;
-use cvtcycle::transmission::manual::{Manual, ShiftSpeeds};
-use cvtcycle::transmission::{Drive, DriveState, Surroundings, Transmission};
-use cvtcycle::vehicle::WheelDemand;
+use cvtcycle::config::cycle::GearCommand;
+use cvtcycle::model::drive::Car;
+use cvtcycle::model::engine::{EngineNow, FULL};
+use cvtcycle::model::road::WheelDemand;
+use cvtcycle::model::thermal::{Heat, NODES};
+use cvtcycle::model::transmission::film_heating::FilmHeating;
+use cvtcycle::model::transmission::launch::FrictionClutch;
+use cvtcycle::model::transmission::manual::{Manual, ShiftSpeeds};
+use cvtcycle::model::transmission::{Drive, DriveState, Surroundings, Transmission};
+use cvtcycle::output::Component;
+use cvtcycle::output::Flags;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -358,7 +358,7 @@ fn an_engine_too_weak_to_idle_is_flagged() {
         (1.0 + 1e-6, false),
         (0.5, false),
     ] {
-        car.engine.full_load = cvtcycle::numeric::Curve::constant(nm / share);
+        car.engine.full_load = cvtcycle::model::math::Curve::constant(nm / share);
         let (d, _) = solve(&car, &s);
         near(d.throttle, share.min(1.0), 1e-12);
         assert_eq!(d.flags.contains(Flags::OUTSIDE_VALIDITY), want, "{share}");

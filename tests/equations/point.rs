@@ -1,9 +1,9 @@
 //! Flags of a point of the `belt` command: each by itself, from both sides of its bound.
 
 use crate::common::ZERO;
-use cvtcycle::lubricant::BandFriction;
-use cvtcycle::transmission::cvt::variator::point::{LIMIT_SLACK, PointFlags, PointLimits};
-use cvtcycle::transmission::cvt::variator::{
+use cvtcycle::model::fluid::BandFriction;
+use cvtcycle::model::transmission::cvt::variator::point::{LIMIT_SLACK, PointFlags, PointLimits};
+use cvtcycle::model::transmission::cvt::variator::{
     BeltAtRatio, BeltLoad, BeltPoint, Formulation, belt_point,
 };
 

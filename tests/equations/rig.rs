@@ -2,14 +2,16 @@
 
 use crate::common::{RPM, ZERO, car};
 use crate::{near, same};
-use cvtcycle::results::{Component, Flags};
-use cvtcycle::rig::losses::{Axis, LossRow};
-use cvtcycle::rig::{Bench, BenchAnswer, BenchPoint, Parts};
-use cvtcycle::setup::{Options, load};
-use cvtcycle::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, NODES, SUMP};
-use cvtcycle::transmission::Transmission;
-use cvtcycle::transmission::cvt::variator::point::LIMIT_SLACK;
-use cvtcycle::transmission::cvt::variator::{BeltAtRatio, BeltLoad, Formulation, belt_point};
+use cvtcycle::config::setup::{Options, load};
+use cvtcycle::model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
+use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, NODES, SUMP};
+use cvtcycle::model::transmission::Transmission;
+use cvtcycle::model::transmission::cvt::variator::point::LIMIT_SLACK;
+use cvtcycle::model::transmission::cvt::variator::{
+    BeltAtRatio, BeltLoad, Formulation, belt_point,
+};
+use cvtcycle::output::losses::{Axis, LossRow};
+use cvtcycle::output::{Component, Flags};
 
 fn bench() -> Bench {
     Bench::new(&car("rover_216_cvt", &[]))
@@ -360,13 +362,14 @@ fn val_solvable_ratios_are_the_last_that_fit() {
         (0.3, 0.62),
         (0.155, 0.325),
     ] {
-        let belt = cvtcycle::transmission::cvt::variator::Belt {
+        let belt = cvtcycle::model::transmission::cvt::variator::Belt {
             centre_distance_m: centre,
             length_m: length,
             ..shipped.clone()
         };
         let fits = |ratio: f64| {
-            let g = cvtcycle::transmission::cvt::variator::Geometry::new(ratio, centre, length);
+            let g =
+                cvtcycle::model::transmission::cvt::variator::Geometry::new(ratio, centre, length);
             let (p, s) = (
                 g.primary_radius_m * g.primary_wrap_rad,
                 g.secondary_radius_m * g.secondary_wrap_rad,
@@ -374,7 +377,7 @@ fn val_solvable_ratios_are_the_last_that_fit() {
             let pitch = belt.segment_thickness_m;
             p >= pitch && s >= pitch && (p + s + 2.0 * g.strut_m - length).abs() <= 1e-9 * length
         };
-        let (high, low) = cvtcycle::rig::solvable_ratios(&belt);
+        let (high, low) = cvtcycle::model::bench::solvable_ratios(&belt);
         assert!(
             (0.05..=1.0).contains(&high) && (1.0..=20.0).contains(&low),
             "{high} {low}"
@@ -394,10 +397,10 @@ fn val_solvable_ratios_are_the_last_that_fit() {
 /// A transient of the transmission rig: energies from its own seconds, the branches between them, the gap and where it is widest.
 #[test]
 fn val_transient_from_its_seconds() {
-    use cvtcycle::rig::transmission::{Branch, Conditions, transient};
+    use cvtcycle::model::bench::transmission::{Branch, transient};
     let (bench, mut c) = (
         bench(),
-        Conditions::load(&["rig.transient.end_degc=45".to_owned()])
+        cvtcycle::config::rig::load(&["rig.transient.end_degc=45".to_owned()])
             .unwrap()
             .0,
     );
@@ -431,7 +434,7 @@ fn val_transient_from_its_seconds() {
         }; // RT-2
     }
     // The first minute once more by the network itself (RT-1), heat by SI-3.
-    let network = cvtcycle::rig::transmission::on_the_rig(&car.network);
+    let network = cvtcycle::model::bench::transmission::on_the_rig(&car.network);
     let mut node_k = [c.transient.start_k; NODES];
     (node_k[COOLANT], node_k[ENGINE_OIL]) = (c.room_k, c.room_k);
     let mut heat = Heat { node_k };
@@ -525,8 +528,8 @@ fn val_transient_from_its_seconds() {
 /// The second box against the first (RT-6).
 #[test]
 fn val_second_box_is_a_difference() {
-    use cvtcycle::rig::transmission::{Conditions, Plan, second_box};
-    let c = Conditions::load(&[]).unwrap().0;
+    use cvtcycle::model::bench::transmission::{Plan, second_box};
+    let c = cvtcycle::config::rig::load(&[]).unwrap().0;
     for two in second_box(&bench(), &c, &Plan::of(&c)) {
         same(
             two.difference_nm(),
@@ -538,7 +541,7 @@ fn val_second_box_is_a_difference() {
 /// The belt's map takes its own torques: the pulley's at the pulley, the shaft's at the shaft; the box's at its input.
 #[test]
 fn val_map_parts_take_their_own_torque() {
-    use cvtcycle::rig::loss_table::MapPart;
+    use cvtcycle::output::loss_table::MapPart;
     let bench = bench();
     let cvt = bench.cvt().unwrap();
     let p = BenchPoint {
@@ -606,8 +609,8 @@ fn val_map_parts_take_their_own_torque() {
 /// Columns whose unit is not the model's, and the counts of flags.
 #[test]
 fn val_columns_of_the_bench() {
-    use cvtcycle::results::columns::Value;
-    use cvtcycle::rig::losses::{FlagCount, columns};
+    use cvtcycle::output::columns::Value;
+    use cvtcycle::output::losses::{FlagCount, columns};
     let bench = bench();
     let mut asked = [f64::NAN; Axis::COUNT];
     for (axis, value) in [
@@ -648,8 +651,8 @@ fn val_columns_of_the_bench() {
 /// The variator rig: the belt at the slip that comes out, with an uncompensated cylinder and a film; limits from both sides; summary.
 #[test]
 fn val_variator_rig_from_its_parts() {
-    use cvtcycle::rig::variator::{Held, Resolution, VariatorRig};
-    use cvtcycle::transmission::cvt::variator::{belt_state, sliding_speed_m_s};
+    use cvtcycle::model::bench::variator::{Held, Resolution, VariatorRig};
+    use cvtcycle::model::transmission::cvt::variator::{belt_state, sliding_speed_m_s};
     let setup = car(
         "rover_216_cvt",
         &["transmission.cvt.variator.compensated=false"],

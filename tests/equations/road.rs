@@ -1,9 +1,9 @@
 //! Road load: RL-1 to RL-5.
 
 use crate::{near, same};
-use cvtcycle::cycle::{Motion, Step};
-use cvtcycle::setup::{Options, load};
-use cvtcycle::vehicle::{Ambient, RoadLoad, Surface};
+use cvtcycle::config::cycle::{Motion, Step};
+use cvtcycle::config::setup::{Options, load};
+use cvtcycle::model::road::{Ambient, RoadLoad, Surface};
 
 fn car() -> RoadLoad {
     RoadLoad {

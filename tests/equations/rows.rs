@@ -3,12 +3,12 @@
 
 use crate::common::{CARS, Keep, ZERO, at, car, cycle, hill};
 use crate::{near, same};
-use cvtcycle::cycle::Cycle;
-use cvtcycle::results::{Component, Flags, Row};
-use cvtcycle::run::{Start, drive, fuel_map, litres_per_100km};
-use cvtcycle::simulate::{Car, State, simulate};
-use cvtcycle::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, NODES, SUMP};
-use cvtcycle::transmission::Transmission;
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::model::drive::{Car, State, simulate};
+use cvtcycle::model::drive::{Start, drive, fuel_map, litres_per_100km};
+use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, NODES, SUMP};
+use cvtcycle::model::transmission::Transmission;
+use cvtcycle::output::{Component, Flags, Row};
 
 #[track_caller]
 fn close(got: f64, want: f64, scale: f64, place: &str) {
@@ -305,7 +305,7 @@ fn kept_rows_are_all_rows() {
     let outcome = drive(
         &setup,
         &cycle,
-        &cvtcycle::run::Conditions {
+        &cvtcycle::model::drive::Conditions {
             keep_rows: true,
             ..at(20.0, Start::Soak)
         },

@@ -1,9 +1,9 @@
 //! Pump PU-1, PU-2, PU-4, PU-5 (PU-3: `belt`); shaft, reverse clutch and final drive: IS-1, CD-1, FD-1, FD-2, FH-1.
 
 use crate::same;
-use cvtcycle::transmission::cvt::pump::{ETA_REFERENCE_PA_S, Pump, PumpKind};
-use cvtcycle::transmission::cvt::spin::{NU_REFERENCE_M2_S, Spin};
-use cvtcycle::transmission::film_heating::FilmHeating;
+use cvtcycle::model::transmission::cvt::pump::{ETA_REFERENCE_PA_S, Pump, PumpKind};
+use cvtcycle::model::transmission::cvt::spin::{NU_REFERENCE_M2_S, Spin};
+use cvtcycle::model::transmission::film_heating::FilmHeating;
 
 fn pump(kind: PumpKind) -> Pump {
     Pump {

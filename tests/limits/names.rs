@@ -80,7 +80,7 @@ fn a_pipe_that_a_file_names_is_not_waited_for() {
         &words,
     );
     pipe(dir.path(), "oil.toml", None);
-    let car = cvtcycle::setup::embedded_vehicles()
+    let car = cvtcycle::config::setup::embedded_vehicles()
         .iter()
         .find(|(name, _)| *name == "rover_216_cvt")
         .unwrap()

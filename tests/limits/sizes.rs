@@ -5,8 +5,8 @@ use std::io::Write;
 use std::path::Path;
 
 use cvtcycle::config::bounded::{self, LOGO, Limit, RECORD, TABLE, TOML, TRACE};
-use cvtcycle::cycle;
-use cvtcycle::setup::{self, Options};
+use cvtcycle::config::cycle;
+use cvtcycle::config::setup::{self, Options};
 
 use super::{MIB, folder, refused, refused_once, sparse, within};
 

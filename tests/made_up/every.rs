@@ -1,10 +1,10 @@
 //! The plots of every kind of run.
-use cvtcycle::report::{
-    FuelMap, Picture, PlotRun, driveline, fuel_bars, losses, operating_points, pressure,
-    temperatures,
+use cvtcycle::model::drive::FuelMap;
+use cvtcycle::output::columns::columns_for;
+use cvtcycle::output::{Component, History, Row};
+use cvtcycle::report::charts::{
+    Picture, PlotRun, driveline, fuel_bars, losses, operating_points, pressure, temperatures,
 };
-use cvtcycle::results::columns::columns_for;
-use cvtcycle::results::{Component, History, Row};
 
 use super::{history, phases, rows, run};
 

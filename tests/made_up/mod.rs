@@ -1,7 +1,8 @@
 //! Made-up runs.
-use cvtcycle::report::{FuelMap, PlotRun};
-use cvtcycle::results::columns::columns_for;
-use cvtcycle::results::{Component, Flags, History, Row};
+use cvtcycle::model::drive::FuelMap;
+use cvtcycle::output::columns::columns_for;
+use cvtcycle::output::{Component, Flags, History, Row};
+use cvtcycle::report::charts::PlotRun;
 
 pub mod every;
 

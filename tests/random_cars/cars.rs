@@ -4,8 +4,8 @@ use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cvtcycle::config::KeyInfo;
-use cvtcycle::setup::blueprint::{Bench, Blueprint};
-use cvtcycle::setup::{Options, Setup};
+use cvtcycle::config::setup::blueprint::{Bench, Blueprint};
+use cvtcycle::config::setup::{Options, Setup};
 use proptest::prelude::*;
 use proptest::sample::Index;
 

@@ -2,9 +2,9 @@
 
 use std::cell::Cell;
 
-use cvtcycle::cycle::{Cycle, Trace};
-use cvtcycle::simulate::{Car, State, simulate};
-use cvtcycle::thermal::NODES;
+use cvtcycle::config::cycle::{Cycle, Trace};
+use cvtcycle::model::drive::{Car, State, simulate};
+use cvtcycle::model::thermal::NODES;
 use proptest::prelude::*;
 
 use crate::cars::recipes;
@@ -97,8 +97,8 @@ fn repeated(car: &Car, cycle: &Cycle, start_k: f64, seconds: f64) -> ([f64; NODE
 
 struct Nobody;
 
-impl cvtcycle::simulate::Recorder for Nobody {
-    fn record(&mut self, _: &cvtcycle::results::Row, _: &cvtcycle::results::Terms) {}
+impl cvtcycle::model::drive::Recorder for Nobody {
+    fn record(&mut self, _: &cvtcycle::output::Row, _: &cvtcycle::output::Terms) {}
 }
 
 /// A cycle that is repeated comes to a periodic state: temperatures stop changing from one drive to the next, and it is the same state from a

@@ -1,6 +1,6 @@
 //! The thermal network by itself, with random conductances: second law, conservation, a dense solver, an exponential, the order of the step.
 
-use cvtcycle::thermal::{
+use cvtcycle::model::thermal::{
     BELT, COOLANT, Cooler, ENGINE_OIL, Heat, HeatInput, METAL, NODES, Network,
     SPRAY_REFERENCE_RAD_S, SUMP,
 };

@@ -3,12 +3,12 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
-use cvtcycle::cycle::Step;
-use cvtcycle::results::{Component, Flags, Row, Terms};
-use cvtcycle::run::{Conditions, Start, drive};
-use cvtcycle::simulate::{Car, State, simulate};
-use cvtcycle::thermal::{COOLANT, ENGINE_OIL, Heat, METAL, NODES, SUMP};
-use cvtcycle::vehicle::RoadLoad;
+use cvtcycle::config::cycle::Step;
+use cvtcycle::model::drive::{Car, State, simulate};
+use cvtcycle::model::drive::{Conditions, Start, drive};
+use cvtcycle::model::road::RoadLoad;
+use cvtcycle::model::thermal::{COOLANT, ENGINE_OIL, Heat, METAL, NODES, SUMP};
+use cvtcycle::output::{Component, Flags, Row, Terms};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 

@@ -2,8 +2,8 @@
 
 use std::fmt::{self, Write as _};
 
+use cvtcycle::config::cycle::{Cycle, read_csv};
 use cvtcycle::config::render;
-use cvtcycle::cycle::{Cycle, read_csv};
 use proptest::prelude::*;
 
 /// A stretch with one acceleration.

@@ -1,7 +1,7 @@
 //! The same cycle in other units is the same drive.
 
-use cvtcycle::results::Row;
-use cvtcycle::simulate::{State, simulate};
+use cvtcycle::model::drive::{State, simulate};
+use cvtcycle::output::Row;
 use proptest::prelude::*;
 
 use crate::cars::recipes;

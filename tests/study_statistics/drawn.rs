@@ -1,7 +1,7 @@
 //! Pictures of made-up statistics: few and many factors, long names, tiny and negative values, nothing at all.
 
-use cvtcycle::report::Picture;
-use cvtcycle::report::study::{
+use cvtcycle::report::charts::Picture;
+use cvtcycle::report::charts::study::{
     ConvergencePlot, DistributionPlot, DistributionSeries, EffectFactor, EffectsPlot, RankPlot,
     Shown, SobolPlot, TornadoPlot, convergence_plot, distribution_plot, effects_plot, rank_plot,
     sobol_plot, tornado_plot,

@@ -1,8 +1,8 @@
 //! Pictures are sound, readable and true.
 
 use super::drawn::{every_plot, names, sample};
-use cvtcycle::report::Picture;
-use cvtcycle::report::study::{
+use cvtcycle::report::charts::Picture;
+use cvtcycle::report::charts::study::{
     DistributionPlot, DistributionSeries, Shown, SobolPlot, TornadoPlot, distribution_plot,
     sobol_plot, tornado_plot,
 };

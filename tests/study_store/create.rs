@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use cvtcycle::results::files::OutputDir;
+use cvtcycle::output::files::OutputDir;
 use cvtcycle::study::store::{Study, StudyDir};
 use serde_json::json;
 use tempfile::TempDir;

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use cvtcycle::results::file::OutputFile;
+use cvtcycle::output::file::OutputFile;
 use cvtcycle::study::export::{Exported, Format, export};
 use cvtcycle::study::store::{ParquetFile, PartTable, Study, StudyDir, sha256};
 use cvtcycle::study::table::{Kind, Rows, Values};

@@ -2,8 +2,8 @@
 
 use std::io::{ErrorKind, Write};
 
-use cvtcycle::results::columns::columns_for;
-use cvtcycle::results::trace::write_trace;
+use cvtcycle::output::columns::columns_for;
+use cvtcycle::output::trace::write_trace;
 use cvtcycle::study::store::{
     ParquetFile, ParquetTable, sha256, write_csv, write_parquet, write_trace_parquet,
 };

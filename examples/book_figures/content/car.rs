@@ -2,13 +2,13 @@
 
 use super::reference::{RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
-use cvtcycle::cycle;
-use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::numeric::Grid;
-use cvtcycle::run::{Conditions, Start, drive};
-use cvtcycle::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
-use cvtcycle::transmission::loss_map::{LossMap, MapPoint};
-use cvtcycle::vehicle::{Ambient, Surface};
+use cvtcycle::config::cycle;
+use cvtcycle::model::drive::{Conditions, Start, drive};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::math::Grid;
+use cvtcycle::model::road::{Ambient, Surface};
+use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
+use cvtcycle::model::transmission::loss_map::{LossMap, MapPoint};
 
 /// All of them, by file name.
 pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {
@@ -141,7 +141,7 @@ fn warm_up(r: &Reference) -> Result<String, String> {
     ];
     let lines = names
         .map(|(node, name)| {
-            let at = |row: &cvtcycle::results::Row| {
+            let at = |row: &cvtcycle::output::Row| {
                 [
                     row.coolant_k,
                     row.engine_oil_k,

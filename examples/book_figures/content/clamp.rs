@@ -2,8 +2,8 @@
 
 use super::reference::{RPM, Reference};
 use super::{Line, axes, plot, sweep};
-use cvtcycle::transmission::cvt::controller::{ClampLaw, ClampSignals, RatioDemand};
-use cvtcycle::transmission::cvt::variator::{BeltAtRatio, Formulation};
+use cvtcycle::model::transmission::cvt::controller::{ClampLaw, ClampSignals, RatioDemand};
+use cvtcycle::model::transmission::cvt::variator::{BeltAtRatio, Formulation};
 
 /// All of them, by file name.
 pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {

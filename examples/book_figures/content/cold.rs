@@ -2,10 +2,10 @@
 
 use super::reference::RPM;
 use cvtcycle::config::render;
-use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::results::Component;
-use cvtcycle::rig::{Bench, BenchPoint};
-use cvtcycle::setup::{Options, Setup, load};
+use cvtcycle::config::setup::{Options, Setup, load};
+use cvtcycle::model::bench::{Bench, BenchPoint};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::output::Component;
 use std::fmt::Write as _;
 
 /// Temperatures of oil, belt and engine, degC.
@@ -175,8 +175,8 @@ fn lines(
     ratio: f64,
     lines: &[Line],
 ) -> Result<(), String> {
-    let shipped = Bench::new(&car(name, &[])?);
-    let unbound = Bench::new(&car(name, unbound)?);
+    let shipped = Bench::new(&*car(name, &[])?);
+    let unbound = Bench::new(&*car(name, unbound)?);
     let mut sums = [0.0; AT.len() + 1];
     for of in lines {
         let loss = |bench: &Bench, degc: f64| {
@@ -216,8 +216,8 @@ pub fn table() -> Result<String, String> {
         .to_owned();
     let cvt = car("rover_216_cvt", &[])?;
     let high = match cvt.transmission() {
-        cvtcycle::transmission::Transmission::Cvt(cvt) => cvt.ratio.high,
-        cvtcycle::transmission::Transmission::Manual(_) => unreachable!("the car has a CVT"),
+        cvtcycle::model::transmission::Transmission::Cvt(cvt) => cvt.ratio.high,
+        cvtcycle::model::transmission::Transmission::Manual(_) => unreachable!("the car has a CVT"),
     };
     lines(&mut text, "rover_216_cvt", &UNBOUND_CVT, high, &CVT)?;
     lines(&mut text, "rover_216_5mt", &UNBOUND_MANUAL, 5.0, &MANUAL)?;

@@ -1,7 +1,7 @@
 //! The belt's path, drawn to scale from the geometry.
 
 use super::reference::Reference;
-use cvtcycle::transmission::cvt::variator::Geometry;
+use cvtcycle::model::transmission::cvt::variator::Geometry;
 use std::fmt::Write as _;
 
 /// Pixels in a metre.

@@ -9,7 +9,7 @@ mod parts;
 mod reference;
 pub mod tables;
 
-use cvtcycle::report::chart::{Chart, ChartPanel, Look, Points, chart};
+use cvtcycle::report::charts::chart::{Chart, ChartPanel, Look, Points, chart};
 use std::path::Path;
 
 /// A page of the book.

@@ -2,9 +2,9 @@
 
 use super::reference::{RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
-use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::results::Component;
-use cvtcycle::transmission::cvt::pump::{Pump, PumpKind};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::transmission::cvt::pump::{Pump, PumpKind};
+use cvtcycle::output::Component;
 
 const SPEED: &str = "Engine speed [rpm]";
 const LITRES_MIN: f64 = 60_000.0;

@@ -1,14 +1,14 @@
 //! The cars and fluids that the figures show.
 
 use cvtcycle::config::render;
-use cvtcycle::lubricant::{BandFriction, Lubricant, ZERO_DEGC_K};
-use cvtcycle::setup::{Options, Setup, load};
-use cvtcycle::transmission::Transmission;
-use cvtcycle::transmission::cvt::Cvt;
-use cvtcycle::transmission::cvt::variator::{
+use cvtcycle::config::setup::{Options, Setup, load};
+use cvtcycle::model::fluid::{BandFriction, Lubricant, ZERO_DEGC_K};
+use cvtcycle::model::transmission::Transmission;
+use cvtcycle::model::transmission::cvt::Cvt;
+use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state,
 };
-use cvtcycle::transmission::manual::Manual;
+use cvtcycle::model::transmission::manual::Manual;
 
 /// rad/s in one rpm.
 pub const RPM: f64 = std::f64::consts::PI / 30.0;

@@ -1,10 +1,10 @@
 //! Include files: the values of a page with their status, its labels as the code has them, room for its validation rows.
 
 use super::{PAGES, Page};
+use cvtcycle::config::setup::assumptions::value;
+use cvtcycle::config::setup::equations::{by_label, cited};
+use cvtcycle::config::setup::{Options, load};
 use cvtcycle::config::{KeyInfo, render};
-use cvtcycle::setup::assumptions::value;
-use cvtcycle::setup::equations::{by_label, cited};
-use cvtcycle::setup::{Options, load};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -169,7 +169,7 @@ fn label_table(labels: &[Labelled]) -> String {
                 // Bars are escaped in the heads already.
                 let _ = writeln!(
                     text,
-                    "| {} | {} | {} | `src/{}` |",
+                    "| {} | {} | {} | `{}` |",
                     e.label,
                     plain(e.statement),
                     plain(e.status),

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 
 use cvtcycle::config::Problem;
-use cvtcycle::results::file::OutputFile;
-use cvtcycle::rig::points::{
+use cvtcycle::output::file::OutputFile;
+use cvtcycle::study::points::{
     CASE, FLAGS, FORMULATION, NUMBERS, OUTPUTS, STATUS, Solved, Take, name, output_names,
 };
 use tempfile::{SpooledTempFile, spooled_tempfile};

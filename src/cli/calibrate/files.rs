@@ -1,11 +1,11 @@
 //! The files of a calibration.
 
-use cvtcycle::calibrate::fitted;
-use cvtcycle::calibrate::outcome::{Outcome, Parameter, Residual};
-use cvtcycle::calibrate::plan::Plan;
 use cvtcycle::config::Problem;
-use cvtcycle::report::calibration::calibration_pictures;
-use cvtcycle::results::files::OutputDir;
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::report::charts::calibration::calibration_pictures;
+use cvtcycle::study::fit::fitted;
+use cvtcycle::study::fit::outcome::{Outcome, Parameter, Residual};
+use cvtcycle::study::fit::plan::Plan;
 
 use crate::cli::answer::json_text;
 use crate::cli::run::files::Written;

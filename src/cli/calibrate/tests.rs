@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use cvtcycle::calibrate::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
+use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 
 use super::{failures, files, text};
 use crate::cli::colour::Colour;

@@ -1,6 +1,6 @@
 //! What a calibration says, for people: what it is worth first, then the numbers behind it.
 
-use cvtcycle::calibrate::outcome::{Outcome, Residual, rms};
+use cvtcycle::study::fit::outcome::{Outcome, Residual, rms};
 
 use crate::cli::colour::Paint;
 use crate::cli::grid::{Grid, WIDTH};

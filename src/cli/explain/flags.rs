@@ -1,6 +1,6 @@
 //! The flags of a row in words.
 
-use cvtcycle::results::Flags;
+use cvtcycle::output::Flags;
 
 const MEANINGS: [(Flags, &str); Flags::NAMES.len()] = [
     (

@@ -1,7 +1,7 @@
 //! Explanations for people.
 
-use cvtcycle::setup::assumptions::value;
-use cvtcycle::setup::equations::{Equation, cited};
+use cvtcycle::config::setup::assumptions::value;
+use cvtcycle::config::setup::equations::{Equation, cited};
 
 use super::{Found, Meanings};
 use crate::cli::colour::Paint;
@@ -39,7 +39,7 @@ pub fn of(meanings: &Meanings, paint: Paint) -> String {
         ));
     }
     parts.extend(meanings.equation.as_ref().map(|e| {
-        let file = format!("src/{}", e.file);
+        let file = e.file.to_string();
         let statement = e.statement.replace("\\|", "|");
         let rows = [
             ("what", "equation of the model"),

@@ -4,11 +4,11 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use cvtcycle::config::Problem;
-use cvtcycle::results::Flags;
-use cvtcycle::results::columns::Value;
-use cvtcycle::results::files::OutputDir;
-use cvtcycle::results::trace::push_value;
-use cvtcycle::rig::losses::{LossColumn, LossRow};
+use cvtcycle::output::Flags;
+use cvtcycle::output::columns::Value;
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::losses::{LossColumn, LossRow};
+use cvtcycle::output::trace::push_value;
 
 use super::plan::Plan;
 use super::plots;

@@ -1,13 +1,13 @@
 //! Words to a checked grid on a bench.
 
+use cvtcycle::config::setup::{self, Options, Setup};
 use cvtcycle::config::{Bound, Problem};
-use cvtcycle::results::files::OutputDir;
-use cvtcycle::rig::loss_table::MapPart;
-use cvtcycle::rig::losses::{Axis, LossColumn, LossGrid, MOST_POINTS, columns};
-use cvtcycle::rig::{Bench, solvable_ratios};
-use cvtcycle::setup::{self, Options, Setup};
-use cvtcycle::transmission::Transmission;
-use cvtcycle::transmission::cvt::variator::Formulation;
+use cvtcycle::model::bench::{Bench, solvable_ratios};
+use cvtcycle::model::transmission::Transmission;
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::loss_table::MapPart;
+use cvtcycle::output::losses::{Axis, LossColumn, LossGrid, MOST_POINTS, columns};
 
 use super::Args;
 use crate::cli::answer::problem;
@@ -61,7 +61,7 @@ pub fn plan(args: &Args) -> Result<Plan, Vec<Problem>> {
     let setup = problems.take(setup::load(&args.vehicle, "--vehicle", &options));
     let mut grid = LossGrid::default();
     common(args, &mut grid, &mut problems);
-    match setup.as_ref().map(Setup::transmission) {
+    match setup.as_ref().map(|setup| setup.transmission()) {
         Some(Transmission::Cvt(cvt)) => {
             let limits = solvable_ratios(&cvt.belt);
             let words = [("low", cvt.ratio.low), ("high", cvt.ratio.high)];

@@ -1,8 +1,8 @@
 //! Pictures of a grid: maps over two axes, stacks over one, a panel for each combination of the others.
 
-use cvtcycle::report::{MapFigure, StackFigure, map_figure, stack_figure};
-use cvtcycle::results::Component;
-use cvtcycle::rig::losses::{Axis, LossRow, bench_components};
+use cvtcycle::output::Component;
+use cvtcycle::output::losses::{Axis, LossRow, bench_components};
+use cvtcycle::report::charts::{MapFigure, StackFigure, map_figure, stack_figure};
 
 use super::plan::Plan;
 use super::text::{component_name, groups, held};

@@ -1,10 +1,10 @@
 //! Losses as tables for people.
 
-use cvtcycle::results::columns::Value;
-use cvtcycle::results::trace::push_value;
-use cvtcycle::results::{Component, Flags};
-use cvtcycle::rig::BELT_PARTS;
-use cvtcycle::rig::losses::{Axis, LossRow, bench_components};
+use cvtcycle::model::bench::BELT_PARTS;
+use cvtcycle::output::columns::Value;
+use cvtcycle::output::losses::{Axis, LossRow, bench_components};
+use cvtcycle::output::trace::push_value;
+use cvtcycle::output::{Component, Flags};
 
 use super::plan::Plan;
 use crate::cli::colour::Paint;

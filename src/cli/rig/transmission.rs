@@ -4,18 +4,18 @@ mod files;
 mod json;
 mod text;
 
+use cvtcycle::config::rig::{OIL, PREFIX, TORQUE};
+use cvtcycle::config::setup::{self, Options, Setup};
 use cvtcycle::config::{Bound, Problem, to_si};
-use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::results::Flags;
-use cvtcycle::results::files::OutputDir;
-use cvtcycle::rig::transmission::conditions::{OIL, PREFIX, TORQUE};
-use cvtcycle::rig::transmission::{
+use cvtcycle::model::bench::transmission::{
     self as rig, Conditions, Loop, Plan, SteadyPoint, StripDown, TwoBoxes,
 };
-use cvtcycle::rig::{Bench, BenchAnswer, solvable_ratios};
-use cvtcycle::setup::{self, Options, Setup};
-use cvtcycle::transmission::Transmission;
-use cvtcycle::transmission::cvt::variator::Formulation;
+use cvtcycle::model::bench::{Bench, BenchAnswer, solvable_ratios};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::transmission::Transmission;
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::Flags;
+use cvtcycle::output::files::OutputDir;
 
 use crate::cli::Context;
 use crate::cli::answer::{Answer, FAILED, Reply, json_text};
@@ -218,7 +218,7 @@ fn job(args: &Args) -> Result<Job, Vec<Problem>> {
         problems.add(manual(&args.vehicle));
     }
     let conditions = problems
-        .take(Conditions::load(&of_rig))
+        .take(cvtcycle::config::rig::load(&of_rig))
         .map(|(conditions, _)| conditions);
     let plan = plan(args, conditions.as_ref(), &mut problems);
     if let (Some(setup), Some(plan)) = (&setup, &plan) {

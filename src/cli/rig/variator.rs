@@ -5,7 +5,7 @@ mod plan;
 mod plots;
 mod text;
 
-use cvtcycle::transmission::cvt::variator::Formulation;
+use cvtcycle::model::transmission::cvt::variator::Formulation;
 
 use crate::cli::Context;
 use crate::cli::answer::{Answer, Reply};

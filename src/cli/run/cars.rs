@@ -1,8 +1,8 @@
 //! The cars of a run: the subject with its overrides, then the baselines.
 
+use cvtcycle::config::setup::{self, Options, Setup};
 use cvtcycle::config::{Document, Place, Problem};
-use cvtcycle::setup::{self, Options, Setup};
-use cvtcycle::transmission::cvt::variator::Formulation;
+use cvtcycle::model::transmission::cvt::variator::Formulation;
 
 use super::Args;
 use crate::cli::answer::problem;

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use cvtcycle::config::Problem;
-use cvtcycle::cycle::Cycle;
-use cvtcycle::report::{self, PlotRun};
-use cvtcycle::results::History;
-use cvtcycle::results::columns::columns_for;
-use cvtcycle::results::files::OutputDir;
-use cvtcycle::results::summary::{Driven, RunSummary, Summary};
-use cvtcycle::results::trace::write_trace;
-use cvtcycle::run::{components, fuel_map};
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::model::drive::{components, fuel_map};
+use cvtcycle::output::History;
+use cvtcycle::output::columns::columns_for;
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::summary::{Driven, RunSummary, Summary};
+use cvtcycle::output::trace::write_trace;
+use cvtcycle::report::charts::{self, PlotRun};
 use cvtcycle::study::store::write_trace_parquet;
 
 /// Formats of the traces.
@@ -122,19 +122,19 @@ pub fn write(
     put(
         &mut dir,
         "fuel_comparison.svg",
-        &report::fuel_bars(&runs).svg,
+        &charts::fuel_bars(&runs).svg,
     )?;
     Written::commit(dir)
 }
 
 fn write_plots(dir: &mut OutputDir, run: &PlotRun) -> Result<(), Problem> {
-    let mut plots = vec![("driveline", report::driveline(run))];
+    let mut plots = vec![("driveline", charts::driveline(run))];
     if run.history.is_cvt() {
-        plots.push(("pressure", report::pressure(run)));
+        plots.push(("pressure", charts::pressure(run)));
     }
-    plots.push(("temperatures", report::temperatures(run)));
-    plots.push(("losses", report::losses(run)));
-    plots.push(("operating_points", report::operating_points(run)));
+    plots.push(("temperatures", charts::temperatures(run)));
+    plots.push(("losses", charts::losses(run)));
+    plots.push(("operating_points", charts::operating_points(run)));
     plots
         .into_iter()
         .try_for_each(|(kind, picture)| put(dir, &format!("{kind}_{}.svg", run.name), &picture.svg))

@@ -1,11 +1,11 @@
 //! What the run was made from, for `inputs.json`.
 
 use cvtcycle::config::Problem;
-use cvtcycle::cycle::Cycle;
-use cvtcycle::provenance::{car_record, cycle_record};
-use cvtcycle::results::record::{Record, SCHEMA};
-use cvtcycle::run::Conditions;
-use cvtcycle::sensitivity::{Named, sensitivity};
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::model::drive::Conditions;
+use cvtcycle::output::provenance::{car_record, cycle_record};
+use cvtcycle::output::record::{Record, SCHEMA};
+use cvtcycle::study::sensitivity::{Named, sensitivity};
 
 use super::cars::Car;
 

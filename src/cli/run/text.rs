@@ -1,8 +1,8 @@
 //! A run as tables for people.
 
-use cvtcycle::cycle::Cycle;
-use cvtcycle::results::Component;
-use cvtcycle::results::summary::{Comparison, RunSummary, StartWord, Summary};
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::output::Component;
+use cvtcycle::output::summary::{Comparison, RunSummary, StartWord, Summary};
 
 use crate::cli::colour::Paint;
 use crate::cli::grid::{Grid, WIDTH};

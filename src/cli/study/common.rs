@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use cvtcycle::config::Problem;
-use cvtcycle::review::found::StudyFound;
+use cvtcycle::report::found::StudyFound;
 use cvtcycle::study::disk::DirSink;
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::StudyDir;

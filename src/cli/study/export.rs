@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use cvtcycle::results::file::OutputFile;
+use cvtcycle::output::file::OutputFile;
 use cvtcycle::study::export::{Format, export};
 use cvtcycle::study::manifest::{RUNS, TRACES};
 use cvtcycle::study::store;

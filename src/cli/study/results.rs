@@ -1,8 +1,8 @@
 //! The files that a study writes when it is finished.
 
 use cvtcycle::config::Problem;
-use cvtcycle::review::found::StudyFound;
-use cvtcycle::review::study_pictures::study_pictures;
+use cvtcycle::report::found::StudyFound;
+use cvtcycle::report::study_pictures::study_pictures;
 
 use super::csv_files;
 use crate::cli::answer::json_text;

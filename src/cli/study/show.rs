@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use cvtcycle::review::found::StudyFound;
+use cvtcycle::report::found::StudyFound;
 
 use super::common::reply;
 use crate::cli::Context;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cvtcycle::review::found::StudyFound;
+use cvtcycle::report::found::StudyFound;
 use cvtcycle::study::answer::{Comparison, OutputAnswer};
 use cvtcycle::study::{Answer, Outline};
 

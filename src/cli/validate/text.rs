@@ -1,8 +1,7 @@
 //! A report as tables for people.
 
-use cvtcycle::validate::{
-    Judged, Report, Verdict, chapter_title, computed_text, notes_line, unit_text,
-};
+use cvtcycle::report::validation_page::chapter_title;
+use cvtcycle::study::check::{Judged, Report, Verdict, computed_text, notes_line, unit_text};
 
 use crate::cli::colour::Paint;
 use crate::cli::grid::Grid;

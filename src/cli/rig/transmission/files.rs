@@ -1,11 +1,11 @@
 //! The files of the transmission rig's tests.
 
 use cvtcycle::config::Problem;
-use cvtcycle::report::rig_transmission::plots::{self, Picture, Subject};
-use cvtcycle::report::rig_transmission::tables::{
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::report::charts::rig_transmission::plots::{self, Picture, Subject};
+use cvtcycle::report::charts::rig_transmission::tables::{
     Column, steady_columns, strip_columns, transient_columns, two_box_columns, write_csv,
 };
-use cvtcycle::results::files::OutputDir;
 
 use super::{Found, Job};
 use crate::cli::run::files::Written;

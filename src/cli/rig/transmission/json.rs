@@ -1,10 +1,10 @@
 //! The transmission rig's tests as one JSON object.
 
-use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::report::rig_transmission::tables::{
+use cvtcycle::model::bench::transmission::{Branch, Loop, Moment, Piece};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::report::charts::rig_transmission::tables::{
     json_rows, steady_columns, strip_columns, transient_columns, two_box_columns,
 };
-use cvtcycle::rig::transmission::{Branch, Loop, Moment, Piece};
 use serde_json::{Map, Value, json};
 
 use super::text::{MEETING_NM, Range, ranges};
@@ -59,7 +59,7 @@ pub fn summary(job: &Job, found: &Found, failed: &[String]) -> Value {
             found
                 .second_box
                 .iter()
-                .map(cvtcycle::rig::transmission::TwoBoxes::difference_nm)
+                .map(cvtcycle::model::bench::transmission::TwoBoxes::difference_nm)
         };
         let mean = differences().sum::<f64>() / found.second_box.len() as f64;
         let points = json_rows(&two_box_columns(), &found.second_box);

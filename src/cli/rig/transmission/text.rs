@@ -1,10 +1,10 @@
 //! The transmission rig's tests as tables for people.
 
-use cvtcycle::lubricant::ZERO_DEGC_K;
-use cvtcycle::report::rig_transmission::tables::{oil_degc, rpm};
-use cvtcycle::results::Flags;
-use cvtcycle::rig::BenchPoint;
-use cvtcycle::rig::transmission::{Branch, Loop, Piece, Stage, SteadyPoint, StripDown};
+use cvtcycle::model::bench::BenchPoint;
+use cvtcycle::model::bench::transmission::{Branch, Loop, Piece, Stage, SteadyPoint, StripDown};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::output::Flags;
+use cvtcycle::report::charts::rig_transmission::tables::{oil_degc, rpm};
 
 use super::{Found, Job};
 use crate::cli::colour::Paint;

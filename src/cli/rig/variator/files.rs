@@ -3,10 +3,11 @@
 use std::io::{self, Write};
 
 use cvtcycle::config::Problem;
-use cvtcycle::results::columns::Value;
-use cvtcycle::results::files::OutputDir;
-use cvtcycle::results::trace::push_value;
-use cvtcycle::rig::variator::{COLUMNS, VariatorRow, VariatorValue, curve_numbers};
+use cvtcycle::model::bench::variator::VariatorRow;
+use cvtcycle::output::columns::Value;
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::trace::push_value;
+use cvtcycle::output::variator::{COLUMNS, VariatorValue, curve_numbers};
 
 use super::plan::{Curve, Plan};
 use super::plots;

@@ -1,14 +1,14 @@
 //! Words to checked curves.
 
+use cvtcycle::config::setup::{self, Options, Setup};
 use cvtcycle::config::{Bound, Problem, to_si};
-use cvtcycle::results::files::OutputDir;
-use cvtcycle::rig::losses::MOST_POINTS;
-use cvtcycle::rig::solvable_ratios;
-use cvtcycle::rig::variator::{
+use cvtcycle::model::bench::solvable_ratios;
+use cvtcycle::model::bench::variator::{
     CurveSummary, Held, MOST_RAD_S, Resolution, VariatorRig, VariatorRow,
 };
-use cvtcycle::setup::{self, Options, Setup};
-use cvtcycle::transmission::cvt::variator::Formulation;
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::losses::MOST_POINTS;
 
 use super::Args;
 use crate::cli::answer::problem;
@@ -95,7 +95,7 @@ pub fn plan(args: &Args) -> Result<Plan, Vec<Problem>> {
         ..Options::default()
     };
     let setup = problems.take(setup::load(&args.vehicle, "--vehicle", &options));
-    let rig = setup.as_ref().and_then(VariatorRig::new);
+    let rig = setup.as_ref().and_then(|setup| VariatorRig::new(setup));
     if setup.is_some() && rig.is_none() {
         let hint = "name a vehicle with a CVT, such as rover_216_cvt";
         problems.add(problem(

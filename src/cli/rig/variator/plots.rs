@@ -1,7 +1,7 @@
 //! Pictures like the thesis's figures 6-5 to 6-9.
 
-use cvtcycle::report::{CurveFigure, CurvePanel, CurveSeries, curve_figure};
-use cvtcycle::rig::variator::{RigFlags, VariatorRow};
+use cvtcycle::model::bench::variator::{RigFlags, VariatorRow};
+use cvtcycle::report::charts::{CurveFigure, CurvePanel, CurveSeries, curve_figure};
 
 use super::plan::{Curve, Plan};
 use super::text::{same_test, test_name};

@@ -1,6 +1,6 @@
 //! Curves as tables for people.
 
-use cvtcycle::rig::variator::RigFlags;
+use cvtcycle::model::bench::variator::RigFlags;
 
 use super::plan::{Curve, Plan};
 use crate::cli::colour::Paint;

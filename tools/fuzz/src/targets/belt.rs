@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 
-use cvtcycle::lubricant::{BandFriction, ZERO_DEGC_K};
-use cvtcycle::rig::points::NUMBERS;
-use cvtcycle::setup::{self, Options};
-use cvtcycle::transmission::Transmission;
-use cvtcycle::transmission::cvt::variator::point::belt_point;
-use cvtcycle::transmission::cvt::variator::{
+use cvtcycle::config::setup::{self, Options};
+use cvtcycle::model::fluid::{BandFriction, ZERO_DEGC_K};
+use cvtcycle::model::transmission::Transmission;
+use cvtcycle::model::transmission::cvt::variator::point::belt_point;
+use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, Formulation, belt_capacity_nm, belt_losses, belt_state,
 };
+use cvtcycle::study::points::NUMBERS;
 
 use super::csv::table_of_points;
 use super::range::range;

@@ -2,14 +2,14 @@
 
 use std::sync::{Arc, OnceLock};
 
-use cvtcycle::calibrate::data::{self, Form};
+use cvtcycle::config::cycle::read_csv;
+use cvtcycle::config::setup::{self, Files, Options, embedded_vehicles};
 use cvtcycle::config::{Problem, render};
-use cvtcycle::cycle::read_csv;
-use cvtcycle::results::History;
-use cvtcycle::rig::points::{self, Job, Model, Solved, Take};
-use cvtcycle::setup::{self, Files, Options, embedded_vehicles};
-use cvtcycle::transmission::cvt::variator::Formulation;
-use cvtcycle::transmission::cvt::variator::point::PointStatus;
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::model::transmission::cvt::variator::point::PointStatus;
+use cvtcycle::output::History;
+use cvtcycle::study::fit::data::{self, Form};
+use cvtcycle::study::points::{self, Job, Model, Solved, Take};
 
 use super::within_memory;
 

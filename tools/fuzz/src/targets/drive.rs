@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 use std::sync::OnceLock;
 
 use cvtcycle::config::KeyInfo;
-use cvtcycle::cycle::{Cycle, read_csv};
-use cvtcycle::results::{Component, Row, Terms};
-use cvtcycle::run::{Conditions, Start, drive};
-use cvtcycle::setup::blueprint::{Bench, Blueprint, Slot};
-use cvtcycle::setup::{Options, Setup};
-use cvtcycle::simulate::{Recorder, State, simulate};
+use cvtcycle::config::cycle::{Cycle, read_csv};
+use cvtcycle::config::setup::blueprint::{Bench, Blueprint, Slot};
+use cvtcycle::config::setup::{Options, Setup};
+use cvtcycle::model::drive::{Conditions, Start, drive};
+use cvtcycle::model::drive::{Recorder, State, simulate};
+use cvtcycle::output::{Component, Row, Terms};
 
 use super::range::range;
 use super::{Bytes, within_memory};

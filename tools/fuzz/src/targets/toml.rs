@@ -2,9 +2,9 @@
 
 use std::sync::OnceLock;
 
-use cvtcycle::calibrate::{embedded_calibrations, plan as calibration};
+use cvtcycle::config::setup::{self, Disk, Options, embedded_lubricants, embedded_vehicles};
 use cvtcycle::config::{Problem, decode, render};
-use cvtcycle::setup::{self, Disk, Options, embedded_lubricants, embedded_vehicles};
+use cvtcycle::study::fit::{embedded_calibrations, plan as calibration};
 use cvtcycle::study::plan::{Plan, embedded_plans};
 
 use super::{edits, within_memory};

@@ -1,0 +1,301 @@
+//! The cycles that the program carries. Where their tables come from: `cycles/SOURCES.md`.
+//!
+//! Only the one that is asked for is parsed.
+
+use std::sync::OnceLock;
+
+use super::gears::GearCommand;
+use super::read::read_trace;
+use super::{Cycle, Interval, Trace, Weighting};
+
+/// What an automatic or CVT drives.
+#[derive(Clone, Copy)]
+enum Automatic {
+    /// The trace of the manual car.
+    Same,
+    /// Another table.
+    Table(&'static str),
+    /// The last `duration_s` of another table.
+    TailOf { name: &'static str, duration_s: f64 },
+    /// The first `idle_s` of the manual car's trace, then another table.
+    IdleThen { idle_s: f64, name: &'static str },
+}
+
+/// What a car with six gears is told, where the table has no column for it.
+#[derive(Clone, Copy)]
+enum SixGears {
+    AsTable,
+    /// The regulation's table asks for the same gears whatever the gearbox.
+    LikeFive,
+    /// The first `idle_s` like five gears, then those of another table.
+    IdleThen {
+        idle_s: f64,
+        name: &'static str,
+    },
+}
+
+struct Entry {
+    name: &'static str,
+    title: &'static str,
+    table: &'static str,
+    automatic: Automatic,
+    six_gears: SixGears,
+}
+
+macro_rules! entry {
+    ($name:literal, $title:literal) => {
+        entry!($name, $title, Automatic::Same)
+    };
+    ($name:literal, $title:literal, $automatic:expr) => {
+        entry!($name, $title, $automatic, SixGears::AsTable)
+    };
+    ($name:literal, $title:literal, $automatic:expr, $six:expr) => {
+        Entry {
+            name: $name,
+            title: $title,
+            table: include_str!(concat!("../../../../cycles/", $name, ".csv")),
+            automatic: $automatic,
+            six_gears: $six,
+        }
+    };
+}
+
+const EUDC_S: f64 = 400.0;
+const MVEGA_IDLE_S: f64 = 40.0;
+
+static ENTRIES: [Entry; 27] = [
+    entry!("artemis_motorway130", "Artemis motorway, 130 km/h version"),
+    entry!("artemis_motorway150", "Artemis motorway, 150 km/h version"),
+    entry!("artemis_road", "Artemis rural road"),
+    entry!("artemis_urban", "Artemis urban"),
+    entry!(
+        "ece15",
+        "ECE 15, one elementary urban cycle (UN R83 part one)",
+        Automatic::Table("ece15_auto"),
+        SixGears::LikeFive
+    ),
+    entry!(
+        "ece15_auto",
+        "ECE 15, one elementary urban cycle without gear-change plateaux"
+    ),
+    entry!(
+        "ece15_eudc",
+        "NEDC: four ECE 15 and one EUDC, 1180 s (UN R83)",
+        Automatic::Table("ece15_eudc_auto")
+    ),
+    entry!("ece15_eudc_auto", "NEDC without gear-change plateaux"),
+    entry!(
+        "ece15_eudc_low",
+        "NEDC for low-powered cars: EUDC up to 90 km/h",
+        Automatic::Table("ece15_eudc_low_auto")
+    ),
+    entry!(
+        "ece15_eudc_low_auto",
+        "NEDC for low-powered cars without gear-change plateaux"
+    ),
+    entry!(
+        "eudc",
+        "EUDC, extra-urban cycle (UN R83 part two)",
+        Automatic::Table("eudc_auto")
+    ),
+    entry!("eudc_auto", "EUDC without gear-change plateaux"),
+    entry!(
+        "eudc_low",
+        "EUDC for low-powered cars, up to 90 km/h",
+        Automatic::TailOf {
+            name: "ece15_eudc_low_auto",
+            duration_s: EUDC_S
+        }
+    ),
+    entry!("ftp75", "FTP-75 with 600 s engine-off soak (40 CFR 86)"),
+    entry!("hwfet", "HWFET, highway fuel economy test (40 CFR 600)"),
+    entry!("jc08", "JC08 (Japan)"),
+    entry!("jp_10_15_mode", "10-15 mode (Japan)"),
+    entry!("la92", "LA92, unified cycle (California)"),
+    entry!(
+        "mvega_idle40",
+        "MVEG-A: 40 s idle before sampling, then the NEDC (until 2000)",
+        Automatic::IdleThen {
+            idle_s: MVEGA_IDLE_S,
+            name: "ece15_eudc_auto"
+        },
+        SixGears::IdleThen {
+            idle_s: MVEGA_IDLE_S,
+            name: "ece15_eudc"
+        }
+    ),
+    entry!("nycc", "NYCC, New York City cycle (40 CFR 86)"),
+    entry!("sc03", "SC03, air-conditioning test (40 CFR 86)"),
+    entry!(
+        "udds",
+        "UDDS, urban dynamometer driving schedule (40 CFR 86)"
+    ),
+    entry!("us06", "US06, aggressive driving (40 CFR 86)"),
+    entry!("wltc_class1", "WLTC class 1 (UN GTR 15)"),
+    entry!("wltc_class2", "WLTC class 2 (UN GTR 15)"),
+    entry!("wltc_class3a", "WLTC class 3a (UN GTR 15)"),
+    entry!("wltc_class3b", "WLTC class 3b (UN GTR 15)"),
+];
+
+static NAMES: [&str; ENTRIES.len()] = {
+    let mut names = [""; ENTRIES.len()];
+    let mut at = 0;
+    while at < names.len() {
+        names[at] = ENTRIES[at].name;
+        at += 1;
+    }
+    names
+};
+
+/// Names of the cycles that the program carries, sorted. Constant speeds ([`super::constant_speed`]) are not among them.
+#[must_use]
+pub fn names() -> &'static [&'static str] {
+    &NAMES
+}
+
+/// The cycle of this name, `None` if the program carries none. For the ECE cycles an automatic drives the table without
+/// gear-change plateaux; a name that ends in `_auto` gives every car that table. FTP75 has its engine off in `hot_soak`.
+///
+/// A table is parsed when its name is first asked for.
+#[must_use]
+pub fn embedded(name: &str) -> Option<Cycle> {
+    static PARSED: [OnceLock<Option<Cycle>>; ENTRIES.len()] =
+        [const { OnceLock::new() }; ENTRIES.len()];
+    let place = NAMES.iter().position(|known| *known == name)?;
+    PARSED[place]
+        .get_or_init(|| parsed(&ENTRIES[place]))
+        .clone()
+}
+
+fn parsed(entry: &Entry) -> Option<Cycle> {
+    let mut phases = Vec::new();
+    let mut manual = table(entry, &mut phases)?;
+    let automatic = match entry.automatic {
+        Automatic::Same => None,
+        Automatic::Table(name) => Some(named(name, &mut phases)?),
+        Automatic::TailOf { name, duration_s } => {
+            Some(tail(&named(name, &mut Vec::new())?, duration_s))
+        }
+        Automatic::IdleThen { idle_s, name } => {
+            Some(idle_then(&manual, idle_s, &named(name, &mut phases)?))
+        }
+    };
+    let six = match entry.six_gears {
+        SixGears::AsTable => None,
+        SixGears::LikeFive => manual.gears(5).map(<[GearCommand]>::to_vec),
+        SixGears::IdleThen { idle_s, name } => {
+            idle_then_gears(&manual, idle_s, &named(name, &mut phases)?)
+        }
+    };
+    if six.is_some() {
+        manual.gear_columns_mut().six = six;
+    }
+    let weighting = if entry.name == "ftp75" {
+        Weighting::Ftp75
+    } else {
+        Weighting::None
+    };
+    if weighting == Weighting::Ftp75 {
+        stop_engine(&mut manual, &phases, "hot_soak");
+    }
+    let (name, title) = (entry.name.to_owned(), entry.title.to_owned());
+    Some(Cycle {
+        name,
+        title,
+        phases,
+        weighting,
+        manual,
+        automatic,
+    })
+}
+
+fn entry(name: &str) -> Option<&'static Entry> {
+    ENTRIES.iter().find(|entry| entry.name == name)
+}
+
+fn named(name: &str, phases: &mut Vec<String>) -> Option<Trace> {
+    table(entry(name)?, phases)
+}
+
+// A test parses every table, so that the problems that are dropped here cannot occur.
+fn table(entry: &Entry, phases: &mut Vec<String>) -> Option<Trace> {
+    read_trace(entry.name, entry.table.as_bytes(), phases).ok()
+}
+
+fn shifted(interval: &Interval, by_s: f64) -> Interval {
+    Interval {
+        start_s: interval.start_s + by_s,
+        end_s: interval.end_s + by_s,
+        ..*interval
+    }
+}
+
+// The part stands alone, as a cycle without phases.
+fn tail(whole: &Trace, duration_s: f64) -> Trace {
+    let from_s = whole.duration_s() - duration_s;
+    let part = whole
+        .intervals
+        .iter()
+        .filter(|interval| interval.start_s >= from_s);
+    Trace::without_gears(
+        part.map(|interval| Interval {
+            phase: 0,
+            ..shifted(interval, -from_s)
+        })
+        .collect(),
+    )
+}
+
+fn idle(trace: &Trace, idle_s: f64) -> impl Iterator<Item = &Interval> {
+    trace
+        .intervals
+        .iter()
+        .take_while(move |interval| interval.end_s <= idle_s)
+}
+
+fn idle_then(first: &Trace, idle_s: f64, then: &Trace) -> Trace {
+    let rest = then
+        .intervals
+        .iter()
+        .map(|interval| shifted(interval, idle_s));
+    Trace::without_gears(idle(first, idle_s).copied().chain(rest).collect())
+}
+
+fn idle_then_gears(first: &Trace, idle_s: f64, then: &Trace) -> Option<Vec<GearCommand>> {
+    let idle = first.gears(5)?.iter().take(idle(first, idle_s).count());
+    Some(idle.chain(then.gears(6)?).copied().collect())
+}
+
+fn stop_engine(trace: &mut Trace, phases: &[String], soak: &str) {
+    let soak = (0_u16..)
+        .zip(phases)
+        .find(|phase| phase.1 == soak)
+        .map(|phase| phase.0);
+    for interval in &mut trace.intervals {
+        interval.engine_off = Some(interval.phase) == soak;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_table_is_read_without_a_problem() {
+        for entry in &ENTRIES {
+            let read = read_trace(entry.name, entry.table.as_bytes(), &mut Vec::new());
+            assert!(read.is_ok(), "{}: {:?}", entry.name, read.err());
+        }
+    }
+
+    #[test]
+    fn the_urban_part_asks_six_gears_for_the_same_as_five() {
+        // what SixGears::LikeFive stands on
+        let trace = table(entry("ece15_eudc").unwrap(), &mut Vec::new()).unwrap();
+        assert_eq!(
+            trace.gears(5).unwrap()[..780],
+            trace.gears(6).unwrap()[..780]
+        );
+        assert_ne!(trace.gears(5).unwrap(), trace.gears(6).unwrap());
+    }
+}

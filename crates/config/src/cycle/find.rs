@@ -1,0 +1,85 @@
+//! A cycle by its name, or a file of the user.
+
+use super::{Cycle, constant_speed, embedded, names, read_csv};
+use crate::bounded::{self, Limit};
+use crate::setup::is_path;
+use crate::{Place, Problem, near};
+
+/// A cycle by name (`ece15_eudc`, `constant_90`), or from the CSV file at a path. `option` is cited where the word itself is bad.
+///
+/// # Errors
+/// An unknown name with those like it, an unreadable file, or all problems of the file.
+pub fn find(option: &str, value: &str) -> Result<Cycle, Vec<Problem>> {
+    if let Some(constant) = constant_speed(value).filter(|_| !is_csv(value)) {
+        return constant.map_err(|problem| {
+            vec![Problem {
+                place: place(option),
+                ..problem
+            }]
+        });
+    }
+    if let Some(found) = embedded(value) {
+        return Ok(found);
+    }
+    if is_path(value) {
+        return read_csv(value, &bytes(option, value, bounded::TABLE)?);
+    }
+    let close = near(value, names().iter().copied());
+    let question = if close.is_empty() {
+        String::new()
+    } else {
+        format!("did you mean {}? ", close.join(" or "))
+    };
+    let quoted = if value.is_empty() {
+        "an empty value".to_owned()
+    } else {
+        format!("`{value}`")
+    };
+    Err(vec![Problem {
+        place: place(option),
+        key: option.to_owned(),
+        value: value.to_owned(),
+        allowed:
+            "a name of `cvtcycle list cycles`, constant_V with V in km/h, or the path of a CSV file"
+                .to_owned(),
+        message: format!("there is no cycle named {quoted}"),
+        hint: format!("{question}`cvtcycle list cycles` shows all; a path needs a / or an ending"),
+    }])
+}
+
+/// Whether a word is surely a file, though it may begin like the name of a constant speed.
+#[must_use]
+pub fn is_csv(word: &str) -> bool {
+    word.contains(['/', '\\']) || word.to_lowercase().ends_with(".csv")
+}
+
+/// The bytes of a file that the user named.
+///
+/// # Errors
+/// A problem of `option`: the words of the operating system, or more bytes than the limit.
+pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Vec<Problem>> {
+    bounded::read(path, limit).map_err(|error| {
+        let hint = match error.kind() {
+            std::io::ErrorKind::NotFound => {
+                "check the path; it is taken from the current directory"
+            }
+            std::io::ErrorKind::IsADirectory => "name a file in that directory",
+            _ => "check the path and its permissions",
+        };
+        vec![Problem {
+            place: place(option),
+            key: option.to_owned(),
+            value: path.to_owned(),
+            allowed: error.allowed("a readable file"),
+            message: format!("cannot read `{path}`: {error}"),
+            hint: error.hint(hint).to_owned(),
+        }]
+    })
+}
+
+fn place(option: &str) -> Place {
+    Place {
+        file: option.to_owned(),
+        ..Place::default()
+    }
+}

@@ -1,0 +1,333 @@
+//! The documents of a car, and one reading of them.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::shelf::Shelf;
+use super::{Files, Kind, Options, Setup, is_path, load_lubricant, other_box, stem, text_of};
+use crate::parts::lubricant as fluid_table;
+use crate::parts::{cvt, engine, manual, road, thermal};
+use crate::{Document, KeyInfo, Problem, Reader, Section};
+use cvtcycle_model::drive::{Car, Vehicle};
+use cvtcycle_model::fluid::Lubricant;
+use cvtcycle_model::road::RoadLoadInput;
+use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::cvt::variator::Formulation;
+
+/// What the keys of transmission oil and engine oil begin with.
+pub(super) const FLUIDS: [&str; 2] = ["lubricant.", "engine_oil."];
+
+/// A document and what is wrong with it so far.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Input {
+    /// None if it could not be read.
+    pub document: Option<Document>,
+    pub problems: Vec<Problem>,
+}
+
+/// The files of a car with the overrides put in, before they are checked.
+#[derive(Debug)]
+pub(super) struct Inputs {
+    pub frame: Arc<Frame>,
+    /// Vehicle, transmission oil, engine oil.
+    pub files: [Input; 3],
+}
+
+/// What a reading of a car's documents needs beside them.
+#[derive(Debug)]
+pub(super) struct Frame {
+    /// Name of the car.
+    pub name: String,
+    /// Names of transmission oil and engine oil; empty where neither vehicle nor user has one.
+    fluids: [String; 2],
+    files: Shelf,
+    formulation: Formulation,
+}
+
+impl Inputs {
+    /// Reads the files and puts the overrides in.
+    ///
+    /// # Errors
+    /// Problems that leave nothing to read: no such vehicle, no TOML, overrides of a box that the vehicle does not have.
+    pub fn gather(word: &str, option: &str, options: &Options) -> Result<Self, Vec<Problem>> {
+        let (file, text, disk) = text_of(word, Kind::Vehicle, option)?;
+        Inputs::of_text(&file, &text, Box::new(disk), options)
+    }
+
+    /// As [`Inputs::gather`], for the text of a vehicle; `file` is its name or path, `files` where the maps are that it names.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn of_text(
+        file: &str,
+        text: &str,
+        files: Box<dyn Files>,
+        options: &Options,
+    ) -> Result<Self, Vec<Problem>> {
+        let mut document = Document::parse(file, text)?;
+        let name = stem(file.strip_prefix("embedded:").unwrap_or(file));
+        let folder = Path::new(file).parent().unwrap_or(Path::new(""));
+        let strangers = other_box::strangers(&document, &options.set, &name);
+        if !strangers.is_empty() {
+            return Err(strangers); // set all the same, they would call for a whole box
+        }
+        let own = |key: &str| (!FLUIDS.iter().any(|f| key.starts_with(f))).then(|| key.to_owned());
+        let problems = apply(&mut document, &options.set, own)
+            .err()
+            .unwrap_or_default();
+        let Head {
+            fluid, engine_oil, ..
+        } = head(&Reader::silent(&document).root(), "");
+        let mut words = [String::new(), String::new()];
+        let asked = [
+            (fluid, &options.lubricant, "--lubricant"),
+            (engine_oil, &options.engine_oil, "--engine-oil"),
+        ];
+        let mut fluids = [Input::default(), Input::default()];
+        for (k, (own, asked, option)) in asked.into_iter().enumerate() {
+            // A path in the vehicle file is relative to that file, one on the command line to the current folder.
+            let beside = if is_path(&own) {
+                folder.join(&own).to_string_lossy().into_owned()
+            } else {
+                own
+            };
+            let option = if asked.is_some() { option } else { file };
+            words[k] = asked.clone().unwrap_or(beside);
+            fluids[k] = match fluid_document(&words[k], option, &options.set, FLUIDS[k]) {
+                Ok(document) => Input {
+                    document: Some(document),
+                    problems: Vec::new(),
+                },
+                Err(problems) => Input {
+                    document: None,
+                    problems,
+                },
+            };
+        }
+        let [oil, engine_oil] = fluids;
+        let vehicle = Input {
+            document: Some(document),
+            problems,
+        };
+        let frame = Frame {
+            name,
+            fluids: words.map(|word| stem(&word)),
+            files: Shelf::new(files),
+            formulation: options.formulation,
+        };
+        Ok(Inputs {
+            frame: Arc::new(frame),
+            files: [vehicle, oil, engine_oil],
+        })
+    }
+
+    /// The same car with other documents.
+    pub fn with_files(&self, files: [Input; 3]) -> Self {
+        Inputs {
+            frame: Arc::clone(&self.frame),
+            files,
+        }
+    }
+
+    /// Reads and checks the car.
+    ///
+    /// # Errors
+    /// All problems of its files and of the overrides.
+    pub fn read(&self) -> Result<Setup, Vec<Problem>> {
+        let documents = self.files.each_ref().map(|input| input.document.as_ref());
+        let readers = documents.map(|document| document.map(Reader::new));
+        let assembled = self.frame.assemble(&readers);
+        let mut problems = Vec::new();
+        let mut keys = Vec::new();
+        for (k, (reader, input)) in readers.into_iter().zip(&self.files).enumerate() {
+            let answer = match (k, reader) {
+                (0, Some(reader)) => reader.finish(),
+                (_, Some(reader)) => fluid_keys(reader, FLUIDS[k - 1]),
+                // A fluid that the vehicle does not name is missing there already.
+                (_, None) if !problems.is_empty() && self.frame.fluids[k - 1].is_empty() => {
+                    continue;
+                }
+                (_, None) => Ok(Vec::new()),
+            };
+            match answer {
+                Ok(mut read) => keys.append(&mut read),
+                Err(mut found) => problems.append(&mut found),
+            }
+            problems.extend(input.problems.iter().cloned());
+        }
+        let setup = assembled?;
+        if problems.is_empty() {
+            Ok(Setup { keys, ..setup })
+        } else {
+            Err(problems)
+        }
+    }
+}
+
+impl Frame {
+    /// Puts a car together from readings of vehicle, transmission oil and engine oil, which take what is wrong with it.
+    ///
+    /// # Errors
+    /// Not for what is wrong with the car.
+    pub fn assemble(&self, readers: &[Option<Reader<'_>>; 3]) -> Result<Setup, Vec<Problem>> {
+        let [vehicle, oil, engine_oil] = readers;
+        let Some(vehicle) = vehicle else {
+            return Err(Vec::new());
+        };
+        let root = vehicle.root();
+        let Head {
+            title, baselines, ..
+        } = head(&root, &self.name);
+        let fluid = |reader: &Option<Reader>, k: usize| match reader {
+            Some(reader) => Ok(fluid_table::load(&reader.root(), &self.fluids[k])),
+            // Some fluid, so that the reading goes on.
+            None => load_lubricant("cvtf_ezl799_class", "", &[], "").map(|found| found.0),
+        };
+        let fluids = [fluid(oil, 0)?, fluid(engine_oil, 1)?];
+        let (road_load, car) = parts(
+            &root,
+            &self.files,
+            fluids,
+            self.formulation,
+            self.name.clone(),
+        );
+        let baselines = baselines
+            .split(',')
+            .map(|b| b.trim().to_owned())
+            .filter(|b| !b.is_empty())
+            .collect();
+        Ok(Setup {
+            name: self.name.clone(),
+            title,
+            baselines,
+            vehicle: Vehicle::new(car, road_load),
+            keys: Vec::new(),
+        })
+    }
+}
+
+/// The document of a fluid with those overrides whose key begins with `prefix`.
+///
+/// # Errors
+/// All problems of the file's text and of the overrides' form.
+pub(super) fn fluid_document(
+    word: &str,
+    option: &str,
+    sets: &[String],
+    prefix: &str,
+) -> Result<Document, Vec<Problem>> {
+    let (file, text, _) = text_of(word, Kind::Lubricant, option)?;
+    let mut document = Document::parse(&file, &text)?;
+    apply(&mut document, sets, |key| {
+        key.strip_prefix(prefix).map(str::to_owned)
+    })
+    .map_err(|problems| as_given(problems, prefix))?;
+    Ok(document)
+}
+
+/// Ends the reading of a fluid; its keys with their prefix.
+///
+/// # Errors
+/// All problems.
+pub(super) fn fluid_keys(reader: Reader, prefix: &str) -> Result<Vec<KeyInfo>, Vec<Problem>> {
+    let keys = reader
+        .finish()
+        .map_err(|problems| as_given(problems, prefix))?;
+    Ok(keys
+        .into_iter()
+        .map(|k| KeyInfo {
+            key: format!("{prefix}{}", k.key),
+            ..k
+        })
+        .collect())
+}
+
+/// Problems of overrides of a fluid, with the option as the user wrote it: the fluid's own keys have no prefix.
+fn as_given(mut problems: Vec<Problem>, prefix: &str) -> Vec<Problem> {
+    for problem in &mut problems {
+        if let Some(assignment) = problem.place.file.strip_prefix("--set ") {
+            problem.place.file = format!("--set {prefix}{assignment}");
+        }
+    }
+    problems
+}
+
+/// Applies those overrides whose key `pick` accepts (and may rename).
+fn apply(
+    document: &mut Document,
+    sets: &[String],
+    pick: impl Fn(&str) -> Option<String>,
+) -> Result<(), Vec<Problem>> {
+    let assignments = sets.iter().filter_map(|set| pick(set));
+    let problems: Vec<Problem> = assignments
+        .filter_map(|assignment| document.set(&assignment).err())
+        .collect();
+    if problems.is_empty() {
+        Ok(())
+    } else {
+        Err(problems)
+    }
+}
+
+/// What the `[vehicle]` table says.
+pub(super) struct Head {
+    title: String,
+    baselines: String,
+    fluid: String,
+    engine_oil: String,
+}
+
+pub(super) fn head(root: &Section, name: &str) -> Head {
+    let head = root.table("vehicle");
+    Head {
+        title: head.text_or("title", name, "name for people"),
+        baselines: head.text_or(
+            "baselines",
+            "",
+            "names of the baseline vehicles, comma separated",
+        ),
+        fluid: head.text("transmission_oil", "name of the transmission oil"),
+        engine_oil: head.text("engine_oil", "name of the engine oil"),
+    }
+}
+
+pub(super) fn parts(
+    root: &Section,
+    files: &dyn Files,
+    [oil, engine_oil]: [Lubricant; 2],
+    formulation: Formulation,
+    name: String,
+) -> (RoadLoadInput, Car) {
+    let road_load = road::load(&root.table("road_load"));
+    let engine = engine::load(&root.table("engine"), files);
+    let (kind, section) = root.choose(
+        "transmission",
+        &["cvt", "manual"],
+        None,
+        "kind of transmission",
+    );
+    let (transmission, belt_heat_share) = if kind == "cvt" {
+        let cvt = cvt::load(&section, files, &engine, &oil, formulation);
+        let share = cvt.belt_heat_share;
+        (Transmission::Cvt(Box::new(cvt)), share)
+    } else {
+        (
+            Transmission::Manual(Box::new(manual::load(&section, files))),
+            0.0,
+        )
+    };
+    let network = thermal::load(&root.table("thermal"), kind == "cvt", &oil);
+    let car = Car {
+        name,
+        road_load: road_load.base,
+        transmission,
+        engine,
+        network,
+        oil,
+        engine_oil,
+        ambient_k: cvtcycle_model::road::REFERENCE_K,
+        full_load_factor: 1.0,
+        belt_heat_share,
+    };
+    (road_load, car)
+}

@@ -1,0 +1,280 @@
+//! Checked files to a car: vehicle, fluids, overrides, ambient.
+//!
+//! A name without a path and without `.toml` is an embedded file; anything else is a path.
+
+pub mod assumptions;
+pub mod catalogue;
+pub mod blueprint;
+mod embedded;
+mod inputs;
+mod map_csv;
+mod other_box;
+mod shelf;
+pub mod equations;
+pub mod tables;
+
+pub use embedded::{embedded_lubricants, embedded_map, embedded_rigs, embedded_vehicles};
+
+use std::sync::Arc;
+
+use crate::bounded::{self, Refused};
+use crate::parts::lubricant as fluid_table;
+use crate::{Bound, Document, KeyInfo, Place, Problem, Reader, decode, near};
+use cvtcycle_model::drive::Vehicle;
+use cvtcycle_model::fluid::Lubricant;
+use cvtcycle_model::transmission::cvt::variator::Formulation;
+
+/// Reads files that an input names; the only way in which loading touches the disk.
+pub trait Files: std::fmt::Debug + Send + Sync {
+    /// Bytes of a file.
+    ///
+    /// # Errors
+    /// The operating system's words, or more bytes than a table may have.
+    fn read(&self, path: &str) -> Result<Vec<u8>, String>;
+
+    /// As [`Files::read`], with what is allowed and what helps where that is known.
+    ///
+    /// # Errors
+    /// As there.
+    fn fetch(&self, path: &str) -> Result<Vec<u8>, Refused> {
+        self.read(path)
+            .map_err(|why| Refused::Unreadable(std::io::Error::other(why)))
+    }
+
+    /// What `make` makes of a file of a kind. Whoever reads the same car again and again keeps it and calls `make` once only.
+    fn table(
+        &self,
+        _kind: &'static str,
+        _file: &str,
+        make: &mut dyn FnMut() -> Option<Arc<tables::Table>>,
+    ) -> Option<Arc<tables::Table>> {
+        make()
+    }
+}
+
+/// The disk, with names relative to a folder.
+#[derive(Clone, Debug, Default)]
+pub struct Disk {
+    /// Folder of the file that names others; empty for the current one.
+    pub folder: std::path::PathBuf,
+}
+
+impl Files for Disk {
+    fn read(&self, path: &str) -> Result<Vec<u8>, String> {
+        self.fetch(path).map_err(|refused| refused.to_string())
+    }
+
+    fn fetch(&self, path: &str) -> Result<Vec<u8>, Refused> {
+        bounded::read_file(self.folder.join(path), bounded::TABLE)
+    }
+}
+
+/// What the user asks for beside the vehicle file.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Transmission oil, name or path; the vehicle's own if none.
+    pub lubricant: Option<String>,
+    /// Engine oil, name or path; the vehicle's own if none.
+    pub engine_oil: Option<String>,
+    /// `KEY=VALUE` overrides; `lubricant.` and `engine_oil.` go to those files.
+    pub set: Vec<String>,
+    /// Reading of the belt model.
+    pub formulation: Formulation,
+}
+
+/// A vehicle with its fluids, checked, and where each of its values comes from. It is used like the [`Vehicle`] in it.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// Name of the vehicle file without `.toml`.
+    pub name: String,
+    /// Name for people.
+    pub title: String,
+    /// Names of its baselines.
+    pub baselines: Vec<String>,
+    /// The car before the ambient temperature is known.
+    pub vehicle: Vehicle,
+    /// Every key that was read, vehicle first, then `lubricant.` and `engine_oil.`.
+    pub keys: Vec<KeyInfo>,
+}
+
+impl std::ops::Deref for Setup {
+    type Target = Vehicle;
+
+    fn deref(&self) -> &Vehicle {
+        &self.vehicle
+    }
+}
+
+/// Kinds of input file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A vehicle.
+    Vehicle,
+    /// A lubricant.
+    Lubricant,
+    /// What a test rig is set to.
+    Rig,
+}
+
+impl Kind {
+    fn embedded(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Kind::Vehicle => embedded_vehicles(),
+            Kind::Lubricant => embedded_lubricants(),
+            Kind::Rig => embedded_rigs(),
+        }
+    }
+
+    fn word(self) -> &'static str {
+        match self {
+            Kind::Vehicle => "vehicle",
+            Kind::Lubricant => "lubricant",
+            Kind::Rig => "rig",
+        }
+    }
+}
+
+/// Whether a word given by the user is meant as a path.
+#[must_use]
+pub fn is_path(word: &str) -> bool {
+    word.contains(['/', '\\']) || std::path::Path::new(word).extension().is_some()
+}
+
+/// Text of an input and the name under which problems cite it.
+///
+/// # Errors
+/// Unknown name (with the near ones), unreadable path, binary or empty file.
+pub fn text_of(
+    word: &str,
+    kind: Kind,
+    option: &str,
+) -> Result<(String, String, Disk), Vec<Problem>> {
+    if !is_path(word) {
+        if let Some((name, text)) = kind.embedded().iter().find(|(n, _)| *n == word) {
+            return Ok((
+                format!("embedded:{name}.toml"),
+                (*text).to_owned(),
+                Disk::default(),
+            ));
+        }
+        return Err(vec![unknown_name(word, kind, option)]);
+    }
+    let path = std::path::Path::new(word);
+    // What no option names stands in a file, whose author may be a stranger.
+    let by_user = option.starts_with("--") || option == "FILE";
+    let read = if by_user {
+        bounded::read(path, bounded::TOML)
+    } else {
+        bounded::read_file(path, bounded::TOML)
+    };
+    let bytes = read.map_err(|error| vec![unreadable(word, option, &error)])?;
+    let folder = path
+        .parent()
+        .map(std::path::Path::to_path_buf)
+        .unwrap_or_default();
+    Ok((word.to_owned(), decode(word, &bytes)?, Disk { folder }))
+}
+
+fn unknown_name(word: &str, kind: Kind, option: &str) -> Problem {
+    let names: Vec<&str> = kind.embedded().iter().map(|(n, _)| *n).collect();
+    let close = near(word, names.iter().copied());
+    let hint = if close.is_empty() {
+        String::new()
+    } else {
+        format!("did you mean {}? ", close.join(", "))
+    };
+    Problem {
+        place: Place {
+            file: option.to_owned(),
+            ..Place::default()
+        },
+        key: option.to_owned(),
+        value: word.to_owned(),
+        allowed: format!("{}, or the path of a TOML file", names.join(", ")),
+        message: format!("there is no {} named `{word}`", kind.word()),
+        hint: format!(
+            "{hint}`cvtcycle list {}s` shows all; a path needs a / or an ending",
+            kind.word()
+        ),
+    }
+}
+
+fn unreadable(word: &str, option: &str, why: &Refused) -> Problem {
+    Problem {
+        place: Place {
+            file: option.to_owned(),
+            ..Place::default()
+        },
+        key: option.to_owned(),
+        value: word.to_owned(),
+        allowed: why.allowed("a readable file"),
+        message: format!("cannot read `{word}`: {why}"),
+        hint: why.hint("check the path and its permissions").into(),
+    }
+}
+
+fn stem(word: &str) -> String {
+    std::path::Path::new(word)
+        .file_stem()
+        .map_or_else(|| word.to_owned(), |s| s.to_string_lossy().into_owned())
+}
+
+/// Reads and checks a lubricant.
+///
+/// # Errors
+/// All problems of the file and of the overrides that go to it.
+pub fn load_lubricant(
+    word: &str,
+    option: &str,
+    sets: &[String],
+    prefix: &str,
+) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
+    read_document(
+        &inputs::fluid_document(word, option, sets, prefix)?,
+        word,
+        prefix,
+    )
+}
+
+fn read_document(
+    document: &Document,
+    word: &str,
+    prefix: &str,
+) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
+    let reader = Reader::new(document);
+    let lubricant = fluid_table::load(&reader.root(), &stem(word));
+    Ok((lubricant, inputs::fluid_keys(reader, prefix)?))
+}
+
+/// Reads and checks a vehicle with its fluids.
+///
+/// # Errors
+/// All problems of the vehicle file, of its fluids and of the overrides.
+pub fn load(word: &str, option: &str, options: &Options) -> Result<Setup, Vec<Problem>> {
+    inputs::Inputs::gather(word, option, options)?.read()
+}
+
+/// As [`load`], for a vehicle's text that need not be on disk. `file` is its name or path, which problems cite and from which paths of
+/// fluids are taken; the maps that the text names come from `files`.
+///
+/// # Errors
+/// As there.
+pub fn read(
+    file: &str,
+    text: &str,
+    files: Box<dyn Files>,
+    options: &Options,
+) -> Result<Setup, Vec<Problem>> {
+    inputs::Inputs::of_text(file, text, files, options)?.read()
+}
+
+/// As [`load_lubricant`], for a fluid's text that need not be on disk.
+///
+/// # Errors
+/// As there.
+pub fn read_lubricant(file: &str, text: &str) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
+    read_document(&Document::parse(file, text)?, file, "")
+}
+
+/// Range of ambient temperatures, degC (test cell of the thesis widened).
+pub const AMBIENT: Bound = Bound::closed(-40.0, 60.0);

@@ -1,0 +1,80 @@
+//! Overrides that reach for the other kind of box: said once, instead of a whole box of missing keys.
+
+use crate::{Document, Place, Problem, Reader};
+
+/// Overrides of keys of a kind of box that the vehicle does not have.
+pub(super) fn strangers(document: &Document, sets: &[String], name: &str) -> Vec<Problem> {
+    let reader = Reader::new(document);
+    let own = reader.root().table("transmission").names();
+    let problem = |set: &String, there: &str, asked: &str| Problem {
+        place: Place {
+            file: format!("--set {set}"),
+            ..Place::default()
+        },
+        key: set.split('=').next().unwrap_or_default().trim().to_owned(),
+        value: set.clone(),
+        allowed: format!("keys of [transmission.{there}]"),
+        message: format!(
+            "{name} has a {} and no {}",
+            box_word(there),
+            box_word(asked)
+        ),
+        hint: format!(
+            "`cvtcycle show {name}` prints its keys; --set reaches the vehicle alone, --set-all its baselines too"
+        ),
+    };
+    let of = |set: &String| {
+        let kind = set
+            .trim()
+            .strip_prefix("transmission.")?
+            .split('.')
+            .next()?;
+        let there = own.iter().find(|there| BOXES.contains(there))?;
+        (BOXES.contains(&kind) && !own.contains(&kind)).then(|| problem(set, there, kind))
+    };
+    sets.iter().filter_map(of).collect()
+}
+
+const BOXES: [&str; 2] = ["cvt", "manual"];
+
+fn box_word(kind: &str) -> &'static str {
+    if kind == "cvt" { "CVT" } else { "manual box" }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::setup::{Options, load};
+
+    #[test]
+    fn a_manual_car_has_no_belt() {
+        let set = vec!["transmission.cvt.belt.band_offset_mm=2".to_owned()];
+        let problems = load(
+            "rover_216_5mt",
+            "--vehicle",
+            &Options {
+                set,
+                ..Options::default()
+            },
+        )
+        .unwrap_err();
+        assert_eq!(problems.len(), 1, "{problems:?}");
+        assert!(
+            problems[0].message.contains("manual box and no CVT"),
+            "{problems:?}"
+        );
+        let set = vec!["transmission.manual.mesh_efficiency=0.9".to_owned()];
+        assert_eq!(
+            load(
+                "rover_216_cvt",
+                "--vehicle",
+                &Options {
+                    set,
+                    ..Options::default()
+                }
+            )
+            .unwrap_err()
+            .len(),
+            1
+        );
+    }
+}

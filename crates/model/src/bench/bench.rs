@@ -1,0 +1,214 @@
+//! A transmission on a motor bench: what each part loses at one operating point.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | RB-1 | T_in = T_p + T_pump + T_shaft, T_p = T_sec w_s/w_in + belt + drag, T_sec from T_out by FD-1, FD-2; clutch locked, w_p = w_in | derived: CV-1, CV-2 read from the motor's side |
+//! | RB-2 | belt and spray in steady state: T_belt = T_sump + share P_belt / G_spray | derived: heat balance of the belt node (TH-1) |
+//! | RB-3 | manual box: T_in = T_out/i + mesh + seal + bearing + churning | derived: MB-1 |
+//!
+//! The part models are those of driving; nothing is computed twice. Losses are torques at the input shaft. The pressure is the clamp
+//! law's at the bench's throttle, times a factor for another box, or given.
+
+use super::cvt_bench;
+use crate::drive::{Car, Vehicle};
+use crate::drive::{Component, Flags};
+use crate::fluid::VALID_K;
+use crate::transmission::Transmission;
+use crate::transmission::cvt::Cvt;
+use crate::transmission::cvt::variator::{BeltState, Formulation};
+use crate::transmission::manual::Manual;
+
+/// Which parts of a CVT are in the box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parts {
+    /// Final drive.
+    pub final_drive: bool,
+    /// Belt; without it nothing behind the primary turns.
+    pub belt: bool,
+    /// Plates of the reverse clutch.
+    pub reverse_clutch: bool,
+    /// Pump; without it the circuit has no pressure.
+    pub pump: bool,
+}
+
+impl Parts {
+    /// The complete box.
+    pub const ALL: Parts = Parts {
+        final_drive: true,
+        belt: true,
+        reverse_clutch: true,
+        pump: true,
+    };
+}
+
+/// What the bench is set to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BenchPoint {
+    /// Belt ratio; gear number of a manual box.
+    pub ratio: f64,
+    /// Input speed, rad/s, above 0.
+    pub input_rad_s: f64,
+    /// Torque taken from the output shaft, Nm; negative where the output drives.
+    pub output_nm: f64,
+    /// Throttle that the clamp law sees, 0..1.
+    pub throttle: f64,
+    /// Secondary pressure, Pa; the clamp law's where none is given.
+    pub pressure_pa: Option<f64>,
+    /// Factor on the clamp law's pressure, 1 for the shipped box.
+    pub pressure_factor: f64,
+    /// Transmission oil in the sump, K.
+    pub sump_k: f64,
+    /// Belt and spray, K; in steady state over the sump where none is given (RB-2).
+    pub belt_k: Option<f64>,
+    /// Parts in the box.
+    pub parts: Parts,
+}
+
+impl Default for BenchPoint {
+    fn default() -> Self {
+        BenchPoint {
+            ratio: 1.0,
+            input_rad_s: 2500.0 * std::f64::consts::PI / 30.0,
+            output_nm: 0.0,
+            throttle: 0.0,
+            pressure_pa: None,
+            pressure_factor: 1.0,
+            sump_k: 348.15,
+            belt_k: None,
+            parts: Parts::ALL,
+        }
+    }
+}
+
+/// The bench's answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BenchAnswer {
+    /// Loss of each component, Nm at the input shaft.
+    pub loss_nm: [f64; Component::COUNT],
+    /// Torque at the input shaft, Nm (RB-1, RB-3).
+    pub input_nm: f64,
+    /// Speed of the output shaft, rad/s.
+    pub output_rad_s: f64,
+    /// Secondary pressure, Pa; NaN for a manual box and without a pump.
+    pub secondary_pa: f64,
+    /// Belt and spray, K; NaN without a belt.
+    pub belt_k: f64,
+    /// The belt in detail; none for a manual box, a removed belt or one replaced by a map.
+    pub belt: Option<BeltState>,
+    /// Flow of the pump that works against pressure, m3/s.
+    pub oil_flow_m3_s: f64,
+    /// What applies at this point.
+    pub flags: Flags,
+}
+
+/// Components that make up the belt.
+pub const BELT_PARTS: [Component; 6] = [
+    Component::BeltBand,
+    Component::BeltFilm,
+    Component::BeltSlip,
+    Component::BeltWedge,
+    Component::BeltPenetration,
+    Component::BeltMap,
+];
+
+impl BenchAnswer {
+    /// Loss of one component, Nm at the input shaft.
+    #[must_use]
+    pub fn part_nm(&self, component: Component) -> f64 {
+        self.loss_nm[component as usize]
+    }
+
+    /// All losses, Nm at the input shaft.
+    #[must_use]
+    pub fn total_nm(&self) -> f64 {
+        self.loss_nm.iter().sum()
+    }
+
+    /// All belt losses, Nm at the input shaft.
+    #[must_use]
+    pub fn belt_nm(&self) -> f64 {
+        BELT_PARTS.iter().map(|c| self.part_nm(*c)).sum()
+    }
+}
+
+/// A transmission on the bench.
+#[derive(Clone, Debug)]
+pub struct Bench {
+    car: Car,
+    printed: bool,
+}
+
+impl Bench {
+    /// Puts a vehicle's transmission on the bench.
+    #[must_use]
+    pub fn new(vehicle: &Vehicle) -> Self {
+        Bench {
+            car: vehicle.car(crate::road::REFERENCE_K),
+            printed: false,
+        }
+    }
+
+    /// The same with the belt as printed (PR-1 to PR-5) where the formulation is one of the thesis's two: whole active segments, no
+    /// blending, no bound of slip. Not defined at a ratio of exactly 1.
+    #[must_use]
+    pub fn as_printed(vehicle: &Vehicle) -> Self {
+        let bench = Bench::new(vehicle);
+        let printed = bench
+            .cvt()
+            .is_some_and(|cvt| cvt.belt.formulation != Formulation::Smooth);
+        Bench { printed, ..bench }
+    }
+
+    /// The vehicle whose transmission is on the bench.
+    #[must_use]
+    pub fn car(&self) -> &Car {
+        &self.car
+    }
+
+    /// The CVT, if it is one.
+    #[must_use]
+    pub fn cvt(&self) -> Option<&Cvt> {
+        match &self.car.transmission {
+            Transmission::Cvt(cvt) => Some(cvt),
+            Transmission::Manual(_) => None,
+        }
+    }
+
+    /// Solves one operating point.
+    #[must_use]
+    pub fn solve(&self, p: &BenchPoint) -> BenchAnswer {
+        match &self.car.transmission {
+            Transmission::Cvt(cvt) => cvt_bench::solve(&self.car, cvt, p, self.printed),
+            Transmission::Manual(manual) => self.solve_manual(manual, p),
+        }
+    }
+
+    fn solve_manual(&self, manual: &Manual, p: &BenchPoint) -> BenchAnswer {
+        let gear = p.ratio as u8;
+        let overall = manual.overall[usize::from(gear) - 1];
+        let nu = self.car.oil.kinematic_m2_s(p.sump_k);
+        let output_nm = p.output_nm / overall;
+        let (parts, inside) = manual.part_losses_nm(gear, p.input_rad_s, output_nm, nu, p.sump_k);
+        let mut loss_nm = [0.0; Component::COUNT];
+        for (component, loss) in parts {
+            loss_nm[component as usize] = loss;
+        }
+        let input_nm = output_nm + loss_nm.iter().sum::<f64>(); // RB-3
+        let mut flags = Flags::default();
+        flags.set(
+            Flags::OUTSIDE_VALIDITY,
+            !VALID_K.contains(&p.sump_k) || !inside,
+        );
+        flags.set(Flags::OVERRUN, input_nm < 0.0);
+        BenchAnswer {
+            loss_nm,
+            input_nm,
+            output_rad_s: p.input_rad_s / overall,
+            secondary_pa: f64::NAN,
+            belt_k: f64::NAN,
+            belt: None,
+            oil_flow_m3_s: 0.0,
+            flags,
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! The thesis's test rigs, virtual: a transmission or its variator driven by a motor, at held speed, torque and oil temperature.
+//!
+//! [`Bench`] answers one operating point of a whole box, part by part; the rigs of chapters 4 to 6 are series of such points.
+
+mod bench;
+mod cvt_bench;
+mod limits;
+pub mod transmission;
+pub mod variator;
+
+pub use bench::{BELT_PARTS, Bench, BenchAnswer, BenchPoint, Parts};
+pub use limits::solvable_ratios;

@@ -1,0 +1,327 @@
+//! The variator alone on its rig: slip against output torque at held ratio, pressure and speed (thesis chapter 6).
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | RV-1 | v_belt = R_p w_p (1 - slip_p), w_s = w_p (1 - slip)/I, slip = slip_p + slip_s | derived: definitions of SL-5, SL-6 |
+//! | RV-2 | pulse radii v_belt/w_p, v_belt/w_s; pulse ratio w_p/w_s | source: thesis 6.3.1, 6.4 |
+//! | RV-3 | slip reading = I_pulse/I - 1; slip speeds R_p w_p - v_belt and v_belt - R_s w_s | source: thesis 6.3.3; secondary sign of its figures 8-36, 8-37 |
+//! | RV-4 | zeroed: geometric ratio and radii are those of the pulse ratio at zero torque (GE-1 to GE-3) | source: thesis 6.3.2 |
+//! | RV-5 | breakpoint C_x = 0 at T = -s R_s mu_b (2 F_p tan th + m v2 beta_p) | derived: TE-5 |
+//!
+//! 6.3.3 prints the secondary's difference the other way round, R_s w_s - v_belt; the text to the figures calls it negative where the pulley
+//! runs ahead of the segments (8.7), which is the sign kept here. The geometric ratio is held: that the belt moves towards low under
+//! load (6.4) is not modelled, so geometric radii are constant. Valid within Table 6-1; rows beyond it are flagged.
+
+mod summary;
+
+pub use summary::{CurveSummary, Resolution};
+
+use crate::drive::Vehicle;
+use crate::fluid::{Lubricant, VALID_K};
+use crate::transmission::Transmission;
+use crate::transmission::cvt::Cvt;
+use crate::transmission::cvt::variator::{
+    BeltAtRatio, BeltLoad, BeltState, Geometry, belt_state, sliding_speed_m_s,
+};
+
+/// Largest torque at the secondary pulley, Nm (Table 6-1).
+pub const MOST_OUTPUT_NM: f64 = 400.0;
+/// Largest torque at the primary pulley, Nm (Table 6-1).
+pub const MOST_INPUT_NM: f64 = 250.0;
+/// Largest pressure, Pa (Table 6-1).
+pub const MOST_PRESSURE_PA: f64 = 40e5;
+/// Largest speed of either shaft, rad/s: 3000 rpm (Table 6-1).
+pub const MOST_RAD_S: f64 = 100.0 * std::f64::consts::PI;
+/// Passes of the fixed point of slip and secondary speed; it is done after two where the centrifugal head is compensated.
+const PASSES: u32 = 40;
+
+/// A variator on its rig.
+#[derive(Clone, Debug)]
+pub struct VariatorRig {
+    cvt: Cvt,
+    oil: Lubricant,
+}
+
+/// What is held along a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// Belt ratio.
+    pub ratio: f64,
+    /// Secondary pressure, Pa.
+    pub pressure_pa: f64,
+    /// Primary speed, rad/s.
+    pub input_rad_s: f64,
+    /// Belt temperature, K.
+    pub belt_k: f64,
+}
+
+/// What the geometric radii are taken from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zero {
+    /// Pulse ratio at zero torque.
+    pub ratio: f64,
+    /// Primary and secondary radius for it, m.
+    pub radius_m: [f64; 2],
+}
+
+/// States of a row and departures from what the rig can do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RigFlags(u8);
+
+impl RigFlags {
+    /// Torque above what the clamping forces carry, or slip at its bound.
+    pub const GROSS_SLIP: RigFlags = RigFlags(1);
+    /// Secondary torque above the rig's.
+    pub const OUTPUT_TORQUE: RigFlags = RigFlags(2);
+    /// Primary torque above the rig's.
+    pub const INPUT_TORQUE: RigFlags = RigFlags(4);
+    /// Pressure above the rig's.
+    pub const PRESSURE: RigFlags = RigFlags(8);
+    /// A shaft faster than the rig's.
+    pub const SPEED: RigFlags = RigFlags(16);
+    /// Temperature outside the fluid's range.
+    pub const OUTSIDE_VALIDITY: RigFlags = RigFlags(32);
+    /// Names in the order of the bits.
+    pub const NAMES: [(RigFlags, &'static str); 6] = [
+        (RigFlags::GROSS_SLIP, "gross_slip"),
+        (RigFlags::OUTPUT_TORQUE, "rig_output_torque"),
+        (RigFlags::INPUT_TORQUE, "rig_input_torque"),
+        (RigFlags::PRESSURE, "rig_pressure"),
+        (RigFlags::SPEED, "rig_speed"),
+        (RigFlags::OUTSIDE_VALIDITY, "outside_validity"),
+    ];
+
+    /// Whether the flag is set.
+    #[must_use]
+    pub fn contains(self, other: RigFlags) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// Whether nothing speaks against the row: within the rig's limits and within what the belt carries.
+    #[must_use]
+    pub fn is_fine(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Names of what is set, joined by `|`.
+    #[must_use]
+    pub fn text(self) -> String {
+        let names: Vec<&str> = Self::NAMES
+            .iter()
+            .filter(|(flag, _)| self.contains(*flag))
+            .map(|(_, name)| *name)
+            .collect();
+        names.join("|")
+    }
+
+    fn new(on: [bool; 6]) -> Self {
+        RigFlags(
+            on.iter()
+                .enumerate()
+                .map(|(bit, on)| u8::from(*on) << bit)
+                .sum(),
+        )
+    }
+}
+
+/// One point of a curve; pairs are primary, secondary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VariatorRow {
+    /// What is held.
+    pub held: Held,
+    /// Torque at the secondary pulley, Nm.
+    pub output_nm: f64,
+    /// The belt.
+    pub belt: BeltState,
+    /// Geometry of the held ratio.
+    pub geometry: Geometry,
+    /// Where the reading has its zero.
+    pub zero: Zero,
+    /// Speeds of the shafts, rad/s.
+    pub shaft_rad_s: [f64; 2],
+    /// Belt speed, m/s.
+    pub belt_m_s: f64,
+    /// What applies.
+    pub flags: RigFlags,
+}
+
+impl VariatorRow {
+    /// Pulse ratio w_p/w_s.
+    #[must_use]
+    pub fn pulse_ratio(&self) -> f64 {
+        self.held.ratio / (1.0 - self.belt.slip_total) // RV-1: the quotient of the speeds, without their rounding
+    }
+
+    /// Radii from belt speed and shaft speed, m.
+    #[must_use]
+    pub fn pulse_radius_m(&self) -> [f64; 2] {
+        self.shaft_rad_s.map(|w| self.belt_m_s / w) // RV-2
+    }
+
+    /// Slip as the rig reads it against the geometric ratio, a fraction.
+    #[must_use]
+    pub fn slip_reading(&self) -> f64 {
+        self.pulse_ratio() / self.geometry.ratio - 1.0 // RV-3
+    }
+
+    /// The reading against the ratio of zero torque.
+    #[must_use]
+    pub fn slip_zeroed(&self) -> f64 {
+        self.pulse_ratio() / self.zero.ratio - 1.0 // RV-4
+    }
+
+    /// Slip speeds at the pulleys, m/s.
+    #[must_use]
+    pub fn slip_m_s(&self) -> [f64; 2] {
+        self.slip_speeds([
+            self.geometry.primary_radius_m,
+            self.geometry.secondary_radius_m,
+        ])
+    }
+
+    /// Slip speeds with the radii of zero torque, m/s.
+    #[must_use]
+    pub fn slip_zeroed_m_s(&self) -> [f64; 2] {
+        self.slip_speeds(self.zero.radius_m) // RV-4
+    }
+
+    fn slip_speeds(&self, radius_m: [f64; 2]) -> [f64; 2] {
+        let [w_p, w_s] = self.shaft_rad_s;
+        [
+            radius_m[0] * w_p - self.belt_m_s,
+            self.belt_m_s - radius_m[1] * w_s,
+        ] // RV-3
+    }
+}
+
+impl VariatorRig {
+    /// Takes the variator out of a vehicle's box; none for a manual box.
+    #[must_use]
+    pub fn new(vehicle: &Vehicle) -> Option<Self> {
+        match vehicle.transmission() {
+            Transmission::Cvt(cvt) => Some(VariatorRig {
+                cvt: (**cvt).clone(),
+                oil: vehicle.oils().0.clone(),
+            }),
+            Transmission::Manual(_) => None,
+        }
+    }
+
+    /// Belt, pulleys and limits.
+    #[must_use]
+    pub fn cvt(&self) -> &Cvt {
+        &self.cvt
+    }
+
+    /// Clamping and friction at a point, with the slip of the pass before.
+    fn load(&self, held: &Held, output_nm: f64, slip: f64) -> BeltLoad {
+        let eta_pa_s = self.oil.dynamic_pa_s(held.belt_k);
+        let film = self.cvt.belt.formulation.has_film();
+        let sliding = if film {
+            sliding_speed_m_s(&self.cvt.belt, held.ratio, held.input_rad_s)
+        } else {
+            0.0
+        };
+        let friction = &self.oil.friction;
+        BeltLoad {
+            primary_speed_rad_s: held.input_rad_s,
+            output_torque_nm: output_nm,
+            secondary_clamp_n: self.cvt.secondary_clamp_n(
+                held.pressure_pa,
+                held.input_rad_s * (1.0 - slip) / held.ratio,
+            ),
+            band: friction.band(held.belt_k, eta_pa_s, sliding),
+            eta_pa_s,
+            film_thickness_m: friction.film_thickness_m,
+            segment_friction: friction.segment,
+            flank_friction: friction.flank,
+        }
+    }
+
+    fn state(&self, held: &Held, at: &BeltAtRatio, output_nm: f64) -> BeltState {
+        let mut state = belt_state(&self.cvt.belt, at, &self.load(held, output_nm, 0.0));
+        for _ in 0..PASSES {
+            let next = belt_state(
+                &self.cvt.belt,
+                at,
+                &self.load(held, output_nm, state.slip_total),
+            );
+            let still = (next.slip_total - state.slip_total).abs() <= 1e-14;
+            state = next;
+            if still {
+                break;
+            }
+        }
+        state
+    }
+
+    /// One point of a curve; [`VariatorRig::zero`] gives the zero of its reading.
+    fn row(&self, held: &Held, at: &BeltAtRatio, zero: &Zero, output_nm: f64) -> VariatorRow {
+        let belt = self.state(held, at, output_nm);
+        let w_p = held.input_rad_s;
+        let w_s = w_p * (1.0 - belt.slip_total) / held.ratio; // RV-1
+        let over = |x: f64, most: f64| x.abs() > most * (1.0 + 1e-9);
+        let flags = RigFlags::new([
+            belt.gross_slip,
+            over(output_nm, MOST_OUTPUT_NM),
+            over(belt.input_torque_nm, MOST_INPUT_NM),
+            over(held.pressure_pa, MOST_PRESSURE_PA),
+            over(w_p, MOST_RAD_S) || over(w_s, MOST_RAD_S),
+            !VALID_K.contains(&held.belt_k),
+        ]);
+        VariatorRow {
+            held: *held,
+            output_nm,
+            belt,
+            geometry: at.geometry,
+            zero: *zero,
+            shaft_rad_s: [w_p, w_s],
+            belt_m_s: at.geometry.primary_radius_m * w_p * (1.0 - belt.slip.primary), // RV-1
+            flags,
+        }
+    }
+
+    /// Where the rig's reading has its zero: slip is taken to be none at zero torque (RV-4).
+    fn zero(&self, held: &Held, at: &BeltAtRatio) -> Zero {
+        let ratio = held.ratio / (1.0 - self.state(held, at, 0.0).slip_total);
+        let g = Geometry::new(
+            ratio,
+            self.cvt.belt.centre_distance_m,
+            self.cvt.belt.length_m,
+        );
+        Zero {
+            ratio,
+            radius_m: [g.primary_radius_m, g.secondary_radius_m],
+        }
+    }
+
+    /// Rows of a curve at given torques.
+    #[must_use]
+    pub fn rows(&self, held: &Held, output_nm: &[f64]) -> Vec<VariatorRow> {
+        let at = BeltAtRatio::new(&self.cvt.belt, held.ratio);
+        let zero = self.zero(held, &at);
+        output_nm
+            .iter()
+            .map(|torque| self.row(held, &at, &zero, *torque))
+            .collect()
+    }
+
+    /// Torque at which the compression between segments changes sign, Nm at the secondary (RV-5); negative in high ratio.
+    #[must_use]
+    pub fn breakpoint_nm(&self, held: &Held) -> f64 {
+        let belt = &self.cvt.belt;
+        let at = BeltAtRatio::new(belt, held.ratio);
+        // The slip at the breakpoint acts on an uncompensated centrifugal head only: two passes are plenty.
+        let mut torque = 0.0;
+        for _ in 0..3 {
+            let load = self.load(held, torque, self.state(held, &at, torque).slip_total);
+            let g = &at.geometry;
+            let v = held.input_rad_s * g.primary_radius_m;
+            let primary_n = load.secondary_clamp_n * at.thrust_ratio;
+            let pull =
+                2.0 * primary_n * belt.tan_wedge + g.primary_wrap_rad * belt.mass_kg_m * v * v;
+            torque = -at.direction * g.secondary_radius_m * load.band.mu * pull; // RV-5
+        }
+        torque
+    }
+}

@@ -1,0 +1,225 @@
+//! The prescribed gear and clutch commands.
+//!
+//! A table gives a gear number (0: none engaged) and a note: `PM` neutral with the clutch engaged, `K1`, `K2`, `K5` that gear
+//! with the clutch disengaged, `GC` gear change (UN R83 Annex 4a, tables 1 and 2).
+
+/// What the driver of a manual car does over one interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GearCommand {
+    /// No gear engaged, clutch engaged.
+    Neutral,
+    /// This gear engaged (counted from 1), clutch disengaged.
+    Declutched(u8),
+    /// This gear engaged (counted from 1), clutch engaged.
+    InGear(u8),
+    /// Gear change under way into this gear (counted from 1); the engine is uncoupled.
+    Change(u8),
+}
+
+impl GearCommand {
+    fn gear(self) -> u8 {
+        match self {
+            Self::Neutral => 0,
+            Self::Declutched(gear) | Self::InGear(gear) | Self::Change(gear) => gear,
+        }
+    }
+}
+
+/// The note beside a gear number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Note {
+    /// No note: the gear number says all.
+    #[default]
+    Blank,
+    /// A number, by which a table repeats its gear; the gear number counts.
+    Gear(u8),
+    /// PM.
+    Neutral,
+    /// K with a gear number.
+    Declutched(u8),
+    /// GC.
+    Change,
+}
+
+impl Note {
+    /// The note of a table's text, `None` if it is none of the known ones.
+    pub fn parse(text: &str) -> Option<Self> {
+        if text.is_empty() {
+            return Some(Self::Blank);
+        }
+        if text.eq_ignore_ascii_case("pm") {
+            return Some(Self::Neutral);
+        }
+        if text.eq_ignore_ascii_case("gc") {
+            return Some(Self::Change);
+        }
+        let declutched = text.strip_prefix(['K', 'k']);
+        let digits = declutched.unwrap_or(text);
+        // u8::from_str would take K+1
+        if !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+            return None;
+        }
+        let gear = digits.parse::<u8>().ok()?;
+        match declutched {
+            Some(_) => (1..=10).contains(&gear).then_some(Self::Declutched(gear)),
+            None => (0..=10).contains(&gear).then_some(Self::Gear(gear)),
+        }
+    }
+}
+
+/// Commands of a table's rows (gear number and note). A change goes into the row's own gear or, where the row has none,
+/// into the next one engaged; a change after which no gear ever comes is a change to neutral.
+pub fn commands<I>(rows: I) -> Vec<GearCommand>
+where
+    I: DoubleEndedIterator<Item = (u8, Note)>,
+{
+    let mut next = 0;
+    let mut list: Vec<GearCommand> = rows
+        .rev()
+        .map(|(gear, note)| {
+            let command = match note {
+                Note::Neutral => GearCommand::Neutral,
+                Note::Declutched(gear) => GearCommand::Declutched(gear),
+                Note::Change if gear.max(next) == 0 => GearCommand::Neutral,
+                Note::Change if gear > 0 => GearCommand::Change(gear),
+                Note::Change => GearCommand::Change(next),
+                Note::Blank | Note::Gear(_) if gear > 0 => GearCommand::InGear(gear),
+                Note::Blank | Note::Gear(_) => GearCommand::Neutral,
+            };
+            if command.gear() > 0 {
+                next = command.gear();
+            }
+            command
+        })
+        .collect();
+    list.reverse();
+    list
+}
+
+/// The gear columns of a trace, one command an interval.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GearColumns {
+    /// `gear_5mt`: for five gears only.
+    five: Option<Vec<GearCommand>>,
+    /// `gear_6mt`: for six gears only.
+    pub six: Option<Vec<GearCommand>>,
+    /// `gear`: for every gearbox that has the gears it asks for.
+    plain: Option<Vec<GearCommand>>,
+    plain_highest: u8,
+}
+
+impl GearColumns {
+    /// Commands for five gears, for six, and for any number of gears.
+    pub fn new(
+        five: Option<Vec<GearCommand>>,
+        six: Option<Vec<GearCommand>>,
+        plain: Option<Vec<GearCommand>>,
+    ) -> Self {
+        let plain_highest = plain
+            .iter()
+            .flatten()
+            .map(|command| command.gear())
+            .max()
+            .unwrap_or(0);
+        Self {
+            five,
+            six,
+            plain,
+            plain_highest,
+        }
+    }
+
+    /// True without any column.
+    pub fn is_empty(&self) -> bool {
+        self.five.is_none() && self.six.is_none() && self.plain.is_none()
+    }
+
+    /// A column made for just this number of gears goes before the general one.
+    pub fn for_count(&self, gear_count: usize) -> Option<&[GearCommand]> {
+        let exact = match gear_count {
+            5 => self.five.as_deref(),
+            6 => self.six.as_deref(),
+            _ => None,
+        };
+        let fits = usize::from(self.plain_highest) <= gear_count;
+        exact.or_else(|| self.plain.as_deref().filter(|_| fits))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use GearCommand::{Change, Declutched, InGear, Neutral};
+
+    fn decode(rows: &[(u8, &str)]) -> Vec<GearCommand> {
+        commands(
+            rows.iter()
+                .map(|&(gear, note)| (gear, Note::parse(note).unwrap())),
+        )
+    }
+
+    #[test]
+    fn notes_become_commands() {
+        let rows = [
+            (0, "PM"),
+            (0, "K1"),
+            (1, "1"),
+            (0, "GC"),
+            (0, "GC"),
+            (2, ""),
+            (0, "K2"),
+            (0, ""),
+            (3, "pm"),
+            (4, "k5"),
+        ];
+        let expected = [
+            Neutral,
+            Declutched(1),
+            InGear(1),
+            Change(2),
+            Change(2),
+            InGear(2),
+            Declutched(2),
+            Neutral,
+            Neutral,
+            Declutched(5),
+        ];
+        assert_eq!(decode(&rows), expected);
+    }
+
+    #[test]
+    fn a_change_goes_into_its_own_gear_then_into_the_next_engaged() {
+        assert_eq!(decode(&[(3, "GC"), (2, "")]), [Change(3), InGear(2)]);
+        assert_eq!(decode(&[(0, "GC"), (0, "K2")]), [Change(2), Declutched(2)]);
+        assert_eq!(
+            decode(&[(0, "GC"), (0, "PM"), (1, "")]),
+            [Change(1), Neutral, InGear(1)]
+        );
+        assert_eq!(
+            decode(&[(4, ""), (0, "GC"), (0, "PM")]),
+            [InGear(4), Neutral, Neutral]
+        );
+    }
+
+    #[test]
+    fn only_known_notes_are_taken() {
+        for bad in [
+            "K", "K0", "K11", "K+1", "KX", "P", "GCC", "K1 ", "é", "11", "-1", "+1",
+        ] {
+            assert_eq!(Note::parse(bad), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_column_serves_the_gear_counts_it_was_made_for() {
+        let columns = GearColumns::new(Some(vec![InGear(5)]), Some(vec![InGear(6)]), None);
+        assert_eq!(columns.for_count(5), Some(&[InGear(5)][..]));
+        assert_eq!(columns.for_count(6), Some(&[InGear(6)][..]));
+        assert_eq!(columns.for_count(4), None);
+        let columns = GearColumns::new(Some(vec![InGear(5)]), None, Some(vec![Change(4)]));
+        assert_eq!(columns.for_count(3), None);
+        assert_eq!(columns.for_count(4), Some(&[Change(4)][..]));
+        assert_eq!(columns.for_count(5), Some(&[InGear(5)][..]));
+        assert_eq!(columns.for_count(6), Some(&[Change(4)][..]));
+    }
+}

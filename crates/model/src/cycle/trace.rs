@@ -1,0 +1,417 @@
+//! A speed trace: intervals over which speed is linear, and their division into steps.
+
+use super::gears::{GearColumns, GearCommand};
+use crate::math::{exp, ln};
+
+/// One interval of a trace, from one row of its table to the next. Speed is linear within it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Time at the start, s from the start of the cycle.
+    pub start_s: f64,
+    /// Time at the end, s; always greater than the start.
+    pub end_s: f64,
+    /// Speed at the start, m/s.
+    pub start_speed_m_s: f64,
+    /// Speed at the end, m/s.
+    pub end_speed_m_s: f64,
+    /// Index into [`super::Cycle::phases`]; 0 in a cycle without phases.
+    pub phase: u16,
+    /// Slope of the road, rise over run; uphill is positive.
+    pub grade: f64,
+    /// Whether the engine stands still by prescription (the soak of FTP75).
+    pub engine_off: bool,
+}
+
+impl Interval {
+    /// Distance driven, m: exact, since speed is linear.
+    #[must_use]
+    pub fn distance_m(&self) -> f64 {
+        0.5 * (self.start_speed_m_s + self.end_speed_m_s) * (self.end_s - self.start_s)
+    }
+
+    // 1e-9: an interval that is a multiple of max_dt up to rounding is not cut once more
+    #[inline]
+    fn parts(&self, max_dt_s: f64) -> usize {
+        if self.end_s - self.start_s <= max_dt_s {
+            return 1; // the usual case, without a division
+        }
+        let parts = ((self.end_s - self.start_s) / max_dt_s - 1e-9).ceil();
+        if max_dt_s > 0.0 && parts > 1.0 {
+            parts as usize
+        } else {
+            1
+        }
+    }
+
+    // The division points come from the index alone, so that they neither drift nor differ between neighbours.
+    fn point(&self, index: usize, parts: usize) -> (f64, f64) {
+        if index == parts {
+            return (self.end_s, self.end_speed_m_s);
+        }
+        let share = index as f64 / parts as f64;
+        let time_s = self.start_s + share * (self.end_s - self.start_s);
+        (
+            time_s,
+            self.start_speed_m_s + share * (self.end_speed_m_s - self.start_speed_m_s),
+        )
+    }
+
+    fn motion(&self) -> Motion {
+        Motion::between(
+            self.start_speed_m_s,
+            self.end_speed_m_s,
+            self.end_s - self.start_s,
+        )
+    }
+
+    /// The whole interval as one step.
+    #[inline]
+    fn whole(&self, interval: usize, motion: Motion) -> Step {
+        let Self {
+            start_s,
+            end_s,
+            start_speed_m_s,
+            end_speed_m_s,
+            phase,
+            grade,
+            engine_off,
+        } = *self;
+        Step {
+            time_s: end_s,
+            dt_s: end_s - start_s,
+            start_speed_m_s,
+            end_speed_m_s,
+            motion,
+            phase,
+            grade,
+            engine_off,
+            interval,
+        }
+    }
+
+    /// A part of the interval as a step.
+    fn step(&self, interval: usize, index: usize, parts: usize) -> Step {
+        let (_, start_speed_m_s) = self.point(index, parts);
+        let (time_s, end_speed_m_s) = self.point(index + 1, parts);
+        let dt_s = (self.end_s - self.start_s) / parts as f64;
+        let motion = Motion::between(start_speed_m_s, end_speed_m_s, dt_s);
+        let Self {
+            phase,
+            grade,
+            engine_off,
+            ..
+        } = *self;
+        Step {
+            time_s,
+            dt_s,
+            start_speed_m_s,
+            end_speed_m_s,
+            motion,
+            phase,
+            grade,
+            engine_off,
+            interval,
+        }
+    }
+}
+
+/// What follows from the speeds of a step alone: a trace has it once for all cars and drives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Mean speed, m/s.
+    pub speed_m_s: f64,
+    /// Acceleration, m/s2.
+    pub accel_m_s2: f64,
+    /// Mean square of the speed, m2/s2.
+    pub square_m2_s2: f64,
+    /// Mean cube of the speed, m3/s3.
+    pub cube_m3_s3: f64,
+    /// Mean speed in m/s to the power of 0.7, as heat transfer to the air asks for it; 0 at standstill.
+    pub speed_power_07: f64,
+}
+
+impl Motion {
+    /// Speed linear from one value to another, m/s, within a time, s.
+    #[must_use]
+    #[inline]
+    pub fn between(from_m_s: f64, to_m_s: f64, dt_s: f64) -> Self {
+        let (v0, v1) = (from_m_s, to_m_s);
+        let speed_m_s = 0.5 * (v0 + v1);
+        Motion {
+            speed_m_s,
+            accel_m_s2: (v1 - v0) / dt_s,
+            square_m2_s2: (v0 * v0 + v0 * v1 + v1 * v1) / 3.0,
+            cube_m3_s3: (v0 + v1) * (v0 * v0 + v1 * v1) / 4.0,
+            speed_power_07: if speed_m_s > 0.0 {
+                exp(0.7 * ln(speed_m_s))
+            } else {
+                0.0
+            },
+        }
+    }
+}
+
+/// One step of the simulation: an interval or an equal part of one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Time at the end of the step, s from the start of the cycle.
+    pub time_s: f64,
+    /// Length, s.
+    pub dt_s: f64,
+    /// Speed at the start, m/s; equal to the end speed of the step before.
+    pub start_speed_m_s: f64,
+    /// Speed at the end, m/s.
+    pub end_speed_m_s: f64,
+    /// What follows from these.
+    pub motion: Motion,
+    /// Index into [`super::Cycle::phases`]; 0 in a cycle without phases.
+    pub phase: u16,
+    /// Slope of the road, rise over run.
+    pub grade: f64,
+    /// Whether the engine stands still by prescription.
+    pub engine_off: bool,
+    /// Index into [`Trace::intervals`] and into [`Trace::gears`].
+    pub interval: usize,
+}
+
+/// What a car is asked to drive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// The intervals in time order, each beginning where the one before ends; the first begins at 0 s.
+    pub intervals: Vec<Interval>,
+    /// Of every interval.
+    motions: Vec<Motion>,
+    gears: GearColumns,
+}
+
+impl Trace {
+    /// A trace that prescribes no gears.
+    pub fn without_gears(intervals: Vec<Interval>) -> Self {
+        Self::with_gears(intervals, GearColumns::default())
+    }
+
+    /// A trace with prescribed gears, one command an interval.
+    pub fn with_gears(intervals: Vec<Interval>, gears: GearColumns) -> Self {
+        Self {
+            motions: intervals.iter().map(Interval::motion).collect(),
+            intervals,
+            gears,
+        }
+    }
+
+    /// The prescribed gears, to be changed.
+    pub fn gear_columns_mut(&mut self) -> &mut GearColumns {
+        &mut self.gears
+    }
+
+    /// Whether the trace prescribes gears for some gearbox.
+    #[must_use]
+    pub fn has_gears(&self) -> bool {
+        !self.gears.is_empty()
+    }
+
+    /// The prescribed commands for a gearbox with this many gears, one an interval. `None`: nothing is prescribed for
+    /// it, and the driver's shift speeds decide. The columns `gear_5mt` and `gear_6mt` are for five and six gears only; a
+    /// user's column `gear` serves every gearbox that has all the gears it names.
+    #[must_use]
+    pub fn gears(&self, gear_count: usize) -> Option<&[GearCommand]> {
+        self.gears.for_count(gear_count)
+    }
+
+    /// Duration, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.intervals.last().map_or(0.0, |interval| interval.end_s)
+    }
+
+    /// Distance, m.
+    #[must_use]
+    pub fn distance_m(&self) -> f64 {
+        self.intervals.iter().map(Interval::distance_m).sum()
+    }
+
+    /// Highest speed, m/s.
+    #[must_use]
+    pub fn max_speed_m_s(&self) -> f64 {
+        let ends = self
+            .intervals
+            .iter()
+            .flat_map(|interval| [interval.start_speed_m_s, interval.end_speed_m_s]);
+        ends.fold(
+            0.0,
+            |highest, speed| if speed > highest { speed } else { highest },
+        )
+    }
+
+    /// Distance driven in one phase, m, over all the intervals that bear its index; 0 for a phase that does not occur.
+    #[must_use]
+    pub fn phase_distance_m(&self, phase: u16) -> f64 {
+        self.intervals
+            .iter()
+            .filter(|interval| interval.phase == phase)
+            .map(Interval::distance_m)
+            .sum()
+    }
+
+    /// The steps of the simulation: each interval is divided into the least number of equal parts that are not longer than
+    /// `max_dt_s` (s). A limit that is not a positive number divides nothing.
+    pub fn steps(&self, max_dt_s: f64) -> impl Iterator<Item = Step> + '_ {
+        let intervals = self.intervals.iter().zip(&self.motions).enumerate();
+        intervals.flat_map(move |(number, (interval, motion))| {
+            let parts = interval.parts(max_dt_s);
+            let step = move |index| {
+                if parts == 1 {
+                    interval.whole(number, *motion)
+                } else {
+                    interval.step(number, index, parts)
+                }
+            };
+            (0..parts).map(step)
+        })
+    }
+
+    /// Gives every step of [`Trace::steps`] to `take`, in order; two plain loops cost a drive less than the iterator.
+    #[inline]
+    pub fn for_each_step(&self, max_dt_s: f64, mut take: impl FnMut(Step)) {
+        for (number, (interval, motion)) in self.intervals.iter().zip(&self.motions).enumerate() {
+            let parts = interval.parts(max_dt_s);
+            for index in 0..parts {
+                take(if parts == 1 {
+                    interval.whole(number, *motion)
+                } else {
+                    interval.step(number, index, parts)
+                });
+            }
+        }
+    }
+
+    /// How many steps [`Trace::steps`] gives.
+    #[must_use]
+    pub fn step_count(&self, max_dt_s: f64) -> usize {
+        self.intervals.iter().fold(0, |sum: usize, interval| {
+            sum.saturating_add(interval.parts(max_dt_s))
+        })
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::float_cmp, reason = "division points are promised exactly")]
+mod tests {
+    use super::*;
+
+    fn ramp(start_s: f64, end_s: f64, start_speed_m_s: f64, end_speed_m_s: f64) -> Interval {
+        Interval {
+            start_s,
+            end_s,
+            start_speed_m_s,
+            end_speed_m_s,
+            phase: 3,
+            grade: 0.01,
+            engine_off: false,
+        }
+    }
+
+    #[test]
+    fn an_interval_is_cut_into_the_least_number_of_equal_parts() {
+        let trace = Trace::without_gears(vec![
+            ramp(0.0, 1.0, 0.0, 2.0),
+            ramp(1.0, 1.05, 2.0, 2.0),
+            ramp(1.05, 3.05, 2.0, 0.0),
+        ]);
+        for (max_dt_s, parts) in [
+            (1.0, [1, 1, 2]),
+            (0.5, [2, 1, 4]),
+            (0.3, [4, 1, 7]),
+            (0.1, [10, 1, 20]),
+            (9.0, [1, 1, 1]),
+        ] {
+            let count = |number| {
+                trace
+                    .steps(max_dt_s)
+                    .filter(|step| step.interval == number)
+                    .count()
+            };
+            assert_eq!([count(0), count(1), count(2)], parts, "{max_dt_s}");
+            assert_eq!(trace.step_count(max_dt_s), parts.iter().sum::<usize>());
+            let mut taken = Vec::new();
+            trace.for_each_step(max_dt_s, |step| taken.push(step));
+            assert!(trace.steps(max_dt_s).eq(taken));
+            assert!(
+                trace
+                    .steps(max_dt_s)
+                    .all(|step| step.dt_s <= max_dt_s * (1.0 + 1e-8))
+            );
+        }
+    }
+
+    #[test]
+    fn steps_join_without_gap_or_drift() {
+        let trace = Trace::without_gears(vec![
+            ramp(0.0, 700.0, 0.0, 20.0),
+            ramp(700.0, 700.7, 20.0, 13.0),
+        ]);
+        let steps: Vec<Step> = trace.steps(0.1).collect();
+        assert_eq!(steps.len(), 7007);
+        assert_eq!(steps[2999].time_s, 700.0 * (3000.0 / 7000.0));
+        assert_eq!(
+            (steps[6999].time_s, steps[6999].end_speed_m_s),
+            (700.0, 20.0)
+        );
+        assert_eq!(
+            (steps[7006].time_s, steps[7006].end_speed_m_s),
+            (700.7, 13.0)
+        );
+        assert!(
+            steps
+                .windows(2)
+                .all(|pair| pair[0].end_speed_m_s == pair[1].start_speed_m_s)
+        );
+        assert!(
+            steps
+                .windows(2)
+                .all(|pair| (pair[1].time_s - pair[0].time_s - pair[1].dt_s).abs() < 1e-12 * 700.0)
+        );
+        let distance: f64 = steps
+            .iter()
+            .map(|s| 0.5 * (s.start_speed_m_s + s.end_speed_m_s) * s.dt_s)
+            .sum();
+        assert!((distance / trace.distance_m() - 1.0).abs() < 1e-12);
+        assert!(
+            steps
+                .iter()
+                .all(|step| step.phase == 3 && step.grade == 0.01 && !step.engine_off)
+        );
+    }
+
+    #[test]
+    fn a_senseless_step_limit_divides_nothing() {
+        let trace = Trace::without_gears(vec![ramp(0.0, 10.0, 1.0, 1.0); 2]);
+        for max_dt_s in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(trace.step_count(max_dt_s), 2);
+        }
+        assert_eq!(trace.step_count(f64::MIN_POSITIVE), usize::MAX);
+    }
+
+    #[test]
+    fn sums_by_hand() {
+        let mut trace =
+            Trace::without_gears(vec![ramp(0.0, 2.0, 0.0, 4.0), ramp(2.0, 5.0, 4.0, 4.0)]);
+        trace.intervals[1].phase = 1;
+        assert_eq!(
+            (
+                trace.duration_s(),
+                trace.distance_m(),
+                trace.max_speed_m_s()
+            ),
+            (5.0, 16.0, 4.0)
+        );
+        assert_eq!(
+            (
+                trace.phase_distance_m(3),
+                trace.phase_distance_m(1),
+                trace.phase_distance_m(0)
+            ),
+            (4.0, 12.0, 0.0)
+        );
+    }
+}

@@ -1,0 +1,248 @@
+//! One car through one cycle: start state, drive, totals, rows on request.
+
+use crate::cycle::{Cycle, Trace};
+use crate::drive::{Car, Recorder, State, Vehicle, simulate};
+use crate::drive::{Component, Row, Terms, Totals};
+use crate::thermal::Heat;
+use crate::transmission::Transmission;
+
+/// Temperatures at the start of a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Start {
+    /// Everything at ambient.
+    Soak,
+    /// The same cycle has just been driven from a soak, without a pause; it is not counted.
+    Warm,
+    /// All nodes at a temperature, K.
+    At(f64),
+}
+
+/// What a run is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Conditions {
+    /// Ambient temperature, K.
+    pub ambient_k: f64,
+    /// Start.
+    pub start: Start,
+    /// Largest step, s.
+    pub max_dt_s: f64,
+    /// Whether every row is kept.
+    pub keep_rows: bool,
+}
+
+/// What a run gives.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Sums.
+    pub totals: Totals,
+    /// Rows, empty unless asked for.
+    pub rows: Vec<Row>,
+    /// Temperatures at the end.
+    pub end: Heat,
+    /// Gear schedule in force, in words; empty for a CVT.
+    pub gear_schedule: &'static str,
+}
+
+/// Takes rows, some at a time and in order.
+pub type Give<'g> = dyn FnMut(&[Row]) + 'g;
+
+/// Rows that are given away at a time: few enough to stay in the processor's cache.
+const LOT: usize = 32;
+
+/// Keeps totals and gives rows away in lots; for totals alone, [`Totals`] themselves listen, so that no row need exist.
+struct Lots<'g> {
+    totals: Totals,
+    lot: Vec<Row>,
+    give: &'g mut Give<'g>,
+}
+
+impl Recorder for Lots<'_> {
+    fn record(&mut self, row: &Row, terms: &Terms) {
+        self.totals.record(row, terms);
+        self.lot.push(*row);
+        if self.lot.len() == LOT {
+            (self.give)(&self.lot);
+            self.lot.clear();
+        }
+    }
+}
+
+/// Drops everything.
+struct Nobody;
+
+impl Recorder for Nobody {
+    fn record(&mut self, _: &Row, _: &Terms) {}
+}
+
+/// Drives a car through a cycle.
+#[must_use]
+pub fn drive(vehicle: &Vehicle, cycle: &Cycle, conditions: &Conditions) -> Outcome {
+    if !conditions.keep_rows {
+        return drive_into(vehicle, cycle, conditions, None);
+    }
+    let steps = cycle
+        .trace_for(vehicle.transmission().is_cvt())
+        .step_count(conditions.max_dt_s);
+    let mut rows = Vec::with_capacity(steps);
+    let outcome = drive_into(
+        vehicle,
+        cycle,
+        conditions,
+        Some(&mut |lot| rows.extend_from_slice(lot)),
+    );
+    Outcome { rows, ..outcome }
+}
+
+/// The same, but rows go to `give`, some at a time and in order, whatever `keep_rows` says, and none into the outcome.
+#[must_use]
+pub fn drive_into(
+    vehicle: &Vehicle,
+    cycle: &Cycle,
+    conditions: &Conditions,
+    give: Option<&mut Give>,
+) -> Outcome {
+    let car = &vehicle.car(conditions.ambient_k);
+    let trace = cycle.trace_for(car.transmission.is_cvt());
+    let gear_schedule = gear_schedule(car, trace);
+    let start = match conditions.start {
+        Start::Soak => State::at(conditions.ambient_k),
+        Start::At(temp_k) => State::at(temp_k),
+        Start::Warm => simulate(
+            car,
+            trace,
+            conditions.max_dt_s,
+            State::at(conditions.ambient_k),
+            &mut Nobody,
+        ),
+    };
+    // A car at rest begins a new cycle in its own start state; only heat and rotating energy carry over.
+    let start = State {
+        drive: None,
+        ..start
+    };
+    let mut totals = Totals::new(cycle.phases.len());
+    let end = match give {
+        Some(give) => {
+            let mut lots = Lots {
+                totals,
+                lot: Vec::with_capacity(LOT),
+                give,
+            };
+            let end = simulate(car, trace, conditions.max_dt_s, start, &mut lots);
+            (lots.give)(&lots.lot);
+            totals = lots.totals;
+            end
+        }
+        None => simulate(car, trace, conditions.max_dt_s, start, &mut totals),
+    };
+    Outcome {
+        totals,
+        rows: Vec::new(),
+        end: end.heat,
+        gear_schedule,
+    }
+}
+
+fn gear_schedule(car: &Car, trace: &Trace) -> &'static str {
+    match &car.transmission {
+        Transmission::Cvt(_) => "",
+        Transmission::Manual(m) if trace.gears(m.overall.len()).is_some() => {
+            "gears prescribed by the cycle"
+        }
+        Transmission::Manual(_) if trace.has_gears() => {
+            "shift speeds of the vehicle file: the cycle's gear column does not fit this box"
+        }
+        Transmission::Manual(_) => "shift speeds of the vehicle file",
+    }
+}
+
+/// Components that a transmission has, in the order of the power flow.
+#[must_use]
+pub fn components(transmission: &Transmission) -> Vec<Component> {
+    use Component as C;
+    match transmission {
+        Transmission::Cvt(cvt) => {
+            let mut list = vec![C::LaunchClutch, C::Pump, C::InputShaft, C::ClutchDrag];
+            if cvt.maps.belt.is_some() {
+                list.push(C::BeltMap);
+            } else {
+                list.extend([
+                    C::BeltBand,
+                    C::BeltFilm,
+                    C::BeltSlip,
+                    C::BeltWedge,
+                    C::BeltPenetration,
+                ]);
+            }
+            list.push(C::FinalDrive);
+            list
+        }
+        Transmission::Manual(manual) if manual.map.is_some() => vec![C::LaunchClutch, C::BoxMap],
+        Transmission::Manual(_) => vec![
+            C::LaunchClutch,
+            C::GearMesh,
+            C::Bearing,
+            C::Churning,
+            C::Seal,
+        ],
+    }
+}
+
+/// An engine's fuel map on a grid.
+#[derive(Clone, Debug, Default)]
+pub struct FuelMap {
+    /// Engine speeds, rad/s, ascending.
+    pub speed_rad_s: Vec<f64>,
+    /// Torques, Nm, ascending.
+    pub torque_nm: Vec<f64>,
+    /// Brake specific fuel consumption, kg/J, by speed and torque; NaN above full load.
+    pub bsfc_kg_j: Vec<Vec<f64>>,
+    /// Full-load torque at each speed, Nm.
+    pub full_load_nm: Vec<f64>,
+}
+
+/// Hot fuel map of the engine for the operating-point plot, over the flywheel torque.
+#[must_use]
+pub fn fuel_map(vehicle: &Vehicle) -> FuelMap {
+    let car = vehicle.car(293.15);
+    let hot = car
+        .engine
+        .at(car.engine.hot_k, car.engine.hot_k, &car.engine_oil, 1.0);
+    let (lo, hi) = (car.engine.idle_hot_rad_s, car.engine.highest_rad_s);
+    let speed_rad_s: Vec<f64> = (0..=40)
+        .map(|i| lo + (hi - lo) * f64::from(i) / 40.0)
+        .collect();
+    let full_load_nm: Vec<f64> = speed_rad_s.iter().map(|&w| hot.full_load_nm(w)).collect();
+    let most = full_load_nm
+        .iter()
+        .copied()
+        .fold(0.0, |a, b| if b > a { b } else { a });
+    let torque_nm: Vec<f64> = (1..=40).map(|i| most * f64::from(i) / 40.0).collect();
+    let bsfc = |w: f64, t: f64| {
+        if t <= hot.full_load_nm(w) + most / 40.0 {
+            hot.burn(w, t).fuel_kg_s / (t * w)
+        } else {
+            f64::NAN
+        }
+    };
+    let bsfc_kg_j = speed_rad_s
+        .iter()
+        .map(|&w| torque_nm.iter().map(|&t| bsfc(w, t)).collect())
+        .collect();
+    FuelMap {
+        speed_rad_s,
+        torque_nm,
+        bsfc_kg_j,
+        full_load_nm,
+    }
+}
+
+/// Fuel in L/100 km from mass and distance; NaN for no distance.
+#[must_use]
+pub fn litres_per_100km(fuel_kg: f64, density_kg_m3: f64, distance_m: f64) -> f64 {
+    if distance_m > 0.0 {
+        fuel_kg / density_kg_m3 * 1000.0 / (distance_m / 100_000.0)
+    } else {
+        f64::NAN
+    }
+}

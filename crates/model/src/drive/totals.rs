@@ -1,0 +1,170 @@
+//! Sums of a run by phase, gathered row by row without keeping the rows.
+
+use super::{Component, Flags, Row, Terms};
+use crate::drive::Recorder;
+
+/// Sums over one phase.
+#[derive(Clone, Debug, Default)]
+pub struct PhaseTotals {
+    /// Duration, s.
+    pub duration_s: f64,
+    /// Distance, m.
+    pub distance_m: f64,
+    /// Fuel, kg.
+    pub fuel_kg: f64,
+    /// Fuel at standstill, kg.
+    pub standstill_fuel_kg: f64,
+    /// Demanded wheel work in drive, J.
+    pub wheel_positive_j: f64,
+    /// Demanded wheel work in braking, J.
+    pub wheel_negative_j: f64,
+    /// Loss of each component, J.
+    pub loss_j: [f64; Component::COUNT],
+    /// Ledger terms, J.
+    pub terms: Terms,
+}
+
+/// Sums and extremes over a whole run.
+#[derive(Clone, Debug, Default)]
+pub struct Totals {
+    /// By phase index of the cycle.
+    pub phases: Vec<PhaseTotals>,
+    /// Largest ledger error of any row, both ledgers.
+    pub ledger_error: f64,
+    /// Smallest clamp safety factor, infinite if never loaded.
+    pub min_clamp_safety: f64,
+    /// Time of that row's end, s.
+    pub min_clamp_at_s: f64,
+    /// Time with each flag, s, in the order of [`Flags::NAMES`].
+    pub flag_s: [f64; Flags::NAMES.len()],
+    /// Worst missing power, W.
+    pub worst_deficit_w: f64,
+    /// Torque at the wheels missing there, Nm.
+    pub worst_deficit_nm: f64,
+    /// End of the row with the worst deficit, s.
+    pub worst_deficit_at_s: f64,
+    /// Largest residual of the implicit solve.
+    pub worst_residual: f64,
+    /// Evaluations of the driveline.
+    pub evaluations: u64,
+    /// Rows.
+    pub rows: u64,
+}
+
+impl Totals {
+    /// Empty sums for a number of phases.
+    #[must_use]
+    pub fn new(phases: usize) -> Self {
+        Totals {
+            phases: vec![PhaseTotals::default(); phases.max(1)],
+            min_clamp_safety: f64::INFINITY,
+            min_clamp_at_s: f64::NAN,
+            worst_deficit_at_s: f64::NAN,
+            ..Totals::default()
+        }
+    }
+
+    /// Seconds with a flag.
+    #[must_use]
+    pub fn seconds(&self, flag: Flags) -> f64 {
+        Flags::NAMES
+            .iter()
+            .zip(&self.flag_s)
+            .filter(|((f, _), _)| *f == flag)
+            .map(|(_, s)| s)
+            .sum()
+    }
+
+    /// Sums over some phases.
+    #[must_use]
+    pub fn over(&self, phases: &[u16]) -> PhaseTotals {
+        let mut sum = PhaseTotals::default();
+        for p in phases
+            .iter()
+            .filter_map(|&k| self.phases.get(usize::from(k)))
+        {
+            sum.add(p);
+        }
+        sum
+    }
+
+    /// Sums over the whole run.
+    #[must_use]
+    pub fn total(&self) -> PhaseTotals {
+        let mut sum = PhaseTotals::default();
+        for p in &self.phases {
+            sum.add(p);
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn extremes(&mut self, row: &Row) {
+        let error = if row.power_ledger_error > row.heat_ledger_error {
+            row.power_ledger_error
+        } else {
+            row.heat_ledger_error
+        };
+        // A ledger error that is not a number must not hide.
+        if error.is_nan() || error > self.ledger_error {
+            self.ledger_error = error;
+        }
+        if row.clamp_safety < self.min_clamp_safety {
+            (self.min_clamp_safety, self.min_clamp_at_s) = (row.clamp_safety, row.time_s);
+        }
+        if row.deficit_w > self.worst_deficit_w && row.flags.contains(Flags::MISSED_TRACE) {
+            (self.worst_deficit_w, self.worst_deficit_at_s) = (row.deficit_w, row.time_s);
+            self.worst_deficit_nm = row.deficit_w * row.wheel_torque_nm / row.wheel_power_w;
+        }
+        if row.solve_residual.is_nan() || row.solve_residual > self.worst_residual {
+            self.worst_residual = row.solve_residual;
+        }
+    }
+}
+
+impl PhaseTotals {
+    fn add(&mut self, other: &PhaseTotals) {
+        self.duration_s += other.duration_s;
+        self.distance_m += other.distance_m;
+        self.fuel_kg += other.fuel_kg;
+        self.standstill_fuel_kg += other.standstill_fuel_kg;
+        self.wheel_positive_j += other.wheel_positive_j;
+        self.wheel_negative_j += other.wheel_negative_j;
+        for (s, o) in self.loss_j.iter_mut().zip(other.loss_j) {
+            *s += o;
+        }
+        self.terms.add(&other.terms, 1.0);
+    }
+}
+
+impl Recorder for Totals {
+    // Within the loop, so that the parts of a row that no total looks at are never put together.
+    #[inline(always)]
+    fn record(&mut self, row: &Row, terms: &Terms) {
+        let index = usize::from(row.phase).min(self.phases.len() - 1);
+        let p = &mut self.phases[index];
+        p.duration_s += row.dt_s;
+        p.distance_m += row.distance_m;
+        p.fuel_kg += row.fuel_kg_s * row.dt_s;
+        if row.speed_m_s <= 0.0 {
+            p.standstill_fuel_kg += row.fuel_kg_s * row.dt_s;
+        }
+        p.wheel_positive_j += row.wheel_work_positive_j;
+        p.wheel_negative_j += row.wheel_work_negative_j;
+        for (s, w) in p.loss_j.iter_mut().zip(row.loss_w) {
+            *s += w * row.dt_s;
+        }
+        p.terms.add(terms, row.dt_s);
+        let mut left = row.flags.0;
+        while left != 0 {
+            let bit = left.trailing_zeros() as usize; // flags stand in the order of their bits
+            if let Some(seconds) = self.flag_s.get_mut(bit) {
+                *seconds += row.dt_s;
+            }
+            left &= left - 1;
+        }
+        self.evaluations += u64::from(row.iterations);
+        self.rows += 1;
+        self.extremes(row);
+    }
+}

@@ -1,0 +1,309 @@
+//! The engine: full-load line, idle, accessories, friction with temperature, fuel.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | EN-1 | idle = hot + (cold - hot) clip((60 degC - T_c)/70 K, 0, 1) | ASSUMED |
+//! | EN-2 | friction factor = theta^-t (1 + s ((nu/nu_r)^m - 1)), theta = T/T_hot at most 1, T mean of coolant and oil | source: CO2MPAS (theta^-t); share s and m ASSUMED, so that the oil counts |
+//! | EN-3 | enrichment = 1 + e max(0, (60 degC - T_c)/60 K) | ASSUMED |
+//! | EN-4 | accessories: T = P_el/w + T_0, w at least half the idle speed | source: CO2MPAS class values |
+//! | EN-5 | full load falls with altitude as (p/p_0)^1.2 | source: ISO 1585 naturally aspirated, pressure term only |
+//! | EN-6 | waste = fuel - indicated; exhaust takes its share, falling linearly with speed; friction goes to the engine | source: ADVISOR (0.40 to 0.30); unburnt enrichment goes to the exhaust |
+//! | EN-7 | overrun torque = friction x drag factor; fuel off where the fuel line reaches zero; the wheels drag the engine only above 1.1 idle (LC-3) | source: CO2MPAS rule; drag factor ASSUMED |
+//! | EN-8 | the full-load line is not lowered by cold friction: denser charge and friction act against each other | ASSUMED |
+//!
+//! nu_r is the viscosity of the reference oil at the same temperature, so that with the reference oil EN-2 is the published law.
+
+mod fuel;
+
+pub use fuel::{BsfcMap, EFFICIENCY, FuelModel, FuelPoint, Willans};
+
+use crate::fluid::{Lubricant, Viscosity, ZERO_DEGC_K};
+use crate::math::{Curve, exp, held, ln};
+
+/// Share of full load above which an engine is asked for what it cannot give, beyond what a solve leaves: one that cannot turn its own pump
+/// and accessories in the cold. Such rows are flagged outside validity.
+pub const FULL: f64 = 1.0 + 1e-5;
+
+/// The checked engine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Engine {
+    /// Displacement, m3.
+    pub displacement_m3: f64,
+    /// Stroke, m.
+    pub stroke_m: f64,
+    /// Rated power, W.
+    pub rated_w: f64,
+    /// Full-load torque over speed, rad/s to Nm, at sea level.
+    pub full_load: Curve,
+    /// Largest speed, rad/s.
+    pub highest_rad_s: f64,
+    /// Moment of inertia of engine, flywheel and primary side, kg m2.
+    pub inertia_kg_m2: f64,
+    /// Largest torque that speeds up or slows down the rotating parts, Nm.
+    pub inertia_torque_nm: f64,
+    /// Idle speed hot, rad/s.
+    pub idle_hot_rad_s: f64,
+    /// Idle speed at -10 degC and below, rad/s.
+    pub idle_cold_rad_s: f64,
+    /// Friction exponent t.
+    pub friction_exponent: f64,
+    /// Temperature at which friction is that of the warm engine, K.
+    pub hot_k: f64,
+    /// Viscous share s of friction.
+    pub viscous_share: f64,
+    /// Exponent m of viscosity.
+    pub viscous_exponent: f64,
+    /// Viscosity of the reference oil.
+    pub reference_oil: Viscosity,
+    /// Overrun drag over friction.
+    pub overrun_drag: f64,
+    /// Enrichment e.
+    pub enrichment: f64,
+    /// Electrical load at the shaft, W.
+    pub electrical_w: f64,
+    /// Torque of pumps and belts, Nm.
+    pub accessory_nm: f64,
+    /// Share of the waste heat in the exhaust at idle.
+    pub exhaust_idle: f64,
+    /// Share of the waste heat in the exhaust at the highest speed.
+    pub exhaust_fast: f64,
+    /// Share of friction heat that goes to the oil.
+    pub friction_to_oil: f64,
+    /// Lower heating value, J/kg.
+    pub heating_value_j_kg: f64,
+    /// Fuel density, kg/m3.
+    pub fuel_density_kg_m3: f64,
+    /// CO2 per fuel mass, kg/kg.
+    pub co2_kg_kg: f64,
+    /// Fuel model.
+    pub fuel: FuelModel,
+}
+
+/// The engine at one temperature state and altitude.
+#[derive(Clone, Copy, Debug)]
+pub struct EngineNow<'a> {
+    /// The engine.
+    pub engine: &'a Engine,
+    /// Friction over hot friction (EN-2).
+    pub friction_factor: f64,
+    /// Idle speed, rad/s (EN-1).
+    pub idle_rad_s: f64,
+    /// Fuel factor of enrichment (EN-3).
+    pub enrichment: f64,
+    /// Full-load factor of altitude (EN-5).
+    pub full_load_factor: f64,
+}
+
+/// What the engine burns and rejects at one operating point, W unless said.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Burn {
+    /// Fuel mass flow, kg/s.
+    pub fuel_kg_s: f64,
+    /// Fuel power.
+    pub fuel_w: f64,
+    /// Heat into coolant and block.
+    pub to_coolant_w: f64,
+    /// Heat into the engine oil.
+    pub to_oil_w: f64,
+    /// Exhaust, sensible heat and unburnt fuel.
+    pub exhaust_w: f64,
+    /// Whether fuel is cut off.
+    pub cut: bool,
+    /// Whether the fuel model left its validity.
+    pub outside: bool,
+}
+
+impl Engine {
+    /// The oil in use, where its viscosity is not that of the reference oil: then EN-2 has its second factor.
+    #[must_use]
+    pub fn unlike_reference<'a>(&self, oil: &'a Lubricant) -> Option<&'a Lubricant> {
+        (oil.viscosity != self.reference_oil).then_some(oil)
+    }
+
+    /// Prepares the engine for coolant and oil temperature, oil and ambient pressure ratio.
+    #[must_use]
+    pub fn at(
+        &self,
+        coolant_k: f64,
+        oil_k: f64,
+        oil: &Lubricant,
+        pressure_factor: f64,
+    ) -> EngineNow<'_> {
+        self.at_temperatures(
+            coolant_k,
+            oil_k,
+            self.unlike_reference(oil),
+            pressure_factor,
+        )
+    }
+
+    /// The same, with what [`Engine::unlike_reference`] says of the oil: it holds for a whole drive.
+    #[must_use]
+    #[inline(always)]
+    pub fn at_temperatures(
+        &self,
+        coolant_k: f64,
+        oil_k: f64,
+        unlike: Option<&Lubricant>,
+        pressure_factor: f64,
+    ) -> EngineNow<'_> {
+        let theta = 0.5 * (coolant_k + oil_k) / self.hot_k;
+        let viscous = unlike.map_or(1.0, |oil| {
+            let relative = oil.kinematic_m2_s(oil_k) / self.reference_oil.kinematic_m2_s(oil_k);
+            1.0 + self.viscous_share * (exp(self.viscous_exponent * ln(relative)) - 1.0)
+        });
+        let thick = if theta < 1.0 {
+            exp(-self.friction_exponent * ln(theta))
+        } else {
+            1.0
+        };
+        let cold = held((60.0 + ZERO_DEGC_K - coolant_k) / 70.0, 0.0, 1.0);
+        let enrich = (60.0 + ZERO_DEGC_K - coolant_k) / 60.0;
+        EngineNow {
+            engine: self,
+            friction_factor: thick * viscous, // EN-2
+            idle_rad_s: self.idle_hot_rad_s + (self.idle_cold_rad_s - self.idle_hot_rad_s) * cold, // EN-1
+            enrichment: 1.0
+                + if enrich > 0.0 {
+                    self.enrichment * enrich
+                } else {
+                    0.0
+                }, // EN-3
+            full_load_factor: pressure_factor,
+        }
+    }
+
+    /// Torque of a mean effective pressure (four-stroke), Nm.
+    #[must_use]
+    #[inline]
+    pub fn torque_nm(&self, mep_pa: f64) -> f64 {
+        mep_pa * self.displacement_m3 / (4.0 * std::f64::consts::PI)
+    }
+
+    /// Mean effective pressure of a torque (four-stroke), Pa.
+    #[must_use]
+    #[inline]
+    pub fn mep_pa(&self, torque_nm: f64) -> f64 {
+        torque_nm * 4.0 * std::f64::consts::PI / self.displacement_m3
+    }
+
+    /// Mean piston speed, m/s.
+    #[must_use]
+    #[inline]
+    pub fn piston_m_s(&self, speed_rad_s: f64) -> f64 {
+        speed_rad_s * self.stroke_m / std::f64::consts::PI
+    }
+
+    /// Speed of the greatest full-load power, rad/s.
+    #[must_use]
+    pub fn peak_power_rad_s(&self) -> f64 {
+        self.speed_for_power()
+            .points()
+            .last()
+            .map_or(self.highest_rad_s, |p| p.1)
+    }
+
+    /// Lowest speed, on a fine grid, at which full load gives a power; as a curve power W to speed rad/s.
+    #[must_use]
+    pub fn speed_for_power(&self) -> Curve {
+        let lo = self.idle_hot_rad_s;
+        let mut points: Vec<(f64, f64)> = vec![(0.0, lo)];
+        let mut best = 0.0;
+        for i in 0..=400 {
+            let speed = lo + (self.highest_rad_s - lo) * f64::from(i) / 400.0;
+            let power = speed * self.full_load.at(speed);
+            if power > best * (1.0 + 1e-9) && power > 0.0 {
+                points.push((power, speed));
+                best = power;
+            }
+        }
+        Curve::new(&points).unwrap_or_else(|_| Curve::constant(lo))
+    }
+}
+
+impl EngineNow<'_> {
+    /// Full-load torque, Nm.
+    #[must_use]
+    #[inline]
+    pub fn full_load_nm(&self, speed_rad_s: f64) -> f64 {
+        self.engine.full_load.at(speed_rad_s) * self.full_load_factor // EN-5
+    }
+
+    /// Torque of the accessories, Nm; none at standstill (EN-4).
+    #[must_use]
+    #[inline]
+    pub fn accessories_nm(&self, speed_rad_s: f64) -> f64 {
+        let least = 0.5 * self.engine.idle_hot_rad_s;
+        let w = if speed_rad_s > least {
+            speed_rad_s
+        } else {
+            least
+        };
+        if speed_rad_s > 0.0 {
+            self.engine.electrical_w / w + self.engine.accessory_nm
+        } else {
+            0.0
+        } // EN-4
+    }
+
+    /// Friction mean effective pressure at the present temperature, Pa.
+    #[must_use]
+    #[inline]
+    pub fn friction_pa(&self, speed_rad_s: f64) -> f64 {
+        self.engine
+            .fuel
+            .hot_friction_pa(self.engine.piston_m_s(speed_rad_s))
+            * self.friction_factor
+    }
+
+    /// Torque that the engine takes up in overrun with fuel cut off, Nm, positive (EN-7).
+    #[must_use]
+    #[inline]
+    pub fn drag_nm(&self, speed_rad_s: f64) -> f64 {
+        self.engine.torque_nm(self.friction_pa(speed_rad_s)) * self.engine.overrun_drag // EN-7
+    }
+
+    /// Fuel and heat at a speed and crankshaft torque (with accessories and inertia), Nm.
+    #[must_use]
+    #[inline(always)]
+    pub fn burn(&self, speed_rad_s: f64, torque_nm: f64) -> Burn {
+        let e = self.engine;
+        if speed_rad_s <= 0.0 {
+            return Burn::default();
+        }
+        let brake_pa = e.mep_pa(torque_nm);
+        let friction_pa = self.friction_pa(speed_rad_s);
+        let point = e.fuel.fuel_mep(
+            e.piston_m_s(speed_rad_s),
+            speed_rad_s,
+            brake_pa,
+            friction_pa,
+        );
+        let watts = e.displacement_m3 * speed_rad_s / (4.0 * std::f64::consts::PI);
+        let burnt = point.fuel_pa * watts;
+        let indicated = point.indicated_pa * watts;
+        // With fuel cut, throttle losses add to friction: what is taken up is the drag itself.
+        let friction = if point.fuel_pa > 0.0 {
+            friction_pa * watts
+        } else {
+            -brake_pa * watts
+        };
+        let fast = (speed_rad_s - e.idle_hot_rad_s) / (e.highest_rad_s - e.idle_hot_rad_s);
+        let exhaust_share =
+            e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * held(fast, 0.0, 1.0);
+        let waste = burnt - indicated;
+        let fuel_w = burnt * self.enrichment;
+        Burn {
+            fuel_kg_s: fuel_w / e.heating_value_j_kg,
+            fuel_w,
+            to_coolant_w: (1.0 - exhaust_share) * waste + (1.0 - e.friction_to_oil) * friction, // EN-6
+            to_oil_w: e.friction_to_oil * friction,
+            exhaust_w: exhaust_share * waste + (self.enrichment - 1.0) * burnt,
+            cut: point.fuel_pa <= 0.0,
+            // More taken up than the closed throttle explains would be energy from nowhere in the heat of friction.
+            outside: point.outside
+                || (point.fuel_pa <= 0.0
+                    && -torque_nm > self.drag_nm(speed_rad_s) * (1.0 + 1e-4) + 1e-3),
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! A lubricant: viscosity, density, heat capacity, and the friction it lends to the belt.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | LU-1 | ln ln(nu + 0.7) = a - b ln T, nu in mm2/s, T in K | source: ASTM D341 (Walther) |
+//! | LU-2 | rho = rho15 (1 - 0.00068 (T - 15 degC)) | source: physics of petroleum oils, ASSUMED coefficient |
+//! | LU-3 | cp = (1.685 + 0.0034 T_C) / sqrt(rho15 / 1000), kJ/kgK | source: petroleum oils, ASSUMED for all fluids |
+//! | LU-4 | mu_b = mu_85 clamp(1 + k (T - 85 degC), floor, ceiling) (1 - r s) | k fitted to thesis 5.5.2, 8.9; bounds: Ichihashi in thesis 2.3 |
+//! | LU-5 | film share s = z/(1+z), z = (eta dv / N_lift)^p; 0 with the film switched off | r, N_lift, p fitted to thesis 5.5.2, 8.9 (form ASSUMED: mixed lubrication) |
+//!
+//! Symbols: nu kinematic viscosity, eta dynamic viscosity Pa s, dv sliding speed of the innermost band m/s.
+//! Valid from 1.5 mm2/s upwards and from -40 to 160 degC; outside, rows are flagged.
+//!
+//! Sources: ASTM D341; Akehurst 2001, 5.5.2, 8.4.5, 8.9; Ichihashi in Akehurst 2.3 (band 0.09 to 0.135, up to 30 % with temperature).
+
+mod viscosity;
+
+pub use viscosity::Viscosity;
+
+use crate::math::{exp, held, ln};
+
+/// 0 degC in K.
+pub const ZERO_DEGC_K: f64 = 273.15;
+
+/// Least share of the density at 15 degC; reached at some 1000 degC.
+const LEAST_DENSITY: f64 = 0.3;
+
+/// Friction that a fluid lends to the belt's contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// Boundary friction band on band and band on segment at 85 degC.
+    pub band: f64,
+    /// Rise of the band friction with belt temperature, 1/K.
+    pub band_rise_per_k: f64,
+    /// Lower bound of the temperature factor (Ichihashi: at most 30 % change).
+    pub band_floor: f64,
+    /// Upper bound of the temperature factor.
+    pub band_ceiling: f64,
+    /// Friction segment on pulley.
+    pub segment: f64,
+    /// Friction in wedging and penetration.
+    pub flank: f64,
+    /// Whether the bands can ride on oil at all (LU-5).
+    pub lift_off: bool,
+    /// Part of the boundary friction that the film takes away when it carries fully.
+    pub lift_reduction: f64,
+    /// eta dv at which the film carries half, N/m.
+    pub lift_n_m: f64,
+    /// Sharpness of the lift-off.
+    pub lift_exponent: f64,
+    /// Thickness of the carrying film, m.
+    pub film_thickness_m: f64,
+}
+
+/// Band friction at one state: boundary part and the share of the contact that a film carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandFriction {
+    /// Coefficient of friction, boundary and mixed.
+    pub mu: f64,
+    /// Share z / (1 + z) of the film, 0..1.
+    pub film_share: f64,
+}
+
+impl Friction {
+    /// Band friction at belt temperature, dynamic viscosity and sliding speed (LU-4).
+    #[must_use]
+    #[inline]
+    pub fn band(&self, belt_k: f64, eta_pa_s: f64, sliding_m_s: f64) -> BandFriction {
+        let load = self.film_load(eta_pa_s, sliding_m_s);
+        self.band_on_film(
+            belt_k,
+            if load > 0.0 {
+                exp(self.lift_exponent * ln(load))
+            } else {
+                0.0
+            },
+        )
+    }
+
+    /// eta dv / `N_lift` of LU-5; 0 where nothing slides or the film is switched off.
+    #[must_use]
+    #[inline]
+    pub fn film_load(&self, eta_pa_s: f64, sliding_m_s: f64) -> f64 {
+        if self.lift_off {
+            eta_pa_s * sliding_m_s / self.lift_n_m
+        } else {
+            0.0
+        }
+    }
+
+    /// Band friction at belt temperature with the power z of the film's load known (LU-4, LU-5).
+    #[must_use]
+    #[inline]
+    pub fn band_on_film(&self, belt_k: f64, z: f64) -> BandFriction {
+        let warm = 1.0 + self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0);
+        let warm = held(warm, self.band_floor, self.band_ceiling);
+        let film_share = if z.is_finite() { z / (1.0 + z) } else { 1.0 }; // LU-5
+        BandFriction {
+            mu: self.band * warm * (1.0 - self.lift_reduction * film_share),
+            film_share,
+        } // LU-4
+    }
+}
+
+/// A checked lubricant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lubricant {
+    /// Short name as in `--lubricant`.
+    pub name: String,
+    /// Name for people.
+    pub title: String,
+    /// Kinematic viscosity.
+    pub viscosity: Viscosity,
+    /// Density at 15 degC, kg/m3.
+    pub density15_kg_m3: f64,
+    /// Friction in the belt's contacts.
+    pub friction: Friction,
+}
+
+/// Validity range of the fluid models, K.
+pub const VALID_K: std::ops::RangeInclusive<f64> = 233.15..=433.15;
+
+impl Lubricant {
+    /// Kinematic viscosity, m2/s (LU-1).
+    #[must_use]
+    #[inline]
+    pub fn kinematic_m2_s(&self, temp_k: f64) -> f64 {
+        self.viscosity.kinematic_m2_s(temp_k)
+    }
+
+    /// Density, kg/m3 (LU-2).
+    #[must_use]
+    #[inline]
+    pub fn density_kg_m3(&self, temp_k: f64) -> f64 {
+        let share = 1.0 - 0.000_68 * (temp_k - ZERO_DEGC_K - 15.0);
+        // Far beyond its validity the line would reach zero, and there is no oil of negative mass.
+        self.density15_kg_m3
+            * if share < LEAST_DENSITY {
+                LEAST_DENSITY
+            } else {
+                share
+            } // LU-2
+    }
+
+    /// Dynamic viscosity, Pa s.
+    #[must_use]
+    #[inline]
+    pub fn dynamic_pa_s(&self, temp_k: f64) -> f64 {
+        self.kinematic_m2_s(temp_k) * self.density_kg_m3(temp_k)
+    }
+
+    /// Specific heat capacity, J/kgK (LU-3).
+    #[must_use]
+    pub fn heat_capacity_j_kgk(&self, temp_k: f64) -> f64 {
+        1000.0 * (1.685 + 0.0034 * (temp_k - ZERO_DEGC_K)) / (self.density15_kg_m3 / 1000.0).sqrt() // LU-3
+    }
+}

@@ -1,0 +1,245 @@
+//! The car on the road or on the dynamometer: what the wheels must deliver.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | RL-1 | F = f0 + f1 v + f2 v2 + m_e a + m g sin(atan(grade)), m_e = m (1 + rotating) | source: UN R83; payload adds to m |
+//! | RL-2 | road: f2 scales with air density, f0 with 1 + k (20 degC - T) | source: gas law; k 0.00864/K UN R83 coast-down correction |
+//! | RL-3 | body form: f0 = m g c_r, f2 = rho/2 c_d A | source: mechanics |
+//! | RL-4 | p/p_0 = (1 - 2.25577e-5 h)^5.25588 | source: ISO standard atmosphere |
+//! | RL-5 | work of a step: integral of F v dt, speed linear, split where F changes sign | derived: polynomial |
+//!
+//! On a dynamometer the coefficients are fixed, whatever the ambient; air resistance and rolling belong to the rollers. SI throughout.
+
+use crate::cycle::{Motion, Step};
+
+/// Gravity, m/s2.
+pub const GRAVITY_M_S2: f64 = 9.80665;
+/// Ambient at which road-load coefficients hold, K (20 degC).
+pub const REFERENCE_K: f64 = 293.15;
+
+/// The checked road load, coefficients in force for one ambient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoadLoad {
+    /// f0, N.
+    pub f0_n: f64,
+    /// f1, N s/m.
+    pub f1_n_per_m_s: f64,
+    /// f2, N s2/m2.
+    pub f2_n_per_m_s2: f64,
+    /// Mass with payload, kg.
+    pub mass_kg: f64,
+    /// Mass with rotating parts, kg.
+    pub inertia_kg: f64,
+    /// Dynamic tyre radius, m.
+    pub wheel_radius_m: f64,
+}
+
+/// How the coefficients depend on ambient.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    /// Fixed coefficients.
+    Dynamometer,
+    /// Air density and rolling resistance follow ambient.
+    Road,
+}
+
+/// Ambient air.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ambient {
+    /// Temperature, K.
+    pub temp_k: f64,
+    /// Altitude, m.
+    pub altitude_m: f64,
+}
+
+impl Ambient {
+    /// Pressure over sea level's (RL-4).
+    #[must_use]
+    pub fn pressure_ratio(&self) -> f64 {
+        (1.0 - 2.25577e-5 * self.altitude_m).powf(5.25588) // RL-4
+    }
+
+    /// Air density over that at 20 degC and sea level.
+    #[must_use]
+    pub fn density_ratio(&self) -> f64 {
+        self.pressure_ratio() * REFERENCE_K / self.temp_k
+    }
+}
+
+/// Demand at the wheels in one step: means over the step, works over the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WheelDemand {
+    /// Mean speed, m/s.
+    pub speed_m_s: f64,
+    /// Acceleration, m/s2.
+    pub accel_m_s2: f64,
+    /// Mean wheel speed, rad/s.
+    pub wheel_rad_s: f64,
+    /// Mean power, W.
+    pub power_w: f64,
+    /// Work in the drive parts, J.
+    pub positive_j: f64,
+    /// Work in the braking parts, J, negative.
+    pub negative_j: f64,
+}
+
+impl RoadLoad {
+    /// Coefficients for an ambient (RL-2).
+    #[must_use]
+    pub fn for_ambient(mut self, surface: Surface, ambient: &Ambient, rolling_per_k: f64) -> Self {
+        if surface == Surface::Road {
+            self.f0_n *= 1.0 + rolling_per_k * (REFERENCE_K - ambient.temp_k);
+            self.f2_n_per_m_s2 *= ambient.density_ratio();
+        }
+        self
+    }
+
+    /// Mean power of a motion with a constant part of force `c`, W.
+    #[inline]
+    fn power_w(&self, c: f64, motion: &Motion) -> f64 {
+        c * motion.speed_m_s
+            + self.f1_n_per_m_s * motion.square_m2_s2
+            + self.f2_n_per_m_s2 * motion.cube_m3_s3 // RL-5
+    }
+
+    /// Speed at which the force is zero, m/s; NaN if there is none.
+    #[inline]
+    fn zero_force_speed(&self, c: f64) -> f64 {
+        let (f1, f2) = (self.f1_n_per_m_s, self.f2_n_per_m_s2);
+        if f2 > 0.0 {
+            -2.0 * c / (f1 + (f1 * f1 - 4.0 * f2 * c).sqrt())
+        } else {
+            -c / f1
+        }
+    }
+
+    /// What a step demands of the wheels (RL-1, RL-5).
+    #[must_use]
+    #[inline(always)]
+    pub fn wheel(&self, step: &Step) -> WheelDemand {
+        let motion = &step.motion;
+        if motion.speed_m_s <= 0.0 {
+            return WheelDemand::default();
+        }
+        let mut c = self.f0_n + self.inertia_kg * motion.accel_m_s2;
+        if step.grade.abs() > 0.0 {
+            c += self.mass_kg * GRAVITY_M_S2 * step.grade / (1.0 + step.grade * step.grade).sqrt(); // RL-1
+        }
+        let power_w = self.power_w(c, motion);
+        let (positive_j, negative_j) = self.split_j(c, step, power_w * step.dt_s);
+        WheelDemand {
+            speed_m_s: motion.speed_m_s,
+            accel_m_s2: motion.accel_m_s2,
+            wheel_rad_s: motion.speed_m_s / self.wheel_radius_m,
+            power_w,
+            positive_j,
+            negative_j,
+        }
+    }
+
+    /// Work in the drive parts and in the braking parts of a step, of its whole work, J (RL-5).
+    #[inline]
+    fn split_j(&self, c: f64, step: &Step, whole_j: f64) -> (f64, f64) {
+        let (v0, v1) = (step.start_speed_m_s, step.end_speed_m_s);
+        // With no part of the force negative there is nothing to split: most steps need no root.
+        if c < 0.0 || self.f1_n_per_m_s < 0.0 {
+            let zero = self.zero_force_speed(c);
+            let (low, high) = if v0 < v1 { (v0, v1) } else { (v1, v0) };
+            if zero > low && zero < high {
+                let first_s = (zero - v0) / step.motion.accel_m_s2;
+                let first = self.power_w(c, &Motion::between(v0, zero, first_s)) * first_s;
+                let second = whole_j - first;
+                return if first > second {
+                    (first, second)
+                } else {
+                    (second, first)
+                };
+            }
+        }
+        if whole_j >= 0.0 {
+            (whole_j, 0.0)
+        } else {
+            (0.0, whole_j)
+        }
+    }
+}
+
+/// Road load as the file has it, before an ambient is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoadLoadInput {
+    /// Coefficients at 20 degC and sea level.
+    pub base: RoadLoad,
+    /// Dynamometer or road.
+    pub surface: Surface,
+    /// Rise of rolling resistance per kelvin below 20 degC.
+    pub rolling_per_k: f64,
+    /// Altitude, m.
+    pub altitude_m: f64,
+}
+
+impl RoadLoadInput {
+    /// Coefficients in force at an ambient temperature, K.
+    #[must_use]
+    pub fn at(&self, ambient_k: f64) -> RoadLoad {
+        let ambient = Ambient {
+            temp_k: ambient_k,
+            altitude_m: self.altitude_m,
+        };
+        self.base
+            .for_ambient(self.surface, &ambient, self.rolling_per_k)
+    }
+
+    /// Full-load factor of altitude, (p/p_0)^1.2.
+    #[must_use]
+    pub fn full_load_factor(&self) -> f64 {
+        Ambient {
+            temp_k: REFERENCE_K,
+            altitude_m: self.altitude_m,
+        }
+        .pressure_ratio()
+        .powf(1.2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rover() -> RoadLoad {
+        RoadLoad {
+            f0_n: 6.3,
+            f1_n_per_m_s: 0.0,
+            f2_n_per_m_s2: 0.0433 * 12.96,
+            mass_kg: 1130.0,
+            inertia_kg: 1130.0 * 1.015,
+            wheel_radius_m: 0.2832,
+        }
+    }
+
+    /// Colder air is denser and tyres roll harder; a dynamometer does not know.
+    #[test]
+    fn cold_road_drags_more() {
+        let cold = Ambient {
+            temp_k: 263.15,
+            altitude_m: 0.0,
+        };
+        let road = rover().for_ambient(Surface::Road, &cold, 0.00864);
+        assert!(road.f0_n > 1.2 * 6.3 && road.f2_n_per_m_s2 > 1.1 * rover().f2_n_per_m_s2);
+        assert_eq!(
+            rover().for_ambient(Surface::Dynamometer, &cold, 0.00864),
+            rover()
+        );
+    }
+
+    /// Standard atmosphere: 0.7942 of the density at 2260 m by the isothermal part, pressure 898.7 hPa at 1000 m.
+    #[test]
+    fn val_standard_atmosphere() {
+        let p = Ambient {
+            temp_k: 288.15,
+            altitude_m: 1000.0,
+        }
+        .pressure_ratio()
+            * 1013.25;
+        assert!((p - 898.75).abs() < 0.1, "{p}");
+    }
+}

@@ -1,0 +1,142 @@
+//! How hard the secondary clamps the belt.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | PC-1 | `map`: p = f(n) (p0 + k u) (r_low/r_p)^a (1 + k_T (80 degC - T)), at most the cap | source: thesis 3.7 in words (rises with ratio, throttle, cold); fitted to 36-40 bar pulling away, 12 bar at 50 km/h |
+//! | PC-2 | f(n) from `slow_factor` at `slow_rpm` to 1 at `full_rpm`, above it less by `fall` per 1000 rpm, never below `slow_factor` | source: thesis 5.3.1 (steep rise to 2000 rpm, very gradual fall in high); fitted, size of the fall ASSUMED |
+//! | PC-3 | `torque_following`: F = S \|T\| cos th / (2 mu R_s), thrust ratio below 1 counted, between floor and cap | source: Coulomb limit VA-2 with safety factor S |
+//! | PC-4 | `slip_limited`: the lowest pressure between floor and cap at which belt slip stays below the limit; where none does, that of least slip | derived: slip falls with clamping force until the stretch of the bands (SL-1) outweighs the grip |
+//!
+//! The law is never raised silently: where it is below what the torque needs, the row is flagged `low_clamp`.
+
+use crate::math::ramp;
+
+/// The Rover's law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapLaw {
+    /// Pressure in low at closed throttle, Pa.
+    pub base_pa: f64,
+    /// Rise to full throttle, Pa.
+    pub throttle_pa: f64,
+    /// Rise per kelvin below 80 degC, 1/K.
+    pub cold_per_k: f64,
+    /// Factor at and below the slow speed.
+    pub slow_factor: f64,
+    /// Speed of the slow factor, rad/s.
+    pub slow_rad_s: f64,
+    /// Speed at which the factor is 1, rad/s.
+    pub full_rad_s: f64,
+    /// Fall of the factor with speed above it, s/rad.
+    pub fall_s: f64,
+}
+
+/// The clamp law in force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ClampLaw {
+    /// PC-1.
+    Map(MapLaw),
+    /// PC-3 with safety factor.
+    TorqueFollowing {
+        /// Safety factor S.
+        safety: f64,
+        /// Smallest torque that is clamped for, Nm.
+        least_torque_nm: f64,
+    },
+    /// PC-4 with slip limit.
+    SlipLimited {
+        /// Largest slip.
+        slip: f64,
+        /// Safety factor below which the law never goes.
+        safety: f64,
+        /// Smallest torque that is clamped for, Nm.
+        least_torque_nm: f64,
+    },
+}
+
+/// What the law looks at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClampSignals {
+    /// Throttle 0..1.
+    pub throttle: f64,
+    /// Engine speed, rad/s.
+    pub engine_rad_s: f64,
+    /// Oil temperature, K.
+    pub oil_k: f64,
+    /// (r_low/r_p)^a of the ratio in force.
+    pub radius_factor: f64,
+}
+
+impl MapLaw {
+    /// Pressure before the cap, Pa (PC-1, PC-2).
+    #[must_use]
+    #[inline(always)]
+    pub fn pressure_pa(&self, s: &ClampSignals) -> f64 {
+        let rise = self.slow_factor
+            + (1.0 - self.slow_factor) * ramp(s.engine_rad_s, self.slow_rad_s, self.full_rad_s);
+        let over = s.engine_rad_s - self.full_rad_s;
+        let fallen = if over > 0.0 {
+            rise - self.fall_s * over
+        } else {
+            rise
+        };
+        let fast = if fallen > self.slow_factor || over <= 0.0 {
+            fallen
+        } else {
+            self.slow_factor
+        }; // PC-2
+        fast * (self.base_pa + self.throttle_pa * s.throttle)
+            * s.radius_factor
+            * (1.0 + self.cold_per_k * (353.15 - s.oil_k)) // PC-1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn law() -> MapLaw {
+        let rpm = std::f64::consts::PI / 30.0;
+        MapLaw {
+            base_pa: 36.5e5,
+            throttle_pa: 12e5,
+            cold_per_k: 0.0006,
+            slow_factor: 0.68,
+            slow_rad_s: 1000.0 * rpm,
+            full_rad_s: 2000.0 * rpm,
+            fall_s: 0.009 / (1000.0 * rpm),
+        }
+    }
+
+    /// Thesis 3.7 in signs: more throttle, colder oil, faster engine and lower gear all raise pressure.
+    #[test]
+    fn val_signs_of_the_map() {
+        let s = ClampSignals {
+            throttle: 0.2,
+            engine_rad_s: 150.0,
+            oil_k: 300.0,
+            radius_factor: 0.5,
+        };
+        let p = law().pressure_pa(&s);
+        assert!(law().pressure_pa(&ClampSignals { throttle: 0.3, ..s }) > p);
+        assert!(law().pressure_pa(&ClampSignals { oil_k: 290.0, ..s }) > p);
+        assert!(
+            law().pressure_pa(&ClampSignals {
+                engine_rad_s: 160.0,
+                ..s
+            }) > p
+        );
+        assert!(
+            law().pressure_pa(&ClampSignals {
+                radius_factor: 0.6,
+                ..s
+            }) > p
+        );
+        let fast = |rad_s: f64| {
+            law().pressure_pa(&ClampSignals {
+                engine_rad_s: rad_s,
+                ..s
+            })
+        };
+        assert!(fast(400.0) < fast(210.0) && fast(400.0) > 0.98 * fast(210.0));
+    }
+}

@@ -1,0 +1,194 @@
+//! Which ratio the box takes: a variogram with a limited shift rate.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | RC-1 | target speed: 1700 rpm in gentle driving, + g (P/P_max - 15 %) above 15 % power | 1700 rpm source: thesis 1.1.2, Fig 1-6; rise ASSUMED |
+//! | RC-2 | overrun target, reached linearly over 1 % of rated power | ASSUMED |
+//! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
+//! | RC-7 | where full load does not suffice, RC-3 is asked again with 10 % less efficiency each time, down to 40 % | derived: kick-down, within RC-4 and RC-5 |
+//! | RC-8 | target never above the speed of greatest power | source: thesis 1.1.2, maximum power route |
+//! | RC-4 | \|d ln I/dt\| <= rate min(1, n_p/n_ref), up and down rates apart; none at rest | source: thesis 2.4, 3.7 in words; values ASSUMED |
+//! | RC-6 | no up-shift before the launch clutch has locked | source: thesis 1.1.2, order A-B-C-D of the variogram |
+//! | RC-5 | and <= free pump flow / (A 2 tan th \|dR/d ln I\|) | derived: thesis 9.1 |
+//!
+//! The power asked for is wheel power, so the ratio never chases its own losses.
+
+use crate::math::{exp, held, ln};
+
+/// The checked controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RatioControl {
+    /// Lowest gear: largest belt ratio.
+    pub low: f64,
+    /// Highest gear: smallest belt ratio.
+    pub high: f64,
+    /// Speed in gentle driving, rad/s.
+    pub gentle_rad_s: f64,
+    /// Share of rated power up to which driving is gentle.
+    pub gentle_share: f64,
+    /// Rise of speed over the share of rated power above it, rad/s.
+    pub rise_rad_s: f64,
+    /// Speed in overrun, rad/s.
+    pub overrun_rad_s: f64,
+    /// Highest target speed: that of the engine's greatest power, rad/s.
+    pub highest_rad_s: f64,
+    /// Wheel power over engine power that RC-3 reckons with.
+    pub route_efficiency: f64,
+    /// Rate towards high, 1/s in ln I.
+    pub up_per_s: f64,
+    /// Rate towards low, 1/s in ln I.
+    pub down_per_s: f64,
+    /// Primary speed from which the full rates hold, rad/s.
+    pub rate_speed_rad_s: f64,
+}
+
+/// What the controller looks at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RatioDemand {
+    /// Secondary speed, rad/s.
+    pub secondary_rad_s: f64,
+    /// Wheel power asked for, W.
+    pub power_w: f64,
+    /// Rated engine power, W.
+    pub rated_w: f64,
+    /// Lowest speed at which full load gives the power asked for, rad/s.
+    pub full_load_rad_s: f64,
+    /// Ratio before the step.
+    pub ratio_before: f64,
+    /// Limit from pump flow towards low, 1/s.
+    pub flow_down_per_s: f64,
+    /// Limit from pump flow towards high, 1/s.
+    pub flow_up_per_s: f64,
+    /// Whether the launch clutch has locked.
+    pub coupled: bool,
+    /// Step, s.
+    pub dt_s: f64,
+}
+
+impl RatioControl {
+    /// Target primary speed, rad/s (RC-1 to RC-3).
+    #[must_use]
+    pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
+        let share = d.power_w / d.rated_w;
+        let drive = held(share / 0.01, 0.0, 1.0);
+        let mut speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
+        if share > self.gentle_share {
+            speed += self.rise_rad_s * (share - self.gentle_share); // RC-1
+        }
+        if share > 0.0 && d.full_load_rad_s > speed {
+            speed = d.full_load_rad_s; // RC-3
+        }
+        if speed < self.highest_rad_s {
+            speed
+        } else {
+            self.highest_rad_s
+        }
+    }
+
+    /// Ratio after the step and its change in ln I (RC-4, RC-5), and whether pump flow held it back.
+    #[must_use]
+    pub fn step(&self, d: &RatioDemand) -> (f64, f64, bool) {
+        let before = d.ratio_before;
+        if d.secondary_rad_s <= 0.0 {
+            return (before, 0.0, false); // RC-4
+        }
+        let wanted = held(
+            self.target_rad_s(d) / d.secondary_rad_s,
+            self.high,
+            self.low,
+        );
+        let wanted = if !d.coupled && wanted < before {
+            before
+        } else {
+            wanted
+        }; // RC-6
+        if wanted.to_bits() == before.to_bits() {
+            return (before, 0.0, false);
+        }
+        let change = ln(wanted / before);
+        let pace = held(before * d.secondary_rad_s / self.rate_speed_rad_s, 0.0, 1.0);
+        let (mut up, mut down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
+        let short_of_flow =
+            (change > 0.0 && d.flow_down_per_s < down && change > d.flow_down_per_s * d.dt_s)
+                || (change < 0.0 && d.flow_up_per_s < up && -change > d.flow_up_per_s * d.dt_s);
+        up = if d.flow_up_per_s < up {
+            d.flow_up_per_s
+        } else {
+            up
+        };
+        down = if d.flow_down_per_s < down {
+            d.flow_down_per_s
+        } else {
+            down
+        }; // RC-5
+        let (least, most) = (-up * d.dt_s, down * d.dt_s);
+        if least <= change && change <= most {
+            return (wanted, change, short_of_flow);
+        }
+        let change = held(change, least, most);
+        (
+            held(before * exp(change), self.high, self.low),
+            change,
+            short_of_flow,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RPM: f64 = std::f64::consts::PI / 30.0;
+
+    fn control() -> RatioControl {
+        RatioControl {
+            low: 2.4169,
+            high: 0.4137,
+            gentle_rad_s: 1700.0 * RPM,
+            gentle_share: 0.15,
+            rise_rad_s: 4000.0 * RPM,
+            overrun_rad_s: 1500.0 * RPM,
+            highest_rad_s: 6000.0 * RPM,
+            route_efficiency: 0.85,
+            up_per_s: 0.35,
+            down_per_s: 1.0,
+            rate_speed_rad_s: 1000.0 * RPM,
+        }
+    }
+
+    fn demand(secondary: f64, power: f64, before: f64) -> RatioDemand {
+        RatioDemand {
+            secondary_rad_s: secondary,
+            power_w: power,
+            rated_w: 82e3,
+            full_load_rad_s: 0.0,
+            ratio_before: before,
+            flow_down_per_s: 9.0,
+            flow_up_per_s: 9.0,
+            coupled: true,
+            dt_s: 1.0,
+        }
+    }
+
+    /// Thesis 1.1.2: about 1700 rpm in gentle acceleration, more with power; no shift at rest.
+    #[test]
+    fn val_variogram() {
+        let c = control();
+        assert!((c.target_rad_s(&demand(100.0, 5e3, 1.0)) / RPM - 1700.0).abs() < 1e-9);
+        assert!((c.target_rad_s(&demand(100.0, 41e3, 1.0)) / RPM - 3100.0).abs() < 1e-9);
+        assert!((c.target_rad_s(&demand(100.0, -5e3, 1.0)) / RPM - 1500.0).abs() < 1e-9);
+        assert!((c.step(&demand(0.0, 0.0, 1.3)).0 - 1.3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn shift_rate_is_limited_and_says_when_flow_does_it() {
+        let c = control();
+        let fast = c.step(&demand(400.0, 5e3, 1.0));
+        assert!(((1.0 / fast.0).ln() - 0.35).abs() < 1e-9 && !fast.2);
+        let slow = c.step(&RatioDemand {
+            flow_up_per_s: 0.1,
+            ..demand(400.0, 5e3, 1.0)
+        });
+        assert!(((1.0 / slow.0).ln() - 0.1).abs() < 1e-9 && (slow.1 + 0.1).abs() < 1e-12 && slow.2);
+    }
+}

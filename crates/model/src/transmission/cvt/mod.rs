@@ -1,0 +1,335 @@
+//! The CVT, backward from the wheel: final drive, variator, reverse clutch, launch clutch, pump and input shaft.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | CV-1 | w_s = i_fd w_wheel, w_p = I w_s / (1 - slip) | derived |
+//! | CV-2 | T_flywheel = T_p + T_pump(w_e) + T_shaft(w_e), T_p = T_belt + T_drag | source: thesis 1.1 (layout: pump and shaft turn with the engine) |
+//! | CV-3 | T_p >= creep torque below idle speed, >= -share (drag + accessories + pump + shaft) above it; the brakes take the rest | derived: engine can absorb no more; share LC-3 |
+//! | CV-4 | T_flywheel + accessories <= full load; the rest is a deficit | derived |
+//! | CV-6 | launch clutch: T_engine = T_p, loss T_p (w_e - w_p) for T_p >= 0; in overrun T_engine w_e = T_p w_p, no loss | derived |
+//! | CV-5 | unknowns pressure (through throttle), slip, engine speed (and output torque where CV-3 or CV-4 bind) by fixed point with secant, bounded | derived |
+//!
+//! The last iterate is accepted and every torque follows from it, so that the ledger closes whatever residual is left.
+
+pub mod controller;
+pub mod pump;
+pub mod spin;
+pub mod variator;
+mod answer;
+mod evaluate;
+mod prepare;
+mod secant;
+mod solve;
+
+pub use secant::{Slopes, Trend};
+
+use self::controller::{ClampLaw, ClampSignals, RatioControl};
+use self::pump::Pump;
+use self::spin::Spin;
+use self::variator::{Belt, BeltAtRatio, BeltLoad, belt_state};
+use super::launch::Launch;
+use super::loss_map::LossMap;
+use super::{Drive, DriveState, Past, Surroundings};
+use crate::math::{Curve, exp, ln};
+use std::sync::Arc;
+
+/// Measured maps in place of models.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CvtMaps {
+    /// Whole belt.
+    pub belt: Option<LossMap>,
+    /// Pump.
+    pub pump: Option<LossMap>,
+    /// Input shaft.
+    pub input_shaft: Option<LossMap>,
+    /// Reverse clutch drag.
+    pub clutch_drag: Option<LossMap>,
+    /// Final drive.
+    pub final_drive: Option<LossMap>,
+}
+
+impl CvtMaps {
+    /// Whether there is one.
+    #[must_use]
+    #[inline]
+    pub fn any(&self) -> bool {
+        [
+            &self.belt,
+            &self.pump,
+            &self.input_shaft,
+            &self.clutch_drag,
+            &self.final_drive,
+        ]
+        .iter()
+        .any(|map| map.is_some())
+    }
+}
+
+/// The checked CVT.
+#[derive(Clone, Debug)]
+pub struct Cvt {
+    /// Final drive ratio.
+    pub final_drive: f64,
+    /// Belt and pulleys.
+    pub belt: Belt,
+    /// Secondary piston area, m2.
+    pub secondary_piston_m2: f64,
+    /// Primary piston area, m2.
+    pub primary_piston_m2: f64,
+    /// Spring force on the secondary, N.
+    pub spring_n: f64,
+    /// Uncompensated share of the centrifugal head times rho (r_o4 - r_i4) pi/4, N s2/rad2.
+    pub centrifugal_n_s2: f64,
+    /// Pump.
+    pub pump: Pump,
+    /// Input shaft, reverse clutch, final drive.
+    pub spin: Spin,
+    /// Ratio control.
+    pub ratio: RatioControl,
+    /// Clamp law.
+    pub clamp: ClampLaw,
+    /// Exponent of the primary radius in the clamp map.
+    pub radius_exponent: f64,
+    /// Smallest secondary pressure, Pa.
+    pub floor_pa: f64,
+    /// Largest secondary pressure, Pa.
+    pub cap_pa: f64,
+    /// Primary radius in low, m.
+    pub low_radius_m: f64,
+    /// Launch device.
+    pub launch: Arc<dyn Launch>,
+    /// Engine speed for a power at full load, W to rad/s.
+    pub full_load_route: Curve,
+    /// Measured maps in place of models.
+    pub maps: CvtMaps,
+    /// Share of belt loss that heats the belt node.
+    pub belt_heat_share: f64,
+}
+
+/// Steps of the slip-limited law's walk from its lowest pressure to the cap.
+const SLIP_STEPS: u32 = 32;
+
+impl Cvt {
+    /// Clamping force of the secondary at a pressure, N (VA-3).
+    #[must_use]
+    #[inline]
+    pub fn secondary_clamp_n(&self, pressure_pa: f64, secondary_rad_s: f64) -> f64 {
+        pressure_pa * self.secondary_piston_m2
+            + self.spring_n
+            + self.centrifugal_n_s2 * secondary_rad_s * secondary_rad_s
+    }
+
+    /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
+    #[must_use]
+    pub fn radius_factor(&self, at: &BeltAtRatio) -> f64 {
+        exp(self.radius_exponent * ln(self.low_radius_m / at.geometry.primary_radius_m))
+    }
+
+    /// State at the beginning of a cycle: in low at rest, in the ratio that the variogram asks for when rolling.
+    #[must_use]
+    pub fn start(&self, around: &Surroundings) -> DriveState {
+        let secondary = self.final_drive * around.wheel.wheel_rad_s;
+        let demand = controller::RatioDemand {
+            secondary_rad_s: secondary,
+            power_w: around.wheel.power_w,
+            rated_w: around.engine.engine.rated_w,
+            full_load_rad_s: self
+                .full_load_route
+                .at(around.wheel.power_w / self.ratio.route_efficiency),
+            ratio_before: self.ratio.low,
+            flow_down_per_s: 0.0,
+            flow_up_per_s: 0.0,
+            coupled: true,
+            dt_s: around.dt_s,
+        };
+        let ratio = if secondary > 0.0 {
+            (self.ratio.target_rad_s(&demand) / secondary).clamp(self.ratio.high, self.ratio.low)
+        } else {
+            self.ratio.low
+        };
+        let idle = around.engine.idle_rad_s;
+        let primary = ratio * secondary;
+        let past = Past {
+            gear: 0,
+            engine_rad_s: if primary > idle { primary } else { idle },
+            throttle: 0.1,
+            trend: Trend::default(),
+            slopes: Slopes::default(),
+            overrun: false,
+            secondary_pa: self.floor_pa,
+            coupled: primary > idle,
+            stood: secondary <= 0.0,
+        };
+        DriveState {
+            belt: Some(BeltAtRatio::new(&self.belt, ratio)),
+            past,
+        }
+    }
+
+    /// Pressure that the clamp law asks for, Pa (PC-1 to PC-4), within floor and cap; `load` is asked by the laws that look at the belt.
+    #[must_use]
+    #[inline(always)]
+    pub fn pressure_pa(
+        &self,
+        signals: &ClampSignals,
+        at: &BeltAtRatio,
+        load: impl FnOnce() -> BeltLoad,
+        secondary_rad_s: f64,
+    ) -> f64 {
+        let wanted = match &self.clamp {
+            ClampLaw::Map(map) => map.pressure_pa(signals),
+            law => self.belt_pressure_pa(law, at, &load(), secondary_rad_s),
+        };
+        if wanted > self.cap_pa {
+            self.cap_pa
+        } else if wanted > self.floor_pa {
+            wanted
+        } else {
+            self.floor_pa
+        }
+    }
+
+    /// Pressure of the laws that look at the belt (PC-3, PC-4).
+    #[inline(never)]
+    fn belt_pressure_pa(
+        &self,
+        law: &ClampLaw,
+        at: &BeltAtRatio,
+        load: &BeltLoad,
+        secondary_rad_s: f64,
+    ) -> f64 {
+        match law {
+            ClampLaw::Map(_) => f64::NAN, // looks at the engine only
+            ClampLaw::TorqueFollowing {
+                safety,
+                least_torque_nm,
+            } => self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s),
+            ClampLaw::SlipLimited {
+                slip,
+                safety,
+                least_torque_nm,
+            } => {
+                let least =
+                    self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s);
+                self.slip_pressure_pa(*slip, least, at, load, secondary_rad_s)
+            }
+        }
+    }
+
+    fn torque_pressure_pa(
+        &self,
+        safety: f64,
+        least_nm: f64,
+        at: &BeltAtRatio,
+        load: &BeltLoad,
+        secondary_rad_s: f64,
+    ) -> f64 {
+        let torque = load.output_torque_nm.abs();
+        let torque = if torque > least_nm { torque } else { least_nm };
+        let mu = self
+            .belt
+            .formulation
+            .segment_friction(load.segment_friction);
+        let weaker = if at.thrust_ratio < 1.0 {
+            at.thrust_ratio
+        } else {
+            1.0
+        };
+        let force = safety * torque * self.belt.cos_wedge
+            / (2.0 * mu * at.geometry.secondary_radius_m * weaker); // PC-3
+        (force - self.secondary_clamp_n(0.0, secondary_rad_s)) / self.secondary_piston_m2
+    }
+
+    fn slip_pressure_pa(
+        &self,
+        limit: f64,
+        least_pa: f64,
+        at: &BeltAtRatio,
+        load: &BeltLoad,
+        secondary_rad_s: f64,
+    ) -> f64 {
+        let slip = |pa: f64| {
+            let force = self.secondary_clamp_n(pa, secondary_rad_s);
+            belt_state(
+                &self.belt,
+                at,
+                &BeltLoad {
+                    secondary_clamp_n: force,
+                    ..*load
+                },
+            )
+            .slip_total
+            .abs()
+        };
+        let floor = if least_pa > self.floor_pa {
+            least_pa
+        } else {
+            self.floor_pa
+        };
+        if floor >= self.cap_pa || slip(floor) <= limit {
+            return floor;
+        }
+        // Slip falls with clamping force until the stretch of the bands outweighs the grip, then rises: walk up to the first
+        // pressure that meets the limit, or to the least slip where none does.
+        let step = (self.cap_pa - floor) / f64::from(SLIP_STEPS);
+        let at_step = |k: u32| floor + step * f64::from(k);
+        let mut best = (slip(floor), 0);
+        for k in 1..=SLIP_STEPS {
+            let now = slip(at_step(k));
+            if now <= limit {
+                return bisect(at_step(k - 1), at_step(k), |pa| slip(pa) > limit);
+            }
+            best = if now < best.0 { (now, k) } else { best };
+        }
+        let (low, high) = (
+            at_step(best.1.saturating_sub(1)),
+            at_step(if best.1 < SLIP_STEPS {
+                best.1 + 1
+            } else {
+                SLIP_STEPS
+            }),
+        );
+        let least = least_of(low, high, slip);
+        if slip(least) <= limit {
+            bisect(low, least, |pa| slip(pa) > limit)
+        } else {
+            least
+        } // PC-4
+    }
+
+    /// Solves one step (CV-1 to CV-5).
+    #[must_use]
+    pub fn solve(&self, around: &Surroundings, state: &mut DriveState) -> Drive {
+        match &mut state.belt {
+            Some(belt) => solve::solve(self, around, belt, &mut state.past),
+            None => Drive::at_rest(),
+        }
+    }
+}
+
+/// Where `above` changes from true at `low` to false at `high`.
+fn bisect(mut low: f64, mut high: f64, above: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if above(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// Place of the least value of a function with one valley between `low` and `high`, by golden section.
+fn least_of(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    for _ in 0..60 {
+        let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+        if f(a) < f(b) {
+            high = b;
+        } else {
+            low = a;
+        }
+    }
+    0.5 * (low + high)
+}

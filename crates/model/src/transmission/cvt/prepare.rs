@@ -1,0 +1,224 @@
+//! What a step of the CVT knows before its solve: the ratio after shifting, and everything that depends on ratio and temperature only.
+
+use super::Cvt;
+use super::controller::RatioDemand;
+use super::evaluate::Step;
+use super::pump::{ETA_REFERENCE_PA_S, PumpNow};
+use super::spin::{NU_REFERENCE_M2_S, SpinNow};
+use super::variator::{BeltAtRatio, BeltLoad, Geometry, sliding_speed_m_s};
+use crate::math::{exp_each, ln_each};
+use crate::thermal::{BELT, SUMP};
+use crate::transmission::{Past, Surroundings};
+
+/// Oil volume for a unit of ln I: secondary cylinder towards low, primary cylinder towards high, m3 (PU-3).
+fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
+    let slope = g.secondary_radius_slope_m();
+    let primary = (g.secondary_radius_m - slope) / g.ratio;
+    let travel = 2.0 * cvt.belt.tan_wedge;
+    (
+        cvt.secondary_piston_m2 * travel * slope,
+        cvt.primary_piston_m2 * travel * primary,
+    )
+}
+
+/// What the shift reckons with: leakage and inlet for the pump's free flow, efficiency for the full-load route.
+struct Route {
+    leakage_m3_s_pa: f64,
+    pump: PumpNow,
+    efficiency: f64,
+}
+
+/// Outcome of the shift.
+struct Shift {
+    ratio: f64,
+    flow_m3_s: f64,
+    /// Whether pump flow held it back.
+    held: bool,
+}
+
+fn shift(cvt: &Cvt, around: &Surroundings, past: &Past, before: &Geometry, route: Route) -> Shift {
+    if around.wheel.wheel_rad_s <= 0.0 {
+        return Shift {
+            ratio: before.ratio,
+            flow_m3_s: 0.0,
+            held: false,
+        }; // RC-4
+    }
+    let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
+    let drawn = route
+        .pump
+        .drawn_m3_s(cvt.pump.displacement_m3_rad * past.engine_rad_s);
+    let free = drawn - cvt.pump.need_m3_s(past.secondary_pa, route.leakage_m3_s_pa);
+    let free = if free > 0.0 { free } else { 0.0 };
+    let demand = RatioDemand {
+        secondary_rad_s: cvt.final_drive * around.wheel.wheel_rad_s,
+        power_w: around.wheel.power_w,
+        rated_w: around.engine.engine.rated_w,
+        full_load_rad_s: cvt
+            .full_load_route
+            .at(around.wheel.power_w / (route.efficiency * around.engine.full_load_factor)),
+        ratio_before: before.ratio,
+        flow_down_per_s: free / down_m3, // RC-5
+        flow_up_per_s: free / up_m3,     // RC-5
+        coupled: past.coupled,
+        dt_s: around.dt_s,
+    };
+    let (ratio, change, held) = cvt.ratio.step(&demand);
+    let volume = if change > 0.0 {
+        down_m3 * change
+    } else {
+        -up_m3 * change
+    };
+    Shift {
+        ratio,
+        flow_m3_s: volume / around.dt_s,
+        held,
+    }
+}
+
+/// Powers and exponentials of a step.
+struct Powers {
+    spin: SpinNow,
+    drive_nm: f64,
+    viscous_factor: f64,
+    radius_factor: f64,
+    /// The film's z (LU-5).
+    film: f64,
+}
+
+/// What they are powers of.
+struct Bases {
+    nu_m2_s: f64,
+    eta_pa_s: f64,
+    film_load: f64,
+    secondary_rad_s: f64,
+}
+
+impl Powers {
+    /// All of a step together: four logarithms, then seven exponentials.
+    #[inline(always)]
+    fn new(cvt: &Cvt, at: &BeltAtRatio, lift_exponent: f64, b: &Bases) -> Self {
+        let films = b.film_load > 0.0;
+        let [spin, pump, film, radius] = ln_each([
+            b.nu_m2_s / NU_REFERENCE_M2_S,
+            b.eta_pa_s / ETA_REFERENCE_PA_S,
+            if films { b.film_load } else { 1.0 },
+            cvt.low_radius_m / at.geometry.primary_radius_m,
+        ]);
+        let [shaft, clutch, drive] = cvt.spin.exponents(spin);
+        let [
+            shaft,
+            clutch,
+            drive,
+            fall,
+            viscous_factor,
+            radius_factor,
+            film,
+        ] = exp_each([
+            shaft,
+            clutch,
+            drive,
+            cvt.spin.drive_fall_exponent(b.secondary_rad_s),
+            cvt.pump.viscous_exponent * pump,
+            cvt.radius_exponent * radius,
+            lift_exponent * film,
+        ]);
+        let spin = cvt.spin.with_powers([shaft, clutch, drive]);
+        let drive_nm = cvt.spin.drive_with_fall_nm(&spin, b.secondary_rad_s, fall);
+        Powers {
+            spin,
+            drive_nm,
+            viscous_factor,
+            radius_factor,
+            film: if films { film } else { 0.0 },
+        }
+    }
+}
+
+/// Prepares a step: shifts from the geometry `before` it, brings the belt to the new ratio, and works out what the solve does not change.
+#[inline(never)]
+pub(super) fn prepare<'a>(
+    cvt: &'a Cvt,
+    around: &'a Surroundings<'a>,
+    past: &Past,
+    before: &Geometry,
+    belt: &'a mut BeltAtRatio,
+    efficiency: f64,
+) -> Step<'a> {
+    let (oil, friction) = (around.oil, &around.oil.friction);
+    let (sump_k, belt_k) = (around.heat.node_k[SUMP], around.heat.node_k[BELT]);
+    let locked_from_rad_s = if past.coupled {
+        cvt.launch.holds_from_rad_s(around.engine.idle_rad_s)
+    } else {
+        f64::INFINITY
+    };
+    let [nu_sump, nu_belt] = oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]);
+    let eta_sump = nu_sump * oil.density_kg_m3(sump_k);
+    let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
+    let leakage_m3_s_pa = cvt.pump.leakage_now_m3_s_pa(eta_sump);
+    let inlet = cvt.pump.with_factor(eta_sump, 1.0);
+    let Shift {
+        ratio,
+        flow_m3_s,
+        held,
+    } = shift(
+        cvt,
+        around,
+        past,
+        before,
+        Route {
+            leakage_m3_s_pa,
+            pump: inlet,
+            efficiency,
+        },
+    );
+    if ratio.to_bits() != belt.geometry.ratio.to_bits() {
+        *belt = BeltAtRatio::new(&cvt.belt, ratio);
+    }
+    let at = &*belt;
+    let secondary_rad_s = cvt.final_drive * around.wheel.wheel_rad_s;
+    let sliding = if cvt.belt.formulation.has_film() {
+        sliding_speed_m_s(&cvt.belt, ratio, ratio * secondary_rad_s)
+    } else {
+        0.0
+    };
+    let bases = Bases {
+        nu_m2_s: nu_sump,
+        eta_pa_s: eta_sump,
+        film_load: friction.film_load(eta_belt, sliding),
+        secondary_rad_s,
+    };
+    let powers = Powers::new(cvt, at, friction.lift_exponent, &bases);
+    let engine = around.engine.engine;
+    Step {
+        cvt,
+        around,
+        secondary_rad_s,
+        drive_nm: powers.drive_nm,
+        spin: powers.spin,
+        pump: PumpNow {
+            viscous_factor: powers.viscous_factor,
+            ..inlet
+        },
+        leakage_m3_s_pa,
+        load: BeltLoad {
+            primary_speed_rad_s: 0.0,
+            output_torque_nm: 0.0,
+            secondary_clamp_n: 0.0,
+            band: friction.band_on_film(belt_k, powers.film),
+            eta_pa_s: eta_belt,
+            film_thickness_m: friction.film_thickness_m,
+            segment_friction: friction.segment,
+            flank_friction: friction.flank,
+        },
+        radius_factor: powers.radius_factor,
+        at,
+        shift_flow_m3_s: flow_m3_s,
+        shift_held: held,
+        engine_before: past.engine_rad_s,
+        pace_rad_s: engine.inertia_torque_nm / engine.inertia_kg_m2 * around.dt_s,
+        coupled: past.coupled,
+        locked_from_rad_s,
+        maps: cvt.maps.any().then_some(&cvt.maps),
+    }
+}

@@ -1,0 +1,210 @@
+//! What the solve learns from its evaluations: slopes for the next guess, kept from step to step as a start.
+
+use super::evaluate::{Guess, Point};
+use crate::math::held;
+
+/// Closer than this two pressures say nothing of a slope, Pa.
+const SECANT_FROM_PA: f64 = 200.0;
+/// Closer than this two output torques say nothing of a slope, Nm: what pressure and slip still move is larger.
+const SECANT_FROM_NM: f64 = 0.02;
+/// Largest slope of the pressure's fixed point that is believed: above it the step would overshoot.
+const MOST_GAIN: f64 = 0.06;
+
+/// Largest relative change of slip per relative change of pressure that is believed.
+const MOST_SLIP_GAIN: f64 = 2.0;
+
+/// Accelerations closer than this are the same, m/s2: traces round their speeds.
+const ALIKE_M_S2: f64 = 1e-3;
+
+/// Slopes at the last evaluations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slopes {
+    /// Pressure that the clamp law asks for against pressure in force.
+    pub pressure: f64,
+    /// Slip against pressure, 1/Pa.
+    pub slip_per_pa: f64,
+    /// Primary torque against output torque over ratio.
+    pub torque: f64,
+}
+
+/// How losses and slip went on over steps of equal acceleration: what the next such step begins with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Trend {
+    /// Acceleration of the last step, m/s2.
+    accel_m_s2: f64,
+    /// Steps before it with the same acceleration.
+    alike: u32,
+    /// Flywheel torque above output torque over ratio, Nm.
+    loss: Series,
+    slip: Series,
+}
+
+/// Last value of a smooth series and its differences.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Series {
+    value: f64,
+    first: f64,
+    second: f64,
+}
+
+impl Series {
+    /// The value that follows, with as many differences as there are steps alike before the last.
+    #[inline]
+    fn onward(&self, alike: u32) -> f64 {
+        let first = if alike > 0 { self.first } else { 0.0 };
+        self.value + first + if alike > 1 { self.second } else { 0.0 }
+    }
+
+    #[inline]
+    fn push(&mut self, value: f64) {
+        let first = value - self.value;
+        *self = Series {
+            value,
+            first,
+            second: first - self.first,
+        };
+    }
+}
+
+impl Trend {
+    /// Slip and loss torque in Nm to begin a step with: those of the step before, carried on where the car is driven alike.
+    #[inline]
+    pub(super) fn onward(&self, accel_m_s2: f64) -> (f64, f64) {
+        let alike = if (accel_m_s2 - self.accel_m_s2).abs() < ALIKE_M_S2 {
+            self.alike
+        } else {
+            0
+        };
+        (self.slip.onward(alike), self.loss.onward(alike))
+    }
+
+    /// Takes a step at standstill: nothing slips, and what follows is not like it.
+    pub(super) fn stand(&mut self) {
+        *self = Trend {
+            loss: Series {
+                value: self.loss.value,
+                ..Series::default()
+            },
+            ..Trend::default()
+        };
+    }
+
+    /// Takes a solved step.
+    #[inline]
+    pub(super) fn push(&mut self, accel_m_s2: f64, slip: f64, loss_nm: f64) {
+        self.alike = if (accel_m_s2 - self.accel_m_s2).abs() < ALIKE_M_S2 {
+            self.alike.saturating_add(1)
+        } else {
+            0
+        };
+        self.accel_m_s2 = accel_m_s2;
+        self.slip.push(slip);
+        self.loss.push(loss_nm);
+    }
+}
+
+impl Default for Slopes {
+    /// Before anything is known: pressure acts on nothing, torque passes without loss.
+    fn default() -> Self {
+        Slopes {
+            pressure: 0.0,
+            slip_per_pa: 0.0,
+            torque: 1.0,
+        }
+    }
+}
+
+impl Slopes {
+    /// Takes the slopes between two evaluations, the earlier one given by its guess and the pressure that followed from it.
+    #[inline]
+    pub(super) fn learn(&mut self, before: &Guess, before_next_pa: f64, now: &Point) {
+        let step_pa = now.guess.pressure_pa - before.pressure_pa;
+        if step_pa.abs() > SECANT_FROM_PA {
+            self.pressure = held(
+                (now.next_pressure_pa - before_next_pa) / step_pa,
+                -MOST_GAIN,
+                MOST_GAIN,
+            );
+            if now.guess.output_nm.to_bits() == before.output_nm.to_bits() {
+                let most = MOST_SLIP_GAIN * now.guess.slip.abs() / now.guess.pressure_pa;
+                self.slip_per_pa = held((now.guess.slip - before.slip) / step_pa, -most, most);
+            }
+        }
+    }
+
+    /// Pressure at which the line through an evaluation meets its fixed point, Pa (CV-5).
+    #[inline]
+    pub(super) fn pressure_pa(&self, now: &Point) -> f64 {
+        let p = now.guess.pressure_pa;
+        p + (now.next_pressure_pa - p) / (1.0 - self.pressure)
+    }
+}
+
+/// Secant on the output torque where the engine binds it.
+pub(super) struct TorqueSecant {
+    /// Belt ratio: without loss the slope of primary against output torque is its inverse.
+    ratio: f64,
+    /// Output torque that is always allowed, Nm.
+    allowed_nm: f64,
+    last: Option<(f64, f64)>,
+}
+
+impl TorqueSecant {
+    pub fn new(ratio: f64, first_nm: f64) -> Self {
+        TorqueSecant {
+            ratio,
+            allowed_nm: first_nm.abs(),
+            last: None,
+        }
+    }
+
+    /// Next output torque after an evaluation, and whether it moves no more for the bound
+    /// of the belt: the belt carries no more than its capacity, whatever the engine could take or give (VA-2).
+    pub fn next_nm(&mut self, now: &Point, slopes: &mut Slopes, plain: bool) -> (f64, bool) {
+        let (x, miss_nm) = (now.guess.output_nm, now.miss_nm);
+        if let Some((x0, miss0)) = self.last
+            && (x - x0).abs() > SECANT_FROM_NM
+        {
+            slopes.torque = held((miss_nm - miss0) / (x - x0) * self.ratio, 0.5, 2.0);
+        }
+        self.last = Some((x, miss_nm));
+        let slope = if plain { 1.0 } else { slopes.torque };
+        let carried = 1.05 * now.belt.capacity_nm;
+        let carried = if carried > self.allowed_nm {
+            carried
+        } else {
+            self.allowed_nm
+        };
+        let next = held(x - miss_nm * self.ratio / slope, -carried, carried); // CV-5
+        (next, (next - x).abs() <= 1e-9 * carried)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A quadratic series is met exactly once three steps were alike; after another acceleration only the last value counts.
+    #[test]
+    fn trend_follows_steps_alike_and_no_others() {
+        let slip = |k: f64| 0.01 + 1e-4 * k - 2e-6 * k * k;
+        let mut trend = Trend::default();
+        for k in 0..4 {
+            trend.push(0.5, slip(f64::from(k)), 2.0 * slip(f64::from(k)));
+        }
+        let (next_slip, next_nm) = trend.onward(0.5);
+        assert!(
+            (next_slip / slip(4.0) - 1.0).abs() < 1e-12
+                && (next_nm / slip(4.0) - 2.0).abs() < 1e-12
+        );
+        assert!((trend.onward(0.6).0 / slip(3.0) - 1.0).abs() < 1e-15);
+        trend.push(0.6, 0.02, 1.0);
+        assert!(
+            (trend.onward(0.6).0 - 0.02).abs() < 1e-15,
+            "one step alone has no trend"
+        );
+        trend.stand();
+        let (slip, loss_nm) = trend.onward(0.6);
+        assert!(slip.abs() < 1e-15 && (loss_nm - 1.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,198 @@
+//! Input shaft, reverse clutch and final drive of the CVT: losses that turn with the shafts.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | IS-1 | input shaft: T = c0 + c1 (nu/nu_80)^m n/1000 rpm, the second term by FH-1 | source: thesis 7.3, 5.5.5 in form; fitted to 1-2 Nm over 1000-4000 rpm |
+//! | CD-1 | reverse clutch: T = min(c (nu/nu_80)^m, cap) | source: thesis 7.6 in form; fitted to 5.5.3; cap: 5.5.3 "approximately 0.5 Nm" below 25 degC |
+//! | FD-1 | final drive at the secondary shaft: T = c exp(-n/n0) + c_v (nu/nu_80)^m, the second term by FH-1 | fitted to thesis 5.5.1; the fall with speed is measured and unexplained there |
+//! | FD-2 | mesh: \|T_sec - T_wheel/i - FD-1\| = (1 - eta) \|T\| in both directions of power | ASSUMED eta, 0.98 to 0.985 for two helical meshes |
+//!
+//! nu_80 = 11 mm2/s is the viscosity at which the constants hold, without the heating of the films. Below 25 degC all three are
+//! extrapolated; the cap bounds CD-1, the heating of their films (FH-1) the viscous terms of IS-1 and FD-1. Unmeasured there.
+
+use crate::math::{exp, exp_each, ln};
+use crate::transmission::film_heating::FilmHeating;
+
+/// Kinematic viscosity to which the constants refer, m2/s.
+pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
+
+/// The checked constants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spin {
+    /// IS-1 constant, Nm.
+    pub shaft_constant_nm: f64,
+    /// IS-1 slope at reference viscosity, Nm s/rad.
+    pub shaft_viscous_nm_s: f64,
+    /// IS-1 exponent.
+    pub shaft_exponent: f64,
+    /// Heating of the input shaft's films (FH-1).
+    pub shaft_heating: FilmHeating,
+    /// CD-1 torque at reference viscosity, Nm.
+    pub clutch_nm: f64,
+    /// CD-1 exponent.
+    pub clutch_exponent: f64,
+    /// CD-1 cap, Nm.
+    pub clutch_cap_nm: f64,
+    /// FD-1 torque that falls with speed, Nm.
+    pub drive_boundary_nm: f64,
+    /// FD-1 speed scale n0, rad/s.
+    pub drive_scale_rad_s: f64,
+    /// FD-1 viscous torque at reference viscosity, Nm.
+    pub drive_viscous_nm: f64,
+    /// FD-1 exponent.
+    pub drive_exponent: f64,
+    /// Heating of the final drive's films (FH-1).
+    pub drive_heating: FilmHeating,
+    /// FD-2 mesh efficiency.
+    pub mesh_efficiency: f64,
+}
+
+/// The constants at one oil temperature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpinNow {
+    shaft_constant_nm: f64,
+    shaft_slope_nm_s: f64,
+    shaft_heating: FilmHeating,
+    /// Reverse clutch drag, Nm.
+    pub clutch_nm: f64,
+    drive_viscous_nm: f64,
+}
+
+impl Spin {
+    /// The constants at a viscosity.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, nu_m2_s: f64) -> SpinNow {
+        self.with_powers(exp_each(self.exponents(ln(nu_m2_s / NU_REFERENCE_M2_S))))
+    }
+
+    /// Logarithms of the powers of viscosity in IS-1, CD-1 and FD-1, from ln(nu/nu_80).
+    #[must_use]
+    #[inline]
+    pub fn exponents(&self, log_nu: f64) -> [f64; 3] {
+        [
+            self.shaft_exponent * log_nu,
+            self.clutch_exponent * log_nu,
+            self.drive_exponent * log_nu,
+        ]
+    }
+
+    /// The constants with the powers of viscosity known.
+    #[must_use]
+    #[inline]
+    pub fn with_powers(&self, [shaft, clutch, drive]: [f64; 3]) -> SpinNow {
+        let clutch_nm = self.clutch_nm * clutch;
+        SpinNow {
+            shaft_constant_nm: self.shaft_constant_nm,
+            shaft_slope_nm_s: self.shaft_viscous_nm_s * shaft,
+            shaft_heating: self.shaft_heating,
+            clutch_nm: if clutch_nm < self.clutch_cap_nm {
+                clutch_nm
+            } else {
+                self.clutch_cap_nm
+            }, // CD-1
+            drive_viscous_nm: self.drive_viscous_nm * drive,
+        }
+    }
+
+    /// Load-independent torque of the final drive at the secondary shaft, Nm (FD-1).
+    #[must_use]
+    #[inline]
+    pub fn drive_nm(&self, now: &SpinNow, secondary_rad_s: f64) -> f64 {
+        self.drive_with_fall_nm(
+            now,
+            secondary_rad_s,
+            exp(self.drive_fall_exponent(secondary_rad_s)),
+        )
+    }
+
+    /// -n/n0 of FD-1.
+    #[must_use]
+    #[inline]
+    pub fn drive_fall_exponent(&self, secondary_rad_s: f64) -> f64 {
+        -secondary_rad_s / self.drive_scale_rad_s
+    }
+
+    /// The same torque, Nm, with exp(-n/n0) known (FD-1).
+    #[must_use]
+    #[inline]
+    pub fn drive_with_fall_nm(&self, now: &SpinNow, secondary_rad_s: f64, fall: f64) -> f64 {
+        self.drive_boundary_nm * fall
+            + self
+                .drive_heating
+                .torque_nm(now.drive_viscous_nm, secondary_rad_s) // FD-1
+    }
+
+    /// Torque at the secondary shaft for a torque after the final drive, both at the secondary's speed, Nm (FD-2).
+    #[must_use]
+    #[inline]
+    pub fn secondary_torque_nm(&self, drive_nm: f64, output_nm: f64) -> f64 {
+        let through = output_nm + drive_nm;
+        through
+            * if through >= 0.0 {
+                1.0 / self.mesh_efficiency
+            } else {
+                self.mesh_efficiency
+            } // FD-2
+    }
+}
+
+impl SpinNow {
+    /// Input shaft torque, Nm (IS-1).
+    #[must_use]
+    #[inline]
+    pub fn shaft_nm(&self, speed_rad_s: f64) -> f64 {
+        self.shaft_constant_nm
+            + self
+                .shaft_heating
+                .torque_nm(self.shaft_slope_nm_s * speed_rad_s, speed_rad_s) // IS-1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spin() -> Spin {
+        let rpm = std::f64::consts::PI / 30.0;
+        Spin {
+            shaft_constant_nm: 0.97,
+            shaft_viscous_nm_s: 0.07 / (1000.0 * rpm),
+            shaft_exponent: 0.75,
+            shaft_heating: FilmHeating::NONE,
+            clutch_nm: 0.25,
+            clutch_exponent: 0.55,
+            clutch_cap_nm: 0.5,
+            drive_boundary_nm: 1.2,
+            drive_scale_rad_s: 2000.0 * rpm,
+            drive_viscous_nm: 0.29,
+            drive_exponent: 0.72,
+            drive_heating: FilmHeating::NONE,
+            mesh_efficiency: 0.98,
+        }
+    }
+
+    /// Thesis 5.5.5: 1-2 Nm over 1000-4000 rpm and 25-95 degC (68 to 7.8 mm2/s).
+    #[test]
+    fn val_input_shaft_range() {
+        let rpm = std::f64::consts::PI / 30.0;
+        let low = spin().at(7.8e-6).shaft_nm(1000.0 * rpm);
+        let high = spin().at(68e-6).shaft_nm(4000.0 * rpm);
+        assert!(
+            (0.9..1.2).contains(&low) && (1.8..2.3).contains(&high),
+            "{low} {high}"
+        );
+    }
+
+    #[test]
+    fn final_drive_loss_is_positive_both_ways_and_continuous() {
+        let s = spin();
+        let mut last = s.secondary_torque_nm(1.0, -60.0);
+        for i in -600..600 {
+            let out = f64::from(i) * 0.1;
+            let t = s.secondary_torque_nm(1.0, out);
+            assert!(t - out > 0.0 && (t - last).abs() < 0.12, "{out}: {t}");
+            last = t;
+        }
+    }
+}

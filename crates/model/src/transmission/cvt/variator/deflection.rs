@@ -1,0 +1,89 @@
+//! Segments wedge at pulley entry and exit and penetrate into pulleys that give way under clamping force.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | WE-1 | deflection delta_p = R_p F_p / 0.6e7, delta_s = R_s F_s / 5e7 | source: App. C |
+//! | WE-2 | q = delta / (2 tan th); chord = sqrt(q (2R + q)); sliding speed/w = sqrt(2 (R + q) q) | source: thesis eq. 79 to 91 |
+//! | WE-3 | loss at the primary shaft: arcs mu N/2 chord/t sliding speed/w_in | source: thesis eq. 92, 93; App. C counts one arc of two |
+//! | WE-4 | the primary's deflection falls to zero towards its end stop, I 2.30 to 2.417 | source: thesis 8.8 in words; ramp ASSUMED |
+//! | PE-1 | loss: mu N 2 depth R_p / t, depth = delta (App. C) or delta/(2 tan th) (eq. 95) | source: thesis eq. 94 to 98 |
+//!
+//! N is the resultant normal force on a segment (both flanks), t the segment thickness. Always positive; zero at zero clamping force.
+
+use super::{Belt, BeltAtRatio, Geometry, Tension};
+use crate::math::pair;
+
+/// Wedge and penetration losses of both pulleys, at the primary shaft, Nm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Deflection {
+    /// Wedge loss, primary pulley.
+    pub wedge_primary_nm: f64,
+    /// Wedge loss, secondary pulley.
+    pub wedge_secondary_nm: f64,
+    /// Penetration loss, primary pulley.
+    pub penetration_primary_nm: f64,
+    /// Penetration loss, secondary pulley.
+    pub penetration_secondary_nm: f64,
+}
+
+/// Arcs over twice the segment thickness, referred to the primary shaft, 1/m; primary, secondary (WE-3).
+#[must_use]
+pub fn wedge_per_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
+    let arcs = 0.5 * belt.formulation.wedge_arcs() / belt.segment_thickness_m;
+    [arcs, arcs / g.ratio]
+}
+
+/// 2 `R_p` / t, times depth over deflection (PE-1).
+#[must_use]
+pub fn penetration(belt: &Belt, g: &Geometry) -> f64 {
+    let depth = if belt.formulation.radial_penetration() {
+        0.5 / belt.tan_wedge
+    } else {
+        1.0
+    };
+    2.0 * g.primary_radius_m * depth / belt.segment_thickness_m
+}
+
+/// Wedge and penetration losses (WE-1 to PE-1).
+#[must_use]
+#[inline]
+pub fn deflection(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_flank: f64) -> Deflection {
+    clamped(belt, at, t.primary_clamp_n, t.secondary_clamp_n, mu_flank)
+}
+
+/// The same from the clamping forces, N, both pulleys side by side.
+#[inline(never)]
+fn clamped(
+    belt: &Belt,
+    at: &BeltAtRatio,
+    primary_n: f64,
+    secondary_n: f64,
+    mu_flank: f64,
+) -> Deflection {
+    let (g, prepared) = (&at.geometry, &at.prepared);
+    let radius_m = [g.primary_radius_m, g.secondary_radius_m];
+    let clamp_n = [primary_n, secondary_n];
+    let friction_n = pair(|i| mu_flank * clamp_n[i] * prepared.normal_per_clamp[i]);
+    let compliance_per_n = [
+        prepared.stop * belt.primary_compliance_per_n,
+        belt.secondary_compliance_per_n,
+    ]; // WE-4
+    let delta_m = pair(|i| clamp_n[i] * (radius_m[i] * compliance_per_n[i])); // WE-1
+    let chord_m2 = pair(|i| {
+        let (r, q) = (radius_m[i], delta_m[i] * prepared.wedge_half_cot);
+        q * ((r + r + q) * (r + r + q + q)).sqrt() // WE-2: sqrt(q (2R+q)) sqrt(2 (R+q) q)
+    });
+    let wedge_n = if belt.formulation.own_wedge_force() {
+        friction_n
+    } else {
+        [friction_n[0]; 2]
+    };
+    let wedge_nm = pair(|i| prepared.wedge_per_m[i] * wedge_n[i] * chord_m2[i]); // WE-3
+    let penetration_nm = pair(|i| prepared.penetration * friction_n[i] * delta_m[i]); // PE-1
+    Deflection {
+        wedge_primary_nm: wedge_nm[0],
+        wedge_secondary_nm: wedge_nm[1],
+        penetration_primary_nm: penetration_nm[0],
+        penetration_secondary_nm: penetration_nm[1],
+    }
+}

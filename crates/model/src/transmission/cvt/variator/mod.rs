@@ -1,0 +1,421 @@
+//! The pushing metal V-belt between its two pulleys: from output torque to input torque, loss by loss.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | VA-1 | T_in = (T_out/I)(1 - slip) + band + film + slip loss + wedge + penetration | derived: energy with w_sec = w_pri (1 - slip)/I; the printed sum counts slip power twice |
+//! | VA-2 | T_cap = 2 mu_seg R_s min(F_p, F_s) / cos th | source: Coulomb limit on both pulleys; the thesis checks the primary only |
+//! | VA-3 | F_s = p A_s + spring + (1 - compensated) pi rho w2 (r_o4 - r_i4)/4 | source: App. C; centrifugal head from hydrostatics |
+//!
+//! Valid for clamping forces from zero on; torque above VA-2 is flagged `gross_slip` and slip is bounded (SL-9).
+
+mod bands;
+mod deflection;
+mod formulation;
+mod geometry;
+mod slip;
+mod tension;
+mod printed;
+pub mod point;
+
+pub use bands::{BandLoss, Film, sliding_speed_m_s};
+pub use deflection::Deflection;
+pub use formulation::Formulation;
+pub use geometry::Geometry;
+pub use point::{BeltPoint, belt_point, driving_point};
+pub use slip::Slip;
+pub use tension::{Tension, TensionInput};
+
+use crate::fluid::BandFriction;
+use crate::math::{Curve, ln, ramp};
+
+/// The checked belt and pulleys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Belt {
+    /// Centre distance of the pulleys, m.
+    pub centre_distance_m: f64,
+    /// Length of the belt, m.
+    pub length_m: f64,
+    /// Thickness of a segment, m.
+    pub segment_thickness_m: f64,
+    /// Half wedge angle: cosine.
+    pub cos_wedge: f64,
+    /// Half wedge angle: tangent.
+    pub tan_wedge: f64,
+    /// Bands in a pack.
+    pub band_count: f64,
+    /// Thickness of a band, m.
+    pub band_thickness_m: f64,
+    /// Width of both packs, m.
+    pub band_width_m: f64,
+    /// Offset of the innermost band above the rocking edge, m.
+    pub band_offset_m: f64,
+    /// Mass per length, kg/m.
+    pub mass_kg_m: f64,
+    /// Young's modulus of bands and segments, Pa.
+    pub youngs_pa: f64,
+    /// Contact area between segments in the free strut, m2.
+    pub strut_area_m2: f64,
+    /// Gap between all segments at no load, m.
+    pub initial_gap_m: f64,
+    /// Axial deflection of the primary per radius and force, 1/N.
+    pub primary_compliance_per_n: f64,
+    /// Axial deflection of the secondary per radius and force, 1/N.
+    pub secondary_compliance_per_n: f64,
+    /// Ratio from which the primary leans on its end stop.
+    pub stop_from_ratio: f64,
+    /// Ratio at which it rests on it fully.
+    pub stop_to_ratio: f64,
+    /// Width of the smoothing of the tension step in ln I.
+    pub unity_width: f64,
+    /// Force width of the blend between the loading branches, N.
+    pub blend_n: f64,
+    /// Bound of each pulley's slip.
+    pub slip_bound: f64,
+    /// Thrust ratio F_p/F_s over ln I, or none for the wrap ratio.
+    pub thrust_ratio: Option<Curve>,
+    /// Reading of the thesis.
+    pub formulation: Formulation,
+}
+
+impl Belt {
+    /// Cross-section of both band packs, m2.
+    #[must_use]
+    #[inline]
+    pub fn band_area_m2(&self) -> f64 {
+        self.band_count * self.band_width_m * self.band_thickness_m
+    }
+}
+
+/// The belt at one ratio: everything that does not depend on torque or pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeltAtRatio {
+    /// Geometry.
+    pub geometry: Geometry,
+    /// Direction of the tension step, -1 in low, +1 in high (TE-6).
+    pub direction: f64,
+    /// Primary clamp over secondary clamp (TE-1).
+    pub thrust_ratio: f64,
+    /// What the loss equations need of this ratio, worked out once.
+    pub prepared: Prepared,
+}
+
+/// Coefficients of one ratio, so that an operating point costs few divisions; pairs are primary, secondary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prepared {
+    /// Contact arcs, m.
+    pub arc_m: [f64; 2],
+    /// Segments in the wraps.
+    pub count: [f64; 2],
+    /// Resultant normal force of a segment per clamping force.
+    pub normal_per_clamp: [f64; 2],
+    /// Shoulder friction of a segment per tension step.
+    pub shoulder_per_step: [f64; 2],
+    /// Extension of the band pack per shoulder force of the primary, m/N (SL-1).
+    pub band_gap_m_n: f64,
+    /// Compression of the free strut per force, m/N (SL-2).
+    pub strut_gap_m_n: f64,
+    /// Friction-weighted sliding of the band pack per turn of the primary, times BT-4, m/rad (BT-3).
+    pub slide_m: [f64; 2],
+    /// Film shear torque per share, viscosity, speed over thickness, m4 (FI-1).
+    pub film_m4: f64,
+    /// Share of the primary's deflection left by its end stop (WE-4).
+    pub stop: f64,
+    /// Half the cotangent of the angle in the wedge terms (WE-2).
+    pub wedge_half_cot: f64,
+    /// Arcs over twice the segment thickness, referred to the primary shaft, 1/m (WE-3).
+    pub wedge_per_m: [f64; 2],
+    /// Penetration torque per friction force and deflection (PE-1).
+    pub penetration: f64,
+    /// One over the segments in the wraps.
+    pub per_count: [f64; 2],
+    /// One over the belt ratio.
+    pub per_ratio: f64,
+    /// One over the secondary radius, 1/m.
+    pub per_secondary_m: f64,
+    /// Torque capacity per clamping force and segment friction, m (VA-2).
+    pub capacity_m: f64,
+    /// One over the width of the blend between the loading branches, 1/N.
+    pub per_blend_n: f64,
+}
+
+impl Prepared {
+    fn new(belt: &Belt, g: &Geometry) -> Self {
+        let pitch = belt.segment_thickness_m;
+        let arc_m = [
+            g.primary_radius_m * g.primary_wrap_rad,
+            g.secondary_radius_m * g.secondary_wrap_rad,
+        ];
+        let least = if g.primary_wrap_rad < g.secondary_wrap_rad {
+            g.primary_wrap_rad
+        } else {
+            g.secondary_wrap_rad
+        };
+        Prepared {
+            arc_m,
+            count: arc_m.map(|a| a / pitch),
+            normal_per_clamp: arc_m.map(|a| 2.0 * pitch / (a * belt.cos_wedge)),
+            shoulder_per_step: [g.primary_radius_m, g.secondary_radius_m]
+                .map(|r| pitch / (r * least)),
+            band_gap_m_n: belt.length_m
+                / (belt.youngs_pa * belt.band_area_m2() * g.primary_wrap_rad),
+            strut_gap_m_n: g.strut_m / (belt.youngs_pa * belt.strut_area_m2),
+            slide_m: bands::slide_m(belt, g),
+            film_m4: bands::film_m4(belt, g),
+            stop: belt
+                .formulation
+                .primary_stop(1.0 - ramp(g.ratio, belt.stop_from_ratio, belt.stop_to_ratio)), // WE-4
+            wedge_half_cot: 0.5 / belt.formulation.wedge_tan(belt.tan_wedge),
+            wedge_per_m: deflection::wedge_per_m(belt, g),
+            penetration: deflection::penetration(belt, g),
+            per_count: arc_m.map(|a| pitch / a),
+            per_ratio: 1.0 / g.ratio,
+            per_secondary_m: 1.0 / g.secondary_radius_m,
+            capacity_m: 2.0 * g.secondary_radius_m / belt.cos_wedge,
+            per_blend_n: 1.0 / belt.blend_n,
+        }
+    }
+}
+
+/// From here on tanh is 1 to the last bit.
+const FULL_STEP: f64 = 20.0;
+
+impl BeltAtRatio {
+    /// Prepares a ratio.
+    #[must_use]
+    pub fn new(belt: &Belt, ratio: f64) -> Self {
+        let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
+        let log = ln(ratio);
+        let steep = log / belt.unity_width;
+        BeltAtRatio {
+            geometry,
+            prepared: Prepared::new(belt, &geometry),
+            direction: if steep.abs() < FULL_STEP {
+                -steep.tanh()
+            } else {
+                -steep.signum()
+            }, // TE-6
+            thrust_ratio: match &belt.thrust_ratio {
+                Some(curve) => curve.at(log),
+                None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
+            },
+        }
+    }
+}
+
+/// What acts on the belt at one operating point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeltLoad {
+    /// Primary speed, rad/s.
+    pub primary_speed_rad_s: f64,
+    /// Torque at the secondary pulley, Nm; negative in overrun.
+    pub output_torque_nm: f64,
+    /// Axial clamping force of the secondary, N.
+    pub secondary_clamp_n: f64,
+    /// Band friction in force.
+    pub band: BandFriction,
+    /// Dynamic viscosity at belt temperature, Pa s.
+    pub eta_pa_s: f64,
+    /// Thickness of the film, m.
+    pub film_thickness_m: f64,
+    /// Segment friction of the fluid.
+    pub segment_friction: f64,
+    /// Flank friction of the fluid.
+    pub flank_friction: f64,
+}
+
+/// The belt's answer: losses are torques at the primary shaft, Nm, never negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeltState {
+    /// Torque at the primary pulley, Nm (VA-1).
+    pub input_torque_nm: f64,
+    /// Tensions and forces.
+    pub tension: Tension,
+    /// Slip in detail.
+    pub slip: Slip,
+    /// Total slip as a fraction.
+    pub slip_total: f64,
+    /// Boundary friction of the bands.
+    pub band_nm: f64,
+    /// Shear of the film.
+    pub film_nm: f64,
+    /// Sliding of segments on pulleys.
+    pub slip_nm: f64,
+    /// Wedging.
+    pub wedge_nm: f64,
+    /// Penetration.
+    pub penetration_nm: f64,
+    /// Torque capacity at the secondary, Nm (VA-2).
+    pub capacity_nm: f64,
+    /// Torque above capacity, or slip at its bound.
+    pub gross_slip: bool,
+}
+
+/// What the driveline needs of the belt: losses as torques at the primary shaft, Nm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BeltLosses {
+    /// Boundary friction of the bands.
+    pub band_nm: f64,
+    /// Shear of the film.
+    pub film_nm: f64,
+    /// Sliding of segments on pulleys.
+    pub slip_nm: f64,
+    /// Wedging.
+    pub wedge_nm: f64,
+    /// Penetration.
+    pub penetration_nm: f64,
+    /// Total slip as a fraction.
+    pub slip_total: f64,
+    /// Torque capacity at the secondary, Nm (VA-2).
+    pub capacity_nm: f64,
+    /// Torque above capacity, or slip at its bound.
+    pub gross_slip: bool,
+}
+
+impl BeltLosses {
+    /// All belt losses, Nm at the primary shaft.
+    #[must_use]
+    #[inline]
+    pub fn sum_nm(&self) -> f64 {
+        self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
+    }
+}
+
+impl BeltState {
+    /// All belt losses, Nm at the primary shaft.
+    #[must_use]
+    #[inline]
+    pub fn loss_nm(&self) -> f64 {
+        self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
+    }
+}
+
+/// Tension at one operating point for a direction of its step (TE-2 to TE-5).
+#[inline(always)]
+fn tension(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, direction: f64) -> Tension {
+    let v = load.primary_speed_rad_s * at.geometry.primary_radius_m;
+    Tension::new(
+        &at.geometry,
+        &TensionInput {
+            primary_clamp_n: load.secondary_clamp_n * at.thrust_ratio,
+            secondary_clamp_n: load.secondary_clamp_n,
+            output_torque_nm: load.output_torque_nm,
+            mu_band: load.band.mu,
+            centrifugal_n: belt.mass_kg_m * v * v,
+            direction,
+            tan_wedge: belt.tan_wedge,
+            per_secondary_m: at.prepared.per_secondary_m,
+        },
+    )
+}
+
+/// Torque capacity at the secondary, Nm (VA-2).
+#[inline]
+fn capacity_nm(at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> f64 {
+    let weaker = if t.primary_clamp_n < t.secondary_clamp_n {
+        t.primary_clamp_n
+    } else {
+        t.secondary_clamp_n
+    };
+    weaker * mu_segment * at.prepared.capacity_m // VA-2
+}
+
+/// Everything that the equations give at one operating point, pulley by pulley.
+struct Parts {
+    tension: Tension,
+    slip: Slip,
+    bands: BandLoss,
+    film_nm: f64,
+    deflection: Deflection,
+    capacity_nm: f64,
+}
+
+#[inline(always)]
+fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
+    let tension = tension(belt, at, load, at.direction);
+    let mu_segment = belt.formulation.segment_friction(load.segment_friction);
+    let film = Film {
+        share: load.band.film_share,
+        eta_pa_s: load.eta_pa_s,
+        thickness_m: load.film_thickness_m,
+    };
+    Parts {
+        slip: slip::slip(belt, at, &tension, mu_segment),
+        bands: bands::band_loss(at, &tension, load.band.mu),
+        film_nm: bands::film_loss_nm(at, &film, load.primary_speed_rad_s),
+        deflection: deflection::deflection(belt, at, &tension, load.flank_friction),
+        capacity_nm: capacity_nm(at, &tension, mu_segment),
+        tension,
+    }
+}
+
+#[inline(always)]
+fn losses(load: &BeltLoad, parts: &Parts) -> BeltLosses {
+    let Parts {
+        slip,
+        bands,
+        film_nm,
+        deflection,
+        capacity_nm,
+        ..
+    } = parts;
+    BeltLosses {
+        band_nm: bands.primary_nm + bands.secondary_nm,
+        film_nm: *film_nm,
+        slip_nm: slip.primary_loss_nm + slip.secondary_loss_nm,
+        wedge_nm: deflection.wedge_primary_nm + deflection.wedge_secondary_nm,
+        penetration_nm: deflection.penetration_primary_nm + deflection.penetration_secondary_nm,
+        slip_total: slip.primary + slip.secondary,
+        capacity_nm: *capacity_nm,
+        gross_slip: slip.held || load.output_torque_nm.abs() > *capacity_nm,
+    }
+}
+
+fn state(at: &BeltAtRatio, load: &BeltLoad, parts: &Parts) -> BeltState {
+    let sums = losses(load, parts);
+    let BeltLosses {
+        band_nm,
+        film_nm,
+        slip_nm,
+        wedge_nm,
+        penetration_nm,
+        slip_total,
+        capacity_nm,
+        gross_slip,
+    } = sums;
+    BeltState {
+        input_torque_nm: load.output_torque_nm / at.geometry.ratio * (1.0 - slip_total)
+            + sums.sum_nm(), // VA-1
+        tension: parts.tension,
+        slip: parts.slip,
+        slip_total,
+        band_nm,
+        film_nm,
+        slip_nm,
+        wedge_nm,
+        penetration_nm,
+        capacity_nm,
+        gross_slip,
+    }
+}
+
+/// Slip, losses and capacity at one operating point: the sums of [`belt_state`] without its detail.
+#[must_use]
+#[inline(always)]
+pub fn belt_losses(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltLosses {
+    losses(load, &parts(belt, at, load))
+}
+
+/// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2).
+#[must_use]
+pub fn belt_capacity_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
+    belt_losses(belt, at, load).capacity_nm
+}
+
+/// Solves the belt at one operating point.
+#[must_use]
+pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
+    state(at, load, &parts(belt, at, load))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,255 @@
+//! Segments slide along the pulleys because gaps between them must close.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | SL-1 | e_band = (T1+T2)/2 L / (E A_band) | source: thesis eq. 54 |
+//! | SL-2 | e_segs = \|C_x\|/E (strut/A_strut + (active arc + other arc)/2 / A_arc(\|C_x\|)) | source: thesis eq. 55, 56 |
+//! | SL-3 | A_arc = 1.74142e-6 + 1.56364e-9 \|C_x\| - 1.74032e-13 C_x2, held beyond its maximum at 4492 N | source: thesis eq. 58; holding is ours |
+//! | SL-4 | active arc k t with k = C_x/(mu R' - dT') conventional, \|C_x\|/(mu R' + dT') inverted, real valued | source: thesis eq. 59 to 61; real k derived from the printed count |
+//! | SL-5 | gap slip = v e_belt / (own arc - k t) | source: thesis eq. 61 to 64 |
+//! | SL-6 | idle slip = gap slip lambda_idle/lambda_act, other pulley by lambda_other/lambda_act | source: thesis eq. 65 to 70; signs per Formulation |
+//! | SL-7 | loss = sum \|v_slip F_T\| / w_in | source: thesis eq. 74 to 76 |
+//! | SL-8 | conventional at max(C_x, 0) and inverted at max(-C_x, 0) blended by (1 + tanh(C_x/C0))/2 | ASSUMED smoothing of the change of pulley at C_x = 0 |
+//! | SL-9 | each pulley's slip is held at +-`slip_bound`, gap and idle slip in proportion | ASSUMED: beyond it gross slip, flagged |
+//! | SL-10 | lambda_idle is held above -0.95 | ASSUMED: an idle segment takes no more than its grip; else overload slips the wrong way |
+//!
+//! Slip is a fraction of belt speed, positive when the output turns slower than the geometric ratio says; independent of speed, so
+//! defined at standstill.
+
+use super::{Belt, BeltAtRatio, Tension};
+use crate::math::{exp, held, pair};
+
+/// Slip and its loss.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slip {
+    /// Slip at the primary over belt speed.
+    pub primary: f64,
+    /// Slip at the secondary over belt speed.
+    pub secondary: f64,
+    /// Part of the loading pulley's slip that closes the gaps, over belt speed.
+    pub gap: f64,
+    /// Part of the loading pulley's slip that the band friction on its idle arc adds, over belt speed.
+    pub idle: f64,
+    /// Torque loss at the primary, referred to the primary shaft, Nm.
+    pub primary_loss_nm: f64,
+    /// Torque loss at the secondary, referred to the primary shaft, Nm.
+    pub secondary_loss_nm: f64,
+    /// Segments in the active arc of the branch in force.
+    pub active_segments: f64,
+    /// Whether the bound of SL-9 holds the slip.
+    pub held: bool,
+}
+
+/// Grip never below this share of the friction limit (ASSUMED): keeps the active arc finite where the bands' pull alone takes it up.
+const LEAST_GRIP: f64 = 0.05;
+
+/// Grip never below this force, N (ASSUMED; nothing beside any real one): without clamping slip is at its bound and not 0/0.
+const NO_GRIP_N: f64 = 1e-6;
+
+/// Blend beyond which one branch alone counts: the other's weight is below 2e-8.
+const ALONE: f64 = 9.0;
+
+/// Compression at which the fitted contact area is largest, N (SL-3).
+pub(super) const LARGEST_AREA_N: f64 = 4492.0;
+
+/// Contact area between segments in an arc for a compression \|C_x\| as printed, m2: falls again above [`LARGEST_AREA_N`] (SL-3 without holding).
+#[inline]
+pub(super) fn printed_area_m2(compression_n: f64) -> f64 {
+    let c = compression_n;
+    1.74142e-6 + 1.56364e-9 * c - 1.74032e-13 * c * c // SL-3
+}
+
+/// Contact area between segments in an arc for a compression \|C_x\|, m2 (SL-3).
+#[inline]
+fn arc_area_m2(compression_n: f64) -> f64 {
+    let c = compression_n;
+    printed_area_m2(if c < LARGEST_AREA_N {
+        c
+    } else {
+        LARGEST_AREA_N
+    })
+}
+
+/// What the slip equations of both branches look at; pairs are primary, secondary.
+#[derive(Clone, Copy)]
+pub(super) struct Contact<'a> {
+    pub belt: &'a Belt,
+    pub at: &'a BeltAtRatio,
+    /// Extension of the band pack and initial gap, m.
+    pub slack_m: f64,
+    /// Normal force on a segment times friction, N.
+    pub grip_n: [f64; 2],
+    /// Band friction on the shoulder of a segment, with the sign of dT, N.
+    pub shoulder_n: [f64; 2],
+    /// C_x as the formulation has the slip equations take it, N.
+    pub compression_n: f64,
+}
+
+impl<'a> Contact<'a> {
+    #[inline]
+    pub fn new(belt: &'a Belt, at: &'a BeltAtRatio, t: &Tension, mu_segment: f64) -> Self {
+        let prepared = &at.prepared;
+        let grip = |clamp_n: f64, pulley: usize| {
+            let n = mu_segment * clamp_n * prepared.normal_per_clamp[pulley];
+            if n > NO_GRIP_N { n } else { NO_GRIP_N }
+        };
+        Contact {
+            belt,
+            at,
+            slack_m: t.primary_shoulder_n * prepared.band_gap_m_n + belt.initial_gap_m, // SL-1
+            grip_n: [grip(t.primary_clamp_n, 0), grip(t.secondary_clamp_n, 1)],
+            shoulder_n: [
+                t.step_n * prepared.shoulder_per_step[0],
+                t.step_n * prepared.shoulder_per_step[1],
+            ],
+            compression_n: belt.formulation.compression_n(t.compression_n),
+        }
+    }
+}
+
+/// Both loading branches side by side: conventional (segments loaded in the primary), inverted (in the secondary).
+struct Branches {
+    /// Slip of the loaded pulley, not below zero, and of the other one.
+    loaded: [f64; 2],
+    other: [f64; 2],
+    /// Slip of the loaded pulley before its bound (SL-9), and the part of it that closes the gaps.
+    free: [f64; 2],
+    gap: [f64; 2],
+    loss_loaded_nm: [f64; 2],
+    loss_other_nm: [f64; 2],
+    active_segments: [f64; 2],
+}
+
+/// Works out both branches (SL-2 to SL-7, SL-9, SL-10). One of them carries no compression; processors do two at once for one.
+#[inline(never)]
+fn branches(c: &Contact) -> Branches {
+    let (belt, prepared, f) = (c.belt, &c.at.prepared, c.belt.formulation);
+    let swapped = |of: [f64; 2]| [of[1], of[0]];
+    let (pitch, arc, arc_other) = (
+        belt.segment_thickness_m,
+        prepared.arc_m,
+        swapped(prepared.arc_m),
+    );
+    let cx = [c.compression_n, -c.compression_n].map(|x| if x > 0.0 { x } else { 0.0 });
+    let shoulder = [c.shoulder_n[0], -c.shoulder_n[1]];
+    let grip = pair(|i| {
+        let (grip, floor) = (c.grip_n[i] - shoulder[i], LEAST_GRIP * c.grip_n[i]);
+        if grip > floor { grip } else { floor }
+    });
+    let k = pair(|i| cx[i] / grip[i]); // SL-4
+    let segments = pair(|i| {
+        if k[i] < prepared.count[i] {
+            k[i]
+        } else {
+            prepared.count[i]
+        }
+    });
+    let active = segments.map(|n| n * pitch);
+    let arcs = pair(|i| 0.5 * (active[i] + arc_other[i]) / (belt.youngs_pa * arc_area_m2(cx[i])));
+    let e_segs = pair(|i| cx[i] * (prepared.strut_gap_m_n + arcs[i])); // SL-2
+    let idle_arc = pair(|i| arc[i] - active[i]);
+    let gap = pair(|i| (c.slack_m + e_segs[i]) / (idle_arc[i] + 1e-9)); // SL-5
+    let per_grip = c.grip_n.map(|n| 1.0 / n);
+    let lambda = pair(|i| {
+        let lambda = shoulder[i] * per_grip[i];
+        if lambda > LEAST_GRIP - 1.0 {
+            lambda
+        } else {
+            LEAST_GRIP - 1.0
+        } // SL-10
+    });
+    // Conventional loading takes the magnitude: the larger of the number and its opposite.
+    let turned = [if f.signed_idle_slip() { 1.0 } else { -1.0 }, 1.0];
+    let idle = pair(|i| {
+        gap[i]
+            * if turned[i] * lambda[i] > lambda[i] {
+                turned[i] * lambda[i]
+            } else {
+                lambda[i]
+            }
+    }); // SL-6
+    let free = pair(|i| gap[i] + idle[i]); // not below zero (SL-10)
+    let loaded = pair(|i| {
+        if belt.slip_bound < free[i] {
+            belt.slip_bound
+        } else {
+            free[i]
+        }
+    }); // SL-9
+    let total_other = swapped([
+        cx[1] - c.shoulder_n[0] * prepared.count[0],
+        cx[0] + c.shoulder_n[1] * prepared.count[1],
+    ]);
+    let per_other = swapped(pair(|i| prepared.per_count[i] * per_grip[i]));
+    let other = pair(|i| {
+        held(
+            loaded[i] * (total_other[i] * per_other[i]),
+            -belt.slip_bound,
+            belt.slip_bound,
+        )
+    }); // SL-9
+    let r = c.at.geometry.primary_radius_m;
+    let mut loaded_n = pair(|i| loaded[i] * c.grip_n[i] * segments[i]);
+    if f.counts_idle_arc() {
+        let share = pair(|i| {
+            if loaded[i] < free[i] {
+                loaded[i] / free[i]
+            } else {
+                1.0
+            }
+        });
+        loaded_n = pair(|i| {
+            loaded_n[i] + (idle[i] * share[i] * shoulder[i]).abs() * (idle_arc[i] / pitch)
+        });
+    }
+    Branches {
+        loaded,
+        other,
+        free,
+        gap,
+        loss_loaded_nm: pair(|i| r * loaded_n[i]), // SL-7
+        loss_other_nm: pair(|i| r * (other[i] * total_other[i]).abs()), // SL-7
+        active_segments: k,
+    }
+}
+
+/// Slip of both pulleys and its loss (SL-1 to SL-9).
+#[must_use]
+#[inline(always)]
+pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip {
+    let contact = Contact::new(belt, at, t, mu_segment);
+    let b = branches(&contact);
+    let x = contact.compression_n * at.prepared.per_blend_n;
+    // SL-8: (1 + tanh x)/2
+    let w = if x > ALONE {
+        1.0
+    } else if x < -ALONE {
+        0.0
+    } else {
+        1.0 / (1.0 + exp(-2.0 * x))
+    };
+    let mix = |conventional: f64, inverted: f64| w * conventional + (1.0 - w) * inverted;
+    let other = if belt.formulation.flips_inverted_primary() {
+        b.other[1]
+    } else {
+        -b.other[1]
+    }; // SL-6
+    let branch = usize::from(x < 0.0);
+    let gap = pair(|i| {
+        if b.free[i] > b.loaded[i] {
+            b.gap[i] * (b.loaded[i] / b.free[i])
+        } else {
+            b.gap[i]
+        }
+    }); // SL-9
+    Slip {
+        primary: mix(b.loaded[0], other),
+        secondary: mix(b.other[0].abs(), -b.loaded[1]),
+        gap: mix(gap[0], gap[1]),
+        idle: mix(b.loaded[0] - gap[0], b.loaded[1] - gap[1]),
+        primary_loss_nm: mix(b.loss_loaded_nm[0], b.loss_other_nm[1]),
+        secondary_loss_nm: mix(b.loss_other_nm[0], b.loss_loaded_nm[1]),
+        active_segments: b.active_segments[branch],
+        held: b.free[branch] > b.loaded[branch],
+    }
+}

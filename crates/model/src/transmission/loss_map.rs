@@ -1,0 +1,48 @@
+//! A measured torque-loss map that replaces a component's model.
+//!
+//! Coordinates: ratio (belt ratio, or gear number of a manual box), input speed rad/s, torque Nm, secondary pressure Pa,
+//! oil temperature K. Value: torque loss at the box's input shaft, Nm. Outside the map the edge's value holds and the row is flagged.
+
+use crate::math::Grid;
+
+/// A measured torque-loss map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LossMap {
+    grid: Grid,
+}
+
+/// Where a map is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapPoint {
+    /// Belt ratio, or gear number.
+    pub ratio: f64,
+    /// Input shaft speed, rad/s.
+    pub input_speed_rad_s: f64,
+    /// Transmitted torque as the map's column says, Nm.
+    pub torque_nm: f64,
+    /// Secondary pressure, Pa.
+    pub pressure_pa: f64,
+    /// Oil temperature, K.
+    pub oil_k: f64,
+}
+
+impl LossMap {
+    /// A map from its grid.
+    #[must_use]
+    pub fn new(grid: Grid) -> Self {
+        LossMap { grid }
+    }
+
+    /// Torque loss at the input shaft, Nm, never negative, and whether the point lies within the map.
+    #[must_use]
+    pub fn loss_nm(&self, p: &MapPoint) -> (f64, bool) {
+        let (loss, inside) = self.grid.at([
+            p.ratio,
+            p.input_speed_rad_s,
+            p.torque_nm,
+            p.pressure_pa,
+            p.oil_k,
+        ]);
+        (if loss > 0.0 { loss } else { 0.0 }, inside)
+    }
+}

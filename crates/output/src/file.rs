@@ -1,0 +1,125 @@
+//! One file of a command: it appears under its name when it is complete, or not at all.
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use super::files::{failed, problem, sync_directory, temporary_in};
+use cvtcycle_config::Problem;
+
+/// A file that is written under a temporary name beside its own; dropped before [`OutputFile::commit`], it goes again.
+#[derive(Debug)]
+pub struct OutputFile {
+    path: PathBuf,
+    out: BufWriter<NamedTempFile>,
+    force: bool,
+}
+
+impl OutputFile {
+    /// Begins a file. Fails at once if it cannot be written in its directory, or if a file of that name exists and `force` is not set.
+    ///
+    /// # Errors
+    /// A problem of `--out` that says what is in the way.
+    pub fn create(path: impl AsRef<Path>, force: bool) -> Result<Self, Problem> {
+        let path = path.as_ref().to_path_buf();
+        if path.file_name().is_none() {
+            return Err(problem(
+                &path,
+                "the name of the output file is empty",
+                "name a file, for example --out points.csv",
+            ));
+        }
+        check_target(&path, force)?;
+        let folder = folder(&path);
+        let out = temporary_in(&folder).map_err(|error| {
+            failed(
+                &path,
+                &format!("cannot write in {}", folder.display()),
+                &error,
+            )
+        })?;
+        Ok(OutputFile {
+            path,
+            out: BufWriter::new(out),
+            force,
+        })
+    }
+
+    /// Where the file will stand.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// A problem of `--out`; no file of that name has then appeared or changed.
+    pub fn commit(self) -> Result<PathBuf, Problem> {
+        let OutputFile { path, out, force } = self;
+        // Somebody else may have written it meanwhile.
+        check_target(&path, force)?;
+        let written = out
+            .into_inner()
+            .map_err(io::IntoInnerError::into_error)
+            .and_then(|file| {
+                file.as_file().sync_all()?;
+                file.persist(&path).map_err(|error| error.error)
+            });
+        written
+            .map_err(|error| failed(&path, &format!("cannot write {}", path.display()), &error))?;
+        sync_directory(&folder(&path));
+        Ok(path)
+    }
+
+    /// The problem of an error in writing.
+    #[must_use]
+    pub fn cannot_write(&self, error: &io::Error) -> Problem {
+        failed(
+            &self.path,
+            &format!("cannot write {}", self.path.display()),
+            error,
+        )
+    }
+}
+
+impl Write for OutputFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+fn folder(path: &Path) -> PathBuf {
+    let parent = path
+        .parent()
+        .filter(|parent| !parent.as_os_str().is_empty());
+    parent.map_or_else(|| PathBuf::from("."), Path::to_path_buf)
+}
+
+fn check_target(path: &Path, force: bool) -> Result<(), Problem> {
+    let Ok(found) = fs::symlink_metadata(path) else {
+        return Ok(());
+    };
+    let name = path.display();
+    if !found.is_file() && !found.is_symlink() {
+        return Err(problem(
+            path,
+            &format!("{name} exists and is not a plain file"),
+            "choose another name",
+        ));
+    }
+    if force {
+        return Ok(());
+    }
+    Err(problem(
+        path,
+        &format!("{name} exists"),
+        "choose another name, or replace it with --force",
+    ))
+}

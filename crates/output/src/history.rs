@@ -1,0 +1,225 @@
+//! The trace of a car by column: what plots and reports read, whether the run has just been driven or lies on disk.
+//!
+//! Numbers are in the units of [`columns`](super::columns). A history that was written and read again has the same numbers, bit by bit.
+
+mod read;
+
+pub use read::{AGAIN, FLAGS, too_many_phases};
+
+use super::columns::{COLUMNS, Column, Scope, Value, column, loss_column};
+use super::{Component, Flags, Row};
+
+/// Most steps of a trace that is read: as many as a cycle may have rows, 23 days at 1 s. Some 500 bytes of memory each.
+pub const MOST_STEPS: usize = 2_000_000;
+/// Most phases, as of a cycle.
+const MOST_PHASES: usize = 200;
+/// What helps with a trace that is too long.
+pub const SHORTER: &str = "run it again with a larger --dt, or a part of the cycle";
+
+/// The steps of one car through one cycle, by column.
+#[derive(Clone, Debug, Default)]
+pub struct History {
+    columns: Vec<(&'static Column, Vec<f64>)>,
+    phases: Vec<String>,
+    phase: Vec<usize>,
+    flags: Vec<Flags>,
+}
+
+impl History {
+    /// Rows of a run as columns. `phases` are the names that belong to [`Row::phase`]; only those that occur are kept, in their order.
+    #[must_use]
+    pub fn of(rows: &[Row], columns: &[&'static Column], phases: &[String]) -> Self {
+        let numbers = |column: &&'static Column| {
+            (
+                *column,
+                rows.iter().map(|row| plain(column.number(row))).collect(),
+            )
+        };
+        let mut history = History {
+            columns: columns
+                .iter()
+                .filter(|column| is_number(column))
+                .map(numbers)
+                .collect(),
+            ..History::default()
+        };
+        for row in rows {
+            let name = phases
+                .get(usize::from(row.phase))
+                .map_or("", String::as_str);
+            history.step(name, row.flags);
+        }
+        history
+    }
+
+    /// A history of these columns without steps yet.
+    pub fn empty(columns: &[&'static Column]) -> Self {
+        History {
+            columns: columns.iter().map(|column| (*column, Vec::new())).collect(),
+            ..History::default()
+        }
+    }
+
+    /// Puts the numbers of a column in place.
+    pub fn put(&mut self, name: &str, numbers: Vec<f64>) {
+        if let Some((_, own)) = self
+            .columns
+            .iter_mut()
+            .find(|(column, _)| column.name == name)
+        {
+            *own = numbers;
+        }
+    }
+
+    /// Appends phase and flags of a step.
+    pub fn step(&mut self, phase: &str, flags: Flags) {
+        // A phase mostly is that of the step before.
+        let known = |at: &usize| self.phases.get(*at).is_some_and(|name| name == phase);
+        let before = self.phase.last().copied().filter(known);
+        let index = before
+            .or_else(|| self.phases.iter().position(|name| name == phase))
+            .unwrap_or_else(|| {
+                self.phases.push(phase.to_owned());
+                self.phases.len() - 1
+            });
+        self.phase.push(index);
+        self.flags.push(flags);
+    }
+
+    /// The numbers of a column, one a step, in the unit of the column; NaN where there is none. Empty for a column that is not there
+    /// or that holds words.
+    #[must_use]
+    pub fn column(&self, name: &str) -> &[f64] {
+        self.columns
+            .iter()
+            .find(|(column, _)| column.name == name)
+            .map_or(&[], |(_, numbers)| numbers)
+    }
+
+    /// All columns of numbers, in the order of the table.
+    pub fn columns(&self) -> impl Iterator<Item = (&'static Column, &[f64])> {
+        self.columns
+            .iter()
+            .map(|(column, numbers)| (*column, numbers.as_slice()))
+    }
+
+    /// Whether there is a column of numbers of that name.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.columns.iter().any(|(column, _)| column.name == name)
+    }
+
+    /// Whether the car has a belt; otherwise it has gears.
+    #[must_use]
+    pub fn is_cvt(&self) -> bool {
+        self.has("belt_ratio")
+    }
+
+    /// Ends of the steps, s.
+    #[must_use]
+    pub fn time_s(&self) -> &[f64] {
+        self.column("time_s")
+    }
+
+    /// Lengths of the steps, s.
+    #[must_use]
+    pub fn dt_s(&self) -> &[f64] {
+        self.column("dt_s")
+    }
+
+    /// Number of steps.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.flags.len()
+    }
+
+    /// Whether there is no step.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.flags.is_empty()
+    }
+
+    /// Names of the phases, in the order in which they begin.
+    #[must_use]
+    pub fn phases(&self) -> &[String] {
+        &self.phases
+    }
+
+    /// The phase of a step, as index into [`History::phases`]; 0 beyond the last step.
+    #[must_use]
+    pub fn phase(&self, step: usize) -> usize {
+        self.phase.get(step).copied().unwrap_or(0)
+    }
+
+    /// Flags of a step; none beyond the last one.
+    #[must_use]
+    pub fn flags(&self, step: usize) -> Flags {
+        self.flags.get(step).copied().unwrap_or_default()
+    }
+
+    /// The loss components that have a column, in the order of the power flow.
+    #[must_use]
+    pub fn components(&self) -> Vec<Component> {
+        Component::ALL
+            .into_iter()
+            .filter(|component| loss_column(*component).is_some_and(|column| self.has(column.name)))
+            .collect()
+    }
+
+    /// Loss power of a component at each step, W; empty if the car has none.
+    #[must_use]
+    pub fn loss_w(&self, component: Component) -> &[f64] {
+        loss_column(component).map_or(&[], |column| self.column(column.name))
+    }
+}
+
+/// A number as the files keep it: NaN where it is not finite, zero without a sign.
+fn plain(number: f64) -> f64 {
+    if number.is_finite() {
+        number + 0.0
+    } else {
+        f64::NAN
+    }
+}
+
+/// Whether the cells of a column are numbers.
+pub fn is_number(column: &Column) -> bool {
+    matches!(
+        (column.get)(&Row::default()),
+        Value::Number(_) | Value::Count(_)
+    )
+}
+
+/// The flags of a cell; the first word that is no flag, where there is one.
+pub fn flags_of(cell: &str) -> Result<Flags, &str> {
+    let mut flags = Flags::default();
+    for word in cell.split('|').filter(|_| !cell.is_empty()) {
+        let (flag, _) = Flags::NAMES
+            .iter()
+            .find(|(_, name)| *name == word)
+            .ok_or(word)?;
+        flags.set(*flag, true);
+    }
+    Ok(flags)
+}
+
+/// The columns that a trace with the columns `there` has to have besides: those of every trace, and of one with a belt or with gears.
+pub fn missing(there: &[&'static Column]) -> Vec<&'static Column> {
+    let cvt = there.iter().any(|column| column.scope == Scope::Cvt);
+    let kind = if cvt { Scope::Cvt } else { Scope::Manual };
+    let wanted = |own: &&Column| own.scope == Scope::Always || own.scope == kind;
+    COLUMNS
+        .iter()
+        .filter(wanted)
+        .filter(|own| !there.iter().any(|column| column.name == own.name))
+        .collect()
+}
+
+/// The columns of these names that this program knows, in the order of the table.
+pub fn known<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'static Column> {
+    let list: Vec<&Column> = names.filter_map(column).collect();
+    COLUMNS
+        .iter()
+        .filter(|own| list.iter().any(|column| column.name == own.name))
+        .collect()
+}

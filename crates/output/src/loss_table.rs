@@ -1,0 +1,163 @@
+//! Our losses in the form of the measured maps that a vehicle file can name: `[transmission.cvt.maps]`, `[transmission.manual.maps]`.
+//!
+//! The torque axis of such a map is the component's own: at the secondary pulley for the belt, behind it without the final drive's loss
+//! for the final drive, at the input shaft for a manual box. The other components of a CVT do not depend on torque.
+
+use std::io::{self, Write};
+
+use super::losses::{Axis, LossGrid, bench_point};
+use crate::Component;
+use crate::columns::Value;
+use crate::trace::push_value;
+use cvtcycle_model::bench::{Bench, BenchPoint, Parts};
+use cvtcycle_model::transmission::Transmission;
+
+/// A component that a map can stand for, named like its key in the vehicle file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapPart {
+    /// Whole belt.
+    Belt,
+    /// Pump.
+    Pump,
+    /// Input shaft.
+    InputShaft,
+    /// Reverse clutch drag.
+    ClutchDrag,
+    /// Final drive of the CVT.
+    FinalDrive,
+    /// Whole manual box.
+    Box,
+}
+
+impl MapPart {
+    /// Names as in the vehicle file.
+    pub const NAMES: [(&'static str, MapPart); 6] = [
+        ("belt", MapPart::Belt),
+        ("pump", MapPart::Pump),
+        ("input_shaft", MapPart::InputShaft),
+        ("clutch_drag", MapPart::ClutchDrag),
+        ("final_drive", MapPart::FinalDrive),
+        ("box", MapPart::Box),
+    ];
+
+    /// Whether it is a part of a CVT; otherwise of a manual box.
+    #[must_use]
+    pub fn of_cvt(self) -> bool {
+        self != MapPart::Box
+    }
+
+    /// The torque column of its map, if its loss depends on torque.
+    #[must_use]
+    pub fn torque_column(self) -> Option<&'static str> {
+        match self {
+            MapPart::Belt | MapPart::FinalDrive => Some("output_torque_nm"),
+            MapPart::Box => Some("input_torque_nm"),
+            MapPart::Pump | MapPart::InputShaft | MapPart::ClutchDrag => None,
+        }
+    }
+
+    /// Loss at a point whose torque is the map's own, Nm at the input shaft.
+    #[must_use]
+    pub fn loss_nm(self, bench: &Bench, point: &BenchPoint) -> f64 {
+        let part = |component: Component, point: &BenchPoint| bench.solve(point).part_nm(component);
+        match self {
+            MapPart::Pump => part(Component::Pump, point),
+            MapPart::InputShaft => part(Component::InputShaft, point),
+            MapPart::ClutchDrag => part(Component::ClutchDrag, point),
+            MapPart::FinalDrive => part(
+                Component::FinalDrive,
+                &BenchPoint {
+                    output_nm: point.output_nm * own_ratio(bench, point),
+                    ..*point
+                },
+            ),
+            MapPart::Belt => {
+                // Without the final drive the pulley's torque is what was asked for.
+                let parts = Parts {
+                    final_drive: false,
+                    ..point.parts
+                };
+                bench
+                    .solve(&BenchPoint {
+                        output_nm: point.output_nm * own_ratio(bench, point),
+                        parts,
+                        ..*point
+                    })
+                    .belt_nm()
+            }
+            MapPart::Box => bench.solve(&at_input_torque(bench, point)).total_nm(),
+        }
+    }
+}
+
+/// Final drive of a CVT, overall ratio of a manual box's gear.
+fn own_ratio(bench: &Bench, point: &BenchPoint) -> f64 {
+    match &bench.car().transmission {
+        Transmission::Cvt(cvt) => cvt.final_drive,
+        Transmission::Manual(manual) => manual.overall[point.ratio as usize - 1],
+    }
+}
+
+/// The point at which the box takes the point's torque at its input instead of giving it at its output.
+fn at_input_torque(bench: &Bench, point: &BenchPoint) -> BenchPoint {
+    let (wanted_nm, overall) = (point.output_nm, own_ratio(bench, point));
+    let mut found = BenchPoint {
+        output_nm: wanted_nm * overall,
+        ..*point
+    };
+    // The losses change by a few per cent of the torque, so that each pass leaves a few per cent of the error.
+    for _ in 0..60 {
+        let miss = bench.solve(&found).input_nm - wanted_nm;
+        if miss.abs() <= 1e-13 * (1.0 + wanted_nm.abs()) {
+            break;
+        }
+        found.output_nm -= miss * overall;
+    }
+    found
+}
+
+/// Columns of the map over a grid, with the grid's axis where the cell comes from one.
+fn map_columns(part: MapPart, grid: &LossGrid) -> Vec<(&'static str, Axis)> {
+    let mut list = vec![
+        (if part.of_cvt() { "ratio" } else { "gear" }, Axis::Ratio),
+        ("input_speed_rpm", Axis::Speed),
+    ];
+    list.extend(part.torque_column().map(|name| (name, Axis::Torque)));
+    if !grid.of(Axis::Pressure).is_empty() {
+        list.push(("secondary_pressure_bar", Axis::Pressure));
+    }
+    list.push(("oil_temp_degc", Axis::Sump));
+    list
+}
+
+/// Writes the map of a component over a grid as CSV, one line a point.
+///
+/// # Errors
+/// Whatever `out` reports.
+pub fn write_map(
+    out: &mut dyn Write,
+    bench: &Bench,
+    part: MapPart,
+    grid: &LossGrid,
+) -> io::Result<()> {
+    let columns = map_columns(part, grid);
+    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+    writeln!(out, "{},torque_loss_nm", names.join(","))?;
+    let mut line = String::new();
+    for index in 0..grid.len() {
+        let asked = grid.at(index);
+        line.clear();
+        for (_, axis) in &columns {
+            push_value(&mut line, Value::Number(asked[*axis as usize]), &[]);
+            line.push(',');
+        }
+        push_value(
+            &mut line,
+            Value::Number(part.loss_nm(bench, &bench_point(&asked))),
+            &[],
+        );
+        line.push('\n');
+        out.write_all(line.as_bytes())?;
+    }
+    Ok(())
+}

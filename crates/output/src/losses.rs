@@ -1,0 +1,475 @@
+//! Component losses at one operating point or over a grid of points, as rows with named columns.
+//!
+//! The values of a grid stay in the units of their columns: what the user wrote is written back unchanged.
+
+use crate::columns::Value;
+use crate::{Component, Flags};
+use cvtcycle_config::to_si;
+use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
+use cvtcycle_model::drive::components;
+use cvtcycle_model::transmission::Transmission;
+
+/// Most points of a grid.
+pub const MOST_POINTS: usize = 1_000_000;
+
+/// What a grid can vary, outermost first: the last one runs fastest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(usize)]
+pub enum Axis {
+    /// Belt ratio, or gear of a manual box.
+    Ratio,
+    /// Oil in the sump, degC.
+    Sump,
+    /// Belt and spray, degC; in steady state over the sump where it is not given.
+    Belt,
+    /// Throttle that the clamp law sees.
+    Throttle,
+    /// Secondary pressure, bar; the clamp law's where it is not given.
+    Pressure,
+    /// Torque at the output shaft, Nm.
+    Torque,
+    /// Speed of the input shaft, rpm.
+    Speed,
+}
+
+impl Axis {
+    /// Number of axes.
+    pub const COUNT: usize = 7;
+    /// All axes, outermost first.
+    pub const ALL: [Axis; Self::COUNT] = [
+        Axis::Ratio,
+        Axis::Sump,
+        Axis::Belt,
+        Axis::Throttle,
+        Axis::Pressure,
+        Axis::Torque,
+        Axis::Speed,
+    ];
+
+    /// Title of a plot's axis.
+    #[must_use]
+    pub fn title(self, cvt: bool) -> &'static str {
+        match self {
+            Axis::Ratio if cvt => "Belt ratio",
+            Axis::Ratio => "Gear",
+            Axis::Sump => "Oil in the sump [\u{b0}C]",
+            Axis::Belt => "Belt and spray [\u{b0}C]",
+            Axis::Throttle => "Throttle",
+            Axis::Pressure => "Secondary pressure [bar]",
+            Axis::Torque => "Torque at the output shaft [Nm]",
+            Axis::Speed => "Input speed [rpm]",
+        }
+    }
+}
+
+/// Values of all axes, each in the unit of its column. Empty: not given, for belt temperature and pressure only.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LossGrid {
+    /// Values by [`Axis`].
+    pub values: [Vec<f64>; Axis::COUNT],
+}
+
+impl LossGrid {
+    /// Values of one axis.
+    #[must_use]
+    pub fn of(&self, axis: Axis) -> &[f64] {
+        &self.values[axis as usize]
+    }
+
+    /// Axes with more than one value, outermost first.
+    #[must_use]
+    pub fn varied(&self) -> Vec<Axis> {
+        Axis::ALL
+            .into_iter()
+            .filter(|axis| self.of(*axis).len() > 1)
+            .collect()
+    }
+
+    /// Number of points, as a float: it may exceed what can be counted.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.values.iter().map(|v| v.len().max(1) as f64).product()
+    }
+
+    /// Number of points of a grid that is not too large.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.values.iter().map(|v| v.len().max(1)).product()
+    }
+
+    /// Whether there is no point; never, since an axis without values counts as one.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Index of the value of each axis at a point.
+    #[must_use]
+    pub fn indices(&self, mut index: usize) -> [usize; Axis::COUNT] {
+        let mut out = [0; Axis::COUNT];
+        for (place, values) in out.iter_mut().zip(&self.values).rev() {
+            let count = values.len().max(1);
+            *place = index % count;
+            index /= count;
+        }
+        out
+    }
+
+    /// The values of a point, NaN where an axis is not given.
+    #[must_use]
+    pub fn at(&self, index: usize) -> [f64; Axis::COUNT] {
+        let indices = self.indices(index);
+        std::array::from_fn(|k| self.values[k].get(indices[k]).copied().unwrap_or(f64::NAN))
+    }
+
+    /// Solves all points one after the other.
+    pub fn rows<'a>(&'a self, bench: &'a Bench) -> impl Iterator<Item = LossRow> + 'a {
+        (0..self.len()).map(|index| LossRow::new(bench, self.at(index)))
+    }
+}
+
+/// One solved point.
+#[derive(Clone, Copy, Debug)]
+pub struct LossRow {
+    /// What was asked for, by [`Axis`] in the units of the columns; NaN where not given.
+    pub asked: [f64; Axis::COUNT],
+    /// The same in SI units.
+    pub point: BenchPoint,
+    /// The bench's answer.
+    pub answer: BenchAnswer,
+}
+
+/// The point that values in the units of the columns mean.
+#[must_use]
+pub fn bench_point(asked: &[f64; Axis::COUNT]) -> BenchPoint {
+    let value = |axis: Axis| asked[axis as usize];
+    let given =
+        |axis: Axis, suffix: &str| Some(to_si(suffix, value(axis))).filter(|x| x.is_finite());
+    BenchPoint {
+        ratio: value(Axis::Ratio),
+        input_rad_s: to_si("_rpm", value(Axis::Speed)),
+        output_nm: value(Axis::Torque),
+        throttle: value(Axis::Throttle),
+        pressure_pa: given(Axis::Pressure, "_bar"),
+        sump_k: to_si("_degc", value(Axis::Sump)),
+        belt_k: given(Axis::Belt, "_degc"),
+        ..BenchPoint::default()
+    }
+}
+
+impl LossRow {
+    /// Solves a point.
+    #[must_use]
+    pub fn new(bench: &Bench, asked: [f64; Axis::COUNT]) -> Self {
+        let point = bench_point(&asked);
+        LossRow {
+            asked,
+            point,
+            answer: bench.solve(&point),
+        }
+    }
+
+    /// Power at the input shaft, W.
+    #[must_use]
+    pub fn input_w(&self) -> f64 {
+        self.answer.input_nm * self.point.input_rad_s
+    }
+
+    /// Power at the output shaft, W.
+    #[must_use]
+    pub fn output_w(&self) -> f64 {
+        self.point.output_nm * self.answer.output_rad_s
+    }
+
+    /// Power out over power in, whichever way it flows; NaN where both shafts drive.
+    #[must_use]
+    pub fn efficiency(&self) -> f64 {
+        let (input, output) = (self.input_w(), self.output_w());
+        if input > 0.0 && output >= 0.0 {
+            output / input
+        } else if input <= 0.0 && output < 0.0 {
+            input / output
+        } else {
+            f64::NAN
+        }
+    }
+
+    /// Belt slip as a fraction; NaN without a belt model.
+    #[must_use]
+    pub fn slip(&self) -> f64 {
+        self.answer.belt.map_or(f64::NAN, |belt| belt.slip_total)
+    }
+
+    /// Torque capacity of the belt over its torque; infinite without load, NaN without a belt model.
+    #[must_use]
+    pub fn clamp_safety(&self) -> f64 {
+        self.answer.belt.map_or(f64::NAN, |belt| {
+            let secondary_nm = (belt.input_torque_nm - belt.loss_nm()) * self.point.ratio
+                / (1.0 - belt.slip_total);
+            belt.capacity_nm / secondary_nm.abs()
+        })
+    }
+
+    /// How the belt's solution ended, as in the `belt` command; empty without a belt model.
+    #[must_use]
+    pub fn belt_status(&self) -> &'static str {
+        match self.answer.belt {
+            None => "",
+            Some(belt) if belt.slip_total.is_nan() => "no_active_arc",
+            Some(belt) if belt.gross_slip => "gross_slip",
+            Some(_) => "ok",
+        }
+    }
+
+    fn asked_or(&self, axis: Axis, answered: f64) -> f64 {
+        let asked = self.asked[axis as usize];
+        if asked.is_nan() { answered } else { asked }
+    }
+}
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug)]
+enum Cell {
+    Number(fn(&LossRow) -> f64),
+    Gear,
+    Loss(Component),
+    BeltStatus,
+    Flags,
+}
+
+/// One column of the rows.
+#[derive(Clone, Debug)]
+pub struct LossColumn {
+    /// Name, ending in its unit where it has one.
+    pub name: String,
+    /// Unit; `-` for plain ratios, empty for words.
+    pub unit: &'static str,
+    /// What it holds, one phrase.
+    pub doc: &'static str,
+    cell: Cell,
+}
+
+impl LossColumn {
+    /// Its cell in a row.
+    #[must_use]
+    pub fn value(&self, row: &LossRow) -> Value {
+        match self.cell {
+            Cell::Number(get) => Value::Number(get(row)),
+            Cell::Gear => Value::Count(row.asked[Axis::Ratio as usize] as u32),
+            Cell::Loss(component) => Value::Number(row.answer.part_nm(component)),
+            Cell::BeltStatus => Value::Text(row.belt_status()),
+            Cell::Flags => Value::Flags(row.answer.flags),
+        }
+    }
+}
+
+/// Components that a bench knows: all but the launch clutch, which is locked.
+#[must_use]
+pub fn bench_components(transmission: &Transmission) -> Vec<Component> {
+    components(transmission)
+        .into_iter()
+        .filter(|c| *c != Component::LaunchClutch)
+        .collect()
+}
+
+/// Columns for a transmission, in the order in which they are written.
+#[must_use]
+pub fn columns(transmission: &Transmission) -> Vec<LossColumn> {
+    let cvt = transmission.is_cvt();
+    let number = |name: &str, unit, doc, get| LossColumn {
+        name: name.to_owned(),
+        unit,
+        doc,
+        cell: Cell::Number(get),
+    };
+    let mut list = vec![number(
+        "input_speed_rpm",
+        "rpm",
+        "speed of the input shaft",
+        |r| r.asked[Axis::Speed as usize],
+    )];
+    if cvt {
+        list.push(number(
+            "belt_ratio",
+            "-",
+            "belt ratio, secondary over primary running radius",
+            |r| r.asked[Axis::Ratio as usize],
+        ));
+    } else {
+        list.push(LossColumn {
+            name: "gear".to_owned(),
+            unit: "",
+            doc: "gear",
+            cell: Cell::Gear,
+        });
+    }
+    list.push(number(
+        "output_torque_nm",
+        "Nm",
+        "torque taken from the output shaft, after the final drive",
+        |r| r.point.output_nm,
+    ));
+    list.push(number(
+        "transmission_sump_degc",
+        "degC",
+        "transmission oil in the sump",
+        |r| r.asked[Axis::Sump as usize],
+    ));
+    if cvt {
+        let belt = |r: &LossRow| r.asked_or(Axis::Belt, r.answer.belt_k - 273.15);
+        let pressure = |r: &LossRow| r.asked_or(Axis::Pressure, r.answer.secondary_pa / 1e5);
+        list.push(number(
+            "belt_spray_degc",
+            "degC",
+            "belt, pulleys and the oil sprayed off them",
+            belt,
+        ));
+        list.push(number(
+            "throttle",
+            "-",
+            "throttle that the clamp law sees",
+            |r| r.point.throttle,
+        ));
+        list.push(number(
+            "secondary_pressure_bar",
+            "bar",
+            "secondary pulley pressure",
+            pressure,
+        ));
+        list.push(number("slip_percent", "%", "belt slip", |r| {
+            100.0 * r.slip()
+        }));
+        let segments = |r: &LossRow| {
+            r.answer
+                .belt
+                .map_or(f64::NAN, |belt| belt.slip.active_segments)
+        };
+        list.push(number(
+            "active_segments",
+            "-",
+            "segments that carry; whole numbers in the printed forms, 0 where there are none",
+            segments,
+        ));
+        let doc = "ok, gross_slip, or no_active_arc: no number of segments carries the load (printed forms only)";
+        list.push(LossColumn {
+            name: "belt_status".to_owned(),
+            unit: "",
+            doc,
+            cell: Cell::BeltStatus,
+        });
+        list.push(number(
+            "clamp_safety",
+            "-",
+            "torque capacity of the belt over its torque; none without load",
+            LossRow::clamp_safety,
+        ));
+    }
+    list.extend(
+        bench_components(transmission)
+            .into_iter()
+            .map(|component| LossColumn {
+                name: format!("{}_loss_nm", component.name()),
+                unit: "Nm",
+                doc: component_doc(component),
+                cell: Cell::Loss(component),
+            }),
+    );
+    list.push(number(
+        "total_loss_nm",
+        "Nm",
+        "all losses, torque at the input shaft",
+        |r| r.answer.total_nm(),
+    ));
+    list.push(number(
+        "input_torque_nm",
+        "Nm",
+        "torque at the input shaft",
+        |r| r.answer.input_nm,
+    ));
+    list.push(number(
+        "input_power_w",
+        "W",
+        "power at the input shaft",
+        LossRow::input_w,
+    ));
+    list.push(number(
+        "output_speed_rpm",
+        "rpm",
+        "speed of the output shaft",
+        |r| r.answer.output_rad_s * 30.0 / std::f64::consts::PI,
+    ));
+    list.push(number(
+        "output_power_w",
+        "W",
+        "power at the output shaft",
+        LossRow::output_w,
+    ));
+    list.push(number(
+        "efficiency",
+        "-",
+        "power out over power in; none where both shafts drive",
+        LossRow::efficiency,
+    ));
+    list.push(LossColumn {
+        name: "flags".to_owned(),
+        unit: "",
+        doc: "states and departures from validity",
+        cell: Cell::Flags,
+    });
+    list
+}
+
+fn component_doc(component: Component) -> &'static str {
+    match component {
+        Component::LaunchClutch => "loss of the launch clutch",
+        Component::Pump => "loss of the oil pump, torque at the input shaft",
+        Component::InputShaft => "loss of the input shaft's bearings and seals",
+        Component::ClutchDrag => "drag of the open reverse clutch",
+        Component::BeltBand => {
+            "boundary friction between bands and between band and segments, torque at the input shaft"
+        }
+        Component::BeltFilm => "viscous shear between the bands, torque at the input shaft",
+        Component::BeltSlip => {
+            "sliding of the segments along the pulleys, torque at the input shaft"
+        }
+        Component::BeltWedge => "wedging at pulley entry and exit, torque at the input shaft",
+        Component::BeltPenetration => {
+            "penetration into the deflected pulleys, torque at the input shaft"
+        }
+        Component::BeltMap => {
+            "loss of the whole belt from its measured map, torque at the input shaft"
+        }
+        Component::FinalDrive => "loss of the final drive, torque at the input shaft",
+        Component::GearMesh => {
+            "gear mesh loss of the manual box with its final drive, torque at the input shaft"
+        }
+        Component::Bearing => "bearing loss of the manual box",
+        Component::Churning => "churning loss of the manual box",
+        Component::Seal => "seal loss of the manual box",
+        Component::BoxMap => {
+            "loss of the whole manual box from its measured map, torque at the input shaft"
+        }
+    }
+}
+
+/// Flags that stand in at least one of the rows, with the number of rows, in the order of the bits.
+#[derive(Clone, Debug, Default)]
+pub struct FlagCount([usize; Flags::NAMES.len()]);
+
+impl FlagCount {
+    /// Counts a row.
+    pub fn add(&mut self, flags: Flags) {
+        for (count, (flag, _)) in self.0.iter_mut().zip(Flags::NAMES) {
+            *count += usize::from(flags.contains(flag));
+        }
+    }
+
+    /// Names and numbers of those that occurred.
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        Flags::NAMES
+            .iter()
+            .zip(self.0)
+            .filter(|(_, n)| *n > 0)
+            .map(|((_, name), n)| (*name, n))
+    }
+}

@@ -1,0 +1,339 @@
+//! What a car was made from: its files with their hashes, what differs from the shipped vehicle most like it, every value.
+
+use std::f64::consts::PI;
+
+use crate::hash::hash;
+use crate::record::{
+    CarRecord, Change, CycleRecord, FileRecord, FuelMapRecord, SpeedLine, ValueRecord,
+};
+use crate::summary::finite;
+use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::setup::{Kind, Options, Setup, embedded_vehicles, is_path, load, text_of};
+use cvtcycle_config::{KeyInfo, Problem, unit_of};
+use cvtcycle_model::drive::fuel_map;
+use cvtcycle_model::road::REFERENCE_K;
+use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::cvt::Cvt;
+use cvtcycle_model::transmission::cvt::controller::RatioDemand;
+
+const RPM: f64 = 30.0 / PI;
+/// Speed up to which lines of the variogram are drawn, km/h.
+const FASTEST_KMH: f64 = 200.0;
+/// Shares of rated power for which targets of a ratio control are told, with their names.
+const TARGETS: [(f64, &str); 4] = [
+    (-0.05, "target in overrun"),
+    (0.10, "target, 10 % of rated power"),
+    (0.30, "target, 30 % of rated power"),
+    (0.60, "target, 60 % of rated power"),
+];
+
+/// A cycle's name and hash.
+#[must_use]
+pub fn cycle_record(cycle: &Cycle) -> CycleRecord {
+    CycleRecord {
+        name: cycle.name.clone(),
+        title: cycle.title.clone(),
+        sha256: hash(format!("{cycle:?}").as_bytes()),
+    }
+}
+
+/// What is known of a car. `name` is its name within the run, `word` what the user calls it.
+///
+/// # Errors
+/// Problems of files, none where the car has just been loaded from them.
+pub fn car_record(
+    name: &str,
+    word: &str,
+    options: &Options,
+    setup: &Setup,
+) -> Result<CarRecord, Vec<Problem>> {
+    let (file, text, disk) = text_of(word, Kind::Vehicle, "--vehicle")?;
+    let fluid = |asked: &Option<String>, key: &str| {
+        let own = setup
+            .keys
+            .iter()
+            .find(|info| info.key == key)
+            .map_or("", |info| info.value.as_str());
+        let beside = if is_path(own) {
+            disk.folder.join(own).to_string_lossy().into_owned()
+        } else {
+            own.to_owned()
+        };
+        let (file, text, _) = text_of(asked.as_ref().unwrap_or(&beside), Kind::Lubricant, key)?;
+        Ok::<_, Vec<Problem>>(FileRecord {
+            file,
+            sha256: hash(text.as_bytes()),
+        })
+    };
+    let reference = reference(setup, word, options)?;
+    Ok(CarRecord {
+        name: name.to_owned(),
+        vehicle: FileRecord {
+            file,
+            sha256: hash(text.as_bytes()),
+        },
+        lubricant: fluid(&options.lubricant, "vehicle.transmission_oil")?,
+        engine_oil: fluid(&options.engine_oil, "vehicle.engine_oil")?,
+        resolved_sha256: hash(format!("{:?}", setup.car(REFERENCE_K)).as_bytes()),
+        reference_values: (reference.same, reference.setup.keys.len()),
+        changes: changes(&reference.setup.keys, &setup.keys),
+        reference: reference.setup.name,
+        values: setup.keys.iter().map(value).collect(),
+        fuel_map: fuel_map_record(setup),
+        speed_lines: speed_lines(setup),
+    })
+}
+
+/// The shipped vehicle most like a car.
+struct Reference {
+    setup: Setup,
+    same: usize,
+}
+
+/// A shipped vehicle is held against itself, a file of the user against the shipped one with which it shares most values.
+fn reference(setup: &Setup, word: &str, options: &Options) -> Result<Reference, Vec<Problem>> {
+    let plain = Options {
+        formulation: options.formulation,
+        ..Options::default()
+    };
+    let names = embedded_vehicles()
+        .iter()
+        .map(|(name, _)| *name)
+        .filter(|name| is_path(word) || *name == word);
+    let mut best: Option<Reference> = None;
+    for name in names {
+        let shipped = load(name, "--vehicle", &plain)?;
+        let same = setup
+            .keys
+            .iter()
+            .filter(|info| {
+                shipped
+                    .keys
+                    .iter()
+                    .any(|other| other.key == info.key && equal(other, info))
+            })
+            .count();
+        if best.as_ref().is_none_or(|best| same > best.same) {
+            best = Some(Reference {
+                setup: shipped,
+                same,
+            });
+        }
+    }
+    best.ok_or_else(Vec::new)
+}
+
+fn equal(a: &KeyInfo, b: &KeyInfo) -> bool {
+    match (a.si, b.si) {
+        (Some(a), Some(b)) => a.to_bits() == b.to_bits(),
+        _ => a.value == b.value,
+    }
+}
+
+/// Values that are other ones, or that only one of both has. What the user has set stands first.
+fn changes(shipped: &[KeyInfo], here: &[KeyInfo]) -> Vec<Change> {
+    let find = |list: &[KeyInfo], key: &str| list.iter().find(|info| info.key == key).cloned();
+    let mut list: Vec<(bool, Change)> = Vec::new();
+    for info in here {
+        let other = find(shipped, &info.key);
+        let same = match &other {
+            Some(other) => equal(other, info),
+            None => info.value.is_empty(),
+        };
+        if !same {
+            list.push((
+                info.status == "set",
+                change(&info.key, other.as_ref(), Some(info)),
+            ));
+        }
+    }
+    let gone = shipped
+        .iter()
+        .filter(|info| !info.value.is_empty() && find(here, &info.key).is_none());
+    list.extend(gone.map(|info| (false, change(&info.key, Some(info), None))));
+    list.sort_by_key(|(set, _)| !set);
+    list.into_iter().map(|(_, change)| change).collect()
+}
+
+fn change(key: &str, shipped: Option<&KeyInfo>, here: Option<&KeyInfo>) -> Change {
+    let text = |info: Option<&KeyInfo>| info.map_or(String::new(), |info| info.value.clone());
+    Change {
+        key: key.to_owned(),
+        unit: unit_of(key).to_owned(),
+        shipped: text(shipped),
+        here: text(here),
+    }
+}
+
+fn value(info: &KeyInfo) -> ValueRecord {
+    let info = info.clone();
+    ValueRecord {
+        key: info.key,
+        value: info.value,
+        unit: info.unit,
+        status: info.status,
+        source: info.source,
+        doc: info.doc,
+    }
+}
+
+fn fuel_map_record(setup: &Setup) -> FuelMapRecord {
+    /// kg/J to g/kWh.
+    const G_KWH: f64 = 3.6e9;
+    let map = fuel_map(setup);
+    FuelMapRecord {
+        speed_rpm: map.speed_rad_s.iter().map(|w| w * RPM).collect(),
+        torque_nm: map.torque_nm,
+        bsfc_g_kwh: map
+            .bsfc_kg_j
+            .iter()
+            .map(|row| row.iter().map(|b| finite(b * G_KWH)).collect())
+            .collect(),
+        full_load_nm: map.full_load_nm,
+    }
+}
+
+/// Engine speed over road speed, wheels and belt without slip: gears, or limits and targets of a ratio control.
+fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
+    let radius_m = setup.road_load.base.wheel_radius_m;
+    let highest_rpm = setup.engine().highest_rad_s * RPM;
+    // rpm per km/h in a whole ratio from engine to wheel.
+    let slope = |overall: f64| overall / 3.6 / radius_m * RPM;
+    let straight = |name: String, overall: f64| {
+        let fastest = (highest_rpm / slope(overall)).min(FASTEST_KMH);
+        SpeedLine {
+            name,
+            points: vec![(0.0, 0.0), (fastest, fastest * slope(overall))],
+        }
+    };
+    match setup.transmission() {
+        Transmission::Manual(manual) => manual
+            .overall
+            .iter()
+            .enumerate()
+            .map(|(k, r)| straight(format!("gear {}", k + 1), *r))
+            .collect(),
+        Transmission::Cvt(cvt) => {
+            let (low, high) = (
+                cvt.final_drive * cvt.ratio.low,
+                cvt.final_drive * cvt.ratio.high,
+            );
+            let limits = [
+                straight("lowest ratio".to_owned(), low),
+                straight("highest ratio".to_owned(), high),
+            ];
+            let target = |(share, name): &(f64, &str)| {
+                let rpm = target_rad_s(cvt, setup.engine().rated_w, *share) * RPM;
+                let (from, to) = (rpm / slope(low), (rpm / slope(high)).min(FASTEST_KMH));
+                SpeedLine {
+                    name: (*name).to_owned(),
+                    points: vec![(from, rpm), (to, rpm)],
+                }
+            };
+            limits
+                .into_iter()
+                .chain(TARGETS.iter().map(target))
+                .collect()
+        }
+    }
+}
+
+/// Speed that the control ends at for a steady share of rated power at the wheels, rad/s.
+fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
+    cvt.ratio.target_rad_s(&RatioDemand {
+        secondary_rad_s: 0.0,
+        power_w: share * rated_w,
+        rated_w,
+        full_load_rad_s: cvt
+            .full_load_route
+            .at(share * rated_w / cvt.ratio.route_efficiency),
+        ratio_before: 1.0,
+        flow_down_per_s: f64::INFINITY,
+        flow_up_per_s: f64::INFINITY,
+        coupled: true,
+        dt_s: 1.0,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record_of(word: &str, set: &[&str], lubricant: Option<&str>) -> CarRecord {
+        let set = set.iter().map(|s| (*s).to_owned()).collect();
+        let options = Options {
+            set,
+            lubricant: lubricant.map(str::to_owned),
+            ..Options::default()
+        };
+        let setup = load(word, "--vehicle", &options).unwrap_or_else(|p| unreachable!("{p:?}"));
+        car_record("car", word, &options, &setup).unwrap_or_else(|p| unreachable!("{p:?}"))
+    }
+
+    #[test]
+    fn a_shipped_car_differs_from_itself_in_nothing() {
+        for (name, text) in embedded_vehicles() {
+            let record = record_of(name, &[], None);
+            assert_eq!(
+                (record.reference.as_str(), record.changes.len()),
+                (*name, 0)
+            );
+            assert_eq!(record.reference_values.0, record.reference_values.1);
+            assert_eq!(record.vehicle.sha256, hash(text.as_bytes()));
+        }
+    }
+
+    #[test]
+    fn what_was_set_is_told_first_and_another_oil_in_full() {
+        let key = "transmission.cvt.belt.band_offset_mm";
+        let record = record_of(
+            "rover_216_cvt",
+            &[&format!("{key}=3.25"), "lubricant.density15_kg_m3=900"],
+            Some("dexron_ii"),
+        );
+        assert_eq!(
+            (
+                record.changes[0].key.as_str(),
+                record.changes[0].here.as_str(),
+                record.changes[0].unit.as_str()
+            ),
+            (key, "3.25", "mm")
+        );
+        assert!(!record.changes[0].shipped.is_empty());
+        assert_eq!(record.changes[1].key, "lubricant.density15_kg_m3");
+        assert!(
+            record
+                .changes
+                .iter()
+                .any(|c| c.key.starts_with("lubricant.") && c.key.contains("kv")),
+            "{:?}",
+            record.changes
+        );
+        assert!(record.lubricant.file.contains("dexron_ii"));
+    }
+
+    /// Lines from rest, each as steep as its ratio: between both limits lies the span of the file's belt ratios.
+    #[test]
+    fn lines_of_the_variogram_are_those_of_the_ratios() {
+        let record = record_of("rover_216_cvt", &[], None);
+        let lines = &record.speed_lines;
+        assert_eq!(
+            (lines[0].name.as_str(), lines[1].name.as_str(), lines.len()),
+            ("lowest ratio", "highest ratio", 6)
+        );
+        let number = |end: &str| {
+            let value = record
+                .values
+                .iter()
+                .find(|v| v.key.ends_with(end))
+                .map(|v| v.value.parse::<f64>());
+            value
+                .unwrap_or_else(|| unreachable!("{end}"))
+                .unwrap_or_else(|e| unreachable!("{e}"))
+        };
+        let slope = |line: &SpeedLine| line.points[1].1 / line.points[1].0;
+        let span = number(".ratio.low") / number(".ratio.high");
+        assert!((slope(&lines[0]) / slope(&lines[1]) / span - 1.0).abs() < 1e-12);
+        assert_eq!(record_of("rover_216_5mt", &[], None).speed_lines.len(), 5);
+    }
+}

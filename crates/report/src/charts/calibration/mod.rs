@@ -1,0 +1,177 @@
+//! Pictures of a calibration: what was measured against what is computed, before and after, and what is known of the parameters.
+
+mod correlation;
+mod parameters;
+mod residuals;
+mod scatter;
+#[cfg(test)]
+mod tests;
+mod trace;
+
+use super::Picture;
+use super::axis::round_step;
+use super::figure::{Anchor, Figure, INK, escape, text_width};
+use super::picture::cell;
+use super::symbol::Symbol;
+use cvtcycle_study::fit::outcome::{Outcome, Residual};
+
+pub use correlation::correlation_plot;
+pub use parameters::parameters_plot;
+pub use residuals::residuals_plot;
+pub use scatter::scatter_plot;
+pub use trace::trace_plots;
+
+/// Width of the pictures, pixels: on A4 their text is still read.
+const WIDTH: f64 = 880.0;
+const RIGHT: f64 = WIDTH - 24.0;
+const TOP: f64 = 58.0;
+const MARGIN: f64 = 12.0;
+/// Most observations that a picture shows; of traces with more, every second or third value and so on is shown.
+const MOST_SHOWN: usize = 600;
+/// Colours of what is computed: with the files' values, fitted, predicted.
+const BEFORE: &str = "#777777";
+const AFTER: &str = "#0072b2";
+const LEFT_OUT: &str = "#d55e00";
+
+/// All pictures that the outcome has data for, with names that can be those of files.
+#[must_use]
+pub fn calibration_pictures(outcome: &Outcome) -> Vec<(String, Picture)> {
+    let mut list = Vec::new();
+    if !outcome.residuals.is_empty() {
+        list.push(("measured_computed".to_owned(), scatter_plot(outcome)));
+        list.push(("residuals".to_owned(), residuals_plot(outcome)));
+    }
+    if !outcome.parameters.is_empty() {
+        list.push(("parameters".to_owned(), parameters_plot(outcome)));
+    }
+    if outcome.parameters.len() > 1 {
+        list.push(("correlation".to_owned(), correlation_plot(outcome)));
+    }
+    list.extend(trace_plots(outcome));
+    list
+}
+
+/// What a picture is of.
+fn subject(outcome: &Outcome) -> String {
+    let (data, free) = (outcome.residuals.len(), outcome.parameters.len());
+    let s = |n: usize| if n == 1 { "" } else { "s" };
+    format!(
+        "{}: {}, {data} observation{}, {free} parameter{}",
+        outcome.title,
+        outcome.vehicle,
+        s(data),
+        s(free)
+    )
+}
+
+/// Names of the groups in the order of the data.
+fn groups(outcome: &Outcome) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for residual in &outcome.residuals {
+        if !names.contains(&residual.group.as_str()) {
+            names.push(&residual.group);
+        }
+    }
+    names
+}
+
+/// The symbol of a group, the same in every picture.
+fn symbol(groups: &[&str], name: &str) -> Symbol {
+    Symbol::of(groups.iter().position(|group| *group == name).unwrap_or(0))
+}
+
+/// Indices of the observations that are shown, by group, and a word about what is left out.
+fn shown(outcome: &Outcome) -> (Vec<usize>, Option<String>) {
+    let all = &outcome.residuals;
+    let traced = all.iter().filter(|r| r.time_s.is_some()).count();
+    let single = all.len() - traced;
+    // Traces first: their neighbours look alike.
+    let of_traces = traced
+        .div_ceil(MOST_SHOWN.saturating_sub(single).max(MOST_SHOWN / 2))
+        .max(1);
+    let of_single = single.div_ceil(MOST_SHOWN).max(1);
+    let names = groups(outcome);
+    let (mut counts, mut kept) = ([0_usize; 2], Vec::new());
+    for name in names {
+        for (k, r) in all.iter().enumerate().filter(|(_, r)| r.group == name) {
+            let kind = usize::from(r.time_s.is_some());
+            if counts[kind].is_multiple_of([of_single, of_traces][kind]) {
+                kept.push(k);
+            }
+            counts[kind] += 1;
+        }
+    }
+    let left = all.len() - kept.len();
+    let note = (left > 0).then(|| {
+        format!(
+            "{} of {} observations are shown; residuals.csv has all.",
+            kept.len(),
+            all.len()
+        )
+    });
+    (kept, note)
+}
+
+/// Writes a name that ends at a place. Keys begin alike: one that is too wide loses its beginning, and shows whole under the pointer.
+fn key(figure: &mut Figure, at: (f64, f64), width: f64, attributes: &str, name: &str) {
+    let size = super::study::text::SIZE;
+    let mut ends = name
+        .char_indices()
+        .map(|(at, _)| format!("\u{2026}{}", &name[at..]));
+    let short = if text_width(name, size) <= width {
+        name.to_owned()
+    } else {
+        ends.find(|end| text_width(end, size) <= width)
+            .unwrap_or_default()
+    };
+    if short != name {
+        figure.raw(&format!("<g><title>{}</title>", escape(name)));
+    }
+    figure.text(at, size, Anchor::End, attributes, INK, &short);
+    if short != name {
+        figure.close();
+    }
+}
+
+/// Unit for a bracket.
+fn unit(unit: &str) -> &str {
+    match unit {
+        "" => "-",
+        // As keys have it.
+        "N m" => "Nm",
+        other => super::study::sign(other),
+    }
+}
+
+/// What tells an observation from the others.
+fn label(r: &Residual) -> String {
+    if r.what.is_empty() {
+        r.label.clone()
+    } else {
+        format!("{}: {}", r.label, r.what)
+    }
+}
+
+/// A number of an observation for a cell, with three digits of its standard deviation.
+fn in_sd(x: Option<f64>, r: &Residual) -> String {
+    let scale = if r.sd > 0.0 && r.sd.is_finite() {
+        r.sd
+    } else {
+        1.0
+    };
+    x.map_or_else(String::new, |x| cell(x, round_step(scale / 200.0)))
+}
+
+/// The measured number, or the range, as two cells.
+fn measured_cells(r: &Residual) -> [String; 2] {
+    [in_sd(r.low, r), in_sd(r.high, r)]
+}
+
+/// Whether a group has an error in common, and the sentence that has to go with computed numbers then.
+fn common_note(outcome: &Outcome) -> Option<String> {
+    let common = outcome.parameters.iter().any(|p| !p.is_key);
+    common.then(|| {
+        "Computed numbers are without the common error of a group; residuals are with it."
+            .to_owned()
+    })
+}

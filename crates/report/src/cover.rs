@@ -1,0 +1,230 @@
+//! The user's own title, logo, author and remarks, from a TOML file.
+//!
+//! ```toml
+//! title = "Band offset of 2 mm"
+//! subtitle = "Design review 7"
+//! author = "A. Engineer"
+//! organisation = "Example Ltd"
+//! date = "2026-11-21"
+//! logo = "logo.svg"        # PNG, JPEG or SVG, up to 500 kB, beside this file
+//! logo_words = "Example Ltd"
+//! [remarks]
+//! answer = "First paragraph.\nSecond paragraph."
+//! losses = "..."
+//! ```
+
+use std::path::Path;
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+
+use super::document::{Block, Document};
+use cvtcycle_config::bounded::{self, Refused};
+use cvtcycle_config::{Document as Toml, Problem, Reader, decode};
+
+/// Sections that a report may have, in their order.
+pub const SECTIONS: [&str; 13] = [
+    "answer",
+    "conditions",
+    "difference",
+    "energy",
+    "losses",
+    "warm_up",
+    "driveline",
+    "engine",
+    "ambient",
+    "uncertainty",
+    "values",
+    "validation",
+    "reproducibility",
+];
+
+/// What stands on the cover, and remarks on sections.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cover {
+    /// Title in place of the report's own.
+    pub title: Option<String>,
+    /// A line below it.
+    pub subtitle: Option<String>,
+    /// Author, organisation, date.
+    pub byline: Vec<String>,
+    /// Logo as a data URI, with its words.
+    pub logo: Option<(String, String)>,
+    /// Section and remark.
+    pub remarks: Vec<(&'static str, String)>,
+}
+
+impl Cover {
+    /// Reads a cover.
+    ///
+    /// # Errors
+    /// All problems of the file, with line and hint, and of the logo.
+    pub fn read(path: &str) -> Result<Self, Vec<Problem>> {
+        let bytes = cvtcycle_config::cycle::bytes("--cover", path, bounded::TOML)?;
+        let text = decode(path, &bytes)?;
+        let toml = Toml::parse(path, &text)?;
+        let reader = Reader::new(&toml);
+        let root = reader.root();
+        let text = |key: &str, doc: &str| {
+            root.optional_text(key, doc)
+                .filter(|text| !text.trim().is_empty())
+        };
+        let mut cover = Cover {
+            title: text("title", "title of the report"),
+            subtitle: text("subtitle", "a line below it"),
+            ..Cover::default()
+        };
+        for (key, doc) in [
+            ("author", "who made the report"),
+            ("organisation", "for whom the author works"),
+            ("date", "when, in any form"),
+        ] {
+            cover.byline.extend(text(key, doc));
+        }
+        let logo = text("logo", "file of the logo, beside this file");
+        let words = text("logo_words", "the logo in words");
+        if let Some(name) = logo {
+            match logo_data(path, &name) {
+                Ok(data) => cover.logo = Some((data, words.unwrap_or_else(|| "Logo".to_owned()))),
+                Err((message, hint)) => root.complain(
+                    "logo",
+                    "a PNG, JPEG or SVG file of at most 500 kB",
+                    &message,
+                    &hint,
+                ),
+            }
+        }
+        let remarks = root.table("remarks");
+        for section in SECTIONS {
+            let remark = remarks.optional_text(section, "remark at the beginning of that section");
+            cover.remarks.extend(
+                remark
+                    .filter(|text| !text.trim().is_empty())
+                    .map(|text| (section, text)),
+            );
+        }
+        reader.finish()?;
+        Ok(cover)
+    }
+
+    /// Puts the cover on a report. Remarks on sections that it does not have are told as warnings.
+    pub fn apply(&self, document: &mut Document) {
+        if let Some(title) = &self.title {
+            document.title.clone_from(title);
+        }
+        if let Some(subtitle) = &self.subtitle {
+            document.subtitle.clone_from(subtitle);
+        }
+        document.byline.clone_from(&self.byline);
+        document.logo.clone_from(&self.logo);
+        for (id, text) in &self.remarks {
+            match document
+                .sections
+                .iter_mut()
+                .find(|section| section.id == *id)
+            {
+                Some(section) => section.blocks.insert(0, Block::Remark(text.clone())),
+                None => document.warnings.push(format!(
+                    "the cover has a remark on `{id}`, a section that this report does not have"
+                )),
+            }
+        }
+    }
+}
+
+/// A logo as a data URI, or what is wrong with it and what helps.
+fn logo_data(cover: &str, name: &str) -> Result<String, (String, String)> {
+    let path = Path::new(cover)
+        .parent()
+        .unwrap_or(Path::new(""))
+        .join(name);
+    let bytes = bounded::read_file(&path, bounded::LOGO).map_err(|error| match error {
+        Refused::TooLarge(Some(size), limit) => {
+            (format!("the logo has {size} bytes"), limit.hint.to_owned())
+        }
+        _ => unreadable(&path, &error),
+    })?;
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(1000)]).to_lowercase();
+    let kind = match () {
+        () if bytes.starts_with(b"\x89PNG\r\n\x1a\n") => "image/png",
+        () if bytes.starts_with(b"\xff\xd8\xff") => "image/jpeg",
+        () if head.contains("<svg") => "image/svg+xml",
+        () => {
+            return Err((
+                "the file is no PNG, JPEG or SVG".to_owned(),
+                "save the logo in one of these forms".to_owned(),
+            ));
+        }
+    };
+    Ok(format!(
+        "data:{kind};base64,{}",
+        BASE64_STANDARD.encode(&bytes)
+    ))
+}
+
+fn unreadable(path: &Path, error: &Refused) -> (String, String) {
+    let hint = error.hint("the path is taken from the folder of this file");
+    (
+        format!("cannot read {}: {error}", path.display()),
+        hint.to_owned(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::document::Section;
+    use super::*;
+
+    fn written(text: &str, logo: &[u8]) -> (tempfile::TempDir, String) {
+        let dir = tempfile::tempdir().unwrap_or_else(|e| unreachable!("{e}"));
+        let path = dir.path().join("cover.toml");
+        let done = std::fs::write(&path, text)
+            .and_then(|()| std::fs::write(dir.path().join("logo.svg"), logo));
+        assert!(done.is_ok());
+        let name = path.display().to_string();
+        (dir, name)
+    }
+
+    #[test]
+    fn a_cover_comes_before_the_sections_own_words() {
+        let (_dir, path) = written(
+            "title = \"Mine\"\nauthor = \"A\"\ndate = \"today\"\nlogo = \"logo.svg\"\n[remarks]\nanswer = \"so\"\nengine = \"none\"",
+            b"<svg/>",
+        );
+        let cover = Cover::read(&path).unwrap_or_else(|p| unreachable!("{p:?}"));
+        let mut section = Section::new("answer", "Answer");
+        section.text("own");
+        let mut document = Document {
+            title: "own".into(),
+            sections: vec![section],
+            ..Document::default()
+        };
+        cover.apply(&mut document);
+        assert_eq!(
+            (document.title.as_str(), document.byline.len()),
+            ("Mine", 2)
+        );
+        assert_eq!(
+            document.logo.as_ref().map(|l| l.0.as_str()),
+            Some("data:image/svg+xml;base64,PHN2Zy8+")
+        );
+        assert!(matches!(&document.sections[0].blocks[0], Block::Remark(text) if text == "so"));
+        assert!(document.warnings.len() == 1 && document.warnings[0].contains("engine"));
+    }
+
+    #[test]
+    fn all_that_is_wrong_is_told_at_once() {
+        let (_dir, path) = written(
+            "titel = \"x\"\nauthor = 3\nlogo = \"logo.svg\"\n[remarks]\nloses = \"x\"",
+            b"GIF89a",
+        );
+        let problems = Cover::read(&path).err().unwrap_or_default();
+        let keys: Vec<&str> = problems.iter().map(|p| p.key.as_str()).collect();
+        assert_eq!(problems.len(), 4, "{problems:?}");
+        for key in ["titel", "author", "logo", "remarks.loses"] {
+            assert!(keys.contains(&key), "{keys:?}");
+        }
+        assert!(problems.iter().all(|p| p.place.line > 0), "{problems:?}");
+        assert!(Cover::read("no/such.toml").is_err_and(|p| p[0].message.contains("cannot read")));
+    }
+}

@@ -1,0 +1,255 @@
+//! What a report consists of, without its form.
+
+use crate::charts::{Picture, PictureTable};
+
+/// A report.
+#[derive(Clone, Debug, Default)]
+pub struct Document {
+    /// Title.
+    pub title: String,
+    /// What it is about, one line.
+    pub subtitle: String,
+    /// Author, organisation, date, as the user wrote them.
+    pub byline: Vec<String>,
+    /// The user's logo as a data URI, with its words.
+    pub logo: Option<(String, String)>,
+    /// Sections.
+    pub sections: Vec<Section>,
+    /// What is incomplete, for standard error.
+    pub warnings: Vec<String>,
+}
+
+/// A section.
+#[derive(Clone, Debug, Default)]
+pub struct Section {
+    /// Name for links, unique within the document.
+    pub id: String,
+    /// Title.
+    pub title: String,
+    /// What stands in it.
+    pub blocks: Vec<Block>,
+}
+
+/// A part of a section.
+#[derive(Clone, Debug)]
+pub enum Block {
+    /// A sentence that says what matters.
+    Lead(String),
+    /// A paragraph.
+    Text(String),
+    /// A paragraph that must not be missed.
+    Alert(String),
+    /// The user's own words.
+    Remark(String),
+    /// A heading within the section.
+    Heading(String),
+    /// Points.
+    List(Vec<String>),
+    /// Names and what stands behind them.
+    Facts(Vec<(String, String)>),
+    /// A table.
+    Table(Table),
+    /// A table that is folded away.
+    Folded(Table),
+    /// A figure.
+    Figure(Figure),
+}
+
+/// A table. The first column names the row.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    /// What it holds.
+    pub caption: String,
+    /// Columns.
+    pub columns: Vec<Column>,
+    /// Cells, row by row.
+    pub rows: Vec<Row>,
+    /// What has to be known of it; may be empty.
+    pub note: String,
+}
+
+/// Head of a column.
+#[derive(Clone, Debug, Default)]
+pub struct Column {
+    /// Name.
+    pub name: String,
+    /// Unit; may be empty.
+    pub unit: String,
+    /// Whether it holds numbers.
+    pub number: bool,
+}
+
+/// A row of a table.
+#[derive(Clone, Debug, Default)]
+pub struct Row {
+    /// Cells.
+    pub cells: Vec<String>,
+    /// Whether it is a sum or else stands out.
+    pub strong: bool,
+}
+
+/// A figure.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// Name of its file without the ending, unique within the document.
+    pub name: String,
+    /// What is to be seen.
+    pub caption: String,
+    /// Drawing and numbers.
+    pub picture: Picture,
+}
+
+impl Section {
+    /// An empty section.
+    #[must_use]
+    pub fn new(id: &str, title: &str) -> Self {
+        Section {
+            id: id.to_owned(),
+            title: title.to_owned(),
+            blocks: Vec::new(),
+        }
+    }
+
+    /// Adds a paragraph.
+    pub fn text(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Text(text.into()));
+    }
+
+    /// Adds a figure.
+    pub fn figure(
+        &mut self,
+        name: impl Into<String>,
+        caption: impl Into<String>,
+        picture: Picture,
+    ) {
+        self.blocks.push(Block::Figure(Figure {
+            name: name.into(),
+            caption: caption.into(),
+            picture,
+        }));
+    }
+
+    /// Adds a table.
+    pub fn table(&mut self, table: Table) {
+        self.blocks.push(Block::Table(table));
+    }
+}
+
+impl Table {
+    /// A table of a column of names and columns of numbers with their units.
+    #[must_use]
+    pub fn of_numbers(
+        caption: &str,
+        first: &str,
+        columns: impl IntoIterator<Item = (String, String)>,
+    ) -> Self {
+        let first = Column {
+            name: first.to_owned(),
+            ..Column::default()
+        };
+        let rest = columns.into_iter().map(|(name, unit)| Column {
+            name,
+            unit,
+            number: true,
+        });
+        Table {
+            caption: caption.to_owned(),
+            columns: [first].into_iter().chain(rest).collect(),
+            ..Table::default()
+        }
+    }
+
+    /// A table of words.
+    #[must_use]
+    pub fn of_words(caption: &str, columns: &[&str]) -> Self {
+        let column = |name: &&str| Column {
+            name: (*name).to_owned(),
+            ..Column::default()
+        };
+        Table {
+            caption: caption.to_owned(),
+            columns: columns.iter().map(column).collect(),
+            ..Table::default()
+        }
+    }
+
+    /// Whether every column but the first holds numbers.
+    #[must_use]
+    pub fn all_numbers(&self) -> bool {
+        self.columns.iter().skip(1).all(|column| column.number)
+    }
+
+    /// Whether the cells of a column have to be marked as numbers, since not all columns hold some.
+    #[must_use]
+    pub fn marked(&self, column: &usize) -> bool {
+        !self.all_numbers()
+            && self
+                .columns
+                .get(*column)
+                .is_some_and(|column| column.number)
+    }
+
+    /// Adds a row.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(Row {
+            cells: cells.into_iter().collect(),
+            strong: false,
+        });
+    }
+
+    /// Adds a row that stands out.
+    pub fn strong_row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(Row {
+            cells: cells.into_iter().collect(),
+            strong: true,
+        });
+    }
+}
+
+/// The numbers of a picture as a table of a report.
+#[must_use]
+pub fn table_of(caption: &str, table: &PictureTable) -> Table {
+    // A column holds numbers if all its cells are some.
+    let numeric = |k: usize| {
+        let cells = || {
+            table
+                .rows
+                .iter()
+                .filter_map(|row| row.get(k))
+                .filter(|cell| !cell.is_empty())
+        };
+        cells().next().is_some()
+            && cells().all(|cell| cell.replace('\u{2212}', "-").parse::<f64>().is_ok())
+    };
+    let column = |(k, (name, unit)): (usize, &(String, &'static str))| Column {
+        name: name.clone(),
+        unit: (*unit).to_owned(),
+        number: numeric(k),
+    };
+    Table {
+        caption: caption.to_owned(),
+        columns: table.columns.iter().enumerate().map(column).collect(),
+        rows: table
+            .rows
+            .iter()
+            .map(|cells| Row {
+                cells: cells.clone(),
+                strong: false,
+            })
+            .collect(),
+        note: table.note.clone(),
+    }
+}
+
+impl Document {
+    /// All figures in their order.
+    pub fn figures(&self) -> impl Iterator<Item = &Figure> {
+        self.sections
+            .iter()
+            .flat_map(|section| &section.blocks)
+            .filter_map(|block| match block {
+                Block::Figure(figure) => Some(figure),
+                _ => None,
+            })
+    }
+}

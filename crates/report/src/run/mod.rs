@@ -1,0 +1,164 @@
+//! The report of a run: the answer first, then what it rests on.
+
+mod answer;
+mod conditions;
+mod energy;
+mod figures;
+mod reproduce;
+mod values;
+
+use super::document::{Document, Section};
+use super::found::{RunFound, StudyFound};
+use super::number::{degc, words};
+use super::{study, validation};
+use cvtcycle_config::Problem;
+use cvtcycle_output::Component;
+use cvtcycle_output::history::History;
+use cvtcycle_output::record::{CarRecord, Record};
+use cvtcycle_output::summary::{RunSummary, StartWord, Summary};
+
+pub(super) use conditions::change_table;
+pub use energy::{TERMS, car_energy};
+pub use figures::fuel_map;
+pub use reproduce::hashes;
+
+/// A car of a run with everything that is known of it.
+#[derive(Clone, Copy)]
+pub struct Car<'a> {
+    /// Its numbers.
+    pub run: &'a RunSummary,
+    /// What it was made from.
+    pub record: Option<&'a CarRecord>,
+    /// Its trace.
+    pub history: Option<&'a History>,
+}
+
+impl Car<'_> {
+    /// Losses of the transmission that the run tells, kJ, in the order of the power flow.
+    #[must_use]
+    pub fn losses_kj(&self) -> Vec<(Component, f64)> {
+        Component::ALL
+            .iter()
+            .filter_map(|c| Some((*c, self.run.loss_kj.get(c.name())?)))
+            .collect()
+    }
+}
+
+/// The cars of a run, the subject first.
+#[must_use]
+pub fn cars(found: &RunFound) -> Vec<Car<'_>> {
+    let record = |name: &str| {
+        found
+            .record
+            .as_ref()?
+            .cars
+            .iter()
+            .find(|car| car.name == name)
+    };
+    let car = |(run, history)| -> Car<'_> {
+        let run: &RunSummary = run;
+        let history: &Option<History> = history;
+        Car {
+            run,
+            record: record(&run.vehicle),
+            history: history.as_ref(),
+        }
+    };
+    found
+        .summary
+        .runs
+        .iter()
+        .zip(&found.histories)
+        .map(car)
+        .collect()
+}
+
+/// The report of a run.
+///
+/// # Errors
+/// A part of a study beside it that cannot be read.
+pub fn document(found: &RunFound) -> Result<Document, Problem> {
+    let cars = cars(found);
+    let mut document = Document {
+        title: title(&found.summary),
+        subtitle: format!(
+            "{}; {}",
+            cycle_title(&found.summary, found.record.as_ref()),
+            conditions_line(&found.summary)
+        ),
+        warnings: found.missing.clone(),
+        ..Document::default()
+    };
+    let mut sections = vec![
+        answer::section(found, &cars),
+        conditions::section(found, &cars),
+    ];
+    sections.extend(figures::sections(found, &cars));
+    for (k, beside) in found.studies.iter().enumerate() {
+        let mut section = study::section(beside)?;
+        // Of several studies of a kind the first keeps the plain name.
+        if sections
+            .iter()
+            .any(|other: &Section| other.id == section.id)
+        {
+            section.id = format!("{}-{k}", section.id);
+        }
+        document.warnings.extend(unfinished(beside));
+        sections.push(section);
+    }
+    sections.extend(values::section(found, &cars));
+    sections.extend(found.validation.as_ref().map(validation::section));
+    sections.push(reproduce::section(found, &cars));
+    document.sections = sections;
+    Ok(document)
+}
+
+/// A word about a study that is not finished.
+#[must_use]
+pub fn unfinished(study: &StudyFound) -> Option<String> {
+    let (there, all) = study.parts();
+    (there < all).then(|| {
+        format!(
+            "the study in {} is not finished: {there} of {all} parts",
+            study.path.display()
+        )
+    })
+}
+
+fn title(summary: &Summary) -> String {
+    let subject = summary.runs.first().map_or("", |run| run.title.as_str());
+    match summary.runs.len() {
+        0 | 1 => subject.to_owned(),
+        2 => format!("{subject} against {}", summary.runs[1].title),
+        more => format!("{subject} against {} cars", more - 1),
+    }
+}
+
+/// The cycle as people call it.
+#[must_use]
+pub fn cycle_title(summary: &Summary, record: Option<&Record>) -> String {
+    record
+        .map(|r| r.cycle.title.clone())
+        .filter(|title| !title.is_empty())
+        .unwrap_or_else(|| words(&summary.cycle))
+}
+
+/// The start in words.
+#[must_use]
+pub fn start_line(summary: &Summary) -> String {
+    match &summary.start {
+        StartWord::Word(word) if word == "warm" => "after the same cycle from a soak".to_owned(),
+        StartWord::Word(_) => "from a soak".to_owned(),
+        StartWord::Degc(start) => format!("all nodes at {} at the start", degc(*start)),
+    }
+}
+
+/// Ambient and start in words.
+#[must_use]
+pub fn conditions_line(summary: &Summary) -> String {
+    format!(
+        "ambient {}, {}",
+        degc(summary.ambient_degc),
+        start_line(summary)
+    )
+}

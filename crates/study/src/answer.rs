@@ -1,0 +1,380 @@
+//! From a study's table to what it says: each output described, the subject held against its baselines, and which factor decides.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::ambient::{Matrix, matrix};
+use super::design::{Role, saltelli_role};
+use super::frame::{Frame, Status};
+use super::outputs::EXCESS;
+use super::plan::{Design, FactorValue};
+use super::statistics::{
+    Blocks, Bootstrap, Groups, RankSensitivity, Share, SobolIndices, Summary, Tornado,
+    TornadoInput, group_means, rank_sensitivity, sobol_convergence, tornado,
+};
+use cvtcycle_config::Problem;
+
+/// What a study says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Answer {
+    /// Version of this object.
+    pub schema: u32,
+    /// Name of the study.
+    pub title: String,
+    /// The question; may be empty.
+    pub question: String,
+    /// Points of the design.
+    pub points: u64,
+    /// Points whose runs are there.
+    pub points_done: u64,
+    /// Cars, the subject first.
+    pub cars: Vec<String>,
+    /// How the runs ended.
+    pub runs: Ended,
+    /// Samples that are described: of a Saltelli design A and B alone.
+    pub described: &'static str,
+    /// The subject against each baseline.
+    pub comparisons: Vec<Comparison>,
+    /// Each analysed output of each car.
+    pub outputs: Vec<OutputAnswer>,
+    /// The matrix, where the study is one of ambient temperatures and starts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matrix: Option<Matrix>,
+}
+
+/// How the runs ended.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Ended {
+    /// Fine.
+    pub ok: usize,
+    /// A check failed.
+    pub failed: usize,
+    /// The values do not go together.
+    pub not_run: usize,
+    /// Not there yet.
+    pub missing: usize,
+    /// First words of the reasons with their counts, the commonest first.
+    pub reasons: Vec<(String, usize)>,
+}
+
+/// The subject against one baseline.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// Name of the baseline.
+    pub baseline: String,
+    /// Excess of the subject's fuel, per cent.
+    pub excess_percent: Summary,
+    /// Pairs in which the subject uses more.
+    pub worse: Share,
+}
+
+/// One output of one car.
+#[derive(Clone, Debug, Serialize)]
+pub struct OutputAnswer {
+    /// Column.
+    pub output: String,
+    /// Its unit.
+    pub unit: String,
+    /// Car; for an excess the baseline.
+    pub car: String,
+    /// Description.
+    pub summary: Summary,
+    /// Sobol indices of growing numbers of samples, the last of all; of a Saltelli design.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sobol: Vec<SobolIndices>,
+    /// Of a one-at-a-time design.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tornado: Option<Tornado>,
+    /// Of factors that are numbers, in designs that sample.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rank: Option<Ranked>,
+    /// Means at the levels of factors: in grids of all, else of words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub levels: Vec<(String, Groups)>,
+}
+
+/// Rank correlations with the factors that are drawn numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ranked {
+    /// Names of the factors.
+    pub factors: Vec<String>,
+    /// Correlations, in their order.
+    pub of: RankSensitivity,
+}
+
+/// Computes what the study says from the parts that are there.
+///
+/// # Errors
+/// A part that cannot be read.
+pub fn answer(frame: &Frame) -> Result<Answer, Problem> {
+    let outline = frame.outline;
+    let rows = described(frame);
+    let mut comparisons = Vec::new();
+    for (car, baseline) in outline.cars.iter().enumerate().skip(1) {
+        let excess = pick(&frame.numbers(EXCESS, car)?, &rows);
+        comparisons.push(Comparison {
+            baseline: baseline.clone(),
+            worse: Share::of(&excess, |x| x > 0.0),
+            excess_percent: Summary::of(&excess),
+        });
+    }
+    let mut outputs = Vec::new();
+    for (name, unit) in &outline.analysed {
+        for car in 0..outline.cars.len() {
+            if name.starts_with("subject_excess_") && car == 0 {
+                continue;
+            }
+            outputs.push(output(frame, &rows, (name, unit), car)?);
+        }
+    }
+    Ok(Answer {
+        schema: super::manifest::SCHEMA,
+        title: outline.title.clone(),
+        question: outline.question.clone(),
+        points: outline.points,
+        points_done: frame
+            .status(0)
+            .filter(|status| *status != Status::Missing)
+            .count() as u64,
+        cars: outline.cars.clone(),
+        runs: ended(frame)?,
+        described: if is_saltelli(frame) {
+            "samples A and B"
+        } else {
+            "all points"
+        },
+        comparisons,
+        outputs,
+        matrix: matrix(frame)?,
+    })
+}
+
+fn is_saltelli(frame: &Frame) -> bool {
+    matches!(frame.outline.plan.design, Design::Saltelli { .. })
+}
+
+/// Points that are independent draws: all, but of a Saltelli design A and B; nothing else says something of the output's distribution.
+fn described(frame: &Frame) -> Vec<bool> {
+    let factors = frame.outline.plan.factors.len();
+    let mixed = is_saltelli(frame);
+    (0..frame.outline.points)
+        .map(|point| !mixed || matches!(saltelli_role(factors, point).1, Role::A | Role::B))
+        .collect()
+}
+
+/// The numbers of a car that are described: of points that are independent draws.
+///
+/// # Errors
+/// A part that cannot be read.
+pub fn described_numbers(frame: &Frame, output: &str, car: usize) -> Result<Vec<f64>, Problem> {
+    Ok(pick(&frame.numbers(output, car)?, &described(frame)))
+}
+
+/// The numbers of the described points of which runs are there.
+fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
+    numbers
+        .iter()
+        .zip(rows)
+        .filter(|(_, described)| **described)
+        .map(|(x, _)| *x)
+        .collect()
+}
+
+fn ended(frame: &Frame) -> Result<Ended, Problem> {
+    let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
+    for car in 0..frame.outline.cars.len() {
+        if !frame
+            .status(car)
+            .any(|status| matches!(status, Status::Failed | Status::NotRun))
+        {
+            continue;
+        }
+        for (reason, status) in frame.words("reason", car)?.iter().zip(frame.status(car)) {
+            for one in reason
+                .split("; ")
+                .filter(|_| matches!(status, Status::Failed | Status::NotRun))
+            {
+                // Of a failed check the name alone: what follows differs from run to run.
+                let word = if status == Status::Failed {
+                    one.split(' ').next().unwrap_or_default()
+                } else {
+                    one
+                };
+                *reasons.entry(word.to_owned()).or_default() += 1;
+            }
+        }
+    }
+    let mut reasons: Vec<(String, usize)> = reasons.into_iter().collect();
+    reasons.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    Ok(Ended {
+        ok: frame.count(Status::Ok),
+        failed: frame.count(Status::Failed),
+        not_run: frame.count(Status::NotRun),
+        missing: frame.count(Status::Missing),
+        reasons,
+    })
+}
+
+/// Points from which rank correlations are computed at most: more would cost memory and tell nothing that can be seen.
+const MOST_RANKED: usize = 1 << 16;
+
+/// The values of a factor at the first points, as the design has them. They need no table: a design is a function of the point.
+fn values(
+    frame: &Frame,
+    factor: usize,
+    points: usize,
+) -> impl Iterator<Item = Option<FactorValue>> {
+    let plan = &frame.outline.plan;
+    (0..points as u64).map(move |point| {
+        plan.factors[factor].value(plan.design.level(&plan.factors, point, factor))
+    })
+}
+
+/// Numbers of a factor.
+fn numbers(frame: &Frame, factor: usize, points: usize) -> Vec<f64> {
+    let number = |value: Option<FactorValue>| match value {
+        Some(FactorValue::Number(x)) => x,
+        _ => f64::NAN,
+    };
+    values(frame, factor, points).map(number).collect()
+}
+
+/// Words of a factor, or its numbers as words; every word is held once.
+fn words(frame: &Frame, factor: usize, points: usize) -> Vec<Arc<str>> {
+    let mut known: Vec<(FactorValue, Arc<str>)> = Vec::new();
+    let empty: Arc<str> = "".into();
+    let mut word = |value: Option<FactorValue>| {
+        let Some(value) = value else {
+            return empty.clone();
+        };
+        if let Some((_, text)) = known.iter().find(|(other, _)| *other == value) {
+            return text.clone();
+        }
+        let text: Arc<str> = label(&value, "").into();
+        known.push((value, text.clone()));
+        text
+    };
+    values(frame, factor, points).map(&mut word).collect()
+}
+
+fn output(
+    frame: &Frame,
+    rows: &[bool],
+    (name, unit): (&str, &str),
+    car: usize,
+) -> Result<OutputAnswer, Problem> {
+    let outline = frame.outline;
+    let plan = &outline.plan;
+    let numbers_of = frame.numbers(name, car)?;
+    let mut answer = OutputAnswer {
+        output: name.to_owned(),
+        unit: unit.to_owned(),
+        car: outline.cars[car].clone(),
+        summary: Summary::of(&pick(&numbers_of, rows)),
+        sobol: Vec::new(),
+        tornado: None,
+        rank: None,
+        levels: Vec::new(),
+    };
+    match plan.design {
+        Design::Saltelli { .. } => answer.sobol = sobol(&numbers_of, plan.factors.len()),
+        Design::OneAtATime { .. } => answer.tornado = Some(of_tornado(frame, &numbers_of)),
+        _ => {
+            let as_words =
+                |f: &usize| super::cars::is_words(&plan.factors[*f]) || plan.design == Design::Grid;
+            let (levels, drawn): (Vec<usize>, Vec<usize>) =
+                (0..plan.factors.len()).partition(as_words);
+            if !drawn.is_empty() {
+                let points = numbers_of.len().min(MOST_RANKED);
+                let columns: Vec<Vec<f64>> =
+                    drawn.iter().map(|&f| numbers(frame, f, points)).collect();
+                let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+                answer.rank = Some(Ranked {
+                    factors: drawn
+                        .iter()
+                        .map(|&f| plan.factors[f].name.clone())
+                        .collect(),
+                    of: rank_sensitivity(&columns, &numbers_of[..points]),
+                });
+            }
+            for f in levels {
+                answer.levels.push((
+                    plan.factors[f].name.clone(),
+                    group_means(&words(frame, f, numbers_of.len()), &numbers_of),
+                ));
+            }
+        }
+    }
+    Ok(answer)
+}
+
+/// Splits the points of a Saltelli design into its blocks.
+fn sobol(numbers: &[f64], factors: usize) -> Vec<SobolIndices> {
+    let width = factors + 2;
+    let column = |k: usize| {
+        numbers
+            .iter()
+            .skip(k)
+            .step_by(width)
+            .copied()
+            .collect::<Vec<f64>>()
+    };
+    let columns: Vec<Vec<f64>> = (0..width).map(column).collect();
+    let blocks = Blocks {
+        a: &columns[0],
+        b: &columns[1],
+        ab: columns[2..].iter().map(Vec::as_slice).collect(),
+    };
+    sobol_convergence(&blocks, Bootstrap::default())
+}
+
+/// Point 0 is the base; the others follow factor by factor.
+fn of_tornado(frame: &Frame, numbers: &[f64]) -> Tornado {
+    let plan = &frame.outline.plan;
+    let mut inputs: Vec<TornadoInput> = plan
+        .factors
+        .iter()
+        .map(|factor| TornadoInput {
+            name: factor.name.clone(),
+            entries: Vec::new(),
+        })
+        .collect();
+    for (point, number) in (0_u64..).zip(numbers).skip(1) {
+        for (f, factor) in plan.factors.iter().enumerate() {
+            let level = plan.design.level(&plan.factors, point, f);
+            if let Some(value) = factor.value(level) {
+                inputs[f]
+                    .entries
+                    .push((label(&value, &factor.unit), *number));
+            }
+        }
+    }
+    tornado(numbers.first().copied().unwrap_or(f64::NAN), &inputs)
+}
+
+/// A value as a label: numbers with four figures and their unit.
+fn label(value: &FactorValue, unit: &str) -> String {
+    match value {
+        FactorValue::Word(word) => word.to_string(),
+        FactorValue::Number(x) => {
+            let digits = if x.abs() > 0.0 {
+                (3 - x.abs().log10().floor() as i32).clamp(0, 12)
+            } else {
+                0
+            };
+            let text = format!("{x:.*}", usize::try_from(digits).unwrap_or(0));
+            let text = if text.contains('.') {
+                text.trim_end_matches('0').trim_end_matches('.')
+            } else {
+                &text
+            };
+            if unit.is_empty() || unit == "-" {
+                text.to_owned()
+            } else {
+                format!("{text} {unit}")
+            }
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! The cars of a study, and how each factor reaches each of them.
+
+use std::sync::{Arc, OnceLock};
+
+use super::plan::{Acts, Base, Cars, Factor, FactorValue, FactorValues, Plan};
+use cvtcycle_config::Problem;
+use cvtcycle_config::setup::blueprint::{Blueprint, Slot};
+use cvtcycle_config::setup::{Options, Setup};
+use cvtcycle_model::transmission::cvt::variator::Formulation;
+
+/// Largest number of combinations of words of a car: each keeps its documents in memory.
+pub const MOST_VARIANTS: usize = 4096;
+/// What a hint for the command line goes on with.
+const ABOUT_SET: &str = "; --set reaches";
+
+/// How a factor acts on one car.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Binding {
+    /// Not at all.
+    Not,
+    /// A number of the car's files.
+    Number(Acts),
+    /// Words that need documents of their own; the weight of a word in the variant's index.
+    Words {
+        /// Weight.
+        stride: usize,
+    },
+    /// Ambient temperature, degC.
+    Ambient,
+    /// Start.
+    Start,
+    /// Cycle.
+    Cycle,
+    /// Largest step, s.
+    Step,
+}
+
+/// A car in one combination of words: checked documents, and where the numbers stand in them.
+pub(super) struct Variant {
+    pub blueprint: Blueprint,
+    /// By factor; none for factors that are no number of this car.
+    pub slots: Vec<Option<Slot>>,
+    /// Keys of factors that this car does not know, with what is to be said of them.
+    pub unknown: Vec<(usize, Problem)>,
+    /// The car with all numbers as its files have them.
+    pub setup: Setup,
+}
+
+/// A car of a study.
+pub struct StudyCar {
+    /// Name in the table, unique within the study.
+    pub name: Arc<str>,
+    /// `subject` or `baseline`.
+    pub role: Arc<str>,
+    /// Name or path of its file.
+    pub word: String,
+    pub(super) bindings: Vec<Binding>,
+    options: Options,
+    variants: Vec<OnceLock<Result<Variant, Vec<Problem>>>>,
+}
+
+impl StudyCar {
+    /// A car of the plan.
+    ///
+    /// # Errors
+    /// A problem at the factor with which the words have more than [`MOST_VARIANTS`] combinations.
+    pub(super) fn new(name: &str, word: &str, subject: bool, plan: &Plan) -> Result<Self, Problem> {
+        let mut stride = 1_usize;
+        let mut bindings = Vec::with_capacity(plan.factors.len());
+        for factor in &plan.factors {
+            bindings.push(binding(factor, subject, stride));
+            if matches!(bindings.last(), Some(Binding::Words { .. })) {
+                stride = stride.saturating_mul(words(factor).len() + 1);
+            }
+            if stride > MOST_VARIANTS {
+                return Err(too_many(factor));
+            }
+        }
+        Ok(StudyCar {
+            name: name.into(),
+            role: if subject { "subject" } else { "baseline" }.into(),
+            word: word.to_owned(),
+            bindings,
+            options: options(&plan.base, subject),
+            variants: (0..stride).map(|_| OnceLock::new()).collect(),
+        })
+    }
+
+    /// The weight of a factor's value in the index of the variant; 0 for what is no word of this car.
+    pub(super) fn weight(&self, factor: usize, of: &Factor, value: Option<&FactorValue>) -> usize {
+        match (self.bindings[factor], value) {
+            (Binding::Words { stride }, Some(value)) => {
+                let text = text(value);
+                words(of)
+                    .iter()
+                    .position(|word| *word == text)
+                    .map_or(0, |k| (k + 1) * stride)
+            }
+            _ => 0,
+        }
+    }
+
+    /// A variant, made when it is first asked for; its problems if its words do not go together.
+    pub(super) fn variant(&self, index: usize, factors: &[Factor]) -> Result<&Variant, &[Problem]> {
+        self.variants[index]
+            .get_or_init(|| self.make(index, factors))
+            .as_ref()
+            .map_err(Vec::as_slice)
+    }
+
+    /// The unchanged car, and the baselines that its file names.
+    ///
+    /// # Errors
+    /// The problems of its files and of the factors' keys.
+    pub(super) fn check_base(&self, factors: &[Factor]) -> Result<Vec<String>, Vec<Problem>> {
+        match self.variant(0, factors) {
+            Ok(variant) => Ok(variant.setup.baselines.clone()),
+            Err(problems) => Err(problems.to_vec()),
+        }
+    }
+
+    /// The unchanged car in every combination of words that goes together.
+    pub(super) fn setups<'s>(&'s self, factors: &'s [Factor]) -> impl Iterator<Item = &'s Setup> {
+        (0..self.variants.len())
+            .filter_map(|index| self.variant(index, factors).ok())
+            .map(|variant| &variant.setup)
+    }
+
+    fn make(&self, index: usize, factors: &[Factor]) -> Result<Variant, Vec<Problem>> {
+        let options = self.options_of(index, factors);
+        let (blueprint, setup) = Blueprint::load(&self.word, super::prepare::VEHICLE, &options)?;
+        let mut variant = Variant {
+            blueprint,
+            slots: Vec::with_capacity(factors.len()),
+            unknown: Vec::new(),
+            setup,
+        };
+        for (index, (factor, binding)) in factors.iter().zip(&self.bindings).enumerate() {
+            let found = matches!(binding, Binding::Number(_))
+                .then(|| variant.blueprint.slot(&factor.key))
+                .transpose();
+            variant.slots.push(found.unwrap_or_else(|problem| {
+                let place = factor.place.clone();
+                let message = format!("{}: {}", self.name, problem.message);
+                // A plan has its own word for whose value it is.
+                let hint = match problem.hint.split_once(ABOUT_SET) {
+                    Some((hint, _)) => {
+                        format!("{hint}; `cars = \"baselines\"` varies the baselines alone")
+                    }
+                    None => problem.hint.clone(),
+                };
+                variant.unknown.push((
+                    index,
+                    Problem {
+                        place,
+                        key: factor.key.clone(),
+                        message,
+                        hint,
+                        ..problem
+                    },
+                ));
+                None
+            }));
+        }
+        Ok(variant)
+    }
+
+    fn options_of(&self, index: usize, factors: &[Factor]) -> Options {
+        let mut options = self.options.clone();
+        for (factor, binding) in factors.iter().zip(&self.bindings) {
+            let Binding::Words { stride } = binding else {
+                continue;
+            };
+            let words = words(factor);
+            let Some(word) = (index / stride % (words.len() + 1))
+                .checked_sub(1)
+                .map(|k| words[k].to_string())
+            else {
+                continue;
+            };
+            match factor.key.as_str() {
+                "lubricant" => options.lubricant = Some(word),
+                "engine_oil" => options.engine_oil = Some(word),
+                "formulation" => {
+                    options.formulation = formulation(&word).unwrap_or(options.formulation)
+                }
+                key => options.set.push(format!("{key}={word}")),
+            }
+        }
+        options
+    }
+}
+
+fn formulation(word: &str) -> Option<Formulation> {
+    Formulation::NAMES
+        .iter()
+        .find(|(name, _)| *name == word)
+        .map(|(_, formulation)| *formulation)
+}
+
+/// What the plan says for all runs, of one car.
+fn options(base: &Base, subject: bool) -> Options {
+    let own: &[String] = if subject { &base.set } else { &[] };
+    Options {
+        lubricant: base.lubricant.clone().filter(|_| subject),
+        engine_oil: base.engine_oil.clone(),
+        set: base.set_all.iter().chain(own).cloned().collect(),
+        formulation: base.formulation,
+    }
+}
+
+fn binding(factor: &Factor, subject: bool, stride: usize) -> Binding {
+    let reached = match factor.cars {
+        Cars::All => true,
+        Cars::Subject => subject,
+        Cars::Baselines => !subject,
+    };
+    match factor.key.as_str() {
+        _ if !reached => Binding::Not,
+        "ambient_degc" => Binding::Ambient,
+        "start" => Binding::Start,
+        "cycle" => Binding::Cycle,
+        "dt_s" => Binding::Step,
+        _ if is_words(factor) => Binding::Words { stride },
+        _ => Binding::Number(factor.acts),
+    }
+}
+
+/// Whether a factor's values are words, or numbers mixed with words.
+pub(super) fn is_words(factor: &Factor) -> bool {
+    match &factor.values {
+        FactorValues::List(list) => list
+            .iter()
+            .any(|value| matches!(value, FactorValue::Word(_))),
+        FactorValues::Distribution(_) => false,
+    }
+}
+
+/// The entries of a factor's list as text; nothing for a distribution.
+pub(super) fn words(factor: &Factor) -> Vec<Arc<str>> {
+    match &factor.values {
+        FactorValues::List(list) => list.iter().map(text).collect(),
+        FactorValues::Distribution(_) => Vec::new(),
+    }
+}
+
+/// A value as a person would write it.
+#[must_use]
+pub fn text(value: &FactorValue) -> Arc<str> {
+    match value {
+        FactorValue::Number(x) => x.to_string().into(),
+        FactorValue::Word(word) => word.clone(),
+    }
+}
+
+fn too_many(factor: &Factor) -> Problem {
+    Problem {
+        place: factor.place.clone(),
+        key: factor.key.clone(),
+        allowed: format!("at most {MOST_VARIANTS} combinations of words of one car"),
+        message: format!(
+            "with `{}` the words of the factors have too many combinations",
+            factor.key
+        ),
+        hint: "give fewer words, or split the plan".into(),
+        ..Problem::default()
+    }
+}

@@ -1,0 +1,488 @@
+//! Files of rows as read: tolerances and sources at the head, then `[[row]]` by `[[row]]`.
+
+use std::collections::HashMap;
+
+use super::checks::{KINDS, complete, mechanism, printed, verdict};
+use super::expr::{Expr, Fault, parse};
+use super::names::FileNames;
+use super::rule::{Printed, Verdict};
+use super::source::{self, Source};
+use cvtcycle_config::setup::{catalogue, is_path};
+use cvtcycle_config::{Bound, Document, Place, Problem, Reader, Section, append, near};
+
+/// A named tolerance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Name.
+    pub name: String,
+    /// Width in the unit of the row.
+    pub absolute: f64,
+    /// Width as a share of the printed number, of each end of a range for itself.
+    pub relative: f64,
+    /// Unit of `absolute`; `-` for any.
+    pub unit: String,
+    /// Where the width comes from.
+    pub source: String,
+}
+
+/// A computed number that supports the reason of a row that differs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cause {
+    /// What it is.
+    pub what: String,
+    /// Its unit.
+    pub unit: String,
+    /// How it is computed.
+    pub compute: Expr,
+}
+
+/// One row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Identifier, such as `5.18a`.
+    pub id: String,
+    /// Where it stands: its expression, or its identifier.
+    pub place: Place,
+    /// Where its identifier stands.
+    pub id_place: Place,
+    /// Chapter.
+    pub chapter: String,
+    /// Page of the book.
+    pub mechanism: String,
+    /// What is compared.
+    pub what: String,
+    /// At which condition.
+    pub condition: String,
+    /// The printed text.
+    pub printed_text: String,
+    /// Unit of printed and computed numbers.
+    pub unit: String,
+    /// Kind of the statement: N number, O order or sign, C constant, L quoted from others, X record only.
+    pub kind: String,
+    /// Printed in numbers; none for what cannot be compared.
+    pub printed: Option<Printed>,
+    /// Name of the tolerance; empty for orders and signs.
+    pub tolerance: String,
+    /// Its widths below the lower and above the upper printed number, in the unit of the row.
+    pub tolerance_widths: [f64; 2],
+    /// Parameters that were fitted to this number.
+    pub fitted_to: Vec<String>,
+    /// Recorded verdict.
+    pub recorded: Option<Verdict>,
+    /// Why it differs or cannot be compared.
+    pub reason: String,
+    /// What else a reader should know.
+    pub remark: String,
+    /// Number behind the reason.
+    pub cause: Option<Cause>,
+    /// How it is computed, as written.
+    pub compute_text: String,
+    /// How it is computed.
+    pub compute: Option<Expr>,
+}
+
+impl Row {
+    /// Whether the row tests the program: computed, no parameter was fitted to it, and no constant that the program was given.
+    #[must_use]
+    pub fn is_held_out(&self) -> bool {
+        self.compute.is_some() && self.fitted_to.is_empty() && self.kind != "C"
+    }
+}
+
+/// A file of rows.
+#[derive(Clone, Debug)]
+pub struct File {
+    /// Name.
+    pub name: String,
+    /// Own tolerances, then those of the common file.
+    pub tolerances: Vec<Tolerance>,
+    /// Own sources, then those of the common file.
+    pub sources: Vec<Source>,
+    /// Rows in order.
+    pub rows: Vec<Row>,
+}
+
+/// Reads files: name and text each. `common` comes first and lends its tolerances and sources.
+///
+/// # Errors
+/// All problems of all files.
+pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File>, Vec<Problem>> {
+    let keys = catalogue::known_names();
+    let mut problems = Vec::new();
+    let lent = file(common.0, common.1, &Lent::default(), keys, &mut problems);
+    let lent = Lent {
+        tolerances: lent.tolerances,
+        sources: lent.sources,
+    };
+    let read: Vec<File> = files
+        .iter()
+        .map(|(name, text)| file(name, text, &lent, keys, &mut problems))
+        .collect();
+    let mut seen: HashMap<&str, &Row> = HashMap::new();
+    for row in read
+        .iter()
+        .flat_map(|file| &file.rows)
+        .filter(|row| !row.id.is_empty())
+    {
+        let first = *seen.entry(&row.id).or_insert(row);
+        if !std::ptr::eq(first, row) {
+            let message = format!(
+                "the id `{}` was used before, in {} line {}",
+                row.id, first.id_place.file, first.id_place.line
+            );
+            let (place, value) = (row.id_place.clone(), row.id.clone());
+            let twice = Problem {
+                place,
+                key: "id".into(),
+                value,
+                message,
+                hint: "ids are unique".into(),
+                ..Problem::default()
+            };
+            append(&mut problems, vec![twice]);
+        }
+    }
+    if problems.is_empty() {
+        Ok(read)
+    } else {
+        Err(problems)
+    }
+}
+
+/// What the common file lends.
+#[derive(Default)]
+struct Lent {
+    tolerances: Vec<Tolerance>,
+    sources: Vec<Source>,
+}
+
+fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec<Problem>) -> File {
+    let mut read = File {
+        name: name.to_owned(),
+        tolerances: Vec::new(),
+        sources: Vec::new(),
+        rows: Vec::new(),
+    };
+    let mut document = match Document::parse(name, text) {
+        Ok(document) => document,
+        Err(found) => {
+            append(problems, found);
+            return read;
+        }
+    };
+    let rows = document.take_tables("row");
+    let reader = Reader::new(&document);
+    let root = reader.root();
+    read.tolerances = tolerances(&root.table("tolerances"));
+    read.sources = source::read(&root.table("sources"), &lent.sources);
+    if let Err(found) = reader.finish() {
+        let hint = |p: &Problem| {
+            if p.key == "row" {
+                "rows are written as [[row]]".to_owned()
+            } else {
+                p.hint.clone()
+            }
+        };
+        append(
+            problems,
+            found
+                .into_iter()
+                .map(|p| Problem {
+                    hint: hint(&p),
+                    ..p
+                })
+                .collect(),
+        );
+    }
+    // A path in a file is relative to that file.
+    for named in read
+        .sources
+        .iter_mut()
+        .flat_map(|source| [&mut source.vehicle, &mut source.lubricant])
+        .flatten()
+    {
+        if is_path(named)
+            && let Some(folder) = std::path::Path::new(name).parent()
+        {
+            *named = folder.join(&*named).to_string_lossy().into_owned();
+        }
+    }
+    read.tolerances.extend(lent.tolerances.iter().cloned());
+    read.sources.extend(lent.sources.iter().cloned());
+    let head = Head {
+        tolerances: &read.tolerances,
+        names: FileNames {
+            sources: &read.sources,
+            keys,
+        },
+    };
+    for document in &rows {
+        let reader = Reader::new(document);
+        let row = head.row(&reader.root());
+        if let Err(found) = reader.finish() {
+            let of = if row.id.is_empty() {
+                String::new()
+            } else {
+                format!("row {}: ", row.id)
+            };
+            let named = |p: Problem| {
+                if p.not_shown().is_some() {
+                    p
+                } else {
+                    Problem {
+                        message: format!("{of}{}", p.message),
+                        ..p
+                    }
+                }
+            };
+            append(problems, found.into_iter().map(named).collect());
+        }
+        read.rows.push(row);
+    }
+    read
+}
+
+fn tolerances(all: &Section) -> Vec<Tolerance> {
+    let width = Bound::closed(0.0, 1e9);
+    let one = |name: &str| {
+        let s = all.table(name);
+        let absolute = s.optional_number(
+            "width",
+            width,
+            "width on both sides, in the unit of the row",
+        );
+        let relative = s.optional_number(
+            "share",
+            Bound::closed(0.0, 10.0),
+            "width as a share of the printed number",
+        );
+        if s.exists() && absolute.is_some() == relative.is_some() {
+            s.complain(
+                "width",
+                "width or share",
+                &format!("tolerance `{name}` needs either `width` or `share`"),
+                "give one of them",
+            );
+        }
+        Tolerance {
+            name: name.to_owned(),
+            absolute: absolute.unwrap_or(0.0),
+            relative: relative.unwrap_or(0.0),
+            unit: s.text_or("unit", "-", "unit of the width"),
+            source: s.text("from", "where the width comes from"),
+        }
+    };
+    all.names().into_iter().map(one).collect()
+}
+
+/// What the rows of a file may refer to.
+struct Head<'a> {
+    tolerances: &'a [Tolerance],
+    names: FileNames<'a>,
+}
+
+impl Head<'_> {
+    fn row(&self, s: &Section) -> Row {
+        let id = s.text("id", "identifier, unique over all files");
+        let chapter = s.text(
+            "chapter",
+            "chapter of the thesis, or a word for the user's own rows",
+        );
+        let mechanism = mechanism(s);
+        let kind = s
+            .word_or(
+                "kind",
+                &KINDS,
+                "N",
+                "N number, O order or sign, C constant, L quoted from others, X record only",
+            )
+            .to_owned();
+        let compute_text = s
+            .optional_text("compute", "how it is computed")
+            .unwrap_or_default();
+        let compute = self.expression(s, "compute", &compute_text);
+        let unit = s.text_or("unit", "-", "unit of printed and computed numbers");
+        let broken = compute.is_none() && !compute_text.trim().is_empty();
+        let printed = printed(s, compute.as_ref(), broken);
+        let recorded = verdict(s);
+        let reason = s.text_or("reason", "", "why it differs or cannot be compared");
+        let (tolerance, tolerance_widths) = self.tolerance(s, printed, &unit, broken);
+        let row = Row {
+            id,
+            id_place: s.place("id"),
+            place: s.place(if compute_text.is_empty() {
+                "id"
+            } else {
+                "compute"
+            }),
+            chapter,
+            mechanism,
+            what: s.text("what", "what is compared"),
+            condition: s.text_or("condition", "", "at which condition"),
+            printed_text: s.text("printed", "the printed text"),
+            unit,
+            kind,
+            printed,
+            tolerance,
+            tolerance_widths,
+            fitted_to: self.fitted(s),
+            recorded,
+            reason,
+            remark: s.text_or("remark", "", "what else a reader should know"),
+            cause: self.cause(s),
+            compute_text,
+            compute,
+        };
+        complete(s, &row);
+        row
+    }
+
+    /// Parses the expression at a key; its faults become problems with their place in the text.
+    fn expression(&self, s: &Section, key: &str, text: &str) -> Option<Expr> {
+        if text.trim().is_empty() {
+            return None;
+        }
+        match parse(text, &self.names) {
+            Ok(expr) => Some(expr),
+            Err(faults) => {
+                faults
+                    .into_iter()
+                    .for_each(|fault| s.report_problem(within(s.place(key), key, text, fault)));
+                None
+            }
+        }
+    }
+
+    fn tolerance(
+        &self,
+        s: &Section,
+        printed: Option<Printed>,
+        unit: &str,
+        broken: bool,
+    ) -> (String, [f64; 2]) {
+        let name = s.optional_text("tolerance", "name of a tolerance at the head of the file");
+        let Some(Printed::Range(low, high)) = printed else {
+            if name.is_some() && !broken {
+                s.complain(
+                    "tolerance",
+                    "",
+                    "an order or sign has no tolerance",
+                    "remove it",
+                );
+            }
+            return (String::new(), [0.0; 2]);
+        };
+        let known: Vec<&str> = self.tolerances.iter().map(|t| t.name.as_str()).collect();
+        let Some(name) = name else {
+            s.complain(
+                "tolerance",
+                &known.join(", "),
+                "missing key `tolerance`",
+                "name a tolerance of the head of the file",
+            );
+            return (String::new(), [0.0; 2]);
+        };
+        let Some(found) = self.tolerances.iter().find(|t| t.name == name) else {
+            let close = near(&name, known.iter().copied());
+            let hint = if close.is_empty() {
+                String::new()
+            } else {
+                format!("did you mean {}?", close.join(" or "))
+            };
+            s.complain(
+                "tolerance",
+                &known.join(", "),
+                &format!("there is no tolerance `{name}`"),
+                &hint,
+            );
+            return (name, [0.0; 2]);
+        };
+        if found.unit != "-" && found.unit != unit {
+            let message = format!("tolerance `{name}` is in {}, the row in {unit}", found.unit);
+            s.complain(
+                "tolerance",
+                "the same unit",
+                &message,
+                "use another tolerance",
+            );
+        }
+        let width = |end: f64| {
+            if end.is_finite() {
+                found.absolute + found.relative * end.abs()
+            } else {
+                found.absolute
+            }
+        };
+        (name, [width(low), width(high)])
+    }
+
+    fn fitted(&self, s: &Section) -> Vec<String> {
+        let keys = s.texts("fitted_to", "parameters that were fitted to this number");
+        for key in keys.iter().filter(|key| !self.names.keys.contains(key)) {
+            let close = near(key, self.names.keys.iter().map(String::as_str));
+            let hint = if close.is_empty() {
+                String::new()
+            } else {
+                format!("did you mean {}?", close.join(" or "))
+            };
+            s.complain(
+                "fitted_to",
+                "keys of a vehicle or lubricant",
+                &format!("there is no parameter `{key}`"),
+                &hint,
+            );
+        }
+        keys
+    }
+
+    fn cause(&self, s: &Section) -> Option<Cause> {
+        let table = s.table("cause");
+        if !table.exists() {
+            return None;
+        }
+        let text = table.text("compute", "how it is computed");
+        let cause = Cause {
+            what: table.text("what", "what the number is"),
+            unit: table.text_or("unit", "-", "its unit"),
+            compute: self.expression(&table, "compute", &text)?,
+        };
+        Some(cause)
+    }
+}
+
+/// What helps where an expression cannot be read.
+const GRAMMAR: &str = "docs/validation_format.md shows what an expression may hold";
+
+/// A fault in an expression as a problem at its place.
+pub fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
+    // The place is exact where the text stands on one line as it is.
+    let quoted: String = place
+        .line_text
+        .chars()
+        .skip(place.column.saturating_sub(1))
+        .collect();
+    let plain = quoted
+        .strip_prefix(['"', '\''])
+        .is_some_and(|rest| rest.starts_with(text));
+    let place = if plain {
+        Place {
+            column: place.column + 1 + fault.at,
+            width: fault.width,
+            ..place
+        }
+    } else {
+        place
+    };
+    Problem {
+        place,
+        key: key.to_owned(),
+        value: fault.word,
+        allowed: String::new(),
+        message: format!("`{key}`: {}", fault.message),
+        hint: if fault.hint.is_empty() {
+            GRAMMAR.to_owned()
+        } else {
+            fault.hint
+        },
+    }
+}

@@ -1,0 +1,202 @@
+//! Sources computed once and seen by expressions, whatever the cars come from.
+
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::rc::Rc;
+
+use super::expr::{Table, Tables};
+use super::source::{Kind, Source};
+use super::tables::{self, Driven};
+use cvtcycle_config::rig::PREFIX;
+use cvtcycle_config::setup::Setup;
+use cvtcycle_config::{KeyInfo, Place, Problem};
+use cvtcycle_model::bench::transmission::Conditions;
+
+/// Where the cars and the rig of the sources come from.
+pub trait Cars {
+    /// The car of a source; the subject for none.
+    ///
+    /// # Errors
+    /// What is wrong with its files, or with its numbers.
+    fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Vec<Problem>>;
+
+    /// What the transmission rig is set to, for a source.
+    ///
+    /// # Errors
+    /// What is wrong with its values.
+    fn conditions(
+        &self,
+        source: Option<&Source>,
+    ) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>>;
+}
+
+/// The value for a key, made once.
+pub fn once<K: Eq + Hash, T: Clone>(
+    map: &RefCell<HashMap<K, T>>,
+    key: K,
+    make: impl FnOnce() -> T,
+) -> T {
+    if let Some(found) = map.borrow().get(&key) {
+        return found.clone();
+    }
+    let made = make();
+    map.borrow_mut().insert(key, made.clone());
+    made
+}
+
+/// Everything that was computed, shared by all expressions: sources of equal contents are one.
+pub struct Store<'a> {
+    cars: &'a dyn Cars,
+    runs: RefCell<HashMap<String, Rc<Result<Driven, String>>>>,
+    tables: RefCell<HashMap<String, Result<Rc<Table>, String>>>,
+}
+
+impl<'a> Store<'a> {
+    /// With nothing computed yet.
+    pub fn new(cars: &'a dyn Cars) -> Self {
+        Store {
+            cars,
+            runs: RefCell::default(),
+            tables: RefCell::default(),
+        }
+    }
+
+    /// The table of a source, or of its totals.
+    ///
+    /// # Errors
+    /// Why it cannot be computed.
+    pub fn table(&self, source: &Source, totals: bool) -> Result<Rc<Table>, String> {
+        let bare = Source {
+            name: String::new(),
+            place: Place::default(),
+            ..source.clone()
+        };
+        once(&self.tables, format!("{totals} {bare:?}"), || {
+            self.compute(&bare, totals).map(Rc::new)
+        })
+    }
+
+    fn compute(&self, source: &Source, totals: bool) -> Result<Table, String> {
+        let setup = self
+            .cars
+            .setup(Some(source))
+            .map_err(|problems| refused(&problems))?;
+        if source.kind != Kind::Run {
+            let (conditions, _) = self
+                .cars
+                .conditions(Some(source))
+                .map_err(|_| "the rig's conditions cannot be read".to_owned())?;
+            return tables::table(source, &setup, &conditions);
+        }
+        // Phases of the same run share it.
+        let whole = Source {
+            phase: String::new(),
+            ..source.clone()
+        };
+        let driven = once(&self.runs, format!("{whole:?}"), || {
+            Rc::new(tables::drive(&whole, &setup))
+        });
+        match driven.as_ref() {
+            Ok(driven) => tables::of_run(source, driven, totals),
+            Err(why) => Err(why.clone()),
+        }
+    }
+}
+
+fn refused(problems: &[Problem]) -> String {
+    let first = problems
+        .first()
+        .map(|problem| format!(": {}", problem.message))
+        .unwrap_or_default();
+    format!("its vehicle cannot be loaded{first}")
+}
+
+/// The store as the expressions of one file see it.
+pub struct View<'a> {
+    store: &'a Store<'a>,
+    sources: &'a [Source],
+    left_out: Cell<usize>,
+    outside: Cell<usize>,
+}
+
+impl<'a> View<'a> {
+    /// With the sources that the expressions count from 0.
+    pub fn new(store: &'a Store<'a>, sources: &'a [Source]) -> Self {
+        View {
+            store,
+            sources,
+            left_out: Cell::default(),
+            outside: Cell::default(),
+        }
+    }
+
+    /// Forgets what was noted.
+    pub fn begin(&self) {
+        self.left_out.set(0);
+        self.outside.set(0);
+    }
+
+    /// Points left out because of gross slip, and points that count though they lie outside the validity of a model.
+    pub fn noted(&self) -> (usize, usize) {
+        (self.left_out.get(), self.outside.get())
+    }
+}
+
+impl Tables for View<'_> {
+    fn table(&self, source: usize, totals: bool) -> Result<Rc<Table>, String> {
+        let spec = self.sources.get(source).ok_or("no such source")?;
+        self.store
+            .table(spec, totals)
+            .map_err(|why| format!("source `{}`: {why}", spec.name))
+    }
+
+    fn key(&self, source: Option<usize>, path: &str, item: Option<usize>) -> Result<f64, String> {
+        let spec = source.and_then(|k| self.sources.get(k));
+        if path.starts_with(PREFIX) {
+            let (_, keys) = self
+                .store
+                .cars
+                .conditions(spec)
+                .map_err(|_| "the rig's conditions cannot be read".to_owned())?;
+            let info = keys
+                .iter()
+                .find(|info| info.key == path)
+                .ok_or_else(|| format!("the rig has no `{path}`"))?;
+            return number_of(info, item)
+                .ok_or_else(|| format!("`{path}` is no number here: {}", info.value));
+        }
+        let setup = self
+            .store
+            .cars
+            .setup(spec)
+            .map_err(|_| "the vehicle cannot be loaded".to_owned())?;
+        let info = setup
+            .keys
+            .iter()
+            .find(|info| info.key == path)
+            .ok_or_else(|| format!("the vehicle `{}` has no `{path}`", setup.name))?;
+        number_of(info, item).ok_or_else(|| format!("`{path}` is no number here: {}", info.value))
+    }
+
+    fn left_out(&self, rows: usize) {
+        self.left_out.set(self.left_out.get() + rows);
+    }
+
+    fn outside(&self, rows: usize) {
+        self.outside.set(self.outside.get() + rows);
+    }
+}
+
+/// A key's number in its own unit, an item of a list, 1 and 0 for true and false.
+fn number_of(info: &KeyInfo, item: Option<usize>) -> Option<f64> {
+    match (info.value.as_str(), item) {
+        ("true", None) => Some(1.0),
+        ("false", None) => Some(0.0),
+        (value, None) => value.parse().ok(),
+        (value, Some(k)) => {
+            let inner = value.strip_prefix('[')?.strip_suffix(']')?;
+            inner.split(',').nth(k)?.trim().parse().ok()
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Measured CSV files to numbers, with the place of each.
+//!
+//! | file | columns |
+//! |---|---|
+//! | `points` | settings of the bench, then measured columns of it |
+//! | `trace` | `time_s`, then measured columns of the trace |
+//! | `scalars` | `quantity`, `value`, `sd`, `phase` |
+//!
+//! Every column's unit is in its name. A measured column may have its standard deviation beside it, in `sd_COLUMN`; an empty cell was not
+//! measured.
+
+pub(super) mod points;
+pub(super) mod scalars;
+pub(super) mod sheet;
+pub(super) mod trace;
+
+use crate::check::source::Kind;
+use crate::check::tables;
+use cvtcycle_config::cycle::problems::Complaint;
+use cvtcycle_config::{Place, Problem, bounded, near};
+
+/// Forms of a measured file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Points of a bench.
+    Points,
+    /// A trace over time.
+    Trace,
+    /// Single numbers of a run.
+    Scalars,
+}
+
+impl Form {
+    /// All of them.
+    pub const ALL: [Form; 3] = [Form::Points, Form::Trace, Form::Scalars];
+}
+
+/// Reads a measured file by itself, without the plan that says what it is of; the number of its rows.
+///
+/// # Errors
+/// All problems of the file.
+pub fn check(form: Form, file: &str, bytes: &[u8]) -> Result<usize, Vec<Problem>> {
+    let (sheet, problems) = match form {
+        Form::Points => points::read(file, bytes),
+        Form::Trace => trace::read(file, bytes, &tables::columns(Kind::Run, false)),
+        Form::Scalars => scalars::read(file, bytes, &tables::columns(Kind::Run, true), None),
+    };
+    if problems.is_empty() {
+        Ok(sheet.map_or(0, |sheet| sheet.rows.len()))
+    } else {
+        Err(problems)
+    }
+}
+
+/// Reads a file that a plan names, relative to the plan.
+///
+/// # Errors
+/// The operating system's words, or more bytes than a table may have, at the place in the plan.
+pub(super) fn bytes_of(path: &str, place: &Place, key: &str) -> Result<Vec<u8>, Vec<Problem>> {
+    bounded::read_file(path, bounded::TABLE).map_err(|error| {
+        let message = format!("cannot read `{path}`: {error}");
+        let hint = error.hint("check the name; a path is relative to the folder of the plan");
+        let value = path.to_owned();
+        let place = place.clone();
+        let allowed = error.allowed("a readable CSV file");
+        vec![Problem {
+            place,
+            key: key.to_owned(),
+            value,
+            allowed,
+            message,
+            hint: hint.into(),
+        }]
+    })
+}
+
+/// A column that nobody knows.
+pub(super) fn unknown(name: &str, known: &[&str], what: &str) -> Complaint {
+    if name.trim().is_empty() {
+        return Complaint::new(
+            "this column has no name",
+            what,
+            "remove the comma or name the column",
+        );
+    }
+    let close = near(name, known.iter().copied());
+    // What is meant may be there with its unit.
+    let unit: Vec<&str> = known
+        .iter()
+        .copied()
+        .filter(|full| {
+            full.strip_prefix(name)
+                .is_some_and(|rest| rest.starts_with('_'))
+        })
+        .collect();
+    if let [full] = unit.as_slice() {
+        return Complaint::new(
+            "this column has no unit",
+            format!("`{full}`"),
+            format!("if it is in that unit, name it {full}"),
+        );
+    }
+    if !unit.is_empty() {
+        return Complaint::new(
+            "this column has no unit",
+            unit.join(", "),
+            "name it by its unit",
+        );
+    }
+    let hint = if close.is_empty() {
+        "remove it or rename it".to_owned()
+    } else {
+        format!("did you mean {}?", close.join(" or "))
+    };
+    Complaint::new("there is no such column", what, hint)
+}

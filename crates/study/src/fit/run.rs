@@ -1,0 +1,342 @@
+//! A plan to its outcome.
+
+use sha2::{Digest, Sha256};
+
+use super::model::{Answer, Model};
+use super::outcome::{self, Direction, Fold, Outcome, Residual, SCHEMA, Start, rms};
+use super::plan::{Measured, Plan, What, problem};
+use super::solve::{self, Bound, End, Fit, Options, Uncertainty, Watcher};
+use cvtcycle_config::Problem;
+
+/// Probability below which the data scatter more than their standard deviations say.
+const UNLIKELY: f64 = 0.01;
+/// A start within this share of the least cost found the same minimum.
+const SAME_COST: f64 = 1e-3;
+/// Distance from its prior, in its standard deviations, that a reader should know of.
+const FAR: f64 = 3.0;
+
+/// Fits the parameters of a plan, and says what the fit is worth.
+///
+/// # Errors
+/// What is wrong with the plan's vehicle, keys, bounds and sources; a problem if the model has no answer at any start.
+pub fn calibrate(plan: &Plan, watcher: &dyn Watcher) -> Result<Outcome, Vec<Problem>> {
+    let model = Model::new(plan)?;
+    let search = &plan.search;
+    let options = Options {
+        starts: search.starts,
+        seed: search.seed,
+        most_evaluations: search.most_evaluations,
+        tolerance: search.tolerance,
+    };
+    let fit = solve::fit(&model, model.parameters(), &options, watcher).map_err(|failure| {
+        let hint = "leave out data where the model has no number; the first start is at the values of the files";
+        // Each cause once: the starts and their many values say no more.
+        let whys = failure.starts.iter().filter_map(|start| start.failure.clone());
+        let mut whys: Vec<String> = if failure.starts.is_empty() { failure.reasons } else { whys.collect() };
+        whys.sort();
+        whys.dedup();
+        whys.into_iter().map(|why| problem(&plan.place, "", "", format!("the model has no answer: {why}"), hint)).collect::<Vec<Problem>>()
+    })?;
+    let folds = if search.leave_out && plan.folds.len() > 1 && fit.end != End::Stopped {
+        let groups: Vec<usize> = plan
+            .observations
+            .iter()
+            .map(|observation| observation.fold)
+            .collect();
+        solve::leave_out(&model, model.parameters(), &groups, &fit, &options, watcher)
+    } else {
+        Vec::new()
+    };
+    Ok(Found {
+        uncertainty: solve::uncertainty(&fit, model.parameters()),
+        model: &model,
+        fit,
+        folds,
+    }
+    .outcome())
+}
+
+/// A finished fit with its model.
+struct Found<'m> {
+    model: &'m Model<'m>,
+    fit: Fit,
+    uncertainty: Uncertainty,
+    folds: Vec<solve::Fold>,
+}
+
+impl Found<'_> {
+    fn outcome(&self) -> Outcome {
+        let (plan, fit) = (self.model.plan(), &self.fit);
+        let file_values = self.model.file_values();
+        let before = self.model.answer(&file_values).ok();
+        let residuals = self.residuals(before.as_ref(), &file_values);
+        let parameters = self.parameters(&file_values);
+        let sum = |list: &mut dyn Iterator<Item = f64>| list.map(|x| x * x).sum::<f64>();
+        let prior_before = sum(&mut parameters
+            .iter()
+            .filter_map(|p| p.prior.map(|[mean, sd]| (p.file_value - mean) / sd)));
+        let mut outcome = Outcome {
+            schema: SCHEMA,
+            program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")).to_owned(),
+            title: plan.title.clone(),
+            plan: plan.file.clone(),
+            plan_sha256: Sha256::digest(plan.text.as_bytes())
+                .iter()
+                .map(|byte| format!("{byte:02x}"))
+                .collect(),
+            files: plan
+                .files
+                .iter()
+                .map(|(path, hash)| [path.clone(), hash.clone()])
+                .collect(),
+            vehicle: plan.vehicle.clone(),
+            end: end_words(fit.end).to_owned(),
+            converged: fit.end == End::Converged,
+            cost_before: residuals
+                .iter()
+                .map(|r| r.before_sd)
+                .collect::<Option<Vec<f64>>>()
+                .map(|list| sum(&mut list.into_iter()) + prior_before),
+            cost_after: fit.cost,
+            chi2: sum(&mut fit.residuals.iter().copied()),
+            degrees_of_freedom: self.uncertainty.degrees_of_freedom,
+            chi2_probability: self.uncertainty.chi2_probability,
+            parameters,
+            residuals,
+            correlation: matrix(&self.uncertainty.correlation),
+            covariance: matrix(&self.uncertainty.covariance),
+            directions: self
+                .uncertainty
+                .directions
+                .iter()
+                .rev()
+                .map(|d| Direction {
+                    singular_value: d.singular_value,
+                    weights: d.weights.clone(),
+                })
+                .collect(),
+            not_identified: solve::words(fit, self.model.parameters()),
+            folds: Vec::new(),
+            starts: fit.starts.iter().map(start).collect(),
+            evaluations: fit.evaluations,
+            warnings: Vec::new(),
+        };
+        outcome.folds = self.folds_of(&outcome.residuals);
+        outcome.warnings = warnings(&outcome);
+        outcome
+    }
+
+    fn parameters(&self, file_values: &[f64]) -> Vec<outcome::Parameter> {
+        let (plan, u) = (self.model.plan(), &self.uncertainty);
+        let units = self.model.units();
+        let one = |(k, p): (usize, &solve::Parameter)| {
+            let own = plan.parameters.get(k);
+            outcome::Parameter {
+                name: p.name.clone(),
+                is_key: own.is_some(),
+                unit: units[k].clone(),
+                file_value: file_values[k],
+                value: self.fit.values[k],
+                standard_error: u.standard_error[k],
+                low: p.low,
+                high: p.high,
+                prior: p.prior.map(|prior| [prior.mean, prior.sd]),
+                prior_status: own.map_or_else(|| "assumed".to_owned(), |free| free.status.clone()),
+                source: own.map_or_else(
+                    || "one error for all data of the group".to_owned(),
+                    |free| free.source.clone(),
+                ),
+                prior_share: u.prior_share[k],
+                at_bound: u.at_bound[k]
+                    .map(|bound| if bound == Bound::Low { "low" } else { "high" }),
+                is_dead: u.dead.contains(&k),
+            }
+        };
+        self.model
+            .parameters()
+            .iter()
+            .enumerate()
+            .map(one)
+            .collect()
+    }
+
+    fn residuals(&self, before: Option<&Answer>, file_values: &[f64]) -> Vec<Residual> {
+        let plan = self.model.plan();
+        // The fit ended where the model has an answer.
+        let after = self.model.answer(&self.fit.values).unwrap_or(Answer {
+            computed: Vec::new(),
+            doubtful: Vec::new(),
+        });
+        let left_out = self.left_out();
+        let before_distances =
+            before.map(|answer| self.model.distances(&answer.computed, file_values));
+        let one = |(k, o): (usize, &super::plan::Observation)| {
+            let (low, high) = match o.measured {
+                Measured::Value(x) => (x, x),
+                Measured::Within(low, high) => (low, high),
+            };
+            Residual {
+                group: plan.groups[o.group].name.clone(),
+                fold: plan.folds[o.fold].clone(),
+                label: o.label.clone(),
+                what: o.what.clone(),
+                column: o.column.clone(),
+                time_s: if let What::Trace { time_s, .. } = o.what_computed {
+                    Some(time_s)
+                } else {
+                    None
+                },
+                unit: o.unit.clone(),
+                low: low.is_finite().then_some(low),
+                high: high.is_finite().then_some(high),
+                sd: o.sd,
+                weight_sd: o.weight_sd,
+                before: before.map(|answer| answer.computed[k]),
+                after: after.computed.get(k).copied().unwrap_or(f64::NAN),
+                left_out: left_out[k].0,
+                before_sd: before_distances.as_ref().map(|list| list[k] / o.weight_sd),
+                after_sd: self.fit.residuals[k],
+                left_out_sd: left_out[k].1,
+                doubtful: after.doubtful.get(k).copied().unwrap_or(0),
+            }
+        };
+        plan.observations.iter().enumerate().map(one).collect()
+    }
+
+    /// Prediction of each observation by the fit without its fold, and its residual.
+    fn left_out(&self) -> Vec<(Option<f64>, Option<f64>)> {
+        let plan = self.model.plan();
+        let mut all = vec![(None, None); plan.observations.len()];
+        for fold in &self.folds {
+            let Ok(answer) = self.model.answer(&fold.values) else {
+                continue;
+            };
+            let own = (0..all.len()).filter(|k| plan.observations[*k].fold == fold.group);
+            for (k, residual) in own.zip(&fold.residuals) {
+                all[k] = (Some(answer.computed[k]), Some(*residual));
+            }
+        }
+        all
+    }
+
+    fn folds_of(&self, residuals: &[Residual]) -> Vec<Fold> {
+        let plan = self.model.plan();
+        let one = |fold: &solve::Fold| {
+            let name = plan.folds[fold.group].clone();
+            let own = || residuals.iter().filter(|r| r.fold == name);
+            Fold {
+                observations: own().count(),
+                fitted_rms_sd: rms(own().map(|r| r.after_sd)).unwrap_or(f64::NAN),
+                predicted_rms_sd: rms(fold.residuals.iter().copied()),
+                end: fold
+                    .failure
+                    .clone()
+                    .unwrap_or_else(|| end_words(fold.end).to_owned()),
+                name,
+            }
+        };
+        self.folds.iter().map(one).collect()
+    }
+}
+
+/// How a search ended, in words.
+fn end_words(end: End) -> &'static str {
+    match end {
+        End::Converged => "converged",
+        End::OutOfEvaluations => "out of evaluations",
+        End::Stopped => "stopped",
+        End::NoProgress => "no progress",
+    }
+}
+
+fn start(start: &solve::Start) -> Start {
+    let end = start.failure.as_ref().map_or_else(
+        || end_words(start.end).to_owned(),
+        |why| format!("{}: {why}", end_words(start.end)),
+    );
+    Start {
+        from: start.from.clone(),
+        to: start.to.clone(),
+        cost: start.cost.is_finite().then_some(start.cost),
+        end,
+        evaluations: start.evaluations,
+    }
+}
+
+fn matrix(m: &nalgebra::DMatrix<f64>) -> Vec<Vec<Option<f64>>> {
+    m.row_iter()
+        .map(|row| row.iter().map(|x| x.is_finite().then_some(*x)).collect())
+        .collect()
+}
+
+/// What a reader must not overlook.
+fn warnings(o: &Outcome) -> Vec<String> {
+    let mut said = Vec::new();
+    if !o.converged {
+        said.push(format!(
+            "the search did not converge ({}): the values are the best point so far, no minimum",
+            o.end
+        ));
+    }
+    for p in o.parameters.iter().filter(|p| p.is_dead) {
+        said.push(format!(
+            "{} moves no datum: it is not fitted by these data",
+            p.name
+        ));
+    }
+    for p in &o.parameters {
+        if let Some(bound) = p.at_bound {
+            said.push(format!(
+                "{} lies at its {bound} bound, {}: the data would carry it further",
+                p.name, p.value
+            ));
+        }
+        if let Some([mean, sd]) = p.prior
+            && (p.value - mean).abs() > FAR * sd
+        {
+            said.push(format!(
+                "{} is {:.1} standard deviations away from its prior",
+                p.name,
+                (p.value - mean).abs() / sd
+            ));
+        }
+    }
+    if let Some(p) = o.chi2_probability.filter(|p| *p < UNLIKELY) {
+        said.push(format!(
+            "the data scatter more than their standard deviations say: a sum of squares of {:.1} with {} degrees of freedom has a probability of {p:.1e}; \
+             the standard errors are too small by a factor of about {:.1}",
+            o.cost_after,
+            o.degrees_of_freedom,
+            (o.cost_after / o.degrees_of_freedom as f64).sqrt()
+        ));
+    }
+    let doubtful: Vec<&str> = o
+        .residuals
+        .iter()
+        .filter(|r| r.doubtful > 0)
+        .map(|r| r.label.as_str())
+        .collect();
+    if let Some(first) = doubtful.first() {
+        let more = if doubtful.len() > 1 {
+            format!(" and {} more", doubtful.len() - 1)
+        } else {
+            String::new()
+        };
+        said.push(format!("{first}{more}: computed outside the validity of a model, or with points left out at gross slip"));
+    }
+    let elsewhere = o
+        .starts
+        .iter()
+        .filter(|s| {
+            s.cost
+                .is_none_or(|cost| cost > o.cost_after * (1.0 + SAME_COST) + 1e-9)
+        })
+        .count();
+    if elsewhere > 0 {
+        said.push(format!(
+            "{elsewhere} of {} starts ended in another place, with a larger sum of squares",
+            o.starts.len()
+        ));
+    }
+    said
+}

@@ -1,0 +1,329 @@
+//! What a study is to do, read from a TOML file and checked.
+//!
+//! | file | what stands there |
+//! |---|---|
+//! | `read` | the head of a plan, and all its parts together |
+//! | `factor`, `values` | one `[[factor]]` and its list, range or distribution |
+//! | `options` | what the run options allow, as factors and at the head |
+//! | `design` | the design's own keys, and what concerns all factors at once |
+//! | `distribution` | equations of the distributions |
+//! | `embedded` | the plans that the program carries |
+
+mod design;
+mod distribution;
+mod embedded;
+mod factor;
+mod options;
+mod places;
+mod read;
+mod values;
+
+pub use embedded::embedded_plans;
+pub use places::Places;
+
+use std::sync::Arc;
+
+use cvtcycle_config::{Place, Problem};
+use cvtcycle_model::transmission::cvt::variator::Formulation;
+
+use super::design::Level;
+
+/// A whole plan.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Name of the file, as problems cite it.
+    pub file: String,
+    /// Its text, byte for byte.
+    pub text: String,
+    /// Name for people.
+    pub title: String,
+    /// The question that the study is to answer, in words; may be empty.
+    pub question: String,
+    /// What is driven where no factor says otherwise.
+    pub base: Base,
+    /// What is varied.
+    pub factors: Vec<Factor>,
+    /// Which combinations are driven.
+    pub design: Design,
+    /// What is kept of each run beside its summary.
+    pub keep: Keep,
+    /// Columns of the summary that are analysed, in their order; the fuel columns if there are none.
+    pub analyse: Vec<String>,
+    /// Number of runs above which the user must agree.
+    pub most_runs: u64,
+    /// Where the keys of `[study]` stand; `design` is the place of the design's table.
+    pub places: Places,
+}
+
+/// Cars and conditions of all runs; paths are relative to the plan's folder.
+#[derive(Clone, Debug)]
+pub struct Base {
+    /// Subject, name or path.
+    pub vehicle: String,
+    /// Baselines, names or paths; those of the vehicle's file if none are given.
+    pub baselines: Option<Vec<String>>,
+    /// Cycle, name or path.
+    pub cycle: String,
+    /// Ambient temperature, degC.
+    pub ambient_degc: f64,
+    /// `soak`, `warm` or a temperature in degC.
+    pub start: String,
+    /// Transmission oil of the subject.
+    pub lubricant: Option<String>,
+    /// Engine oil of all cars.
+    pub engine_oil: Option<String>,
+    /// Overrides of the subject, `KEY=VALUE`.
+    pub set: Vec<String>,
+    /// Overrides of all cars, `KEY=VALUE`.
+    pub set_all: Vec<String>,
+    /// Largest step, s.
+    pub dt_s: f64,
+    /// Reading of the belt model.
+    pub formulation: Formulation,
+}
+
+/// One thing that is varied.
+#[derive(Clone, Debug)]
+pub struct Factor {
+    /// A run option ([`RUN_OPTIONS`]) or a dotted key of the vehicle, `lubricant.` or `engine_oil.`.
+    pub key: String,
+    /// Short name for tables and plots; the key unless given.
+    pub name: String,
+    /// Unit of its numbers: the key's, `-` where they multiply, `K` where they are added to a temperature. Empty for words: either all
+    /// values of a factor are numbers and there is a unit, or all are words.
+    pub unit: String,
+    /// Whose value it is.
+    pub cars: Cars,
+    /// What a number does with the value of the car's file.
+    pub acts: Acts,
+    /// The values.
+    pub values: FactorValues,
+    /// `source`, `derived`, `fitted` or `assumed`: how the values are known; empty if not said, which no distribution leaves.
+    pub status: String,
+    /// Reason or reference for them.
+    pub source: String,
+    /// Where its key stands in the plan.
+    pub place: Place,
+    /// Where its values stand: `values` and its items, `range`, `distribution` and `distribution.low` or the like.
+    pub places: Places,
+}
+
+/// Factors that are no keys of a file. They are of all cars, but for the lubricant.
+pub const RUN_OPTIONS: [&str; 7] = [
+    "ambient_degc",
+    "start",
+    "cycle",
+    "lubricant",
+    "engine_oil",
+    "dt_s",
+    "formulation",
+];
+
+/// The cars that a factor changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cars {
+    /// The subject alone, as `--set`.
+    Subject,
+    /// The baselines alone.
+    Baselines,
+    /// All cars with the same draw, as `--set-all`.
+    All,
+}
+
+/// What a number does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Acts {
+    /// It is the value.
+    Value,
+    /// It multiplies the value of each car's own file.
+    Scale,
+    /// It is added to the value of each car's own file.
+    Offset,
+}
+
+/// A value of a factor, in the unit of its key.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FactorValue {
+    /// A number.
+    Number(f64),
+    /// A word, or any other TOML value as written.
+    Word(Arc<str>),
+}
+
+/// As a user would write it, words without quotes.
+impl std::fmt::Display for FactorValue {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            FactorValue::Number(x) => write!(f, "{x}"),
+            FactorValue::Word(word) => f.write_str(word),
+        }
+    }
+}
+
+/// The values that a factor takes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FactorValues {
+    /// These, equally likely where they are drawn.
+    List(Vec<FactorValue>),
+    /// Numbers of a distribution.
+    Distribution(Distribution),
+}
+
+/// A distribution of numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Distribution {
+    /// Normal.
+    Normal {
+        /// Mean.
+        mean: f64,
+        /// Standard deviation.
+        sd: f64,
+    },
+    /// Normal, cut off at both ends and raised to probability 1 between them.
+    TruncatedNormal {
+        /// Mean before the cut.
+        mean: f64,
+        /// Standard deviation before the cut.
+        sd: f64,
+        /// Least value.
+        low: f64,
+        /// Largest value.
+        high: f64,
+    },
+    /// Uniform.
+    Uniform {
+        /// Least value.
+        low: f64,
+        /// Largest value.
+        high: f64,
+    },
+    /// Triangular.
+    Triangular {
+        /// Least value.
+        low: f64,
+        /// Most likely value.
+        mode: f64,
+        /// Largest value.
+        high: f64,
+    },
+    /// Lognormal.
+    Lognormal {
+        /// Median.
+        median: f64,
+        /// Geometric standard deviation: 68 % lie between median / g and median g.
+        geometric_sd: f64,
+    },
+}
+
+impl Plan {
+    /// Reads and checks a plan; `file` is the name under which problems cite it. Names of cars, fluids and cycles that the program carries
+    /// are checked; files that the plan names are not opened, and keys of cars and names of result columns are not known here.
+    ///
+    /// # Errors
+    /// All problems with their places.
+    pub fn read(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
+        read::plan(file, text)
+    }
+
+    /// The plan of a word given by the user, name or path as for a vehicle; `option` is what problems of the word itself cite.
+    ///
+    /// # Errors
+    /// Unknown name, unreadable file, or all problems of the plan.
+    pub fn open(word: &str, option: &str) -> Result<Plan, Vec<Problem>> {
+        let (file, text) = embedded::text_of(word, option)?;
+        Plan::read(&file, &text)
+    }
+
+    /// Least and largest number that a factor takes in this plan; none for words. Exact, but for distributions drawn more than 2^20
+    /// times ([`Design::share_span`]).
+    #[must_use]
+    pub fn span(&self, factor: usize) -> Option<(f64, f64)> {
+        let values = &self.factors.get(factor)?.values;
+        match values {
+            FactorValues::List(list) => {
+                let numbers = list.iter().filter_map(|value| match value {
+                    FactorValue::Number(x) => Some((*x, *x)),
+                    FactorValue::Word(_) => None,
+                });
+                numbers.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+            }
+            FactorValues::Distribution(distribution) => {
+                let (low, high) = self.design.share_span(&self.factors, factor);
+                Some((
+                    distribution.inverse_cdf(low),
+                    distribution.inverse_cdf(high),
+                ))
+            }
+        }
+    }
+}
+
+impl Factor {
+    /// Its value where a design puts it; none for the value of the car's own file.
+    #[must_use]
+    pub fn value(&self, level: Level) -> Option<FactorValue> {
+        match (&self.values, level) {
+            (_, Level::Base) => None,
+            (FactorValues::List(list), Level::Entry(entry)) => list.get(entry).cloned(),
+            (FactorValues::List(list), Level::Share(share)) => {
+                let entry = (share * list.len() as f64) as usize;
+                list.get(entry.min(list.len().saturating_sub(1))).cloned()
+            }
+            (FactorValues::Distribution(distribution), Level::Share(share)) => {
+                Some(FactorValue::Number(distribution.inverse_cdf(share)))
+            }
+            (FactorValues::Distribution(_), Level::Entry(_)) => None,
+        }
+    }
+}
+
+/// Which combinations of values are driven.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Design {
+    /// Every value of each factor with every value of the others, the last factor fastest.
+    Grid,
+    /// The base, then each factor by itself: every value of a list, or two quantiles of a distribution.
+    OneAtATime {
+        /// Lower quantile of distributions; the upper one is 1 minus it.
+        quantile: f64,
+    },
+    /// Latin hypercube.
+    LatinHypercube {
+        /// Points.
+        samples: u64,
+        /// Seed.
+        seed: u64,
+    },
+    /// Owen-scrambled Sobol sequence.
+    Sobol {
+        /// Points.
+        samples: u64,
+        /// Seed.
+        seed: u64,
+    },
+    /// Independent draws.
+    MonteCarlo {
+        /// Points.
+        samples: u64,
+        /// Seed.
+        seed: u64,
+    },
+    /// Saltelli's blocks for Sobol indices: A, B and, for each factor, A with that factor's column from B.
+    Saltelli {
+        /// Base samples N; N (factors + 2) points.
+        samples: u64,
+        /// Seed.
+        seed: u64,
+    },
+}
+
+/// What is kept of each run beside its row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Keep {
+    /// Nothing.
+    Summary,
+    /// Some columns of the trace, by name.
+    Columns(Vec<String>),
+    /// Every column of the trace.
+    Everything,
+}

@@ -1,0 +1,62 @@
+//! Where the parts of a plan stand, for whoever finds out later that one of them is wrong.
+
+use cvtcycle_config::{Place, Section};
+
+/// Places of the keys of one table of a plan.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Places {
+    whole: Place,
+    known: Vec<(String, Place)>,
+}
+
+impl Places {
+    /// Those of a table that stands at `whole`.
+    #[must_use]
+    pub fn new(whole: Place) -> Self {
+        Places {
+            whole,
+            known: Vec::new(),
+        }
+    }
+
+    /// Where a key's value stands, such as `design`, `values` or `distribution.low`; the table itself where the key is not given.
+    #[must_use]
+    pub fn of(&self, key: &str) -> &Place {
+        self.find(key).unwrap_or(&self.whole)
+    }
+
+    /// Where an item of a list stands, counted from 0; the whole value where it is no list, such as a range.
+    #[must_use]
+    pub fn nth(&self, key: &str, item: usize) -> &Place {
+        self.find(&item_name(key, item))
+            .unwrap_or_else(|| self.of(key))
+    }
+
+    /// Notes a place.
+    pub(super) fn add(&mut self, key: &str, place: Place) {
+        self.known.push((key.to_owned(), place));
+    }
+
+    /// Notes the place of an item of a list.
+    pub(super) fn add_item(&mut self, key: &str, item: usize, place: Place) {
+        self.add(&item_name(key, item), place);
+    }
+
+    /// Notes the place of a key of `section` under the name `name`, where it is given.
+    pub(super) fn add_given(&mut self, section: &Section, key: &str, name: &str) {
+        if section.has(key) {
+            self.add(name, section.place(key));
+        }
+    }
+
+    fn find(&self, key: &str) -> Option<&Place> {
+        self.known
+            .iter()
+            .find(|(known, _)| known == key)
+            .map(|(_, place)| place)
+    }
+}
+
+fn item_name(key: &str, item: usize) -> String {
+    format!("{key}[{item}]")
+}

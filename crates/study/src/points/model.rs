@@ -1,0 +1,298 @@
+//! A vehicle's belt with the values of a row in place of its own.
+
+use std::f64::consts::PI;
+
+use cvtcycle_config::cycle::problems::Complaint;
+use cvtcycle_config::setup::Setup;
+use cvtcycle_model::fluid::{BandFriction, Lubricant, ZERO_DEGC_K};
+use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::cvt::Cvt;
+use cvtcycle_model::transmission::cvt::variator::point::{PointFlags, PointLimits};
+use cvtcycle_model::transmission::cvt::variator::{
+    Belt, BeltAtRatio, BeltLoad, BeltPoint, Formulation, Geometry, belt_point, sliding_speed_m_s,
+};
+
+use super::columns::{
+    BAND_COUNT, BAND_FRICTION, BAND_OFFSET, BELT_TEMP, NUMBERS, ON_STOP, PRESSURE, PULLEY_ANGLE,
+    RATIO, SEGMENT_FRICTION, SPEED, TORQUE, WEDGE_ANGLE,
+};
+use super::rows::Given;
+
+/// Belt temperature at which the friction of a fluid stands, degC.
+const REFERENCE_DEGC: f64 = 85.0;
+/// Boundary friction of the bands in the printed forms.
+const PRINTED_BAND_FRICTION: f64 = 0.13;
+/// Largest mu beta/2 for which tension and compression have a solution worth the name (TE-5 needs less than 1).
+const LARGEST_GRIP: f64 = 0.98;
+
+/// What to do where a printed form has no value.
+const DEFINED: &str = "the formulation smooth is defined there";
+
+/// A computed point with the values that it was computed from.
+#[derive(Clone, Copy, Debug)]
+pub struct Solved {
+    /// Answer of the belt model.
+    pub point: BeltPoint,
+    /// What it departs from.
+    pub flags: PointFlags,
+    /// The reading in force.
+    pub formulation: Formulation,
+    /// In the order of [`NUMBERS`]; NaN where none is in force.
+    pub numbers: [f64; NUMBERS.len()],
+}
+
+/// The belt of a vehicle in each formulation; a row's values are written into it, every one anew for each row.
+#[derive(Clone, Debug)]
+pub struct Model {
+    cvt: Cvt,
+    oil: Lubricant,
+    limits: PointLimits,
+    pulley_angle_deg: f64,
+    band_speed_share: f64,
+    belts: [Belt; Formulation::NAMES.len()],
+    ratios: [f64; 2],
+}
+
+impl Model {
+    /// None for a car without a belt.
+    pub fn new(setup: &Setup, band_speed_share: f64) -> Option<Self> {
+        let Transmission::Cvt(cvt) = setup.transmission() else {
+            return None;
+        };
+        let belt = &cvt.belt;
+        let car = setup.car(ZERO_DEGC_K + 20.0);
+        Some(Model {
+            oil: setup.oils().0.clone(),
+            limits: PointLimits {
+                ratio: [cvt.ratio.high, cvt.ratio.low],
+                pressure_pa: [cvt.floor_pa, cvt.cap_pa],
+                highest_rad_s: car.engine.highest_rad_s,
+            },
+            // The belt keeps the tangent; what is shown is rid of the rounding of the way back.
+            pulley_angle_deg: (belt.tan_wedge.atan().to_degrees() * 1e12).round() / 1e12,
+            band_speed_share,
+            belts: Formulation::NAMES.map(|(_, formulation)| Belt {
+                formulation,
+                ..belt.clone()
+            }),
+            ratios: solvable(belt),
+            cvt: (**cvt).clone(),
+        })
+    }
+
+    /// Everything that stands against computing a row, with the number that is meant; also of a row that lacks some values.
+    pub fn check(&self, given: &Given, fallback: Formulation) -> Vec<(usize, Complaint)> {
+        let formulation = given.formulation.unwrap_or(fallback);
+        let mut found = Vec::new();
+        if let Some(ratio) = given.numbers[RATIO] {
+            if !runs(&self.cvt.belt, ratio) {
+                found.push((RATIO, no_geometry(self.ratios)));
+            } else if formulation != Formulation::Smooth && (ratio - 1.0).abs() <= 0.0 {
+                let message = format!("{} is not defined at ratio 1 (PR-1)", name(formulation));
+                found.push((
+                    RATIO,
+                    Complaint::new(message, "a ratio other than exactly 1", DEFINED),
+                ));
+            }
+        }
+        if formulation != Formulation::Smooth && given.numbers[SPEED].is_some_and(|rpm| rpm <= 0.0)
+        {
+            found.push((
+                SPEED,
+                Complaint::new(
+                    format!("{} is not defined at rest", name(formulation)),
+                    "above 0 rpm",
+                    DEFINED,
+                ),
+            ));
+        }
+        found
+    }
+
+    /// Computes a whole row that passed [`Model::check`], or says what stands against it after all and in which number.
+    pub fn solve(
+        &mut self,
+        given: &Given,
+        fallback: Formulation,
+    ) -> Result<Solved, (usize, Complaint)> {
+        let formulation = given.formulation.unwrap_or(fallback);
+        let ratio = given.required(RATIO);
+        let vehicle = &self.cvt.belt;
+        let speed_rad_s = given.required(SPEED) * PI / 30.0;
+        let pressure_pa = given.required(PRESSURE) * 1e5;
+        let clamp_n = self.cvt.secondary_clamp_n(pressure_pa, speed_rad_s / ratio);
+        let mut numbers = given.numbers.map(|number| number.unwrap_or(f64::NAN));
+        let own = |place: usize, value: f64| given.numbers[place].unwrap_or(value);
+        let index = Formulation::NAMES
+            .iter()
+            .position(|(_, known)| *known == formulation)
+            .unwrap_or_default();
+        let belt = &mut self.belts[index];
+        numbers[PULLEY_ANGLE] = own(PULLEY_ANGLE, self.pulley_angle_deg);
+        let angle = given.numbers[PULLEY_ANGLE].map(f64::to_radians);
+        (belt.cos_wedge, belt.tan_wedge) = angle
+            .map_or((vehicle.cos_wedge, vehicle.tan_wedge), |th| {
+                (th.cos(), th.tan())
+            });
+        numbers[BAND_OFFSET] = own(BAND_OFFSET, vehicle.band_offset_m * 1e3);
+        belt.band_offset_m =
+            given.numbers[BAND_OFFSET].map_or(vehicle.band_offset_m, |mm| mm * 1e-3);
+        numbers[BAND_COUNT] = own(BAND_COUNT, vehicle.band_count);
+        belt.band_count = numbers[BAND_COUNT];
+        let mut at = BeltAtRatio::new(belt, ratio);
+        if let Some(angle) = given.numbers[WEDGE_ANGLE] {
+            at.prepared.wedge_half_cot = 0.5 / angle.to_radians().tan();
+        }
+        numbers[WEDGE_ANGLE] = own(
+            WEDGE_ANGLE,
+            if formulation == Formulation::AppendixC {
+                11.0
+            } else {
+                numbers[PULLEY_ANGLE]
+            },
+        );
+        if let Some(on_stop) = given.numbers[ON_STOP] {
+            at.prepared.stop = if on_stop > 0.5 { 0.0 } else { 1.0 };
+        }
+        let load = BeltLoad {
+            primary_speed_rad_s: speed_rad_s,
+            output_torque_nm: given.required(TORQUE),
+            secondary_clamp_n: clamp_n,
+            ..friction(&self.oil, belt, ratio, speed_rad_s, &mut numbers)
+        };
+        let wrap = at.geometry.primary_wrap_rad;
+        if load.band.mu * wrap / 2.0 > LARGEST_GRIP {
+            let allowed = format!(
+                "up to {:.3} at this ratio and temperature",
+                2.0 * LARGEST_GRIP / wrap
+            );
+            return Err((
+                BAND_FRICTION,
+                Complaint::new("the bands would block themselves (TE-5)", allowed, ""),
+            ));
+        }
+        let point = belt_point(belt, &at, &load);
+        let point = if self.band_speed_share.abs() > 0.0 {
+            point.with_band_speed(belt, self.band_speed_share)
+        } else {
+            point
+        };
+        let belt_k = given.numbers[BELT_TEMP].unwrap_or(REFERENCE_DEGC) + ZERO_DEGC_K;
+        let flags = PointFlags::new(&point, &load, pressure_pa, belt_k, &self.limits);
+        Ok(Solved {
+            point,
+            flags,
+            formulation,
+            numbers,
+        })
+    }
+}
+
+/// Frictions of a row; `numbers` receives those in force.
+fn friction(
+    oil: &Lubricant,
+    belt: &Belt,
+    ratio: f64,
+    speed_rad_s: f64,
+    numbers: &mut [f64; NUMBERS.len()],
+) -> BeltLoad {
+    let fluid = &oil.friction;
+    let (smooth, has_film) = (
+        belt.formulation == Formulation::Smooth,
+        belt.formulation.has_film(),
+    );
+    let (band, segment) = if smooth {
+        (fluid.band, fluid.segment)
+    } else {
+        (
+            PRINTED_BAND_FRICTION,
+            belt.formulation.segment_friction(fluid.segment),
+        )
+    };
+    let or = |x: f64, other: f64| if x.is_nan() { other } else { x };
+    numbers[BAND_FRICTION] = or(numbers[BAND_FRICTION], band);
+    numbers[SEGMENT_FRICTION] = or(numbers[SEGMENT_FRICTION], segment);
+    let degc = numbers[BELT_TEMP];
+    let belt_k = or(degc, REFERENCE_DEGC) + ZERO_DEGC_K;
+    let eta_pa_s = oil.dynamic_pa_s(belt_k);
+    let band = if degc.is_nan() {
+        BandFriction {
+            mu: numbers[BAND_FRICTION],
+            film_share: 0.0,
+        }
+    } else {
+        // The printed forms know no film: without sliding there is no lift-off, the rise with temperature stays (LU-4).
+        let sliding = if has_film {
+            sliding_speed_m_s(belt, ratio, speed_rad_s)
+        } else {
+            0.0
+        };
+        cvtcycle_model::fluid::Friction {
+            band: numbers[BAND_FRICTION],
+            ..*fluid
+        }
+        .band(belt_k, eta_pa_s, sliding)
+    };
+    BeltLoad {
+        primary_speed_rad_s: speed_rad_s,
+        output_torque_nm: 0.0,
+        secondary_clamp_n: 0.0,
+        band,
+        eta_pa_s,
+        film_thickness_m: fluid.film_thickness_m,
+        segment_friction: numbers[SEGMENT_FRICTION],
+        flank_friction: fluid.flank,
+    }
+}
+
+/// Name of a formulation as on the command line.
+pub fn name(formulation: Formulation) -> &'static str {
+    Formulation::NAMES
+        .iter()
+        .find(|(_, known)| *known == formulation)
+        .map_or("", |(name, _)| *name)
+}
+
+fn no_geometry(ratios: [f64; 2]) -> Complaint {
+    if ratios[0].is_nan() {
+        let hint = "check length_m of the belt against centre_distance_mm";
+        return Complaint::new(
+            "this belt does not fit round these pulleys at any ratio",
+            "",
+            hint,
+        );
+    }
+    let allowed = format!("{:.4} to {:.4}", ratios[0], ratios[1]);
+    Complaint::new(
+        "the belt cannot run at this ratio: no radii on which both pulleys carry a segment",
+        allowed,
+        "I = R_sec / R_pri",
+    )
+}
+
+/// Whether the belt has radii at this ratio.
+fn runs(belt: &Belt, ratio: f64) -> bool {
+    let geometry = |ratio| Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
+    ratio > 0.0 && geometry(ratio).is_real(belt.length_m, belt.segment_thickness_m)
+}
+
+/// Smallest and largest ratio at which the belt runs, NaN if it does not run at 1: there the radii are equal.
+fn solvable(belt: &Belt) -> [f64; 2] {
+    let end = |log: f64| {
+        let (mut inside, mut outside) = (0.0, log);
+        for _ in 0..60 {
+            let middle: f64 = 0.5 * (inside + outside);
+            (inside, outside) = if runs(belt, middle.exp()) {
+                (middle, outside)
+            } else {
+                (inside, middle)
+            };
+        }
+        inside.exp()
+    };
+    if runs(belt, 1.0) {
+        [end(-7.0), end(7.0)]
+    } else {
+        [f64::NAN; 2]
+    }
+}

@@ -1,0 +1,171 @@
+//! How much each single value of a car matters for its fuel: every number changed by itself, up and down, and the cycle driven again.
+//!
+//! An efficiency is changed through its loss: 5 % of 0.98 would be two and a half times the loss. A temperature in degC is changed by 5 K. The step is one for all, so the answer says how steep the fuel is in a value, not how uncertain the value is: that is what a study with
+//! ranges of its own says (docs/uncertainty.md).
+
+use rayon::prelude::*;
+
+use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::setup::blueprint::{Bench, Blueprint, Slot};
+use cvtcycle_config::setup::{Options, Setup};
+use cvtcycle_config::{Problem, unit_of};
+use cvtcycle_model::drive::{Conditions, drive};
+use cvtcycle_output::record::{Effect, Sensitivity};
+use cvtcycle_output::summary::Driven;
+use cvtcycle_output::summary::{Settings, finite, run_summary};
+
+/// Change of a value, per cent of it.
+pub const STEP_PERCENT: f64 = 5.0;
+
+/// Change of a temperature, K.
+const STEP_K: f64 = 5.0;
+
+/// A car as its words on the command line name it.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// Name, unique within the run.
+    pub name: String,
+    /// Vehicle, name or path.
+    pub word: String,
+    /// Oils, overrides, formulation.
+    pub options: Options,
+}
+
+/// Changes every number of every car by [`STEP_PERCENT`], down and up, and drives the cycle.
+///
+/// Numbers that are zero and those that the program reads as whole numbers, words or lists are left out. `None` on a side: the car is
+/// refused with that value. The order is that of the cars and of their keys, whatever the number of threads.
+///
+/// # Errors
+/// Problems of the cars' files, none where the cars have just been loaded.
+pub fn sensitivity(
+    cars: &[Named],
+    cycle: &Cycle,
+    conditions: &Conditions,
+) -> Result<Sensitivity, Vec<Problem>> {
+    let conditions = Conditions {
+        keep_rows: false,
+        ..*conditions
+    };
+    let mut effects = Vec::new();
+    for car in cars {
+        let (blueprint, setup) = Blueprint::load(&car.word, "--vehicle", &car.options)?;
+        let base = fuel(&setup, cycle, &conditions);
+        let keys = setup
+            .keys
+            .iter()
+            .filter(|info| info.si.is_some() && info.status != "choice");
+        let slots: Vec<Slot> = keys
+            .filter_map(|info| blueprint.slot(&info.key).ok())
+            .filter(|slot| slot.base().abs() > 0.0)
+            .collect();
+        let of_slot = |bench: &mut Bench, slot: &Slot| {
+            let mut side = |sign: f64| {
+                bench.reset();
+                bench.set(slot, changed(slot.key(), slot.base(), sign));
+                let now = fuel(&bench.build().ok()?, cycle, &conditions);
+                finite(100.0 * (now? / base? - 1.0))
+            };
+            let (lowered_percent, raised_percent) = (side(-1.0), side(1.0));
+            Effect {
+                car: car.name.clone(),
+                key: slot.key().to_owned(),
+                lowered_percent,
+                raised_percent,
+            }
+        };
+        let found: Vec<Effect> = slots
+            .par_iter()
+            .map_init(|| blueprint.bench(), of_slot)
+            .collect();
+        effects.extend(found);
+    }
+    Ok(Sensitivity {
+        step_percent: STEP_PERCENT,
+        effects,
+    })
+}
+
+/// A value lowered (`sign` -1) or raised (+1) by the step; an efficiency through its loss.
+fn changed(key: &str, value: f64, sign: f64) -> f64 {
+    let step = STEP_PERCENT / 100.0;
+    if unit_of(key) == "\u{b0}C" {
+        return value + sign * STEP_K;
+    }
+    if key.ends_with("efficiency") && (0.0..1.0).contains(&value) {
+        1.0 - (1.0 - value) * (1.0 - sign * step)
+    } else {
+        value * (1.0 + sign * step)
+    }
+}
+
+/// Fuel that stands for the car, L/100 km.
+fn fuel(setup: &Setup, cycle: &Cycle, conditions: &Conditions) -> Option<f64> {
+    let outcome = drive(setup, cycle, conditions);
+    let driven = Driven {
+        name: &setup.name,
+        setup,
+        outcome: &outcome,
+    };
+    run_summary(cycle, "subject", &Settings::default(), &driven).headline_fuel()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cvtcycle_config::cycle::embedded;
+    use cvtcycle_model::drive::Start;
+
+    #[test]
+    fn an_efficiency_changes_by_its_loss() {
+        assert!((changed("a.mesh_efficiency", 0.98, -1.0) - 0.979).abs() < 1e-12);
+        assert!((changed("a.mesh_efficiency", 0.98, 1.0) - 0.981).abs() < 1e-12);
+        assert!((changed("a.opens_degc", 80.0, -1.0) - 75.0).abs() < 1e-12);
+        assert!((changed("a.mass_kg", 1000.0, -1.0) - 950.0).abs() < 1e-9);
+        assert!(
+            (changed("a.efficiency", 1.0, -1.0) - 0.95).abs() < 1e-12,
+            "without a loss there is nothing else to change"
+        );
+    }
+
+    /// Property: more of a loss costs fuel, less saves it, and the answer does not depend on the number of threads.
+    #[test]
+    fn a_larger_pump_costs_fuel_whatever_the_number_of_threads() {
+        let cars = [Named {
+            name: "car".into(),
+            word: "rover_216_cvt".into(),
+            options: Options::default(),
+        }];
+        let cycle = embedded("ece15").unwrap_or_else(|| unreachable!("shipped"));
+        let conditions = Conditions {
+            ambient_k: 263.15,
+            start: Start::Soak,
+            max_dt_s: 1.0,
+            keep_rows: true,
+        };
+        let on = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap_or_else(|e| unreachable!("{e}"));
+            pool.install(|| sensitivity(&cars, &cycle, &conditions))
+                .unwrap_or_else(|p| unreachable!("{p:?}"))
+        };
+        let (one, three) = (on(1), on(3));
+        assert_eq!(one, three);
+        let pump = one
+            .effects
+            .iter()
+            .find(|e| e.key == "transmission.cvt.pump.displacement_cc_rev");
+        let pump = pump.unwrap_or_else(|| unreachable!("the pump's size is a number"));
+        let (Some(less), Some(more)) = (pump.lowered_percent, pump.raised_percent) else {
+            unreachable!("both sides are cars")
+        };
+        assert!(
+            less < 0.0 && more > 0.0 && (less + more).abs() < 0.5 * more,
+            "{less} {more}"
+        );
+        // The unchanged car is at zero: a value that nothing in this cycle looks at moves nothing.
+        assert!(one.effects.iter().any(|e| e.size_percent() < 1e-12));
+    }
+}

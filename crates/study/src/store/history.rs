@@ -1,0 +1,169 @@
+//! A `trace_*.parquet` of this program back to a history.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::parquet_read::{ParquetFile, unreadable};
+use super::{Values, file_problem};
+use cvtcycle_config::cycle::problems::Complaint;
+use cvtcycle_config::{Problem, bounded};
+use cvtcycle_output::Flags;
+use cvtcycle_output::columns::Column;
+use cvtcycle_output::history::{
+    AGAIN, FLAGS, History, MOST_STEPS, SHORTER, flags_of, is_number, known, missing,
+    too_many_phases,
+};
+
+/// Reads a trace that this program has written as Parquet. Columns that it does not know, as of a newer version, are passed over.
+///
+/// The file has to be one of this program: the Parquet library trusts the lengths that it finds in a file.
+///
+/// # Errors
+/// All problems at once: the file cannot be read or is no table of this program, a column that every trace has is missing, a flag is
+/// unknown, time does not rise, there are no rows. Of each column the first bad row is named.
+pub fn read_trace_parquet(path: &Path) -> Result<History, Vec<Problem>> {
+    let hinted = |problem: Problem| {
+        vec![Problem {
+            hint: AGAIN.to_owned(),
+            ..problem
+        }]
+    };
+    let file = bounded::open_file(path).map_err(|error| hinted(unreadable(path, &error)))?;
+    let file = ParquetFile::open_known(path, file).map_err(hinted)?;
+    let columns = known(file.columns().iter().map(|head| head.name.as_str()));
+    if columns.is_empty() {
+        return Err(vec![file_problem(
+            path,
+            "this is no trace of cvtcycle: it has none of its columns",
+            AGAIN,
+        )]);
+    }
+    let lacks = |own: &Column| Problem {
+        key: own.name.to_owned(),
+        ..file_problem(path, format!("the column {} is missing", own.name), AGAIN)
+    };
+    let mut problems: Vec<Problem> = missing(&columns).into_iter().map(lacks).collect();
+    if file.rows() == 0 {
+        problems.push(file_problem(path, "the file has no rows", AGAIN));
+    }
+    if file.rows() > MOST_STEPS as u64 {
+        let message = format!("the file says that it has {} rows", file.rows());
+        return Err(vec![Problem {
+            allowed: format!("up to {MOST_STEPS}"),
+            ..file_problem(path, message, SHORTER)
+        }]);
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+    let read = file.read(&names).map_err(hinted)?;
+    let numbers: Vec<&'static Column> = columns
+        .iter()
+        .copied()
+        .filter(|column| is_number(column))
+        .collect();
+    let mut history = History::empty(&numbers);
+    let (mut phases, mut flags): (Vec<Arc<str>>, Vec<Arc<str>>) = (Vec::new(), Vec::new());
+    for (column, values) in columns.iter().zip(read.values) {
+        match (column.name, values) {
+            ("phase", Values::Text(words)) => phases = words,
+            ("flags", Values::Text(words)) => flags = words,
+            (name, Values::Number(numbers)) if is_number(column) => history.put(name, numbers),
+            (name, Values::Count(counts)) if is_number(column) => {
+                history.put(name, counts.iter().map(|n| *n as f64).collect())
+            }
+            (name, _) => problems.push(bad(
+                path,
+                name,
+                "",
+                "the column holds words where numbers are due, or the other way round",
+                "",
+            )),
+        }
+    }
+    steps(path, &mut history, &phases, &flags, &mut problems);
+    problems.extend(times(path, &history));
+    if problems.is_empty() {
+        Ok(history)
+    } else {
+        Err(problems)
+    }
+}
+
+fn steps(
+    path: &Path,
+    history: &mut History,
+    phases: &[Arc<str>],
+    flags: &[Arc<str>],
+    problems: &mut Vec<Problem>,
+) {
+    let mut unknown = None;
+    for (row, (phase, cell)) in phases.iter().zip(flags).enumerate() {
+        let found = flags_of(cell).unwrap_or_else(|word| {
+            unknown.get_or_insert((row, word));
+            Flags::default()
+        });
+        history.step(phase, found);
+        if let Some(Complaint {
+            message,
+            allowed,
+            hint,
+        }) = too_many_phases(history)
+        {
+            problems.push(Problem {
+                key: "phase".to_owned(),
+                allowed,
+                ..file_problem(path, message, &hint)
+            });
+            return;
+        }
+    }
+    problems.extend(unknown.map(|(row, word)| {
+        bad(
+            path,
+            "flags",
+            word,
+            &format!("unknown flag in row {}", row + 1),
+            FLAGS,
+        )
+    }));
+}
+
+/// What is wrong with the times and the lengths of the steps: of each the first bad one.
+fn times(path: &Path, history: &History) -> Vec<Problem> {
+    let (time, dt) = (history.time_s(), history.dt_s());
+    let late = |row: &usize| !time[*row].is_finite() || (*row > 0 && time[*row] <= time[row - 1]);
+    let time = (0..time.len()).find(late).map(|row| {
+        bad(
+            path,
+            "time_s",
+            &time[row].to_string(),
+            &format!("the time does not rise in row {}", row + 1),
+            "above that of the row before",
+        )
+    });
+    let dt = dt
+        .iter()
+        .position(|dt| !(dt.is_finite() && *dt > 0.0))
+        .map(|row| {
+            bad(
+                path,
+                "dt_s",
+                &dt[row].to_string(),
+                &format!("the length of the step is not positive in row {}", row + 1),
+                "above 0 s",
+            )
+        });
+    time.into_iter().chain(dt).collect()
+}
+
+fn bad(path: &Path, key: &str, value: &str, message: &str, allowed: &str) -> Problem {
+    let problem = file_problem(path, message, AGAIN);
+    Problem {
+        key: key.to_owned(),
+        value: value.to_owned(),
+        allowed: allowed.to_owned(),
+        ..problem
+    }
+}

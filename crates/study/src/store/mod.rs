@@ -1,0 +1,84 @@
+//! Tables of a study on disk: whole parts only, nothing lost, the same bytes whoever wrote them.
+//!
+//! ```text
+//! DIR/study.json                 manifest; marks the directory as a study, written before anything else
+//! DIR/plan.toml                  the plan, byte for byte
+//! DIR/parts/runs_00000.parquet   a table of a part; `.csv` beside it where CSV was asked for; `trace_00000...` where traces are kept
+//! DIR/parts/part_00000.sha256    checksums of the files of a part; written last, marks the part as whole
+//! DIR/statistics.json, ...       results over all parts, at the end
+//! DIR/results.sha256             checksums of the results; written last, marks the study as finished
+//! DIR/.lock                      empty; locked by the process that writes
+//! ```
+//!
+//! A part counts only if its marked files are all there with these checksums, so that neither a killed process nor a damaged disk
+//! leaves rows that are believed. The lists have the format of `sha256sum` and can be checked with `sha256sum -c`. Parquet is read only
+//! after its checksum was found right: the reader of the library trusts the lengths in a file.
+//!
+//! Names are never taken from a file's contents, but for the list of results, where only plain names in DIR itself are accepted.
+
+mod checksums;
+mod csv;
+mod dir;
+mod disk;
+mod history;
+mod layout;
+mod manifest;
+mod names;
+mod parquet;
+mod parquet_read;
+mod read;
+mod trace;
+
+pub use checksums::sha256;
+pub use csv::{CsvTable, Header, write_csv};
+pub use dir::{PartTable, StudyDir};
+pub use history::read_trace_parquet;
+pub use layout::Layout;
+pub use names::is_study;
+pub use parquet::{ParquetTable, write_parquet};
+pub use parquet_read::ParquetFile;
+pub use read::{Status, Study};
+pub use trace::{TraceColumns, write_trace_parquet};
+
+use std::fmt::Display;
+use std::io;
+use std::path::Path;
+
+use super::table::{Column, Kind, Rows, Values};
+use cvtcycle_config::{Place, Problem};
+
+/// A problem of a file or directory of a study.
+fn file_problem(path: &Path, message: impl Display, hint: &str) -> Problem {
+    Problem {
+        place: Place {
+            file: path.display().to_string(),
+            ..Place::default()
+        },
+        value: path.display().to_string(),
+        message: message.to_string(),
+        hint: hint.to_owned(),
+        ..Problem::default()
+    }
+}
+
+/// Checks that rows fit under their heads.
+fn check_shape(columns: &[Column], rows: &Rows) -> io::Result<()> {
+    let kind = |values: &Values| match values {
+        Values::Number(_) => Kind::Number,
+        Values::Count(_) => Kind::Count,
+        Values::Text(_) => Kind::Text,
+    };
+    let fits = columns.len() == rows.values.len()
+        && columns
+            .iter()
+            .zip(&rows.values)
+            .all(|(column, values)| column.kind == kind(values) && values.len() == rows.len());
+    if fits {
+        Ok(())
+    } else {
+        Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "rows do not fit under the heads of their table",
+        ))
+    }
+}

@@ -1,0 +1,281 @@
+//! Tables as Parquet: the same table gives the same bytes.
+
+use std::collections::{HashMap, HashSet};
+use std::hash::{BuildHasherDefault, Hasher};
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::schema::types::{ColumnPath, Type};
+use serde_json::json;
+
+use super::check_shape;
+use crate::table::{Column, Kind, Rows, Values};
+
+/// Key of the metadata under which the heads of the columns stand, as JSON.
+pub const COLUMNS_KEY: &str = "cvtcycle.columns";
+/// Writer of the files, as Parquet's own field says it.
+const CREATED_BY: &str = concat!("cvtcycle ", env!("CARGO_PKG_VERSION"));
+/// A dictionary is kept where values are repeated at least so often on average.
+const REPEATED: usize = 4;
+/// Values of a column, from its first one, that this is judged by.
+const LOOKED_AT: usize = 8192;
+
+/// A Parquet table that is written piece by piece, a row group each.
+///
+/// Numbers are optional DOUBLEs, null where they are not finite; minus zero is written as zero, as in CSV. Counts are required INT64s,
+/// words optional UTF-8 strings, null where they are empty. Name, unit and meaning of the columns stand in the metadata under
+/// `cvtcycle.columns`.
+pub struct ParquetTable<W: Write + Send> {
+    file: SerializedFileWriter<W>,
+    columns: Vec<Column>,
+}
+
+impl<W: Write + Send> ParquetTable<W> {
+    /// Begins a file. `metadata` are pairs of the caller's; `first` are the first rows, which decide where a dictionary helps.
+    ///
+    /// # Errors
+    /// Whatever `out` reports; [`io::ErrorKind::InvalidInput`] for rows of another table, without columns, or with two of one name.
+    pub fn new(
+        out: W,
+        columns: &[Column],
+        metadata: &[(&str, &str)],
+        first: &Rows,
+    ) -> io::Result<Self> {
+        check_shape(columns, first)?;
+        let mut names = HashSet::new();
+        if columns.is_empty() || !columns.iter().all(|column| names.insert(&column.name)) {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "a table needs columns, each with a name of its own",
+            ));
+        }
+        let schema = schema(columns).map_err(io_error)?;
+        let file = SerializedFileWriter::new(
+            out,
+            Arc::new(schema),
+            Arc::new(properties(columns, metadata, first)),
+        );
+        Ok(ParquetTable {
+            file: file.map_err(io_error)?,
+            columns: columns.to_vec(),
+        })
+    }
+
+    /// Writes some rows as a row group; none are no group.
+    ///
+    /// # Errors
+    /// Whatever `out` reports; [`io::ErrorKind::InvalidInput`] for rows of another table.
+    pub fn write(&mut self, rows: &Rows) -> io::Result<()> {
+        check_shape(&self.columns, rows)?;
+        if rows.is_empty() {
+            return Ok(());
+        }
+        write_group(&mut self.file, rows).map_err(io_error)
+    }
+
+    /// Writes the end of the file and hands everything on.
+    ///
+    /// # Errors
+    /// Whatever `out` reports.
+    pub fn finish(mut self) -> io::Result<()> {
+        // Flushes as well. Giving `out` back would turn its error into words.
+        self.file.finish().map(drop).map_err(io_error)
+    }
+}
+
+/// Writes a whole table as one row group.
+///
+/// # Errors
+/// Those of [`ParquetTable`].
+pub fn write_parquet<W: Write + Send>(
+    out: W,
+    columns: &[Column],
+    rows: &Rows,
+    metadata: &[(&str, &str)],
+) -> io::Result<()> {
+    let mut table = ParquetTable::new(out, columns, metadata, rows)?;
+    table.write(rows)?;
+    table.finish()
+}
+
+fn schema(columns: &[Column]) -> Result<Type, ParquetError> {
+    let field = |column: &Column| {
+        let of = |kind| Type::primitive_type_builder(&column.name, kind);
+        let field = match column.kind {
+            Kind::Number => of(Physical::DOUBLE).with_repetition(Repetition::OPTIONAL),
+            Kind::Count => of(Physical::INT64).with_repetition(Repetition::REQUIRED),
+            Kind::Text => of(Physical::BYTE_ARRAY)
+                .with_repetition(Repetition::OPTIONAL)
+                .with_logical_type(Some(LogicalType::String)),
+        };
+        field.build().map(Arc::new)
+    };
+    let fields = columns.iter().map(field).collect::<Result<Vec<_>, _>>()?;
+    Type::group_type_builder("schema")
+        .with_fields(fields)
+        .build()
+}
+
+fn properties(columns: &[Column], metadata: &[(&str, &str)], first: &Rows) -> WriterProperties {
+    let mut pairs: Vec<KeyValue> = metadata
+        .iter()
+        .map(|(key, value)| KeyValue::new((*key).to_owned(), (*value).to_owned()))
+        .collect();
+    pairs.push(KeyValue::new(COLUMNS_KEY.to_owned(), heads(columns)));
+    let mut builder = WriterProperties::builder()
+        .set_created_by(CREATED_BY.to_owned())
+        .set_compression(Compression::SNAPPY)
+        // Least and largest of each group; pages need none in groups of this size.
+        .set_statistics_enabled(EnabledStatistics::Chunk)
+        .set_offset_index_disabled(true)
+        // What is one group here is to be one in the file.
+        .set_max_row_group_row_count(None)
+        .set_key_value_metadata(Some(pairs));
+    for (column, values) in columns.iter().zip(&first.values) {
+        // A name with dots is one name.
+        let path = ColumnPath::new(vec![column.name.clone()]);
+        builder = builder.set_column_dictionary_enabled(path, dictionary_helps(values));
+    }
+    builder.build()
+}
+
+/// Name, unit, meaning and kind of the columns as JSON.
+fn heads(columns: &[Column]) -> String {
+    let head = |column: &Column| json!({ "name": column.name, "unit": column.unit, "doc": column.doc, "kind": kind_word(column.kind) });
+    serde_json::Value::Array(columns.iter().map(head).collect()).to_string()
+}
+
+fn kind_word(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Number => "number",
+        Kind::Count => "count",
+        Kind::Text => "text",
+    }
+}
+
+/// Whether values come again often enough for a dictionary to be shorter and quicker.
+fn dictionary_helps(values: &Values) -> bool {
+    let looked_at = values.len().min(LOOKED_AT);
+    let most = looked_at / REPEATED;
+    match values {
+        Values::Number(numbers) => few(numbers[..looked_at].iter().map(|x| x.to_bits()), most),
+        Values::Count(counts) => few(counts[..looked_at].iter().map(|n| n.cast_unsigned()), most),
+        Values::Text(_) => true,
+    }
+}
+
+/// Whether there are no more different ones than `most`.
+fn few(mut bits: impl Iterator<Item = u64>, most: usize) -> bool {
+    let mut seen: HashSet<u64, BuildHasherDefault<Mixed>> = HashSet::default();
+    bits.all(|bits| {
+        seen.insert(bits);
+        seen.len() <= most
+    })
+}
+
+/// A hash of 64 bits that costs a multiplication; the numbers are our own, so nobody can choose them to collide.
+#[derive(Default)]
+struct Mixed(u64);
+
+impl Hasher for Mixed {
+    fn write(&mut self, bytes: &[u8]) {
+        bytes
+            .iter()
+            .for_each(|byte| self.write_u64(u64::from(*byte)));
+    }
+
+    fn write_u64(&mut self, bits: u64) {
+        // The upper half of the product depends on all bits: round numbers end in many zeros.
+        let product = u128::from(self.0 ^ bits) * 0x9e37_79b9_7f4a_7c15;
+        self.0 = (product >> 64) as u64 ^ product as u64;
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
+}
+
+fn write_group<W: Write + Send>(
+    file: &mut SerializedFileWriter<W>,
+    rows: &Rows,
+) -> Result<(), ParquetError> {
+    let mut group = file.next_row_group()?;
+    for values in &rows.values {
+        let missing =
+            || ParquetError::General("fewer columns in the file than in the table".to_owned());
+        let mut column = group.next_column()?.ok_or_else(missing)?;
+        write_column(&mut column, values)?;
+        column.close()?;
+    }
+    group.close()?;
+    Ok(())
+}
+
+fn write_column(column: &mut SerializedColumnWriter, values: &Values) -> Result<(), ParquetError> {
+    match values {
+        Values::Number(numbers) => {
+            let there: Vec<i16> = numbers.iter().map(|x| i16::from(x.is_finite())).collect();
+            // Adding zero takes the sign from minus zero and changes nothing else. Where every number is there, none is looked at alone.
+            let all = there.iter().all(|there| *there > 0);
+            let plain = numbers.iter().map(|x| x + 0.0);
+            let numbers: Vec<f64> = if all {
+                plain.collect()
+            } else {
+                plain.filter(|x| x.is_finite()).collect()
+            };
+            column
+                .typed::<DoubleType>()
+                .write_batch(&numbers, Some(&there), None)?;
+        }
+        Values::Count(counts) => {
+            column
+                .typed::<Int64Type>()
+                .write_batch(counts, None, None)?;
+        }
+        Values::Text(words) => {
+            let there: Vec<i16> = words
+                .iter()
+                .map(|word| i16::from(!word.is_empty()))
+                .collect();
+            let mut known: HashMap<&str, ByteArray> = HashMap::new();
+            let mut bytes = |word| {
+                known
+                    .entry(word)
+                    .or_insert_with(|| ByteArray::from(word))
+                    .clone()
+            };
+            let mut last: Option<(&Arc<str>, ByteArray)> = None;
+            // Most words are the one before, often the very same.
+            let mut next = |word| match &last {
+                Some((before, bytes)) if Arc::ptr_eq(before, word) => bytes.clone(),
+                _ => last.insert((word, bytes(&**word))).1.clone(),
+            };
+            let words: Vec<ByteArray> = words
+                .iter()
+                .filter(|word| !word.is_empty())
+                .map(&mut next)
+                .collect();
+            column
+                .typed::<ByteArrayType>()
+                .write_batch(&words, Some(&there), None)?;
+        }
+    }
+    Ok(())
+}
+
+/// The error of the operating system, where it is one: it says whether the disk is full.
+pub(super) fn io_error(error: ParquetError) -> io::Error {
+    match error {
+        ParquetError::External(inner) => match inner.downcast::<io::Error>() {
+            Ok(error) => *error,
+            Err(inner) => io::Error::other(inner),
+        },
+        other => io::Error::other(other),
+    }
+}

@@ -1,0 +1,297 @@
+//! Parquet files of this program, read by column.
+
+use std::collections::HashSet;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::{ByteArray, DataType};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::ColumnChunkMetaData;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use serde_json::Value;
+
+use super::checksums::{Sum, sum_of};
+use super::file_problem;
+use super::parquet::{COLUMNS_KEY, io_error};
+use crate::table::{Column, Kind, Rows, Values};
+use cvtcycle_config::Problem;
+use cvtcycle_config::bounded::{self, Refused};
+
+/// What helps with a damaged file.
+pub(super) const MEND: &str =
+    "a study computes its damaged parts anew when it is continued with --resume";
+
+/// Most rows of a file: a part has 50 000 rows of traces and those of one more point, of which each car may have as many as a trace.
+const MOST_ROWS: u64 = 16_000_000;
+/// Most bytes of the footer; that of a table with all columns and a hundred groups of rows has some hundred kB.
+const MOST_METADATA: u32 = 16 << 20;
+/// Cells for which room is made at once; a file may name any number.
+const ROOM: usize = 1 << 16;
+
+/// A Parquet file that this program has written and that is as it was.
+pub struct ParquetFile {
+    path: PathBuf,
+    file: SerializedFileReader<File>,
+    columns: Vec<Column>,
+}
+
+impl ParquetFile {
+    /// Opens a file after its checksum was found right.
+    ///
+    /// # Errors
+    /// A problem that names the file: it cannot be read, has other bytes than it had, or is no table of this program.
+    pub fn open(path: &Path, sum: &Sum) -> Result<Self, Problem> {
+        let file = bounded::open_file(path).map_err(|error| unreadable(path, &error))?;
+        if sum_of(&file).map_err(|error| unreadable(path, &error.into()))? != *sum {
+            return Err(file_problem(
+                path,
+                "the file is damaged: its checksum is not that of what was written",
+                MEND,
+            ));
+        }
+        Self::open_known(path, file)
+    }
+
+    /// Opens a file whose bytes are known to be those that were written.
+    pub(super) fn open_known(path: &Path, mut file: File) -> Result<Self, Problem> {
+        let damaged = || {
+            file_problem(
+                path,
+                "the file is damaged: it is shorter than it says, or longer than any of this program",
+                MEND,
+            )
+        };
+        if !is_short(&mut file).map_err(|error| unreadable(path, &error.into()))? {
+            return Err(damaged());
+        }
+        let bytes = file
+            .metadata()
+            .map_err(|error| unreadable(path, &error.into()))?
+            .len();
+        let file = SerializedFileReader::new(file)
+            .map_err(|error| unreadable(path, &io_error(error).into()))?;
+        if !fits(&file, bytes) {
+            return Err(damaged());
+        }
+        let columns = heads(&file)
+            .ok_or_else(|| file_problem(path, "the file is no table of this program", ""))?;
+        Ok(ParquetFile {
+            path: path.to_path_buf(),
+            file,
+            columns,
+        })
+    }
+
+    /// Heads of its columns.
+    #[must_use]
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Number of its rows.
+    #[must_use]
+    pub fn rows(&self) -> u64 {
+        u64::try_from(self.file.metadata().file_metadata().num_rows()).unwrap_or(0)
+    }
+
+    /// Pairs of its metadata, in their order.
+    #[must_use]
+    pub fn metadata(&self) -> Vec<(String, String)> {
+        let pairs = self.file.metadata().file_metadata().key_value_metadata();
+        pairs
+            .into_iter()
+            .flatten()
+            .map(|pair| (pair.key.clone(), pair.value.clone().unwrap_or_default()))
+            .collect()
+    }
+
+    /// All rows of some columns, in the order of the names.
+    ///
+    /// # Errors
+    /// A problem that names the file, for a column that it does not have or a file that cannot be read.
+    pub fn read(&self, names: &[&str]) -> Result<Rows, Problem> {
+        let mut values = Vec::with_capacity(names.len());
+        for name in names {
+            let found = self.columns.iter().position(|column| column.name == *name);
+            let index = found.ok_or_else(|| {
+                file_problem(&self.path, format!("the table has no column `{name}`"), "")
+            })?;
+            values.push(
+                self.column(index)
+                    .map_err(|error| unreadable(&self.path, &io_error(error).into()))?,
+            );
+        }
+        Ok(Rows { values })
+    }
+
+    fn column(&self, index: usize) -> Result<Values, ParquetError> {
+        let total = usize::try_from(self.rows()).unwrap_or(0);
+        let mut values = Values::with_capacity(self.columns[index].kind, total.min(ROOM));
+        let mut words = HashSet::new();
+        for group in 0..self.file.num_row_groups() {
+            let reader = self.file.get_row_group(group)?.get_column_reader(index)?;
+            let room = total - values.len();
+            match (&mut values, reader) {
+                (Values::Number(into), ColumnReader::DoubleColumnReader(reader)) => {
+                    each(reader, room, |x| into.push(x.copied().unwrap_or(f64::NAN)))?;
+                }
+                (Values::Count(into), ColumnReader::Int64ColumnReader(reader)) => {
+                    each(reader, room, |n| into.extend(n))?
+                }
+                (Values::Text(into), ColumnReader::ByteArrayColumnReader(reader)) => {
+                    let mut wrong = None;
+                    each(reader, room, |bytes| match word(bytes, &mut words) {
+                        Ok(word) => into.push(word),
+                        Err(error) => wrong = Some(error),
+                    })?;
+                    wrong.map_or(Ok(()), Err)?;
+                }
+                _ => {
+                    return Err(ParquetError::General(
+                        "a column is not of the kind that its head says".to_owned(),
+                    ));
+                }
+            }
+        }
+        if values.len() == total {
+            Ok(values)
+        } else {
+            Err(ParquetError::General(
+                "a column is shorter than the table".to_owned(),
+            ))
+        }
+    }
+}
+
+/// Whether the file's last bytes do not ask for more memory than the footer of a table takes. The file is left at its beginning.
+fn is_short(file: &mut File) -> io::Result<bool> {
+    let mut last = [0; 8];
+    let length = file.seek(SeekFrom::End(0))?;
+    if length >= 8 {
+        file.seek(SeekFrom::End(-8))?;
+        file.read_exact(&mut last)?;
+    }
+    file.rewind()?;
+    let [a, b, c, d, ..] = last;
+    // A file of eight bytes and less is told to be no table.
+    Ok(u32::from_le_bytes([a, b, c, d]) <= MOST_METADATA || !last.ends_with(b"PAR1"))
+}
+
+/// Whether all that the footer says lies within the file: the library trusts it, and makes room for what it says.
+fn fits(file: &SerializedFileReader<File>, bytes: u64) -> bool {
+    let metadata = file.metadata();
+    let rows = u64::try_from(metadata.file_metadata().num_rows());
+    let within = |column: &ColumnChunkMetaData| {
+        let start = column
+            .dictionary_page_offset()
+            .unwrap_or(column.data_page_offset());
+        let end = u64::try_from(start)
+            .ok()
+            .zip(u64::try_from(column.compressed_size()).ok())
+            .and_then(|(start, size)| start.checked_add(size));
+        end.is_some_and(|end| end <= bytes)
+    };
+    rows.is_ok_and(|rows| rows <= MOST_ROWS)
+        && metadata
+            .row_groups()
+            .iter()
+            .all(|group| group.columns().iter().all(within))
+}
+
+/// Hands on every cell of a column in a row group, none where it is null; `room` is how many there may be.
+fn each<T: DataType>(
+    mut reader: ColumnReaderImpl<T>,
+    mut room: usize,
+    mut cell: impl FnMut(Option<&T::T>),
+) -> Result<(), ParquetError> {
+    /// Cells at a time.
+    const BATCH: usize = 8192;
+    let (mut there, mut values) = (Vec::new(), Vec::new());
+    loop {
+        there.clear();
+        values.clear();
+        let (records, ..) = reader.read_records(BATCH, Some(&mut there), None, &mut values)?;
+        if records == 0 {
+            return Ok(());
+        }
+        // A few bytes can stand for any number of equal cells.
+        room = room
+            .checked_sub(records)
+            .ok_or_else(|| ParquetError::General("a column is longer than the table".to_owned()))?;
+        if there.is_empty() {
+            values.iter().for_each(|value| cell(Some(value)));
+            continue;
+        }
+        let mut next = values.iter();
+        for level in &there {
+            cell(if *level > 0 { next.next() } else { None });
+        }
+    }
+}
+
+/// A cell as a word; words that come again share their memory.
+fn word(
+    bytes: Option<&ByteArray>,
+    known: &mut HashSet<Arc<str>>,
+) -> Result<Arc<str>, ParquetError> {
+    let text = bytes.map_or(Ok(""), ByteArray::as_utf8)?;
+    if let Some(word) = known.get(text) {
+        return Ok(word.clone());
+    }
+    let word: Arc<str> = Arc::from(text);
+    known.insert(word.clone());
+    Ok(word)
+}
+
+/// The heads in the metadata; none if there are none or they are not those of the file's columns.
+fn heads(file: &SerializedFileReader<File>) -> Option<Vec<Column>> {
+    let metadata = file.metadata().file_metadata();
+    let pair = metadata
+        .key_value_metadata()?
+        .iter()
+        .find(|pair| pair.key == COLUMNS_KEY)?;
+    let heads: Value = serde_json::from_str(pair.value.as_ref()?).ok()?;
+    let columns = heads
+        .as_array()?
+        .iter()
+        .map(head)
+        .collect::<Option<Vec<_>>>()?;
+    let schema = metadata.schema_descr().columns();
+    let same = schema.len() == columns.len()
+        && schema
+            .iter()
+            .zip(&columns)
+            .all(|(found, head)| found.name() == head.name);
+    same.then_some(columns)
+}
+
+fn head(head: &Value) -> Option<Column> {
+    let text = |key: &str| head.get(key)?.as_str().map(str::to_owned);
+    let kind = match text("kind")?.as_str() {
+        "number" => Kind::Number,
+        "count" => Kind::Count,
+        "text" => Kind::Text,
+        _ => return None,
+    };
+    Some(Column {
+        name: text("name")?,
+        unit: text("unit")?,
+        doc: text("doc")?,
+        kind,
+    })
+}
+
+pub(super) fn unreadable(path: &Path, error: &Refused) -> Problem {
+    let hint = if error.kind() == io::ErrorKind::NotFound {
+        MEND
+    } else {
+        error.hint("check the file and its permissions")
+    };
+    Problem {
+        allowed: error.allowed(""),
+        ..file_problem(path, format!("cannot read the file: {error}"), hint)
+    }
+}

@@ -1,0 +1,265 @@
+//! A study that is read, whether it is finished, interrupted or being written.
+
+use std::collections::HashSet;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use serde_json::Value;
+
+use super::checksums::{Checksums, sum_of};
+use super::file_problem;
+use super::layout::Layout;
+use super::names::{self, MANIFEST, PLAN, RESULTS};
+use super::parquet_read::{MEND, ParquetFile, unreadable};
+use crate::table::{Column, Rows, Values};
+use cvtcycle_config::{Problem, bounded};
+
+/// How far a study has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Status {
+    /// Parts that are marked as whole.
+    pub present: usize,
+    /// Parts that the study will have.
+    pub expected: usize,
+    /// Whether its results were written.
+    pub finished: bool,
+}
+
+impl Status {
+    /// Whether all parts are there.
+    #[must_use]
+    pub fn is_complete(self) -> bool {
+        self.present == self.expected
+    }
+}
+
+/// A study on disk, read part by part.
+#[derive(Debug)]
+pub struct Study {
+    path: PathBuf,
+    manifest: Value,
+    layout: Layout,
+    present: Vec<usize>,
+    // Files whose checksum was found right: it is computed once only.
+    known: Mutex<HashSet<String>>,
+}
+
+impl Study {
+    /// Opens the study in a directory. Parts that appear later are not seen.
+    ///
+    /// # Errors
+    /// A problem: no study is there, it cannot be read, or its manifest is damaged.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, Problem> {
+        let path = path.as_ref().to_path_buf();
+        let file = path.join(MANIFEST);
+        let bytes =
+            bounded::read_file(&file, bounded::RECORD).map_err(|error| match error.kind() {
+                io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
+                    let message = format!(
+                        "there is no study in {}: it has no {MANIFEST}",
+                        path.display()
+                    );
+                    file_problem(
+                        &path,
+                        message,
+                        "name the directory that was given to --out of `cvtcycle study`",
+                    )
+                }
+                _ => unreadable(&file, &error),
+            })?;
+        let parsed = serde_json::from_slice::<Value>(&bytes).ok();
+        let known =
+            parsed.and_then(|manifest| Layout::of(&manifest).map(|layout| (manifest, layout)));
+        let (manifest, layout) =
+            known.ok_or_else(|| file_problem(&file, "the manifest of the study is damaged", ""))?;
+        let mut present = marked_parts(&path, &layout)
+            .map_err(|error| unreadable(&names::parts_folder(&path), &error.into()))?;
+        present.sort_unstable();
+        Ok(Study {
+            path,
+            manifest,
+            layout,
+            present,
+            known: Mutex::default(),
+        })
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What it was begun with.
+    #[must_use]
+    pub fn manifest(&self) -> &Value {
+        &self.manifest
+    }
+
+    /// Its parts and tables.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// The plan, byte for byte.
+    ///
+    /// # Errors
+    /// A problem that names the file.
+    pub fn plan(&self) -> Result<Vec<u8>, Problem> {
+        let file = self.path.join(PLAN);
+        bounded::read_file(&file, bounded::TOML).map_err(|error| unreadable(&file, &error))
+    }
+
+    /// The parts that are there, in their order.
+    #[must_use]
+    pub fn present(&self) -> &[usize] {
+        &self.present
+    }
+
+    /// How far it has come.
+    #[must_use]
+    pub fn status(&self) -> Status {
+        let finished = Checksums::read(&self.path.join(RESULTS)).is_some();
+        Status {
+            present: self.present.len(),
+            expected: self.layout.parts,
+            finished,
+        }
+    }
+
+    /// One table of a part.
+    ///
+    /// # Errors
+    /// A problem that names the file: it is missing or damaged, or no such part or table is there.
+    pub fn part(&self, index: usize, table: &str) -> Result<ParquetFile, Problem> {
+        let folder = names::parts_folder(&self.path);
+        let name = names::part_file(table, index, "parquet");
+        let path = folder.join(&name);
+        if !self.layout.tables.iter().any(|other| other == table) {
+            let message = format!(
+                "the study has no table `{table}`, only {}",
+                self.layout.tables.join(", ")
+            );
+            return Err(file_problem(&self.path, message, ""));
+        }
+        let file = bounded::open_file(&path).map_err(|error| unreadable(&path, &error))?;
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if !known.contains(&name) {
+            let list = Checksums::read(&folder.join(names::part_mark(index)));
+            let right = list.as_ref().and_then(|list| list.get(&name));
+            let right = right.ok_or_else(|| {
+                file_problem(&path, "the list of checksums of this part is damaged", MEND)
+            })?;
+            if sum_of(&file).map_err(|error| unreadable(&path, &error.into()))? != *right {
+                return Err(file_problem(
+                    &path,
+                    "the file is damaged: its checksum is not that of what was written",
+                    MEND,
+                ));
+            }
+            known.insert(name);
+        }
+        drop(known);
+        ParquetFile::open_known(&path, file)
+    }
+
+    /// Heads of the columns of a table; none as long as no part is there.
+    ///
+    /// # Errors
+    /// Those of [`Study::part`].
+    pub fn heads(&self, table: &str) -> Result<Vec<Column>, Problem> {
+        self.present.first().map_or(Ok(Vec::new()), |&index| {
+            self.part(index, table).map(|file| file.columns().to_vec())
+        })
+    }
+
+    /// Number of rows of a table in all parts that are there.
+    ///
+    /// # Errors
+    /// Those of [`Study::part`].
+    pub fn rows(&self, table: &str) -> Result<u64, Problem> {
+        self.present
+            .iter()
+            .map(|&index| self.part(index, table).map(|file| file.rows()))
+            .sum()
+    }
+
+    /// Hands on some columns of a table part by part, in the order of the parts; only one part is in memory at a time.
+    ///
+    /// # Errors
+    /// Those of [`Study::part`], for a column that is not there, and those of `f`.
+    pub fn for_each(
+        &self,
+        table: &str,
+        names: &[&str],
+        mut f: impl FnMut(usize, Rows) -> Result<(), Problem>,
+    ) -> Result<(), Problem> {
+        self.present
+            .iter()
+            .try_for_each(|&index| f(index, self.part(index, table)?.read(names)?))
+    }
+
+    /// Some columns of a table over all parts that are there. Of the table nothing else is in memory.
+    ///
+    /// # Errors
+    /// Those of [`Study::for_each`].
+    pub fn read(&self, table: &str, names: &[&str]) -> Result<Rows, Problem> {
+        let mut all: Option<Rows> = None;
+        self.for_each(table, names, |_, part| {
+            match &mut all {
+                None => all = Some(part),
+                Some(all) => all
+                    .values
+                    .iter_mut()
+                    .zip(part.values)
+                    .for_each(|(all, part)| append(all, part)),
+            }
+            Ok(())
+        })?;
+        Ok(all.unwrap_or_default())
+    }
+}
+
+fn append(all: &mut Values, part: Values) {
+    match (all, part) {
+        (Values::Number(all), Values::Number(part)) => all.extend(part),
+        (Values::Count(all), Values::Count(part)) => all.extend(part),
+        (Values::Text(all), Values::Text(part)) => all.extend(part),
+        _ => debug_assert!(false, "parts of one study have the same columns"),
+    }
+}
+
+/// Parts with a mark, in no order.
+pub(super) fn marked_parts(study: &Path, layout: &Layout) -> io::Result<Vec<usize>> {
+    let entries = match fs::read_dir(names::parts_folder(study)) {
+        // Between manifest and folder a study can have been killed.
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries?,
+    };
+    let mut found = Vec::new();
+    for entry in entries {
+        found.extend(
+            names::marked_part(&entry?.file_name().to_string_lossy())
+                .filter(|index| *index < layout.parts),
+        );
+    }
+    Ok(found)
+}
+
+/// Whether all files of a part are there, with the checksums in its mark.
+pub(super) fn is_whole(study: &Path, layout: &Layout, index: usize) -> bool {
+    let folder = names::parts_folder(study);
+    let Some(list) = Checksums::read(&folder.join(names::part_mark(index))) else {
+        return false;
+    };
+    let as_written = |name: &String| {
+        let sum = bounded::open_file(folder.join(name))
+            .ok()
+            .and_then(|file| sum_of(&file).ok());
+        sum.is_some() && sum.as_ref() == list.get(name)
+    };
+    layout.files(index).iter().all(as_written)
+}
