@@ -1,6 +1,6 @@
 //! Writes the figures and the generated tables of the book: `cargo run --release --example book_figures`.
 //!
-//! They are committed; `tests/book.rs` holds them against what the models give now.
+//! `tools/docs` runs it; the files are not in git.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
