@@ -1,7 +1,9 @@
 //! Command line of cvtcycle.
 
-mod cli;
+mod args;
+mod commands;
+mod print;
 
 fn main() -> std::process::ExitCode {
-    cli::main()
+    commands::main()
 }

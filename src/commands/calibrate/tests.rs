@@ -1,0 +1,263 @@
+//! What is told and written of made-up outcomes.
+
+use std::collections::HashMap;
+
+use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
+
+use super::{failures, files, text};
+use crate::print::colour::Colour;
+
+#[path = "../../../tests/made_up/outcome.rs"]
+mod made_up;
+use made_up::{every, noise};
+
+fn named(name: &str) -> Outcome {
+    every()
+        .into_iter()
+        .find(|(own, _)| *own == name)
+        .map(|(_, outcome)| outcome)
+        .expect("a made-up outcome")
+}
+
+fn told(outcome: &Outcome) -> String {
+    text::answer(outcome, Colour::Never.stdout())
+}
+
+#[test]
+fn every_outcome_is_told_without_broken_numbers_and_within_its_width() {
+    for (name, outcome) in every() {
+        let text = told(&outcome);
+        assert!(
+            !text.contains("NaN") && !text.contains("inf "),
+            "{name}: {text}"
+        );
+        assert!(text.contains("A fit is no validation"), "{name}");
+        if name != "odd" {
+            // The columns of numbers cannot be wrapped: a little more than what prose keeps to.
+            for line in text.lines().skip(1) {
+                assert!(
+                    line.chars().count() <= 118,
+                    "{name}: {} {line}",
+                    line.chars().count()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn counts_and_root_mean_squares_are_those_of_the_outcome() {
+    for (name, n) in [("nothing", 0), ("one", 1), ("hundred", 100)] {
+        let outcome = named(name);
+        let text = told(&outcome);
+        let s = if n == 1 { "" } else { "s" };
+        assert!(
+            text.contains(&format!("fitted to {n} observation{s};")),
+            "{text}"
+        );
+        let line = |begin: &str| {
+            text.lines()
+                .find(|line| line.trim_start().starts_with(begin))
+                .expect("a line")
+                .to_owned()
+        };
+        let figure = |line: &str, begin: &str| {
+            line.trim_start()[begin.len()..]
+                .split_whitespace()
+                .next()
+                .unwrap_or("")
+                .to_owned()
+        };
+        let [before, after, left_out] = outcome.rms_sd();
+        for (begin, wanted) in [
+            ("with the files' values", before),
+            ("fitted ", after),
+            ("predicted ", left_out),
+        ] {
+            let line = line(begin);
+            let wanted = wanted.map_or("-".to_owned(), |x| format!("{x:.2}"));
+            assert_eq!(figure(&line, begin), wanted, "{line}");
+        }
+        assert_eq!(text.contains("Largest residuals"), n > 0);
+        assert_eq!(text.contains("\nParameters"), n > 0);
+    }
+}
+
+#[test]
+fn the_five_largest_residuals_are_told_largest_first() {
+    let outcome = named("hundred");
+    let text = told(&outcome);
+    let section = text
+        .split("Largest residuals\n")
+        .nth(1)
+        .and_then(|rest| rest.split("\n\n").next())
+        .expect("a section");
+    let found: Vec<f64> = section
+        .lines()
+        .filter_map(|line| {
+            line.split_whitespace()
+                .next()
+                .filter(|x| x.contains(['+', '-']))?
+                .parse()
+                .ok()
+        })
+        .collect();
+    let mut wanted: Vec<f64> = outcome.residuals.iter().map(|r| r.after_sd).collect();
+    wanted.sort_by(|a, b| b.abs().total_cmp(&a.abs()));
+    assert_eq!(found.len(), 5);
+    assert!(
+        found
+            .iter()
+            .zip(&wanted)
+            .all(|(a, b)| (a - b).abs() <= 0.0051),
+        "{found:?} {wanted:?}"
+    );
+}
+
+#[test]
+fn starts_that_ended_elsewhere_are_named() {
+    let text = told(&named("ordinary"));
+    assert!(
+        text.contains("2 of 4 reached the same least sum of squares, 41.000"),
+        "{text}"
+    );
+    assert!(
+        text.contains("start 3: sum of squares 44.000; converged")
+            && text.contains("start 4: sum of squares -; no answer")
+    );
+    let bound = text
+        .lines()
+        .find(|line| line.contains("lubricant.friction.band"))
+        .expect("a row");
+    assert!(bound.ends_with(" high"), "{bound}");
+}
+
+#[test]
+fn a_fit_that_failed_says_why_and_a_bound_alone_does_not_fail() {
+    let mut outcome = named("ordinary");
+    let clean = |outcome: &mut Outcome| {
+        outcome
+            .parameters
+            .iter_mut()
+            .for_each(|p| p.is_dead = false);
+        outcome.residuals.iter_mut().for_each(|r| r.doubtful = 0);
+    };
+    assert_eq!(failures(&outcome).len(), 2, "{:?}", failures(&outcome));
+    clean(&mut outcome);
+    assert!(outcome.parameters.iter().any(|p| p.at_bound.is_some()));
+    assert!(failures(&outcome).is_empty());
+    (outcome.converged, outcome.end) = (false, "out of evaluations".to_owned());
+    assert!(failures(&outcome)[0].contains("out of evaluations"));
+    assert!(told(&outcome).contains("not converged"));
+}
+
+/// Rows of a CSV file by the names of its columns.
+fn rows(bytes: &[u8]) -> Vec<HashMap<String, String>> {
+    let mut reader = csv::Reader::from_reader(bytes);
+    reader
+        .deserialize()
+        .collect::<Result<_, _>>()
+        .expect("a sound file")
+}
+
+#[test]
+fn tables_hold_every_number_unrounded() {
+    let outcome = named("mixed");
+    let written = files::tables(&outcome);
+    let of = |name: &str| {
+        written
+            .iter()
+            .find(|(own, _)| own == name)
+            .map(|(_, bytes)| rows(bytes))
+            .expect("a table")
+    };
+    let number = |text: &str| text.parse::<f64>().ok();
+    let same = |text: &str, x: Option<f64>| {
+        assert_eq!(
+            number(text).map(f64::to_bits),
+            x.map(f64::to_bits),
+            "{text}"
+        )
+    };
+    let residuals = of("residuals.csv");
+    assert_eq!(residuals.len(), outcome.residuals.len());
+    for (row, r) in residuals.iter().zip(&outcome.residuals) {
+        assert_eq!(
+            (&row["group"], &row["label"], &row["unit"]),
+            (&r.group, &r.label, &r.unit)
+        );
+        let wanted = [
+            ("measured_low", r.low),
+            ("measured_high", r.high),
+            ("sd", Some(r.sd)),
+            ("weight_sd", Some(r.weight_sd)),
+        ];
+        let computed = [
+            ("before", r.before),
+            ("after", Some(r.after)),
+            ("left_out", r.left_out),
+            ("time_s", r.time_s),
+        ];
+        let in_sd = [
+            ("before_sd", r.before_sd),
+            ("after_sd", Some(r.after_sd)),
+            ("left_out_sd", r.left_out_sd),
+        ];
+        wanted
+            .into_iter()
+            .chain(computed)
+            .chain(in_sd)
+            .for_each(|(name, x)| same(&row[name], x));
+    }
+    for (row, p) in of("parameters.csv").iter().zip(&outcome.parameters) {
+        assert_eq!(
+            (&row["parameter"], &row["unit"], &row["source"]),
+            (&p.name, &p.unit, &p.source)
+        );
+        let known = [
+            ("file_value", Some(p.file_value)),
+            ("fitted", Some(p.value)),
+            ("standard_error", p.standard_error),
+        ];
+        let prior = [
+            ("prior_mean", p.prior.map(|x| x[0])),
+            ("prior_sd", p.prior.map(|x| x[1])),
+            ("prior_share", p.prior_share),
+        ];
+        known
+            .into_iter()
+            .chain(prior)
+            .chain([("low", Some(p.low)), ("high", Some(p.high))])
+            .for_each(|(name, x)| same(&row[name], x));
+    }
+    for (row, line) in of("correlation.csv").iter().zip(&outcome.correlation) {
+        outcome
+            .parameters
+            .iter()
+            .zip(line)
+            .for_each(|(p, r)| same(&row[&p.name], *r));
+    }
+    assert!(files::tables(&named("nothing")).is_empty());
+    assert!(noise(1).abs() <= 1.0);
+}
+
+#[test]
+fn numbers_have_the_digits_that_their_error_leaves() {
+    let of = |x, error| text::to_error(x, Some(error));
+    assert_eq!(
+        [
+            of(8.298_4, 0.098),
+            of(14_750.0, 6317.0),
+            of(0.002_24, 0.000_72)
+        ],
+        ["8.298", "14750", "0.00224"]
+    );
+    assert_eq!(
+        [of(0.000_029_8, 0.000_003_4), of(-0.000_000_5, 0.000_1)],
+        ["2.98e-5", "0.00000"]
+    );
+    assert_eq!(
+        (of(f64::NAN, 1.0), text::to_error(0.0, None)),
+        ("-".to_owned(), "0".to_owned())
+    );
+}

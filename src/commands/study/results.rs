@@ -1,0 +1,27 @@
+//! The files that a study writes when it is finished.
+
+use cvtcycle::config::Problem;
+use cvtcycle::report::found::StudyFound;
+use cvtcycle::report::study_pictures::study_pictures;
+
+use super::csv_files;
+use crate::print::json_text;
+
+/// Files of a finished study: numbers and pictures.
+pub fn files(study: &StudyFound) -> Result<Vec<(String, Vec<u8>)>, Vec<Problem>> {
+    let mut files = vec![(
+        "statistics.json".to_owned(),
+        json_text(&study.answer)?.into_bytes(),
+    )];
+    files.extend(csv_files::all(&study.answer, &study.outline));
+    let pictures = study
+        .frame()
+        .and_then(|frame| study_pictures(&study.answer, &frame, &study.warm_ups));
+    let pictures = pictures.map_err(|problem| vec![problem])?;
+    files.extend(
+        pictures
+            .into_iter()
+            .map(|(name, picture)| (format!("{name}.svg"), picture.svg.into_bytes())),
+    );
+    Ok(files)
+}
