@@ -1,9 +1,11 @@
 //! Choice of one of several options by the name of its table.
 use super::document::{Node, Table, Value};
-use super::near::{one_of, suggest};
+use super::near::suggest;
 use super::reader::join;
 use super::section::Section;
-use super::value::{Found, Lazy, Lookup};
+use super::value::{Found, Lookup};
+use super::values::options;
+use cvtcycle_model::keys::{Key, Presence};
 
 /// How the choice came out.
 enum Choice<'r> {
@@ -13,65 +15,48 @@ enum Choice<'r> {
     Failed,
 }
 
-/// The question: what is asked for and what may be answered.
-struct Question<'a> {
-    name: &'a str,
-    options: &'a [&'static str],
-    default: Option<&'static str>,
-}
-
 impl<'r> Section<'r> {
-    /// The option under `name` and its table. An option is chosen by its table (`[….name.option]`) or by
-    /// its name alone (`name = "option"`, with all its defaults); an assignment from the command line,
-    /// to the name or to a key within an option, goes before the file. Without any, `default`.
+    /// The option of `key` and its table. An option is chosen by its table (`[….key.option]`) or by
+    /// its name alone (`key = "option"`, with all its defaults); an assignment from the command line,
+    /// to the key or to a key within an option, goes before the file. Without any, the default.
     /// After a problem it is the default or the first option, with a section that reports nothing missing.
-    ///
-    /// # Panics
-    /// If `options` is empty.
-    pub fn choose(
-        &self,
-        name: &str,
-        options: &[&'static str],
-        default: Option<&'static str>,
-        doc: &str,
-    ) -> (&'static str, Section<'r>) {
-        let question = Question {
-            name,
-            options,
-            default,
-        };
+    pub(super) fn choose_option(&self, key: &Key<'_>) -> (&'static str, Section<'r>) {
+        let name = key.name;
         let node = self
             .table
             .and_then(|table| table.entries.get(name))
             .map(|entry| &entry.node);
         let table = node.and_then(|node| match &node.value {
-            Value::Table(table) if table.wrapped().is_none() || options.contains(&"value") => {
+            Value::Table(table)
+                if table.wrapped().is_none() || options(key).any(|option| option == "value") =>
+            {
                 Some(table)
             }
             _ => None,
         });
-        self.announce(&question, doc, node.is_some() && table.is_none());
+        self.announce(key, node.is_some() && table.is_none());
         let choice = match (node, table) {
-            (None, _) => self.default_choice(&question),
-            (Some(node), None) => self.by_word(&question, node),
-            (Some(node), Some(table)) => self.by_table(&question, node, table),
+            (None, _) => self.default_choice(key),
+            (Some(node), None) => self.by_word(key, node),
+            (Some(node), Some(table)) => self.by_table(key, node, table),
         };
-        let (option, failed) = match choice {
+        let failed = matches!(choice, Choice::Failed);
+        let option = match choice {
             Choice::Given(option, found) => {
                 self.given(name, &found, option, None);
-                (option, false)
+                option
             }
             Choice::Default(option) => {
                 self.defaulted(name, option, None);
-                (option, false)
+                option
             }
-            Choice::Failed => (default.unwrap_or(options[0]), true),
+            Choice::Failed => default_of(key).or(options(key).next()).unwrap_or_default(),
         };
         let mut section = self.below(name);
-        let others = options.iter().filter(|other| failed || **other != option);
         self.reader.note(|log| {
+            let others = options(key).filter(|other| failed || *other != option);
             log.read
-                .extend(others.map(|other| join(&section.path, other)))
+                .extend(others.map(|other| join(&section.path, other)));
         });
         section.header = node.map(|node| node.span.clone()).or(section.header);
         section.table = table.filter(|_| !failed);
@@ -80,39 +65,31 @@ impl<'r> Section<'r> {
     }
 
     /// Makes the choice and its options known.
-    fn announce(&self, question: &Question<'_>, doc: &str, is_word: bool) {
-        if self.reader.is_silent() {
-            return;
-        }
-        // Looked up in an empty table: the options' tables are no value, but the key is to be known.
-        let empty = Section {
-            table: None,
-            ..self.clone()
-        };
-        let _ = empty.open(question.name, Lazy(|| one_of(question.options)), doc);
+    fn announce(&self, key: &Key<'_>, is_word: bool) {
+        self.register(key);
         self.reader.note(|log| {
-            let path = join(&self.path, question.name);
+            let path = join(&self.path, key.name);
             if !is_word {
                 log.read.remove(&path);
             }
             log.choices.insert(path.clone());
             log.tables
-                .extend(question.options.iter().map(|option| join(&path, option)));
+                .extend(options(key).map(|option| join(&path, option)));
             log.tables.insert(path);
         });
     }
 
-    fn default_choice(&self, question: &Question<'_>) -> Choice<'r> {
-        if let Some(default) = question.default {
+    fn default_choice(&self, key: &Key<'_>) -> Choice<'r> {
+        if let Some(default) = default_of(key) {
             return Choice::Default(default);
         }
-        self.missing(question.name, Lazy(|| one_of(question.options)));
+        self.missing(key);
         Choice::Failed
     }
 
     /// The option that a word names.
-    fn by_word(&self, question: &Question<'_>, node: &'r Node) -> Choice<'r> {
-        let Question { name, options, .. } = *question;
+    fn by_word(&self, key: &Key<'_>, node: &'r Node) -> Choice<'r> {
+        let name = key.name;
         let Lookup::Found(found) = self.unwrap(name, node) else {
             return Choice::Failed;
         };
@@ -120,72 +97,51 @@ impl<'r> Section<'r> {
             self.wrong_type(name, found.node, "the name of an option or its table");
             return Choice::Failed;
         };
-        match options.iter().find(|option| *option == word) {
-            Some(option) => Choice::Given(option, found),
-            None => {
-                let message = format!("`{word}` is not known for `{}`", join(&self.path, name));
-                self.report(
-                    &found.node.span,
-                    name,
-                    &one_of(options),
-                    message,
-                    suggest(word, options),
-                );
-                Choice::Failed
-            }
+        if let Some(option) = options(key).find(|option| option == word) {
+            return Choice::Given(option, found);
         }
+        let message = format!("`{word}` is not known for `{}`", join(&self.path, name));
+        let hint = suggest(word, &options(key).collect::<Vec<_>>());
+        self.report(&found.node.span, name, &key.allowed(), message, hint);
+        Choice::Failed
     }
 
     /// The option whose table is present.
-    fn by_table(&self, question: &Question<'_>, node: &'r Node, table: &'r Table) -> Choice<'r> {
-        let present: Vec<(&'static str, &'r Node)> = question
-            .options
-            .iter()
-            .filter_map(|option| {
-                table
-                    .entries
-                    .get(*option)
-                    .map(|entry| (*option, &entry.node))
-            })
-            .collect();
+    fn by_table(&self, key: &Key<'_>, node: &'r Node, table: &'r Table) -> Choice<'r> {
+        let entry = |option| Some((option, &table.entries.get(option)?.node));
+        let present: Vec<(&'static str, &'r Node)> = options(key).filter_map(entry).collect();
         let touched: Vec<(&'static str, &'r Node)> = present
             .iter()
             .filter(|(_, node)| is_touched(node))
             .copied()
             .collect();
         if let Some(word) = &table.choice {
-            let choice = self.by_word(question, word);
+            let choice = self.by_word(key, word);
             return match (
                 choice,
                 touched.iter().find(|(option, _)| !names(word, option)),
             ) {
-                (Choice::Given(option, _), Some(other)) => {
-                    self.clash(question, (option, word), *other)
-                }
+                (Choice::Given(option, _), Some(other)) => self.clash(key, (option, word), *other),
                 (choice, _) => choice,
             };
         }
         match (touched.as_slice(), present.as_slice()) {
-            ([one], _) => self.taken(question, *one, "set"),
-            ([first, second, ..], _) => self.clash(question, *first, *second),
-            ([], [one]) => self.taken(
-                question,
-                *one,
-                if node.span.is_set() { "set" } else { "choice" },
-            ),
-            ([], [first, second, ..]) => self.clash(question, *first, *second),
-            ([], []) => self.default_choice(question),
+            ([one], _) => self.taken(key, *one, "set"),
+            ([first, second, ..], _) => self.clash(key, *first, *second),
+            ([], [one]) => self.taken(key, *one, if node.span.is_set() { "set" } else { "choice" }),
+            ([], [first, second, ..]) => self.clash(key, *first, *second),
+            ([], []) => self.default_choice(key),
         }
     }
 
     fn taken(
         &self,
-        question: &Question<'_>,
+        key: &Key<'_>,
         (option, node): (&'static str, &'r Node),
         status: &'static str,
     ) -> Choice<'r> {
         if !matches!(node.value, Value::Table(_)) {
-            self.wrong_type(&format!("{}.{option}", question.name), node, "a table");
+            self.wrong_type(&format!("{}.{option}", key.name), node, "a table");
             return Choice::Failed;
         }
         let source = if status == "set" { "command line" } else { "" };
@@ -203,7 +159,7 @@ impl<'r> Section<'r> {
     /// Two options at once: the message stands at the later one and names the place of the other.
     fn clash(
         &self,
-        question: &Question<'_>,
+        key: &Key<'_>,
         first: (&'static str, &'r Node),
         second: (&'static str, &'r Node),
     ) -> Choice<'r> {
@@ -222,7 +178,7 @@ impl<'r> Section<'r> {
                 place.file
             }
         };
-        let name = join(&self.path, question.name);
+        let name = join(&self.path, key.name);
         let message = format!(
             "two options for `{name}`: `{}` ({}) and `{}` ({})",
             first.0,
@@ -231,14 +187,16 @@ impl<'r> Section<'r> {
             at(second.1)
         );
         let hint = format!("keep one of them, or choose with --set {name}={}", first.0);
-        self.report(
-            &second.1.span,
-            question.name,
-            &one_of(question.options),
-            message,
-            hint,
-        );
+        self.report(&second.1.span, key.name, &key.allowed(), message, hint);
         Choice::Failed
+    }
+}
+
+/// The option that a key takes when nothing is given.
+fn default_of(key: &Key<'_>) -> Option<&'static str> {
+    match key.presence {
+        Presence::Word(default) => options(key).find(|option| *option == default),
+        _ => None,
     }
 }
 

@@ -7,8 +7,6 @@ mod assign;
 pub mod cycle;
 pub mod setup;
 pub mod rig;
-mod parts;
-mod bound;
 pub mod bounded;
 mod choice;
 mod document;
@@ -22,11 +20,12 @@ mod section;
 mod shape;
 mod source;
 mod syntax;
-mod units;
 mod value;
+mod values;
 mod written;
 
-pub use bound::Bound;
+pub use cvtcycle_model::keys::Bound;
+use cvtcycle_model::keys::Quantity;
 pub use document::Document;
 pub use draft::{Draft, KeyPath};
 pub use near::near;
@@ -35,9 +34,21 @@ pub use problem::{Place, Problem, append};
 pub use reader::{KeyInfo, Reader};
 pub use render::render;
 pub use section::Section;
+use setup::tables;
 pub use syntax::decode;
-pub use units::{to_si, unit_of};
 pub use written::Written;
+
+/// A value in the unit of the key, converted to SI (temperatures to kelvin).
+#[must_use]
+pub fn to_si(key: &str, value: f64) -> f64 {
+    Quantity::of(key).to_si(value)
+}
+
+/// The unit of a key as people write it, `-` for a dimensionless one.
+#[must_use]
+pub fn unit_of(key: &str) -> &'static str {
+    Quantity::of(key).unit()
+}
 
 #[cfg(test)]
 mod tests;

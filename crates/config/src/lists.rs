@@ -1,123 +1,94 @@
 //! Reading of lists and of tables of numbers.
-use std::fmt::Display;
-use std::ops::RangeInclusive;
-
-use super::bound::Bound;
 use super::document::{Node, Value};
 use super::reader::join;
 use super::section::Section;
-use super::units::{to_si, unit_of};
-use super::value::{Lazy, Lookup};
+use super::value::Lookup;
+use cvtcycle_model::keys::{Bound, Column, Key, Kind, Presence, Quantity, count};
 
 impl Section<'_> {
-    /// A list of numbers in SI units. It is required unless `length` begins at 0. After a problem the
-    /// numbers concerned are NaN, and the length is within `length` all the same.
-    pub fn numbers(
-        &self,
-        key: &str,
-        allowed: Bound,
-        length: RangeInclusive<usize>,
-        doc: &str,
-    ) -> Vec<f64> {
-        let (least, most) = (*length.start(), *length.end());
-        let range = Lazy(|| {
-            format!(
-                "{}, each {}",
-                count_in_words(least, most),
-                allowed.in_unit(unit_of(key))
-            )
-        });
+    /// A list of numbers in SI units. After a problem the numbers concerned are NaN, and the length is
+    /// within the allowed one all the same.
+    pub(super) fn read_numbers(&self, key: &Key<'_>) -> Vec<f64> {
+        let (allowed, least, most) = match key.kind {
+            Kind::Numbers(each, least, most) => (each, least, most),
+            _ => (Bound::any(), 0, usize::MAX),
+        };
         let mut values = Vec::new();
-        match self.open(key, &range, doc) {
+        match self.open(key) {
             Lookup::Found(found) => {
                 if let Value::List(items) = &found.node.value {
-                    values = items
-                        .iter()
-                        .map(|item| {
-                            self.check_number(key, key, item, allowed)
-                                .unwrap_or(f64::NAN)
-                        })
-                        .collect();
-                    if length.contains(&values.len()) {
-                        self.given(key, &found, format_args!("{values:?}"), None);
+                    values = self.each_number(key, items, allowed);
+                    if (least..=most).contains(&values.len()) {
+                        self.given(key.name, &found, format_args!("{values:?}"), None);
                     } else {
-                        let count = count_in_words(least, most);
-                        let message = format!(
-                            "`{}`: expected {count}, found {}",
-                            join(&self.path, key),
-                            values.len()
-                        );
-                        self.report(
-                            &found.node.span,
-                            key,
-                            &range.to_string(),
-                            message,
-                            String::new(),
-                        );
+                        let path = join(&self.path, key.name);
+                        let (count, found_count) = (count(least, most), values.len());
+                        let message = format!("`{path}`: expected {count}, found {found_count}");
+                        let span = &found.node.span;
+                        self.report(span, key.name, &key.allowed(), message, String::new());
                     }
                 } else {
-                    self.wrong_type(key, found.node, "a list of numbers");
+                    self.wrong_type(key.name, found.node, "a list of numbers");
                 }
             }
-            Lookup::Absent if least > 0 => self.missing(key, &range),
-            Lookup::Absent => self.defaulted(key, "[]", None),
+            Lookup::Absent if least > 0 => self.missing(key),
+            Lookup::Absent => self.defaulted(key.name, "[]", None),
             Lookup::Bad => {}
         }
         values.truncate(most);
         values.resize(values.len().max(least), f64::NAN);
-        values.into_iter().map(|value| to_si(key, value)).collect()
+        let si = |value| key.quantity.to_si(value);
+        values.into_iter().map(si).collect()
+    }
+
+    /// The items of a list as numbers in the key's unit, NaN where one is wrong.
+    fn each_number(&self, key: &Key<'_>, items: &[Node], allowed: Bound) -> Vec<f64> {
+        let number = |item| self.check_number(key.name, key.quantity, item, allowed);
+        let numbers = items.iter().map(|item| number(item).unwrap_or(f64::NAN));
+        numbers.collect()
     }
 
     /// Numbers in SI units, written as one number, a list of numbers, or a range `"1000..4000:250"` with both ends; none if the key is
     /// absent, NaN after a problem.
     pub fn grid(&self, key: &str, allowed: Bound, doc: &str) -> Option<Vec<f64>> {
-        let range = Lazy(|| {
-            format!(
-                "a number, a list or a range \"from..to:step\", each {}",
-                allowed.in_unit(unit_of(key))
-            )
-        });
-        let found = match self.open(key, &range, doc) {
+        let key = &Key::new(key, (Kind::Grid(allowed), Presence::Optional), doc);
+        let found = match self.open(key) {
             Lookup::Found(found) => found,
             Lookup::Absent => return None,
             Lookup::Bad => return Some(vec![f64::NAN]),
         };
         let values: Vec<f64> = match &found.node.value {
-            Value::List(items) => items
-                .iter()
-                .map(|item| {
-                    self.check_number(key, key, item, allowed)
-                        .unwrap_or(f64::NAN)
-                })
-                .collect(),
-            Value::Text(text) => match range_values(text) {
-                Some(values) if values.iter().all(|x| allowed.contains(*x)) => values,
-                Some(_) => {
-                    self.out_of_range(key, found.node, &range.to_string());
-                    vec![f64::NAN]
-                }
-                None => {
-                    let message = format!("`{}`: `{text}` is no range", join(&self.path, key));
-                    let hint = match text.split_once("..") {
-                        Some((from, to)) if !to.contains(':') => format!("add the step, as in \"{from}..{to}:5\""),
-                        _ => "the end lies above the beginning and the step above 0, as in \"1000..4000:250\"".to_string(),
-                    };
-                    self.report(&found.node.span, key, &range.to_string(), message, hint);
-                    vec![f64::NAN]
-                }
-            },
-            _ => vec![
-                self.check_number(key, key, found.node, allowed)
-                    .unwrap_or(f64::NAN),
-            ],
+            Value::List(items) => self.each_number(key, items, allowed),
+            Value::Text(text) => self.range_of(key, found.node, text, allowed),
+            _ => self.each_number(key, std::slice::from_ref(found.node), allowed),
         };
-        self.given(key, &found, format_args!("{values:?}"), None);
-        Some(values.into_iter().map(|value| to_si(key, value)).collect())
+        self.given(key.name, &found, format_args!("{values:?}"), None);
+        let si = |value| key.quantity.to_si(value);
+        Some(values.into_iter().map(si).collect())
+    }
+
+    /// The numbers of a range in the key's unit; NaN after a problem.
+    fn range_of(&self, key: &Key<'_>, node: &Node, text: &str, allowed: Bound) -> Vec<f64> {
+        match range_values(text) {
+            Some(values) if values.iter().all(|x| allowed.contains(*x)) => return values,
+            Some(_) => self.out_of_range(key.name, node, &key.allowed()),
+            None => {
+                let message = format!("`{}`: `{text}` is no range", join(&self.path, key.name));
+                let hint = match text.split_once("..") {
+                    Some((from, to)) if !to.contains(':') => {
+                        format!("add the step, as in \"{from}..{to}:5\"")
+                    }
+                    _ => "the end lies above the beginning and the step above 0, as in \"1000..4000:250\"".to_string(),
+                };
+                self.report(&node.span, key.name, &key.allowed(), message, hint);
+            }
+        }
+        vec![f64::NAN]
     }
 
     /// Texts of a list; empty if the key is absent.
     pub fn texts(&self, key: &str, doc: &str) -> Vec<String> {
-        let found = match self.open(key, "a list of texts", doc) {
+        let found = match self.open(&Key::new(key, (Kind::Texts, Presence::Optional), doc)) {
             Lookup::Found(found) => found,
             Lookup::Absent => {
                 self.defaulted(key, "[]", None);
@@ -143,105 +114,62 @@ impl Section<'_> {
 
     /// A table of numbers written as a list of rows, in SI units by the suffixes of the column names.
     /// Empty if the key is absent; rows with a problem are left out.
-    pub fn rows(&self, key: &str, columns: &[(&str, Bound)], doc: &str) -> Vec<Vec<f64>> {
-        let allowed = Lazy(|| rows_of(columns));
-        let units = Lazy(|| {
-            columns
-                .iter()
-                .map(|(name, _)| unit_of(name))
-                .collect::<Vec<_>>()
-                .join(", ")
-        });
-        let lookup = self.open(key, &allowed, doc);
-        self.unit(key, &units);
-        let found = match lookup {
+    pub fn rows(&self, key: &str, columns: &[Column<'_>], doc: &str) -> Vec<Vec<f64>> {
+        self.read_rows(&Key::new(
+            key,
+            (Kind::Rows(columns), Presence::Optional),
+            doc,
+        ))
+    }
+
+    /// The rows of a key, as [`Section::rows`].
+    pub(super) fn read_rows(&self, key: &Key<'_>) -> Vec<Vec<f64>> {
+        let Kind::Rows(columns) = key.kind else {
+            return Vec::new();
+        };
+        let found = match self.open(key) {
             Lookup::Found(found) => found,
             Lookup::Absent => {
-                self.defaulted(key, "[]", None);
+                self.defaulted(key.name, "[]", None);
                 return Vec::new();
             }
             Lookup::Bad => return Vec::new(),
         };
         let Value::List(items) = &found.node.value else {
-            self.wrong_type(key, found.node, "a list of rows");
+            self.wrong_type(key.name, found.node, "a list of rows");
             return Vec::new();
         };
-        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(items.len());
-        rows.extend(
-            items
-                .iter()
-                .filter_map(|item| self.row(key, item, columns, &allowed)),
-        );
-        self.given(key, &found, format_args!("{rows:?}"), None);
-        for row in &mut rows {
-            row.iter_mut()
-                .zip(columns)
-                .for_each(|(value, (name, _))| *value = to_si(name, *value));
+        let row = |item| self.row(key, item, columns);
+        let mut rows: Vec<Vec<f64>> = items.iter().filter_map(row).collect();
+        self.given(key.name, &found, format_args!("{rows:?}"), None);
+        for (column, (name, _)) in columns.iter().enumerate() {
+            let quantity = Quantity::of(name);
+            rows.iter_mut()
+                .for_each(|row| row[column] = quantity.to_si(row[column]));
         }
         rows
     }
 
-    /// A table of numbers as [`Section::rows`]; none after a problem with any of its rows.
-    pub fn sound_rows(
-        &self,
-        key: &str,
-        columns: &[(&str, Bound)],
-        doc: &str,
-    ) -> Option<Vec<Vec<f64>>> {
-        let before = self.reader.faults();
-        let rows = self.rows(key, columns, doc);
-        (self.reader.faults() == before).then_some(rows)
-    }
-
-    /// A table of numbers that has to be there, as [`Section::rows`]; none after a problem with any of its rows.
-    pub fn required_rows(
-        &self,
-        key: &str,
-        columns: &[(&str, Bound)],
-        doc: &str,
-    ) -> Option<Vec<Vec<f64>>> {
-        let rows = self.sound_rows(key, columns, doc)?;
-        if !self.has(key) {
-            self.missing(key, Lazy(|| rows_of(columns)));
-            return None;
-        }
-        Some(rows)
-    }
-
     /// One row in the columns' own units.
-    fn row(
-        &self,
-        key: &str,
-        node: &Node,
-        columns: &[(&str, Bound)],
-        allowed: &dyn Display,
-    ) -> Option<Vec<f64>> {
+    fn row(&self, key: &Key<'_>, node: &Node, columns: &[Column<'_>]) -> Option<Vec<f64>> {
         let Value::List(cells) = &node.value else {
-            self.wrong_type(key, node, "a row of numbers in brackets");
+            self.wrong_type(key.name, node, "a row of numbers in brackets");
             return None;
         };
         if cells.len() != columns.len() {
             let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
-            let message = format!(
-                "`{}`: expected {} numbers in a row, found {}",
-                join(&self.path, key),
-                columns.len(),
-                cells.len()
-            );
-            self.report(
-                &node.span,
-                key,
-                &allowed.to_string(),
-                message,
-                format!("write [{}]", names.join(", ")),
-            );
+            let path = join(&self.path, key.name);
+            let (expected, found) = (columns.len(), cells.len());
+            let message = format!("`{path}`: expected {expected} numbers in a row, found {found}");
+            let hint = format!("write [{}]", names.join(", "));
+            self.report(&node.span, key.name, &key.allowed(), message, hint);
             return None;
         }
         // All cells are looked at before the row is dropped, so that every problem is reported.
         let mut good = true;
         let mut row = Vec::with_capacity(cells.len());
         for (cell, (name, bound)) in cells.iter().zip(columns) {
-            let number = self.check_number(key, name, cell, *bound);
+            let number = self.check_number(key.name, Quantity::of(name), cell, *bound);
             good &= number.is_some();
             row.extend(number);
         }
@@ -273,25 +201,6 @@ fn range_values(text: &str) -> Option<Vec<f64>> {
     } else {
         values.into_iter().chain([to]).collect()
     })
-}
-
-/// What the rows of a table hold, in words.
-fn rows_of(columns: &[(&str, Bound)]) -> String {
-    let describe =
-        |(name, bound): &(&str, Bound)| format!("{name} {}", bound.in_unit(unit_of(name)));
-    format!(
-        "rows of {}",
-        columns.iter().map(describe).collect::<Vec<_>>().join(", ")
-    )
-}
-
-fn count_in_words(least: usize, most: usize) -> String {
-    match (least, most) {
-        (1, 1) => "1 number".to_string(),
-        (least, most) if least == most => format!("{least} numbers"),
-        (least, usize::MAX) => format!("at least {least} numbers"),
-        (least, most) => format!("{least} to {most} numbers"),
-    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,8 @@ use super::document::{Document, Entry, Span, Table, Value};
 use super::near::{likeness, plausible, question};
 use super::problem::{Place, Problem};
 use super::section::Section;
-use super::units::{stem, unit_of};
+use crate::setup::Files;
+use cvtcycle_model::keys::{Quantity, stem};
 
 /// What is known about one key after reading it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,6 +28,8 @@ pub struct KeyInfo {
     pub note: String,
     /// Allowed range or words.
     pub allowed: String,
+    /// Whether the value is a single number.
+    pub is_number: bool,
     /// Meaning of the key.
     pub doc: String,
 }
@@ -65,6 +68,8 @@ pub struct Reader<'d> {
     log: Option<RefCell<Log>>,
     /// Problems so far.
     faults: Cell<usize>,
+    /// Files that the document names.
+    pub(super) files: Option<&'d dyn Files>,
 }
 
 impl<'d> Reader<'d> {
@@ -74,6 +79,7 @@ impl<'d> Reader<'d> {
             document,
             log: Some(RefCell::default()),
             faults: Cell::new(0),
+            files: None,
         }
     }
 
@@ -84,6 +90,16 @@ impl<'d> Reader<'d> {
             document,
             log: None,
             faults: Cell::new(0),
+            files: None,
+        }
+    }
+
+    /// With the files that the document names.
+    #[must_use]
+    pub fn with_files(self, files: &'d dyn Files) -> Self {
+        Reader {
+            files: Some(files),
+            ..self
         }
     }
 
@@ -255,8 +271,8 @@ impl Log {
             return (problem, None);
         }
         if let Some(known) = self.other_unit(path, span) {
-            let (unit, shown) = (unit_of(known), shown(path, known, span));
-            problem.message = match unit_of(last(path)) {
+            let (unit, shown) = (Quantity::of(known).unit(), shown(path, known, span));
+            problem.message = match Quantity::of(last(path)).unit() {
                 "-" => format!("no unit: `{path}` is not known, `{shown}` is"),
                 _ => format!("wrong unit: `{path}` is not known, `{shown}` is"),
             };

@@ -1,12 +1,9 @@
 //! Reading of single values from one table.
 use std::ops::RangeInclusive;
 
-use super::bound::Bound;
 use super::document::{Node, Span, Table, Value};
-use super::near::{one_of, suggest};
 use super::reader::{Reader, join};
-use super::units::{to_si, unit_of};
-use super::value::{Lazy, Lookup};
+use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Values, spec};
 
 /// A table at a dotted path. It also stands for a table that is absent and so has no keys.
 #[derive(Clone)]
@@ -110,38 +107,18 @@ impl<'r> Section<'r> {
 
     /// A required number, in SI units; NaN after a problem.
     pub fn number(&self, key: &str, allowed: Bound, doc: &str) -> f64 {
-        self.read_number(key, allowed, doc)
-            .unwrap_or_else(|absent| {
-                if absent {
-                    self.missing(key, Lazy(|| allowed.in_unit(unit_of(key))));
-                }
-                f64::NAN
-            })
+        Values::number(self, &Key::new(key, spec::within(allowed), doc))
     }
 
     /// A number, in SI units, with a default in the key's own unit; NaN after a problem.
     pub fn number_or(&self, key: &str, allowed: Bound, default: f64, doc: &str) -> f64 {
-        debug_assert!(
-            allowed.contains(default),
-            "default of {key} is out of range"
-        );
-        self.read_number(key, allowed, doc)
-            .unwrap_or_else(|absent| {
-                if !absent {
-                    return f64::NAN;
-                }
-                let si = to_si(key, default);
-                self.defaulted(key, default, Some(si));
-                si
-            })
+        let spec = spec::or(default, spec::within(allowed));
+        Values::number(self, &Key::new(key, spec, doc))
     }
 
     /// A number, in SI units, that may be absent; NaN after a problem.
     pub fn optional_number(&self, key: &str, allowed: Bound, doc: &str) -> Option<f64> {
-        match self.read_number(key, allowed, doc) {
-            Ok(si) => Some(si),
-            Err(absent) => (!absent).then_some(f64::NAN),
-        }
+        self.optional(&Key::new(key, spec::within(allowed), doc))
     }
 
     /// An integer with a default; the default also after a problem. It is not converted to SI units.
@@ -152,74 +129,28 @@ impl<'r> Section<'r> {
         default: i64,
         doc: &str,
     ) -> i64 {
-        let range = Lazy(|| match (*allowed.start(), *allowed.end()) {
-            (low, i64::MAX) => format!("integer of at least {low}"),
-            (low, high) => format!("integer from {low} to {high}"),
-        });
-        let found = match self.open(key, &range, doc) {
-            Lookup::Found(found) => found,
-            Lookup::Bad => return default,
-            Lookup::Absent => {
-                self.defaulted(key, default, Some(to_si(key, default as f64)));
-                return default;
-            }
-        };
-        match found.node.value {
-            Value::Integer(value) if allowed.contains(&value) => {
-                self.given(key, &found, value, Some(to_si(key, value as f64)));
-                value
-            }
-            Value::Integer(_) => {
-                self.out_of_range(key, found.node, &range.to_string());
-                default
-            }
-            _ => {
-                self.wrong_type(key, found.node, "an integer");
-                default
-            }
-        }
+        let spec = spec::integer(*allowed.start(), *allowed.end(), default);
+        self.integer(&Key::new(key, spec, doc))
     }
 
     /// A boolean with a default; the default also after a problem.
     pub fn boolean_or(&self, key: &str, default: bool, doc: &str) -> bool {
-        match self.open(key, "true or false", doc) {
-            Lookup::Found(found) => {
-                if let Value::Boolean(value) = found.node.value {
-                    self.given(key, &found, value, None);
-                    return value;
-                }
-                self.wrong_type(key, found.node, "true or false");
-            }
-            Lookup::Absent => self.defaulted(key, default, None),
-            Lookup::Bad => {}
-        }
-        default
+        self.flag(&Key::new(key, spec::flag(default), doc))
     }
 
     /// A required text; empty after a problem.
     pub fn text(&self, key: &str, doc: &str) -> String {
-        self.read_text(key, "text", doc).unwrap_or_else(|absent| {
-            if absent {
-                self.missing(key, "text");
-            }
-            String::new()
-        })
+        Values::text(self, &Key::new(key, spec::text(), doc))
     }
 
     /// A text with a default; empty after a problem.
     pub fn text_or(&self, key: &str, default: &str, doc: &str) -> String {
-        self.read_text(key, "text", doc).unwrap_or_else(|absent| {
-            if !absent {
-                return String::new();
-            }
-            self.defaulted(key, default, None);
-            default.to_string()
-        })
+        Values::text_or(self, &Key::new(key, spec::text(), doc), default)
     }
 
     /// A text that may be absent.
     pub fn optional_text(&self, key: &str, doc: &str) -> Option<String> {
-        self.read_text(key, "text", doc).ok()
+        self.read_text(&Key::new(key, spec::text(), doc)).ok()
     }
 
     /// One of `words`, with a default; the default also after a problem.
@@ -230,25 +161,40 @@ impl<'r> Section<'r> {
         default: &'static str,
         doc: &str,
     ) -> &'static str {
-        let allowed = Lazy(|| one_of(words));
-        match self.open(key, &allowed, doc) {
-            Lookup::Found(found) => {
-                let Value::Text(text) = &found.node.value else {
-                    self.wrong_type(key, found.node, "text");
-                    return default;
-                };
-                if let Some(word) = words.iter().find(|word| *word == text) {
-                    self.given(key, &found, text, None);
-                    return word;
-                }
-                let hint = suggest(text, words);
-                let message = format!("`{}` is not known for `{}`", text, join(&self.path, key));
-                self.report(&found.node.span, key, &allowed.to_string(), message, hint);
-            }
-            Lookup::Absent => self.defaulted(key, default, None),
-            Lookup::Bad => {}
-        }
-        default
+        let choices = choices(words);
+        let spec = (Kind::Words(&choices), Presence::Word(default));
+        self.word(&Key::new(key, spec, doc))
+    }
+
+    /// The option under `name` and its table, as [`Values::choose`].
+    ///
+    /// # Panics
+    /// If `options` is empty.
+    pub fn choose(
+        &self,
+        name: &str,
+        options: &[&'static str],
+        default: Option<&'static str>,
+        doc: &str,
+    ) -> (&'static str, Section<'r>) {
+        let choices = choices(options);
+        let presence = default.map_or(Presence::Required, Presence::Word);
+        Values::choose(
+            self,
+            &Key::new(name, (Kind::Options(&choices), presence), doc),
+        )
+    }
+
+    /// A list of numbers in SI units, as [`Values::numbers`]. It is required unless `length` begins at 0.
+    pub fn numbers(
+        &self,
+        key: &str,
+        allowed: Bound,
+        length: RangeInclusive<usize>,
+        doc: &str,
+    ) -> Vec<f64> {
+        let spec = spec::numbers(allowed, *length.start(), *length.end());
+        Values::numbers(self, &Key::new(key, spec, doc))
     }
 
     /// Adds a problem found in a file that this section names.
@@ -281,4 +227,9 @@ impl<'r> Section<'r> {
         };
         self.reader.fault(problem);
     }
+}
+
+/// Options without keys of their own.
+fn choices(words: &[&'static str]) -> Vec<Choice> {
+    words.iter().map(|word| Choice::word(word, "")).collect()
 }

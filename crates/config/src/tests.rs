@@ -56,6 +56,7 @@ fn both_forms_carry_their_status() {
         source: "run 4".into(),
         note: "cold".into(),
         allowed: "0.5 to 10 mm".into(),
+        is_number: true,
         doc: "Distance of the bands".into(),
     };
     assert_eq!(keys.unwrap(), [expected]);

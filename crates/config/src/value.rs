@@ -1,14 +1,13 @@
 //! What the readings of all kinds of values have in common: look-up, origin, registration, complaints.
-use std::fmt::{self, Display};
+use std::fmt::Display;
 
-use super::bound::Bound;
 use super::document::{Node, Span, Table, Value};
 use super::near::{near, one_of, question, suggest};
 use super::problem::{Place, Problem};
 use super::reader::{KeyInfo, join};
 use super::section::Section;
 use super::syntax::{decimal_comma, number_hint, number_with_unit};
-use super::units::{to_si, unit_of};
+use cvtcycle_model::keys::{Bound, Key, Quantity};
 
 /// What a value's status may be in a file.
 const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
@@ -19,15 +18,6 @@ pub(super) struct Found<'r> {
     pub status: &'r str,
     pub source: &'r str,
     pub note: &'r str,
-}
-
-/// A text that is made when it is written; silent readings never do.
-pub(super) struct Lazy<F: Fn() -> String>(pub F);
-
-impl<F: Fn() -> String> Display for Lazy<F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&(self.0)())
-    }
 }
 
 /// What stands at a key.
@@ -53,14 +43,14 @@ fn text_hint(text: &str) -> String {
 
 impl<'r> Section<'r> {
     /// The number in SI units; an error says whether the key is absent (else it is reported already).
-    pub(super) fn read_number(&self, key: &str, allowed: Bound, doc: &str) -> Result<f64, bool> {
-        match self.open(key, Lazy(|| allowed.in_unit(unit_of(key))), doc) {
+    pub(super) fn read_number(&self, key: &Key<'_>, allowed: Bound) -> Result<f64, bool> {
+        match self.open(key) {
             Lookup::Found(found) => {
                 let value = self
-                    .check_number(key, key, found.node, allowed)
+                    .check_number(key.name, key.quantity, found.node, allowed)
                     .ok_or(false)?;
-                let si = to_si(key, value);
-                self.given(key, &found, value, Some(si));
+                let si = key.quantity.to_si(value);
+                self.given(key.name, &found, value, Some(si));
                 Ok(si)
             }
             Lookup::Absent => Err(true),
@@ -68,15 +58,15 @@ impl<'r> Section<'r> {
         }
     }
 
-    pub(super) fn read_text(&self, key: &str, allowed: &str, doc: &str) -> Result<String, bool> {
-        match self.open(key, allowed, doc) {
+    pub(super) fn read_text(&self, key: &Key<'_>) -> Result<String, bool> {
+        match self.open(key) {
             Lookup::Found(found) => match &found.node.value {
                 Value::Text(text) => {
-                    self.given(key, &found, text, None);
+                    self.given(key.name, &found, text, None);
                     Ok(text.clone())
                 }
                 _ => {
-                    self.wrong_type(key, found.node, "text");
+                    self.wrong_type(key.name, found.node, "text");
                     Err(false)
                 }
             },
@@ -85,11 +75,11 @@ impl<'r> Section<'r> {
         }
     }
 
-    /// A finite number within its range, in its own unit; `quantity` carries the unit.
+    /// A finite number within its range, in its own unit.
     pub(super) fn check_number(
         &self,
         key: &str,
-        quantity: &str,
+        quantity: Quantity,
         node: &Node,
         allowed: Bound,
     ) -> Option<f64> {
@@ -104,7 +94,7 @@ impl<'r> Section<'r> {
         if allowed.contains(value) {
             return Some(value);
         }
-        let range = allowed.in_unit(unit_of(quantity));
+        let range = allowed.in_unit(quantity.unit());
         if value.is_finite() {
             self.out_of_range(key, node, &range);
         } else {
@@ -115,22 +105,28 @@ impl<'r> Section<'r> {
     }
 
     /// Looks a key up, counts it as read and as known, and unwraps `{ value = …, status = … }`.
-    pub(super) fn open(&self, key: &str, allowed: impl Display, doc: &str) -> Lookup<'r> {
+    pub(super) fn open(&self, key: &Key<'_>) -> Lookup<'r> {
+        self.register(key);
+        let Some(entry) = self.table.and_then(|table| table.entries.get(key.name)) else {
+            return Lookup::Absent;
+        };
+        self.unwrap(key.name, &entry.node)
+    }
+
+    /// Counts a key as read and as known.
+    pub(super) fn register(&self, key: &Key<'_>) {
         self.reader.note(|log| {
-            let path = join(&self.path, key);
+            let path = join(&self.path, key.name);
             log.register(KeyInfo {
                 key: path.clone(),
-                unit: unit_of(key).to_string(),
-                allowed: allowed.to_string(),
-                doc: doc.to_string(),
+                unit: key.unit(),
+                allowed: key.allowed(),
+                is_number: key.is_number(),
+                doc: key.doc.to_string(),
                 ..KeyInfo::default()
             });
             log.read.insert(path);
         });
-        let Some(entry) = self.table.and_then(|table| table.entries.get(key)) else {
-            return Lookup::Absent;
-        };
-        self.unwrap(key, &entry.node)
     }
 
     /// The value with its origin, from either of its two forms.
@@ -225,11 +221,6 @@ impl<'r> Section<'r> {
         });
     }
 
-    /// Names the unit of a key whose name does not carry it.
-    pub(super) fn unit(&self, key: &str, unit: impl Display) {
-        self.fill(key, |info| info.unit = unit.to_string());
-    }
-
     fn fill(&self, key: &str, write: impl FnOnce(&mut KeyInfo)) {
         self.reader.note(|log| {
             if let Some(info) = log
@@ -303,7 +294,8 @@ impl<'r> Section<'r> {
     }
 
     /// Reports a required key that is absent.
-    pub(super) fn missing(&self, key: &str, allowed: impl Display) {
+    pub(super) fn missing(&self, of: &Key<'_>) {
+        let key = of.name;
         if self.muted {
             return;
         }
@@ -316,7 +308,7 @@ impl<'r> Section<'r> {
             let message = format!("missing key `{}`", join(&self.path, key));
             self.absent(
                 key,
-                &allowed.to_string(),
+                &of.allowed(),
                 message,
                 format!("add `{key} = …` to {table}"),
             )

@@ -1,10 +1,10 @@
 //! Values as they are written: in the unit of their key and each with its place, for inputs in which another key decides what a value
 //! has to be.
-use super::bound::Bound;
 use super::document::{Node, Value};
 use super::problem::Place;
 use super::section::Section;
 use super::value::Lookup;
+use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Quantity};
 
 /// A value as written. Its checks report at its own place.
 #[derive(Clone)]
@@ -17,7 +17,11 @@ pub struct Written<'r> {
 impl<'r> Section<'r> {
     /// The value of `key` as written; none if it is absent or, reported already, no value at all.
     pub fn written(&self, key: &str, allowed: &str, doc: &str) -> Option<Written<'r>> {
-        match self.open(key, allowed, doc) {
+        match self.open(&Key::new(
+            key,
+            (Kind::Other(allowed), Presence::Optional),
+            doc,
+        )) {
             Lookup::Found(found) => {
                 self.given(
                     key,
@@ -91,7 +95,7 @@ impl<'r> Written<'r> {
     #[must_use]
     pub fn number(&self, quantity: &str, allowed: Bound) -> Option<f64> {
         self.section
-            .check_number(&self.key, quantity, self.node, allowed)
+            .check_number(&self.key, Quantity::of(quantity), self.node, allowed)
     }
 
     /// Reports that it is of another kind than expected.

@@ -3,6 +3,7 @@
 //! No input or output, SI units throughout. The modules are listed in the order of the power flow.
 
 pub mod math;
+pub mod keys;
 pub mod cycle;
 pub mod fluid;
 pub mod road;

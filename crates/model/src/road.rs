@@ -10,6 +10,10 @@
 //!
 //! On a dynamometer the coefficients are fixed, whatever the ambient; air resistance and rolling belong to the rollers. SI throughout.
 
+mod keys;
+
+pub use keys::RoadLoadKeys;
+
 use crate::cycle::{Motion, Step};
 
 /// Gravity, m/s2.

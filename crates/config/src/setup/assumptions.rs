@@ -176,20 +176,6 @@ fn cell(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// The committed page is what this program prints: `cargo run -- assumptions > docs/assumptions.md`.
-    #[test]
-    fn the_committed_book_is_up_to_date() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/assumptions.md");
-        let committed = std::fs::read_to_string(path)
-            .unwrap_or_default()
-            .replace("\r\n", "\n");
-        let same = committed == book();
-        assert!(
-            same,
-            "docs/assumptions.md is out of date: cargo run -- assumptions > docs/assumptions.md"
-        );
-    }
-
     #[test]
     fn the_book_names_every_assumed_value_and_label() {
         let book = book();

@@ -74,6 +74,7 @@ impl Blueprint {
             value: info.value.clone(),
             si: info.si,
             allowed: info.allowed.clone(),
+            is_number: info.is_number,
             ..KeyInfo::default()
         };
         let keys = setup
@@ -113,7 +114,7 @@ impl Blueprint {
         let base = match info.si {
             Some(_) => info.value.parse().unwrap_or(f64::NAN),
             // Nothing has been given: only what the key allows tells what it would be.
-            None if info.value.is_empty() && is_number(&info.allowed) => f64::NAN,
+            None if info.value.is_empty() && info.is_number => f64::NAN,
             None => return Err(no_number(key, info)),
         };
         let path = own.split('.').map(|name| name.trim().into()).collect();
@@ -151,9 +152,10 @@ impl Blueprint {
         if let Some(document) = &mut documents[file] {
             document.reach(own).map_err(unset)?;
         }
-        let readers = documents
-            .each_ref()
-            .map(|document| document.as_ref().map(Reader::new));
+        let readers = documents.each_ref().map(|document| {
+            let reader = |document| Reader::new(document).with_files(&self.inputs.frame.files);
+            document.as_ref().map(reader)
+        });
         let _ = self.inputs.frame.assemble(&readers);
         let known = readers[file]
             .as_ref()
@@ -192,20 +194,6 @@ impl Blueprint {
             checked: Vec::new(),
         }
     }
-}
-
-/// Whether what a key allows is a range of numbers: neither a text nor a choice nor a list.
-fn is_number(allowed: &str) -> bool {
-    ![
-        "text",
-        "true or false",
-        "one of ",
-        "rows of ",
-        "a list",
-        "a number, a list",
-    ]
-    .iter()
-    .any(|other| allowed.starts_with(other))
 }
 
 fn no_number(key: &str, info: KeyInfo) -> Problem {
@@ -297,10 +285,9 @@ impl Bench {
         if !self.misfits.is_empty() {
             return rejected(self.misfits.len());
         }
-        let readers = self
-            .drafts
-            .each_ref()
-            .map(|draft| Some(Reader::silent(draft.document())));
+        let readers = self.drafts.each_ref().map(|draft| {
+            Some(Reader::silent(draft.document()).with_files(&self.inputs.frame.files))
+        });
         let setup = match self.inputs.frame.assemble(&readers) {
             Ok(setup) => setup,
             Err(problems) => return rejected(problems.len()),

@@ -1,17 +1,15 @@
 //! Every key that the program can read, with its value in each embedded file.
 //!
-//! Nothing is listed by hand: the readers themselves are run, over the embedded files and over every option that
-//! these leave unchosen.
+//! The keys are the rows of the model's tables; the values come from reading the files.
 
-use std::collections::{BTreeSet, VecDeque};
 use std::sync::OnceLock;
 
 use super::inputs::{head, parts};
-use super::{Disk, Kind, embedded_lubricants, embedded_rigs, embedded_vehicles};
-use crate::parts::lubricant as fluid_table;
+use super::{Kind, embedded_lubricants, embedded_rigs, embedded_vehicles};
 use crate::rig;
 use crate::{Document, KeyInfo, Reader};
 use cvtcycle_model::fluid::Lubricant;
+use cvtcycle_model::keys;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Prefix of the keys of the transmission oil, as in `--set lubricant.KEY=VALUE`.
@@ -60,7 +58,7 @@ pub fn files() -> Vec<File> {
         .map(|(name, text, kind)| File {
             name,
             kind,
-            keys: keys(name, text, kind, &[]),
+            keys: values(name, text, kind),
         })
         .collect()
 }
@@ -81,74 +79,37 @@ pub fn known_names() -> &'static [String] {
 }
 
 fn gathered() -> Vec<KeyInfo> {
-    let mut known: Vec<KeyInfo> = Vec::new();
-    let mut seen = BTreeSet::new();
-    for file in files() {
-        let text = file
-            .kind
-            .embedded()
-            .iter()
-            .find(|(name, _)| *name == file.name)
-            .map_or("", |(_, text)| text);
-        let mut queue = VecDeque::from([Vec::new()]);
-        let mut tried = BTreeSet::new();
-        while let Some(sets) = queue.pop_front() {
-            for info in keys(file.name, text, file.kind, &sets) {
-                for word in options(&info) {
-                    let set = format!("{}={word}", info.key);
-                    if tried.insert(set.clone()) {
-                        queue.push_back(sets.iter().cloned().chain([set]).collect());
-                    }
-                }
-                let key = file.full_key(&info.key);
-                if seen.insert(key.clone()) {
-                    let (unit, allowed, doc) = (info.unit, info.allowed, info.doc);
-                    known.push(KeyInfo {
-                        key,
-                        unit,
-                        allowed,
-                        doc,
-                        ..KeyInfo::default()
-                    });
-                }
-            }
-        }
+    let mut known = Vec::new();
+    for (prefix, table) in [("", keys::VEHICLE), (OIL, keys::LUBRICANT), ("", keys::RIG)] {
+        table.walk("", &mut |path, key| {
+            known.push(KeyInfo {
+                key: format!("{prefix}{path}"),
+                unit: key.unit(),
+                allowed: key.allowed(),
+                is_number: key.is_number(),
+                doc: key.doc.to_owned(),
+                ..KeyInfo::default()
+            });
+        });
     }
     known
 }
 
-/// The words from which a key's value is chosen.
-fn options(info: &KeyInfo) -> impl Iterator<Item = &str> {
-    info.allowed
-        .strip_prefix("one of ")
-        .into_iter()
-        .flat_map(|list| list.split(", "))
-}
-
-/// Keys that reading a text asks for, whatever problems there are: an option without its keys has many.
-fn keys(name: &str, text: &str, kind: Kind, sets: &[String]) -> Vec<KeyInfo> {
-    let Ok(mut document) = Document::parse(name, text) else {
+/// Keys that reading a text asks for, with their values.
+fn values(name: &str, text: &str, kind: Kind) -> Vec<KeyInfo> {
+    let Ok(document) = Document::parse(name, text) else {
         return Vec::new();
     };
-    if sets.iter().any(|set| document.set(set).is_err()) {
-        return Vec::new();
-    }
     let reader = Reader::new(&document);
-    match (kind, oil()) {
-        (Kind::Lubricant, _) => drop(fluid_table::load(&reader.root(), name)),
-        (Kind::Vehicle, Some(oil)) => {
-            let root = reader.root();
-            drop(head(&root, name));
-            drop(parts(
-                &root,
-                &Disk::default(),
-                [oil.clone(), oil],
-                Formulation::default(),
-                name.to_owned(),
-            ));
-        }
-        (Kind::Rig, _) => drop(rig::read(&reader.root())),
-        (Kind::Vehicle, None) => {}
+    let root = reader.root();
+    match kind {
+        Kind::Lubricant => drop(Lubricant::from_values(&root, name)),
+        Kind::Vehicle => drop(head(&root, name)),
+        Kind::Rig => drop(rig::read(&root)),
+    }
+    if let (Kind::Vehicle, Some(oil)) = (kind, oil()) {
+        let oils = [oil.clone(), oil];
+        drop(parts(&root, oils, Formulation::default(), name.to_owned()));
     }
     reader.known()
 }

@@ -5,14 +5,17 @@ use std::sync::Arc;
 
 use super::shelf::Shelf;
 use super::{Files, Kind, Options, Setup, is_path, load_lubricant, other_box, stem, text_of};
-use crate::parts::lubricant as fluid_table;
-use crate::parts::{cvt, engine, manual, road, thermal};
-use crate::{Document, KeyInfo, Problem, Reader, Section};
+use crate::{Document, KeyInfo, Problem, Reader};
 use cvtcycle_model::drive::{Car, Vehicle};
+use cvtcycle_model::engine::Engine;
 use cvtcycle_model::fluid::Lubricant;
+use cvtcycle_model::keys::{HEAD, VEHICLE_FILE, Values};
 use cvtcycle_model::road::RoadLoadInput;
+use cvtcycle_model::thermal::Network;
 use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
+use cvtcycle_model::transmission::manual::Manual;
 
 /// What the keys of transmission oil and engine oil begin with.
 pub(super) const FLUIDS: [&str; 2] = ["lubricant.", "engine_oil."];
@@ -40,7 +43,7 @@ pub(super) struct Frame {
     pub name: String,
     /// Names of transmission oil and engine oil; empty where neither vehicle nor user has one.
     fluids: [String; 2],
-    files: Shelf,
+    pub files: Shelf,
     formulation: Formulation,
 }
 
@@ -135,7 +138,8 @@ impl Inputs {
     /// All problems of its files and of the overrides.
     pub fn read(&self) -> Result<Setup, Vec<Problem>> {
         let documents = self.files.each_ref().map(|input| input.document.as_ref());
-        let readers = documents.map(|document| document.map(Reader::new));
+        let reader = |document| Reader::new(document).with_files(&self.frame.files);
+        let readers = documents.map(|document| document.map(reader));
         let assembled = self.frame.assemble(&readers);
         let mut problems = Vec::new();
         let mut keys = Vec::new();
@@ -179,18 +183,12 @@ impl Frame {
             title, baselines, ..
         } = head(&root, &self.name);
         let fluid = |reader: &Option<Reader>, k: usize| match reader {
-            Some(reader) => Ok(fluid_table::load(&reader.root(), &self.fluids[k])),
+            Some(reader) => Ok(Lubricant::from_values(&reader.root(), &self.fluids[k])),
             // Some fluid, so that the reading goes on.
             None => load_lubricant("cvtf_ezl799_class", "", &[], "").map(|found| found.0),
         };
         let fluids = [fluid(oil, 0)?, fluid(engine_oil, 1)?];
-        let (road_load, car) = parts(
-            &root,
-            &self.files,
-            fluids,
-            self.formulation,
-            self.name.clone(),
-        );
+        let (road_load, car) = parts(&root, fluids, self.formulation, self.name.clone());
         let baselines = baselines
             .split(',')
             .map(|b| b.trim().to_owned())
@@ -277,46 +275,34 @@ pub(super) struct Head {
     engine_oil: String,
 }
 
-pub(super) fn head(root: &Section, name: &str) -> Head {
+pub(super) fn head<V: Values>(root: &V, name: &str) -> Head {
     let head = root.table("vehicle");
     Head {
-        title: head.text_or("title", name, "name for people"),
-        baselines: head.text_or(
-            "baselines",
-            "",
-            "names of the baseline vehicles, comma separated",
-        ),
-        fluid: head.text("transmission_oil", "name of the transmission oil"),
-        engine_oil: head.text("engine_oil", "name of the engine oil"),
+        title: head.text_or(&HEAD.title, name),
+        baselines: head.text_or(&HEAD.baselines, ""),
+        fluid: head.text(&HEAD.transmission_oil),
+        engine_oil: head.text(&HEAD.engine_oil),
     }
 }
 
-pub(super) fn parts(
-    root: &Section,
-    files: &dyn Files,
+pub(super) fn parts<V: Values>(
+    root: &V,
     [oil, engine_oil]: [Lubricant; 2],
     formulation: Formulation,
     name: String,
 ) -> (RoadLoadInput, Car) {
-    let road_load = road::load(&root.table("road_load"));
-    let engine = engine::load(&root.table("engine"), files);
-    let (kind, section) = root.choose(
-        "transmission",
-        &["cvt", "manual"],
-        None,
-        "kind of transmission",
-    );
+    let road_load = RoadLoadInput::from_values(&root.table("road_load"));
+    let engine = Engine::from_values(&root.table("engine"));
+    let (kind, section) = root.choose(&VEHICLE_FILE.transmission);
     let (transmission, belt_heat_share) = if kind == "cvt" {
-        let cvt = cvt::load(&section, files, &engine, &oil, formulation);
+        let cvt = Cvt::from_values(&section, &engine, &oil, formulation);
         let share = cvt.belt_heat_share;
         (Transmission::Cvt(Box::new(cvt)), share)
     } else {
-        (
-            Transmission::Manual(Box::new(manual::load(&section, files))),
-            0.0,
-        )
+        let manual = Manual::from_values(&section);
+        (Transmission::Manual(Box::new(manual)), 0.0)
     };
-    let network = thermal::load(&root.table("thermal"), kind == "cvt", &oil);
+    let network = Network::from_values(&root.table("thermal"), kind == "cvt", &oil);
     let car = Car {
         name,
         road_load: road_load.base,

@@ -18,7 +18,6 @@ pub use embedded::{embedded_lubricants, embedded_map, embedded_rigs, embedded_ve
 use std::sync::Arc;
 
 use crate::bounded::{self, Refused};
-use crate::parts::lubricant as fluid_table;
 use crate::{Bound, Document, KeyInfo, Place, Problem, Reader, decode, near};
 use cvtcycle_model::drive::Vehicle;
 use cvtcycle_model::fluid::Lubricant;
@@ -242,7 +241,7 @@ fn read_document(
     prefix: &str,
 ) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
     let reader = Reader::new(document);
-    let lubricant = fluid_table::load(&reader.root(), &stem(word));
+    let lubricant = Lubricant::from_values(&reader.root(), &stem(word));
     Ok((lubricant, inputs::fluid_keys(reader, prefix)?))
 }
 

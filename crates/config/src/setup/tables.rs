@@ -1,48 +1,16 @@
-//! Tables that vehicle files name or hold: curves, viscosity, BSFC and loss maps.
+//! Tables that vehicle files name: BSFC and loss maps.
 
+use std::io::ErrorKind;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::map_csv::{self, Column, Form};
 use super::{Files, embedded_map};
-use crate::parts::engine::DEFAULT_FRICTION;
-use crate::{Section, to_si};
+use crate::Section;
+use crate::bounded::Refused;
 use cvtcycle_model::engine::BsfcMap;
-use cvtcycle_model::fluid::Viscosity;
-use cvtcycle_model::math::{Curve, GRID_AXES, Grid};
+use cvtcycle_model::keys::Quantity;
+use cvtcycle_model::math::{GRID_AXES, Grid};
 use cvtcycle_model::transmission::loss_map::LossMap;
-
-/// A curve from two-column rows; a problem at `key` if they do not make one.
-#[must_use]
-pub fn curve(s: &Section, key: &str, rows: &[Vec<f64>]) -> Curve {
-    let points: Vec<(f64, f64)> = rows.iter().map(|r| (r[0], r[1])).collect();
-    Curve::new(&points).unwrap_or_else(|why| {
-        s.complain(
-            key,
-            "rows [x, y] with rising x",
-            &why,
-            "give at least one row; sort them by their first number and remove doubled ones",
-        );
-        Curve::constant(1.0)
-    })
-}
-
-/// Viscosity from values at 40 and 100 degC; a problem at `key` if they do not make one.
-#[must_use]
-pub fn viscosity(s: &Section, key: &str, kv40: f64, kv100: f64) -> Viscosity {
-    let points = [(313.15, kv40), (373.15, kv100)];
-    Viscosity::new(&points).unwrap_or_else(|why| {
-        if kv40.is_finite() && kv100.is_finite() {
-            s.complain(
-                key,
-                "falling as the oil warms",
-                &why,
-                "check the two values and their unit, mm2/s (cSt)",
-            );
-        }
-        Viscosity::new(&[(313.15, 36e-6), (373.15, 7.2e-6)])
-            .unwrap_or_else(|_| unreachable!("constant points"))
-    })
-}
 
 /// A CSV of numbers with a header, read whole, and the map that was made of it.
 #[derive(Debug)]
@@ -60,7 +28,7 @@ impl Table {
     }
 }
 
-fn read(s: &Section, key: &str, file: &str, files: &dyn Files, form: &Form) -> Option<Arc<Table>> {
+fn read(s: &Section, key: &str, file: &str, form: &Form) -> Option<Arc<Table>> {
     if file.trim().is_empty() {
         s.complain(
             key,
@@ -74,7 +42,7 @@ fn read(s: &Section, key: &str, file: &str, files: &dyn Files, form: &Form) -> O
         let read;
         let bytes = match embedded_map(file) {
             Some(text) => text.as_bytes(),
-            None => match files.fetch(file) {
+            None => match fetch(s.reader.files, file) {
                 Ok(bytes) => {
                     read = bytes;
                     read.as_slice()
@@ -105,18 +73,26 @@ fn read(s: &Section, key: &str, file: &str, files: &dyn Files, form: &Form) -> O
             }
         }
     };
-    files.table(form.columns[0].name, file, &mut make)
+    match s.reader.files {
+        Some(files) => files.table(form.columns[0].name, file, &mut make),
+        None => make(),
+    }
+}
+
+fn fetch(files: Option<&dyn Files>, file: &str) -> Result<Vec<u8>, Refused> {
+    let none = || Refused::Unreadable(ErrorKind::NotFound.into());
+    files.ok_or_else(none)?.fetch(file)
 }
 
 /// What helps with a BSFC map that does not hang together.
 const GRID: &str = "give at least two speeds and two loads; more torque needs more fuel";
 
-/// A BSFC map from CSV; none after a problem.
+/// A BSFC map from CSV, without friction; none after a problem.
 #[must_use]
 pub fn bsfc_map(
     s: &Section,
+    key: &str,
     file: &str,
-    files: &dyn Files,
     heating_value_j_kg: f64,
     displacement_m3: f64,
 ) -> Option<BsfcMap> {
@@ -142,15 +118,11 @@ pub fn bsfc_map(
             high: 3000.0,
         },
     ];
-    if file.is_empty() && s.optional_text("file", "").is_none() {
-        return None; // missing, or no text: reported
-    }
     let required: [&[&str]; 3] = [&["speed_rpm"], &["bmep_bar", "torque_nm"], &["bsfc_g_kwh"]];
     let table = read(
         s,
-        "file",
+        key,
         file,
-        files,
         &Form {
             columns: &columns,
             required: &required,
@@ -168,34 +140,22 @@ pub fn bsfc_map(
     let (Some(speed), Some(bsfc), Some((load, factor))) = (speed, bsfc, load) else {
         return None;
     };
+    let rpm = Quantity::of("speed_rpm");
     let rows: Vec<(f64, f64, f64)> = table
         .rows
         .iter()
-        .map(|r| {
-            (
-                to_si("speed_rpm", r[speed]),
-                r[load] * factor,
-                r[bsfc] / 3.6e9,
-            )
-        })
+        .map(|r| (rpm.to_si(r[speed]), r[load] * factor, r[bsfc] / 3.6e9))
         .collect();
-    let map = BsfcMap::from_rows(&rows, heating_value_j_kg, DEFAULT_FRICTION)
-        .map_err(|why| s.complain("file", "a map of fuel over speed and load", &why, GRID))
+    let map = BsfcMap::from_rows(&rows, heating_value_j_kg, (0.0, 0.0))
+        .map_err(|why| s.complain(key, "a map of fuel over speed and load", &why, GRID))
         .ok()?;
     *made = Some((scale, map.clone()));
     Some(map)
 }
 
-/// A measured torque-loss map from CSV where `key` names one; `first` is the name of its first axis, `ratio` or `gear`.
+/// A measured torque-loss map from CSV; `first` is the name of its first axis, `ratio` or `gear`.
 #[must_use]
-pub fn loss_map(
-    s: &Section,
-    key: &str,
-    doc: &str,
-    files: &dyn Files,
-    first: &'static str,
-) -> Option<LossMap> {
-    let file = s.optional_text(key, doc)?;
+pub fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) -> Option<LossMap> {
     let torque = if first == "gear" {
         "input_torque_nm"
     } else {
@@ -236,8 +196,7 @@ pub fn loss_map(
     let table = read(
         s,
         key,
-        &file,
-        files,
+        file,
         &Form {
             columns: &columns,
             required: &[&["torque_loss_nm"]],
@@ -247,17 +206,17 @@ pub fn loss_map(
         return Some(map.clone());
     }
     let loss = table.index("torque_loss_nm")?;
-    let axes: Vec<Option<usize>> = columns[..GRID_AXES]
+    let axes: Vec<(Option<usize>, Quantity)> = columns[..GRID_AXES]
         .iter()
-        .map(|c| table.index(c.name))
+        .map(|c| (table.index(c.name), Quantity::of(c.name)))
         .collect();
     let rows: Vec<([f64; GRID_AXES], f64)> = table
         .rows
         .iter()
         .map(|r| {
             let mut x = [0.0; GRID_AXES];
-            for (k, axis) in axes.iter().enumerate() {
-                x[k] = axis.map_or(0.0, |i| to_si(columns[k].name, r[i]));
+            for (x, (axis, quantity)) in x.iter_mut().zip(&axes) {
+                *x = axis.map_or(0.0, |i| quantity.to_si(r[i]));
             }
             (x, r[loss])
         })

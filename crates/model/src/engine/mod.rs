@@ -14,8 +14,10 @@
 //! nu_r is the viscosity of the reference oil at the same temperature, so that with the reference oil EN-2 is the published law.
 
 mod fuel;
+mod keys;
 
 pub use fuel::{BsfcMap, EFFICIENCY, FuelModel, FuelPoint, Willans};
+pub use keys::EngineKeys;
 
 use crate::fluid::{Lubricant, Viscosity, ZERO_DEGC_K};
 use crate::math::{Curve, exp, held, ln};

@@ -13,8 +13,10 @@
 //!
 //! Sources: ASTM D341; Akehurst 2001, 5.5.2, 8.4.5, 8.9; Ichihashi in Akehurst 2.3 (band 0.09 to 0.135, up to 30 % with temperature).
 
+mod keys;
 mod viscosity;
 
+pub use keys::FluidKeys;
 pub use viscosity::Viscosity;
 
 use crate::math::{exp, held, ln};

@@ -17,8 +17,10 @@
 //! Nodes: coolant and block; engine oil; transmission oil; transmission metal; belt and pulleys with the oil they spray (unused in a
 //! manual box). Soak is the same network with the engine off. Speeds m/s, heat flows W.
 
+mod keys;
 mod links;
 
+pub use keys::ThermalKeys;
 use links::Links;
 
 use crate::math::{exp, held, ln, ramp};

@@ -17,6 +17,8 @@
 //! -30 degC for the CVT's fluid, and P_h is meant at -10 degC. Colder, the true P_h is smaller, and FH-1 still a bound from above.
 //! The film is taken to be in step with its dissipation: it holds grams of oil, and is there within a second.
 
+use crate::keys::{Key, Values, spec};
+
 /// Heating of a film by its own drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FilmHeating {
@@ -44,6 +46,16 @@ impl FilmHeating {
     pub fn torque_nm(self, unheated_nm: f64, speed_rad_s: f64) -> f64 {
         2.0 * unheated_nm
             / (1.0 + (1.0 + unheated_nm * speed_rad_s * self.four_per_halving_w).sqrt()) // FH-1
+    }
+}
+
+/// Row of the key `film_heating_w`, which several parts have.
+pub const FILM_HEATING: spec::Spec = spec::optional(spec::number(1.0, 1e9));
+
+impl FilmHeating {
+    /// The heating that a part's `film_heating_w` gives; none where it is absent.
+    pub fn from_values<V: Values>(s: &V, key: &Key<'_>) -> Self {
+        FilmHeating::halving_at_w(s.optional(key))
     }
 }
 

@@ -10,6 +10,9 @@
 //!
 //! A wet or dry friction clutch slips from idle to lock-up. A torque converter will be another implementation of [`Launch`].
 
+use std::sync::Arc;
+
+use crate::keys::{Choice, Key, Values, keys, spec};
 use crate::math::{exp, ramp};
 
 /// Launch device as the driveline sees it; torques at the box's input shaft, Nm, speeds rad/s.
@@ -110,6 +113,38 @@ impl Launch for FrictionClutch {
         };
         ramp(input_speed_rad_s, from, to + 0.2 * idle_rad_s) // LC-3
     }
+}
+
+keys! {
+    /// Keys of `[….launch.friction_clutch]`.
+    FRICTION_CLUTCH: FrictionClutchKeys = "friction_clutch" [] {
+        engage_rpm: or(1000.0, number(300.0, 5000.0)), "engine speed at which it begins to engage (LC-1)";
+        gain_nm_per_rpm2: or(3.0e-5, number(1e-7, 1e-2)), "torque over the square of engine speed above it (LC-1)";
+        creep_nm: computed("5 with a CVT, 0 with a manual gearbox", number(0.0, 50.0)), "torque passed on at idle in gear (LC-2)";
+        release_rpm: or(1000.0, number(300.0, 5000.0)), "input speed below which it opens in overrun (LC-3)";
+    }
+}
+
+/// Row of the key `launch`, which every gearbox has.
+pub const LAUNCH: spec::Spec = spec::or_word(
+    "friction_clutch",
+    spec::options(&[Choice::new(
+        "friction_clutch",
+        "friction clutch, wet or dry",
+        FrictionClutchKeys::TABLE,
+    )]),
+);
+
+/// The launch device of a gearbox; `creep_nm` is the default of its creep torque.
+#[must_use]
+pub fn from_values<V: Values>(s: &V, key: &Key<'_>, creep_nm: f64) -> Arc<dyn Launch> {
+    let (_, c) = s.choose(key);
+    Arc::new(FrictionClutch {
+        engage_rad_s: c.number(&FRICTION_CLUTCH.engage_rpm),
+        gain_nm_s2: c.number(&FRICTION_CLUTCH.gain_nm_per_rpm2),
+        creep_nm: c.number_or(&FRICTION_CLUTCH.creep_nm, creep_nm),
+        release_rad_s: c.number(&FRICTION_CLUTCH.release_rpm),
+    })
 }
 
 #[cfg(test)]

@@ -17,10 +17,12 @@ pub mod spin;
 pub mod variator;
 mod answer;
 mod evaluate;
+mod keys;
 mod prepare;
 mod secant;
 mod solve;
 
+pub use keys::CvtKeys;
 pub use secant::{Slopes, Trend};
 
 use self::controller::{ClampLaw, ClampSignals, RatioControl};

@@ -15,7 +15,9 @@
 //! opens to it, and is then pushed out against p in full; what flowed back is lost as heat. Only flow is missing. The depression itself
 //! adds D 0.7 bar at most, 0.1 Nm for 9 cm3/rev, and is left out.
 
+use crate::keys::{Choice, Values, keys};
 use crate::math::{exp, held, ln, smooth_ramp};
+use crate::transmission::film_heating::FILM_HEATING;
 use crate::transmission::film_heating::FilmHeating;
 
 /// How the displacement follows the need for flow.
@@ -195,6 +197,72 @@ impl Pump {
             flow_m3_s: flow,
             working_m3_s: working,
             flow_limited: need_m3_s > drawn,
+        }
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.pump]`.
+    PUMP: PumpKeys = "pump" [] {
+        kind: or_word("fixed", options(&[
+            Choice::word("fixed", "the whole displacement works"),
+            Choice::new("dual_cavity", "one of two cavities can idle", DualCavityKeys::TABLE),
+            Choice::new("variable", "the displacement follows the demand", VariableKeys::TABLE),
+        ])), "fixed, dual_cavity or variable displacement (PU-4)";
+        displacement_cc_rev: number(0.5, 100.0), "displacement (PU-1)";
+        friction_coefficient: or(0.0, number(0.0, 1.0)), "Coulomb coefficient C_f (PU-1)";
+        viscous_coefficient: number(0.0, 1e6), "viscous coefficient C_v (PU-1)";
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (PU-1)";
+        film_heating_w: FILM_HEATING, "viscous dissipation at which the heat of the gaps halves the viscous torque; absent: no heating (PU-1, FH-1)";
+        inlet_bar_per_l_min: optional(number(0.0, 1.0)), "drop in strainer and suction line at 10 mPa s; absent: none (PU-5)";
+        constant_nm: or(0.0, number(0.0, 10.0)), "constant torque T_c (PU-1)";
+        line_drop_bar: or(0.0, number(0.0, 50.0)), "pressure drop between pump and secondary (PU-1)";
+        residual_bar: or(1.0, number(0.0, 50.0)), "pressure against which idle displacement turns (PU-4)";
+        lubrication_l_min: or(3.0, number(0.0, 50.0)), "lubrication flow (PU-2)";
+        leakage_l_min_per_bar: or(0.1, number(0.0, 2.0)), "leakage at 10 mPa s (PU-2)";
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.pump.kind.dual_cavity]`.
+    DUAL_CAVITY: DualCavityKeys = "dual_cavity" [] {
+        share: or(0.5, number(0.05, 1.0)), "share of displacement in the cavity that always works (PU-4)";
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.pump.kind.variable]`.
+    VARIABLE: VariableKeys = "variable" [] {
+        least_share: or(0.25, number(0.05, 1.0)), "smallest share of the displacement (PU-4)";
+    }
+}
+
+impl Pump {
+    /// A pump from the values of its table.
+    pub fn from_values<V: Values>(p: &V) -> Self {
+        let (kind, k) = p.choose(&PUMP.kind);
+        let kind = match kind {
+            "dual_cavity" => PumpKind::DualCavity {
+                share: k.number(&DUAL_CAVITY.share),
+            },
+            "variable" => PumpKind::Variable {
+                least: k.number(&VARIABLE.least_share),
+            },
+            _ => PumpKind::Fixed,
+        };
+        Pump {
+            kind,
+            displacement_m3_rad: p.number(&PUMP.displacement_cc_rev),
+            friction: p.number(&PUMP.friction_coefficient),
+            viscous: p.number(&PUMP.viscous_coefficient),
+            viscous_exponent: p.number(&PUMP.viscous_exponent),
+            heating: FilmHeating::from_values(p, &PUMP.film_heating_w),
+            inlet_pa_s_m3: p.optional(&PUMP.inlet_bar_per_l_min).unwrap_or(0.0),
+            constant_nm: p.number(&PUMP.constant_nm),
+            line_drop_pa: p.number(&PUMP.line_drop_bar),
+            residual_pa: p.number(&PUMP.residual_bar),
+            lubrication_m3_s: p.number(&PUMP.lubrication_l_min),
+            leakage_m3_s_pa: p.number(&PUMP.leakage_l_min_per_bar),
         }
     }
 }

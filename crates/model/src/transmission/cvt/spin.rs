@@ -10,7 +10,9 @@
 //! nu_80 = 11 mm2/s is the viscosity at which the constants hold, without the heating of the films. Below 25 degC all three are
 //! extrapolated; the cap bounds CD-1, the heating of their films (FH-1) the viscous terms of IS-1 and FD-1. Unmeasured there.
 
+use crate::keys::{Values, keys};
 use crate::math::{exp, exp_each, ln};
+use crate::transmission::film_heating::FILM_HEATING;
 use crate::transmission::film_heating::FilmHeating;
 
 /// Kinematic viscosity to which the constants refer, m2/s.
@@ -146,6 +148,63 @@ impl SpinNow {
             + self
                 .shaft_heating
                 .torque_nm(self.shaft_slope_nm_s * speed_rad_s, speed_rad_s) // IS-1
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.input_shaft]`.
+    SHAFT: ShaftKeys = "input_shaft" [] {
+        constant_nm: number(0.0, 20.0), "torque at rest (IS-1)";
+        viscous_nm_per_rpm: number(0.0, 0.01), "slope at 11 mm2/s (IS-1)";
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (IS-1)";
+        film_heating_w: FILM_HEATING, "viscous dissipation at which the heat of the films halves it; absent: no heating (IS-1, FH-1)";
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.reverse_clutch]`.
+    CLUTCH: ClutchKeys = "reverse_clutch" [] {
+        drag_nm: number(0.0, 20.0), "drag at 11 mm2/s (CD-1)";
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (CD-1)";
+        cap_nm: number(0.0, 20.0), "largest drag (CD-1)";
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.final_drive]`.
+    DRIVE: DriveKeys = "final_drive" [] {
+        boundary_nm: number(0.0, 20.0), "part that falls with speed, at the secondary (FD-1)";
+        boundary_rpm: number(10.0, 20_000.0), "its speed scale (FD-1)";
+        viscous_nm: number(0.0, 20.0), "viscous part at 11 mm2/s (FD-1)";
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (FD-1)";
+        film_heating_w: FILM_HEATING, "viscous dissipation at which the heat of the films halves it; absent: no heating (FD-1, FH-1)";
+        mesh_efficiency: number(0.8, 1.0), "efficiency of the meshes (FD-2)";
+    }
+}
+
+impl Spin {
+    /// The spin losses from the values of `[transmission.cvt]`.
+    pub fn from_values<V: Values>(s: &V) -> Self {
+        let (shaft, clutch, drive) = (
+            s.table("input_shaft"),
+            s.table("reverse_clutch"),
+            s.table("final_drive"),
+        );
+        Spin {
+            shaft_constant_nm: shaft.number(&SHAFT.constant_nm),
+            shaft_viscous_nm_s: shaft.number(&SHAFT.viscous_nm_per_rpm),
+            shaft_exponent: shaft.number(&SHAFT.viscous_exponent),
+            shaft_heating: FilmHeating::from_values(&shaft, &SHAFT.film_heating_w),
+            clutch_nm: clutch.number(&CLUTCH.drag_nm),
+            clutch_exponent: clutch.number(&CLUTCH.viscous_exponent),
+            clutch_cap_nm: clutch.number(&CLUTCH.cap_nm),
+            drive_boundary_nm: drive.number(&DRIVE.boundary_nm),
+            drive_scale_rad_s: drive.number(&DRIVE.boundary_rpm),
+            drive_viscous_nm: drive.number(&DRIVE.viscous_nm),
+            drive_exponent: drive.number(&DRIVE.viscous_exponent),
+            drive_heating: FilmHeating::from_values(&drive, &DRIVE.film_heating_w),
+            mesh_efficiency: drive.number(&DRIVE.mesh_efficiency),
+        }
     }
 }
 

@@ -13,8 +13,10 @@
 //! A gear change is driven in the gear that follows it: the plateau's load is small and the engine's loss of speed is not resolved.
 
 mod gears;
+mod keys;
 
 pub use gears::ShiftSpeeds;
+pub use keys::ManualKeys;
 
 use super::cvt::{Slopes, Trend};
 use super::film_heating::FilmHeating;

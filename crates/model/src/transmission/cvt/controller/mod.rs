@@ -2,5 +2,5 @@
 mod pressure;
 mod ratio;
 
-pub use pressure::{ClampLaw, ClampSignals, MapLaw};
-pub use ratio::{RatioControl, RatioDemand};
+pub use pressure::{ClampKeys, ClampLaw, ClampSignals, MapLaw, clamp};
+pub use ratio::{RatioControl, RatioDemand, RatioKeys};

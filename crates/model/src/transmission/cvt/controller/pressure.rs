@@ -9,6 +9,7 @@
 //!
 //! The law is never raised silently: where it is below what the torque needs, the row is flagged `low_clamp`.
 
+use crate::keys::{Choice, Key, Values, keys};
 use crate::math::ramp;
 
 /// The Rover's law.
@@ -87,6 +88,78 @@ impl MapLaw {
         fast * (self.base_pa + self.throttle_pa * s.throttle)
             * s.radius_factor
             * (1.0 + self.cold_per_k * (353.15 - s.oil_k)) // PC-1
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.clamp.torque_following]`.
+    FOLLOWING: FollowingKeys = "torque_following" [] {
+        safety_factor: or(1.3, number(0.5, 10.0)), "capacity over torque (PC-3)";
+        least_torque_nm: or(20.0, number(0.0, 500.0)), "smallest torque clamped for (PC-3)";
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.clamp.slip_limited]`.
+    SLIP: SlipKeys = "slip_limited" [] {
+        slip_percent: or(2.0, number(0.1, 10.0)), "largest slip (PC-4)";
+        safety_factor: or(1.05, number(0.5, 10.0)), "smallest capacity over torque (PC-4)";
+        least_torque_nm: or(20.0, number(0.0, 500.0)), "smallest torque clamped for (PC-4)";
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.clamp.map]`.
+    MAP: ClampKeys = "map" [] {
+        base_bar: number(0.0, 200.0), "pressure in low at closed throttle (PC-1)";
+        throttle_bar: number(0.0, 200.0), "rise to full throttle (PC-1)";
+        cold_per_k: number(0.0, 0.02), "rise per kelvin below 80 degC (PC-1)";
+        slow_factor: number(0.05, 1.5), "factor at the slow speed (PC-2)";
+        slow_rpm: number(0.0, 10_000.0), "slow speed (PC-2)";
+        full_rpm: number(0.0, 10_000.0), "speed at which the factor is 1 (PC-2)";
+        fall_per_1000_rpm: or(0.0, number(0.0, 0.2)), "fall of the factor per 1000 rpm above full_rpm (PC-2)";
+    }
+}
+
+impl ClampKeys {
+    /// The clamp laws.
+    pub const CHOICES: &[Choice] = &[
+        Choice::new("map", "pressure map of the Rover 216", Self::TABLE),
+        Choice::new(
+            "torque_following",
+            "a constant safety factor over the transmitted torque",
+            FollowingKeys::TABLE,
+        ),
+        Choice::new(
+            "slip_limited",
+            "the least force that keeps the slip below a limit",
+            SlipKeys::TABLE,
+        ),
+    ];
+}
+
+/// The chosen clamp law.
+pub fn clamp<V: Values>(s: &V, key: &Key<'_>) -> ClampLaw {
+    let (law, c) = s.choose(key);
+    match law {
+        "torque_following" => ClampLaw::TorqueFollowing {
+            safety: c.number(&FOLLOWING.safety_factor),
+            least_torque_nm: c.number(&FOLLOWING.least_torque_nm),
+        },
+        "slip_limited" => ClampLaw::SlipLimited {
+            slip: c.number(&SLIP.slip_percent),
+            safety: c.number(&SLIP.safety_factor),
+            least_torque_nm: c.number(&SLIP.least_torque_nm),
+        },
+        _ => ClampLaw::Map(MapLaw {
+            base_pa: c.number(&MAP.base_bar),
+            throttle_pa: c.number(&MAP.throttle_bar),
+            cold_per_k: c.number(&MAP.cold_per_k),
+            slow_factor: c.number(&MAP.slow_factor),
+            slow_rad_s: c.number(&MAP.slow_rpm),
+            full_rad_s: c.number(&MAP.full_rpm),
+            fall_s: c.number(&MAP.fall_per_1000_rpm),
+        }),
     }
 }
 

@@ -13,6 +13,7 @@
 //!
 //! The power asked for is wheel power, so the ratio never chases its own losses.
 
+use crate::keys::{Values, keys};
 use crate::math::{exp, held, ln};
 
 /// The checked controller.
@@ -131,6 +132,50 @@ impl RatioControl {
             change,
             short_of_flow,
         )
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.ratio]`.
+    RATIO: RatioKeys = "ratio" [] {
+        low: number(0.3, 3.3), "belt ratio of the lowest gear";
+        high: number(0.3, 3.3), "belt ratio of the highest gear";
+        gentle_rpm: number(500.0, 10_000.0), "engine speed in gentle driving (RC-1)";
+        gentle_power_share: number(0.0, 1.0), "share of rated power up to which driving is gentle (RC-1)";
+        rise_rpm: number(0.0, 20_000.0), "rise of engine speed over the share of rated power above it (RC-1)";
+        overrun_rpm: number(500.0, 10_000.0), "engine speed in overrun (RC-2)";
+        route_efficiency: or(0.85, number(0.3, 1.0)), "wheel power over engine power on the full-load route (RC-3)";
+        up_per_s: above(0.0, 20.0), "rate of ln I towards high (RC-4)";
+        down_per_s: above(0.0, 20.0), "rate of ln I towards low (RC-4)";
+        rate_speed_rpm: number(500.0, 10_000.0), "primary speed from which the full rates hold (RC-4)";
+    }
+}
+
+impl RatioControl {
+    /// The ratio control from the values of its table; `highest_rad_s` ends the full-load route.
+    pub fn from_values<V: Values>(s: &V, highest_rad_s: f64) -> Self {
+        let control = RatioControl {
+            low: s.number(&RATIO.low),
+            high: s.number(&RATIO.high),
+            gentle_rad_s: s.number(&RATIO.gentle_rpm),
+            gentle_share: s.number(&RATIO.gentle_power_share),
+            rise_rad_s: s.number(&RATIO.rise_rpm),
+            overrun_rad_s: s.number(&RATIO.overrun_rpm),
+            highest_rad_s,
+            route_efficiency: s.number(&RATIO.route_efficiency),
+            up_per_s: s.number(&RATIO.up_per_s),
+            down_per_s: s.number(&RATIO.down_per_s),
+            rate_speed_rad_s: s.number(&RATIO.rate_speed_rpm),
+        };
+        if control.low <= control.high {
+            s.complain(
+                "low",
+                "above `high`",
+                "low must be the larger belt ratio",
+                "I = R_sec / R_pri: above 1 is low, below 1 is high",
+            );
+        }
+        control
     }
 }
 

@@ -38,6 +38,21 @@ impl Bound {
         Bound::closed(f64::NEG_INFINITY, f64::INFINITY)
     }
 
+    /// Lower end; infinite where there is none.
+    pub const fn low(&self) -> f64 {
+        self.low
+    }
+
+    /// Upper end; infinite where there is none.
+    pub const fn high(&self) -> f64 {
+        self.high
+    }
+
+    /// Whether the lower end itself is allowed.
+    pub const fn includes_low(&self) -> bool {
+        self.low_included
+    }
+
     /// Whether `x` is allowed; never for NaN and infinities.
     pub fn contains(&self, x: f64) -> bool {
         let above = if self.low_included {

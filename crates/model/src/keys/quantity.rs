@@ -1,17 +1,82 @@
-//! Units by the suffix of a key. Numbers become SI here and nowhere else.
+//! Units by the suffix of a key. Numbers are converted to and from SI here.
 use std::f64::consts::PI;
-use std::sync::LazyLock;
 
-/// One unit: how keys end, how people write it, and the way to SI (`si = value * factor + offset`).
-struct Unit {
+/// A physical quantity in one unit: `si = value * factor + offset`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantity {
     suffix: &'static str,
     name: &'static str,
     factor: f64,
     offset: f64,
 }
 
-const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Unit {
-    Unit {
+/// rad/s in one rpm.
+pub const RPM: f64 = PI / 30.0;
+
+impl Quantity {
+    /// A dimensionless number.
+    pub const NONE: Quantity = unit("", "-", 1.0);
+
+    /// The quantity of a key: the unit whose suffix ends it, the longest one if several do.
+    #[must_use]
+    pub const fn of(key: &str) -> Quantity {
+        let mut found = Quantity::NONE;
+        let mut i = 0;
+        while i < UNITS.len() {
+            if UNITS[i].suffix.len() > found.suffix.len() && ends_with(key, UNITS[i].suffix) {
+                found = UNITS[i];
+            }
+            i += 1;
+        }
+        found
+    }
+
+    /// Unit as written for people, `-` for a dimensionless number.
+    #[must_use]
+    pub const fn unit(&self) -> &'static str {
+        self.name
+    }
+
+    /// A value in this unit, converted to SI (temperatures to kelvin).
+    #[must_use]
+    pub fn to_si(&self, value: f64) -> f64 {
+        if self.suffix.is_empty() {
+            value
+        } else {
+            value * self.factor + self.offset
+        }
+    }
+
+    /// A value in SI, converted to this unit.
+    ///
+    /// ```
+    /// use cvtcycle_model::keys::Quantity;
+    /// let speed = Quantity::of("speed_kmh");
+    /// assert_eq!((speed.to_si(36.0), speed.from_si(10.0), speed.unit()), (10.0, 36.0, "km/h"));
+    /// ```
+    #[must_use]
+    pub fn from_si(&self, si: f64) -> f64 {
+        (si - self.offset) / self.factor
+    }
+}
+
+const fn ends_with(key: &str, suffix: &str) -> bool {
+    let (key, suffix) = (key.as_bytes(), suffix.as_bytes());
+    if suffix.len() > key.len() {
+        return false;
+    }
+    let mut i = suffix.len();
+    while i > 0 {
+        i -= 1;
+        if key[key.len() - suffix.len() + i] != suffix[i] {
+            return false;
+        }
+    }
+    true
+}
+
+const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Quantity {
+    Quantity {
         suffix,
         name,
         factor,
@@ -19,10 +84,7 @@ const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Unit {
     }
 }
 
-/// rad/s in one rpm.
-const RPM: f64 = PI / 30.0;
-
-const UNITS: [Unit; 58] = [
+const UNITS: [Quantity; 58] = [
     unit("_m", "m", 1.0),
     unit("_mm", "mm", 1e-3),
     unit("_um", "µm", 1e-6),
@@ -47,7 +109,7 @@ const UNITS: [Unit; 58] = [
     unit("_gpa", "GPa", 1e9),
     unit("_mpa_s", "mPa s", 1e-3),
     unit("_mm2_s", "mm²/s", 1e-6),
-    Unit {
+    Quantity {
         suffix: "_degc",
         name: "°C",
         factor: 1.0,
@@ -88,43 +150,10 @@ const UNITS: [Unit; 58] = [
     unit("_percent", "%", 0.01),
 ];
 
-/// The units by the last byte of their suffix, long suffixes first: every key that is read asks for its unit.
-static BY_LAST_BYTE: LazyLock<[Vec<&'static Unit>; 128]> = LazyLock::new(|| {
-    let mut units = std::array::from_fn(|_| Vec::new());
-    for unit in &UNITS {
-        let list: &mut Vec<&'static Unit> =
-            &mut units[usize::from(unit.suffix.as_bytes()[unit.suffix.len() - 1])];
-        list.push(unit);
-        list.sort_by_key(|unit| std::cmp::Reverse(unit.suffix.len()));
-    }
-    units
-});
-
-/// The unit with the longest suffix that ends the key; none for dimensionless keys.
-fn find(key: &str) -> Option<&'static Unit> {
-    let last = *key.as_bytes().last()?;
-    BY_LAST_BYTE
-        .get(usize::from(last))?
-        .iter()
-        .find(|unit| key.ends_with(unit.suffix))
-        .copied()
-}
-
-/// A value in the unit of the key, converted to SI (temperatures to kelvin).
-pub fn to_si(key: &str, value: f64) -> f64 {
-    find(key).map_or(value, |unit| value * unit.factor + unit.offset)
-}
-
-/// The unit of a key as people write it, `-` for a dimensionless one.
-pub fn unit_of(key: &str) -> &'static str {
-    find(key).map_or("-", |unit| unit.name)
-}
-
 /// The key without its unit, to recognise the same quantity in another unit.
-pub(super) fn stem(key: &str) -> &str {
-    find(key)
-        .and_then(|unit| key.strip_suffix(unit.suffix))
-        .unwrap_or(key)
+#[must_use]
+pub fn stem(key: &str) -> &str {
+    key.strip_suffix(Quantity::of(key).suffix).unwrap_or(key)
 }
 
 #[cfg(test)]
@@ -216,12 +245,15 @@ mod tests {
     #[test]
     fn every_unit_converts_as_worked_out_by_hand() {
         for (key, value, si, name) in EXPECTED {
-            let found = to_si(key, value);
+            let quantity = Quantity::of(key);
+            let found = quantity.to_si(value);
             assert!(
                 (found - si).abs() <= 1e-12 * si.abs(),
                 "{key}: {found} instead of {si}"
             );
-            assert_eq!(unit_of(key), name, "{key}");
+            assert_eq!(quantity.unit(), name, "{key}");
+            let back = quantity.from_si(found);
+            assert!((back - value).abs() <= 1e-9 * value.abs(), "{key}: {back}");
         }
     }
 
@@ -230,7 +262,7 @@ mod tests {
         for unit in &UNITS {
             let tried = EXPECTED
                 .iter()
-                .any(|(key, ..)| find(key).is_some_and(|found| found.suffix == unit.suffix));
+                .any(|(key, ..)| Quantity::of(key).suffix == unit.suffix);
             assert!(tried, "{} is not tried", unit.suffix);
             assert_eq!(
                 UNITS

@@ -1,0 +1,214 @@
+//! Values of the model's keys, read from a table of a file.
+use super::document::Value;
+use super::near::suggest;
+use super::reader::join;
+use super::section::Section;
+use super::tables;
+use super::value::Lookup;
+use cvtcycle_model::engine::BsfcMap;
+use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Values};
+use cvtcycle_model::transmission::loss_map::LossMap;
+
+/// The range of a key that holds numbers.
+pub(super) fn range(key: &Key<'_>) -> Bound {
+    match key.kind {
+        Kind::Number(range) | Kind::Numbers(range, ..) | Kind::Grid(range) => range,
+        _ => Bound::any(),
+    }
+}
+
+impl<'r> Values for Section<'r> {
+    fn table(&self, name: &str) -> Self {
+        Section::table(self, name)
+    }
+
+    fn has(&self, key: &Key<'_>) -> bool {
+        Section::has(self, key.name)
+    }
+
+    fn number(&self, key: &Key<'_>) -> f64 {
+        match key.presence {
+            Presence::Number(default) => Values::number_or(self, key, default),
+            _ => self.read_number(key, range(key)).unwrap_or_else(|absent| {
+                if absent {
+                    self.missing(key);
+                }
+                f64::NAN
+            }),
+        }
+    }
+
+    fn number_or(&self, key: &Key<'_>, default: f64) -> f64 {
+        debug_assert!(range(key).contains(default), "default of {}", key.name);
+        self.read_number(key, range(key)).unwrap_or_else(|absent| {
+            if !absent {
+                return f64::NAN;
+            }
+            let si = key.quantity.to_si(default);
+            self.defaulted(key.name, default, Some(si));
+            si
+        })
+    }
+
+    fn optional(&self, key: &Key<'_>) -> Option<f64> {
+        match self.read_number(key, range(key)) {
+            Ok(si) => Some(si),
+            Err(absent) => (!absent).then_some(f64::NAN),
+        }
+    }
+
+    fn integer(&self, key: &Key<'_>) -> i64 {
+        let (low, high) = match key.kind {
+            Kind::Integer(low, high) => (low, high),
+            _ => (i64::MIN, i64::MAX),
+        };
+        let default = match key.presence {
+            Presence::Integer(default) => default,
+            _ => low,
+        };
+        let si = |value: i64| Some(key.quantity.to_si(value as f64));
+        let found = match self.open(key) {
+            Lookup::Found(found) => found,
+            Lookup::Bad => return default,
+            Lookup::Absent => {
+                self.defaulted(key.name, default, si(default));
+                return default;
+            }
+        };
+        match found.node.value {
+            Value::Integer(value) if (low..=high).contains(&value) => {
+                self.given(key.name, &found, value, si(value));
+                value
+            }
+            Value::Integer(_) => {
+                self.out_of_range(key.name, found.node, &key.allowed());
+                default
+            }
+            _ => {
+                self.wrong_type(key.name, found.node, "an integer");
+                default
+            }
+        }
+    }
+
+    fn flag(&self, key: &Key<'_>) -> bool {
+        let default = matches!(key.presence, Presence::Flag(true));
+        match self.open(key) {
+            Lookup::Found(found) => {
+                if let Value::Boolean(value) = found.node.value {
+                    self.given(key.name, &found, value, None);
+                    return value;
+                }
+                self.wrong_type(key.name, found.node, "true or false");
+            }
+            Lookup::Absent => self.defaulted(key.name, default, None),
+            Lookup::Bad => {}
+        }
+        default
+    }
+
+    fn text(&self, key: &Key<'_>) -> String {
+        self.read_text(key).unwrap_or_else(|absent| {
+            if absent {
+                self.missing(key);
+            }
+            String::new()
+        })
+    }
+
+    fn text_or(&self, key: &Key<'_>, default: &str) -> String {
+        self.read_text(key).unwrap_or_else(|absent| {
+            if !absent {
+                return String::new();
+            }
+            self.defaulted(key.name, default, None);
+            default.to_string()
+        })
+    }
+
+    fn word(&self, key: &Key<'_>) -> &'static str {
+        let words: Vec<&'static str> = options(key).collect();
+        let default = match key.presence {
+            Presence::Word(default) => words.iter().find(|word| **word == default),
+            _ => None,
+        };
+        let default = default.or(words.first()).copied().unwrap_or_default();
+        match self.open(key) {
+            Lookup::Found(found) => {
+                let Value::Text(text) = &found.node.value else {
+                    self.wrong_type(key.name, found.node, "text");
+                    return default;
+                };
+                if let Some(word) = words.iter().find(|word| *word == text) {
+                    self.given(key.name, &found, text, None);
+                    return word;
+                }
+                let path = join(&self.path, key.name);
+                let message = format!("`{text}` is not known for `{path}`");
+                let hint = suggest(text, &words);
+                self.report(&found.node.span, key.name, &key.allowed(), message, hint);
+            }
+            Lookup::Absent => self.defaulted(key.name, default, None),
+            Lookup::Bad => {}
+        }
+        default
+    }
+
+    fn choose(&self, key: &Key<'_>) -> (&'static str, Self) {
+        self.choose_option(key)
+    }
+
+    fn numbers(&self, key: &Key<'_>) -> Vec<f64> {
+        self.read_numbers(key)
+    }
+
+    fn rows(&self, key: &Key<'_>) -> Option<Vec<Vec<f64>>> {
+        let before = self.reader.faults();
+        let rows = self.read_rows(key);
+        if self.reader.faults() > before {
+            return None;
+        }
+        if matches!(key.presence, Presence::Required) && !Section::has(self, key.name) {
+            self.missing(key);
+            return None;
+        }
+        Some(rows)
+    }
+
+    fn loss_map(&self, key: &Key<'_>, first: &'static str) -> Option<LossMap> {
+        let file = self.read_text(key).ok()?;
+        tables::loss_map(self, key.name, &file, first)
+    }
+
+    fn bsfc_map(
+        &self,
+        key: &Key<'_>,
+        heating_value_j_kg: f64,
+        displacement_m3: f64,
+    ) -> Option<BsfcMap> {
+        let file = self.read_text(key);
+        if file == Err(true) {
+            self.missing(key);
+        }
+        tables::bsfc_map(
+            self,
+            key.name,
+            &file.ok()?,
+            heating_value_j_kg,
+            displacement_m3,
+        )
+    }
+
+    fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str) {
+        Section::complain(self, key, allowed, message, hint);
+    }
+}
+
+/// Names of the options of a key.
+pub(super) fn options(key: &Key<'_>) -> impl Iterator<Item = &'static str> {
+    let choices = match key.kind {
+        Kind::Words(choices) | Kind::Options(choices) => choices,
+        _ => &[],
+    };
+    choices.iter().map(|choice| choice.name)
+}

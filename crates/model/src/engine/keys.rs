@@ -1,0 +1,216 @@
+//! Keys of `[engine]`, and an engine from their values.
+
+use super::{BsfcMap, EFFICIENCY, Engine, FuelModel, Willans};
+use crate::fluid::Viscosity;
+use crate::keys::{Bound, Choice, Values, curve, keys, viscosity};
+use crate::math::{Curve, held};
+
+keys! {
+    /// Keys of `[engine]` and its tables.
+    ENGINE: EngineKeys = "engine" [IdleKeys::TABLE, FrictionKeys::TABLE, FuelKeys::TABLE, HeatKeys::TABLE] {
+        displacement_cc: number(200.0, 10_000.0), "swept volume";
+        stroke_mm: number(40.0, 150.0), "piston stroke";
+        rated_kw: number(5.0, 600.0), "rated power; the ratio controller's measure of power";
+        full_load: rows(&[("speed_rpm", Bound::closed(0.0, 15_000.0)), ("torque_nm", Bound::open_low(0.0, 2000.0))]), "full-load line: rows [speed rpm, torque Nm], at sea level";
+        highest_rpm: number(300.0, 12_000.0), "largest speed; above it rows are flagged overspeed";
+        inertia_kg_m2: above(0.0, 5.0), "engine, flywheel and primary side (SI-1)";
+        inertia_torque_nm: or(60.0, number(5.0, 500.0)), "largest torque that changes the speed of the rotating parts (SI-2)";
+        electrical_w: number(0.0, 5000.0), "electrical load at the shaft (EN-4)";
+        accessory_nm: number(0.0, 20.0), "torque of pumps and belts (EN-4)";
+        model: or_word("willans", options(&[
+            Choice::new("willans", "extended Willans line", WillansKeys::TABLE),
+            Choice::new("bsfc_map", "BSFC map from CSV", BsfcKeys::TABLE),
+        ])), "fuel model: extended Willans line, or a BSFC map from CSV";
+    }
+}
+
+keys! {
+    /// Keys of `[engine.idle]`.
+    IDLE: IdleKeys = "idle" [] {
+        hot_rpm: number(400.0, 2000.0), "idle speed, warm (EN-1)";
+        cold_rpm: number(400.0, 3000.0), "idle speed at -10 degC coolant and below (EN-1)";
+    }
+}
+
+keys! {
+    /// Keys of `[engine.friction]`.
+    FRICTION: FrictionKeys = "friction" [] {
+        temperature_exponent: number(0.0, 8.0), "exponent t of friction with temperature (EN-2)";
+        hot_degc: number(60.0, 130.0), "temperature of the warm engine (EN-2)";
+        viscous_share: number(0.0, 1.0), "share of friction that follows the oil's viscosity (EN-2)";
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (EN-2)";
+        reference_kv40_mm2_s: number(1.5, 1000.0), "reference oil at 40 degC, for which the temperature exponent holds (EN-2)";
+        reference_kv100_mm2_s: number(1.5, 1000.0), "reference oil at 100 degC (EN-2)";
+        overrun_factor: or(1.0, number(1.0, 3.0)), "closed-throttle drag over friction (EN-7)";
+    }
+}
+
+keys! {
+    /// Keys of `[engine.fuel]`.
+    FUEL: FuelKeys = "fuel" [] {
+        cold_enrichment: number(0.0, 2.0), "extra fuel at 0 degC coolant, none from 60 degC (EN-3)";
+        heating_value_mj_kg: number(20.0, 60.0), "lower heating value";
+        density_kg_m3: number(500.0, 1000.0), "density of the fuel";
+        co2_per_fuel: number(0.0, 4.0), "CO2 per mass of fuel";
+    }
+}
+
+keys! {
+    /// Keys of `[engine.heat]`.
+    HEAT: HeatKeys = "heat" [] {
+        exhaust_share_idle: number(0.0, 1.0), "share of waste heat in the exhaust at idle (EN-6)";
+        exhaust_share_fast: number(0.0, 1.0), "share at the largest speed (EN-6)";
+        friction_to_oil: number(0.0, 1.0), "share of friction heat that goes to the oil (EN-6)";
+    }
+}
+
+keys! {
+    /// Keys of `[engine.model.willans]`.
+    WILLANS: WillansKeys = "willans" [] {
+        l: or(DEFAULT.l, number(0.0, 5.0)), "hot friction mean effective pressure at zero speed, bar (WI-1, BM-2)";
+        l2: or(DEFAULT.l2, number(0.0, 0.05)), "its rise with piston speed squared, bar s2/m2 (WI-1, BM-2)";
+        a: or(DEFAULT.a, number(0.2, 0.7)), "indicated efficiency at zero speed and load (WI-1)";
+        b: or(DEFAULT.b, number(-0.02, 0.05)), "its rise with piston speed, s/m (WI-1)";
+        c: or(DEFAULT.c, number(-0.01, 0.001)), "its bend with piston speed, s2/m2 (WI-1)";
+        a2: or(DEFAULT.a2, number(-0.02, 0.0)), "fall of efficiency with load, 1/bar (WI-1)";
+    }
+}
+
+keys! {
+    /// Keys of `[engine.model.bsfc_map]`.
+    BSFC: BsfcKeys = "bsfc_map" [] {
+        l: or(DEFAULT.l, number(0.0, 5.0)), "hot friction mean effective pressure at zero speed, bar (WI-1, BM-2)";
+        l2: or(DEFAULT.l2, number(0.0, 0.05)), "its rise with piston speed squared, bar s2/m2 (WI-1, BM-2)";
+        file: text(), "CSV with speed_rpm, bmep_bar or torque_nm, bsfc_g_kwh on a full grid (BM-1)";
+    }
+}
+
+/// Spark ignition, natural aspiration (CO2MPAS default set).
+const DEFAULT: Willans = Willans {
+    a: 0.4851,
+    b: 0.01193,
+    c: -0.000_65,
+    a2: -0.003_85,
+    l: 2.398_82,
+    l2: 0.002_86,
+};
+
+impl Engine {
+    /// A checked engine from the values of `[engine]`.
+    #[must_use]
+    pub fn from_values<V: Values>(s: &V) -> Self {
+        let (friction, idle) = (s.table("friction"), s.table("idle"));
+        let (fuel, heat) = (s.table("fuel"), s.table("heat"));
+        let displacement_m3 = s.number(&ENGINE.displacement_cc);
+        let line;
+        let engine = Engine {
+            displacement_m3,
+            stroke_m: s.number(&ENGINE.stroke_mm),
+            rated_w: s.number(&ENGINE.rated_kw),
+            full_load: full_load(s),
+            highest_rad_s: s.number(&ENGINE.highest_rpm),
+            inertia_kg_m2: s.number(&ENGINE.inertia_kg_m2),
+            inertia_torque_nm: s.number(&ENGINE.inertia_torque_nm),
+            idle_hot_rad_s: idle.number(&IDLE.hot_rpm),
+            idle_cold_rad_s: idle.number(&IDLE.cold_rpm),
+            friction_exponent: friction.number(&FRICTION.temperature_exponent),
+            hot_k: friction.number(&FRICTION.hot_degc),
+            viscous_share: friction.number(&FRICTION.viscous_share),
+            viscous_exponent: friction.number(&FRICTION.viscous_exponent),
+            reference_oil: reference_oil(&friction),
+            overrun_drag: friction.number(&FRICTION.overrun_factor),
+            enrichment: fuel.number(&FUEL.cold_enrichment),
+            electrical_w: s.number(&ENGINE.electrical_w),
+            accessory_nm: s.number(&ENGINE.accessory_nm),
+            exhaust_idle: heat.number(&HEAT.exhaust_share_idle),
+            exhaust_fast: heat.number(&HEAT.exhaust_share_fast),
+            friction_to_oil: heat.number(&HEAT.friction_to_oil),
+            heating_value_j_kg: fuel.number(&FUEL.heating_value_mj_kg),
+            fuel_density_kg_m3: fuel.number(&FUEL.density_kg_m3),
+            co2_kg_kg: fuel.number(&FUEL.co2_per_fuel),
+            fuel: {
+                let (model, table) = fuel_model(s, displacement_m3);
+                line = table;
+                model
+            },
+        };
+        check_efficiency(&line, &engine);
+        engine
+    }
+}
+
+/// The line's efficiency at no load, at every speed of the engine: what leaves the bounds would make fuel of work, or work of nothing.
+fn check_efficiency<V: Values>(willans: &V, engine: &Engine) {
+    let FuelModel::Willans(line) = &engine.fuel else {
+        return;
+    };
+    let fastest = engine.piston_m_s(engine.highest_rad_s);
+    let bend = if line.c.abs() > 0.0 {
+        held(-0.5 * line.b / line.c, 0.0, fastest)
+    } else {
+        0.0
+    };
+    // What could not be read is no number, and has its own complaint.
+    let outside = |speed: &f64| {
+        line.efficiency(*speed) < *EFFICIENCY.start() || line.efficiency(*speed) > *EFFICIENCY.end()
+    };
+    if let Some(speed) = [0.0, bend, fastest].into_iter().find(outside) {
+        let what = format!(
+            "the engine's efficiency a + b v + c v² is {:.2} at a piston speed v of {speed:.1} m/s",
+            line.efficiency(speed)
+        );
+        let allowed = format!(
+            "{} to {} from rest to highest_rpm",
+            EFFICIENCY.start(),
+            EFFICIENCY.end()
+        );
+        willans.complain(
+            "a",
+            &allowed,
+            &what,
+            "the three belong together: change a, b or c, or lower highest_rpm",
+        );
+    }
+}
+
+fn full_load<V: Values>(s: &V) -> Curve {
+    match s.rows(&ENGINE.full_load) {
+        Some(points) => curve(s, &ENGINE.full_load, &points),
+        None => Curve::constant(1.0),
+    }
+}
+
+fn reference_oil<V: Values>(s: &V) -> Viscosity {
+    let kv40 = s.number(&FRICTION.reference_kv40_mm2_s);
+    let kv100 = s.number(&FRICTION.reference_kv100_mm2_s);
+    let points = [(313.15, kv40), (373.15, kv100)];
+    let words = [
+        "falling as the oil warms",
+        "check the two values and their unit, mm2/s (cSt)",
+    ];
+    viscosity(s, &FRICTION.reference_kv40_mm2_s, &points, words)
+}
+
+/// The fuel model, and the table of its keys.
+fn fuel_model<V: Values>(s: &V, displacement_m3: f64) -> (FuelModel, V) {
+    let (kind, w) = s.choose(&ENGINE.model);
+    if kind == "bsfc_map" {
+        let friction = (w.number(&BSFC.l), w.number(&BSFC.l2));
+        let heating_value = s.table("fuel").number(&FUEL.heating_value_mj_kg);
+        let map = w.bsfc_map(&BSFC.file, heating_value, displacement_m3);
+        let model = map.map_or(FuelModel::Willans(DEFAULT), |map| {
+            FuelModel::Map(BsfcMap { friction, ..map })
+        });
+        return (model, w);
+    }
+    let (l, l2) = (w.number(&WILLANS.l), w.number(&WILLANS.l2));
+    let line = Willans {
+        a: w.number(&WILLANS.a),
+        b: w.number(&WILLANS.b),
+        c: w.number(&WILLANS.c),
+        a2: w.number(&WILLANS.a2),
+        l,
+        l2,
+    };
+    (FuelModel::Willans(line), w)
+}

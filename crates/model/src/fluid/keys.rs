@@ -1,0 +1,121 @@
+//! Keys of a lubricant file, and a lubricant from their values.
+
+use super::{Friction, Lubricant, Viscosity, ZERO_DEGC_K};
+use crate::keys::{Bound, Values, any_viscosity, keys, viscosity};
+
+keys! {
+    /// Keys of a lubricant file.
+    FLUID: FluidKeys = "" [FrictionKeys::TABLE] {
+        title: computed("name of the file", text()), "name for people";
+        viscosity_table: optional(rows(&[("temp_degc", Bound::closed(-60.0, 200.0)), ("kinematic_mm2_s", Bound::closed(1.0, 1e7))])), "rows [temperature degC, kinematic viscosity mm2/s]; replaces kv40 and kv100 (LU-1)";
+        kv40_mm2_s: required_if("without viscosity_table", number(1.5, 5000.0)), "kinematic viscosity at 40 degC (LU-1)";
+        kv100_mm2_s: required_if("without viscosity_table", number(1.5, 5000.0)), "kinematic viscosity at 100 degC (LU-1)";
+        density15_kg_m3: number(650.0, 1200.0), "density at 15 degC (LU-2, LU-3)";
+    }
+}
+
+keys! {
+    /// Keys of `[friction]`.
+    FRICTION: FrictionKeys = "friction" [LiftKeys::TABLE] {
+        band: or(0.13, number(0.0, 0.4)), "band boundary friction at 85 degC (LU-4)";
+        band_rise_per_k: or(0.002, number(0.0, 0.02)), "rise of band friction with belt temperature (LU-4)";
+        band_floor: or(0.7, number(0.1, 1.0)), "lower bound of the temperature factor (LU-4)";
+        band_ceiling: or(1.04, number(1.0, 2.0)), "upper bound of the temperature factor (LU-4)";
+        segment: or(0.125, number(0.02, 0.4)), "friction segment on pulley (SL-4, VA-2)";
+        flank: or(0.13, number(0.0, 0.4)), "friction in wedging and penetration (WE-3, PE-1)";
+    }
+}
+
+keys! {
+    /// Keys of `[friction.lift_off]`.
+    LIFT: LiftKeys = "lift_off" [] {
+        enabled: flag(true), "whether the bands can ride on oil (LU-5)";
+        reduction: or(0.2, number(0.0, 0.95)), "part of the boundary friction that a carrying film removes (LU-4)";
+        load_n_per_m: or(0.0075, above(0.0, 10.0)), "eta dv at which the film carries half (LU-5)";
+        exponent: or(5.0, number(0.5, 8.0)), "sharpness of lift-off (LU-5)";
+        film_thickness_um: or(1.5, number(0.01, 100.0)), "thickness of the carrying film (FI-1)";
+    }
+}
+
+impl Lubricant {
+    /// A checked lubricant from the values of its file.
+    #[must_use]
+    pub fn from_values<V: Values>(s: &V, name: &str) -> Self {
+        Lubricant {
+            name: name.to_owned(),
+            title: s.text_or(&FLUID.title, name),
+            viscosity: of_fluid(s),
+            density15_kg_m3: s.number(&FLUID.density15_kg_m3),
+            friction: Friction::from_values(&s.table("friction")),
+        }
+    }
+}
+
+fn of_fluid<V: Values>(s: &V) -> Viscosity {
+    let ends = [&FLUID.kv40_mm2_s, &FLUID.kv100_mm2_s];
+    let Some(table) = s.rows(&FLUID.viscosity_table) else {
+        for key in ends {
+            let _ = s.optional(key);
+        }
+        return any_viscosity();
+    };
+    let key = if table.is_empty() {
+        ends[0]
+    } else {
+        &FLUID.viscosity_table
+    };
+    let points: Vec<(f64, f64)> = if table.is_empty() {
+        let [kv40, kv100] = ends.map(|key| s.number(key));
+        vec![(40.0 + ZERO_DEGC_K, kv40), (100.0 + ZERO_DEGC_K, kv100)]
+    } else {
+        for key in ends.into_iter().filter(|key| s.has(key)) {
+            let _ = s.optional(key);
+            s.complain(
+                key.name,
+                "viscosity_table, or kv40_mm2_s and kv100_mm2_s",
+                "both a viscosity table and this value are given",
+                "keep one of them: the table replaces kv40 and kv100",
+            );
+        }
+        table.iter().map(|r| (r[0], r[1])).collect()
+    };
+    let words = [
+        "viscosities that fall as temperature rises",
+        "check the order of the points and their unit, mm2/s (cSt)",
+    ];
+    viscosity(s, key, &points, words)
+}
+
+/// Largest friction of the bands, rise with temperature included: at 0.53 they would block themselves in the larger wrap (TE-5).
+const MAX_BAND_FRICTION: f64 = 0.5;
+
+impl Friction {
+    fn from_values<V: Values>(s: &V) -> Self {
+        let lift = s.table("lift_off");
+        let band = s.number(&FRICTION.band);
+        let band_rise_per_k = s.number(&FRICTION.band_rise_per_k);
+        let band_floor = s.number(&FRICTION.band_floor);
+        let band_ceiling = s.number(&FRICTION.band_ceiling);
+        if band * band_ceiling > MAX_BAND_FRICTION {
+            let allowed = format!("band times band_ceiling up to {MAX_BAND_FRICTION}");
+            let message = format!(
+                "when hot, band friction could be {:.3}: the bands would block themselves (TE-5)",
+                band * band_ceiling
+            );
+            s.complain("band_ceiling", &allowed, &message, "lower it or `band`");
+        }
+        Friction {
+            band,
+            band_rise_per_k,
+            band_floor,
+            band_ceiling,
+            segment: s.number(&FRICTION.segment),
+            flank: s.number(&FRICTION.flank),
+            lift_off: lift.flag(&LIFT.enabled),
+            lift_reduction: lift.number(&LIFT.reduction),
+            lift_n_m: lift.number(&LIFT.load_n_per_m),
+            lift_exponent: lift.number(&LIFT.exponent),
+            film_thickness_m: lift.number(&LIFT.film_thickness_um),
+        }
+    }
+}

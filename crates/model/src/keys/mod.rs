@@ -1,0 +1,368 @@
+//! Parameters as data: every key of vehicle, lubricant and rig files with unit, range, default and meaning.
+//!
+//! A part of the model states its keys with [`keys!`], one row each, and is built from [`Values`]. TOML
+//! reading, `explain`, JSON Schema, overrides, studies and fits use the same rows.
+mod allowed;
+mod make;
+mod quantity;
+mod range;
+mod roots;
+
+pub use allowed::count;
+pub(crate) use make::{any_viscosity, curve, viscosity};
+pub use quantity::{Quantity, RPM, stem};
+pub use range::Bound;
+pub use roots::{HEAD, HeadKeys, LUBRICANT, RIG, VEHICLE, VEHICLE_FILE, VehicleKeys};
+
+use crate::engine::BsfcMap;
+use crate::transmission::loss_map::LossMap;
+
+/// One parameter.
+#[derive(Clone, Copy, Debug)]
+pub struct Key<'k> {
+    /// Name in its table, with the unit as its end.
+    pub name: &'k str,
+    /// Unit of the value.
+    pub quantity: Quantity,
+    /// Allowed values.
+    pub kind: Kind<'k>,
+    /// Whether it has to be given, and its value if it is not.
+    pub presence: Presence<'k>,
+    /// Meaning, with the labels of the equations that use it.
+    pub doc: &'k str,
+}
+
+/// What a key accepts.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind<'k> {
+    /// A number within a range, in the key's unit.
+    Number(Bound),
+    /// An integer from one number to another; `i64::MAX` is no limit.
+    Integer(i64, i64),
+    /// True or false.
+    Flag,
+    /// Any text.
+    Text,
+    /// One of some words.
+    Words(&'k [Choice]),
+    /// One of some tables.
+    Options(&'k [Choice]),
+    /// A list of numbers, each in a range: at least and at most so many.
+    Numbers(Bound, usize, usize),
+    /// One number, a list or a range `"from..to:step"`.
+    Grid(Bound),
+    /// A list of texts.
+    Texts,
+    /// A list of rows.
+    Rows(&'k [Column<'k>]),
+    /// Anything; the text says what.
+    Other(&'k str),
+}
+
+/// One option of a choice.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice {
+    /// Word in the file.
+    pub name: &'static str,
+    /// Meaning.
+    pub doc: &'static str,
+    /// Its keys.
+    pub table: Table,
+}
+
+impl Choice {
+    /// An option without keys.
+    #[must_use]
+    pub const fn word(name: &'static str, doc: &'static str) -> Self {
+        Choice::new(name, doc, Table::EMPTY)
+    }
+
+    /// An option with its keys.
+    #[must_use]
+    pub const fn new(name: &'static str, doc: &'static str, table: Table) -> Self {
+        Choice { name, doc, table }
+    }
+}
+
+/// One column of a key that holds rows; the unit is the end of its name.
+pub type Column<'k> = (&'k str, Bound);
+
+/// Whether a key has to be given.
+#[derive(Clone, Copy, Debug)]
+pub enum Presence<'k> {
+    /// Always.
+    Required,
+    /// On the condition stated here.
+    RequiredIf(&'k str),
+    /// No; without it there is no value.
+    Optional,
+    /// No; a number in the key's unit without it.
+    Number(f64),
+    /// No; an integer without it.
+    Integer(i64),
+    /// No; a truth value without it.
+    Flag(bool),
+    /// No; a word without it.
+    Word(&'k str),
+    /// No; the default follows from other values, as stated here.
+    Computed(&'k str),
+}
+
+/// A table of keys and the tables in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Table {
+    /// Name in the table around it.
+    pub name: &'static str,
+    /// Keys in the order of their rows.
+    pub keys: &'static [&'static Key<'static>],
+    /// Tables in it.
+    pub tables: &'static [Table],
+}
+
+impl Table {
+    /// A table without keys.
+    pub const EMPTY: Table = Table {
+        name: "",
+        keys: &[],
+        tables: &[],
+    };
+
+    /// Calls `visit` with the dotted path of every key below `path`, those of unchosen options too.
+    pub fn walk(&self, path: &str, visit: &mut impl FnMut(String, &'static Key<'static>)) {
+        let below = |name: &str| match (path, name) {
+            (path, "") => path.to_owned(),
+            ("", name) => name.to_owned(),
+            _ => format!("{path}.{name}"),
+        };
+        for key in self.keys {
+            visit(below(key.name), key);
+            if let Kind::Options(choices) = key.kind {
+                for choice in choices {
+                    choice
+                        .table
+                        .walk(&below(&format!("{}.{}", key.name, choice.name)), visit);
+                }
+            }
+        }
+        for table in self.tables {
+            table.walk(&below(table.name), visit);
+        }
+    }
+}
+
+impl<'k> Key<'k> {
+    /// A key with its unit from its name.
+    #[must_use]
+    pub const fn new(name: &'k str, spec: (Kind<'k>, Presence<'k>), doc: &'k str) -> Self {
+        Key {
+            name,
+            quantity: Quantity::of(name),
+            kind: spec.0,
+            presence: spec.1,
+            doc,
+        }
+    }
+}
+
+/// A field's name without the mark of a raw identifier.
+pub(crate) const fn bare(name: &'static str) -> &'static str {
+    match name.as_bytes() {
+        [b'r', b'#', ..] => name.split_at(2).1,
+        _ => name,
+    }
+}
+
+/// Makers of rows: kind and presence.
+pub mod spec {
+    use super::{Bound, Choice, Column, Kind, Presence};
+
+    /// Kind and presence of a key.
+    pub type Spec = (Kind<'static>, Presence<'static>);
+
+    /// A required number from `low` to `high`.
+    #[must_use]
+    pub const fn number(low: f64, high: f64) -> Spec {
+        (Kind::Number(Bound::closed(low, high)), Presence::Required)
+    }
+
+    /// A required number above `low`, up to `high`.
+    #[must_use]
+    pub const fn above(low: f64, high: f64) -> Spec {
+        (Kind::Number(Bound::open_low(low, high)), Presence::Required)
+    }
+
+    /// A required text.
+    #[must_use]
+    pub const fn text() -> Spec {
+        (Kind::Text, Presence::Required)
+    }
+
+    /// True or false, with a default.
+    #[must_use]
+    pub const fn flag(default: bool) -> Spec {
+        (Kind::Flag, Presence::Flag(default))
+    }
+
+    /// An integer with a default.
+    #[must_use]
+    pub const fn integer(low: i64, high: i64, default: i64) -> Spec {
+        (Kind::Integer(low, high), Presence::Integer(default))
+    }
+
+    /// One of some words, with a default.
+    #[must_use]
+    pub const fn words(choices: &'static [Choice], default: &'static str) -> Spec {
+        (Kind::Words(choices), Presence::Word(default))
+    }
+
+    /// One of some tables, required.
+    #[must_use]
+    pub const fn options(choices: &'static [Choice]) -> Spec {
+        (Kind::Options(choices), Presence::Required)
+    }
+
+    /// A required list of numbers from `low` to `high`.
+    #[must_use]
+    pub const fn list(low: f64, high: f64, least: usize, most: usize) -> Spec {
+        (
+            Kind::Numbers(Bound::closed(low, high), least, most),
+            Presence::Required,
+        )
+    }
+
+    /// A required number in a stated range.
+    #[must_use]
+    pub const fn within(range: Bound) -> Spec {
+        (Kind::Number(range), Presence::Required)
+    }
+
+    /// A required list of numbers in a stated range.
+    #[must_use]
+    pub const fn numbers(each: Bound, least: usize, most: usize) -> Spec {
+        (Kind::Numbers(each, least, most), Presence::Required)
+    }
+
+    /// Required rows.
+    #[must_use]
+    pub const fn rows(columns: &'static [Column<'static>]) -> Spec {
+        (Kind::Rows(columns), Presence::Required)
+    }
+
+    /// With a default number, in the key's unit.
+    #[must_use]
+    pub const fn or(default: f64, spec: Spec) -> Spec {
+        (spec.0, Presence::Number(default))
+    }
+
+    /// With a default option.
+    #[must_use]
+    pub const fn or_word(default: &'static str, spec: Spec) -> Spec {
+        (spec.0, Presence::Word(default))
+    }
+
+    /// May be absent.
+    #[must_use]
+    pub const fn optional(spec: Spec) -> Spec {
+        (spec.0, Presence::Optional)
+    }
+
+    /// With a default that follows from other values.
+    #[must_use]
+    pub const fn computed(words: &'static str, spec: Spec) -> Spec {
+        (spec.0, Presence::Computed(words))
+    }
+
+    /// Required on a condition.
+    #[must_use]
+    pub const fn required_if(words: &'static str, spec: Spec) -> Spec {
+        (spec.0, Presence::RequiredIf(words))
+    }
+}
+
+/// Values of one table of keys. Problems are collected by the implementation; after one a number is NaN.
+pub trait Values: Sized {
+    /// The table `name` in this one.
+    #[must_use]
+    fn table(&self, name: &str) -> Self;
+
+    /// Whether the key is given.
+    fn has(&self, key: &Key<'_>) -> bool;
+
+    /// A number in SI units: the value given or the key's default.
+    fn number(&self, key: &Key<'_>) -> f64;
+
+    /// A number in SI units with a computed default in the key's unit.
+    fn number_or(&self, key: &Key<'_>, default: f64) -> f64;
+
+    /// A number in SI units that may be absent.
+    fn optional(&self, key: &Key<'_>) -> Option<f64>;
+
+    /// An integer; the default also after a problem.
+    fn integer(&self, key: &Key<'_>) -> i64;
+
+    /// A truth value; the default also after a problem.
+    fn flag(&self, key: &Key<'_>) -> bool;
+
+    /// A required text; empty after a problem.
+    fn text(&self, key: &Key<'_>) -> String;
+
+    /// A text with a default; empty after a problem.
+    fn text_or(&self, key: &Key<'_>, default: &str) -> String;
+
+    /// One of the key's words.
+    fn word(&self, key: &Key<'_>) -> &'static str;
+
+    /// The chosen option of the key, and its table.
+    fn choose(&self, key: &Key<'_>) -> (&'static str, Self);
+
+    /// Numbers in SI units; as many as the key allows, NaN after a problem.
+    fn numbers(&self, key: &Key<'_>) -> Vec<f64>;
+
+    /// Rows in SI units by column; none after a problem, empty where the key may be absent and is.
+    fn rows(&self, key: &Key<'_>) -> Option<Vec<Vec<f64>>>;
+
+    /// A measured loss map from the file that the key names; `first` is the name of its first axis.
+    fn loss_map(&self, key: &Key<'_>, first: &'static str) -> Option<LossMap>;
+
+    /// A BSFC map from the file that the key names, for a heating value and a displacement; the
+    /// caller gives it its friction.
+    fn bsfc_map(
+        &self,
+        key: &Key<'_>,
+        heating_value_j_kg: f64,
+        displacement_m3: f64,
+    ) -> Option<BsfcMap>;
+
+    /// Reports a problem at a key of this table.
+    fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str);
+}
+
+/// Declares a table of keys: a struct of rows, a static with them, and its [`Table`].
+macro_rules! keys {
+    (
+        $(#[$meta:meta])*
+        $table:ident: $keys:ident = $path:literal [$($inner:expr),* $(,)?] {
+            $($name:ident: $spec:expr, $doc:literal;)*
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Debug)]
+        pub struct $keys {
+            $(#[doc = $doc] pub $name: $crate::keys::Key<'static>,)*
+        }
+        $(#[$meta])*
+        pub static $table: $keys = {
+            use $crate::keys::spec::*;
+            $keys { $($name: $crate::keys::Key::new($crate::keys::bare(stringify!($name)), $spec, $doc),)* }
+        };
+        impl $keys {
+            /// The keys as a table of the file.
+            pub const TABLE: $crate::keys::Table = $crate::keys::Table {
+                name: $path,
+                keys: &[$(&$table.$name),*],
+                tables: &[$($inner),*],
+            };
+        }
+    };
+}
+pub(crate) use keys;

@@ -1,0 +1,41 @@
+//! The tables of whole files.
+
+use super::{Choice, Table, keys};
+use crate::bench::transmission::RigKeys;
+use crate::engine::EngineKeys;
+use crate::fluid::FluidKeys;
+use crate::road::RoadLoadKeys;
+use crate::thermal::ThermalKeys;
+use crate::transmission::cvt::CvtKeys;
+use crate::transmission::manual::ManualKeys;
+
+keys! {
+    /// Keys of `[vehicle]`.
+    HEAD: HeadKeys = "vehicle" [] {
+        title: computed("name of the file", text()), "name for people";
+        baselines: computed("none", text()), "names of the baseline vehicles, comma separated";
+        transmission_oil: text(), "name of the transmission oil";
+        engine_oil: text(), "name of the engine oil";
+    }
+}
+
+keys! {
+    /// Keys of a vehicle file.
+    VEHICLE_FILE: VehicleKeys = "" [HeadKeys::TABLE, RoadLoadKeys::TABLE, EngineKeys::TABLE, ThermalKeys::TABLE] {
+        transmission: options(&[
+            Choice::new("cvt", "CVT with a pushing belt", CvtKeys::TABLE),
+            Choice::new("manual", "manual gearbox", ManualKeys::TABLE),
+        ]), "kind of transmission";
+    }
+}
+
+/// A vehicle file.
+pub const VEHICLE: Table = VehicleKeys::TABLE;
+/// A lubricant file.
+pub const LUBRICANT: Table = FluidKeys::TABLE;
+/// A rig file.
+pub const RIG: Table = Table {
+    name: "",
+    keys: &[],
+    tables: &[RigKeys::TABLE],
+};

@@ -1,0 +1,161 @@
+//! Keys of `[transmission.cvt]`, and a CVT from their values.
+
+use super::controller::{ClampKeys, RatioControl, RatioKeys, clamp};
+use super::pump::{Pump, PumpKeys};
+use super::spin::{ClutchKeys, DriveKeys, ShaftKeys, Spin};
+use super::variator::{Belt, BeltKeys, Formulation, Geometry, VARIATOR, VariatorKeys};
+use super::{Cvt, CvtMaps};
+use crate::engine::Engine;
+use crate::fluid::Lubricant;
+use crate::keys::{Values, keys};
+use crate::transmission::launch::{self, LAUNCH};
+
+keys! {
+    /// Keys of `[transmission.cvt]` and its tables.
+    CVT: CvtKeys = "cvt" [
+        RatioKeys::TABLE, BeltKeys::TABLE, VariatorKeys::TABLE, PressureKeys::TABLE, PumpKeys::TABLE,
+        ShaftKeys::TABLE, ClutchKeys::TABLE, DriveKeys::TABLE, MapKeys::TABLE
+    ] {
+        final_drive_ratio: number(1.0, 20.0), "secondary speed over wheel speed (CV-1)";
+        clamp: or_word("map", options(ClampKeys::CHOICES)), "clamp law: the Rover's map, torque following, or slip limited";
+        launch: LAUNCH, "launch device: a wet or dry friction clutch";
+        belt_heat_share: or(0.7, number(0.0, 1.0)), "share of belt loss that heats belt and pulleys (SI-3)";
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.pressure]`.
+    PRESSURE: PressureKeys = "pressure" [] {
+        radius_exponent: or(1.43, number(0.0, 4.0)), "exponent of primary radius in the clamp map (PC-1)";
+        cap_bar: number(1.0, 200.0), "largest secondary pressure";
+        floor_bar: number(0.0, 200.0), "smallest secondary pressure";
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.maps]`: measured losses in place of a model.
+    MAPS: MapKeys = "maps" [] {
+        belt: optional(text()), "CSV of measured torque loss at the primary that replaces the belt model";
+        pump: optional(text()), "CSV of measured torque loss at the primary that replaces the pump model";
+        input_shaft: optional(text()), "CSV of measured torque loss at the primary that replaces the input shaft model";
+        clutch_drag: optional(text()), "CSV of measured torque loss at the primary that replaces the reverse-clutch drag";
+        final_drive: optional(text()), "CSV of measured torque loss at the primary that replaces the final drive model";
+    }
+}
+
+impl Cvt {
+    /// A checked CVT from the values of `[transmission.cvt]`.
+    #[must_use]
+    pub fn from_values<V: Values>(
+        s: &V,
+        engine: &Engine,
+        oil: &Lubricant,
+        formulation: Formulation,
+    ) -> Self {
+        let v = s.table("variator");
+        let full_load_route = engine.speed_for_power();
+        // The route ends at the greatest power.
+        let fastest_rad_s = full_load_route
+            .points()
+            .last()
+            .map_or(engine.highest_rad_s, |p| p.1);
+        let ratio = RatioControl::from_values(&s.table("ratio"), fastest_rad_s);
+        let belt = Belt::from_values(&s.table("belt"), &v, formulation);
+        let low = Geometry::new(ratio.low, belt.centre_distance_m, belt.length_m);
+        check_reach(s, &ratio, &belt, &low);
+        let pressure = s.table("pressure");
+        let clamp = clamp(s, &CVT.clamp);
+        let radius_exponent = pressure.number(&PRESSURE.radius_exponent);
+        let (floor_pa, cap_pa) = pressures(&pressure);
+        Cvt {
+            final_drive: s.number(&CVT.final_drive_ratio),
+            secondary_piston_m2: v.number(&VARIATOR.secondary_piston_cm2),
+            primary_piston_m2: v.number(&VARIATOR.primary_piston_cm2),
+            spring_n: v.number(&VARIATOR.spring_n),
+            centrifugal_n_s2: centrifugal(&v, oil),
+            pump: Pump::from_values(&s.table("pump")),
+            spin: Spin::from_values(s),
+            ratio,
+            clamp,
+            radius_exponent,
+            floor_pa,
+            cap_pa,
+            low_radius_m: low.primary_radius_m,
+            launch: launch::from_values(s, &CVT.launch, 5.0),
+            full_load_route,
+            maps: CvtMaps::from_values(&s.table("maps")),
+            belt_heat_share: s.number(&CVT.belt_heat_share),
+            belt,
+        }
+    }
+}
+
+/// Smallest and largest secondary pressure, Pa.
+fn pressures<V: Values>(s: &V) -> (f64, f64) {
+    let cap_pa = s.number(&PRESSURE.cap_bar);
+    let floor_pa = s.number(&PRESSURE.floor_bar);
+    if floor_pa > cap_pa {
+        s.complain(
+            "floor_bar",
+            "at most cap_bar",
+            "the smallest pressure is above the largest",
+            "lower floor_bar or raise cap_bar",
+        );
+    }
+    (floor_pa, cap_pa)
+}
+
+/// The belt runs at both ends of the ratio, and the pulleys do not run into each other.
+fn check_reach<V: Values>(s: &V, ratio: &RatioControl, belt: &Belt, low: &Geometry) {
+    let read = [ratio.low, ratio.high, belt.centre_distance_m, belt.length_m]
+        .iter()
+        .all(|x| x.is_finite());
+    let high = Geometry::new(ratio.high, belt.centre_distance_m, belt.length_m);
+    let fits = |g: &Geometry| {
+        let (primary, secondary) = (g.primary_radius_m, g.secondary_radius_m);
+        primary > 0.005
+            && secondary > 0.005
+            && primary + secondary <= belt.centre_distance_m
+            && g.strut_m > 0.0
+    };
+    let ends = [("low", fits(low)), ("high", fits(&high))];
+    if let Some((end, _)) = ends.iter().find(|(_, fits)| read && !fits) {
+        s.table("ratio").complain(
+            end,
+            "",
+            "the belt cannot reach this ratio",
+            "check belt length and centre distance against the ratio limits",
+        );
+    }
+}
+
+fn centrifugal<V: Values>(v: &V, oil: &Lubricant) -> f64 {
+    let compensated = v.flag(&VARIATOR.compensated);
+    let outer = v.number(&VARIATOR.piston_outer_mm);
+    let inner = v.number(&VARIATOR.piston_inner_mm);
+    if compensated {
+        return 0.0;
+    }
+    if outer < inner {
+        v.complain(
+            "piston_inner_mm",
+            "at most piston_outer_mm",
+            "the oil chamber's inner radius is above its outer one",
+            "give both as radii, the smaller one here",
+        );
+    }
+    std::f64::consts::PI * oil.density_kg_m3(353.15) * (outer.powi(4) - inner.powi(4)) / 4.0 // VA-3
+}
+
+impl CvtMaps {
+    /// The measured maps that `[transmission.cvt.maps]` names.
+    fn from_values<V: Values>(s: &V) -> Self {
+        CvtMaps {
+            belt: s.loss_map(&MAPS.belt, "ratio"),
+            pump: s.loss_map(&MAPS.pump, "ratio"),
+            input_shaft: s.loss_map(&MAPS.input_shaft, "ratio"),
+            clutch_drag: s.loss_map(&MAPS.clutch_drag, "ratio"),
+            final_drive: s.loss_map(&MAPS.final_drive, "ratio"),
+        }
+    }
+}
