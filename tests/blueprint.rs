@@ -12,7 +12,7 @@ use common::CARS;
 use cvtcycle::config::cycle::embedded;
 use cvtcycle::config::setup::blueprint::{Bench, Blueprint, Slot};
 use cvtcycle::config::setup::{Options, Setup, load};
-use cvtcycle::config::{KeyInfo, Problem, render};
+use cvtcycle::config::{KeyInfo, Problems, render};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use proptest::prelude::*;
 
@@ -46,11 +46,7 @@ fn text(setup: Setup) -> String {
 }
 
 /// What the ordinary load makes of numbers beside the options.
-fn ordinary(
-    word: &str,
-    options: &Options,
-    numbers: &[(&str, f64)],
-) -> Result<String, Vec<Problem>> {
+fn ordinary(word: &str, options: &Options, numbers: &[(&str, f64)]) -> Result<String, Problems> {
     let mut options = options.clone();
     options.set.extend(
         numbers
@@ -61,7 +57,7 @@ fn ordinary(
 }
 
 /// What a bench makes of its numbers; that it counts problems if and only if there are any is checked here.
-fn built(bench: &mut Bench) -> Result<String, Vec<Problem>> {
+fn built(bench: &mut Bench) -> Result<String, Problems> {
     let problems = bench.problems();
     match bench.build() {
         Ok(setup) => {

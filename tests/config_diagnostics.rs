@@ -4,11 +4,11 @@
 //! and `#~ allowed: …` add to it what its hint and its allowed range must contain.
 use std::path::Path;
 
-use cvtcycle::config::{Bound, Document, KeyInfo, Problem, Reader, decode, near, render};
+use cvtcycle::config::{Bound, Document, KeyInfo, Problem, Problems, Reader, decode, near, render};
 use proptest::prelude::*;
 
 /// Reads a small vehicle that has a value of every kind.
-fn read(document: &Document) -> Result<Vec<KeyInfo>, Vec<Problem>> {
+fn read(document: &Document) -> Result<Vec<KeyInfo>, Problems> {
     let reader = Reader::new(document);
     let root = reader.root();
     let belt = root.table("belt");
@@ -56,7 +56,7 @@ fn read(document: &Document) -> Result<Vec<KeyInfo>, Vec<Problem>> {
     reader.finish()
 }
 
-fn problems(file: &str, text: &str) -> Vec<Problem> {
+fn problems(file: &str, text: &str) -> Problems {
     match Document::parse(file, text) {
         Ok(document) => read(&document).err().unwrap_or_default(),
         Err(problems) => problems,

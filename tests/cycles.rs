@@ -4,8 +4,8 @@
 use std::collections::HashMap;
 use std::fmt::Write;
 
-use cvtcycle::config::Problem;
 use cvtcycle::config::cycle::{Cycle, GearCommand, Trace, Weighting, embedded, names, read_csv};
+use cvtcycle::config::{Problem, Problems};
 use proptest::prelude::*;
 
 /// Rows of a CSV file as maps from column name to text.
@@ -486,7 +486,7 @@ fn good(text: &str) -> Cycle {
     read_csv("town.csv", text.as_bytes()).unwrap_or_else(|problems| panic!("{problems:#?}"))
 }
 
-fn bad(text: &str) -> Vec<Problem> {
+fn bad(text: &str) -> Problems {
     read_csv("town.csv", text.as_bytes()).unwrap_err()
 }
 
@@ -665,7 +665,7 @@ fn all_problems_come_at_once_in_the_order_of_the_lines() {
 
 #[test]
 fn hints_speak_of_the_likely_cause() {
-    let hint = |text: &str| bad(text).swap_remove(0).hint;
+    let hint = |text: &str| bad(text).remove(0).hint;
     assert!(hint("time_s,speed_m_s\n0,0\n1,50\n").contains("is the column in km/h?"));
     assert!(hint("time_s,speed_kmh\n0,0\n1,50\n").contains("is the column in km/h?"));
     assert!(hint("time_s,speed\n0,0\n1,0\n").contains("speed_kmh"));

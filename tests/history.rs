@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use cvtcycle::config::Problem;
+use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::model::drive::components;
 use cvtcycle::output::columns::{COLUMNS, Value, columns_for};
@@ -116,7 +116,7 @@ fn lines() -> Vec<String> {
     text.lines().map(str::to_owned).collect()
 }
 
-fn problems(lines: &[String]) -> Vec<Problem> {
+fn problems(lines: &[String]) -> Problems {
     History::read_csv("trace_x.csv", lines.join("\n").as_bytes())
         .map(|_| ())
         .unwrap_err()

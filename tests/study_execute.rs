@@ -96,10 +96,7 @@ struct Full(u64);
 
 impl Sink for Full {
     fn write(&self, part: u64, _: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
-        let problem = || Problem {
-            message: "no room".to_owned(),
-            ..Problem::default()
-        };
+        let problem = || Problem::invalid("no room");
         if part == self.0 {
             Err(problem())
         } else {

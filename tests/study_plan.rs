@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "tests say what they found")]
 
 use cvtcycle::config::setup::{self, Options};
-use cvtcycle::config::{Problem, render};
+use cvtcycle::config::{Problem, Problems, render};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::study::plan::{
     Acts, Cars, Design, Distribution, FactorValue, FactorValues, Keep, Plan, embedded_plans,
@@ -13,7 +13,7 @@ fn good(text: &str) -> Plan {
     Plan::read("p.toml", text).unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
 }
 
-fn bad(text: &str) -> Vec<Problem> {
+fn bad(text: &str) -> Problems {
     Plan::read("p.toml", text)
         .map(|plan| panic!("accepted: {}\n{plan:?}", plan.text))
         .unwrap_or_else(|problems| problems)

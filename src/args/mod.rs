@@ -7,7 +7,7 @@ use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use cvtcycle::config::cycle;
 pub use cvtcycle::config::cycle::{bytes, find as cycle, is_csv};
 use cvtcycle::config::setup::{self, is_path};
-use cvtcycle::config::{Bound, Place, Problem, near, unit_of};
+use cvtcycle::config::{Bound, Problem, Problems, near, unit_of};
 
 /// Takes any text, but lets completions offer the known names: unknown ones are reported with all other problems.
 #[derive(Clone, Copy, Debug)]
@@ -64,40 +64,6 @@ pub fn rigs() -> Vec<&'static str> {
         .collect()
 }
 
-/// Everything that goes wrong, gathered over all inputs.
-#[derive(Debug, Default)]
-pub struct Problems(Vec<Problem>);
-
-impl Problems {
-    /// The value, or none and its problems noted.
-    pub fn take<T>(&mut self, result: Result<T, Vec<Problem>>) -> Option<T> {
-        result
-            .map_err(|problems| problems.into_iter().for_each(|problem| self.add(problem)))
-            .ok()
-    }
-
-    /// Notes a problem, once: two cars may name the same bad file.
-    pub fn add(&mut self, problem: Problem) {
-        if !self.0.contains(&problem) {
-            self.0.push(problem);
-        }
-    }
-
-    /// Whether none was noted.
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// Nothing, or all problems.
-    pub fn finish(self) -> Result<(), Vec<Problem>> {
-        if self.0.is_empty() {
-            Ok(())
-        } else {
-            Err(self.0)
-        }
-    }
-}
-
 /// A problem of an option's value.
 pub fn bad_value(
     option: &str,
@@ -106,17 +72,12 @@ pub fn bad_value(
     message: String,
     hint: String,
 ) -> Problem {
-    Problem {
-        place: Place {
-            file: option.to_owned(),
-            ..Place::default()
-        },
-        key: option.to_owned(),
-        value: value.to_owned(),
-        allowed: allowed.to_owned(),
-        message,
-        hint,
-    }
+    Problem::invalid(message)
+        .in_file(option)
+        .key(option)
+        .value(value)
+        .allowed(allowed)
+        .hint(hint)
 }
 
 /// The value as a word between backquotes; an empty one is called so.
@@ -129,25 +90,14 @@ fn quoted(value: &str) -> String {
 }
 
 /// A finite number within its range; `suffix` is that of a key with the same unit.
-pub fn number(
-    option: &str,
-    value: &str,
-    allowed: Bound,
-    suffix: &str,
-) -> Result<f64, Vec<Problem>> {
+pub fn number(option: &str, value: &str, allowed: Bound, suffix: &str) -> Result<f64, Problems> {
     let unit = unit_of(suffix);
     let range = allowed.in_unit(unit);
     match value.trim().parse::<f64>() {
         Ok(x) if allowed.contains(x) => Ok(x),
         Ok(x) if x.is_finite() => {
             let message = format!("{} is out of range", quoted(value));
-            Err(vec![bad_value(
-                option,
-                value,
-                &range,
-                message,
-                String::new(),
-            )])
+            Err(bad_value(option, value, &range, message, String::new()).into())
         }
         parsed => {
             let what = if parsed.is_ok() {
@@ -156,13 +106,14 @@ pub fn number(
                 "not a number"
             };
             let message = format!("{} is {what}", quoted(value));
-            Err(vec![bad_value(
+            Err(bad_value(
                 option,
                 value,
                 &range,
                 message,
                 number_hint(option, value, unit),
-            )])
+            )
+            .into())
         }
     }
 }
@@ -191,19 +142,20 @@ pub fn word<T: Copy>(
     option: &str,
     value: &str,
     known: &[(&'static str, T)],
-) -> Result<T, Vec<Problem>> {
+) -> Result<T, Problems> {
     if let Some((_, found)) = known.iter().find(|(name, _)| *name == value) {
         return Ok(*found);
     }
     let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
     let hint = did_you_mean(value, &names).unwrap_or_default();
-    Err(vec![bad_value(
+    Err(bad_value(
         option,
         value,
         &format!("one of {}", names.join(", ")),
         format!("{} is not known", quoted(value)),
         hint,
-    )])
+    )
+    .into())
 }
 
 /// Question for the known names that are like the given one.

@@ -1,6 +1,6 @@
 //! Values of an option: one number, a list, ranges, or all of these mixed, such as `25,50,75` or `1000..4000:250`.
 
-use cvtcycle::config::{Bound, Problem, unit_of};
+use cvtcycle::config::{Bound, Problem, Problems, unit_of};
 
 use crate::args::bad_value;
 
@@ -21,7 +21,7 @@ pub fn values(
     text: &str,
     allowed: Bound,
     suffix: &str,
-) -> Result<Vec<f64>, Vec<Problem>> {
+) -> Result<Vec<f64>, Problems> {
     values_or_words(option, text, allowed, suffix, &[])
 }
 
@@ -35,14 +35,14 @@ pub fn values_or_words(
     allowed: Bound,
     suffix: &str,
     words: &[(&str, f64)],
-) -> Result<Vec<f64>, Vec<Problem>> {
+) -> Result<Vec<f64>, Problems> {
     let list = List {
         option,
         allowed,
         unit: unit_of(suffix),
         words,
     };
-    let (mut found, mut problems): (Vec<f64>, Vec<Problem>) = (Vec::new(), Vec::new());
+    let (mut found, mut problems) = (Vec::new(), Problems::new());
     for part in text.split(',') {
         match list.part(part.trim()) {
             Ok(values) => found.extend(values),
@@ -208,7 +208,7 @@ mod tests {
             .unwrap_or_else(|p| panic!("{text}: {p:?}"))
     }
 
-    fn bad(text: &str) -> Vec<Problem> {
+    fn bad(text: &str) -> Problems {
         values("--speed", text, Bound::closed(-100.0, 7000.0), "_rpm").expect_err(text)
     }
 

@@ -2,7 +2,7 @@
 
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::is_path;
-use cvtcycle::config::{Document, Problem, bounded, decode};
+use cvtcycle::config::{Document, Problem, Problems, bounded, decode};
 use cvtcycle::study::fit::embedded_calibrations;
 use cvtcycle::study::plan::embedded_plans;
 
@@ -59,14 +59,14 @@ impl Sort {
 ///
 /// # Errors
 /// Unknown name, unreadable file, or a file that is none of them.
-pub fn sort_of(word: &str, must_be_file: bool) -> Result<(Sort, String), Vec<Problem>> {
+pub fn sort_of(word: &str, must_be_file: bool) -> Result<(Sort, String), Problems> {
     let exists = std::path::Path::new(word).exists();
     if !must_be_file || !exists {
         if let Some(sort) = embedded(word) {
             return Ok((sort, word.to_owned()));
         }
         if !is_path(word) && !exists {
-            return Err(vec![unknown(word)]);
+            return Err(unknown(word).into());
         }
     }
     // The library takes a bare word for an embedded name.
@@ -111,7 +111,7 @@ fn embedded(word: &str) -> Option<Sort> {
 }
 
 /// By the names at the beginnings of lines; the text may be full of mistakes otherwise.
-fn by_text(word: &str, text: &str) -> Result<Sort, Vec<Problem>> {
+fn by_text(word: &str, text: &str) -> Result<Sort, Problems> {
     // A plan names a vehicle, too; what only it has is looked for everywhere.
     let any = |headers: &[&str]| {
         text.lines().any(|line| {
@@ -156,14 +156,15 @@ fn by_text(word: &str, text: &str) -> Result<Sort, Vec<Problem>> {
         "a vehicle has [{tables}], a lubricant {}, a cycle time_s, a calibration [calibration], a study [study]",
         LUBRICANT[0]
     );
-    Err(vec![bad_value(
+    Err(bad_value(
         word,
         "",
         "",
         "neither a vehicle, nor a lubricant, nor a cycle, nor a calibration, nor a study"
             .to_owned(),
         hint,
-    )])
+    )
+    .into())
 }
 
 fn unknown(word: &str) -> Problem {

@@ -7,14 +7,14 @@ use std::io::{self, BufRead, BufReader};
 use std::path::PathBuf;
 
 use cvtcycle::config::setup::{self, Options, Setup};
-use cvtcycle::config::{Bound, Problem};
+use cvtcycle::config::{Bound, Problems};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::study::points::{self, Counts, Done, Job, Model};
 use serde_json::{Map, Value, json};
 
 use super::Context;
-use crate::args::{self as inputs, Offering, Problems};
+use crate::args::{self as inputs, Offering};
 use crate::print::{Answer, Reply};
 use sink::Offer;
 
@@ -165,8 +165,7 @@ fn asked(args: &Args, problems: &mut Problems) -> Asked {
         model
     });
     let file = args.out.as_ref().filter(|path| path.as_os_str() != "-");
-    let out =
-        file.map(|path| OutputFile::create(path, args.force).map_err(|problem| vec![problem]));
+    let out = file.map(|path| OutputFile::create(path, args.force).map_err(Problems::from));
     let out = out.and_then(|out| problems.take(out));
     // Points are computed only where everything else is good: what is bad is said without delay.
     let model = if problems.is_empty() { model } else { None };
@@ -178,32 +177,34 @@ fn asked(args: &Args, problems: &mut Problems) -> Asked {
     }
 }
 
-fn open(points: &str) -> Result<Box<dyn BufRead>, Vec<Problem>> {
+fn open(points: &str) -> Result<Box<dyn BufRead>, Problems> {
     if points == "-" {
         return Ok(Box::new(io::stdin().lock()));
     }
     let unreadable = |why: String, hint: &str| {
         let message = format!("cannot read `{points}`: {why}");
-        vec![inputs::bad_value(
+        inputs::bad_value(
             "--points",
             points,
             "a readable file, or - for standard input",
             message,
             hint.to_owned(),
-        )]
+        )
     };
     if std::path::Path::new(points).is_dir() {
         return Err(unreadable(
             "it is a directory".to_owned(),
             "name a file in that directory",
-        ));
+        )
+        .into());
     }
     match File::open(points) {
         Ok(file) => Ok(Box::new(BufReader::with_capacity(1 << 16, file))),
         Err(error) => Err(unreadable(
             error.to_string(),
             "check the path and its permissions; it is taken from the current directory",
-        )),
+        )
+        .into()),
     }
 }
 

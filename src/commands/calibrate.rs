@@ -9,7 +9,7 @@ mod text;
 
 use std::path::PathBuf;
 
-use cvtcycle::config::Problem;
+use cvtcycle::config::Problems;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::study::fit::outcome::Outcome;
 use cvtcycle::study::fit::plan::Plan;
@@ -17,7 +17,7 @@ use cvtcycle::study::fit::{calibrate, embedded_calibrations, open};
 
 use super::Context;
 use super::run::files::Written;
-use crate::args::{Offering, Problems};
+use crate::args::Offering;
 use crate::print::progress::{listen, stop_asked};
 use crate::print::{Answer, FAILED, Reply, json_text, problem};
 use progress::Progress;
@@ -80,7 +80,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     let out = args
         .out
         .as_ref()
-        .map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
+        .map(|dir| OutputDir::create(dir, args.force).map_err(Problems::from));
     let out = out.and_then(|dir| problems.take(dir));
     problems.finish()?;
     let Some(mut plan) = plan else {
@@ -122,16 +122,16 @@ fn asked(plan: &mut Plan, args: &Args) {
     plan.search.leave_out &= !args.no_folds;
 }
 
-fn fit(plan: &Plan, args: &Args) -> Result<Outcome, Vec<Problem>> {
+fn fit(plan: &Plan, args: &Args) -> Result<Outcome, Problems> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads.map_or(0, usize::from))
         .build();
     let pool = pool.map_err(|e| {
-        vec![problem(
+        problem(
             "--threads",
             &format!("cannot start threads: {e}"),
             "give fewer",
-        )]
+        )
     })?;
     let progress = Progress::new(args.quiet);
     let outcome = pool.install(|| calibrate(plan, &progress));

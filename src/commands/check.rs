@@ -1,7 +1,7 @@
 //! `check`: inputs without a run.
 
 use cvtcycle::config::setup::{self, Kind, Options};
-use cvtcycle::config::{Problem, render};
+use cvtcycle::config::{Problem, Problems, render};
 use cvtcycle::study::Study;
 use cvtcycle::study::fit::open;
 use cvtcycle::study::plan::Plan;
@@ -29,7 +29,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn answer(args: &Args, context: Context) -> Reply {
-    let checked: Vec<(&String, Result<Sort, Vec<Problem>>)> =
+    let checked: Vec<(&String, Result<Sort, Problems>)> =
         args.files.iter().map(|file| (file, check(file))).collect();
     let code = if checked.iter().all(|(_, result)| result.is_ok()) {
         0
@@ -53,7 +53,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     let stdout = ok
         .map(|(file, sort)| format!("ok  {file} ({})\n", sort.word()))
         .collect();
-    let problems: Vec<Problem> = checked
+    let problems: Problems = checked
         .iter()
         .filter_map(|(_, result)| result.as_ref().err())
         .flatten()
@@ -66,7 +66,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     })
 }
 
-fn check(file: &str) -> Result<Sort, Vec<Problem>> {
+fn check(file: &str) -> Result<Sort, Problems> {
     let (sort, word) = sort_of(file, true)?;
     match sort {
         Sort::Cycle => drop(inputs::cycle("FILE", &word)?),
@@ -81,7 +81,7 @@ fn check(file: &str) -> Result<Sort, Vec<Problem>> {
             let texts = setup.baselines.iter().map(|name| {
                 setup::text_of(&inputs::beside(&word, name), Kind::Vehicle, file).map(drop)
             });
-            let bad: Vec<Problem> = texts.filter_map(Result::err).flatten().collect();
+            let bad: Problems = texts.filter_map(Result::err).flatten().collect();
             if !bad.is_empty() {
                 return Err(bad);
             }
@@ -90,7 +90,7 @@ fn check(file: &str) -> Result<Sort, Vec<Problem>> {
     Ok(sort)
 }
 
-fn json(file: &str, result: &Result<Sort, Vec<Problem>>) -> serde_json::Value {
+fn json(file: &str, result: &Result<Sort, Problems>) -> serde_json::Value {
     let problem = |p: &Problem| {
         serde_json::json!({
             "file": p.place.file, "line": p.place.line, "column": p.place.column, "key": p.key, "value": p.value,

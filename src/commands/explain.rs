@@ -68,7 +68,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
         && meanings.flag.is_none()
         && meanings.equation.is_none()
     {
-        return Err(vec![unknown(word, known)]);
+        return Err(unknown(word, known).into());
     }
     if args.json {
         Answer::json(&as_json(word, &meanings))

@@ -1,7 +1,7 @@
 //! `list`: what the program carries.
 
 use clap::ValueEnum;
-use cvtcycle::config::Problem;
+use cvtcycle::config::Problems;
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::{self, Options};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
@@ -149,7 +149,7 @@ fn cycle_table(list: &[CycleLine]) -> String {
     grid.text()
 }
 
-fn vehicle_lines() -> Result<Vec<VehicleLine>, Vec<Problem>> {
+fn vehicle_lines() -> Result<Vec<VehicleLine>, Problems> {
     let line = |name: &'static str| {
         let setup = setup::load(name, "list", &Options::default())?;
         let car = setup.car(ZERO_DEGC_K + 20.0);
@@ -191,7 +191,7 @@ fn vehicle_table(list: &[VehicleLine]) -> String {
     grid.text()
 }
 
-fn lubricant_lines() -> Result<Vec<LubricantLine>, Vec<Problem>> {
+fn lubricant_lines() -> Result<Vec<LubricantLine>, Problems> {
     let line = |name: &'static str| {
         let (oil, _) = setup::load_lubricant(name, "list", &[], "")?;
         let kv = |degc: f64| oil.kinematic_m2_s(degc + ZERO_DEGC_K) * 1e6;

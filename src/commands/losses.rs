@@ -130,7 +130,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     }
     let flags = RefCell::new(FlagCount::default());
     let written = match out {
-        Some(dir) => Some(files::write(dir, &plan).map_err(|problem| vec![problem])?),
+        Some(dir) => Some(files::write(dir, &plan)?),
         None => None,
     };
     let counted = |row: LossRow| {
@@ -189,7 +189,7 @@ fn map(
         write,
     )
     .and_then(|()| files::commit(dir));
-    let written = written.map_err(|problem| vec![problem])?;
+    let written = written?;
     let stdout = if args.quiet {
         String::new()
     } else {

@@ -113,7 +113,7 @@ pub fn main() -> ExitCode {
             cli.color,
         ),
         Err(error) if error.kind() == ErrorKind::InvalidUtf8 => {
-            (Err(vec![no_text(unreadable)]), asked)
+            (Err(no_text(unreadable).into()), asked)
         }
         Err(error) => (Ok(usage(&error, asked)), asked),
     };
@@ -146,10 +146,7 @@ impl Command {
 fn no_text(word: Option<OsString>) -> Problem {
     let value = word.unwrap_or_default().to_string_lossy().into_owned();
     let hint = "rename the file, or name it by a link; --out takes any name";
-    Problem {
-        value: value.clone(),
-        ..problem("command line", &format!("`{value}` is not UTF-8"), hint)
-    }
+    problem("command line", &format!("`{value}` is not UTF-8"), hint).value(value.clone())
 }
 
 /// Help, version and clap's complaints, through our own writer: a closed pipe or a full disk is handled there.

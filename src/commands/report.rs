@@ -55,7 +55,7 @@ fn forms() -> Vec<&'static str> {
 
 /// Runs the command.
 pub fn answer(args: &Args) -> Reply {
-    let mut problems = inputs::Problems::default();
+    let mut problems = cvtcycle::config::Problems::new();
     let by_ending = || args.out.as_deref().and_then(Form::of).unwrap_or(Form::Html);
     let form = match &args.format {
         Some(word) => problems
@@ -72,13 +72,13 @@ pub fn answer(args: &Args) -> Reply {
     // Without a directory to look into, what is said of the place of the report would only repeat it.
     let target = match (&document, &args.out) {
         (None, None) => None,
-        _ => problems.take(Target::new(&file, form, args.force).map_err(|problem| vec![problem])),
+        _ => problems.take(Target::new(&file, form, args.force)),
     };
     problems.finish()?;
     let (Some(document), Some(target)) = (document, target) else {
         unreachable!("what is missing has left a problem")
     };
-    let written = target.write(&document).map_err(|problem| vec![problem])?;
+    let written = target.write(&document)?;
     let warnings: String = document
         .warnings
         .iter()

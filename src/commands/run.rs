@@ -6,6 +6,7 @@ mod record;
 mod text;
 
 use cvtcycle::config::Bound;
+use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::AMBIENT;
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
@@ -16,7 +17,7 @@ use cvtcycle::output::record::FILE;
 use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, name_of, summarise};
 
 use super::Context;
-use crate::args::{self as inputs, Offering, Problems};
+use crate::args::{self as inputs, Offering};
 use crate::print::{Answer, FAILED, Reply, json_text};
 use cars::Car;
 use files::TraceFormat;
@@ -178,10 +179,8 @@ pub fn answer(args: &Args, context: Context) -> Reply {
                 &conditions,
                 plan.sensitivity,
             )?)?;
-            dir.write(FILE, |out| out.write_all(record.as_bytes()))
-                .map_err(|problem| vec![problem])?;
-            files::write(dir, plan.format, &json, &summary, &plan.cycle, &driven)
-                .map_err(|problem| vec![problem])?
+            dir.write(FILE, |out| out.write_all(record.as_bytes()))?;
+            files::write(dir, plan.format, &json, &summary, &plan.cycle, &driven)?
         }
         None => files::Written::default(),
     };
@@ -218,7 +217,7 @@ fn reply(
     }
 }
 
-fn plan(args: &Args) -> Result<Plan, Vec<cvtcycle::config::Problem>> {
+fn plan(args: &Args) -> Result<Plan, cvtcycle::config::Problems> {
     let mut problems = Problems::default();
     let cycle = problems.take(inputs::cycle("--cycle", &args.cycle));
     let formulation = problems.take(inputs::word(
@@ -244,7 +243,7 @@ fn plan(args: &Args) -> Result<Plan, Vec<cvtcycle::config::Problem>> {
     let out = args
         .out
         .as_ref()
-        .map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
+        .map(|dir| OutputDir::create(dir, args.force).map_err(Problems::from));
     let out = out.and_then(|dir| problems.take(dir));
     problems.finish()?;
     match (
@@ -277,7 +276,7 @@ fn plan(args: &Args) -> Result<Plan, Vec<cvtcycle::config::Problem>> {
     }
 }
 
-fn start(value: &str) -> Result<(Start, StartWord), Vec<cvtcycle::config::Problem>> {
+fn start(value: &str) -> Result<(Start, StartWord), cvtcycle::config::Problems> {
     let word = |start: Start| Ok((start, StartWord::Word(value.to_owned())));
     match value {
         "soak" => return word(Start::Soak),
@@ -288,14 +287,10 @@ fn start(value: &str) -> Result<(Start, StartWord), Vec<cvtcycle::config::Proble
     let degc = inputs::number("--start", value, bound, "start_degc").map_err(|problems| {
         let allowed = format!("soak, warm, or {}", bound.in_unit("°C"));
         let hint = inputs::did_you_mean(value, &["soak", "warm"]);
-        problems
-            .into_iter()
-            .map(|p| cvtcycle::config::Problem {
-                allowed: allowed.clone(),
-                hint: hint.clone().unwrap_or(p.hint),
-                ..p
-            })
-            .collect::<Vec<_>>()
+        problems.map(|p| {
+            let hint = hint.clone().unwrap_or_else(|| p.hint.clone());
+            p.allowed(allowed.clone()).hint(hint)
+        })
     })?;
     Ok((Start::At(degc + ZERO_DEGC_K), StartWord::Degc(degc)))
 }

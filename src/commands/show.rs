@@ -5,7 +5,7 @@ use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue;
 use cvtcycle::config::setup::{self, Options};
-use cvtcycle::config::{KeyInfo, Problem};
+use cvtcycle::config::{KeyInfo, Problems};
 use serde::Serialize;
 
 use super::Context;
@@ -138,16 +138,17 @@ pub fn answer(args: &Args, context: Context) -> Reply {
 }
 
 /// A plan, which has nothing to show.
-fn plan(word: &str, of: &str, instead: &str) -> Vec<Problem> {
+fn plan(word: &str, of: &str, instead: &str) -> Problems {
     let message = format!("`{word}` is the plan of {of}, which holds no values of a car");
     let hint = format!("{instead}; `cvtcycle check` reads a plan");
-    vec![inputs::bad_value(
+    inputs::bad_value(
         "NAME",
         word,
         "a vehicle, lubricant, cycle or rig",
         message,
         hint,
-    )]
+    )
+    .into()
 }
 
 /// Title and keys of an embedded rig.

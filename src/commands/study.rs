@@ -15,7 +15,7 @@ use super::Context;
 use crate::args::Offering;
 use crate::print::{Reply, problem};
 use common::Common;
-use cvtcycle::config::Problem;
+use cvtcycle::config::Problems;
 use cvtcycle::study::plan::{Design, Plan};
 
 /// Arguments of `study`.
@@ -90,7 +90,7 @@ fn plan(args: &PlanArgs, context: Context) -> Reply {
             "name a plan: {}, or a TOML file; or `study ambient`",
             plans().join(", ")
         );
-        return Err(vec![problem("PLAN", "no plan is named", &hint)]);
+        return Err(problem("PLAN", "no plan is named", &hint).into());
     };
     let mut plan = Plan::open(word, "PLAN")?;
     plan.design = drawn(&plan.design, args)?;
@@ -98,7 +98,7 @@ fn plan(args: &PlanArgs, context: Context) -> Reply {
 }
 
 /// The plan's design with the samples and the seed that the options ask for.
-fn drawn(design: &Design, args: &PlanArgs) -> Result<Design, Vec<Problem>> {
+fn drawn(design: &Design, args: &PlanArgs) -> Result<Design, Problems> {
     if args.samples.is_none() && args.seed.is_none() {
         return Ok(*design);
     }
@@ -112,22 +112,17 @@ fn drawn(design: &Design, args: &PlanArgs) -> Result<Design, Vec<Problem>> {
     else {
         let hint =
             "--samples and --seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs";
-        return Err(vec![problem(
-            option,
-            "the plan's design draws nothing",
-            hint,
-        )]);
+        return Err(problem(option, "the plan's design draws nothing", hint).into());
     };
     match args.samples {
-        Some(samples) if !range.contains(&samples) => Err(vec![Problem {
-            value: samples.to_string(),
-            allowed: format!("{} to {}", range.start(), range.end()),
-            ..problem(
-                "--samples",
-                &format!("{samples} samples are out of range for this design"),
-                "",
-            )
-        }]),
+        Some(samples) if !range.contains(&samples) => Err(problem(
+            "--samples",
+            &format!("{samples} samples are out of range for this design"),
+            "",
+        )
+        .value(samples.to_string())
+        .allowed(format!("{} to {}", range.start(), range.end()))
+        .into()),
         _ => Ok(changed),
     }
 }

@@ -3,7 +3,7 @@
 mod text;
 
 use cvtcycle::config::setup;
-use cvtcycle::config::{Problem, bounded, decode};
+use cvtcycle::config::{Problem, Problems, bounded, decode};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::validation_page::page;
 use cvtcycle::study::check::{
@@ -11,7 +11,7 @@ use cvtcycle::study::check::{
 };
 
 use super::Context;
-use crate::args::{self as inputs, Offering, Problems};
+use crate::args::{self as inputs, Offering};
 use crate::print::{Answer, FAILED, Reply, json_text, problem};
 
 /// Arguments of `validate`.
@@ -112,7 +112,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     let out = args
         .out
         .as_ref()
-        .map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
+        .map(|dir| OutputDir::create(dir, args.force).map_err(Problems::from));
     let out = out.and_then(|dir| problems.take(dir));
     if !args.only_rows {
         manual(args, &mut problems);
@@ -125,7 +125,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     };
     let report = judge(&files, &subject, |row| wanted(args, row))?;
     let written = match out {
-        Some(dir) => write(dir, &report).map_err(|problem| vec![problem])?,
+        Some(dir) => write(dir, &report)?,
         None => String::new(),
     };
     let moved = text::moved(&report);
@@ -135,7 +135,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
         Form::Table if args.quiet => String::new(),
         Form::Table => text::tables(&report, context.paint) + &written,
         Form::Csv => csv(&report),
-        Form::Html => html(&report).map_err(|problem| vec![problem])?,
+        Form::Html => html(&report)?,
         Form::Markdown => markdown(&report),
     };
     // The table shows them itself.
@@ -174,7 +174,7 @@ fn embedded_name(name: &str) -> String {
 }
 
 /// Names and texts of all files of rows.
-fn texts(args: &Args) -> Result<Vec<(String, String)>, Vec<Problem>> {
+fn texts(args: &Args) -> Result<Vec<(String, String)>, Problems> {
     let mut problems = Problems::default();
     let embedded = embedded_rows().iter().filter(|_| !args.only_rows);
     let mut texts: Vec<(String, String)> = embedded

@@ -9,7 +9,7 @@ pub mod stream;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use cvtcycle::config::{Place, Problem, render};
+use cvtcycle::config::{Problem, Problems, render};
 
 use colour::Colour;
 
@@ -30,7 +30,7 @@ pub struct Answer {
 }
 
 /// An answer, or everything that is wrong with the input.
-pub type Reply = Result<Answer, Vec<Problem>>;
+pub type Reply = Result<Answer, Problems>;
 
 impl Answer {
     /// An answer that is all fine.
@@ -42,7 +42,7 @@ impl Answer {
     }
 
     /// One JSON object and nothing else.
-    pub fn json(value: &impl serde::Serialize) -> Result<Self, Vec<Problem>> {
+    pub fn json(value: &impl serde::Serialize) -> Result<Self, Problems> {
         json_text(value).map(Answer::text)
     }
 }
@@ -51,24 +51,18 @@ impl Answer {
 ///
 /// # Errors
 /// Never for the values of this program; a map with keys that are no text would be one.
-pub fn json_text(value: &impl serde::Serialize) -> Result<String, Vec<Problem>> {
+pub fn json_text(value: &impl serde::Serialize) -> Result<String, Problems> {
     let text = serde_json::to_string_pretty(value);
     text.map(|text| text + "\n")
-        .map_err(|e| vec![problem("--json", &e.to_string(), "")])
+        .map_err(|e| problem("--json", &e.to_string(), "").into())
 }
 
 /// A problem of an option or argument without more places than its name.
 pub fn problem(option: &str, message: &str, hint: &str) -> Problem {
-    Problem {
-        place: Place {
-            file: option.to_owned(),
-            ..Place::default()
-        },
-        key: option.to_owned(),
-        message: message.to_owned(),
-        hint: hint.to_owned(),
-        ..Problem::default()
-    }
+    Problem::invalid(message)
+        .in_file(option)
+        .key(option)
+        .hint(hint)
 }
 
 /// Prints an answer or the problems and gives the exit code.

@@ -2,7 +2,7 @@
 
 use std::io::{self, BufWriter, Write};
 
-use cvtcycle::config::Problem;
+use cvtcycle::config::Problems;
 
 use crate::print::problem;
 
@@ -10,16 +10,12 @@ use crate::print::problem;
 ///
 /// # Errors
 /// A problem of standard output with the words of the operating system.
-pub fn to_stdout(f: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Vec<Problem>> {
+pub fn to_stdout(f: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Problems> {
     let mut out = BufWriter::new(io::stdout().lock());
     match f(&mut out).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             let hint = "free some space, or send the output elsewhere";
-            Err(vec![problem(
-                "standard output",
-                &format!("cannot write: {error}"),
-                hint,
-            )])
+            Err(problem("standard output", &format!("cannot write: {error}"), hint).into())
         }
         _ => Ok(()),
     }

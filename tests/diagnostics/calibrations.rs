@@ -1,13 +1,13 @@
 //! Bad plans of calibrations, their bad data files, and sound plans whose fit does not end well.
 
-use cvtcycle::config::Problem;
+use cvtcycle::config::Problems;
 use cvtcycle::config::setup::{self, Options};
 use cvtcycle::study::fit;
 
 use super::kinds::{made_file, told_by};
 
 /// A data file, named by a sound plan that lies beside it.
-pub fn data(kind: &str, case: &str) -> Option<Vec<Problem>> {
+pub fn data(kind: &str, case: &str) -> Option<Problems> {
     let (folder, name) = case.rsplit_once('/').unwrap();
     let way = kind.trim_start_matches("calibration_");
     let about = if way == "points" {

@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use cvtcycle::config::setup::{Kind, Options, catalogue, load, load_lubricant};
-use cvtcycle::config::{Document, KeyInfo, Problem, Reader};
+use cvtcycle::config::{Document, KeyInfo, Problem, Problems, Reader};
 
 use super::kinds::written;
 
@@ -103,7 +103,7 @@ impl Plain {
         }
     }
 
-    fn problems(&self, text: &str, path: &str) -> Vec<Problem> {
+    fn problems(&self, text: &str, path: &str) -> Problems {
         std::fs::write(path, text).unwrap();
         match self.kind {
             Kind::Vehicle => load(path, "--vehicle", &Options::default()).err(),
@@ -301,7 +301,7 @@ impl Tried<'_> {
             self.several.insert(info.key.clone());
             return;
         }
-        let [problem] = problems.as_slice() else {
+        let [problem] = &*problems else {
             let told: Vec<String> = problems
                 .iter()
                 .map(|p| format!("    {}: {}", p.place.line, p.message))

@@ -5,7 +5,7 @@
 
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::{self, Options};
-use cvtcycle::config::{Document, KeyInfo, Problem, Reader, render};
+use cvtcycle::config::{Document, KeyInfo, Problem, Problems, Reader, render};
 use cvtcycle::output::History;
 use cvtcycle::report::cover::Cover;
 use cvtcycle::study::Study;
@@ -62,7 +62,7 @@ pub fn message(kind: &str, case: &str) -> String {
     render(&problems.unwrap_or_default(), false)
 }
 
-fn rows(case: &str, bytes: &[u8]) -> Option<Vec<Problem>> {
+fn rows(case: &str, bytes: &[u8]) -> Option<Problems> {
     let text = match cvtcycle::config::decode(case, bytes) {
         Ok(text) => text,
         Err(problems) => return Some(problems),
@@ -91,7 +91,7 @@ fn points(case: &str) -> String {
 }
 
 /// The first word of a map's name says what it is put in place of.
-fn map(case: &str, name: &str) -> Option<Vec<Problem>> {
+fn map(case: &str, name: &str) -> Option<Problems> {
     let (vehicle, key) = match name.split('_').next() {
         Some("bsfc") => ("rover_216_cvt", "engine.model.bsfc_map.file"),
         Some("box") => ("rover_216_5mt", "transmission.manual.maps.box"),
@@ -127,7 +127,7 @@ fn vehicle(case: &str, text: &str) -> String {
     render(&problems, false).replace(path, case)
 }
 
-fn rig(case: &str, text: &str) -> Option<Vec<Problem>> {
+fn rig(case: &str, text: &str) -> Option<Problems> {
     let (_, keys) = cvtcycle::config::rig::load(&[]).unwrap();
     let document = match Document::parse(case, &completed(text, keys.iter())) {
         Ok(document) => document,
@@ -293,7 +293,7 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
     }
 }
 
-pub fn told_by(problems: Option<Vec<Problem>>) -> String {
+pub fn told_by(problems: Option<Problems>) -> String {
     render(&problems.unwrap_or_default(), false)
 }
 

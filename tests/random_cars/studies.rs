@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
-use cvtcycle::config::{Problem, render};
+use cvtcycle::config::{Problem, Problems, render};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::table::{Rows, Values};
 use cvtcycle::study::{End, Sink, Study, Unwatched};
@@ -128,7 +128,7 @@ fn cell(values: &Values, at: usize) -> String {
 /// Every row as text with its heads, without the number of its point, and how often it is there: a baseline does not feel what is varied of
 /// the subject.
 fn rows(factors: &[Factor]) -> BTreeMap<String, u64> {
-    let told = |problems: Vec<Problem>| -> String { panic!("{}", render(&problems, false)) };
+    let told = |problems: Problems| -> String { panic!("{}", render(&problems, false)) };
     let plan = Plan::read("p.toml", &plan(factors)).map_err(told).unwrap();
     let study = Study::prepare(plan).map_err(told).unwrap();
     let shelf = Shelf::default();

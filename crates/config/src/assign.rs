@@ -5,7 +5,7 @@ use std::sync::Arc;
 use toml::de::DeValue;
 
 use super::document::{Document, Entry, Node, Span, Table, Value, convert};
-use super::problem::{Place, Problem};
+use super::problem::Problem;
 use super::source::Source;
 
 /// Tables that an assignment may nest; more than any input has, few enough to recurse over.
@@ -17,15 +17,11 @@ impl Document {
     /// # Errors
     /// A text that is no assignment, or a path that leads through a value.
     pub fn set(&mut self, assignment: &str) -> Result<(), Problem> {
-        let refuse = |key: &str, message: String, hint: &str| Problem {
-            place: Place {
-                file: format!("--set {assignment}"),
-                ..Place::default()
-            },
-            key: key.to_string(),
-            message,
-            hint: hint.to_string(),
-            ..Problem::default()
+        let refuse = |key: &str, message: String, hint: &str| {
+            Problem::invalid(message)
+                .in_file(format!("--set {assignment}"))
+                .key(key.to_string())
+                .hint(hint.to_string())
         };
         let form = "write --set table.key=VALUE";
         let Some((path, text)) = assignment.split_once('=') else {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use toml::de::{DeInteger, DeTable, DeValue};
 
-use super::problem::{Place, Problem};
+use super::problem::{Place, Problem, Problems};
 use super::shape::{self, Excess};
 use super::source::{Source, shortened};
 use super::syntax;
@@ -103,10 +103,10 @@ impl Document {
     /// # Errors
     /// All places where the text is not valid TOML, at most one per line; beyond some number the rest is counted. One problem where the
     /// text has more tables or is nested deeper than any input could be.
-    pub fn parse(file: &str, text: &str) -> Result<Document, Vec<Problem>> {
+    pub fn parse(file: &str, text: &str) -> Result<Document, Problems> {
         let source = Source::new(file, text, true);
         if let Some(excess) = shape::excess(text) {
-            return Err(vec![too_much(&source, excess)]);
+            return Err(too_much(&source, excess).into());
         }
         let (table, errors) = DeTable::parse_recoverable(text);
         if !errors.is_empty() {
@@ -118,7 +118,7 @@ impl Document {
         };
         let root = levels.table(table.get_ref(), 0);
         match levels.too_deep.take() {
-            Some(at) => Err(vec![nested(&source, at)]),
+            Some(at) => Err(nested(&source, at).into()),
             None => Ok(Document {
                 sources: vec![Arc::new(source)],
                 root,
@@ -201,23 +201,17 @@ fn too_much(source: &Source, excess: Excess) -> Problem {
             )
         }
     };
-    Problem {
-        place: source.place(at..at + 1),
-        allowed,
-        message: message.to_string(),
-        hint: hint.to_string(),
-        ..Problem::default()
-    }
+    Problem::invalid(message.to_string())
+        .at(source.place(at..at + 1))
+        .allowed(allowed)
+        .hint(hint.to_string())
 }
 
 fn nested(source: &Source, at: usize) -> Problem {
-    Problem {
-        place: source.place(at..at + 1),
-        allowed: format!("up to {} levels", shape::MOST_LEVELS),
-        message: "tables and lists are nested too deep here".to_string(),
-        hint: "is a bracket too many open?".to_string(),
-        ..Problem::default()
-    }
+    Problem::invalid("tables and lists are nested too deep here")
+        .at(source.place(at..at + 1))
+        .allowed(format!("up to {} levels", shape::MOST_LEVELS))
+        .hint("is a bracket too many open?")
 }
 
 /// The value of an assignment; what is nested too deep is left out, which a command line hardly can be.

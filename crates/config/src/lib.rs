@@ -29,8 +29,8 @@ use cvtcycle_model::keys::Quantity;
 pub use document::Document;
 pub use draft::{Draft, KeyPath};
 pub use near::near;
-pub use problem::readable;
-pub use problem::{Place, Problem, append};
+
+pub use problem::{Place, Problem, ProblemKind, Problems, readable};
 pub use reader::{KeyInfo, Reader};
 pub use render::render;
 pub use section::Section;

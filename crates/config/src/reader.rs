@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use super::document::{Document, Entry, Span, Table, Value};
 use super::near::{likeness, plausible, question};
-use super::problem::{Place, Problem};
+use super::problem::{Place, Problem, Problems};
 use super::section::Section;
 use crate::setup::Files;
 use cvtcycle_model::keys::{Quantity, stem};
@@ -167,14 +167,14 @@ impl<'d> Reader<'d> {
     /// # Errors
     /// All problems, in the order of their places, including keys that are present but were never read; of a great many the last entry tells
     /// how many more there are. After a silent session as many empty problems as were counted.
-    pub fn finish(self) -> Result<Vec<KeyInfo>, Vec<Problem>> {
+    pub fn finish(self) -> Result<Vec<KeyInfo>, Problems> {
         let document = self.document;
         let Some(log) = self.log else {
             let faults = self.faults.get();
             return if faults == 0 {
                 Ok(Vec::new())
             } else {
-                Err(vec![Problem::default(); faults])
+                Err(std::iter::repeat_n(Problem::default(), faults).collect())
             };
         };
         let mut log = log.into_inner();
@@ -209,7 +209,7 @@ impl<'d> Reader<'d> {
             let place = &problem.place;
             (rank(place).unwrap_or(usize::MAX), place.line, place.column)
         });
-        let mut problems: Vec<Problem> = Vec::new();
+        let mut problems = Problems::new();
         for problem in log.problems {
             if !problems.contains(&problem) {
                 problems.push(problem);
@@ -245,20 +245,17 @@ impl Log {
         } else {
             &entry.key
         };
-        let mut problem = Problem {
-            place: document.place(span),
-            key: path.to_string(),
-            value: if is_table {
-                String::new()
-            } else {
-                document.shown(&entry.node.span)
-            },
-            message: format!(
-                "unknown {} `{path}`",
-                if is_table { "table" } else { "key" }
-            ),
-            ..Problem::default()
-        };
+        let mut problem = Problem::unknown_key(format!(
+            "unknown {} `{path}`",
+            if is_table { "table" } else { "key" }
+        ))
+        .at(document.place(span))
+        .key(path.to_string())
+        .value(if is_table {
+            String::new()
+        } else {
+            document.shown(&entry.node.span)
+        });
         if self.tables.contains(path) {
             if let Value::Table(Table {
                 choice: Some(word), ..

@@ -135,20 +135,18 @@ mod tests {
     use super::*;
 
     fn problem() -> Problem {
-        Problem {
-            place: Place {
+        Problem::out_of_range("`belt.band_offset_mm` is out of range")
+            .at(Place {
                 file: "car.toml".into(),
                 line: 7,
                 column: 18,
                 line_text: "band_offset_mm = 99.0 # é".into(),
                 width: 4,
-            },
-            key: "belt.band_offset_mm".into(),
-            value: "99.0".into(),
-            allowed: "0.5 to 10 mm".into(),
-            message: "`belt.band_offset_mm` is out of range".into(),
-            hint: "try less".into(),
-        }
+            })
+            .key("belt.band_offset_mm")
+            .value("99.0")
+            .allowed("0.5 to 10 mm")
+            .hint("try less")
     }
 
     #[test]
@@ -175,7 +173,7 @@ mod tests {
             file: "--set a=2".into(),
             ..Place::default()
         };
-        let text = render(&[Problem { place, ..problem() }, problem()], false);
+        let text = render(&[problem().at(place), problem()], false);
         assert!(
             text.contains("--set a=2: `belt.band_offset_mm` is out of range"),
             "{text}"
@@ -189,30 +187,20 @@ mod tests {
 
     #[test]
     fn a_cell_is_named_by_its_column() {
-        let cell = Problem {
-            message: "this is not a number".into(),
-            key: "speed_kmh".into(),
-            ..problem()
-        };
+        let cell = problem().key("speed_kmh").message("this is not a number");
         assert!(
             render(std::slice::from_ref(&cell), false)
                 .starts_with("error: speed_kmh: this is not a number\n")
         );
-        let far = Problem {
-            place: Place {
-                line_text: String::new(),
-                ..cell.place.clone()
-            },
-            ..cell.clone()
-        };
+        let far = cell.clone().at(Place {
+            line_text: String::new(),
+            ..cell.place.clone()
+        });
         assert!(
             render(&[far], false)
                 .starts_with("error: car.toml:7: speed_kmh: this is not a number\n")
         );
-        let long = Problem {
-            key: "k".repeat(1000),
-            ..cell
-        };
+        let long = cell.key("k".repeat(1000));
         assert!(render(&[long], false).starts_with("error: this is not a number\n"));
         assert_eq!(
             render(&[problem()], false)
@@ -224,10 +212,7 @@ mod tests {
 
     #[test]
     fn long_texts_are_cut_and_all_problems_are_counted() {
-        let long = Problem {
-            message: "ä".repeat(1 << 20),
-            ..problem()
-        };
+        let long = problem().message("ä".repeat(1 << 20));
         let text = render(&[long, Problem::more("car.toml", 41)], false);
         assert!(
             text.contains(&format!("{}...\n", "ä".repeat(LONGEST_TEXT)))
@@ -247,16 +232,12 @@ mod tests {
             width: usize::MAX,
             ..problem().place
         };
-        assert!(render(&[Problem { place, ..problem() }], false).contains("car.toml"));
+        assert!(render(&[problem().at(place)], false).contains("car.toml"));
         let place = Place {
             file: "a\u{1b}[31m.toml".into(),
             ..problem().place
         };
-        let wild = Problem {
-            message: "a\u{1b}[31mb\nc".into(),
-            place,
-            ..problem()
-        };
+        let wild = problem().at(place).message("a\u{1b}[31mb\nc");
         assert!(!render(&[wild], false).contains('\u{1b}'));
     }
 }

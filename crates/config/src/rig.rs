@@ -3,7 +3,7 @@
 use cvtcycle_model::bench::transmission::Conditions;
 pub use cvtcycle_model::bench::transmission::{OIL, TORQUE};
 
-use crate::{Document, KeyInfo, Problem, Reader, Section};
+use crate::{Document, KeyInfo, Problems, Reader, Section};
 
 /// Prefix of the rig's keys on the command line, as in `--set rig.ratio.high=0.45`.
 pub const PREFIX: &str = "rig.";
@@ -18,10 +18,10 @@ pub const FILE: (&str, &str) = (
 ///
 /// # Errors
 /// All problems of the overrides, and of the file.
-pub fn load(sets: &[String]) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>> {
+pub fn load(sets: &[String]) -> Result<(Conditions, Vec<KeyInfo>), Problems> {
     let mut document = Document::parse(&format!("embedded:{}.toml", FILE.0), FILE.1)?;
     let own = sets.iter().filter(|set| set.starts_with(PREFIX));
-    let mut problems: Vec<Problem> = own.filter_map(|set| document.set(set).err()).collect();
+    let mut problems: Problems = own.filter_map(|set| document.set(set).err()).collect();
     let reader = Reader::new(&document);
     let conditions = read(&reader.root());
     match reader.finish() {

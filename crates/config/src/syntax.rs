@@ -1,7 +1,7 @@
 //! Problems that are found before any key is read: bytes that are no text, text that is no TOML.
 use std::ops::Range;
 
-use super::problem::{Place, Problem};
+use super::problem::{Place, Problem, Problems};
 use super::source::{Source, shortened};
 
 /// Bytes of a line up to which slips are looked for: nobody writes longer lines by hand, and the search
@@ -12,19 +12,14 @@ const LONGEST_LINE: usize = 1000;
 ///
 /// # Errors
 /// One problem if the bytes are not UTF-8 text or hold nothing but white space.
-pub fn decode(file: &str, bytes: &[u8]) -> Result<String, Vec<Problem>> {
+pub fn decode(file: &str, bytes: &[u8]) -> Result<String, Problems> {
     let problem = |message: &str, hint: &str| {
         let place = Place {
             file: file.to_string(),
             ..Place::default()
         };
         let (message, hint) = (message.to_string(), hint.to_string());
-        vec![Problem {
-            place,
-            message,
-            hint,
-            ..Problem::default()
-        }]
+        Problem::invalid(message).at(place).hint(hint).into()
     };
     let binary = || {
         problem(
@@ -51,7 +46,7 @@ const MOST_SHOWN: usize = 100;
 
 /// The parser's errors as problems, one per line: what follows the first error of a line is
 /// mostly its consequence.
-pub(super) fn problems(source: &Source, errors: &[toml::de::Error]) -> Vec<Problem> {
+pub(super) fn problems(source: &Source, errors: &[toml::de::Error]) -> Problems {
     let mut ordered: Vec<(Range<usize>, &str)> = errors
         .iter()
         .map(|error| {
@@ -62,7 +57,7 @@ pub(super) fn problems(source: &Source, errors: &[toml::de::Error]) -> Vec<Probl
         })
         .collect();
     ordered.sort_by_key(|(span, _)| span.start);
-    let mut found = Vec::new();
+    let mut found = Problems::new();
     let mut more = 0;
     let mut line_end = None;
     for (span, parser) in ordered {
@@ -100,13 +95,10 @@ fn syntax_problem(source: &Source, span: Range<usize>, parser: &str) -> Problem 
         None => format!("not valid TOML: {parser}"),
     };
     let span = slip.unwrap_or(span);
-    Problem {
-        value: shortened(source.text.get(span.clone()).unwrap_or_default()),
-        place: source.place(span),
-        message,
-        hint,
-        ..Problem::default()
-    }
+    Problem::syntax(message)
+        .value(shortened(source.text.get(span.clone()).unwrap_or_default()))
+        .at(source.place(span))
+        .hint(hint)
 }
 
 /// The usual slips in a line that TOML refuses: where the value stands in it and what to write.

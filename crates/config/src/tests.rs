@@ -20,7 +20,7 @@ fn with(text: &str, assignments: &[&str]) -> Document {
 const OFFSET: Bound = Bound::closed(0.5, 10.0);
 
 /// Reads the band offset of a belt and ends the session.
-fn belt(document: &Document) -> (f64, Result<Vec<KeyInfo>, Vec<Problem>>) {
+fn belt(document: &Document) -> (f64, Result<Vec<KeyInfo>, Problems>) {
     let reader = Reader::new(document);
     let belt = reader
         .root()
@@ -34,7 +34,7 @@ fn belt(document: &Document) -> (f64, Result<Vec<KeyInfo>, Vec<Problem>>) {
 
 const HEAD: &str = "[transmission.cvt.belt]\n";
 
-fn only(result: Result<Vec<KeyInfo>, Vec<Problem>>) -> Problem {
+fn only(result: Result<Vec<KeyInfo>, Problems>) -> Problem {
     let mut problems = result.unwrap_err();
     assert_eq!(problems.len(), 1, "{problems:#?}");
     problems.remove(0)
@@ -203,10 +203,7 @@ fn complaints_stand_at_the_value() {
     section.number("x", Bound::any(), "");
     section.complain("x", "below y", "`x` is above `y`", "swap them");
     section.complain("y", "", "no `y`", "");
-    reader.problem(Problem {
-        message: "from outside".into(),
-        ..Problem::default()
-    });
+    reader.problem(Problem::invalid("from outside"));
     drop(section);
     let problems = reader.finish().unwrap_err();
     let at = |message: &str| {

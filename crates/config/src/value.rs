@@ -327,17 +327,14 @@ impl<'r> Section<'r> {
             file: document.sources[0].name.clone(),
             ..Place::default()
         };
-        Problem {
-            place: self
+        Problem::invalid(message)
+            .at(self
                 .header
                 .as_ref()
-                .map_or_else(whole, |span| document.place(span)),
-            key: join(&self.path, key),
-            allowed: allowed.to_string(),
-            message,
-            hint,
-            ..Problem::default()
-        }
+                .map_or_else(whole, |span| document.place(span)))
+            .key(join(&self.path, key))
+            .allowed(allowed.to_string())
+            .hint(hint)
     }
 
     pub(super) fn report(
@@ -349,13 +346,13 @@ impl<'r> Section<'r> {
         hint: String,
     ) {
         let document = self.reader.document;
-        self.reader.fault(|| Problem {
-            place: document.place(span),
-            key: self.dotted(key),
-            value: document.shown(span),
-            allowed: allowed.to_string(),
-            message,
-            hint,
+        self.reader.fault(|| {
+            Problem::invalid(message)
+                .at(document.place(span))
+                .key(self.dotted(key))
+                .value(document.shown(span))
+                .allowed(allowed.to_string())
+                .hint(hint)
         });
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{NamedTempFile, TempPath};
 
-use cvtcycle_config::{Place, Problem};
+use cvtcycle_config::Problem;
 
 /// The files that mark a directory as one of an earlier run or calibration.
 const MARKS: [&str; 2] = ["summary.json", "calibration.json"];
@@ -360,15 +360,9 @@ pub fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
 
 /// A problem of `--out`.
 pub fn problem(path: &Path, message: &str, hint: &str) -> Problem {
-    Problem {
-        place: Place {
-            file: "--out".to_string(),
-            ..Place::default()
-        },
-        key: "--out".to_string(),
-        value: path.display().to_string(),
-        allowed: String::new(),
-        message: message.to_string(),
-        hint: hint.to_string(),
-    }
+    Problem::invalid(message.to_string())
+        .in_file("--out")
+        .key("--out")
+        .value(path.display().to_string())
+        .hint(hint.to_string())
 }

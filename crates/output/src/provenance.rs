@@ -9,7 +9,7 @@ use crate::record::{
 use crate::summary::finite;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::{Kind, Options, Setup, embedded_vehicles, is_path, load, text_of};
-use cvtcycle_config::{KeyInfo, Problem, unit_of};
+use cvtcycle_config::{KeyInfo, Problems, unit_of};
 use cvtcycle_model::drive::fuel_map;
 use cvtcycle_model::road::REFERENCE_K;
 use cvtcycle_model::transmission::Transmission;
@@ -46,7 +46,7 @@ pub fn car_record(
     word: &str,
     options: &Options,
     setup: &Setup,
-) -> Result<CarRecord, Vec<Problem>> {
+) -> Result<CarRecord, Problems> {
     let (file, text, disk) = text_of(word, Kind::Vehicle, "--vehicle")?;
     let fluid = |asked: &Option<String>, key: &str| {
         let own = setup
@@ -60,7 +60,7 @@ pub fn car_record(
             own.to_owned()
         };
         let (file, text, _) = text_of(asked.as_ref().unwrap_or(&beside), Kind::Lubricant, key)?;
-        Ok::<_, Vec<Problem>>(FileRecord {
+        Ok::<_, Problems>(FileRecord {
             file,
             sha256: hash(text.as_bytes()),
         })
@@ -91,7 +91,7 @@ struct Reference {
 }
 
 /// A shipped vehicle is held against itself, a file of the user against the shipped one with which it shares most values.
-fn reference(setup: &Setup, word: &str, options: &Options) -> Result<Reference, Vec<Problem>> {
+fn reference(setup: &Setup, word: &str, options: &Options) -> Result<Reference, Problems> {
     let plain = Options {
         formulation: options.formulation,
         ..Options::default()
@@ -120,7 +120,7 @@ fn reference(setup: &Setup, word: &str, options: &Options) -> Result<Reference, 
             });
         }
     }
-    best.ok_or_else(Vec::new)
+    best.ok_or_else(Problems::new)
 }
 
 fn equal(a: &KeyInfo, b: &KeyInfo) -> bool {

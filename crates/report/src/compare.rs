@@ -7,7 +7,7 @@ use super::run::{Car, TERMS, car_energy, cars, conditions_line, cycle_title, has
 use crate::charts::review_figures::{
     Difference, DifferenceTerm, Overlay, OverlayPanel, Term, difference_bars, overlay,
 };
-use cvtcycle_config::{Place, Problem};
+use cvtcycle_config::{Place, Problem, Problems};
 use cvtcycle_output::Component;
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::Change;
@@ -26,7 +26,7 @@ struct Pair<'a> {
 ///
 /// # Errors
 /// Runs of different cycles; runs without a car in common.
-pub fn document(a: &RunFound, b: &RunFound) -> Result<Document, Vec<Problem>> {
+pub fn document(a: &RunFound, b: &RunFound) -> Result<Document, Problems> {
     if a.summary.cycle != b.summary.cycle {
         let message = format!(
             "{} drives {}, {} drives {}: there is no difference to tell between cycles",
@@ -40,14 +40,12 @@ pub fn document(a: &RunFound, b: &RunFound) -> Result<Document, Vec<Problem>> {
             ..Place::default()
         };
         let hint = "compare runs of one cycle".to_owned();
-        return Err(vec![Problem {
-            place,
-            value: b.summary.cycle.clone(),
-            allowed: a.summary.cycle.clone(),
-            message,
-            hint,
-            ..Problem::default()
-        }]);
+        return Err(Problem::invalid(message)
+            .at(place)
+            .value(b.summary.cycle.clone())
+            .allowed(a.summary.cycle.clone())
+            .hint(hint)
+            .into());
     }
     let (cars_a, cars_b) = (cars(a), cars(b));
     let pairs = pairs(&cars_a, &cars_b);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use cvtcycle_config::bounded::{self, Refused};
-use cvtcycle_config::{Place, Problem};
+use cvtcycle_config::{Place, Problem, Problems};
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::{self, Record};
 use cvtcycle_output::summary::{RunSummary, SCHEMA, Summary};
@@ -128,34 +128,36 @@ impl StudyFound {
 ///
 /// # Errors
 /// All problems: no such directory, nothing of this program in it, a newer schema, damaged files.
-pub fn find(path: &Path, extra: &[PathBuf]) -> Result<Found, Vec<Problem>> {
-    let entries = fs::read_dir(path).map_err(|error| vec![unreadable(path, &error.into())])?;
+pub fn find(path: &Path, extra: &[PathBuf]) -> Result<Found, Problems> {
+    let entries = fs::read_dir(path).map_err(|error| unreadable(path, &error.into()))?;
     if is_study(path) {
         return StudyFound::open(path)
             .map(|study| Found::Study(Box::new(study)))
-            .map_err(|problem| vec![problem]);
+            .map_err(Problems::from);
     }
     let file = path.join(SUMMARY);
     if !file.exists() {
         let hint =
             "name the directory that was given to --out of `cvtcycle run` or `cvtcycle study`";
-        return Err(vec![problem(
+        return Err(problem(
             path,
             &format!(
                 "{} holds no run and no study: it has neither {SUMMARY} nor {STUDY}",
                 path.display()
             ),
             hint,
-        )]);
+        )
+        .into());
     }
     let value = json(&file).map_err(|problem| vec![problem])?;
     if is_validation(&value) {
         let hint = "its report is validation.html in that directory; beside a run it belongs into the run's report: `cvtcycle report RUN --with DIR`";
-        return Err(vec![problem(
+        return Err(problem(
             path,
             "this is the answer of `cvtcycle validate`, not of a run",
             hint,
-        )]);
+        )
+        .into());
     }
     let mut found = run(path, &file, value)?;
     let mut beside: Vec<PathBuf> = entries
@@ -164,7 +166,7 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<Found, Vec<Problem>> {
         .filter(|path| path.is_dir())
         .collect();
     beside.sort();
-    let mut problems = Vec::new();
+    let mut problems = Problems::new();
     let mut seen = std::collections::BTreeSet::new();
     for (dir, asked) in extra
         .iter()
@@ -214,7 +216,7 @@ fn is_validation(value: &Value) -> bool {
     value["counts"].is_object() && value["rows"].is_array()
 }
 
-fn run(path: &Path, file: &Path, value: Value) -> Result<RunFound, Vec<Problem>> {
+fn run(path: &Path, file: &Path, value: Value) -> Result<RunFound, Problems> {
     let summary: Summary = typed(file, value, SCHEMA).map_err(|problem| vec![problem])?;
     let mut missing = Vec::new();
     let record_file = path.join(record::FILE);
@@ -232,13 +234,9 @@ fn run(path: &Path, file: &Path, value: Value) -> Result<RunFound, Vec<Problem>>
         None
     };
     if summary.runs.is_empty() {
-        return Err(vec![problem(
-            file,
-            "the summary names no car",
-            "run it again",
-        )]);
+        return Err(problem(file, "the summary names no car", "run it again").into());
     }
-    let mut problems: Vec<Problem> = summary
+    let mut problems: Problems = summary
         .runs
         .iter()
         .filter_map(|run| consistent(file, run).err())
@@ -257,7 +255,7 @@ fn run(path: &Path, file: &Path, value: Value) -> Result<RunFound, Vec<Problem>>
                 ));
                 histories.push(None);
             }
-            Err(mut found) => problems.append(&mut found),
+            Err(found) => problems.extend(found),
         }
     }
     if !problems.is_empty() {
@@ -376,17 +374,17 @@ fn belongs(path: &Path, run: &RunSummary, history: &History) -> Result<(), Probl
 }
 
 /// The trace of a car, from whichever file there is.
-fn history(path: &Path, vehicle: &str) -> Result<Option<History>, Vec<Problem>> {
+fn history(path: &Path, vehicle: &str) -> Result<Option<History>, Problems> {
     // A name is the middle of a file name and must not lead anywhere else.
     if vehicle.is_empty() || vehicle.contains(['/', '\\', ':']) {
         let message =
             format!("`{vehicle}` cannot be the name of a vehicle: no file can be named after it");
-        return Err(vec![problem(&path.join(SUMMARY), &message, "run it again")]);
+        return Err(problem(&path.join(SUMMARY), &message, "run it again").into());
     }
     let csv = path.join(format!("trace_{vehicle}.csv"));
     if csv.exists() {
-        let bytes = bounded::read_file(&csv, bounded::TRACE)
-            .map_err(|error| vec![unreadable(&csv, &error)])?;
+        let bytes =
+            bounded::read_file(&csv, bounded::TRACE).map_err(|error| unreadable(&csv, &error))?;
         return History::read_csv(&csv.display().to_string(), &bytes).map(Some);
     }
     let parquet = path.join(format!("trace_{vehicle}.parquet"));
@@ -407,12 +405,9 @@ fn json(path: &Path) -> Result<Value, Problem> {
             column: error.column(),
             ..Place::default()
         };
-        Problem {
-            place,
-            message: format!("this is no whole JSON: {error}"),
-            hint: "the file is damaged; run it again".into(),
-            ..Problem::default()
-        }
+        Problem::invalid(format!("this is no whole JSON: {error}"))
+            .at(place)
+            .hint("the file is damaged; run it again")
     })
 }
 
@@ -454,12 +449,7 @@ pub(super) fn problem(path: &Path, message: &str, hint: &str) -> Problem {
         file: path.display().to_string(),
         ..Place::default()
     };
-    Problem {
-        place,
-        message: message.to_owned(),
-        hint: hint.to_owned(),
-        ..Problem::default()
-    }
+    Problem::invalid(message).at(place).hint(hint)
 }
 
 fn unreadable(path: &Path, error: &Refused) -> Problem {
@@ -469,12 +459,10 @@ fn unreadable(path: &Path, error: &Refused) -> Problem {
         _ => "check the path and its permissions",
     };
     let allowed = error.allowed("");
-    Problem {
-        allowed,
-        ..problem(
-            path,
-            &format!("cannot read {}: {error}", path.display()),
-            error.hint(hint),
-        )
-    }
+    problem(
+        path,
+        &format!("cannot read {}: {error}", path.display()),
+        error.hint(hint),
+    )
+    .allowed(allowed)
 }

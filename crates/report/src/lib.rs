@@ -30,7 +30,7 @@ pub mod write;
 use std::path::PathBuf;
 
 use cover::Cover;
-use cvtcycle_config::Problem;
+use cvtcycle_config::{Problem, Problems};
 use document::Document;
 use found::{Found, find};
 
@@ -44,10 +44,10 @@ pub fn report(
     dirs: &[PathBuf],
     with: &[PathBuf],
     cover: Option<&str>,
-) -> Result<Document, Vec<Problem>> {
+) -> Result<Document, Problems> {
     let cover = cover.map(Cover::read).transpose();
-    let looked: Vec<Result<Found, Vec<Problem>>> = dirs.iter().map(|dir| find(dir, with)).collect();
-    let mut problems: Vec<Problem> = cover.as_ref().err().cloned().unwrap_or_default();
+    let looked: Vec<Result<Found, Problems>> = dirs.iter().map(|dir| find(dir, with)).collect();
+    let mut problems: Problems = cover.as_ref().err().cloned().unwrap_or_default();
     problems.extend(
         looked
             .iter()
@@ -64,7 +64,7 @@ pub fn report(
             "a study stands beside one run, not beside {} and another one",
             other.display()
         );
-        return Err(vec![found::problem(first, &message, hint)]);
+        return Err(found::problem(first, &message, hint).into());
     }
     let pair: Vec<Found> = looked.into_iter().flatten().collect();
     let one = |problem: Problem| vec![problem];
@@ -74,11 +74,9 @@ pub fn report(
         [Found::Run(a), Found::Run(b)] => compare::document(a, b)?,
         _ => {
             let hint = "two directories are compared if both are runs; a study stands beside a run by --with";
-            return Err(vec![found::problem(
-                &dirs[dirs.len() - 1],
-                "this is no pair of runs",
-                hint,
-            )]);
+            return Err(
+                found::problem(&dirs[dirs.len() - 1], "this is no pair of runs", hint).into(),
+            );
         }
     };
     if let Ok(Some(cover)) = cover {

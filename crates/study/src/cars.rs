@@ -3,9 +3,9 @@
 use std::sync::{Arc, OnceLock};
 
 use super::plan::{Acts, Base, Cars, Factor, FactorValue, FactorValues, Plan};
-use cvtcycle_config::Problem;
 use cvtcycle_config::setup::blueprint::{Blueprint, Slot};
 use cvtcycle_config::setup::{Options, Setup};
+use cvtcycle_config::{Problem, Problems};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Largest number of combinations of words of a car: each keeps its documents in memory.
@@ -56,7 +56,7 @@ pub struct StudyCar {
     pub word: String,
     pub(super) bindings: Vec<Binding>,
     options: Options,
-    variants: Vec<OnceLock<Result<Variant, Vec<Problem>>>>,
+    variants: Vec<OnceLock<Result<Variant, Problems>>>,
 }
 
 impl StudyCar {
@@ -105,17 +105,17 @@ impl StudyCar {
         self.variants[index]
             .get_or_init(|| self.make(index, factors))
             .as_ref()
-            .map_err(Vec::as_slice)
+            .map_err(|problems| &**problems)
     }
 
     /// The unchanged car, and the baselines that its file names.
     ///
     /// # Errors
     /// The problems of its files and of the factors' keys.
-    pub(super) fn check_base(&self, factors: &[Factor]) -> Result<Vec<String>, Vec<Problem>> {
+    pub(super) fn check_base(&self, factors: &[Factor]) -> Result<Vec<String>, Problems> {
         match self.variant(0, factors) {
             Ok(variant) => Ok(variant.setup.baselines.clone()),
-            Err(problems) => Err(problems.to_vec()),
+            Err(problems) => Err(problems.to_vec().into()),
         }
     }
 
@@ -126,7 +126,7 @@ impl StudyCar {
             .map(|variant| &variant.setup)
     }
 
-    fn make(&self, index: usize, factors: &[Factor]) -> Result<Variant, Vec<Problem>> {
+    fn make(&self, index: usize, factors: &[Factor]) -> Result<Variant, Problems> {
         let options = self.options_of(index, factors);
         let (blueprint, setup) = Blueprint::load(&self.word, super::prepare::VEHICLE, &options)?;
         let mut variant = Variant {
@@ -151,13 +151,11 @@ impl StudyCar {
                 };
                 variant.unknown.push((
                     index,
-                    Problem {
-                        place,
-                        key: factor.key.clone(),
-                        message,
-                        hint,
-                        ..problem
-                    },
+                    problem
+                        .at(place)
+                        .key(factor.key.clone())
+                        .message(message)
+                        .hint(hint),
                 ));
                 None
             }));
@@ -254,15 +252,14 @@ pub fn text(value: &FactorValue) -> Arc<str> {
 }
 
 fn too_many(factor: &Factor) -> Problem {
-    Problem {
-        place: factor.place.clone(),
-        key: factor.key.clone(),
-        allowed: format!("at most {MOST_VARIANTS} combinations of words of one car"),
-        message: format!(
-            "with `{}` the words of the factors have too many combinations",
-            factor.key
-        ),
-        hint: "give fewer words, or split the plan".into(),
-        ..Problem::default()
-    }
+    Problem::too_large(format!(
+        "with `{}` the words of the factors have too many combinations",
+        factor.key
+    ))
+    .at(factor.place.clone())
+    .key(factor.key.clone())
+    .allowed(format!(
+        "at most {MOST_VARIANTS} combinations of words of one car"
+    ))
+    .hint("give fewer words, or split the plan")
 }

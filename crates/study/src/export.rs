@@ -60,10 +60,8 @@ impl Format {
                 "the ending of {} does not say in which format to write",
                 path.display()
             );
-            Problem {
-                allowed: "a name that ends in .csv, .parquet or .xlsx".to_owned(),
-                ..problem(path, &message, "for example --out runs.csv")
-            }
+            problem(path, &message, "for example --out runs.csv")
+                .allowed("a name that ends in .csv, .parquet or .xlsx")
         })
     }
 }

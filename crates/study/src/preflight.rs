@@ -2,10 +2,10 @@
 
 use super::cars::{Binding, StudyCar, Variant, words};
 use super::plan::{Acts, Distribution, Factor, FactorValue, FactorValues, Plan};
-use cvtcycle_config::{Place, Problem};
+use cvtcycle_config::{Place, Problem, Problems};
 
 /// Notes the problems of a factor: a key that a car does not know, values that its files do not allow.
-pub(super) fn factor(plan: &Plan, index: usize, cars: &[StudyCar], problems: &mut Vec<Problem>) {
+pub(super) fn factor(plan: &Plan, index: usize, cars: &[StudyCar], problems: &mut Problems) {
     let factor = &plan.factors[index];
     let mut reached = false;
     for car in cars {
@@ -22,10 +22,7 @@ pub(super) fn factor(plan: &Plan, index: usize, cars: &[StudyCar], problems: &mu
             None,
             "the study has no baseline, so no car has this factor",
         );
-        problems.push(Problem {
-            hint: "name baselines, or give `cars = \"subject\"`".into(),
-            ..problem
-        });
+        problems.push(problem.hint("name baselines, or give `cars = \"subject\"`"));
     }
 }
 
@@ -38,7 +35,7 @@ pub(super) fn resolved(acts: Acts, base: f64, number: f64) -> f64 {
     }
 }
 
-fn numbers(plan: &Plan, index: usize, car: &StudyCar, acts: Acts, problems: &mut Vec<Problem>) {
+fn numbers(plan: &Plan, index: usize, car: &StudyCar, acts: Acts, problems: &mut Problems) {
     let factor = &plan.factors[index];
     // The car itself has been checked before.
     let Ok(variant) = car.variant(0, &plan.factors) else {
@@ -129,37 +126,38 @@ fn of_value(
     } else {
         problem.hint
     };
-    Problem {
-        place: place(factor, entry),
-        key: factor.key.clone(),
-        value: number.to_string(),
-        allowed: problem.allowed,
-        message: format!(
-            "{}: {value}{unit}{by} is not possible: {}",
-            car.name, problem.message
-        ),
-        hint,
-    }
+    Problem::invalid(format!(
+        "{}: {value}{unit}{by} is not possible: {}",
+        car.name, problem.message
+    ))
+    .at(place(factor, entry))
+    .key(factor.key.clone())
+    .value(number.to_string())
+    .allowed(problem.allowed)
+    .hint(hint)
 }
 
-fn variants(plan: &Plan, index: usize, car: &StudyCar, stride: usize, problems: &mut Vec<Problem>) {
+fn variants(plan: &Plan, index: usize, car: &StudyCar, stride: usize, problems: &mut Problems) {
     let factor = &plan.factors[index];
     for (k, word) in words(factor).iter().enumerate() {
         let Err(found) = car.variant((k + 1) * stride, &plan.factors) else {
             continue;
         };
         for problem in found {
-            problems.push(Problem {
-                place: if problem.place.line > 0 && !problem.place.file.starts_with("--set") {
-                    problem.place.clone()
-                } else {
-                    place(factor, Some(k))
-                },
-                key: factor.key.clone(),
-                value: word.to_string(),
-                message: format!("{}: {}", car.name, problem.message),
-                ..problem.clone()
-            });
+            problems.push(
+                problem
+                    .clone()
+                    .at(
+                        if problem.place.line > 0 && !problem.place.file.starts_with("--set") {
+                            problem.place.clone()
+                        } else {
+                            place(factor, Some(k))
+                        },
+                    )
+                    .key(factor.key.clone())
+                    .value(word.to_string())
+                    .message(format!("{}: {}", car.name, problem.message)),
+            );
         }
     }
 }
@@ -193,12 +191,9 @@ fn extremes(plan: &Plan, index: usize) -> Vec<(Option<usize>, f64)> {
 }
 
 fn at(factor: &Factor, entry: Option<usize>, message: &str) -> Problem {
-    Problem {
-        place: place(factor, entry),
-        key: factor.key.clone(),
-        message: message.to_owned(),
-        ..Problem::default()
-    }
+    Problem::invalid(message)
+        .at(place(factor, entry))
+        .key(factor.key.clone())
 }
 
 fn place(factor: &Factor, entry: Option<usize>) -> Place {

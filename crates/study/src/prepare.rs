@@ -7,9 +7,9 @@ use super::cars::{StudyCar, is_words};
 use super::outputs::{EXCESS, FUEL, Output, outputs, phase_excess, phase_fuel};
 use super::plan::{Keep, Plan};
 use super::table::{Column, Kind};
-use cvtcycle_config::Problem;
 use cvtcycle_config::cycle::{self, Cycle};
 use cvtcycle_config::setup::is_path;
+use cvtcycle_config::{Problem, Problems};
 use cvtcycle_model::drive::components;
 use cvtcycle_output::Component;
 use cvtcycle_output::columns::{self, columns_for};
@@ -54,13 +54,13 @@ impl Study {
     ///
     /// # Errors
     /// All problems.
-    pub fn prepare(plan: Plan) -> Result<Self, Vec<Problem>> {
+    pub fn prepare(plan: Plan) -> Result<Self, Problems> {
         let folder = Path::new(&plan.file)
             .parent()
             .filter(|_| is_path(&plan.file))
             .map(Path::to_path_buf)
             .unwrap_or_default();
-        let mut problems = Vec::new();
+        let mut problems = Problems::new();
         let cars = cars(&plan, &folder, &mut problems);
         let cycles = cycles(&plan, &folder, &mut problems);
         let Some(points) = plan.design.points(&plan.factors) else {
@@ -147,7 +147,7 @@ impl Study {
         self.columns.iter().position(|column| column.name == name)
     }
 
-    fn unknown_analysed(&self) -> Vec<Problem> {
+    fn unknown_analysed(&self) -> Problems {
         let known: Vec<&str> = self.output_names().collect();
         let unknown = self
             .plan
@@ -168,18 +168,16 @@ impl Study {
                     &format!("there is no number named `{name}` in a run's row"),
                     "",
                 );
-                Problem {
-                    value: name.clone(),
-                    hint: format!("{hint}docs/plan_format.md names them"),
-                    ..problem
-                }
+                problem
+                    .value(name.clone())
+                    .hint(format!("{hint}docs/plan_format.md names them"))
             })
             .collect()
     }
 }
 
-fn dedup(problems: Vec<Problem>) -> Vec<Problem> {
-    let mut list: Vec<Problem> = Vec::new();
+fn dedup(problems: Problems) -> Problems {
+    let mut list = Problems::new();
     for problem in problems {
         if !list.contains(&problem) {
             list.push(problem);
@@ -190,13 +188,10 @@ fn dedup(problems: Vec<Problem>) -> Vec<Problem> {
 
 /// A problem of a key of the plan's head.
 pub(super) fn of_plan(plan: &Plan, key: &str, message: &str, hint: &str) -> Problem {
-    Problem {
-        place: plan.places.of(key).clone(),
-        key: key.to_owned(),
-        message: message.to_owned(),
-        hint: hint.to_owned(),
-        ..Problem::default()
-    }
+    Problem::invalid(message)
+        .at(plan.places.of(key).clone())
+        .key(key)
+        .hint(hint)
 }
 
 /// A file that the plan names, seen from the current directory.
@@ -209,7 +204,7 @@ pub(super) fn beside(folder: &Path, word: &str) -> String {
 }
 
 /// A car's file as the study cites it.
-fn cars(plan: &Plan, folder: &Path, problems: &mut Vec<Problem>) -> Vec<StudyCar> {
+fn cars(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<StudyCar> {
     let mut cars: Vec<StudyCar> = Vec::new();
     let subject = beside(folder, &plan.base.vehicle);
     let own = add(&subject, "vehicle", true, plan, &mut cars, problems);
@@ -234,13 +229,13 @@ fn add(
     subject: bool,
     plan: &Plan,
     cars: &mut Vec<StudyCar>,
-    problems: &mut Vec<Problem>,
+    problems: &mut Problems,
 ) -> Vec<String> {
     let stem = Path::new(word)
         .file_stem()
         .map_or_else(|| word.to_owned(), |s| s.to_string_lossy().into_owned());
     let name = unique(&stem, cars);
-    let made = StudyCar::new(&name, word, subject, plan).map_err(|problem| vec![problem]);
+    let made = StudyCar::new(&name, word, subject, plan).map_err(Problems::from);
     match made.and_then(|car| {
         car.check_base(&plan.factors)
             .map(|baselines| (car, baselines))
@@ -263,7 +258,7 @@ fn in_plan(plan: &Plan, key: &str, problem: Problem) -> Problem {
     } else {
         problem.place.clone()
     };
-    Problem { place, ..problem }
+    problem.at(place)
 }
 
 fn unique(name: &str, cars: &[StudyCar]) -> String {
@@ -278,7 +273,7 @@ fn unique(name: &str, cars: &[StudyCar]) -> String {
 }
 
 /// The plan's cycle, or those of its factor.
-fn cycles(plan: &Plan, folder: &Path, problems: &mut Vec<Problem>) -> Vec<Cycle> {
+fn cycles(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<Cycle> {
     let factor = plan.factors.iter().find(|factor| factor.key == "cycle");
     let words: Vec<Arc<str>> = factor.map_or_else(Vec::new, super::cars::words);
     let mut list = Vec::new();
@@ -294,20 +289,15 @@ fn cycles(plan: &Plan, folder: &Path, problems: &mut Vec<Problem>) -> Vec<Cycle>
                     .map(|factor| factor.places.nth("values", k - 1).clone());
                 let place = place.unwrap_or_else(|| of_plan(plan, "cycle", "", "").place);
                 // What is wrong within a file stands there, with a line or without.
-                problems.extend(found.into_iter().map(
-                    |problem| match problem.place.file.as_str() {
-                        "cycle" if is_path(&word) => Problem {
-                            place: place.clone(),
-                            hint: "a path in a plan begins at the plan's folder".into(),
-                            ..problem
-                        },
-                        "cycle" => Problem {
-                            place: place.clone(),
-                            ..problem
-                        },
+                problems.extend(found.into_iter().map(|problem| {
+                    match problem.place.file.as_str() {
+                        "cycle" if is_path(&word) => problem
+                            .at(place.clone())
+                            .hint("a path in a plan begins at the plan's folder"),
+                        "cycle" => problem.at(place.clone()),
                         _ => problem,
-                    },
-                ));
+                    }
+                }));
             }
         }
     }

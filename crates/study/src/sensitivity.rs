@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::blueprint::{Bench, Blueprint, Slot};
 use cvtcycle_config::setup::{Options, Setup};
-use cvtcycle_config::{Problem, unit_of};
+use cvtcycle_config::{Problems, unit_of};
 use cvtcycle_model::drive::{Conditions, drive};
 use cvtcycle_output::record::{Effect, Sensitivity};
 use cvtcycle_output::summary::Driven;
@@ -42,7 +42,7 @@ pub fn sensitivity(
     cars: &[Named],
     cycle: &Cycle,
     conditions: &Conditions,
-) -> Result<Sensitivity, Vec<Problem>> {
+) -> Result<Sensitivity, Problems> {
     let conditions = Conditions {
         keep_rows: false,
         ..*conditions

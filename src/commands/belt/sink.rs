@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 
-use cvtcycle::config::Problem;
+use cvtcycle::config::{Problem, Problems};
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::study::points::{
     CASE, FLAGS, FORMULATION, NUMBERS, OUTPUTS, STATUS, Solved, Take, name, output_names,
@@ -28,14 +28,14 @@ impl Place {
         Place::Spool(BufWriter::new(spooled_tempfile(IN_MEMORY)))
     }
 
-    fn put(&mut self, text: &str) -> Result<(), Vec<Problem>> {
+    fn put(&mut self, text: &str) -> Result<(), Problems> {
         match self {
             Place::File(file) => file
                 .write_all(text.as_bytes())
-                .map_err(|error| vec![file.cannot_write(&error)]),
+                .map_err(|error| file.cannot_write(&error).into()),
             Place::Spool(spool) => spool
                 .write_all(text.as_bytes())
-                .map_err(|error| vec![unspooled(&error)]),
+                .map_err(|error| unspooled(&error).into()),
         }
     }
 }
@@ -61,12 +61,12 @@ impl Offer {
 }
 
 impl Take for Offer {
-    fn begin(&mut self, with_case: bool) -> Result<(), Vec<Problem>> {
+    fn begin(&mut self, with_case: bool) -> Result<(), Problems> {
         self.sink = Some(Sink::new(self.file.take(), self.json, with_case)?);
         Ok(())
     }
 
-    fn put(&mut self, case: &str, row: &Solved) -> Result<(), Vec<Problem>> {
+    fn put(&mut self, case: &str, row: &Solved) -> Result<(), Problems> {
         self.sink
             .as_mut()
             .map_or(Ok(()), |sink| sink.put(case, row))
@@ -84,7 +84,7 @@ pub struct Sink {
 }
 
 impl Sink {
-    fn new(file: Option<OutputFile>, json: bool, with_case: bool) -> Result<Self, Vec<Problem>> {
+    fn new(file: Option<OutputFile>, json: bool, with_case: bool) -> Result<Self, Problems> {
         let csv = file.map(|file| Place::File(Box::new(file)));
         let csv = if csv.is_none() && !json {
             Some(Place::spool())
@@ -106,7 +106,7 @@ impl Sink {
     }
 
     /// Adds a row.
-    pub fn put(&mut self, case: &str, row: &Solved) -> Result<(), Vec<Problem>> {
+    pub fn put(&mut self, case: &str, row: &Solved) -> Result<(), Problems> {
         if let Some(csv) = &mut self.csv {
             self.line.clear();
             csv_line(&mut self.line, self.with_case.then_some(case), row);
@@ -124,12 +124,9 @@ impl Sink {
     }
 
     /// Gives the file its name and sends the rest to standard output, JSON after its `head` (an object without rows).
-    pub fn finish(
-        self,
-        head: &serde_json::Map<String, serde_json::Value>,
-    ) -> Result<(), Vec<Problem>> {
+    pub fn finish(self, head: &serde_json::Map<String, serde_json::Value>) -> Result<(), Problems> {
         match self.csv {
-            Some(Place::File(file)) => drop(file.commit().map_err(|problem| vec![problem])?),
+            Some(Place::File(file)) => drop(file.commit()?),
             Some(Place::Spool(spool)) => send(spool, "", "")?,
             None => {}
         }
@@ -210,12 +207,12 @@ fn push(line: &mut String, number: f64) {
 }
 
 /// Sends what was kept aside to standard output.
-fn send(spool: BufWriter<SpooledTempFile>, before: &str, after: &str) -> Result<(), Vec<Problem>> {
+fn send(spool: BufWriter<SpooledTempFile>, before: &str, after: &str) -> Result<(), Problems> {
     let kept = spool
         .into_inner()
         .map_err(io::IntoInnerError::into_error)
         .and_then(|mut kept| kept.seek(SeekFrom::Start(0)).map(|_| kept));
-    let mut kept = kept.map_err(|error| vec![unspooled(&error)])?;
+    let mut kept = kept.map_err(|error| unspooled(&error))?;
     stream::to_stdout(|out| {
         out.write_all(before.as_bytes())?;
         io::copy(&mut kept, out)?;

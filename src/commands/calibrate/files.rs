@@ -1,6 +1,6 @@
 //! The files of a calibration.
 
-use cvtcycle::config::Problem;
+use cvtcycle::config::Problems;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::charts::calibration::calibration_pictures;
 use cvtcycle::study::fit::fitted;
@@ -20,16 +20,15 @@ pub fn write(
     plan: &Plan,
     outcome: &Outcome,
     date: &str,
-) -> Result<Written, Vec<Problem>> {
+) -> Result<Written, Problems> {
     for (name, bytes) in all(plan, outcome, date)? {
-        dir.write(&name, |out| out.write_all(&bytes))
-            .map_err(|problem| vec![problem])?;
+        dir.write(&name, |out| out.write_all(&bytes))?;
     }
-    Written::commit(dir).map_err(|problem| vec![problem])
+    Written::commit(dir).map_err(Problems::from)
 }
 
 /// Names and contents: the fitted files first.
-fn all(plan: &Plan, outcome: &Outcome, date: &str) -> Result<Vec<(String, Vec<u8>)>, Vec<Problem>> {
+fn all(plan: &Plan, outcome: &Outcome, date: &str) -> Result<Vec<(String, Vec<u8>)>, Problems> {
     let fitted = fitted::files(plan, outcome, date)?;
     let mut files: Vec<(String, Vec<u8>)> = fitted
         .into_iter()

@@ -1,7 +1,7 @@
 //! Words to a checked grid on a bench.
 
 use cvtcycle::config::setup::{self, Options, Setup};
-use cvtcycle::config::{Bound, Problem};
+use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::model::bench::{Bench, solvable_ratios};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
@@ -11,7 +11,7 @@ use cvtcycle::output::losses::{Axis, LossColumn, LossGrid, MOST_POINTS, columns}
 
 use super::Args;
 use crate::args::ranges::{values, values_or_words};
-use crate::args::{self as inputs, Problems, bad_value};
+use crate::args::{self as inputs, bad_value};
 use crate::print::problem;
 
 const SPEED: Bound = Bound::open_low(0.0, 10_000.0);
@@ -41,7 +41,7 @@ impl Plan {
 }
 
 /// Reads all arguments.
-pub fn plan(args: &Args) -> Result<Plan, Vec<Problem>> {
+pub fn plan(args: &Args) -> Result<Plan, Problems> {
     let mut problems = Problems::default();
     let formulation = problems.take(inputs::word(
         "--formulation",
@@ -104,7 +104,7 @@ pub fn plan(args: &Args) -> Result<Plan, Vec<Problem>> {
     let out = args
         .out
         .as_ref()
-        .map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
+        .map(|dir| OutputDir::create(dir, args.force).map_err(Problems::from));
     let out = out.and_then(|dir| problems.take(dir));
     problems.finish()?;
     let Some(setup) = setup else {
@@ -221,7 +221,7 @@ fn no_belt(args: &Args, formulation: Option<Formulation>, problems: &mut Problem
 }
 
 /// Gears, all where none is named.
-fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Vec<Problem>> {
+fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Problems> {
     let all = format!("1..{count}");
     // A range of gears goes by ones.
     let by_ones = |part: &str| {
@@ -239,7 +239,7 @@ fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Vec<Problem>> {
         "",
     )?;
     let bad = |x: &&f64| x.fract().abs() > 0.0;
-    let problems: Vec<Problem> = found
+    let problems: Problems = found
         .iter()
         .filter(bad)
         .map(|x| {
@@ -337,15 +337,13 @@ fn too_many(grid: &LossGrid) -> Problem {
         .map(|(option, v)| format!("{option} {}", v.len()))
         .collect();
     let message = format!("the grid has {:.0} points", grid.size());
-    Problem {
-        allowed: format!("at most {MOST_POINTS} points"),
-        ..problem(
-            "losses",
-            &message,
-            &format!(
-                "take larger steps or do it in parts; values given: {}",
-                counts.join(", ")
-            ),
-        )
-    }
+    problem(
+        "losses",
+        &message,
+        &format!(
+            "take larger steps or do it in parts; values given: {}",
+            counts.join(", ")
+        ),
+    )
+    .allowed(format!("at most {MOST_POINTS} points"))
 }

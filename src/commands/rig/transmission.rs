@@ -6,7 +6,7 @@ mod text;
 
 use cvtcycle::config::rig::{OIL, PREFIX, TORQUE};
 use cvtcycle::config::setup::{self, Options, Setup};
-use cvtcycle::config::{Bound, Problem, to_si};
+use cvtcycle::config::{Bound, Problem, Problems, to_si};
 use cvtcycle::model::bench::transmission::{
     self as rig, Conditions, Loop, Plan, SteadyPoint, StripDown, TwoBoxes,
 };
@@ -18,7 +18,7 @@ use cvtcycle::output::Flags;
 use cvtcycle::output::files::OutputDir;
 
 use crate::args::ranges::{values, values_or_words};
-use crate::args::{self as inputs, Offering, Problems, bad_value};
+use crate::args::{self as inputs, Offering, bad_value};
 use crate::commands::Context;
 use crate::commands::run::{files::Written, formulations};
 use crate::print::{Answer, FAILED, Reply, json_text};
@@ -136,7 +136,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     let failed = failures(&job, &found);
     let json = json_text(&json::summary(&job, &found, &failed))?;
     let written = match job.out.take() {
-        Some(dir) => files::write(dir, &json, &job, &found).map_err(|problem| vec![problem])?,
+        Some(dir) => files::write(dir, &json, &job, &found)?,
         None => Written::default(),
     };
     let code = if failed.is_empty() { 0 } else { FAILED };
@@ -191,7 +191,7 @@ fn run(job: &Job) -> Found {
     found
 }
 
-fn job(args: &Args) -> Result<Job, Vec<Problem>> {
+fn job(args: &Args) -> Result<Job, Problems> {
     let mut problems = Problems::default();
     let test = problems.take(inputs::word("--test", &args.test, &TESTS));
     let formulation = problems.take(inputs::word(
@@ -227,7 +227,7 @@ fn job(args: &Args) -> Result<Job, Vec<Problem>> {
     let out = args
         .out
         .as_ref()
-        .map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
+        .map(|dir| OutputDir::create(dir, args.force).map_err(Problems::from));
     let out = out.and_then(|dir| problems.take(dir));
     problems.finish()?;
     match (test, setup, conditions, plan) {

@@ -106,7 +106,7 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     let out = plan.out.take();
     let curves = plan.curves();
     let written = match out {
-        Some(dir) => Some(files::write(dir, &plan, &curves).map_err(|problem| vec![problem])?),
+        Some(dir) => Some(files::write(dir, &plan, &curves)?),
         None => None,
     };
     let mut stdout = String::new();

@@ -1,11 +1,11 @@
 //! The cars of a run: the subject with its overrides, then the baselines.
 
 use cvtcycle::config::setup::{self, Options, Setup};
-use cvtcycle::config::{Document, Place, Problem};
+use cvtcycle::config::{Document, Place, Problem, Problems};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 
 use super::Args;
-use crate::args::{Problems, beside};
+use crate::args::beside;
 use crate::print::problem;
 
 /// A car under the name that it bears in this run.
@@ -96,16 +96,14 @@ fn renamed(problem: Problem, option: &str, assignment: &str) -> Problem {
     if problem.place.file != format!("--set {assignment}") {
         return problem;
     }
-    Problem {
-        place: Place {
-            file: format!("{option} {assignment}"),
-            ..problem.place
-        },
-        ..problem
-    }
+    let place = Place {
+        file: format!("{option} {assignment}"),
+        ..problem.place.clone()
+    };
+    problem.at(place)
 }
 
-fn one(word: &str, option: &str, options: &Options, args: &Args) -> Result<Setup, Vec<Problem>> {
+fn one(word: &str, option: &str, options: &Options, args: &Args) -> Result<Setup, Problems> {
     setup::load(word, option, options).map_err(|problems| {
         let for_all = |mut problem: Problem| {
             if let Some(assignment) = args

@@ -1,6 +1,6 @@
 //! What the run was made from, for `inputs.json`.
 
-use cvtcycle::config::Problem;
+use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::model::drive::Conditions;
 use cvtcycle::output::provenance::{car_record, cycle_record};
@@ -38,7 +38,7 @@ pub fn record(
     cycle: &Cycle,
     conditions: &Conditions,
     when: When,
-) -> Result<Record, Vec<Problem>> {
+) -> Result<Record, Problems> {
     let records = cars
         .iter()
         .map(|car| car_record(&car.name, &car.word, &car.options, &car.setup));

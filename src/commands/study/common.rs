@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use cvtcycle::config::Problem;
+use cvtcycle::config::{Problem, Problems};
 use cvtcycle::report::found::StudyFound;
 use cvtcycle::study::disk::DirSink;
 use cvtcycle::study::plan::Plan;
@@ -72,7 +72,7 @@ pub fn run(plan: Plan, common: &Common, context: Context) -> Reply {
             tempfile::Builder::new()
                 .prefix("cvtcycle-study-")
                 .tempdir()
-                .map_err(|e| vec![no_room(&e)])?,
+                .map_err(|e| no_room(&e))?,
         ),
     };
     let path = match (&common.out, &temporary) {
@@ -85,7 +85,7 @@ pub fn run(plan: Plan, common: &Common, context: Context) -> Reply {
         true => StudyDir::resume(&path, manifest.as_bytes(), plan_text),
         false => StudyDir::create(&path, manifest.as_bytes(), plan_text, common.force),
     };
-    let dir = dir.map_err(|problem| vec![problem])?;
+    let dir = dir?;
     match execute(&study, &dir, common)? {
         End::Complete => finish(&study, &dir, common, context),
         End::Stopped => Ok(stopped(&study, &dir, common)),
@@ -93,7 +93,7 @@ pub fn run(plan: Plan, common: &Common, context: Context) -> Reply {
 }
 
 /// More runs than the plan says need a word of the user.
-fn agreed(study: &Study, common: &Common) -> Result<(), Vec<Problem>> {
+fn agreed(study: &Study, common: &Common) -> Result<(), Problems> {
     let (runs, most) = (study.runs(), study.plan.most_runs);
     if runs <= most || common.yes {
         return Ok(());
@@ -104,10 +104,9 @@ fn agreed(study: &Study, common: &Common) -> Result<(), Vec<Problem>> {
         study.cars.len()
     );
     let hint = "run it with --yes, give fewer values or samples, or raise `most_runs` in the plan";
-    Err(vec![Problem {
-        allowed: format!("at most {most} runs without --yes"),
-        ..problem(&study.plan.file, &message, hint)
-    }])
+    Err(problem(&study.plan.file, &message, hint)
+        .allowed(format!("at most {most} runs without --yes"))
+        .into())
 }
 
 fn no_room(error: &std::io::Error) -> Problem {
@@ -118,15 +117,15 @@ fn no_room(error: &std::io::Error) -> Problem {
     )
 }
 
-fn execute(study: &Study, dir: &StudyDir, common: &Common) -> Result<End, Vec<Problem>> {
+fn execute(study: &Study, dir: &StudyDir, common: &Common) -> Result<End, Problems> {
     let threads = common.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|e| {
-        vec![problem(
+        problem(
             "--threads",
             &format!("cannot start threads: {e}"),
             "give fewer",
-        )]
+        )
     })?;
     let missing: std::collections::BTreeSet<u64> =
         dir.missing().into_iter().map(|part| part as u64).collect();
@@ -141,18 +140,16 @@ fn execute(study: &Study, dir: &StudyDir, common: &Common) -> Result<End, Vec<Pr
     let progress = Progress::new(left * study.cars.len() as u64, common.quiet);
     let end = pool.install(|| study.execute(&done, &DirSink::new(study, dir), &progress));
     progress.finish();
-    end.map_err(|problem| vec![problem])
+    end.map_err(Problems::from)
 }
 
 fn finish(study: &Study, dir: &StudyDir, common: &Common, context: Context) -> Reply {
     let outline = Outline::of(study);
-    let found = dir.study().map_err(|problem| vec![problem])?;
-    let study = StudyFound::of(outline, found).map_err(|problem| vec![problem])?;
+    let found = dir.study()?;
+    let study = StudyFound::of(outline, found)?;
     let mut reply = reply(&study, common.json, common.quiet, context)?;
     if common.out.is_some() {
-        let written = dir
-            .finish(&results::files(&study)?)
-            .map_err(|problem| vec![problem])?;
+        let written = dir.finish(&results::files(&study)?)?;
         if !common.json && !common.quiet {
             reply.stdout += &text::written(dir.path(), &written);
         }

@@ -47,7 +47,7 @@ enum Table {
 
 /// Runs the command.
 pub fn answer(args: &Args) -> Reply {
-    written(args).map_err(|problem| vec![problem])
+    Ok(written(args)?)
 }
 
 fn written(args: &Args) -> Result<Answer, cvtcycle::config::Problem> {

@@ -1,6 +1,6 @@
 //! The files that a study writes when it is finished.
 
-use cvtcycle::config::Problem;
+use cvtcycle::config::Problems;
 use cvtcycle::report::found::StudyFound;
 use cvtcycle::report::study_pictures::study_pictures;
 
@@ -8,7 +8,7 @@ use super::csv_files;
 use crate::print::json_text;
 
 /// Files of a finished study: numbers and pictures.
-pub fn files(study: &StudyFound) -> Result<Vec<(String, Vec<u8>)>, Vec<Problem>> {
+pub fn files(study: &StudyFound) -> Result<Vec<(String, Vec<u8>)>, Problems> {
     let mut files = vec![(
         "statistics.json".to_owned(),
         json_text(&study.answer)?.into_bytes(),
@@ -17,7 +17,7 @@ pub fn files(study: &StudyFound) -> Result<Vec<(String, Vec<u8>)>, Vec<Problem>>
     let pictures = study
         .frame()
         .and_then(|frame| study_pictures(&study.answer, &frame, &study.warm_ups));
-    let pictures = pictures.map_err(|problem| vec![problem])?;
+    let pictures = pictures?;
     files.extend(
         pictures
             .into_iter()

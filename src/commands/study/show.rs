@@ -27,6 +27,6 @@ pub struct Args {
 
 /// Runs the command.
 pub fn answer(args: &Args, context: Context) -> Reply {
-    let study = StudyFound::open(&args.dir).map_err(|problem| vec![problem])?;
+    let study = StudyFound::open(&args.dir)?;
     reply(&study, args.json, args.quiet, context)
 }

@@ -66,14 +66,14 @@ fn problem(name: &str, text: &str) -> Problem {
     } else {
         "write, for example, constant_90"
     };
-    Problem {
-        place,
-        key: "--cycle".to_owned(),
-        value: name.to_owned(),
-        allowed: format!("constant_V with V in km/h, above 0 and up to {HIGHEST_KMH}"),
-        message: "this is not a constant speed the program can drive".to_owned(),
-        hint: hint.to_owned(),
-    }
+    Problem::invalid("this is not a constant speed the program can drive")
+        .at(place)
+        .key("--cycle")
+        .value(name)
+        .allowed(format!(
+            "constant_V with V in km/h, above 0 and up to {HIGHEST_KMH}"
+        ))
+        .hint(hint)
 }
 
 #[cfg(test)]

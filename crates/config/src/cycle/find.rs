@@ -3,20 +3,15 @@
 use super::{Cycle, constant_speed, embedded, names, read_csv};
 use crate::bounded::{self, Limit};
 use crate::setup::is_path;
-use crate::{Place, Problem, near};
+use crate::{Place, Problem, Problems, near};
 
 /// A cycle by name (`ece15_eudc`, `constant_90`), or from the CSV file at a path. `option` is cited where the word itself is bad.
 ///
 /// # Errors
 /// An unknown name with those like it, an unreadable file, or all problems of the file.
-pub fn find(option: &str, value: &str) -> Result<Cycle, Vec<Problem>> {
+pub fn find(option: &str, value: &str) -> Result<Cycle, Problems> {
     if let Some(constant) = constant_speed(value).filter(|_| !is_csv(value)) {
-        return constant.map_err(|problem| {
-            vec![Problem {
-                place: place(option),
-                ..problem
-            }]
-        });
+        return constant.map_err(|problem| problem.at(place(option)).into());
     }
     if let Some(found) = embedded(value) {
         return Ok(found);
@@ -35,16 +30,7 @@ pub fn find(option: &str, value: &str) -> Result<Cycle, Vec<Problem>> {
     } else {
         format!("`{value}`")
     };
-    Err(vec![Problem {
-        place: place(option),
-        key: option.to_owned(),
-        value: value.to_owned(),
-        allowed:
-            "a name of `cvtcycle list cycles`, constant_V with V in km/h, or the path of a CSV file"
-                .to_owned(),
-        message: format!("there is no cycle named {quoted}"),
-        hint: format!("{question}`cvtcycle list cycles` shows all; a path needs a / or an ending"),
-    }])
+    Err(Problem::unknown_name(format!("there is no cycle named {quoted}")).at(place(option)).key(option).value(value).allowed("a name of `cvtcycle list cycles`, constant_V with V in km/h, or the path of a CSV file").hint(format!("{question}`cvtcycle list cycles` shows all; a path needs a / or an ending")).into())
 }
 
 /// Whether a word is surely a file, though it may begin like the name of a constant speed.
@@ -57,7 +43,7 @@ pub fn is_csv(word: &str) -> bool {
 ///
 /// # Errors
 /// A problem of `option`: the words of the operating system, or more bytes than the limit.
-pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Vec<Problem>> {
+pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Problems> {
     bounded::read(path, limit).map_err(|error| {
         let hint = match error.kind() {
             std::io::ErrorKind::NotFound => {
@@ -66,14 +52,13 @@ pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Vec<Prob
             std::io::ErrorKind::IsADirectory => "name a file in that directory",
             _ => "check the path and its permissions",
         };
-        vec![Problem {
-            place: place(option),
-            key: option.to_owned(),
-            value: path.to_owned(),
-            allowed: error.allowed("a readable file"),
-            message: format!("cannot read `{path}`: {error}"),
-            hint: error.hint(hint).to_owned(),
-        }]
+        Problem::unreadable(format!("cannot read `{path}`: {error}"))
+            .at(place(option))
+            .key(option)
+            .value(path)
+            .allowed(error.allowed("a readable file"))
+            .hint(error.hint(hint))
+            .into()
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::mem::discriminant;
 
-use super::problems::{Complaint, Line, Problems};
+use super::problems::{Collector, Complaint, Line};
 use super::text::Field;
 
 /// Unit of the speed column.
@@ -113,7 +113,7 @@ impl Header {
     }
 
     /// Reads the column names. `None` where the rest of the file cannot be understood without them.
-    pub(super) fn read(line: Line<'_>, problems: &mut Problems<'_>) -> Option<Self> {
+    pub(super) fn read(line: Line<'_>, problems: &mut Collector<'_>) -> Option<Self> {
         let fields = problems.names(line)?;
         if fields.iter().all(|field| field.text.parse::<f64>().is_ok()) {
             let hint = "put the names above the numbers, for example time_s,speed_kmh";
@@ -137,7 +137,7 @@ impl Header {
         &self,
         line: Line<'_>,
         field: Field<'_>,
-        problems: &mut Problems<'_>,
+        problems: &mut Collector<'_>,
     ) -> Option<(Column, &'static str)> {
         let Some(&(name, column)) = COLUMNS.iter().find(|known| known.0 == field.text) else {
             problems.value(line, field, field.text, || unknown(field.text));
@@ -168,7 +168,7 @@ impl Header {
         None
     }
 
-    fn require(&self, line: Line<'_>, problems: &mut Problems<'_>) {
+    fn require(&self, line: Line<'_>, problems: &mut Collector<'_>) {
         if !self.has(Column::Time) {
             let hint = "name the column of the time in seconds time_s";
             problems.line(line, "time_s", || {
@@ -226,10 +226,10 @@ fn unknown(name: &str) -> Complaint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Problem;
+    use crate::Problems;
 
-    fn read(text: &str) -> (Option<Header>, Vec<Problem>) {
-        let mut problems = Problems::new("f.csv");
+    fn read(text: &str) -> (Option<Header>, Problems) {
+        let mut problems = Collector::new("f.csv");
         let header = Header::read(Line { number: 1, text }, &mut problems);
         (header, problems.finish())
     }

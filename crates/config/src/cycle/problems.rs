@@ -1,7 +1,7 @@
 //! Collecting the problems of a CSV file and saying where each stands.
 
 use super::text::{Field, decode, split};
-use crate::{Place, Problem};
+use crate::{Place, Problem, Problems};
 
 /// More than these help nobody; the rest is counted.
 const SHOWN: usize = 50;
@@ -62,19 +62,19 @@ impl Complaint {
 
 /// The problems found so far.
 #[derive(Debug)]
-pub struct Problems<'f> {
+pub struct Collector<'f> {
     file: &'f str,
-    list: Vec<Problem>,
+    list: Problems,
     more: usize,
 }
 
-impl<'f> Problems<'f> {
+impl<'f> Collector<'f> {
     /// None yet, of a file of that name.
     #[must_use]
     pub fn new(file: &'f str) -> Self {
         Self {
             file,
-            list: Vec::new(),
+            list: Problems::new(),
             more: 0,
         }
     }
@@ -258,19 +258,19 @@ impl<'f> Problems<'f> {
                 hint,
             },
         ) = build(self.file);
-        self.list.push(Problem {
-            place,
-            key: key.to_owned(),
-            value,
-            allowed,
-            message,
-            hint,
-        });
+        self.list.push(
+            Problem::invalid(message)
+                .at(place)
+                .key(key)
+                .value(value)
+                .allowed(allowed)
+                .hint(hint),
+        );
     }
 
     /// All of them; beyond the first 50, one last entry says how many more there are.
     #[must_use]
-    pub fn finish(mut self) -> Vec<Problem> {
+    pub fn finish(mut self) -> Problems {
         if self.more > 0 {
             self.list.push(Problem::more(self.file, self.more));
         }
@@ -325,7 +325,7 @@ mod tests {
             number: 7,
             text: "é,ü,12",
         };
-        let mut problems = Problems::new("f.csv");
+        let mut problems = Collector::new("f.csv");
         problems.value(
             line,
             Field {
@@ -350,7 +350,7 @@ mod tests {
     #[test]
     fn long_lines_and_values_are_kept_off_the_screen() {
         let text = "ö".repeat(1000);
-        let mut problems = Problems::new("f.csv");
+        let mut problems = Collector::new("f.csv");
         problems.value(
             Line {
                 number: 1,
@@ -377,7 +377,7 @@ mod tests {
     fn a_long_line_and_many_columns_are_refused() {
         for (length, taken) in [(LONGEST_LINE - 1, true), (LONGEST_LINE, false)] {
             let text = format!("a,b\n{}\n1,2\n", "1".repeat(length));
-            let mut problems = Problems::new("f.csv");
+            let mut problems = Collector::new("f.csv");
             assert_eq!(
                 problems.lines(text.as_bytes()).map(Iterator::count),
                 taken.then_some(3)
@@ -390,7 +390,7 @@ mod tests {
         }
         for (columns, taken) in [(MOST_COLUMNS, true), (MOST_COLUMNS + 1, false)] {
             let text = vec!["a"; columns].join(",");
-            let mut problems = Problems::new("f.csv");
+            let mut problems = Collector::new("f.csv");
             assert_eq!(
                 problems
                     .names(Line {
@@ -411,7 +411,7 @@ mod tests {
             (51, Some("1 more problem is not shown")),
             (250, Some("200 more problems are not shown")),
         ] {
-            let mut problems = Problems::new("f.csv");
+            let mut problems = Collector::new("f.csv");
             for _ in 0..count {
                 problems.file(Complaint::default());
             }

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use super::gears::{GearColumns, GearCommand, commands};
 use super::header::{Column, Header};
-use super::problems::Problems;
+use super::problems::Collector;
 use super::row::Row;
 use super::table::Table;
 use super::{Cycle, Interval, Trace, Weighting};
-use crate::Problem;
+use crate::Problems;
 
 /// Reads a drive cycle from the bytes of a CSV file called `file`.
 ///
@@ -19,7 +19,7 @@ use crate::Problem;
 ///
 /// # Errors
 /// All problems of the file at once, in the order of its lines, each with its place; after 50 the rest is counted in one last entry.
-pub fn read_csv(file: &str, bytes: &[u8]) -> Result<Cycle, Vec<Problem>> {
+pub fn read_csv(file: &str, bytes: &[u8]) -> Result<Cycle, Problems> {
     let mut phases = Vec::new();
     let manual = read_trace(file, bytes, &mut phases)?;
     let path = Path::new(file);
@@ -43,8 +43,8 @@ pub(super) fn read_trace(
     file: &str,
     bytes: &[u8],
     phases: &mut Vec<String>,
-) -> Result<Trace, Vec<Problem>> {
-    let mut problems = Problems::new(file);
+) -> Result<Trace, Problems> {
+    let mut problems = Collector::new(file);
     let Some(mut lines) = problems.lines(bytes) else {
         return Err(problems.finish());
     };

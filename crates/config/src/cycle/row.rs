@@ -2,7 +2,7 @@
 
 use super::gears::Note;
 use super::header::{Column, Header, SpeedUnit};
-use super::problems::{Cell, Complaint, Line, Problems};
+use super::problems::{Cell, Collector, Complaint, Line};
 use super::text::Field;
 use crate::readable;
 
@@ -33,7 +33,7 @@ pub(super) fn read<'t>(
     fields: &[Field<'t>],
     header: &Header,
     phases: &mut Vec<String>,
-    problems: &mut Problems<'_>,
+    problems: &mut Collector<'_>,
 ) -> Row {
     let mut row = Row::default();
     for (&field, &column) in fields.iter().zip(&header.columns) {
@@ -58,7 +58,7 @@ pub(super) fn read<'t>(
     row
 }
 
-fn check_note(line: Line<'_>, row: &Row, problems: &mut Problems<'_>) {
+fn check_note(line: Line<'_>, row: &Row, problems: &mut Collector<'_>) {
     if let Note::Gear(gear) = row.note
         && gear > 0
         && row.gear.max(row.gear_5).max(row.gear_6) == 0
@@ -74,7 +74,7 @@ fn check_note(line: Line<'_>, row: &Row, problems: &mut Problems<'_>) {
     }
 }
 
-fn number(cell: &Cell<'_>, allowed: &str, problems: &mut Problems<'_>) -> Option<f64> {
+fn number(cell: &Cell<'_>, allowed: &str, problems: &mut Collector<'_>) -> Option<f64> {
     let text = cell.field.text;
     let (message, hint) = match text.parse::<f64>() {
         Ok(value) if value.is_finite() => return Some(value),
@@ -97,7 +97,7 @@ fn number(cell: &Cell<'_>, allowed: &str, problems: &mut Problems<'_>) -> Option
     None
 }
 
-fn speed(cell: &Cell<'_>, unit: SpeedUnit, problems: &mut Problems<'_>) -> Option<f64> {
+fn speed(cell: &Cell<'_>, unit: SpeedUnit, problems: &mut Collector<'_>) -> Option<f64> {
     let value = number(cell, "a speed from 0 to 300 km/h", problems)?;
     let kmh = unit.kmh(value);
     if (0.0..=HIGHEST_KMH).contains(&kmh) {
@@ -121,7 +121,12 @@ fn speed(cell: &Cell<'_>, unit: SpeedUnit, problems: &mut Problems<'_>) -> Optio
     None
 }
 
-fn phase(cell: &Cell<'_>, last: u16, phases: &mut Vec<String>, problems: &mut Problems<'_>) -> u16 {
+fn phase(
+    cell: &Cell<'_>,
+    last: u16,
+    phases: &mut Vec<String>,
+    problems: &mut Collector<'_>,
+) -> u16 {
     let name = cell.field.text;
     if let Some(found) = phases.iter().position(|known| known == name) {
         return u16::try_from(found).unwrap_or(last);
@@ -150,7 +155,7 @@ fn phase(cell: &Cell<'_>, last: u16, phases: &mut Vec<String>, problems: &mut Pr
     last
 }
 
-fn gear(cell: &Cell<'_>, highest: u8, problems: &mut Problems<'_>) -> u8 {
+fn gear(cell: &Cell<'_>, highest: u8, problems: &mut Collector<'_>) -> u8 {
     let text = cell.field.text;
     // other programs write whole numbers as 3.0
     let value = text
@@ -171,7 +176,7 @@ fn gear(cell: &Cell<'_>, highest: u8, problems: &mut Problems<'_>) -> u8 {
     0
 }
 
-fn note(cell: &Cell<'_>, highest: u8, problems: &mut Problems<'_>) -> Note {
+fn note(cell: &Cell<'_>, highest: u8, problems: &mut Collector<'_>) -> Note {
     match Note::parse(cell.field.text) {
         Some(Note::Declutched(gear)) if gear > highest => {}
         Some(note) => return note,
@@ -190,7 +195,7 @@ fn note(cell: &Cell<'_>, highest: u8, problems: &mut Problems<'_>) -> Note {
     Note::Blank
 }
 
-fn grade(cell: &Cell<'_>, divisor: f64, problems: &mut Problems<'_>) -> f64 {
+fn grade(cell: &Cell<'_>, divisor: f64, problems: &mut Collector<'_>) -> f64 {
     let limit = STEEPEST * divisor;
     let allowed = format!("-{limit} to {limit}");
     let Some(value) = number(cell, &allowed, problems) else {
@@ -210,7 +215,7 @@ fn grade(cell: &Cell<'_>, divisor: f64, problems: &mut Problems<'_>) -> f64 {
     0.0
 }
 
-fn engine_off(cell: &Cell<'_>, problems: &mut Problems<'_>) -> bool {
+fn engine_off(cell: &Cell<'_>, problems: &mut Collector<'_>) -> bool {
     match cell.field.text {
         "1" => true,
         "0" => false,

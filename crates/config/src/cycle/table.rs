@@ -3,7 +3,7 @@
 use std::mem::discriminant;
 
 use super::header::{Column, Header, SpeedUnit};
-use super::problems::{Cell, Complaint, Line, Problems};
+use super::problems::{Cell, Collector, Complaint, Line};
 use super::row::{self, Row};
 use super::text::Field;
 use crate::readable;
@@ -19,7 +19,7 @@ const MOST_ROWS: usize = 2_000_000;
 pub(super) struct Table<'a> {
     header: &'a Header,
     phases: &'a mut Vec<String>,
-    problems: Problems<'a>,
+    problems: Collector<'a>,
     rows: Vec<Row>,
     // the row above as far as it could be read: neighbours are compared one to the next, so that one bad row
     // does not condemn all that follow
@@ -33,9 +33,9 @@ impl<'a> Table<'a> {
     pub(super) fn read<'t>(
         header: &'a Header,
         phases: &'a mut Vec<String>,
-        problems: Problems<'a>,
+        problems: Collector<'a>,
         lines: impl Iterator<Item = Line<'t>>,
-    ) -> (Vec<Row>, Problems<'a>) {
+    ) -> (Vec<Row>, Collector<'a>) {
         let mut table = Self {
             header,
             phases,

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::inputs::{FLUIDS, Input, Inputs};
 use super::{Options, Setup, other_box};
-use crate::{Document, Draft, KeyInfo, KeyPath, Place, Problem, Reader, unit_of};
+use crate::{Document, Draft, KeyInfo, KeyPath, Problem, Problems, Reader, unit_of};
 
 /// The parsed and checked files of one car.
 #[derive(Clone, Debug)]
@@ -67,7 +67,7 @@ impl Blueprint {
         word: &str,
         option: &str,
         options: &Options,
-    ) -> Result<(Blueprint, Setup), Vec<Problem>> {
+    ) -> Result<(Blueprint, Setup), Problems> {
         let inputs = Inputs::gather(word, option, options)?;
         let setup = inputs.read()?;
         let known = |info: &KeyInfo| KeyInfo {
@@ -130,14 +130,7 @@ impl Blueprint {
 
     /// A key that the unchanged files do not ask for.
     fn elsewhere(&self, key: &str, own: &str, file: usize) -> Result<KeyInfo, Problem> {
-        let unset = |problem: Problem| Problem {
-            place: Place {
-                file: format!("--set {key}"),
-                ..Place::default()
-            },
-            value: String::new(),
-            ..problem
-        };
+        let unset = |problem: Problem| problem.in_file(format!("--set {key}")).value(String::new());
         if let Some(document) = &self.inputs.files[0].document
             && let Some(stranger) =
                 other_box::strangers(document, &[format!("{key}=0")], &self.inputs.frame.name).pop()
@@ -169,10 +162,8 @@ impl Blueprint {
             .err()
             .unwrap_or_default();
         let problem = problems.into_iter().find(|problem| problem.key == own);
-        Err(unset(problem.unwrap_or_else(|| Problem {
-            key: key.to_owned(),
-            message: format!("unknown key `{key}`"),
-            ..Problem::default()
+        Err(unset(problem.unwrap_or_else(|| {
+            Problem::unknown_key(format!("unknown key `{key}`")).key(key)
         })))
     }
 
@@ -197,17 +188,14 @@ impl Blueprint {
 }
 
 fn no_number(key: &str, info: KeyInfo) -> Problem {
-    Problem {
-        place: Place {
-            file: format!("--set {key}"),
-            ..Place::default()
-        },
-        key: key.to_owned(),
-        value: info.value,
-        allowed: info.allowed,
-        message: format!("`{key}` holds no single number"),
-        hint: format!("give its values as texts, each what would stand after --set {key}="),
-    }
+    Problem::invalid(format!("`{key}` holds no single number"))
+        .in_file(format!("--set {key}"))
+        .key(key)
+        .value(info.value)
+        .allowed(info.allowed)
+        .hint(format!(
+            "give its values as texts, each what would stand after --set {key}="
+        ))
 }
 
 /// The files with numbers set as by `--set`, in order: index of the file, key without prefix, value.
@@ -315,7 +303,7 @@ impl Bench {
     /// What is wrong with the car, in the words that [`super::load`] has for `--set KEY=NUMBER`; nothing if all is well. Takes as long as
     /// an ordinary reading.
     #[must_use]
-    pub fn problems(&self) -> Vec<Problem> {
+    pub fn problems(&self) -> Problems {
         let of_file = |(file, draft): (usize, &Draft)| {
             draft
                 .numbers()

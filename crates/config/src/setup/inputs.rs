@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::shelf::Shelf;
 use super::{Files, Kind, Options, Setup, is_path, load_lubricant, other_box, stem, text_of};
-use crate::{Document, KeyInfo, Problem, Reader};
+use crate::{Document, KeyInfo, Problems, Reader};
 use cvtcycle_model::drive::{Car, Vehicle};
 use cvtcycle_model::engine::Engine;
 use cvtcycle_model::fluid::Lubricant;
@@ -25,7 +25,7 @@ pub(super) const FLUIDS: [&str; 2] = ["lubricant.", "engine_oil."];
 pub(super) struct Input {
     /// None if it could not be read.
     pub document: Option<Document>,
-    pub problems: Vec<Problem>,
+    pub problems: Problems,
 }
 
 /// The files of a car with the overrides put in, before they are checked.
@@ -52,7 +52,7 @@ impl Inputs {
     ///
     /// # Errors
     /// Problems that leave nothing to read: no such vehicle, no TOML, overrides of a box that the vehicle does not have.
-    pub fn gather(word: &str, option: &str, options: &Options) -> Result<Self, Vec<Problem>> {
+    pub fn gather(word: &str, option: &str, options: &Options) -> Result<Self, Problems> {
         let (file, text, disk) = text_of(word, Kind::Vehicle, option)?;
         Inputs::of_text(&file, &text, Box::new(disk), options)
     }
@@ -66,7 +66,7 @@ impl Inputs {
         text: &str,
         files: Box<dyn Files>,
         options: &Options,
-    ) -> Result<Self, Vec<Problem>> {
+    ) -> Result<Self, Problems> {
         let mut document = Document::parse(file, text)?;
         let name = stem(file.strip_prefix("embedded:").unwrap_or(file));
         let folder = Path::new(file).parent().unwrap_or(Path::new(""));
@@ -99,7 +99,7 @@ impl Inputs {
             fluids[k] = match fluid_document(&words[k], option, &options.set, FLUIDS[k]) {
                 Ok(document) => Input {
                     document: Some(document),
-                    problems: Vec::new(),
+                    problems: Problems::new(),
                 },
                 Err(problems) => Input {
                     document: None,
@@ -136,12 +136,12 @@ impl Inputs {
     ///
     /// # Errors
     /// All problems of its files and of the overrides.
-    pub fn read(&self) -> Result<Setup, Vec<Problem>> {
+    pub fn read(&self) -> Result<Setup, Problems> {
         let documents = self.files.each_ref().map(|input| input.document.as_ref());
         let reader = |document| Reader::new(document).with_files(&self.frame.files);
         let readers = documents.map(|document| document.map(reader));
         let assembled = self.frame.assemble(&readers);
-        let mut problems = Vec::new();
+        let mut problems = Problems::new();
         let mut keys = Vec::new();
         for (k, (reader, input)) in readers.into_iter().zip(&self.files).enumerate() {
             let answer = match (k, reader) {
@@ -155,7 +155,7 @@ impl Inputs {
             };
             match answer {
                 Ok(mut read) => keys.append(&mut read),
-                Err(mut found) => problems.append(&mut found),
+                Err(found) => problems.extend(found),
             }
             problems.extend(input.problems.iter().cloned());
         }
@@ -173,10 +173,10 @@ impl Frame {
     ///
     /// # Errors
     /// Not for what is wrong with the car.
-    pub fn assemble(&self, readers: &[Option<Reader<'_>>; 3]) -> Result<Setup, Vec<Problem>> {
+    pub fn assemble(&self, readers: &[Option<Reader<'_>>; 3]) -> Result<Setup, Problems> {
         let [vehicle, oil, engine_oil] = readers;
         let Some(vehicle) = vehicle else {
-            return Err(Vec::new());
+            return Err(Problems::new());
         };
         let root = vehicle.root();
         let Head {
@@ -213,7 +213,7 @@ pub(super) fn fluid_document(
     option: &str,
     sets: &[String],
     prefix: &str,
-) -> Result<Document, Vec<Problem>> {
+) -> Result<Document, Problems> {
     let (file, text, _) = text_of(word, Kind::Lubricant, option)?;
     let mut document = Document::parse(&file, &text)?;
     apply(&mut document, sets, |key| {
@@ -227,7 +227,7 @@ pub(super) fn fluid_document(
 ///
 /// # Errors
 /// All problems.
-pub(super) fn fluid_keys(reader: Reader, prefix: &str) -> Result<Vec<KeyInfo>, Vec<Problem>> {
+pub(super) fn fluid_keys(reader: Reader, prefix: &str) -> Result<Vec<KeyInfo>, Problems> {
     let keys = reader
         .finish()
         .map_err(|problems| as_given(problems, prefix))?;
@@ -241,8 +241,8 @@ pub(super) fn fluid_keys(reader: Reader, prefix: &str) -> Result<Vec<KeyInfo>, V
 }
 
 /// Problems of overrides of a fluid, with the option as the user wrote it: the fluid's own keys have no prefix.
-fn as_given(mut problems: Vec<Problem>, prefix: &str) -> Vec<Problem> {
-    for problem in &mut problems {
+fn as_given(mut problems: Problems, prefix: &str) -> Problems {
+    for problem in problems.iter_mut() {
         if let Some(assignment) = problem.place.file.strip_prefix("--set ") {
             problem.place.file = format!("--set {prefix}{assignment}");
         }
@@ -255,9 +255,9 @@ fn apply(
     document: &mut Document,
     sets: &[String],
     pick: impl Fn(&str) -> Option<String>,
-) -> Result<(), Vec<Problem>> {
+) -> Result<(), Problems> {
     let assignments = sets.iter().filter_map(|set| pick(set));
-    let problems: Vec<Problem> = assignments
+    let problems: Problems = assignments
         .filter_map(|assignment| document.set(&assignment).err())
         .collect();
     if problems.is_empty() {

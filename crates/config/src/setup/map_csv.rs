@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::cycle::problems::{Complaint, Line, Problems};
+use crate::cycle::problems::{Collector, Complaint, Line};
 use crate::cycle::text::Field;
-use crate::{Problem, near};
+use crate::{Problems, near};
 
 /// One column: name, and range in its own unit.
 pub(super) struct Column {
@@ -51,8 +51,8 @@ pub(super) struct Read {
 ///
 /// # Errors
 /// All problems with line, column and value; after 50 the rest is counted in one last entry.
-pub(super) fn read(file: &str, bytes: &[u8], form: &Form) -> Result<Read, Vec<Problem>> {
-    let mut problems = Problems::new(file);
+pub(super) fn read(file: &str, bytes: &[u8], form: &Form) -> Result<Read, Problems> {
+    let mut problems = Collector::new(file);
     let Some(mut lines) = problems.lines(bytes) else {
         return Err(problems.finish());
     };
@@ -116,7 +116,7 @@ pub(super) fn read(file: &str, bytes: &[u8], form: &Form) -> Result<Read, Vec<Pr
 fn header<'f>(
     line: Line,
     form: &Form<'f>,
-    problems: &mut Problems,
+    problems: &mut Collector,
 ) -> Option<Vec<Option<&'f Column>>> {
     let fields = problems.names(line)?;
     let mut columns: Vec<Option<&Column>> = Vec::new();
@@ -181,7 +181,7 @@ fn unknown(name: &str, form: &Form) -> Complaint {
     Complaint::new("there is no such column", form.all(), hint)
 }
 
-fn number(line: Line, field: Field, column: &Column, problems: &mut Problems) -> f64 {
+fn number(line: Line, field: Field, column: &Column, problems: &mut Collector) -> f64 {
     let (message, hint) = match field.text.parse::<f64>() {
         // turns -0 into 0
         Ok(x) if column.low <= x && x <= column.high => return x + 0.0,
@@ -216,7 +216,7 @@ fn number(line: Line, field: Field, column: &Column, problems: &mut Problems) ->
 }
 
 /// Looks for combinations of the axes' values that stand twice, or never. What the file says is repeated in its own units.
-fn full(form: &Form, columns: &[Option<&Column>], rows: &[Row], problems: &mut Problems) {
+fn full(form: &Form, columns: &[Option<&Column>], rows: &[Row], problems: &mut Collector) {
     let Some((value, _)) = form.columns.split_last() else {
         return;
     };

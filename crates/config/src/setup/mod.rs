@@ -18,7 +18,7 @@ pub use embedded::{embedded_lubricants, embedded_map, embedded_rigs, embedded_ve
 use std::sync::Arc;
 
 use crate::bounded::{self, Refused};
-use crate::{Bound, Document, KeyInfo, Place, Problem, Reader, decode, near};
+use crate::{Bound, Document, KeyInfo, Problem, Problems, Reader, decode, near};
 use cvtcycle_model::drive::Vehicle;
 use cvtcycle_model::fluid::Lubricant;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
@@ -143,11 +143,7 @@ pub fn is_path(word: &str) -> bool {
 ///
 /// # Errors
 /// Unknown name (with the near ones), unreadable path, binary or empty file.
-pub fn text_of(
-    word: &str,
-    kind: Kind,
-    option: &str,
-) -> Result<(String, String, Disk), Vec<Problem>> {
+pub fn text_of(word: &str, kind: Kind, option: &str) -> Result<(String, String, Disk), Problems> {
     if !is_path(word) {
         if let Some((name, text)) = kind.embedded().iter().find(|(n, _)| *n == word) {
             return Ok((
@@ -156,7 +152,7 @@ pub fn text_of(
                 Disk::default(),
             ));
         }
-        return Err(vec![unknown_name(word, kind, option)]);
+        return Err(unknown_name(word, kind, option).into());
     }
     let path = std::path::Path::new(word);
     // What no option names stands in a file, whose author may be a stranger.
@@ -166,7 +162,7 @@ pub fn text_of(
     } else {
         bounded::read_file(path, bounded::TOML)
     };
-    let bytes = read.map_err(|error| vec![unreadable(word, option, &error)])?;
+    let bytes = read.map_err(|error| unreadable(word, option, &error))?;
     let folder = path
         .parent()
         .map(std::path::Path::to_path_buf)
@@ -182,34 +178,24 @@ fn unknown_name(word: &str, kind: Kind, option: &str) -> Problem {
     } else {
         format!("did you mean {}? ", close.join(", "))
     };
-    Problem {
-        place: Place {
-            file: option.to_owned(),
-            ..Place::default()
-        },
-        key: option.to_owned(),
-        value: word.to_owned(),
-        allowed: format!("{}, or the path of a TOML file", names.join(", ")),
-        message: format!("there is no {} named `{word}`", kind.word()),
-        hint: format!(
+    Problem::unknown_name(format!("there is no {} named `{word}`", kind.word()))
+        .in_file(option)
+        .key(option)
+        .value(word)
+        .allowed(format!("{}, or the path of a TOML file", names.join(", ")))
+        .hint(format!(
             "{hint}`cvtcycle list {}s` shows all; a path needs a / or an ending",
             kind.word()
-        ),
-    }
+        ))
 }
 
 fn unreadable(word: &str, option: &str, why: &Refused) -> Problem {
-    Problem {
-        place: Place {
-            file: option.to_owned(),
-            ..Place::default()
-        },
-        key: option.to_owned(),
-        value: word.to_owned(),
-        allowed: why.allowed("a readable file"),
-        message: format!("cannot read `{word}`: {why}"),
-        hint: why.hint("check the path and its permissions").into(),
-    }
+    Problem::unreadable(format!("cannot read `{word}`: {why}"))
+        .in_file(option)
+        .key(option)
+        .value(word)
+        .allowed(why.allowed("a readable file"))
+        .hint(why.hint("check the path and its permissions"))
 }
 
 fn stem(word: &str) -> String {
@@ -227,7 +213,7 @@ pub fn load_lubricant(
     option: &str,
     sets: &[String],
     prefix: &str,
-) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
+) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
     read_document(
         &inputs::fluid_document(word, option, sets, prefix)?,
         word,
@@ -239,7 +225,7 @@ fn read_document(
     document: &Document,
     word: &str,
     prefix: &str,
-) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
+) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
     let reader = Reader::new(document);
     let lubricant = Lubricant::from_values(&reader.root(), &stem(word));
     Ok((lubricant, inputs::fluid_keys(reader, prefix)?))
@@ -249,7 +235,7 @@ fn read_document(
 ///
 /// # Errors
 /// All problems of the vehicle file, of its fluids and of the overrides.
-pub fn load(word: &str, option: &str, options: &Options) -> Result<Setup, Vec<Problem>> {
+pub fn load(word: &str, option: &str, options: &Options) -> Result<Setup, Problems> {
     inputs::Inputs::gather(word, option, options)?.read()
 }
 
@@ -263,7 +249,7 @@ pub fn read(
     text: &str,
     files: Box<dyn Files>,
     options: &Options,
-) -> Result<Setup, Vec<Problem>> {
+) -> Result<Setup, Problems> {
     inputs::Inputs::of_text(file, text, files, options)?.read()
 }
 
@@ -271,7 +257,7 @@ pub fn read(
 ///
 /// # Errors
 /// As there.
-pub fn read_lubricant(file: &str, text: &str) -> Result<(Lubricant, Vec<KeyInfo>), Vec<Problem>> {
+pub fn read_lubricant(file: &str, text: &str) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
     read_document(&Document::parse(file, text)?, file, "")
 }
 

@@ -1,27 +1,19 @@
 //! Overrides that reach for the other kind of box: said once, instead of a whole box of missing keys.
 
-use crate::{Document, Place, Problem, Reader};
+use crate::{Document, Problem, Problems, Reader};
 
 /// Overrides of keys of a kind of box that the vehicle does not have.
-pub(super) fn strangers(document: &Document, sets: &[String], name: &str) -> Vec<Problem> {
+pub(super) fn strangers(document: &Document, sets: &[String], name: &str) -> Problems {
     let reader = Reader::new(document);
     let own = reader.root().table("transmission").names();
-    let problem = |set: &String, there: &str, asked: &str| Problem {
-        place: Place {
-            file: format!("--set {set}"),
-            ..Place::default()
-        },
-        key: set.split('=').next().unwrap_or_default().trim().to_owned(),
-        value: set.clone(),
-        allowed: format!("keys of [transmission.{there}]"),
-        message: format!(
+    let problem = |set: &String, there: &str, asked: &str| {
+        Problem::invalid(format!(
             "{name} has a {} and no {}",
             box_word(there),
             box_word(asked)
-        ),
-        hint: format!(
+        )).in_file(format!("--set {set}")).key(set.split('=').next().unwrap_or_default().trim()).value(set.clone()).allowed(format!("keys of [transmission.{there}]")).hint(format!(
             "`cvtcycle show {name}` prints its keys; --set reaches the vehicle alone, --set-all its baselines too"
-        ),
+        ))
     };
     let of = |set: &String| {
         let kind = set

@@ -7,7 +7,7 @@ const CLAMPS: [&str; 2] = ["torque_following", "map"];
 fn clamp(
     document: &Document,
     default: Option<&'static str>,
-) -> (&'static str, Result<Vec<KeyInfo>, Vec<Problem>>) {
+) -> (&'static str, Result<Vec<KeyInfo>, Problems>) {
     let reader = Reader::new(document);
     let (option, section) = reader.root().choose("clamp", &CLAMPS, default, "Clamping");
     assert_eq!(section.path(), format!("clamp.{option}"));

@@ -3,8 +3,8 @@
 use super::{History, MOST_PHASES, MOST_STEPS, SHORTER, flags_of, is_number, known, missing};
 use crate::Flags;
 use crate::columns::column;
-use cvtcycle_config::Problem;
-use cvtcycle_config::cycle::problems::{Complaint, Line, Problems};
+use cvtcycle_config::Problems;
+use cvtcycle_config::cycle::problems::{Collector, Complaint, Line};
 use cvtcycle_config::cycle::text::Field;
 
 /// What helps with a trace that cannot be read.
@@ -41,8 +41,8 @@ impl History {
     /// All problems at once, each with its line and column: the file is no text, a column that every trace has is missing or there
     /// twice, a row has too few or too many values, a cell is no number, a flag is unknown, time does not rise, there are no rows.
     /// After 50 the rest is counted in one last entry.
-    pub fn read_csv(file_name: &str, bytes: &[u8]) -> Result<Self, Vec<Problem>> {
-        let mut problems = Problems::new(file_name);
+    pub fn read_csv(file_name: &str, bytes: &[u8]) -> Result<Self, Problems> {
+        let mut problems = Collector::new(file_name);
         let Some(mut lines) = problems.lines(bytes) else {
             return Err(problems.finish());
         };
@@ -66,7 +66,7 @@ impl History {
 }
 
 /// Reads the names of the columns; none where the lines below them could not be understood.
-fn header<'t>(line: Line<'t>, problems: &mut Problems) -> Option<Header<'t>> {
+fn header<'t>(line: Line<'t>, problems: &mut Collector) -> Option<Header<'t>> {
     let fields = problems.names(line)?;
     let columns = known(fields.iter().map(|field| field.text));
     if columns.is_empty() {
@@ -131,7 +131,7 @@ fn header<'t>(line: Line<'t>, problems: &mut Problems) -> Option<Header<'t>> {
 fn rows<'t>(
     header: &Header,
     lines: impl Iterator<Item = Line<'t>>,
-    problems: &mut Problems,
+    problems: &mut Collector,
 ) -> History {
     let mut history = History::empty(
         &known(header.names.iter().copied())
@@ -209,7 +209,7 @@ enum Least {
     Above(f64),
 }
 
-fn number(line: Line, field: Field, name: &str, least: Least, problems: &mut Problems) -> f64 {
+fn number(line: Line, field: Field, name: &str, least: Least, problems: &mut Collector) -> f64 {
     if field.text.is_empty() {
         if let Least::Above(_) = least {
             problems.value(line, field, name, || {
@@ -250,7 +250,7 @@ fn word(line: Line, field: Field) -> String {
     }
 }
 
-fn flags_in(line: Line, field: Field, problems: &mut Problems) -> Flags {
+fn flags_in(line: Line, field: Field, problems: &mut Collector) -> Flags {
     flags_of(field.text).unwrap_or_else(|word| {
         let names: Vec<&str> = Flags::NAMES.iter().map(|(_, name)| *name).collect();
         let hint = format!("known are {}", names.join(", "));

@@ -11,7 +11,7 @@ use super::source::Source;
 use super::store::{Cars, Store, View, once};
 use cvtcycle_config::rig::PREFIX;
 use cvtcycle_config::setup::{Options, Setup, load};
-use cvtcycle_config::{KeyInfo, Problem};
+use cvtcycle_config::{KeyInfo, Problem, Problems};
 use cvtcycle_model::bench::transmission::Conditions;
 
 /// The vehicle that is validated: sources that name none are computed for it.
@@ -136,18 +136,15 @@ pub fn judge(
     files: &[File],
     subject: &Subject,
     wanted: impl Fn(&Row) -> bool,
-) -> Result<Report, Vec<Problem>> {
+) -> Result<Report, Problems> {
     let cars = FromFiles {
         subject,
         setups: RefCell::default(),
     };
     let store = Store::new(&cars);
-    let mut problems = Vec::new();
+    let mut problems = Problems::new();
     // Once for all: what is wrong with the subject is no problem of a file.
-    if let Err(mut p) = load(&subject.vehicle, "--vehicle", &cars.options(None)) {
-        problems.append(&mut p);
-        return Err(problems);
-    }
+    load(&subject.vehicle, "--vehicle", &cars.options(None))?;
     cars.conditions(None)?;
     for source in files.iter().flat_map(|file| &file.sources) {
         let loaded = cars
@@ -160,11 +157,10 @@ pub fn judge(
                 } else {
                     source.place.clone()
                 };
-                let problem = Problem {
-                    place,
-                    message: format!("source `{}`: {}", source.name, problem.message),
-                    ..problem.clone()
-                };
+                let problem = problem
+                    .clone()
+                    .at(place)
+                    .message(format!("source `{}`: {}", source.name, problem.message));
                 if !problems.contains(&problem) {
                     problems.push(problem);
                 }
@@ -195,7 +191,7 @@ pub fn judge(
 }
 
 /// A car, or what is wrong with its files.
-type Loaded = Result<Rc<Setup>, Vec<Problem>>;
+type Loaded = Result<Rc<Setup>, Problems>;
 
 /// Cars from their files, each read once.
 struct FromFiles<'a> {
@@ -230,7 +226,7 @@ impl FromFiles<'_> {
 }
 
 impl Cars for FromFiles<'_> {
-    fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Vec<Problem>> {
+    fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Problems> {
         let vehicle = source
             .and_then(|source| source.vehicle.as_deref())
             .unwrap_or(&self.subject.vehicle);
@@ -241,10 +237,7 @@ impl Cars for FromFiles<'_> {
         })
     }
 
-    fn conditions(
-        &self,
-        source: Option<&Source>,
-    ) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>> {
+    fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Problems> {
         let own = source
             .map(|source| source.set.as_slice())
             .unwrap_or_default();
@@ -254,12 +247,14 @@ impl Cars for FromFiles<'_> {
 }
 
 fn judged(view: &View, file: &File, row: &Row) -> Result<Judged, Problem> {
-    let problem = |what: &str, why: String| Problem {
-        place: row.place.clone(),
-        key: what.to_owned(),
-        value: row.compute_text.clone(),
-        message: format!("row {}: `{what}` cannot be computed: {why}", row.id),
-        ..Problem::default()
+    let problem = |what: &str, why: String| {
+        Problem::invalid(format!(
+            "row {}: `{what}` cannot be computed: {why}",
+            row.id
+        ))
+        .at(row.place.clone())
+        .key(what)
+        .value(row.compute_text.clone())
     };
     view.begin();
     let computed = row

@@ -8,7 +8,7 @@ use super::names::FileNames;
 use super::rule::{Printed, Verdict};
 use super::source::{self, Source};
 use cvtcycle_config::setup::{catalogue, is_path};
-use cvtcycle_config::{Bound, Document, Place, Problem, Reader, Section, append, near};
+use cvtcycle_config::{Bound, Document, Place, Problem, Problems, Reader, Section, near};
 
 /// A named tolerance.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,9 +106,9 @@ pub struct File {
 ///
 /// # Errors
 /// All problems of all files.
-pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File>, Vec<Problem>> {
+pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File>, Problems> {
     let keys = catalogue::known_names();
-    let mut problems = Vec::new();
+    let mut problems = Problems::new();
     let lent = file(common.0, common.1, &Lent::default(), keys, &mut problems);
     let lent = Lent {
         tolerances: lent.tolerances,
@@ -131,15 +131,12 @@ pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File
                 row.id, first.id_place.file, first.id_place.line
             );
             let (place, value) = (row.id_place.clone(), row.id.clone());
-            let twice = Problem {
-                place,
-                key: "id".into(),
-                value,
-                message,
-                hint: "ids are unique".into(),
-                ..Problem::default()
-            };
-            append(&mut problems, vec![twice]);
+            let twice = Problem::invalid(message)
+                .at(place)
+                .key("id")
+                .value(value)
+                .hint("ids are unique");
+            problems.append(twice.into());
         }
     }
     if problems.is_empty() {
@@ -156,7 +153,7 @@ struct Lent {
     sources: Vec<Source>,
 }
 
-fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec<Problem>) -> File {
+fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Problems) -> File {
     let mut read = File {
         name: name.to_owned(),
         tolerances: Vec::new(),
@@ -166,7 +163,7 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec
     let mut document = match Document::parse(name, text) {
         Ok(document) => document,
         Err(found) => {
-            append(problems, found);
+            problems.append(found);
             return read;
         }
     };
@@ -183,16 +180,10 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec
                 p.hint.clone()
             }
         };
-        append(
-            problems,
-            found
-                .into_iter()
-                .map(|p| Problem {
-                    hint: hint(&p),
-                    ..p
-                })
-                .collect(),
-        );
+        problems.append(found.map(|p| {
+            let hint = hint(&p);
+            p.hint(hint)
+        }));
     }
     // A path in a file is relative to that file.
     for named in read
@@ -229,13 +220,10 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Vec
                 if p.not_shown().is_some() {
                     p
                 } else {
-                    Problem {
-                        message: format!("{of}{}", p.message),
-                        ..p
-                    }
+                    p.with_context(&of)
                 }
             };
-            append(problems, found.into_iter().map(named).collect());
+            problems.append(found.map(named));
         }
         read.rows.push(row);
     }
@@ -473,16 +461,13 @@ pub fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
     } else {
         place
     };
-    Problem {
-        place,
-        key: key.to_owned(),
-        value: fault.word,
-        allowed: String::new(),
-        message: format!("`{key}`: {}", fault.message),
-        hint: if fault.hint.is_empty() {
+    Problem::invalid(format!("`{key}`: {}", fault.message))
+        .at(place)
+        .key(key)
+        .value(fault.word)
+        .hint(if fault.hint.is_empty() {
             GRAMMAR.to_owned()
         } else {
             fault.hint
-        },
-    }
+        })
 }

@@ -10,7 +10,7 @@ use super::source::{Kind, Source};
 use super::tables::{self, Driven};
 use cvtcycle_config::rig::PREFIX;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_config::{KeyInfo, Place, Problem};
+use cvtcycle_config::{KeyInfo, Place, Problem, Problems};
 use cvtcycle_model::bench::transmission::Conditions;
 
 /// Where the cars and the rig of the sources come from.
@@ -19,16 +19,13 @@ pub trait Cars {
     ///
     /// # Errors
     /// What is wrong with its files, or with its numbers.
-    fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Vec<Problem>>;
+    fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Problems>;
 
     /// What the transmission rig is set to, for a source.
     ///
     /// # Errors
     /// What is wrong with its values.
-    fn conditions(
-        &self,
-        source: Option<&Source>,
-    ) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>>;
+    fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Problems>;
 }
 
 /// The value for a key, made once.

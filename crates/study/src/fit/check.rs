@@ -2,17 +2,17 @@
 
 use super::model::Model;
 use super::plan::{self, Plan};
-use cvtcycle_config::Problem;
+use cvtcycle_config::Problems;
 
 /// Reads the plan that a word of the user means, and loads its cars.
 ///
 /// # Errors
 /// All problems of the plan, of its data files and of its cars.
-pub fn open(word: &str, option: &str) -> Result<Plan, Vec<Problem>> {
+pub fn open(word: &str, option: &str) -> Result<Plan, Problems> {
     let (plan, mut problems) = plan::gather(word, option)?;
     // Without a vehicle, and that is told already, every key would be unknown.
     if !plan.vehicle.is_empty() {
-        problems.append(&mut Model::new(&plan).err().unwrap_or_default());
+        problems.extend(Model::new(&plan).err().unwrap_or_default());
     }
     if problems.is_empty() {
         Ok(plan)

@@ -10,7 +10,7 @@ use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
 
 use super::outcome::{Outcome, Parameter};
 use super::plan::{Plan, problem};
-use cvtcycle_config::Problem;
+use cvtcycle_config::Problems;
 use cvtcycle_config::setup::{Kind, is_path, text_of};
 
 /// Significant digits of a fitted value, far beyond its standard error.
@@ -30,7 +30,7 @@ pub fn files(
     plan: &Plan,
     outcome: &Outcome,
     date: &str,
-) -> Result<Vec<(String, String)>, Vec<Problem>> {
+) -> Result<Vec<(String, String)>, Problems> {
     let (_, text, disk) = text_of(&plan.vehicle, Kind::Vehicle, "calibration.vehicle")?;
     let mut vehicle = parsed(plan, &text)?;
     beside(vehicle.as_item_mut(), &disk.folder);
@@ -122,16 +122,17 @@ pub fn files(
     Ok(written)
 }
 
-fn parsed(plan: &Plan, text: &str) -> Result<DocumentMut, Vec<Problem>> {
+fn parsed(plan: &Plan, text: &str) -> Result<DocumentMut, Problems> {
     // The model was loaded from it before.
     text.parse().map_err(|error| {
-        vec![problem(
+        problem(
             &plan.place,
             "vehicle",
             "",
             format!("the file cannot be changed: {error}"),
             "",
-        )]
+        )
+        .into()
     })
 }
 

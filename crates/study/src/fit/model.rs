@@ -19,7 +19,7 @@ use crate::check::source::Source;
 use cvtcycle_config::rig::PREFIX;
 use cvtcycle_config::setup::blueprint::{Bench, Blueprint, Slot};
 use cvtcycle_config::setup::{Options, Setup, load};
-use cvtcycle_config::{KeyInfo, Place, Problem};
+use cvtcycle_config::{KeyInfo, Place, Problem, Problems};
 use cvtcycle_model::bench::transmission::Conditions;
 
 /// What the readers say of an assignment, which in a plan is no option.
@@ -65,7 +65,7 @@ impl<'p> Model<'p> {
     ///
     /// # Errors
     /// What is wrong with its vehicle, keys, bounds and sources.
-    pub fn new(plan: &'p Plan) -> Result<Self, Vec<Problem>> {
+    pub fn new(plan: &'p Plan) -> Result<Self, Problems> {
         let mut model = Model {
             plan,
             parameters: Vec::new(),
@@ -76,14 +76,14 @@ impl<'p> Model<'p> {
             common: Vec::new(),
             pool: Mutex::default(),
         };
-        let mut problems: Vec<Problem> = model
+        let mut problems: Problems = model
             .car(None)
             .err()
             .unwrap_or_default()
             .into_iter()
             .map(|p| in_plan(plan, p))
             .collect();
-        problems.append(&mut model.free());
+        problems.extend(model.free());
         problems.extend(
             cvtcycle_config::rig::load(&plan.set)
                 .err()
@@ -94,7 +94,7 @@ impl<'p> Model<'p> {
         for source in used(plan) {
             let mut found = model.of_source(source, &problems);
             found.retain(|problem| !problems.contains(problem));
-            problems.append(&mut found);
+            problems.extend(found);
         }
         if !problems.is_empty() {
             return Err(problems);
@@ -195,7 +195,7 @@ impl<'p> Model<'p> {
         format!("{own} {vehicle} {:?}", self.options(source))
     }
 
-    fn car(&mut self, source: Option<&Source>) -> Result<(), Vec<Problem>> {
+    fn car(&mut self, source: Option<&Source>) -> Result<(), Problems> {
         let name = self.name_of(source);
         if self.by_options.contains_key(&name) || self.fixed.contains_key(&name) {
             return Ok(());
@@ -207,7 +207,7 @@ impl<'p> Model<'p> {
         }
         let (blueprint, setup) =
             Blueprint::load(&self.plan.vehicle, "calibration.vehicle", &options)?;
-        let mut problems: Vec<Problem> = Vec::new();
+        let mut problems = Problems::new();
         let mut slots = Vec::new();
         for free in &self.plan.parameters {
             match blueprint.slot(&free.key) {
@@ -222,18 +222,13 @@ impl<'p> Model<'p> {
                         ),
                         false => found.hint.clone(),
                     };
-                    let found = Problem { hint, ..found };
-                    let told = Problem {
-                        place: free.place.clone(),
-                        key: "key".into(),
-                        value: free.key.clone(),
-                        ..found
-                    };
+                    let found = found.hint(hint);
+                    let told = found
+                        .at(free.place.clone())
+                        .key("key")
+                        .value(free.key.clone());
                     problems.push(if told.allowed.is_empty() {
-                        Problem {
-                            allowed: allowed.into(),
-                            ..told
-                        }
+                        told.allowed(allowed)
                     } else {
                         told
                     });
@@ -255,7 +250,7 @@ impl<'p> Model<'p> {
     }
 
     /// Loads what a source needs; gives its problems, but those of the plan's own car, `known` already, only once.
-    fn of_source(&mut self, source: &Source, known: &[Problem]) -> Vec<Problem> {
+    fn of_source(&mut self, source: &Source, known: &[Problem]) -> Problems {
         let at = |found: Problem| {
             let place = if found.place.line > 0 {
                 found.place.clone()
@@ -266,17 +261,14 @@ impl<'p> Model<'p> {
                 "--lubricant" => "lubricant".to_owned(),
                 _ => found.key.clone(),
             };
-            Problem {
-                message: format!("source `{}`: {}", source.name, found.message),
-                ..assigned(Problem { key, ..found }, place)
-            }
+            assigned(found.key(key), place).with_context(&format!("source `{}`: ", source.name))
         };
         let is_new = |found: &Problem| {
             !known
                 .iter()
                 .any(|old| old.message == found.message && old.value == found.value)
         };
-        let mut problems: Vec<Problem> = Vec::new();
+        let mut problems = Problems::new();
         if source.vehicle.is_none() {
             problems.extend(self.held(&source.set, &source.place).into_iter().map(at));
             if source.lubricant.is_some()
@@ -316,7 +308,7 @@ impl<'p> Model<'p> {
     }
 
     /// Assignments that hold what is to be fitted.
-    fn held(&self, sets: &[String], place: &Place) -> Vec<Problem> {
+    fn held(&self, sets: &[String], place: &Place) -> Problems {
         let holds = |free: &&Free| {
             sets.iter().any(|set| {
                 set.split_once('=')
@@ -342,7 +334,7 @@ impl<'p> Model<'p> {
     }
 
     /// Checks the plan's parameters against the car and makes those of the fit.
-    fn free(&mut self) -> Vec<Problem> {
+    fn free(&mut self) -> Problems {
         let mut problems = self.held(&self.plan.set, &self.plan.places[3]);
         let Some(kind) = self.kinds.first() else {
             return problems;
@@ -379,10 +371,9 @@ impl<'p> Model<'p> {
                     } else {
                         &first.hint
                     };
-                    problems.push(Problem {
-                        value: value.to_string(),
-                        ..problem(place, word, &allowed, message, hint)
-                    });
+                    problems.push(
+                        problem(place, word, &allowed, message, hint).value(value.to_string()),
+                    );
                 }
             }
             let start = free.start.unwrap_or(slot.base());
@@ -496,24 +487,15 @@ fn in_plan(plan: &Plan, found: Problem) -> Problem {
         file if file.starts_with("--set") => (set, "set"),
         _ => return found,
     };
-    assigned(
-        Problem {
-            key: key.to_owned(),
-            ..found
-        },
-        place.clone(),
-    )
+    assigned(found.key(key), place.clone())
 }
 
 /// A problem moved to a place in the plan: there to the assignment of a list that is meant, where it stands in that line.
 fn assigned(found: Problem, place: Place) -> Problem {
     let assignment = found.place.file.strip_prefix("--set ").unwrap_or_default();
     let hint = found.hint.replace(AS_OPTION, "write \"table.key=VALUE\"");
-    Problem {
-        place: at_item(place, assignment),
-        hint,
-        ..found
-    }
+    let place = at_item(place, assignment);
+    found.at(place).hint(hint)
 }
 
 /// All sources that observations look at.

@@ -6,7 +6,7 @@ use super::model::{Answer, Model};
 use super::outcome::{self, Direction, Fold, Outcome, Residual, SCHEMA, Start, rms};
 use super::plan::{Measured, Plan, What, problem};
 use super::solve::{self, Bound, End, Fit, Options, Uncertainty, Watcher};
-use cvtcycle_config::Problem;
+use cvtcycle_config::Problems;
 
 /// Probability below which the data scatter more than their standard deviations say.
 const UNLIKELY: f64 = 0.01;
@@ -19,7 +19,7 @@ const FAR: f64 = 3.0;
 ///
 /// # Errors
 /// What is wrong with the plan's vehicle, keys, bounds and sources; a problem if the model has no answer at any start.
-pub fn calibrate(plan: &Plan, watcher: &dyn Watcher) -> Result<Outcome, Vec<Problem>> {
+pub fn calibrate(plan: &Plan, watcher: &dyn Watcher) -> Result<Outcome, Problems> {
     let model = Model::new(plan)?;
     let search = &plan.search;
     let options = Options {
@@ -35,7 +35,7 @@ pub fn calibrate(plan: &Plan, watcher: &dyn Watcher) -> Result<Outcome, Vec<Prob
         let mut whys: Vec<String> = if failure.starts.is_empty() { failure.reasons } else { whys.collect() };
         whys.sort();
         whys.dedup();
-        whys.into_iter().map(|why| problem(&plan.place, "", "", format!("the model has no answer: {why}"), hint)).collect::<Vec<Problem>>()
+        whys.into_iter().map(|why| problem(&plan.place, "", "", format!("the model has no answer: {why}"), hint)).collect::<Problems>()
     })?;
     let folds = if search.leave_out && plan.folds.len() > 1 && fit.end != End::Stopped {
         let groups: Vec<usize> = plan

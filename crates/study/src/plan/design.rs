@@ -2,7 +2,7 @@
 
 use super::{Cars, Design, Factor, FactorValues, Places, Plan, options};
 use crate::design::{MOST_SOBOL_DIMENSIONS, MOST_SOBOL_SAMPLES};
-use cvtcycle_config::{Bound, Problem, Section, readable, unit_of};
+use cvtcycle_config::{Bound, Problem, Problems, Section, readable, unit_of};
 
 /// Designs.
 const DESIGNS: [&str; 6] = [
@@ -83,8 +83,8 @@ pub(super) fn read(study: &Section, places: &mut Places) -> Design {
 }
 
 /// What is wrong between factors.
-pub(super) fn clashes(factors: &[Factor]) -> Vec<Problem> {
-    let mut problems = Vec::new();
+pub(super) fn clashes(factors: &[Factor]) -> Problems {
+    let mut problems = Problems::new();
     for (k, factor) in factors.iter().enumerate() {
         let overlaps = |other: &Factor| {
             other.cars == factor.cars || other.cars == Cars::All || factor.cars == Cars::All
@@ -118,33 +118,24 @@ fn problem(factor: &Factor, key: &str, message: &str, hint: &str) -> Problem {
     } else {
         factor.places.of(key)
     };
-    Problem {
-        place: place.clone(),
-        key: key.to_owned(),
-        message: message.to_owned(),
-        hint: hint.to_owned(),
-        ..Problem::default()
-    }
+    Problem::invalid(message)
+        .at(place.clone())
+        .key(key)
+        .hint(hint)
 }
 
 /// What is wrong between the design and a number of factors, of which those in `read` could be read.
-pub(super) fn limits(
-    design: &Design,
-    number: usize,
-    read: &[Factor],
-    places: &Places,
-) -> Vec<Problem> {
-    let mut problems = Vec::new();
+pub(super) fn limits(design: &Design, number: usize, read: &[Factor], places: &Places) -> Problems {
+    let mut problems = Problems::new();
     let mut add = |place, key: &str, allowed: String, message: String, hint: &str| {
         let (key, hint) = (key.to_owned(), hint.to_owned());
-        problems.push(Problem {
-            place,
-            key,
-            allowed,
-            message,
-            hint,
-            ..Problem::default()
-        });
+        problems.push(
+            Problem::invalid(message)
+                .at(place)
+                .key(key)
+                .allowed(allowed)
+                .hint(hint),
+        );
     };
     let at = || places.of("design").clone();
     if number == 0 && *design != Design::Grid {
@@ -203,8 +194,8 @@ pub(super) fn limits(
 }
 
 /// What only a whole plan shows: distributions of run options that leave their range, and factors of cars that do not exist.
-pub(super) fn reach(plan: &Plan) -> Vec<Problem> {
-    let mut problems = Vec::new();
+pub(super) fn reach(plan: &Plan) -> Problems {
+    let mut problems = Problems::new();
     for (k, factor) in plan.factors.iter().enumerate() {
         if factor.cars == Cars::Baselines && plan.base.baselines.as_ref().is_some_and(Vec::is_empty)
         {
@@ -231,14 +222,13 @@ pub(super) fn reach(plan: &Plan) -> Vec<Problem> {
             let allowed = bound.in_unit(unit_of(options::quantity(&factor.key)));
             let hint = "use truncated_normal, uniform or triangular".to_owned();
             let place = factor.places.of("distribution").clone();
-            problems.push(Problem {
-                place,
-                key: "distribution".into(),
-                allowed,
-                message,
-                hint,
-                ..Problem::default()
-            });
+            problems.push(
+                Problem::invalid(message)
+                    .at(place)
+                    .key("distribution")
+                    .allowed(allowed)
+                    .hint(hint),
+            );
         }
     }
     problems

@@ -2,7 +2,7 @@
 
 use super::options::did_you_mean;
 use cvtcycle_config::setup::is_path;
-use cvtcycle_config::{Place, Problem, bounded, decode};
+use cvtcycle_config::{Place, Problem, Problems, bounded, decode};
 
 /// Embedded plans: name and TOML text.
 #[must_use]
@@ -27,20 +27,19 @@ pub fn embedded_plans() -> &'static [(&'static str, &'static str)] {
 ///
 /// # Errors
 /// Unknown name (with the near ones), unreadable path, binary or empty file.
-pub(super) fn text_of(word: &str, option: &str) -> Result<(String, String), Vec<Problem>> {
+pub(super) fn text_of(word: &str, option: &str) -> Result<(String, String), Problems> {
     let problem = |allowed: String, message: String, hint: String| {
         let place = Place {
             file: option.to_owned(),
             ..Place::default()
         };
-        vec![Problem {
-            place,
-            key: option.to_owned(),
-            value: word.to_owned(),
-            allowed,
-            message,
-            hint,
-        }]
+        Problem::invalid(message)
+            .at(place)
+            .key(option)
+            .value(word)
+            .allowed(allowed)
+            .hint(hint)
+            .into()
     };
     if is_path(word) {
         let bytes = bounded::read(word, bounded::TOML).map_err(|error| {

@@ -2,7 +2,7 @@
 
 use super::values::{self, Of};
 use super::{Acts, Cars, Factor, FactorValue, FactorValues, Places, RUN_OPTIONS, options};
-use cvtcycle_config::{Document, Problem, Reader, Section, unit_of};
+use cvtcycle_config::{Document, Problem, Problems, Reader, Section, unit_of};
 
 const CARS: [(&str, Cars); 3] = [
     ("subject", Cars::Subject),
@@ -20,7 +20,7 @@ const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
 ///
 /// # Errors
 /// All its problems.
-pub(super) fn read(document: &Document) -> Result<Factor, Vec<Problem>> {
+pub(super) fn read(document: &Document) -> Result<Factor, Problems> {
     let reader = Reader::new(document);
     let s = reader.root();
     let key = key(&s);
@@ -79,7 +79,7 @@ pub(super) fn read(document: &Document) -> Result<Factor, Vec<Problem>> {
 }
 
 /// Problems under the name of their factor, and without words that fit the top of a file only.
-fn told(problems: Vec<Problem>, document: &Document) -> Vec<Problem> {
+fn told(problems: Problems, document: &Document) -> Problems {
     let reader = Reader::new(document);
     let key = reader
         .root()
@@ -94,10 +94,9 @@ fn told(problems: Vec<Problem>, document: &Document) -> Vec<Problem> {
     let told = problems
         .into_iter()
         .filter(|p| !(mistyped && p.message == values::NONE));
-    told.map(|p| Problem {
-        message: format!("{of}{}", p.message),
-        hint: p.hint.replace("the top of the file", "its [[factor]]"),
-        ..p
+    told.map(|p| {
+        let hint = p.hint.replace("the top of the file", "its [[factor]]");
+        p.with_context(&of).hint(hint)
     })
     .collect()
 }

@@ -23,7 +23,7 @@ pub use places::Places;
 
 use std::sync::Arc;
 
-use cvtcycle_config::{Place, Problem};
+use cvtcycle_config::{Place, Problems};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 use super::design::Level;
@@ -221,7 +221,7 @@ impl Plan {
     ///
     /// # Errors
     /// All problems with their places.
-    pub fn read(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
+    pub fn read(file: &str, text: &str) -> Result<Plan, Problems> {
         read::plan(file, text)
     }
 
@@ -229,7 +229,7 @@ impl Plan {
     ///
     /// # Errors
     /// Unknown name, unreadable file, or all problems of the plan.
-    pub fn open(word: &str, option: &str) -> Result<Plan, Vec<Problem>> {
+    pub fn open(word: &str, option: &str) -> Result<Plan, Problems> {
         let (file, text) = embedded::text_of(word, option)?;
         Plan::read(&file, &text)
     }

@@ -1,7 +1,7 @@
 //! The head of a plan, and all its parts together.
 
 use super::{Base, FactorValue, Keep, Places, Plan, design, factor, options};
-use cvtcycle_config::{Document, Problem, Reader, Section, Written, append};
+use cvtcycle_config::{Document, Problem, Problems, Reader, Section, Written};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_output::columns::COLUMNS;
 
@@ -9,7 +9,7 @@ use cvtcycle_output::columns::COLUMNS;
 const MOST_RUNS: i64 = 100_000;
 
 /// Reads a plan.
-pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
+pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Problems> {
     let mut document = Document::parse(file, text)?;
     let tables = document.take_tables("factor");
     let (mut plan, mut problems) = head(&document, file, text);
@@ -19,15 +19,17 @@ pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
     for table in &tables {
         match factor::read(table) {
             Ok(factor) => plan.factors.push(factor),
-            Err(found) => append(&mut problems, found),
+            Err(found) => problems.append(found),
         }
     }
-    append(&mut problems, design::clashes(&plan.factors));
+    problems.append(design::clashes(&plan.factors));
     if design_is_read && !has_other_factors(&problems) {
-        append(
-            &mut problems,
-            design::limits(&plan.design, tables.len(), &plan.factors, &plan.places),
-        );
+        problems.append(design::limits(
+            &plan.design,
+            tables.len(),
+            &plan.factors,
+            &plan.places,
+        ));
     }
     if problems.is_empty() {
         problems = design::reach(&plan);
@@ -52,7 +54,7 @@ fn has_other_factors(problems: &[Problem]) -> bool {
         .any(|problem| problem.key.starts_with("factor"))
 }
 
-fn head(document: &Document, file: &str, text: &str) -> (Plan, Vec<Problem>) {
+fn head(document: &Document, file: &str, text: &str) -> (Plan, Problems) {
     let reader = Reader::new(document);
     let s = reader.root().table("study");
     let mut places = Places::new(s.place(""));
@@ -86,9 +88,9 @@ fn fitting(problem: Problem) -> Problem {
     let hint = match problem.hint.split_once(", or choose with --set") {
         Some((hint, _)) => hint.to_owned(),
         None if problem.key.starts_with("factor") => "factors are written as [[factor]]".to_owned(),
-        None => problem.hint,
+        None => return problem,
     };
-    Problem { hint, ..problem }
+    problem.hint(hint)
 }
 
 fn stem(file: &str) -> String {

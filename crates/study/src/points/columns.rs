@@ -1,6 +1,6 @@
 //! The columns of belt points: what is read, what is computed, and the line of their names.
 
-use cvtcycle_config::cycle::problems::{Complaint, Line, Problems};
+use cvtcycle_config::cycle::problems::{Collector, Complaint, Line};
 use cvtcycle_config::cycle::text::Field;
 use cvtcycle_config::{Bound, near};
 use cvtcycle_model::transmission::cvt::variator::BeltPoint;
@@ -189,7 +189,7 @@ pub struct Header {
 
 impl Header {
     /// Reads the column names. `None` where the rest of the file cannot be understood without them.
-    pub fn read(line: Line<'_>, problems: &mut Problems<'_>) -> Option<Self> {
+    pub fn read(line: Line<'_>, problems: &mut Collector<'_>) -> Option<Self> {
         if line.text.contains('\r') {
             let message = "the lines end with a carriage return alone";
             problems.file(Complaint::new(
@@ -240,7 +240,7 @@ impl Header {
         &self,
         line: Line<'_>,
         field: Field<'_>,
-        problems: &mut Problems<'_>,
+        problems: &mut Collector<'_>,
     ) -> Option<Column> {
         let Some(column) = Column::of(field.text) else {
             problems.value(line, field, field.text, || unknown(field.text));

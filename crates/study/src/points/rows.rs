@@ -1,6 +1,6 @@
 //! One row of belt points: its values, each checked for itself.
 
-use cvtcycle_config::cycle::problems::{Cell, Complaint, Line, Problems};
+use cvtcycle_config::cycle::problems::{Cell, Collector, Complaint, Line};
 use cvtcycle_config::cycle::text::Field;
 use cvtcycle_config::near;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
@@ -32,7 +32,7 @@ pub fn read<'t>(
     line: Line<'t>,
     fields: &[Field<'t>],
     header: &Header,
-    problems: &mut Problems<'_>,
+    problems: &mut Collector<'_>,
 ) -> (Given<'t>, bool) {
     let mut given = Given::default();
     let mut good = true;
@@ -68,7 +68,7 @@ pub fn read<'t>(
     (given, good)
 }
 
-fn formulation(cell: &Cell<'_>, problems: &mut Problems<'_>) -> Option<Formulation> {
+fn formulation(cell: &Cell<'_>, problems: &mut Collector<'_>) -> Option<Formulation> {
     let text = cell.field.text;
     let found = Formulation::NAMES
         .iter()
@@ -93,7 +93,7 @@ fn formulation(cell: &Cell<'_>, problems: &mut Problems<'_>) -> Option<Formulati
     found
 }
 
-fn number(place: usize, cell: &Cell<'_>, problems: &mut Problems<'_>) -> Option<f64> {
+fn number(place: usize, cell: &Cell<'_>, problems: &mut Collector<'_>) -> Option<f64> {
     let (text, column) = (cell.field.text, &NUMBERS[place]);
     let parsed = text.parse::<f64>();
     if let Ok(value) = parsed

@@ -2,8 +2,8 @@
 
 use std::io::BufRead;
 
-use cvtcycle_config::Problem;
-use cvtcycle_config::cycle::problems::{Cell, Complaint, Line, Problems};
+use cvtcycle_config::Problems;
+use cvtcycle_config::cycle::problems::{Cell, Collector, Complaint, Line};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_model::transmission::cvt::variator::point::{PointFlags, PointStatus};
 
@@ -18,14 +18,14 @@ pub trait Take {
     ///
     /// # Errors
     /// Why no row can be taken.
-    fn begin(&mut self, with_case: bool) -> Result<(), Vec<Problem>>;
+    fn begin(&mut self, with_case: bool) -> Result<(), Problems>;
 
     /// A row and its `case` as it stood in the input, quotes within doubled; empty where there is none. Rows that come before a bad one
     /// are given too: whoever keeps them drops them when the table turns out bad.
     ///
     /// # Errors
     /// Why the row cannot be taken.
-    fn put(&mut self, case: &str, row: &Solved) -> Result<(), Vec<Problem>>;
+    fn put(&mut self, case: &str, row: &Solved) -> Result<(), Problems>;
 }
 
 /// What is to be done with the points.
@@ -107,7 +107,7 @@ impl Counts {
 
 /// A table on its way.
 struct Table<'f, 't> {
-    found: Problems<'f>,
+    found: Collector<'f>,
     job: Job<'t>,
     counts: Counts,
 }
@@ -116,9 +116,9 @@ struct Table<'f, 't> {
 ///
 /// # Errors
 /// All problems of the table, or why a row could not be taken.
-pub fn read(file: &str, reader: impl BufRead, job: Job<'_>) -> Result<Done, Vec<Problem>> {
+pub fn read(file: &str, reader: impl BufRead, job: Job<'_>) -> Result<Done, Problems> {
     let mut table = Table {
-        found: Problems::new(file),
+        found: Collector::new(file),
         job,
         counts: Counts::default(),
     };
@@ -133,7 +133,7 @@ pub fn read(file: &str, reader: impl BufRead, job: Job<'_>) -> Result<Done, Vec<
 
 impl Table<'_, '_> {
     /// Goes through the lines; gives the columns of the input that are computed and not read.
-    fn read(&mut self, mut lines: Lines<impl BufRead>) -> Result<Vec<&'static str>, Vec<Problem>> {
+    fn read(&mut self, mut lines: Lines<impl BufRead>) -> Result<Vec<&'static str>, Problems> {
         let header = match lines.next() {
             None => {
                 self.found.file(Complaint::new(
@@ -176,7 +176,7 @@ impl Table<'_, '_> {
         Ok(header.ignored())
     }
 
-    fn row(&mut self, line: Line<'_>, header: &Header) -> Result<(), Vec<Problem>> {
+    fn row(&mut self, line: Line<'_>, header: &Header) -> Result<(), Problems> {
         let mut fields = Vec::with_capacity(header.columns.len());
         if !self.found.split(line, header.columns.len(), &mut fields) {
             return Ok(());

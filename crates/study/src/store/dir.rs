@@ -306,7 +306,7 @@ impl StudyDir {
                 problem.hint
             ),
         };
-        Problem { hint, ..problem }
+        problem.hint(hint)
     }
 }
 
@@ -360,10 +360,8 @@ fn no_study(path: &Path, error: Refused) -> Problem {
     let message = format!("cannot read {MANIFEST} in {}", path.display());
     match error {
         Refused::Unreadable(error) => failed(path, &message, &error),
-        refused => Problem {
-            allowed: refused.allowed(""),
-            ..problem(path, &format!("{message}: {refused}"), refused.hint(""))
-        },
+        refused => problem(path, &format!("{message}: {refused}"), refused.hint(""))
+            .allowed(refused.allowed("")),
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::parquet_read::{ParquetFile, unreadable};
 use super::{Values, file_problem};
 use cvtcycle_config::cycle::problems::Complaint;
-use cvtcycle_config::{Problem, bounded};
+use cvtcycle_config::{Problem, Problems, bounded};
 use cvtcycle_output::Flags;
 use cvtcycle_output::columns::Column;
 use cvtcycle_output::history::{
@@ -21,37 +21,31 @@ use cvtcycle_output::history::{
 /// # Errors
 /// All problems at once: the file cannot be read or is no table of this program, a column that every trace has is missing, a flag is
 /// unknown, time does not rise, there are no rows. Of each column the first bad row is named.
-pub fn read_trace_parquet(path: &Path) -> Result<History, Vec<Problem>> {
-    let hinted = |problem: Problem| {
-        vec![Problem {
-            hint: AGAIN.to_owned(),
-            ..problem
-        }]
-    };
+pub fn read_trace_parquet(path: &Path) -> Result<History, Problems> {
+    let hinted = |problem: Problem| Problems::from(problem.hint(AGAIN));
     let file = bounded::open_file(path).map_err(|error| hinted(unreadable(path, &error)))?;
     let file = ParquetFile::open_known(path, file).map_err(hinted)?;
     let columns = known(file.columns().iter().map(|head| head.name.as_str()));
     if columns.is_empty() {
-        return Err(vec![file_problem(
+        return Err(file_problem(
             path,
             "this is no trace of cvtcycle: it has none of its columns",
             AGAIN,
-        )]);
+        )
+        .into());
     }
-    let lacks = |own: &Column| Problem {
-        key: own.name.to_owned(),
-        ..file_problem(path, format!("the column {} is missing", own.name), AGAIN)
+    let lacks = |own: &Column| {
+        file_problem(path, format!("the column {} is missing", own.name), AGAIN).key(own.name)
     };
-    let mut problems: Vec<Problem> = missing(&columns).into_iter().map(lacks).collect();
+    let mut problems: Problems = missing(&columns).into_iter().map(lacks).collect();
     if file.rows() == 0 {
         problems.push(file_problem(path, "the file has no rows", AGAIN));
     }
     if file.rows() > MOST_STEPS as u64 {
         let message = format!("the file says that it has {} rows", file.rows());
-        return Err(vec![Problem {
-            allowed: format!("up to {MOST_STEPS}"),
-            ..file_problem(path, message, SHORTER)
-        }]);
+        return Err(file_problem(path, message, SHORTER)
+            .allowed(format!("up to {MOST_STEPS}"))
+            .into());
     }
     if !problems.is_empty() {
         return Err(problems);
@@ -96,7 +90,7 @@ fn steps(
     history: &mut History,
     phases: &[Arc<str>],
     flags: &[Arc<str>],
-    problems: &mut Vec<Problem>,
+    problems: &mut Problems,
 ) {
     let mut unknown = None;
     for (row, (phase, cell)) in phases.iter().zip(flags).enumerate() {
@@ -111,11 +105,11 @@ fn steps(
             hint,
         }) = too_many_phases(history)
         {
-            problems.push(Problem {
-                key: "phase".to_owned(),
-                allowed,
-                ..file_problem(path, message, &hint)
-            });
+            problems.push(
+                file_problem(path, message, &hint)
+                    .key("phase")
+                    .allowed(allowed),
+            );
             return;
         }
     }
@@ -131,7 +125,7 @@ fn steps(
 }
 
 /// What is wrong with the times and the lengths of the steps: of each the first bad one.
-fn times(path: &Path, history: &History) -> Vec<Problem> {
+fn times(path: &Path, history: &History) -> Problems {
     let (time, dt) = (history.time_s(), history.dt_s());
     let late = |row: &usize| !time[*row].is_finite() || (*row > 0 && time[*row] <= time[row - 1]);
     let time = (0..time.len()).find(late).map(|row| {
@@ -160,10 +154,5 @@ fn times(path: &Path, history: &History) -> Vec<Problem> {
 
 fn bad(path: &Path, key: &str, value: &str, message: &str, allowed: &str) -> Problem {
     let problem = file_problem(path, message, AGAIN);
-    Problem {
-        key: key.to_owned(),
-        value: value.to_owned(),
-        allowed: allowed.to_owned(),
-        ..problem
-    }
+    problem.key(key).value(value).allowed(allowed)
 }

@@ -45,20 +45,14 @@ use std::io;
 use std::path::Path;
 
 use super::table::{Column, Kind, Rows, Values};
-use cvtcycle_config::{Place, Problem};
+use cvtcycle_config::Problem;
 
 /// A problem of a file or directory of a study.
 fn file_problem(path: &Path, message: impl Display, hint: &str) -> Problem {
-    Problem {
-        place: Place {
-            file: path.display().to_string(),
-            ..Place::default()
-        },
-        value: path.display().to_string(),
-        message: message.to_string(),
-        hint: hint.to_owned(),
-        ..Problem::default()
-    }
+    Problem::invalid(message.to_string())
+        .in_file(path.display().to_string())
+        .value(path.display().to_string())
+        .hint(hint)
 }
 
 /// Checks that rows fit under their heads.

@@ -290,8 +290,5 @@ pub(super) fn unreadable(path: &Path, error: &Refused) -> Problem {
     } else {
         error.hint("check the file and its permissions")
     };
-    Problem {
-        allowed: error.allowed(""),
-        ..file_problem(path, format!("cannot read the file: {error}"), hint)
-    }
+    file_problem(path, format!("cannot read the file: {error}"), hint).allowed(error.allowed(""))
 }

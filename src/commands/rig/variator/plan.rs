@@ -1,7 +1,7 @@
 //! Words to checked curves.
 
 use cvtcycle::config::setup::{self, Options, Setup};
-use cvtcycle::config::{Bound, Problem, to_si};
+use cvtcycle::config::{Bound, Problems, to_si};
 use cvtcycle::model::bench::solvable_ratios;
 use cvtcycle::model::bench::variator::{
     CurveSummary, Held, MOST_RAD_S, Resolution, VariatorRig, VariatorRow,
@@ -12,7 +12,7 @@ use cvtcycle::output::losses::MOST_POINTS;
 
 use super::Args;
 use crate::args::ranges::{values, values_or_words};
-use crate::args::{self as inputs, Problems, bad_value};
+use crate::args::{self as inputs, bad_value};
 use crate::print::problem;
 
 /// The rig's high ratio (thesis Appendix C; 5.5.1 refers to it).
@@ -81,7 +81,7 @@ fn default_torques(held: &Held, capacity_nm: f64) -> Vec<f64> {
 }
 
 /// Reads all arguments.
-pub fn plan(args: &Args) -> Result<Plan, Vec<Problem>> {
+pub fn plan(args: &Args) -> Result<Plan, Problems> {
     let mut problems = Problems::default();
     let formulation = problems.take(inputs::word(
         "--formulation",
@@ -156,7 +156,7 @@ pub fn plan(args: &Args) -> Result<Plan, Vec<Problem>> {
     let out = args
         .out
         .as_ref()
-        .map(|dir| OutputDir::create(dir, args.force).map_err(|problem| vec![problem]));
+        .map(|dir| OutputDir::create(dir, args.force).map_err(Problems::from));
     let out = out.and_then(|dir| problems.take(dir));
     problems.finish()?;
     let (Some(setup), Some(rig), Some(pulses)) = (setup, rig, pulses) else {

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use cvtcycle::config::cycle::read_csv;
 use cvtcycle::config::setup::{self, Files, Options, embedded_vehicles};
-use cvtcycle::config::{Problem, render};
+use cvtcycle::config::{Problems, render};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::model::transmission::cvt::variator::point::PointStatus;
 use cvtcycle::output::History;
@@ -14,7 +14,7 @@ use cvtcycle::study::points::{self, Job, Model, Solved, Take};
 use super::within_memory;
 
 /// A refusal has at least one problem, and its words can be made.
-fn told<T>(answer: Result<T, Vec<Problem>>) -> Option<T> {
+fn told<T>(answer: Result<T, Problems>) -> Option<T> {
     answer
         .map_err(|problems| {
             assert!(!problems.is_empty(), "refused without a word");
@@ -91,12 +91,12 @@ pub fn map(data: &[u8]) {
 struct Look(bool);
 
 impl Take for Look {
-    fn begin(&mut self, _: bool) -> Result<(), Vec<Problem>> {
+    fn begin(&mut self, _: bool) -> Result<(), Problems> {
         self.0 = true;
         Ok(())
     }
 
-    fn put(&mut self, _: &str, row: &Solved) -> Result<(), Vec<Problem>> {
+    fn put(&mut self, _: &str, row: &Solved) -> Result<(), Problems> {
         assert!(self.0, "a row before the line of names");
         let losses = [
             row.point.band_loss_nm,

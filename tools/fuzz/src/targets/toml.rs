@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use cvtcycle::config::setup::{self, Disk, Options, embedded_lubricants, embedded_vehicles};
-use cvtcycle::config::{Problem, decode, render};
+use cvtcycle::config::{Problems, decode, render};
 use cvtcycle::study::fit::{embedded_calibrations, plan as calibration};
 use cvtcycle::study::plan::{Plan, embedded_plans};
 
@@ -28,7 +28,7 @@ fn texts(
 }
 
 /// What a reader of a text does with bytes; every refusal is put into words as a user would see it.
-fn read<T>(bytes: &[u8], reader: impl Fn(&str) -> Result<T, Vec<Problem>>) {
+fn read<T>(bytes: &[u8], reader: impl Fn(&str) -> Result<T, Problems>) {
     within_memory(bytes.len(), || {
         let refused = match decode("fuzz.toml", bytes) {
             Ok(text) => reader(&text).err(),
@@ -39,7 +39,7 @@ fn read<T>(bytes: &[u8], reader: impl Fn(&str) -> Result<T, Vec<Problem>>) {
 }
 
 /// A refusal has at least one problem, and its words can be made.
-fn told(refused: Option<Vec<Problem>>) {
+fn told(refused: Option<Problems>) {
     if let Some(problems) = refused {
         assert!(!problems.is_empty(), "refused without a word");
         assert!(!render(&problems, false).is_empty());

@@ -17,7 +17,7 @@ pub(super) mod trace;
 use crate::check::source::Kind;
 use crate::check::tables;
 use cvtcycle_config::cycle::problems::Complaint;
-use cvtcycle_config::{Place, Problem, bounded, near};
+use cvtcycle_config::{Place, Problem, Problems, bounded, near};
 
 /// Forms of a measured file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +39,7 @@ impl Form {
 ///
 /// # Errors
 /// All problems of the file.
-pub fn check(form: Form, file: &str, bytes: &[u8]) -> Result<usize, Vec<Problem>> {
+pub fn check(form: Form, file: &str, bytes: &[u8]) -> Result<usize, Problems> {
     let (sheet, problems) = match form {
         Form::Points => points::read(file, bytes),
         Form::Trace => trace::read(file, bytes, &tables::columns(Kind::Run, false)),
@@ -56,21 +56,20 @@ pub fn check(form: Form, file: &str, bytes: &[u8]) -> Result<usize, Vec<Problem>
 ///
 /// # Errors
 /// The operating system's words, or more bytes than a table may have, at the place in the plan.
-pub(super) fn bytes_of(path: &str, place: &Place, key: &str) -> Result<Vec<u8>, Vec<Problem>> {
+pub(super) fn bytes_of(path: &str, place: &Place, key: &str) -> Result<Vec<u8>, Problems> {
     bounded::read_file(path, bounded::TABLE).map_err(|error| {
         let message = format!("cannot read `{path}`: {error}");
         let hint = error.hint("check the name; a path is relative to the folder of the plan");
         let value = path.to_owned();
         let place = place.clone();
         let allowed = error.allowed("a readable CSV file");
-        vec![Problem {
-            place,
-            key: key.to_owned(),
-            value,
-            allowed,
-            message,
-            hint: hint.into(),
-        }]
+        Problem::invalid(message)
+            .at(place)
+            .key(key)
+            .value(value)
+            .allowed(allowed)
+            .hint(hint)
+            .into()
     })
 }
 

@@ -4,7 +4,7 @@ use super::sheet::{self, Column, Rules, Sheet};
 use super::unknown;
 use crate::check::source::BENCH;
 use crate::check::tables::bench;
-use cvtcycle_config::{Bound, Problem, to_si};
+use cvtcycle_config::{Bound, Problems, to_si};
 use cvtcycle_model::bench::{BenchPoint, Parts};
 
 /// Prefix of the column of standard deviations.
@@ -19,7 +19,7 @@ fn measurable() -> Vec<&'static str> {
 }
 
 /// Reads points as far as they can be understood, and all problems of the file.
-pub fn read(file: &str, bytes: &[u8]) -> (Option<Sheet>, Vec<Problem>) {
+pub fn read(file: &str, bytes: &[u8]) -> (Option<Sheet>, Problems) {
     let measurable = measurable();
     let settings: Vec<&str> = BENCH.iter().map(|(key, ..)| *key).collect();
     let known = |name: &str| {

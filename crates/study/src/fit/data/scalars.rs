@@ -3,7 +3,7 @@
 use super::sheet::{self, Column, Rules, Sheet};
 use super::unknown;
 use cvtcycle_config::cycle::problems::Complaint;
-use cvtcycle_config::{Bound, Problem, near};
+use cvtcycle_config::{Bound, Problems, near};
 
 /// Reads totals of a run with these quantities and, where they are known, phases, as far as they can be understood; and all problems of the
 /// file.
@@ -12,7 +12,7 @@ pub fn read(
     bytes: &[u8],
     quantities: &[&'static str],
     phases: Option<&[String]>,
-) -> (Option<Sheet>, Vec<Problem>) {
+) -> (Option<Sheet>, Problems) {
     let known = |name: &str| {
         let column = |range, may_be_empty| {
             Ok(Column {

@@ -1,7 +1,7 @@
 //! A CSV file of numbers and words in known columns.
 
 use super::points::SD;
-use cvtcycle_config::cycle::problems::{Complaint, Line, Problems};
+use cvtcycle_config::cycle::problems::{Collector, Complaint, Line};
 use cvtcycle_config::cycle::text::Field;
 use cvtcycle_config::{Bound, Place, Problem, unit_of};
 
@@ -119,14 +119,12 @@ impl Sheet {
             allowed,
             hint,
         } = complaint;
-        Problem {
-            place: self.place(row, column),
-            key,
-            value,
-            allowed,
-            message,
-            hint,
-        }
+        Problem::invalid(message)
+            .at(self.place(row, column))
+            .key(key)
+            .value(value)
+            .allowed(allowed)
+            .hint(hint)
     }
 }
 
@@ -150,8 +148,8 @@ const LONGEST_KEPT: usize = 300;
 
 /// Reads a file and all its problems, with line, column and value; after 50 the rest is counted. What can be understood of a bad file is
 /// given, so that more can be said of it; no sheet where that is nothing.
-pub fn read<'f>(file: &'f str, bytes: &[u8], rules: &Rules) -> (Option<Sheet>, Problems<'f>) {
-    let mut problems = Problems::new(file);
+pub fn read<'f>(file: &'f str, bytes: &[u8], rules: &Rules) -> (Option<Sheet>, Collector<'f>) {
+    let mut problems = Collector::new(file);
     if std::str::from_utf8(bytes)
         .is_ok_and(|text| text.trim_start_matches('\u{feff}').trim().is_empty())
     {
@@ -239,7 +237,7 @@ fn start(line: Line, field: Field) -> usize {
 }
 
 /// The columns; none where the lines below cannot be understood, none in place of a column that nobody knows.
-fn header(line: Line, rules: &Rules, problems: &mut Problems) -> Option<Vec<Option<Column>>> {
+fn header(line: Line, rules: &Rules, problems: &mut Collector) -> Option<Vec<Option<Column>>> {
     let fields = problems.names(line)?;
     let mut columns: Vec<Option<Column>> = Vec::new();
     for field in &fields {
@@ -300,7 +298,7 @@ fn header(line: Line, rules: &Rules, problems: &mut Problems) -> Option<Vec<Opti
     Some(columns)
 }
 
-fn cell(line: Line, field: Field, column: &Column, problems: &mut Problems) -> Cell {
+fn cell(line: Line, field: Field, column: &Column, problems: &mut Collector) -> Cell {
     if field.text.is_empty() && column.may_be_empty {
         return Cell::Empty;
     }

@@ -4,7 +4,7 @@ use super::points::SD;
 use super::sheet::{self, Column, Rules, Sheet};
 use super::unknown;
 use cvtcycle_config::cycle::problems::Complaint;
-use cvtcycle_config::{Bound, Problem};
+use cvtcycle_config::{Bound, Problems};
 
 /// Name of the column of times.
 pub const TIME: &str = "time_s";
@@ -14,7 +14,7 @@ const FEW: usize = 40;
 
 /// Reads a trace, of which the columns `computed` can be computed, as far as it can be understood, and all problems of the file: also times
 /// that do not rise.
-pub fn read(file: &str, bytes: &[u8], computed: &[&'static str]) -> (Option<Sheet>, Vec<Problem>) {
+pub fn read(file: &str, bytes: &[u8], computed: &[&'static str]) -> (Option<Sheet>, Problems) {
     let known = |name: &str| {
         let column = |range, may_be_empty| {
             Ok(Column {

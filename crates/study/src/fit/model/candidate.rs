@@ -12,7 +12,7 @@ use crate::check::tables;
 use crate::fit::plan::What;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::setup::blueprint::Bench;
-use cvtcycle_config::{KeyInfo, Problem, to_si};
+use cvtcycle_config::{KeyInfo, Problem, Problems, to_si};
 use cvtcycle_model::bench::transmission::Conditions;
 
 /// The cars with one set of values.
@@ -165,25 +165,17 @@ fn between(table: &Table, [time, column]: [usize; 2], time_s: f64) -> (f64, usiz
 }
 
 impl Cars for Candidate<'_> {
-    fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Vec<Problem>> {
+    fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Problems> {
         let name = self.model.name_of(source);
         if let Some(setup) = self.model.fixed.get(&name) {
             return Ok(Rc::new(setup.clone()));
         }
         let kind = self.model.by_options.get(&name).copied().unwrap_or(0);
         let built = once(&self.built, kind, || self.build(kind));
-        built.map_err(|message| {
-            vec![Problem {
-                message,
-                ..Problem::default()
-            }]
-        })
+        built.map_err(|message| Problem::invalid(message).into())
     }
 
-    fn conditions(
-        &self,
-        source: Option<&Source>,
-    ) -> Result<(Conditions, Vec<KeyInfo>), Vec<Problem>> {
+    fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Problems> {
         let own = source
             .map(|source| source.set.as_slice())
             .unwrap_or_default();

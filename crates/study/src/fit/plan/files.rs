@@ -10,7 +10,7 @@ use crate::fit::data::points::SD;
 use crate::fit::data::sheet::Sheet;
 use crate::fit::data::{bytes_of, points, scalars, trace};
 use cvtcycle_config::cycle::problems::Complaint;
-use cvtcycle_config::{Bound, Problem, Section, near, unit_of};
+use cvtcycle_config::{Bound, Problems, Section, near, unit_of};
 
 /// Seconds after which two values of a trace are independent, where the plan does not say.
 const INDEPENDENT_S: f64 = 30.0;
@@ -71,7 +71,7 @@ impl std::fmt::LowerHex for HexOf<'_> {
     }
 }
 
-fn report(s: &Section, problems: Vec<Problem>) {
+fn report(s: &Section, problems: Problems) {
     problems
         .into_iter()
         .for_each(|problem| s.report_problem(problem));

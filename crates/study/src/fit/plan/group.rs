@@ -8,7 +8,7 @@ use crate::check::expr::{Expr, Gives, parse};
 use crate::check::names::FileNames;
 use crate::check::source::Source;
 use crate::check::{File, Printed, within};
-use cvtcycle_config::{Bound, Document, Place, Problem, Reader, Section, near};
+use cvtcycle_config::{Bound, Document, Place, Problem, Problems, Reader, Section, near};
 
 /// Ways to give data, just one of which a group has.
 const WAYS: [&str; 5] = ["rows", "compute", "points", "trace", "scalars"];
@@ -42,7 +42,7 @@ pub(super) struct Found {
 ///
 /// # Errors
 /// All its problems.
-pub(super) fn read(document: &Document, around: &Around) -> Result<Found, Vec<Problem>> {
+pub(super) fn read(document: &Document, around: &Around) -> Result<Found, Problems> {
     let reader = Reader::new(document);
     let s = reader.root();
     let ways: Vec<&str> = WAYS.into_iter().filter(|way| s.has(way)).collect();
@@ -119,7 +119,7 @@ pub(super) fn read(document: &Document, around: &Around) -> Result<Found, Vec<Pr
                 message,
                 hint,
             );
-            Err(vec![told(nothing, &name, around.file)])
+            Err(told(nothing, &name, around.file).into())
         }
         Ok(_) => Ok(found),
         Err(problems) => Err(problems
@@ -135,11 +135,8 @@ fn told(problem: Problem, name: &str, plan: &str) -> Problem {
     if problem.place.file != plan {
         return problem;
     }
-    Problem {
-        message: format!("data `{name}`: {}", problem.message),
-        hint: problem.hint.replace("the top of the file", "its [[data]]"),
-        ..problem
-    }
+    let hint = problem.hint.replace("the top of the file", "its [[data]]");
+    problem.with_context(&format!("data `{name}`: ")).hint(hint)
 }
 
 /// The standard deviation that a whole group has: `sd`, or a share of what was measured.
@@ -208,10 +205,9 @@ fn rows(s: &Section, around: &Around, found: &mut Found) {
         let place = at_item(s.place("rows"), &format!("{id:?}"));
         let complain = |message: String, hint: &str| {
             let value = format!("{id:?}");
-            s.report_problem(Problem {
-                value,
-                ..problem(&place, "rows", "rows that compute a number", message, hint)
-            });
+            s.report_problem(
+                problem(&place, "rows", "rows that compute a number", message, hint).value(value),
+            );
         };
         let Some((file, row)) = all().find(|(_, row)| row.id == id) else {
             let close = near(&id, all().map(|(_, row)| row.id.as_str()));

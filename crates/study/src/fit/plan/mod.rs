@@ -222,12 +222,9 @@ pub fn at_item(mut place: Place, text: &str) -> Place {
 
 /// A problem of a plan at a place.
 pub fn problem(place: &Place, key: &str, allowed: &str, message: String, hint: &str) -> Problem {
-    Problem {
-        place: place.clone(),
-        key: key.to_owned(),
-        allowed: allowed.to_owned(),
-        message,
-        hint: hint.to_owned(),
-        ..Problem::default()
-    }
+    Problem::invalid(message)
+        .at(place.clone())
+        .key(key)
+        .allowed(allowed)
+        .hint(hint)
 }

@@ -2,7 +2,7 @@
 
 use super::Free;
 use crate::fit::solve::Prior;
-use cvtcycle_config::{Bound, Document, Problem, Reader, Section};
+use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section};
 
 /// How a prior may be known.
 const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
@@ -11,7 +11,7 @@ const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
 ///
 /// # Errors
 /// All its problems.
-pub(super) fn read(document: &Document) -> Result<Free, Vec<Problem>> {
+pub(super) fn read(document: &Document) -> Result<Free, Problems> {
     let reader = Reader::new(document);
     let s = reader.root();
     let any = Bound::any();
@@ -89,10 +89,9 @@ pub(super) fn read(document: &Document) -> Result<Free, Vec<Problem>> {
         let hint = |p: &Problem| p.hint.replace("the top of the file", "its [[parameter]]");
         problems
             .into_iter()
-            .map(|p| Problem {
-                message: format!("{of}{}", p.message),
-                hint: hint(&p),
-                ..p
+            .map(|p| {
+                let hint = hint(&p);
+                p.with_context(&of).hint(hint)
             })
             .collect()
     })

@@ -9,7 +9,7 @@ use crate::check::{COMMON, File, embedded_rows};
 use crate::fit::embedded_calibrations;
 use cvtcycle_config::setup::{catalogue, is_path};
 use cvtcycle_config::{
-    Bound, Document, Place, Problem, Reader, Section, append, bounded, decode, near,
+    Bound, Document, Place, Problem, Problems, Reader, Section, bounded, decode, near,
 };
 
 /// Most starts.
@@ -19,11 +19,11 @@ const MOST_STARTS: i64 = 1000;
 ///
 /// # Errors
 /// Unknown name, unreadable path, and all problems of the file and of the data that it names.
-pub fn load(word: &str, option: &str) -> Result<Plan, Vec<Problem>> {
+pub fn load(word: &str, option: &str) -> Result<Plan, Problems> {
     sound(gather(word, option)?)
 }
 
-fn sound((plan, problems): (Plan, Vec<Problem>)) -> Result<Plan, Vec<Problem>> {
+fn sound((plan, problems): (Plan, Problems)) -> Result<Plan, Problems> {
     if problems.is_empty() {
         Ok(plan)
     } else {
@@ -35,20 +35,19 @@ fn sound((plan, problems): (Plan, Vec<Problem>)) -> Result<Plan, Vec<Problem>> {
 ///
 /// # Errors
 /// What leaves nothing to be understood: an unknown name, an unreadable path, a text that is no TOML.
-pub fn gather(word: &str, option: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> {
+pub fn gather(word: &str, option: &str) -> Result<(Plan, Problems), Problems> {
     let wrong = |allowed: String, message: String, hint: String| {
         let place = Place {
             file: option.to_owned(),
             ..Place::default()
         };
-        vec![Problem {
-            place,
-            key: option.to_owned(),
-            value: word.to_owned(),
-            allowed,
-            message,
-            hint,
-        }]
+        Problem::invalid(message)
+            .at(place)
+            .key(option)
+            .value(word)
+            .allowed(allowed)
+            .hint(hint)
+            .into()
     };
     if is_path(word) {
         let bytes = bounded::read(word, bounded::TOML).map_err(|error| {
@@ -88,11 +87,11 @@ pub fn gather(word: &str, option: &str) -> Result<(Plan, Vec<Problem>), Vec<Prob
 ///
 /// # Errors
 /// All problems of all of them.
-pub fn read(file: &str, text: &str) -> Result<Plan, Vec<Problem>> {
+pub fn read(file: &str, text: &str) -> Result<Plan, Problems> {
     sound(partly(file, text)?)
 }
 
-fn partly(file: &str, text: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> {
+fn partly(file: &str, text: &str) -> Result<(Plan, Problems), Problems> {
     let mut document = Document::parse(file, text)?;
     let (parameters, data) = (
         document.take_tables("parameter"),
@@ -107,7 +106,7 @@ fn partly(file: &str, text: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> 
     sources.extend(common.iter().cloned());
     let mut plan = head_of(&head, file, text);
     let exists = head.exists();
-    let mut problems: Vec<Problem> = reader
+    let mut problems: Problems = reader
         .finish()
         .err()
         .unwrap_or_default()
@@ -135,7 +134,7 @@ fn partly(file: &str, text: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> 
     for document in &parameters {
         match parameter::read(document) {
             Ok(free) => plan.parameters.push(free),
-            Err(found) => append(&mut problems, found),
+            Err(found) => problems.append(found),
         }
     }
     relative(&mut sources, file);
@@ -152,21 +151,18 @@ fn partly(file: &str, text: &str) -> Result<(Plan, Vec<Problem>), Vec<Problem>> 
             // Two groups may name the same bad file.
             Err(mut found) => {
                 found.retain(|problem| !problems.contains(problem));
-                append(&mut problems, found);
+                problems.append(found);
             }
         }
     }
     let sound = problems.is_empty();
-    append(
-        &mut problems,
-        clashes(&plan, [parameters_written, data_written], sound),
-    );
+    problems.append(clashes(&plan, [parameters_written, data_written], sound));
     Ok((plan, problems))
 }
 
 /// The rows that the program carries: the same for every plan, read once.
-fn shipped_rows() -> &'static Result<Vec<File>, Vec<Problem>> {
-    static ROWS: OnceLock<Result<Vec<File>, Vec<Problem>>> = OnceLock::new();
+fn shipped_rows() -> &'static Result<Vec<File>, Problems> {
+    static ROWS: OnceLock<Result<Vec<File>, Problems>> = OnceLock::new();
     let texts = || {
         embedded_rows()
             .iter()
@@ -177,8 +173,8 @@ fn shipped_rows() -> &'static Result<Vec<File>, Vec<Problem>> {
 }
 
 /// The sources that every plan may use.
-fn common_sources() -> &'static Result<Vec<Source>, Vec<Problem>> {
-    static COMMON_SOURCES: OnceLock<Result<Vec<Source>, Vec<Problem>>> = OnceLock::new();
+fn common_sources() -> &'static Result<Vec<Source>, Problems> {
+    static COMMON_SOURCES: OnceLock<Result<Vec<Source>, Problems>> = OnceLock::new();
     COMMON_SOURCES.get_or_init(|| {
         let files = crate::check::read(COMMON, &[(String::new(), String::new())])?;
         Ok(files
@@ -307,7 +303,7 @@ fn fitting(problem: Problem) -> Problem {
             .split_once(", or choose with --set")
             .map_or(problem.hint.clone(), |(hint, _)| hint.to_owned()),
     };
-    Problem { hint, ..problem }
+    problem.hint(hint)
 }
 
 /// Adds a group to the plan, counting on what is there.
@@ -364,8 +360,8 @@ fn same(a: &[Source], b: &[Source]) -> bool {
 }
 
 /// What is wrong between the parts, `[parameters, groups]` being how many were written.
-fn clashes(plan: &Plan, [parameters, groups]: [usize; 2], sound: bool) -> Vec<Problem> {
-    let mut problems = Vec::new();
+fn clashes(plan: &Plan, [parameters, groups]: [usize; 2], sound: bool) -> Problems {
+    let mut problems = Problems::new();
     if parameters == 0 {
         problems.push(problem(
             &plan.place,
