@@ -199,7 +199,7 @@ fn links_pictures_and_includes_lead_somewhere() {
             }
             pictures.extend(file.strip_prefix("img/").map(str::to_owned));
         }
-        // tests/validate.rs has the tables of validation rows.
+        // tests/results/validate.rs has the tables of validation rows.
         let tables = includes(text).filter(|file| !file.starts_with("generated/validation_"));
         for file in tables.filter(|file| !pages.contains_key(*file) && !MADE.contains_key(*file)) {
             wrong.push(format!("{name}: include {file} does not exist"));

@@ -21,6 +21,8 @@ mod keys;
 mod kinds;
 #[path = "diagnostics/sentences.rs"]
 mod sentences;
+#[path = "common/sources.rs"]
+mod sources;
 
 use std::path::Path;
 

@@ -1,154 +1,109 @@
-//! A sentence of a complaint that no bad file shows fails here.
+//! A sentence of a message that no bad file shows fails here.
 //!
-//! The source is read as text: in every file that makes problems of a user's file, each text literal with a blank in it that stands within
-//! a maker of complaints (`complain`, `Complaint::new`, `Problem { .. }`, `Err(..)` and the like), or is given to a name such as `message`
-//! or `hint`, must stand in one of the expected texts, its `{..}` being anything. A new file with a maker is looked at by itself.
+//! The source is read as text: in every module that makes problems of a user's file, each text literal with a blank in it that is an argument
+//! of a maker of messages (`complain`, `Complaint::new`, `Problem { .. }`, `Err(..)`, ...), or is assigned to a name such as `message`
+//! or `hint`, must be in one of the expected texts, with anything in place of its `{..}`. A new module with a maker is read without an entry here.
 //!
-//! Limits: a sentence that a function returns under another name, or that is put together from single words, is not seen; two makers with
-//! the same words count as one; a sentence of two branches must be met in both, but not each value that it may hold.
+//! Limits: a sentence that a function returns under another name, or that is joined from single words, is not seen; two makers with
+//! the same words count as one; a sentence of two branches must be shown in both, but not with every value that it may hold.
 
-use std::path::{Path, PathBuf};
+use crate::sources::{Source, sources};
 
-/// Marks of a file that makes problems.
+/// Marks of a module that makes problems.
 const MARKS: [&str; 4] = [".complain(", "Complaint::new(", "Problem {", "Fault {"];
 
-/// Files that make no such problems, or not of a user's input file: path and reason.
-const OUTSIDE: [(&str, &str); OUTSIDE_COUNT] = [
+/// Modules (with their submodules) whose problems are not of a user's input file, with the reason.
+const OUTSIDE: &[(&str, &str)] = &[
+    ("config::assign", "overrides: unit tests of config"),
+    ("config::cycle::constant", "names given to options"),
+    ("config::cycle::find", "names given to options"),
     (
-        "src/calibrate/solve/descend.rs",
-        "the search: tests/calibrate_solve",
+        "config::setup",
+        "names given to options: only this module, see INSIDE",
     ),
-    ("src/cli/belt/sink.rs", "output"),
-    ("src/cli/explain.rs", "words of the command line"),
-    ("src/cli/losses/plan.rs", "options"),
-    ("src/cli/mod.rs", "words of the command line"),
-    ("src/cli/run/cars.rs", "options"),
-    ("src/cli/sniff.rs", "words of the command line"),
-    ("src/cli/study.rs", "options"),
-    ("src/cli/study/common.rs", "options and output"),
-    ("src/cli/answer.rs", "output"),
-    ("src/cli/ranges.rs", "options"),
-    ("src/cli/rig/transmission.rs", "options"),
-    ("src/config/assign.rs", "overrides: src/config/tests.rs"),
-    ("src/cycle/find.rs", "words of options"),
-    ("src/cycle/constant.rs", "words of options"),
-    ("src/results/file.rs", "output"),
-    ("src/results/files.rs", "output"),
+    ("config::setup::other_box", "overrides"),
+    ("cvtcycle", "options, words of the command line, output"),
+    ("output::file", "output"),
+    ("output::files", "output"),
+    ("report::compare", "directories that the program wrote"),
+    ("report::found", "directories that the program wrote"),
     (
-        "src/review/compare.rs",
-        "directories that the program wrote",
+        "study::check::judge",
+        "found by computing only: tests/results/validate.rs",
     ),
-    ("src/review/found.rs", "directories that the program wrote"),
-    ("src/setup/mod.rs", "words of options"),
-    ("src/setup/other_box.rs", "overrides"),
-    ("src/study/export.rs", "output"),
-    ("src/study/plan/embedded.rs", "words of the command line"),
-    ("src/study/store/dir.rs", "files that the program wrote"),
-    ("src/study/store/history.rs", "files that the program wrote"),
-    ("src/study/store/mod.rs", "files that the program wrote"),
+    ("study::export", "output"),
     (
-        "src/study/store/parquet_read.rs",
-        "files that the program wrote",
+        "study::fit::solve::descend",
+        "the search: tests/studies/calibrate_solve",
     ),
-    (
-        "src/validate/judge.rs",
-        "what only computing shows: tests/validate.rs",
-    ),
+    ("study::plan::embedded", "words of the command line"),
+    ("study::store", "files that the program wrote"),
 ];
-const OUTSIDE_COUNT: usize = 28;
 
-/// Files that make sentences and no problems: what they say is passed on by a reader.
+/// Submodules of those above that read input files.
+const INSIDE: &[&str] = &[
+    "config::setup::blueprint",
+    "config::setup::map_csv",
+    "config::setup::tables",
+];
+
+/// Modules that make sentences and no problems: a reader passes their sentences on.
 const PASSED_ON: [&str; 4] = [
-    "src/numeric/curve.rs",
-    "src/numeric/grid.rs",
-    "src/lubricant/viscosity.rs",
-    "src/engine/fuel.rs",
+    "model::math::curve",
+    "model::math::grid",
+    "model::fluid::viscosity",
+    "model::engine::fuel",
 ];
 
-/// Sentences without a bad file: file, beginning of the sentence and reason.
-const EXCUSED: [(&str, &str, &str); EXCUSED_COUNT] = [
+/// Sentences without a bad file: beginning of the sentence, and the reason.
+const EXCUSED: &[(&str, &str)] = &[
+    ("cannot read on: ", "needs a failing disk"),
+    ("check the file and its disk", "needs a failing disk"),
+    ("this belt does not fit", "the vehicle is refused before"),
     (
-        "src/rig/points/lines.rs",
-        "cannot read on: ",
-        "needs a failing disk",
-    ),
-    (
-        "src/rig/points/lines.rs",
-        "check the file and its disk",
-        "needs a failing disk",
-    ),
-    (
-        "src/rig/points/model.rs",
-        "this belt does not fit",
-        "of the vehicle, which is refused before",
-    ),
-    (
-        "src/rig/points/model.rs",
         "check length_m of the belt",
-        "of the vehicle, which is refused before",
+        "the vehicle is refused before",
     ),
     (
-        "src/config/reader.rs",
         "`{path}` is a table, not a value",
-        "overrides only: src/config/tests.rs",
+        "overrides only: unit tests of config",
     ),
     (
-        "src/engine/load.rs",
         "a combination of speed and load stands twice",
-        "setup/map_csv.rs says it before, with the line",
+        "the reader of maps reports it before, with the line",
     ),
     (
-        "src/lubricant/viscosity.rs",
         "viscosity must be above",
-        "the ranges of the keys lie above it",
+        "the ranges of the keys are above it",
     ),
     (
-        "src/numeric/curve.rs",
         "a curve takes finite numbers only",
-        "the ranges of the keys keep others out",
+        "the ranges of the keys exclude others",
     ),
+    ("a curve takes at most", "unit test of the curve"),
     (
-        "src/numeric/curve.rs",
-        "a curve takes at most",
-        "src/numeric/curve.rs has its test",
-    ),
-    (
-        "src/numeric/grid.rs",
         "the {} rows do not fill",
-        "setup/map_csv.rs says it before, with the line",
+        "the reader of maps reports it before, with the line",
     ),
     (
-        "src/numeric/grid.rs",
         "the combination {x:?}",
-        "setup/map_csv.rs says it before, with the line",
+        "the reader of maps reports it before, with the line",
     ),
     (
-        "src/results/history/read.rs",
         "the trace has too many steps",
-        "a file of 140 MB; as Parquet in tests/limits",
+        "a file of 140 MB; as Parquet in tests/cli/limits",
     ),
     (
-        "src/setup/tables.rs",
         "every combination of the columns'",
-        "setup/map_csv.rs says it before, with the line",
+        "the reader of maps reports it before, with the line",
     ),
     (
-        "src/setup/tables.rs",
         "a full grid",
-        "setup/map_csv.rs says it before, with the line",
+        "the reader of maps reports it before, with the line",
     ),
-    (
-        "src/study/prepare.rs",
-        "give fewer values",
-        "the plan's reader says it before",
-    ),
-    (
-        "src/validate/expr/calls.rs",
-        "a function",
-        "a fallback that nothing reaches",
-    ),
+    ("give fewer values", "the reader of plans reports it before"),
+    ("a function", "a fallback that nothing reaches"),
 ];
-const EXCUSED_COUNT: usize = 16;
 
 /// What makes a complaint of the texts within its brackets.
 const MAKERS: [&str; 17] = [
@@ -192,70 +147,61 @@ struct Sentence {
     text: String,
 }
 
-pub fn check(said: &[String]) {
+/// Whether a source is the module or one of its submodules.
+fn is_in_module(source: &Source, module: &str) -> bool {
+    let rest = source.module.strip_prefix(module);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
+}
+
+pub fn check(messages: &[String]) {
     let mut wrong = String::new();
-    let mut excused = [0_usize; EXCUSED.len()];
+    let mut excused = vec![0_usize; EXCUSED.len()];
     let mut count = 0;
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for path in sources(&root.join("src")) {
-        let name = path
-            .strip_prefix(root)
-            .unwrap()
-            .to_str()
-            .unwrap()
-            .replace('\\', "/");
-        let source = std::fs::read_to_string(&path).unwrap();
-        let code = source.split("#[cfg(test)]").next().unwrap();
-        let marked = MARKS.iter().any(|mark| code.contains(mark));
-        let outside = OUTSIDE.iter().any(|(file, _)| *file == name);
-        if outside && !marked {
-            wrong += &format!("{name}: makes no problems, so it needs no reason to be left out\n");
-        }
-        if outside || !(marked || PASSED_ON.contains(&name.as_str())) {
+    let sources = sources();
+    for source in &sources {
+        let marked = MARKS.iter().any(|mark| source.code.contains(mark));
+        let listed = |list: &[&str]| list.iter().any(|module| is_in_module(source, module));
+        let outside = OUTSIDE
+            .iter()
+            .any(|(module, _)| is_in_module(source, module));
+        if outside && !listed(INSIDE) || !marked && !listed(&PASSED_ON) {
             continue;
         }
-        for sentence in sentences(code) {
+        for sentence in sentences(&source.code) {
             count += 1;
-            let excuse = EXCUSED
-                .iter()
-                .position(|(file, text, _)| *file == name && sentence.text.starts_with(text));
-            match (excuse, said.iter().any(|text| is_in(&sentence.text, text))) {
+            let known = |(text, _): &(&str, &str)| sentence.text.starts_with(text);
+            let excuse = EXCUSED.iter().position(known);
+            let shown = messages.iter().any(|text| is_in(&sentence.text, text));
+            match (excuse, shown) {
                 (Some(excuse), false) => excused[excuse] += 1,
                 (None, false) => {
-                    wrong += &format!(
-                        "{name}:{}: no bad file shows {:?}\n",
-                        sentence.line, sentence.text
-                    )
+                    let (module, line, text) = (&source.module, sentence.line, &sentence.text);
+                    wrong += &format!("{module}, line {line}: no bad file shows {text:?}\n");
                 }
                 (_, true) => {}
             }
         }
     }
-    for ((file, text, _), used) in EXCUSED.iter().zip(excused) {
+    for ((text, _), used) in EXCUSED.iter().zip(excused) {
         if used == 0 {
-            wrong += &format!("{file}: {text:?} is excused for nothing\n");
+            wrong += &format!("{text:?} is excused without need\n");
         }
+    }
+    let modules = OUTSIDE
+        .iter()
+        .map(|(module, _)| module)
+        .chain(INSIDE)
+        .chain(&PASSED_ON);
+    for module in
+        modules.filter(|module| !sources.iter().any(|source| is_in_module(source, module)))
+    {
+        wrong += &format!("there is no module {module}\n");
     }
     assert!(wrong.is_empty(), "\n{wrong}");
     assert!(count > 300, "only {count} sentences");
 }
 
-fn sources(folder: &Path) -> Vec<PathBuf> {
-    let mut list = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_name().unwrap().to_str().unwrap();
-        if path.is_dir() && name != "tests" {
-            list.append(&mut sources(&path));
-        } else if name.ends_with(".rs") && name != "tests.rs" {
-            list.push(path);
-        }
-    }
-    list.sort();
-    list
-}
-
-/// Whether the fixed parts of a sentence stand in a text, one after the other.
+/// Whether a text holds the fixed parts of a sentence, one after the other.
 fn is_in(sentence: &str, text: &str) -> bool {
     let mut rest = text;
     parts(sentence)

@@ -7,9 +7,9 @@ use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residua
 use super::{failures, files, text};
 use crate::print::colour::Colour;
 
-#[path = "../../../tests/made_up/outcome.rs"]
-mod made_up;
-use made_up::{every, noise};
+#[path = "../../../tests/fixtures/outcome.rs"]
+mod fixtures;
+use fixtures::{every, noise};
 
 fn named(name: &str) -> Outcome {
     every()

@@ -27,7 +27,7 @@ pub(super) fn section(found: &RunFound, cars: &[Car]) -> Option<Section> {
     let record = found.record.as_ref()?;
     let mut section = Section::new("values", "Assumptions, and how much each matters");
     section.text(format!(
-        "{} docs/assumptions.md has every value and equation of the shipped files with its source.",
+        "{} `cvtcycle assumptions` prints every value and equation of the shipped files with its source.",
         count(record)
     ));
     match &record.sensitivity {

@@ -2,9 +2,9 @@ use super::super::review_figures::tidy::{check, numbers};
 use super::*;
 use cvtcycle_study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 
-#[path = "../../../../../tests/made_up/outcome.rs"]
-mod made_up;
-use made_up::{every, noise};
+#[path = "../../../../../tests/fixtures/outcome.rs"]
+mod fixtures;
+use fixtures::{every, noise};
 
 fn ordinary(name: &str) -> Outcome {
     every()

@@ -1,0 +1,11 @@
+//! The program as a user runs it: commands, documents, limits of inputs, faults of its surroundings.
+
+#[path = "../common/sources.rs"]
+mod sources;
+#[path = "../common/tree.rs"]
+mod tree;
+
+mod commands;
+mod documents;
+mod faults;
+mod limits;

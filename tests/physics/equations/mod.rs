@@ -1,0 +1,44 @@
+//! Every equation of the loss, engine and heat models once more, written down from the tables at the heads of the model files with the
+//! standard library's functions, against what the program computes: inside each regime and on both sides of each of its bounds.
+//!
+//! Truth: the labelled statements, and arithmetic. A changed sign, factor, exponent, bound or constant fails here (docs/mutation.md).
+#![allow(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    clippy::too_many_lines,
+    reason = "tests; some equalities hold to the last bit"
+)]
+
+mod belt;
+mod clamp;
+mod control;
+mod drive;
+mod effort;
+mod engine;
+mod fluid;
+mod fuel;
+mod heat;
+mod manual;
+mod point;
+mod rig;
+mod road;
+mod rows;
+mod spin;
+
+/// Equal to rounding: two ways of one sum.
+#[track_caller]
+pub fn same(got: f64, want: f64) {
+    assert!(
+        (got - want).abs() <= 1e-11 * want.abs() + 1e-13,
+        "{got} instead of {want}"
+    );
+}
+
+/// Equal but for `share`.
+#[track_caller]
+pub fn near(got: f64, want: f64, share: f64) {
+    assert!(
+        (got - want).abs() <= share * want.abs(),
+        "{got} instead of {want}"
+    );
+}

@@ -1,0 +1,17 @@
+//! The models: laws, bounds, printed numbers, and every equation once more.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod allocation;
+mod belt_properties;
+mod cold;
+mod conserve;
+mod continuity;
+mod cvt_part_properties;
+mod cycles;
+mod equations;
+mod maps;
+mod metamorphic;
+mod random_cars;
+mod targets;

@@ -1,0 +1,627 @@
+//! A car built from a blueprint is the car that the ordinary load makes of the same overrides, and is refused in the same words.
+//!
+//! Truth of all comparisons: `setup::load` with `--set KEY=NUMBER`; what is compared is the Debug text of the whole car, in which every
+//! number stands with all its digits.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use std::collections::BTreeSet;
+
+use crate::common::CARS;
+use cvtcycle::config::cycle::embedded;
+use cvtcycle::config::setup::blueprint::{Bench, Blueprint, Slot};
+use cvtcycle::config::setup::{Options, Setup, load};
+use cvtcycle::config::{KeyInfo, Problems, render};
+use cvtcycle::model::drive::{Conditions, Start, drive};
+use proptest::prelude::*;
+
+const AMBIENT_K: f64 = 263.15;
+
+fn options(set: &[&str]) -> Options {
+    Options {
+        set: set.iter().map(|s| (*s).to_owned()).collect(),
+        ..Options::default()
+    }
+}
+
+fn blueprint(word: &str, options: &Options) -> (Blueprint, Setup) {
+    Blueprint::load(word, "--vehicle", options)
+        .unwrap_or_else(|problems| panic!("{word}: {}", render(&problems, false)))
+}
+
+fn slot(blueprint: &Blueprint, key: &str) -> Slot {
+    blueprint
+        .slot(key)
+        .unwrap_or_else(|problem| panic!("{key}: {}", problem.message))
+}
+
+/// The whole car with its names, all digits.
+fn text(setup: Setup) -> String {
+    let names = format!(
+        "{} {} {:?} {:?}",
+        setup.name, setup.title, setup.baselines, setup.road_load
+    );
+    format!("{names} {:?}", setup.vehicle.into_car(AMBIENT_K))
+}
+
+/// What the ordinary load makes of numbers beside the options.
+fn ordinary(word: &str, options: &Options, numbers: &[(&str, f64)]) -> Result<String, Problems> {
+    let mut options = options.clone();
+    options.set.extend(
+        numbers
+            .iter()
+            .map(|(key, number)| format!("{key}={number}").replace("NaN", "nan")),
+    );
+    load(word, "--vehicle", &options).map(text)
+}
+
+/// What a bench makes of its numbers; that it counts problems if and only if there are any is checked here.
+fn built(bench: &mut Bench) -> Result<String, Problems> {
+    let problems = bench.problems();
+    match bench.build() {
+        Ok(setup) => {
+            assert!(
+                problems.is_empty() && setup.keys.is_empty(),
+                "built in spite of {problems:?}"
+            );
+            Ok(text(setup))
+        }
+        Err(rejected) => {
+            assert!(
+                rejected.problems > 0 && !problems.is_empty(),
+                "refused without a word"
+            );
+            Err(problems)
+        }
+    }
+}
+
+/// Sets numbers on a bench and compares with the ordinary load; whether the car was accepted.
+fn same(
+    word: &str,
+    options: &Options,
+    blueprint: &Blueprint,
+    bench: &mut Bench,
+    numbers: &[(&str, f64)],
+) -> bool {
+    bench.reset();
+    for (key, number) in numbers {
+        bench.set(&slot(blueprint, key), *number);
+    }
+    let (quick, full) = (built(bench), ordinary(word, options, numbers));
+    assert!(
+        quick == full,
+        "{word} {numbers:?}:\n{quick:?}\ninstead of\n{full:?}"
+    );
+    quick.is_ok()
+}
+
+/// A little more than the value, as the key allows.
+fn changed(info: &KeyInfo, base: f64) -> f64 {
+    match base {
+        _ if info.allowed.starts_with("integer") => base + 1.0,
+        0.0 => 0.01,
+        _ => base * 1.01,
+    }
+}
+
+/// Compares every numeric key of a car; how many there are, and how many changes were accepted.
+fn every_number(word: &str, options: &Options) -> (usize, usize) {
+    let (blueprint, setup) = blueprint(word, options);
+    let mut bench = blueprint.bench();
+    let base = text(setup.clone());
+    assert_eq!(built(&mut bench).as_ref(), Ok(&base), "{word} unchanged");
+    let numbers = setup.keys.iter().filter(|info| info.si.is_some());
+    let (mut count, mut accepted) = (0, 0);
+    for info in numbers {
+        let slot = slot(&blueprint, &info.key);
+        assert_eq!(
+            (slot.base().to_string(), slot.unit(), slot.allowed()),
+            (
+                info.value.clone(),
+                info.unit.as_str(),
+                info.allowed.as_str()
+            )
+        );
+        count += 1;
+        accepted += usize::from(same(
+            word,
+            options,
+            &blueprint,
+            &mut bench,
+            &[(&info.key, changed(info, slot.base()))],
+        ));
+    }
+    bench.reset();
+    assert_eq!(built(&mut bench), Ok(base), "{word} after a reset");
+    (count, accepted)
+}
+
+#[test]
+fn every_number_of_every_shipped_car() {
+    for (word, least) in [(CARS[0], 160), (CARS[1], 1), (CARS[2], 1)] {
+        let (count, accepted) = every_number(word, &Options::default());
+        println!("{word}: {accepted} of {count} changes accepted");
+        assert!(count >= least, "{word}: only {count} numbers");
+        // A hundredth more leaves few ranges: efficiencies near 1, the ends of a ratio.
+        assert!(
+            accepted * 100 >= count * 95,
+            "{word}: only {accepted} of {count}"
+        );
+    }
+}
+
+/// Words of a car that bring other keys, other fluids, measured maps and a list of thrust ratios.
+#[test]
+fn every_number_of_other_options() {
+    let fluid = Options {
+        lubricant: Some("dexron_iii".into()),
+        engine_oil: Some("engine_5w30".into()),
+        ..Options::default()
+    };
+    every_number(CARS[0], &fluid);
+    let rows = "transmission.cvt.belt.thrust_ratio=[[0.4, 1.2], [1, 1.1], [2.5, 0.9]]";
+    let words = [
+        "transmission.cvt.clamp=slip_limited",
+        "transmission.cvt.pump.kind=dual_cavity",
+        "road_load.surface=road",
+        rows,
+    ];
+    every_number(CARS[0], &options(&words));
+    let (count, accepted) = every_number(
+        CARS[1],
+        &options(&["engine.model.bsfc_map.file=si_1900_bsfc"]),
+    );
+    assert!(accepted * 100 >= count * 95);
+}
+
+/// Keys of the shipped CVT that have a default in the program.
+const WITH_DEFAULT: [&str; 22] = [
+    "payload_kg",
+    "rotating_factor",
+    "altitude_m",
+    "rolling_per_k",
+    "inertia_torque_nm",
+    "overrun_factor",
+    "belt_heat_share",
+    "piston_outer_mm",
+    "band_count",
+    "unity_width",
+    "blend_n",
+    "slip_bound_percent",
+    "initial_gap_mm",
+    "radius_exponent",
+    "route_efficiency",
+    "residual_bar",
+    "lubrication_l_min",
+    "leakage_l_min_per_bar",
+    "creep_nm",
+    "under_bonnet_rise",
+    "exchanger_opens_degc",
+    "fall_per_1000_rpm",
+];
+
+/// The shipped CVT with some lines changed or left out, as a file of its own.
+fn edited(folder: &tempfile::TempDir, edit: impl Fn(&str) -> Option<String>) -> String {
+    let shipped = std::fs::read_to_string(format!(
+        "{}/vehicles/{}.toml",
+        env!("CARGO_MANIFEST_DIR"),
+        CARS[0]
+    ))
+    .unwrap();
+    let file = folder.path().join("car.toml");
+    let text: Vec<String> = shipped.lines().filter_map(edit).collect();
+    std::fs::write(&file, text.join("\n")).unwrap();
+    file.to_str().unwrap().to_owned()
+}
+
+fn name_of(line: &str) -> &str {
+    line.split(" = ").next().unwrap_or_default()
+}
+
+#[test]
+fn numbers_that_the_file_leaves_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let word = edited(&folder, |line| {
+        (!WITH_DEFAULT.contains(&name_of(line))).then(|| line.to_owned())
+    });
+    let (_, setup) = blueprint(&word, &Options::default());
+    let defaults: BTreeSet<&str> = setup
+        .keys
+        .iter()
+        .filter(|info| info.status == "default")
+        .map(|info| info.key.as_str())
+        .collect();
+    for name in WITH_DEFAULT {
+        assert!(defaults.iter().any(|key| key.ends_with(name)), "{name}");
+    }
+    every_number(&word, &Options::default());
+}
+
+/// A table for an option may be missing, or a word may stand for it; a number of the option then makes the table.
+#[test]
+fn numbers_of_options_that_stand_as_a_word_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let launch = ["engage_rpm", "gain_nm_per_rpm2", "creep_nm", "release_rpm"];
+    let word = edited(&folder, |line| match line {
+        "[transmission.cvt.launch.friction_clutch]" | "[transmission.cvt.pump.kind.fixed]" => None,
+        "[transmission.cvt.pump]" => Some(format!(
+            "{line}\nkind = {{ value = \"variable\", status = \"assumed\" }}"
+        )),
+        _ => (!launch.contains(&name_of(line))).then(|| line.to_owned()),
+    });
+    let (blueprint, _) = blueprint(&word, &Options::default());
+    let mut bench = blueprint.bench();
+    let base = built(&mut bench);
+    let (gain, share) = (
+        "transmission.cvt.launch.friction_clutch.gain_nm_per_rpm2",
+        "transmission.cvt.pump.kind.variable.least_share",
+    );
+    assert_eq!(slot(&blueprint, share).base().to_string(), "0.25");
+    assert!(same(
+        &word,
+        &Options::default(),
+        &blueprint,
+        &mut bench,
+        &[(gain, 4e-5), (share, 0.4)]
+    ));
+    assert!(same(
+        &word,
+        &Options::default(),
+        &blueprint,
+        &mut bench,
+        &[("transmission.cvt.pump.kind.dual_cavity.share", 0.3)]
+    ));
+    let both = [
+        (share, 0.4),
+        ("transmission.cvt.pump.kind.dual_cavity.share", 0.3),
+    ];
+    assert!(!same(
+        &word,
+        &Options::default(),
+        &blueprint,
+        &mut bench,
+        &both
+    ));
+    bench.reset();
+    assert_eq!(built(&mut bench), base);
+}
+
+/// A number chooses the option to which it belongs, as on the command line, and leaves no key behind that nobody reads.
+#[test]
+fn numbers_of_options_that_the_file_does_not_choose() {
+    let (blueprint, setup) = blueprint(CARS[0], &Options::default());
+    let mut bench = blueprint.bench();
+    let none = Options::default();
+    let share = slot(&blueprint, "transmission.cvt.pump.kind.dual_cavity.share");
+    assert_eq!(
+        (share.base().to_string(), share.unit(), share.allowed()),
+        ("0.5".to_owned(), "-", "0.05 to 1")
+    );
+    let (cd, area, rolling) = (
+        "road_load.form.body.drag_coefficient",
+        "road_load.form.body.frontal_area_m2",
+        "road_load.form.body.rolling_coefficient",
+    );
+    assert!(slot(&blueprint, cd).base().is_nan(), "no default");
+    assert_eq!(slot(&blueprint, area).unit(), "m²");
+    let good: [&[(&str, f64)]; 4] = [
+        &[("transmission.cvt.pump.kind.dual_cavity.share", 0.6)],
+        &[
+            ("transmission.cvt.clamp.torque_following.safety_factor", 1.5),
+            (
+                "transmission.cvt.clamp.torque_following.least_torque_nm",
+                30.0,
+            ),
+        ],
+        &[(cd, 0.3), (area, 2.0), (rolling, 0.01)],
+        &[
+            ("transmission.cvt.clamp.map.base_bar", 30.0),
+            ("lubricant.kv40_mm2_s", 34.0),
+            ("engine_oil.kv100_mm2_s", 13.0),
+        ],
+    ];
+    for numbers in good {
+        assert!(
+            same(CARS[0], &none, &blueprint, &mut bench, numbers),
+            "{numbers:?}"
+        );
+        assert!(same(
+            CARS[0],
+            &none,
+            &blueprint,
+            &mut bench,
+            &numbers.iter().rev().copied().collect::<Vec<_>>()
+        ));
+    }
+    // Parts of an option are missing; mass_kg is left over; two options at once.
+    let bad: [&[(&str, f64)]; 4] = [
+        &[(cd, 0.3)],
+        &[("road_load.form.r83.reference_mass_kg", 1100.0)],
+        &[
+            ("transmission.cvt.clamp.slip_limited.slip_percent", 2.0),
+            ("transmission.cvt.clamp.torque_following.safety_factor", 1.5),
+        ],
+        &[("engine.model.bsfc_map.l", 2.4)],
+    ];
+    for numbers in bad {
+        assert!(
+            !same(CARS[0], &none, &blueprint, &mut bench, numbers),
+            "{numbers:?}"
+        );
+        // Again, and twice the same car: what has been learnt of one car must not help another.
+        bench.set(&share, 0.6);
+        assert!(
+            bench.build().is_err() && bench.build().is_err(),
+            "{numbers:?}"
+        );
+    }
+    bench.reset();
+    assert_eq!(built(&mut bench), Ok(text(setup)));
+}
+
+#[test]
+fn what_is_no_possible_car_is_refused_in_the_words_of_the_ordinary_load() {
+    let (cvt, manual) = (
+        blueprint(CARS[0], &Options::default()).0,
+        blueprint(CARS[1], &Options::default()).0,
+    );
+    let bad: [&[(&str, f64)]; 17] = [
+        &[
+            ("transmission.cvt.variator.stop_from_ratio", 2.3),
+            ("transmission.cvt.variator.stop_to_ratio", 2.0),
+        ],
+        &[("transmission.cvt.pressure.floor_bar", 41.0)],
+        &[("transmission.cvt.pressure.cap_bar", 5.0)],
+        &[
+            ("transmission.cvt.ratio.low", 0.4),
+            ("transmission.cvt.ratio.high", 2.4),
+        ],
+        &[("transmission.cvt.belt.length_m", 0.3)],
+        &[("transmission.cvt.belt.band_count", 12.5)],
+        &[("transmission.cvt.belt.band_count", 0.0)],
+        &[("transmission.cvt.belt.band_count", 1e30)],
+        &[("transmission.cvt.belt.band_offset_mm", 20.001)],
+        &[("thermal.radiator.thermostat_from_degc", 95.0)],
+        &[("lubricant.kv40_mm2_s", 7.0)],
+        &[
+            ("lubricant.kv100_mm2_s", 40.0),
+            ("engine_oil.kv40_mm2_s", -1.0),
+            ("road_load.mass_kg", 10.0),
+        ],
+        &[("engine.friction.reference_kv100_mm2_s", 500.0)],
+        &[("road_load.mass_kg", f64::NAN)],
+        &[
+            ("road_load.mass_kg", f64::INFINITY),
+            ("road_load.payload_kg", f64::NEG_INFINITY),
+        ],
+        &[("engine.inertia_kg_m2", 0.0)],
+        &[("thermal.transmission.oil_l", 1e300)],
+    ];
+    let mut bench = cvt.bench();
+    for numbers in bad {
+        assert!(
+            !same(CARS[0], &Options::default(), &cvt, &mut bench, numbers),
+            "{numbers:?}"
+        );
+    }
+    for numbers in [
+        [("thermal.radiator.thermostat_to_degc", 79.0)],
+        [("transmission.manual.mesh.efficiency", 0.5)],
+    ] {
+        assert!(!same(
+            CARS[1],
+            &Options::default(),
+            &manual,
+            &mut manual.bench(),
+            &numbers
+        ));
+    }
+    assert!(same(
+        CARS[0],
+        &Options::default(),
+        &cvt,
+        &mut bench,
+        &[
+            ("transmission.cvt.belt.band_count", 40.0),
+            ("engine.stroke_mm", 80.0)
+        ]
+    ));
+}
+
+/// Unknown keys get the words of `--set`; keys without a single number say so.
+#[test]
+fn keys_without_a_slot() {
+    let unknown = [
+        (
+            CARS[0],
+            "transmission.cvt.belt.band_ofset_mm",
+            "did you mean `transmission.cvt.belt.band_offset_mm`",
+        ),
+        (
+            CARS[0],
+            "transmission.cvt.belt.band_offset_m",
+            "give the value in mm as",
+        ),
+        (CARS[0], "lubricant.kv41_mm2_s", "kv40_mm2_s"),
+        (CARS[0], "zebra", "remove it"),
+        (CARS[0], "transmission.manual.mesh.efficiency", "--set-all"),
+        (CARS[1], "transmission.cvt.belt.band_offset_mm", "--set-all"),
+        (
+            CARS[1],
+            "thermal.transmission.belt_kj_k",
+            "thermal.transmission.",
+        ),
+        (CARS[1], "engine.stroke_mm.value.x", ""),
+        (CARS[1], "engine..stroke_mm", ""),
+        (CARS[1], "", ""),
+    ];
+    for (car, key, hint) in unknown {
+        let problem = blueprint(car, &Options::default()).0.slot(key).unwrap_err();
+        let set = format!("{key}=0");
+        let ordinary = load(car, "--vehicle", &options(&[&set])).unwrap_err();
+        assert!(
+            ordinary
+                .iter()
+                .any(|p| p.message == problem.message && p.hint == problem.hint),
+            "{problem:?}\ninstead of\n{ordinary:?}"
+        );
+        assert!(
+            problem.hint.contains(hint) && problem.place.file == format!("--set {key}"),
+            "{problem:?}"
+        );
+    }
+    let texts = [
+        "vehicle.title",
+        "transmission.cvt.clamp",
+        "engine.full_load",
+        "thermal.cooler.fitted",
+        "road_load.surface",
+    ];
+    for key in texts.into_iter().chain([
+        "transmission.cvt.maps.belt",
+        "lubricant.title",
+        "lubricant.viscosity_table",
+    ]) {
+        let problem = blueprint(CARS[0], &Options::default())
+            .0
+            .slot(key)
+            .unwrap_err();
+        assert!(
+            problem.message.contains("no single number") && !problem.allowed.is_empty(),
+            "{problem:?}"
+        );
+    }
+}
+
+/// Measured maps are read once: the cars stay the same when the file is gone.
+#[test]
+fn maps_are_read_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let word = edited(&folder, |line| Some(line.to_owned()));
+    let map = folder.path().join("pump.csv");
+    std::fs::write(
+        &map,
+        "input_speed_rpm,oil_temp_degc,torque_loss_nm\n0,0,2\n7000,0,2.5\n0,90,1\n7000,90,1.5\n",
+    )
+    .unwrap();
+    let options = options(&[
+        "transmission.cvt.maps.pump=pump.csv",
+        "engine.model.bsfc_map.file=si_1900_bsfc",
+    ]);
+    every_number(&word, &options);
+    let (blueprint, _) = blueprint(&word, &options);
+    let mass = [("road_load.mass_kg", 1200.0)];
+    let want = ordinary(&word, &options, &mass);
+    std::fs::remove_file(map).unwrap();
+    assert!(ordinary(&word, &options, &mass).is_err());
+    let mut bench = blueprint.bench();
+    bench.set(&slot(&blueprint, mass[0].0), mass[0].1);
+    assert_eq!(bench.build().map(text).ok(), want.ok());
+}
+
+fn is_shared<T: Send + Sync>(_: &T) {}
+
+fn is_sent<T: Send>(_: &T) {}
+
+/// Two threads, each with its own bench, drive the same cars to the last bit, as one after the other.
+#[test]
+fn threads_agree() {
+    let (blueprint, _) = blueprint(CARS[0], &Options::default());
+    is_shared(&blueprint);
+    is_sent(&blueprint.bench());
+    let cycle = embedded("ece15").unwrap();
+    let slots = [
+        "transmission.cvt.belt.band_offset_mm",
+        "lubricant.kv40_mm2_s",
+        "engine.rated_kw",
+    ]
+    .map(|key| slot(&blueprint, key));
+    let drives = || {
+        let mut bench = blueprint.bench();
+        let run = |k: u32| {
+            bench.reset();
+            for slot in &slots {
+                bench.set(slot, slot.base() * (1.0 + 0.01 * f64::from(k)));
+            }
+            let conditions = Conditions {
+                ambient_k: AMBIENT_K,
+                start: Start::Soak,
+                max_dt_s: 1.0,
+                keep_rows: false,
+            };
+            format!(
+                "{:?}",
+                drive(&bench.build().unwrap(), &cycle, &conditions).totals
+            )
+        };
+        (0..6).map(run).collect::<Vec<String>>()
+    };
+    let (one, two) = std::thread::scope(|scope| {
+        let other = scope.spawn(drives);
+        (drives(), other.join().unwrap())
+    });
+    assert_eq!(one, two);
+    let key = |k: usize, factor: f64| format!("{}={}", slots[k].key(), slots[k].base() * factor);
+    let set = [key(0, 1.05), key(1, 1.05), key(2, 1.05)];
+    let conditions = Conditions {
+        ambient_k: AMBIENT_K,
+        start: Start::Soak,
+        max_dt_s: 1.0,
+        keep_rows: false,
+    };
+    let setup = load(
+        CARS[0],
+        "--vehicle",
+        &options(&set.each_ref().map(String::as_str)),
+    )
+    .unwrap();
+    assert_eq!(
+        one[5],
+        format!("{:?}", drive(&setup, &cycle, &conditions).totals)
+    );
+    assert_eq!(
+        one.iter().collect::<BTreeSet<_>>().len(),
+        6,
+        "each car is another one"
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+    /// Property: whatever was set before, and how often, only what is set last counts.
+    #[test]
+    fn any_order_of_setting_and_taking_back(steps in prop::collection::vec((0..9_usize, 0.2..1.8_f64, any::<bool>()), 1..24)) {
+        const KEYS: [&str; 9] = [
+            "road_load.mass_kg",
+            "transmission.cvt.variator.stop_from_ratio",
+            "transmission.cvt.variator.stop_to_ratio",
+            "transmission.cvt.belt.band_count",
+            "lubricant.friction.band",
+            "engine_oil.kv40_mm2_s",
+            "transmission.cvt.pump.kind.dual_cavity.share",
+            "transmission.cvt.clamp.torque_following.safety_factor",
+            "transmission.cvt.clamp.map.base_bar",
+        ];
+        let (blueprint, _) = blueprint(CARS[0], &Options::default());
+        let mut bench = blueprint.bench();
+        let mut in_force: Vec<(&str, f64)> = Vec::new();
+        for (k, factor, restart) in steps {
+            let slot = slot(&blueprint, KEYS[k]);
+            if restart && factor < 0.6 {
+                bench.reset();
+                in_force.clear();
+            }
+            let number = if k == 3 { (slot.base() * factor).round() } else { slot.base() * factor };
+            bench.set(&slot, number);
+            match in_force.iter_mut().find(|(key, _)| *key == KEYS[k]) {
+                Some(entry) => entry.1 = number,
+                None => in_force.push((KEYS[k], number)),
+            }
+            if restart {
+                let _ = built(&mut bench);
+            }
+        }
+        prop_assert_eq!(built(&mut bench), ordinary(CARS[0], &Options::default(), &in_force));
+    }
+}

@@ -1,0 +1,23 @@
+//! Plans, designs, execution and statistics of studies; fits to measurements.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[allow(dead_code, reason = "the pictures of runs are used by tests/results")]
+#[path = "../fixtures/mod.rs"]
+mod fixtures;
+#[path = "../common/tree.rs"]
+mod tree;
+
+mod blueprint;
+mod calibrate;
+mod calibrate_cli;
+mod calibrate_solve;
+mod parquet_readers;
+mod study;
+mod study_design;
+mod study_distributions;
+mod study_execute;
+mod study_plan;
+mod study_statistics;
+mod study_store;
+mod uncertainty_plan;

@@ -1,0 +1,643 @@
+//! Studies by the real program: the same bytes whatever happens on the way, nothing lost, honest exit codes.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    clippy::too_many_lines,
+    reason = "helpers and tables of tests; a test that is skipped says so"
+)]
+
+mod answers;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::LazyLock;
+use std::thread::sleep;
+use std::time::Duration;
+
+use crate::tree::{same, tree};
+use serde_json::Value;
+
+/// A cycle of a minute, so that a run takes little time.
+const CYCLE: &str = "time_s,speed_kmh,phase\n0,0,town\n4,0,town\n14,32,town\n24,32,town\n34,0,town\n36,0,road\n50,70,road\n56,70,road\n60,60,road\n";
+/// A factor of the CVT alone, and one of all cars.
+const FACTORS: &str = r#"
+[[factor]]
+key = "transmission.cvt.pump.displacement_cc_rev"
+name = "pump"
+status = "assumed"
+distribution.uniform = { low = 7, high = 11 }
+
+[[factor]]
+key = "engine.electrical_w"
+name = "current"
+cars = "all"
+acts = "scale"
+status = "assumed"
+distribution.triangular = { low = 0.5, mode = 1.0, high = 2.0 }
+"#;
+/// 5000 Monte Carlo points of two cars: 32 parts.
+static PLAN: LazyLock<String> = LazyLock::new(|| {
+    format!(
+        r#"
+[study]
+title = "kill me"
+vehicle = "rover_216_cvt"
+baselines = ["rover_216_5mt"]
+cycle = "minute.csv"
+ambient_degc = -10
+
+[study.design.monte_carlo]
+samples = 5000
+seed = 7
+{FACTORS}
+[[factor]]
+key = "lubricant"
+values = ["dexron_ii", "cvtf_ezl799_class"]
+"#
+    )
+});
+
+fn folder(plan: &str) -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("minute.csv"), CYCLE).unwrap();
+    fs::write(dir.path().join("plan.toml"), plan).unwrap();
+    dir
+}
+
+fn program(dir: &Path, words: &[&str]) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin("cvtcycle"));
+    command.current_dir(dir).args(words);
+    command
+}
+
+fn run(dir: &Path, words: &[&str]) -> Output {
+    program(dir, words).output().unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn ends(dir: &Path, words: &[&str], code: i32) -> Output {
+    let output = run(dir, words);
+    assert_eq!(
+        output.status.code(),
+        Some(code),
+        "{words:?}: {}",
+        stderr(&output)
+    );
+    output
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn parts(dir: &Path) -> usize {
+    let Ok(entries) = fs::read_dir(dir.join("parts")) else {
+        return 0;
+    };
+    entries
+        .filter(|e| {
+            e.as_ref()
+                .unwrap()
+                .file_name()
+                .to_string_lossy()
+                .ends_with(".sha256")
+        })
+        .count()
+}
+
+/// Waits until so many parts are there, or the process has ended.
+fn wait_for_parts(child: &mut Child, dir: &Path, count: usize) {
+    while parts(dir) < count && child.try_wait().unwrap().is_none() {
+        sleep(Duration::from_millis(1));
+    }
+}
+
+/// The property that resuming rests on: killed again and again, at moments that move through the writing of a part, a study ends with
+/// the bytes of one that nobody disturbed; and one thread gives the bytes of three.
+#[test]
+fn killed_at_many_moments_it_ends_with_the_same_bytes() {
+    let dir = folder(&PLAN);
+    ends(
+        dir.path(),
+        &[
+            "study",
+            "plan.toml",
+            "--out",
+            "whole",
+            "--quiet",
+            "--threads",
+            "1",
+        ],
+        0,
+    );
+    let mut kills = 0_usize;
+    let mut first = true;
+    loop {
+        let mut words = vec![
+            "study",
+            "plan.toml",
+            "--out",
+            "killed",
+            "--quiet",
+            "--threads",
+            "3",
+        ];
+        words.extend((!first).then_some("--resume"));
+        let before = parts(&dir.path().join("killed"));
+        let mut child = program(dir.path(), &words)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        wait_for_parts(&mut child, &dir.path().join("killed"), before + 1);
+        // Steps of a third of a millisecond: within the writing of a part, between parts, within the computing.
+        sleep(Duration::from_micros(333 * (kills as u64 % 40)));
+        child.kill().unwrap();
+        let status = child.wait().unwrap();
+        // A study that was killed before its manifest stood has to be begun again.
+        first = !dir.path().join("killed/study.json").exists();
+        if status.code() == Some(0) {
+            break;
+        }
+        assert_eq!(status.code(), None, "it was killed");
+        kills += 1;
+        let now = parts(&dir.path().join("killed"));
+        assert!(now >= before, "a whole part was lost");
+        assert!(kills < 500);
+    }
+    assert!(kills >= 10, "only {kills} kills");
+    same(&dir.path().join("whole"), &dir.path().join("killed"));
+    // What is there and finished is left as it is.
+    ends(
+        dir.path(),
+        &[
+            "study",
+            "plan.toml",
+            "--out",
+            "killed",
+            "--quiet",
+            "--resume",
+        ],
+        0,
+    );
+    same(&dir.path().join("whole"), &dir.path().join("killed"));
+}
+
+/// Ctrl-C: code 130, whole parts kept and nothing half written, and the rest can be done later.
+#[test]
+fn ctrl_c_stops_with_whole_parts() {
+    let dir = folder(&PLAN);
+    let out = dir.path().join("out");
+    let mut child = program(dir.path(), &["study", "plan.toml", "--out", "out"])
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    wait_for_parts(&mut child, &out, 2);
+    assert!(
+        Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status()
+            .unwrap()
+            .success()
+    );
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert!(stderr(&output).contains("--resume"), "{}", stderr(&output));
+    assert!(
+        tree(&out)
+            .keys()
+            .all(|name| !name.to_string_lossy().contains(".tmp")),
+        "something half written"
+    );
+    let shown = ends(dir.path(), &["study", "show", "out", "--json"], 0);
+    let done = json(&shown)["points_done"].as_u64().unwrap();
+    assert!(done > 0 && done < 5000, "{done}");
+    ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "whole", "--quiet"],
+        0,
+    );
+    ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "out", "--quiet", "--resume"],
+        0,
+    );
+    same(&out, &dir.path().join("whole"));
+}
+
+/// A disk that is really full: a small file system in memory. Whole parts stay, the message says what to do, and with room it ends with the
+/// bytes of an undisturbed study.
+#[test]
+fn a_full_disk_loses_nothing() {
+    let dir = folder(&PLAN);
+    let bin = assert_cmd::cargo::cargo_bin("cvtcycle");
+    let script = format!(
+        "mkdir small && mount -t tmpfs -o size=640k none small || exit 77\n\
+         '{0}' study plan.toml --out small/out --quiet 2>full.txt; echo $? >full.code\n\
+         ls small/out/parts | grep -c sha256 >full.parts\n\
+         ls -a small/out small/out/parts | grep -c tmp >full.tmp\n\
+         mount -o remount,size=64m none small || exit 77\n\
+         '{0}' study plan.toml --out small/out --quiet --resume; echo $? >again.code\n\
+         cp -r small/out copy\n",
+        bin.display()
+    );
+    let status = Command::new("unshare")
+        .args(["-rm", "sh", "-c", &script])
+        .current_dir(dir.path())
+        .stderr(Stdio::null())
+        .status();
+    if !status.is_ok_and(|status| status.success()) {
+        assert!(
+            std::env::var_os("CVTCYCLE_REQUIRE_FULL_DISK").is_none(),
+            "no small file system can be mounted here"
+        );
+        eprintln!("skipped: no small file system can be mounted here");
+        return;
+    }
+    let text = |name: &str| fs::read_to_string(dir.path().join(name)).unwrap();
+    assert_eq!(text("full.code").trim(), "2", "{}", text("full.txt"));
+    assert!(
+        text("full.txt").contains("No space left") && text("full.txt").contains("--resume"),
+        "{}",
+        text("full.txt")
+    );
+    let kept: usize = text("full.parts").trim().parse().unwrap();
+    assert!(kept > 0 && kept < 32, "{kept}");
+    assert_eq!(text("full.tmp").trim(), "0", "something half written");
+    assert_eq!(text("again.code").trim(), "0");
+    ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "whole", "--quiet"],
+        0,
+    );
+    same(&dir.path().join("copy"), &dir.path().join("whole"));
+}
+
+/// Runs that fail are rows with a reason, the study goes on, the code is 1, and the others are described without them.
+#[test]
+fn failed_runs_are_rows() {
+    let plan = r#"
+[study]
+title = "too much"
+vehicle = "rover_216_cvt"
+baselines = ["rover_216_5mt"]
+cycle = "minute.csv"
+[study.design.grid]
+[[factor]]
+key = "road_load.payload_kg"
+cars = "all"
+values = [0, 400, 1900]
+[[factor]]
+key = "transmission.cvt.variator.stop_from_ratio"
+values = [2.0, 2.3]
+[[factor]]
+key = "transmission.cvt.variator.stop_to_ratio"
+values = [2.2, 2.417]
+"#;
+    let dir = folder(plan);
+    let output = ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "out", "--json"],
+        1,
+    );
+    let answer = json(&output);
+    // 2.3 to 2.2 is a ramp that runs backward: one combination in four, at each of three loads.
+    assert_eq!(answer["runs"]["not_run"], 3);
+    assert!(
+        answer["runs"]["failed"].as_u64().unwrap() >= 1,
+        "a car with 1.9 t of load cannot follow: {}",
+        answer["runs"]
+    );
+    let total: u64 = ["ok", "failed", "not_run"]
+        .iter()
+        .map(|k| answer["runs"][k].as_u64().unwrap())
+        .sum();
+    assert_eq!(total, 24);
+    assert!(
+        stderr(&output).contains("missed_trace"),
+        "{}",
+        stderr(&output)
+    );
+    let failed = answer["runs"]["failed"].as_u64().unwrap();
+    let words = String::from_utf8(ends(dir.path(), &["study", "show", "out"], 1).stdout).unwrap();
+    let told = format!(
+        "{} runs have no good numbers ({failed} failed a check, 3 could not be run) and are left out below",
+        failed + 3
+    );
+    assert!(words.contains(&told), "{told} is not in {words}");
+    ends(
+        dir.path(),
+        &["study", "export", "out", "--out", "runs.csv"],
+        0,
+    );
+    let mut reader = csv::Reader::from_path(dir.path().join("runs.csv")).unwrap();
+    let heads: Vec<String> = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(str::to_owned)
+        .collect();
+    let at = |name: &str| {
+        heads
+            .iter()
+            .position(|h| h.split(" [").next() == Some(name))
+            .unwrap_or_else(|| panic!("{name} in {heads:?}"))
+    };
+    let records: Vec<_> = reader.records().map(Result::unwrap).collect();
+    assert_eq!(records.len(), 24);
+    for record in &records {
+        let bad = record[at("role")] == *"subject"
+            && record[at("transmission.cvt.variator.stop_from_ratio")] == *"2.3";
+        let bad = bad && record[at("transmission.cvt.variator.stop_to_ratio")] == *"2.2";
+        assert_eq!(&record[at("status")] == "not_run", bad, "{record:?}");
+        assert_eq!(
+            record[at("status")] == *"ok",
+            record[at("reason")].is_empty()
+        );
+        assert_eq!(
+            record[at("fuel_l_per_100km")].is_empty(),
+            bad,
+            "numbers of runs that ran are kept"
+        );
+        assert_eq!(
+            record[at("transmission.cvt.variator.stop_to_ratio")].is_empty(),
+            record[at("role")] == *"baseline"
+        );
+    }
+}
+
+/// A run of a study is the run of `run`: the same conditions give the same numbers, to the last bit.
+#[test]
+fn rows_are_the_numbers_of_run() {
+    let plan = r#"
+[study]
+title = "one"
+ambient_degc = 5
+start = "warm"
+set_all = ["engine.electrical_w=250"]
+[study.design.grid]
+[[factor]]
+key = "transmission.cvt.belt.band_offset_mm"
+values = [2, 3.5]
+[[factor]]
+key = "transmission.cvt.clamp"
+values = ["torque_following", "map"]
+[[factor]]
+key = "lubricant"
+values = ["dexron_iii"]
+"#;
+    let dir = folder(plan);
+    ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "out", "--quiet"],
+        0,
+    );
+    ends(
+        dir.path(),
+        &["study", "export", "out", "--out", "runs.csv"],
+        0,
+    );
+    let mut reader = csv::Reader::from_path(dir.path().join("runs.csv")).unwrap();
+    let heads: Vec<String> = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(|h| h.split(" [").next().unwrap().to_owned())
+        .collect();
+    let records: Vec<_> = reader.records().map(Result::unwrap).collect();
+    for (point, (offset, clamp)) in [
+        ("2", "torque_following"),
+        ("2", "map"),
+        ("3.5", "torque_following"),
+        ("3.5", "map"),
+    ]
+    .iter()
+    .enumerate()
+    {
+        let words = [
+            "run",
+            "--ambient",
+            "5",
+            "--start",
+            "warm",
+            "--set-all",
+            "engine.electrical_w=250",
+            "--lubricant",
+            "dexron_iii",
+            "--json",
+            "--set",
+        ];
+        let (offset, clamp) = (
+            format!("transmission.cvt.belt.band_offset_mm={offset}"),
+            format!("transmission.cvt.clamp={clamp}"),
+        );
+        let words: Vec<&str> = words
+            .into_iter()
+            .chain([offset.as_str(), "--set", clamp.as_str()])
+            .collect();
+        let summary = json(&ends(dir.path(), &words, 0));
+        for (k, run) in summary["runs"].as_array().unwrap().iter().enumerate() {
+            let record = &records[3 * point + k];
+            let cell = |name: &str| {
+                record[heads.iter().position(|h| h == name).unwrap()]
+                    .parse::<f64>()
+                    .unwrap()
+            };
+            for (column, value) in [
+                ("fuel_l_per_100km", &run["fuel_l_per_100km"]),
+                (
+                    "fuel_eudc_l_per_100km",
+                    &run["phases"][1]["fuel_l_per_100km"],
+                ),
+                ("loss_accessories_kj", &run["loss_kj"]["accessories"]),
+                ("end_engine_oil_degc", &run["end_degc"]["engine_oil"]),
+                ("clutch_slipping_s", &run["flags_s"]["clutch_slipping"]),
+            ] {
+                assert_eq!(
+                    cell(column).to_bits(),
+                    value.as_f64().unwrap().to_bits(),
+                    "{column} of {}",
+                    run["vehicle"]
+                );
+            }
+            if k > 0 {
+                assert_eq!(
+                    cell("subject_excess_percent").to_bits(),
+                    summary["comparison"][k - 1]["fuel_percent"]
+                        .as_f64()
+                        .unwrap()
+                        .to_bits()
+                );
+            }
+        }
+    }
+}
+
+/// Everything that is wrong with a plan is said at once, with its line, before anything starts.
+#[test]
+fn a_bad_plan_is_refused_with_all_its_problems() {
+    let plan = r#"
+[study]
+title = "bad"
+cycle = "minute.csv"
+baselines = ["rover_216_5mt"]
+[study.design.grid]
+[[factor]]
+key = "transmission.cvt.pump.displacement_cc_revs"
+values = [7]
+[[factor]]
+key = "transmission.cvt.belt.band_offset_mm"
+values = [2, 2000]
+[[factor]]
+key = "transmission.cvt.belt.mass_kg"
+cars = "all"
+values = [1]
+"#;
+    let dir = folder(plan);
+    let told = stderr(&ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "out"],
+        2,
+    ));
+    for words in [
+        "displacement_cc_rev",
+        "plan.toml:8",
+        "2000",
+        "plan.toml:12",
+        "rover_216_5mt",
+        "plan.toml:14",
+    ] {
+        assert!(told.contains(words), "{words} in\n{told}");
+    }
+    assert!(!dir.path().join("out").exists());
+    let large = PLAN.replace("samples = 5000", "samples = 60000");
+    let dir = folder(&large);
+    let told = stderr(&ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "out"],
+        2,
+    ));
+    assert!(
+        told.contains("120000 runs") && told.contains("--yes"),
+        "{told}"
+    );
+    assert!(!dir.path().join("out").exists());
+}
+
+/// Another plan, another seed, another car: not the study that is in the directory.
+#[test]
+fn resume_wants_the_same_study() {
+    let small = PLAN.replace("samples = 5000", "samples = 40");
+    let dir = folder(&small);
+    ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "out", "--quiet"],
+        0,
+    );
+    let told = stderr(&ends(
+        dir.path(),
+        &[
+            "study",
+            "plan.toml",
+            "--out",
+            "out",
+            "--resume",
+            "--seed",
+            "8",
+        ],
+        2,
+    ));
+    assert!(told.contains("seed"), "{told}");
+    let told = stderr(&ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "out"],
+        2,
+    ));
+    assert!(
+        told.contains("--resume") && told.contains("--force"),
+        "{told}"
+    );
+    fs::write(
+        dir.path().join("minute.csv"),
+        CYCLE.replace("70,road", "71,road"),
+    )
+    .unwrap();
+    let told = stderr(&ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "out", "--resume"],
+        2,
+    ));
+    assert!(told.contains("cycles"), "{told}");
+    let told = stderr(&ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "nothing", "--resume"],
+        2,
+    ));
+    assert!(told.contains("there is no study"), "{told}");
+    ends(
+        dir.path(),
+        &["study", "plan.toml", "--out", "out", "--force", "--quiet"],
+        0,
+    );
+}
+
+/// The matrix of the thesis: 30 runs whose numbers are those of `run`, with its pictures.
+#[test]
+fn the_ambient_matrix() {
+    let dir = folder(&PLAN);
+    let matrix = json(&ends(
+        dir.path(),
+        &["study", "ambient", "--json", "--out", "out"],
+        0,
+    ));
+    assert_eq!(matrix["runs"]["ok"], 30);
+    let fuel = &matrix["matrix"]["fuel"][0];
+    for (start, word) in ["soak", "warm"].iter().enumerate() {
+        for (ambient, degc) in ["-10", "0", "10", "25", "40"]
+            .iter()
+            .enumerate()
+            .skip(3 * start)
+        {
+            let run = json(&ends(
+                dir.path(),
+                &["run", "--ambient", degc, "--start", word, "--json"],
+                0,
+            ));
+            for car in 0..3 {
+                assert_eq!(
+                    fuel["l_per_100km"][car][start][ambient],
+                    run["runs"][car]["fuel_l_per_100km"]
+                );
+            }
+            assert_eq!(
+                fuel["excess_percent"][0][start][ambient],
+                run["comparison"][0]["fuel_percent"]
+            );
+        }
+    }
+    for name in [
+        "ambient_fuel.svg",
+        "ambient_penalty.svg",
+        "warm_up_soak.svg",
+        "warm_up_warm.svg",
+    ] {
+        let svg = fs::read_to_string(dir.path().join("out").join(name)).unwrap();
+        roxmltree::Document::parse(&svg).unwrap();
+        assert!(!svg.contains("NaN"), "{name}");
+    }
+    let told = stderr(&ends(
+        dir.path(),
+        &["study", "ambient", "--ambient", "-10,80", "--start", "cold"],
+        2,
+    ));
+    assert!(
+        told.contains("--ambient")
+            && told.contains("80")
+            && told.contains("--start")
+            && told.contains("cold"),
+        "{told}"
+    );
+}
