@@ -6,7 +6,7 @@ pub mod sniff;
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use cvtcycle::config::cycle;
 pub use cvtcycle::config::cycle::{bytes, find as cycle, is_csv};
-use cvtcycle::config::setup::{self, is_path};
+use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::{Bound, Problem, Problems, near, unit_of};
 
 /// Takes any text, but lets completions offer the known names: unknown ones are reported with all other problems.
@@ -37,10 +37,7 @@ pub fn cycles() -> Vec<&'static str> {
 
 /// Names of the embedded vehicles.
 pub fn vehicles() -> Vec<&'static str> {
-    setup::embedded_vehicles()
-        .iter()
-        .map(|(name, _)| *name)
-        .collect()
+    Kind::Vehicle.names()
 }
 
 /// Names of the embedded vehicles, and `none`.
@@ -50,18 +47,12 @@ pub fn baselines() -> Vec<&'static str> {
 
 /// Names of the embedded lubricants.
 pub fn lubricants() -> Vec<&'static str> {
-    setup::embedded_lubricants()
-        .iter()
-        .map(|(name, _)| *name)
-        .collect()
+    Kind::Lubricant.names()
 }
 
 /// Names of the embedded rigs.
 pub fn rigs() -> Vec<&'static str> {
-    setup::embedded_rigs()
-        .iter()
-        .map(|(name, _)| *name)
-        .collect()
+    Kind::Rig.names()
 }
 
 /// A problem of an option's value.

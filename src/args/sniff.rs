@@ -1,10 +1,8 @@
 //! What a name or a file is: vehicle, lubricant, cycle, rig, calibration or study.
 
 use cvtcycle::config::cycle;
-use cvtcycle::config::setup::is_path;
+use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::{Document, Problem, Problems, bounded, decode};
-use cvtcycle::study::fit::embedded_calibrations;
-use cvtcycle::study::plan::embedded_plans;
 
 use crate::args::{bad_value, bytes, did_you_mean, is_csv, lubricants, rigs, vehicles};
 
@@ -96,12 +94,9 @@ fn embedded(word: &str) -> Option<Sort> {
         Some(Sort::Lubricant)
     } else if rigs().contains(&word) {
         Some(Sort::Rig)
-    } else if embedded_calibrations()
-        .iter()
-        .any(|(name, _)| *name == word)
-    {
+    } else if Kind::Calibration.names().contains(&word) {
         Some(Sort::Calibration)
-    } else if embedded_plans().iter().any(|(name, _)| *name == word) {
+    } else if Kind::Plan.names().contains(&word) {
         Some(Sort::Study)
     } else if cycle::names().contains(&word) || word.starts_with("constant_") && !is_csv(word) {
         Some(Sort::Cycle)
@@ -168,10 +163,10 @@ fn by_text(word: &str, text: &str) -> Result<Sort, Problems> {
 }
 
 fn unknown(word: &str) -> Problem {
-    let plans = embedded_calibrations()
-        .iter()
-        .chain(embedded_plans())
-        .map(|(name, _)| *name);
+    let plans = Kind::Calibration
+        .names()
+        .into_iter()
+        .chain(Kind::Plan.names());
     let inputs = vehicles()
         .into_iter()
         .chain(lubricants())

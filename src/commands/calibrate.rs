@@ -10,10 +10,11 @@ mod text;
 use std::path::PathBuf;
 
 use cvtcycle::config::Problems;
+use cvtcycle::config::setup::Kind;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::study::fit::outcome::Outcome;
 use cvtcycle::study::fit::plan::Plan;
-use cvtcycle::study::fit::{calibrate, embedded_calibrations, open};
+use cvtcycle::study::fit::{calibrate, open};
 
 use super::Context;
 use super::run::files::Written;
@@ -66,10 +67,7 @@ pub struct Args {
 }
 
 fn plans() -> Vec<&'static str> {
-    embedded_calibrations()
-        .iter()
-        .map(|(name, _)| *name)
-        .collect()
+    Kind::Calibration.names()
 }
 
 /// Runs the command.

@@ -12,6 +12,7 @@ mod losses;
 mod report;
 mod rig;
 mod run;
+mod schema;
 mod shell;
 mod show;
 mod study;
@@ -77,6 +78,8 @@ enum Command {
     Explain(explain::Args),
     /// Check vehicle, lubricant and cycle files without running them
     Check(check::Args),
+    /// Print the JSON Schema of an input file, for editors and other programs
+    Schema(schema::Args),
     /// Print the book of assumptions: where every value comes from
     Assumptions(shell::AssumptionsArgs),
     /// Print a completion script for a shell
@@ -135,6 +138,7 @@ impl Command {
             Command::Show(args) => show::answer(&args, context),
             Command::Explain(args) => explain::answer(&args, context),
             Command::Check(args) => check::answer(&args, context),
+            Command::Schema(args) => schema::answer(&args),
             Command::Assumptions(args) => shell::assumptions(&args),
             Command::Completions(args) => Ok(shell::completions(&args, Cli::command())),
             Command::Man(args) => shell::man(&args, Cli::command()),

@@ -16,6 +16,7 @@ use crate::args::Offering;
 use crate::print::{Reply, problem};
 use common::Common;
 use cvtcycle::config::Problems;
+use cvtcycle::config::setup::Kind;
 use cvtcycle::study::plan::{Design, Plan};
 
 /// Arguments of `study`.
@@ -68,10 +69,7 @@ struct PlanArgs {
 }
 
 fn plans() -> Vec<&'static str> {
-    cvtcycle::study::plan::embedded_plans()
-        .iter()
-        .map(|(name, _)| *name)
-        .collect()
+    Kind::Plan.names()
 }
 
 /// Runs the command.

@@ -116,6 +116,7 @@ impl Plain {
                 }
                 Err(problems) => Some(problems),
             },
+            Kind::Plan | Kind::Calibration => None,
         }
         .unwrap_or_default()
     }
@@ -145,6 +146,7 @@ impl Plain {
                 let _ = cvtcycle::config::rig::read(&reader.root());
                 reader.finish().unwrap()
             }
+            Kind::Plan | Kind::Calibration => Vec::new(),
         }
     }
 

@@ -1,25 +1,21 @@
-//! What the transmission rig was set to, as data with a status: `rigs/transmission.toml`.
+//! What the transmission rig was set to, as data with a status: `rigs/rig_transmission.toml`.
 
 use cvtcycle_model::bench::transmission::Conditions;
 pub use cvtcycle_model::bench::transmission::{OIL, TORQUE};
 
+use crate::embedded;
 use crate::{Document, KeyInfo, Problems, Reader, Section};
 
 /// Prefix of the rig's keys on the command line, as in `--set rig.ratio.high=0.45`.
 pub const PREFIX: &str = "rig.";
-
-/// The embedded file: name and text.
-pub const FILE: (&str, &str) = (
-    "rig_transmission",
-    include_str!("../../../rigs/transmission.toml"),
-);
 
 /// The embedded conditions with overrides; of `sets` only those count that begin with [`PREFIX`].
 ///
 /// # Errors
 /// All problems of the overrides, and of the file.
 pub fn load(sets: &[String]) -> Result<(Conditions, Vec<KeyInfo>), Problems> {
-    let mut document = Document::parse(&format!("embedded:{}.toml", FILE.0), FILE.1)?;
+    let (name, text) = embedded::rigs()[0];
+    let mut document = Document::parse(&format!("embedded:{name}.toml"), text)?;
     let own = sets.iter().filter(|set| set.starts_with(PREFIX));
     let mut problems: Problems = own.filter_map(|set| document.set(set).err()).collect();
     let reader = Reader::new(&document);

@@ -10,7 +10,7 @@ use super::syntax::{decimal_comma, number_hint, number_with_unit};
 use cvtcycle_model::keys::{Bound, Key, Quantity};
 
 /// What a value's status may be in a file.
-const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
+pub(crate) const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
 
 /// A value as found, with its origin.
 pub(super) struct Found<'r> {

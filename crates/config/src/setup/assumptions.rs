@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use super::Kind;
 use super::catalogue::{self, File};
 use super::equations::{Equation, equations};
 use crate::KeyInfo;
@@ -73,11 +72,8 @@ fn of_file(text: &mut String, file: &File) {
         .iter()
         .find(|info| info.key.ends_with("title"))
         .map_or("", |info| &info.value);
-    let kind = match file.kind {
-        Kind::Vehicle => "Vehicle",
-        Kind::Lubricant => "Lubricant",
-        Kind::Rig => "Rig",
-    };
+    let mut kind = file.kind.word().to_owned();
+    kind[..1].make_ascii_uppercase();
     let _ = writeln!(text, "\n## {kind} `{}`: {title}", file.name);
     for (status, _) in STATUSES {
         let keys: Vec<&KeyInfo> = file

@@ -4,8 +4,9 @@
 
 use std::sync::OnceLock;
 
+use super::Kind;
 use super::inputs::{head, parts};
-use super::{Kind, embedded_lubricants, embedded_rigs, embedded_vehicles};
+use crate::embedded;
 use crate::rig;
 use crate::{Document, KeyInfo, Reader};
 use cvtcycle_model::fluid::Lubricant;
@@ -43,24 +44,14 @@ impl File {
 /// All embedded files: vehicles, lubricants, rigs.
 #[must_use]
 pub fn files() -> Vec<File> {
-    let vehicles = embedded_vehicles()
-        .iter()
-        .map(|(name, text)| (*name, *text, Kind::Vehicle));
-    let lubricants = embedded_lubricants()
-        .iter()
-        .map(|(name, text)| (*name, *text, Kind::Lubricant));
-    let rigs = embedded_rigs()
-        .iter()
-        .map(|(name, text)| (*name, *text, Kind::Rig));
-    vehicles
-        .chain(lubricants)
-        .chain(rigs)
-        .map(|(name, text, kind)| File {
-            name,
-            kind,
-            keys: values(name, text, kind),
-        })
-        .collect()
+    let kinds = [Kind::Vehicle, Kind::Lubricant, Kind::Rig];
+    let file = |kind: Kind, (name, text): embedded::File| File {
+        name,
+        kind,
+        keys: values(name, text, kind),
+    };
+    let of = |kind: Kind| kind.embedded().iter().map(move |found| file(kind, *found));
+    kinds.into_iter().flat_map(of).collect()
 }
 
 /// Every key of any vehicle, lubricant or rig, those of the transmission oil with [`OIL`]; without values. They are the same in every
@@ -106,6 +97,7 @@ fn values(name: &str, text: &str, kind: Kind) -> Vec<KeyInfo> {
         Kind::Lubricant => drop(Lubricant::from_values(&root, name)),
         Kind::Vehicle => drop(head(&root, name)),
         Kind::Rig => drop(rig::read(&root)),
+        Kind::Plan | Kind::Calibration => {}
     }
     if let (Kind::Vehicle, Some(oil)) = (kind, oil()) {
         let oils = [oil.clone(), oil];
@@ -116,7 +108,7 @@ fn values(name: &str, text: &str, kind: Kind) -> Vec<KeyInfo> {
 
 /// Any checked fluid: which one has no influence on the keys of a vehicle.
 fn oil() -> Option<Lubricant> {
-    let (name, _) = embedded_lubricants().first()?;
+    let (name, _) = embedded::lubricants().first()?;
     super::load_lubricant(name, "", &[], "")
         .ok()
         .map(|(oil, _)| oil)

@@ -5,7 +5,6 @@
 pub mod assumptions;
 pub mod catalogue;
 pub mod blueprint;
-mod embedded;
 mod inputs;
 mod map_csv;
 mod other_box;
@@ -13,14 +12,16 @@ mod shelf;
 pub mod equations;
 pub mod tables;
 
-pub use embedded::{embedded_lubricants, embedded_map, embedded_rigs, embedded_vehicles};
+pub use crate::embedded::{lubricants as embedded_lubricants, vehicles as embedded_vehicles};
 
 use std::sync::Arc;
 
 use crate::bounded::{self, Refused};
+use crate::embedded;
 use crate::{Bound, Document, KeyInfo, Problem, Problems, Reader, decode, near};
 use cvtcycle_model::drive::Vehicle;
 use cvtcycle_model::fluid::Lubricant;
+use cvtcycle_model::keys::{self, Table};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Reads files that an input names; the only way in which loading touches the disk.
@@ -113,22 +114,49 @@ pub enum Kind {
     Lubricant,
     /// What a test rig is set to.
     Rig,
+    /// The plan of a study.
+    Plan,
+    /// The plan of a calibration.
+    Calibration,
 }
 
 impl Kind {
-    fn embedded(self) -> &'static [(&'static str, &'static str)] {
+    /// The files of this kind that the program carries: name and text.
+    #[must_use]
+    pub const fn embedded(self) -> &'static [embedded::File] {
         match self {
-            Kind::Vehicle => embedded_vehicles(),
-            Kind::Lubricant => embedded_lubricants(),
-            Kind::Rig => embedded_rigs(),
+            Kind::Vehicle => embedded::vehicles(),
+            Kind::Lubricant => embedded::lubricants(),
+            Kind::Rig => embedded::rigs(),
+            Kind::Plan => embedded::plans(),
+            Kind::Calibration => embedded::calibrations(),
         }
     }
 
-    fn word(self) -> &'static str {
+    /// Names of the files of this kind that the program carries.
+    #[must_use]
+    pub fn names(self) -> Vec<&'static str> {
+        self.embedded().iter().map(|(name, _)| *name).collect()
+    }
+
+    /// Its keys; none yet of plans and calibrations.
+    #[must_use]
+    pub const fn keys(self) -> Table {
+        match self {
+            Kind::Vehicle => keys::VEHICLE,
+            Kind::Lubricant => keys::LUBRICANT,
+            Kind::Rig => keys::RIG,
+            Kind::Plan | Kind::Calibration => Table::EMPTY,
+        }
+    }
+
+    pub(crate) const fn word(self) -> &'static str {
         match self {
             Kind::Vehicle => "vehicle",
             Kind::Lubricant => "lubricant",
             Kind::Rig => "rig",
+            Kind::Plan => "plan",
+            Kind::Calibration => "calibration",
         }
     }
 }
@@ -145,18 +173,14 @@ pub fn is_path(word: &str) -> bool {
 /// Unknown name (with the near ones), unreadable path, binary or empty file.
 pub fn text_of(word: &str, kind: Kind, option: &str) -> Result<(String, String, Disk), Problems> {
     if !is_path(word) {
-        if let Some((name, text)) = kind.embedded().iter().find(|(n, _)| *n == word) {
-            return Ok((
-                format!("embedded:{name}.toml"),
-                (*text).to_owned(),
-                Disk::default(),
-            ));
-        }
-        return Err(unknown_name(word, kind, option).into());
+        let text = embedded::text(kind.embedded(), word)
+            .ok_or_else(|| unknown_name(word, kind, option))?;
+        let file = format!("embedded:{word}.toml");
+        return Ok((file, text.to_owned(), Disk::default()));
     }
     let path = std::path::Path::new(word);
     // What no option names stands in a file, whose author may be a stranger.
-    let by_user = option.starts_with("--") || option == "FILE";
+    let by_user = option.starts_with("--") || ["FILE", "PLAN"].contains(&option);
     let read = if by_user {
         bounded::read(path, bounded::TOML)
     } else {
@@ -171,7 +195,7 @@ pub fn text_of(word: &str, kind: Kind, option: &str) -> Result<(String, String, 
 }
 
 fn unknown_name(word: &str, kind: Kind, option: &str) -> Problem {
-    let names: Vec<&str> = kind.embedded().iter().map(|(n, _)| *n).collect();
+    let names = kind.names();
     let close = near(word, names.iter().copied());
     let hint = if close.is_empty() {
         String::new()
@@ -183,10 +207,7 @@ fn unknown_name(word: &str, kind: Kind, option: &str) -> Problem {
         .key(option)
         .value(word)
         .allowed(format!("{}, or the path of a TOML file", names.join(", ")))
-        .hint(format!(
-            "{hint}`cvtcycle list {}s` shows all; a path needs a / or an ending",
-            kind.word()
-        ))
+        .hint(format!("{hint}a path needs a / or an ending"))
 }
 
 fn unreadable(word: &str, option: &str, why: &Refused) -> Problem {

@@ -3,10 +3,11 @@
 use std::io::ErrorKind;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use super::Files;
 use super::map_csv::{self, Column, Form};
-use super::{Files, embedded_map};
 use crate::Section;
 use crate::bounded::Refused;
+use crate::embedded;
 use cvtcycle_model::engine::BsfcMap;
 use cvtcycle_model::keys::Quantity;
 use cvtcycle_model::math::{GRID_AXES, Grid};
@@ -40,7 +41,7 @@ fn read(s: &Section, key: &str, file: &str, form: &Form) -> Option<Arc<Table>> {
     }
     let mut make = || {
         let read;
-        let bytes = match embedded_map(file) {
+        let bytes = match embedded::text(embedded::maps(), file) {
             Some(text) => text.as_bytes(),
             None => match fetch(s.reader.files, file) {
                 Ok(bytes) => {

@@ -15,7 +15,6 @@
 //! | `report`, `markdown`, `html` | JSON, CSV, Markdown, the HTML page |
 
 mod checks;
-mod embedded;
 pub mod expr;
 pub mod judge;
 mod markdown;
@@ -28,7 +27,10 @@ pub mod store;
 pub mod tables;
 
 pub use checks::MECHANISMS;
-pub use embedded::{COMMON, embedded_rows};
+pub use cvtcycle_config::embedded::rows as embedded_rows;
+
+/// The file whose tolerances and sources all files may use: name and text.
+pub const COMMON: (&str, &str) = cvtcycle_config::embedded::common_rows()[0];
 pub use expr::Computed;
 pub use judge::{HeldOut, Judged, Report, Subject, judge};
 pub use markdown::markdown;

@@ -9,14 +9,12 @@
 //! | `solve` | least squares, bounds, several starts, covariance, what the data do not identify; knows no physics |
 //! | `outcome` | everything that a calibration found |
 //! | `fitted` | vehicle and lubricant files with the fitted values |
-//! | `embedded` | the plans of the shipped cars |
 //!
 //! A residual is (computed - measured) / sd. What is computed comes from the sources and expressions of [`crate::validate`], so that a
 //! number is computed in the same way for a fit and for a verdict. A measured range has no residual within it.
 
 mod check;
 pub mod data;
-mod embedded;
 pub mod fitted;
 pub mod model;
 pub mod outcome;
@@ -25,5 +23,5 @@ mod run;
 pub mod solve;
 
 pub use check::open;
-pub use embedded::embedded_calibrations;
+pub use cvtcycle_config::embedded::calibrations as embedded_calibrations;
 pub use run::calibrate;

@@ -7,18 +7,17 @@
 //! | `options` | what the run options allow, as factors and at the head |
 //! | `design` | the design's own keys, and what concerns all factors at once |
 //! | `distribution` | equations of the distributions |
-//! | `embedded` | the plans that the program carries |
 
 mod design;
 mod distribution;
-mod embedded;
 mod factor;
 mod options;
 mod places;
 mod read;
 mod values;
 
-pub use embedded::embedded_plans;
+pub use cvtcycle_config::embedded::plans as embedded_plans;
+use cvtcycle_config::setup::{Kind, text_of};
 pub use places::Places;
 
 use std::sync::Arc;
@@ -230,7 +229,7 @@ impl Plan {
     /// # Errors
     /// Unknown name, unreadable file, or all problems of the plan.
     pub fn open(word: &str, option: &str) -> Result<Plan, Problems> {
-        let (file, text) = embedded::text_of(word, option)?;
+        let (file, text, _) = text_of(word, Kind::Plan, option)?;
         Plan::read(&file, &text)
     }
 

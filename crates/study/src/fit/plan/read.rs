@@ -6,11 +6,8 @@ use super::group::{self, Around, Found};
 use super::{Plan, Search, What, parameter, problem};
 use crate::check::source::{self, Source};
 use crate::check::{COMMON, File, embedded_rows};
-use crate::fit::embedded_calibrations;
-use cvtcycle_config::setup::{catalogue, is_path};
-use cvtcycle_config::{
-    Bound, Document, Place, Problem, Problems, Reader, Section, bounded, decode, near,
-};
+use cvtcycle_config::setup::{Kind, catalogue, is_path, text_of};
+use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section, near};
 
 /// Most starts.
 const MOST_STARTS: i64 = 1000;
@@ -36,51 +33,8 @@ fn sound((plan, problems): (Plan, Problems)) -> Result<Plan, Problems> {
 /// # Errors
 /// What leaves nothing to be understood: an unknown name, an unreadable path, a text that is no TOML.
 pub fn gather(word: &str, option: &str) -> Result<(Plan, Problems), Problems> {
-    let wrong = |allowed: String, message: String, hint: String| {
-        let place = Place {
-            file: option.to_owned(),
-            ..Place::default()
-        };
-        Problem::invalid(message)
-            .at(place)
-            .key(option)
-            .value(word)
-            .allowed(allowed)
-            .hint(hint)
-            .into()
-    };
-    if is_path(word) {
-        let bytes = bounded::read(word, bounded::TOML).map_err(|error| {
-            let hint = error.hint("check the path and its permissions");
-            wrong(
-                error.allowed("a readable file"),
-                format!("cannot read `{word}`: {error}"),
-                hint.into(),
-            )
-        })?;
-        return partly(word, &decode(word, &bytes)?);
-    }
-    if let Some((name, text)) = embedded_calibrations()
-        .iter()
-        .find(|(name, _)| *name == word)
-    {
-        return partly(&format!("embedded:{name}.toml"), text);
-    }
-    let names: Vec<&str> = embedded_calibrations()
-        .iter()
-        .map(|(name, _)| *name)
-        .collect();
-    let close = near(word, names.iter().copied());
-    let question = if close.is_empty() {
-        String::new()
-    } else {
-        format!("did you mean {}? ", close.join(" or "))
-    };
-    Err(wrong(
-        format!("{}, or the path of a TOML file", names.join(", ")),
-        format!("there is no calibration named `{word}`"),
-        format!("{question}a path needs a / or an ending"),
-    ))
+    let (file, text, _) = text_of(word, Kind::Calibration, option)?;
+    partly(&file, &text)
 }
 
 /// Reads a plan and the data files that it names; `file` is the plan's own name or path.

@@ -1,0 +1,179 @@
+//! JSON Schema (draft 07) of input files, made from the model's keys.
+//!
+//! Editors with a TOML server show ranges, options, units and meanings from it and mark unknown keys.
+
+use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Quantity, Table};
+use serde_json::{Map, Value, json};
+
+use crate::setup::Kind as File;
+use crate::value::STATUSES;
+
+/// The schema of a kind of file.
+///
+/// ```
+/// use cvtcycle_config::{schema, setup::Kind};
+/// let vehicle = schema::of(Kind::Vehicle);
+/// let belt = &vehicle["properties"]["transmission"]["anyOf"][2]["properties"]["cvt"]["properties"]["belt"];
+/// assert_eq!(belt["properties"]["band_offset_mm"]["anyOf"][0]["maximum"], 20.0);
+/// ```
+#[must_use]
+pub fn of(file: File) -> Value {
+    let mut schema = table(&file.keys());
+    let head = json!({
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": format!("cvtcycle {} file", file.word()),
+    });
+    for (place, entry) in head.as_object().into_iter().flatten() {
+        schema[place] = entry.clone();
+    }
+    schema
+}
+
+fn table(table: &Table) -> Value {
+    let mut properties = Map::new();
+    let mut required = Vec::new();
+    for key in table.keys {
+        properties.insert(key.name.to_owned(), entry(key));
+        if matches!(key.presence, Presence::Required) {
+            required.push(key.name);
+        }
+    }
+    for inner in table.tables {
+        properties.insert(inner.name.to_owned(), self::table(inner));
+        if is_required(inner) {
+            required.push(inner.name);
+        }
+    }
+    let mut schema = json!({
+        "type": "object",
+        "properties": properties,
+        "additionalProperties": false,
+    });
+    if !required.is_empty() {
+        schema["required"] = json!(required);
+    }
+    schema
+}
+
+/// Whether a table has a key that is always required.
+fn is_required(table: &Table) -> bool {
+    let required = |key: &&Key<'_>| matches!(key.presence, Presence::Required);
+    table.keys.iter().any(required) || table.tables.iter().any(is_required)
+}
+
+/// A key: its bare value, or the value with its origin; an option also as a table.
+fn entry(key: &Key<'_>) -> Value {
+    let bare = value(key);
+    let text = json!({ "type": "string" });
+    let mut forms = vec![
+        bare.clone(),
+        json!({
+            "type": "object",
+            "properties": {
+                "value": bare,
+                "status": { "enum": STATUSES },
+                "source": text,
+                "note": text,
+            },
+            "required": ["value"],
+            "additionalProperties": false,
+        }),
+    ];
+    if let Kind::Options(choices) = key.kind {
+        forms.push(options(choices));
+    }
+    let mut schema = json!({ "description": description(key), "anyOf": forms });
+    match key.presence {
+        Presence::Number(default) => schema["default"] = json!(default),
+        Presence::Integer(default) => schema["default"] = json!(default),
+        Presence::Flag(default) => schema["default"] = json!(default),
+        Presence::Word(default) => schema["default"] = json!(default),
+        _ => {}
+    }
+    schema
+}
+
+fn options(choices: &[Choice]) -> Value {
+    let tables = choices.iter().map(|choice| {
+        let mut schema = table(&choice.table);
+        schema["description"] = json!(choice.doc);
+        (choice.name.to_owned(), schema)
+    });
+    json!({
+        "type": "object",
+        "properties": tables.collect::<Map<_, _>>(),
+        "additionalProperties": false,
+        "maxProperties": 1,
+    })
+}
+
+/// Meaning, unit and allowed values.
+fn description(key: &Key<'_>) -> String {
+    let mut text = format!("{}\n\nAllowed: {}", key.doc, key.allowed());
+    if let Kind::Words(choices) | Kind::Options(choices) = key.kind {
+        for choice in choices {
+            text += &format!("\n- {}: {}", choice.name, choice.doc);
+        }
+    }
+    match key.presence {
+        Presence::RequiredIf(condition) => text += &format!("\n\nRequired {condition}"),
+        Presence::Computed(words) => text += &format!("\n\nDefault: {words}"),
+        Presence::Required | Presence::Optional => {}
+        Presence::Number(default) => {
+            text += &format!("\n\nDefault: {default} {}", key.quantity.unit());
+        }
+        Presence::Integer(_) | Presence::Flag(_) | Presence::Word(_) => {}
+    }
+    text
+}
+
+/// The bare value of a key.
+fn value(key: &Key<'_>) -> Value {
+    match &key.kind {
+        Kind::Number(range) => number(range),
+        Kind::Integer(low, i64::MAX) => json!({ "type": "integer", "minimum": low }),
+        Kind::Integer(low, high) => json!({ "type": "integer", "minimum": low, "maximum": high }),
+        Kind::Flag => json!({ "type": "boolean" }),
+        Kind::Text => json!({ "type": "string" }),
+        Kind::Words(choices) | Kind::Options(choices) => {
+            json!({ "enum": choices.iter().map(|choice| choice.name).collect::<Vec<_>>() })
+        }
+        Kind::Numbers(range, least, most) => {
+            json!({ "type": "array", "items": number(range), "minItems": least, "maxItems": most })
+        }
+        Kind::Grid(range) => {
+            let list = json!({ "type": "array", "items": number(range) });
+            json!({ "anyOf": [number(range), list, { "type": "string", "pattern": r"\.\..*:" }] })
+        }
+        Kind::Texts => json!({ "type": "array", "items": { "type": "string" } }),
+        Kind::Rows(columns) => {
+            let cell = |(name, range): &(&str, Bound)| {
+                let mut schema = number(range);
+                schema["description"] = json!(format!("{name} [{}]", Quantity::of(name).unit()));
+                schema
+            };
+            let cells: Vec<Value> = columns.iter().map(cell).collect();
+            let count = cells.len();
+            let row =
+                json!({ "type": "array", "items": cells, "minItems": count, "maxItems": count });
+            json!({ "type": "array", "items": row })
+        }
+        Kind::Other(_) => json!({}),
+    }
+}
+
+fn number(range: &Bound) -> Value {
+    let mut schema = json!({ "type": "number" });
+    if range.low().is_finite() {
+        let low = if range.includes_low() {
+            "minimum"
+        } else {
+            "exclusiveMinimum"
+        };
+        schema[low] = json!(range.low());
+    }
+    if range.high().is_finite() {
+        schema["maximum"] = json!(range.high());
+    }
+    schema
+}

@@ -1,0 +1,144 @@
+//! `cvtcycle schema`: the shipped files are valid, and mistakes of range, option and key are seen.
+//!
+//! Truth: the rules of JSON Schema draft 07 for the words that the schemas use, written here; any other
+//! word fails the test. `tools/schema_check` does the same with an independent validator.
+use cvtcycle::config::schema;
+use cvtcycle::config::setup::Kind;
+use serde_json::{Value, json};
+
+/// Where and why a value is not valid.
+fn mistakes(schema: &Value, value: &Value, at: &str) -> Vec<String> {
+    let number = value.as_f64();
+    let mut found = Vec::new();
+    for (word, rule) in schema.as_object().expect("a schema") {
+        let limit = rule.as_f64().unwrap_or(f64::NAN);
+        let holds = match word.as_str() {
+            "$schema" | "title" | "description" | "default" => true,
+            "type" => is_type(value, rule.as_str().expect("one type")),
+            "enum" => rule.as_array().expect("values").contains(value),
+            "minimum" => number.is_none_or(|x| x >= limit),
+            "exclusiveMinimum" => number.is_none_or(|x| x > limit),
+            "maximum" => number.is_none_or(|x| x <= limit),
+            "minItems" => value.as_array().is_none_or(|a| a.len() as f64 >= limit),
+            "maxItems" => value.as_array().is_none_or(|a| a.len() as f64 <= limit),
+            "maxProperties" => value.as_object().is_none_or(|o| o.len() as f64 <= limit),
+            "required" => value.as_object().is_none_or(|o| {
+                let names = rule.as_array().expect("names").iter();
+                names
+                    .filter_map(Value::as_str)
+                    .all(|name| o.contains_key(name))
+            }),
+            "anyOf" => {
+                let forms = rule.as_array().expect("schemas").iter();
+                let tried: Vec<_> = forms.map(|form| mistakes(form, value, at)).collect();
+                if !tried.iter().any(Vec::is_empty) {
+                    // The form that comes furthest tells the mistake.
+                    found.extend(
+                        tried
+                            .into_iter()
+                            .max_by_key(|list| list[0].find(':'))
+                            .expect("a form"),
+                    );
+                }
+                true
+            }
+            "items" => {
+                for (k, item) in value.as_array().into_iter().flatten().enumerate() {
+                    let schema = rule.as_array().map_or(rule, |list| &list[k]);
+                    found.extend(mistakes(schema, item, &format!("{at}[{k}]")));
+                }
+                true
+            }
+            "properties" => {
+                for (name, item) in value.as_object().into_iter().flatten() {
+                    if let Some(schema) = rule.get(name) {
+                        found.extend(mistakes(schema, item, &format!("{at}.{name}")));
+                    }
+                }
+                true
+            }
+            "additionalProperties" => {
+                let known = &schema["properties"];
+                for (name, _) in value.as_object().into_iter().flatten() {
+                    if known.get(name).is_none() {
+                        found.push(format!("{at}.{name}: unknown"));
+                    }
+                }
+                *rule == json!(false)
+            }
+            _ => false,
+        };
+        if !holds {
+            found.push(format!("{at}: {word}"));
+        }
+    }
+    found
+}
+
+fn is_type(value: &Value, name: &str) -> bool {
+    match name {
+        "object" => value.is_object(),
+        "array" => value.is_array(),
+        "string" => value.is_string(),
+        "boolean" => value.is_boolean(),
+        "integer" => value.is_i64(),
+        "number" => value.is_number(),
+        other => panic!("type {other}"),
+    }
+}
+
+fn checked(kind: Kind, text: &str) -> Vec<String> {
+    let value: toml::Value = toml::from_str(text).expect("TOML");
+    mistakes(&schema::of(kind), &json!(value), "")
+}
+
+#[test]
+fn the_shipped_files_are_valid() {
+    for kind in [Kind::Vehicle, Kind::Lubricant, Kind::Rig] {
+        for (name, text) in kind.embedded() {
+            assert_eq!(checked(kind, text), [] as [&str; 0], "{name}");
+        }
+    }
+}
+
+#[test]
+fn mistakes_are_seen() {
+    let (_, rover) = Kind::Vehicle
+        .embedded()
+        .iter()
+        .find(|(name, _)| *name == "rover_216_cvt")
+        .expect("the shipped car");
+    for (from, to, mistake) in [
+        (
+            "[vehicle]\n",
+            "[vehicle]\ncolour = \"red\"\n",
+            ".vehicle.colour: unknown",
+        ),
+        (
+            "wheel_radius_m = {",
+            "wheel_radius_m = 9\nx = {",
+            ".road_load.wheel_radius_m: maximum",
+        ),
+        (
+            "[road_load]\n",
+            "[road_load]\nsurface = \"sand\"\n",
+            ".road_load.surface: enum",
+        ),
+        (
+            "[road_load]\n",
+            "[road_load]\npayload_kg = \"much\"\n",
+            ".road_load.payload_kg: type",
+        ),
+    ] {
+        let text = rover.replacen(from, to, 1);
+        assert_ne!(text, *rover, "{from}");
+        let found = checked(Kind::Vehicle, &text);
+        assert!(
+            found.iter().any(|m| m.starts_with(mistake)),
+            "{mistake}: {found:?}"
+        );
+    }
+    let status = "density15_kg_m3 = { value = 850, status = \"guessed\" }\nkv40_mm2_s = 30\nkv100_mm2_s = 7\n";
+    let found = checked(Kind::Lubricant, status);
+    assert_eq!(found, [".density15_kg_m3.status: enum"]);
+}
