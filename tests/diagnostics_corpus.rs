@@ -19,6 +19,8 @@ mod corpus;
 mod keys;
 #[path = "diagnostics/kinds.rs"]
 mod kinds;
+#[path = "diagnostics/schema.rs"]
+mod schema;
 #[path = "diagnostics/sentences.rs"]
 mod sentences;
 #[path = "common/sources.rs"]

@@ -846,6 +846,7 @@ fn the_examples_of_the_help_work() {
         "show",
         "explain",
         "check",
+        "schema",
         "assumptions",
         "completions",
         "man",

@@ -36,7 +36,6 @@ const OUTSIDE: &[(&str, &str)] = &[
         "study::fit::solve::descend",
         "the search: tests/studies/calibrate_solve",
     ),
-    ("study::plan::embedded", "words of the command line"),
     ("study::store", "files that the program wrote"),
 ];
 

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use super::{bin, made, program, stderr, words};
 
 /// Commands that print.
-const PRINTERS: [&str; 22] = [
+const PRINTERS: [&str; 23] = [
     "run --cycle minute.csv",
     "run --cycle minute.csv --json",
     "run --cycle minute.csv --sensitivity never --force --out again",
@@ -29,6 +29,7 @@ const PRINTERS: [&str; 22] = [
     "show rover_216_cvt",
     "explain SL-8",
     "check minute.csv",
+    "schema vehicle",
     "assumptions",
 ];
 
