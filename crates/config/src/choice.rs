@@ -4,8 +4,8 @@ use super::near::suggest;
 use super::reader::join;
 use super::section::Section;
 use super::value::{Found, Lookup};
-use super::values::options;
-use cvtcycle_model::keys::{Key, Presence};
+use super::values::{default_option, options};
+use cvtcycle_model::keys::Key;
 
 /// How the choice came out.
 enum Choice<'r> {
@@ -50,7 +50,9 @@ impl<'r> Section<'r> {
                 self.defaulted(name, option, None);
                 option
             }
-            Choice::Failed => default_of(key).or(options(key).next()).unwrap_or_default(),
+            Choice::Failed => default_option(key)
+                .or(options(key).next())
+                .unwrap_or_default(),
         };
         let mut section = self.below(name);
         self.reader.note(|log| {
@@ -80,7 +82,7 @@ impl<'r> Section<'r> {
     }
 
     fn default_choice(&self, key: &Key<'_>) -> Choice<'r> {
-        if let Some(default) = default_of(key) {
+        if let Some(default) = default_option(key) {
             return Choice::Default(default);
         }
         self.missing(key);
@@ -189,14 +191,6 @@ impl<'r> Section<'r> {
         let hint = format!("keep one of them, or choose with --set {name}={}", first.0);
         self.report(&second.1.span, key.name, &key.allowed(), message, hint);
         Choice::Failed
-    }
-}
-
-/// The option that a key takes when nothing is given.
-fn default_of(key: &Key<'_>) -> Option<&'static str> {
-    match key.presence {
-        Presence::Word(default) => options(key).find(|option| *option == default),
-        _ => None,
     }
 }
 

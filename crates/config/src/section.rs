@@ -163,7 +163,7 @@ impl<'r> Section<'r> {
     ) -> &'static str {
         let choices = choices(words);
         let spec = (Kind::Words(&choices), Presence::Word(default));
-        self.word(&Key::new(key, spec, doc))
+        self.read_word(&Key::new(key, spec, doc), default)
     }
 
     /// The option under `name` and its table, as [`Values::choose`].

@@ -127,31 +127,7 @@ impl<'r> Values for Section<'r> {
     }
 
     fn word(&self, key: &Key<'_>) -> &'static str {
-        let words: Vec<&'static str> = options(key).collect();
-        let default = match key.presence {
-            Presence::Word(default) => words.iter().find(|word| **word == default),
-            _ => None,
-        };
-        let default = default.or(words.first()).copied().unwrap_or_default();
-        match self.open(key) {
-            Lookup::Found(found) => {
-                let Value::Text(text) = &found.node.value else {
-                    self.wrong_type(key.name, found.node, "text");
-                    return default;
-                };
-                if let Some(word) = words.iter().find(|word| *word == text) {
-                    self.given(key.name, &found, text, None);
-                    return word;
-                }
-                let path = join(&self.path, key.name);
-                let message = format!("`{text}` is not known for `{path}`");
-                let hint = suggest(text, &words);
-                self.report(&found.node.span, key.name, &key.allowed(), message, hint);
-            }
-            Lookup::Absent => self.defaulted(key.name, default, None),
-            Lookup::Bad => {}
-        }
-        default
+        self.read_word(key, default_option(key).unwrap_or_default())
     }
 
     fn choose(&self, key: &Key<'_>) -> (&'static str, Self) {
@@ -201,6 +177,39 @@ impl<'r> Values for Section<'r> {
 
     fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str) {
         Section::complain(self, key, allowed, message, hint);
+    }
+}
+
+impl Section<'_> {
+    /// One of the key's words; the default also after a problem.
+    pub(super) fn read_word(&self, key: &Key<'_>, default: &'static str) -> &'static str {
+        match self.open(key) {
+            Lookup::Found(found) => {
+                let Value::Text(text) = &found.node.value else {
+                    self.wrong_type(key.name, found.node, "text");
+                    return default;
+                };
+                if let Some(word) = options(key).find(|word| word == text) {
+                    self.given(key.name, &found, text, None);
+                    return word;
+                }
+                let path = join(&self.path, key.name);
+                let message = format!("`{text}` is not known for `{path}`");
+                let hint = suggest(text, &options(key).collect::<Vec<_>>());
+                self.report(&found.node.span, key.name, &key.allowed(), message, hint);
+            }
+            Lookup::Absent => self.defaulted(key.name, default, None),
+            Lookup::Bad => {}
+        }
+        default
+    }
+}
+
+/// The option that a key takes when nothing is given.
+pub(super) fn default_option(key: &Key<'_>) -> Option<&'static str> {
+    match key.presence {
+        Presence::Word(default) => options(key).find(|option| *option == default),
+        _ => None,
     }
 }
 
