@@ -224,10 +224,7 @@ fn some(names: &[&str]) -> String {
 fn head(asked: &Asked, counts: &Counts) -> Map<String, Value> {
     let mut head = Map::new();
     head.insert("schema".into(), json!(1));
-    head.insert(
-        "program".into(),
-        json!(concat!("cvtcycle ", env!("CARGO_PKG_VERSION"))),
-    );
+    head.insert("program".into(), json!(cvtcycle::output::PROGRAM));
     if let Some(setup) = &asked.setup {
         head.insert("vehicle".into(), json!(setup.name));
         head.insert("lubricant".into(), json!(setup.oils().0.name));

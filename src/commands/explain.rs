@@ -7,7 +7,7 @@ use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
 use cvtcycle::config::setup::equations::{Equation, by_label, cited, equations};
 use cvtcycle::config::{KeyInfo, Problem, near};
 use cvtcycle::output::Flags;
-use cvtcycle::output::columns::{COLUMNS, Column, column};
+use cvtcycle::output::trace::{COLUMNS, TraceColumn, column};
 use serde_json::{Value, json};
 
 use super::Context;
@@ -44,7 +44,7 @@ struct Found {
 /// Everything that bears the name asked for.
 struct Meanings {
     keys: Vec<Found>,
-    column: Option<&'static Column>,
+    column: Option<&'static TraceColumn>,
     flag: Option<(&'static str, &'static str)>,
     equation: Option<Equation>,
 }
@@ -133,7 +133,7 @@ fn unknown(word: &str, known: &[KeyInfo]) -> Problem {
         .collect();
     let others = COLUMNS
         .iter()
-        .map(|c| c.name)
+        .map(|c| &*c.name)
         .chain(Flags::NAMES.iter().map(|(_, name)| *name));
     names.extend(others.map(|name| (name.to_owned(), name.to_owned())));
     names.extend(equations().map(|e| (e.label.to_owned(), e.label.to_owned())));

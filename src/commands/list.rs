@@ -10,8 +10,8 @@ use serde::Serialize;
 use super::Context;
 use crate::args::{lubricants, vehicles};
 use crate::print::grid::Grid;
-use crate::print::number::fixed;
 use crate::print::{Answer, Reply};
+use cvtcycle::output::number::fixed;
 
 /// Arguments of `list`.
 #[derive(Clone, Debug, clap::Args)]

@@ -13,6 +13,7 @@ use cvtcycle::output::loss_table::{MapPart, write_map};
 use cvtcycle::output::losses::{FlagCount, LossRow};
 
 use super::Context;
+use super::run::files::Written;
 use crate::args::{self as inputs, Offering};
 use crate::print::stream;
 use crate::print::{Answer, FAILED, Reply};
@@ -142,18 +143,16 @@ pub fn answer(args: &Args, context: Context) -> Reply {
     if args.json {
         stream::to_stdout(|out| files::write_json(out, &plan, rows()))?;
     } else if args.format == Format::Csv {
-        stream::to_stdout(|out| files::write_csv(out, &plan.columns, rows()))?;
+        stream::to_stdout(|out| files::write_csv(out, &plan, rows()))?;
     } else if args.quiet {
         rows().for_each(drop);
     } else {
         stdout = text::table(&plan, rows(), context.paint);
-        stdout += &written
-            .as_ref()
-            .map_or_else(String::new, files::Written::text);
+        stdout += &written.as_ref().map_or_else(String::new, Written::text);
     }
     let mut stderr = written
         .as_ref()
-        .map_or_else(String::new, files::Written::left_over_text);
+        .map_or_else(String::new, Written::left_over_text);
     let open = flags
         .borrow()
         .named()
@@ -188,7 +187,7 @@ fn map(
         args.as_map.as_deref().unwrap_or_default(),
         write,
     )
-    .and_then(|()| files::commit(dir));
+    .and_then(|()| Written::commit(dir));
     let written = written?;
     let stdout = if args.quiet {
         String::new()

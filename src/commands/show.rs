@@ -12,8 +12,8 @@ use super::Context;
 use crate::args as inputs;
 use crate::args::sniff::{Sort, sort_of};
 use crate::print::grid::Grid;
-use crate::print::number::{fixed, signed};
 use crate::print::{Answer, Reply};
+use cvtcycle::output::number::{fixed, signed};
 
 /// Longest value that stands in its own column; longer ones, lists mostly, move to the last.
 const VALUE: usize = 18;

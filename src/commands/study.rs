@@ -2,7 +2,6 @@
 
 mod ambient;
 mod common;
-pub(super) mod csv_files;
 mod export;
 mod matrix;
 mod results;

@@ -2,7 +2,6 @@
 
 pub mod colour;
 pub mod grid;
-pub mod number;
 pub mod progress;
 pub mod stream;
 

@@ -315,11 +315,11 @@ pub fn made_file(
 
 /// Traces that are wrong in one way each; their columns are those that the program writes.
 fn traces() -> Vec<(String, String)> {
-    use cvtcycle::output::columns::{COLUMNS, Scope};
+    use cvtcycle::output::{table::Scope, trace::COLUMNS};
     let names: Vec<&str> = COLUMNS
         .iter()
         .filter(|column| column.scope != Scope::Cvt)
-        .map(|column| column.name)
+        .map(|column| &*column.name)
         .collect();
     let row = |time: &str, dt: &str, flags: &str, other: &str| {
         let cell = |name: &&str| match *name {

@@ -6,8 +6,9 @@ use std::fs;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::model::drive::components;
-use cvtcycle::output::columns::{COLUMNS, Value, columns_for};
+use cvtcycle::output::table::Cell;
 use cvtcycle::output::trace::write_trace;
+use cvtcycle::output::trace::{COLUMNS, columns_for};
 use cvtcycle::output::{Component, Flags, History, Row};
 use cvtcycle::study::store::{read_trace_parquet, write_trace_parquet};
 
@@ -27,7 +28,7 @@ fn bits(history: &History) -> Bits {
     Bits {
         columns: history
             .columns()
-            .map(|(column, of)| (column.name, numbers(of)))
+            .map(|(column, of)| (&*column.name, numbers(of)))
             .collect(),
         phases: history.phases().to_vec(),
         steps: (0..history.len())
@@ -88,18 +89,18 @@ fn what_is_written_is_read_bit_by_bit() {
                 );
                 assert_eq!(history.flags(i), row.flags);
                 for column in &columns {
-                    match (column.get)(row) {
-                        Value::Number(x) if x.is_finite() => assert_eq!(
-                            history.column(column.name)[i].to_bits(),
+                    match column.cell(row) {
+                        Cell::Number(x) if x.is_finite() => assert_eq!(
+                            history.column(&column.name)[i].to_bits(),
                             (x + 0.0).to_bits()
                         ),
-                        Value::Number(_) => assert!(history.column(column.name)[i].is_nan()),
-                        Value::Count(n) => assert_eq!(
-                            history.column(column.name)[i].to_bits(),
-                            f64::from(n).to_bits()
+                        Cell::Number(_) => assert!(history.column(&column.name)[i].is_nan()),
+                        Cell::Count(n) => assert_eq!(
+                            history.column(&column.name)[i].to_bits(),
+                            (n as f64).to_bits()
                         ),
                         _ => assert!(
-                            !history.has(column.name) && history.column(column.name).is_empty()
+                            !history.has(&column.name) && history.column(&column.name).is_empty()
                         ),
                     }
                 }

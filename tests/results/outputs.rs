@@ -9,9 +9,11 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use cvtcycle::output::columns::{COLUMNS, Value, column, columns_for};
 use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::number::{fixed, percent, plain, signed, tiny};
+use cvtcycle::output::table::{Cell, Scope};
 use cvtcycle::output::trace::write_trace;
+use cvtcycle::output::trace::{COLUMNS, column, columns_for, loss_column};
 use cvtcycle::output::{Component, Flags, Row};
 
 #[allow(dead_code, reason = "shared with other tests")]
@@ -26,23 +28,23 @@ fn a_trace_reads_back_to_the_same_numbers() {
         let mut bytes = Vec::new();
         write_trace(&mut bytes, &columns, &rows, &phases).unwrap();
         let mut reader = csv::Reader::from_reader(&bytes[..]);
-        let names: Vec<_> = columns.iter().map(|c| c.name).collect();
+        let names: Vec<_> = columns.iter().map(|c| &*c.name).collect();
         assert_eq!(reader.headers().unwrap(), &names);
         let records: Vec<_> = reader.records().map(Result::unwrap).collect();
         assert_eq!(records.len(), rows.len());
         for (record, row) in records.iter().zip(&rows) {
             for (field, column) in record.iter().zip(&columns) {
-                match (column.get)(row) {
-                    Value::Number(x) if x.is_finite() => assert!(
+                match column.cell(row) {
+                    Cell::Number(x) if x.is_finite() => assert!(
                         field.parse::<f64>().unwrap().total_cmp(&(x + 0.0)).is_eq(),
                         "{field}"
                     ),
-                    Value::Number(_) => assert_eq!(field, ""),
-                    Value::Count(n) => assert_eq!(field, n.to_string()),
-                    Value::Phase(_) => assert_eq!(field, "ECE 1"),
-                    Value::Flags(f) if f == Flags::default() => assert_eq!(field, ""),
-                    Value::Flags(_) => assert_eq!(field, "overrun|fuel_cut"),
-                    Value::Text(_) => unreachable!(),
+                    Cell::Number(_) => assert_eq!(field, ""),
+                    Cell::Count(n) => assert_eq!(field, n.to_string()),
+                    Cell::Phase(_) => assert_eq!(field, "ECE 1"),
+                    Cell::Flags(f) if f == Flags::default() => assert_eq!(field, ""),
+                    Cell::Flags(_) => assert_eq!(field, "overrun|fuel_cut"),
+                    Cell::Text(_) | Cell::Names(_) => unreachable!(),
                 }
             }
         }
@@ -54,7 +56,7 @@ fn columns_are_those_of_the_car_in_the_agreed_order() {
     let names = |cvt, components: &[Component]| {
         columns_for(cvt, components)
             .iter()
-            .map(|c| c.name)
+            .map(|c| &*c.name)
             .collect::<Vec<_>>()
             .join(", ")
     };
@@ -95,7 +97,7 @@ fn columns_are_those_of_the_car_in_the_agreed_order() {
     ];
     for (name, value) in wanted {
         assert!(
-            (column(name).unwrap().number(&row) - value).abs() < 1e-9,
+            (column(name).unwrap().number_of(&row) - value).abs() < 1e-9,
             "{name}"
         );
     }
@@ -271,4 +273,74 @@ fn names_that_would_leave_the_directory_or_clash_are_refused() {
             .message
             .contains("two files")
     );
+}
+
+#[test]
+fn every_component_has_its_column_in_the_order_of_the_power_flow() {
+    let losses = COLUMNS.iter().filter(|c| matches!(c.scope, Scope::Has(_)));
+    let names: Vec<_> = losses.map(|c| c.name.to_string()).collect();
+    let wanted = Component::ALL.map(|c| format!("{}_loss_w", c.name()));
+    assert_eq!(names, wanted);
+    for component in Component::ALL {
+        let mut row = Row::default();
+        row.loss_w[component as usize] = 7.5;
+        let loss = |c: Component| loss_column(c).map_or(f64::NAN, |column| column.number_of(&row));
+        let sum: f64 = Component::ALL.into_iter().map(loss).sum();
+        assert!((loss(component) - 7.5).abs() < 1e-15 && (sum - 7.5).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn many_numbers_are_those_of_single_rows() {
+    let row = |k: u8| Row {
+        time_s: f64::from(k),
+        phase: u16::from(k),
+        gear: k,
+        slip: f64::NAN,
+        loss_w: [0.5; 16],
+        ..Row::default()
+    };
+    let rows: Vec<Row> = (0..5).map(row).collect();
+    for column in COLUMNS.iter() {
+        let mut numbers = vec![7.0];
+        column.numbers(&rows, &mut numbers);
+        let single = rows.iter().map(|row| column.number_of(row).to_bits());
+        let wanted: Vec<u64> = [7.0_f64.to_bits()].into_iter().chain(single).collect();
+        let found: Vec<u64> = numbers.iter().map(|x| x.to_bits()).collect();
+        assert_eq!(found, wanted, "{}", column.name);
+    }
+}
+
+#[test]
+fn names_are_unique_and_end_in_their_unit() {
+    for (i, column) in COLUMNS.iter().enumerate() {
+        assert!(COLUMNS[..i].iter().all(|other| other.name != column.name));
+        let suffix = match column.unit {
+            "" | "-" => continue,
+            "km/h" => "_kmh",
+            "m/s2" => "_m_s2",
+            "g/s" => "_g_s",
+            "%" => "_percent",
+            "degC" => "_degc",
+            "Nm" => "_nm",
+            "W" => "_w",
+            unit => &format!("_{unit}"),
+        };
+        assert!(column.name.ends_with(suffix), "{}", column.name);
+    }
+}
+
+#[test]
+fn numbers_for_people() {
+    assert_eq!(fixed(-0.04, 1), "0.0");
+    assert_eq!(fixed(-10.04, 1), "-10.0");
+    assert_eq!(fixed(f64::NAN, 1), "-");
+    assert_eq!(fixed(None, 1), "-");
+    assert_eq!(signed(5.26, 1), "+5.3");
+    assert_eq!(signed(0.01, 1), "0.0");
+    assert_eq!(signed(-14.0, 1), "-14.0");
+    assert_eq!(percent(1.0, 4.0, 0), "25");
+    assert_eq!(tiny(Some(3.2e-15)), "3e-15");
+    assert_eq!(plain(-0.0), "0");
+    assert_eq!(plain(0.25), "0.25");
 }

@@ -10,14 +10,14 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::Arc;
 
-use cvtcycle::output::columns::columns_for;
 use cvtcycle::output::file::OutputFile;
+use cvtcycle::output::trace::columns_for;
 use cvtcycle::output::trace::write_trace;
 use cvtcycle::study::export::{Format, export};
 use cvtcycle::study::store::{
     PartTable, Study, StudyDir, write_csv, write_parquet, write_trace_parquet,
 };
-use cvtcycle::study::table::{Column, Kind, Rows, Values};
+use cvtcycle::study::table::{Head, Kind, Rows, Values};
 use serde_json::json;
 use tempfile::TempDir;
 
@@ -105,7 +105,7 @@ fn compare(python: &Path, base: &Path) -> Result<serde_json::Value, String> {
 
 /// What the reader must find beside the cells.
 struct Wanted<'a> {
-    columns: &'a [Column],
+    columns: &'a [Head],
     rows: u64,
     groups: u64,
     units: bool,
@@ -119,7 +119,7 @@ impl Wanted<'_> {
             Kind::Count => "count",
             Kind::Text => "text",
         };
-        let head = |c: &Column| json!({ "name": c.name, "unit": c.unit, "doc": c.doc, "kind": kind(c.kind) });
+        let head = |c: &Head| json!({ "name": c.name, "unit": c.unit, "doc": c.doc, "kind": kind(c.kind) });
         let wanted = json!({
             "columns": self.columns.iter().map(head).collect::<Vec<_>>(),
             "rows": self.rows,
@@ -132,8 +132,8 @@ impl Wanted<'_> {
     }
 }
 
-fn columns() -> Vec<Column> {
-    let head = |name: &str, unit: &str, kind| Column {
+fn columns() -> Vec<Head> {
+    let head = |name: &str, unit: &str, kind| Head {
         name: name.into(),
         unit: unit.into(),
         doc: format!("Größe „{name}“, \"quoted\""),
@@ -277,18 +277,7 @@ fn val_pyarrow_finds_the_cells_of_a_trace_and_of_an_export() {
             &phases,
         )
         .unwrap();
-        let kind = |name: &str| match name {
-            "phase" | "flags" => Kind::Text,
-            "gear" | "iterations" => Kind::Count,
-            _ => Kind::Number,
-        };
-        let head = |c: &&cvtcycle::output::columns::Column| Column {
-            name: c.name.into(),
-            unit: c.unit.into(),
-            doc: c.doc.into(),
-            kind: kind(c.name),
-        };
-        let heads: Vec<Column> = columns.iter().map(head).collect();
+        let heads: Vec<Head> = columns.iter().map(|column| column.head()).collect();
         Wanted {
             columns: &heads,
             rows: 1180,

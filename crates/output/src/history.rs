@@ -1,12 +1,13 @@
 //! The trace of a car by column: what plots and reports read, whether the run has just been driven or lies on disk.
 //!
-//! Numbers are in the units of [`columns`](super::columns). A history that was written and read again has the same numbers, bit by bit.
+//! Numbers are in the units of [`trace`](super::trace). A history that was written and read again has the same numbers, bit by bit.
 
 mod read;
 
 pub use read::{AGAIN, FLAGS, too_many_phases};
 
-use super::columns::{COLUMNS, Column, Scope, Value, column, loss_column};
+use super::table::{Kind, Scope};
+use super::trace::{COLUMNS, TraceColumn, column, loss_column};
 use super::{Component, Flags, Row};
 
 /// Most steps of a trace that is read: as many as a cycle may have rows, 23 days at 1 s. Some 500 bytes of memory each.
@@ -19,7 +20,7 @@ pub const SHORTER: &str = "run it again with a larger --dt, or a part of the cyc
 /// The steps of one car through one cycle, by column.
 #[derive(Clone, Debug, Default)]
 pub struct History {
-    columns: Vec<(&'static Column, Vec<f64>)>,
+    columns: Vec<(&'static TraceColumn, Vec<f64>)>,
     phases: Vec<String>,
     phase: Vec<usize>,
     flags: Vec<Flags>,
@@ -28,12 +29,12 @@ pub struct History {
 impl History {
     /// Rows of a run as columns. `phases` are the names that belong to [`Row::phase`]; only those that occur are kept, in their order.
     #[must_use]
-    pub fn of(rows: &[Row], columns: &[&'static Column], phases: &[String]) -> Self {
-        let numbers = |column: &&'static Column| {
-            (
-                *column,
-                rows.iter().map(|row| plain(column.number(row))).collect(),
-            )
+    pub fn of(rows: &[Row], columns: &[&'static TraceColumn], phases: &[String]) -> Self {
+        let numbers = |column: &&'static TraceColumn| {
+            let mut numbers = Vec::with_capacity(rows.len());
+            column.numbers(rows, &mut numbers);
+            numbers.iter_mut().for_each(|x| *x = plain(*x));
+            (*column, numbers)
         };
         let mut history = History {
             columns: columns
@@ -53,7 +54,7 @@ impl History {
     }
 
     /// A history of these columns without steps yet.
-    pub fn empty(columns: &[&'static Column]) -> Self {
+    pub fn empty(columns: &[&'static TraceColumn]) -> Self {
         History {
             columns: columns.iter().map(|column| (*column, Vec::new())).collect(),
             ..History::default()
@@ -97,7 +98,7 @@ impl History {
     }
 
     /// All columns of numbers, in the order of the table.
-    pub fn columns(&self) -> impl Iterator<Item = (&'static Column, &[f64])> {
+    pub fn columns(&self) -> impl Iterator<Item = (&'static TraceColumn, &[f64])> {
         self.columns
             .iter()
             .map(|(column, numbers)| (*column, numbers.as_slice()))
@@ -162,14 +163,16 @@ impl History {
     pub fn components(&self) -> Vec<Component> {
         Component::ALL
             .into_iter()
-            .filter(|component| loss_column(*component).is_some_and(|column| self.has(column.name)))
+            .filter(|component| {
+                loss_column(*component).is_some_and(|column| self.has(&column.name))
+            })
             .collect()
     }
 
     /// Loss power of a component at each step, W; empty if the car has none.
     #[must_use]
     pub fn loss_w(&self, component: Component) -> &[f64] {
-        loss_column(component).map_or(&[], |column| self.column(column.name))
+        loss_column(component).map_or(&[], |column| self.column(&column.name))
     }
 }
 
@@ -182,12 +185,9 @@ fn plain(number: f64) -> f64 {
     }
 }
 
-/// Whether the cells of a column are numbers.
-pub fn is_number(column: &Column) -> bool {
-    matches!(
-        (column.get)(&Row::default()),
-        Value::Number(_) | Value::Count(_)
-    )
+/// True if the cells of a column are numbers.
+pub fn is_number(column: &TraceColumn) -> bool {
+    column.kind != Kind::Text
 }
 
 /// The flags of a cell; the first word that is no flag, where there is one.
@@ -204,10 +204,10 @@ pub fn flags_of(cell: &str) -> Result<Flags, &str> {
 }
 
 /// The columns that a trace with the columns `there` has to have besides: those of every trace, and of one with a belt or with gears.
-pub fn missing(there: &[&'static Column]) -> Vec<&'static Column> {
+pub fn missing(there: &[&'static TraceColumn]) -> Vec<&'static TraceColumn> {
     let cvt = there.iter().any(|column| column.scope == Scope::Cvt);
     let kind = if cvt { Scope::Cvt } else { Scope::Manual };
-    let wanted = |own: &&Column| own.scope == Scope::Always || own.scope == kind;
+    let wanted = |own: &&TraceColumn| own.scope == Scope::Always || own.scope == kind;
     COLUMNS
         .iter()
         .filter(wanted)
@@ -216,8 +216,8 @@ pub fn missing(there: &[&'static Column]) -> Vec<&'static Column> {
 }
 
 /// The columns of these names that this program knows, in the order of the table.
-pub fn known<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'static Column> {
-    let list: Vec<&Column> = names.filter_map(column).collect();
+pub fn known<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'static TraceColumn> {
+    let list: Vec<&TraceColumn> = names.filter_map(column).collect();
     COLUMNS
         .iter()
         .filter(|own| list.iter().any(|column| column.name == own.name))

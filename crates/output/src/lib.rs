@@ -1,17 +1,22 @@
 //! Result files: columns, traces, summaries, records of what a run was made from, and files that are whole or absent.
 
-pub mod columns;
-pub mod trace;
 pub mod file;
 pub mod files;
 pub mod hash;
 pub mod history;
 pub mod loss_table;
 pub mod losses;
+pub mod number;
 pub mod provenance;
 pub mod record;
+pub mod rig;
 pub mod summary;
+pub mod table;
+pub mod trace;
 pub mod variator;
 
 pub use cvtcycle_model::drive::{Component, Flags, PhaseTotals, Row, TERM_NAMES, Terms, Totals};
 pub use history::History;
+
+/// Name and version of the program, as the result files cite it.
+pub const PROGRAM: &str = concat!("cvtcycle ", env!("CARGO_PKG_VERSION"));

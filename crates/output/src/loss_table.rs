@@ -7,8 +7,7 @@ use std::io::{self, Write};
 
 use super::losses::{Axis, LossGrid, bench_point};
 use crate::Component;
-use crate::columns::Value;
-use crate::trace::push_value;
+use crate::table::{Column, write_csv};
 use cvtcycle_model::bench::{Bench, BenchPoint, Parts};
 use cvtcycle_model::transmission::Transmission;
 
@@ -116,48 +115,42 @@ fn at_input_torque(bench: &Bench, point: &BenchPoint) -> BenchPoint {
     found
 }
 
-/// Columns of the map over a grid, with the grid's axis where the cell comes from one.
-fn map_columns(part: MapPart, grid: &LossGrid) -> Vec<(&'static str, Axis)> {
+/// Columns of the map over a grid: its axes, then the loss.
+fn map_columns(part: MapPart, grid: &LossGrid) -> Vec<Column<([f64; Axis::COUNT], f64)>> {
+    let axis = |name: &'static str, axis: Axis| {
+        Column::number(
+            name,
+            "",
+            "",
+            move |(asked, _): &([f64; Axis::COUNT], f64)| asked[axis as usize],
+        )
+    };
     let mut list = vec![
-        (if part.of_cvt() { "ratio" } else { "gear" }, Axis::Ratio),
-        ("input_speed_rpm", Axis::Speed),
+        axis(if part.of_cvt() { "ratio" } else { "gear" }, Axis::Ratio),
+        axis("input_speed_rpm", Axis::Speed),
     ];
-    list.extend(part.torque_column().map(|name| (name, Axis::Torque)));
+    list.extend(part.torque_column().map(|name| axis(name, Axis::Torque)));
     if !grid.of(Axis::Pressure).is_empty() {
-        list.push(("secondary_pressure_bar", Axis::Pressure));
+        list.push(axis("secondary_pressure_bar", Axis::Pressure));
     }
-    list.push(("oil_temp_degc", Axis::Sump));
+    list.push(axis("oil_temp_degc", Axis::Sump));
+    list.push(Column::number("torque_loss_nm", "", "", |(_, loss)| *loss));
     list
 }
 
 /// Writes the map of a component over a grid as CSV, one line a point.
 ///
 /// # Errors
-/// Whatever `out` reports.
+/// Those of `out`.
 pub fn write_map(
     out: &mut dyn Write,
     bench: &Bench,
     part: MapPart,
     grid: &LossGrid,
 ) -> io::Result<()> {
-    let columns = map_columns(part, grid);
-    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
-    writeln!(out, "{},torque_loss_nm", names.join(","))?;
-    let mut line = String::new();
-    for index in 0..grid.len() {
+    let rows = (0..grid.len()).map(|index| {
         let asked = grid.at(index);
-        line.clear();
-        for (_, axis) in &columns {
-            push_value(&mut line, Value::Number(asked[*axis as usize]), &[]);
-            line.push(',');
-        }
-        push_value(
-            &mut line,
-            Value::Number(part.loss_nm(bench, &bench_point(&asked))),
-            &[],
-        );
-        line.push('\n');
-        out.write_all(line.as_bytes())?;
-    }
-    Ok(())
+        (asked, part.loss_nm(bench, &bench_point(&asked)))
+    });
+    write_csv(out, &map_columns(part, grid), rows, &[])
 }

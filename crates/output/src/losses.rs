@@ -2,8 +2,9 @@
 //!
 //! The values of a grid stay in the units of their columns: what the user wrote is written back unchanged.
 
-use crate::columns::Value;
-use crate::{Component, Flags};
+use crate::table::{Cell, Column, Scope};
+use crate::trace::{bar, component_doc, degc, rpm};
+use crate::{Component, Flags, columns};
 use cvtcycle_config::to_si;
 use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
 use cvtcycle_model::drive::components;
@@ -227,42 +228,6 @@ impl LossRow {
     }
 }
 
-/// What a column holds.
-#[derive(Clone, Copy, Debug)]
-enum Cell {
-    Number(fn(&LossRow) -> f64),
-    Gear,
-    Loss(Component),
-    BeltStatus,
-    Flags,
-}
-
-/// One column of the rows.
-#[derive(Clone, Debug)]
-pub struct LossColumn {
-    /// Name, ending in its unit where it has one.
-    pub name: String,
-    /// Unit; `-` for plain ratios, empty for words.
-    pub unit: &'static str,
-    /// What it holds, one phrase.
-    pub doc: &'static str,
-    cell: Cell,
-}
-
-impl LossColumn {
-    /// Its cell in a row.
-    #[must_use]
-    pub fn value(&self, row: &LossRow) -> Value {
-        match self.cell {
-            Cell::Number(get) => Value::Number(get(row)),
-            Cell::Gear => Value::Count(row.asked[Axis::Ratio as usize] as u32),
-            Cell::Loss(component) => Value::Number(row.answer.part_nm(component)),
-            Cell::BeltStatus => Value::Text(row.belt_status()),
-            Cell::Flags => Value::Flags(row.answer.flags),
-        }
-    }
-}
-
 /// Components that a bench knows: all but the launch clutch, which is locked.
 #[must_use]
 pub fn bench_components(transmission: &Transmission) -> Vec<Component> {
@@ -274,182 +239,40 @@ pub fn bench_components(transmission: &Transmission) -> Vec<Component> {
 
 /// Columns for a transmission, in the order in which they are written.
 #[must_use]
-pub fn columns(transmission: &Transmission) -> Vec<LossColumn> {
-    let cvt = transmission.is_cvt();
-    let number = |name: &str, unit, doc, get| LossColumn {
-        name: name.to_owned(),
-        unit,
-        doc,
-        cell: Cell::Number(get),
+pub fn columns(transmission: &Transmission) -> Vec<Column<LossRow>> {
+    let components = bench_components(transmission);
+    let mut list = columns! { LossRow;
+        number "input_speed_rpm", "rpm", "speed of the input shaft", r => r.asked[Axis::Speed as usize];
+        number "belt_ratio", "-", "belt ratio, secondary over primary running radius", r => r.asked[Axis::Ratio as usize], Scope::Cvt;
+        count "gear", "", "gear", r => r.asked[Axis::Ratio as usize] as u64, Scope::Manual;
+        number "output_torque_nm", "Nm", "torque taken from the output shaft, after the final drive", r => r.point.output_nm;
+        number "transmission_sump_degc", "degC", "transmission oil in the sump", r => r.asked[Axis::Sump as usize];
+        number "belt_spray_degc", "degC", "belt, pulleys and the oil sprayed off them", r => r.asked_or(Axis::Belt, degc(r.answer.belt_k)), Scope::Cvt;
+        number "throttle", "-", "throttle that the clamp law sees", r => r.point.throttle, Scope::Cvt;
+        number "secondary_pressure_bar", "bar", "secondary pulley pressure", r => r.asked_or(Axis::Pressure, bar(r.answer.secondary_pa)), Scope::Cvt;
+        number "slip_percent", "%", "belt slip", r => 100.0 * r.slip(), Scope::Cvt;
+        number "active_segments", "-", "segments that carry; whole numbers in the printed forms, 0 where there are none", r => r.answer.belt.map_or(f64::NAN, |belt| belt.slip.active_segments), Scope::Cvt;
+        text "belt_status", "", "ok, gross_slip, or no_active_arc: no number of segments carries the load (printed forms only)", r => r.belt_status(), Scope::Cvt;
+        number "clamp_safety", "-", "torque capacity of the belt over its torque; none without load", r => r.clamp_safety(), Scope::Cvt;
     };
-    let mut list = vec![number(
-        "input_speed_rpm",
-        "rpm",
-        "speed of the input shaft",
-        |r| r.asked[Axis::Speed as usize],
-    )];
-    if cvt {
-        list.push(number(
-            "belt_ratio",
-            "-",
-            "belt ratio, secondary over primary running radius",
-            |r| r.asked[Axis::Ratio as usize],
-        ));
-    } else {
-        list.push(LossColumn {
-            name: "gear".to_owned(),
-            unit: "",
-            doc: "gear",
-            cell: Cell::Gear,
-        });
-    }
-    list.push(number(
-        "output_torque_nm",
-        "Nm",
-        "torque taken from the output shaft, after the final drive",
-        |r| r.point.output_nm,
-    ));
-    list.push(number(
-        "transmission_sump_degc",
-        "degC",
-        "transmission oil in the sump",
-        |r| r.asked[Axis::Sump as usize],
-    ));
-    if cvt {
-        let belt = |r: &LossRow| r.asked_or(Axis::Belt, r.answer.belt_k - 273.15);
-        let pressure = |r: &LossRow| r.asked_or(Axis::Pressure, r.answer.secondary_pa / 1e5);
-        list.push(number(
-            "belt_spray_degc",
-            "degC",
-            "belt, pulleys and the oil sprayed off them",
-            belt,
-        ));
-        list.push(number(
-            "throttle",
-            "-",
-            "throttle that the clamp law sees",
-            |r| r.point.throttle,
-        ));
-        list.push(number(
-            "secondary_pressure_bar",
-            "bar",
-            "secondary pulley pressure",
-            pressure,
-        ));
-        list.push(number("slip_percent", "%", "belt slip", |r| {
-            100.0 * r.slip()
-        }));
-        let segments = |r: &LossRow| {
-            r.answer
-                .belt
-                .map_or(f64::NAN, |belt| belt.slip.active_segments)
-        };
-        list.push(number(
-            "active_segments",
-            "-",
-            "segments that carry; whole numbers in the printed forms, 0 where there are none",
-            segments,
-        ));
-        let doc = "ok, gross_slip, or no_active_arc: no number of segments carries the load (printed forms only)";
-        list.push(LossColumn {
-            name: "belt_status".to_owned(),
-            unit: "",
-            doc,
-            cell: Cell::BeltStatus,
-        });
-        list.push(number(
-            "clamp_safety",
-            "-",
-            "torque capacity of the belt over its torque; none without load",
-            LossRow::clamp_safety,
-        ));
-    }
-    list.extend(
-        bench_components(transmission)
-            .into_iter()
-            .map(|component| LossColumn {
-                name: format!("{}_loss_nm", component.name()),
-                unit: "Nm",
-                doc: component_doc(component),
-                cell: Cell::Loss(component),
-            }),
-    );
-    list.push(number(
-        "total_loss_nm",
-        "Nm",
-        "all losses, torque at the input shaft",
-        |r| r.answer.total_nm(),
-    ));
-    list.push(number(
-        "input_torque_nm",
-        "Nm",
-        "torque at the input shaft",
-        |r| r.answer.input_nm,
-    ));
-    list.push(number(
-        "input_power_w",
-        "W",
-        "power at the input shaft",
-        LossRow::input_w,
-    ));
-    list.push(number(
-        "output_speed_rpm",
-        "rpm",
-        "speed of the output shaft",
-        |r| r.answer.output_rad_s * 30.0 / std::f64::consts::PI,
-    ));
-    list.push(number(
-        "output_power_w",
-        "W",
-        "power at the output shaft",
-        LossRow::output_w,
-    ));
-    list.push(number(
-        "efficiency",
-        "-",
-        "power out over power in; none where both shafts drive",
-        LossRow::efficiency,
-    ));
-    list.push(LossColumn {
-        name: "flags".to_owned(),
-        unit: "",
-        doc: "states and departures from validity",
-        cell: Cell::Flags,
+    list.retain(|column| column.scope.includes(transmission.is_cvt(), &components));
+    list.extend(components.into_iter().map(|component| {
+        let doc = format!("{}, torque at the input shaft", component_doc(component));
+        let name = format!("{}_loss_nm", component.name());
+        Column::number(name, "Nm", doc, move |r: &LossRow| {
+            r.answer.part_nm(component)
+        })
+    }));
+    list.extend(columns! { LossRow;
+        number "total_loss_nm", "Nm", "all losses, torque at the input shaft", r => r.answer.total_nm();
+        number "input_torque_nm", "Nm", "torque at the input shaft", r => r.answer.input_nm;
+        number "input_power_w", "W", "power at the input shaft", r => r.input_w();
+        number "output_speed_rpm", "rpm", "speed of the output shaft", r => rpm(r.answer.output_rad_s);
+        number "output_power_w", "W", "power at the output shaft", r => r.output_w();
+        number "efficiency", "-", "power out over power in; none where both shafts drive", r => r.efficiency();
+        words "flags", "", "states and departures from validity", r => Cell::Flags(r.answer.flags);
     });
     list
-}
-
-fn component_doc(component: Component) -> &'static str {
-    match component {
-        Component::LaunchClutch => "loss of the launch clutch",
-        Component::Pump => "loss of the oil pump, torque at the input shaft",
-        Component::InputShaft => "loss of the input shaft's bearings and seals",
-        Component::ClutchDrag => "drag of the open reverse clutch",
-        Component::BeltBand => {
-            "boundary friction between bands and between band and segments, torque at the input shaft"
-        }
-        Component::BeltFilm => "viscous shear between the bands, torque at the input shaft",
-        Component::BeltSlip => {
-            "sliding of the segments along the pulleys, torque at the input shaft"
-        }
-        Component::BeltWedge => "wedging at pulley entry and exit, torque at the input shaft",
-        Component::BeltPenetration => {
-            "penetration into the deflected pulleys, torque at the input shaft"
-        }
-        Component::BeltMap => {
-            "loss of the whole belt from its measured map, torque at the input shaft"
-        }
-        Component::FinalDrive => "loss of the final drive, torque at the input shaft",
-        Component::GearMesh => {
-            "gear mesh loss of the manual box with its final drive, torque at the input shaft"
-        }
-        Component::Bearing => "bearing loss of the manual box",
-        Component::Churning => "churning loss of the manual box",
-        Component::Seal => "seal loss of the manual box",
-        Component::BoxMap => {
-            "loss of the whole manual box from its measured map, torque at the input shaft"
-        }
-    }
 }
 
 /// Flags that stand in at least one of the rows, with the number of rows, in the order of the bits.

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use crate::hash::hash;
+use crate::number::finite;
 use crate::record::{
     CarRecord, Change, CycleRecord, FileRecord, FuelMapRecord, SpeedLine, ValueRecord,
 };
-use crate::summary::finite;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::{Kind, Options, Setup, embedded_vehicles, is_path, load, text_of};
 use cvtcycle_config::{KeyInfo, Problems, unit_of};

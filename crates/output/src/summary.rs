@@ -215,12 +215,6 @@ pub struct Driven<'a> {
     pub outcome: &'a Outcome,
 }
 
-/// A number, or none where it is not finite.
-#[must_use]
-pub fn finite(x: f64) -> Option<f64> {
-    x.is_finite().then_some(x + 0.0)
-}
-
 impl RunSummary {
     /// Fuel that stands for the car: weighted where the cycle is.
     #[must_use]

@@ -1,87 +1,146 @@
-//! Rows to CSV.
-use std::fmt::Write as _;
+//! The trace of a run: its columns and its CSV file.
+//!
+//! Rows are in SI units; this table converts them to the units of the columns. See [`columns!`](crate::columns) for a new column.
+
+use std::f64::consts::PI;
 use std::io::{self, Write};
+use std::sync::LazyLock;
 
-use super::columns::{Column, Value};
-use super::{Flags, Row};
+use crate::table::{Cell, Column, Scope, write_csv};
+use crate::{Component, Row, columns};
 
-/// Writes a header and one line per row.
+/// A column of the trace.
+pub type TraceColumn = Column<Row>;
+
+fn kmh(speed_m_s: f64) -> f64 {
+    speed_m_s * 3.6
+}
+
+pub(crate) fn rpm(speed_rad_s: f64) -> f64 {
+    speed_rad_s * 30.0 / PI
+}
+
+pub(crate) fn bar(pressure_pa: f64) -> f64 {
+    pressure_pa / 1e5
+}
+
+pub(crate) fn degc(temperature_k: f64) -> f64 {
+    temperature_k - 273.15
+}
+
+/// Every column that a trace can have, in the order in which they are written.
+pub static COLUMNS: LazyLock<Vec<TraceColumn>> = LazyLock::new(|| {
+    let mut list = columns! { Row;
+        number "time_s", "s", "end of the step, from the start of the cycle; every other column is the mean over the step that ends here, temperatures are those at its end", r => r.time_s;
+        number "dt_s", "s", "length of the step", r => r.dt_s;
+        words "phase", "", "phase of the cycle", r => Cell::Phase(r.phase);
+        number "speed_kmh", "km/h", "vehicle speed, mean over the step that ends at time_s", r => kmh(r.speed_m_s);
+        number "accel_m_s2", "m/s2", "vehicle acceleration", r => r.accel_m_s2;
+        number "wheel_torque_nm", "Nm", "demanded torque at the driven wheels", r => r.wheel_torque_nm;
+        number "wheel_power_w", "W", "demanded power at the driven wheels", r => r.wheel_power_w;
+        number "engine_speed_rpm", "rpm", "engine speed", r => rpm(r.engine_speed_rad_s);
+        number "engine_torque_nm", "Nm", "torque at the flywheel into the transmission, without inertia", r => r.engine_torque_nm;
+        number "throttle", "-", "engine torque with accessories over full-load torque at that speed", r => r.throttle;
+        count "gear", "", "gear; 0 is neutral", r => u64::from(r.gear), Scope::Manual;
+        number "belt_ratio", "-", "belt ratio, secondary over primary running radius", r => r.belt_ratio, Scope::Cvt;
+        number "overall_ratio", "-", "engine speed over wheel speed; empty at standstill", r => r.overall_ratio;
+        number "primary_pressure_bar", "bar", "primary pulley pressure", r => bar(r.primary_pressure_pa), Scope::Cvt;
+        number "secondary_pressure_bar", "bar", "secondary pulley pressure", r => bar(r.secondary_pressure_pa), Scope::Cvt;
+        number "slip_percent", "%", "belt slip", r => 100.0 * r.slip, Scope::Cvt;
+        number "clamp_safety", "-", "torque capacity of the belt over its torque; empty at zero torque", r => r.clamp_safety, Scope::Cvt;
+    };
+    list.extend(Component::ALL.map(loss));
+    list.extend(columns! { Row;
+        number "accessories_w", "W", "power of the accessories", r => r.accessories_w;
+        number "brake_w", "W", "power into the wheel brakes", r => r.brake_w;
+        number "kinetic_w", "W", "change of the rotating kinetic energy of engine and transmission", r => r.kinetic_w;
+        number "deficit_w", "W", "power that could not be delivered", r => r.deficit_w;
+        number "fuel_g_s", "g/s", "fuel mass flow", r => 1000.0 * r.fuel_kg_s;
+        number "fuel_power_w", "W", "fuel power, lower heating value", r => r.fuel_power_w;
+        number "engine_heat_w", "W", "heat into the engine", r => r.engine_heat_w;
+        number "exhaust_w", "W", "heat and unburnt fuel into the exhaust", r => r.exhaust_w;
+        number "coolant_degc", "degC", "coolant and engine block at the end of the step", r => degc(r.coolant_k);
+        number "engine_oil_degc", "degC", "engine oil at the end of the step", r => degc(r.engine_oil_k);
+        number "transmission_sump_degc", "degC", "transmission oil in the sump at the end of the step", r => degc(r.sump_k);
+        number "transmission_metal_degc", "degC", "transmission case and shafts at the end of the step", r => degc(r.metal_k);
+        number "belt_spray_degc", "degC", "belt, pulleys and the oil sprayed off them at the end of the step", r => degc(r.belt_spray_k), Scope::Cvt;
+        number "cooler_in_degc", "degC", "oil to the cooler; empty without one", r => degc(r.cooler_in_k);
+        number "cooler_out_degc", "degC", "oil from the cooler; empty without one", r => degc(r.cooler_out_k);
+        number "stored_w", "W", "heat stored in the thermal nodes", r => r.stored_w;
+        number "to_air_w", "W", "heat given to the air", r => r.to_air_w;
+        number "power_ledger_error", "-", "power ledger: |in - out| over the sum of absolute terms", r => r.power_ledger_error;
+        number "heat_ledger_error", "-", "heat ledger: |in - stored - to air| over the sum of absolute terms", r => r.heat_ledger_error;
+        number "solve_residual", "-", "what the implicit solve left, as a fraction of full-load torque", r => r.solve_residual;
+        count "iterations", "", "driveline evaluations of the implicit solve", r => u64::from(r.iterations);
+        words "flags", "", "states and departures from validity", r => Cell::Flags(r.flags);
+    });
+    list
+});
+
+fn loss(component: Component) -> TraceColumn {
+    let name = format!("{}_loss_w", component.name());
+    Column::number(name, "W", component_doc(component), move |row: &Row| {
+        row.loss_w[component as usize]
+    })
+    .only(Scope::Has(component))
+}
+
+/// Meaning of a component's loss.
+pub(crate) fn component_doc(component: Component) -> &'static str {
+    match component {
+        Component::LaunchClutch => "loss of launch clutch slip and creep",
+        Component::Pump => "loss of the oil pump",
+        Component::InputShaft => "loss of the input shaft's bearings and seals",
+        Component::ClutchDrag => "drag of the open reverse clutch",
+        Component::BeltBand => "boundary friction between bands and between band and segments",
+        Component::BeltFilm => "viscous shear between the bands",
+        Component::BeltSlip => "sliding of the segments along the pulleys",
+        Component::BeltWedge => "wedging at pulley entry and exit",
+        Component::BeltPenetration => "penetration into the deflected pulleys",
+        Component::BeltMap => "loss of the whole belt, from its measured map",
+        Component::FinalDrive => "loss of the final drive of the CVT",
+        Component::GearMesh => "gear mesh loss of the manual box, with its final drive",
+        Component::Bearing => "bearing loss of the manual box",
+        Component::Churning => "churning loss of the manual box",
+        Component::Seal => "seal loss of the manual box",
+        Component::BoxMap => "loss of the whole manual box, from its measured map",
+    }
+}
+
+/// The columns of a run, in the order of the table.
+#[must_use]
+pub fn columns_for(cvt: bool, components: &[Component]) -> Vec<&'static TraceColumn> {
+    COLUMNS
+        .iter()
+        .filter(|column| column.scope.includes(cvt, components))
+        .collect()
+}
+
+/// The column of that name.
+#[must_use]
+pub fn column(name: &str) -> Option<&'static TraceColumn> {
+    COLUMNS.iter().find(|column| column.name == name)
+}
+
+/// The column of a component's loss power.
+#[must_use]
+pub fn loss_column(component: Component) -> Option<&'static TraceColumn> {
+    COLUMNS
+        .iter()
+        .find(|column| column.scope == Scope::Has(component))
+}
+
+/// Writes a header and one line per row. `phases` are the names that belong to [`Row::phase`].
 ///
-/// Numbers read back to the same `f64`; what is not finite becomes an empty field. A phase index
-/// without a name becomes an empty field too.
+/// Numbers read back to the same `f64`. A number that is not finite, and a phase without a name, become an empty field.
 ///
 /// # Errors
-/// Whatever `out` reports.
+/// Those of `out`.
 pub fn write_trace<W: Write>(
     out: W,
-    columns: &[&Column],
+    columns: &[&TraceColumn],
     rows: &[Row],
     phases: &[String],
 ) -> io::Result<()> {
-    let mut writer = csv::Writer::from_writer(out);
-    writer
-        .write_record(columns.iter().map(|column| column.name))
-        .map_err(csv_error)?;
-    let mut text = String::new();
-    for row in rows {
-        for column in columns {
-            text.clear();
-            push_value(&mut text, (column.get)(row), phases);
-            writer.write_field(&text).map_err(csv_error)?;
-        }
-        writer.write_record(None::<&[u8]>).map_err(csv_error)?;
-    }
-    writer.flush()
-}
-
-/// The error of the operating system within one of CSV: it says whether the disk is full.
-pub fn csv_error(error: csv::Error) -> io::Error {
-    match error.into_kind() {
-        csv::ErrorKind::Io(error) => error,
-        other => io::Error::other(format!("{other:?}")),
-    }
-}
-
-/// Appends a cell as it stands in the CSV file.
-pub fn push_value(text: &mut String, value: Value, phases: &[String]) {
-    match value {
-        Value::Number(x) => push_number(text, x),
-        Value::Count(n) => push_number(text, f64::from(n)),
-        Value::Text(word) => text.push_str(word),
-        Value::Phase(index) => {
-            text.push_str(phases.get(usize::from(index)).map_or("", String::as_str));
-        }
-        Value::Flags(flags) => push_flags(text, flags),
-    }
-}
-
-/// The shortest decimal that reads back to the same number, with an exponent where plain decimals
-/// would be a row of zeros; nothing for NaN and infinities.
-fn push_number(text: &mut String, x: f64) {
-    let size = x.abs();
-    if !size.is_finite() {
-        return;
-    }
-    // A minus sign on zero only puzzles the reader.
-    // Writing into a String cannot fail.
-    let done = if size <= 0.0 {
-        write!(text, "0")
-    } else if (1e-5..1e16).contains(&size) {
-        write!(text, "{x}")
-    } else {
-        write!(text, "{x:e}")
-    };
-    debug_assert!(done.is_ok());
-}
-
-fn push_flags(text: &mut String, flags: Flags) {
-    let start = text.len();
-    for (flag, name) in Flags::NAMES {
-        if flags.contains(flag) {
-            if text.len() > start {
-                text.push('|');
-            }
-            text.push_str(name);
-        }
-    }
+    write_csv(out, columns, rows, phases)
 }

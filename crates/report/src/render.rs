@@ -2,10 +2,9 @@
 
 use askama::Template;
 
-use super::document::{Block, Document, Figure, Table, table_of};
+use cvtcycle_output::PROGRAM;
 
-/// What made the report.
-const PROGRAM: &str = concat!("cvtcycle ", env!("CARGO_PKG_VERSION"));
+use super::document::{Block, Document, Figure, Table, table_of};
 
 #[derive(Template)]
 #[template(path = "review.html")]

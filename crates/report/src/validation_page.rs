@@ -45,7 +45,7 @@ struct Line {
 /// Never for the templates of this program.
 pub fn page(report: &Report) -> Result<String, String> {
     let page = Page {
-        program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")),
+        program: cvtcycle_output::PROGRAM,
         vehicle: report.subject.vehicle.clone(),
         set: report.subject.set.clone(),
         counts: Counts::of(report.rows.iter()),

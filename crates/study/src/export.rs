@@ -14,7 +14,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::store::{CsvTable, Header, ParquetTable, Status, Study};
-use super::table::{Column, Kind, Rows, Values};
+use super::table::{Head, Kind, Rows, Values};
 use cvtcycle_config::Problem;
 use cvtcycle_output::file::OutputFile;
 use cvtcycle_output::files::problem;
@@ -164,7 +164,7 @@ enum Failure {
 struct Parts<'a> {
     study: &'a Study,
     table: &'a str,
-    heads: &'a [Column],
+    heads: &'a [Head],
 }
 
 impl Parts<'_> {
@@ -226,7 +226,7 @@ fn check_size(path: &Path, rows: u64, columns: usize) -> Result<(), Problem> {
 }
 
 /// Whether a letter beyond ASCII stands in a head or a cell.
-fn beyond_ascii(study: &Study, table: &str, heads: &[Column]) -> Result<bool, Problem> {
+fn beyond_ascii(study: &Study, table: &str, heads: &[Head]) -> Result<bool, Problem> {
     if !heads
         .iter()
         .all(|column| column.name.is_ascii() && column.unit.is_ascii())

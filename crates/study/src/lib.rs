@@ -43,6 +43,7 @@ pub mod prepare;
 pub mod statistics;
 pub mod store;
 pub mod table;
+pub mod tables;
 mod traces;
 
 pub use answer::{Answer, answer};

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::plan::{Acts, Cars, Design, Factor, FactorValue, FactorValues};
 use super::prepare::Study;
 use super::store::Layout;
-use super::table::Column;
+use super::table::Head;
 
 /// Name of the table of runs.
 pub const RUNS: &str = "runs";
@@ -24,7 +24,7 @@ impl Study {
         let value = json!({
             "schema": SCHEMA,
             "kind": "study",
-            "program": concat!("cvtcycle ", env!("CARGO_PKG_VERSION")),
+            "program": cvtcycle_output::PROGRAM,
             "title": plan.title,
             "question": plan.question,
             "plan_sha256": hash(plan.text.as_bytes()),
@@ -103,7 +103,7 @@ impl Study {
     }
 }
 
-fn columns(columns: &[Column]) -> Vec<Value> {
+fn columns(columns: &[Head]) -> Vec<Value> {
     columns
         .iter()
         .map(|column| json!({"name": column.name, "unit": column.unit, "doc": column.doc}))

@@ -2,7 +2,7 @@
 //!
 //! Names and units are those of `run --json`, flattened: what stands there as `loss_kj.pump` is `loss_pump_kj` here.
 
-use super::table::{Column, Kind};
+use super::table::{Head, Kind};
 use cvtcycle_output::summary::{Comparison, RunSummary};
 use cvtcycle_output::{Component, Flags};
 
@@ -10,7 +10,7 @@ use cvtcycle_output::{Component, Flags};
 #[derive(Clone, Debug)]
 pub struct Output {
     /// Its column.
-    pub column: Column,
+    pub column: Head,
     get: Getter,
 }
 
@@ -28,7 +28,7 @@ enum Getter {
 impl Output {
     fn new(name: &str, unit: &str, doc: &str, get: Getter) -> Self {
         Output {
-            column: Column {
+            column: Head {
                 name: name.to_owned(),
                 unit: unit.to_owned(),
                 doc: doc.to_owned(),

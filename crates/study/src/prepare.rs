@@ -6,13 +6,13 @@ use std::sync::Arc;
 use super::cars::{StudyCar, is_words};
 use super::outputs::{EXCESS, FUEL, Output, outputs, phase_excess, phase_fuel};
 use super::plan::{Keep, Plan};
-use super::table::{Column, Kind};
+use super::table::{Head, Kind};
 use cvtcycle_config::cycle::{self, Cycle};
 use cvtcycle_config::setup::is_path;
 use cvtcycle_config::{Problem, Problems};
 use cvtcycle_model::drive::components;
 use cvtcycle_output::Component;
-use cvtcycle_output::columns::{self, columns_for};
+use cvtcycle_output::trace::{COLUMNS, TraceColumn, columns_for};
 
 /// Name under which problems of a car's word are reported before they get their place in the plan.
 pub(super) const VEHICLE: &str = "vehicle";
@@ -30,12 +30,12 @@ pub struct Study {
     /// Phase groups of all cycles that have several, in order.
     pub phases: Vec<String>,
     /// Columns of the table of runs: head, factors, numbers.
-    pub columns: Vec<Column>,
+    pub columns: Vec<Head>,
     /// Columns of the table of traces; empty if none are kept.
-    pub trace_columns: Vec<Column>,
+    pub trace_columns: Vec<Head>,
     pub(super) factor_columns: Vec<FactorColumn>,
     pub(super) outputs: Vec<Output>,
-    pub(super) traces: Vec<&'static columns::Column>,
+    pub(super) traces: Vec<&'static TraceColumn>,
 }
 
 /// A column of the table of runs that holds a factor, or several with one key.
@@ -334,8 +334,8 @@ fn parts(cars: &[StudyCar], plan: &Plan) -> Vec<Component> {
         .collect()
 }
 
-fn head_columns() -> Vec<Column> {
-    let column = |name: &str, kind: Kind, doc: &str| Column {
+fn head_columns() -> Vec<Head> {
+    let column = |name: &str, kind: Kind, doc: &str| Head {
         name: name.into(),
         unit: String::new(),
         doc: doc.into(),
@@ -358,9 +358,9 @@ fn head_columns() -> Vec<Column> {
     ]
 }
 
-fn factor_columns(plan: &Plan) -> (Vec<FactorColumn>, Vec<Column>) {
+fn factor_columns(plan: &Plan) -> (Vec<FactorColumn>, Vec<Head>) {
     let mut list: Vec<FactorColumn> = Vec::new();
-    let mut heads: Vec<Column> = Vec::new();
+    let mut heads: Vec<Head> = Vec::new();
     for (index, factor) in plan.factors.iter().enumerate() {
         let kind = if is_words(factor) {
             Kind::Text
@@ -387,7 +387,7 @@ fn factor_columns(plan: &Plan) -> (Vec<FactorColumn>, Vec<Column>) {
             "{} in this run; empty for a car that it does not reach",
             factor.name
         );
-        heads.push(Column {
+        heads.push(Head {
             name: factor.key.clone(),
             unit,
             doc,
@@ -406,7 +406,7 @@ pub(super) fn key_unit(key: &str) -> String {
 }
 
 /// Trace columns that are kept.
-fn traces(plan: &Plan, cars: &[StudyCar], parts: &[Component]) -> Vec<&'static columns::Column> {
+fn traces(plan: &Plan, cars: &[StudyCar], parts: &[Component]) -> Vec<&'static TraceColumn> {
     let any = |cvt: bool| {
         cars.iter()
             .flat_map(|car| car.setups(&plan.factors))
@@ -420,33 +420,21 @@ fn traces(plan: &Plan, cars: &[StudyCar], parts: &[Component]) -> Vec<&'static c
         }
     };
     let (cvt, manual) = (of(true), of(false));
-    let has = |list: &[&columns::Column], name: &str| list.iter().any(|column| column.name == name);
+    let has = |list: &[&TraceColumn], name: &str| list.iter().any(|column| column.name == name);
     let wanted = |name: &str| match &plan.keep {
         Keep::Summary => false,
         Keep::Columns(names) => names.iter().any(|wanted| wanted == name),
         Keep::Everything => has(&cvt, name) || has(&manual, name),
     };
-    columns::COLUMNS
+    COLUMNS
         .iter()
-        .filter(|column| wanted(column.name))
+        .filter(|column| wanted(&column.name))
         .collect()
 }
 
-fn trace_columns(traces: &[&'static columns::Column]) -> Vec<Column> {
+fn trace_columns(traces: &[&'static TraceColumn]) -> Vec<Head> {
     let mut list = head_columns();
     list.truncate(2);
-    list.extend(traces.iter().map(|column| {
-        let kind = match column.name {
-            "phase" | "flags" => Kind::Text,
-            "gear" | "iterations" => Kind::Count,
-            _ => Kind::Number,
-        };
-        Column {
-            name: column.name.into(),
-            unit: column.unit.into(),
-            doc: column.doc.into(),
-            kind,
-        }
-    }));
+    list.extend(traces.iter().map(|column| column.head()));
     list
 }

@@ -10,9 +10,10 @@ use cvtcycle_config::setup::blueprint::{Bench, Blueprint, Slot};
 use cvtcycle_config::setup::{Options, Setup};
 use cvtcycle_config::{Problems, unit_of};
 use cvtcycle_model::drive::{Conditions, drive};
+use cvtcycle_output::number::finite;
 use cvtcycle_output::record::{Effect, Sensitivity};
 use cvtcycle_output::summary::Driven;
-use cvtcycle_output::summary::{Settings, finite, run_summary};
+use cvtcycle_output::summary::{Settings, run_summary};
 
 /// Change of a value, per cent of it.
 pub const STEP_PERCENT: f64 = 5.0;

@@ -2,29 +2,7 @@
 
 use std::sync::Arc;
 
-/// What the cells of a column are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Real numbers; one that is not finite means that there is no value.
-    Number,
-    /// Whole numbers.
-    Count,
-    /// Words; an empty one means that there is none.
-    Text,
-}
-
-/// Head of a column.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Column {
-    /// Name, ending in its unit where it has one.
-    pub name: String,
-    /// Unit as people write it; empty for words and counts, `-` for plain ratios.
-    pub unit: String,
-    /// What it holds, one phrase.
-    pub doc: String,
-    /// What its cells are.
-    pub kind: Kind,
-}
+pub use cvtcycle_output::table::{Head, Kind};
 
 /// Cells of a column.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,13 +42,31 @@ impl Values {
         self.len() == 0
     }
 
-    /// Moves the cells of another column of the same kind behind its own.
+    /// What the cells are.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        match self {
+            Values::Number(_) => Kind::Number,
+            Values::Count(_) => Kind::Count,
+            Values::Text(_) => Kind::Text,
+        }
+    }
+
+    /// Appends the cells of another column of the same kind.
     fn append(&mut self, other: &mut Values) {
         match (self, other) {
             (Values::Number(into), Values::Number(cells)) => into.append(cells),
             (Values::Count(into), Values::Count(cells)) => into.append(cells),
             (Values::Text(into), Values::Text(cells)) => into.append(cells),
             _ => debug_assert!(false, "columns of two kinds"),
+        }
+    }
+
+    fn clear(&mut self) {
+        match self {
+            Values::Number(cells) => cells.clear(),
+            Values::Count(cells) => cells.clear(),
+            Values::Text(cells) => cells.clear(),
         }
     }
 }
@@ -85,7 +81,7 @@ pub struct Rows {
 impl Rows {
     /// No rows yet, with room for a number of them.
     #[must_use]
-    pub fn with_capacity(columns: &[Column], rows: usize) -> Self {
+    pub fn with_capacity(columns: &[Head], rows: usize) -> Self {
         Rows {
             values: columns
                 .iter()
@@ -96,13 +92,7 @@ impl Rows {
 
     /// Drops all rows and keeps the room.
     pub fn clear(&mut self) {
-        for values in &mut self.values {
-            match values {
-                Values::Number(cells) => cells.clear(),
-                Values::Count(cells) => cells.clear(),
-                Values::Text(cells) => cells.clear(),
-            }
-        }
+        self.values.iter_mut().for_each(Values::clear);
     }
 
     /// Moves the rows of a table with the same columns behind its own.

@@ -1,4 +1,4 @@
-//! Rows of runs as cells of the table of traces, some at a time as they are driven, so that no run's rows need be kept.
+//! Rows of runs as cells of columns: of the table of traces while a study runs, and of a trace file.
 
 use std::sync::Arc;
 
@@ -7,38 +7,83 @@ use super::prepare::Study;
 use super::table::{Rows, Values};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_output::Row;
-use cvtcycle_output::columns::{Column, Value};
-use cvtcycle_output::trace::push_value;
+use cvtcycle_output::table::Cell;
+use cvtcycle_output::trace::TraceColumn;
+
+/// Words of a run, each kept once.
+#[derive(Default)]
+pub(crate) struct SharedWords(Vec<(Cell, Arc<str>)>);
+
+impl SharedWords {
+    /// The text of a cell; equal cells share it.
+    fn text(&mut self, cell: Cell, phases: &[String]) -> Arc<str> {
+        if let Some((_, text)) = self.0.iter().find(|(other, _)| *other == cell) {
+            return text.clone();
+        }
+        let mut text = String::new();
+        cell.push(&mut text, phases);
+        let text: Arc<str> = text.into();
+        self.0.push((cell, text.clone()));
+        text
+    }
+
+    /// Appends the cells of some rows of one run to the columns of a table.
+    pub fn push<'v>(
+        &mut self,
+        columns: &[&TraceColumn],
+        rows: &[Row],
+        phases: &[String],
+        values: impl Iterator<Item = &'v mut Values>,
+    ) {
+        for (column, cells) in columns.iter().zip(values) {
+            match cells {
+                Values::Number(cells) => column.numbers(rows, cells),
+                Values::Count(cells) => {
+                    cells.extend(rows.iter().map(|row| count(&column.cell(row))))
+                }
+                Values::Text(cells) => {
+                    cells.extend(rows.iter().map(|row| self.text(column.cell(row), phases)));
+                }
+            }
+        }
+    }
+}
+
+fn count(cell: &Cell) -> i64 {
+    match cell {
+        Cell::Count(n) => i64::try_from(*n).unwrap_or(i64::MAX),
+        _ => 0,
+    }
+}
 
 /// The table of traces of some consecutive points.
 pub(super) struct Traces<'s> {
-    columns: &'s [&'static Column],
+    columns: &'s [&'static TraceColumn],
     rows: Rows,
     point: i64,
-    /// Of this table alone: counting who shares a word is slow where threads do it at once.
+    /// A copy of this table alone: threads that count references to one word at once slow each other down.
     car: Arc<str>,
-    /// Words of the run that is driven, each held once.
-    words: Vec<(Value, Arc<str>)>,
+    words: SharedWords,
 }
 
 impl<'s> Traces<'s> {
-    /// No rows yet, with room for a number of them; nothing if the study keeps none.
+    /// No rows yet, with room for a number of them; none if the study keeps no traces.
     pub fn new(study: &'s Study, rows: impl Fn() -> usize) -> Option<Self> {
         let traces = || Traces {
             columns: &study.traces,
             rows: Rows::with_capacity(&study.trace_columns, rows()),
             point: 0,
             car: "".into(),
-            words: Vec::new(),
+            words: SharedWords::default(),
         };
         (!study.traces.is_empty()).then(traces)
     }
 
-    /// What follows belongs to a car at a point.
+    /// The following rows belong to a car at a point.
     pub fn begin(&mut self, point: u64, car: &StudyCar) {
         self.point = i64::try_from(point).unwrap_or(i64::MAX);
         self.car = Arc::from(&*car.name);
-        self.words.clear();
+        self.words = SharedWords::default();
     }
 
     /// Appends rows of a run through a cycle.
@@ -55,41 +100,11 @@ impl<'s> Traces<'s> {
         if let Some(Values::Text(cells)) = columns.next() {
             cells.resize(cells.len() + rows.len(), self.car.clone());
         }
-        for (column, cells) in self.columns.iter().zip(columns) {
-            match cells {
-                Values::Number(cells) => (column.numbers)(rows, cells),
-                Values::Count(cells) => {
-                    cells.extend(rows.iter().map(|row| count((column.get)(row))))
-                }
-                Values::Text(cells) => cells.extend(
-                    rows.iter()
-                        .map(|row| shared((column.get)(row), phases, &mut self.words)),
-                ),
-            }
-        }
+        self.words.push(self.columns, rows, phases, columns);
     }
 
     /// The table.
     pub fn into_rows(self) -> Rows {
         self.rows
     }
-}
-
-fn count(value: Value) -> i64 {
-    match value {
-        Value::Count(n) => i64::from(n),
-        _ => 0,
-    }
-}
-
-/// The text of a cell; the same value shares it.
-fn shared(value: Value, phases: &[String], known: &mut Vec<(Value, Arc<str>)>) -> Arc<str> {
-    if let Some((_, text)) = known.iter().find(|(other, _)| *other == value) {
-        return text.clone();
-    }
-    let mut text = String::new();
-    push_value(&mut text, value, phases);
-    let text: Arc<str> = text.into();
-    known.push((value, text.clone()));
-    text
 }

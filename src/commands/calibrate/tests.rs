@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
+use cvtcycle::study::fit::tables::tables;
 
-use super::{failures, files, text};
+use super::{failures, text};
 use crate::print::colour::Colour;
 
 #[path = "../../../tests/fixtures/outcome.rs"]
@@ -163,7 +164,7 @@ fn rows(bytes: &[u8]) -> Vec<HashMap<String, String>> {
 #[test]
 fn tables_hold_every_number_unrounded() {
     let outcome = named("mixed");
-    let written = files::tables(&outcome);
+    let written = tables(&outcome);
     let of = |name: &str| {
         written
             .iter()
@@ -237,7 +238,7 @@ fn tables_hold_every_number_unrounded() {
             .zip(line)
             .for_each(|(p, r)| same(&row[&p.name], *r));
     }
-    assert!(files::tables(&named("nothing")).is_empty());
+    assert!(tables(&named("nothing")).is_empty());
     assert!(noise(1).abs() <= 1.0);
 }
 

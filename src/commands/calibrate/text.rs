@@ -4,7 +4,7 @@ use cvtcycle::study::fit::outcome::{Outcome, Residual, rms};
 
 use crate::print::colour::Paint;
 use crate::print::grid::{Grid, WIDTH};
-use crate::print::number::{NONE, fixed, signed};
+use cvtcycle::output::number::{NONE, fixed, signed};
 
 /// Largest residuals that are told.
 const TOLD: usize = 5;

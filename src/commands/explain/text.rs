@@ -22,10 +22,10 @@ pub fn of(meanings: &Meanings, paint: Paint) -> String {
         };
         parts.push(format!(
             "{}\n{}",
-            paint.heading(column.name),
+            paint.heading(&column.name),
             facts(&[
                 ("what", "column of the trace"),
-                ("meaning", column.doc),
+                ("meaning", &*column.doc),
                 ("unit", unit)
             ])
         ));

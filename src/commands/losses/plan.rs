@@ -7,7 +7,8 @@ use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::loss_table::MapPart;
-use cvtcycle::output::losses::{Axis, LossColumn, LossGrid, MOST_POINTS, columns};
+use cvtcycle::output::losses::{Axis, LossGrid, LossRow, MOST_POINTS, columns};
+use cvtcycle::output::table::Column;
 
 use super::Args;
 use crate::args::ranges::{values, values_or_words};
@@ -26,7 +27,7 @@ pub struct Plan {
     pub setup: Setup,
     pub bench: Bench,
     pub grid: LossGrid,
-    pub columns: Vec<LossColumn>,
+    pub columns: Vec<Column<LossRow>>,
     pub formulation: &'static str,
     pub set: Vec<String>,
     pub map: Option<MapPart>,

@@ -1,15 +1,13 @@
 //! Losses as tables for people.
 
 use cvtcycle::model::bench::BELT_PARTS;
-use cvtcycle::output::columns::Value;
 use cvtcycle::output::losses::{Axis, LossRow, bench_components};
-use cvtcycle::output::trace::push_value;
 use cvtcycle::output::{Component, Flags};
 
 use super::plan::Plan;
 use crate::print::colour::Paint;
 use crate::print::grid::Grid;
-use crate::print::number::{NONE, fixed, percent, plain};
+use cvtcycle::output::number::{NONE, fixed, percent, plain};
 
 /// Most rows of a table; CSV and JSON carry all.
 const MOST_ROWS: usize = 100;
@@ -67,9 +65,7 @@ pub fn component_name(component: Component) -> String {
 }
 
 fn flag_text(flags: Flags) -> String {
-    let mut text = String::new();
-    push_value(&mut text, Value::Flags(flags), &[]);
-    text
+    flags.names().collect::<Vec<_>>().join("|")
 }
 
 fn one(plan: &Plan, row: &LossRow) -> String {

@@ -6,10 +6,10 @@ use cvtcycle::config::Problem;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::model::drive::{components, fuel_map};
 use cvtcycle::output::History;
-use cvtcycle::output::columns::columns_for;
+
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::summary::{Driven, RunSummary, Summary};
-use cvtcycle::output::trace::write_trace;
+use cvtcycle::output::trace::{columns_for, write_trace};
 use cvtcycle::report::charts::{self, PlotRun};
 use cvtcycle::study::store::write_trace_parquet;
 
@@ -35,6 +35,7 @@ impl TraceFormat {
 pub struct Written {
     paths: Vec<PathBuf>,
     left_over: Vec<String>,
+    note: String,
 }
 
 impl Written {
@@ -44,7 +45,13 @@ impl Written {
         Ok(Written {
             paths: dir.commit()?,
             left_over,
+            note: String::new(),
         })
+    }
+
+    /// The same with a line below the list of files.
+    pub fn with_note(self, note: String) -> Self {
+        Written { note, ..self }
     }
 
     /// The files, one a line.
@@ -57,7 +64,7 @@ impl Written {
             .iter()
             .map(|path| format!("  {}\n", path.display()))
             .collect();
-        format!("\nFiles written\n{}", lines.concat())
+        format!("\nFiles written\n{}{}", lines.concat(), self.note)
     }
 
     /// A word about files of an earlier run that this one has not replaced.

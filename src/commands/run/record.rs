@@ -52,7 +52,7 @@ pub fn record(
     let named: Vec<Named> = cars.iter().map(named).collect();
     Ok(Record {
         schema: SCHEMA,
-        program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")).to_owned(),
+        program: cvtcycle::output::PROGRAM.to_owned(),
         command: command(
             std::env::args_os()
                 .skip(1)

@@ -6,7 +6,7 @@ use cvtcycle::output::summary::{Comparison, RunSummary, StartWord, Summary};
 
 use crate::print::colour::Paint;
 use crate::print::grid::{Grid, WIDTH};
-use crate::print::number::{NONE, fixed, percent, plain, signed, tiny};
+use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
 
 /// Widths of the two leading columns, so that the tables stand under each other.
 const LEAD: [usize; 2] = [22, 8];

@@ -4,7 +4,7 @@ use cvtcycle::study::ambient::Matrix;
 
 use crate::print::colour::Paint;
 use crate::print::grid::Grid;
-use crate::print::number::{fixed, plain, signed};
+use cvtcycle::output::number::{fixed, plain, signed};
 
 /// Fuel of each part of the cycle with the subject's excess, and end temperatures.
 pub fn tables(matrix: &Matrix, paint: Paint) -> String {

@@ -3,8 +3,8 @@
 use cvtcycle::config::Problems;
 use cvtcycle::report::found::StudyFound;
 use cvtcycle::report::study_pictures::study_pictures;
+use cvtcycle::study::tables::tables;
 
-use super::csv_files;
 use crate::print::json_text;
 
 /// Files of a finished study: numbers and pictures.
@@ -13,7 +13,7 @@ pub fn files(study: &StudyFound) -> Result<Vec<(String, Vec<u8>)>, Problems> {
         "statistics.json".to_owned(),
         json_text(&study.answer)?.into_bytes(),
     )];
-    files.extend(csv_files::all(&study.answer, &study.outline));
+    files.extend(tables(&study.answer, &study.outline));
     let pictures = study
         .frame()
         .and_then(|frame| study_pictures(&study.answer, &frame, &study.warm_ups));

@@ -9,7 +9,7 @@ use cvtcycle::study::{Answer, Outline};
 use super::matrix;
 use crate::print::colour::Paint;
 use crate::print::grid::Grid;
-use crate::print::number::{fixed, signed};
+use cvtcycle::output::number::{fixed, signed};
 
 /// Factors that are told of each output.
 const TOLD: usize = 10;

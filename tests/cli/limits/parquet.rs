@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use cvtcycle::config::Problem;
 use cvtcycle::study::store::{ParquetFile, read_trace_parquet, sha256, write_parquet};
-use cvtcycle::study::table::{Column, Kind, Rows, Values};
+use cvtcycle::study::table::{Head, Kind, Rows, Values};
 use parquet::file::metadata::{
     FileMetaData, ParquetMetaData, ParquetMetaDataWriter, RowGroupMetaData,
 };
@@ -21,7 +21,7 @@ const DAMAGED: &str =
 /// A file with one column of that many equal numbers.
 fn table(dir: &TempDir, rows: usize) -> PathBuf {
     let path = dir.path().join("table.parquet");
-    let column = Column {
+    let column = Head {
         name: "time_s".to_owned(),
         unit: "s".to_owned(),
         doc: "time".to_owned(),

@@ -609,8 +609,8 @@ fn val_map_parts_take_their_own_torque() {
 /// Columns whose unit is not the model's, and the counts of flags.
 #[test]
 fn val_columns_of_the_bench() {
-    use cvtcycle::output::columns::Value;
     use cvtcycle::output::losses::{FlagCount, columns};
+    use cvtcycle::output::table::Cell;
     let bench = bench();
     let mut asked = [f64::NAN; Axis::COUNT];
     for (axis, value) in [
@@ -627,9 +627,9 @@ fn val_columns_of_the_bench() {
         .iter()
         .find(|c| c.name == name)
         .unwrap()
-        .value(&row)
+        .cell(&row)
     {
-        Value::Number(x) => x,
+        Cell::Number(x) => x,
         _ => panic!("{name}"),
     };
     same(of("secondary_pressure_bar"), row.answer.secondary_pa / 1e5);

@@ -15,13 +15,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use cvtcycle::study::store::{PartTable, StudyDir};
-use cvtcycle::study::table::{Column, Kind, Rows, Values};
+use cvtcycle::study::table::{Head, Kind, Rows, Values};
 use serde_json::json;
 
 const PLAN: &[u8] = b"title = \"test\"\n";
 
-fn head(name: &str, unit: &str, kind: Kind) -> Column {
-    Column {
+fn head(name: &str, unit: &str, kind: Kind) -> Head {
+    Head {
         name: name.to_owned(),
         unit: unit.to_owned(),
         doc: format!("what {name} is"),
@@ -30,7 +30,7 @@ fn head(name: &str, unit: &str, kind: Kind) -> Column {
 }
 
 /// Heads of a small table, with a name with dots and one with letters beyond ASCII.
-fn heads() -> Vec<Column> {
+fn heads() -> Vec<Head> {
     vec![
         head("run", "", Kind::Count),
         head("vehicle", "", Kind::Text),

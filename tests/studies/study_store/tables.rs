@@ -2,12 +2,12 @@
 
 use std::io::{ErrorKind, Write};
 
-use cvtcycle::output::columns::columns_for;
+use cvtcycle::output::trace::columns_for;
 use cvtcycle::output::trace::write_trace;
 use cvtcycle::study::store::{
     ParquetFile, ParquetTable, sha256, write_csv, write_parquet, write_trace_parquet,
 };
-use cvtcycle::study::table::{Column, Kind, Rows, Values};
+use cvtcycle::study::table::{Head, Kind, Rows, Values};
 use proptest::prelude::*;
 
 use super::{Small, head, heads, rows};
@@ -16,7 +16,7 @@ use super::{Small, head, heads, rows};
 use crate::fixtures;
 
 /// The bytes of a table as Parquet.
-fn bytes(columns: &[Column], rows: &Rows) -> Vec<u8> {
+fn bytes(columns: &[Head], rows: &Rows) -> Vec<u8> {
     let mut out = Vec::new();
     write_parquet(&mut out, columns, rows, &[("cvtcycle.seed", "7")]).unwrap();
     out
@@ -58,7 +58,7 @@ fn said(rows: &Rows) -> Vec<Vec<String>> {
 }
 
 /// The same of its CSV.
-fn csv_said(columns: &[Column], rows: &Rows) -> Vec<Vec<String>> {
+fn csv_said(columns: &[Head], rows: &Rows) -> Vec<Vec<String>> {
     let mut out = Vec::new();
     write_csv(&mut out, columns, rows).unwrap();
     let mut reader = csv::Reader::from_reader(&out[..]);
@@ -230,7 +230,7 @@ fn groups_of_rows_and_long_columns_read_back_whole() {
 
 #[test]
 fn rows_of_another_table_are_refused() {
-    let refused = |columns: &[Column], rows: &Rows| {
+    let refused = |columns: &[Head], rows: &Rows| {
         let errors = [
             write_parquet(Vec::new(), columns, rows, &[]),
             write_csv(Vec::new(), columns, rows),
@@ -295,7 +295,7 @@ fn a_trace_is_the_same_in_parquet_and_csv() {
         write_trace_parquet(&mut parquet, &columns, &rows, &fixtures::phases()).unwrap();
         write_trace(&mut text, &columns, &rows, &fixtures::phases()).unwrap();
         let file = opened(&parquet);
-        let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+        let names: Vec<&str> = columns.iter().map(|column| &*column.name).collect();
         assert_eq!(
             file.columns()
                 .iter()

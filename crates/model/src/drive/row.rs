@@ -143,6 +143,14 @@ impl Flags {
         self.0 & other.0 == other.0
     }
 
+    /// Names of the flags that are set, in the order of the bits.
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        let set = Self::NAMES
+            .iter()
+            .filter(move |(flag, _)| self.contains(*flag));
+        set.map(|(_, name)| *name)
+    }
+
     /// Sets the bits of `flag` when `on`.
     pub fn set(&mut self, flag: Flags, on: bool) {
         self.0 |= if on { flag.0 } else { 0 };

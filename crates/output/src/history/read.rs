@@ -2,7 +2,7 @@
 
 use super::{History, MOST_PHASES, MOST_STEPS, SHORTER, flags_of, is_number, known, missing};
 use crate::Flags;
-use crate::columns::column;
+use crate::trace::column;
 use cvtcycle_config::Problems;
 use cvtcycle_config::cycle::problems::{Collector, Complaint, Line};
 use cvtcycle_config::cycle::text::Field;
@@ -80,7 +80,7 @@ fn header<'t>(line: Line<'t>, problems: &mut Collector) -> Option<Header<'t>> {
         return None;
     }
     for own in missing(&columns) {
-        problems.line(line, own.name, || {
+        problems.line(line, &own.name, || {
             Complaint::new(
                 format!("the column {} is missing", own.name),
                 format!("with {}: {}", own.name, own.doc),
@@ -91,7 +91,7 @@ fn header<'t>(line: Line<'t>, problems: &mut Collector) -> Option<Header<'t>> {
     let numbers: Vec<&str> = columns
         .iter()
         .filter(|column| is_number(column))
-        .map(|column| column.name)
+        .map(|column| &*column.name)
         .collect();
     let mut uses = Vec::new();
     for (k, field) in fields.iter().enumerate() {

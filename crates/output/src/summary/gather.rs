@@ -2,8 +2,9 @@
 
 use super::{
     Comparison, Deficit, Driven, Named, PhaseSummary, RunSummary, SCHEMA, Settings, Solve,
-    StartWord, Summary, finite,
+    StartWord, Summary,
 };
+use crate::number::finite;
 use crate::{Component, Flags, PhaseTotals, TERM_NAMES};
 use cvtcycle_config::cycle::{Cycle, Weighting};
 use cvtcycle_model::drive::{Outcome, components, litres_per_100km};
@@ -44,7 +45,7 @@ pub fn summarise(
     };
     Summary {
         schema: SCHEMA,
-        program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")).to_owned(),
+        program: crate::PROGRAM.to_owned(),
         cycle: cycle.name.clone(),
         ambient_degc,
         start,

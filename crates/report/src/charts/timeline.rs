@@ -7,7 +7,7 @@ use super::panel::{BELOW, LEFT, Panel};
 use super::picture::{Picture, PictureTable, cell};
 use super::style::Stroke;
 use cvtcycle_output::History;
-use cvtcycle_output::columns::column;
+use cvtcycle_output::trace::column;
 
 /// Width of a picture over time, pixels: on A4 its text is still read.
 pub(super) const WIDTH: f64 = 880.0;

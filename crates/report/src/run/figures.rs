@@ -14,10 +14,10 @@ use crate::charts::{
 use cvtcycle_config::cycle::phase_group;
 use cvtcycle_model::drive::FuelMap;
 use cvtcycle_output::Component;
-use cvtcycle_output::columns::loss_column;
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::FuelMapRecord;
 use cvtcycle_output::summary::RunSummary;
+use cvtcycle_output::trace::loss_column;
 
 /// rpm to rad/s.
 const RPM: f64 = std::f64::consts::PI / 30.0;
@@ -177,7 +177,7 @@ fn group_losses(history: &History, group: &str) -> Vec<(Component, f64)> {
     };
     let own: Vec<usize> = (0..history.len()).filter(|i| in_group(*i)).collect();
     let sum = |component: &Component| {
-        let column = loss_column(*component).map_or(&[][..], |column| history.column(column.name));
+        let column = loss_column(*component).map_or(&[][..], |column| history.column(&column.name));
         own.iter()
             .filter_map(|i| Some(column.get(*i)? * dt.get(*i)?))
             .filter(|joule| joule.is_finite())
@@ -220,7 +220,7 @@ fn phase_losses(all: &[Car], traced: &[&Car]) -> PhaseLosses {
 
 fn loss_trace<'a>(car: &Car, history: &'a History) -> LossTrace<'a> {
     let column = |component: &Component| {
-        loss_column(*component).map_or(&[][..], |column| history.column(column.name))
+        loss_column(*component).map_or(&[][..], |column| history.column(&column.name))
     };
     LossTrace {
         subject: car.run.vehicle.clone(),

@@ -4,8 +4,8 @@ use super::super::document::{Block, Section, Table};
 use super::super::found::RunFound;
 use super::super::number::{Quantity, tiny, words};
 use super::Car;
+use cvtcycle_output::number::finite;
 use cvtcycle_output::record::Record;
-use cvtcycle_output::summary::finite;
 
 pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
     let mut section = Section::new("reproducibility", "Reproducibility");

@@ -1,5 +1,7 @@
 //! A report as JSON and CSV, and its words for people.
 
+use cvtcycle_output::columns;
+use cvtcycle_output::table::{Column, write_csv};
 use serde::Serialize;
 
 use super::expr::{Computed, short};
@@ -90,7 +92,7 @@ struct JsonRow {
 pub fn json(report: &Report) -> Json {
     Json {
         schema: SCHEMA,
-        program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")),
+        program: cvtcycle_output::PROGRAM,
         vehicle: report.subject.vehicle.clone(),
         set: report.subject.set.clone(),
         counts: Counts::of(report.rows.iter()),
@@ -243,64 +245,43 @@ pub fn unit_text(unit: &str) -> &str {
     if unit == "-" { "" } else { unit }
 }
 
-const HEADER: [&str; 22] = [
-    "id",
-    "chapter",
-    "mechanism",
-    "kind",
-    "what",
-    "condition",
-    "printed",
-    "unit",
-    "printed_low",
-    "printed_high",
-    "tolerance",
-    "tolerance_below",
-    "tolerance_above",
-    "computed_low",
-    "computed_high",
-    "computed",
-    "verdict",
-    "recorded",
-    "fitted_to",
-    "reason",
-    "cause",
-    "remark",
-];
+/// The columns of the CSV file: a row in JSON, and its cause as words.
+fn columns() -> Vec<Column<(JsonRow, String)>> {
+    columns! { (JsonRow, String);
+        text "id", "", "", (r, _) => r.id.clone();
+        text "chapter", "", "", (r, _) => r.chapter.clone();
+        text "mechanism", "", "", (r, _) => r.mechanism.clone();
+        text "kind", "", "", (r, _) => r.kind.clone();
+        text "what", "", "", (r, _) => r.what.clone();
+        text "condition", "", "", (r, _) => r.condition.clone();
+        text "printed", "", "", (r, _) => r.printed.clone();
+        text "unit", "", "", (r, _) => r.unit.clone();
+        optional "printed_low", "", "", (r, _) => r.printed_low;
+        optional "printed_high", "", "", (r, _) => r.printed_high;
+        text "tolerance", "", "", (r, _) => r.tolerance.clone().unwrap_or_default();
+        optional "tolerance_below", "", "", (r, _) => r.tolerance_below;
+        optional "tolerance_above", "", "", (r, _) => r.tolerance_above;
+        optional "computed_low", "", "", (r, _) => r.computed_low;
+        optional "computed_high", "", "", (r, _) => r.computed_high;
+        text "computed", "", "", (r, _) => r.computed.clone();
+        text "verdict", "", "", (r, _) => r.verdict;
+        text "recorded", "", "", (r, _) => r.recorded.unwrap_or_default();
+        text "fitted_to", "", "", (r, _) => r.fitted_to.join(" ");
+        text "reason", "", "", (r, _) => r.reason.clone();
+        text "cause", "", "", (_, cause) => cause.clone();
+        text "remark", "", "", (r, _) => r.remark.clone();
+    }
+}
 
 /// A report as CSV, a line a row.
 #[must_use]
 pub fn csv(report: &Report) -> String {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let number = |x: Option<f64>| x.map(|x| x.to_string()).unwrap_or_default();
+    let rows = report
+        .rows
+        .iter()
+        .map(|judged| (json_row(judged), cause_text(judged)));
+    let mut bytes = Vec::new();
     // Writing into memory cannot fail.
-    let _ = writer.write_record(HEADER);
-    for judged in &report.rows {
-        let row = json_row(judged);
-        let _ = writer.write_record([
-            row.id,
-            row.chapter,
-            row.mechanism,
-            row.kind,
-            row.what,
-            row.condition,
-            row.printed,
-            row.unit,
-            number(row.printed_low),
-            number(row.printed_high),
-            row.tolerance.unwrap_or_default(),
-            number(row.tolerance_below),
-            number(row.tolerance_above),
-            number(row.computed_low),
-            number(row.computed_high),
-            row.computed,
-            row.verdict.to_owned(),
-            row.recorded.unwrap_or_default().to_owned(),
-            row.fitted_to.join(" "),
-            row.reason,
-            cause_text(judged),
-            row.remark,
-        ]);
-    }
-    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+    let _ = write_csv(&mut bytes, &columns(), rows, &[]);
+    String::from_utf8(bytes).unwrap_or_default()
 }

@@ -10,9 +10,8 @@ use zip::write::{SimpleFileOptions, StreamWriter, ZipWriter};
 
 use super::xml::{column_letters, escaped, frame, sheet_head};
 use crate::store::Header;
-use crate::table::{Column, Rows, Values};
-use cvtcycle_output::columns::Value;
-use cvtcycle_output::trace::push_value;
+use crate::table::{Head, Rows, Values};
+use cvtcycle_output::number::exact;
 
 /// Most rows of a sheet below its header.
 pub const MOST_ROWS: u64 = (1 << 20) - 1;
@@ -28,7 +27,7 @@ const EXACT: u64 = 1 << 53;
 pub struct XlsxTable<W: Write> {
     zip: ZipWriter<StreamWriter<FirstError<W>>>,
     error: Rc<RefCell<Option<io::Error>>>,
-    columns: Vec<Column>,
+    columns: Vec<Head>,
     letters: Vec<String>,
     row: u64,
     text: String,
@@ -40,7 +39,7 @@ impl<W: Write> XlsxTable<W> {
     ///
     /// # Errors
     /// Whatever `out` reports.
-    pub fn new(out: W, name: &str, columns: &[Column]) -> io::Result<Self> {
+    pub fn new(out: W, name: &str, columns: &[Head]) -> io::Result<Self> {
         let error = Rc::new(RefCell::new(None));
         let zip = ZipWriter::new_stream(FirstError {
             out,
@@ -186,8 +185,7 @@ impl<W: Write> XlsxTable<W> {
     }
 
     fn number(&mut self, column: usize, x: f64) {
-        let mut digits = String::new();
-        push_value(&mut digits, Value::Number(x), &[]);
+        let digits = exact(x);
         if !digits.is_empty() {
             self.raw(column, &digits);
         }
@@ -255,8 +253,8 @@ mod tests {
     use crate::table::Kind;
     use std::io::ErrorKind;
 
-    fn columns() -> Vec<Column> {
-        let head = |name: &str, kind| Column {
+    fn columns() -> Vec<Head> {
+        let head = |name: &str, kind| Head {
             name: name.to_owned(),
             unit: "mm".to_owned(),
             doc: "a < b & c".to_owned(),

@@ -20,6 +20,7 @@ pub mod model;
 pub mod outcome;
 pub mod plan;
 mod run;
+pub mod tables;
 pub mod solve;
 
 pub use check::open;

@@ -77,7 +77,7 @@ impl Found<'_> {
             .filter_map(|p| p.prior.map(|[mean, sd]| (p.file_value - mean) / sd)));
         let mut outcome = Outcome {
             schema: SCHEMA,
-            program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")).to_owned(),
+            program: cvtcycle_output::PROGRAM.to_owned(),
             title: plan.title.clone(),
             plan: plan.file.clone(),
             plan_sha256: Sha256::digest(plan.text.as_bytes())

@@ -3,7 +3,7 @@
 use super::{Base, FactorValue, Keep, Places, Plan, design, factor, options};
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, Written};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
-use cvtcycle_output::columns::COLUMNS;
+use cvtcycle_output::trace::COLUMNS;
 
 /// Runs above which the user has to agree, unless the plan says otherwise.
 const MOST_RUNS: i64 = 100_000;
@@ -253,7 +253,7 @@ fn columns(whole: &Written, items: &[Written], what: &str) -> Vec<String> {
         if !COLUMNS.iter().any(|column| column.name == word) {
             let hint = options::did_you_mean(
                 word,
-                COLUMNS.iter().map(|column| column.name),
+                COLUMNS.iter().map(|column| &*column.name),
                 "the trace of `run --out` shows all",
             );
             item.complain(

@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 
 use super::check_shape;
-use crate::table::{Column, Rows, Values};
-use cvtcycle_output::columns::Value;
-use cvtcycle_output::trace::{csv_error, push_value};
+use crate::table::{Head, Rows, Values};
+use cvtcycle_output::number::push_exact;
+use cvtcycle_output::table::CsvWriter;
 
 /// What stands over the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub enum Header {
 impl Header {
     /// The text over a column.
     #[must_use]
-    pub fn of(self, column: &Column) -> String {
+    pub fn of(self, column: &Head) -> String {
         if self == Header::Names || column.unit.is_empty() {
             column.name.clone()
         } else {
@@ -32,21 +32,18 @@ impl Header {
 ///
 /// Numbers read back to the same `f64`; those that are not finite, and empty words, are empty fields. Minus zero is written as zero.
 pub struct CsvTable<W: Write> {
-    out: csv::Writer<W>,
-    columns: Vec<Column>,
+    out: CsvWriter<W>,
+    columns: Vec<Head>,
 }
 
 impl<W: Write> CsvTable<W> {
     /// Writes the header.
     ///
     /// # Errors
-    /// Whatever `out` reports.
-    pub fn new(out: W, columns: &[Column], header: Header) -> io::Result<Self> {
-        let mut out = csv::Writer::from_writer(out);
-        out.write_record(columns.iter().map(|column| header.of(column)))
-            .map_err(csv_error)?;
+    /// Those of `out`.
+    pub fn new(out: W, columns: &[Head], header: Header) -> io::Result<Self> {
         Ok(CsvTable {
-            out,
+            out: CsvWriter::new(out, columns.iter().map(|column| header.of(column)))?,
             columns: columns.to_vec(),
         })
     }
@@ -54,33 +51,25 @@ impl<W: Write> CsvTable<W> {
     /// Writes some rows.
     ///
     /// # Errors
-    /// Whatever `out` reports; [`io::ErrorKind::InvalidInput`] for rows of another table.
+    /// Those of `out`; [`io::ErrorKind::InvalidInput`] for rows of another table.
     pub fn write(&mut self, rows: &Rows) -> io::Result<()> {
         check_shape(&self.columns, rows)?;
-        let mut text = String::new();
-        for row in 0..rows.len() {
-            for values in &rows.values {
-                text.clear();
-                match values {
-                    Values::Number(numbers) => {
-                        push_value(&mut text, Value::Number(numbers[row]), &[])
-                    }
-                    Values::Count(counts) => text += &counts[row].to_string(),
-                    Values::Text(words) => text += &words[row],
-                }
-                self.out.write_field(&text).map_err(csv_error)?;
-            }
-            self.out.write_record(None::<&[u8]>).map_err(csv_error)?;
-        }
-        Ok(())
+        (0..rows.len()).try_for_each(|row| {
+            self.out.row(&rows.values, |values, text| match values {
+                Values::Number(numbers) if !numbers[row].is_finite() => {}
+                Values::Number(numbers) => push_exact(text, numbers[row]),
+                Values::Count(counts) => *text += &counts[row].to_string(),
+                Values::Text(words) => *text += &words[row],
+            })
+        })
     }
 
     /// Hands everything on.
     ///
     /// # Errors
-    /// Whatever `out` reports.
-    pub fn finish(mut self) -> io::Result<()> {
-        self.out.flush()
+    /// Those of `out`.
+    pub fn finish(self) -> io::Result<()> {
+        self.out.finish()
     }
 }
 
@@ -88,7 +77,7 @@ impl<W: Write> CsvTable<W> {
 ///
 /// # Errors
 /// Those of [`CsvTable`].
-pub fn write_csv<W: Write>(out: W, columns: &[Column], rows: &Rows) -> io::Result<()> {
+pub fn write_csv<W: Write>(out: W, columns: &[Head], rows: &Rows) -> io::Result<()> {
     let mut table = CsvTable::new(out, columns, Header::Names)?;
     table.write(rows)?;
     table.finish()

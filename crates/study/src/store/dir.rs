@@ -16,7 +16,7 @@ use super::manifest::{differences, lines};
 use super::names::{self, LOCK, MANIFEST, PARTS, PLAN, RESULTS, SUMMARY};
 use super::parquet::write_parquet;
 use super::read::{Study, is_whole, marked_parts};
-use crate::table::{Column, Rows};
+use crate::table::{Head, Rows};
 use cvtcycle_config::Problem;
 use cvtcycle_config::bounded::{self, Refused};
 use cvtcycle_output::files::{
@@ -29,7 +29,7 @@ pub struct PartTable<'a> {
     /// Name of the table, one of the layout's.
     pub name: &'a str,
     /// Heads of its columns.
-    pub columns: &'a [Column],
+    pub columns: &'a [Head],
     /// Its rows.
     pub rows: &'a Rows,
     /// Pairs for the metadata of the Parquet file.

@@ -8,11 +8,11 @@ use super::{Values, file_problem};
 use cvtcycle_config::cycle::problems::Complaint;
 use cvtcycle_config::{Problem, Problems, bounded};
 use cvtcycle_output::Flags;
-use cvtcycle_output::columns::Column;
 use cvtcycle_output::history::{
     AGAIN, FLAGS, History, MOST_STEPS, SHORTER, flags_of, is_number, known, missing,
     too_many_phases,
 };
+use cvtcycle_output::trace::TraceColumn;
 
 /// Reads a trace that this program has written as Parquet. Columns that it does not know, as of a newer version, are passed over.
 ///
@@ -34,8 +34,8 @@ pub fn read_trace_parquet(path: &Path) -> Result<History, Problems> {
         )
         .into());
     }
-    let lacks = |own: &Column| {
-        file_problem(path, format!("the column {} is missing", own.name), AGAIN).key(own.name)
+    let lacks = |own: &TraceColumn| {
+        file_problem(path, format!("the column {} is missing", own.name), AGAIN).key(&*own.name)
     };
     let mut problems: Problems = missing(&columns).into_iter().map(lacks).collect();
     if file.rows() == 0 {
@@ -50,9 +50,9 @@ pub fn read_trace_parquet(path: &Path) -> Result<History, Problems> {
     if !problems.is_empty() {
         return Err(problems);
     }
-    let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+    let names: Vec<&str> = columns.iter().map(|column| &*column.name).collect();
     let read = file.read(&names).map_err(hinted)?;
-    let numbers: Vec<&'static Column> = columns
+    let numbers: Vec<&'static TraceColumn> = columns
         .iter()
         .copied()
         .filter(|column| is_number(column))
@@ -60,7 +60,7 @@ pub fn read_trace_parquet(path: &Path) -> Result<History, Problems> {
     let mut history = History::empty(&numbers);
     let (mut phases, mut flags): (Vec<Arc<str>>, Vec<Arc<str>>) = (Vec::new(), Vec::new());
     for (column, values) in columns.iter().zip(read.values) {
-        match (column.name, values) {
+        match (&*column.name, values) {
             ("phase", Values::Text(words)) => phases = words,
             ("flags", Values::Text(words)) => flags = words,
             (name, Values::Number(numbers)) if is_number(column) => history.put(name, numbers),

@@ -38,13 +38,13 @@ pub use names::is_study;
 pub use parquet::{ParquetTable, write_parquet};
 pub use parquet_read::ParquetFile;
 pub use read::{Status, Study};
-pub use trace::{TraceColumns, write_trace_parquet};
+pub use trace::write_trace_parquet;
 
 use std::fmt::Display;
 use std::io;
 use std::path::Path;
 
-use super::table::{Column, Kind, Rows, Values};
+use super::table::{Head, Rows, Values};
 use cvtcycle_config::Problem;
 
 /// A problem of a file or directory of a study.
@@ -56,17 +56,12 @@ fn file_problem(path: &Path, message: impl Display, hint: &str) -> Problem {
 }
 
 /// Checks that rows fit under their heads.
-fn check_shape(columns: &[Column], rows: &Rows) -> io::Result<()> {
-    let kind = |values: &Values| match values {
-        Values::Number(_) => Kind::Number,
-        Values::Count(_) => Kind::Count,
-        Values::Text(_) => Kind::Text,
-    };
+fn check_shape(columns: &[Head], rows: &Rows) -> io::Result<()> {
     let fits = columns.len() == rows.values.len()
         && columns
             .iter()
             .zip(&rows.values)
-            .all(|(column, values)| column.kind == kind(values) && values.len() == rows.len());
+            .all(|(column, values)| column.kind == values.kind() && values.len() == rows.len());
     if fits {
         Ok(())
     } else {

@@ -15,12 +15,12 @@ use parquet::schema::types::{ColumnPath, Type};
 use serde_json::json;
 
 use super::check_shape;
-use crate::table::{Column, Kind, Rows, Values};
+use crate::table::{Head, Kind, Rows, Values};
 
 /// Key of the metadata under which the heads of the columns stand, as JSON.
 pub const COLUMNS_KEY: &str = "cvtcycle.columns";
 /// Writer of the files, as Parquet's own field says it.
-const CREATED_BY: &str = concat!("cvtcycle ", env!("CARGO_PKG_VERSION"));
+const CREATED_BY: &str = cvtcycle_output::PROGRAM;
 /// A dictionary is kept where values are repeated at least so often on average.
 const REPEATED: usize = 4;
 /// Values of a column, from its first one, that this is judged by.
@@ -33,7 +33,7 @@ const LOOKED_AT: usize = 8192;
 /// `cvtcycle.columns`.
 pub struct ParquetTable<W: Write + Send> {
     file: SerializedFileWriter<W>,
-    columns: Vec<Column>,
+    columns: Vec<Head>,
 }
 
 impl<W: Write + Send> ParquetTable<W> {
@@ -43,7 +43,7 @@ impl<W: Write + Send> ParquetTable<W> {
     /// Whatever `out` reports; [`io::ErrorKind::InvalidInput`] for rows of another table, without columns, or with two of one name.
     pub fn new(
         out: W,
-        columns: &[Column],
+        columns: &[Head],
         metadata: &[(&str, &str)],
         first: &Rows,
     ) -> io::Result<Self> {
@@ -95,7 +95,7 @@ impl<W: Write + Send> ParquetTable<W> {
 /// Those of [`ParquetTable`].
 pub fn write_parquet<W: Write + Send>(
     out: W,
-    columns: &[Column],
+    columns: &[Head],
     rows: &Rows,
     metadata: &[(&str, &str)],
 ) -> io::Result<()> {
@@ -104,8 +104,8 @@ pub fn write_parquet<W: Write + Send>(
     table.finish()
 }
 
-fn schema(columns: &[Column]) -> Result<Type, ParquetError> {
-    let field = |column: &Column| {
+fn schema(columns: &[Head]) -> Result<Type, ParquetError> {
+    let field = |column: &Head| {
         let of = |kind| Type::primitive_type_builder(&column.name, kind);
         let field = match column.kind {
             Kind::Number => of(Physical::DOUBLE).with_repetition(Repetition::OPTIONAL),
@@ -122,7 +122,7 @@ fn schema(columns: &[Column]) -> Result<Type, ParquetError> {
         .build()
 }
 
-fn properties(columns: &[Column], metadata: &[(&str, &str)], first: &Rows) -> WriterProperties {
+fn properties(columns: &[Head], metadata: &[(&str, &str)], first: &Rows) -> WriterProperties {
     let mut pairs: Vec<KeyValue> = metadata
         .iter()
         .map(|(key, value)| KeyValue::new((*key).to_owned(), (*value).to_owned()))
@@ -146,8 +146,8 @@ fn properties(columns: &[Column], metadata: &[(&str, &str)], first: &Rows) -> Wr
 }
 
 /// Name, unit, meaning and kind of the columns as JSON.
-fn heads(columns: &[Column]) -> String {
-    let head = |column: &Column| json!({ "name": column.name, "unit": column.unit, "doc": column.doc, "kind": kind_word(column.kind) });
+fn heads(columns: &[Head]) -> String {
+    let head = |column: &Head| json!({ "name": column.name, "unit": column.unit, "doc": column.doc, "kind": kind_word(column.kind) });
     serde_json::Value::Array(columns.iter().map(head).collect()).to_string()
 }
 

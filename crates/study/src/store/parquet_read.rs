@@ -16,7 +16,7 @@ use serde_json::Value;
 use super::checksums::{Sum, sum_of};
 use super::file_problem;
 use super::parquet::{COLUMNS_KEY, io_error};
-use crate::table::{Column, Kind, Rows, Values};
+use crate::table::{Head, Kind, Rows, Values};
 use cvtcycle_config::Problem;
 use cvtcycle_config::bounded::{self, Refused};
 
@@ -35,7 +35,7 @@ const ROOM: usize = 1 << 16;
 pub struct ParquetFile {
     path: PathBuf,
     file: SerializedFileReader<File>,
-    columns: Vec<Column>,
+    columns: Vec<Head>,
 }
 
 impl ParquetFile {
@@ -87,7 +87,7 @@ impl ParquetFile {
 
     /// Heads of its columns.
     #[must_use]
-    pub fn columns(&self) -> &[Column] {
+    pub fn columns(&self) -> &[Head] {
         &self.columns
     }
 
@@ -247,7 +247,7 @@ fn word(
 }
 
 /// The heads in the metadata; none if there are none or they are not those of the file's columns.
-fn heads(file: &SerializedFileReader<File>) -> Option<Vec<Column>> {
+fn heads(file: &SerializedFileReader<File>) -> Option<Vec<Head>> {
     let metadata = file.metadata().file_metadata();
     let pair = metadata
         .key_value_metadata()?
@@ -268,7 +268,7 @@ fn heads(file: &SerializedFileReader<File>) -> Option<Vec<Column>> {
     same.then_some(columns)
 }
 
-fn head(head: &Value) -> Option<Column> {
+fn head(head: &Value) -> Option<Head> {
     let text = |key: &str| head.get(key)?.as_str().map(str::to_owned);
     let kind = match text("kind")?.as_str() {
         "number" => Kind::Number,
@@ -276,7 +276,7 @@ fn head(head: &Value) -> Option<Column> {
         "text" => Kind::Text,
         _ => return None,
     };
-    Some(Column {
+    Some(Head {
         name: text("name")?,
         unit: text("unit")?,
         doc: text("doc")?,

@@ -13,7 +13,7 @@ use super::file_problem;
 use super::layout::Layout;
 use super::names::{self, MANIFEST, PLAN, RESULTS};
 use super::parquet_read::{MEND, ParquetFile, unreadable};
-use crate::table::{Column, Rows, Values};
+use crate::table::{Head, Rows, Values};
 use cvtcycle_config::{Problem, bounded};
 
 /// How far a study has come.
@@ -170,7 +170,7 @@ impl Study {
     ///
     /// # Errors
     /// Those of [`Study::part`].
-    pub fn heads(&self, table: &str) -> Result<Vec<Column>, Problem> {
+    pub fn heads(&self, table: &str) -> Result<Vec<Head>, Problem> {
         self.present.first().map_or(Ok(Vec::new()), |&index| {
             self.part(index, table).map(|file| file.columns().to_vec())
         })

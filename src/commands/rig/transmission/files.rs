@@ -2,10 +2,9 @@
 
 use cvtcycle::config::Problem;
 use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::rig::{steady_columns, strip_columns, transient_columns, two_box_columns};
+use cvtcycle::output::table::{Column, write_csv};
 use cvtcycle::report::charts::rig_transmission::plots::{self, Picture, Subject};
-use cvtcycle::report::charts::rig_transmission::tables::{
-    Column, steady_columns, strip_columns, transient_columns, two_box_columns, write_csv,
-};
 
 use super::{Found, Job};
 use crate::commands::run::files::Written;
@@ -59,6 +58,6 @@ fn table<T>(
     if rows.is_empty() {
         Ok(())
     } else {
-        dir.write(name, |out| write_csv(out, columns, rows))
+        dir.write(name, |out| write_csv(out, columns, rows, &[]))
     }
 }

@@ -2,9 +2,8 @@
 
 use cvtcycle::model::bench::transmission::{Branch, Loop, Moment, Piece};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
-use cvtcycle::report::charts::rig_transmission::tables::{
-    json_rows, steady_columns, strip_columns, transient_columns, two_box_columns,
-};
+use cvtcycle::output::rig::{steady_columns, strip_columns, transient_columns, two_box_columns};
+use cvtcycle::output::table::json_rows;
 use serde_json::{Map, Value, json};
 
 use super::text::{MEETING_NM, Range, ranges};

@@ -4,12 +4,12 @@ use cvtcycle::model::bench::BenchPoint;
 use cvtcycle::model::bench::transmission::{Branch, Loop, Piece, Stage, SteadyPoint, StripDown};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::output::Flags;
-use cvtcycle::report::charts::rig_transmission::tables::{oil_degc, rpm};
+use cvtcycle::output::rig::{oil_degc, rpm};
 
 use super::{Found, Job};
 use crate::print::colour::Paint;
 use crate::print::grid::Grid;
-use crate::print::number::{NONE, fixed, plain, signed};
+use cvtcycle::output::number::{NONE, fixed, plain, signed};
 
 /// Branches that are closer than this have met, Nm: well within the transducer's error.
 pub const MEETING_NM: f64 = 0.1;

@@ -5,7 +5,7 @@ use cvtcycle::model::bench::variator::RigFlags;
 use super::plan::{Curve, Plan};
 use crate::print::colour::Paint;
 use crate::print::grid::Grid;
-use crate::print::number::{fixed, percent, plain};
+use cvtcycle::output::number::{fixed, percent, plain};
 
 /// A line a curve, and what the counters can resolve.
 pub fn tables(plan: &Plan, curves: &[Curve], paint: Paint) -> String {

@@ -106,12 +106,15 @@ impl RigFlags {
     /// Names of what is set, joined by `|`.
     #[must_use]
     pub fn text(self) -> String {
-        let names: Vec<&str> = Self::NAMES
+        self.names().collect::<Vec<_>>().join("|")
+    }
+
+    /// Names of the flags that are set.
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        let set = Self::NAMES
             .iter()
-            .filter(|(flag, _)| self.contains(*flag))
-            .map(|(_, name)| *name)
-            .collect();
-        names.join("|")
+            .filter(move |(flag, _)| self.contains(*flag));
+        set.map(|(_, name)| *name)
     }
 
     fn new(on: [bool; 6]) -> Self {

@@ -1,4 +1,3 @@
-//! Tables and pictures of the transmission rig's tests.
+//! Pictures of the transmission rig's tests.
 
 pub mod plots;
-pub mod tables;

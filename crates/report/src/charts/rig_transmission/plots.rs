@@ -1,12 +1,12 @@
 //! Pictures of the transmission rig's tests, after the figures of thesis chapter 5.
 
-use super::tables::{clean, oil_degc, rpm};
 use crate::charts::chart::{Chart, ChartPanel, Look, Points, chart};
 use cvtcycle_model::bench::BenchPoint;
 use cvtcycle_model::bench::transmission::{
     Branch, Conditions, Loop, Piece, Stage, SteadyPoint, StripDown, TwoBoxes,
 };
 use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_output::rig::{clean, oil_degc, rpm};
 
 /// File name and SVG text.
 pub type Picture = (String, String);

@@ -7,7 +7,7 @@ use cvtcycle_config::setup::Setup;
 use cvtcycle_model::drive::{Conditions, Outcome, Start, litres_per_100km};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
-use cvtcycle_output::columns::COLUMNS;
+use cvtcycle_output::trace::COLUMNS;
 use cvtcycle_output::{Component, Flags, Row};
 
 /// A finished run.
@@ -71,7 +71,7 @@ const LOSSES: [&str; Component::COUNT] = [
 
 /// Names of the columns of the trace.
 pub fn columns() -> Vec<&'static str> {
-    let trace = COLUMNS.iter().map(|column| column.name);
+    let trace = COLUMNS.iter().map(|column| &*column.name);
     trace
         .chain(Flags::NAMES.iter().map(|(_, name)| *name))
         .chain(MORE)
@@ -172,7 +172,7 @@ fn row(r: &Row, rated_w: f64, launch: f64, since_s: f64) -> Vec<f64> {
         r.wheel_power_w / rated_w,
         r.loss_w.iter().sum::<f64>(),
     ];
-    let trace = COLUMNS.iter().map(|column| column.number(r));
+    let trace = COLUMNS.iter().map(|column| column.number_of(r));
     trace
         .chain(
             Flags::NAMES

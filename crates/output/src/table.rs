@@ -1,0 +1,421 @@
+//! Tables: rows of any type under named columns, written as CSV and JSON.
+//!
+//! A table is a list of [`Column`]s, mostly made with [`columns!`](crate::columns). Files and JSON carry numbers unrounded.
+
+use std::borrow::{Borrow, Cow};
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use serde_json::{Map, Value as Json, json};
+
+use crate::number::{finite, push_exact};
+use crate::{Component, Flags};
+
+/// One cell.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// A real number; a number that is not finite is missing.
+    Number(f64),
+    /// A whole number.
+    Count(u64),
+    /// Words.
+    Text(Cow<'static, str>),
+    /// Index into the phase names of the cycle, which the row does not hold.
+    Phase(u16),
+    /// A set of flags, written as names joined by `|`.
+    Flags(Flags),
+    /// Names out of a fixed list, written joined by `|`.
+    Names(Vec<&'static str>),
+}
+
+impl Cell {
+    /// The cell as a number; NaN for words.
+    #[inline]
+    #[must_use]
+    pub fn number(&self) -> f64 {
+        match self {
+            Cell::Number(x) => *x,
+            Cell::Count(n) => *n as f64,
+            Cell::Phase(n) => f64::from(*n),
+            Cell::Text(_) | Cell::Flags(_) | Cell::Names(_) => f64::NAN,
+        }
+    }
+
+    /// Appends the text of the cell in a CSV file: empty for a missing number or phase.
+    pub fn push(&self, text: &mut String, phases: &[String]) {
+        match self {
+            Cell::Number(x) if !x.is_finite() => {}
+            Cell::Number(x) => push_exact(text, *x),
+            Cell::Count(n) => text.push_str(&n.to_string()),
+            Cell::Text(words) => text.push_str(words),
+            Cell::Phase(index) => {
+                text.push_str(phases.get(usize::from(*index)).map_or("", String::as_str));
+            }
+            Cell::Flags(flags) => push_names(text, flags.names()),
+            Cell::Names(names) => push_names(text, names.iter().copied()),
+        }
+    }
+
+    /// The cell in a JSON object: `null` for a missing number, a list for flags.
+    #[must_use]
+    pub fn json(&self) -> Json {
+        match self {
+            Cell::Number(x) => finite(*x).into(),
+            Cell::Count(n) => (*n).into(),
+            Cell::Text(words) => (&**words).into(),
+            Cell::Phase(_) => Json::Null,
+            Cell::Flags(flags) => flags.names().collect(),
+            Cell::Names(names) => names.iter().copied().collect(),
+        }
+    }
+}
+
+fn push_names(text: &mut String, names: impl Iterator<Item = &'static str>) {
+    for (k, name) in names.enumerate() {
+        if k > 0 {
+            text.push('|');
+        }
+        text.push_str(name);
+    }
+}
+
+/// What the cells of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Real numbers; one that is not finite is missing.
+    Number,
+    /// Whole numbers.
+    Count,
+    /// Words; an empty one is missing.
+    Text,
+}
+
+/// Name, unit, meaning and kind of a column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Head {
+    /// Name, ending in its unit where it has one.
+    pub name: String,
+    /// Unit; empty for words and counts, `-` for plain ratios.
+    pub unit: String,
+    /// Meaning, one phrase.
+    pub doc: String,
+    /// What its cells are.
+    pub kind: Kind,
+}
+
+/// The transmissions whose table has a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// All.
+    Always,
+    /// Those with a belt.
+    Cvt,
+    /// Manual boxes.
+    Manual,
+    /// Those that have this component.
+    Has(Component),
+}
+
+impl Scope {
+    /// True if a transmission with these components has the column.
+    #[must_use]
+    pub fn includes(self, cvt: bool, components: &[Component]) -> bool {
+        match self {
+            Scope::Always => true,
+            Scope::Cvt => cvt,
+            Scope::Manual => !cvt,
+            Scope::Has(component) => components.contains(&component),
+        }
+    }
+}
+
+/// One column of a table of rows `R`.
+pub struct Column<R> {
+    /// Name, ending in its unit where it has one.
+    pub name: Cow<'static, str>,
+    /// Unit; empty for words and counts, `-` for plain ratios.
+    pub unit: &'static str,
+    /// Meaning, one phrase.
+    pub doc: Cow<'static, str>,
+    /// What its cells are.
+    pub kind: Kind,
+    /// The transmissions that have it.
+    pub scope: Scope,
+    get: Arc<dyn Get<R>>,
+}
+
+/// A function from a row to its cell, and from many rows to their numbers in one call.
+trait Get<R>: Send + Sync {
+    fn cell(&self, row: &R) -> Cell;
+    fn numbers(&self, rows: &[R], into: &mut Vec<f64>);
+}
+
+impl<R, F: Fn(&R) -> Cell + Send + Sync> Get<R> for F {
+    fn cell(&self, row: &R) -> Cell {
+        self(row)
+    }
+
+    fn numbers(&self, rows: &[R], into: &mut Vec<f64>) {
+        into.extend(rows.iter().map(|row| self(row).number()));
+    }
+}
+
+impl<R> Column<R> {
+    fn new(
+        name: impl Into<Cow<'static, str>>,
+        unit: &'static str,
+        doc: impl Into<Cow<'static, str>>,
+        kind: Kind,
+        get: impl Fn(&R) -> Cell + Send + Sync + 'static,
+    ) -> Self {
+        Column {
+            name: name.into(),
+            unit,
+            doc: doc.into(),
+            kind,
+            scope: Scope::Always,
+            get: Arc::new(get),
+        }
+    }
+
+    /// A column of real numbers.
+    pub fn number(
+        name: impl Into<Cow<'static, str>>,
+        unit: &'static str,
+        doc: impl Into<Cow<'static, str>>,
+        get: impl Fn(&R) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Self::new(name, unit, doc, Kind::Number, move |row| {
+            Cell::Number(get(row))
+        })
+    }
+
+    /// A column of numbers that a row may not have.
+    pub fn optional(
+        name: impl Into<Cow<'static, str>>,
+        unit: &'static str,
+        doc: impl Into<Cow<'static, str>>,
+        get: impl Fn(&R) -> Option<f64> + Send + Sync + 'static,
+    ) -> Self {
+        Self::number(name, unit, doc, move |row| get(row).unwrap_or(f64::NAN))
+    }
+
+    /// A column of whole numbers.
+    pub fn count(
+        name: impl Into<Cow<'static, str>>,
+        unit: &'static str,
+        doc: impl Into<Cow<'static, str>>,
+        get: impl Fn(&R) -> u64 + Send + Sync + 'static,
+    ) -> Self {
+        Self::new(name, unit, doc, Kind::Count, move |row| {
+            Cell::Count(get(row))
+        })
+    }
+
+    /// A column of words.
+    pub fn text<T: Into<Cow<'static, str>>>(
+        name: impl Into<Cow<'static, str>>,
+        unit: &'static str,
+        doc: impl Into<Cow<'static, str>>,
+        get: impl Fn(&R) -> T + Send + Sync + 'static,
+    ) -> Self {
+        Self::new(name, unit, doc, Kind::Text, move |row| {
+            Cell::Text(get(row).into())
+        })
+    }
+
+    /// A column of other cells that are written as words: phases, flags, names.
+    pub fn words(
+        name: impl Into<Cow<'static, str>>,
+        unit: &'static str,
+        doc: impl Into<Cow<'static, str>>,
+        get: impl Fn(&R) -> Cell + Send + Sync + 'static,
+    ) -> Self {
+        Self::new(name, unit, doc, Kind::Text, get)
+    }
+
+    /// The column with another scope.
+    #[must_use]
+    pub fn only(self, scope: Scope) -> Self {
+        Column { scope, ..self }
+    }
+
+    /// The cell of a row.
+    #[must_use]
+    pub fn cell(&self, row: &R) -> Cell {
+        self.get.cell(row)
+    }
+
+    /// The number of a row; NaN where the cell is none.
+    #[must_use]
+    pub fn number_of(&self, row: &R) -> f64 {
+        self.cell(row).number()
+    }
+
+    /// Appends the numbers of many rows.
+    pub fn numbers(&self, rows: &[R], into: &mut Vec<f64>) {
+        self.get.numbers(rows, into);
+    }
+
+    /// Name, unit, meaning and kind.
+    #[must_use]
+    pub fn head(&self) -> Head {
+        Head {
+            name: self.name.clone().into_owned(),
+            unit: self.unit.to_owned(),
+            doc: self.doc.clone().into_owned(),
+            kind: self.kind,
+        }
+    }
+}
+
+impl<R> std::fmt::Debug for Column<R> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} [{}]", self.name, self.unit)
+    }
+}
+
+impl<R> Clone for Column<R> {
+    fn clone(&self) -> Self {
+        Column {
+            name: self.name.clone(),
+            doc: self.doc.clone(),
+            get: Arc::clone(&self.get),
+            ..*self
+        }
+    }
+}
+
+/// Columns of a table, one a line: `KIND NAME, UNIT, DOC, row => VALUE;`, with `, SCOPE` before the semicolon where not all
+/// transmissions have it. KIND is one of `number`, `optional`, `count`, `text` and `words`, the constructors of
+/// [`Column`](crate::table::Column).
+#[macro_export]
+macro_rules! columns {
+    ($row:ty; $($kind:ident $name:expr, $unit:expr, $doc:expr, $r:pat => $value:expr $(, $scope:expr)?;)*) => {
+        vec![$($crate::table::Column::$kind($name, $unit, $doc, move |$r: &$row| $value)$(.only($scope))?),*]
+    };
+}
+
+/// A CSV file that is written row by row. Numbers read back to the same `f64`.
+pub struct CsvWriter<W: Write> {
+    out: csv::Writer<W>,
+    text: String,
+}
+
+impl<W: Write> CsvWriter<W> {
+    /// Writes the names of the columns.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn new<T: AsRef<[u8]>>(out: W, names: impl IntoIterator<Item = T>) -> io::Result<Self> {
+        let mut out = csv::Writer::from_writer(out);
+        out.write_record(names).map_err(csv_error)?;
+        Ok(CsvWriter {
+            out,
+            text: String::new(),
+        })
+    }
+
+    /// Writes a row, of which each cell appends its text.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn row<T>(
+        &mut self,
+        cells: impl IntoIterator<Item = T>,
+        push: impl Fn(T, &mut String),
+    ) -> io::Result<()> {
+        for cell in cells {
+            self.text.clear();
+            push(cell, &mut self.text);
+            self.out.write_field(&self.text).map_err(csv_error)?;
+        }
+        self.out.write_record(None::<&[u8]>).map_err(csv_error)
+    }
+
+    /// Hands everything on.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn finish(mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// The error of the operating system within one of CSV: it says whether the disk is full.
+fn csv_error(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
+    }
+}
+
+/// Writes names and rows as CSV. `phases` are the names of phases that cells refer to.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_csv<R, C: Borrow<Column<R>>, I: Borrow<R>>(
+    out: impl Write,
+    columns: &[C],
+    rows: impl IntoIterator<Item = I>,
+    phases: &[String],
+) -> io::Result<()> {
+    let names = columns.iter().map(|column| column.borrow().name.as_bytes());
+    let mut csv = CsvWriter::new(out, names)?;
+    for row in rows {
+        csv.row(columns, |column, text| {
+            column.borrow().cell(row.borrow()).push(text, phases);
+        })?;
+    }
+    csv.finish()
+}
+
+/// The rows as CSV in memory; none if there are no rows.
+#[must_use]
+pub fn csv_bytes<R>(columns: &[Column<R>], rows: &[R]) -> Option<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let written = write_csv(&mut bytes, columns, rows, &[]);
+    // Writing into memory cannot fail.
+    debug_assert!(written.is_ok());
+    (!rows.is_empty()).then_some(bytes)
+}
+
+/// Name, unit and meaning of the columns.
+#[must_use]
+pub fn json_columns<R>(columns: &[Column<R>]) -> Json {
+    let head = |c: &Column<R>| json!({ "name": c.name, "unit": c.unit, "meaning": c.doc });
+    columns.iter().map(head).collect()
+}
+
+/// A row as an object by the names of the columns.
+#[must_use]
+pub fn json_row<R>(columns: &[Column<R>], row: &R) -> Json {
+    let cell = |column: &Column<R>| (column.name.clone().into_owned(), column.cell(row).json());
+    Json::Object(columns.iter().map(cell).collect())
+}
+
+/// Rows as objects.
+#[must_use]
+pub fn json_rows<R>(columns: &[Column<R>], rows: &[R]) -> Json {
+    rows.iter().map(|row| json_row(columns, row)).collect()
+}
+
+/// Writes an object: the entries of `head`, then `points`, a row a line.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_json<R, I: Borrow<R>>(
+    out: &mut dyn Write,
+    head: &Map<String, Json>,
+    columns: &[Column<R>],
+    rows: impl IntoIterator<Item = I>,
+) -> io::Result<()> {
+    let head = serde_json::to_string_pretty(head)?;
+    let open = head.trim_end_matches('}').trim_end();
+    write!(out, "{open},\n  \"points\": [")?;
+    for (k, row) in rows.into_iter().enumerate() {
+        let comma = if k > 0 { "," } else { "" };
+        write!(out, "{comma}\n    {}", json_row(columns, row.borrow()))?;
+    }
+    out.write_all(b"\n  ]\n}\n")
+}
