@@ -25,7 +25,7 @@ use cvtcycle::model::transmission::{DriveState, Surroundings, Transmission};
 use cvtcycle::output::{Row, Terms};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::table::Rows;
-use cvtcycle::study::{Sink, Study, Unwatched};
+use cvtcycle::study::{NoProgress, PartWriter, Study};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 
@@ -267,7 +267,7 @@ fn blueprint_build(bencher: Bencher, name: &str) {
 /// Takes the parts of a study and drops them.
 struct Nowhere;
 
-impl Sink for Nowhere {
+impl PartWriter for Nowhere {
     fn write(&self, _: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem> {
         black_box((runs.len(), trace.map(Rows::len)));
         Ok(())
@@ -301,7 +301,7 @@ fn study_runs(bencher: Bencher, (threads, traces): (usize, bool)) {
     bencher.counter(ItemsCount::new(512_usize)).bench_local(|| {
         pool.install(|| {
             study
-                .execute(&BTreeSet::new(), &Nowhere, &Unwatched)
+                .execute(&BTreeSet::new(), &Nowhere, &NoProgress)
                 .map_err(|p| p.message)
         })
     });

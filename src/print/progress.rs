@@ -5,7 +5,6 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use cvtcycle::study::Watcher;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 /// Between two lines where there is no terminal.
@@ -99,7 +98,7 @@ fn style() -> ProgressStyle {
     )
 }
 
-impl Watcher for Progress {
+impl cvtcycle::study::Progress for Progress {
     fn advance(&self, runs: u64) {
         let done = self.done.fetch_add(runs, Ordering::Relaxed) + runs;
         match &self.how {

@@ -4,10 +4,11 @@
 use std::collections::BTreeSet;
 
 use cvtcycle::config::setup::{self, Options};
+use cvtcycle::study::NoProgress;
 use cvtcycle::study::fit::model::Model;
 use cvtcycle::study::fit::outcome::Outcome;
 use cvtcycle::study::fit::plan::{Measured, Plan, load, read};
-use cvtcycle::study::fit::solve::{Residuals, Unwatched};
+use cvtcycle::study::fit::solve::Residuals;
 use cvtcycle::study::fit::{calibrate, embedded_calibrations, fitted};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -37,7 +38,7 @@ fn measure(plan: &mut Plan, truth: &[f64], seed: u64) {
 }
 
 fn solved(plan: &Plan) -> Outcome {
-    calibrate(plan, &Unwatched)
+    calibrate(plan, &NoProgress)
         .unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)))
 }
 

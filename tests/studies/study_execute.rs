@@ -9,7 +9,7 @@ use std::time::Duration;
 use cvtcycle::config::Problem;
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::table::{Rows, Values};
-use cvtcycle::study::{End, Sink, Study, Unwatched, Watcher};
+use cvtcycle::study::{End, NoProgress, PartWriter, Progress, Study};
 
 /// 70 points of two cars through a short cycle: 24 parts, the last one with a point, the others with three.
 fn study(keep: &str) -> Study {
@@ -23,8 +23,8 @@ fn study(keep: &str) -> Study {
 fn execute(
     study: &Study,
     threads: usize,
-    sink: &dyn Sink,
-    watcher: &dyn Watcher,
+    sink: &dyn PartWriter,
+    watcher: &dyn Progress,
 ) -> Result<End, Problem> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
@@ -37,7 +37,7 @@ fn execute(
 #[derive(Default)]
 struct Shelf(Mutex<BTreeMap<u64, (Rows, Option<Rows>)>>);
 
-impl Sink for Shelf {
+impl PartWriter for Shelf {
     fn write(&self, part: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem> {
         let before = self
             .0
@@ -67,7 +67,7 @@ fn parts_are_whole_and_the_same_on_any_number_of_threads() {
         let parts = |threads| {
             let shelf = Shelf::default();
             assert_eq!(
-                execute(&study, threads, &shelf, &Unwatched).unwrap(),
+                execute(&study, threads, &shelf, &NoProgress).unwrap(),
                 End::Complete
             );
             shelf.0.into_inner().unwrap()
@@ -94,7 +94,7 @@ fn parts_are_whole_and_the_same_on_any_number_of_threads() {
 /// Refuses one part.
 struct Full(u64);
 
-impl Sink for Full {
+impl PartWriter for Full {
     fn write(&self, part: u64, _: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
         let problem = || Problem::invalid("no room");
         if part == self.0 {
@@ -112,7 +112,7 @@ fn a_sink_that_fails_ends_the_study_with_its_problem() {
     for part in [0, 11, 23] {
         for threads in [1, 4] {
             assert_eq!(
-                execute(&study, threads, &Full(part), &Unwatched)
+                execute(&study, threads, &Full(part), &NoProgress)
                     .unwrap_err()
                     .message,
                 "no room"
@@ -129,7 +129,7 @@ struct Slow {
     changed: Condvar,
 }
 
-impl Sink for Slow {
+impl PartWriter for Slow {
     fn write(&self, _: u64, _: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
         self.parts.fetch_add(1, Ordering::Relaxed);
         let mut by_drivers = self.by_drivers.lock().unwrap();
@@ -151,7 +151,7 @@ impl Sink for Slow {
 fn who_drives_writes_when_the_writer_is_behind() {
     let slow = Slow::default();
     assert_eq!(
-        execute(&study("\"summary\""), 1, &slow, &Unwatched).unwrap(),
+        execute(&study("\"summary\""), 1, &slow, &NoProgress).unwrap(),
         End::Complete
     );
     assert_eq!(slow.parts.load(Ordering::Relaxed), 23);
@@ -160,7 +160,7 @@ fn who_drives_writes_when_the_writer_is_behind() {
 /// Stops after some runs.
 struct Enough(Mutex<u64>);
 
-impl Watcher for Enough {
+impl Progress for Enough {
     fn advance(&self, runs: u64) {
         *self.0.lock().unwrap() += runs;
     }

@@ -13,7 +13,7 @@ use cvtcycle_output::summary::{RunSummary, SCHEMA, Summary};
 use cvtcycle_study::ambient::{WarmUp, warm_ups};
 use cvtcycle_study::manifest::TRACES;
 use cvtcycle_study::store::{self, is_study, read_trace_parquet};
-use cvtcycle_study::{Answer, Frame, Outline, answer};
+use cvtcycle_study::{Answer, StudyManifest, StudyTable, answer};
 
 /// The file of numbers of a run or a validation.
 const SUMMARY: &str = "summary.json";
@@ -54,7 +54,7 @@ pub struct StudyFound {
     /// The directory.
     pub path: PathBuf,
     /// What it is.
-    pub outline: Outline,
+    pub outline: StudyManifest,
     /// Its manifest.
     pub manifest: Value,
     /// Its parts.
@@ -74,7 +74,7 @@ impl StudyFound {
         let store = store::Study::open(path)?;
         let text = String::from_utf8_lossy(&store.plan()?).into_owned();
         let file = path.join("plan.toml").display().to_string();
-        let outline = Outline::read(store.manifest(), &file, &text).map_err(|words| {
+        let outline = StudyManifest::read(store.manifest(), &file, &text).map_err(|words| {
             problem(
                 &path.join(STUDY),
                 &format!("cannot read the study: {words}"),
@@ -88,8 +88,8 @@ impl StudyFound {
     ///
     /// # Errors
     /// A part that cannot be read.
-    pub fn of(outline: Outline, store: store::Study) -> Result<Self, Problem> {
-        let frame = Frame::new(&outline, &store)?;
+    pub fn of(outline: StudyManifest, store: store::Study) -> Result<Self, Problem> {
+        let frame = StudyTable::new(&outline, &store)?;
         let answer = answer(&frame)?;
         let traced = store.layout().tables.iter().any(|table| table == TRACES);
         let warm_ups = match &answer.matrix {
@@ -111,8 +111,8 @@ impl StudyFound {
     ///
     /// # Errors
     /// A part that cannot be read.
-    pub fn frame(&self) -> Result<Frame<'_>, Problem> {
-        Frame::new(&self.outline, &self.store)
+    pub fn frame(&self) -> Result<StudyTable<'_>, Problem> {
+        StudyTable::new(&self.outline, &self.store)
     }
 
     /// Parts that are there, and that there will be.

@@ -12,7 +12,7 @@ use cvtcycle_study::ambient::{Matrix, WarmUp};
 use cvtcycle_study::answer::{OutputAnswer, described_numbers};
 use cvtcycle_study::outputs::{EXCESS, FUEL};
 use cvtcycle_study::statistics::Groups;
-use cvtcycle_study::{Answer, Frame, Outline};
+use cvtcycle_study::{Answer, StudyManifest, StudyTable};
 
 /// Every picture that the answer has something for, each under a name that can be a file's: of a matrix of ambient temperatures fuel,
 /// excess and, where traces were kept, warm-up; else of the outputs that the plan names, or of fuel and excess.
@@ -21,7 +21,7 @@ use cvtcycle_study::{Answer, Frame, Outline};
 /// A part of the study that cannot be read.
 pub fn study_pictures(
     answer: &Answer,
-    frame: &Frame,
+    frame: &StudyTable,
     warm_ups: &[WarmUp],
 ) -> Result<Vec<(String, Picture)>, Problem> {
     match &answer.matrix {
@@ -59,7 +59,7 @@ fn of_matrix(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, 
     list
 }
 
-fn of_outputs(answer: &Answer, frame: &Frame) -> Result<Vec<(String, Picture)>, Problem> {
+fn of_outputs(answer: &Answer, frame: &StudyTable) -> Result<Vec<(String, Picture)>, Problem> {
     let outline = frame.outline;
     let mut list = Vec::new();
     let pictured: Vec<&OutputAnswer> = answer
@@ -92,12 +92,12 @@ fn of_outputs(answer: &Answer, frame: &Frame) -> Result<Vec<(String, Picture)>, 
     Ok(list)
 }
 
-fn is_pictured(output: &str, outline: &Outline) -> bool {
+fn is_pictured(output: &str, outline: &StudyManifest) -> bool {
     !outline.plan.analyse.is_empty() || [FUEL, EXCESS].contains(&output)
 }
 
 /// Name of an output as people say it.
-fn named(output: &OutputAnswer, outline: &Outline) -> String {
+fn named(output: &OutputAnswer, outline: &StudyManifest) -> String {
     let subject = outline.cars.first().map_or("", String::as_str);
     let words = output
         .output
@@ -111,7 +111,7 @@ fn named(output: &OutputAnswer, outline: &Outline) -> String {
     }
 }
 
-fn distribution(frame: &Frame, outputs: &[&&OutputAnswer]) -> Result<Picture, Problem> {
+fn distribution(frame: &StudyTable, outputs: &[&&OutputAnswer]) -> Result<Picture, Problem> {
     let outline = frame.outline;
     let mut values = Vec::new();
     for output in outputs {
@@ -174,7 +174,7 @@ fn tail(output: &str) -> String {
     })
 }
 
-fn of_output(output: &OutputAnswer, outline: &Outline) -> Vec<(&'static str, Picture)> {
+fn of_output(output: &OutputAnswer, outline: &StudyManifest) -> Vec<(&'static str, Picture)> {
     let name = named(output, outline);
     let shown = Shown {
         output: &name,
@@ -238,7 +238,7 @@ fn of_output(output: &OutputAnswer, outline: &Outline) -> Vec<(&'static str, Pic
 }
 
 /// A factor's levels: at their numbers, or side by side where they are words.
-fn effect<'a>(name: &'a str, groups: &'a Groups, outline: &'a Outline) -> EffectFactor<'a> {
+fn effect<'a>(name: &'a str, groups: &'a Groups, outline: &'a StudyManifest) -> EffectFactor<'a> {
     let unit = outline
         .plan
         .factors

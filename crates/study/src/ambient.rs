@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::frame::Frame;
 use super::outputs::{EXCESS, FUEL, phase_excess, phase_fuel};
 use super::plan::{Design, FactorValue, FactorValues};
+use super::study_table::StudyTable;
 use cvtcycle_config::Problem;
 
 /// The matrix. Numbers stand by car, start and ambient; NaN where a run has none.
@@ -60,7 +60,7 @@ pub struct WarmUp {
 }
 
 /// The axes of a study that is such a matrix: ambient temperatures and starts, in this order.
-fn axes(frame: &Frame) -> Option<(Vec<f64>, Vec<String>)> {
+fn axes(frame: &StudyTable) -> Option<(Vec<f64>, Vec<String>)> {
     let plan = &frame.outline.plan;
     let [ambient, start] = &plan.factors[..] else {
         return None;
@@ -90,7 +90,7 @@ fn axes(frame: &Frame) -> Option<(Vec<f64>, Vec<String>)> {
 ///
 /// # Errors
 /// A part that cannot be read.
-pub fn matrix(frame: &Frame) -> Result<Option<Matrix>, Problem> {
+pub fn matrix(frame: &StudyTable) -> Result<Option<Matrix>, Problem> {
     let Some((ambient_degc, starts)) = axes(frame) else {
         return Ok(None);
     };
@@ -150,7 +150,7 @@ pub fn matrix(frame: &Frame) -> Result<Option<Matrix>, Problem> {
 ///
 /// # Errors
 /// A part that cannot be read.
-pub fn warm_ups(frame: &Frame, matrix: &Matrix) -> Result<Vec<WarmUp>, Problem> {
+pub fn warm_ups(frame: &StudyTable, matrix: &Matrix) -> Result<Vec<WarmUp>, Problem> {
     let mut list: Vec<WarmUp> = Vec::new();
     let columns = ["time_s", "transmission_sump_degc", "engine_oil_degc"];
     frame.each_trace(&columns, |points, cars, values| {

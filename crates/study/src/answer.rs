@@ -7,13 +7,13 @@ use serde::Serialize;
 
 use super::ambient::{Matrix, matrix};
 use super::design::{Role, saltelli_role};
-use super::frame::{Frame, Status};
 use super::outputs::EXCESS;
 use super::plan::{Design, FactorValue};
 use super::statistics::{
     Blocks, Bootstrap, Groups, RankSensitivity, Share, SobolIndices, Summary, Tornado,
     TornadoInput, group_means, rank_sensitivity, sobol_convergence, tornado,
 };
+use super::study_table::{Status, StudyTable};
 use cvtcycle_config::Problem;
 
 /// What a study says.
@@ -108,7 +108,7 @@ pub struct Ranked {
 ///
 /// # Errors
 /// A part that cannot be read.
-pub fn answer(frame: &Frame) -> Result<Answer, Problem> {
+pub fn answer(frame: &StudyTable) -> Result<Answer, Problem> {
     let outline = frame.outline;
     let rows = described(frame);
     let mut comparisons = Vec::new();
@@ -151,12 +151,12 @@ pub fn answer(frame: &Frame) -> Result<Answer, Problem> {
     })
 }
 
-fn is_saltelli(frame: &Frame) -> bool {
+fn is_saltelli(frame: &StudyTable) -> bool {
     matches!(frame.outline.plan.design, Design::Saltelli { .. })
 }
 
 /// Points that are independent draws: all, but of a Saltelli design A and B; nothing else says something of the output's distribution.
-fn described(frame: &Frame) -> Vec<bool> {
+fn described(frame: &StudyTable) -> Vec<bool> {
     let factors = frame.outline.plan.factors.len();
     let mixed = is_saltelli(frame);
     (0..frame.outline.points)
@@ -168,7 +168,11 @@ fn described(frame: &Frame) -> Vec<bool> {
 ///
 /// # Errors
 /// A part that cannot be read.
-pub fn described_numbers(frame: &Frame, output: &str, car: usize) -> Result<Vec<f64>, Problem> {
+pub fn described_numbers(
+    frame: &StudyTable,
+    output: &str,
+    car: usize,
+) -> Result<Vec<f64>, Problem> {
     Ok(pick(&frame.numbers(output, car)?, &described(frame)))
 }
 
@@ -182,7 +186,7 @@ fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
         .collect()
 }
 
-fn ended(frame: &Frame) -> Result<Ended, Problem> {
+fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
     for car in 0..frame.outline.cars.len() {
         if !frame
@@ -222,7 +226,7 @@ const MOST_RANKED: usize = 1 << 16;
 
 /// The values of a factor at the first points, as the design has them. They need no table: a design is a function of the point.
 fn values(
-    frame: &Frame,
+    frame: &StudyTable,
     factor: usize,
     points: usize,
 ) -> impl Iterator<Item = Option<FactorValue>> {
@@ -233,7 +237,7 @@ fn values(
 }
 
 /// Numbers of a factor.
-fn numbers(frame: &Frame, factor: usize, points: usize) -> Vec<f64> {
+fn numbers(frame: &StudyTable, factor: usize, points: usize) -> Vec<f64> {
     let number = |value: Option<FactorValue>| match value {
         Some(FactorValue::Number(x)) => x,
         _ => f64::NAN,
@@ -242,7 +246,7 @@ fn numbers(frame: &Frame, factor: usize, points: usize) -> Vec<f64> {
 }
 
 /// Words of a factor, or its numbers as words; every word is held once.
-fn words(frame: &Frame, factor: usize, points: usize) -> Vec<Arc<str>> {
+fn words(frame: &StudyTable, factor: usize, points: usize) -> Vec<Arc<str>> {
     let mut known: Vec<(FactorValue, Arc<str>)> = Vec::new();
     let empty: Arc<str> = "".into();
     let mut word = |value: Option<FactorValue>| {
@@ -260,7 +264,7 @@ fn words(frame: &Frame, factor: usize, points: usize) -> Vec<Arc<str>> {
 }
 
 fn output(
-    frame: &Frame,
+    frame: &StudyTable,
     rows: &[bool],
     (name, unit): (&str, &str),
     car: usize,
@@ -331,7 +335,7 @@ fn sobol(numbers: &[f64], factors: usize) -> Vec<SobolIndices> {
 }
 
 /// Point 0 is the base; the others follow factor by factor.
-fn of_tornado(frame: &Frame, numbers: &[f64]) -> Tornado {
+fn of_tornado(frame: &StudyTable, numbers: &[f64]) -> Tornado {
     let plan = &frame.outline.plan;
     let mut inputs: Vec<TornadoInput> = plan
         .factors

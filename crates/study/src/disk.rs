@@ -1,28 +1,28 @@
 //! A study and its directory: parts go there, columns come from there.
 
-use super::execute::Sink;
-use super::frame::TableSource;
+use super::execute::PartWriter;
 use super::manifest::{RUNS, TRACES};
 use super::prepare::Study;
 use super::store::{self, PartTable, StudyDir};
+use super::study_table::TableSource;
 use super::table::{Rows, Values};
 use cvtcycle_config::Problem;
 
 /// Writes the parts of a study into its directory.
-pub struct DirSink<'a> {
+pub struct DirWriter<'a> {
     study: &'a Study,
     dir: &'a StudyDir,
 }
 
-impl<'a> DirSink<'a> {
+impl<'a> DirWriter<'a> {
     /// For a study in its directory.
     #[must_use]
     pub fn new(study: &'a Study, dir: &'a StudyDir) -> Self {
-        DirSink { study, dir }
+        DirWriter { study, dir }
     }
 }
 
-impl Sink for DirSink<'_> {
+impl PartWriter for DirWriter<'_> {
     fn write(&self, part: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem> {
         let index = usize::try_from(part).unwrap_or(usize::MAX);
         let trace = trace.map(|rows| PartTable {

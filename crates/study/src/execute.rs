@@ -11,6 +11,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::point::{Filler, Worker};
 use super::prepare::Study;
+use super::progress::Progress;
 use super::table::Rows;
 use super::traces::Traces;
 use cvtcycle_config::Problem;
@@ -26,7 +27,7 @@ const PARTS: u64 = 32;
 const MOST_TRACE_ROWS: u64 = 50_000;
 
 /// Where whole parts go: in no certain order, and several at once.
-pub trait Sink: Sync {
+pub trait PartWriter: Sync {
     /// Takes a part, whole or not at all.
     ///
     /// # Errors
@@ -34,32 +35,12 @@ pub trait Sink: Sync {
     fn write(&self, part: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem>;
 }
 
-/// Looks on, and may stop the study.
-pub trait Watcher: Sync {
-    /// So many runs more are done.
-    fn advance(&self, runs: u64);
-    /// Whether the study is to stop now.
-    fn stopped(&self) -> bool;
-}
-
-/// Nobody looks on.
-#[derive(Clone, Copy, Debug)]
-pub struct Unwatched;
-
-impl Watcher for Unwatched {
-    fn advance(&self, _: u64) {}
-
-    fn stopped(&self) -> bool {
-        false
-    }
-}
-
 /// How an execution ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// All parts are there.
     Complete,
-    /// Stopped by the watcher; finished parts are kept.
+    /// Stopped by the progress; finished parts are kept.
     Stopped,
 }
 
@@ -110,8 +91,8 @@ impl Study {
     pub fn execute(
         &self,
         done: &BTreeSet<u64>,
-        sink: &dyn Sink,
-        watcher: &dyn Watcher,
+        sink: &dyn PartWriter,
+        progress: &dyn Progress,
     ) -> Result<End, Problem> {
         let left = (0..self.parts()).filter(|part| !done.contains(part));
         let papers = Papers {
@@ -136,7 +117,7 @@ impl Study {
                     .into_iter()
                     .try_for_each(|part| part.write(sink, desk))
             });
-            let ends = rayon::broadcast(|_| self.work(desk, &Out { sink, send: &send }, watcher));
+            let ends = rayon::broadcast(|_| self.work(desk, &Out { sink, send: &send }, progress));
             drop(send);
             let written = writer
                 .join()
@@ -153,11 +134,11 @@ impl Study {
     }
 
     /// What one thread does until nothing is left.
-    fn work(&self, desk: &Desk, out: &Out, watcher: &dyn Watcher) -> Result<End, Problem> {
+    fn work(&self, desk: &Desk, out: &Out, progress: &dyn Progress) -> Result<End, Problem> {
         let mut worker = Worker::default();
         while let Some((part, points)) = desk.take() {
             let from = points.start;
-            let Some(piece) = self.piece(points, desk.trace_rows, &mut worker, watcher) else {
+            let Some(piece) = self.piece(points, desk.trace_rows, &mut worker, progress) else {
                 desk.clear();
                 return Ok(End::Stopped);
             };
@@ -173,13 +154,13 @@ impl Study {
         Ok(End::Complete)
     }
 
-    /// Drives some points; nothing if the watcher has stopped it.
+    /// Drives some points; nothing if the progress has stopped it.
     fn piece(
         &self,
         points: Range<u64>,
         trace_rows: u64,
         worker: &mut Worker,
-        watcher: &dyn Watcher,
+        progress: &dyn Progress,
     ) -> Option<Piece> {
         let count = points.end - points.start;
         let rows_of =
@@ -188,7 +169,7 @@ impl Study {
         let mut runs = Rows::with_capacity(&self.columns, rows_of(self.cars.len() as u64));
         let mut traces = Traces::new(self, || rows_of(trace_rows));
         for point in points {
-            if watcher.stopped() {
+            if progress.stopped() {
                 return None;
             }
             filler.push(
@@ -196,7 +177,7 @@ impl Study {
                 &self.point(point, worker, traces.as_mut()),
                 &mut runs,
             );
-            watcher.advance(self.cars.len() as u64);
+            progress.advance(self.cars.len() as u64);
         }
         Some(Piece {
             points: count,
@@ -238,7 +219,7 @@ struct Part {
 }
 
 impl Part {
-    fn write(self, sink: &dyn Sink, desk: &Desk) -> Result<(), Problem> {
+    fn write(self, sink: &dyn PartWriter, desk: &Desk) -> Result<(), Problem> {
         sink.write(self.part, &self.runs, self.traces.as_ref())?;
         if let Some(mut rows) = self.traces {
             rows.clear();
@@ -250,7 +231,7 @@ impl Part {
 
 /// The way of a part to the sink.
 struct Out<'a> {
-    sink: &'a dyn Sink,
+    sink: &'a dyn PartWriter,
     send: &'a SyncSender<Part>,
 }
 

@@ -1,10 +1,10 @@
-//! What a study is, as `study.json` keeps it: the same study gives the same bytes, so that one that is resumed can be told from another.
+//! The manifest of a study, `study.json`: the same study gives the same bytes, by which a resumed study is recognised.
 
 use cvtcycle_output::hash::hash;
-use serde::Serialize;
+use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::plan::{Acts, Cars, Design, Factor, FactorValue, FactorValues};
+use super::plan::{Design, Factor, FactorValue, FactorValues, Plan};
 use super::prepare::Study;
 use super::store::Layout;
 use super::table::Head;
@@ -29,7 +29,7 @@ impl Study {
             "question": plan.question,
             "plan_sha256": hash(plan.text.as_bytes()),
             "layout": Layout { parts: usize::try_from(self.parts()).unwrap_or(usize::MAX), tables: self.tables(), csv },
-            "design": design(&plan.design),
+            "design": plan.design,
             "points": self.points,
             "runs": self.runs(),
             "points_per_part": self.points_per_part(),
@@ -110,38 +110,13 @@ fn columns(columns: &[Head]) -> Vec<Value> {
         .collect()
 }
 
-fn design(design: &Design) -> Value {
-    match *design {
-        Design::Grid => json!({"kind": "grid"}),
-        Design::OneAtATime { quantile } => json!({"kind": "one_at_a_time", "quantile": quantile}),
-        Design::LatinHypercube { samples, seed } => sampled("latin_hypercube", samples, seed),
-        Design::Sobol { samples, seed } => sampled("sobol", samples, seed),
-        Design::MonteCarlo { samples, seed } => sampled("monte_carlo", samples, seed),
-        Design::Saltelli { samples, seed } => sampled("saltelli", samples, seed),
-    }
-}
-
-fn sampled(kind: &str, samples: u64, seed: u64) -> Value {
-    json!({"kind": kind, "samples": samples, "seed": seed})
-}
-
 fn factor(factor: &Factor) -> Value {
-    let cars = match factor.cars {
-        Cars::Subject => "subject",
-        Cars::Baselines => "baselines",
-        Cars::All => "all",
-    };
-    let acts = match factor.acts {
-        Acts::Value => "value",
-        Acts::Scale => "scale",
-        Acts::Offset => "offset",
-    };
     let values = match &factor.values {
         FactorValues::List(list) => list.iter().map(entry).collect(),
         FactorValues::Distribution(distribution) => json!(format!("{distribution:?}")),
     };
     json!({
-        "key": factor.key, "name": factor.name, "unit": factor.unit, "cars": cars, "acts": acts, "values": values,
+        "key": factor.key, "name": factor.name, "unit": factor.unit, "cars": factor.cars, "acts": factor.acts, "values": values,
         "status": factor.status, "source": factor.source,
     })
 }
@@ -153,10 +128,127 @@ fn entry(value: &FactorValue) -> Value {
     }
 }
 
-/// A value as indented JSON with a line end.
-///
-/// # Errors
-/// For maps whose keys are no text; the studies have none.
-pub fn json_text(value: &impl Serialize) -> serde_json::Result<String> {
-    serde_json::to_string_pretty(value).map(|text| text + "\n")
+/// The part of a study that its tables are read with: from a study, or from its directory when its cars may be gone.
+#[derive(Clone, Debug)]
+pub struct StudyManifest {
+    /// Name for people.
+    pub title: String,
+    /// The question; may be empty.
+    pub question: String,
+    /// Names of the cars, the subject first.
+    pub cars: Vec<String>,
+    /// Phase groups.
+    pub phases: Vec<String>,
+    /// Names and units of the numbers that are analysed.
+    pub analysed: Vec<(String, String)>,
+    /// Names and units of the columns of the table of runs.
+    pub columns: Vec<(String, String)>,
+    /// Number of points.
+    pub points: u64,
+    /// Points of a part.
+    pub points_per_part: u64,
+    /// Factors and design.
+    pub plan: Plan,
+}
+
+/// The entries of `study.json` that are read.
+#[derive(Deserialize)]
+struct Stored {
+    schema: u32,
+    title: String,
+    question: String,
+    design: Design,
+    points: u64,
+    points_per_part: u64,
+    analyse: Vec<String>,
+    phases: Vec<String>,
+    columns: Vec<StoredColumn>,
+    cars: Vec<StoredCar>,
+}
+
+#[derive(Deserialize)]
+struct StoredColumn {
+    name: String,
+    unit: String,
+}
+
+#[derive(Deserialize)]
+struct StoredCar {
+    name: String,
+}
+
+impl StudyManifest {
+    /// The manifest of a study that is ready to run.
+    #[must_use]
+    pub fn of(study: &Study) -> Self {
+        let columns: Vec<_> = study
+            .columns
+            .iter()
+            .map(|c| (c.name.clone(), c.unit.clone()))
+            .collect();
+        StudyManifest {
+            title: study.plan.title.clone(),
+            question: study.plan.question.clone(),
+            cars: study.cars.iter().map(|car| car.name.to_string()).collect(),
+            phases: study.phases.clone(),
+            analysed: analysed(&study.analysed(), &columns),
+            columns,
+            points: study.points,
+            points_per_part: study.points_per_part(),
+            plan: study.plan.clone(),
+        }
+    }
+
+    /// Reads the manifest of a study's directory; `plan` is the text of its plan and `file` the name that problems cite.
+    ///
+    /// # Errors
+    /// The first mistake in the manifest, in words.
+    pub fn read(manifest: &Value, file: &str, plan: &str) -> Result<Self, String> {
+        let stored = Stored::deserialize(manifest).map_err(|error| error.to_string())?;
+        if stored.schema != SCHEMA {
+            let found = stored.schema;
+            return Err(format!(
+                "it has schema {found}; this program reads schema {SCHEMA}"
+            ));
+        }
+        let mut plan = Plan::read(file, plan).map_err(|problems| {
+            let messages: Vec<String> = problems.into_iter().map(|p| p.message).collect();
+            messages.join("; ")
+        })?;
+        plan.design = stored.design;
+        // The tables are as large as the plan says: a damaged number here would ask for any amount of memory.
+        let (points, points_per_part) = (stored.points, stored.points_per_part);
+        if plan.design.points(&plan.factors) != Some(points)
+            || !(1..=points.max(1)).contains(&points_per_part)
+        {
+            return Err("its number of points is not that of its plan".to_owned());
+        }
+        let columns: Vec<_> = stored
+            .columns
+            .into_iter()
+            .map(|c| (c.name, c.unit))
+            .collect();
+        Ok(StudyManifest {
+            title: stored.title,
+            question: stored.question,
+            cars: stored.cars.into_iter().map(|car| car.name).collect(),
+            phases: stored.phases,
+            analysed: analysed(&stored.analyse, &columns),
+            columns,
+            points,
+            points_per_part,
+            plan,
+        })
+    }
+
+    /// Number of parts.
+    #[must_use]
+    pub fn parts(&self) -> u64 {
+        self.points.div_ceil(self.points_per_part)
+    }
+}
+
+fn analysed(names: &[String], columns: &[(String, String)]) -> Vec<(String, String)> {
+    let known = |name: &String| columns.iter().find(|(column, _)| column == name).cloned();
+    names.iter().filter_map(known).collect()
 }

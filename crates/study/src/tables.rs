@@ -4,7 +4,7 @@ use cvtcycle_output::columns;
 use cvtcycle_output::table::{Column, csv_bytes};
 
 use crate::answer::{Answer, OutputAnswer, Ranked};
-use crate::outline::Outline;
+use crate::manifest::StudyManifest;
 use crate::statistics::{
     Estimate, FactorIndices, Group, QUANTILES, RankFactor, SobolIndices, Tornado, TornadoBar,
     TornadoEnd,
@@ -12,7 +12,7 @@ use crate::statistics::{
 
 /// Name and contents of every table that has rows. Numbers read back to the same `f64`; a missing one is an empty cell.
 #[must_use]
-pub fn tables(answer: &Answer, outline: &Outline) -> Vec<(String, Vec<u8>)> {
+pub fn tables(answer: &Answer, outline: &StudyManifest) -> Vec<(String, Vec<u8>)> {
     let outputs: Vec<&OutputAnswer> = answer.outputs.iter().collect();
     let files = [
         ("statistics.csv", csv_bytes(&statistics(), &outputs)),
@@ -85,7 +85,7 @@ type SobolRow<'a> = (
     &'a FactorIndices,
 );
 
-fn sobol_rows<'a>(answer: &'a Answer, outline: &'a Outline) -> Vec<SobolRow<'a>> {
+fn sobol_rows<'a>(answer: &'a Answer, outline: &'a StudyManifest) -> Vec<SobolRow<'a>> {
     let mut rows = Vec::new();
     for output in &answer.outputs {
         for indices in &output.sobol {

@@ -6,7 +6,6 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use cvtcycle::study::fit::solve::Watcher;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::print::progress::stop_asked;
@@ -60,12 +59,12 @@ impl Progress {
     }
 }
 
-impl Watcher for Progress {
-    fn evaluated(&self) {
-        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+impl cvtcycle::study::Progress for Progress {
+    fn advance(&self, count: u64) {
+        let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
         match &self.how {
             How::Nothing => {}
-            How::Spinner(spinner) => spinner.inc(1),
+            How::Spinner(spinner) => spinner.inc(count),
             How::Lines(last) => {
                 // Whoever comes while another prints has nothing to add.
                 let Ok(mut last) = last.try_lock() else {
@@ -84,7 +83,7 @@ impl Watcher for Progress {
         }
     }
 
-    fn stop(&self) -> bool {
+    fn stopped(&self) -> bool {
         stop_asked()
     }
 }

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::report::found::StudyFound;
-use cvtcycle::study::disk::DirSink;
+use cvtcycle::study::disk::DirWriter;
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::StudyDir;
-use cvtcycle::study::{End, Outline, Study};
+use cvtcycle::study::{End, Study, StudyManifest};
 
 use super::results;
 use super::text;
@@ -138,13 +138,13 @@ fn execute(study: &Study, dir: &StudyDir, common: &Common) -> Result<End, Proble
         .map(|points| points.end - points.start)
         .sum();
     let progress = Progress::new(left * study.cars.len() as u64, common.quiet);
-    let end = pool.install(|| study.execute(&done, &DirSink::new(study, dir), &progress));
+    let end = pool.install(|| study.execute(&done, &DirWriter::new(study, dir), &progress));
     progress.finish();
     end.map_err(Problems::from)
 }
 
 fn finish(study: &Study, dir: &StudyDir, common: &Common, context: Context) -> Reply {
-    let outline = Outline::of(study);
+    let outline = StudyManifest::of(study);
     let found = dir.study()?;
     let study = StudyFound::of(outline, found)?;
     let mut reply = reply(&study, common.json, common.quiet, context)?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use cvtcycle::report::found::StudyFound;
 use cvtcycle::study::answer::{Comparison, OutputAnswer};
-use cvtcycle::study::{Answer, Outline};
+use cvtcycle::study::{Answer, StudyManifest};
 
 use super::matrix;
 use crate::print::colour::Paint;
@@ -72,7 +72,7 @@ fn head(study: &StudyFound, paint: Paint) -> String {
     text
 }
 
-fn design(outline: &Outline) -> String {
+fn design(outline: &StudyManifest) -> String {
     use cvtcycle::study::plan::Design;
     let factors = match outline.plan.factors.len() {
         1 => "1 factor".to_owned(),
@@ -128,7 +128,7 @@ fn compared(of: &Comparison, answer: &Answer, drawn: bool) -> String {
 }
 
 /// Which factors decide the excess over a baseline.
-fn decided(of: &Comparison, answer: &Answer, outline: &Outline) -> Option<String> {
+fn decided(of: &Comparison, answer: &Answer, outline: &StudyManifest) -> Option<String> {
     let output = answer
         .outputs
         .iter()
@@ -152,7 +152,7 @@ fn decided(of: &Comparison, answer: &Answer, outline: &Outline) -> Option<String
 }
 
 /// Factors with the measure of the design, the strongest first.
-fn ranked(output: &OutputAnswer, outline: &Outline) -> Option<Vec<(String, f64)>> {
+fn ranked(output: &OutputAnswer, outline: &StudyManifest) -> Option<Vec<(String, f64)>> {
     let mut list: Vec<(String, f64)> = if let Some(indices) = output.sobol.last() {
         outline
             .plan
@@ -216,7 +216,7 @@ fn outputs(answer: &Answer) -> String {
 }
 
 /// The factors behind the analysed outputs: of the first output of the subject, and of the excess.
-fn factors(answer: &Answer, outline: &Outline, paint: Paint) -> String {
+fn factors(answer: &Answer, outline: &StudyManifest, paint: Paint) -> String {
     let mut text = String::new();
     let shown = |o: &&OutputAnswer| {
         o.output == cvtcycle::study::outputs::EXCESS
@@ -240,7 +240,7 @@ fn factors(answer: &Answer, outline: &Outline, paint: Paint) -> String {
     text
 }
 
-fn table(output: &OutputAnswer, outline: &Outline) -> String {
+fn table(output: &OutputAnswer, outline: &StudyManifest) -> String {
     if let Some(indices) = output.sobol.last() {
         return sobol(output, outline, indices);
     }
@@ -305,7 +305,7 @@ fn table(output: &OutputAnswer, outline: &Outline) -> String {
 
 fn sobol(
     output: &OutputAnswer,
-    outline: &Outline,
+    outline: &StudyManifest,
     indices: &cvtcycle::study::statistics::SobolIndices,
 ) -> String {
     let Some(ranked) = ranked(output, outline) else {

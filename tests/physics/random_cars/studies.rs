@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use cvtcycle::config::{Problem, Problems, render};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::table::{Rows, Values};
-use cvtcycle::study::{End, Sink, Study, Unwatched};
+use cvtcycle::study::{End, NoProgress, PartWriter, Study};
 use proptest::prelude::*;
 
 use super::hold;
@@ -103,7 +103,7 @@ fn plan(factors: &[Factor]) -> String {
 #[derive(Default)]
 struct Shelf(Mutex<BTreeMap<u64, Rows>>);
 
-impl Sink for Shelf {
+impl PartWriter for Shelf {
     fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
         self.0.lock().unwrap().insert(part, runs.clone());
         Ok(())
@@ -133,7 +133,9 @@ fn rows(factors: &[Factor]) -> BTreeMap<String, u64> {
     let study = Study::prepare(plan).map_err(told).unwrap();
     let shelf = Shelf::default();
     assert_eq!(
-        study.execute(&BTreeSet::new(), &shelf, &Unwatched).unwrap(),
+        study
+            .execute(&BTreeSet::new(), &shelf, &NoProgress)
+            .unwrap(),
         End::Complete
     );
     let mut found = BTreeMap::new();

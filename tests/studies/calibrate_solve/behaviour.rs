@@ -3,8 +3,9 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cvtcycle::study::fit::solve::{
-    End, Fit, Options, Residuals, Unwatched, Watcher, fit, leave_out, uncertainty, words,
+    End, Fit, Options, Residuals, fit, leave_out, uncertainty, words,
 };
+use cvtcycle::study::{NoProgress, Progress};
 
 use super::{Model, ONCE, curve, fitted, near, parameter};
 
@@ -71,7 +72,7 @@ fn starts_that_fail_say_why_and_the_others_go_on() {
     ];
     let options = Options { starts: 12, ..ONCE };
     let found =
-        fit(&rooted([3.0, 1.0], 2.0), &parameters, &options, &Unwatched).expect("some start");
+        fit(&rooted([3.0, 1.0], 2.0), &parameters, &options, &NoProgress).expect("some start");
     let first = &found.starts[0];
     assert_eq!(
         (first.end, first.failure.as_deref(), first.evaluations),
@@ -92,7 +93,7 @@ fn starts_that_fail_say_why_and_the_others_go_on() {
         &rooted([3.0, 1.0], -1.0),
         &parameters,
         &Options { starts: 3, ..ONCE },
-        &Unwatched,
+        &NoProgress,
     )
     .expect_err("fails everywhere");
     assert_eq!((refused.reasons.len(), refused.starts.len()), (3, 3));
@@ -108,7 +109,7 @@ fn answers_that_are_no_numbers_and_parameters_that_are_none() {
     let infinite = Model(2, |_: &[f64]| Ok(vec![1.0, f64::INFINITY]));
     let good = [parameter("a", 1.0, [0.0, 2.0])];
     let why = |model: &dyn Residuals| {
-        fit(model, &good, &ONCE, &Unwatched)
+        fit(model, &good, &ONCE, &NoProgress)
             .expect_err("no answer")
             .to_string()
     };
@@ -123,14 +124,14 @@ fn answers_that_are_no_numbers_and_parameters_that_are_none() {
     ];
     bad[1].prior = Some(cvtcycle::study::fit::solve::Prior { mean: 1.0, sd: 0.0 });
     assert_eq!(
-        fit(&short, &bad, &ONCE, &Unwatched)
+        fit(&short, &bad, &ONCE, &NoProgress)
             .expect_err("bad")
             .reasons
             .len(),
         4
     );
     assert_eq!(
-        fit(&Model(0, |_: &[f64]| Ok(vec![])), &[], &ONCE, &Unwatched)
+        fit(&Model(0, |_: &[f64]| Ok(vec![])), &[], &ONCE, &NoProgress)
             .expect_err("nothing")
             .reasons
             .len(),
@@ -155,7 +156,7 @@ fn wave_fit(options: &Options) -> Fit {
             parameter("pulse", 4.5, [0.5, 6.0]),
         ],
         options,
-        &Unwatched,
+        &NoProgress,
     )
     .expect("a fit")
 }
@@ -191,12 +192,12 @@ fn the_same_on_any_number_of_threads() {
 
 struct Patience(AtomicUsize, usize);
 
-impl Watcher for Patience {
-    fn evaluated(&self) {
-        self.0.fetch_add(1, Ordering::Relaxed);
+impl Progress for Patience {
+    fn advance(&self, count: u64) {
+        self.0.fetch_add(count as usize, Ordering::Relaxed);
     }
 
-    fn stop(&self) -> bool {
+    fn stopped(&self) -> bool {
         self.0.load(Ordering::Relaxed) >= self.1
     }
 }
@@ -249,7 +250,7 @@ fn who_stops_keeps_the_best_so_far_and_limits_hold() {
             most_evaluations: 12,
             ..ONCE
         },
-        &Unwatched,
+        &NoProgress,
     )
     .expect("the best so far");
     assert_eq!(few.end, End::OutOfEvaluations);
@@ -292,7 +293,7 @@ fn groups_left_out_are_predicted_as_by_a_fit_by_hand() {
     let model = curve(X.to_vec(), y.clone(), 0.02, f);
     let groups = [4, 4, 1, 1, 1, 7, 7, 7, 7];
     let solution = fitted(&model, &parameters);
-    let folds = leave_out(&model, &parameters, &groups, &solution, &ONCE, &Unwatched);
+    let folds = leave_out(&model, &parameters, &groups, &solution, &ONCE, &NoProgress);
     assert_eq!(
         folds.iter().map(|fold| fold.group).collect::<Vec<_>>(),
         [1, 4, 7]
@@ -331,6 +332,6 @@ fn groups_left_out_are_predicted_as_by_a_fit_by_hand() {
             fold.residuals
         );
     }
-    let only = leave_out(&model, &parameters, &[3; 9], &solution, &ONCE, &Unwatched);
+    let only = leave_out(&model, &parameters, &[3; 9], &solution, &ONCE, &NoProgress);
     assert!(only.len() == 1 && only[0].residuals.is_empty() && only[0].failure.is_some());
 }

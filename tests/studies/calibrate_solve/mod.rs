@@ -5,7 +5,8 @@ mod nist;
 mod unidentified;
 mod worth;
 
-use cvtcycle::study::fit::solve::{Fit, Options, Parameter, Prior, Residuals, Unwatched, fit};
+use cvtcycle::study::NoProgress;
+use cvtcycle::study::fit::solve::{Fit, Options, Parameter, Prior, Residuals, fit};
 
 /// A model that is a function.
 struct Model<F>(usize, F);
@@ -60,7 +61,7 @@ const ONCE: Options = Options {
 };
 
 fn fitted(model: &dyn Residuals, parameters: &[Parameter]) -> Fit {
-    fit(model, parameters, &ONCE, &Unwatched).expect("a fit")
+    fit(model, parameters, &ONCE, &NoProgress).expect("a fit")
 }
 
 fn near(got: f64, want: f64, relative: f64) -> bool {

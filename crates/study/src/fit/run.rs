@@ -5,7 +5,8 @@ use sha2::{Digest, Sha256};
 use super::model::{Answer, Model};
 use super::outcome::{self, Direction, Fold, Outcome, Residual, SCHEMA, Start, rms};
 use super::plan::{Measured, Plan, What, problem};
-use super::solve::{self, Bound, End, Fit, Options, Uncertainty, Watcher};
+use super::solve::{self, Bound, End, Fit, Options, Uncertainty};
+use crate::progress::Progress;
 use cvtcycle_config::Problems;
 
 /// Probability below which the data scatter more than their standard deviations say.
@@ -19,7 +20,7 @@ const FAR: f64 = 3.0;
 ///
 /// # Errors
 /// What is wrong with the plan's vehicle, keys, bounds and sources; a problem if the model has no answer at any start.
-pub fn calibrate(plan: &Plan, watcher: &dyn Watcher) -> Result<Outcome, Problems> {
+pub fn calibrate(plan: &Plan, progress: &dyn Progress) -> Result<Outcome, Problems> {
     let model = Model::new(plan)?;
     let search = &plan.search;
     let options = Options {
@@ -28,7 +29,7 @@ pub fn calibrate(plan: &Plan, watcher: &dyn Watcher) -> Result<Outcome, Problems
         most_evaluations: search.most_evaluations,
         tolerance: search.tolerance,
     };
-    let fit = solve::fit(&model, model.parameters(), &options, watcher).map_err(|failure| {
+    let fit = solve::fit(&model, model.parameters(), &options, progress).map_err(|failure| {
         let hint = "leave out data where the model has no number; the first start is at the values of the files";
         // Each cause once: the starts and their many values say no more.
         let whys = failure.starts.iter().filter_map(|start| start.failure.clone());
@@ -43,7 +44,14 @@ pub fn calibrate(plan: &Plan, watcher: &dyn Watcher) -> Result<Outcome, Problems
             .iter()
             .map(|observation| observation.fold)
             .collect();
-        solve::leave_out(&model, model.parameters(), &groups, &fit, &options, watcher)
+        solve::leave_out(
+            &model,
+            model.parameters(),
+            &groups,
+            &fit,
+            &options,
+            progress,
+        )
     } else {
         Vec::new()
     };

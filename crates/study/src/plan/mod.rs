@@ -22,6 +22,8 @@ pub use places::Places;
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use cvtcycle_config::{Place, Problems};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
@@ -119,7 +121,8 @@ pub const RUN_OPTIONS: [&str; 7] = [
 ];
 
 /// The cars that a factor changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Cars {
     /// The subject alone, as `--set`.
     Subject,
@@ -130,7 +133,8 @@ pub enum Cars {
 }
 
 /// What a number does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Acts {
     /// It is the value.
     Value,
@@ -277,7 +281,8 @@ impl Factor {
 }
 
 /// Which combinations of values are driven.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Design {
     /// Every value of each factor with every value of the others, the last factor fastest.
     Grid,

@@ -6,7 +6,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::{Residuals, Watcher};
+use super::Residuals;
+use crate::progress::Progress;
 
 /// Why there is no answer.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,15 +18,15 @@ pub(super) enum Refusal {
 
 pub(super) struct Ask<'a> {
     pub model: &'a dyn Residuals,
-    watcher: &'a dyn Watcher,
+    progress: &'a dyn Progress,
     count: AtomicUsize,
 }
 
 impl<'a> Ask<'a> {
-    pub fn new(model: &'a dyn Residuals, watcher: &'a dyn Watcher) -> Ask<'a> {
+    pub fn new(model: &'a dyn Residuals, progress: &'a dyn Progress) -> Ask<'a> {
         Ask {
             model,
-            watcher,
+            progress,
             count: AtomicUsize::new(0),
         }
     }
@@ -35,12 +36,12 @@ impl<'a> Ask<'a> {
     }
 
     pub fn at(&self, values: &[f64]) -> Result<Vec<f64>, Refusal> {
-        if self.watcher.stop() {
+        if self.progress.stopped() {
             return Err(Refusal::Stopped);
         }
         self.count.fetch_add(1, Ordering::Relaxed);
         let answer = self.model.at(values);
-        self.watcher.evaluated();
+        self.progress.advance(1);
         let rows = answer.map_err(Refusal::Model)?;
         // CA-1
         if rows.len() != self.model.count() {

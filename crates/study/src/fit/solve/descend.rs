@@ -368,8 +368,9 @@ pub(super) fn descend(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Residuals, Unwatched};
+    use super::super::Residuals;
     use super::*;
+    use crate::NoProgress;
 
     struct Parabola;
 
@@ -400,7 +401,7 @@ mod tests {
                 prior: None,
             }];
             let start = descend(
-                &Ask::new(&Parabola, &Unwatched),
+                &Ask::new(&Parabola, &NoProgress),
                 &parameters,
                 &options,
                 vec![on_bound],

@@ -6,7 +6,8 @@ use super::ask::Ask;
 use super::descend::descend;
 use super::point::prior_residuals;
 use super::starts::starts;
-use super::{End, Failure, Fit, Options, Parameter, Residuals, Watcher, slope};
+use super::{End, Failure, Fit, Options, Parameter, Residuals, slope};
+use crate::progress::Progress;
 
 /// Fits the parameters: least squares of the residuals and of the priors between the bounds. Starts go in parallel, and so do the columns
 /// of each Jacobian; the best start is the one of least cost, the earlier of equal ones.
@@ -17,7 +18,7 @@ pub fn fit(
     model: &dyn Residuals,
     parameters: &[Parameter],
     options: &Options,
-    watcher: &dyn Watcher,
+    progress: &dyn Progress,
 ) -> Result<Fit, Failure> {
     let reasons = wrong(model, parameters);
     if !reasons.is_empty() {
@@ -29,7 +30,7 @@ pub fn fit(
     let from = starts(parameters, options.starts, options.seed);
     let descents: Vec<_> = from
         .into_par_iter()
-        .map(|from| descend(&Ask::new(model, watcher), parameters, options, from))
+        .map(|from| descend(&Ask::new(model, progress), parameters, options, from))
         .collect();
     let mut evaluations = descents
         .iter()
@@ -70,7 +71,7 @@ pub fn fit(
         if end == End::Stopped {
             return nalgebra::DMatrix::from_element(point.rows.len(), parameters.len(), f64::NAN);
         }
-        let ask = Ask::new(model, watcher);
+        let ask = Ask::new(model, progress);
         let columns = slope::columns(&ask, parameters, &point.values, &point.rows);
         evaluations += ask.evaluations();
         slope::matrix_with_gaps(columns, point.rows.len())

@@ -7,7 +7,8 @@
 use rayon::prelude::*;
 
 use super::ask::{Ask, Refusal};
-use super::{End, Fit, Options, Parameter, Residuals, Watcher, fit};
+use super::{End, Fit, Options, Parameter, Residuals, fit};
+use crate::progress::Progress;
 
 /// A group left out.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +63,7 @@ pub fn leave_out(
     groups: &[usize],
     solution: &Fit,
     options: &Options,
-    watcher: &dyn Watcher,
+    progress: &dyn Progress,
 ) -> Vec<Fold> {
     let of = |i: usize| groups.get(i).copied().unwrap_or(0);
     let mut all: Vec<usize> = (0..model.count()).map(of).collect();
@@ -92,7 +93,7 @@ pub fn leave_out(
             end,
             failure: Some(failure),
         };
-        let fitted = match fit(&without, &parameters, &options, watcher) {
+        let fitted = match fit(&without, &parameters, &options, progress) {
             Ok(fitted) => fitted,
             Err(failure) => {
                 let end = failure
@@ -102,7 +103,7 @@ pub fn leave_out(
                 return none(solution.values.clone(), end, failure.to_string());
             }
         };
-        match Ask::new(model, watcher).at(&fitted.values) {
+        match Ask::new(model, progress).at(&fitted.values) {
             Ok(rows) => {
                 let residuals = rows
                     .into_iter()

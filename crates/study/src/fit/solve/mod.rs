@@ -32,8 +32,6 @@ mod words;
 
 pub use fit::fit;
 pub use leave_out::{Fold, leave_out};
-pub use types::{
-    End, Failure, Fit, Options, Parameter, Prior, Residuals, Start, Unwatched, Watcher,
-};
+pub use types::{End, Failure, Fit, Options, Parameter, Prior, Residuals, Start};
 pub use uncertainty::{Bound, Direction, Uncertainty, uncertainty};
 pub use words::words;

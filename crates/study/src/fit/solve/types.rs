@@ -62,27 +62,6 @@ pub struct Options {
     pub tolerance: f64,
 }
 
-/// Somebody who looks on, from several threads at once.
-pub trait Watcher: Sync {
-    /// The model was evaluated.
-    fn evaluated(&self);
-
-    /// Shall the fit stop? The best so far is kept.
-    fn stop(&self) -> bool;
-}
-
-/// Nobody looks on, nobody stops.
-#[derive(Clone, Copy, Debug)]
-pub struct Unwatched;
-
-impl Watcher for Unwatched {
-    fn evaluated(&self) {}
-
-    fn stop(&self) -> bool {
-        false
-    }
-}
-
 /// How a start ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
@@ -90,7 +69,7 @@ pub enum End {
     Converged,
     /// The evaluations of the start are spent. The best point so far may be far from a minimum.
     OutOfEvaluations,
-    /// The watcher asked for it. The best point so far is kept.
+    /// Stopped by the caller. The best point so far is kept.
     Stopped,
     /// No way on, and no minimum: the model failed at the start, or wherever the next step led, or on both sides of the point.
     NoProgress,

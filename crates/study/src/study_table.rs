@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::outline::Outline;
+use super::manifest::StudyManifest;
 use super::table::Values;
 use cvtcycle_config::Problem;
 
@@ -25,9 +25,9 @@ pub trait TableSource {
 }
 
 /// A study's table, seen by car and point. Points of parts that are not there have no numbers.
-pub struct Frame<'a> {
+pub struct StudyTable<'a> {
     /// What the table is.
-    pub outline: &'a Outline,
+    pub outline: &'a StudyManifest,
     source: &'a dyn TableSource,
     status: Vec<Status>,
 }
@@ -45,13 +45,13 @@ pub enum Status {
     NotRun,
 }
 
-impl<'a> Frame<'a> {
+impl<'a> StudyTable<'a> {
     /// Reads how the runs ended.
     ///
     /// # Errors
     /// A part that cannot be read.
-    pub fn new(outline: &'a Outline, source: &'a dyn TableSource) -> Result<Self, Problem> {
-        let mut frame = Frame {
+    pub fn new(outline: &'a StudyManifest, source: &'a dyn TableSource) -> Result<Self, Problem> {
+        let mut frame = StudyTable {
             outline,
             source,
             status: Vec::new(),
