@@ -1,7 +1,5 @@
 //! `study ambient`: the thesis's matrix of ambient temperatures, starts and cars.
 
-use std::fmt::Write as _;
-
 use cvtcycle::config::Problem;
 use cvtcycle::study::plan::Plan;
 
@@ -73,75 +71,77 @@ const TRACES: [&str; 6] = [
 
 /// Runs the command: the matrix is a plan like any other.
 pub fn answer(args: &Args, context: Context) -> Reply {
-    let text = plan_text(args);
-    let plan = Plan::read(PLAN, &text).map_err(|problems| {
-        problems
-            .into_iter()
-            .map(|p| as_option(p, args))
-            .collect::<Vec<_>>()
-    })?;
-    let reply = common::run(plan, &args.common, context);
-    reply.map_err(|problems| problems.into_iter().map(|p| as_option(p, args)).collect())
+    let lines = plan_lines(args);
+    let text: String = lines.iter().map(|(_, line)| format!("{line}\n")).collect();
+    let reply = Plan::read(PLAN, &text).and_then(|plan| common::run(plan, &args.common, context));
+    reply.map_err(|problems| problems.into_iter().map(|p| at_option(p, &lines)).collect())
 }
 
 /// Name of the plan that these options make.
 const PLAN: &str = "study ambient";
 
-fn plan_text(args: &Args) -> String {
-    let mut text = format!(
-        "# Made by `cvtcycle study ambient`.\n[study]\ntitle = {}\n",
-        quoted(&format!("{} on {}, cold to warm", args.vehicle, args.cycle))
+/// The lines of the plan, each with the option that it comes from.
+fn plan_lines(args: &Args) -> Vec<(&'static str, String)> {
+    let title = format!("{} on {}, cold to warm", args.vehicle, args.cycle);
+    let mut lines = vec![
+        ("", "# Made by `cvtcycle study ambient`.".to_owned()),
+        ("", "[study]".to_owned()),
+        ("", format!("title = {}", quoted(&title))),
+    ];
+    let mut add = |option, key: &str, value: Option<String>| {
+        lines.extend(value.map(|value| (option, format!("{key} = {value}"))));
+    };
+    let given = |word: &Option<String>| word.as_deref().map(quoted);
+    let listed = |words: &[String]| (!words.is_empty()).then(|| list(words));
+    let is_car = |name: &&String| *name != "none";
+    let baselines: Vec<&String> = args.baseline.iter().filter(is_car).collect();
+    add("--vehicle", "vehicle", Some(quoted(&args.vehicle)));
+    let compared = !args.baseline.is_empty();
+    add(
+        "--baseline",
+        "baselines",
+        compared.then(|| list(&baselines)),
     );
-    let mut line = |key: &str, value: String| {
-        // Writing into a String cannot fail.
-        let _ = writeln!(text, "{key} = {value}");
+    add("--cycle", "cycle", Some(quoted(&args.cycle)));
+    add("--lubricant", "lubricant", given(&args.lubricant));
+    add("--engine-oil", "engine_oil", given(&args.engine_oil));
+    add("--set", "set", listed(&args.set));
+    add("--set-all", "set_all", listed(&args.set_all));
+    add(
+        "--out",
+        "keep",
+        args.common.out.as_ref().map(|_| list(&TRACES)),
+    );
+    lines.push(("", String::new()));
+    lines.push(("--ambient", "[study.design.grid]".to_owned()));
+    let factors = [
+        (
+            "--ambient",
+            "key = \"ambient_degc\"\nname = \"ambient\"",
+            &args.ambient,
+        ),
+        ("--start", "key = \"start\"", &args.start),
+    ];
+    for (option, keys, values) in factors {
+        lines.push((
+            option,
+            format!("\n[[factor]]\n{keys}\nvalues = [{}]", numbers(values)),
+        ));
+    }
+    let split = |(option, text): &(&'static str, String)| {
+        let lines = text.split('\n').map(|line| (*option, line.to_owned()));
+        lines.collect::<Vec<_>>()
     };
-    line("vehicle", quoted(&args.vehicle));
-    if !args.baseline.is_empty() {
-        let named: Vec<&String> = args
-            .baseline
-            .iter()
-            .filter(|name| *name != "none")
-            .collect();
-        line("baselines", list(&named));
-    }
-    line("cycle", quoted(&args.cycle));
-    for (key, value) in [
-        ("lubricant", &args.lubricant),
-        ("engine_oil", &args.engine_oil),
-    ] {
-        if let Some(value) = value {
-            line(key, quoted(value));
-        }
-    }
-    for (key, values) in [("set", &args.set), ("set_all", &args.set_all)] {
-        if !values.is_empty() {
-            line(key, list(values));
-        }
-    }
-    if args.common.out.is_some() {
-        line("keep", list(&TRACES));
-    }
-    let numbers = |words: &str| {
-        words
-            .split(',')
-            .map(|word| number_or_word(word.trim()))
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
-    text + &format!(
-        "\n[study.design.grid]\n\n[[factor]]\nkey = \"ambient_degc\"\nname = \"ambient\"\nvalues = [{}]\n\n[[factor]]\nkey = \"start\"\nvalues = [{}]\n",
-        numbers(&args.ambient),
-        numbers(&args.start),
-    )
+    lines.iter().flat_map(split).collect()
 }
 
-fn number_or_word(word: &str) -> String {
-    // What TOML takes as a number goes in as written; all else is a word, for the plan's reading to judge.
-    match word.parse::<f64>() {
+/// Numbers as TOML numbers, other words as text for the plan's reader to judge.
+fn numbers(words: &str) -> String {
+    let item = |word: &str| match word.trim().parse::<f64>() {
         Ok(x) if x.is_finite() => format!("{x:?}"),
-        _ => quoted(word),
-    }
+        _ => quoted(word.trim()),
+    };
+    words.split(',').map(item).collect::<Vec<_>>().join(", ")
 }
 
 fn list<S: AsRef<str>>(words: &[S]) -> String {
@@ -153,41 +153,13 @@ fn quoted(word: &str) -> String {
     toml::Value::String(word.to_owned()).to_string()
 }
 
-/// A problem of the plan that the options made, under the option.
-fn as_option(mut problem: Problem, args: &Args) -> Problem {
-    if problem.place.file != PLAN {
-        return problem;
-    }
-    let factor = |key: &str| {
-        problem.key == key
-            || problem.key.contains(key)
-            || problem.message.contains(&format!("`{key}`"))
-    };
-    let option = match problem.key.as_str() {
-        "study.vehicle" | "vehicle" => "--vehicle",
-        "study.baselines" | "baselines" => "--baseline",
-        "study.cycle" | "cycle" => "--cycle",
-        "study.lubricant" | "lubricant" => "--lubricant",
-        "study.engine_oil" | "engine_oil" => "--engine-oil",
-        "study.set" | "set" => "--set",
-        "study.set_all" | "set_all" => "--set-all",
-        _ if factor("ambient_degc") => "--ambient",
-        _ if factor("start") => "--start",
-        // The factors' own lines of the plan: ambient comes first.
-        _ => {
-            if problem.place.line_text.contains("soak")
-                || problem.place.line_text.contains(&args.start)
-            {
-                "--start"
-            } else {
-                "--ambient"
-            }
+/// A problem of a line of the plan, under the option that the line comes from.
+fn at_option(problem: Problem, lines: &[(&'static str, String)]) -> Problem {
+    let line = problem.place.line.checked_sub(1).and_then(|k| lines.get(k));
+    match line {
+        Some((option, _)) if problem.place.file == PLAN && !option.is_empty() => {
+            problem.in_file(*option).key(*option)
         }
-    };
-    problem.place = cvtcycle::config::Place {
-        file: option.to_owned(),
-        ..cvtcycle::config::Place::default()
-    };
-    option.clone_into(&mut problem.key);
-    problem
+        _ => problem,
+    }
 }
