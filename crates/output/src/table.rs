@@ -6,6 +6,7 @@ use std::borrow::{Borrow, Cow};
 use std::io::{self, Write};
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json, json};
 
 use crate::number::{finite, push_exact};
@@ -80,7 +81,8 @@ fn push_names(text: &mut String, names: impl Iterator<Item = &'static str>) {
 }
 
 /// What the cells of a column are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// Real numbers; one that is not finite is missing.
     Number,
@@ -91,7 +93,7 @@ pub enum Kind {
 }
 
 /// Name, unit, meaning and kind of a column.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Head {
     /// Name, ending in its unit where it has one.
     pub name: String,

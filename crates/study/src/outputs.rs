@@ -1,67 +1,13 @@
-//! The row of a run: one table of columns, with the getter of each.
+//! The row of a run: its columns.
 //!
-//! Names and units are those of `run --json`, flattened: what stands there as `loss_kj.pump` is `loss_pump_kj` here.
+//! Names and units are those of `run --json`, flattened: `loss_kj.pump` there is `loss_pump_kj` here.
 
-use super::table::{Head, Kind};
 use cvtcycle_output::summary::{Comparison, RunSummary};
-use cvtcycle_output::{Component, Flags};
+use cvtcycle_output::table::Column;
+use cvtcycle_output::{Component, Flags, columns};
 
-/// A number of a run's row.
-#[derive(Clone, Debug)]
-pub struct Output {
-    /// Its column.
-    pub column: Head,
-    get: Getter,
-}
-
-#[derive(Clone, Debug)]
-enum Getter {
-    Summary(fn(&RunSummary) -> Option<f64>),
-    Phase(String),
-    Loss(&'static str),
-    End(&'static str),
-    Flag(&'static str),
-    Excess,
-    PhaseExcess(String),
-}
-
-impl Output {
-    fn new(name: &str, unit: &str, doc: &str, get: Getter) -> Self {
-        Output {
-            column: Head {
-                name: name.to_owned(),
-                unit: unit.to_owned(),
-                doc: doc.to_owned(),
-                kind: Kind::Number,
-            },
-            get,
-        }
-    }
-
-    /// The number of a run; NaN where there is none. `excess` is the subject against this car, none for the subject itself.
-    #[must_use]
-    pub fn number(&self, run: &RunSummary, excess: Option<&Comparison>) -> f64 {
-        let found = match &self.get {
-            Getter::Summary(get) => get(run),
-            Getter::Phase(name) => run
-                .phases
-                .iter()
-                .find(|p| column_word(&p.name) == *name)
-                .and_then(|p| p.fuel_l_per_100km),
-            Getter::Loss(name) => run.loss_kj.get(name),
-            Getter::End(name) => run.end_degc.get(name),
-            Getter::Flag(name) => run.flags_s.get(name),
-            Getter::Excess => excess.and_then(|e| e.fuel_percent),
-            Getter::PhaseExcess(name) => excess.and_then(|e| {
-                e.phases_percent
-                    .iter()
-                    .find(|(p, _)| column_word(p) == *name)?
-                    .1
-            }),
-        };
-        found.unwrap_or(f64::NAN)
-    }
-}
+/// A run and the comparison of the subject with it; none for the subject itself.
+pub type Run = (RunSummary, Option<Comparison>);
 
 /// The column of the subject's fuel over that of the row's car.
 pub const EXCESS: &str = "subject_excess_percent";
@@ -83,209 +29,102 @@ pub fn phase_excess(phase: &str) -> String {
 /// A phase's name as part of a column's: lower case, `_` for what is neither letter nor digit.
 #[must_use]
 pub fn column_word(name: &str) -> String {
-    name.chars()
-        .map(|c| {
-            if c.is_alphanumeric() {
-                c.to_ascii_lowercase()
-            } else {
-                '_'
-            }
-        })
-        .collect()
+    let letter = |c: char| {
+        if c.is_alphanumeric() {
+            c.to_ascii_lowercase()
+        } else {
+            '_'
+        }
+    };
+    name.chars().map(letter).collect()
 }
 
 /// Every number of a row, for cycles with these phase groups and cars with these components.
 #[must_use]
-pub fn outputs(phases: &[String], components: &[Component]) -> Vec<Output> {
+pub fn outputs(phases: &[String], components: &[Component]) -> Vec<Column<Run>> {
     let mut list = fuel(phases);
     list.extend(energy(components));
     list.extend(states());
     list
 }
 
-fn fuel(phases: &[String]) -> Vec<Output> {
-    use Getter::Summary as S;
-    let mut list = vec![
-        Output::new(
-            FUEL,
-            "L/100 km",
-            "fuel that stands for the car: weighted where the cycle is, else over the whole cycle",
-            S(RunSummary::headline_fuel),
-        ),
-        Output::new(
-            "fuel_l_per_100km",
-            "L/100 km",
-            "fuel over the whole cycle",
-            S(|r| r.fuel_l_per_100km),
-        ),
-    ];
-    for phase in phases {
-        list.push(Output::new(
-            &phase_fuel(phase),
-            "L/100 km",
-            &format!("fuel in {phase}"),
-            Getter::Phase(column_word(phase)),
-        ));
-    }
-    list.push(Output::new(
-        EXCESS,
-        "%",
-        "headline fuel of the subject over that of this car at the same point; empty for the subject",
-        Getter::Excess,
-    ));
-    for phase in phases {
+fn fuel(phases: &[String]) -> Vec<Column<Run>> {
+    let mut list = columns! { Run;
+        optional FUEL, "L/100 km", "fuel that stands for the car: weighted where the cycle is, else over the whole cycle", (r, _) => r.headline_fuel();
+        optional "fuel_l_per_100km", "L/100 km", "fuel over the whole cycle", (r, _) => r.fuel_l_per_100km;
+    };
+    list.extend(phases.iter().map(|phase| {
+        let (doc, word) = (format!("fuel in {phase}"), column_word(phase));
+        Column::optional(phase_fuel(phase), "L/100 km", doc, move |(r, _): &Run| {
+            r.phases
+                .iter()
+                .find(|p| column_word(&p.name) == word)?
+                .fuel_l_per_100km
+        })
+    }));
+    list.extend(columns! { Run;
+        optional EXCESS, "%", "headline fuel of the subject over that of this car at the same point; empty for the subject", (_, excess) => excess.as_ref()?.fuel_percent;
+    });
+    list.extend(phases.iter().map(|phase| {
         let doc =
             format!("fuel of the subject over that of this car in {phase}; empty for the subject");
-        list.push(Output::new(
-            &phase_excess(phase),
-            "%",
-            &doc,
-            Getter::PhaseExcess(column_word(phase)),
-        ));
-    }
-    list.extend([
-        Output::new(
-            "co2_g_per_km",
-            "g/km",
-            "carbon dioxide over the whole cycle",
-            S(|r| r.co2_g_per_km),
-        ),
-        Output::new(
-            "distance_km",
-            "km",
-            "driven distance",
-            S(|r| Some(r.distance_km)),
-        ),
-        Output::new("duration_s", "s", "duration", S(|r| Some(r.duration_s))),
-        Output::new(
-            "standstill_fuel_g",
-            "g",
-            "fuel at standstill",
-            S(|r| Some(r.standstill_fuel_g)),
-        ),
-    ]);
+        let word = column_word(phase);
+        Column::optional(phase_excess(phase), "%", doc, move |(_, excess): &Run| {
+            let phases = &excess.as_ref()?.phases_percent;
+            phases.iter().find(|(name, _)| column_word(name) == word)?.1
+        })
+    }));
+    list.extend(columns! { Run;
+        optional "co2_g_per_km", "g/km", "carbon dioxide over the whole cycle", (r, _) => r.co2_g_per_km;
+        number "distance_km", "km", "driven distance", (r, _) => r.distance_km;
+        number "duration_s", "s", "duration", (r, _) => r.duration_s;
+        number "standstill_fuel_g", "g", "fuel at standstill", (r, _) => r.standstill_fuel_g;
+    });
     list
 }
 
-fn energy(components: &[Component]) -> Vec<Output> {
-    use Getter::Summary as S;
-    let mut list = vec![
-        Output::new(
-            "fuel_energy_kj",
-            "kJ",
-            "lower heating value of the fuel",
-            S(|r| Some(r.fuel_energy_kj)),
-        ),
-        Output::new(
-            "wheel_work_positive_kj",
-            "kJ",
-            "demanded work at the wheels in driving",
-            S(|r| Some(r.wheel_work_positive_kj)),
-        ),
-        Output::new(
-            "wheel_work_negative_kj",
-            "kJ",
-            "demanded work at the wheels in braking, negative",
-            S(|r| Some(r.wheel_work_negative_kj)),
-        ),
-        Output::new(
-            "transmission_loss_kj",
-            "kJ",
-            "losses of the transmission",
-            S(|r| Some(r.transmission_loss_kj())),
-        ),
-    ];
-    for component in components {
+fn energy(components: &[Component]) -> Vec<Column<Run>> {
+    let mut list = columns! { Run;
+        number "fuel_energy_kj", "kJ", "lower heating value of the fuel", (r, _) => r.fuel_energy_kj;
+        number "wheel_work_positive_kj", "kJ", "demanded work at the wheels in driving", (r, _) => r.wheel_work_positive_kj;
+        number "wheel_work_negative_kj", "kJ", "demanded work at the wheels in braking, negative", (r, _) => r.wheel_work_negative_kj;
+        number "transmission_loss_kj", "kJ", "losses of the transmission", (r, _) => r.transmission_loss_kj();
+    };
+    list.extend(components.iter().map(|component| {
         let name = component.name();
-        list.push(Output::new(
-            &format!("loss_{name}_kj"),
-            "kJ",
-            &format!("loss of {}", name.replace('_', " ")),
-            Getter::Loss(name),
-        ));
-    }
-    list.extend([
-        Output::new(
-            "loss_accessories_kj",
-            "kJ",
-            "work of the accessories",
-            Getter::Loss("accessories"),
-        ),
-        Output::new(
-            "loss_brake_kj",
-            "kJ",
-            "work of the wheel brakes",
-            Getter::Loss("brake"),
-        ),
-        Output::new(
-            "kinetic_kj",
-            "kJ",
-            "change of rotating energy",
-            S(|r| Some(r.kinetic_kj)),
-        ),
-    ]);
+        let doc = format!("loss of {}", name.replace('_', " "));
+        let column = format!("loss_{name}_kj");
+        Column::optional(column, "kJ", doc, move |(r, _): &Run| r.loss_kj.get(name))
+    }));
+    list.extend(columns! { Run;
+        optional "loss_accessories_kj", "kJ", "work of the accessories", (r, _) => r.loss_kj.get("accessories");
+        optional "loss_brake_kj", "kJ", "work of the wheel brakes", (r, _) => r.loss_kj.get("brake");
+        number "kinetic_kj", "kJ", "change of rotating energy", (r, _) => r.kinetic_kj;
+    });
     list
 }
 
-fn states() -> Vec<Output> {
-    use Getter::Summary as S;
-    let mut list: Vec<Output> = [
-        ("transmission_sump", "transmission oil in the sump"),
-        ("engine_oil", "engine oil"),
-        ("coolant", "coolant and engine block"),
-        ("transmission_metal", "transmission case and shafts"),
-        ("belt_spray", "belt, pulleys and the oil sprayed off them"),
-    ]
-    .map(|(name, doc)| {
-        Output::new(
-            &format!("end_{name}_degc"),
-            "degC",
-            &format!("{doc} at the end"),
-            Getter::End(name),
-        )
-    })
-    .into();
-    list.extend([
-        Output::new(
-            "min_clamp_safety",
-            "-",
-            "smallest clamp safety factor",
-            S(|r| r.min_clamp_safety),
-        ),
-        Output::new(
-            "at_ratio_limit_s",
-            "s",
-            "time at a ratio limit",
-            S(|r| r.at_ratio_limit_s),
-        ),
-        Output::new(
-            "ledger_error",
-            "-",
-            "largest ledger error of any row",
-            S(|r| r.ledger_error),
-        ),
-        Output::new(
-            "solve_residual",
-            "-",
-            "largest residual of the implicit solve",
-            S(|r| Some(r.solve.worst_residual)),
-        ),
-        Output::new(
-            "evaluations_per_step",
-            "-",
-            "mean evaluations of the driveline a row",
-            S(|r| r.solve.evaluations_per_step),
-        ),
-    ]);
-    for (flag, name) in Flags::NAMES {
-        if flag != Flags::RATIO_LIMIT {
-            list.push(Output::new(
-                &format!("{name}_s"),
-                "s",
-                &format!("time with {}", name.replace('_', " ")),
-                Getter::Flag(name),
-            ));
-        }
-    }
+fn states() -> Vec<Column<Run>> {
+    let mut list = columns! { Run;
+        optional "end_transmission_sump_degc", "degC", "transmission oil in the sump at the end", (r, _) => r.end_degc.get("transmission_sump");
+        optional "end_engine_oil_degc", "degC", "engine oil at the end", (r, _) => r.end_degc.get("engine_oil");
+        optional "end_coolant_degc", "degC", "coolant and engine block at the end", (r, _) => r.end_degc.get("coolant");
+        optional "end_transmission_metal_degc", "degC", "transmission case and shafts at the end", (r, _) => r.end_degc.get("transmission_metal");
+        optional "end_belt_spray_degc", "degC", "belt, pulleys and the oil sprayed off them at the end", (r, _) => r.end_degc.get("belt_spray");
+        optional "min_clamp_safety", "-", "smallest clamp safety factor", (r, _) => r.min_clamp_safety;
+        optional "at_ratio_limit_s", "s", "time at a ratio limit", (r, _) => r.at_ratio_limit_s;
+        optional "ledger_error", "-", "largest ledger error of any row", (r, _) => r.ledger_error;
+        number "solve_residual", "-", "largest residual of the implicit solve", (r, _) => r.solve.worst_residual;
+        optional "evaluations_per_step", "-", "mean evaluations of the driveline a row", (r, _) => r.solve.evaluations_per_step;
+    };
+    let flags = Flags::NAMES
+        .into_iter()
+        .filter(|(flag, _)| *flag != Flags::RATIO_LIMIT);
+    list.extend(flags.map(|(_, name)| {
+        let doc = format!("time with {}", name.replace('_', " "));
+        Column::optional(format!("{name}_s"), "s", doc, move |(r, _): &Run| {
+            r.flags_s.get(name)
+        })
+    }));
     list
 }

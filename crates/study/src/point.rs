@@ -150,12 +150,13 @@ impl Study {
         let summary = run_summary(&self.cycles[cycle], &car.role, &settings, &named);
         run.status = status(&summary);
         let excess = subject.map(|subject| compare(subject, &summary));
+        let row = (summary, excess);
         run.numbers = self
             .outputs
             .iter()
-            .map(|output| output.number(&summary, excess.as_ref()))
+            .map(|column| column.number_of(&row))
             .collect();
-        (run, Some(summary))
+        (run, Some(row.0))
     }
 
     /// The car with the point's values; in `factors` what each factor has become in it.

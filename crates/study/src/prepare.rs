@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::cars::{StudyCar, is_words};
-use super::outputs::{EXCESS, FUEL, Output, outputs, phase_excess, phase_fuel};
+use super::outputs::{EXCESS, FUEL, Run, outputs, phase_excess, phase_fuel};
 use super::plan::{Keep, Plan};
 use super::table::{Head, Kind};
 use cvtcycle_config::cycle::{self, Cycle};
@@ -12,6 +12,7 @@ use cvtcycle_config::setup::is_path;
 use cvtcycle_config::{Problem, Problems};
 use cvtcycle_model::drive::components;
 use cvtcycle_output::Component;
+use cvtcycle_output::table::Column;
 use cvtcycle_output::trace::{COLUMNS, TraceColumn, columns_for};
 
 /// Name under which problems of a car's word are reported before they get their place in the plan.
@@ -34,7 +35,7 @@ pub struct Study {
     /// Columns of the table of traces; empty if none are kept.
     pub trace_columns: Vec<Head>,
     pub(super) factor_columns: Vec<FactorColumn>,
-    pub(super) outputs: Vec<Output>,
+    pub(super) outputs: Vec<Column<Run>>,
     pub(super) traces: Vec<&'static TraceColumn>,
 }
 
@@ -84,7 +85,7 @@ impl Study {
         let (factor_columns, mut heads) = factor_columns(&plan);
         let mut columns = head_columns();
         columns.append(&mut heads);
-        columns.extend(outputs.iter().map(|o| o.column.clone()));
+        columns.extend(outputs.iter().map(Column::head));
         let traces = traces(&plan, &cars, &parts);
         let trace_columns = if traces.is_empty() {
             Vec::new()
@@ -119,9 +120,7 @@ impl Study {
 
     /// Names of the numbers of a row that can be analysed.
     pub fn output_names(&self) -> impl Iterator<Item = &str> {
-        self.outputs
-            .iter()
-            .map(|output| output.column.name.as_str())
+        self.outputs.iter().map(|column| &*column.name)
     }
 
     /// Names of the numbers that are analysed: those of the plan, or else the fuels and the subject's excess, by phase as well.

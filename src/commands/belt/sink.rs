@@ -1,13 +1,12 @@
 //! Rows to CSV and JSON, kept aside until all of them are good.
 
-use std::fmt::Write as _;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::output::file::OutputFile;
-use cvtcycle::study::points::{
-    CASE, FLAGS, FORMULATION, NUMBERS, OUTPUTS, STATUS, Solved, Take, name, output_names,
-};
+use cvtcycle::output::number::push_exact;
+use cvtcycle::output::table::{Cell, Column, json_row};
+use cvtcycle::study::points::{OUTPUTS, Point, Solved, Take, output_columns};
 use tempfile::{SpooledTempFile, spooled_tempfile};
 
 use crate::print::problem;
@@ -78,7 +77,7 @@ impl Take for Offer {
 pub struct Sink {
     csv: Option<Place>,
     json: Option<Place>,
-    with_case: bool,
+    columns: Vec<Column<Point>>,
     rows: u64,
     line: String,
 }
@@ -94,12 +93,12 @@ impl Sink {
         let mut sink = Sink {
             csv,
             json: json.then(Place::spool),
-            with_case,
+            columns: output_columns(with_case),
             rows: 0,
             line: String::new(),
         };
         if let Some(csv) = &mut sink.csv {
-            let names: Vec<&str> = output_names(with_case).collect();
+            let names: Vec<&str> = sink.columns.iter().map(|column| &*column.name).collect();
             csv.put(&(names.join(",") + "\n"))?;
         }
         Ok(sink)
@@ -107,17 +106,15 @@ impl Sink {
 
     /// Adds a row.
     pub fn put(&mut self, case: &str, row: &Solved) -> Result<(), Problems> {
+        let row = (case.replace("\"\"", "\""), *row);
         if let Some(csv) = &mut self.csv {
             self.line.clear();
-            csv_line(&mut self.line, self.with_case.then_some(case), row);
+            csv_line(&mut self.line, &self.columns, &row);
             csv.put(&self.line)?;
         }
         if let Some(json) = &mut self.json {
-            self.line.clear();
-            self.line
-                .push_str(if self.rows == 0 { "\n" } else { ",\n" });
-            json_line(&mut self.line, self.with_case.then_some(case), row);
-            json.put(&self.line)?;
+            let comma = if self.rows == 0 { "\n" } else { ",\n" };
+            json.put(&format!("{comma}{}", json_row(&self.columns, &row)))?;
         }
         self.rows += 1;
         Ok(())
@@ -139,71 +136,24 @@ impl Sink {
     }
 }
 
-fn csv_line(line: &mut String, case: Option<&str>, row: &Solved) {
-    if let Some(case) = case {
-        // Quotes within are doubled already: the text is as it stood in the input.
-        let quote = if case.contains([',', '"']) { "\"" } else { "" };
-        // Writing to a string cannot fail.
-        let _ = write!(line, "{quote}{case}{quote},");
-    }
-    line.push_str(name(row.formulation));
-    for number in row.numbers {
-        line.push(',');
-        if !number.is_nan() {
-            push(line, number);
+/// A row as CSV: `;` between flags, and `NaN` where a point has no solution.
+fn csv_line(line: &mut String, columns: &[Column<Point>], row: &Point) {
+    let given = columns.len() - OUTPUTS.len();
+    for (k, column) in columns.iter().enumerate() {
+        if k > 0 {
+            line.push(',');
         }
-    }
-    for (_, value) in OUTPUTS {
-        line.push(',');
-        push(line, value(&row.point));
-    }
-    line.push(',');
-    line.push_str(row.point.status.name());
-    line.push(',');
-    for (place, flag) in row.flags.names().enumerate() {
-        line.push_str(if place > 0 { ";" } else { "" });
-        line.push_str(flag);
+        match column.cell(row) {
+            Cell::Number(x) if x.is_nan() && k < given => {}
+            Cell::Number(x) => push_exact(line, x),
+            Cell::Names(names) => line.push_str(&names.join(";")),
+            Cell::Text(words) if words.contains([',', '"']) => {
+                *line += &format!("\"{}\"", words.replace('"', "\"\""));
+            }
+            cell => cell.push(line, &[]),
+        }
     }
     line.push('\n');
-}
-
-fn json_line(line: &mut String, case: Option<&str>, row: &Solved) {
-    line.push('{');
-    if let Some(case) = case {
-        let _ = write!(
-            line,
-            "\"{CASE}\":{},",
-            serde_json::Value::from(case.replace("\"\"", "\""))
-        );
-    }
-    let _ = write!(line, "\"{FORMULATION}\":\"{}\"", name(row.formulation));
-    let given = NUMBERS.iter().map(|number| number.name).zip(row.numbers);
-    for (key, number) in given.chain(OUTPUTS.iter().map(|(key, value)| (*key, value(&row.point)))) {
-        let _ = write!(line, ",\"{key}\":");
-        if number.is_finite() {
-            push(line, number);
-        } else {
-            line.push_str("null");
-        }
-    }
-    let flags: Vec<&str> = row.flags.names().collect();
-    let _ = write!(
-        line,
-        ",\"{STATUS}\":\"{}\",\"{FLAGS}\":{}}}",
-        row.point.status.name(),
-        serde_json::Value::from(flags)
-    );
-}
-
-/// A number in the fewest digits that read back to the same; -0 as 0, what is none as `NaN`.
-fn push(line: &mut String, number: f64) {
-    let number = number + 0.0;
-    let plain = (1e-5..1e15).contains(&number.abs()) || number.abs() <= 0.0 || !number.is_finite();
-    let _ = if plain {
-        write!(line, "{number}")
-    } else {
-        write!(line, "{number:e}")
-    };
 }
 
 /// Sends what was kept aside to standard output.

@@ -1,9 +1,14 @@
 //! The columns of belt points: what is read, what is computed, and the line of their names.
 
+use std::sync::LazyLock;
+
 use cvtcycle_config::cycle::problems::{Collector, Complaint, Line};
 use cvtcycle_config::cycle::text::Field;
 use cvtcycle_config::{Bound, near};
-use cvtcycle_model::transmission::cvt::variator::BeltPoint;
+use cvtcycle_output::columns;
+use cvtcycle_output::table::{self, Cell};
+
+use super::model::{Solved, name};
 
 /// A number that a row gives.
 #[derive(Debug)]
@@ -85,51 +90,66 @@ pub const STATUS: &str = "status";
 /// Name of the column of what a point departs from.
 pub const FLAGS: &str = "flags";
 
-/// A computed column: name, and value in the unit of the name.
-type Output = (&'static str, fn(&BeltPoint) -> f64);
+/// A solved point and its `case`.
+pub type Point = (String, Solved);
 
-/// Computed numbers, in the order of the output; [`STATUS`] and [`FLAGS`] follow.
-pub const OUTPUTS: [Output; 31] = [
-    ("primary_radius_m", |p| p.geometry.primary_radius_m),
-    ("secondary_radius_m", |p| p.geometry.secondary_radius_m),
-    ("primary_wrap_rad", |p| p.geometry.primary_wrap_rad),
-    ("secondary_wrap_rad", |p| p.geometry.secondary_wrap_rad),
-    ("strut_length_m", |p| p.geometry.strut_m),
-    ("belt_speed_m_s", |p| p.belt_speed_m_s),
-    ("primary_clamp_n", |p| p.tension.primary_clamp_n),
-    ("secondary_clamp_n", |p| p.tension.secondary_clamp_n),
-    ("primary_shoulder_force_n", |p| p.tension.primary_shoulder_n),
-    ("secondary_shoulder_force_n", |p| {
-        p.tension.secondary_shoulder_n
-    }),
-    ("band_tension_1_n", |p| p.band_tension_n[0]),
-    ("band_tension_2_n", |p| p.band_tension_n[1]),
-    ("band_tension_step_n", |p| p.tension.step_n),
-    ("segment_compression_n", |p| p.tension.compression_n),
-    ("band_1_travel_m_per_rev", |p| p.band_travel_m[0]),
-    ("band_i_travel_m_per_rev", |p| p.band_travel_m[1]),
-    ("band_loss_primary_nm", |p| {
-        p.band_loss_nm[0] + p.film_loss_nm[0]
-    }),
-    ("band_loss_secondary_nm", |p| {
-        p.band_loss_nm[1] + p.film_loss_nm[1]
-    }),
-    ("active_segments", |p| p.active_segments),
-    ("gap_slip_m_s", |p| p.gap_slip_m_s),
-    ("idle_slip_m_s", |p| p.idle_slip_m_s),
-    ("primary_slip_m_s", |p| p.slip_m_s[0]),
-    ("secondary_slip_m_s", |p| p.slip_m_s[1]),
-    ("slip_percent", |p| 100.0 * p.slip_total),
-    ("slip_loss_primary_nm", |p| p.slip_loss_nm[0]),
-    ("slip_loss_secondary_nm", |p| p.slip_loss_nm[1]),
-    ("wedge_loss_primary_nm", |p| p.wedge_loss_nm[0]),
-    ("wedge_loss_secondary_nm", |p| p.wedge_loss_nm[1]),
-    ("penetration_loss_primary_nm", |p| p.penetration_loss_nm[0]),
-    ("penetration_loss_secondary_nm", |p| {
-        p.penetration_loss_nm[1]
-    }),
-    ("belt_loss_nm", |p| p.loss_nm),
-];
+/// Computed columns, in the order of the output.
+pub static OUTPUTS: LazyLock<Vec<table::Column<Point>>> = LazyLock::new(|| {
+    columns! { Point;
+        number "primary_radius_m", "m", "", (_, s) => s.point.geometry.primary_radius_m;
+        number "secondary_radius_m", "m", "", (_, s) => s.point.geometry.secondary_radius_m;
+        number "primary_wrap_rad", "rad", "", (_, s) => s.point.geometry.primary_wrap_rad;
+        number "secondary_wrap_rad", "rad", "", (_, s) => s.point.geometry.secondary_wrap_rad;
+        number "strut_length_m", "m", "", (_, s) => s.point.geometry.strut_m;
+        number "belt_speed_m_s", "m/s", "", (_, s) => s.point.belt_speed_m_s;
+        number "primary_clamp_n", "N", "", (_, s) => s.point.tension.primary_clamp_n;
+        number "secondary_clamp_n", "N", "", (_, s) => s.point.tension.secondary_clamp_n;
+        number "primary_shoulder_force_n", "N", "", (_, s) => s.point.tension.primary_shoulder_n;
+        number "secondary_shoulder_force_n", "N", "", (_, s) => s.point.tension.secondary_shoulder_n;
+        number "band_tension_1_n", "N", "", (_, s) => s.point.band_tension_n[0];
+        number "band_tension_2_n", "N", "", (_, s) => s.point.band_tension_n[1];
+        number "band_tension_step_n", "N", "", (_, s) => s.point.tension.step_n;
+        number "segment_compression_n", "N", "", (_, s) => s.point.tension.compression_n;
+        number "band_1_travel_m_per_rev", "m", "", (_, s) => s.point.band_travel_m[0];
+        number "band_i_travel_m_per_rev", "m", "", (_, s) => s.point.band_travel_m[1];
+        number "band_loss_primary_nm", "Nm", "", (_, s) => s.point.band_loss_nm[0] + s.point.film_loss_nm[0];
+        number "band_loss_secondary_nm", "Nm", "", (_, s) => s.point.band_loss_nm[1] + s.point.film_loss_nm[1];
+        number "active_segments", "", "", (_, s) => s.point.active_segments;
+        number "gap_slip_m_s", "m/s", "", (_, s) => s.point.gap_slip_m_s;
+        number "idle_slip_m_s", "m/s", "", (_, s) => s.point.idle_slip_m_s;
+        number "primary_slip_m_s", "m/s", "", (_, s) => s.point.slip_m_s[0];
+        number "secondary_slip_m_s", "m/s", "", (_, s) => s.point.slip_m_s[1];
+        number "slip_percent", "%", "", (_, s) => 100.0 * s.point.slip_total;
+        number "slip_loss_primary_nm", "Nm", "", (_, s) => s.point.slip_loss_nm[0];
+        number "slip_loss_secondary_nm", "Nm", "", (_, s) => s.point.slip_loss_nm[1];
+        number "wedge_loss_primary_nm", "Nm", "", (_, s) => s.point.wedge_loss_nm[0];
+        number "wedge_loss_secondary_nm", "Nm", "", (_, s) => s.point.wedge_loss_nm[1];
+        number "penetration_loss_primary_nm", "Nm", "", (_, s) => s.point.penetration_loss_nm[0];
+        number "penetration_loss_secondary_nm", "Nm", "", (_, s) => s.point.penetration_loss_nm[1];
+        number "belt_loss_nm", "Nm", "", (_, s) => s.point.loss_nm;
+        text STATUS, "", "", (_, s) => s.point.status.name();
+        words FLAGS, "", "", (_, s) => Cell::Names(s.flags.names().collect());
+    }
+});
+
+/// The columns of the output, in their order: what was read, then [`OUTPUTS`].
+#[must_use]
+pub fn output_columns(with_case: bool) -> Vec<table::Column<Point>> {
+    let mut list = columns! { Point;
+        text CASE, "", "", (case, _) => case.clone();
+        text FORMULATION, "", "", (_, s) => name(s.formulation);
+    };
+    if !with_case {
+        list.remove(0);
+    }
+    list.extend(NUMBERS.iter().enumerate().map(|(k, number)| {
+        table::Column::number(number.name, number.unit, "", move |(_, s): &Point| {
+            s.numbers[k]
+        })
+    }));
+    list.extend(OUTPUTS.iter().cloned());
+    list
+}
 
 /// What a column of the input says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,18 +187,13 @@ impl Column {
 }
 
 fn computed() -> impl Iterator<Item = &'static str> {
-    OUTPUTS.iter().map(|(name, _)| *name).chain([STATUS, FLAGS])
+    OUTPUTS.iter().map(|column| &*column.name)
 }
 
 fn read() -> impl Iterator<Item = &'static str> {
     [CASE, FORMULATION]
         .into_iter()
         .chain(NUMBERS.iter().map(|number| number.name))
-}
-
-/// Names of the columns of the output, in their order.
-pub fn output_names(with_case: bool) -> impl Iterator<Item = &'static str> {
-    read().skip(usize::from(!with_case)).chain(computed())
 }
 
 /// The columns of a file, in its order; `None` for one that is not known.

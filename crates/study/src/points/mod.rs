@@ -8,6 +8,6 @@ mod model;
 mod rows;
 mod table;
 
-pub use columns::{CASE, FLAGS, FORMULATION, NUMBERS, OUTPUTS, STATUS, output_names};
+pub use columns::{NUMBERS, OUTPUTS, Point, output_columns};
 pub use model::{Model, Solved, name};
 pub use table::{Counts, Done, Job, Take, read};

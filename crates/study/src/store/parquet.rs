@@ -127,7 +127,10 @@ fn properties(columns: &[Head], metadata: &[(&str, &str)], first: &Rows) -> Writ
         .iter()
         .map(|(key, value)| KeyValue::new((*key).to_owned(), (*value).to_owned()))
         .collect();
-    pairs.push(KeyValue::new(COLUMNS_KEY.to_owned(), heads(columns)));
+    pairs.push(KeyValue::new(
+        COLUMNS_KEY.to_owned(),
+        json!(columns).to_string(),
+    ));
     let mut builder = WriterProperties::builder()
         .set_created_by(CREATED_BY.to_owned())
         .set_compression(Compression::SNAPPY)
@@ -143,20 +146,6 @@ fn properties(columns: &[Head], metadata: &[(&str, &str)], first: &Rows) -> Writ
         builder = builder.set_column_dictionary_enabled(path, dictionary_helps(values));
     }
     builder.build()
-}
-
-/// Name, unit, meaning and kind of the columns as JSON.
-fn heads(columns: &[Head]) -> String {
-    let head = |column: &Head| json!({ "name": column.name, "unit": column.unit, "doc": column.doc, "kind": kind_word(column.kind) });
-    serde_json::Value::Array(columns.iter().map(head).collect()).to_string()
-}
-
-fn kind_word(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Number => "number",
-        Kind::Count => "count",
-        Kind::Text => "text",
-    }
 }
 
 /// Whether values come again often enough for a dictionary to be shorter and quicker.

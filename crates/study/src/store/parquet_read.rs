@@ -6,19 +6,17 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::checksums::{Sum, sum_of};
+use super::file_problem;
+use super::parquet::{COLUMNS_KEY, io_error};
+use crate::table::{Head, Rows, Values};
+use cvtcycle_config::Problem;
+use cvtcycle_config::bounded::{self, Refused};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
-use serde_json::Value;
-
-use super::checksums::{Sum, sum_of};
-use super::file_problem;
-use super::parquet::{COLUMNS_KEY, io_error};
-use crate::table::{Head, Kind, Rows, Values};
-use cvtcycle_config::Problem;
-use cvtcycle_config::bounded::{self, Refused};
 
 /// What helps with a damaged file.
 pub(super) const MEND: &str =
@@ -45,13 +43,7 @@ impl ParquetFile {
     /// A problem that names the file: it cannot be read, has other bytes than it had, or is no table of this program.
     pub fn open(path: &Path, sum: &Sum) -> Result<Self, Problem> {
         let file = bounded::open_file(path).map_err(|error| unreadable(path, &error))?;
-        if sum_of(&file).map_err(|error| unreadable(path, &error.into()))? != *sum {
-            return Err(file_problem(
-                path,
-                "the file is damaged: its checksum is not that of what was written",
-                MEND,
-            ));
-        }
+        check_sum(path, &file, sum)?;
         Self::open_known(path, file)
     }
 
@@ -253,12 +245,7 @@ fn heads(file: &SerializedFileReader<File>) -> Option<Vec<Head>> {
         .key_value_metadata()?
         .iter()
         .find(|pair| pair.key == COLUMNS_KEY)?;
-    let heads: Value = serde_json::from_str(pair.value.as_ref()?).ok()?;
-    let columns = heads
-        .as_array()?
-        .iter()
-        .map(head)
-        .collect::<Option<Vec<_>>>()?;
+    let columns: Vec<Head> = serde_json::from_str(pair.value.as_ref()?).ok()?;
     let schema = metadata.schema_descr().columns();
     let same = schema.len() == columns.len()
         && schema
@@ -268,20 +255,13 @@ fn heads(file: &SerializedFileReader<File>) -> Option<Vec<Head>> {
     same.then_some(columns)
 }
 
-fn head(head: &Value) -> Option<Head> {
-    let text = |key: &str| head.get(key)?.as_str().map(str::to_owned);
-    let kind = match text("kind")?.as_str() {
-        "number" => Kind::Number,
-        "count" => Kind::Count,
-        "text" => Kind::Text,
-        _ => return None,
-    };
-    Some(Head {
-        name: text("name")?,
-        unit: text("unit")?,
-        doc: text("doc")?,
-        kind,
-    })
+/// Checks that the bytes that are left to read of a file are those that were written.
+pub(super) fn check_sum(path: &Path, file: &File, sum: &Sum) -> Result<(), Problem> {
+    if sum_of(file).map_err(|error| unreadable(path, &error.into()))? == *sum {
+        return Ok(());
+    }
+    let message = "the file is damaged: its checksum is not that of what was written";
+    Err(file_problem(path, message, MEND))
 }
 
 pub(super) fn unreadable(path: &Path, error: &Refused) -> Problem {

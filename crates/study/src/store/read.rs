@@ -12,8 +12,8 @@ use super::checksums::{Checksums, sum_of};
 use super::file_problem;
 use super::layout::Layout;
 use super::names::{self, MANIFEST, PLAN, RESULTS};
-use super::parquet_read::{MEND, ParquetFile, unreadable};
-use crate::table::{Head, Rows, Values};
+use super::parquet_read::{MEND, ParquetFile, check_sum, unreadable};
+use crate::table::{Head, Rows};
 use cvtcycle_config::{Problem, bounded};
 
 /// How far a study has come.
@@ -153,13 +153,7 @@ impl Study {
             let right = right.ok_or_else(|| {
                 file_problem(&path, "the list of checksums of this part is damaged", MEND)
             })?;
-            if sum_of(&file).map_err(|error| unreadable(&path, &error.into()))? != *right {
-                return Err(file_problem(
-                    &path,
-                    "the file is damaged: its checksum is not that of what was written",
-                    MEND,
-                ));
-            }
+            check_sum(&path, &file, right)?;
             known.insert(name);
         }
         drop(known);
@@ -211,24 +205,11 @@ impl Study {
         self.for_each(table, names, |_, part| {
             match &mut all {
                 None => all = Some(part),
-                Some(all) => all
-                    .values
-                    .iter_mut()
-                    .zip(part.values)
-                    .for_each(|(all, part)| append(all, part)),
+                Some(all) => all.append(part),
             }
             Ok(())
         })?;
         Ok(all.unwrap_or_default())
-    }
-}
-
-fn append(all: &mut Values, part: Values) {
-    match (all, part) {
-        (Values::Number(all), Values::Number(part)) => all.extend(part),
-        (Values::Count(all), Values::Count(part)) => all.extend(part),
-        (Values::Text(all), Values::Text(part)) => all.extend(part),
-        _ => debug_assert!(false, "parts of one study have the same columns"),
     }
 }
 
