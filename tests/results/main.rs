@@ -8,5 +8,6 @@ mod fixtures;
 mod history;
 mod outputs;
 mod plots;
+mod record;
 mod report;
 mod validate;

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use cvtcycle::study::design::{Level, MOST_SOBOL_SAMPLES, Role, saltelli_role};
+use cvtcycle::study::design::{Level, MAX_SOBOL_SAMPLES, Role, saltelli_role};
 use cvtcycle::study::plan::{Design, Factor, FactorValue, Plan};
 use proptest::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
@@ -431,7 +431,7 @@ fn lists_are_drawn_evenly() {
 #[test]
 fn shares_lead_to_finite_values() {
     let normal = Normal::standard();
-    for design in drawn(MOST_SOBOL_SAMPLES, 11) {
+    for design in drawn(MAX_SOBOL_SAMPLES, 11) {
         let (low, high) = design.share_span(&factors(&[0, 0]), 1);
         assert!(
             0.0 < low

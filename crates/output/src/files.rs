@@ -112,7 +112,7 @@ impl OutputDir {
             .map(|(name, _)| self.path.join(name))
             .collect();
         let mut written = std::mem::take(&mut self.written);
-        // The mark comes last, so that it never stands for a run of which files are missing.
+        // The mark comes last, so that a directory with missing files never has it.
         written.sort_by_key(|(name, _)| is_mark(name));
         let mut swap = Swap::default();
         for (name, temporary) in written {

@@ -11,9 +11,9 @@ use super::trace::{COLUMNS, TraceColumn, column, loss_column};
 use super::{Component, Flags, Row};
 
 /// Most steps of a trace that is read: as many as a cycle may have rows, 23 days at 1 s. Some 500 bytes of memory each.
-pub const MOST_STEPS: usize = 2_000_000;
+pub const MAX_STEPS: usize = 2_000_000;
 /// Most phases, as of a cycle.
-const MOST_PHASES: usize = 200;
+const MAX_PHASES: usize = 200;
 /// What helps with a trace that is too long.
 pub const SHORTER: &str = "run it again with a larger --dt, or a part of the cycle";
 

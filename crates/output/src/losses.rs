@@ -11,7 +11,7 @@ use cvtcycle_model::drive::components;
 use cvtcycle_model::transmission::Transmission;
 
 /// Most points of a grid.
-pub const MOST_POINTS: usize = 1_000_000;
+pub const MAX_POINTS: usize = 1_000_000;
 
 /// What a grid can vary, outermost first: the last one runs fastest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

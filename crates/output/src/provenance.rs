@@ -19,7 +19,7 @@ use cvtcycle_model::transmission::cvt::controller::RatioDemand;
 const RPM: f64 = 30.0 / PI;
 /// Speed up to which lines of the variogram are drawn, km/h.
 const FASTEST_KMH: f64 = 200.0;
-/// Shares of rated power for which targets of a ratio control are told, with their names.
+/// Shares of rated power of the listed targets of a ratio control, with their names.
 const TARGETS: [(f64, &str); 4] = [
     (-0.05, "target in overrun"),
     (0.10, "target, 10 % of rated power"),
@@ -130,7 +130,7 @@ fn equal(a: &KeyInfo, b: &KeyInfo) -> bool {
     }
 }
 
-/// Values that are other ones, or that only one of both has. What the user has set stands first.
+/// Values that differ, or that only one of both has; values set by the user first.
 fn changes(shipped: &[KeyInfo], here: &[KeyInfo]) -> Vec<Change> {
     let find = |list: &[KeyInfo], key: &str| list.iter().find(|info| info.key == key).cloned();
     let mut list: Vec<(bool, Change)> = Vec::new();
@@ -253,87 +253,4 @@ fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
         coupled: true,
         dt_s: 1.0,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn record_of(word: &str, set: &[&str], lubricant: Option<&str>) -> CarRecord {
-        let set = set.iter().map(|s| (*s).to_owned()).collect();
-        let options = Options {
-            set,
-            lubricant: lubricant.map(str::to_owned),
-            ..Options::default()
-        };
-        let setup = load(word, "--vehicle", &options).unwrap_or_else(|p| unreachable!("{p:?}"));
-        car_record("car", word, &options, &setup).unwrap_or_else(|p| unreachable!("{p:?}"))
-    }
-
-    #[test]
-    fn a_shipped_car_differs_from_itself_in_nothing() {
-        for (name, text) in embedded_vehicles() {
-            let record = record_of(name, &[], None);
-            assert_eq!(
-                (record.reference.as_str(), record.changes.len()),
-                (*name, 0)
-            );
-            assert_eq!(record.reference_values.0, record.reference_values.1);
-            assert_eq!(record.vehicle.sha256, hash(text.as_bytes()));
-        }
-    }
-
-    #[test]
-    fn what_was_set_is_told_first_and_another_oil_in_full() {
-        let key = "transmission.cvt.belt.band_offset_mm";
-        let record = record_of(
-            "rover_216_cvt",
-            &[&format!("{key}=3.25"), "lubricant.density15_kg_m3=900"],
-            Some("dexron_ii"),
-        );
-        assert_eq!(
-            (
-                record.changes[0].key.as_str(),
-                record.changes[0].here.as_str(),
-                record.changes[0].unit.as_str()
-            ),
-            (key, "3.25", "mm")
-        );
-        assert!(!record.changes[0].shipped.is_empty());
-        assert_eq!(record.changes[1].key, "lubricant.density15_kg_m3");
-        assert!(
-            record
-                .changes
-                .iter()
-                .any(|c| c.key.starts_with("lubricant.") && c.key.contains("kv")),
-            "{:?}",
-            record.changes
-        );
-        assert!(record.lubricant.file.contains("dexron_ii"));
-    }
-
-    /// Lines from rest, each as steep as its ratio: between both limits lies the span of the file's belt ratios.
-    #[test]
-    fn lines_of_the_variogram_are_those_of_the_ratios() {
-        let record = record_of("rover_216_cvt", &[], None);
-        let lines = &record.speed_lines;
-        assert_eq!(
-            (lines[0].name.as_str(), lines[1].name.as_str(), lines.len()),
-            ("lowest ratio", "highest ratio", 6)
-        );
-        let number = |end: &str| {
-            let value = record
-                .values
-                .iter()
-                .find(|v| v.key.ends_with(end))
-                .map(|v| v.value.parse::<f64>());
-            value
-                .unwrap_or_else(|| unreachable!("{end}"))
-                .unwrap_or_else(|e| unreachable!("{e}"))
-        };
-        let slope = |line: &SpeedLine| line.points[1].1 / line.points[1].0;
-        let span = number(".ratio.low") / number(".ratio.high");
-        assert!((slope(&lines[0]) / slope(&lines[1]) / span - 1.0).abs() < 1e-12);
-        assert_eq!(record_of("rover_216_5mt", &[], None).speed_lines.len(), 5);
-    }
 }

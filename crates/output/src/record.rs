@@ -158,21 +158,3 @@ impl Effect {
             .fold(f64::NAN, |a, b| if a > b { a } else { b })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_size_of_an_effect_is_that_of_its_larger_side() {
-        let effect = |lowered_percent, raised_percent| Effect {
-            car: String::new(),
-            key: String::new(),
-            lowered_percent,
-            raised_percent,
-        };
-        assert!((effect(Some(-0.4), Some(0.3)).size_percent() - 0.4).abs() < 1e-15);
-        assert!((effect(None, Some(0.3)).size_percent() - 0.3).abs() < 1e-15);
-        assert!(effect(None, None).size_percent().is_nan());
-    }
-}

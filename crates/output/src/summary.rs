@@ -216,7 +216,7 @@ pub struct Driven<'a> {
 }
 
 impl RunSummary {
-    /// Fuel that stands for the car: weighted where the cycle is.
+    /// Headline fuel of the car: weighted where the cycle is.
     #[must_use]
     pub fn headline_fuel(&self) -> Option<f64> {
         self.weighted_fuel_l_per_100km.or(self.fuel_l_per_100km)

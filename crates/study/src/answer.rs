@@ -222,7 +222,7 @@ fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
 }
 
 /// Points from which rank correlations are computed at most: more would cost memory and tell nothing that can be seen.
-const MOST_RANKED: usize = 1 << 16;
+const MAX_RANKED: usize = 1 << 16;
 
 /// The values of a factor at the first points, as the design has them. They need no table: a design is a function of the point.
 fn values(
@@ -291,7 +291,7 @@ fn output(
             let (levels, drawn): (Vec<usize>, Vec<usize>) =
                 (0..plan.factors.len()).partition(as_words);
             if !drawn.is_empty() {
-                let points = numbers_of.len().min(MOST_RANKED);
+                let points = numbers_of.len().min(MAX_RANKED);
                 let columns: Vec<Vec<f64>> =
                     drawn.iter().map(|&f| numbers(frame, f, points)).collect();
                 let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();

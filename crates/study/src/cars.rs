@@ -9,7 +9,7 @@ use cvtcycle_config::{Problem, Problems};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Largest number of combinations of words of a car: each keeps its documents in memory.
-pub const MOST_VARIANTS: usize = 4096;
+pub const MAX_VARIANTS: usize = 4096;
 /// What a hint for the command line goes on with.
 const ABOUT_SET: &str = "; --set reaches";
 
@@ -63,7 +63,7 @@ impl StudyCar {
     /// A car of the plan.
     ///
     /// # Errors
-    /// A problem at the factor with which the words have more than [`MOST_VARIANTS`] combinations.
+    /// A problem at the factor with which the words have more than [`MAX_VARIANTS`] combinations.
     pub(super) fn new(name: &str, word: &str, subject: bool, plan: &Plan) -> Result<Self, Problem> {
         let mut stride = 1_usize;
         let mut bindings = Vec::with_capacity(plan.factors.len());
@@ -72,7 +72,7 @@ impl StudyCar {
             if matches!(bindings.last(), Some(Binding::Words { .. })) {
                 stride = stride.saturating_mul(words(factor).len() + 1);
             }
-            if stride > MOST_VARIANTS {
+            if stride > MAX_VARIANTS {
                 return Err(too_many(factor));
             }
         }
@@ -259,7 +259,7 @@ fn too_many(factor: &Factor) -> Problem {
     .at(factor.place.clone())
     .key(factor.key.clone())
     .allowed(format!(
-        "at most {MOST_VARIANTS} combinations of words of one car"
+        "at most {MAX_VARIANTS} combinations of words of one car"
     ))
     .hint("give fewer words, or split the plan")
 }

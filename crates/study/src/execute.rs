@@ -18,13 +18,13 @@ use cvtcycle_config::Problem;
 
 /// Least number of points that a thread takes at a time, and the number of such takings that a larger part is divided into. What comes out
 /// does not depend on them.
-const LEAST_CHUNK: u64 = 2;
+const MIN_CHUNK: u64 = 2;
 const CHUNKS: u64 = 64;
 /// Most points of a part, and the number of parts that a small study is divided into at least.
-const MOST_POINTS: u64 = 4096;
+const MAX_POINTS: u64 = 4096;
 const PARTS: u64 = 32;
 /// Most rows of traces in a part.
-const MOST_TRACE_ROWS: u64 = 50_000;
+const MAX_TRACE_ROWS: u64 = 50_000;
 
 /// Where whole parts go: in no certain order, and several at once.
 pub trait PartWriter: Sync {
@@ -48,12 +48,12 @@ impl Study {
     /// Number of points in a part; the last part may have fewer.
     #[must_use]
     pub fn points_per_part(&self) -> u64 {
-        let small = self.points.div_ceil(PARTS).clamp(1, MOST_POINTS);
+        let small = self.points.div_ceil(PARTS).clamp(1, MAX_POINTS);
         if self.traces.is_empty() {
             return small;
         }
         let per_point = self.trace_rows_per_point().max(1);
-        small.min((MOST_TRACE_ROWS / per_point).max(1))
+        small.min((MAX_TRACE_ROWS / per_point).max(1))
     }
 
     /// Number of parts.
@@ -101,7 +101,7 @@ impl Study {
             pieces: BTreeMap::new(),
             spare: Vec::new(),
         };
-        let chunk = (self.points_per_part() / CHUNKS).max(LEAST_CHUNK);
+        let chunk = (self.points_per_part() / CHUNKS).max(MIN_CHUNK);
         let desk = Desk {
             study: self,
             trace_rows: self.trace_rows_per_point(),

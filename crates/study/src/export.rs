@@ -42,7 +42,7 @@ impl Format {
         ("xlsx", Format::Xlsx),
     ];
 
-    /// The format that the ending of a file's name asks for.
+    /// The format of the ending of a file's name.
     ///
     /// # Errors
     /// A problem of `--out` that names the endings.
@@ -225,7 +225,7 @@ fn check_size(path: &Path, rows: u64, columns: usize) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Whether a letter beyond ASCII stands in a head or a cell.
+/// True if a head or a cell has a letter beyond ASCII.
 fn beyond_ascii(study: &Study, table: &str, heads: &[Head]) -> Result<bool, Problem> {
     if !heads
         .iter()

@@ -4,7 +4,7 @@
 //! each, one row of the table each. What a point is follows from the plan, the seed and its index alone, so that points can be computed in
 //! any order, on any number of threads, and again after an interruption.
 //!
-//! | module | what stands there |
+//! | module | contents |
 //! |---|---|
 //! | `plan` | a TOML file to a plan: cars, factors, design |
 //! | `design` | from the index of a point to a level of each factor |

@@ -324,7 +324,7 @@ fn status(summary: &RunSummary) -> Status {
     if reasons.is_empty() {
         return Status::Ok;
     }
-    let told = reasons
+    let described = reasons
         .iter()
         .map(|name| match (name.as_str(), &summary.worst_deficit) {
             ("missed_trace", Some(worst)) => format!(
@@ -339,12 +339,12 @@ fn status(summary: &RunSummary) -> Status {
                 None => name.to_owned(),
             },
         });
-    Status::Failed(told.collect::<Vec<_>>().join("; "))
+    Status::Failed(described.collect::<Vec<_>>().join("; "))
 }
 
 /// Problems in one line.
 fn reason(problems: &[Problem]) -> String {
-    let told = problems.iter().map(|problem| {
+    let messages = problems.iter().map(|problem| {
         let allowed = if problem.allowed.is_empty() {
             String::new()
         } else {
@@ -352,7 +352,7 @@ fn reason(problems: &[Problem]) -> String {
         };
         format!("{}{allowed}", problem.message)
     });
-    let text = told.collect::<Vec<_>>().join("; ");
+    let text = messages.collect::<Vec<_>>().join("; ");
     text.replace(['\n', '\r'], " ")
 }
 

@@ -287,7 +287,7 @@ fn cycles(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<Cycle> {
                     .filter(|_| k > 0)
                     .map(|factor| factor.places.nth("values", k - 1).clone());
                 let place = place.unwrap_or_else(|| of_plan(plan, "cycle", "", "").place);
-                // What is wrong within a file stands there, with a line or without.
+                // A problem within a file keeps its place there, with a line or without.
                 problems.extend(found.into_iter().map(|problem| {
                     match problem.place.file.as_str() {
                         "cycle" if is_path(&word) => problem

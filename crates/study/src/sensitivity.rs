@@ -100,7 +100,7 @@ fn changed(key: &str, value: f64, sign: f64) -> f64 {
     }
 }
 
-/// Fuel that stands for the car, L/100 km.
+/// Headline fuel of the car, L/100 km.
 fn fuel(setup: &Setup, cycle: &Cycle, conditions: &Conditions) -> Option<f64> {
     let outcome = drive(setup, cycle, conditions);
     let driven = Driven {

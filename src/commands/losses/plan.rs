@@ -7,7 +7,7 @@ use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::loss_table::MapPart;
-use cvtcycle::output::losses::{Axis, LossGrid, LossRow, MOST_POINTS, columns};
+use cvtcycle::output::losses::{Axis, LossGrid, LossRow, MAX_POINTS, columns};
 use cvtcycle::output::table::Column;
 
 use super::Args;
@@ -99,7 +99,7 @@ pub fn plan(args: &Args) -> Result<Plan, Problems> {
     if let (Some(part), Some(setup)) = (map, &setup) {
         map_limits(args, part, setup, &grid, &mut problems);
     }
-    if grid.size() > MOST_POINTS as f64 {
+    if grid.size() > MAX_POINTS as f64 {
         problems.add(too_many(&grid));
     }
     let out = args
@@ -346,5 +346,5 @@ fn too_many(grid: &LossGrid) -> Problem {
             counts.join(", ")
         ),
     )
-    .allowed(format!("at most {MOST_POINTS} points"))
+    .allowed(format!("at most {MAX_POINTS} points"))
 }

@@ -1,6 +1,6 @@
 //! A `trace_*.csv` of this program back to a history.
 
-use super::{History, MOST_PHASES, MOST_STEPS, SHORTER, flags_of, is_number, known, missing};
+use super::{History, MAX_PHASES, MAX_STEPS, SHORTER, flags_of, is_number, known, missing};
 use crate::Flags;
 use crate::trace::column;
 use cvtcycle_config::Problems;
@@ -143,11 +143,11 @@ fn rows<'t>(
     let mut before_s = f64::NAN;
     let mut numbers = vec![f64::NAN; header.numbers];
     for line in lines {
-        if history.len() == MOST_STEPS {
+        if history.len() == MAX_STEPS {
             problems.line(line, "", || {
                 Complaint::new(
                     "the trace has too many steps",
-                    format!("up to {MOST_STEPS}"),
+                    format!("up to {MAX_STEPS}"),
                     SHORTER,
                 )
             });
@@ -191,10 +191,10 @@ fn rows<'t>(
 /// What is wrong where nearly every step has a phase of its own.
 pub fn too_many_phases(history: &History) -> Option<Complaint> {
     let message = "there are too many phases";
-    (history.phases().len() > MOST_PHASES).then(|| {
+    (history.phases().len() > MAX_PHASES).then(|| {
         Complaint::new(
             message,
-            format!("up to {MOST_PHASES} different names"),
+            format!("up to {MAX_PHASES} different names"),
             AGAIN,
         )
     })

@@ -15,7 +15,7 @@ mod draw;
 use super::plan::{Design, Factor, FactorValues};
 use draw::{Purpose, mix, permute, uniform};
 
-/// Where a factor stands at a point.
+/// Position of a factor at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Level {
     /// Not varied: the value of the car's file.
@@ -38,10 +38,10 @@ pub enum Role {
 }
 
 /// Most samples of a Sobol sequence: the length of the tables behind it.
-pub const MOST_SOBOL_SAMPLES: u64 = 1 << 16;
+pub const MAX_SOBOL_SAMPLES: u64 = 1 << 16;
 
 /// Most dimensions of a Sobol sequence; Saltelli's design needs two a factor.
-pub const MOST_SOBOL_DIMENSIONS: usize = sobol_burley::NUM_DIMENSIONS as usize;
+pub const MAX_SOBOL_DIMENSIONS: usize = sobol_burley::NUM_DIMENSIONS as usize;
 
 /// Half of the resolution of the Sobol sequence (DE-7).
 const HALF_STEP: f64 = 1.0 / (1_u64 << 24) as f64;
@@ -82,10 +82,10 @@ impl Design {
         }
     }
 
-    /// Where one factor stands at a point below [`Design::points`].
+    /// Position of one factor at a point below [`Design::points`].
     ///
     /// # Panics
-    /// In a Sobol design if the factor's dimension is beyond [`MOST_SOBOL_DIMENSIONS`], which no plan that was read has.
+    /// In a Sobol design if the factor's dimension is beyond [`MAX_SOBOL_DIMENSIONS`], which no plan that was read has.
     #[must_use]
     pub fn level(&self, factors: &[Factor], point: u64, factor: usize) -> Level {
         let column = factor as u64;
@@ -224,7 +224,7 @@ fn sobol(sample: u64, dimension: usize, seed: u64) -> f64 {
     // The crate's seeds have 32 bits; its index 16.
     let seed = mix(seed, Purpose::Sobol, 0, 0) as u32;
     f64::from(sobol_burley::sample(
-        (sample % MOST_SOBOL_SAMPLES) as u32,
+        (sample % MAX_SOBOL_SAMPLES) as u32,
         dimension as u32,
         seed,
     )) + HALF_STEP // DE-7

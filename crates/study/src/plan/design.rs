@@ -1,7 +1,7 @@
 //! The design of a plan, and what concerns all its factors at once.
 
 use super::{Cars, Design, Factor, FactorValues, Places, Plan, options};
-use crate::design::{MOST_SOBOL_DIMENSIONS, MOST_SOBOL_SAMPLES};
+use crate::design::{MAX_SOBOL_DIMENSIONS, MAX_SOBOL_SAMPLES};
 use cvtcycle_config::{Bound, Problem, Problems, Section, readable, unit_of};
 
 /// Designs.
@@ -14,7 +14,7 @@ const DESIGNS: [&str; 6] = [
     "saltelli",
 ];
 /// Most samples of a design without a limit of its own.
-const MOST_SAMPLES: u64 = 1_000_000_000;
+const MAX_SAMPLES: u64 = 1_000_000_000;
 
 impl Design {
     /// Numbers of samples that it may have; none for a design without samples.
@@ -22,8 +22,8 @@ impl Design {
     pub fn sample_range(&self) -> Option<std::ops::RangeInclusive<u64>> {
         match self {
             Design::Grid | Design::OneAtATime { .. } => None,
-            Design::LatinHypercube { .. } | Design::MonteCarlo { .. } => Some(2..=MOST_SAMPLES),
-            Design::Sobol { .. } | Design::Saltelli { .. } => Some(2..=MOST_SOBOL_SAMPLES),
+            Design::LatinHypercube { .. } | Design::MonteCarlo { .. } => Some(2..=MAX_SAMPLES),
+            Design::Sobol { .. } | Design::Saltelli { .. } => Some(2..=MAX_SOBOL_SAMPLES),
         }
     }
 }
@@ -48,7 +48,7 @@ pub(super) fn read(study: &Section, places: &mut Places) -> Design {
     places.add_given(&d, "samples", "design.samples");
     let count = d.number(
         "samples",
-        Bound::closed(2.0, MOST_SAMPLES as f64),
+        Bound::closed(2.0, MAX_SAMPLES as f64),
         "number of samples",
     );
     let samples = count as u64;
@@ -60,7 +60,7 @@ pub(super) fn read(study: &Section, places: &mut Places) -> Design {
             "",
         );
     }
-    if matches!(name, "sobol" | "saltelli") && samples > MOST_SOBOL_SAMPLES {
+    if matches!(name, "sobol" | "saltelli") && samples > MAX_SOBOL_SAMPLES {
         let hint = if name == "sobol" {
             "use latin_hypercube for more"
         } else {
@@ -68,7 +68,7 @@ pub(super) fn read(study: &Section, places: &mut Places) -> Design {
         };
         d.complain(
             "samples",
-            &format!("2 to {MOST_SOBOL_SAMPLES}"),
+            &format!("2 to {MAX_SOBOL_SAMPLES}"),
             "the Sobol sequence is not that long",
             hint,
         );
@@ -153,8 +153,8 @@ pub(super) fn limits(design: &Design, number: usize, read: &[Factor], places: &P
         Design::Saltelli { .. } => 2 * number,
         _ => 0,
     };
-    if dimensions > MOST_SOBOL_DIMENSIONS {
-        let most = MOST_SOBOL_DIMENSIONS * number / dimensions;
+    if dimensions > MAX_SOBOL_DIMENSIONS {
+        let most = MAX_SOBOL_DIMENSIONS * number / dimensions;
         add(
             at(),
             "study.design",

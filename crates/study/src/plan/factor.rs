@@ -75,11 +75,11 @@ pub(super) fn read(document: &Document) -> Result<Factor, Problems> {
     reader
         .finish()
         .map(|_| factor)
-        .map_err(|problems| told(problems, document))
+        .map_err(|problems| of_factor(problems, document))
 }
 
 /// Problems under the name of their factor, and without words that fit the top of a file only.
-fn told(problems: Problems, document: &Document) -> Problems {
+fn of_factor(problems: Problems, document: &Document) -> Problems {
     let reader = Reader::new(document);
     let key = reader
         .root()
@@ -91,14 +91,15 @@ fn told(problems: Problems, document: &Document) -> Problems {
         p.message.starts_with("unknown") && values::WAYS.iter().any(|way| p.hint.contains(way))
     };
     let mistyped = problems.iter().any(meant);
-    let told = problems
+    let shown = problems
         .into_iter()
         .filter(|p| !(mistyped && p.message == values::NONE));
-    told.map(|p| {
-        let hint = p.hint.replace("the top of the file", "its [[factor]]");
-        p.with_context(&of).hint(hint)
-    })
-    .collect()
+    shown
+        .map(|p| {
+            let hint = p.hint.replace("the top of the file", "its [[factor]]");
+            p.with_context(&of).hint(hint)
+        })
+        .collect()
 }
 
 fn key(s: &Section) -> String {

@@ -1,6 +1,6 @@
 //! What a study is to do, read from a TOML file and checked.
 //!
-//! | file | what stands there |
+//! | file | contents |
 //! |---|---|
 //! | `read` | the head of a plan, and all its parts together |
 //! | `factor`, `values` | one `[[factor]]` and its list, range or distribution |
@@ -103,7 +103,7 @@ pub struct Factor {
     pub status: String,
     /// Reason or reference for them.
     pub source: String,
-    /// Where its key stands in the plan.
+    /// Place of its key in the plan.
     pub place: Place,
     /// Where its values stand: `values` and its items, `range`, `distribution` and `distribution.low` or the like.
     pub places: Places,

@@ -1,4 +1,4 @@
-//! Where the parts of a plan stand, for whoever finds out later that one of them is wrong.
+//! Places of the parts of a plan, for problems that are found later.
 
 use cvtcycle_config::{Place, Section};
 
@@ -10,7 +10,7 @@ pub struct Places {
 }
 
 impl Places {
-    /// Those of a table that stands at `whole`.
+    /// Those of a table at `whole`.
     #[must_use]
     pub fn new(whole: Place) -> Self {
         Places {
@@ -19,13 +19,13 @@ impl Places {
         }
     }
 
-    /// Where a key's value stands, such as `design`, `values` or `distribution.low`; the table itself where the key is not given.
+    /// Place of a key's value, such as `design`, `values` or `distribution.low`; the table itself where the key is not given.
     #[must_use]
     pub fn of(&self, key: &str) -> &Place {
         self.find(key).unwrap_or(&self.whole)
     }
 
-    /// Where an item of a list stands, counted from 0; the whole value where it is no list, such as a range.
+    /// Place of an item of a list, counted from 0; the whole value where it is no list, such as a range.
     #[must_use]
     pub fn nth(&self, key: &str, item: usize) -> &Place {
         self.find(&item_name(key, item))

@@ -6,7 +6,7 @@ use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_output::trace::COLUMNS;
 
 /// Runs above which the user has to agree, unless the plan says otherwise.
-const MOST_RUNS: i64 = 100_000;
+const MAX_RUNS: i64 = 100_000;
 
 /// Reads a plan.
 pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Problems> {
@@ -73,7 +73,7 @@ fn head(document: &Document, file: &str, text: &str) -> (Plan, Problems) {
             .integer_or(
                 "most_runs",
                 1..=i64::MAX,
-                MOST_RUNS,
+                MAX_RUNS,
                 "number of runs above which --yes is needed",
             )
             .unsigned_abs(),
@@ -264,7 +264,7 @@ fn columns(whole: &Written, items: &[Written], what: &str) -> Vec<String> {
         } else if found.iter().any(|other| other == word) {
             item.complain(
                 "",
-                &format!("`{word}` stands twice in `study.keep`"),
+                &format!("`{word}` is listed twice in `study.keep`"),
                 "remove one",
             );
         } else {
@@ -291,7 +291,7 @@ fn analyse(s: &Section, places: &mut Places) -> Vec<String> {
             Some(word) if found.iter().any(|other| other == word) => {
                 item.complain(
                     "",
-                    &format!("`{word}` stands twice in `study.analyse`"),
+                    &format!("`{word}` is listed twice in `study.analyse`"),
                     "remove one",
                 );
             }

@@ -19,11 +19,11 @@ const DISTRIBUTIONS: [&str; 5] = [
     "lognormal",
 ];
 /// Most values of a range.
-const MOST_IN_RANGE: i64 = 10_000;
+const MAX_IN_RANGE: i64 = 10_000;
 /// Least share of a normal distribution that has to lie between the ends at which it is cut off.
-const LEAST_LEFT: f64 = 0.01;
+const MIN_LEFT: f64 = 0.01;
 /// Least standard deviation over the mean: below it the draws hardly differ as they are stored.
-const LEAST_SPREAD: f64 = 1e-9;
+const MIN_SPREAD: f64 = 1e-9;
 
 /// Whose values they are.
 #[derive(Clone, Copy)]
@@ -128,7 +128,7 @@ fn list(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
         if values[..k].contains(value) {
             items[k].complain(
                 "",
-                &format!("`{value}` stands twice in `values`"),
+                &format!("`{value}` is listed twice in `values`"),
                 "remove one",
             );
             return None;
@@ -196,7 +196,7 @@ fn range(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
     );
     let count = table.integer_or(
         "count",
-        2..=MOST_IN_RANGE,
+        2..=MAX_IN_RANGE,
         2,
         "number of values, with both ends",
     );
@@ -212,10 +212,10 @@ fn range(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
     }
     let numbers = match (count, step) {
         (Some(count), None) => evenly(from, to, count),
-        (None, Some(step)) if (to - from) / step >= MOST_IN_RANGE as f64 => {
+        (None, Some(step)) if (to - from) / step >= MAX_IN_RANGE as f64 => {
             table.complain(
                 "step",
-                &format!("up to {MOST_IN_RANGE} values"),
+                &format!("up to {MAX_IN_RANGE} values"),
                 "the range has too many values",
                 "take a larger step",
             );
@@ -245,7 +245,7 @@ fn range(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
         table.complain(
             "to",
             "",
-            "the values lie too near to each other to be told apart",
+            "the values lie too close to each other",
             "widen the range, or take fewer values",
         );
         return None;
@@ -364,7 +364,7 @@ fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
                 return false;
             }
             let left = mass((low - mean) / sd, (high - mean) / sd);
-            if left < LEAST_LEFT {
+            if left < MIN_LEFT {
                 let message = format!(
                     "only {:.2} % of the normal distribution lie between `low` and `high`",
                     100.0 * left
@@ -376,7 +376,7 @@ fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
                     "move the mean, or use uniform or triangular",
                 );
             }
-            left >= LEAST_LEFT
+            left >= MIN_LEFT
         }
         Distribution::Uniform { low, high } => ends(t, low, high),
         Distribution::Triangular { low, mode, high } => {
@@ -399,16 +399,16 @@ fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
 }
 
 fn not_too_narrow(t: &Section, mean: f64, sd: f64) -> bool {
-    if sd < LEAST_SPREAD * mean.abs() {
+    if sd < MIN_SPREAD * mean.abs() {
         let message = "the standard deviation is so small that nothing varies";
         t.complain(
             "sd",
-            &format!("at least {:e}", LEAST_SPREAD * mean.abs()),
+            &format!("at least {:e}", MIN_SPREAD * mean.abs()),
             message,
             "",
         );
     }
-    sd >= LEAST_SPREAD * mean.abs()
+    sd >= MIN_SPREAD * mean.abs()
 }
 
 fn ends(t: &Section, low: f64, high: f64) -> bool {

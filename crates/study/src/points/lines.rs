@@ -5,7 +5,7 @@ use std::io::{BufRead, Read};
 use cvtcycle_config::cycle::problems::{Complaint, Line};
 
 /// Longer is no row of a table.
-const LONGEST_LINE: u64 = 1 << 20;
+const MAX_LINE_LEN: u64 = 1 << 20;
 
 /// What stands in a file's way of being read on.
 #[derive(Debug)]
@@ -62,7 +62,7 @@ impl<R: BufRead> Lines<R> {
         let read = self
             .reader
             .by_ref()
-            .take(LONGEST_LINE)
+            .take(MAX_LINE_LEN)
             .read_until(b'\n', &mut self.buffer);
         let count = read.map_err(|error| {
             Complaint::new(
@@ -96,7 +96,7 @@ impl<R: BufRead> Lines<R> {
         }
         match self.buffer.pop_if(|byte| *byte == b'\n') {
             Some(_) => drop(self.buffer.pop_if(|byte| *byte == b'\r')),
-            None if self.buffer.len() as u64 >= LONGEST_LINE => {
+            None if self.buffer.len() as u64 >= MAX_LINE_LEN => {
                 let message = format!("line {} is too long for a row of a table", self.number);
                 return Err(Complaint::new(
                     message,

@@ -156,7 +156,7 @@ pub fn quantile_of_sorted(sorted: &[f64], p: f64) -> f64 {
 pub struct Share {
     /// Number of cases in which it holds.
     pub k: usize,
-    /// Number of cases in which it can be told.
+    /// Number of cases in which it is known.
     pub n: usize,
     /// Number of cases in which it cannot, for there is no value.
     pub missing: usize,

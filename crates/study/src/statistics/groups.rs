@@ -82,8 +82,8 @@ pub fn group_means<S: AsRef<str>>(levels: &[S], output: &[f64]) -> Groups {
     };
     let groups: Vec<Group> = names.iter().zip(&rows).map(group).collect();
     let all = Moments::of(rows.iter().flatten().copied());
-    let told = || groups.iter().filter(|g| g.n > 0);
-    let between: f64 = told()
+    let filled = || groups.iter().filter(|g| g.n > 0);
+    let between: f64 = filled()
         .map(|g| g.n as f64 * (g.mean - all.mean).powi(2))
         .sum();
     let within = all.sd.powi(2) * (all.n as f64 - 1.0);
@@ -93,10 +93,10 @@ pub fn group_means<S: AsRef<str>>(levels: &[S], output: &[f64]) -> Groups {
     } else {
         f64::NAN
     }; // GR-1
-    let (low, high) = told().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), g| {
+    let (low, high) = filled().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), g| {
         (g.mean.min(l), g.mean.max(h))
     });
-    let range = if told().count() > 1 {
+    let range = if filled().count() > 1 {
         high - low
     } else {
         f64::NAN

@@ -48,7 +48,7 @@ pub(super) fn quantile_ranks(n: usize, p: f64) -> [Option<usize>; 2] {
     let Ok(below) = Binomial::new(p, n as u64) else {
         return [None; 2];
     };
-    // `inverse_cdf(q)` is the least x with P(K <= x) >= q: IV-3 asks for l = x at 0.025 and u = x + 1 at 0.975, counted from 1.
+    // `inverse_cdf(q)` is the least x with P(K <= x) >= q: IV-3 needs l = x at 0.025 and u = x + 1 at 0.975, counted from 1.
     let (lower, upper) = (
         below.inverse_cdf(TAIL) as usize,
         below.inverse_cdf(1.0 - TAIL) as usize,

@@ -1,6 +1,6 @@
 //! Statistics of studies: pure functions on columns of outputs.
 //!
-//! A value that is not finite means that there is none: it is left out *and counted*. Every interval is one of 95 %. What cannot be told
+//! A value that is not finite means that there is none: it is left out *and counted*. Every interval is one of 95 %. What does not follow
 //! from the data (the spread of one value, the indices of a constant) is NaN, and `None` where an interval is meant; JSON shows both as
 //! `null`. Nothing here depends on the number of threads.
 

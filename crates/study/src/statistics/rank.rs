@@ -8,7 +8,7 @@
 //! | RK-4 | interval of b: b_i -+ t(n - d - 1) sqrt((1 - R2) (R^-1)_ii / (n - d - 1)) | source: linear least squares; for ranks an approximation, ASSUMED good enough |
 //!
 //! A row in which the output or any factor is missing is left out whole and counted. A factor that does not vary has neither coefficient and
-//! takes no part in the regression; where factors follow from each other (one inflates another's variance beyond 1e8) nobody has an RK-3.
+//! takes no part in the regression; where factors follow from each other (one inflates another's variance beyond 1e8) no factor has an RK-3.
 //! Of a Saltelli design only the rows of A and B may go in. Both coefficients see what rises or falls throughout; R2 says how much of the
 //! ranks of the output they explain. Where it is low, ask for Sobol indices.
 
@@ -19,8 +19,8 @@ use serde::Serialize;
 use super::Estimate;
 use super::intervals::{NORMAL_975, student_975};
 
-/// Largest inflation of a variance up to which factors are independent enough to be told apart.
-const MOST_INFLATION: f64 = 1e8;
+/// Largest inflation of a variance up to which factors are counted as independent.
+const MAX_INFLATION: f64 = 1e8;
 
 /// One factor against an output.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -53,9 +53,9 @@ pub fn rank_sensitivity(factors: &[&[f64]], output: &[f64]) -> RankSensitivity {
         .max()
         .unwrap_or(0)
         .max(output.len());
-    let told = |column: &[f64], i: usize| column.get(i).is_some_and(|x| x.is_finite());
+    let is_known = |column: &[f64], i: usize| column.get(i).is_some_and(|x| x.is_finite());
     let kept: Vec<usize> = (0..all)
-        .filter(|&i| told(output, i) && factors.iter().all(|x| told(x, i)))
+        .filter(|&i| is_known(output, i) && factors.iter().all(|x| is_known(x, i)))
         .collect();
     let n = kept.len();
     let standard =
@@ -133,7 +133,7 @@ fn regression(x: &[&Vec<f64>], rho: &DVector<f64>, n: usize) -> Option<(f64, Vec
     if !inverse
         .diagonal()
         .iter()
-        .all(|inflation| *inflation <= MOST_INFLATION)
+        .all(|inflation| *inflation <= MAX_INFLATION)
     {
         return None;
     }

@@ -200,7 +200,7 @@ impl Table {
         }
     }
 
-    /// How often each sample stands in a resample.
+    /// Number of times that each sample occurs in a resample.
     fn draw(&self, seed: u64, resample: usize) -> Vec<u32> {
         // Every resample has its own generator, so that no thread's draws depend on another's. The factor spreads the seeds out.
         let mut random =

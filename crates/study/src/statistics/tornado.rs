@@ -75,16 +75,16 @@ fn bar(base: f64, factor: &TornadoInput) -> TornadoBar {
         output: *output,
         effect: output - base,
     }; // TO-1
-    let told: Vec<&(String, f64)> = factor
+    let known: Vec<&(String, f64)> = factor
         .entries
         .iter()
         .filter(|(_, output)| (output - base).is_finite())
         .collect();
-    let missing = factor.entries.len() - told.len();
+    let missing = factor.entries.len() - known.len();
     let (low, high) = if let [a, b] = factor.entries.as_slice() {
         let kept = |e: &(String, f64)| (e.1 - base).is_finite().then(|| end(e));
         (kept(a), kept(b))
-    } else if let [one] = told[..] {
+    } else if let [one] = known[..] {
         // On the side to which it goes.
         if one.1 < base {
             (Some(end(one)), None)
@@ -95,8 +95,8 @@ fn bar(base: f64, factor: &TornadoInput) -> TornadoBar {
         let by_output = |a: &&&(String, f64), b: &&&(String, f64)| a.1.total_cmp(&b.1);
         // The first of equal ones on both sides.
         (
-            told.iter().min_by(by_output).map(|e| end(e)),
-            told.iter().rev().max_by(by_output).map(|e| end(e)),
+            known.iter().min_by(by_output).map(|e| end(e)),
+            known.iter().rev().max_by(by_output).map(|e| end(e)),
         )
     };
     let effects = || low.iter().chain(&high).map(|end| end.effect);

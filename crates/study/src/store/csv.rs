@@ -7,7 +7,7 @@ use crate::table::{Head, Rows, Values};
 use cvtcycle_output::number::push_exact;
 use cvtcycle_output::table::CsvWriter;
 
-/// What stands over the columns.
+/// Titles of the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Header {
     /// Names.

@@ -271,7 +271,7 @@ impl StudyDir {
     fn begin(&self, manifest: &[u8], plan: &[u8], earlier: bool) -> Result<(), Problem> {
         let written = temporary_in(&self.path).map(drop).and_then(|()| {
             if earlier {
-                // While the old manifest stands: what an interruption leaves is an old study with fewer parts.
+                // While the old manifest is there: an interruption leaves an old study with fewer parts.
                 clear(&self.path)?;
             }
             fs::create_dir_all(names::parts_folder(&self.path))?;

@@ -9,8 +9,7 @@ use cvtcycle_config::cycle::problems::Complaint;
 use cvtcycle_config::{Problem, Problems, bounded};
 use cvtcycle_output::Flags;
 use cvtcycle_output::history::{
-    AGAIN, FLAGS, History, MOST_STEPS, SHORTER, flags_of, is_number, known, missing,
-    too_many_phases,
+    AGAIN, FLAGS, History, MAX_STEPS, SHORTER, flags_of, is_number, known, missing, too_many_phases,
 };
 use cvtcycle_output::trace::TraceColumn;
 
@@ -41,10 +40,10 @@ pub fn read_trace_parquet(path: &Path) -> Result<History, Problems> {
     if file.rows() == 0 {
         problems.push(file_problem(path, "the file has no rows", AGAIN));
     }
-    if file.rows() > MOST_STEPS as u64 {
+    if file.rows() > MAX_STEPS as u64 {
         let message = format!("the file says that it has {} rows", file.rows());
         return Err(file_problem(path, message, SHORTER)
-            .allowed(format!("up to {MOST_STEPS}"))
+            .allowed(format!("up to {MAX_STEPS}"))
             .into());
     }
     if !problems.is_empty() {

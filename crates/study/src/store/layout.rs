@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::names::{is_table, part_file};
 
 /// Most parts of a study.
-const MOST_PARTS: usize = 1_000_000;
+const MAX_PARTS: usize = 1_000_000;
 
 /// The parts and tables of a study: the object `layout` of its manifest.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,7 +29,7 @@ impl Layout {
             .iter()
             .enumerate()
             .all(|(k, name)| is_table(name) && !tables[..k].contains(name));
-        (layout.parts <= MOST_PARTS && !tables.is_empty() && unlike).then_some(layout)
+        (layout.parts <= MAX_PARTS && !tables.is_empty() && unlike).then_some(layout)
     }
 
     /// Endings of the files of each table.

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 /// Longest value that is shown.
-const LONGEST: usize = 60;
+const MAX_LEN: usize = 60;
 
 /// A place where two manifests differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -99,10 +99,10 @@ fn shown(value: Option<&Value>) -> String {
 }
 
 fn cut(text: &str) -> String {
-    if text.chars().count() <= LONGEST {
+    if text.chars().count() <= MAX_LEN {
         text.to_owned()
     } else {
-        text.chars().take(LONGEST).chain("...".chars()).collect()
+        text.chars().take(MAX_LEN).chain("...".chars()).collect()
     }
 }
 
@@ -163,7 +163,7 @@ mod tests {
         let long = json!("x".repeat(200));
         assert_eq!(
             first(&base, &with("seed", long)).2.chars().count(),
-            LONGEST + 3
+            MAX_LEN + 3
         );
         let both = json!({ "seed": 8, "plan": "a = 1\nb = 2\n", "cars": [], "program": 0 });
         assert_eq!(differences(&base, &both).len(), 3);

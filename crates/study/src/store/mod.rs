@@ -1,4 +1,4 @@
-//! Tables of a study on disk: whole parts only, nothing lost, the same bytes whoever wrote them.
+//! Tables of a study on disk: whole parts only, nothing lost, the same bytes on every machine.
 //!
 //! ```text
 //! DIR/study.json                 manifest; marks the directory as a study, written before anything else

@@ -168,7 +168,7 @@ fn few(mut bits: impl Iterator<Item = u64>, most: usize) -> bool {
     })
 }
 
-/// A hash of 64 bits that costs a multiplication; the numbers are our own, so nobody can choose them to collide.
+/// A hash of 64 bits that costs one multiplication. The numbers are our own: no collisions by intent.
 #[derive(Default)]
 struct Mixed(u64);
 

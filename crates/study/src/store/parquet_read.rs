@@ -23,9 +23,9 @@ pub(super) const MEND: &str =
     "a study computes its damaged parts anew when it is continued with --resume";
 
 /// Most rows of a file: a part has 50 000 rows of traces and those of one more point, of which each car may have as many as a trace.
-const MOST_ROWS: u64 = 16_000_000;
+const MAX_ROWS: u64 = 16_000_000;
 /// Most bytes of the footer; that of a table with all columns and a hundred groups of rows has some hundred kB.
-const MOST_METADATA: u32 = 16 << 20;
+const MAX_METADATA: u32 = 16 << 20;
 /// Cells for which room is made at once; a file may name any number.
 const ROOM: usize = 1 << 16;
 
@@ -168,8 +168,8 @@ fn is_short(file: &mut File) -> io::Result<bool> {
     }
     file.rewind()?;
     let [a, b, c, d, ..] = last;
-    // A file of eight bytes and less is told to be no table.
-    Ok(u32::from_le_bytes([a, b, c, d]) <= MOST_METADATA || !last.ends_with(b"PAR1"))
+    // The reader refuses a file of eight bytes and less.
+    Ok(u32::from_le_bytes([a, b, c, d]) <= MAX_METADATA || !last.ends_with(b"PAR1"))
 }
 
 /// Whether all that the footer says lies within the file: the library trusts it, and makes room for what it says.
@@ -186,7 +186,7 @@ fn fits(file: &SerializedFileReader<File>, bytes: u64) -> bool {
             .and_then(|(start, size)| start.checked_add(size));
         end.is_some_and(|end| end <= bytes)
     };
-    rows.is_ok_and(|rows| rows <= MOST_ROWS)
+    rows.is_ok_and(|rows| rows <= MAX_ROWS)
         && metadata
             .row_groups()
             .iter()

@@ -8,7 +8,7 @@ use cvtcycle::model::bench::variator::{
 };
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
-use cvtcycle::output::losses::MOST_POINTS;
+use cvtcycle::output::losses::MAX_POINTS;
 
 use super::Args;
 use crate::args::ranges::{values, values_or_words};
@@ -143,12 +143,12 @@ pub fn plan(args: &Args) -> Result<Plan, Problems> {
         * count(&speeds, 1)
         * temps.len() as f64;
     let points = curves * count(&torque_nm, 100);
-    if points > MOST_POINTS as f64 {
+    if points > MAX_POINTS as f64 {
         let message = format!("{curves:.0} curves with {points:.0} points");
         problems.add(bad_value(
             "rig variator",
             "",
-            &format!("at most {MOST_POINTS} points"),
+            &format!("at most {MAX_POINTS} points"),
             message,
             "take larger steps or do it in parts".to_owned(),
         ));
