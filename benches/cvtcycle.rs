@@ -10,7 +10,7 @@
 use std::collections::BTreeSet;
 
 use cvtcycle::config::cycle::{Cycle, embedded, read_csv};
-use cvtcycle::config::setup::blueprint::Blueprint;
+use cvtcycle::config::setup::template::VehicleTemplate;
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{Problem, render};
 use cvtcycle::model::drive::{Car, Recorder, State, simulate};
@@ -250,7 +250,7 @@ fn parse_user_cycle(bencher: Bencher) {
 /// A car with two changed numbers, from its parsed files, as each run of a study begins.
 #[divan::bench(args = CARS)]
 fn blueprint_build(bencher: Bencher, name: &str) {
-    let (blueprint, _) = Blueprint::load(name, "--vehicle", &Options::default())
+    let (blueprint, _) = VehicleTemplate::load(name, "--vehicle", &Options::default())
         .unwrap_or_else(|p| panic!("{}", render(&p, false)));
     let slots =
         ["road_load.mass_kg", "lubricant.kv40_mm2_s"].map(|key| blueprint.slot(key).unwrap());

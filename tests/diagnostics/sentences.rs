@@ -21,7 +21,7 @@ const OUTSIDE: &[(&str, &str)] = &[
         "config::setup",
         "names given to options: only this module, see INSIDE",
     ),
-    ("config::setup::other_box", "overrides"),
+    ("config::setup::wrong_transmission", "overrides"),
     ("cvtcycle", "options, words of the command line, output"),
     ("output::file", "output"),
     ("output::files", "output"),
@@ -41,7 +41,7 @@ const OUTSIDE: &[(&str, &str)] = &[
 
 /// Submodules of those above that read input files.
 const INSIDE: &[&str] = &[
-    "config::setup::blueprint",
+    "config::setup::template",
     "config::setup::map_csv",
     "config::setup::tables",
 ];

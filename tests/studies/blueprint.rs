@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use crate::common::CARS;
 use cvtcycle::config::cycle::embedded;
-use cvtcycle::config::setup::blueprint::{Bench, Blueprint, Slot};
+use cvtcycle::config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{KeyInfo, Problems, render};
 use cvtcycle::model::drive::{Conditions, Start, drive};
@@ -23,12 +23,12 @@ fn options(set: &[&str]) -> Options {
     }
 }
 
-fn blueprint(word: &str, options: &Options) -> (Blueprint, Setup) {
-    Blueprint::load(word, "--vehicle", options)
+fn blueprint(word: &str, options: &Options) -> (VehicleTemplate, Setup) {
+    VehicleTemplate::load(word, "--vehicle", options)
         .unwrap_or_else(|problems| panic!("{word}: {}", render(&problems, false)))
 }
 
-fn slot(blueprint: &Blueprint, key: &str) -> Slot {
+fn slot(blueprint: &VehicleTemplate, key: &str) -> ParameterRef {
     blueprint
         .slot(key)
         .unwrap_or_else(|problem| panic!("{key}: {}", problem.message))
@@ -55,7 +55,7 @@ fn ordinary(word: &str, options: &Options, numbers: &[(&str, f64)]) -> Result<St
 }
 
 /// What a bench makes of its numbers; that it counts problems if and only if there are any is checked here.
-fn built(bench: &mut Bench) -> Result<String, Problems> {
+fn built(bench: &mut Variant) -> Result<String, Problems> {
     let problems = bench.problems();
     match bench.build() {
         Ok(setup) => {
@@ -79,8 +79,8 @@ fn built(bench: &mut Bench) -> Result<String, Problems> {
 fn same(
     word: &str,
     options: &Options,
-    blueprint: &Blueprint,
-    bench: &mut Bench,
+    blueprint: &VehicleTemplate,
+    bench: &mut Variant,
     numbers: &[(&str, f64)],
 ) -> bool {
     bench.reset();

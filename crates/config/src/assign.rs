@@ -9,7 +9,7 @@ use super::problem::Problem;
 use super::source::Source;
 
 /// Tables that an assignment may nest; more than any input has, few enough to recurse over.
-const DEEPEST: usize = 32;
+const MAX_DEPTH: usize = 32;
 
 impl Document {
     /// Puts in one assignment `a.b.c=VALUE`. The value is TOML, or else taken as text without quotes.
@@ -23,13 +23,13 @@ impl Document {
                 .key(key.to_string())
                 .hint(hint.to_string())
         };
-        let form = "write --set table.key=VALUE";
+        let form = "write table.key=VALUE";
         let Some((path, text)) = assignment.split_once('=') else {
             return Err(refuse("", "no `=` in the assignment".to_string(), form));
         };
         let (path, text) = (path.trim(), text.trim());
         let keys: Vec<&str> = path.split('.').map(str::trim).collect();
-        if keys.iter().any(|key| key.is_empty()) || keys.len() > DEEPEST {
+        if keys.iter().any(|key| key.is_empty()) || keys.len() > MAX_DEPTH {
             return Err(refuse(path, format!("`{path}` is no key"), form));
         }
         if text.is_empty() {

@@ -78,7 +78,7 @@ impl Limit {
 
 /// Why a file was not read.
 #[derive(Debug)]
-pub enum Refused {
+pub enum ReadError {
     /// The operating system's words.
     Unreadable(io::Error),
     /// It has more bytes than allowed; so many, where that is known.
@@ -87,13 +87,13 @@ pub enum Refused {
     NoFile,
 }
 
-impl Refused {
+impl ReadError {
     /// What would be accepted: the limit where the file is too large, else `usual`.
     #[must_use]
     pub fn allowed(&self, usual: &str) -> String {
         match self {
-            Refused::TooLarge(_, limit) => limit.allowed(),
-            Refused::Unreadable(_) | Refused::NoFile => usual.to_owned(),
+            ReadError::TooLarge(_, limit) => limit.allowed(),
+            ReadError::Unreadable(_) | ReadError::NoFile => usual.to_owned(),
         }
     }
 
@@ -101,9 +101,9 @@ impl Refused {
     #[must_use]
     pub fn hint<'h>(&self, usual: &'h str) -> &'h str {
         match self {
-            Refused::TooLarge(_, limit) => limit.hint,
-            Refused::NoFile => "name a file",
-            Refused::Unreadable(_) => usual,
+            ReadError::TooLarge(_, limit) => limit.hint,
+            ReadError::NoFile => "name a file",
+            ReadError::Unreadable(_) => usual,
         }
     }
 
@@ -111,28 +111,28 @@ impl Refused {
     #[must_use]
     pub fn kind(&self) -> io::ErrorKind {
         match self {
-            Refused::Unreadable(error) => error.kind(),
-            Refused::TooLarge(..) => io::ErrorKind::FileTooLarge,
-            Refused::NoFile => io::ErrorKind::Unsupported,
+            ReadError::Unreadable(error) => error.kind(),
+            ReadError::TooLarge(..) => io::ErrorKind::FileTooLarge,
+            ReadError::NoFile => io::ErrorKind::Unsupported,
         }
     }
 }
 
-impl fmt::Display for Refused {
+impl fmt::Display for ReadError {
     /// What is the matter, to stand behind "cannot read NAME: ".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Refused::Unreadable(error) => error.fmt(f),
-            Refused::TooLarge(Some(bytes), _) => write!(f, "it has {bytes} bytes"),
-            Refused::TooLarge(None, limit) => write!(f, "it has more than {}", limit.size()),
-            Refused::NoFile => f.write_str("it is a pipe or a device and no file"),
+            ReadError::Unreadable(error) => error.fmt(f),
+            ReadError::TooLarge(Some(bytes), _) => write!(f, "it has {bytes} bytes"),
+            ReadError::TooLarge(None, limit) => write!(f, "it has more than {}", limit.size()),
+            ReadError::NoFile => f.write_str("it is a pipe or a device and no file"),
         }
     }
 }
 
-impl From<io::Error> for Refused {
+impl From<io::Error> for ReadError {
     fn from(error: io::Error) -> Self {
-        Refused::Unreadable(error)
+        ReadError::Unreadable(error)
     }
 }
 
@@ -140,29 +140,29 @@ impl From<io::Error> for Refused {
 ///
 /// # Errors
 /// It cannot be read, or has more bytes than its limit.
-pub fn read(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, Refused> {
+pub fn read(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, ReadError> {
     let file = File::open(path)?;
     let found = file.metadata()?;
     let size = if found.is_file() { found.len() } else { 0 };
     if size > limit.bytes {
-        return Err(Refused::TooLarge(Some(size), limit));
+        return Err(ReadError::TooLarge(Some(size), limit));
     }
     // One byte more than allowed tells a file that goes on from one that ends there.
     let mut bytes = Vec::with_capacity(usize::try_from(size + 1).unwrap_or(0));
     let read = file.take(limit.bytes + 1).read_to_end(&mut bytes)?;
     if read as u64 > limit.bytes {
-        Err(Refused::TooLarge(None, limit))
+        Err(ReadError::TooLarge(None, limit))
     } else {
         Ok(bytes)
     }
 }
 
-/// The bytes of a file that another file names, or that the program has written: whoever made that file may be a stranger, and a pipe
+/// The bytes of a file that another file names, or that the program has written: whoever made that file may be a wrong, and a pipe
 /// without a writer would be waited for without end.
 ///
 /// # Errors
 /// As [`read`], and for what is no file.
-pub fn read_file(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, Refused> {
+pub fn read_file(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, ReadError> {
     is_file(path.as_ref())?;
     read(path, limit)
 }
@@ -171,18 +171,18 @@ pub fn read_file(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, Refuse
 ///
 /// # Errors
 /// It cannot be opened, or is a pipe or a device.
-pub fn open_file(path: impl AsRef<Path>) -> Result<File, Refused> {
+pub fn open_file(path: impl AsRef<Path>) -> Result<File, ReadError> {
     is_file(path.as_ref())?;
     Ok(File::open(path)?)
 }
 
-fn is_file(path: &Path) -> Result<(), Refused> {
+fn is_file(path: &Path) -> Result<(), ReadError> {
     let found = fs::metadata(path)?;
     // A directory has its own words from the operating system.
     if found.is_file() || found.is_dir() {
         Ok(())
     } else {
-        Err(Refused::NoFile)
+        Err(ReadError::NoFile)
     }
 }
 
@@ -232,7 +232,7 @@ mod tests {
             (io::ErrorKind::NotFound, "a".to_owned(), "b")
         );
         let folder = read_file(dir.path(), SMALL).expect_err("a folder");
-        assert!(matches!(folder, Refused::Unreadable(_)), "{folder}");
+        assert!(matches!(folder, ReadError::Unreadable(_)), "{folder}");
         assert_eq!(
             [TOML, TABLE, TRACE, LOGO].map(|limit| limit.size()),
             ["1 MiB", "64 MiB", "512 MiB", "500 kB"]
@@ -247,7 +247,7 @@ mod tests {
         assert_eq!(endless.allowed("x"), "up to 1 kB");
         assert!(matches!(
             read_file("/dev/zero", SMALL),
-            Err(Refused::NoFile)
+            Err(ReadError::NoFile)
         ));
         assert_eq!(read("/dev/null", SMALL).expect("nothing"), b"");
     }

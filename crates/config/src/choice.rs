@@ -55,7 +55,7 @@ impl<'r> Section<'r> {
                 .unwrap_or_default(),
         };
         let mut section = self.below(name);
-        self.reader.note(|log| {
+        self.reader.record(|log| {
             let others = options(key).filter(|other| failed || *other != option);
             log.read
                 .extend(others.map(|other| join(&section.path, other)));
@@ -69,7 +69,7 @@ impl<'r> Section<'r> {
     /// Makes the choice and its options known.
     fn announce(&self, key: &Key<'_>, is_word: bool) {
         self.register(key);
-        self.reader.note(|log| {
+        self.reader.record(|log| {
             let path = join(&self.path, key.name);
             if !is_word {
                 log.read.remove(&path);
@@ -188,7 +188,7 @@ impl<'r> Section<'r> {
             second.0,
             at(second.1)
         );
-        let hint = format!("keep one of them, or choose with --set {name}={}", first.0);
+        let hint = "keep one of them".to_string();
         self.report(&second.1.span, key.name, &key.allowed(), message, hint);
         Choice::Failed
     }

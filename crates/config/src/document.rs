@@ -181,13 +181,13 @@ fn too_much(source: &Source, excess: Excess) -> Problem {
     let (at, allowed, message, hint) = match excess {
         Excess::Tables(at) => (
             at,
-            format!("up to {} tables", shape::MOST_TABLES),
+            format!("up to {} tables", shape::MAX_TABLES),
             "the file has too many tables",
             hint,
         ),
         Excess::Keys(at) => (
             at,
-            format!("up to {} keys", shape::MOST_KEYS),
+            format!("up to {} keys", shape::MAX_KEYS),
             "the file has too many keys",
             hint,
         ),
@@ -195,7 +195,7 @@ fn too_much(source: &Source, excess: Excess) -> Problem {
             let hint = "a dotted key is `table.table.key`; text stands in quotes";
             (
                 at,
-                format!("up to {} names", shape::MOST_NAMES),
+                format!("up to {} names", shape::MAX_NAMES),
                 "this key has too many names",
                 hint,
             )
@@ -210,7 +210,7 @@ fn too_much(source: &Source, excess: Excess) -> Problem {
 fn nested(source: &Source, at: usize) -> Problem {
     Problem::invalid("tables and lists are nested too deep here")
         .at(source.place(at..at + 1))
-        .allowed(format!("up to {} levels", shape::MOST_LEVELS))
+        .allowed(format!("up to {} levels", shape::MAX_LEVELS))
         .hint("is a bracket too many open?")
 }
 
@@ -247,7 +247,7 @@ impl Levels {
 
     fn node(&self, value: &toml::Spanned<DeValue<'_>>, level: usize) -> Node {
         let range = value.span();
-        if level >= shape::MOST_LEVELS {
+        if level >= shape::MAX_LEVELS {
             self.too_deep.set(self.too_deep.get().or(Some(range.start)));
             return Node {
                 value: Value::Date,

@@ -10,7 +10,7 @@ pub mod rig;
 pub mod bounded;
 mod choice;
 mod document;
-mod draft;
+mod patched;
 pub mod embedded;
 mod lists;
 mod near;
@@ -24,21 +24,21 @@ mod source;
 mod syntax;
 mod value;
 mod values;
-mod written;
+mod raw_value;
 
 pub use cvtcycle_model::keys::Bound;
 use cvtcycle_model::keys::Quantity;
 pub use document::Document;
-pub use draft::{Draft, KeyPath};
 pub use near::near;
+pub use patched::{KeyPath, PatchedDocument};
 
 pub use problem::{Place, Problem, ProblemKind, Problems, readable};
+pub use raw_value::RawValue;
 pub use reader::{KeyInfo, Reader};
 pub use render::render;
 pub use section::Section;
 use setup::tables;
 pub use syntax::decode;
-pub use written::Written;
 
 /// A value in the unit of the key, converted to SI (temperatures to kelvin).
 #[must_use]

@@ -178,7 +178,7 @@ impl Section<'_> {
 }
 
 /// Most numbers of one range.
-const MOST_IN_RANGE: f64 = 10_000.0;
+const MAX_IN_RANGE: f64 = 10_000.0;
 
 /// `from..to:step` with both ends; a last step that falls short of `to` is kept short.
 fn range_values(text: &str) -> Option<Vec<f64>> {
@@ -187,7 +187,7 @@ fn range_values(text: &str) -> Option<Vec<f64>> {
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
     let (from, to, step) = (number(from)?, number(to)?, number(step)?);
     let count = ((to - from) / step).floor();
-    if !(step > 0.0 && from <= to && count < MOST_IN_RANGE) {
+    if !(step > 0.0 && from <= to && count < MAX_IN_RANGE) {
         return None;
     }
     let values: Vec<f64> = (0..=count as u32)

@@ -1,37 +1,37 @@
 //! Names that a mistyped one may have meant.
 
-/// Likeness below which a known name is no plausible reading of the written one.
-const PLAUSIBLE: f64 = 0.6;
+/// Likeness below which a known name is no is_suggestion reading of the written one.
+const SUGGESTED: f64 = 0.6;
 
 /// Bytes of a longer word are not compared with names: that takes time with its length, and nobody mistypes a name into it.
-const LONGEST: usize = 200;
+const MAX_LEN: usize = 200;
 
 /// Likeness of two names, from 0 to 1.
-pub(super) fn likeness(a: &str, b: &str) -> f64 {
-    if a.len().max(b.len()) > LONGEST {
+pub(super) fn similarity(a: &str, b: &str) -> f64 {
+    if a.len().max(b.len()) > MAX_LEN {
         return 0.0;
     }
     let edit = strsim::normalized_damerau_levenshtein(a, b);
     // Truncated and extended names ("mass" for "mass_kg") cost many edits; their common start
-    // counts only when the likeness is high, since names of one table often begin alike.
+    // counts only when the similarity is high, since names of one table often begin alike.
     let start = strsim::jaro_winkler(a, b);
     if start > 0.9 { edit.max(start) } else { edit }
 }
 
-/// Whether a likeness is high enough to suggest the name.
-pub(super) fn plausible(likeness: f64) -> bool {
-    likeness >= PLAUSIBLE
+/// Whether a similarity is high enough to suggest the name.
+pub(super) fn is_suggestion(similarity: f64) -> bool {
+    similarity >= SUGGESTED
 }
 
-/// Up to three of the `known` names that are plausible readings of `wanted`, best first.
+/// Up to three of the `known` names that are is_suggestion readings of `wanted`, best first.
 pub fn near<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    if wanted.len() > LONGEST {
+    if wanted.len() > MAX_LEN {
         return Vec::new();
     }
     let lower = wanted.to_lowercase();
     let mut rated: Vec<(f64, &str)> = known
-        .map(|name| (likeness(&lower, &name.to_lowercase()), name))
-        .filter(|(rating, _)| plausible(*rating))
+        .map(|name| (similarity(&lower, &name.to_lowercase()), name))
+        .filter(|(rating, _)| is_suggestion(*rating))
         .collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0));
     rated.dedup_by(|a, b| a.1 == b.1);
@@ -84,7 +84,7 @@ mod tests {
     fn a_word_of_any_length_takes_no_time() {
         let long = "mass_kg".repeat(1 << 20);
         assert!(near(&long, std::iter::repeat_n("mass_kg", 100_000)).is_empty());
-        assert!(likeness(&long, "mass_kg") <= 0.0 && likeness("mass_kg", &long) <= 0.0);
+        assert!(similarity(&long, "mass_kg") <= 0.0 && similarity("mass_kg", &long) <= 0.0);
     }
 
     #[test]

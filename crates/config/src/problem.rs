@@ -64,6 +64,8 @@ kinds! {
     OutOfRange out_of_range "A number outside its range.";
     Duplicate duplicate "Something that is given twice.";
     Conflict conflict "Values that contradict each other.";
+    WrongTransmission wrong_transmission "A key of a transmission that the vehicle does not have.";
+    NotSingle not_single "A key that holds no single number, where one is needed.";
     Syntax syntax "Text that is not valid TOML, CSV, JSON or Parquet.";
     TooLarge too_large "More rows, values, bytes or cases than the limit.";
     Unreadable unreadable "A file that cannot be read.";

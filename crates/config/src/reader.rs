@@ -3,7 +3,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, HashMap};
 
 use super::document::{Document, Entry, Span, Table, Value};
-use super::near::{likeness, plausible, question};
+use super::near::{is_suggestion, question, similarity};
 use super::problem::{Place, Problem, Problems};
 use super::section::Section;
 use crate::setup::Files;
@@ -35,7 +35,7 @@ pub struct KeyInfo {
 }
 
 /// Problems of one document that are put into words; the rest is counted.
-const MOST_SHOWN: usize = 500;
+const MAX_SHOWN: usize = 500;
 
 /// Likeness above which a name in another table may be what was meant: short names of all tables are like each other.
 const ELSEWHERE: f64 = 0.75;
@@ -67,7 +67,7 @@ pub struct Reader<'d> {
     /// None in a silent session.
     log: Option<RefCell<Log>>,
     /// Problems so far.
-    faults: Cell<usize>,
+    problem_count: Cell<usize>,
     /// Files that the document names.
     pub(super) files: Option<&'d dyn Files>,
 }
@@ -78,18 +78,18 @@ impl<'d> Reader<'d> {
         Reader {
             document,
             log: Some(RefCell::default()),
-            faults: Cell::new(0),
+            problem_count: Cell::new(0),
             files: None,
         }
     }
 
     /// Starts to read `document` silently: [`Reader::finish`] then gives no keys, and problems without words. Keys that are present but
     /// not known are not looked for.
-    pub fn silent(document: &'d Document) -> Self {
+    pub fn check_only(document: &'d Document) -> Self {
         Reader {
             document,
             log: None,
-            faults: Cell::new(0),
+            problem_count: Cell::new(0),
             files: None,
         }
     }
@@ -104,23 +104,23 @@ impl<'d> Reader<'d> {
     }
 
     /// Whether nobody wants to know more than whether all is well.
-    pub(super) fn is_silent(&self) -> bool {
+    pub(super) fn is_check_only(&self) -> bool {
         self.log.is_none()
     }
 
     /// Writes something down, unless the session is silent.
-    pub(super) fn note(&self, write: impl FnOnce(&mut Log)) {
+    pub(super) fn record(&self, write: impl FnOnce(&mut Log)) {
         if let Some(log) = &self.log {
             write(&mut log.borrow_mut());
         }
     }
 
     /// Counts a problem; `say` puts it into words, unless the session is silent or has many already.
-    pub(super) fn fault(&self, say: impl FnOnce() -> Problem) {
-        self.faults.set(self.faults.get() + 1);
-        self.note(|log| {
+    pub(super) fn report(&self, message: impl FnOnce() -> Problem) {
+        self.problem_count.set(self.problem_count.get() + 1);
+        self.record(|log| {
             if log.has_room() {
-                log.problems.push(say());
+                log.problems.push(message());
             } else {
                 log.more += 1;
             }
@@ -128,16 +128,16 @@ impl<'d> Reader<'d> {
     }
 
     /// Problems so far.
-    pub(super) fn faults(&self) -> usize {
-        self.faults.get()
+    pub(super) fn problem_count(&self) -> usize {
+        self.problem_count.get()
     }
 
     /// Counts a missing key, apart from other problems.
-    pub(super) fn fault_of_missing(&self, say: impl FnOnce() -> Problem) {
-        self.faults.set(self.faults.get() + 1);
-        self.note(|log| {
+    pub(super) fn report_missing(&self, message: impl FnOnce() -> Problem) {
+        self.problem_count.set(self.problem_count.get() + 1);
+        self.record(|log| {
             if log.has_room() {
-                log.missing.push(say());
+                log.missing.push(message());
             } else {
                 log.more += 1;
             }
@@ -151,7 +151,7 @@ impl<'d> Reader<'d> {
 
     /// Adds a problem found outside the reader.
     pub fn problem(&self, problem: Problem) {
-        self.fault(|| problem);
+        self.report(|| problem);
     }
 
     /// Every key that was looked up so far, whatever is wrong with its value.
@@ -170,11 +170,11 @@ impl<'d> Reader<'d> {
     pub fn finish(self) -> Result<Vec<KeyInfo>, Problems> {
         let document = self.document;
         let Some(log) = self.log else {
-            let faults = self.faults.get();
-            return if faults == 0 {
+            let problem_count = self.problem_count.get();
+            return if problem_count == 0 {
                 Ok(Vec::new())
             } else {
-                Err(std::iter::repeat_n(Problem::default(), faults).collect())
+                Err(std::iter::repeat_n(Problem::default(), problem_count).collect())
             };
         };
         let mut log = log.into_inner();
@@ -225,7 +225,7 @@ impl<'d> Reader<'d> {
 impl Log {
     /// Whether another problem is to be put into words.
     fn has_room(&self) -> bool {
-        self.problems.len() + self.missing.len() < MOST_SHOWN
+        self.problems.len() + self.missing.len() < MAX_SHOWN
     }
 
     /// Adds a key; the first reading counts if it is read twice.
@@ -309,7 +309,7 @@ impl Log {
         keys()
             .filter(|_| !misplaced)
             .filter(same)
-            .max_by(|a, b| likeness(a, path).total_cmp(&likeness(b, path)))
+            .max_by(|a, b| similarity(a, path).total_cmp(&similarity(b, path)))
     }
 
     /// Up to three known paths like this one. The last names decide, whole paths only between equals:
@@ -320,13 +320,13 @@ impl Log {
             .known()
             .map(|known| {
                 (
-                    likeness(last(known), last(&lower)),
-                    likeness(known, &lower),
+                    similarity(last(known), last(&lower)),
+                    similarity(known, &lower),
                     known,
                 )
             })
             .filter(|(own, _, known)| {
-                plausible(*own)
+                is_suggestion(*own)
                     && *known != path
                     && (parent(known) == parent(path) || *own > ELSEWHERE)
             })

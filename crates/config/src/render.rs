@@ -9,9 +9,9 @@ use super::problem::{Place, Problem};
 /// Widest text that is shown without being cut.
 const WIDTH: usize = 120;
 /// A longer one is no name and would hide the message.
-const LONGEST_KEY: usize = 80;
+const MAX_KEY: usize = 80;
 /// A longer text repeats something of the input that nobody can read.
-const LONGEST_TEXT: usize = 2000;
+const MAX_TEXT: usize = 2000;
 
 /// All problems with the lines they stand in, and their number on the last line. `colour` adds
 /// terminal colours. Empty without problems.
@@ -100,7 +100,7 @@ fn group(problem: &Problem) -> Group<'static> {
 /// The key of a value in a file where the message leaves it open, as that of a table cell does: the line of column names is far away.
 fn unsaid_key(problem: &Problem) -> Option<&str> {
     let key = problem.key.as_str();
-    let said = key.is_empty() || key.len() > LONGEST_KEY || problem.message.contains(key);
+    let said = key.is_empty() || key.len() > MAX_KEY || problem.message.contains(key);
     (problem.place.line > 0 && !said).then_some(key)
 }
 
@@ -121,10 +121,10 @@ fn visible(text: impl AsRef<str>) -> String {
     let text = text.as_ref();
     let mut shown: String = text
         .chars()
-        .take(LONGEST_TEXT)
+        .take(MAX_TEXT)
         .map(|c| if c.is_control() { '\u{FFFD}' } else { c })
         .collect();
-    if text.chars().nth(LONGEST_TEXT).is_some() {
+    if text.chars().nth(MAX_TEXT).is_some() {
         shown.push_str("...");
     }
     shown
@@ -215,8 +215,8 @@ mod tests {
         let long = problem().message("ä".repeat(1 << 20));
         let text = render(&[long, Problem::more("car.toml", 41)], false);
         assert!(
-            text.contains(&format!("{}...\n", "ä".repeat(LONGEST_TEXT)))
-                && text.len() < 2 * LONGEST_TEXT + 1000
+            text.contains(&format!("{}...\n", "ä".repeat(MAX_TEXT)))
+                && text.len() < 2 * MAX_TEXT + 1000
         );
         assert!(
             text.ends_with("\n42 problems in car.toml\n"),

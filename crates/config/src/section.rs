@@ -63,7 +63,7 @@ impl<'r> Section<'r> {
     /// The table `name` within this one. It may be absent: keys read from it are then missing.
     pub fn table(&self, name: &str) -> Section<'r> {
         let mut section = self.below(name);
-        self.reader.note(|log| {
+        self.reader.record(|log| {
             log.tables.insert(section.path.clone());
         });
         match self
@@ -78,7 +78,7 @@ impl<'r> Section<'r> {
                 (section.table, section.header) = (Some(table), Some(span.clone()));
             }
             Some(node) => {
-                self.reader.note(|log| {
+                self.reader.record(|log| {
                     log.read.insert(section.path.clone());
                 });
                 self.wrong_type(name, node, "a table");
@@ -91,7 +91,7 @@ impl<'r> Section<'r> {
 
     /// The table `name` within this one, before it is known whether there is one. Silent readings know no paths.
     pub(super) fn below(&self, name: &str) -> Section<'r> {
-        let path = if self.reader.is_silent() {
+        let path = if self.reader.is_check_only() {
             String::new()
         } else {
             join(&self.path, name)
@@ -225,7 +225,7 @@ impl<'r> Section<'r> {
             }
             None => || self.absent(key, allowed, message.to_string(), hint.to_string()),
         };
-        self.reader.fault(problem);
+        self.reader.report(problem);
     }
 }
 

@@ -5,13 +5,13 @@
 //! where the text is no TOML. What stands in texts and comments does not count.
 
 /// Most tables, and lists at the beginning of a line; the largest shipped file has 177.
-pub(super) const MOST_TABLES: usize = 20_000;
+pub(super) const MAX_TABLES: usize = 20_000;
 /// Most equals signs: keys with their values, and mistakes around them, of which the parser makes several each.
-pub(super) const MOST_KEYS: usize = 100_000;
+pub(super) const MAX_KEYS: usize = 100_000;
 /// Most names of one dotted key; the longest that is read has 7. The parser itself allows 80 open brackets.
-pub(super) const MOST_NAMES: usize = 16;
+pub(super) const MAX_NAMES: usize = 16;
 /// Most levels of a value that is kept: all that is read has fewer than ten.
-pub(super) const MOST_LEVELS: usize = 64;
+pub(super) const MAX_LEVELS: usize = 64;
 
 /// What a text has too much of, and the byte at which it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub(super) fn excess(text: &str) -> Option<Excess> {
             Word::Dot => {
                 dots += 1;
                 number &= dots == 1;
-                if dots >= MOST_NAMES {
+                if dots >= MAX_NAMES {
                     return Some(Excess::Names(at));
                 }
             }
@@ -68,10 +68,10 @@ pub(super) fn excess(text: &str) -> Option<Excess> {
                 (dots, number) = (0, true);
             }
         }
-        if tables > MOST_TABLES {
+        if tables > MAX_TABLES {
             return Some(Excess::Tables(at));
         }
-        if keys > MOST_KEYS {
+        if keys > MAX_KEYS {
             return Some(Excess::Keys(at));
         }
         line_start = word == Word::Line || (line_start && word == Word::Blank);
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn tables_are_counted_in_all_their_forms() {
-        let many = MOST_TABLES / 2;
+        let many = MAX_TABLES / 2;
         for table in [
             "[a]\n",
             "[[a]]\n",
@@ -180,25 +180,25 @@ mod tests {
             "x = '''\n[a]\n'''\n",
             "x = [[1], [2]]\n",
         ] {
-            assert_eq!(excess(&line.repeat(2 * MOST_TABLES)), None, "{line}");
+            assert_eq!(excess(&line.repeat(2 * MAX_TABLES)), None, "{line}");
         }
-        assert_eq!(excess(&"x = \"\\\"{{\\\\\"\n".repeat(MOST_TABLES)), None);
+        assert_eq!(excess(&"x = \"\\\"{{\\\\\"\n".repeat(MAX_TABLES)), None);
         assert_eq!(
             excess(&format!(
                 "x = \"\"\"{}\"\"\"\"\"\n",
-                "{\n".repeat(2 * MOST_TABLES)
+                "{\n".repeat(2 * MAX_TABLES)
             )),
             None
         );
         // A text that is not closed ends with its line.
-        assert!(excess(&"x = \"a\n{}".repeat(MOST_TABLES + 1)).is_some());
+        assert!(excess(&"x = \"a\n{}".repeat(MAX_TABLES + 1)).is_some());
     }
 
     #[test]
     fn keys_are_counted_by_their_equals_signs() {
-        for (text, at) in [("=", MOST_KEYS), ("a=1\n", 4 * MOST_KEYS + 1)] {
-            assert_eq!(excess(&text.repeat(MOST_KEYS)), None);
-            assert_eq!(excess(&text.repeat(MOST_KEYS + 1)), Some(Excess::Keys(at)));
+        for (text, at) in [("=", MAX_KEYS), ("a=1\n", 4 * MAX_KEYS + 1)] {
+            assert_eq!(excess(&text.repeat(MAX_KEYS)), None);
+            assert_eq!(excess(&text.repeat(MAX_KEYS + 1)), Some(Excess::Keys(at)));
         }
     }
 
@@ -213,13 +213,13 @@ mod tests {
             ("} ", " ] ["),
         ] {
             assert_eq!(
-                excess(&format!("{before}{}{after}\n", key(MOST_NAMES))),
+                excess(&format!("{before}{}{after}\n", key(MAX_NAMES))),
                 None,
                 "{before}"
             );
             assert!(
                 matches!(
-                    excess(&format!("{before}{}{after}\n", key(MOST_NAMES + 1))),
+                    excess(&format!("{before}{}{after}\n", key(MAX_NAMES + 1))),
                     Some(Excess::Names(_))
                 ),
                 "{before}"

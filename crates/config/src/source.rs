@@ -5,9 +5,9 @@ use std::sync::OnceLock;
 use super::problem::Place;
 
 /// A longer line is not repeated beside a problem.
-const LONGEST_LINE: usize = 1000;
+const MAX_LINE: usize = 1000;
 /// A longer value is cut where it is repeated.
-const LONGEST_VALUE: usize = 200;
+const MAX_VALUE: usize = 200;
 
 /// One input: the file, or one assignment.
 #[derive(Debug)]
@@ -51,7 +51,7 @@ impl Source {
             file,
             line: self.line(start) + 1,
             column: self.text[line_start..start].chars().count() + 1,
-            line_text: if line_text.len() <= LONGEST_LINE {
+            line_text: if line_text.len() <= MAX_LINE {
                 line_text.to_string()
             } else {
                 String::new()
@@ -112,7 +112,7 @@ impl Source {
 
 /// A value as it is repeated in a problem.
 pub(super) fn shortened(text: &str) -> String {
-    match text.char_indices().nth(LONGEST_VALUE) {
+    match text.char_indices().nth(MAX_VALUE) {
         Some((end, _)) => format!("{}...", &text[..end]),
         None => text.to_string(),
     }

@@ -6,7 +6,7 @@ use super::source::{Source, shortened};
 
 /// Bytes of a line up to which slips are looked for: nobody writes longer lines by hand, and the search
 /// takes time with the square of the length.
-const LONGEST_LINE: usize = 1000;
+const MAX_LINE: usize = 1000;
 
 /// The text of an input file.
 ///
@@ -42,7 +42,7 @@ pub fn decode(file: &str, bytes: &[u8]) -> Result<String, Problems> {
 }
 
 /// Lines of which the errors are shown; the rest is counted.
-const MOST_SHOWN: usize = 100;
+const MAX_SHOWN: usize = 100;
 
 /// The parser's errors as problems, one per line: what follows the first error of a line is
 /// mostly its consequence.
@@ -68,7 +68,7 @@ pub(super) fn problems(source: &Source, errors: &[toml::de::Error]) -> Problems 
                     .find('\n')
                     .map_or(source.text.len(), |length| start + length),
             );
-            if found.len() < MOST_SHOWN {
+            if found.len() < MAX_SHOWN {
                 found.push(syntax_problem(source, span, parser));
             } else {
                 more += 1;
@@ -103,7 +103,7 @@ fn syntax_problem(source: &Source, span: Range<usize>, parser: &str) -> Problem 
 
 /// The usual slips in a line that TOML refuses: where the value stands in it and what to write.
 fn slip(line: &str) -> Option<(Range<usize>, String)> {
-    if line.len() > LONGEST_LINE {
+    if line.len() > MAX_LINE {
         return None;
     }
     line.match_indices('=').find_map(|(equals, _)| {
@@ -204,7 +204,7 @@ mod tests {
         assert!(slip("a_mm = 3 mm").unwrap().1.contains("without `mm`"));
         assert!(slip("a = belt drive").unwrap().1.contains("\"belt drive\""));
         assert_eq!(slip("a_mm = 3 mm # x").unwrap().0, 7..11);
-        let long = format!("a = 2,40 # {}", "x".repeat(LONGEST_LINE));
+        let long = format!("a = 2,40 # {}", "x".repeat(MAX_LINE));
         assert!(slip(&long).is_none());
         assert!(slip("a = [1, 2").is_none());
         assert!(slip("a = 1").is_none());

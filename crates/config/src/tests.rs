@@ -3,7 +3,7 @@ use super::*;
 
 mod assignments;
 mod choices;
-mod silent;
+mod check_only;
 
 fn document(text: &str) -> Document {
     Document::parse("car.toml", text).unwrap()

@@ -115,7 +115,7 @@ impl<'r> Section<'r> {
 
     /// Counts a key as read and as known.
     pub(super) fn register(&self, key: &Key<'_>) {
-        self.reader.note(|log| {
+        self.reader.record(|log| {
             let path = join(&self.path, key.name);
             log.register(KeyInfo {
                 key: path.clone(),
@@ -152,7 +152,7 @@ impl<'r> Section<'r> {
             return Lookup::Bad;
         };
         found.node = value;
-        if !self.reader.is_silent() {
+        if !self.reader.is_check_only() {
             self.origin(key, table, &mut found);
         }
         Lookup::Found(found)
@@ -222,7 +222,7 @@ impl<'r> Section<'r> {
     }
 
     fn fill(&self, key: &str, write: impl FnOnce(&mut KeyInfo)) {
-        self.reader.note(|log| {
+        self.reader.record(|log| {
             if let Some(info) = log
                 .index
                 .get(&join(&self.path, key))
@@ -247,7 +247,7 @@ impl<'r> Section<'r> {
         );
         // The range that the key was registered with, where the message does not say it already.
         let mut allowed = String::new();
-        self.reader.note(|log| {
+        self.reader.record(|log| {
             let info = log
                 .index
                 .get(&join(&self.path, key))
@@ -299,7 +299,7 @@ impl<'r> Section<'r> {
         if self.muted {
             return;
         }
-        self.reader.fault_of_missing(|| {
+        self.reader.report_missing(|| {
             let table = if self.path.is_empty() {
                 "the top of the file".to_string()
             } else {
@@ -346,7 +346,7 @@ impl<'r> Section<'r> {
         hint: String,
     ) {
         let document = self.reader.document;
-        self.reader.fault(|| {
+        self.reader.report(|| {
             Problem::invalid(message)
                 .at(document.place(span))
                 .key(self.dotted(key))

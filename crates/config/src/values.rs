@@ -139,9 +139,9 @@ impl<'r> Values for Section<'r> {
     }
 
     fn rows(&self, key: &Key<'_>) -> Option<Vec<Vec<f64>>> {
-        let before = self.reader.faults();
+        let before = self.reader.problem_count();
         let rows = self.read_rows(key);
-        if self.reader.faults() > before {
+        if self.reader.problem_count() > before {
             return None;
         }
         if matches!(key.presence, Presence::Required) && !Section::has(self, key.name) {

@@ -19,7 +19,7 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 
 use super::document::{Block, Document};
-use cvtcycle_config::bounded::{self, Refused};
+use cvtcycle_config::bounded::{self, ReadError};
 use cvtcycle_config::{Document as Toml, Problems, Reader, decode};
 
 /// Sections that a report may have, in their order.
@@ -139,7 +139,7 @@ fn logo_data(cover: &str, name: &str) -> Result<String, (String, String)> {
         .unwrap_or(Path::new(""))
         .join(name);
     let bytes = bounded::read_file(&path, bounded::LOGO).map_err(|error| match error {
-        Refused::TooLarge(Some(size), limit) => {
+        ReadError::TooLarge(Some(size), limit) => {
             (format!("the logo has {size} bytes"), limit.hint.to_owned())
         }
         _ => unreadable(&path, &error),
@@ -162,7 +162,7 @@ fn logo_data(cover: &str, name: &str) -> Result<String, (String, String)> {
     ))
 }
 
-fn unreadable(path: &Path, error: &Refused) -> (String, String) {
+fn unreadable(path: &Path, error: &ReadError) -> (String, String) {
     let hint = error.hint("the path is taken from the folder of this file");
     (
         format!("cannot read {}: {error}", path.display()),

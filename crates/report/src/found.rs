@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use cvtcycle_config::bounded::{self, Refused};
+use cvtcycle_config::bounded::{self, ReadError};
 use cvtcycle_config::{Place, Problem, Problems};
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::{self, Record};
@@ -452,7 +452,7 @@ pub(super) fn problem(path: &Path, message: &str, hint: &str) -> Problem {
     Problem::invalid(message).at(place).hint(hint)
 }
 
-fn unreadable(path: &Path, error: &Refused) -> Problem {
+fn unreadable(path: &Path, error: &ReadError) -> Problem {
     let hint = match error.kind() {
         std::io::ErrorKind::NotFound => "check the path; it is taken from the current directory",
         std::io::ErrorKind::NotADirectory => "name the directory, not a file in it",

@@ -3,15 +3,13 @@
 use std::sync::{Arc, OnceLock};
 
 use super::plan::{Acts, Base, Cars, Factor, FactorValue, FactorValues, Plan};
-use cvtcycle_config::setup::blueprint::{Blueprint, Slot};
+use cvtcycle_config::setup::template::{ParameterRef, VehicleTemplate};
 use cvtcycle_config::setup::{Options, Setup};
-use cvtcycle_config::{Problem, Problems};
+use cvtcycle_config::{Problem, ProblemKind, Problems};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Largest number of combinations of words of a car: each keeps its documents in memory.
 pub const MAX_VARIANTS: usize = 4096;
-/// What a hint for the command line goes on with.
-const ABOUT_SET: &str = "; --set reaches";
 
 /// How a factor acts on one car.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,10 +34,10 @@ pub(super) enum Binding {
 }
 
 /// A car in one combination of words: checked documents, and where the numbers stand in them.
-pub(super) struct Variant {
-    pub blueprint: Blueprint,
+pub(super) struct CarVariant {
+    pub blueprint: VehicleTemplate,
     /// By factor; none for factors that are no number of this car.
-    pub slots: Vec<Option<Slot>>,
+    pub slots: Vec<Option<ParameterRef>>,
     /// Keys of factors that this car does not know, with what is to be said of them.
     pub unknown: Vec<(usize, Problem)>,
     /// The car with all numbers as its files have them.
@@ -56,7 +54,7 @@ pub struct StudyCar {
     pub word: String,
     pub(super) bindings: Vec<Binding>,
     options: Options,
-    variants: Vec<OnceLock<Result<Variant, Problems>>>,
+    variants: Vec<OnceLock<Result<CarVariant, Problems>>>,
 }
 
 impl StudyCar {
@@ -101,7 +99,11 @@ impl StudyCar {
     }
 
     /// A variant, made when it is first asked for; its problems if its words do not go together.
-    pub(super) fn variant(&self, index: usize, factors: &[Factor]) -> Result<&Variant, &[Problem]> {
+    pub(super) fn variant(
+        &self,
+        index: usize,
+        factors: &[Factor],
+    ) -> Result<&CarVariant, &[Problem]> {
         self.variants[index]
             .get_or_init(|| self.make(index, factors))
             .as_ref()
@@ -126,10 +128,11 @@ impl StudyCar {
             .map(|variant| &variant.setup)
     }
 
-    fn make(&self, index: usize, factors: &[Factor]) -> Result<Variant, Problems> {
+    fn make(&self, index: usize, factors: &[Factor]) -> Result<CarVariant, Problems> {
         let options = self.options_of(index, factors);
-        let (blueprint, setup) = Blueprint::load(&self.word, super::prepare::VEHICLE, &options)?;
-        let mut variant = Variant {
+        let (blueprint, setup) =
+            VehicleTemplate::load(&self.word, super::prepare::VEHICLE, &options)?;
+        let mut variant = CarVariant {
             blueprint,
             slots: Vec::with_capacity(factors.len()),
             unknown: Vec::new(),
@@ -142,12 +145,12 @@ impl StudyCar {
             variant.slots.push(found.unwrap_or_else(|problem| {
                 let place = factor.place.clone();
                 let message = format!("{}: {}", self.name, problem.message);
-                // A plan has its own word for whose value it is.
-                let hint = match problem.hint.split_once(ABOUT_SET) {
-                    Some((hint, _)) => {
-                        format!("{hint}; `cars = \"baselines\"` varies the baselines alone")
-                    }
-                    None => problem.hint.clone(),
+                let hint = match problem.kind {
+                    ProblemKind::WrongTransmission => format!(
+                        "{}; `cars = \"baselines\"` varies the baselines alone",
+                        problem.hint
+                    ),
+                    _ => problem.hint.clone(),
                 };
                 variant.unknown.push((
                     index,

@@ -12,7 +12,7 @@ use super::table::{Rows, Values};
 use super::traces::Traces;
 use cvtcycle_config::Problem;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_config::setup::blueprint::{Bench, Slot};
+use cvtcycle_config::setup::template::{ParameterRef, Variant};
 use cvtcycle_model::drive::{Conditions, Outcome, Start, drive_into};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_output::summary::{Driven, RunSummary, Settings, compare, name_of, run_summary};
@@ -20,7 +20,7 @@ use cvtcycle_output::summary::{Driven, RunSummary, Settings, compare, name_of, r
 /// What one thread keeps from point to point: a bench for each variant of each car, and room for the levels.
 #[derive(Default)]
 pub(super) struct Worker {
-    benches: HashMap<(usize, usize), Bench>,
+    benches: HashMap<(usize, usize), Variant>,
     levels: Vec<Level>,
 }
 
@@ -181,7 +181,7 @@ impl Study {
                 .as_ref()
                 .ok()
                 .and_then(|variant| variant.slots[f].as_ref());
-            factors.push(self.resolve(f, car, value.as_ref(), slot.map(Slot::base)));
+            factors.push(self.resolve(f, car, value.as_ref(), slot.map(ParameterRef::base)));
         }
         let variant = variant.map_err(reason)?;
         if let Some((_, problem)) = variant.unknown.first() {

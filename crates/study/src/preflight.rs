@@ -1,6 +1,6 @@
 //! Every value of a factor tried by itself, before anything starts.
 
-use super::cars::{Binding, StudyCar, Variant, words};
+use super::cars::{Binding, CarVariant, StudyCar, words};
 use super::plan::{Acts, Distribution, Factor, FactorValue, FactorValues, Plan};
 use cvtcycle_config::{Place, Problem, Problems};
 
@@ -70,7 +70,7 @@ fn goes_with_another(
     plan: &Plan,
     index: usize,
     car: &StudyCar,
-    variant: &Variant,
+    variant: &CarVariant,
     value: f64,
 ) -> bool {
     let mut bench = variant.blueprint.bench();

@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use cvtcycle_config::cycle::Cycle;
-use cvtcycle_config::setup::blueprint::{Bench, Blueprint, Slot};
+use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle_config::setup::{Options, Setup};
 use cvtcycle_config::{Problems, unit_of};
 use cvtcycle_model::drive::{Conditions, drive};
@@ -50,17 +50,17 @@ pub fn sensitivity(
     };
     let mut effects = Vec::new();
     for car in cars {
-        let (blueprint, setup) = Blueprint::load(&car.word, "--vehicle", &car.options)?;
+        let (blueprint, setup) = VehicleTemplate::load(&car.word, "--vehicle", &car.options)?;
         let base = fuel(&setup, cycle, &conditions);
         let keys = setup
             .keys
             .iter()
             .filter(|info| info.si.is_some() && info.status != "choice");
-        let slots: Vec<Slot> = keys
+        let slots: Vec<ParameterRef> = keys
             .filter_map(|info| blueprint.slot(&info.key).ok())
             .filter(|slot| slot.base().abs() > 0.0)
             .collect();
-        let of_slot = |bench: &mut Bench, slot: &Slot| {
+        let of_slot = |bench: &mut Variant, slot: &ParameterRef| {
             let mut side = |sign: f64| {
                 bench.reset();
                 bench.set(slot, changed(slot.key(), slot.base(), sign));

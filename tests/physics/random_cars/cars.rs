@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cvtcycle::config::KeyInfo;
-use cvtcycle::config::setup::blueprint::{Bench, Blueprint};
+use cvtcycle::config::setup::template::{Variant, VehicleTemplate};
 use cvtcycle::config::setup::{Options, Setup};
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -146,7 +146,7 @@ impl Recipe {
             ..Options::default()
         };
         let name = CARS[self.vehicle];
-        let loaded = Blueprint::load(name, "--vehicle", &options);
+        let loaded = VehicleTemplate::load(name, "--vehicle", &options);
         let (blueprint, base) =
             loaded.unwrap_or_else(|problems| panic!("{name} {options:?}: {}", problems[0].message));
         let numbers: Vec<KeyInfo> = base
@@ -187,7 +187,11 @@ impl Recipe {
     }
 }
 
-fn built(blueprint: &Blueprint, bench: &mut Bench, numbers: &[(&str, f64)]) -> Option<Setup> {
+fn built(
+    blueprint: &VehicleTemplate,
+    bench: &mut Variant,
+    numbers: &[(&str, f64)],
+) -> Option<Setup> {
     bench.reset();
     for (key, number) in numbers {
         bench.set(

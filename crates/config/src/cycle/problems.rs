@@ -6,12 +6,12 @@ use crate::{Place, Problem, Problems};
 /// More than these help nobody; the rest is counted.
 const SHOWN: usize = 50;
 /// A longer line is no row of a table, but another file.
-const LONGEST_LINE: usize = 1 << 20;
+const MAX_LINE: usize = 1 << 20;
 /// No table has as many columns; each unknown one is compared with all known ones.
-const MOST_COLUMNS: usize = 1000;
+const MAX_COLUMNS: usize = 1000;
 // a longer line would only fill the screen
-const LONGEST_SHOWN: usize = 500;
-const LONGEST_VALUE: usize = 60;
+const MAX_SHOWN: usize = 500;
+const MAX_VALUE: usize = 60;
 
 /// One line of the file.
 #[derive(Clone, Copy, Debug)]
@@ -127,11 +127,11 @@ impl<'f> Collector<'f> {
         }
         let mut fields = Vec::new();
         match split(line.text, &mut fields) {
-            Ok(()) if fields.len() > MOST_COLUMNS => {
+            Ok(()) if fields.len() > MAX_COLUMNS => {
                 let message = format!("this line has {} column names", fields.len());
                 let hint = "keep the columns that are needed, with a row for every point";
                 self.line(line, "", || {
-                    Complaint::new(message, format!("up to {MOST_COLUMNS}"), hint)
+                    Complaint::new(message, format!("up to {MAX_COLUMNS}"), hint)
                 });
                 None
             }
@@ -279,12 +279,12 @@ impl<'f> Collector<'f> {
 }
 
 fn no_long_line(text: &str) -> Result<&str, Complaint> {
-    match text.split('\n').position(|line| line.len() >= LONGEST_LINE) {
+    match text.split('\n').position(|line| line.len() >= MAX_LINE) {
         Some(before) => {
             let message = format!("line {} is too long for a row of a table", before + 1);
             Err(Complaint::new(
                 message,
-                format!("up to {LONGEST_LINE} bytes"),
+                format!("up to {MAX_LINE} bytes"),
                 "is this a CSV file?",
             ))
         }
@@ -294,7 +294,7 @@ fn no_long_line(text: &str) -> Result<&str, Complaint> {
 
 fn place(file: &str, line: Line<'_>, field: Field<'_>) -> Place {
     let before = line.text.get(..field.start).unwrap_or_default();
-    let shown = line.text.len() <= LONGEST_SHOWN;
+    let shown = line.text.len() <= MAX_SHOWN;
     Place {
         file: file.to_owned(),
         line: line.number,
@@ -309,7 +309,7 @@ fn place(file: &str, line: Line<'_>, field: Field<'_>) -> Place {
 }
 
 fn shortened(text: &str) -> String {
-    match text.char_indices().nth(LONGEST_VALUE) {
+    match text.char_indices().nth(MAX_VALUE) {
         Some((end, _)) => format!("{}...", &text[..end]),
         None => text.to_owned(),
     }
@@ -375,7 +375,7 @@ mod tests {
 
     #[test]
     fn a_long_line_and_many_columns_are_refused() {
-        for (length, taken) in [(LONGEST_LINE - 1, true), (LONGEST_LINE, false)] {
+        for (length, taken) in [(MAX_LINE - 1, true), (MAX_LINE, false)] {
             let text = format!("a,b\n{}\n1,2\n", "1".repeat(length));
             let mut problems = Collector::new("f.csv");
             assert_eq!(
@@ -388,7 +388,7 @@ mod tests {
                 (!taken).then_some("line 2 is too long for a row of a table")
             );
         }
-        for (columns, taken) in [(MOST_COLUMNS, true), (MOST_COLUMNS + 1, false)] {
+        for (columns, taken) in [(MAX_COLUMNS, true), (MAX_COLUMNS + 1, false)] {
             let text = vec!["a"; columns].join(",");
             let mut problems = Collector::new("f.csv");
             assert_eq!(

@@ -11,7 +11,7 @@ const HIGHEST_KMH: f64 = 300.0;
 /// The steepest streets stay below this slope (rise over run).
 const STEEPEST: f64 = 0.35;
 /// A file with more phases has its row number or its time in the column.
-const MOST_PHASES: usize = 200;
+const MAX_PHASES: usize = 200;
 
 /// The values of a row, in SI. What a column does not give, or gives badly, stays at its default.
 #[derive(Clone, Copy, Debug, Default)]
@@ -139,8 +139,8 @@ fn phase(
                 "repeat the name in each row of the phase",
             )
         });
-    } else if phases.len() >= MOST_PHASES {
-        let allowed = format!("up to {MOST_PHASES} different names");
+    } else if phases.len() >= MAX_PHASES {
+        let allowed = format!("up to {MAX_PHASES} different names");
         problems.cell(cell, || {
             Complaint::new(
                 "there are too many phases",

@@ -11,9 +11,9 @@ use crate::readable;
 /// Tyres cannot do more; a higher value is a wrong unit or a lost sample.
 const HIGHEST_ACCEL_M_S2: f64 = 12.0;
 /// A longer gap is a lost recording.
-const LONGEST_INTERVAL_S: f64 = 3600.0;
-const LONGEST_CYCLE_S: f64 = 1e6;
-const MOST_ROWS: usize = 2_000_000;
+const MAX_INTERVAL_S: f64 = 3600.0;
+const MAX_CYCLE_S: f64 = 1e6;
+const MAX_ROWS: usize = 2_000_000;
 
 /// What is known while the rows are read.
 pub(super) struct Table<'a> {
@@ -54,11 +54,11 @@ impl<'a> Table<'a> {
         let mut count = 0;
         let mut names = self.phases.len();
         for line in lines {
-            if count == MOST_ROWS {
+            if count == MAX_ROWS {
                 self.problems.line(line, "", || {
                     Complaint::new(
                         "the file has too many rows",
-                        format!("up to {MOST_ROWS} rows"),
+                        format!("up to {MAX_ROWS} rows"),
                         "thin it out",
                     )
                 });
@@ -112,7 +112,7 @@ impl<'a> Table<'a> {
     // The distance to the row above, if it can be used.
     fn check_time(&mut self, cell: &Cell<'_>, row: &Row) -> Option<f64> {
         let time_s = row.time_s?;
-        if !self.too_long && !(..=LONGEST_CYCLE_S).contains(&time_s) {
+        if !self.too_long && !(..=MAX_CYCLE_S).contains(&time_s) {
             self.too_long = true;
             let hint = "is the time in milliseconds?";
             self.problems.cell(cell, || {
@@ -124,7 +124,7 @@ impl<'a> Table<'a> {
             });
         }
         let dt_s = time_s - self.before.time_s?;
-        let complaint = if dt_s > 0.0 && dt_s <= LONGEST_INTERVAL_S {
+        let complaint = if dt_s > 0.0 && dt_s <= MAX_INTERVAL_S {
             return Some(dt_s);
         } else if dt_s > 0.0 {
             Complaint::new(

@@ -3,8 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::shelf::Shelf;
-use super::{Files, Kind, Options, Setup, is_path, load_lubricant, other_box, stem, text_of};
+use super::table_cache::TableCache;
+use super::{
+    Files, Kind, Options, Setup, is_path, load_lubricant, stem, text_of, wrong_transmission,
+};
 use crate::{Document, KeyInfo, Problems, Reader};
 use cvtcycle_model::drive::{Car, Vehicle};
 use cvtcycle_model::engine::Engine;
@@ -43,7 +45,7 @@ pub(super) struct Frame {
     pub name: String,
     /// Names of transmission oil and engine oil; empty where neither vehicle nor user has one.
     fluids: [String; 2],
-    pub files: Shelf,
+    pub files: TableCache,
     formulation: Formulation,
 }
 
@@ -70,9 +72,10 @@ impl Inputs {
         let mut document = Document::parse(file, text)?;
         let name = stem(file.strip_prefix("embedded:").unwrap_or(file));
         let folder = Path::new(file).parent().unwrap_or(Path::new(""));
-        let strangers = other_box::strangers(&document, &options.set, &name);
-        if !strangers.is_empty() {
-            return Err(strangers); // set all the same, they would call for a whole box
+        let wrong_transmission_keys =
+            wrong_transmission::wrong_transmission_keys(&document, &options.set, &name);
+        if !wrong_transmission_keys.is_empty() {
+            return Err(wrong_transmission_keys); // set all the same, they would call for a whole box
         }
         let own = |key: &str| (!FLUIDS.iter().any(|f| key.starts_with(f))).then(|| key.to_owned());
         let problems = apply(&mut document, &options.set, own)
@@ -80,7 +83,7 @@ impl Inputs {
             .unwrap_or_default();
         let Head {
             fluid, engine_oil, ..
-        } = head(&Reader::silent(&document).root(), "");
+        } = head(&Reader::check_only(&document).root(), "");
         let mut words = [String::new(), String::new()];
         let asked = [
             (fluid, &options.lubricant, "--lubricant"),
@@ -115,7 +118,7 @@ impl Inputs {
         let frame = Frame {
             name,
             fluids: words.map(|word| stem(&word)),
-            files: Shelf::new(files),
+            files: TableCache::new(files),
             formulation: options.formulation,
         };
         Ok(Inputs {

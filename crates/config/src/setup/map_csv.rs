@@ -31,7 +31,7 @@ impl Form<'_> {
 }
 
 /// Most rows: as many points as `losses` writes.
-const MOST_ROWS: usize = 1_000_000;
+const MAX_ROWS: usize = 1_000_000;
 
 /// A row with its line.
 struct Row<'t> {
@@ -66,12 +66,12 @@ pub(super) fn read(file: &str, bytes: &[u8], form: &Form) -> Result<Read, Proble
     let mut fields = Vec::new();
     let mut count = 0;
     for line in lines {
-        if count == MOST_ROWS {
+        if count == MAX_ROWS {
             let hint = "a coarser grid will do: between its points a map is interpolated";
             problems.line(line, "", || {
                 Complaint::new(
                     "the map has too many rows",
-                    format!("up to {MOST_ROWS} rows"),
+                    format!("up to {MAX_ROWS} rows"),
                     hint,
                 )
             });

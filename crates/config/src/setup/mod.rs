@@ -4,11 +4,11 @@
 
 pub mod assumptions;
 pub mod catalogue;
-pub mod blueprint;
+pub mod template;
 mod inputs;
 mod map_csv;
-mod other_box;
-mod shelf;
+mod wrong_transmission;
+mod table_cache;
 pub mod equations;
 pub mod tables;
 
@@ -16,7 +16,7 @@ pub use crate::embedded::{lubricants as embedded_lubricants, vehicles as embedde
 
 use std::sync::Arc;
 
-use crate::bounded::{self, Refused};
+use crate::bounded::{self, ReadError};
 use crate::embedded;
 use crate::{Bound, Document, KeyInfo, Problem, Problems, Reader, decode, near};
 use cvtcycle_model::drive::Vehicle;
@@ -36,9 +36,9 @@ pub trait Files: std::fmt::Debug + Send + Sync {
     ///
     /// # Errors
     /// As there.
-    fn fetch(&self, path: &str) -> Result<Vec<u8>, Refused> {
+    fn fetch(&self, path: &str) -> Result<Vec<u8>, ReadError> {
         self.read(path)
-            .map_err(|why| Refused::Unreadable(std::io::Error::other(why)))
+            .map_err(|why| ReadError::Unreadable(std::io::Error::other(why)))
     }
 
     /// What `make` makes of a file of a kind. Whoever reads the same car again and again keeps it and calls `make` once only.
@@ -64,7 +64,7 @@ impl Files for Disk {
         self.fetch(path).map_err(|refused| refused.to_string())
     }
 
-    fn fetch(&self, path: &str) -> Result<Vec<u8>, Refused> {
+    fn fetch(&self, path: &str) -> Result<Vec<u8>, ReadError> {
         bounded::read_file(self.folder.join(path), bounded::TABLE)
     }
 }
@@ -179,7 +179,7 @@ pub fn text_of(word: &str, kind: Kind, option: &str) -> Result<(String, String, 
         return Ok((file, text.to_owned(), Disk::default()));
     }
     let path = std::path::Path::new(word);
-    // What no option names stands in a file, whose author may be a stranger.
+    // What no option names stands in a file, whose author may be a wrong.
     let by_user = option.starts_with("--") || ["FILE", "PLAN"].contains(&option);
     let read = if by_user {
         bounded::read(path, bounded::TOML)
@@ -210,7 +210,7 @@ fn unknown_name(word: &str, kind: Kind, option: &str) -> Problem {
         .hint(format!("{hint}a path needs a / or an ending"))
 }
 
-fn unreadable(word: &str, option: &str, why: &Refused) -> Problem {
+fn unreadable(word: &str, option: &str, why: &ReadError) -> Problem {
     Problem::unreadable(format!("cannot read `{word}`: {why}"))
         .in_file(option)
         .key(option)

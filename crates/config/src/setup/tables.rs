@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use super::Files;
 use super::map_csv::{self, Column, Form};
 use crate::Section;
-use crate::bounded::Refused;
+use crate::bounded::ReadError;
 use crate::embedded;
 use cvtcycle_model::engine::BsfcMap;
 use cvtcycle_model::keys::Quantity;
@@ -80,8 +80,8 @@ fn read(s: &Section, key: &str, file: &str, form: &Form) -> Option<Arc<Table>> {
     }
 }
 
-fn fetch(files: Option<&dyn Files>, file: &str) -> Result<Vec<u8>, Refused> {
-    let none = || Refused::Unreadable(ErrorKind::NotFound.into());
+fn fetch(files: Option<&dyn Files>, file: &str) -> Result<Vec<u8>, ReadError> {
+    let none = || ReadError::Unreadable(ErrorKind::NotFound.into());
     files.ok_or_else(none)?.fetch(file)
 }
 

@@ -287,7 +287,7 @@ pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
 /// Counts all keys of a source as read, where it is not known what they mean.
 fn pass_over(s: &Section) {
     for key in s.names() {
-        let _ = s.written(key, "", "");
+        let _ = s.raw(key, "", "");
     }
 }
 

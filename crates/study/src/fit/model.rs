@@ -17,22 +17,19 @@ use super::plan::{Free, Observation, Plan, What, at_item, problem};
 use super::solve::{Parameter, Prior, Residuals};
 use crate::check::source::Source;
 use cvtcycle_config::rig::PREFIX;
-use cvtcycle_config::setup::blueprint::{Bench, Blueprint, Slot};
+use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle_config::setup::{Options, Setup, load};
-use cvtcycle_config::{KeyInfo, Place, Problem, Problems};
+use cvtcycle_config::{KeyInfo, Place, Problem, ProblemKind, Problems};
 use cvtcycle_model::bench::transmission::Conditions;
-
-/// What the readers say of an assignment, which in a plan is no option.
-const AS_OPTION: &str = "write --set table.key=VALUE";
 
 /// Width of the range of a common error, in its standard deviations.
 const COMMON_WIDTH: f64 = 8.0;
 
 /// One car of the plan, as often as its numbers change.
 struct Kind {
-    blueprint: Blueprint,
+    blueprint: VehicleTemplate,
     /// Where each parameter stands in it.
-    slots: Vec<Slot>,
+    slots: Vec<ParameterRef>,
     keys: Vec<KeyInfo>,
 }
 
@@ -57,7 +54,7 @@ pub struct Model<'p> {
     conditions: HashMap<String, (Conditions, Vec<KeyInfo>)>,
     /// Index of the common error of each group, counted behind the keys.
     common: Vec<Option<usize>>,
-    pool: Mutex<Vec<Vec<Bench>>>,
+    pool: Mutex<Vec<Vec<Variant>>>,
 }
 
 impl<'p> Model<'p> {
@@ -132,7 +129,7 @@ impl<'p> Model<'p> {
     /// Values of the files, where the first start is not told otherwise.
     #[must_use]
     pub fn file_values(&self) -> Vec<f64> {
-        let own = self.kinds[0].slots.iter().map(Slot::base);
+        let own = self.kinds[0].slots.iter().map(ParameterRef::base);
         own.chain(
             self.parameters[self.plan.parameters.len()..]
                 .iter()
@@ -206,7 +203,7 @@ impl<'p> Model<'p> {
             return Ok(());
         }
         let (blueprint, setup) =
-            Blueprint::load(&self.plan.vehicle, "calibration.vehicle", &options)?;
+            VehicleTemplate::load(&self.plan.vehicle, "calibration.vehicle", &options)?;
         let mut problems = Problems::new();
         let mut slots = Vec::new();
         for free in &self.plan.parameters {
@@ -214,13 +211,12 @@ impl<'p> Model<'p> {
                 Ok(slot) => slots.push(slot),
                 Err(found) => {
                     let allowed = "the key of a single number of the vehicle or of its fluids";
-                    // The words of others are of options.
-                    let hint = match found.hint.contains("--set") {
-                        true => format!(
+                    let hint = match found.kind {
+                        ProblemKind::WrongTransmission | ProblemKind::NotSingle => format!(
                             "`cvtcycle show {}` prints its keys; words and lists are held, in `set`",
                             self.plan.vehicle
                         ),
-                        false => found.hint.clone(),
+                        _ => found.hint.clone(),
                     };
                     let found = found.hint(hint);
                     let told = found
@@ -493,9 +489,8 @@ fn in_plan(plan: &Plan, found: Problem) -> Problem {
 /// A problem moved to a place in the plan: there to the assignment of a list that is meant, where it stands in that line.
 fn assigned(found: Problem, place: Place) -> Problem {
     let assignment = found.place.file.strip_prefix("--set ").unwrap_or_default();
-    let hint = found.hint.replace(AS_OPTION, "write \"table.key=VALUE\"");
     let place = at_item(place, assignment);
-    found.at(place).hint(hint)
+    found.at(place)
 }
 
 /// All sources that observations look at.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{FactorValue, RUN_OPTIONS};
 use cvtcycle_config::cycle;
 use cvtcycle_config::setup::{AMBIENT, embedded_lubricants, embedded_vehicles, is_path};
-use cvtcycle_config::{Bound, Written, near, unit_of};
+use cvtcycle_config::{Bound, RawValue, near, unit_of};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Range of start temperatures, degC.
@@ -63,7 +63,7 @@ pub(super) fn allowed(option: &str) -> String {
 }
 
 /// The value of an option (or of `vehicle`) as written; none, and reported, if it cannot be one.
-pub(super) fn value(option: &str, written: &Written) -> Option<FactorValue> {
+pub(super) fn value(option: &str, written: &RawValue) -> Option<FactorValue> {
     if let Some(bound) = bound(option)
         && (option != "start" || written.is_number())
     {

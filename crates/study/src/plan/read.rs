@@ -1,7 +1,7 @@
 //! The head of a plan, and all its parts together.
 
 use super::{Base, FactorValue, Keep, Places, Plan, design, factor, options};
-use cvtcycle_config::{Document, Problem, Problems, Reader, Section, Written};
+use cvtcycle_config::{Document, Problem, Problems, RawValue, Reader, Section};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_output::trace::COLUMNS;
 
@@ -85,12 +85,11 @@ fn head(document: &Document, file: &str, text: &str) -> (Plan, Problems) {
 
 /// A problem without hints that fit vehicle files only.
 fn fitting(problem: Problem) -> Problem {
-    let hint = match problem.hint.split_once(", or choose with --set") {
-        Some((hint, _)) => hint.to_owned(),
-        None if problem.key.starts_with("factor") => "factors are written as [[factor]]".to_owned(),
-        None => return problem,
-    };
-    problem.hint(hint)
+    if problem.key.starts_with("factor") {
+        problem.hint("factors are written as [[factor]]")
+    } else {
+        problem
+    }
 }
 
 fn stem(file: &str) -> String {
@@ -103,7 +102,7 @@ fn stem(file: &str) -> String {
 
 fn base(s: &Section, places: &mut Places) -> Base {
     let mut get = |key: &str, doc: &str| {
-        let written = s.written(key, &options::allowed(key), doc)?;
+        let written = s.raw(key, &options::allowed(key), doc)?;
         places.add(key, written.place());
         options::value(key, &written)
     };
@@ -153,8 +152,8 @@ fn items<'r>(
     what: &str,
     doc: &str,
     places: &mut Places,
-) -> Option<Vec<Written<'r>>> {
-    let written = s.written(key, what, doc)?;
+) -> Option<Vec<RawValue<'r>>> {
+    let written = s.raw(key, what, doc)?;
     places.add(key, written.place());
     let items = written.items();
     match &items {
@@ -212,7 +211,7 @@ fn assignments(s: &Section, key: &str, doc: &str, places: &mut Places) -> Vec<St
 
 fn keep(s: &Section) -> Keep {
     let what = "summary, everything, or a list of columns of the trace";
-    let Some(written) = s.written("keep", what, "what is kept of each run") else {
+    let Some(written) = s.raw("keep", what, "what is kept of each run") else {
         return Keep::Summary;
     };
     match (written.word(), written.items()) {
@@ -236,7 +235,7 @@ fn keep(s: &Section) -> Keep {
     }
 }
 
-fn columns(whole: &Written, items: &[Written], what: &str) -> Vec<String> {
+fn columns(whole: &RawValue, items: &[RawValue], what: &str) -> Vec<String> {
     if items.is_empty() {
         whole.complain(
             what,

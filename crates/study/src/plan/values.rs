@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::distribution::mass;
 use super::{Acts, Distribution, FactorValue, FactorValues, Places, options};
-use cvtcycle_config::{Bound, Section, Written};
+use cvtcycle_config::{Bound, RawValue, Section};
 
 /// Ways to give values.
 pub(super) const WAYS: [&str; 3] = ["values", "range", "distribution"];
@@ -82,7 +82,7 @@ pub(super) fn read(s: &Section, of: Of, places: &mut Places) -> Option<FactorVal
 }
 
 fn list(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
-    let written = s.written(
+    let written = s.raw(
         "values",
         "a list of numbers or words",
         "values, each for itself",
@@ -138,7 +138,7 @@ fn list(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
 }
 
 /// An item of a list.
-fn value(item: &Written, of: Of) -> Option<FactorValue> {
+fn value(item: &RawValue, of: Of) -> Option<FactorValue> {
     if options::is_option(of.key) {
         return options::value(of.key, item);
     }
@@ -182,7 +182,7 @@ fn range(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
     if !table.exists() {
         return None;
     }
-    let end = |key: &str, doc: &str| match table.written(key, &of.bound().to_string(), doc) {
+    let end = |key: &str, doc: &str| match table.raw(key, &of.bound().to_string(), doc) {
         Some(written) => written
             .number(of.quantity(), of.bound())
             .unwrap_or(f64::NAN),

@@ -18,7 +18,7 @@ use super::parquet::write_parquet;
 use super::read::{Study, is_whole, marked_parts};
 use crate::table::{Head, Rows};
 use cvtcycle_config::Problem;
-use cvtcycle_config::bounded::{self, Refused};
+use cvtcycle_config::bounded::{self, ReadError};
 use cvtcycle_output::files::{
     Created, check_directory, failed, list, names_in, problem, sync_directory, temporary_in,
 };
@@ -349,7 +349,7 @@ fn check_contents(path: &Path, force: bool) -> Result<bool, Problem> {
     })
 }
 
-fn no_study(path: &Path, error: Refused) -> Problem {
+fn no_study(path: &Path, error: ReadError) -> Problem {
     if error.kind() == ErrorKind::NotFound || error.kind() == ErrorKind::NotADirectory {
         return problem(
             path,
@@ -359,7 +359,7 @@ fn no_study(path: &Path, error: Refused) -> Problem {
     }
     let message = format!("cannot read {MANIFEST} in {}", path.display());
     match error {
-        Refused::Unreadable(error) => failed(path, &message, &error),
+        ReadError::Unreadable(error) => failed(path, &message, &error),
         refused => problem(path, &format!("{message}: {refused}"), refused.hint(""))
             .allowed(refused.allowed("")),
     }

@@ -11,7 +11,7 @@ use super::file_problem;
 use super::parquet::{COLUMNS_KEY, io_error};
 use crate::table::{Head, Rows, Values};
 use cvtcycle_config::Problem;
-use cvtcycle_config::bounded::{self, Refused};
+use cvtcycle_config::bounded::{self, ReadError};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
 use parquet::errors::ParquetError;
@@ -264,7 +264,7 @@ pub(super) fn check_sum(path: &Path, file: &File, sum: &Sum) -> Result<(), Probl
     Err(file_problem(path, message, MEND))
 }
 
-pub(super) fn unreadable(path: &Path, error: &Refused) -> Problem {
+pub(super) fn unreadable(path: &Path, error: &ReadError) -> Problem {
     let hint = if error.kind() == io::ErrorKind::NotFound {
         MEND
     } else {

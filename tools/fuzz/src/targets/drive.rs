@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use cvtcycle::config::KeyInfo;
 use cvtcycle::config::cycle::{Cycle, read_csv};
-use cvtcycle::config::setup::blueprint::{Bench, Blueprint, Slot};
+use cvtcycle::config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle::config::setup::{Options, Setup};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::model::drive::{Recorder, State, simulate};
@@ -78,8 +78,8 @@ const MOST: usize = 40;
 const LEGS: usize = 8;
 
 struct Car {
-    bench: Bench,
-    slots: Vec<(Slot, f64, f64, f64, bool)>,
+    bench: Variant,
+    slots: Vec<(ParameterRef, f64, f64, f64, bool)>,
 }
 
 fn car((name, words): (&str, &[&str])) -> Car {
@@ -87,7 +87,7 @@ fn car((name, words): (&str, &[&str])) -> Car {
         set: words.iter().map(|word| (*word).to_owned()).collect(),
         ..Options::default()
     };
-    let loaded = Blueprint::load(name, "--vehicle", &options);
+    let loaded = VehicleTemplate::load(name, "--vehicle", &options);
     let (blueprint, base) =
         loaded.unwrap_or_else(|problems| panic!("{name} {words:?}: {}", problems[0].message));
     let slot = |info: &KeyInfo| {

@@ -11,7 +11,7 @@ use crate::check::store::{Cars, Store, View, once};
 use crate::check::tables;
 use crate::fit::plan::What;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_config::setup::blueprint::Bench;
+use cvtcycle_config::setup::template::Variant;
 use cvtcycle_config::{KeyInfo, Problem, Problems, to_si};
 use cvtcycle_model::bench::transmission::Conditions;
 
@@ -19,7 +19,7 @@ use cvtcycle_model::bench::transmission::Conditions;
 pub(super) struct Candidate<'m> {
     pub model: &'m Model<'m>,
     pub values: &'m [f64],
-    pub benches: RefCell<Vec<Bench>>,
+    pub benches: RefCell<Vec<Variant>>,
     pub built: RefCell<HashMap<usize, Result<Rc<Setup>, String>>>,
 }
 

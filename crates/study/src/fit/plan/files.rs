@@ -31,7 +31,7 @@ pub(super) fn read(s: &Section, way: &str, around: &Around, found: &mut Found) {
         // What else stands here is not looked at.
         s.names()
             .into_iter()
-            .for_each(|key| drop(s.written(key, "", "")));
+            .for_each(|key| drop(s.raw(key, "", "")));
         return;
     }
     let folder = std::path::Path::new(around.file)
@@ -87,7 +87,7 @@ fn sds(s: &Section) -> Vec<(String, f64)> {
     let table = s.table("sd_by_column");
     let own = table.names().into_iter().map(|name| {
         // The unit is that of the column: no conversion.
-        let sd = table.written(
+        let sd = table.raw(
             name,
             "above 0",
             "standard deviation, in the unit of the column",

@@ -95,7 +95,7 @@ pub(super) fn read(document: &Document, around: &Around) -> Result<Found, Proble
             // Which keys belong to it is not known.
             s.names()
                 .into_iter()
-                .for_each(|key| drop(s.written(key, "", "")));
+                .for_each(|key| drop(s.raw(key, "", "")));
         }
     }
     if found.folds.is_empty() {

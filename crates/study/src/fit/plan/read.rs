@@ -252,10 +252,7 @@ fn fitting(problem: Problem) -> Problem {
     let hint = match table {
         Some((key, header)) if *key == problem.key => format!("it is written as {header}"),
         Some((_, header)) => format!("did you mean {header}?"),
-        None => problem
-            .hint
-            .split_once(", or choose with --set")
-            .map_or(problem.hint.clone(), |(hint, _)| hint.to_owned()),
+        None => problem.hint.clone(),
     };
     problem.hint(hint)
 }

@@ -5,33 +5,33 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::Files;
 use super::tables::Table;
-use crate::bounded::Refused;
+use crate::bounded::ReadError;
 
 /// The tables of one file, by kind.
 type Kinds = BTreeMap<&'static str, Arc<Table>>;
 
 /// Where files come from, and the tables of them that have been asked for.
 #[derive(Debug)]
-pub(super) struct Shelf {
+pub(super) struct TableCache {
     files: Box<dyn Files>,
     tables: Mutex<BTreeMap<String, Kinds>>,
 }
 
-impl Shelf {
+impl TableCache {
     pub fn new(files: Box<dyn Files>) -> Self {
-        Shelf {
+        TableCache {
             files,
             tables: Mutex::default(),
         }
     }
 }
 
-impl Files for Shelf {
+impl Files for TableCache {
     fn read(&self, path: &str) -> Result<Vec<u8>, String> {
         self.files.read(path)
     }
 
-    fn fetch(&self, path: &str) -> Result<Vec<u8>, Refused> {
+    fn fetch(&self, path: &str) -> Result<Vec<u8>, ReadError> {
         self.files.fetch(path)
     }
 

@@ -11,7 +11,7 @@ pub type KeyPath = Arc<[Box<str>]>;
 /// A document with numbers put over those of the file, as assignments from the command line would. It has only what the program computes
 /// with, neither the text nor the origin of values: silent readings need no more, and any other would have problems without a place.
 #[derive(Clone, Debug)]
-pub struct Draft {
+pub struct PatchedDocument {
     document: Document,
     /// Index of the source that the numbers come from.
     source: usize,
@@ -28,7 +28,7 @@ struct Change {
     before: Option<Entry>,
 }
 
-impl Draft {
+impl PatchedDocument {
     /// A draft of a document, without any change.
     pub fn new(document: &Document) -> Self {
         let source = document.sources.len();
@@ -38,7 +38,7 @@ impl Draft {
             root: bare(&document.root),
             header: document.header.clone(),
         };
-        Draft {
+        PatchedDocument {
             document,
             source,
             changes: Vec::new(),

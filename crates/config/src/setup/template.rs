@@ -1,27 +1,27 @@
 //! One car, built again and again with other numbers.
 //!
-//! A study drives up to a million cars that differ in a few numbers. A [`Blueprint`] parses and checks the files once; a [`Bench`], one a
-//! thread, changes numbers in the parsed documents and reads them silently ([`Reader::silent`]): with the same readers, checks and results
+//! A study drives up to a million cars that differ in a few numbers. A [`VehicleTemplate`] parses and checks the files once; a [`Variant`], one a
+//! thread, changes numbers in the parsed documents and reads them silently ([`Reader::check_only`]): with the same readers, checks and results
 //! as [`super::load`], but without a text for every key. Words are asked for when a car is refused: then the ordinary reading is done.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::inputs::{FLUIDS, Input, Inputs};
-use super::{Options, Setup, other_box};
-use crate::{Document, Draft, KeyInfo, KeyPath, Problem, Problems, Reader, unit_of};
+use super::{Options, Setup, wrong_transmission};
+use crate::{Document, KeyInfo, KeyPath, PatchedDocument, Problem, Problems, Reader, unit_of};
 
 /// The parsed and checked files of one car.
 #[derive(Clone, Debug)]
-pub struct Blueprint {
+pub struct VehicleTemplate {
     inputs: Arc<Inputs>,
     /// Of every key what a slot needs: value and range.
     keys: HashMap<String, KeyInfo>,
 }
 
-/// Where a number stands in the files of a blueprint.
+/// Where a number stands in the files of a template.
 #[derive(Clone, Debug)]
-pub struct Slot {
+pub struct ParameterRef {
     key: Arc<str>,
     /// Index of vehicle, transmission oil or engine oil.
     file: usize,
@@ -29,10 +29,10 @@ pub struct Slot {
     base: f64,
     allowed: Arc<str>,
     /// Not read as long as the files are unchanged: it belongs to an option that the number itself chooses.
-    foreign: bool,
+    inactive: bool,
 }
 
-impl Slot {
+impl ParameterRef {
     /// Dotted key with the prefix of its file.
     #[must_use]
     pub fn key(&self) -> &str {
@@ -58,7 +58,7 @@ impl Slot {
     }
 }
 
-impl Blueprint {
+impl VehicleTemplate {
     /// Reads and checks a vehicle with its fluids as [`super::load`] does; also gives the unchanged car.
     ///
     /// # Errors
@@ -67,7 +67,7 @@ impl Blueprint {
         word: &str,
         option: &str,
         options: &Options,
-    ) -> Result<(Blueprint, Setup), Problems> {
+    ) -> Result<(VehicleTemplate, Setup), Problems> {
         let inputs = Inputs::gather(word, option, options)?;
         let setup = inputs.read()?;
         let known = |info: &KeyInfo| KeyInfo {
@@ -83,7 +83,7 @@ impl Blueprint {
             .map(|info| (info.key.clone(), known(info)))
             .collect();
         Ok((
-            Blueprint {
+            VehicleTemplate {
                 inputs: Arc::new(inputs),
                 keys,
             },
@@ -96,7 +96,7 @@ impl Blueprint {
     ///
     /// # Errors
     /// What `--set` would say of an unknown key; a problem for a key that holds no single number.
-    pub fn slot(&self, key: &str) -> Result<Slot, Problem> {
+    pub fn slot(&self, key: &str) -> Result<ParameterRef, Problem> {
         let key = key.trim();
         let file = FLUIDS
             .iter()
@@ -107,7 +107,7 @@ impl Blueprint {
         } else {
             key.strip_prefix(FLUIDS[file - 1]).unwrap_or(key)
         };
-        let (info, foreign) = match self.keys.get(key) {
+        let (info, inactive) = match self.keys.get(key) {
             Some(info) => (info.clone(), false),
             None => (self.elsewhere(key, own, file)?, true),
         };
@@ -118,13 +118,13 @@ impl Blueprint {
             None => return Err(no_number(key, info)),
         };
         let path = own.split('.').map(|name| name.trim().into()).collect();
-        Ok(Slot {
+        Ok(ParameterRef {
             key: key.into(),
             file,
             path,
             base,
             allowed: info.allowed.into(),
-            foreign,
+            inactive,
         })
     }
 
@@ -132,10 +132,14 @@ impl Blueprint {
     fn elsewhere(&self, key: &str, own: &str, file: usize) -> Result<KeyInfo, Problem> {
         let unset = |problem: Problem| problem.in_file(format!("--set {key}")).value(String::new());
         if let Some(document) = &self.inputs.files[0].document
-            && let Some(stranger) =
-                other_box::strangers(document, &[format!("{key}=0")], &self.inputs.frame.name).pop()
+            && let Some(wrong) = wrong_transmission::wrong_transmission_keys(
+                document,
+                &[format!("{key}=0")],
+                &self.inputs.frame.name,
+            )
+            .pop()
         {
-            return Err(unset(stranger));
+            return Err(unset(wrong));
         }
         let mut documents = self
             .inputs
@@ -169,33 +173,31 @@ impl Blueprint {
 
     /// A thread's own copy of the files, unchanged.
     #[must_use]
-    pub fn bench(&self) -> Bench {
+    pub fn bench(&self) -> Variant {
         let empty =
             Document::parse("", "").unwrap_or_else(|_| unreachable!("no text has no mistakes"));
         let drafts = self
             .inputs
             .files
             .each_ref()
-            .map(|input| Draft::new(input.document.as_ref().unwrap_or(&empty)));
-        Bench {
+            .map(|input| PatchedDocument::new(input.document.as_ref().unwrap_or(&empty)));
+        Variant {
             inputs: Arc::clone(&self.inputs),
             drafts,
-            misfits: Vec::new(),
-            foreign: Vec::new(),
+            conflicts: Vec::new(),
+            inactive: Vec::new(),
             checked: Vec::new(),
         }
     }
 }
 
 fn no_number(key: &str, info: KeyInfo) -> Problem {
-    Problem::invalid(format!("`{key}` holds no single number"))
+    Problem::not_single(format!("`{key}` holds no single number"))
         .in_file(format!("--set {key}"))
         .key(key)
         .value(info.value)
         .allowed(info.allowed)
-        .hint(format!(
-            "give its values as texts, each what would stand after --set {key}="
-        ))
+        .hint("give its values as texts")
 }
 
 /// The files with numbers set as by `--set`, in order: index of the file, key without prefix, value.
@@ -228,40 +230,40 @@ fn changed(inputs: &Inputs, numbers: &[(usize, String, f64)]) -> Inputs {
 /// A car was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rejected {
-    /// Number of problems, as counted; [`Bench::problems`] has their words.
+    /// Number of problems, as counted; [`Variant::problems`] has their words.
     pub problems: usize,
 }
 
-/// A blueprint's documents with changed numbers.
+/// A template's documents with changed numbers.
 #[derive(Clone, Debug)]
-pub struct Bench {
+pub struct Variant {
     inputs: Arc<Inputs>,
     /// Vehicle, transmission oil, engine oil.
-    drafts: [Draft; 3],
+    drafts: [PatchedDocument; 3],
     /// Numbers that could not be put in, because another one is in the way.
-    misfits: Vec<(Slot, f64)>,
+    conflicts: Vec<(ParameterRef, f64)>,
     /// Numbers of options that the files do not choose.
-    foreign: Vec<Arc<str>>,
+    inactive: Vec<Arc<str>>,
     /// Such numbers, for which it is known that no key is left over.
     checked: Vec<Arc<str>>,
 }
 
-impl Bench {
+impl Variant {
     /// Puts in a number, in the unit of the slot's key. The car is what [`super::load`] makes of `--set KEY=NUMBER`.
-    pub fn set(&mut self, slot: &Slot, number: f64) {
+    pub fn set(&mut self, slot: &ParameterRef, number: f64) {
         if !self.drafts[slot.file].set(&slot.path, number) {
-            self.misfits.push((slot.clone(), number));
+            self.conflicts.push((slot.clone(), number));
         }
-        if slot.foreign && !self.foreign.contains(&slot.key) {
-            self.foreign.push(Arc::clone(&slot.key));
+        if slot.inactive && !self.inactive.contains(&slot.key) {
+            self.inactive.push(Arc::clone(&slot.key));
         }
     }
 
     /// Takes all numbers back.
     pub fn reset(&mut self) {
-        self.drafts.iter_mut().for_each(Draft::reset);
-        self.misfits.clear();
-        self.foreign.clear();
+        self.drafts.iter_mut().for_each(PatchedDocument::reset);
+        self.conflicts.clear();
+        self.inactive.clear();
     }
 
     /// The car with the numbers in force; it has no [`Setup::keys`].
@@ -270,11 +272,11 @@ impl Bench {
     /// How many problems it has.
     pub fn build(&mut self) -> Result<Setup, Rejected> {
         let rejected = |problems: usize| Err(Rejected { problems });
-        if !self.misfits.is_empty() {
-            return rejected(self.misfits.len());
+        if !self.conflicts.is_empty() {
+            return rejected(self.conflicts.len());
         }
         let readers = self.drafts.each_ref().map(|draft| {
-            Some(Reader::silent(draft.document()).with_files(&self.inputs.frame.files))
+            Some(Reader::check_only(draft.document()).with_files(&self.inputs.frame.files))
         });
         let setup = match self.inputs.frame.assemble(&readers) {
             Ok(setup) => setup,
@@ -290,12 +292,12 @@ impl Bench {
         }
         // A silent reading does not look for keys that nobody reads. Only a number that chooses an option can leave such keys behind, and
         // which keys these are does not depend on its value.
-        if self.foreign != self.checked {
+        if self.inactive != self.checked {
             let problems = self.problems();
             if !problems.is_empty() {
                 return rejected(problems.len());
             }
-            self.checked.clone_from(&self.foreign);
+            self.checked.clone_from(&self.inactive);
         }
         Ok(setup)
     }
@@ -304,14 +306,14 @@ impl Bench {
     /// an ordinary reading.
     #[must_use]
     pub fn problems(&self) -> Problems {
-        let of_file = |(file, draft): (usize, &Draft)| {
+        let of_file = |(file, draft): (usize, &PatchedDocument)| {
             draft
                 .numbers()
                 .map(|(key, number)| (file, key, number))
                 .collect::<Vec<_>>()
         };
-        let misfits = self
-            .misfits
+        let conflicts = self
+            .conflicts
             .iter()
             .map(|(slot, number)| (slot.file, slot.path.join("."), *number));
         let numbers: Vec<_> = self
@@ -319,7 +321,7 @@ impl Bench {
             .iter()
             .enumerate()
             .flat_map(of_file)
-            .chain(misfits)
+            .chain(conflicts)
             .collect();
         changed(&self.inputs, &numbers)
             .read()

@@ -1,19 +1,25 @@
-//! Overrides that reach for the other kind of box: said once, instead of a whole box of missing keys.
+//! Overrides of keys of the other kind of transmission: one problem each, instead of one for every key of it.
 
 use crate::{Document, Problem, Problems, Reader};
 
 /// Overrides of keys of a kind of box that the vehicle does not have.
-pub(super) fn strangers(document: &Document, sets: &[String], name: &str) -> Problems {
+pub(super) fn wrong_transmission_keys(
+    document: &Document,
+    sets: &[String],
+    name: &str,
+) -> Problems {
     let reader = Reader::new(document);
     let own = reader.root().table("transmission").names();
     let problem = |set: &String, there: &str, asked: &str| {
-        Problem::invalid(format!(
-            "{name} has a {} and no {}",
-            box_word(there),
-            box_word(asked)
-        )).in_file(format!("--set {set}")).key(set.split('=').next().unwrap_or_default().trim()).value(set.clone()).allowed(format!("keys of [transmission.{there}]")).hint(format!(
-            "`cvtcycle show {name}` prints its keys; --set reaches the vehicle alone, --set-all its baselines too"
-        ))
+        let (has, lacks) = (box_word(there), box_word(asked));
+        Problem::wrong_transmission(format!("{name} has a {has} and no {lacks}"))
+            .in_file(format!("--set {set}"))
+            .key(set.split('=').next().unwrap_or_default().trim())
+            .value(set.clone())
+            .allowed(format!("keys of [transmission.{there}]"))
+            .hint(format!(
+                "set a key of [transmission.{there}], or take another vehicle"
+            ))
     };
     let of = |set: &String| {
         let kind = set

@@ -8,7 +8,7 @@ use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Quantity};
 
 /// A value as written. Its checks report at its own place.
 #[derive(Clone)]
-pub struct Written<'r> {
+pub struct RawValue<'r> {
     section: Section<'r>,
     key: String,
     node: &'r Node,
@@ -16,7 +16,7 @@ pub struct Written<'r> {
 
 impl<'r> Section<'r> {
     /// The value of `key` as written; none if it is absent or, reported already, no value at all.
-    pub fn written(&self, key: &str, allowed: &str, doc: &str) -> Option<Written<'r>> {
+    pub fn raw(&self, key: &str, allowed: &str, doc: &str) -> Option<RawValue<'r>> {
         match self.open(&Key::new(
             key,
             (Kind::Other(allowed), Presence::Optional),
@@ -29,7 +29,7 @@ impl<'r> Section<'r> {
                     self.reader.document.written(&found.node.span).to_string(),
                     None,
                 );
-                Some(Written {
+                Some(RawValue {
                     section: self.clone(),
                     key: key.to_string(),
                     node: found.node,
@@ -40,7 +40,7 @@ impl<'r> Section<'r> {
     }
 }
 
-impl<'r> Written<'r> {
+impl<'r> RawValue<'r> {
     /// The text of the file.
     #[must_use]
     pub fn text(&self) -> &'r str {
@@ -76,12 +76,12 @@ impl<'r> Written<'r> {
 
     /// Its items, where it is a list.
     #[must_use]
-    pub fn items(&self) -> Option<Vec<Written<'r>>> {
+    pub fn items(&self) -> Option<Vec<RawValue<'r>>> {
         match &self.node.value {
             Value::List(items) => Some(
                 items
                     .iter()
-                    .map(|node| Written {
+                    .map(|node| RawValue {
                         node,
                         ..self.clone()
                     })

@@ -1,5 +1,5 @@
 //! Silent readings find the same values and as many problems as ordinary ones; drafts are what assignments make of a document.
-use super::super::draft::Draft;
+use super::super::patched::PatchedDocument;
 use super::*;
 
 /// A little of everything that a reader reads, as text.
@@ -45,25 +45,25 @@ const GOOD: &str = "title = 'x'\nradii_mm = [1, 2]\npoints = [[1, 0.5], [2, 0.6]
 fn silent_readings_find_the_same() {
     let bad = "title = 1\nradii_mm = []\npoints = [[1, 2], [1]]\nfluid = 'odl'\nwarm = 0\nspeed_rpm = '3'\nnames = [1]\nclamp = 'amp'\n\
         belt = { offset_mm = { status = 'assumed' }, width_mm = -1, bands = 1.5, gap_mm = 'x' }\n";
-    for (text, faults) in [
+    for (text, problem_count) in [
         (GOOD, 0),
         (bad, 13),
         ("", 3),
         ("belt = 1\n[clamp.map]\n[clamp.slip]\n", 4),
     ] {
         let document = document(text);
-        let (ordinary, silent) = (Reader::new(&document), Reader::silent(&document));
+        let (ordinary, silent) = (Reader::new(&document), Reader::check_only(&document));
         let same = read(&ordinary) == read(&silent);
         assert!(same, "{text}");
         assert_eq!(
             ordinary.finish().err().map_or(0, |problems| problems.len()),
-            faults,
+            problem_count,
             "{text}"
         );
         assert!(silent.known().is_empty());
         assert_eq!(
             silent.finish().err().map_or(0, |problems| problems.len()),
-            faults,
+            problem_count,
             "{text}"
         );
     }
@@ -77,8 +77,8 @@ fn path(key: &str) -> KeyPath {
 #[test]
 fn drafts_are_what_assignments_make() {
     let base = document(GOOD);
-    let mut draft = Draft::new(&base);
-    let unchanged = read(&Reader::silent(&base));
+    let mut draft = PatchedDocument::new(&base);
+    let unchanged = read(&Reader::check_only(&base));
     let numbers = [
         ("belt.offset_mm", 4.5),
         ("belt.bands", 7.0),
@@ -93,9 +93,9 @@ fn drafts_are_what_assignments_make() {
                 assert!(draft.set(&path(key), number * round));
                 assigned.set(&format!("{key}={}", number * round)).unwrap();
             }
-            let same = read(&Reader::silent(draft.document())) == read(&Reader::new(&assigned));
+            let same = read(&Reader::check_only(draft.document())) == read(&Reader::new(&assigned));
             assert!(same, "{count} numbers, {round}");
-            assert!(count == 0 || read(&Reader::silent(draft.document())) != unchanged);
+            assert!(count == 0 || read(&Reader::check_only(draft.document())) != unchanged);
         }
         let kept: Vec<(String, f64)> = draft.numbers().collect();
         assert_eq!(
@@ -106,12 +106,12 @@ fn drafts_are_what_assignments_make() {
                 .collect::<Vec<_>>()
         );
         draft.reset();
-        assert_eq!(read(&Reader::silent(draft.document())), unchanged);
+        assert_eq!(read(&Reader::check_only(draft.document())), unchanged);
         assert_eq!(draft.numbers().count(), 0);
     }
     assert!(
         !draft.set(&path("belt.offset_mm.x"), 1.0),
         "a value is in the way"
     );
-    assert_eq!(read(&Reader::silent(draft.document())), unchanged);
+    assert_eq!(read(&Reader::check_only(draft.document())), unchanged);
 }
