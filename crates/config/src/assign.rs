@@ -57,7 +57,7 @@ impl Document {
         Ok(())
     }
 
-    /// Makes the tables around a key, as an assignment to it would, and leaves the key out: a reading then tells its default, and an
+    /// Makes the tables around a key, as an assignment to it would, and leaves the key out: a reading then gives its default, and an
     /// option to which it belongs is chosen.
     ///
     /// # Errors
@@ -70,7 +70,7 @@ impl Document {
     }
 }
 
-/// Takes away what stands at a path; the tables around it stay.
+/// Removes the entry at a path; the tables around it stay.
 fn remove(table: &mut Table, keys: &[&str]) {
     match keys {
         [] => {}
@@ -87,7 +87,7 @@ fn remove(table: &mut Table, keys: &[&str]) {
     }
 }
 
-/// Puts `node` at the path `keys`; fails with the depth at which a value stands in the way.
+/// Puts `node` at the path `keys`; fails with the depth at which a value is in the way.
 pub(super) fn insert<S: AsRef<str>>(
     table: &mut Table,
     keys: &[S],
@@ -152,7 +152,7 @@ pub(super) fn make_room(node: &mut Node) {
     }
 }
 
-/// Whether a word stands there, in either of the two forms of a value.
+/// Whether the value is a word, in either of the two forms of a value.
 pub(super) fn is_word(node: &Node) -> bool {
     match &node.value {
         Value::Text(_) => true,

@@ -9,7 +9,7 @@
 //! | [`CHECKSUMS`] | 1 MiB | ten thousand files |
 //! | [`LOGO`] | 500 kB | it is copied into the report |
 //!
-//! A file's size is asked for, so that a large one is refused without being read, but not trusted: pipes and devices have none, and a file
+//! The size of a file is read first, so that a large one is refused unread, but it is not trusted: pipes and devices have none, and a file
 //! may grow while it is read.
 
 use std::fmt;
@@ -119,7 +119,7 @@ impl ReadError {
 }
 
 impl fmt::Display for ReadError {
-    /// What is the matter, to stand behind "cannot read NAME: ".
+    /// The reason, as the end of "cannot read NAME: ".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             ReadError::Unreadable(error) => error.fmt(f),
@@ -147,7 +147,7 @@ pub fn read(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, ReadError> 
     if size > limit.bytes {
         return Err(ReadError::TooLarge(Some(size), limit));
     }
-    // One byte more than allowed tells a file that goes on from one that ends there.
+    // One byte more than allowed shows that the file goes on.
     let mut bytes = Vec::with_capacity(usize::try_from(size + 1).unwrap_or(0));
     let read = file.take(limit.bytes + 1).read_to_end(&mut bytes)?;
     if read as u64 > limit.bytes {
@@ -157,7 +157,7 @@ pub fn read(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, ReadError> 
     }
 }
 
-/// The bytes of a file that another file names, or that the program has written: whoever made that file may be a wrong, and a pipe
+/// The bytes of a file that another file names, or that the program has written: its author may be unknown, and a pipe
 /// without a writer would be waited for without end.
 ///
 /// # Errors

@@ -158,7 +158,7 @@ impl<'r> Section<'r> {
         )
     }
 
-    /// Two options at once: the message stands at the later one and names the place of the other.
+    /// Two options at once: the problem is at the later one and names the place of the other.
     fn clash(
         &self,
         key: &Key<'_>,

@@ -93,7 +93,7 @@ pub(super) struct Entry {
 pub struct Document {
     pub(super) sources: Vec<Arc<Source>>,
     pub(super) root: Table,
-    /// Header of the table that the document stands for, where it is one item of a list ([`Document::take_tables`]).
+    /// Header of the table, where the document is one item of a list ([`Document::take_tables`]).
     pub(super) header: Option<Span>,
 }
 
@@ -128,7 +128,7 @@ impl Document {
     }
 
     /// Takes the tables of the list `key` (`[[key]]`) out, each as a document of its own with its places in this text. What is not a
-    /// list of tables stays, so that whoever reads the rest complains about it.
+    /// list of tables stays, so that reading the rest reports it.
     pub fn take_tables(&mut self, key: &str) -> Vec<Document> {
         let is_table = |node: &Node| matches!(node.value, Value::Table(_));
         let all = |entry: &Entry| matches!(&entry.node.value, Value::List(items) if items.iter().all(is_table));
@@ -156,7 +156,7 @@ impl Document {
         items.into_iter().filter_map(document).collect()
     }
 
-    /// Where a span stands.
+    /// Place of a span.
     pub(super) fn place(&self, span: &Span) -> Place {
         self.sources[span.source].place(span.range.clone())
     }

@@ -1,8 +1,8 @@
 //! Text to checked input: values in SI units, each with its origin, and every problem with its place.
 //!
-//! A [`Document`] is the parsed text with its places, a [`Reader`] one pass over it. Whoever reads a
-//! key states its allowed range and its meaning in the same call, so that the messages, `explain` and
-//! the page of assumptions cannot drift from what the program really reads.
+//! A [`Document`] is the parsed text with its places, a [`Reader`] one pass over it. The
+//! keys of vehicles, lubricants and rigs are rows of the model (`cvtcycle_model::keys`); messages,
+//! `explain`, the schema and the book of assumptions come from the same rows as the reading.
 mod assign;
 pub mod cycle;
 pub mod setup;

@@ -3,7 +3,7 @@
 /// Likeness below which a known name is no is_suggestion reading of the written one.
 const SUGGESTED: f64 = 0.6;
 
-/// Bytes of a longer word are not compared with names: that takes time with its length, and nobody mistypes a name into it.
+/// Bytes of a longer word are not compared with names: the time grows with its length, and no mistyped name is that long.
 const MAX_LEN: usize = 200;
 
 /// Likeness of two names, from 0 to 1.

@@ -9,7 +9,7 @@ use super::source::Source;
 pub type KeyPath = Arc<[Box<str>]>;
 
 /// A document with numbers put over those of the file, as assignments from the command line would. It has only what the program computes
-/// with, neither the text nor the origin of values: silent readings need no more, and any other would have problems without a place.
+/// with, neither the text nor the origin of values: check-only readings need no more, and any other would have problems without a place.
 #[derive(Clone, Debug)]
 pub struct PatchedDocument {
     document: Document,
@@ -51,7 +51,7 @@ impl PatchedDocument {
     }
 
     /// Puts a number, in the key's own unit, at a path, as `--set` would: whole numbers as integers. Whether that was possible: a value
-    /// may stand where the path needs a table.
+    /// may be where the path needs a table.
     #[must_use]
     pub fn set(&mut self, path: &KeyPath, number: f64) -> bool {
         let (root, value) = (&mut self.document.root, written(number));

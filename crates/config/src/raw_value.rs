@@ -47,7 +47,7 @@ impl<'r> RawValue<'r> {
         self.section.reader.document.written(&self.node.span)
     }
 
-    /// Where it stands.
+    /// Its place.
     #[must_use]
     pub fn place(&self) -> Place {
         self.section.reader.document.place(&self.node.span)

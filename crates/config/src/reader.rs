@@ -52,7 +52,7 @@ pub(super) struct Log {
     pub index: HashMap<String, usize>,
     /// Paths whose whole content counts as read.
     pub read: BTreeSet<String>,
-    /// Paths of tables that were asked for.
+    /// Paths of tables that were read.
     pub tables: BTreeSet<String>,
     /// Paths at which one of several options is chosen.
     pub choices: BTreeSet<String>,
@@ -60,11 +60,11 @@ pub(super) struct Log {
 
 /// One reading session. It collects all problems and what is known about every key that is read.
 ///
-/// A silent session checks the same and writes no text: it knows how many problems there are and no words for them, and nothing about
-/// keys. Whoever reads a section need not know which kind it is: all texts are made inside `note` and `fault`.
+/// A check-only session checks the same and writes no text: it counts problems without describing them, and knows nothing about
+/// keys. Code that reads a section is the same for both: all texts are made inside `record` and `report`.
 pub struct Reader<'d> {
     pub(super) document: &'d Document,
-    /// None in a silent session.
+    /// None in a check-only session.
     log: Option<RefCell<Log>>,
     /// Problems so far.
     problem_count: Cell<usize>,
@@ -83,7 +83,7 @@ impl<'d> Reader<'d> {
         }
     }
 
-    /// Starts to read `document` silently: [`Reader::finish`] then gives no keys, and problems without words. Keys that are present but
+    /// Starts a check-only session: [`Reader::finish`] then gives no keys, and problems without words. Keys that are present but
     /// not known are not looked for.
     pub fn check_only(document: &'d Document) -> Self {
         Reader {
@@ -103,19 +103,19 @@ impl<'d> Reader<'d> {
         }
     }
 
-    /// Whether nobody wants to know more than whether all is well.
+    /// True in check-only mode.
     pub(super) fn is_check_only(&self) -> bool {
         self.log.is_none()
     }
 
-    /// Writes something down, unless the session is silent.
+    /// Writes something down, except in a check-only session.
     pub(super) fn record(&self, write: impl FnOnce(&mut Log)) {
         if let Some(log) = &self.log {
             write(&mut log.borrow_mut());
         }
     }
 
-    /// Counts a problem; `say` puts it into words, unless the session is silent or has many already.
+    /// Counts a problem; `message` describes it, except in a check-only session or after many.
     pub(super) fn report(&self, message: impl FnOnce() -> Problem) {
         self.problem_count.set(self.problem_count.get() + 1);
         self.record(|log| {
@@ -165,8 +165,8 @@ impl<'d> Reader<'d> {
     /// Ends the session with every key that was read, in the order of reading.
     ///
     /// # Errors
-    /// All problems, in the order of their places, including keys that are present but were never read; of a great many the last entry tells
-    /// how many more there are. After a silent session as many empty problems as were counted.
+    /// All problems, in the order of their places, including keys that are present but were never read; of a great many the last entry states
+    /// how many more there are. After a check-only session as many empty problems as were counted.
     pub fn finish(self) -> Result<Vec<KeyInfo>, Problems> {
         let document = self.document;
         let Some(log) = self.log else {
@@ -236,7 +236,7 @@ impl Log {
         }
     }
 
-    /// The problem of an entry that nobody read, and the known key it most likely means.
+    /// The problem of an entry that was not read, and the known key it most likely means.
     fn unknown(&self, document: &Document, path: &str, entry: &Entry) -> (Problem, Option<String>) {
         let is_table =
             matches!(&entry.node.value, Value::Table(table) if table.wrapped().is_none());
@@ -339,7 +339,7 @@ impl Log {
             .collect()
     }
 
-    /// What may stand beside an entry that is like nothing known.
+    /// Known names in the table of an entry that is similar to none.
     fn neighbours(&self, path: &str) -> String {
         let names: BTreeSet<&str> = self
             .known()
@@ -354,7 +354,7 @@ impl Log {
     }
 }
 
-/// Collects the entries that nobody asked for; an unknown table counts as one entry.
+/// Collects the entries that were not read; an unknown table counts as one entry.
 fn unread<'t>(log: &Log, table: &'t Table, path: &str, unknown: &mut Vec<(String, &'t Entry)>) {
     for (name, entry) in &table.entries {
         let path = join(path, name);

@@ -10,10 +10,10 @@ use super::problem::{Place, Problem};
 const WIDTH: usize = 120;
 /// A longer one is no name and would hide the message.
 const MAX_KEY: usize = 80;
-/// A longer text repeats something of the input that nobody can read.
+/// A longer text repeats unreadable input.
 const MAX_TEXT: usize = 2000;
 
-/// All problems with the lines they stand in, and their number on the last line. `colour` adds
+/// All problems with their lines, and their number on the last line. `colour` adds
 /// terminal colours. Empty without problems.
 pub fn render(problems: &[Problem], colour: bool) -> String {
     if problems.is_empty() {

@@ -5,7 +5,7 @@ use super::document::{Node, Span, Table, Value};
 use super::reader::{Reader, join};
 use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Values, spec};
 
-/// A table at a dotted path. It also stands for a table that is absent and so has no keys.
+/// A table at a dotted path. An absent table is a table without keys.
 #[derive(Clone)]
 pub struct Section<'r> {
     pub(super) reader: &'r Reader<'r>,
@@ -52,7 +52,7 @@ impl<'r> Section<'r> {
             .unwrap_or_default()
     }
 
-    /// Where the value of `key` stands; the header of the table, or the file, where it is absent.
+    /// Place of the value of `key`; the header of the table, or the file, where it is absent.
     pub fn place(&self, key: &str) -> super::problem::Place {
         match self.table.and_then(|table| table.entries.get(key)) {
             Some(entry) => self.reader.document.place(&entry.node.span),

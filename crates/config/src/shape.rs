@@ -2,7 +2,7 @@
 //!
 //! A parsed table takes some kB, and two letters of a file (`a.`) can make one; and what is nested without bound is taken apart by a
 //! recursion without bound. So both are counted first, word by word as TOML is cut into words, which needs no parser and is not misled
-//! where the text is no TOML. What stands in texts and comments does not count.
+//! where the text is no TOML. Texts and comments do not count.
 
 /// Most tables, and lists at the beginning of a line; the largest shipped file has 177.
 pub(super) const MAX_TABLES: usize = 20_000;

@@ -1,10 +1,10 @@
-//! The text of an input, and where in it something stands.
+//! The text of an input, and places in it.
 use std::ops::Range;
 use std::sync::OnceLock;
 
 use super::problem::Place;
 
-/// A longer line is not repeated beside a problem.
+/// A longer line is not repeated with a problem.
 const MAX_LINE: usize = 1000;
 /// A longer value is cut where it is repeated.
 const MAX_VALUE: usize = 200;
@@ -16,7 +16,7 @@ pub(super) struct Source {
     pub text: String,
     /// Whether the text has lines that a user could look up.
     has_lines: bool,
-    /// Bytes at which the line ends stand; found when the first place is asked for.
+    /// Bytes of the line ends; found when the first place is needed.
     ends: OnceLock<Vec<usize>>,
 }
 
@@ -75,7 +75,7 @@ impl Source {
             .partition_point(|end| *end < at)
     }
 
-    /// Start of the line in which a byte stands.
+    /// Start of the line of a byte.
     pub fn line_start(&self, at: usize) -> usize {
         let line = self.line(self.clamp(at));
         self.ends
@@ -84,7 +84,7 @@ impl Source {
             .map_or(0, |end| end + 1)
     }
 
-    /// The line in which a byte stands, without its end.
+    /// The line of a byte, without its end.
     pub fn line_at(&self, at: usize) -> &str {
         let start = self.line_start(at);
         let end = self

@@ -4,7 +4,7 @@ use std::ops::Range;
 use super::problem::{Place, Problem, Problems};
 use super::source::{Source, shortened};
 
-/// Bytes of a line up to which slips are looked for: nobody writes longer lines by hand, and the search
+/// Bytes of a line up to which slips are looked for: longer lines are not written by hand, and the search
 /// takes time with the square of the length.
 const MAX_LINE: usize = 1000;
 
@@ -101,7 +101,7 @@ fn syntax_problem(source: &Source, span: Range<usize>, parser: &str) -> Problem 
         .hint(hint)
 }
 
-/// The usual slips in a line that TOML refuses: where the value stands in it and what to write.
+/// The usual slips in a line that TOML refuses: place of the value and what to write.
 fn slip(line: &str) -> Option<(Range<usize>, String)> {
     if line.len() > MAX_LINE {
         return None;

@@ -286,7 +286,7 @@ fn the_end_of_the_text_is_shown_on_its_last_line() {
     assert_eq!(place.line_text, "b = [1");
 }
 
-/// All problems of a reading, and how many they stand for.
+/// All problems of a reading, and their number.
 fn counted(document: &Document) -> (usize, usize) {
     let reader = Reader::new(document);
     let root = reader.root();

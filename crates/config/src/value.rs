@@ -20,7 +20,7 @@ pub(super) struct Found<'r> {
     pub note: &'r str,
 }
 
-/// What stands at a key.
+/// Value at a key.
 pub(super) enum Lookup<'r> {
     Absent,
     /// Something that is no value; reported already.
@@ -28,7 +28,7 @@ pub(super) enum Lookup<'r> {
     Found(Found<'r>),
 }
 
-/// What to write instead of a number that stands in quotes.
+/// What to write instead of a number in quotes.
 fn text_hint(text: &str) -> String {
     if let Some((_, point)) = decimal_comma(text).filter(|(length, _)| *length == text.len()) {
         format!("write {point} with a decimal point and without quotes")
@@ -158,7 +158,7 @@ impl<'r> Section<'r> {
         Lookup::Found(found)
     }
 
-    /// Reads what stands beside the value.
+    /// Reads status, source and note of the value.
     fn origin(&self, key: &str, table: &'r Table, found: &mut Found<'r>) {
         for (name, entry) in table.entries.iter().filter(|(name, _)| *name != "value") {
             let text = match &entry.node.value {

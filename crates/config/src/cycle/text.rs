@@ -1,6 +1,6 @@
 //! Bytes to text, lines to fields.
 //!
-//! RawValue here and not taken from a CSV library because a complaint needs the character at which a value stands.
+//! Written here and not taken from a CSV library because a complaint needs the character at which a value stands.
 
 use super::problems::Complaint;
 

@@ -86,7 +86,7 @@ fn gathered() -> Vec<KeyInfo> {
     known
 }
 
-/// Keys that reading a text asks for, with their values.
+/// Keys that are read from a text, with their values.
 fn values(name: &str, text: &str, kind: Kind) -> Vec<KeyInfo> {
     let Ok(document) = Document::parse(name, text) else {
         return Vec::new();

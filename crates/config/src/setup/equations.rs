@@ -1,4 +1,4 @@
-//! The equations that stand at the heads of the model files, with label, status and place.
+//! The equations at the heads of the model files, with label, status and place.
 //!
 //! The heads are read from the sources themselves, so that `explain` and the book of assumptions cannot drift from them.
 

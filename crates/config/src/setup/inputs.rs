@@ -38,7 +38,7 @@ pub(super) struct Inputs {
     pub files: [Input; 3],
 }
 
-/// What a reading of a car's documents needs beside them.
+/// What a reading of a car's documents needs besides them.
 #[derive(Debug)]
 pub(super) struct Frame {
     /// Name of the car.

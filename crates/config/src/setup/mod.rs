@@ -41,7 +41,7 @@ pub trait Files: std::fmt::Debug + Send + Sync {
             .map_err(|why| ReadError::Unreadable(std::io::Error::other(why)))
     }
 
-    /// What `make` makes of a file of a kind. Whoever reads the same car again and again keeps it and calls `make` once only.
+    /// What `make` makes of a file of a kind. A cache calls `make` once only.
     fn table(
         &self,
         _kind: &'static str,
@@ -69,7 +69,7 @@ impl Files for Disk {
     }
 }
 
-/// What the user asks for beside the vehicle file.
+/// Fluids, overrides and belt model besides the vehicle file.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Transmission oil, name or path; the vehicle's own if none.
@@ -179,7 +179,7 @@ pub fn text_of(word: &str, kind: Kind, option: &str) -> Result<(String, String, 
         return Ok((file, text.to_owned(), Disk::default()));
     }
     let path = std::path::Path::new(word);
-    // What no option names stands in a file, whose author may be a wrong.
+    // A name that no option gives comes from a file, whose author may be unknown.
     let by_user = option.starts_with("--") || ["FILE", "PLAN"].contains(&option);
     let read = if by_user {
         bounded::read(path, bounded::TOML)

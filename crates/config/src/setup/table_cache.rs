@@ -10,7 +10,7 @@ use crate::bounded::ReadError;
 /// The tables of one file, by kind.
 type Kinds = BTreeMap<&'static str, Arc<Table>>;
 
-/// Where files come from, and the tables of them that have been asked for.
+/// Where files come from, and their tables read so far.
 #[derive(Debug)]
 pub(super) struct TableCache {
     files: Box<dyn Files>,

@@ -2,7 +2,7 @@
 //!
 //! A study drives up to a million cars that differ in a few numbers. A [`VehicleTemplate`] parses and checks the files once; a [`Variant`], one a
 //! thread, changes numbers in the parsed documents and reads them silently ([`Reader::check_only`]): with the same readers, checks and results
-//! as [`super::load`], but without a text for every key. Words are asked for when a car is refused: then the ordinary reading is done.
+//! as [`super::load`], but without a text for every key. The texts of problems come from an ordinary reading, done when a car is refused.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ pub struct VehicleTemplate {
     keys: HashMap<String, KeyInfo>,
 }
 
-/// Where a number stands in the files of a template.
+/// Place of a number in the files of a template.
 #[derive(Clone, Debug)]
 pub struct ParameterRef {
     key: Arc<str>,
@@ -113,7 +113,7 @@ impl VehicleTemplate {
         };
         let base = match info.si {
             Some(_) => info.value.parse().unwrap_or(f64::NAN),
-            // Nothing has been given: only what the key allows tells what it would be.
+            // Nothing has been given: the kind of the key decides.
             None if info.value.is_empty() && info.is_number => f64::NAN,
             None => return Err(no_number(key, info)),
         };
@@ -290,7 +290,7 @@ impl Variant {
         if found > 0 {
             return rejected(found);
         }
-        // A silent reading does not look for keys that nobody reads. Only a number that chooses an option can leave such keys behind, and
+        // A check-only reading does not look for unknown keys. Only a number that chooses an option can leave such keys behind, and
         // which keys these are does not depend on its value.
         if self.inactive != self.checked {
             let problems = self.problems();
