@@ -1,9 +1,12 @@
 //! Drive-cycle losses and fuel of cars with a pushing-metal-V-belt CVT, cold and warm.
 //!
-//! One crate a layer, each of which uses only those above it in this list.
+//! One crate for each layer; each uses only those before it in the order model, config, output, study, report. The features are
+//! `cli` (default), the program, and `studies`, the crates study and report.
 
 pub use cvtcycle_config as config;
 pub use cvtcycle_model as model;
 pub use cvtcycle_output as output;
+#[cfg(feature = "studies")]
 pub use cvtcycle_report as report;
+#[cfg(feature = "studies")]
 pub use cvtcycle_study as study;

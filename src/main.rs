@@ -1,9 +1,72 @@
-//! Command line of cvtcycle.
+//! The program `cvtcycle`: command line to library calls, results to text. It computes nothing.
 
 mod args;
 mod commands;
 mod print;
 
-fn main() -> std::process::ExitCode {
-    commands::main()
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory, FromArgMatches};
+use cvtcycle::config::Problem;
+
+use args::problems::bad_value;
+use commands::Cli;
+use print::colour::Colour;
+use print::{CommandOutput, Ending, Terminal};
+
+fn main() -> ExitCode {
+    let words: Vec<OsString> = std::env::args_os().collect();
+    // Read before clap parses the words, because it applies to its messages as well.
+    let colour = Colour::from_words(&words);
+    let parsed = Cli::command()
+        .color(colour.for_clap())
+        .try_get_matches_from(&words)
+        .and_then(|matches| Cli::from_arg_matches(&matches));
+    match parsed {
+        Ok(cli) => {
+            let terminal = cli.color.terminal();
+            print::finish(cli.execute(terminal), terminal)
+        }
+        Err(error) => {
+            let terminal = colour.terminal();
+            let result = match error.kind() {
+                ErrorKind::InvalidUtf8 => Err(not_utf8(&words).into()),
+                _ => Ok(usage(&error, terminal)),
+            };
+            print::finish(result, terminal)
+        }
+    }
+}
+
+/// Values and names of input files are UTF-8; only paths of output may be any path of the system.
+fn not_utf8(words: &[OsString]) -> Problem {
+    let word = words.iter().find(|word| word.to_str().is_none());
+    let value = word.map_or_else(String::new, |word| word.to_string_lossy().into_owned());
+    let hint = "rename the file, or name it by a link; --out takes any name";
+    bad_value(
+        "command line",
+        &value,
+        "",
+        &format!("`{value}` is not UTF-8"),
+        hint,
+    )
+}
+
+/// Help, version and usage errors, written by our own writer, which handles a closed pipe and a full disk.
+fn usage(error: &clap::Error, terminal: Terminal) -> CommandOutput {
+    let text = |colours: bool| match colours {
+        true => error.render().ansi().to_string(),
+        false => error.render().to_string(),
+    };
+    if error.use_stderr() {
+        CommandOutput {
+            stderr: text(terminal.stderr.is_on()),
+            ending: Ending::BadInput,
+            ..CommandOutput::default()
+        }
+    } else {
+        CommandOutput::text(text(terminal.stdout.is_on()))
+    }
 }

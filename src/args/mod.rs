@@ -1,19 +1,26 @@
-//! Words of the command line to checked values. Problems are collected, never the first one only.
+//! The command line: groups of options that several commands share, and their texts as checked values.
 
+pub mod groups;
+pub mod input_kind;
+pub mod problems;
 pub mod ranges;
-pub mod sniff;
+
+pub use groups::{
+    ComparisonArgs, FormulationArgs, JsonArgs, OutArgs, OutputArgs, ThreadArgs, VehicleArgs,
+};
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
-use cvtcycle::config::cycle;
-pub use cvtcycle::config::cycle::{bytes, find as cycle, is_csv};
+pub use cvtcycle::config::cycle::bytes;
 use cvtcycle::config::setup::{Kind, is_path};
-use cvtcycle::config::{Bound, Problem, Problems, near, unit_of};
+use cvtcycle::config::{Bound, Problems, cycle, unit_of};
 
-/// Takes any text, but lets completions offer the known names: unknown ones are reported with all other problems.
+use problems::{bad_value, did_you_mean};
+
+/// Takes any text, but offers known names to shell completions: an unknown name is reported with all other problems.
 #[derive(Clone, Copy, Debug)]
-pub struct Offering(pub fn() -> Vec<&'static str>);
+pub struct Names(pub fn() -> Vec<&'static str>);
 
-impl TypedValueParser for Offering {
+impl TypedValueParser for Names {
     type Value = String;
 
     fn parse_ref(
@@ -30,6 +37,11 @@ impl TypedValueParser for Offering {
     }
 }
 
+/// Names of the choices of an option.
+pub fn names_of<T>(list: &[(&'static str, T)]) -> Vec<&'static str> {
+    list.iter().map(|(name, _)| *name).collect()
+}
+
 /// Names of the embedded cycles.
 pub fn cycles() -> Vec<&'static str> {
     cycle::names().to_vec()
@@ -38,11 +50,6 @@ pub fn cycles() -> Vec<&'static str> {
 /// Names of the embedded vehicles.
 pub fn vehicles() -> Vec<&'static str> {
     Kind::Vehicle.names()
-}
-
-/// Names of the embedded vehicles, and `none`.
-pub fn baselines() -> Vec<&'static str> {
-    vehicles().into_iter().chain(["none"]).collect()
 }
 
 /// Names of the embedded lubricants.
@@ -55,23 +62,17 @@ pub fn rigs() -> Vec<&'static str> {
     Kind::Rig.names()
 }
 
-/// A problem of an option's value.
-pub fn bad_value(
-    option: &str,
-    value: &str,
-    allowed: &str,
-    message: String,
-    hint: String,
-) -> Problem {
-    Problem::invalid(message)
-        .in_file(option)
-        .key(option)
-        .value(value)
-        .allowed(allowed)
-        .hint(hint)
+/// Names of the embedded calibrations.
+pub fn calibrations() -> Vec<&'static str> {
+    Kind::Calibration.names()
 }
 
-/// The value as a word between backquotes; an empty one is called so.
+/// Names of the embedded plans of studies.
+pub fn plans() -> Vec<&'static str> {
+    Kind::Plan.names()
+}
+
+/// The value in backquotes.
 fn quoted(value: &str) -> String {
     if value.is_empty() {
         "an empty value".to_owned()
@@ -81,31 +82,17 @@ fn quoted(value: &str) -> String {
 }
 
 /// A finite number within its range; `suffix` is that of a key with the same unit.
-pub fn number(option: &str, value: &str, allowed: Bound, suffix: &str) -> Result<f64, Problems> {
+pub fn number(option: &str, value: &str, range: Bound, suffix: &str) -> Result<f64, Problems> {
     let unit = unit_of(suffix);
-    let range = allowed.in_unit(unit);
+    let bad = |what: &str, hint: &str| {
+        let message = format!("{} is {what}", quoted(value));
+        Err(bad_value(option, value, &range.in_unit(unit), &message, hint).into())
+    };
     match value.trim().parse::<f64>() {
-        Ok(x) if allowed.contains(x) => Ok(x),
-        Ok(x) if x.is_finite() => {
-            let message = format!("{} is out of range", quoted(value));
-            Err(bad_value(option, value, &range, message, String::new()).into())
-        }
-        parsed => {
-            let what = if parsed.is_ok() {
-                "not a finite number"
-            } else {
-                "not a number"
-            };
-            let message = format!("{} is {what}", quoted(value));
-            Err(bad_value(
-                option,
-                value,
-                &range,
-                message,
-                number_hint(option, value, unit),
-            )
-            .into())
-        }
+        Ok(x) if range.contains(x) => Ok(x),
+        Ok(x) if x.is_finite() => bad("out of range", ""),
+        Ok(_) => bad("not a finite number", &number_hint(option, value, unit)),
+        Err(_) => bad("not a number", &number_hint(option, value, unit)),
     }
 }
 
@@ -117,7 +104,7 @@ fn number_hint(option: &str, value: &str, unit: &str) -> String {
     if value.contains(',') && pointed.parse::<f64>().is_ok() {
         return format!("write a decimal point: {option} {pointed}");
     }
-    // Only where what follows is a unit: a digit mistyped as a letter must not be cut off.
+    // Only if a unit follows: a digit mistyped as a letter must not be cut off.
     let rest = value
         .trim()
         .trim_start_matches(|c: char| c.is_ascii_digit() || "+-.".contains(c));
@@ -128,8 +115,8 @@ fn number_hint(option: &str, value: &str, unit: &str) -> String {
     format!("write a number in {unit}")
 }
 
-/// One of some words.
-pub fn word<T: Copy>(
+/// The choice of that name.
+pub fn one_of<T: Copy>(
     option: &str,
     value: &str,
     known: &[(&'static str, T)],
@@ -137,26 +124,15 @@ pub fn word<T: Copy>(
     if let Some((_, found)) = known.iter().find(|(name, _)| *name == value) {
         return Ok(*found);
     }
-    let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-    let hint = did_you_mean(value, &names).unwrap_or_default();
-    Err(bad_value(
-        option,
-        value,
-        &format!("one of {}", names.join(", ")),
-        format!("{} is not known", quoted(value)),
-        hint,
-    )
-    .into())
+    let names = names_of(known);
+    let allowed = format!("one of {}", names.join(", "));
+    let message = format!("{} is not known", quoted(value));
+    let hint = did_you_mean(value, &names);
+    Err(bad_value(option, value, &allowed, &message, &hint).into())
 }
 
-/// Question for the known names that are like the given one.
-pub fn did_you_mean(value: &str, known: &[&str]) -> Option<String> {
-    let close = near(value, known.iter().copied());
-    (!close.is_empty()).then(|| format!("did you mean {}?", close.join(" or ")))
-}
-
-/// The file that a file names, seen from the current directory: its own folder is where its paths begin.
-pub fn beside(file: &str, named: &str) -> String {
+/// Path of a file named in another file, whose folder is where its paths begin.
+pub fn relative_to(file: &str, named: &str) -> String {
     let folder = std::path::Path::new(file)
         .parent()
         .filter(|_| is_path(file) && is_path(named));

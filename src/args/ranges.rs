@@ -1,11 +1,11 @@
-//! Values of an option: one number, a list, ranges, or all of these mixed, such as `25,50,75` or `1000..4000:250`.
+//! Values of an option: a number, a list, ranges, or these mixed, such as `25,50,75` or `1000..4000:250`.
 
 use cvtcycle::config::{Bound, Problem, Problems, unit_of};
 
-use crate::args::bad_value;
+use super::problems::bad_value;
 
-/// Most values of one option.
-const MOST: f64 = 1e6;
+/// Largest number of values of one option.
+const MAX_VALUES: f64 = 1e6;
 /// A range without a step is cut into at most this many pieces.
 const PIECES: f64 = 10.0;
 
@@ -99,11 +99,11 @@ impl List<'_> {
             ));
         }
         let count = ((high - low) / step * (1.0 + 1e-12)).floor();
-        if count >= MOST {
+        if count >= MAX_VALUES {
             return Err(self.bad(
                 part,
                 &format!("has {:.0} values", count + 1.0),
-                format!("at most {MOST} values; take a larger step"),
+                format!("at most {MAX_VALUES} values; take a larger step"),
             ));
         }
         let mut values: Vec<f64> = (0..=count as u32)
@@ -153,12 +153,13 @@ impl List<'_> {
             .map(|(word, _)| format!("{word}, "))
             .collect();
         let also = if words.is_empty() { "" } else { "or " };
+        let allowed = format!("{words}{also}{}", self.allowed.in_unit(self.unit));
         bad_value(
             self.option,
             part,
-            &format!("{words}{also}{}", self.allowed.in_unit(self.unit)),
-            format!("{named} {what}"),
-            hint,
+            &allowed,
+            &format!("{named} {what}"),
+            &hint,
         )
     }
 

@@ -1,105 +1,122 @@
-//! `check`: inputs without a run.
+//! `check`: input files without a run.
 
+use clap::Args;
 use cvtcycle::config::setup::{self, Kind, Options};
-use cvtcycle::config::{Problem, Problems, render};
+use cvtcycle::config::{Problem, Problems, cycle, render};
 use cvtcycle::study::Study;
 use cvtcycle::study::fit::open;
 use cvtcycle::study::plan::Plan;
+use serde_json::{Value, json};
 
-use super::Context;
-use crate::args as inputs;
-use crate::args::sniff::{Sort, sort_of};
-use crate::print::{Answer, BAD_INPUT, Reply, json_text};
+use super::Execute;
+use crate::args::input_kind::InputKind;
+use crate::args::{JsonArgs, relative_to};
+use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text};
 
 /// Arguments of `check`.
-#[derive(Clone, Debug, clap::Args)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = "\
 Example: cvtcycle check rover_216_cvt
 
-Prints `ok` for every file without problems, and all problems of the others with place, value, allowed range and a hint;
-then the exit code is 2.")]
-pub struct Args {
-    /// Vehicle, lubricant, calibration or study (TOML), or cycle (CSV) files; what a file is shows in its contents
+Prints `ok` for every file without problems, and all problems of the others with place, value, allowed range and a hint; the exit
+code is then 2.")]
+pub struct CheckArgs {
+    /// Vehicle, lubricant, calibration or study (TOML), or cycle (CSV); detected from the contents of the file
     #[arg(value_name = "FILE", required = true)]
     files: Vec<String>,
-    /// Print one JSON object instead of text
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    output: JsonArgs,
 }
 
-/// Runs the command.
-pub fn answer(args: &Args, context: Context) -> Reply {
-    let checked: Vec<(&String, Result<Sort, Problems>)> =
-        args.files.iter().map(|file| (file, check(file))).collect();
-    let code = if checked.iter().all(|(_, result)| result.is_ok()) {
-        0
-    } else {
-        BAD_INPUT
-    };
-    if args.json {
-        let files: Vec<serde_json::Value> = checked
-            .iter()
-            .map(|(file, result)| json(file, result))
-            .collect();
-        return Ok(Answer {
-            stdout: json_text(&serde_json::json!({ "files": files }))?,
-            code,
-            ..Answer::default()
-        });
+type Checked = Result<InputKind, Problems>;
+
+impl Execute for CheckArgs {
+    type Plan = Vec<(String, Checked)>;
+
+    fn plan(&self, _: &mut Problems) -> Option<Self::Plan> {
+        Some(
+            self.files
+                .iter()
+                .map(|file| (file.clone(), check(file)))
+                .collect(),
+        )
     }
-    let ok = checked
-        .iter()
-        .filter_map(|(file, result)| result.as_ref().ok().map(|sort| (file, sort)));
-    let stdout = ok
-        .map(|(file, sort)| format!("ok  {file} ({})\n", sort.word()))
-        .collect();
-    let problems: Problems = checked
-        .iter()
-        .filter_map(|(_, result)| result.as_ref().err())
-        .flatten()
-        .cloned()
-        .collect();
-    Ok(Answer {
-        stdout,
-        stderr: render(&problems, context.colour.stderr().is_on()),
-        code,
-    })
+
+    fn run(&self, checked: Self::Plan, terminal: Terminal) -> CommandResult {
+        let ending = match checked.iter().all(|(_, result)| result.is_ok()) {
+            true => Ending::Success,
+            false => Ending::BadInput,
+        };
+        if self.output.json {
+            let files: Vec<Value> = checked
+                .iter()
+                .map(|(file, result)| json_entry(file, result))
+                .collect();
+            return Ok(CommandOutput {
+                stdout: json_text(&json!({ "files": files }))?,
+                ending,
+                ..CommandOutput::default()
+            });
+        }
+        let ok = checked
+            .iter()
+            .filter_map(|(file, result)| Some((file, result.as_ref().ok()?)));
+        let bad = checked
+            .iter()
+            .filter_map(|(_, result)| result.as_ref().err());
+        Ok(CommandOutput {
+            stdout: ok
+                .map(|(file, kind)| format!("ok  {file} ({})\n", kind.word()))
+                .collect(),
+            stderr: render(
+                &bad.flatten().cloned().collect::<Vec<_>>(),
+                terminal.stderr.is_on(),
+            ),
+            ending,
+        })
+    }
 }
 
-fn check(file: &str) -> Result<Sort, Problems> {
-    let (sort, word) = sort_of(file, true)?;
-    match sort {
-        Sort::Cycle => drop(inputs::cycle("FILE", &word)?),
-        // Only embedded, and read by `rig`.
-        Sort::Rig => {}
-        Sort::Calibration => drop(open(&word, "FILE")?),
-        Sort::Study => drop(Study::prepare(Plan::open(&word, "FILE")?)?),
-        Sort::Lubricant => drop(setup::load_lubricant(&word, "FILE", &[], "")?),
-        Sort::Vehicle => {
+fn check(file: &str) -> Checked {
+    let (kind, word) = InputKind::detect(file, true)?;
+    match kind {
+        InputKind::Cycle => drop(cycle::find("FILE", &word)?),
+        // Only embedded.
+        InputKind::Rig => {}
+        InputKind::Calibration => drop(open(&word, "FILE")?),
+        InputKind::Study => drop(Study::prepare(Plan::open(&word, "FILE")?)?),
+        InputKind::Lubricant => drop(setup::load_lubricant(&word, "FILE", &[], "")?),
+        InputKind::Vehicle => {
             let setup = setup::load(&word, "FILE", &Options::default())?;
-            // Only a run reads the baselines; a name that leads nowhere should show now.
-            let texts = setup.baselines.iter().map(|name| {
-                setup::text_of(&inputs::beside(&word, name), Kind::Vehicle, file).map(drop)
-            });
-            let bad: Problems = texts.filter_map(Result::err).flatten().collect();
-            if !bad.is_empty() {
-                return Err(bad);
+            // Only a run reads the baselines; an unknown name is reported here.
+            let mut problems = Problems::default();
+            for name in &setup.baselines {
+                problems.take(setup::text_of(
+                    &relative_to(&word, name),
+                    Kind::Vehicle,
+                    file,
+                ));
             }
+            problems.finish()?;
         }
     }
-    Ok(sort)
+    Ok(kind)
 }
 
-fn json(file: &str, result: &Result<Sort, Problems>) -> serde_json::Value {
+fn json_entry(file: &str, result: &Checked) -> Value {
     let problem = |p: &Problem| {
-        serde_json::json!({
+        json!({
             "file": p.place.file, "line": p.place.line, "column": p.place.column, "key": p.key, "value": p.value,
             "allowed": p.allowed, "message": p.message, "hint": p.hint,
         })
     };
-    let (kind, problems) = match result {
-        Ok(sort) => (Some(sort.word()), Vec::new()),
-        Err(problems) => (None, problems.iter().map(problem).collect()),
-    };
-    serde_json::json!({ "file": file, "ok": result.is_ok(), "kind": kind, "problems": problems })
+    let problems: Vec<Value> = result
+        .as_ref()
+        .err()
+        .into_iter()
+        .flatten()
+        .map(problem)
+        .collect();
+    let kind = result.as_ref().ok().map(|kind| kind.word());
+    json!({ "file": file, "ok": result.is_ok(), "kind": kind, "problems": problems })
 }

@@ -1,36 +1,35 @@
-//! `list`: what the program carries.
+//! `list`: what is built in.
 
-use clap::ValueEnum;
-use cvtcycle::config::Problems;
-use cvtcycle::config::cycle;
+use clap::{Args, ValueEnum};
 use cvtcycle::config::setup::{self, Options};
+use cvtcycle::config::{Problems, cycle};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use serde::Serialize;
+use serde_json::{Value, json};
 
-use super::Context;
-use crate::args::{lubricants, vehicles};
-use crate::print::grid::Grid;
-use crate::print::{Answer, Reply};
+use super::Execute;
+use crate::args::{JsonArgs, lubricants, vehicles};
+use crate::print::table::TextColumns;
+use crate::print::{CommandOutput, CommandResult, Terminal};
 use cvtcycle::output::number::fixed;
 
 /// Arguments of `list`.
-#[derive(Clone, Debug, clap::Args)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = "Example: cvtcycle list cycles")]
-pub struct Args {
+pub struct ListArgs {
     /// What to list
     #[arg(value_enum)]
-    what: What,
-    /// Print one JSON object instead of a table
-    #[arg(long)]
-    json: bool,
+    what: ListedKind,
+    #[command(flatten)]
+    output: JsonArgs,
 }
 
 /// What can be listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum What {
+enum ListedKind {
     /// Drive cycles with duration, distance, highest speed
     Cycles,
-    /// Cars
+    /// Vehicles
     Vehicles,
     /// Transmission and engine oils
     Lubricants,
@@ -68,98 +67,82 @@ struct LubricantLine {
     density15_kg_m3: f64,
 }
 
-/// Runs the command.
-pub fn answer(args: &Args, context: Context) -> Reply {
-    let heading = |words: &str| context.paint.heading(words) + "\n";
-    match args.what {
-        What::Cycles => {
-            let list = cycle_lines();
-            if args.json {
-                return Answer::json(&serde_json::json!({ "cycles": list }));
-            }
-            let more = "\nAlso constant_V, V in km/h, such as constant_90, and any CSV file with time_s and speed_kmh.\n\
-                Where the distances differ, a manual car drives the trace with gear-change plateaux, an automatic the straight one.\n";
-            Ok(Answer::text(heading("Cycles") + &cycle_table(&list) + more))
+/// A list in both forms.
+pub struct Listing {
+    json: Value,
+    heading: &'static str,
+    table: String,
+    note: &'static str,
+}
+
+impl Execute for ListArgs {
+    type Plan = Listing;
+
+    fn plan(&self, problems: &mut Problems) -> Option<Listing> {
+        match self.what {
+            ListedKind::Cycles => Some(cycles()),
+            ListedKind::Vehicles => list_vehicles(problems),
+            ListedKind::Lubricants => list_lubricants(problems),
         }
-        What::Vehicles => {
-            let list = vehicle_lines()?;
-            if args.json {
-                return Answer::json(&serde_json::json!({ "vehicles": list }));
-            }
-            let more = "\n`cvtcycle show NAME` prints every value with its source; --vehicle also takes the path of a TOML file.\n";
-            Ok(Answer::text(
-                heading("Vehicles") + &vehicle_table(&list) + more,
-            ))
+    }
+
+    fn run(&self, list: Listing, terminal: Terminal) -> CommandResult {
+        if self.output.json {
+            return CommandOutput::json(&list.json);
         }
-        What::Lubricants => {
-            let list = lubricant_lines()?;
-            if args.json {
-                return Answer::json(&serde_json::json!({ "lubricants": list }));
-            }
-            let more = "\nKinematic viscosities in mm2/s at -10, 40 and 100 degC, density in kg/m3 at 15 degC.\n";
-            Ok(Answer::text(
-                heading("Lubricants") + &lubricant_table(&list) + more,
-            ))
-        }
+        let heading = terminal.stdout.heading(list.heading);
+        Ok(CommandOutput::text(format!(
+            "{heading}\n{}\n{}",
+            list.table, list.note
+        )))
     }
 }
 
-fn cycle_lines() -> Vec<CycleLine> {
-    let cycles = cycle::names()
+fn cycles() -> Listing {
+    let embedded = cycle::names()
         .iter()
-        .filter_map(|name| cycle::embedded(name).map(|cycle| (*name, cycle)));
-    cycles
-        .map(|(name, cycle)| {
-            let (manual, automatic) = (cycle.trace_for(false), cycle.trace_for(true));
-            CycleLine {
-                name,
-                duration_s: manual.duration_s(),
-                distance_km: manual.distance_m() / 1e3,
-                distance_automatic_km: automatic.distance_m() / 1e3,
-                max_speed_kmh: manual.max_speed_m_s() * 3.6,
-                gears_prescribed: cycle.has_gears(),
-                title: cycle.title,
-            }
-        })
-        .collect()
-}
-
-fn cycle_table(list: &[CycleLine]) -> String {
-    let mut grid = Grid::new("lrrrrl");
-    grid.row(["name", "s", "km", "km (auto)", "max km/h", "title"]);
-    for line in list {
-        let (manual, automatic) = (
-            fixed(line.distance_km, 3),
-            fixed(line.distance_automatic_km, 3),
-        );
-        let automatic = if manual == automatic {
-            String::new()
-        } else {
-            automatic
-        };
-        grid.row([
-            line.name,
-            &fixed(line.duration_s, 0),
-            &manual,
-            &automatic,
-            &fixed(line.max_speed_kmh, 1),
-            &line.title,
-        ]);
-    }
-    grid.text()
-}
-
-fn vehicle_lines() -> Result<Vec<VehicleLine>, Problems> {
-    let line = |name: &'static str| {
-        let setup = setup::load(name, "list", &Options::default())?;
-        let car = setup.car(ZERO_DEGC_K + 20.0);
-        Ok(VehicleLine {
+        .filter_map(|name| Some((*name, cycle::embedded(name)?)));
+    let line = |(name, cycle): (&'static str, cycle::Cycle)| {
+        let (manual, automatic) = (cycle.trace_for(false), cycle.trace_for(true));
+        CycleLine {
             name,
-            transmission: if setup.transmission().is_cvt() {
-                "cvt"
-            } else {
-                "manual"
-            },
+            duration_s: manual.duration_s(),
+            distance_km: manual.distance_m() / 1e3,
+            distance_automatic_km: automatic.distance_m() / 1e3,
+            max_speed_kmh: manual.max_speed_m_s() * 3.6,
+            gears_prescribed: cycle.has_gears(),
+            title: cycle.title,
+        }
+    };
+    let list: Vec<CycleLine> = embedded.map(line).collect();
+    let automatic = |c: &CycleLine| match fixed(c.distance_automatic_km, 3) {
+        same if same == fixed(c.distance_km, 3) => String::new(),
+        other => other,
+    };
+    let columns = TextColumns::new()
+        .left("name", |c: &CycleLine| c.name)
+        .right("s", |c| fixed(c.duration_s, 0))
+        .right("km", |c| fixed(c.distance_km, 3))
+        .right("km (auto)", automatic)
+        .right("max km/h", |c| fixed(c.max_speed_kmh, 1))
+        .left("title", |c| c.title.clone());
+    Listing {
+        json: json!({ "cycles": list }),
+        heading: "Cycles",
+        table: columns.table(&list).text(),
+        note: "Also constant_V with V in km/h, such as constant_90, and any CSV file with time_s and speed_kmh.\n\
+            Two distances: a manual car drives the trace with gear-change plateaux, an automatic car the one without.\n",
+    }
+}
+
+fn list_vehicles(problems: &mut Problems) -> Option<Listing> {
+    let line = |name: &'static str| {
+        let setup = problems.take(setup::load(name, "list", &Options::default()))?;
+        let car = setup.car(ZERO_DEGC_K + 20.0);
+        let cvt = setup.transmission().is_cvt();
+        Some(VehicleLine {
+            name,
+            transmission: if cvt { "cvt" } else { "manual" },
             mass_kg: car.road_load.mass_kg,
             displacement_l: car.engine.displacement_m3 * 1e3,
             rated_kw: car.engine.rated_w / 1e3,
@@ -167,35 +150,27 @@ fn vehicle_lines() -> Result<Vec<VehicleLine>, Problems> {
             baselines: setup.baselines,
         })
     };
-    vehicles().into_iter().map(line).collect()
+    let list: Vec<VehicleLine> = vehicles().into_iter().map(line).collect::<Option<_>>()?;
+    let columns = TextColumns::new()
+        .left("name", |v: &VehicleLine| v.name)
+        .left("gearbox", |v| v.transmission)
+        .right("kg", |v| fixed(v.mass_kg, 0))
+        .right("litres", |v| fixed(v.displacement_l, 2))
+        .right("kW", |v| fixed(v.rated_kw, 0))
+        .left("title", |v| v.title.clone());
+    Some(Listing {
+        json: json!({ "vehicles": list }),
+        heading: "Vehicles",
+        table: columns.table(&list).text(),
+        note: "`cvtcycle show NAME` prints every value with its source; --vehicle also takes the path of a TOML file.\n",
+    })
 }
 
-fn vehicle_table(list: &[VehicleLine]) -> String {
-    let mut grid = Grid::new("llrrrl");
-    grid.row(["name", "gearbox", "kg", "litres", "kW", "title"]);
-    for line in list {
-        let numbers = [
-            fixed(line.mass_kg, 0),
-            fixed(line.displacement_l, 2),
-            fixed(line.rated_kw, 0),
-        ];
-        grid.row([
-            line.name,
-            line.transmission,
-            &numbers[0],
-            &numbers[1],
-            &numbers[2],
-            &line.title,
-        ]);
-    }
-    grid.text()
-}
-
-fn lubricant_lines() -> Result<Vec<LubricantLine>, Problems> {
+fn list_lubricants(problems: &mut Problems) -> Option<Listing> {
     let line = |name: &'static str| {
-        let (oil, _) = setup::load_lubricant(name, "list", &[], "")?;
+        let (oil, _) = problems.take(setup::load_lubricant(name, "list", &[], ""))?;
         let kv = |degc: f64| oil.kinematic_m2_s(degc + ZERO_DEGC_K) * 1e6;
-        Ok(LubricantLine {
+        Some(LubricantLine {
             name,
             kv_minus10_mm2_s: kv(-10.0),
             kv40_mm2_s: kv(40.0),
@@ -204,26 +179,18 @@ fn lubricant_lines() -> Result<Vec<LubricantLine>, Problems> {
             title: oil.title,
         })
     };
-    lubricants().into_iter().map(line).collect()
-}
-
-fn lubricant_table(list: &[LubricantLine]) -> String {
-    let mut grid = Grid::new("lrrrrl");
-    grid.row(["name", "KV-10", "KV40", "KV100", "density", "title"]);
-    for line in list {
-        let kv = [
-            fixed(line.kv_minus10_mm2_s, 0),
-            fixed(line.kv40_mm2_s, 1),
-            fixed(line.kv100_mm2_s, 2),
-        ];
-        grid.row([
-            line.name,
-            &kv[0],
-            &kv[1],
-            &kv[2],
-            &fixed(line.density15_kg_m3, 0),
-            &line.title,
-        ]);
-    }
-    grid.text()
+    let list: Vec<LubricantLine> = lubricants().into_iter().map(line).collect::<Option<_>>()?;
+    let columns = TextColumns::new()
+        .left("name", |l: &LubricantLine| l.name)
+        .right("KV-10", |l| fixed(l.kv_minus10_mm2_s, 0))
+        .right("KV40", |l| fixed(l.kv40_mm2_s, 1))
+        .right("KV100", |l| fixed(l.kv100_mm2_s, 2))
+        .right("density", |l| fixed(l.density15_kg_m3, 0))
+        .left("title", |l| l.title.clone());
+    Some(Listing {
+        json: json!({ "lubricants": list }),
+        heading: "Lubricants",
+        table: columns.table(&list).text(),
+        note: "Kinematic viscosities in mm2/s at -10, 40 and 100 degC, density in kg/m3 at 15 degC.\n",
+    })
 }

@@ -1,35 +1,37 @@
-//! `rig`: the thesis's test rigs, virtual.
+//! `rig`: simulations of the test rigs of the thesis.
 
 mod transmission;
 mod variator;
 
-use clap::Subcommand;
+use clap::{Args, Subcommand};
 
-use super::Context;
-use crate::print::Reply;
+use super::Execute;
+use crate::print::{CommandResult, Terminal};
 
 /// Arguments of `rig`.
-#[derive(Clone, Debug, clap::Args)]
+#[derive(Args, Clone, Debug)]
 #[command(
     after_help = "Examples:\n  cvtcycle rig transmission --test transient\n  cvtcycle rig variator --ratio low"
 )]
-pub struct Args {
+pub struct RigArgs {
     #[command(subcommand)]
-    rig: Rig,
+    rig: RigCommand,
 }
 
 #[derive(Clone, Debug, Subcommand)]
-enum Rig {
-    /// The transmission rig of thesis chapters 4 and 5: torque loss of a whole box, taken apart, warmed and cooled
-    Transmission(Box<transmission::Args>),
-    /// The variator rig of thesis chapter 6: belt slip against output torque, radii, breakpoints
-    Variator(Box<variator::Args>),
+enum RigCommand {
+    /// Transmission rig of thesis chapters 4 and 5: torque loss of a complete transmission and of its parts, warmed and cooled
+    Transmission(Box<transmission::RigTransmissionArgs>),
+    /// Variator rig of thesis chapter 6: belt slip against output torque, running radii, breakpoints
+    Variator(Box<variator::RigVariatorArgs>),
 }
 
-/// Runs the command.
-pub fn answer(args: &Args, context: Context) -> Reply {
-    match &args.rig {
-        Rig::Transmission(args) => transmission::answer(args, context),
-        Rig::Variator(args) => variator::answer(args, context),
+impl RigArgs {
+    /// Runs the command.
+    pub fn execute(&self, terminal: Terminal) -> CommandResult {
+        match &self.rig {
+            RigCommand::Transmission(args) => args.execute(terminal),
+            RigCommand::Variator(args) => args.execute(terminal),
+        }
     }
 }

@@ -1,27 +1,27 @@
 //! `schema`: JSON Schema of an input file, for editors.
 
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 use cvtcycle::config::schema;
 use cvtcycle::config::setup::Kind;
 
-use crate::print::{Answer, Reply};
+use crate::print::{CommandOutput, CommandResult};
 
 /// Arguments of `schema`.
-#[derive(Clone, Debug, clap::Args)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = "\
 Example: cvtcycle schema vehicle > vehicle.schema.json
 
-Name the file in the first line of a vehicle, and an editor with a TOML server shows ranges, units and
-meanings and marks mistakes: #:schema ./vehicle.schema.json")]
-pub struct Args {
+With the path of the schema in the first line of a vehicle file, #:schema ./vehicle.schema.json, an editor with a TOML server shows
+ranges, units and meanings, and marks errors.")]
+pub struct SchemaArgs {
     /// Kind of file
     #[arg(value_enum)]
-    kind: File,
+    kind: SchemaKind,
 }
 
-/// Kind of file.
+/// Kinds of files with a schema.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum File {
+enum SchemaKind {
     /// Vehicle
     Vehicle,
     /// Lubricant
@@ -30,12 +30,12 @@ enum File {
     Rig,
 }
 
-/// Runs the command.
-pub fn answer(args: &Args) -> Reply {
+/// Runs `schema`.
+pub fn schema(args: &SchemaArgs) -> CommandResult {
     let kind = match args.kind {
-        File::Vehicle => Kind::Vehicle,
-        File::Lubricant => Kind::Lubricant,
-        File::Rig => Kind::Rig,
+        SchemaKind::Vehicle => Kind::Vehicle,
+        SchemaKind::Lubricant => Kind::Lubricant,
+        SchemaKind::Rig => Kind::Rig,
     };
-    Answer::json(&schema::of(kind))
+    CommandOutput::json(&schema::of(kind))
 }

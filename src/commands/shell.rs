@@ -1,12 +1,15 @@
-//! What packagers and readers need: completions, manual pages, the book of assumptions.
+//! `completions`, `man` and `assumptions`: texts for packagers and readers.
 
+use clap::{Args, CommandFactory};
 use cvtcycle::config::setup::assumptions::book;
 
-use crate::args::did_you_mean;
-use crate::print::{Answer, Reply, problem};
+use super::Cli;
+use crate::args::JsonArgs;
+use crate::args::problems::{did_you_mean, problem};
+use crate::print::{CommandOutput, CommandResult};
 
 /// Arguments of `completions`.
-#[derive(Clone, Debug, clap::Args)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = "Example: cvtcycle completions bash > cvtcycle.bash")]
 pub struct CompletionsArgs {
     /// Shell
@@ -15,61 +18,60 @@ pub struct CompletionsArgs {
 }
 
 /// Arguments of `man`.
-#[derive(Clone, Debug, clap::Args)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = "Example: cvtcycle man run > cvtcycle-run.1")]
 pub struct ManArgs {
-    /// Command; without it the page of the whole program
+    /// Command [default: the whole program]
     command: Option<String>,
 }
 
 /// Arguments of `assumptions`.
-#[derive(Clone, Debug, clap::Args)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = "Example: cvtcycle assumptions > assumptions.md")]
 pub struct AssumptionsArgs {
-    /// Print one JSON object that holds the Markdown text
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    output: JsonArgs,
 }
 
 /// Runs `completions`.
-pub fn completions(args: &CompletionsArgs, mut program: clap::Command) -> Answer {
+pub fn completions(args: &CompletionsArgs) -> CommandResult {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut program, "cvtcycle", &mut script);
-    Answer::text(String::from_utf8_lossy(&script).into_owned())
+    clap_complete::generate(args.shell, &mut Cli::command(), "cvtcycle", &mut script);
+    Ok(CommandOutput::text(
+        String::from_utf8_lossy(&script).into_owned(),
+    ))
 }
 
 /// Runs `man`.
-pub fn man(args: &ManArgs, mut program: clap::Command) -> Reply {
+pub fn man(args: &ManArgs) -> CommandResult {
+    let mut program = Cli::command();
     program.build();
     let page = match &args.command {
         None => program,
-        Some(name) => {
-            let found = program.find_subcommand(name).cloned();
-            found.ok_or_else(|| {
-                let names: Vec<&str> = program
-                    .get_subcommands()
-                    .map(clap::Command::get_name)
-                    .collect();
-                let hint = did_you_mean(name, &names)
-                    .unwrap_or_else(|| format!("one of {}", names.join(", ")));
-                vec![problem(
-                    "man",
-                    &format!("there is no command named `{name}`"),
-                    &hint,
-                )]
-            })?
-        }
+        Some(name) => program.find_subcommand(name).cloned().ok_or_else(|| {
+            let names: Vec<&str> = program
+                .get_subcommands()
+                .map(clap::Command::get_name)
+                .collect();
+            let question = did_you_mean(name, &names);
+            let list = format!("one of {}", names.join(", "));
+            let hint = if question.is_empty() { list } else { question };
+            let message = format!("there is no command named `{name}`");
+            problem("man", &message, &hint)
+        })?,
     };
     let mut text = Vec::new();
     let rendered = clap_mangen::Man::new(page).render(&mut text);
-    rendered.map_err(|error| vec![problem("man", &error.to_string(), "")])?;
-    Ok(Answer::text(String::from_utf8_lossy(&text).into_owned()))
+    rendered.map_err(|error| problem("man", &error.to_string(), ""))?;
+    Ok(CommandOutput::text(
+        String::from_utf8_lossy(&text).into_owned(),
+    ))
 }
 
 /// Runs `assumptions`.
-pub fn assumptions(args: &AssumptionsArgs) -> Reply {
-    if args.json {
-        return Answer::json(&serde_json::json!({ "markdown": book() }));
+pub fn assumptions(args: &AssumptionsArgs) -> CommandResult {
+    if args.output.json {
+        return CommandOutput::json(&serde_json::json!({ "markdown": book() }));
     }
-    Ok(Answer::text(book()))
+    Ok(CommandOutput::text(book()))
 }

@@ -1,66 +1,63 @@
-//! `show`: every value of a vehicle, lubricant or rig with its status and source, or what a cycle is made of.
+//! `show`: all values of a vehicle, lubricant or rig with status and source, or the phases of a cycle.
 
-use clap::ValueEnum;
-use cvtcycle::config::cycle::Cycle;
+use clap::{Args, ValueEnum};
+use cvtcycle::config::cycle::{self, Cycle, Trace};
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue;
 use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{KeyInfo, Problems};
 use serde::Serialize;
+use serde_json::json;
 
-use super::Context;
-use crate::args as inputs;
-use crate::args::sniff::{Sort, sort_of};
-use crate::print::grid::Grid;
-use crate::print::{Answer, Reply};
+use super::Execute;
+use crate::args::input_kind::InputKind;
+use crate::args::problems::bad_value;
+use crate::args::{JsonArgs, Names, cycles, lubricants, rigs, vehicles};
+use crate::print::colour::Paint;
+use crate::print::table::{TextColumns, TextTable};
+use crate::print::{CommandOutput, CommandResult, Terminal};
 use cvtcycle::output::number::{fixed, signed};
 
-/// Longest value that stands in its own column; longer ones, lists mostly, move to the last.
-const VALUE: usize = 18;
+/// Longest value in the column of values; longer ones, lists mostly, are in the last column.
+const MAX_VALUE_LEN: usize = 18;
 
 /// Arguments of `show`.
-#[derive(Clone, Debug, clap::Args)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = "\
 Examples:
   cvtcycle show rover_216_cvt --status assumed
   cvtcycle show dexron_iii
   cvtcycle show ece15_eudc")]
-pub struct Args {
-    /// A vehicle, lubricant, rig or cycle: a name or a file
-    #[arg(value_name = "NAME|FILE", value_parser = inputs::Offering(names), hide_possible_values = true)]
+pub struct ShowArgs {
+    /// Vehicle, lubricant, rig or cycle: a name or a file
+    #[arg(value_name = "NAME|FILE", value_parser = Names(names), hide_possible_values = true)]
     name: String,
     /// Only values of this status; repeatable
     #[arg(long, value_enum, value_name = "STATUS")]
     status: Vec<Status>,
-    /// Print one JSON object instead of a table
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    output: JsonArgs,
 }
 
 /// Where a value comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Status {
+enum Status {
     /// Printed or published
     Source,
-    /// Follows from sources by calculation
+    /// Calculated from sources
     Derived,
-    /// Chosen to meet a measured statement
+    /// Fitted to measurements
     Fitted,
-    /// Judgement
+    /// Engineering judgement
     Assumed,
-    /// Given in a file without a status
+    /// In a file without a status
     User,
-    /// Not in the file: the program's own value
+    /// Not in the file: default of the program
     Default,
 }
 
 fn names() -> Vec<&'static str> {
-    inputs::vehicles()
-        .into_iter()
-        .chain(inputs::lubricants())
-        .chain(inputs::rigs())
-        .chain(inputs::cycles())
-        .collect()
+    [vehicles(), lubricants(), rigs(), cycles()].concat()
 }
 
 /// One key as JSON.
@@ -91,78 +88,92 @@ impl<'a> From<&'a KeyInfo> for KeyLine<'a> {
     }
 }
 
-/// Runs the command.
-pub fn answer(args: &Args, context: Context) -> Reply {
-    let (sort, word) = sort_of(&args.name, false)?;
-    let (title, keys) = match sort {
-        Sort::Cycle => return cycle(args, &inputs::cycle("NAME", &word)?, context),
-        Sort::Vehicle => {
-            let setup = setup::load(&word, "NAME", &Options::default())?;
-            // The fluids have pages of their own.
-            let own =
-                |k: &KeyInfo| !k.key.starts_with("lubricant.") && !k.key.starts_with("engine_oil.");
-            (setup.title, setup.keys.into_iter().filter(own).collect())
-        }
-        Sort::Lubricant => {
-            let (oil, keys) = setup::load_lubricant(&word, "NAME", &[], "")?;
-            (oil.title, keys)
-        }
-        Sort::Rig => rig(&word),
-        Sort::Calibration => {
-            return Err(plan(
-                &word,
-                "a calibration",
-                "name the vehicle that it fits",
-            ));
-        }
-        Sort::Study => return Err(plan(&word, "a study", "name the vehicle that it varies")),
-    };
-    let wanted = |info: &KeyInfo| {
-        args.status.is_empty() || args.status.iter().any(|s| s.word() == info.status)
-    };
-    let keys: Vec<KeyInfo> = keys.into_iter().filter(wanted).collect();
-    if args.json {
-        let lines: Vec<KeyLine> = keys.iter().map(KeyLine::from).collect();
-        let name = &args.name;
-        return Answer::json(
-            &serde_json::json!({ "name": name, "kind": sort.word(), "title": title, "keys": lines }),
-        );
-    }
-    let head = format!("{}  {title}\n", context.paint.heading(&args.name));
-    if keys.is_empty() {
-        return Ok(Answer::text(head + "\nno value of this status\n"));
-    }
-    Ok(Answer::text(
-        head + &tables(&keys, context) + &counts(&keys),
-    ))
+/// What is shown.
+pub enum Shown {
+    /// A cycle.
+    Cycle(Box<Cycle>),
+    /// Title and keys of a file.
+    Keys(InputKind, String, Vec<KeyInfo>),
 }
 
-/// A plan, which has nothing to show.
-fn plan(word: &str, of: &str, instead: &str) -> Problems {
-    let message = format!("`{word}` is the plan of {of}, which holds no values of a car");
-    let hint = format!("{instead}; `cvtcycle check` reads a plan");
-    inputs::bad_value(
-        "NAME",
-        word,
-        "a vehicle, lubricant, cycle or rig",
-        message,
-        hint,
-    )
-    .into()
+impl Execute for ShowArgs {
+    type Plan = Shown;
+
+    fn plan(&self, problems: &mut Problems) -> Option<Shown> {
+        let (kind, word) = problems.take(InputKind::detect(&self.name, false))?;
+        let (title, mut keys) = match kind {
+            InputKind::Cycle => {
+                let cycle = problems.take(cycle::find("NAME", &word))?;
+                return Some(Shown::Cycle(Box::new(cycle)));
+            }
+            InputKind::Vehicle => {
+                let setup = problems.take(setup::load(&word, "NAME", &Options::default()))?;
+                // The fluids are shown by their own names.
+                let fluid =
+                    |key: &str| key.starts_with("lubricant.") || key.starts_with("engine_oil.");
+                let own = setup.keys.into_iter().filter(|info| !fluid(&info.key));
+                (setup.title, own.collect())
+            }
+            InputKind::Lubricant => {
+                let (oil, keys) = problems.take(setup::load_lubricant(&word, "NAME", &[], ""))?;
+                (oil.title, keys)
+            }
+            InputKind::Rig => rig(&word),
+            InputKind::Calibration | InputKind::Study => {
+                let (plan, instead) = match kind {
+                    InputKind::Calibration => ("a calibration", "name the vehicle that it fits"),
+                    _ => ("a study", "name the vehicle that it varies"),
+                };
+                let message =
+                    format!("`{word}` is the plan of {plan}, which has no values of a vehicle");
+                let hint = format!("{instead}; `cvtcycle check` reads a plan");
+                let allowed = "a vehicle, lubricant, cycle or rig";
+                problems.add(bad_value("NAME", &word, allowed, &message, &hint));
+                return None;
+            }
+        };
+        let wanted = |info: &KeyInfo| {
+            self.status
+                .iter()
+                .any(|status| status.word() == info.status)
+        };
+        keys.retain(|info| self.status.is_empty() || wanted(info));
+        Some(Shown::Keys(kind, title, keys))
+    }
+
+    fn run(&self, shown: Shown, terminal: Terminal) -> CommandResult {
+        let paint = terminal.stdout;
+        match (shown, self.output.json) {
+            (Shown::Cycle(cycle), true) => CommandOutput::json(&cycle_json(&self.name, &cycle)),
+            (Shown::Cycle(cycle), false) => Ok(CommandOutput::text(cycle_text(&cycle, paint))),
+            (Shown::Keys(kind, title, keys), true) => {
+                let lines: Vec<KeyLine> = keys.iter().map(KeyLine::from).collect();
+                let kind = kind.word();
+                CommandOutput::json(
+                    &json!({ "name": self.name, "kind": kind, "title": title, "keys": lines }),
+                )
+            }
+            (Shown::Keys(_, title, keys), false) => {
+                let body = match keys.is_empty() {
+                    true => "\nno value has this status\n".to_owned(),
+                    false => tables(&keys, paint) + &counts(&keys),
+                };
+                let heading = paint.heading(&self.name);
+                Ok(CommandOutput::text(format!("{heading}  {title}\n{body}")))
+            }
+        }
+    }
 }
 
 /// Title and keys of an embedded rig.
 fn rig(word: &str) -> (String, Vec<KeyInfo>) {
-    let keys = catalogue::files()
+    let file = catalogue::files()
         .into_iter()
-        .find(|file| file.name == word)
-        .map(|file| file.keys)
-        .unwrap_or_default();
+        .find(|file| file.name == word);
+    let keys = file.map(|file| file.keys).unwrap_or_default();
+    let title = keys.iter().find(|info| info.key == "rig.title");
     (
-        keys.iter()
-            .find(|k| k.key == "rig.title")
-            .map(|k| k.value.clone())
-            .unwrap_or_default(),
+        title.map_or_else(String::new, |info| info.value.clone()),
         keys,
     )
 }
@@ -185,13 +196,12 @@ fn split(key: &str) -> (&str, &str) {
     key.rsplit_once('.').unwrap_or(("", key))
 }
 
-fn tables(keys: &[KeyInfo], context: Context) -> String {
+fn tables(keys: &[KeyInfo], paint: Paint) -> String {
     let width = |of: &dyn Fn(&KeyInfo) -> usize| keys.iter().map(of).max().unwrap_or(0);
-    let short = |info: &KeyInfo| value(info).chars().count().min(VALUE);
     let widths = [
-        width(&|k| split(&k.key).1.len()),
-        width(&short),
-        width(&|k| k.status.len()),
+        width(&|info| split(&info.key).1.len()),
+        width(&|info| value(info).chars().count().min(MAX_VALUE_LEN)),
+        width(&|info| info.status.len()),
     ];
     // In the order of reading, but every table in one piece.
     let mut order: Vec<&str> = Vec::new();
@@ -201,53 +211,35 @@ fn tables(keys: &[KeyInfo], context: Context) -> String {
         }
     }
     let mut text = String::new();
-    for table in order {
-        let heading = if table.is_empty() {
-            "[top]".to_owned()
-        } else {
-            format!("[{table}]")
-        };
-        text += &format!("\n{}\n", context.paint.heading(&heading));
-        let mut grid = Grid::new("llll").indented();
-        for info in keys.iter().filter(|info| split(&info.key).0 == table) {
-            grid.row([
-                split(&info.key).1,
-                &own_column(info),
-                &info.status,
-                &remarks(info),
-            ]);
+    for name in order {
+        let heading = if name.is_empty() { "top" } else { name };
+        let mut table = TextTable::new("llll").indented().min_widths(&widths);
+        for info in keys.iter().filter(|info| split(&info.key).0 == name) {
+            let own = value(info);
+            let long = own.chars().count() > MAX_VALUE_LEN;
+            let (shown, moved) = if long { ("...", &*own) } else { (&*own, "") };
+            let remarks = [moved, &info.source, &info.note]
+                .into_iter()
+                .filter(|text| !text.is_empty());
+            let remarks = remarks.collect::<Vec<_>>().join("; ");
+            table.row([split(&info.key).1, shown, &info.status, &remarks]);
         }
-        text += &grid.text_with_widths(&widths);
+        text += &format!(
+            "\n{}\n{}",
+            paint.heading(&format!("[{heading}]")),
+            table.text()
+        );
     }
     text
 }
 
-fn own_column(info: &KeyInfo) -> String {
-    let text = value(info);
-    if text.chars().count() > VALUE {
-        "...".to_owned()
-    } else {
-        text
-    }
-}
-
-fn remarks(info: &KeyInfo) -> String {
-    let text = value(info);
-    let long = (text.chars().count() > VALUE).then_some(text);
-    let parts = long
-        .iter()
-        .chain([&info.source, &info.note])
-        .filter(|part| !part.is_empty());
-    parts.cloned().collect::<Vec<_>>().join("; ")
-}
-
 fn counts(keys: &[KeyInfo]) -> String {
-    let words = Status::value_variants().iter().map(|status| status.word());
-    let counts = words.map(|word| (word, keys.iter().filter(|info| info.status == word).count()));
-    let parts: Vec<String> = counts
-        .filter(|(_, n)| *n > 0)
-        .map(|(word, n)| format!("{n} {word}"))
-        .collect();
+    let count = |status: &Status| {
+        let word = status.word();
+        let n = keys.iter().filter(|info| info.status == word).count();
+        (n > 0).then(|| format!("{n} {word}"))
+    };
+    let parts: Vec<String> = Status::value_variants().iter().filter_map(count).collect();
     format!("\n{} keys: {}\n", keys.len(), parts.join(", "))
 }
 
@@ -258,69 +250,64 @@ struct PhaseLine {
     distance_automatic_km: f64,
 }
 
-fn cycle(args: &Args, cycle: &Cycle, context: Context) -> Reply {
-    let (manual, automatic) = (cycle.trace_for(false), cycle.trace_for(true));
-    let km = |trace: &cvtcycle::config::cycle::Trace, phases: &[u16]| {
+fn phases(cycle: &Cycle) -> Vec<PhaseLine> {
+    let km = |trace: &Trace, phases: &[u16]| {
         phases
             .iter()
             .map(|phase| trace.phase_distance_m(*phase))
             .sum::<f64>()
             / 1e3
     };
-    let phases: Vec<PhaseLine> = cycle
-        .phase_groups()
-        .into_iter()
-        .map(|(name, list)| PhaseLine {
-            name,
-            distance_km: km(manual, &list),
-            distance_automatic_km: km(automatic, &list),
-        })
-        .collect();
-    if args.json {
-        return Answer::json(&serde_json::json!({
-            "name": args.name, "kind": "cycle", "title": cycle.title, "duration_s": manual.duration_s(),
-            "distance_km": manual.distance_m() / 1e3, "distance_automatic_km": automatic.distance_m() / 1e3,
-            "max_speed_kmh": manual.max_speed_m_s() * 3.6, "gears_prescribed": cycle.has_gears(), "phases": phases,
-        }));
-    }
-    let mut grid = Grid::new("lrr").indented();
-    grid.row(["phase", "km", "km (automatic)"]);
-    for phase in &phases {
-        grid.row([
-            &phase.name,
-            &fixed(phase.distance_km, 3),
-            &fixed(phase.distance_automatic_km, 3),
-        ]);
-    }
-    grid.row([
-        "total",
-        &fixed(manual.distance_m() / 1e3, 3),
-        &fixed(automatic.distance_m() / 1e3, 3),
-    ]);
-    let gears = if cycle.has_gears() {
-        "prescribed for manual cars"
-    } else {
-        "left to the car"
+    let line = |(name, list): (String, Vec<u16>)| PhaseLine {
+        name,
+        distance_km: km(cycle.trace_for(false), &list),
+        distance_automatic_km: km(cycle.trace_for(true), &list),
+    };
+    cycle.phase_groups().into_iter().map(line).collect()
+}
+
+fn cycle_json(name: &str, cycle: &Cycle) -> serde_json::Value {
+    let (manual, automatic) = (cycle.trace_for(false), cycle.trace_for(true));
+    json!({
+        "name": name, "kind": "cycle", "title": cycle.title, "duration_s": manual.duration_s(),
+        "distance_km": manual.distance_m() / 1e3, "distance_automatic_km": automatic.distance_m() / 1e3,
+        "max_speed_kmh": manual.max_speed_m_s() * 3.6, "gears_prescribed": cycle.has_gears(), "phases": phases(cycle),
+    })
+}
+
+fn cycle_text(cycle: &Cycle, paint: Paint) -> String {
+    let (manual, automatic) = (cycle.trace_for(false), cycle.trace_for(true));
+    let mut lines = phases(cycle);
+    lines.push(PhaseLine {
+        name: "total".to_owned(),
+        distance_km: manual.distance_m() / 1e3,
+        distance_automatic_km: automatic.distance_m() / 1e3,
+    });
+    let table = TextColumns::new()
+        .left("phase", |p: &PhaseLine| p.name.clone())
+        .right("km", |p| fixed(p.distance_km, 3))
+        .right("km (automatic)", |p| fixed(p.distance_automatic_km, 3))
+        .table(&lines);
+    let gears = match cycle.has_gears() {
+        true => "prescribed for manual cars",
+        false => "chosen by the shift rule of the car",
     };
     let mean = manual.distance_m() / manual.duration_s() * 3.6;
-    let more = manual.distance_m() - automatic.distance_m();
     let mut text = format!(
-        "{}  {}\n\n{}",
-        context.paint.heading(&cycle.name),
+        "{}  {}\n\n{}\nduration {} s, highest speed {} km/h, mean {} km/h; gears {gears}\n",
+        paint.heading(&cycle.name),
         cycle.title,
-        grid.text()
-    );
-    text += &format!(
-        "\nduration {} s, highest speed {} km/h, mean {} km/h; gears {gears}\n",
+        table.indented().text(),
         fixed(manual.duration_s(), 0),
         fixed(manual.max_speed_m_s() * 3.6, 1),
         fixed(mean, 1)
     );
+    let more = manual.distance_m() - automatic.distance_m();
     if more.abs() > 0.5 {
         text += &format!(
-            "in its gear-change plateaux a manual car drives {} m\n",
+            "a manual car drives {} m in gear-change plateaux\n",
             signed(more, 0)
         );
     }
-    Ok(Answer::text(text))
+    text
 }

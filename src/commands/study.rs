@@ -1,25 +1,27 @@
 //! `study`: many runs.
 
 mod ambient;
-mod common;
+mod execution;
 mod export;
 mod matrix;
-mod results;
-mod show;
-mod text;
+mod tables;
 
-use clap::Subcommand;
+use std::path::PathBuf;
 
-use super::Context;
-use crate::args::Offering;
-use crate::print::{Reply, problem};
-use common::Common;
-use cvtcycle::config::Problems;
-use cvtcycle::config::setup::Kind;
+use clap::{Args, Subcommand};
+use cvtcycle::config::{Problem, Problems};
+use cvtcycle::report::found::StudyFound;
+use cvtcycle::study::Study;
 use cvtcycle::study::plan::{Design, Plan};
 
+use super::Execute;
+use crate::args::problems::{bad_value, problem};
+use crate::args::{Names, OutputArgs, plans};
+use crate::print::{CommandResult, Terminal};
+use execution::{StudyRunArgs, results};
+
 /// Arguments of `study`.
-#[derive(Clone, Debug, clap::Args)]
+#[derive(Args, Clone, Debug)]
 #[command(
     args_conflicts_with_subcommands = true,
     after_help = "\
@@ -32,94 +34,130 @@ Examples:
   cvtcycle study show my_study
   cvtcycle study export my_study --out my_study.xlsx
 
-docs/plan_format.md says what a plan may hold. Exit codes: 0 fine; 1 some runs failed, and stand in the table with their reason;
-2 bad input or a full disk; 130 stopped by Ctrl-C: finished parts are kept, --resume goes on."
+docs/plan_format.md describes plans. Exit codes: 0 success; 1 some runs failed, with the reason in their rows; 2 bad input or a
+full disk; 130 stopped by Ctrl-C: finished parts are kept, --resume continues."
 )]
-pub struct Args {
+pub struct StudyArgs {
     #[command(subcommand)]
-    what: Option<What>,
+    command: Option<StudyCommand>,
     #[command(flatten)]
-    plan: PlanArgs,
+    plan: StudyPlanArgs,
 }
 
 #[derive(Clone, Debug, Subcommand)]
-enum What {
-    /// The thesis's matrix: ambient temperatures, from a soak and warm, each car
-    Ambient(Box<ambient::Args>),
+enum StudyCommand {
+    /// Run the matrix of the thesis: ambient temperatures, from a soak and warm, each vehicle
+    Ambient(Box<ambient::StudyAmbientArgs>),
     /// Summarise a finished or partial study
-    Show(show::Args),
+    Show(StudyShowArgs),
     /// Write the table of all runs as one file: CSV, Parquet or Excel workbook
-    Export(export::Args),
+    Export(export::StudyExportArgs),
 }
 
-#[derive(Clone, Debug, clap::Args)]
-struct PlanArgs {
-    /// Plan: a name of the shipped plans, or a TOML file
-    #[arg(value_name = "NAME|PLAN.toml", value_parser = Offering(plans), hide_possible_values = true)]
+impl StudyArgs {
+    /// Runs the command.
+    pub fn execute(&self, terminal: Terminal) -> CommandResult {
+        match &self.command {
+            Some(StudyCommand::Ambient(args)) => args.execute(terminal),
+            Some(StudyCommand::Show(args)) => args.execute(terminal),
+            Some(StudyCommand::Export(args)) => args.execute(terminal),
+            None => self.plan.execute(terminal),
+        }
+    }
+}
+
+/// Arguments of `study PLAN`.
+#[derive(Args, Clone, Debug)]
+struct StudyPlanArgs {
+    /// Plan: name of a built-in plan, or a TOML file
+    #[arg(value_name = "NAME|PLAN.toml", value_parser = Names(plans), hide_possible_values = true)]
     plan: Option<String>,
-    /// Samples in place of the plan's (designs that have samples): for a quick look
+    /// Number of samples, for designs that draw samples [default: from the plan]
     #[arg(long, value_name = "N")]
     samples: Option<u64>,
-    /// Seed in place of the plan's
+    /// Seed of the samples [default: from the plan]
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     #[command(flatten)]
-    common: Common,
+    run: StudyRunArgs,
 }
 
-fn plans() -> Vec<&'static str> {
-    Kind::Plan.names()
-}
+impl Execute for StudyPlanArgs {
+    type Plan = Study;
 
-/// Runs the command.
-pub fn answer(args: &Args, context: Context) -> Reply {
-    match &args.what {
-        Some(What::Ambient(args)) => ambient::answer(args, context),
-        Some(What::Show(args)) => show::answer(args, context),
-        Some(What::Export(args)) => export::answer(args),
-        None => plan(&args.plan, context),
+    fn plan(&self, problems: &mut Problems) -> Option<Study> {
+        let Some(word) = &self.plan else {
+            let names = plans().join(", ");
+            let hint = format!("name a plan: {names}, or a TOML file; or `study ambient`");
+            problems.add(problem("PLAN", "no plan is named", &hint));
+            return None;
+        };
+        let mut plan = problems.take(Plan::open(word, "PLAN"))?;
+        plan.design = problems.take(self.design(&plan.design))?;
+        self.run.prepare(plan, problems)
+    }
+
+    fn run(&self, study: Study, terminal: Terminal) -> CommandResult {
+        self.run.run(&study, terminal)
     }
 }
 
-fn plan(args: &PlanArgs, context: Context) -> Reply {
-    let Some(word) = &args.plan else {
-        let hint = format!(
-            "name a plan: {}, or a TOML file; or `study ambient`",
-            plans().join(", ")
-        );
-        return Err(problem("PLAN", "no plan is named", &hint).into());
-    };
-    let mut plan = Plan::open(word, "PLAN")?;
-    plan.design = drawn(&plan.design, args)?;
-    common::run(plan, &args.common, context)
+impl StudyPlanArgs {
+    /// The design of the plan with the samples and the seed of the options.
+    fn design(&self, design: &Design) -> Result<Design, Problem> {
+        let option = match (self.samples, self.seed) {
+            (None, None) => return Ok(*design),
+            (Some(_), _) => "--samples",
+            (None, Some(_)) => "--seed",
+        };
+        let changed = design.with(self.samples, self.seed);
+        let (Some(range), Some(changed)) = (design.sample_range(), changed) else {
+            let hint = "--samples and --seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs";
+            return Err(problem(
+                option,
+                "the design of the plan draws no samples",
+                hint,
+            ));
+        };
+        match self.samples {
+            Some(samples) if !range.contains(&samples) => {
+                let allowed = format!("{} to {}", range.start(), range.end());
+                let message = format!("{samples} samples are out of range for this design");
+                Err(bad_value(
+                    option,
+                    &samples.to_string(),
+                    &allowed,
+                    &message,
+                    "",
+                ))
+            }
+            _ => Ok(changed),
+        }
+    }
 }
 
-/// The plan's design with the samples and the seed that the options ask for.
-fn drawn(design: &Design, args: &PlanArgs) -> Result<Design, Problems> {
-    if args.samples.is_none() && args.seed.is_none() {
-        return Ok(*design);
+/// Arguments of `study show`.
+#[derive(Args, Clone, Debug)]
+#[command(
+    after_help = "Example:\n  cvtcycle study show my_study\n\nFor an interrupted study it shows the results of the finished parts, and their number."
+)]
+struct StudyShowArgs {
+    /// Directory written by `study --out`
+    #[arg(value_name = "DIR")]
+    dir: PathBuf,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+impl Execute for StudyShowArgs {
+    type Plan = StudyFound;
+
+    fn plan(&self, problems: &mut Problems) -> Option<StudyFound> {
+        problems.take(StudyFound::open(&self.dir))
     }
-    let option = if args.samples.is_some() {
-        "--samples"
-    } else {
-        "--seed"
-    };
-    let (Some(range), Some(changed)) =
-        (design.sample_range(), design.with(args.samples, args.seed))
-    else {
-        let hint =
-            "--samples and --seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs";
-        return Err(problem(option, "the plan's design draws nothing", hint).into());
-    };
-    match args.samples {
-        Some(samples) if !range.contains(&samples) => Err(problem(
-            "--samples",
-            &format!("{samples} samples are out of range for this design"),
-            "",
-        )
-        .value(samples.to_string())
-        .allowed(format!("{} to {}", range.start(), range.end()))
-        .into()),
-        _ => Ok(changed),
+
+    fn run(&self, study: StudyFound, terminal: Terminal) -> CommandResult {
+        let tables = || tables::tables(&study, terminal.stdout);
+        Ok(results(&study)?.output(&self.output, tables))
     }
 }

@@ -1,9 +1,11 @@
-//! Colours: asked for, or on a terminal that has not declined them.
+//! Colours of the output.
 
 use std::ffi::OsString;
 use std::io::IsTerminal;
 
 use clap::{ColorChoice, ValueEnum};
+
+use super::Terminal;
 
 /// When to colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -18,7 +20,10 @@ pub enum Colour {
 pub struct Paint(bool);
 
 impl Colour {
-    /// The wish as far as it can be told before the words are parsed.
+    /// Word of the default.
+    pub const AUTO: &'static str = "auto";
+
+    /// The choice, found before the words are parsed.
     pub fn from_words(words: &[OsString]) -> Self {
         let words: Vec<&str> = words
             .iter()
@@ -39,7 +44,7 @@ impl Colour {
             .unwrap_or(Colour::Auto)
     }
 
-    /// In clap's words. What to do without a wish is decided here, not there.
+    /// The choice in clap's type.
     pub fn for_clap(self) -> ColorChoice {
         match self {
             Colour::Auto => ColorChoice::Auto,
@@ -48,18 +53,16 @@ impl Colour {
         }
     }
 
-    /// Colours of standard output.
-    pub fn stdout(self) -> Paint {
-        self.on(std::io::stdout().is_terminal())
-    }
-
-    /// Colours of standard error.
-    pub fn stderr(self) -> Paint {
-        self.on(std::io::stderr().is_terminal())
+    /// Colours of both streams.
+    pub fn terminal(self) -> Terminal {
+        Terminal {
+            stdout: self.on(std::io::stdout().is_terminal()),
+            stderr: self.on(std::io::stderr().is_terminal()),
+        }
     }
 
     fn on(self, terminal: bool) -> Paint {
-        // As no-color.org has it: set and not empty; a wish on the command line goes before it.
+        // As no-color.org has it: set and not empty; the command line takes precedence.
         let declined = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
         Paint(match self {
@@ -81,7 +84,7 @@ impl Paint {
         self.wrap("1", text)
     }
 
-    /// Something that went wrong.
+    /// A failure.
     pub fn bad(self, text: &str) -> String {
         self.wrap("1;31", text)
     }

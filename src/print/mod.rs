@@ -1,95 +1,215 @@
-//! What a command answers, and how it reaches the user.
+//! The only place that prints: results, tables, problems, progress.
 
 pub mod colour;
-pub mod grid;
 pub mod progress;
-pub mod stream;
+pub mod table;
 
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use cvtcycle::config::{Problem, Problems, render};
+use cvtcycle::output::files::OutputDir;
+use serde::Serialize;
 
-use colour::Colour;
+use crate::args::OutputArgs;
+use crate::args::problems::problem;
+use colour::Paint;
 
-/// Ran, but a check failed.
-pub const FAILED: u8 = 1;
-/// Bad input, or output that cannot be written.
-pub const BAD_INPUT: u8 = 2;
-
-/// Text for the user and how the command ended.
-#[derive(Clone, Debug, Default)]
-pub struct Answer {
-    /// For standard output.
-    pub stdout: String,
-    /// For standard error.
-    pub stderr: String,
-    /// Exit code.
-    pub code: u8,
+/// Colours of the two output streams.
+#[derive(Clone, Copy, Debug)]
+pub struct Terminal {
+    /// Colours of standard output.
+    pub stdout: Paint,
+    /// Colours of standard error.
+    pub stderr: Paint,
 }
 
-/// An answer, or everything that is wrong with the input.
-pub type Reply = Result<Answer, Problems>;
+/// How a command ended; each has its exit code.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ending {
+    /// Fine.
+    #[default]
+    Success,
+    /// It ran, but a check failed.
+    CheckFailed,
+    /// Bad input, or output that cannot be written.
+    BadInput,
+    /// Stopped by Ctrl-C.
+    Interrupted,
+}
 
-impl Answer {
-    /// An answer that is all fine.
-    pub fn text(stdout: String) -> Self {
-        Answer {
-            stdout,
-            ..Answer::default()
+impl Ending {
+    /// [`Ending::CheckFailed`] where the condition holds.
+    pub fn failed_if(failed: bool) -> Self {
+        if failed {
+            Ending::CheckFailed
+        } else {
+            Ending::Success
         }
     }
 
-    /// One JSON object and nothing else.
-    pub fn json(value: &impl serde::Serialize) -> Result<Self, Problems> {
-        json_text(value).map(Answer::text)
+    /// Exit code of the process.
+    pub fn code(self) -> u8 {
+        match self {
+            Ending::Success => 0,
+            Ending::CheckFailed => 1,
+            Ending::BadInput => 2,
+            Ending::Interrupted => 130,
+        }
+    }
+}
+
+/// Text of both streams, and how the command ended.
+#[derive(Clone, Debug, Default)]
+pub struct CommandOutput {
+    pub stdout: String,
+    pub stderr: String,
+    pub ending: Ending,
+}
+
+/// The output of a command, or all problems of its input.
+pub type CommandResult = Result<CommandOutput, Problems>;
+
+impl CommandOutput {
+    /// Text on standard output.
+    pub fn text(stdout: String) -> Self {
+        CommandOutput {
+            stdout,
+            ..CommandOutput::default()
+        }
+    }
+
+    /// One JSON object on standard output.
+    pub fn json(value: &impl Serialize) -> CommandResult {
+        json_text(value).map(CommandOutput::text)
+    }
+}
+
+/// What a command computed: results for both kinds of reader, failed checks, files.
+#[derive(Debug, Default)]
+pub struct Results {
+    /// JSON object.
+    pub json: String,
+    /// Failed checks, a line each; any of them makes the exit code 1.
+    pub failures: Vec<String>,
+    /// Files that were written.
+    pub files: WrittenFiles,
+}
+
+impl Results {
+    /// Chooses by the options: JSON, tables, or nothing on standard output; warnings on standard error.
+    pub fn output(self, args: &OutputArgs, tables: impl FnOnce() -> String) -> CommandOutput {
+        let stdout = match (args.json(), args.quiet) {
+            (true, _) => self.json.clone(),
+            (false, true) => String::new(),
+            (false, false) => tables() + &self.files.list(),
+        };
+        CommandOutput {
+            stdout,
+            ..self.warnings()
+        }
+    }
+
+    /// Warnings and ending alone, for results that are printed already.
+    pub fn warnings(&self) -> CommandOutput {
+        let warnings = self.failures.iter().cloned().chain(self.files.left_over());
+        CommandOutput {
+            stdout: String::new(),
+            stderr: warnings.map(|line| format!("cvtcycle: {line}\n")).collect(),
+            ending: Ending::failed_if(!self.failures.is_empty()),
+        }
+    }
+}
+
+/// Files of a run, and those that an earlier run left in the same directory.
+#[derive(Debug, Default)]
+pub struct WrittenFiles {
+    paths: Vec<PathBuf>,
+    left_over: Vec<String>,
+    note: String,
+}
+
+impl WrittenFiles {
+    /// Gives all files of a directory their names.
+    pub fn commit(dir: OutputDir) -> Result<Self, Problem> {
+        let left_over = dir.left_over();
+        Ok(WrittenFiles {
+            paths: dir.commit()?,
+            left_over,
+            note: String::new(),
+        })
+    }
+
+    /// Adds a line below the list of the files.
+    pub fn with_note(mut self, note: String) -> Self {
+        self.note = note;
+        self
+    }
+
+    fn list(&self) -> String {
+        if self.paths.is_empty() {
+            return String::new();
+        }
+        let line = |path: &PathBuf| format!("  {}\n", path.display());
+        let lines: String = self.paths.iter().map(line).collect();
+        format!("\nFiles written\n{lines}{}", self.note)
+    }
+
+    fn left_over(&self) -> Option<String> {
+        let names = self.left_over.join(", ");
+        (!names.is_empty()).then(|| format!("files of an earlier run were not replaced: {names}"))
     }
 }
 
 /// A value as indented JSON with a line end.
 ///
 /// # Errors
-/// Never for the values of this program; a map with keys that are no text would be one.
-pub fn json_text(value: &impl serde::Serialize) -> Result<String, Problems> {
-    let text = serde_json::to_string_pretty(value);
-    text.map(|text| text + "\n")
-        .map_err(|e| problem("--json", &e.to_string(), "").into())
+/// A map whose keys are no text; no value of this program is one.
+pub fn json_text(value: &impl Serialize) -> Result<String, Problems> {
+    serde_json::to_string_pretty(value)
+        .map(|text| text + "\n")
+        .map_err(|error| problem("--json", &error.to_string(), "").into())
 }
 
-/// A problem of an option or argument without more places than its name.
-pub fn problem(option: &str, message: &str, hint: &str) -> Problem {
-    Problem::invalid(message)
-        .in_file(option)
-        .key(option)
-        .hint(hint)
+/// Writes a long text to standard output through `f` as it is made.
+///
+/// # Errors
+/// A problem of standard output with the message of the operating system; a closed pipe is no error.
+pub fn to_stdout(f: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Problems> {
+    let mut out = BufWriter::new(io::stdout().lock());
+    unless_closed(f(&mut out).and_then(|()| out.flush())).map_err(|error| unwritten(&error).into())
 }
 
-/// Prints an answer or the problems and gives the exit code.
-pub fn finish(reply: Reply, colour: Colour) -> ExitCode {
-    let answer = reply.unwrap_or_else(|problems| Answer {
-        stderr: render(&problems, colour.stderr().is_on()),
-        code: BAD_INPUT,
-        ..Answer::default()
+/// Prints the output of a command, or its problems, and returns the exit code.
+pub fn finish(result: CommandResult, terminal: Terminal) -> ExitCode {
+    let mut output = result.unwrap_or_else(|problems| CommandOutput {
+        stderr: render(&problems, terminal.stderr.is_on()),
+        ending: Ending::BadInput,
+        ..CommandOutput::default()
     });
-    let mut code = answer.code;
-    if let Err(error) = write(&mut io::stdout().lock(), &answer.stdout) {
-        let hint = "free some space, or send the output elsewhere";
-        let unwritten = problem("standard output", &format!("cannot write: {error}"), hint);
-        complain(&render(&[unwritten], colour.stderr().is_on()));
-        code = BAD_INPUT;
+    if let Err(error) = write(&mut io::stdout().lock(), &output.stdout) {
+        let text = render(&[unwritten(&error)], terminal.stderr.is_on());
+        output.stderr.insert_str(0, &text);
+        output.ending = Ending::BadInput;
     }
-    complain(&answer.stderr);
-    ExitCode::from(code)
+    // If standard error cannot be written either, no stream is left for a message.
+    drop(write(&mut io::stderr().lock(), &output.stderr));
+    ExitCode::from(output.ending.code())
 }
 
-fn complain(text: &str) {
-    // Where standard error is gone as well there is nobody left to tell.
-    drop(write(&mut io::stderr().lock(), text));
+fn unwritten(error: &io::Error) -> Problem {
+    let hint = "free some space, or send the output elsewhere";
+    problem("standard output", &format!("cannot write: {error}"), hint)
 }
 
-/// Writes a text; a reader that has seen enough (`| head`) is no error.
 fn write(out: &mut impl Write, text: &str) -> io::Result<()> {
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    unless_closed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// A reader that closes the pipe early (`| head`) is no error.
+fn unless_closed(result: io::Result<()>) -> io::Result<()> {
+    match result {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         other => other,
     }

@@ -1,129 +1,136 @@
-//! How far a study is: a bar on a terminal, a line now and then elsewhere, nothing with --quiet. Always on standard error.
+//! Progress of a long computation on standard error: a bar on a terminal, a line every ten seconds elsewhere, nothing with --quiet.
 
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use cvtcycle::study;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-/// Between two lines where there is no terminal.
-const EVERY: Duration = Duration::from_secs(10);
+use super::Ending;
 
-/// Set by Ctrl-C. A request to end (SIGTERM) ends the process at once, as a kill does: whole parts stay, and --resume goes on.
+/// Time between two lines where standard error is no terminal.
+const INTERVAL: Duration = Duration::from_secs(10);
+
+/// Set by Ctrl-C. SIGTERM ends the process at once, as a kill does: finished parts of a study stay.
 static STOP: AtomicBool = AtomicBool::new(false);
-/// Exit code of a process that ends by Ctrl-C, as shells have it.
-pub const INTERRUPTED: u8 = 130;
 
-/// Looks after a study that runs.
+/// Counts what is done, and shows it.
 pub struct Progress {
-    how: How,
+    display: Display,
     done: AtomicU64,
-    runs: u64,
-}
-
-enum How {
-    Nothing,
-    Bar(ProgressBar),
-    Lines(Mutex<Lines>),
-}
-
-struct Lines {
     begun: Instant,
-    last: Instant,
+    unit: &'static str,
+    /// Where it is known.
+    total: Option<u64>,
+}
+
+enum Display {
+    None,
+    Bar(ProgressBar),
+    /// Time of the last line.
+    Lines(Mutex<Instant>),
 }
 
 impl Progress {
-    /// For so many runs.
-    pub fn new(runs: u64, quiet: bool) -> Self {
-        let how = if quiet {
-            How::Nothing
+    /// Counts so many runs of a study.
+    pub fn runs(total: u64, quiet: bool) -> Self {
+        let bar = "{bar:30} {percent}%  {human_pos} of {human_len} runs  {rate}  {eta} left";
+        Progress::new("runs", Some(total), bar, quiet)
+    }
+
+    /// Counts evaluations of a search of unknown length.
+    pub fn evaluations(quiet: bool) -> Self {
+        let bar = "{spinner} {human_pos} evaluations  {elapsed}  Ctrl-C keeps the best so far";
+        Progress::new("evaluations", None, bar, quiet)
+    }
+
+    fn new(unit: &'static str, total: Option<u64>, template: &str, quiet: bool) -> Self {
+        let display = if quiet {
+            Display::None
         } else if std::io::stderr().is_terminal() {
-            let bar = ProgressBar::with_draw_target(Some(runs), ProgressDrawTarget::stderr());
-            bar.set_style(style());
+            let bar = ProgressBar::with_draw_target(total, ProgressDrawTarget::stderr());
+            bar.set_style(style(template));
             bar.enable_steady_tick(Duration::from_millis(200));
-            How::Bar(bar)
+            Display::Bar(bar)
         } else {
-            let now = Instant::now();
-            How::Lines(Mutex::new(Lines {
-                begun: now,
-                last: now,
-            }))
+            Display::Lines(Mutex::new(Instant::now()))
         };
         Progress {
-            how,
+            display,
             done: AtomicU64::new(0),
-            runs,
+            begun: Instant::now(),
+            unit,
+            total,
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish(&self) {
-        if let How::Bar(bar) = &self.how {
+        if let Display::Bar(bar) = &self.display {
             bar.finish_and_clear();
         }
     }
 
-    fn line(&self, lines: &Mutex<Lines>, done: u64) {
-        // Whoever comes while another prints has nothing to add.
-        let Ok(mut lines) = lines.try_lock() else {
-            return;
-        };
-        if lines.last.elapsed() < EVERY {
-            return;
+    fn show(&self, count: u64, done: u64) {
+        match &self.display {
+            Display::None => {}
+            Display::Bar(bar) => bar.inc(count),
+            Display::Lines(last) => {
+                // If another thread prints, this count is in its line or in the next.
+                let Ok(mut last) = last.try_lock() else {
+                    return;
+                };
+                if last.elapsed() >= INTERVAL {
+                    *last = Instant::now();
+                    // If standard error cannot be written, no stream is left for a message.
+                    drop(std::io::stderr().write_all(self.line(done).as_bytes()));
+                }
+            }
         }
-        lines.last = Instant::now();
-        let rate = done as f64 / lines.begun.elapsed().as_secs_f64();
-        let left = (self.runs.saturating_sub(done)) as f64 / rate;
-        let text = format!(
-            "cvtcycle: {done} of {} runs, {rate:.0} runs/s, {left:.0} s left\n",
-            self.runs
-        );
-        // Where standard error is gone there is nobody to tell.
-        drop(std::io::stderr().write_all(text.as_bytes()));
+    }
+
+    fn line(&self, done: u64) -> String {
+        let (unit, seconds) = (self.unit, self.begun.elapsed().as_secs_f64());
+        let Some(total) = self.total else {
+            return format!("cvtcycle: {done} {unit}, {seconds:.0} s\n");
+        };
+        let rate = done as f64 / seconds;
+        let left = total.saturating_sub(done) as f64 / rate;
+        format!("cvtcycle: {done} of {total} {unit}, {rate:.0} {unit}/s, {left:.0} s left\n")
     }
 }
 
-fn style() -> ProgressStyle {
-    let style = ProgressStyle::with_template(
-        "{bar:30} {percent}%  {human_pos} of {human_len} runs  {rate}  {eta} left",
-    );
+fn style(template: &str) -> ProgressStyle {
+    let style = ProgressStyle::with_template(template);
     let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
     style.with_key(
         "rate",
         |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-            // Writing into a bar's text cannot fail.
+            // Writing into the text of a bar cannot fail.
             let _ = write!(out, "{:.0} runs/s", state.per_sec());
         },
     )
 }
 
-impl cvtcycle::study::Progress for Progress {
-    fn advance(&self, runs: u64) {
-        let done = self.done.fetch_add(runs, Ordering::Relaxed) + runs;
-        match &self.how {
-            How::Nothing => {}
-            How::Bar(bar) => bar.inc(runs),
-            How::Lines(lines) => self.line(lines, done),
-        }
+impl study::Progress for Progress {
+    fn advance(&self, count: u64) {
+        let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
+        self.show(count, done);
     }
 
     fn stopped(&self) -> bool {
-        stop_asked()
+        STOP.load(Ordering::Relaxed)
     }
 }
 
-/// Whether somebody asked to stop.
-pub fn stop_asked() -> bool {
-    STOP.load(Ordering::Relaxed)
-}
-
-/// Listens for Ctrl-C: the first stops the study at the next run, the second ends the process.
-pub fn listen() {
-    // Only a second handler of this process could fail; the study then ends with the process, which loses nothing either.
+/// Handles Ctrl-C: the first stops the computation at its next step, the second ends the process.
+pub fn handle_interrupts() {
+    // It fails only if this process has a handler already.
     drop(ctrlc::set_handler(|| {
         if STOP.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(INTERRUPTED));
+            std::process::exit(i32::from(Ending::Interrupted.code()));
         }
     }));
 }

@@ -357,9 +357,9 @@ fn a_missed_trace_is_exit_code_1() {
     let output = run(&words);
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        stdout(&output).contains("rover_216_cvt misses the trace for"),
+        stderr(&output).contains("rover_216_cvt misses the trace for"),
         "{}",
-        stdout(&output)
+        stderr(&output)
     );
     let output = run(&[&words[..], &["--json"]].concat());
     assert_eq!(output.status.code(), Some(1));

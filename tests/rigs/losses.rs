@@ -287,7 +287,7 @@ fn tables() {
         "All losses",
         "100.0",
         "Secondary pressure",
-        "from the clamp law",
+        "from the clamping law",
         "Efficiency",
     ] {
         assert!(one.contains(word), "{word}: {one}");
@@ -348,7 +348,7 @@ fn refusals() {
         (vec!["--gear", "3"], "has no gears"),
         (
             vec!["--pressure", "30", "--throttle", "0.5"],
-            "clamp law is not asked",
+            "clamping law is not used",
         ),
         (
             vec!["--vehicle", "rover_216_5mt", "--ratio", "1"],
@@ -360,15 +360,15 @@ fn refusals() {
         ),
         (
             vec!["--vehicle", "rover_216_5mt", "--belt-temp", "10"],
-            "has not a belt",
+            "has no belt",
         ),
         (
             vec!["--vehicle", "rover_216_5mt", "--throttle", "0"],
-            "clamp law",
+            "clamping law",
         ),
         (
             vec!["--vehicle", "rover_216_5mt", "--formulation", "chapter_8"],
-            "has not a belt",
+            "has no belt",
         ),
         (vec!["--vehicle", "rover_216_5mt", "--gear", "6"], "1 to 5"),
         (

@@ -664,7 +664,7 @@ fn everything_wrong_is_told_at_once_and_nothing_is_written() {
     ]);
     assert_eq!((code, stdout.as_str()), (2, ""));
     for words in [
-        "has a manual box",
+        "has a manual gearbox",
         "cvtcycle losses --vehicle rover_216_5mt",
         "--test: `alll`",
         "--speed: `9` is out of range",
@@ -755,7 +755,7 @@ fn an_open_loop_is_exit_code_one() {
         "rig.transient.end_degc=60",
     ]);
     assert!(
-        code == 1 && out.contains("check failed: the transient at low comes to rest"),
+        code == 1 && err.contains("check failed: the transient at low stops on its way"),
         "{code} {out} {err}"
     );
     let (code, out, err) = run(&[
@@ -834,7 +834,7 @@ fn files_are_sound_and_named_after_their_tests() {
         out.to_str().unwrap(),
     ]);
     assert!(
-        code == 0 && err.contains("left from an earlier run"),
+        code == 0 && err.contains("files of an earlier run were not replaced"),
         "{err}"
     );
 }

@@ -1,4 +1,4 @@
-//! Rows to CSV and JSON, kept aside until all of them are good.
+//! Rows as CSV and JSON, buffered until all of them are good.
 
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 
@@ -9,99 +9,99 @@ use cvtcycle::output::table::{Cell, Column, json_row};
 use cvtcycle::study::points::{OUTPUTS, Point, Solved, Take, output_columns};
 use tempfile::{SpooledTempFile, spooled_tempfile};
 
-use crate::print::problem;
-use crate::print::stream;
+use crate::args::problems::problem;
+use crate::print::to_stdout;
 
-/// Up to this size what goes to standard output waits in memory, beyond it on disk.
-const IN_MEMORY: usize = 1 << 20;
+/// Bytes for standard output that are buffered in memory; more are buffered on disk.
+const MAX_IN_MEMORY: usize = 1 << 20;
 
-/// Where a table waits for its end.
+/// Where a table is buffered.
 #[derive(Debug)]
-enum Place {
+enum Buffer {
     File(Box<OutputFile>),
     Spool(BufWriter<SpooledTempFile>),
 }
 
-impl Place {
+impl Buffer {
     fn spool() -> Self {
-        Place::Spool(BufWriter::new(spooled_tempfile(IN_MEMORY)))
+        Buffer::Spool(BufWriter::new(spooled_tempfile(MAX_IN_MEMORY)))
     }
 
     fn put(&mut self, text: &str) -> Result<(), Problems> {
         match self {
-            Place::File(file) => file
+            Buffer::File(file) => file
                 .write_all(text.as_bytes())
                 .map_err(|error| file.cannot_write(&error).into()),
-            Place::Spool(spool) => spool
+            Buffer::Spool(spool) => spool
                 .write_all(text.as_bytes())
-                .map_err(|error| unspooled(&error).into()),
+                .map_err(|error| cannot_buffer(&error).into()),
         }
     }
 }
 
-/// Where rows may go, once there are some.
+/// Receives rows, once the header of the input is read.
 #[derive(Debug)]
-pub struct Offer {
+pub struct RowReceiver {
     file: Option<OutputFile>,
     json: bool,
-    /// None as long as there is no good line of names.
-    pub sink: Option<Sink>,
+    /// None until the header is good.
+    pub output: Option<RowOutput>,
 }
 
-impl Offer {
+impl RowReceiver {
     /// CSV to the file if there is one, else to standard output unless `json` goes there.
     pub fn new(file: Option<OutputFile>, json: bool) -> Self {
-        Offer {
+        RowReceiver {
             file,
             json,
-            sink: None,
+            output: None,
         }
     }
 }
 
-impl Take for Offer {
+impl Take for RowReceiver {
     fn begin(&mut self, with_case: bool) -> Result<(), Problems> {
-        self.sink = Some(Sink::new(self.file.take(), self.json, with_case)?);
+        self.output = Some(RowOutput::new(self.file.take(), self.json, with_case)?);
         Ok(())
     }
 
     fn put(&mut self, case: &str, row: &Solved) -> Result<(), Problems> {
-        self.sink
+        self.output
             .as_mut()
-            .map_or(Ok(()), |sink| sink.put(case, row))
+            .map_or(Ok(()), |output| output.put(case, row))
     }
 }
 
 /// The outputs of a run over points.
 #[derive(Debug)]
-pub struct Sink {
-    csv: Option<Place>,
-    json: Option<Place>,
+pub struct RowOutput {
+    csv: Option<Buffer>,
+    json: Option<Buffer>,
     columns: Vec<Column<Point>>,
     rows: u64,
     line: String,
 }
 
-impl Sink {
+impl RowOutput {
     fn new(file: Option<OutputFile>, json: bool, with_case: bool) -> Result<Self, Problems> {
-        let csv = file.map(|file| Place::File(Box::new(file)));
+        let csv = file.map(|file| Buffer::File(Box::new(file)));
         let csv = if csv.is_none() && !json {
-            Some(Place::spool())
+            Some(Buffer::spool())
         } else {
             csv
         };
-        let mut sink = Sink {
+        let mut output = RowOutput {
             csv,
-            json: json.then(Place::spool),
+            json: json.then(Buffer::spool),
             columns: output_columns(with_case),
             rows: 0,
             line: String::new(),
         };
-        if let Some(csv) = &mut sink.csv {
-            let names: Vec<&str> = sink.columns.iter().map(|column| &*column.name).collect();
+        if let Some(csv) = &mut output.csv {
+            let names: Vec<&str> = output.columns.iter().map(|column| &*column.name).collect();
             csv.put(&(names.join(",") + "\n"))?;
         }
-        Ok(sink)
+        Ok(output)
     }
 
     /// Adds a row.
@@ -123,11 +123,11 @@ impl Sink {
     /// Gives the file its name and sends the rest to standard output, JSON after its `head` (an object without rows).
     pub fn finish(self, head: &serde_json::Map<String, serde_json::Value>) -> Result<(), Problems> {
         match self.csv {
-            Some(Place::File(file)) => drop(file.commit()?),
-            Some(Place::Spool(spool)) => send(spool, "", "")?,
+            Some(Buffer::File(file)) => drop(file.commit()?),
+            Some(Buffer::Spool(spool)) => send(spool, "", "")?,
             None => {}
         }
-        if let Some(Place::Spool(spool)) = self.json {
+        if let Some(Buffer::Spool(spool)) = self.json {
             let head = serde_json::Value::Object(head.clone()).to_string();
             let open = head.strip_suffix('}').unwrap_or(&head);
             send(spool, &format!("{open},\"rows\":["), "\n]}\n")?;
@@ -156,22 +156,22 @@ fn csv_line(line: &mut String, columns: &[Column<Point>], row: &Point) {
     line.push('\n');
 }
 
-/// Sends what was kept aside to standard output.
+/// Copies a buffer to standard output.
 fn send(spool: BufWriter<SpooledTempFile>, before: &str, after: &str) -> Result<(), Problems> {
     let kept = spool
         .into_inner()
         .map_err(io::IntoInnerError::into_error)
         .and_then(|mut kept| kept.seek(SeekFrom::Start(0)).map(|_| kept));
-    let mut kept = kept.map_err(|error| unspooled(&error))?;
-    stream::to_stdout(|out| {
+    let mut kept = kept.map_err(|error| cannot_buffer(&error))?;
+    to_stdout(|out| {
         out.write_all(before.as_bytes())?;
         io::copy(&mut kept, out)?;
         out.write_all(after.as_bytes())
     })
 }
 
-fn unspooled(error: &io::Error) -> Problem {
-    let hint = "the table is kept aside until it is complete: free some space there, or write to a file with --out";
+fn cannot_buffer(error: &io::Error) -> Problem {
+    let hint = "the table is buffered there until it is complete: free some space, or write to a file with --out";
     problem(
         "standard output",
         &format!("cannot write in the folder of temporary files: {error}"),

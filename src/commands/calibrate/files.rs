@@ -8,8 +8,7 @@ use cvtcycle::study::fit::outcome::Outcome;
 use cvtcycle::study::fit::plan::Plan;
 use cvtcycle::study::fit::tables::tables;
 
-use crate::commands::run::files::Written;
-use crate::print::json_text;
+use crate::print::{WrittenFiles, json_text};
 
 /// Writes all files under their names, or none.
 ///
@@ -20,11 +19,11 @@ pub fn write(
     plan: &Plan,
     outcome: &Outcome,
     date: &str,
-) -> Result<Written, Problems> {
+) -> Result<WrittenFiles, Problems> {
     for (name, bytes) in all(plan, outcome, date)? {
         dir.write(&name, |out| out.write_all(&bytes))?;
     }
-    Written::commit(dir).map_err(Problems::from)
+    WrittenFiles::commit(dir).map_err(Problems::from)
 }
 
 /// Names and contents: the fitted files first.

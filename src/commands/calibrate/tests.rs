@@ -3,9 +3,8 @@
 use std::collections::HashMap;
 
 use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
-use cvtcycle::study::fit::tables::tables;
 
-use super::{failures, text};
+use super::{failures, tables};
 use crate::print::colour::Colour;
 
 #[path = "../../../tests/fixtures/outcome.rs"]
@@ -21,7 +20,7 @@ fn named(name: &str) -> Outcome {
 }
 
 fn told(outcome: &Outcome) -> String {
-    text::answer(outcome, Colour::Never.stdout())
+    tables::tables(outcome, Colour::Never.terminal().stdout)
 }
 
 #[test]
@@ -71,7 +70,7 @@ fn counts_and_root_mean_squares_are_those_of_the_outcome() {
         };
         let [before, after, left_out] = outcome.rms_sd();
         for (begin, wanted) in [
-            ("with the files' values", before),
+            ("with the values of the files", before),
             ("fitted ", after),
             ("predicted ", left_out),
         ] {
@@ -119,7 +118,7 @@ fn the_five_largest_residuals_are_told_largest_first() {
 fn starts_that_ended_elsewhere_are_named() {
     let text = told(&named("ordinary"));
     assert!(
-        text.contains("2 of 4 reached the same least sum of squares, 41.000"),
+        text.contains("2 of 4 reached the same smallest sum of squares, 41.000"),
         "{text}"
     );
     assert!(
@@ -164,7 +163,7 @@ fn rows(bytes: &[u8]) -> Vec<HashMap<String, String>> {
 #[test]
 fn tables_hold_every_number_unrounded() {
     let outcome = named("mixed");
-    let written = tables(&outcome);
+    let written = cvtcycle::study::fit::tables::tables(&outcome);
     let of = |name: &str| {
         written
             .iter()
@@ -238,13 +237,13 @@ fn tables_hold_every_number_unrounded() {
             .zip(line)
             .for_each(|(p, r)| same(&row[&p.name], *r));
     }
-    assert!(tables(&named("nothing")).is_empty());
+    assert!(cvtcycle::study::fit::tables::tables(&named("nothing")).is_empty());
     assert!(noise(1).abs() <= 1.0);
 }
 
 #[test]
 fn numbers_have_the_digits_that_their_error_leaves() {
-    let of = |x, error| text::to_error(x, Some(error));
+    let of = |x, error| tables::to_error(x, Some(error));
     assert_eq!(
         [
             of(8.298_4, 0.098),
@@ -258,7 +257,7 @@ fn numbers_have_the_digits_that_their_error_leaves() {
         ["2.98e-5", "0.00000"]
     );
     assert_eq!(
-        (of(f64::NAN, 1.0), text::to_error(0.0, None)),
+        (of(f64::NAN, 1.0), tables::to_error(0.0, None)),
         ("-".to_owned(), "0".to_owned())
     );
 }

@@ -9,17 +9,17 @@ use cvtcycle::output::losses::LossRow;
 use cvtcycle::output::table;
 use serde_json::{Map, Value, json};
 
-use super::plan::Plan;
+use super::plan::LossesPlan;
 use super::plots;
-use crate::commands::run::files::Written;
+use crate::print::WrittenFiles;
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
-/// Most points that are drawn.
-const MOST_DRAWN: usize = 100_000;
+/// Largest number of points that are drawn.
+const MAX_DRAWN: usize = 100_000;
 
 /// Everything of the JSON object but its points.
-fn head(plan: &Plan) -> Map<String, Value> {
+fn head(plan: &LossesPlan) -> Map<String, Value> {
     let settings = json!({
         "vehicle": plan.setup.name,
         "transmission": if plan.is_cvt() { "cvt" } else { "manual" },
@@ -43,7 +43,7 @@ fn head(plan: &Plan) -> Map<String, Value> {
 /// Writes all points as CSV.
 pub fn write_csv(
     out: &mut dyn Write,
-    plan: &Plan,
+    plan: &LossesPlan,
     rows: impl Iterator<Item = LossRow>,
 ) -> io::Result<()> {
     table::write_csv(out, &plan.columns, rows, &[])
@@ -52,41 +52,38 @@ pub fn write_csv(
 /// Writes the JSON object, its points one a line.
 pub fn write_json(
     out: &mut dyn Write,
-    plan: &Plan,
+    plan: &LossesPlan,
     rows: impl Iterator<Item = LossRow>,
 ) -> io::Result<()> {
     table::write_json(out, &head(plan), &plan.columns, rows)
 }
 
 /// Writes all files of a grid under their names, or none.
-pub fn write(mut dir: OutputDir, plan: &Plan) -> Result<Written, Problem> {
+pub fn write(mut dir: OutputDir, plan: &LossesPlan) -> Result<WrittenFiles, Problem> {
     let rows = || plan.grid.rows(&plan.bench);
     dir.write("losses.csv", |out| write_csv(out, plan, rows()))?;
     dir.write("summary.json", |out| write_json(out, plan, rows()))?;
-    let drawn = plan.grid.len() <= MOST_DRAWN;
-    if drawn {
-        for (name, svg) in plots::plots(plan) {
-            dir.write(&name, |out| out.write_all(svg.as_bytes()))?;
-        }
+    if plan.grid.len() > MAX_DRAWN {
+        let note = format!("  no plots: more than {MAX_DRAWN} points\n");
+        return Ok(WrittenFiles::commit(dir)?.with_note(note));
     }
-    let written = Written::commit(dir)?;
-    Ok(if drawn {
-        written
-    } else {
-        written.with_note(format!("  no plots: more than {MOST_DRAWN} points\n"))
-    })
+    for (name, svg) in plots::plots(plan) {
+        dir.write(&name, |out| out.write_all(svg.as_bytes()))?;
+    }
+    WrittenFiles::commit(dir)
 }
 
-/// Writes a component's map, and the head of the JSON object to mark the directory.
+/// Writes the map of a component, and the head of the JSON object, which marks the directory as a result.
 pub fn write_map(
-    dir: &mut OutputDir,
-    plan: &Plan,
+    mut dir: OutputDir,
+    plan: &LossesPlan,
     name: &str,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), Problem> {
+) -> Result<WrittenFiles, Problem> {
     dir.write(&format!("map_{name}.csv"), |out| write(out))?;
     dir.write("summary.json", |out| {
         serde_json::to_writer_pretty(&mut *out, &head(plan))?;
         out.write_all(b"\n")
-    })
+    })?;
+    WrittenFiles::commit(dir)
 }

@@ -1,6 +1,6 @@
-//! Words to a checked grid on a bench.
+//! Arguments of `losses` to a checked grid of operating points.
 
-use cvtcycle::config::setup::{self, Options, Setup};
+use cvtcycle::config::setup::Setup;
 use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::model::bench::{Bench, solvable_ratios};
 use cvtcycle::model::transmission::Transmission;
@@ -10,10 +10,10 @@ use cvtcycle::output::loss_table::MapPart;
 use cvtcycle::output::losses::{Axis, LossGrid, LossRow, MAX_POINTS, columns};
 use cvtcycle::output::table::Column;
 
-use super::Args;
+use super::LossesArgs;
+use crate::args::one_of;
+use crate::args::problems::{bad_value, problem};
 use crate::args::ranges::{values, values_or_words};
-use crate::args::{self as inputs, bad_value};
-use crate::print::problem;
 
 const SPEED: Bound = Bound::open_low(0.0, 10_000.0);
 const TORQUE: Bound = Bound::closed(-5000.0, 5000.0);
@@ -22,215 +22,193 @@ const TEMP: Bound = Bound::closed(-40.0, 160.0);
 const PRESSURE: Bound = Bound::closed(0.0, 100.0);
 const THROTTLE: Bound = Bound::closed(0.0, 1.0);
 
-/// Everything that the command needs, checked.
-pub struct Plan {
+/// Checked input of `losses`.
+pub struct LossesPlan {
     pub setup: Setup,
     pub bench: Bench,
     pub grid: LossGrid,
     pub columns: Vec<Column<LossRow>>,
-    pub formulation: &'static str,
+    pub formulation: String,
     pub set: Vec<String>,
     pub map: Option<MapPart>,
     pub out: Option<OutputDir>,
 }
 
-impl Plan {
-    /// Whether the box is a CVT.
+impl LossesPlan {
+    /// Whether the transmission is a CVT.
     pub fn is_cvt(&self) -> bool {
         self.setup.transmission().is_cvt()
     }
 }
 
-/// Reads all arguments.
-pub fn plan(args: &Args) -> Result<Plan, Problems> {
-    let mut problems = Problems::default();
-    let formulation = problems.take(inputs::word(
-        "--formulation",
-        &args.formulation,
-        &Formulation::NAMES,
-    ));
-    let map = args
-        .as_map
-        .as_ref()
-        .and_then(|word| problems.take(inputs::word("--as-map", word, &MapPart::NAMES)));
-    let options = Options {
-        lubricant: args.lubricant.clone(),
-        set: args.set.clone(),
-        formulation: formulation.unwrap_or_default(),
-        ..Options::default()
-    };
-    let setup = problems.take(setup::load(&args.vehicle, "--vehicle", &options));
+/// Checks all arguments.
+pub fn plan(args: &LossesArgs, problems: &mut Problems) -> Option<LossesPlan> {
+    let formulation = args.formulation.get(problems);
+    let map = args.as_map.as_ref();
+    let map = map.and_then(|word| problems.take(one_of("--as-map", word, &MapPart::NAMES)));
+    let setup = args.car.load(formulation, problems);
     let mut grid = LossGrid::default();
-    common(args, &mut grid, &mut problems);
-    match setup.as_ref().map(|setup| setup.transmission()) {
-        Some(Transmission::Cvt(cvt)) => {
-            let limits = solvable_ratios(&cvt.belt);
-            let words = [("low", cvt.ratio.low), ("high", cvt.ratio.high)];
-            let text = args.ratio.as_deref().unwrap_or("low");
-            let found = values_or_words(
-                "--ratio",
-                text,
-                Bound::closed(limits.0, limits.1),
-                "",
-                &words,
-            );
-            put(&mut grid, Axis::Ratio, problems.take(found));
-            if args.gear.is_some() {
-                problems.add(problem(
-                    "--gear",
-                    &format!("{} has a CVT, which has no gears", args.vehicle),
-                    "use --ratio low, --ratio high or --ratio 1.0",
-                ));
+    fill_axes(args, &mut grid, problems);
+    if let Some(setup) = &setup {
+        let ratios = match setup.transmission() {
+            Transmission::Cvt(cvt) => {
+                let (low, high) = solvable_ratios(&cvt.belt);
+                let words = [("low", cvt.ratio.low), ("high", cvt.ratio.high)];
+                let text = args.ratio.as_deref().unwrap_or("low");
+                let ratios = values_or_words("--ratio", text, Bound::closed(low, high), "", &words);
+                let ratios = problems.take(ratios).unwrap_or_default();
+                check_cvt(args, formulation, &ratios, problems);
+                ratios
             }
-            if formulation.is_some_and(|f| f != Formulation::Smooth) {
-                printed_limits(grid.of(Axis::Ratio), &mut problems);
+            Transmission::Manual(manual) => {
+                check_manual(args, formulation, problems);
+                let gears = gears(args.gear.as_deref(), manual.overall.len());
+                problems.take(gears).unwrap_or_default()
             }
+        };
+        grid.values[Axis::Ratio as usize] = ratios;
+        if let Some(part) = map {
+            check_map(args, part, setup.transmission().is_cvt(), &grid, problems);
         }
-        Some(Transmission::Manual(manual)) => {
-            no_belt(args, formulation, &mut problems);
-            put(
-                &mut grid,
-                Axis::Ratio,
-                problems.take(gears(args.gear.as_deref(), manual.overall.len())),
-            );
-        }
-        None => {}
-    }
-    if let (Some(part), Some(setup)) = (map, &setup) {
-        map_limits(args, part, setup, &grid, &mut problems);
     }
     if grid.size() > MAX_POINTS as f64 {
         problems.add(too_many(&grid));
     }
-    let out = args
-        .out
-        .as_ref()
-        .map(|dir| OutputDir::create(dir, args.force).map_err(Problems::from));
-    let out = out.and_then(|dir| problems.take(dir));
-    problems.finish()?;
-    let Some(setup) = setup else {
-        unreachable!("what is missing has left a problem")
-    };
-    let formulation = Formulation::NAMES
-        .iter()
-        .find(|(_, f)| Some(*f) == formulation)
-        .map_or("", |(name, _)| *name);
-    let columns = columns(setup.transmission());
-    Ok(Plan {
+    let out = args.out.dir(problems);
+    let setup = setup?;
+    Some(LossesPlan {
         bench: Bench::as_printed(&setup),
+        columns: columns(setup.transmission()),
         setup,
         grid,
-        columns,
-        formulation,
-        set: args.set.clone(),
+        formulation: args.formulation.formulation.clone(),
+        set: args.car.set.clone(),
         map,
         out,
     })
 }
 
-fn put(grid: &mut LossGrid, axis: Axis, values: Option<Vec<f64>>) {
-    grid.values[axis as usize] = values.unwrap_or_default();
-}
-
-/// Options that do not hang on the vehicle.
-fn common(args: &Args, grid: &mut LossGrid, problems: &mut Problems) {
-    let throttle = args.throttle.as_deref().unwrap_or("0");
-    put(
-        grid,
-        Axis::Speed,
-        problems.take(values("--speed", &args.speed, SPEED, "_rpm")),
-    );
-    put(
-        grid,
-        Axis::Torque,
-        problems.take(values("--torque", &args.torque, TORQUE, "_nm")),
-    );
-    put(
-        grid,
-        Axis::Sump,
-        problems.take(values("--temp", &args.temp, TEMP, "_degc")),
-    );
-    put(
-        grid,
-        Axis::Throttle,
-        problems.take(values("--throttle", throttle, THROTTLE, "")),
-    );
-    if let Some(text) = &args.belt_temp {
-        put(
-            grid,
+/// Axes that every transmission has.
+fn fill_axes(args: &LossesArgs, grid: &mut LossGrid, problems: &mut Problems) {
+    // With --pressure the clamping law is not used, and with no --belt-temp the belt is in steady state: no values on that axis.
+    let axes = [
+        (
+            Axis::Speed,
+            "--speed",
+            &args.speed,
+            Some("2500"),
+            SPEED,
+            "_rpm",
+        ),
+        (
+            Axis::Torque,
+            "--torque",
+            &args.torque,
+            Some("0"),
+            TORQUE,
+            "_nm",
+        ),
+        (Axis::Sump, "--temp", &args.temp, Some("80"), TEMP, "_degc"),
+        (
+            Axis::Throttle,
+            "--throttle",
+            &args.throttle,
+            Some("0"),
+            THROTTLE,
+            "",
+        ),
+        (
             Axis::Belt,
-            problems.take(values("--belt-temp", text, TEMP, "_degc")),
-        );
-    }
-    if let Some(text) = &args.pressure {
-        put(
-            grid,
+            "--belt-temp",
+            &args.belt_temp,
+            None,
+            TEMP,
+            "_degc",
+        ),
+        (
             Axis::Pressure,
-            problems.take(values("--pressure", text, PRESSURE, "_bar")),
-        );
-        if args.throttle.is_some() {
-            problems.add(problem(
-                "--throttle",
-                "with --pressure the clamp law is not asked, so the throttle has no effect",
-                "leave out one of the two",
-            ));
+            "--pressure",
+            &args.pressure,
+            None,
+            PRESSURE,
+            "_bar",
+        ),
+    ];
+    for (axis, option, text, default, range, suffix) in axes {
+        if let Some(text) = text.as_deref().or(default) {
+            let found = problems.take(values(option, text, range, suffix));
+            grid.values[axis as usize] = found.unwrap_or_default();
         }
     }
+    if args.pressure.is_some() && args.throttle.is_some() {
+        let message = "with --pressure the clamping law is not used, so the throttle has no effect";
+        problems.add(problem("--throttle", message, "leave out one of the two"));
+    }
 }
 
-/// Options that a manual box has no use for.
-fn no_belt(args: &Args, formulation: Option<Formulation>, problems: &mut Problems) {
+/// Options that a CVT does not have, and ratios at which the printed formulations are not defined.
+fn check_cvt(args: &LossesArgs, formulation: Formulation, ratios: &[f64], problems: &mut Problems) {
+    if args.gear.is_some() {
+        let message = format!("{} has a CVT, which has no gears", args.car.vehicle);
+        problems.add(problem(
+            "--gear",
+            &message,
+            "use --ratio low, --ratio high or --ratio 1.0",
+        ));
+    }
+    if formulation != Formulation::Smooth && ratios.iter().any(|ratio| (ratio - 1.0).abs() <= 0.0) {
+        let message = "the printed formulations are not defined at ratio 1, where the tension step has no direction";
+        let hint = "use 0.999 or 1.001, or --formulation smooth";
+        problems.add(bad_value("--ratio", "1", "above or below 1", message, hint));
+    }
+}
+
+/// Options that a manual gearbox does not have.
+fn check_manual(args: &LossesArgs, formulation: Formulation, problems: &mut Problems) {
+    let printed = formulation != Formulation::Smooth;
     let given = [
         (
             "--ratio",
             args.ratio.is_some(),
-            "a belt ratio",
+            "belt ratio",
             "use --gear 3 or --gear 1..5",
         ),
         (
             "--belt-temp",
             args.belt_temp.is_some(),
-            "a belt",
-            "leave it out; --temp sets the oil",
+            "belt",
+            "leave it out; --temp is the oil temperature",
         ),
         (
             "--pressure",
             args.pressure.is_some(),
-            "a clamping pressure",
+            "clamping pressure",
             "leave it out",
         ),
         (
             "--throttle",
             args.throttle.is_some(),
-            "a clamp law that asks for the throttle",
+            "clamping law that depends on the throttle",
             "leave it out",
         ),
-        (
-            "--formulation",
-            formulation.is_some_and(|f| f != Formulation::Smooth),
-            "a belt",
-            "leave it out",
-        ),
+        ("--formulation", printed, "belt", "leave it out"),
     ];
-    for (option, _, what, hint) in given.into_iter().filter(|g| g.1) {
-        problems.add(problem(
-            option,
-            &format!("{} has a manual box, which has not {what}", args.vehicle),
-            hint,
-        ));
+    for (option, _, part, hint) in given.into_iter().filter(|given| given.1) {
+        let message = format!(
+            "{} has a manual gearbox, which has no {part}",
+            args.car.vehicle
+        );
+        problems.add(problem(option, &message, hint));
     }
 }
 
-/// Gears, all where none is named.
+/// Gears; all if none is given.
 fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Problems> {
     let all = format!("1..{count}");
-    // A range of gears goes by ones.
-    let by_ones = |part: &str| {
-        if part.contains("..") && !part.contains(':') {
-            format!("{part}:1")
-        } else {
-            part.to_owned()
-        }
+    // The step of a range of gears is 1.
+    let by_ones = |part: &str| match part.contains("..") && !part.contains(':') {
+        true => format!("{part}:1"),
+        false => part.to_owned(),
     };
     let text: Vec<String> = text.unwrap_or(&all).split(',').map(by_ones).collect();
     let found = values(
@@ -239,20 +217,18 @@ fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Problems> {
         Bound::closed(1.0, count as f64),
         "",
     )?;
-    let bad = |x: &&f64| x.fract().abs() > 0.0;
-    let problems: Problems = found
-        .iter()
-        .filter(bad)
-        .map(|x| {
-            bad_value(
-                "--gear",
-                &x.to_string(),
-                &format!("whole numbers from 1 to {count}"),
-                format!("`{x}` is no gear"),
-                String::new(),
-            )
-        })
-        .collect();
+    let allowed = format!("whole numbers from 1 to {count}");
+    let fractions = found.iter().filter(|x| x.fract().abs() > 0.0);
+    let bad = |x: &f64| {
+        bad_value(
+            "--gear",
+            &x.to_string(),
+            &allowed,
+            &format!("`{x}` is no gear"),
+            "",
+        )
+    };
+    let problems: Problems = fractions.map(bad).collect();
     if problems.is_empty() {
         Ok(found)
     } else {
@@ -260,64 +236,44 @@ fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Problems> {
     }
 }
 
-/// What the printed forms cannot answer.
-fn printed_limits(ratios: &[f64], problems: &mut Problems) {
-    if ratios.iter().any(|ratio| (ratio - 1.0).abs() <= 0.0) {
-        let message = "the printed forms are not defined at a ratio of exactly 1: the tension step has no direction there".to_owned();
-        let hint = "take 0.999 or 1.001, or --formulation smooth".to_owned();
-        problems.add(bad_value("--ratio", "1", "above or below 1", message, hint));
-    }
-}
-
-/// What a map cannot carry.
-fn map_limits(args: &Args, part: MapPart, setup: &Setup, grid: &LossGrid, problems: &mut Problems) {
+/// Options that a map of the component cannot have.
+fn check_map(
+    args: &LossesArgs,
+    part: MapPart,
+    cvt: bool,
+    grid: &LossGrid,
+    problems: &mut Problems,
+) {
     let word = args.as_map.as_deref().unwrap_or_default();
-    let cvt = setup.transmission().is_cvt();
     if part.of_cvt() != cvt {
-        let hint = if cvt {
-            "choose belt, pump, input_shaft, clutch_drag or final_drive"
-        } else {
-            "a manual box is mapped as a whole: --as-map box"
+        let hint = match cvt {
+            true => "choose belt, pump, input_shaft, clutch_drag or final_drive",
+            false => "a manual gearbox has one map: --as-map box",
         };
-        problems.add(problem(
-            "--as-map",
-            &format!("{} has no component `{word}`", args.vehicle),
-            hint,
-        ));
+        let message = format!("{} has no component `{word}`", args.car.vehicle);
+        problems.add(problem("--as-map", &message, hint));
         return;
     }
-    if args.formulation != "smooth" {
-        problems.add(problem(
-            "--as-map",
-            "a map is for driving, where the printed forms have no answer everywhere",
-            "leave out --formulation",
-        ));
+    if args.formulation.formulation != "smooth" {
+        let message =
+            "a map is for driving, for which the printed formulations are not defined everywhere";
+        problems.add(problem("--as-map", message, "leave out --formulation"));
     }
+    let pressures = "give the pressures instead: --pressure 10..40:5";
     let mut single = vec![
-        (
-            Axis::Throttle,
-            "--throttle",
-            "give the pressures instead: --pressure 10..40:5",
-        ),
-        (Axis::Belt, "--belt-temp", "name one"),
+        (Axis::Throttle, "--throttle", pressures),
+        (Axis::Belt, "--belt-temp", "give one value"),
     ];
     if part.torque_column().is_none() {
-        single.push((
-            Axis::Torque,
-            "--torque",
-            "this component's loss does not depend on it",
-        ));
+        let hint = "the loss of this component does not depend on it";
+        single.push((Axis::Torque, "--torque", hint));
     }
-    for (axis, option, hint) in single
-        .into_iter()
-        .filter(|(axis, ..)| grid.of(*axis).len() > 1)
-    {
-        let values = grid.of(axis).len();
-        problems.add(problem(
-            option,
-            &format!("{values} values, but a map of `{word}` has no such axis"),
-            hint,
-        ));
+    for (axis, option, hint) in single {
+        let count = grid.of(axis).len();
+        if count > 1 {
+            let message = format!("{count} values, but a map of `{word}` has no such axis");
+            problems.add(problem(option, &message, hint));
+        }
     }
 }
 
@@ -331,20 +287,23 @@ fn too_many(grid: &LossGrid) -> Problem {
         "--torque",
         "--speed",
     ];
-    let counts: Vec<String> = options
+    let varied = options
         .iter()
         .zip(&grid.values)
-        .filter(|(_, v)| v.len() > 1)
-        .map(|(option, v)| format!("{option} {}", v.len()))
+        .filter(|(_, values)| values.len() > 1);
+    let counts: Vec<String> = varied
+        .map(|(option, values)| format!("{option} {}", values.len()))
         .collect();
+    let hint = format!(
+        "use larger steps or several runs; values given: {}",
+        counts.join(", ")
+    );
     let message = format!("the grid has {:.0} points", grid.size());
-    problem(
+    bad_value(
         "losses",
+        "",
+        &format!("at most {MAX_POINTS} points"),
         &message,
-        &format!(
-            "take larger steps or do it in parts; values given: {}",
-            counts.join(", ")
-        ),
+        &hint,
     )
-    .allowed(format!("at most {MAX_POINTS} points"))
 }

@@ -1,17 +1,17 @@
-//! Pictures of a grid: maps over two axes, stacks over one, a panel for each combination of the others.
+//! Figures of a grid: maps over two axes, stacks over one, a panel for each combination of the other axes.
 
 use cvtcycle::output::Component;
 use cvtcycle::output::losses::{Axis, LossRow, bench_components};
 use cvtcycle::report::charts::{MapFigure, StackFigure, map_figure, stack_figure};
 
-use super::plan::Plan;
-use super::text::{component_name, groups, held};
+use super::plan::LossesPlan;
+use super::tables::{component_name, groups, held};
 
-/// An axis with fewer values is no axis of a map: what lies between two of them is unknown.
-const LEAST_ON_MAP: usize = 3;
-/// Most panels of one picture.
-const MOST_PANELS: usize = 12;
-/// Which axes a picture takes first.
+/// Smallest number of values on an axis of a map: values between two points are unknown.
+const MIN_ON_MAP: usize = 3;
+/// Largest number of panels of a figure.
+const MAX_PANELS: usize = 12;
+/// Axes by priority.
 const ORDER: [Axis; 7] = [
     Axis::Speed,
     Axis::Torque,
@@ -22,14 +22,14 @@ const ORDER: [Axis; 7] = [
     Axis::Ratio,
 ];
 
-/// Pictures with their file names; none for a single point.
-pub fn plots(plan: &Plan) -> Vec<(String, String)> {
+/// Figures with their file names; none for a single point.
+pub fn plots(plan: &LossesPlan) -> Vec<(String, String)> {
     let varied = plan.grid.varied();
     let gears = |axis: &Axis| *axis == Axis::Ratio && !plan.is_cvt();
     let on_map: Vec<Axis> = ORDER
         .into_iter()
         .filter(|axis| {
-            varied.contains(axis) && plan.grid.of(*axis).len() >= LEAST_ON_MAP && !gears(axis)
+            varied.contains(axis) && plan.grid.of(*axis).len() >= MIN_ON_MAP && !gears(axis)
         })
         .collect();
     let rows: Vec<LossRow> = plan.grid.rows(&plan.bench).collect();
@@ -78,7 +78,7 @@ struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    fn new(plan: &Plan, rows: &'a [LossRow], x: Axis, y: Option<Axis>) -> Self {
+    fn new(plan: &LossesPlan, rows: &'a [LossRow], x: Axis, y: Option<Axis>) -> Self {
         let along = |axis: Axis| x == axis || y == Some(axis);
         let others: Vec<Axis> = plan
             .grid
@@ -108,7 +108,7 @@ impl<'a> Layout<'a> {
             gathered[place].push(row);
         }
         let count = gathered.len();
-        let panels = gathered.into_iter().take(MOST_PANELS).map(|list| {
+        let panels = gathered.into_iter().take(MAX_PANELS).map(|list| {
             let title = held(plan, &list[0].asked, &others);
             let (x, y) = (x as usize, y.map(|y| y as usize));
             let mut list = list;
@@ -135,8 +135,8 @@ impl<'a> Layout<'a> {
             plan.setup.name,
             held(plan, &plan.grid.at(0), &fixed)
         );
-        if count > MOST_PANELS {
-            subject += &format!(" (first {MOST_PANELS} of {count} combinations)");
+        if count > MAX_PANELS {
+            subject += &format!(" (first {MAX_PANELS} of {count} combinations)");
         }
         Layout {
             x: (x, values(x)),
@@ -152,7 +152,7 @@ fn sum(row: &LossRow, parts: &[Component]) -> f64 {
 }
 
 /// One map of the total and one of each group of components.
-fn maps(plan: &Plan, layout: &Layout) -> Vec<(String, String)> {
+fn maps(plan: &LossesPlan, layout: &Layout) -> Vec<(String, String)> {
     let Some((y_axis, y)) = &layout.y else {
         return Vec::new();
     };
@@ -198,7 +198,7 @@ fn maps(plan: &Plan, layout: &Layout) -> Vec<(String, String)> {
 }
 
 /// All components stacked over one axis.
-fn stack(plan: &Plan, layout: &Layout) -> String {
+fn stack(plan: &LossesPlan, layout: &Layout) -> String {
     let components = bench_components(plan.setup.transmission());
     let values = |panel: &Panel, component: Component| {
         panel

@@ -2,54 +2,57 @@
 
 mod files;
 mod json;
-mod text;
+mod tables;
 
+use clap::Args;
 use cvtcycle::config::rig::{OIL, PREFIX, TORQUE};
-use cvtcycle::config::setup::{self, Options, Setup};
-use cvtcycle::config::{Bound, Problem, Problems, to_si};
+use cvtcycle::config::setup::{self, Setup};
+use cvtcycle::config::{Bound, Problems, to_si};
 use cvtcycle::model::bench::transmission::{
-    self as rig, Conditions, Loop, Plan, SteadyPoint, StripDown, TwoBoxes,
+    self as rig, Conditions, Loop, Plan as TestPoints, SteadyPoint, StripDown, TwoBoxes,
 };
 use cvtcycle::model::bench::{Bench, BenchAnswer, solvable_ratios};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::Transmission;
-use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::Flags;
 use cvtcycle::output::files::OutputDir;
 
+use crate::args::problems::bad_value;
 use crate::args::ranges::{values, values_or_words};
-use crate::args::{self as inputs, Offering, bad_value};
-use crate::commands::Context;
-use crate::commands::run::{files::Written, formulations};
-use crate::print::{Answer, FAILED, Reply, json_text};
+use crate::args::{FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, names_of, one_of};
+use crate::commands::Execute;
+use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
 /// Ratios that can be tested.
 const RATIO: Bound = Bound::closed(0.3, 3.0);
 /// Input speeds that can be tested, rpm.
 const SPEED: Bound = Bound::closed(100.0, 8000.0);
-/// Most that a transient's energy may miss of what was put in.
-const ENERGY: f64 = 1e-9;
+/// Largest relative error of the energy balance of a transient.
+const MAX_ENERGY_ERROR: f64 = 1e-9;
 
 /// Arguments of `rig transmission`.
-#[derive(Clone, Debug, clap::Args)]
-#[command(after_help = "\
+#[derive(Args, Clone, Debug)]
+#[command(
+    mut_arg("out", |out| out.help("Write summary.json, tables (CSV) and plots (SVG) into this directory")),
+    mut_arg("set", |set| set.help("Override one value; repeatable. `rig.KEY` is a value of the rig, `lubricant.KEY` of the oil, any other of the vehicle")),
+    after_help = "\
 Examples:
   cvtcycle rig transmission
   cvtcycle rig transmission --test strip_down --out strip
   cvtcycle rig transmission --test steady --ratio low,1 --speed 1000..4000:500 --temp -10,25,95
   cvtcycle rig transmission --test transient --set rig.transient.start_degc=10 --json
 
-Numbers, lists and ranges FROM..TO:STEP are taken for --ratio, --speed, --temp and --torque; without them the rig's own points are
-tested. Transients run at rig.transient.speed_rpm; --speed, --temp and --torque do not concern them. `cvtcycle explain rig.pressure`
-and the like explain what the rig is set to.")]
-pub struct Args {
-    /// Which test: all, steady, loaded, strip_down, transient or second_box
-    #[arg(long, value_name = "TEST", default_value = "all", value_parser = Offering(tests), hide_possible_values = true)]
+--ratio, --speed, --temp and --torque take numbers, lists and ranges FROM..TO:STEP; the defaults are the test points of the rig.
+Transients run at rig.transient.speed_rpm, independent of --speed, --temp and --torque. `cvtcycle explain rig.pressure` explains
+the keys of the rig."
+)]
+pub struct RigTransmissionArgs {
+    /// Test: all, steady, loaded, strip_down, transient or second_box
+    #[arg(long, value_name = "TEST", default_value = "all", value_parser = Names(tests), hide_possible_values = true)]
     test: String,
-    /// Vehicle whose transmission is on the rig; it must be a CVT
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Offering(inputs::vehicles), hide_possible_values = true)]
-    vehicle: String,
-    /// Belt ratios, 0.3 to 3, `low` and `high` being those of the rig [default: low,high]
+    #[command(flatten)]
+    car: VehicleArgs,
+    /// Belt ratios, 0.3 to 3, or `low` and `high` of the rig [default: low,high]
     #[arg(long, value_name = "VALUES")]
     ratio: Option<String>,
     /// Input speeds, rpm, 100 to 8000 [default: 1000..4000:250 in low, 1750..4000:250 in high]
@@ -61,32 +64,17 @@ pub struct Args {
     /// Torques at the output shaft in the loaded test, Nm, -100 to 1000 [default: 0,25,50,75,100]
     #[arg(long, value_name = "VALUES", allow_hyphen_values = true)]
     torque: Option<String>,
-    /// Transmission oil in place of the vehicle's own
-    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Offering(inputs::lubricants), hide_possible_values = true)]
-    lubricant: Option<String>,
-    /// Reading of the belt model: smooth, appendix_c or chapter_8
-    #[arg(long, value_name = "NAME", default_value = "smooth", value_parser = Offering(formulations), hide_possible_values = true)]
-    formulation: String,
-    /// Override one value; repeatable. `rig.KEY` reaches the rig, `lubricant.KEY` the oil, any other the vehicle
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
-    /// Print one JSON object instead of tables
-    #[arg(long)]
-    json: bool,
-    /// Write summary.json, tables (CSV) and plots (SVG) into this directory
-    #[arg(long, value_name = "DIR")]
-    out: Option<std::path::PathBuf>,
-    /// Replace the files of an earlier run in the --out directory
-    #[arg(long, requires = "out")]
-    force: bool,
-    /// Print nothing but problems
-    #[arg(long, short)]
-    quiet: bool,
+    #[command(flatten)]
+    formulation: FormulationArgs,
+    #[command(flatten)]
+    out: OutArgs,
+    #[command(flatten)]
+    output: OutputArgs,
 }
 
-/// Which tests are run.
+/// Tests of the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Test {
+enum RigTest {
     All,
     Steady,
     Loaded,
@@ -95,33 +83,33 @@ enum Test {
     SecondBox,
 }
 
-const TESTS: [(&str, Test); 6] = [
-    ("all", Test::All),
-    ("steady", Test::Steady),
-    ("loaded", Test::Loaded),
-    ("strip_down", Test::StripDown),
-    ("transient", Test::Transient),
-    ("second_box", Test::SecondBox),
+const TESTS: [(&str, RigTest); 6] = [
+    ("all", RigTest::All),
+    ("steady", RigTest::Steady),
+    ("loaded", RigTest::Loaded),
+    ("strip_down", RigTest::StripDown),
+    ("transient", RigTest::Transient),
+    ("second_box", RigTest::SecondBox),
 ];
 
 fn tests() -> Vec<&'static str> {
-    TESTS.iter().map(|(name, _)| *name).collect()
+    names_of(&TESTS)
 }
 
-/// Everything that the tests need, checked.
-struct Job {
-    test: Test,
+/// Checked input of the tests.
+pub struct RigPlan {
+    test: RigTest,
     setup: Setup,
     conditions: Conditions,
-    plan: Plan,
+    points: TestPoints,
     formulation: String,
     set: Vec<String>,
     out: Option<OutputDir>,
 }
 
-/// What the tests found; empty where a test was not asked for.
+/// Results of the tests; empty for tests that did not run.
 #[derive(Debug, Default)]
-struct Found {
+struct RigResults {
     steady: Vec<SteadyPoint>,
     loaded: Vec<SteadyPoint>,
     strip_down: Vec<StripDown>,
@@ -129,194 +117,155 @@ struct Found {
     second_box: Vec<TwoBoxes>,
 }
 
-/// Runs the command.
-pub fn answer(args: &Args, context: Context) -> Reply {
-    let mut job = job(args)?;
-    let found = run(&job);
-    let failed = failures(&job, &found);
-    let json = json_text(&json::summary(&job, &found, &failed))?;
-    let written = match job.out.take() {
-        Some(dir) => files::write(dir, &json, &job, &found)?,
-        None => Written::default(),
-    };
-    let code = if failed.is_empty() { 0 } else { FAILED };
-    let told: String = failed
-        .iter()
-        .map(|line| format!("cvtcycle: {line}\n"))
-        .collect();
-    if args.json || args.quiet {
-        let stdout = if args.json { json } else { String::new() };
-        return Ok(Answer {
-            stdout,
-            stderr: told + &written.left_over_text(),
-            code,
-        });
-    }
-    let checks: String = failed
-        .iter()
-        .map(|line| context.paint.bad(line) + "\n")
-        .collect();
-    let stdout = text::tables(&job, &found, context.paint) + &checks + &written.text();
-    Ok(Answer {
-        stdout,
-        stderr: written.left_over_text(),
-        code,
-    })
-}
+impl Execute for RigTransmissionArgs {
+    type Plan = RigPlan;
 
-fn run(job: &Job) -> Found {
-    let bench = Bench::new(&job.setup);
-    let (c, plan) = (&job.conditions, &job.plan);
-    let wanted = |test: Test| job.test == Test::All || job.test == test;
-    let mut found = Found::default();
-    if wanted(Test::Steady) {
-        found.steady = rig::steady(&bench, c, plan);
-    }
-    if wanted(Test::Loaded) {
-        found.loaded = rig::loaded(&bench, c, plan);
-    }
-    if wanted(Test::StripDown) {
-        found.strip_down = rig::strip_down(&bench, c, plan);
-    }
-    if wanted(Test::Transient) {
-        found.loops = plan
-            .ratios
-            .iter()
-            .map(|ratio| rig::transient(&bench, c, *ratio))
+    fn plan(&self, problems: &mut Problems) -> Option<RigPlan> {
+        let test = problems.take(one_of("--test", &self.test, &TESTS));
+        let formulation = self.formulation.get(problems);
+        let mut options = self.car.options(formulation);
+        let of_rig: Vec<String> = options
+            .set
+            .extract_if(.., |set| set.starts_with(PREFIX))
             .collect();
-    }
-    if wanted(Test::SecondBox) {
-        found.second_box = rig::second_box(&bench, c, plan);
-    }
-    found
-}
-
-fn job(args: &Args) -> Result<Job, Problems> {
-    let mut problems = Problems::default();
-    let test = problems.take(inputs::word("--test", &args.test, &TESTS));
-    let formulation = problems.take(inputs::word(
-        "--formulation",
-        &args.formulation,
-        &Formulation::NAMES,
-    ));
-    let (of_rig, of_vehicle): (Vec<String>, Vec<String>) = args
-        .set
-        .iter()
-        .cloned()
-        .partition(|set| set.starts_with(PREFIX));
-    let options = Options {
-        lubricant: args.lubricant.clone(),
-        set: of_vehicle,
-        formulation: formulation.unwrap_or_default(),
-        ..Options::default()
-    };
-    let setup = problems.take(setup::load(&args.vehicle, "--vehicle", &options));
-    if setup
-        .as_ref()
-        .is_some_and(|setup| !setup.transmission().is_cvt())
-    {
-        problems.add(manual(&args.vehicle));
-    }
-    let conditions = problems
-        .take(cvtcycle::config::rig::load(&of_rig))
-        .map(|(conditions, _)| conditions);
-    let plan = plan(args, conditions.as_ref(), &mut problems);
-    if let (Some(setup), Some(plan)) = (&setup, &plan) {
-        beyond_the_belt(setup, plan, &mut problems);
-    }
-    let out = args
-        .out
-        .as_ref()
-        .map(|dir| OutputDir::create(dir, args.force).map_err(Problems::from));
-    let out = out.and_then(|dir| problems.take(dir));
-    problems.finish()?;
-    match (test, setup, conditions, plan) {
-        (Some(test), Some(setup), Some(conditions), Some(plan)) => Ok(Job {
-            test,
-            setup,
-            conditions,
-            plan,
-            formulation: args.formulation.clone(),
-            set: args.set.clone(),
+        let vehicle = &self.car.vehicle;
+        let setup = problems.take(setup::load(vehicle, "--vehicle", &options));
+        if setup
+            .as_ref()
+            .is_some_and(|setup| !setup.transmission().is_cvt())
+        {
+            let hint = format!(
+                "`cvtcycle losses --vehicle {vehicle}` computes the losses of a manual gearbox"
+            );
+            problems.add(self.car.needs_cvt(&hint));
+        }
+        let conditions = problems.take(cvtcycle::config::rig::load(&of_rig));
+        let conditions = conditions.map(|(conditions, _)| conditions);
+        let points = self.points(conditions.as_ref(), problems);
+        if let (Some(setup), Some(points)) = (&setup, &points) {
+            check_ratios(setup, points, problems);
+        }
+        let out = self.out.dir(problems);
+        Some(RigPlan {
+            test: test?,
+            setup: setup?,
+            conditions: conditions?,
+            points: points?,
+            formulation: self.formulation.formulation.clone(),
+            set: self.car.set.clone(),
             out,
-        }),
-        _ => unreachable!("what is missing has left a problem"),
+        })
+    }
+
+    fn run(&self, mut plan: RigPlan, terminal: Terminal) -> CommandResult {
+        let out = plan.out.take();
+        let found = plan.run();
+        let failures = found.failures(&plan.conditions);
+        let json = json_text(&json::summary(&plan, &found, &failures))?;
+        let files = match out {
+            Some(dir) => files::write(dir, &json, &plan, &found)?,
+            None => WrittenFiles::default(),
+        };
+        let results = Results {
+            json,
+            failures,
+            files,
+        };
+        Ok(results.output(&self.output, || {
+            tables::tables(&plan, &found, terminal.stdout)
+        }))
     }
 }
 
-fn manual(vehicle: &str) -> Problem {
-    let hint = format!("`cvtcycle losses --vehicle {vehicle}` shows the losses of a manual box");
-    bad_value(
-        "--vehicle",
-        vehicle,
-        "a vehicle with a CVT",
-        format!("`{vehicle}` has a manual box"),
-        hint,
-    )
+impl RigTransmissionArgs {
+    /// Test points of the rig with those of the options; none if the conditions of the rig could not be read.
+    fn points(
+        &self,
+        conditions: Option<&Conditions>,
+        problems: &mut Problems,
+    ) -> Option<TestPoints> {
+        let mut list = |option: &str, text: &Option<String>, range: Bound, suffix: &str| {
+            let read = problems.take(values(option, text.as_ref()?, range, suffix))?;
+            Some(
+                read.into_iter()
+                    .map(|x| to_si(suffix, x))
+                    .collect::<Vec<f64>>(),
+            )
+        };
+        let speeds_rad_s = list("--speed", &self.speed, SPEED, "_rpm");
+        let oil_k = list("--temp", &self.temp, OIL, "_degc");
+        let torques_nm = list("--torque", &self.torque, TORQUE, "_nm");
+        // The words for ratios are those of the conditions.
+        let conditions = conditions?;
+        let words = [
+            ("low", conditions.low_ratio),
+            ("high", conditions.high_ratio),
+        ];
+        let read =
+            |text: &String| problems.take(values_or_words("--ratio", text, RATIO, "", &words));
+        let ratios = self.ratio.as_ref().and_then(read);
+        let own = TestPoints::of(conditions);
+        Some(TestPoints {
+            ratios: ratios.unwrap_or(own.ratios),
+            speeds_rad_s,
+            oil_k: oil_k.unwrap_or(own.oil_k),
+            torques_nm: torques_nm.unwrap_or(own.torques_nm),
+        })
+    }
 }
 
-/// Ratios that a belt of this length cannot run at.
-fn beyond_the_belt(setup: &Setup, plan: &Plan, problems: &mut Problems) {
+/// Reports ratios at which a belt of this length does not fit.
+fn check_ratios(setup: &Setup, points: &TestPoints, problems: &mut Problems) {
     let Transmission::Cvt(cvt) = setup.transmission() else {
         return;
     };
     let (low, high) = solvable_ratios(&cvt.belt);
-    for ratio in plan
+    let allowed = format!("{low} to {high} with this belt");
+    for ratio in points
         .ratios
         .iter()
         .filter(|ratio| !(low..=high).contains(*ratio))
     {
-        let hint =
-            "check the belt's length and the centre distance, or choose other ratios with --ratio"
-                .to_owned();
         let message = format!("the belt does not fit around the pulleys at ratio {ratio}");
+        let hint =
+            "check the belt length and the centre distance, or choose other ratios with --ratio";
         problems.add(bad_value(
             "--ratio",
             &ratio.to_string(),
-            &format!("{low} to {high} with this belt"),
-            message,
+            &allowed,
+            &message,
             hint,
         ));
     }
 }
 
-/// The rig's points with those of the options; none where the rig's own could not be read.
-fn plan(args: &Args, conditions: Option<&Conditions>, problems: &mut Problems) -> Option<Plan> {
-    let mut list = |option: &str, text: &Option<String>, bound: Bound, suffix: &str| {
-        let read = text
-            .as_ref()
-            .map(|text| values(option, text, bound, suffix));
-        read.and_then(|read| problems.take(read)).map(|list| {
-            list.into_iter()
-                .map(|x| to_si(suffix, x))
-                .collect::<Vec<f64>>()
-        })
-    };
-    let speeds_rad_s = list("--speed", &args.speed, SPEED, "_rpm");
-    let oil_k = list("--temp", &args.temp, OIL, "_degc");
-    let torques_nm = list("--torque", &args.torque, TORQUE, "_nm");
-    let words: Vec<(&str, f64)> = conditions
-        .iter()
-        .flat_map(|c| [("low", c.low_ratio), ("high", c.high_ratio)])
-        .collect();
-    let ratios = args
-        .ratio
-        .as_ref()
-        .map(|text| values_or_words("--ratio", text, RATIO, "", &words));
-    // With bad conditions the words mean nothing, and that has been told.
-    let ratios = ratios
-        .filter(|_| conditions.is_some())
-        .and_then(|read| problems.take(read));
-    let own = Plan::of(conditions?);
-    Some(Plan {
-        ratios: ratios.unwrap_or(own.ratios),
-        speeds_rad_s,
-        oil_k: oil_k.unwrap_or(own.oil_k),
-        torques_nm: torques_nm.unwrap_or(own.torques_nm),
-    })
+impl RigPlan {
+    fn run(&self) -> RigResults {
+        let bench = Bench::new(&self.setup);
+        let (c, points) = (&self.conditions, &self.points);
+        let wanted = |test: RigTest| self.test == RigTest::All || self.test == test;
+        let mut found = RigResults::default();
+        if wanted(RigTest::Steady) {
+            found.steady = rig::steady(&bench, c, points);
+        }
+        if wanted(RigTest::Loaded) {
+            found.loaded = rig::loaded(&bench, c, points);
+        }
+        if wanted(RigTest::StripDown) {
+            found.strip_down = rig::strip_down(&bench, c, points);
+        }
+        if wanted(RigTest::Transient) {
+            let transient = |ratio: &f64| rig::transient(&bench, c, *ratio);
+            found.loops = points.ratios.iter().map(transient).collect();
+        }
+        if wanted(RigTest::SecondBox) {
+            found.second_box = rig::second_box(&bench, c, points);
+        }
+        found
+    }
 }
 
-impl Found {
+impl RigResults {
     /// Every operating point that was solved.
     fn answers(&self) -> impl Iterator<Item = &BenchAnswer> {
         let steady = self.steady.iter().chain(&self.loaded).map(|p| &p.answer);
@@ -333,38 +282,38 @@ impl Found {
         steady.chain(boxes).chain(stages).chain(moments)
     }
 
-    /// Points with a flag.
+    /// Number of points with a flag.
     fn flagged(&self, flag: Flags) -> usize {
         self.answers().filter(|a| a.flags.contains(flag)).count()
     }
-}
 
-/// One line for every check that failed.
-fn failures(job: &Job, found: &Found) -> Vec<String> {
-    let mut failed = Vec::new();
-    let unsolved = found.flagged(Flags::NOT_CONVERGED);
-    if unsolved > 0 {
-        failed.push(format!(
-            "check failed: {unsolved} operating points without a solution"
-        ));
-    }
-    for l in &found.loops {
-        let name = job.conditions.ratio_name(l.ratio);
-        if !l.complete {
-            let (start, end) = (
-                job.conditions.transient.start_k - ZERO_DEGC_K,
-                job.conditions.transient.end_k - ZERO_DEGC_K,
-            );
-            failed
-                .push(format!("check failed: the transient at {name} comes to rest on its way from {start:.0} to {end:.0} degC and back"));
-        }
-        let balanced = l.energy.error().abs() <= ENERGY;
-        if !balanced {
+    /// One line for each failed check.
+    fn failures(&self, conditions: &Conditions) -> Vec<String> {
+        let mut failed = Vec::new();
+        let unsolved = self.flagged(Flags::NOT_CONVERGED);
+        if unsolved > 0 {
             failed.push(format!(
-                "check failed: heat of the transient at {name} does not balance: {:.0e} of it",
-                l.energy.error()
+                "check failed: {unsolved} operating points without a solution"
             ));
         }
+        let (start, end) = (
+            conditions.transient.start_k - ZERO_DEGC_K,
+            conditions.transient.end_k - ZERO_DEGC_K,
+        );
+        for l in &self.loops {
+            let (name, error) = (conditions.ratio_name(l.ratio), l.energy.error());
+            if !l.complete {
+                failed.push(format!(
+                    "check failed: the transient at {name} stops on its way from {start:.0} to {end:.0} degC and back"
+                ));
+            }
+            let balanced = error.abs() <= MAX_ENERGY_ERROR;
+            if !balanced {
+                failed.push(format!(
+                    "check failed: heat of the transient at {name} does not balance: relative error {error:.0e}"
+                ));
+            }
+        }
+        failed
     }
-    failed
 }

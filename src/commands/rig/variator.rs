@@ -3,43 +3,40 @@
 mod files;
 mod plan;
 mod plots;
-mod text;
+mod tables;
 
-use cvtcycle::model::transmission::cvt::variator::Formulation;
+use clap::Args;
 
-use crate::args::{self as inputs, Offering};
-use crate::commands::Context;
-use crate::commands::run::files::Written;
-use crate::print::stream;
-use crate::print::{Answer, Reply};
+use crate::args::{FormulationArgs, OutArgs, OutputArgs, VehicleArgs};
+use crate::commands::Execute;
+use crate::print::{CommandResult, Results, Terminal, WrittenFiles, to_stdout};
+use cvtcycle::config::Problems;
+use plan::VariatorPlan;
 
 /// Arguments of `rig variator`.
-#[derive(Clone, Debug, clap::Args)]
-#[command(after_help = "\
+#[derive(Args, Clone, Debug)]
+#[command(
+    mut_arg("out", |out| out.help("Write curves.csv, points.csv, summary.json and plots (SVG) into this directory")),
+    after_help = "\
 Examples:
   cvtcycle rig variator
   cvtcycle rig variator --ratio low --pressure 15..35:5 --torque 0..300:5 --format csv
   cvtcycle rig variator --ratio high --pressure 11 --speed 1500 --out variator
 
-A numeric option takes a number, a list (15,25,35), a range with a step (15..35:5, both ends belong to it) or without one
-(15..35), or these mixed. Torques are those at the secondary pulley. Rows beyond what the rig can do are flagged, not left
-out: 400 Nm and 250 Nm at secondary and primary, 40 bar, 3000 rpm at either shaft.")]
-pub struct Args {
-    /// The car whose variator is on the rig
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Offering(inputs::vehicles), hide_possible_values = true)]
-    vehicle: String,
-    /// Belt ratio: a number, `low` (the car's) or `high` (0.5, the rig's)
-    #[arg(
-        long,
-        value_name = "R|low|high",
-        default_value = "low,high",
-        allow_hyphen_values = true
-    )]
+A numeric option takes a number, a list (15,25,35), a range with a step (15..35:5, both ends included) or without one
+(15..35), or these mixed. Torques are those at the secondary pulley. Rows beyond the limits of the rig are flagged, not
+removed: 400 Nm and 250 Nm at secondary and primary, 40 bar, 3000 rpm at either shaft."
+)]
+pub struct RigVariatorArgs {
+    #[command(flatten)]
+    car: VehicleArgs,
+    /// Belt ratio: a number, `low` (of the vehicle) or `high` (0.5, of the rig)
+    #[arg(long, value_name = "R|low|high", default_value = plan::RATIOS, allow_hyphen_values = true)]
     ratio: String,
     /// Secondary pressure, bar [default: 15..35:5 above ratio 1, 10..12:0.5 below]
     #[arg(long, value_name = "BAR", allow_hyphen_values = true)]
     pressure: Option<String>,
-    /// Primary speed, rpm [default: 2000, or what keeps the secondary at 3000]
+    /// Primary speed, rpm [default: 2000, or less to keep the secondary at 3000]
     #[arg(long, value_name = "RPM", allow_hyphen_values = true)]
     speed: Option<String>,
     /// Belt temperature, degC
@@ -50,10 +47,10 @@ pub struct Args {
         allow_hyphen_values = true
     )]
     temp: String,
-    /// Torque at the secondary pulley, Nm [default: from 0 to past what the belt carries]
+    /// Torque at the secondary pulley, Nm [default: from 0 to beyond the torque capacity]
     #[arg(long, value_name = "NM", allow_hyphen_values = true)]
     torque: Option<String>,
-    /// Pulses a turn of the shafts' speed pick-ups, for the counting resolution; not printed for this rig (60 on the first one, 4.2.4)
+    /// Pulses per turn of the speed sensors, for the resolution; not published for this rig (60 on the first one, 4.2.4)
     #[arg(
         long,
         value_name = "N",
@@ -61,69 +58,58 @@ pub struct Args {
         allow_hyphen_values = true
     )]
     pulses: String,
-    /// Transmission oil
-    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Offering(inputs::lubricants), hide_possible_values = true)]
-    lubricant: Option<String>,
-    /// Override one value of the vehicle; repeatable. `lubricant.KEY` reaches its oil
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
-    /// Reading of the belt model: smooth, appendix_c or chapter_8; the rules of driving stay
-    #[arg(long, value_name = "NAME", default_value = "smooth", value_parser = Offering(formulations), hide_possible_values = true)]
-    formulation: String,
-    /// Print one JSON object instead of a table
-    #[arg(long, conflicts_with = "format")]
-    json: bool,
-    /// What to print: a line a curve for people, or CSV with all points
-    #[arg(long, value_enum, value_name = "FORMAT", default_value = "table")]
-    format: Format,
-    /// Write curves.csv, points.csv, summary.json and plots (SVG) into this directory
-    #[arg(long, value_name = "DIR")]
-    out: Option<std::path::PathBuf>,
-    /// Replace the files of an earlier run in the --out directory
-    #[arg(long, requires = "out")]
-    force: bool,
-    /// Print no table, only problems; --json and --format csv still print
-    #[arg(long, short)]
-    quiet: bool,
+    #[command(flatten)]
+    formulation: FormulationArgs,
+    /// What to print: a line for each curve, or CSV with all points
+    #[arg(
+        long,
+        value_enum,
+        value_name = "FORMAT",
+        default_value = "table",
+        conflicts_with = "json"
+    )]
+    format: VariatorFormat,
+    #[command(flatten)]
+    out: OutArgs,
+    #[command(flatten)]
+    output: OutputArgs,
 }
 
-/// What standard output carries.
+/// Form of standard output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Format {
-    /// A line a curve
+enum VariatorFormat {
+    /// A line for each curve
     Table,
     /// All points as CSV
     Csv,
 }
 
-fn formulations() -> Vec<&'static str> {
-    Formulation::NAMES.iter().map(|(name, _)| *name).collect()
-}
+impl Execute for RigVariatorArgs {
+    type Plan = VariatorPlan;
 
-/// Runs the command.
-pub fn answer(args: &Args, context: Context) -> Reply {
-    let mut plan = plan::plan(args)?;
-    let out = plan.out.take();
-    let curves = plan.curves();
-    let written = match out {
-        Some(dir) => Some(files::write(dir, &plan, &curves)?),
-        None => None,
-    };
-    let mut stdout = String::new();
-    if args.json {
-        stream::to_stdout(|out| files::write_json(out, &plan, &curves))?;
-    } else if args.format == Format::Csv {
-        stream::to_stdout(|out| files::write_points(out, &curves))?;
-    } else if !args.quiet {
-        stdout = text::tables(&plan, &curves, context.paint);
-        stdout += &written.as_ref().map_or_else(String::new, Written::text);
+    fn plan(&self, problems: &mut Problems) -> Option<VariatorPlan> {
+        plan::plan(self, problems)
     }
-    let stderr = written
-        .as_ref()
-        .map_or_else(String::new, Written::left_over_text);
-    Ok(Answer {
-        stdout,
-        stderr,
-        code: 0,
-    })
+
+    fn run(&self, mut plan: VariatorPlan, terminal: Terminal) -> CommandResult {
+        let out = plan.out.take();
+        let curves = plan.curves();
+        let files = match out {
+            Some(dir) => files::write(dir, &plan, &curves)?,
+            None => WrittenFiles::default(),
+        };
+        let results = Results {
+            files,
+            ..Results::default()
+        };
+        if self.output.json() {
+            to_stdout(|out| files::write_json(out, &plan, &curves))?;
+        } else if self.format == VariatorFormat::Csv {
+            to_stdout(|out| files::write_points(out, &curves))?;
+        } else {
+            let tables = || tables::tables(&plan, &curves, terminal.stdout);
+            return Ok(results.output(&self.output, tables));
+        }
+        Ok(results.warnings())
+    }
 }

@@ -1,17 +1,17 @@
 //! The files of a run.
 
-use std::path::PathBuf;
-
 use cvtcycle::config::Problem;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::model::drive::{components, fuel_map};
 use cvtcycle::output::History;
-
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::summary::{Driven, RunSummary, Summary};
 use cvtcycle::output::trace::{columns_for, write_trace};
 use cvtcycle::report::charts::{self, PlotRun};
 use cvtcycle::study::store::write_trace_parquet;
+
+use crate::args::names_of;
+use crate::print::WrittenFiles;
 
 /// Formats of the traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,60 +22,16 @@ pub enum TraceFormat {
 }
 
 impl TraceFormat {
-    /// Words of the command line.
+    /// Names on the command line.
     pub const NAMES: [(&'static str, TraceFormat); 3] = [
         ("csv", TraceFormat::Csv),
         ("parquet", TraceFormat::Parquet),
         ("both", TraceFormat::Both),
     ];
-}
 
-/// What was written, and what an earlier run left beside it.
-#[derive(Debug, Default)]
-pub struct Written {
-    paths: Vec<PathBuf>,
-    left_over: Vec<String>,
-    note: String,
-}
-
-impl Written {
-    /// Gives all files of a directory their names.
-    pub fn commit(dir: OutputDir) -> Result<Self, Problem> {
-        let left_over = dir.left_over();
-        Ok(Written {
-            paths: dir.commit()?,
-            left_over,
-            note: String::new(),
-        })
-    }
-
-    /// The same with a line below the list of files.
-    pub fn with_note(self, note: String) -> Self {
-        Written { note, ..self }
-    }
-
-    /// The files, one a line.
-    pub fn text(&self) -> String {
-        if self.paths.is_empty() {
-            return String::new();
-        }
-        let lines: Vec<String> = self
-            .paths
-            .iter()
-            .map(|path| format!("  {}\n", path.display()))
-            .collect();
-        format!("\nFiles written\n{}{}", lines.concat(), self.note)
-    }
-
-    /// A word about files of an earlier run that this one has not replaced.
-    pub fn left_over_text(&self) -> String {
-        if self.left_over.is_empty() {
-            return String::new();
-        }
-        format!(
-            "cvtcycle: left from an earlier run and not replaced: {}\n",
-            self.left_over.join(", ")
-        )
+    /// Names for completions.
+    pub fn names() -> Vec<&'static str> {
+        names_of(&TraceFormat::NAMES)
     }
 }
 
@@ -87,7 +43,7 @@ pub fn write(
     summary: &Summary,
     cycle: &Cycle,
     driven: &[Driven],
-) -> Result<Written, Problem> {
+) -> Result<WrittenFiles, Problem> {
     dir.write("summary.json", |out| out.write_all(json.as_bytes()))?;
     let phases = if cycle.phases.is_empty() {
         std::slice::from_ref(&cycle.name)
@@ -131,7 +87,7 @@ pub fn write(
         "fuel_comparison.svg",
         &charts::fuel_bars(&runs).svg,
     )?;
-    Written::commit(dir)
+    WrittenFiles::commit(dir)
 }
 
 fn write_plots(dir: &mut OutputDir, run: &PlotRun) -> Result<(), Problem> {
@@ -154,7 +110,7 @@ fn put(dir: &mut OutputDir, name: &str, text: &str) -> Result<(), Problem> {
 fn group_fuel(run: &RunSummary) -> Vec<(String, f64)> {
     let number = |x: Option<f64>| x.unwrap_or(f64::NAN);
     let mut groups: Vec<(String, f64)> = Vec::new();
-    // A cycle of one group is its own total.
+    // The only group of a cycle is its total.
     if run.phases.len() > 1 {
         groups.extend(
             run.phases

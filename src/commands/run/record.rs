@@ -1,4 +1,4 @@
-//! What the run was made from, for `inputs.json`.
+//! Inputs of a run, for `inputs.json`.
 
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
@@ -7,57 +7,68 @@ use cvtcycle::output::provenance::{car_record, cycle_record};
 use cvtcycle::output::record::{Record, SCHEMA};
 use cvtcycle::study::sensitivity::{Named, sensitivity};
 
-use super::cars::Car;
+use super::vehicles::RunVehicle;
+use crate::args::names_of;
+use cvtcycle::output::PROGRAM;
 
-/// Steps of a cycle up to which sensitivities come along unasked: they take some seven hundred drives.
-const MOST_STEPS: usize = 20_000;
+/// Steps of a cycle up to which `auto` computes sensitivities, which take some seven hundred runs.
+const MAX_STEPS: usize = 20_000;
 
-/// Whether sensitivities are computed.
+/// When sensitivities are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum When {
+pub enum SensitivityMode {
+    /// Unless the cycle is long.
     Auto,
+    /// Always.
     Always,
+    /// Never.
     Never,
 }
 
-/// Words of the command line.
-pub const WHEN: [(&str, When); 3] = [
-    ("auto", When::Auto),
-    ("always", When::Always),
-    ("never", When::Never),
-];
+impl SensitivityMode {
+    /// Names on the command line.
+    pub const NAMES: [(&'static str, SensitivityMode); 3] = [
+        ("auto", SensitivityMode::Auto),
+        ("always", SensitivityMode::Always),
+        ("never", SensitivityMode::Never),
+    ];
 
-/// Words of the command line, for completions.
-pub fn when() -> Vec<&'static str> {
-    WHEN.iter().map(|(name, _)| *name).collect()
+    /// Names for completions.
+    pub fn names() -> Vec<&'static str> {
+        names_of(&SensitivityMode::NAMES)
+    }
 }
 
-/// What the run was made from.
+/// Inputs of a run.
+///
+/// # Errors
+/// Problems of files that changed since they were read.
 pub fn record(
-    cars: &[Car],
+    vehicles: &[RunVehicle],
     cycle: &Cycle,
     conditions: &Conditions,
-    when: When,
+    mode: SensitivityMode,
 ) -> Result<Record, Problems> {
-    let records = cars
+    let records = vehicles
         .iter()
         .map(|car| car_record(&car.name, &car.word, &car.options, &car.setup));
     let steps = cycle.trace_for(true).step_count(conditions.max_dt_s);
-    let wanted = when == When::Always || (when == When::Auto && steps <= MOST_STEPS);
-    let named = |car: &Car| Named {
+    let wanted = match mode {
+        SensitivityMode::Auto => steps <= MAX_STEPS,
+        SensitivityMode::Always => true,
+        SensitivityMode::Never => false,
+    };
+    let named = |car: &RunVehicle| Named {
         name: car.name.clone(),
         word: car.word.clone(),
         options: car.options.clone(),
     };
-    let named: Vec<Named> = cars.iter().map(named).collect();
+    let named: Vec<Named> = vehicles.iter().map(named).collect();
+    let words = std::env::args_os().skip(1);
     Ok(Record {
         schema: SCHEMA,
-        program: cvtcycle::output::PROGRAM.to_owned(),
-        command: command(
-            std::env::args_os()
-                .skip(1)
-                .map(|word| word.to_string_lossy().into_owned()),
-        ),
+        program: PROGRAM.to_owned(),
+        command: command_line(words.map(|word| word.to_string_lossy().into_owned())),
         cycle: cycle_record(cycle),
         cars: records.collect::<Result<_, _>>()?,
         sensitivity: wanted
@@ -67,32 +78,11 @@ pub fn record(
 }
 
 /// The command line, quoted for a shell.
-fn command(words: impl Iterator<Item = String>) -> String {
+fn command_line(words: impl Iterator<Item = String>) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
-    let quoted = |word: String| {
-        if !word.is_empty() && word.chars().all(plain) {
-            word
-        } else {
-            format!("'{}'", word.replace('\'', "'\\''"))
-        }
+    let quoted = |word: String| match !word.is_empty() && word.chars().all(plain) {
+        true => format!(" {word}"),
+        false => format!(" '{}'", word.replace('\'', "'\\''")),
     };
-    ["cvtcycle".to_owned()]
-        .into_iter()
-        .chain(words.map(quoted))
-        .collect::<Vec<_>>()
-        .join(" ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_with_spaces_and_quotes_are_quoted() {
-        let words = ["run", "--set", "a.b=1", "--out", "it's here", ""];
-        assert_eq!(
-            command(words.iter().map(|w| (*w).to_owned())),
-            "cvtcycle run --set a.b=1 --out 'it'\\''s here' ''"
-        );
-    }
+    "cvtcycle".to_owned() + &words.map(quoted).collect::<String>()
 }

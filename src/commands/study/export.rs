@@ -2,78 +2,79 @@
 
 use std::path::PathBuf;
 
+use clap::Args;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::study::export::{Format, export};
 use cvtcycle::study::manifest::{RUNS, TRACES};
-use cvtcycle::study::store;
+use cvtcycle::study::store::Study;
 
-use crate::print::{Answer, FAILED, Reply};
+use crate::args::{OutArgs, OutputArgs};
+use crate::commands::Execute;
+use crate::print::{CommandResult, Results, Terminal, json_text};
+use cvtcycle::config::Problems;
 
 /// Arguments of `study export`.
-#[derive(Clone, Debug, clap::Args)]
-#[command(after_help = "\
+#[derive(Args, Clone, Debug)]
+#[command(
+    mut_arg("out", |out| out.required(true).value_name("FILE").help("File to write; its extension gives the format: .csv, .parquet or .xlsx")),
+    after_help = "\
 Examples:
   cvtcycle study export my_study --out my_study.csv
   cvtcycle study export my_study --out my_study.xlsx
   cvtcycle study export ambient_study --table traces --out traces.parquet
 
-Units stand in the header (CSV, Excel) or in the metadata (Parquet).")]
-pub struct Args {
-    /// Directory that was given to --out
+Units are in the header (CSV, Excel) or in the metadata (Parquet)."
+)]
+pub struct StudyExportArgs {
+    /// Directory written by `study --out`
     #[arg(value_name = "DIR")]
     dir: PathBuf,
-    /// File to write; its ending says the format: .csv, .parquet or .xlsx
-    #[arg(long, value_name = "FILE")]
-    out: PathBuf,
+    #[command(flatten)]
+    out: OutArgs,
     /// Table to write
     #[arg(long, value_enum, value_name = "TABLE", default_value = "runs")]
-    table: Table,
-    /// Replace the file
-    #[arg(long)]
-    force: bool,
-    /// Print nothing but problems
-    #[arg(long, short)]
-    quiet: bool,
+    table: ExportedTable,
+    #[command(flatten)]
+    output: OutputArgs,
 }
 
 /// Tables of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Table {
-    /// A row a run
+enum ExportedTable {
+    /// A row for each run
     Runs,
-    /// A row a time step, where traces are kept
+    /// A row for each time step, if traces are kept
     Traces,
 }
 
-/// Runs the command.
-pub fn answer(args: &Args) -> Reply {
-    Ok(written(args)?)
-}
+impl Execute for StudyExportArgs {
+    type Plan = (Format, Study, OutputFile);
 
-fn written(args: &Args) -> Result<Answer, cvtcycle::config::Problem> {
-    let format = Format::of(&args.out)?;
-    let study = store::Study::open(&args.dir)?;
-    let mut out = OutputFile::create(&args.out, args.force)?;
-    let table = if args.table == Table::Runs {
-        RUNS
-    } else {
-        TRACES
-    };
-    let exported = export(&study, table, format, &mut out)?;
-    let path = out.commit()?;
-    let whole = exported.status.is_complete();
-    let stdout = if args.quiet {
-        String::new()
-    } else {
-        format!("{} rows in {}\n", exported.rows, path.display())
-    };
-    let partial = format!(
-        "cvtcycle: the study is not finished: {} of {} parts are in the file\n",
-        exported.status.present, exported.status.expected
-    );
-    Ok(Answer {
-        stdout,
-        stderr: if whole { String::new() } else { partial },
-        code: if whole { 0 } else { FAILED },
-    })
+    fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
+        let path = self.out.path(problems)?;
+        let format = problems.take(Format::of(path))?;
+        let study = problems.take(Study::open(&self.dir))?;
+        let out = problems.take(OutputFile::create(path, self.out.force))?;
+        Some((format, study, out))
+    }
+
+    fn run(&self, (format, study, mut out): Self::Plan, _: Terminal) -> CommandResult {
+        let table = match self.table {
+            ExportedTable::Runs => RUNS,
+            ExportedTable::Traces => TRACES,
+        };
+        let exported = export(&study, table, format, &mut out)?;
+        let path = out.commit()?.display().to_string();
+        let (rows, status) = (exported.rows, &exported.status);
+        let (present, expected) = (status.present, status.expected);
+        let partial = (!status.is_complete()).then(|| {
+            format!("the study is not finished: {present} of {expected} parts are in the file")
+        });
+        let results = Results {
+            json: json_text(&serde_json::json!({ "rows": rows, "file": path }))?,
+            failures: partial.into_iter().collect(),
+            ..Results::default()
+        };
+        Ok(results.output(&self.output, || format!("{rows} rows in {path}\n")))
+    }
 }

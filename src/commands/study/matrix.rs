@@ -1,101 +1,71 @@
-//! The matrix of ambient temperatures as tables for people.
+//! The matrix of ambient temperatures as tables.
 
 use cvtcycle::study::ambient::Matrix;
 
 use crate::print::colour::Paint;
-use crate::print::grid::Grid;
+use crate::print::table::TextColumns;
 use cvtcycle::output::number::{fixed, plain, signed};
 
-/// Fuel of each part of the cycle with the subject's excess, and end temperatures.
+/// Start and ambient temperature of a row, by index.
+type Row = (usize, usize);
+
+/// Fuel of each part of the cycle with the difference to the baselines, and end temperatures.
 pub fn tables(matrix: &Matrix, paint: Paint) -> String {
     let mut text = String::new();
     for part in &matrix.fuel {
-        let name = if part.name == "total" {
-            "whole cycle"
-        } else {
-            &part.name
+        let name = match part.name.as_str() {
+            "total" => "whole cycle",
+            name => name,
         };
-        text += &format!(
-            "\n{}\n",
-            paint.heading(&format!(
-                "Fuel, {name}, L/100 km, and what the subject uses more, %"
-            ))
-        );
-        let fuel = Block {
-            heads: matrix.cars.clone(),
-            numbers: &part.l_per_100km,
-            decimals: 2,
-            sign: false,
-        };
-        let over = matrix
-            .cars
-            .iter()
-            .skip(1)
-            .map(|car| format!("over {car}"))
-            .collect();
-        let excess = Block {
-            heads: over,
-            numbers: &part.excess_percent,
-            decimals: 1,
-            sign: true,
-        };
-        text += &table(matrix, &[fuel, excess]);
+        let heading = format!("Fuel, {name}, L/100 km, and difference of the subject, %");
+        let mut columns = lead(matrix);
+        for (car, numbers) in matrix.cars.iter().zip(&part.l_per_100km) {
+            columns = columns.right(car, |row| fixed(cell(numbers, row), 2));
+        }
+        for (car, numbers) in matrix.cars.iter().skip(1).zip(&part.excess_percent) {
+            columns = columns.right(format!("over {car}"), |row| signed(cell(numbers, row), 1));
+        }
+        text += &section(&heading, matrix, &columns, paint);
     }
     for part in &matrix.ends {
-        text += &format!(
-            "\n{}\n",
-            paint.heading(&format!("End temperature, {}, degC", part.name))
-        );
-        text += &table(
+        let mut columns = lead(matrix);
+        for (car, numbers) in matrix.cars.iter().zip(&part.degc) {
+            columns = columns.right(car, |row| fixed(cell(numbers, row), 1));
+        }
+        text += &section(
+            &format!("End temperature, {}, degC", part.name),
             matrix,
-            &[Block {
-                heads: matrix.cars.clone(),
-                numbers: &part.degc,
-                decimals: 1,
-                sign: false,
-            }],
+            &columns,
+            paint,
         );
     }
     text
 }
 
-/// Columns of one kind of number: one for each car.
-struct Block<'a> {
-    heads: Vec<String>,
-    numbers: &'a [Vec<Vec<f64>>],
-    decimals: usize,
-    sign: bool,
+fn cell(numbers: &[Vec<f64>], (start, ambient): &Row) -> Option<f64> {
+    numbers.get(*start)?.get(*ambient).copied()
 }
 
-fn table(matrix: &Matrix, blocks: &[Block]) -> String {
-    let columns: usize = blocks.iter().map(|block| block.numbers.len()).sum();
-    let mut grid = Grid::new(&("lr".to_owned() + &"r".repeat(columns))).indented();
-    grid.row(
-        ["start", "ambient"].into_iter().chain(
-            blocks
-                .iter()
-                .flat_map(|block| &block.heads)
-                .map(String::as_str),
-        ),
-    );
-    for (s, start) in matrix.starts.iter().enumerate() {
-        for (a, degc) in matrix.ambient_degc.iter().enumerate() {
-            let cells = blocks.iter().flat_map(|block| {
-                block.numbers.iter().map(move |by_start| {
-                    let x = by_start
-                        .get(s)
-                        .and_then(|by_ambient| by_ambient.get(a))
-                        .copied();
-                    if block.sign {
-                        signed(x, block.decimals)
-                    } else {
-                        fixed(x, block.decimals)
-                    }
-                })
-            });
-            let word = if a == 0 { start.as_str() } else { "" };
-            grid.row([word.to_owned(), plain(*degc)].into_iter().chain(cells));
-        }
-    }
-    grid.text()
+/// Columns of start and ambient temperature; a start is named in its first row.
+fn lead(matrix: &Matrix) -> TextColumns<'_, Row> {
+    let start = |(start, ambient): &Row| match ambient {
+        0 => matrix.starts[*start].clone(),
+        _ => String::new(),
+    };
+    TextColumns::new()
+        .left("start", start)
+        .right("ambient", |(_, ambient)| {
+            plain(matrix.ambient_degc[*ambient])
+        })
+}
+
+fn section(heading: &str, matrix: &Matrix, columns: &TextColumns<Row>, paint: Paint) -> String {
+    let of_start =
+        |start: usize| (0..matrix.ambient_degc.len()).map(move |ambient| (start, ambient));
+    let rows: Vec<Row> = (0..matrix.starts.len()).flat_map(of_start).collect();
+    format!(
+        "\n{}\n{}",
+        paint.heading(heading),
+        columns.table(&rows).indented().text()
+    )
 }

@@ -152,7 +152,7 @@ fn val_blocks_of_saltelli() {
     assert!(printed.contains("most is decided by start ("), "{printed}");
     assert!(
         printed.contains("Which of them moves the fuel?")
-            && printed.contains("Saltelli's blocks of 32 samples, seed 3")
+            && printed.contains("Saltelli blocks of 32 samples, seed 3")
     );
     let page = reported(dir.path());
     assert!(
@@ -164,7 +164,7 @@ fn val_blocks_of_saltelli() {
     let again = ends(dir.path(), &["study", "show", "out"], 0);
     let again = String::from_utf8(again.stdout).unwrap();
     let answer = |text: &str| {
-        text[text.find("Answer").unwrap()..]
+        text[text.find("Comparison").unwrap()..]
             .split("\nFiles written")
             .next()
             .unwrap()

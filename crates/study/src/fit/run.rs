@@ -7,7 +7,7 @@ use super::outcome::{self, Direction, Fold, Outcome, Residual, SCHEMA, Start, rm
 use super::plan::{Measured, Plan, What, problem};
 use super::solve::{self, Bound, End, Fit, Options, Uncertainty};
 use crate::progress::Progress;
-use cvtcycle_config::Problems;
+use cvtcycle_config::{ProblemKind, Problems};
 
 /// Probability below which the data scatter more than their standard deviations say.
 const UNLIKELY: f64 = 0.01;
@@ -36,7 +36,9 @@ pub fn calibrate(plan: &Plan, progress: &dyn Progress) -> Result<Outcome, Proble
         let mut whys: Vec<String> = if failure.starts.is_empty() { failure.reasons } else { whys.collect() };
         whys.sort();
         whys.dedup();
-        whys.into_iter().map(|why| problem(&plan.place, "", "", format!("the model has no answer: {why}"), hint)).collect::<Problems>()
+        let kind = if progress.stopped() { ProblemKind::Stopped } else { ProblemKind::Failed };
+        let no_answer = |why| problem(&plan.place, "", "", format!("the model has no answer: {why}"), hint).kind(kind);
+        whys.into_iter().map(no_answer).collect::<Problems>()
     })?;
     let folds = if search.leave_out && plan.folds.len() > 1 && fit.end != End::Stopped {
         let groups: Vec<usize> = plan

@@ -1,4 +1,4 @@
-//! The files of the transmission rig's tests.
+//! Files of the tests of the transmission rig.
 
 use cvtcycle::config::Problem;
 use cvtcycle::output::files::OutputDir;
@@ -6,15 +6,20 @@ use cvtcycle::output::rig::{steady_columns, strip_columns, transient_columns, tw
 use cvtcycle::output::table::{Column, write_csv};
 use cvtcycle::report::charts::rig_transmission::plots::{self, Picture, Subject};
 
-use super::{Found, Job};
-use crate::commands::run::files::Written;
+use super::{RigPlan, RigResults};
+use crate::print::WrittenFiles;
 
 /// Writes all files under their names, or none.
-pub fn write(mut dir: OutputDir, json: &str, job: &Job, found: &Found) -> Result<Written, Problem> {
+pub fn write(
+    mut dir: OutputDir,
+    json: &str,
+    plan: &RigPlan,
+    found: &RigResults,
+) -> Result<WrittenFiles, Problem> {
     dir.write("summary.json", |out| out.write_all(json.as_bytes()))?;
     let subject = Subject {
-        vehicle: &job.setup.name,
-        conditions: &job.conditions,
+        vehicle: &plan.setup.name,
+        conditions: &plan.conditions,
     };
     let mut pictures: Vec<Picture> = Vec::new();
     table(&mut dir, "steady.csv", &steady_columns(), &found.steady)?;
@@ -45,10 +50,10 @@ pub fn write(mut dir: OutputDir, json: &str, job: &Job, found: &Found) -> Result
     for (name, svg) in pictures {
         dir.write(&name, |out| out.write_all(svg.as_bytes()))?;
     }
-    Written::commit(dir)
+    WrittenFiles::commit(dir)
 }
 
-/// A table, where its test was run.
+/// Writes a table if its test ran.
 fn table<T>(
     dir: &mut OutputDir,
     name: &str,

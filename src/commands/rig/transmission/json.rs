@@ -1,4 +1,4 @@
-//! The transmission rig's tests as one JSON object.
+//! The tests of the transmission rig as one JSON object.
 
 use cvtcycle::model::bench::transmission::{Branch, Loop, Moment, Piece};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
@@ -6,24 +6,24 @@ use cvtcycle::output::rig::{steady_columns, strip_columns, transient_columns, tw
 use cvtcycle::output::table::json_rows;
 use serde_json::{Map, Value, json};
 
-use super::text::{MEETING_NM, Range, ranges};
-use super::{Found, Job};
+use super::tables::{MEETING_NM, Range, ranges};
+use super::{RigPlan, RigResults};
 
-/// Everything that was found; transients every 5 K, all of their seconds are in the CSV file.
-pub fn summary(job: &Job, found: &Found, failed: &[String]) -> Value {
+/// All results; transients every 5 K, while the CSV file has every second.
+pub fn summary(plan: &RigPlan, found: &RigResults, failed: &[String]) -> Value {
     let mut all = Map::new();
     all.insert("command".into(), json!("rig transmission"));
-    all.insert("vehicle".into(), json!(job.setup.name));
-    all.insert("lubricant".into(), json!(job.setup.oils().0.name));
-    all.insert("formulation".into(), json!(job.formulation));
-    all.insert("set".into(), json!(job.set));
+    all.insert("vehicle".into(), json!(plan.setup.name));
+    all.insert("lubricant".into(), json!(plan.setup.oils().0.name));
+    all.insert("formulation".into(), json!(plan.formulation));
+    all.insert("set".into(), json!(plan.set));
     let range = |r: &Range| json!({ "from": number(r.low), "to": number(r.high) });
     if !found.steady.is_empty() {
         let of = |ratio: &f64| {
             let r = ranges(&found.steady, *ratio);
             json!({ "ratio": ratio, "torque_loss_nm": range(&r.0), "secondary_pressure_bar": range(&r.1) })
         };
-        let ranges: Vec<Value> = job.plan.ratios.iter().map(of).collect();
+        let ranges: Vec<Value> = plan.points.ratios.iter().map(of).collect();
         all.insert(
             "steady".into(),
             json!({ "ranges": ranges, "points": json_rows(&steady_columns(), &found.steady) }),

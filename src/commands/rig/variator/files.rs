@@ -10,9 +10,9 @@ use cvtcycle::output::table;
 use cvtcycle::output::variator::{curve_columns, point_columns};
 use serde_json::json;
 
-use super::plan::{Curve, Plan};
+use super::plan::{Curve, VariatorPlan};
 use super::plots;
-use crate::commands::run::files::Written;
+use crate::print::WrittenFiles;
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
@@ -39,7 +39,7 @@ fn numbers(curves: &[Curve]) -> Vec<(CurveSummary, Resolution)> {
 }
 
 /// Writes one JSON object, its points one a line.
-pub fn write_json(out: &mut dyn Write, plan: &Plan, curves: &[Curve]) -> io::Result<()> {
+pub fn write_json(out: &mut dyn Write, plan: &VariatorPlan, curves: &[Curve]) -> io::Result<()> {
     let columns = point_columns();
     let settings = json!({
         "vehicle": plan.setup.name,
@@ -67,12 +67,16 @@ pub fn write_json(out: &mut dyn Write, plan: &Plan, curves: &[Curve]) -> io::Res
 }
 
 /// Writes all files of a run under their names, or none.
-pub fn write(mut dir: OutputDir, plan: &Plan, curves: &[Curve]) -> Result<Written, Problem> {
+pub fn write(
+    mut dir: OutputDir,
+    plan: &VariatorPlan,
+    curves: &[Curve],
+) -> Result<WrittenFiles, Problem> {
     dir.write("curves.csv", |out| write_curves(out, curves))?;
     dir.write("points.csv", |out| write_points(out, curves))?;
     dir.write("summary.json", |out| write_json(out, plan, curves))?;
     for (name, svg) in plots::plots(plan, curves) {
         dir.write(name, |out| out.write_all(svg.as_bytes()))?;
     }
-    Written::commit(dir)
+    WrittenFiles::commit(dir)
 }

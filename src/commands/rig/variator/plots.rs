@@ -1,23 +1,23 @@
-//! Pictures like the thesis's figures 6-5 to 6-9.
+//! Figures like 6-5 to 6-9 of the thesis.
 
 use cvtcycle::model::bench::variator::{RigFlags, VariatorRow};
 use cvtcycle::report::charts::{CurveFigure, CurvePanel, CurveSeries, curve_figure};
 
-use super::plan::{Curve, Plan};
-use super::text::{same_test, test_name};
+use super::plan::{Curve, VariatorPlan};
+use super::tables::{bar, same_test, test_name};
 
 const X: &str = "Torque at the secondary pulley [Nm]";
-/// Most tests of which pictures are drawn.
-const MOST_TESTS: usize = 6;
+/// Largest number of tests that are drawn.
+const MAX_TESTS: usize = 6;
 /// Largest slip that is drawn.
-const MOST_DRAWN: f64 = 0.05;
+const MAX_SLIP: f64 = 0.05;
 
 /// A value of a row.
 type Get = fn(&VariatorRow) -> f64;
 
-/// Pictures with their file names.
-pub fn plots(plan: &Plan, curves: &[Curve]) -> Vec<(&'static str, String)> {
-    let tests: Vec<&[Curve]> = curves.chunk_by(same_test).take(MOST_TESTS).collect();
+/// Figures with their file names.
+pub fn plots(plan: &VariatorPlan, curves: &[Curve]) -> Vec<(&'static str, String)> {
+    let tests: Vec<&[Curve]> = curves.chunk_by(same_test).take(MAX_TESTS).collect();
     let lines = |title: &str, y: &str, get: Get, marked: bool| {
         let panels = tests
             .iter()
@@ -66,10 +66,10 @@ pub fn plots(plan: &Plan, curves: &[Curve]) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Rows up to the slip that is drawn: the thesis's figures end at 3 %, and beyond gross slip there is a bound, not a result.
+/// Rows up to the slip that is drawn: the figures of the thesis end at 3 %, and at gross slip the value is only a bound.
 fn carried(curve: &Curve) -> impl Iterator<Item = &VariatorRow> {
     curve.rows.iter().filter(|row| {
-        row.belt.slip_total.abs() <= MOST_DRAWN && !row.flags.contains(RigFlags::GROSS_SLIP)
+        row.belt.slip_total.abs() <= MAX_SLIP && !row.flags.contains(RigFlags::GROSS_SLIP)
     })
 }
 
@@ -86,12 +86,12 @@ fn points(curve: &Curve, get: Get) -> Vec<(f64, f64)> {
     )
 }
 
-fn subject(plan: &Plan) -> String {
+fn subject(plan: &VariatorPlan) -> String {
     format!(
         "{}, {}; drawn up to {} % slip",
         plan.setup.name,
         plan.formulation,
-        100.0 * MOST_DRAWN
+        100.0 * MAX_SLIP
     )
 }
 
@@ -109,9 +109,9 @@ fn by_pressure(test: &[Curve], y: &str, get: Get, marked: bool) -> CurvePanel {
                     let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
                     (at, y0 + (y1 - y0) * (at - x0) / (x1 - x0))
                 });
-            let bar = curve.summary.held.pressure_pa / 1e5;
+
             CurveSeries {
-                name: format!("{} bar", (bar * 1e6).round() / 1e6),
+                name: format!("{} bar", bar(curve)),
                 points,
                 marked: mark.into_iter().filter(|_| marked).collect(),
                 style: None,
@@ -132,11 +132,11 @@ fn by_pressure(test: &[Curve], y: &str, get: Get, marked: bool) -> CurvePanel {
     }
 }
 
-/// Radii of both pulleys at the middle pressure of each test: as the geometry has them, and from the speeds.
-fn radii(plan: &Plan, tests: &[&[Curve]]) -> String {
+/// Radii of both pulleys at the middle pressure of each test, from the geometry and from the speeds.
+fn radii(plan: &VariatorPlan, tests: &[&[Curve]]) -> String {
     let mut panels = Vec::new();
     for curve in tests.iter().filter_map(|test| test.get(test.len() / 2)) {
-        let bar = (curve.summary.held.pressure_pa / 1e5 * 1e6).round() / 1e6;
+        let bar = bar(curve);
         let one = |name: &str, style: usize, get: Get| CurveSeries {
             name: name.to_owned(),
             points: points(curve, get),

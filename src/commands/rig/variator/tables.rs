@@ -1,14 +1,14 @@
-//! Curves as tables for people.
+//! Curves as tables.
 
 use cvtcycle::model::bench::variator::RigFlags;
 
-use super::plan::{Curve, Plan};
+use super::plan::{Curve, VariatorPlan};
 use crate::print::colour::Paint;
-use crate::print::grid::Grid;
+use crate::print::table::TextColumns;
 use cvtcycle::output::number::{fixed, percent, plain};
 
-/// A line a curve, and what the counters can resolve.
-pub fn tables(plan: &Plan, curves: &[Curve], paint: Paint) -> String {
+/// A line for each curve, and the resolution of the speed sensors.
+pub fn tables(plan: &VariatorPlan, curves: &[Curve], paint: Paint) -> String {
     let mut text = format!(
         "{}  variator alone, {}\n",
         paint.heading(&plan.setup.name),
@@ -17,9 +17,9 @@ pub fn tables(plan: &Plan, curves: &[Curve], paint: Paint) -> String {
     for test in curves.chunk_by(same_test) {
         text += &one_test(test, paint);
     }
-    text + "\nbreak: breakpoint, where the compression between segments changes sign; carried: what the clamping forces carry;\n\
-        largest slip within that and the rig's limits; primary, secondary: slip speeds at 3 % slip; linear: straight line from\n\
-        the breakpoint to 3 %. The rig reads slip as zero at zero torque: subtract the slip at 0 Nm to compare.\n"
+    text + "\nbreak: breakpoint, where the compression between segments changes sign; capacity: torque capacity of the clamping\n\
+        forces; largest slip up to it and to the limits of the rig; primary, secondary: slip speeds at 3 % slip; linear: R2 of\n\
+        a straight line from the breakpoint to 3 %. The rig reads zero slip at zero torque: subtract the slip at 0 Nm to compare.\n"
 }
 
 /// Whether two curves differ in pressure only.
@@ -45,57 +45,45 @@ pub fn test_name(curve: &Curve) -> String {
 }
 
 fn one_test(test: &[Curve], paint: Paint) -> String {
-    let mut grid = Grid::new("rrrrrrrrrrr").indented();
-    grid.row([
-        "",
-        "break",
-        "carried",
-        "slip at",
-        "at",
-        "largest",
-        "at",
-        "3 % at",
-        "primary",
-        "secondary",
-        "linear",
-    ]);
-    grid.row([
-        "bar", "Nm", "Nm", "0 Nm %", "carried", "%", "Nm", "Nm", "m/s", "m/s", "R2",
-    ]);
-    for curve in test {
-        let s = &curve.summary;
-        grid.row([
-            plain((s.held.pressure_pa / 1e5 * 1e6).round() / 1e6),
-            fixed(s.breakpoint_nm, 1),
-            fixed(s.capacity_nm, 1),
-            percent(s.slip_at_zero, 1.0, 2),
-            percent(s.slip_at_capacity, 1.0, 2),
-            percent(s.most_slip, 1.0, 2),
-            fixed(s.most_slip_nm, 0),
-            fixed(s.three_percent_nm, 1),
-            fixed(s.three_percent_m_s[0], 3),
-            fixed(s.three_percent_m_s[1], 3),
-            fixed(s.measured_r2, 3),
-        ]);
-    }
-    let mut text = format!(
-        "\n{}\n\n{}",
+    let columns = TextColumns::new()
+        .right("\nbar", |c: &Curve| plain(bar(c)))
+        .right("break\nNm", |c| fixed(c.summary.breakpoint_nm, 1))
+        .right("capacity\nNm", |c| fixed(c.summary.capacity_nm, 1))
+        .right("slip at\n0 Nm %", |c| {
+            percent(c.summary.slip_at_zero, 1.0, 2)
+        })
+        .right("slip at\ncapacity", |c| {
+            percent(c.summary.slip_at_capacity, 1.0, 2)
+        })
+        .right("largest\n%", |c| percent(c.summary.most_slip, 1.0, 2))
+        .right("at\nNm", |c| fixed(c.summary.most_slip_nm, 0))
+        .right("3 % at\nNm", |c| fixed(c.summary.three_percent_nm, 1))
+        .right("primary\nm/s", |c| fixed(c.summary.three_percent_m_s[0], 3))
+        .right("secondary\nm/s", |c| {
+            fixed(c.summary.three_percent_m_s[1], 3)
+        })
+        .right("linear\nR2", |c| fixed(c.summary.measured_r2, 3));
+    let (heading, table) = (
         paint.heading(&test_name(&test[0])),
-        grid.text()
+        columns.table(test).indented().text(),
     );
-    text += &format!("\n  {}\n", resolution(&test[0]));
+    let mut text = format!("\n{heading}\n\n{table}\n  {}\n", resolution(&test[0]));
     let flagged = flags(test);
-    if flagged.is_empty() {
-        text
-    } else {
-        text + &format!("  flagged points: {flagged}\n")
+    if !flagged.is_empty() {
+        text += &format!("  flagged points: {flagged}\n");
     }
+    text
+}
+
+/// Secondary pressure, bar, without the rounding errors of its conversion.
+pub fn bar(curve: &Curve) -> f64 {
+    (curve.summary.held.pressure_pa / 1e5 * 1e6).round() / 1e6
 }
 
 fn resolution(curve: &Curve) -> String {
     let r = &curve.resolution;
     let gate = if r.belt_turns {
-        format!("100 belt turns last {} s", fixed(r.gate_s, 2))
+        format!("100 turns of the belt take {} s", fixed(r.gate_s, 2))
     } else {
         format!(
             "{} segments in {} s, one more is {} % of belt speed",
@@ -106,7 +94,7 @@ fn resolution(curve: &Curve) -> String {
     };
     let pulse = |k: usize| percent(r.slip_per_pulse[k], 1.0, 4);
     format!(
-        "{gate}; one pulse more of primary or secondary is {} or {} % of slip",
+        "{gate}; one pulse of the primary or secondary sensor is {} or {} % slip",
         pulse(0),
         pulse(1)
     )

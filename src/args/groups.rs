@@ -1,0 +1,215 @@
+//! Groups of options, each option declared once. A command flattens the groups that it takes.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::config::setup::{self, Options, Setup};
+use cvtcycle::config::{Problem, Problems, cycle};
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::files::OutputDir;
+
+use super::problems::{bad_value, problem};
+use super::{Names, cycles, lubricants, names_of, one_of, relative_to, vehicles};
+
+/// The vehicle and its transmission oil.
+#[derive(Args, Clone, Debug)]
+pub struct VehicleArgs {
+    /// Vehicle
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Names(vehicles), hide_possible_values = true)]
+    pub vehicle: String,
+    /// Transmission oil of this vehicle [default: from the vehicle file]
+    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(lubricants), hide_possible_values = true)]
+    pub lubricant: Option<String>,
+    /// Override one value of this vehicle; repeatable. `lubricant.KEY` is a value of its transmission oil
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+impl VehicleArgs {
+    /// Options of reading this vehicle.
+    pub fn options(&self, formulation: Formulation) -> Options {
+        Options {
+            lubricant: self.lubricant.clone(),
+            set: self.set.clone(),
+            formulation,
+            ..Options::default()
+        }
+    }
+
+    /// Reads the vehicle.
+    pub fn load(&self, formulation: Formulation, problems: &mut Problems) -> Option<Setup> {
+        problems.take(setup::load(
+            &self.vehicle,
+            "--vehicle",
+            &self.options(formulation),
+        ))
+    }
+
+    /// A problem for a command that needs a CVT.
+    pub fn needs_cvt(&self, hint: &str) -> Problem {
+        let message = format!("`{}` has a manual gearbox", self.vehicle);
+        bad_value(
+            "--vehicle",
+            &self.vehicle,
+            "a vehicle with a CVT",
+            &message,
+            hint,
+        )
+    }
+}
+
+/// Variant of the belt model.
+#[derive(Args, Clone, Debug)]
+pub struct FormulationArgs {
+    /// Belt model: smooth (for driving), appendix_c or chapter_8 (as printed in the thesis)
+    #[arg(long, value_name = "NAME", default_value = "smooth", value_parser = Names(formulations), hide_possible_values = true)]
+    pub formulation: String,
+}
+
+fn formulations() -> Vec<&'static str> {
+    names_of(&Formulation::NAMES)
+}
+
+impl FormulationArgs {
+    /// The variant; the default with a problem if the name is unknown.
+    pub fn get(&self, problems: &mut Problems) -> Formulation {
+        let found = one_of("--formulation", &self.formulation, &Formulation::NAMES);
+        problems.take(found).unwrap_or_default()
+    }
+}
+
+/// The cycle, and the vehicles that are compared on it.
+#[derive(Args, Clone, Debug)]
+pub struct ComparisonArgs {
+    /// Cycle: a name, constant_V (V in km/h, 600 s), or a CSV file
+    #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Names(cycles), hide_possible_values = true)]
+    pub cycle: String,
+    /// Vehicle to compare with; repeatable; `none` for no comparison [default: baselines of the vehicle file]
+    #[arg(long, value_name = "NAME|FILE.toml|none", value_parser = Names(baselines), hide_possible_values = true)]
+    pub baseline: Vec<String>,
+    /// Engine oil of all vehicles
+    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(lubricants), hide_possible_values = true)]
+    pub engine_oil: Option<String>,
+    /// Override one value of the vehicle and of all baselines; repeatable. `--set` takes precedence
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set_all: Vec<String>,
+}
+
+fn baselines() -> Vec<&'static str> {
+    vehicles().into_iter().chain(["none"]).collect()
+}
+
+impl ComparisonArgs {
+    /// Reads the cycle.
+    pub fn cycle(&self, problems: &mut Problems) -> Option<Cycle> {
+        problems.take(cycle::find("--cycle", &self.cycle))
+    }
+
+    /// Names of the baselines: those given, else those of the file of the vehicle.
+    pub fn baselines(
+        &self,
+        vehicle: &str,
+        setup: Option<&Setup>,
+        problems: &mut Problems,
+    ) -> Vec<String> {
+        if self.baseline.is_empty() {
+            let own = setup.iter().flat_map(|setup| &setup.baselines);
+            return own.map(|name| relative_to(vehicle, name)).collect();
+        }
+        let named: Vec<String> = self.named_baselines().cloned().collect();
+        if !named.is_empty() && named.len() < self.baseline.len() {
+            let message = "`none` together with a baseline";
+            problems.add(problem(
+                "--baseline",
+                message,
+                "give either `--baseline none` or names",
+            ));
+        }
+        named
+    }
+
+    /// The baselines given, without `none`.
+    pub fn named_baselines(&self) -> impl Iterator<Item = &String> {
+        self.baseline.iter().filter(|name| *name != "none")
+    }
+}
+
+/// Where the files go.
+#[derive(Args, Clone, Debug)]
+pub struct OutArgs {
+    /// Write the results as files into this directory
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the results of an earlier run there
+    #[arg(long)]
+    pub force: bool,
+}
+
+impl OutArgs {
+    /// Creates the output directory, if one is given.
+    pub fn dir(&self, problems: &mut Problems) -> Option<OutputDir> {
+        let create = |path: &Path| OutputDir::create(path, self.force);
+        self.path(problems)
+            .and_then(|path| problems.take(create(path)))
+    }
+
+    /// The path, if one is given.
+    pub fn path(&self, problems: &mut Problems) -> Option<&Path> {
+        if self.force && self.out.is_none() {
+            problems.add(problem(
+                "--force",
+                "there is no --out whose files could be replaced",
+                "add --out",
+            ));
+        }
+        self.out.as_deref()
+    }
+}
+
+/// Form of the result on standard output, for commands without a quiet form.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct JsonArgs {
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Form of the result on standard output.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct OutputArgs {
+    #[command(flatten)]
+    json: JsonArgs,
+    /// Print problems only, no tables and no progress
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl OutputArgs {
+    /// Whether a JSON object is printed.
+    pub fn json(&self) -> bool {
+        self.json.json
+    }
+}
+
+/// Number of threads.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct ThreadArgs {
+    /// Threads, 1 to 1024 [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl ThreadArgs {
+    /// Runs a computation on so many threads.
+    ///
+    /// # Errors
+    /// A problem if the system cannot start them.
+    pub fn install<T: Send>(self, run: impl FnOnce() -> T + Send) -> Result<T, Problems> {
+        let threads = self.threads.map_or(0, usize::from);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let message = |error| format!("cannot start threads: {error}");
+        let pool = pool.map_err(|error| problem("--threads", &message(error), "give fewer"))?;
+        Ok(pool.install(run))
+    }
+}

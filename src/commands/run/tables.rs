@@ -1,0 +1,315 @@
+//! The summary of a run as tables.
+
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::output::Component;
+use cvtcycle::output::summary::{Comparison, RunSummary, StartWord, Summary};
+
+use crate::print::colour::Paint;
+use crate::print::table::{TextTable, WIDTH};
+use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
+
+/// Widths of the two leading columns, which align the tables.
+const LEAD: [usize; 2] = [22, 8];
+
+/// Everything that a person wants to see of a run.
+pub fn tables(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
+    let comparisons = summary.comparison.iter().map(|c| compared(summary, c));
+    let sections = [
+        ("Fuel", fuel(summary) + &comparisons.collect::<String>()),
+        ("Transmission losses", losses(summary)),
+        ("Where the fuel energy went", balance(summary)),
+        ("End temperatures", ends(summary)),
+        ("Time with", flags(summary)),
+    ];
+    let section = |(title, body): &(&str, String)| format!("\n{}\n{body}", paint.heading(title));
+    head(summary, cycle, paint)
+        + &sections.iter().map(section).collect::<String>()
+        + &notes(summary)
+}
+
+fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
+    let start = match &summary.start {
+        StartWord::Word(word) if word == "warm" => {
+            "start warm, directly after the same cycle from a soak".to_owned()
+        }
+        StartWord::Word(_) => "start soaked at ambient".to_owned(),
+        StartWord::Degc(degc) => format!("start with everything at {} degC", plain(*degc)),
+    };
+    let settings = &summary.settings;
+    let mut text = format!(
+        "{}  {}\nambient {} degC, {start}\nsteps of {} s, belt model {}\n",
+        paint.heading(&summary.cycle),
+        cycle.title,
+        plain(summary.ambient_degc),
+        plain(settings.dt_s),
+        settings.formulation
+    );
+    for (option, list) in [("--set", &settings.set), ("--set-all", &settings.set_all)] {
+        text.extend(list.iter().map(|set| format!("{option} {set}\n")));
+    }
+    let mut table = TextTable::new("lll");
+    for run in &summary.runs {
+        table.row([run.role.as_str(), &run.vehicle, &run.title]);
+        table.row([
+            "",
+            "",
+            &format!("oils {}, {}", run.lubricant, run.engine_oil),
+        ]);
+    }
+    text + "\n" + &table.text()
+}
+
+/// A table with one column for each vehicle.
+struct ByVehicle<'a> {
+    table: TextTable,
+    runs: &'a [RunSummary],
+}
+
+impl<'a> ByVehicle<'a> {
+    fn new(summary: &'a Summary) -> Self {
+        let runs = &summary.runs;
+        let mut table = TextTable::new(&("ll".to_owned() + &"r".repeat(runs.len())));
+        let names = runs.iter().map(|run| run.vehicle.as_str());
+        table.row(["", ""].into_iter().chain(names));
+        ByVehicle { table, runs }
+    }
+
+    fn add(&mut self, name: &str, unit: &str, cell: impl Fn(&RunSummary) -> String) {
+        let head = [name.to_owned(), unit.to_owned()];
+        self.table
+            .row(head.into_iter().chain(self.runs.iter().map(cell)));
+    }
+
+    fn add_number(
+        &mut self,
+        name: &str,
+        unit: &str,
+        decimals: usize,
+        get: impl Fn(&RunSummary) -> Option<f64>,
+    ) {
+        self.add(name, unit, |run| fixed(get(run), decimals));
+    }
+
+    fn text(self, widths: &[usize]) -> String {
+        self.table.min_widths(widths).text()
+    }
+}
+
+fn fuel(summary: &Summary) -> String {
+    let mut table = ByVehicle::new(summary);
+    let groups = summary.runs.first().map_or(&[][..], |run| &run.phases);
+    if groups.len() > 1 {
+        for (k, group) in groups.iter().enumerate() {
+            let fuel = |run: &RunSummary| run.phases.get(k)?.fuel_l_per_100km;
+            table.add_number(&group.name, "L/100 km", 2, fuel);
+        }
+    }
+    table.add_number("total", "L/100 km", 2, |run| run.fuel_l_per_100km);
+    if summary
+        .runs
+        .iter()
+        .any(|run| run.weighted_fuel_l_per_100km.is_some())
+    {
+        table.add_number("weighted 0.43 / 0.57", "L/100 km", 2, |run| {
+            run.weighted_fuel_l_per_100km
+        });
+        table.add_number("", "CO2 g/km", 1, |run| run.weighted_co2_g_per_km);
+    }
+    table.add_number("", "mpg (UK)", 1, |run| run.mpg_uk);
+    table.add_number("", "mpg (US)", 1, |run| run.mpg_us);
+    table.add_number("CO2, total", "g/km", 1, |run| run.co2_g_per_km);
+    table.add_number("driven distance", "km", 3, |run| Some(run.distance_km));
+    table.add("fuel at standstill", "% fuel", |run| {
+        percent(run.standstill_fuel_g, run.fuel_kg * 1e3, 1)
+    });
+    table.text(&LEAD)
+}
+
+/// "CVT uses 5.2 % more fuel than the baseline".
+fn compared(summary: &Summary, comparison: &Comparison) -> String {
+    let subject = summary.runs.first().map_or("", |run| &run.vehicle);
+    let Some(difference) = comparison.fuel_percent else {
+        return String::new();
+    };
+    let word = if difference < 0.0 { "less" } else { "more" };
+    let (size, baseline) = (fixed(difference.abs(), 1), &comparison.baseline);
+    let mut line = format!("{subject} uses {size} % {word} fuel than {baseline}");
+    let phases = comparison
+        .phases_percent
+        .iter()
+        .filter(|(_, x)| x.is_some());
+    let parts: Vec<String> = phases
+        .map(|(name, x)| format!("{name} {} %", signed(x, 1)))
+        .collect();
+    if parts.len() > 1 {
+        let detail = format!("({})", parts.join(", "));
+        let fits = line.len() + detail.len() < usize::from(WIDTH);
+        line += &format!("{}{detail}", if fits { " " } else { "\n  " });
+    }
+    line + "\n"
+}
+
+/// Energy in kJ and as per cent of the fuel energy.
+fn kj_and_share(kj: Option<f64>, run: &RunSummary) -> String {
+    match kj {
+        Some(_) => format!(
+            "{:>7} {:>7}",
+            fixed(kj, 1),
+            percent(kj, run.fuel_energy_kj, 1)
+        ),
+        None => NONE.to_owned(),
+    }
+}
+
+fn losses(summary: &Summary) -> String {
+    let mut table = ByVehicle::new(summary);
+    table.add("", "", |_| "kJ  % fuel".into());
+    for component in Component::ALL {
+        let name = component.name();
+        let entry = |run: &RunSummary| {
+            run.loss_kj
+                .0
+                .iter()
+                .find(|(own, _)| own == name)
+                .map(|(_, kj)| *kj)
+        };
+        if summary.runs.iter().any(|run| entry(run).is_some()) {
+            let cell =
+                |run: &RunSummary| entry(run).map_or_else(String::new, |kj| kj_and_share(kj, run));
+            table.add(&name.replace('_', " "), "", cell);
+        }
+    }
+    table.add("transmission total", "", |run| {
+        kj_and_share(Some(run.transmission_loss_kj()), run)
+    });
+    for name in ["accessories", "brake"] {
+        table.add(name, "", |run| kj_and_share(run.loss_kj.get(name), run));
+    }
+    table.text(&LEAD[..1])
+}
+
+/// Terms of the power balance and their names in the table.
+const BALANCE: [(&str, &str); 7] = [
+    ("wheels", "rolling and air (net)"),
+    ("brake", "brakes"),
+    ("losses", "transmission"),
+    ("accessories", "accessories"),
+    ("engine_heat", "heat to the engine"),
+    ("exhaust", "exhaust"),
+    ("kinetic", "rotating parts"),
+];
+
+fn balance(summary: &Summary) -> String {
+    let mut table = ByVehicle::new(summary);
+    for (term, name) in BALANCE {
+        let share = |run: &RunSummary| percent(run.ledger_kj.get(term), run.fuel_energy_kj, 1);
+        // A row of zeros is left out; the JSON has the unrounded numbers.
+        if term != "kinetic" || summary.runs.iter().any(|run| share(run) != "0.0") {
+            table.add(name, "% fuel", share);
+        }
+    }
+    table.add_number("fuel energy", "kJ", 0, |run| Some(run.fuel_energy_kj));
+    table.text(&LEAD)
+}
+
+fn ends(summary: &Summary) -> String {
+    let mut table = ByVehicle::new(summary);
+    let names = summary
+        .runs
+        .iter()
+        .take(1)
+        .flat_map(|run| run.end_degc.iter());
+    for (name, _) in names {
+        if summary
+            .runs
+            .iter()
+            .any(|run| run.end_degc.get(name).is_some())
+        {
+            table.add_number(&name.replace('_', " "), "degC", 1, |run| {
+                run.end_degc.get(name)
+            });
+        }
+    }
+    table.text(&LEAD)
+}
+
+fn flags(summary: &Summary) -> String {
+    let mut table = ByVehicle::new(summary);
+    let seconds = |run: &RunSummary, name: &str| run.flags_s.get(name).filter(|s| *s > 0.0);
+    let names = summary
+        .runs
+        .iter()
+        .take(1)
+        .flat_map(|run| run.flags_s.iter());
+    for (name, _) in names {
+        if summary.runs.iter().any(|run| seconds(run, name).is_some()) {
+            table.add_number(name, "s", 1, |run| seconds(run, name));
+        }
+    }
+    table.text(&LEAD)
+}
+
+fn notes(summary: &Summary) -> String {
+    let mut text = "\n".to_owned();
+    for run in &summary.runs {
+        if let Some(schedule) = &run.gear_schedule {
+            text += &format!("{}: {schedule}\n", run.vehicle);
+        }
+        if let Some(safety) = run.min_clamp_safety {
+            text += &format!(
+                "{}: smallest clamp safety factor {}\n",
+                run.vehicle,
+                fixed(safety, 2)
+            );
+        }
+    }
+    let worst = |of: fn(&RunSummary) -> Option<f64>| {
+        let all: Option<Vec<f64>> = summary.runs.iter().map(of).collect();
+        tiny(all.and_then(|all| all.into_iter().reduce(|a, b| if b > a { b } else { a })))
+    };
+    let (step, run) = (
+        worst(|run| run.ledger_error),
+        worst(|run| run.run_ledger_error),
+    );
+    text + &format!(
+        "relative error of the energy balances: {step} in the worst time step, {run} over the run\n"
+    )
+}
+
+/// One line for each failed check.
+pub fn failures(summary: &Summary) -> Vec<String> {
+    let of_run = |run: &RunSummary| {
+        run.failed_checks
+            .iter()
+            .map(|check| failure(run, check))
+            .collect::<Vec<_>>()
+    };
+    summary.runs.iter().flat_map(of_run).collect()
+}
+
+fn failure(run: &RunSummary, check: &str) -> String {
+    let seconds = fixed(run.flags_s.get(check), 1);
+    let what = match check {
+        "missed_trace" => {
+            let worst = run.worst_deficit.as_ref().map_or_else(String::new, |d| {
+                let torque = d
+                    .wheel_torque_nm
+                    .map(|nm| format!(" or {} Nm at the wheels", fixed(nm, 0)));
+                let (at, phase, kw) = (fixed(d.at_s, 1), &d.phase, fixed(d.power_w / 1e3, 1));
+                format!(
+                    ", worst at {at} s in {phase}: {kw} kW{} missing",
+                    torque.unwrap_or_default()
+                )
+            });
+            format!("misses the trace for {seconds} s{worst}")
+        }
+        "ledger_error" => {
+            let (step, whole) = (tiny(run.ledger_error), tiny(run.run_ledger_error));
+            format!(
+                "energy does not balance: relative error {step} in the worst time step, {whole} over the run"
+            )
+        }
+        flag => format!("{flag} for {seconds} s"),
+    };
+    format!("check failed: {} {what}", run.vehicle)
+}

@@ -1,0 +1,181 @@
+//! Execution of a study: threads, directory, progress, results.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use clap::Args;
+use cvtcycle::config::{Problem, Problems};
+use cvtcycle::report::found::StudyFound;
+use cvtcycle::report::study_pictures::study_pictures;
+use cvtcycle::study::disk::DirWriter;
+use cvtcycle::study::plan::Plan;
+use cvtcycle::study::store::StudyDir;
+use cvtcycle::study::{End, Study, StudyManifest};
+use tempfile::TempDir;
+
+use super::tables;
+use crate::args::problems::{bad_value, problem};
+use crate::args::{OutArgs, OutputArgs, ThreadArgs};
+use crate::print::progress::{Progress, handle_interrupts};
+use crate::print::{CommandOutput, CommandResult, Ending, Results, Terminal, json_text};
+
+/// Options of every study that runs.
+#[derive(Args, Clone, Debug)]
+#[command(mut_arg("out", |out| out.help("Keep tables, statistics and plots in this directory; without it they are deleted after the results are printed")))]
+pub struct StudyRunArgs {
+    #[command(flatten)]
+    pub out: OutArgs,
+    /// Continue the interrupted study in the --out directory; finished parts are not run again
+    #[arg(long, requires = "out", conflicts_with = "force")]
+    resume: bool,
+    /// Format of the tables in the --out directory
+    #[arg(
+        long,
+        value_enum,
+        value_name = "FORMAT",
+        default_value = "parquet",
+        requires = "out"
+    )]
+    format: PartFormat,
+    #[command(flatten)]
+    threads: ThreadArgs,
+    /// Run a study of more runs than `most_runs` of the plan
+    #[arg(long)]
+    yes: bool,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Format of the tables of a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum PartFormat {
+    /// Parquet
+    Parquet,
+    /// Parquet and CSV
+    Both,
+}
+
+impl StudyRunArgs {
+    /// Reads the vehicles of a plan, and checks the number of runs.
+    pub fn prepare(&self, plan: Plan, problems: &mut Problems) -> Option<Study> {
+        handle_interrupts();
+        self.out.path(problems);
+        let study = problems.take(Study::prepare(plan))?;
+        let (runs, max) = (study.runs(), study.plan.most_runs);
+        if runs > max && !self.yes {
+            let (points, cars) = (study.points, study.cars.len());
+            let message = format!(
+                "the study has {runs} runs ({points} points, {cars} vehicles), more than {max}"
+            );
+            let hint =
+                "run it with --yes, give fewer values or samples, or raise `most_runs` in the plan";
+            let allowed = format!("at most {max} runs without --yes");
+            problems.add(bad_value(&study.plan.file, "", &allowed, &message, hint));
+        }
+        Some(study)
+    }
+
+    /// Runs a study, writes its files and returns its results.
+    pub fn run(&self, study: &Study, terminal: Terminal) -> CommandResult {
+        // Without --out the parts are written to a directory that is deleted afterwards.
+        let temporary = match &self.out.out {
+            Some(_) => None,
+            None => Some(temporary_dir()?),
+        };
+        let temporary = temporary.as_ref().map(TempDir::path);
+        let path = self.out.out.as_deref().or(temporary);
+        let dir = self.dir(study, path.unwrap_or(Path::new("")))?;
+        if self.compute(study, &dir)? == End::Stopped {
+            return Ok(self.stopped(study, &dir));
+        }
+        let found = dir.study()?;
+        let found = StudyFound::of(StudyManifest::of(study), found)?;
+        let files = match &self.out.out {
+            Some(_) => dir.finish(&files(&found)?)?,
+            None => Vec::new(),
+        };
+        let tables = || {
+            let list = match files.as_slice() {
+                [] => String::new(),
+                files => tables::written(dir.path(), files),
+            };
+            tables::tables(&found, terminal.stdout) + &list
+        };
+        Ok(results(&found)?.output(&self.output, tables))
+    }
+
+    fn dir(&self, study: &Study, path: &Path) -> Result<StudyDir, Problem> {
+        let manifest = study.manifest(self.format == PartFormat::Both);
+        let (manifest, plan) = (manifest.as_bytes(), study.plan.text.as_bytes());
+        match self.resume {
+            true => StudyDir::resume(path, manifest, plan),
+            false => StudyDir::create(path, manifest, plan, self.out.force),
+        }
+    }
+
+    /// Runs the parts that are missing in the directory.
+    fn compute(&self, study: &Study, dir: &StudyDir) -> Result<End, Problems> {
+        let missing: BTreeSet<u64> = dir.missing().into_iter().map(|part| part as u64).collect();
+        let done = (0..study.parts())
+            .filter(|part| !missing.contains(part))
+            .collect();
+        let points = missing.iter().map(|part| study.part_points(*part));
+        let points: u64 = points.map(|points| points.end - points.start).sum();
+        let progress = Progress::runs(points * study.cars.len() as u64, self.output.quiet);
+        let sink = DirWriter::new(study, dir);
+        let end = self
+            .threads
+            .install(|| study.execute(&done, &sink, &progress))?;
+        progress.finish();
+        Ok(end?)
+    }
+
+    fn stopped(&self, study: &Study, dir: &StudyDir) -> CommandOutput {
+        let (parts, path) = (study.parts(), dir.path().display());
+        let finished = parts - dir.missing().len() as u64;
+        let kept = match &self.out.out {
+            Some(_) => {
+                format!("{finished} of {parts} parts are kept in {path}; --resume continues")
+            }
+            None => "nothing is kept without --out".to_owned(),
+        };
+        CommandOutput {
+            stderr: format!("cvtcycle: stopped: {kept}\n"),
+            ending: Ending::Interrupted,
+            ..CommandOutput::default()
+        }
+    }
+}
+
+fn temporary_dir() -> Result<TempDir, Problems> {
+    let dir = tempfile::Builder::new().prefix("cvtcycle-study-").tempdir();
+    dir.map_err(|error| {
+        let message = format!("cannot create a temporary directory: {error}");
+        problem("--out", &message, "name a directory with --out").into()
+    })
+}
+
+/// Results of a study, finished or partial.
+pub fn results(study: &StudyFound) -> Result<Results, Problems> {
+    Ok(Results {
+        json: json_text(&study.answer)?,
+        failures: tables::failures(&study.answer),
+        ..Results::default()
+    })
+}
+
+/// Files of a finished study: numbers and figures.
+fn files(study: &StudyFound) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+    let statistics = json_text(&study.answer)?.into_bytes();
+    let mut files = vec![("statistics.json".to_owned(), statistics)];
+    files.extend(cvtcycle::study::tables::tables(
+        &study.answer,
+        &study.outline,
+    ));
+    let frame = study.frame()?;
+    let pictures = study_pictures(&study.answer, &frame, &study.warm_ups);
+    for (name, picture) in pictures? {
+        files.push((format!("{name}.svg"), picture.svg.into_bytes()));
+    }
+    Ok(files)
+}

@@ -1,0 +1,342 @@
+//! Results of a study as tables: the comparison first, then the numbers behind it.
+
+use std::path::{Path, PathBuf};
+
+use cvtcycle::report::found::StudyFound;
+use cvtcycle::study::answer::{Comparison, OutputAnswer};
+use cvtcycle::study::outputs::EXCESS;
+use cvtcycle::study::plan::Design;
+use cvtcycle::study::statistics::{
+    Estimate, FactorIndices, Group, Groups, SobolIndices, Tornado, TornadoBar, TornadoEnd,
+};
+use cvtcycle::study::{Answer, StudyManifest};
+
+use super::matrix;
+use crate::print::colour::Paint;
+use crate::print::table::TextColumns;
+use cvtcycle::output::number::{NONE, fixed, signed};
+
+/// Number of factors that are listed for an output.
+const MAX_FACTORS: usize = 10;
+/// Number of reasons of failed runs that are listed.
+const MAX_REASONS: usize = 5;
+
+/// Everything that a person wants to see of a study.
+pub fn tables(study: &StudyFound, paint: Paint) -> String {
+    let (answer, outline) = (&study.answer, &study.outline);
+    let mut text = head(study, paint);
+    if let Some(matrix) = &answer.matrix {
+        return text + &matrix::tables(matrix, paint);
+    }
+    if !answer.comparisons.is_empty() {
+        text += &format!("\n{}\n", paint.heading("Comparison"));
+        let sampled = outline.plan.design.is_sampled();
+        let comparisons = || answer.comparisons.iter();
+        text.extend(comparisons().map(|of| compared(of, answer, sampled)));
+        text.extend(comparisons().filter_map(|of| strongest(of, answer, outline)));
+    }
+    text + &format!("\n{}\n{}", paint.heading("Outputs"), outputs(answer))
+        + &factors(answer, outline, paint)
+}
+
+fn head(study: &StudyFound, paint: Paint) -> String {
+    let (answer, outline) = (&study.answer, &study.outline);
+    let mut text = format!("{}\n", paint.heading(&answer.title));
+    if !answer.question.is_empty() {
+        text += &format!("{}\n", answer.question);
+    }
+    let (points, cars) = (answer.points, outline.cars.join(", "));
+    let runs = outline.points * outline.cars.len() as u64;
+    text += &format!(
+        "{}; {points} points, {runs} runs of {cars}\n",
+        design(outline)
+    );
+    let (present, all) = study.parts();
+    if present < all {
+        let done = answer.points_done;
+        text += &format!(
+            "not finished: results of {present} of {all} parts, {done} of {points} points\n"
+        );
+    }
+    let (failed, not_run) = (answer.runs.failed, answer.runs.not_run);
+    if failed + not_run > 0 {
+        let bad = failed + not_run;
+        text += &format!(
+            "{bad} runs are left out ({failed} failed a check, {not_run} could not be run)\n"
+        );
+    }
+    text
+}
+
+fn design(outline: &StudyManifest) -> String {
+    let factors = match outline.plan.factors.len() {
+        1 => "1 factor".to_owned(),
+        n => format!("{n} factors"),
+    };
+    let design = match outline.plan.design {
+        Design::Grid => "full grid".to_owned(),
+        Design::OneAtATime { .. } => "one at a time".to_owned(),
+        Design::LatinHypercube { seed, .. } => format!("Latin hypercube, seed {seed}"),
+        Design::Sobol { seed, .. } => format!("Sobol sequence, seed {seed}"),
+        Design::MonteCarlo { seed, .. } => format!("Monte Carlo, seed {seed}"),
+        Design::Saltelli { samples, seed } => {
+            format!("Saltelli blocks of {samples} samples, seed {seed}")
+        }
+    };
+    format!("{factors}, {design}")
+}
+
+/// Share of the pairs in which the subject uses more fuel, and the difference. For a grid the share describes its own points only.
+fn compared(of: &Comparison, answer: &Answer, sampled: bool) -> String {
+    let subject = answer.cars.first().map_or("the subject", String::as_str);
+    let (s, worse, baseline) = (&of.excess_percent, &of.worse, &of.baseline);
+    if worse.n == 0 {
+        return format!("{subject} compared with {baseline}: no pair of good runs\n");
+    }
+    let (k, n, mean) = (worse.k, worse.n, signed(Some(s.mean), 2));
+    if !sampled {
+        let [low, high] = [s.min, s.max].map(|x| signed(Some(x), 1));
+        return format!(
+            "{subject} uses more fuel than {baseline} at {k} of {n} points; the difference is {low} to {high} %, {mean} % on average.\n"
+        );
+    }
+    let percent = |x: f64| fixed(Some(100.0 * x), if n >= 1000 { 1 } else { 0 });
+    let (share, [low, high]) = (percent(worse.share), worse.interval95.map(percent));
+    let [q5, q95, median] = [0.05, 0.95, 0.5].map(|p| signed(Some(s.quantile(p)), 1));
+    let sd = fixed(Some(s.sd), 2);
+    format!(
+        "{subject} uses more fuel than {baseline} in {k} of {n} pairs: {share} % (95 % interval {low} to {high} %).\n\
+         The difference is {mean} % on average, sd {sd}; 90 % of the pairs are between {q5} and {q95} %, the median is {median} %.\n"
+    )
+}
+
+/// Factors with the largest effect on the difference to a baseline.
+fn strongest(of: &Comparison, answer: &Answer, outline: &StudyManifest) -> Option<String> {
+    let mut outputs = answer.outputs.iter();
+    let output = outputs.find(|o| o.output == EXCESS && o.car == of.baseline)?;
+    let ranked = ranked(output, outline)?;
+    let first = ranked.iter().take(3);
+    let first: Vec<String> = first
+        .map(|(name, x)| format!("{name} ({})", fixed(Some(*x), 2)))
+        .collect();
+    let measure = match (&output.tornado, output.sobol.is_empty()) {
+        (Some(_), _) => "swing, points",
+        (None, false) => "share of the variance, with interactions",
+        _ => "rank correlation",
+    };
+    let (baseline, first) = (&of.baseline, first.join(", "));
+    Some(format!(
+        "Largest effects on the difference to {baseline}: {first} [{measure}].\n"
+    ))
+}
+
+/// Factors with the measure of the design, the strongest first.
+fn ranked(output: &OutputAnswer, outline: &StudyManifest) -> Option<Vec<(String, f64)>> {
+    let mut list: Vec<(String, f64)> = if let Some(indices) = output.sobol.last() {
+        let factors = outline.plan.factors.iter().zip(&indices.factors);
+        factors
+            .map(|(factor, i)| (factor.name.clone(), i.total.value))
+            .collect()
+    } else if let Some(tornado) = &output.tornado {
+        tornado
+            .bars
+            .iter()
+            .map(|bar| (bar.name.clone(), bar.swing))
+            .collect()
+    } else {
+        let rank = output.rank.as_ref()?;
+        let factors = rank.factors.iter().zip(&rank.of.factors);
+        factors
+            .map(|(name, f)| (name.clone(), f.spearman.value))
+            .collect()
+    };
+    list.retain(|(_, x)| x.is_finite());
+    list.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    (!list.is_empty()).then_some(list)
+}
+
+fn outputs(answer: &Answer) -> String {
+    let number = |x: f64| fixed(Some(x), 3);
+    // Name and unit are shown once for all vehicles.
+    let is_first = |o: &OutputAnswer| {
+        let mut same = answer
+            .outputs
+            .iter()
+            .filter(|other| other.output == o.output);
+        same.next().is_some_and(|first| first.car == o.car)
+    };
+    let first = |o: &OutputAnswer, text: &str| {
+        if is_first(o) {
+            text.to_owned()
+        } else {
+            String::new()
+        }
+    };
+    TextColumns::new()
+        .left("output", |o: &OutputAnswer| first(o, &o.output))
+        .left("unit", |o| first(o, &o.unit))
+        .left("car", |o| o.car.clone())
+        .right("n", |o| o.summary.n.to_string())
+        .right("mean", |o| number(o.summary.mean))
+        .right("sd", |o| number(o.summary.sd))
+        .right("5 %", |o| number(o.summary.quantile(0.05)))
+        .right("95 %", |o| number(o.summary.quantile(0.95)))
+        .table(&answer.outputs)
+        .indented()
+        .text()
+}
+
+/// Factors of the first output of the subject, and of the difference to each baseline.
+fn factors(answer: &Answer, outline: &StudyManifest, paint: Paint) -> String {
+    let Some(first) = answer.outputs.first() else {
+        return String::new();
+    };
+    let is_shown =
+        |o: &&OutputAnswer| o.output == EXCESS || (o.output == first.output && o.car == first.car);
+    let section = |o: &OutputAnswer| {
+        let heading = format!("Effects on {} ({}), {}", o.output, o.unit, o.car);
+        match effects(o, outline) {
+            table if table.is_empty() => table,
+            table => format!("\n{}\n{table}", paint.heading(&heading)),
+        }
+    };
+    answer
+        .outputs
+        .iter()
+        .filter(is_shown)
+        .map(section)
+        .collect()
+}
+
+fn effects(output: &OutputAnswer, outline: &StudyManifest) -> String {
+    match (output.sobol.last(), &output.tornado) {
+        (Some(indices), _) => sobol(output, outline, indices),
+        (None, Some(of)) => tornado(of),
+        (None, None) => rank(output) + &levels(output),
+    }
+}
+
+fn tornado(tornado: &Tornado) -> String {
+    let label = |end: &Option<TornadoEnd>| {
+        end.as_ref()
+            .map_or(NONE.to_owned(), |end| end.label.clone())
+    };
+    let effect = |end: &Option<TornadoEnd>| signed(end.as_ref().map(|end| end.effect), 3);
+    let columns = TextColumns::new()
+        .left("factor", |bar: &TornadoBar| bar.name.clone())
+        .right("low", |bar| label(&bar.low))
+        .right("effect", |bar| effect(&bar.low))
+        .right("high", |bar| label(&bar.high))
+        .right("effect", |bar| effect(&bar.high))
+        .right("swing", |bar| fixed(Some(bar.swing), 3));
+    let table = columns.table(&tornado.bars).indented().text();
+    format!("  base {}\n{table}", fixed(Some(tornado.base), 3))
+}
+
+fn rank(output: &OutputAnswer) -> String {
+    let Some(rank) = &output.rank else {
+        return String::new();
+    };
+    let mut list: Vec<_> = rank
+        .factors
+        .iter()
+        .zip(&rank.of.factors)
+        .map(|(name, f)| (name, &f.spearman))
+        .collect();
+    list.sort_by(|a, b| b.1.value.abs().total_cmp(&a.1.value.abs()));
+    let end = |e: &Estimate, k: usize| signed(e.interval95.map(|ends| ends[k]), 2);
+    TextColumns::new()
+        .left("factor", |(name, _): &(&String, &Estimate)| (*name).clone())
+        .right("rank correlation", |(_, e)| signed(Some(e.value), 2))
+        .right("from", |(_, e)| end(e, 0))
+        .right("to", |(_, e)| end(e, 1))
+        .table(list.iter().take(MAX_FACTORS))
+        .indented()
+        .text()
+}
+
+fn levels(output: &OutputAnswer) -> String {
+    let number = |x: f64| fixed(Some(x), 3);
+    let table = |(name, levels): &(String, Groups)| {
+        TextColumns::new()
+            .left(name, |g: &Group| g.label.clone())
+            .right("n", |g| g.n.to_string())
+            .right("mean", |g| number(g.mean))
+            .right("min", |g| number(g.min))
+            .right("max", |g| number(g.max))
+            .table(&levels.groups)
+            .indented()
+            .text()
+    };
+    output.levels.iter().map(table).collect()
+}
+
+fn sobol(output: &OutputAnswer, outline: &StudyManifest, indices: &SobolIndices) -> String {
+    let Some(ranked) = ranked(output, outline) else {
+        return "  the output does not vary\n".to_owned();
+    };
+    let span = |e: &Estimate| match e.interval95 {
+        Some([a, b]) => format!("{} .. {}", fixed(Some(a), 3), fixed(Some(b), 3)),
+        None => NONE.to_owned(),
+    };
+    let of_factor = |(name, _): &(String, f64)| {
+        let place = outline
+            .plan
+            .factors
+            .iter()
+            .position(|factor| factor.name == *name)?;
+        Some((name.clone(), &indices.factors[place]))
+    };
+    let rows: Vec<(String, &FactorIndices)> = ranked
+        .iter()
+        .take(MAX_FACTORS)
+        .filter_map(of_factor)
+        .collect();
+    let columns = TextColumns::new()
+        .left("factor", |(name, _): &(String, &FactorIndices)| {
+            name.clone()
+        })
+        .right("first order", |(_, f)| fixed(Some(f.first.value), 3))
+        .right("95 % interval", |(_, f)| span(&f.first))
+        .right("total", |(_, f)| fixed(Some(f.total.value), 3))
+        .right("95 % interval", |(_, f)| span(&f.total));
+    let mut text = columns.table(&rows).indented().text();
+    let rest = ranked.len().saturating_sub(MAX_FACTORS);
+    if rest > 0 {
+        text += &format!("  {rest} more factors have a smaller total index\n");
+    }
+    text + &format!(
+        "  sum of first-order indices {}\n",
+        fixed(Some(indices.sum_first.value), 3)
+    )
+}
+
+/// Failed runs with their reasons, as one message; none if all are good.
+pub fn failures(answer: &Answer) -> Vec<String> {
+    let runs = &answer.runs;
+    let bad = runs.failed + runs.not_run;
+    if bad == 0 {
+        return Vec::new();
+    }
+    let all = runs.ok + bad;
+    let mut text = format!("{bad} of {all} runs failed; the table has the reason of each");
+    for (reason, count) in runs.reasons.iter().take(MAX_REASONS) {
+        text += &format!("\n  {count} x {reason}");
+    }
+    let more = runs.reasons.len().saturating_sub(MAX_REASONS);
+    if more > 0 {
+        text += &format!("\n  and {more} other reasons");
+    }
+    vec![text]
+}
+
+/// List of the files.
+pub fn written(dir: &Path, files: &[PathBuf]) -> String {
+    let names = files.iter().filter_map(|file| file.file_name());
+    let names: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
+    format!(
+        "\nFiles written in {}\n  parts/  {}\n",
+        dir.display(),
+        names.join("  ")
+    )
+}
