@@ -25,7 +25,7 @@ pub fn values(
     values_or_words(option, text, allowed, suffix, &[])
 }
 
-/// Like [`values`], with words that stand for numbers.
+/// Like [`values`], with words for some numbers.
 ///
 /// # Errors
 /// As [`values`].
@@ -56,7 +56,7 @@ pub fn values_or_words(
     }
 }
 
-/// Each value where it stands first.
+/// Removes repeated values.
 fn once(values: Vec<f64>) -> Vec<f64> {
     let mut seen = std::collections::BTreeSet::new();
     // Adding zero turns a negative zero into a plain one.
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn words_stand_for_numbers() {
+    fn words_replace_numbers() {
         let words = [("low", 2.4), ("high", 0.4)];
         let found = values_or_words(
             "--ratio",
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn every_bad_part_is_told() {
+    fn every_bad_part_is_reported() {
         assert_eq!(bad("25,x,50,9999").len(), 2);
         for (text, word) in [
             ("", "empty"),

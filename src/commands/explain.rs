@@ -5,7 +5,7 @@ mod terms;
 
 use clap::Args;
 use cvtcycle::config::setup::assumptions::value;
-use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, OIL};
+use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
 use cvtcycle::config::setup::equations::{Equation, by_label, cited, equations};
 use cvtcycle::config::{KeyInfo, Problem, Problems, near};
 use cvtcycle::output::trace::{COLUMNS, column};
@@ -70,11 +70,12 @@ impl Execute for ExplainArgs {
     fn plan(&self, problems: &mut Problems) -> Option<Meanings> {
         let word = self.key.trim();
         let mut meanings = Meanings::default();
-        meanings.add(word);
+        let files = catalogue::files();
+        meanings.add(word, &files);
         if meanings.is_empty() {
-            terms::names_of(word)
-                .iter()
-                .for_each(|name| meanings.add(name));
+            for name in terms::names_of(word) {
+                meanings.add(name, &files);
+            }
         }
         if meanings.is_empty() {
             problems.add(unknown(word));
@@ -93,9 +94,9 @@ impl Execute for ExplainArgs {
 
 impl Meanings {
     /// Adds what has this very name.
-    fn add(&mut self, name: &str) {
-        self.keys
-            .extend(matching_keys(name).into_iter().map(ExplainedKey::new));
+    fn add(&mut self, name: &str, files: &[File]) {
+        let keys = matching_keys(name).into_iter();
+        self.keys.extend(keys.map(|key| ExplainedKey::new(key, files)));
         self.columns.extend(column(name).map(|c| ExplainedColumn {
             table: "trace",
             name: c.name.to_string(),
@@ -180,15 +181,15 @@ impl Meanings {
 }
 
 impl ExplainedKey {
-    fn new(known: KeyInfo) -> Self {
-        let of_file = |file: &catalogue::File| {
+    fn new(known: KeyInfo, files: &[File]) -> Self {
+        let of_file = |file: &File| {
             let info = file
                 .keys
                 .iter()
                 .find(|info| file.full_key(&info.key) == known.key)?;
             (!info.status.is_empty()).then(|| (file.name, info.clone()))
         };
-        let values = catalogue::files().iter().filter_map(of_file).collect();
+        let values = files.iter().filter_map(of_file).collect();
         ExplainedKey { known, values }
     }
 
@@ -289,9 +290,6 @@ fn unknown(word: &str) -> Problem {
     let keys = catalogue::known_keys()
         .iter()
         .map(|info| (key_name(&info.key), info.key.clone()));
-    let terms = terms::TERMS
-        .iter()
-        .flat_map(|(terms, _)| terms.iter().copied());
     let others = COLUMNS.iter().map(|column| column.name.to_string());
     let others = others.chain(
         summary_columns()
@@ -300,7 +298,7 @@ fn unknown(word: &str) -> Problem {
     );
     let others = others.chain(Flags::NAMES.iter().map(|(_, name)| (*name).to_owned()));
     let others = others.chain(equations().map(|equation| equation.label.to_owned()));
-    let others = others.chain(terms.map(|term| term.replace(' ', "-")));
+    let others = others.chain(terms::terms().map(|term| term.replace(' ', "-")));
     let names: Vec<(String, String)> = keys
         .chain(others.map(|name| (name.clone(), name)))
         .collect();

@@ -179,15 +179,10 @@ fn rig(word: &str) -> (String, Vec<KeyInfo>) {
 }
 
 impl Status {
-    fn word(self) -> &'static str {
-        match self {
-            Status::Source => "source",
-            Status::Derived => "derived",
-            Status::Fitted => "fitted",
-            Status::Assumed => "assumed",
-            Status::User => "user",
-            Status::Default => "default",
-        }
+    /// Name, as in files and on the command line.
+    fn word(self) -> String {
+        let name = self.to_possible_value();
+        name.map_or_else(String::new, |value| value.get_name().to_owned())
     }
 }
 

@@ -621,6 +621,38 @@ fn explain_knows_keys_columns_flags_and_equations() {
     assert!(refused(&["explain", "gros_slip"]).contains("gross_slip"));
 }
 
+/// Terms of the field are found under any spelling, with every name that belongs to them; so are columns of the summary.
+#[test]
+fn explain_knows_the_terms_of_the_field_and_the_summary() {
+    for (term, name) in [
+        ("clamping force", "transmission.cvt.clamp.map.base_bar"),
+        ("spin-loss", "pump_loss_w"),
+        ("drag_torque", "transmission.cvt.reverse_clutch.drag_nm"),
+        ("Road load", "road_load.mass_kg"),
+        ("coast-down", "road_load.form.coefficients.f0_n"),
+        ("torque capacity", "min_clamp_safety"),
+        ("variogram", "transmission.cvt.ratio.low"),
+        ("ratio-span", "transmission.cvt.ratio.high"),
+        ("slip", "slip_percent"),
+        ("fuel_l_per_100km", "column of the summary"),
+        ("subject_excess_percent", "column of the summary"),
+        ("loss_pump_kj", "column of the summary"),
+    ] {
+        let text = stdout(&run(&["explain", term]));
+        assert!(text.contains(name), "{name} is not in the explanation of {term}:\n{text}");
+    }
+    // Every name of the table is explained.
+    let table = include_str!("../../src/commands/explain/terms.txt");
+    for line in table.lines() {
+        let (terms, names) = line.split_once(':').unwrap();
+        let term = terms.split(',').next().unwrap();
+        let text = stdout(&run(&["explain", term]));
+        for name in names.split(',').map(str::trim) {
+            assert!(text.contains(name), "{term}: {name} is not in\n{text}");
+        }
+    }
+}
+
 #[test]
 fn check_reports_every_file() {
     let dir = tempfile::tempdir().unwrap();

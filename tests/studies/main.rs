@@ -12,6 +12,7 @@ mod blueprint;
 mod calibrate;
 mod calibrate_cli;
 mod calibrate_solve;
+mod calibrate_tables;
 mod parquet_readers;
 mod study;
 mod study_design;

@@ -1,4 +1,4 @@
-//! The flags of a row in words.
+//! Meanings of the flags of a time step.
 
 use cvtcycle::output::Flags;
 
@@ -25,7 +25,7 @@ const MEANINGS: [(Flags, &str); Flags::NAMES.len()] = [
     ),
     (
         Flags::RATIO_LIMIT,
-        "the belt ratio stands at one of its limits",
+        "the belt ratio is at one of its limits",
     ),
     (Flags::CLUTCH_SLIPPING, "the launch clutch slips"),
     (Flags::CLUTCH_OPEN, "the launch clutch is open"),
@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_flag_has_its_words() {
+    fn every_flag_has_a_meaning() {
         assert!(Flags::NAMES.iter().all(|(_, name)| meaning(name).is_some()));
     }
 }
