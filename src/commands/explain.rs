@@ -8,9 +8,10 @@ use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
 use cvtcycle::config::setup::equations::{Equation, by_label, cited, equations};
 use cvtcycle::config::{KeyInfo, Problem, Problems, near};
+use cvtcycle::output::table::Head;
 use cvtcycle::output::trace::{COLUMNS, column};
 use cvtcycle::output::{Component, Flags};
-use cvtcycle::study::outputs::{Output, outputs};
+use cvtcycle::study::outputs::outputs;
 use serde_json::{Value, json};
 
 use super::Execute;
@@ -96,14 +97,15 @@ impl Meanings {
     /// Adds what has this very name.
     fn add(&mut self, name: &str, files: &[File]) {
         let keys = matching_keys(name).into_iter();
-        self.keys.extend(keys.map(|key| ExplainedKey::new(key, files)));
+        self.keys
+            .extend(keys.map(|key| ExplainedKey::new(key, files)));
         self.columns.extend(column(name).map(|c| ExplainedColumn {
             table: "trace",
             name: c.name.to_string(),
             unit: c.unit.to_owned(),
             doc: c.doc.to_string(),
         }));
-        let in_summary = summary_columns().into_iter().map(|output| output.column);
+        let in_summary = summary_columns().into_iter();
         self.columns.extend(
             in_summary
                 .filter(|c| c.name == name)
@@ -248,8 +250,9 @@ fn paragraph(name: &str, facts: &[(&str, &str)], paint: Paint) -> String {
 }
 
 /// Columns of the summary for all components; those of single phases are left out.
-fn summary_columns() -> Vec<Output> {
-    outputs(&[], &Component::ALL)
+fn summary_columns() -> Vec<Head> {
+    let columns = outputs(&[], &Component::ALL);
+    columns.iter().map(|column| column.head()).collect()
 }
 
 /// The key itself, else keys that end in the word, else the keys of the table of that name.
@@ -291,11 +294,7 @@ fn unknown(word: &str) -> Problem {
         .iter()
         .map(|info| (key_name(&info.key), info.key.clone()));
     let others = COLUMNS.iter().map(|column| column.name.to_string());
-    let others = others.chain(
-        summary_columns()
-            .into_iter()
-            .map(|output| output.column.name),
-    );
+    let others = others.chain(summary_columns().into_iter().map(|head| head.name));
     let others = others.chain(Flags::NAMES.iter().map(|(_, name)| (*name).to_owned()));
     let others = others.chain(equations().map(|equation| equation.label.to_owned()));
     let others = others.chain(terms::terms().map(|term| term.replace(' ', "-")));

@@ -639,7 +639,10 @@ fn explain_knows_the_terms_of_the_field_and_the_summary() {
         ("loss_pump_kj", "column of the summary"),
     ] {
         let text = stdout(&run(&["explain", term]));
-        assert!(text.contains(name), "{name} is not in the explanation of {term}:\n{text}");
+        assert!(
+            text.contains(name),
+            "{name} is not in the explanation of {term}:\n{text}"
+        );
     }
     // Every name of the table is explained.
     let table = include_str!("../../src/commands/explain/terms.txt");

@@ -23,10 +23,7 @@ const MEANINGS: [(Flags, &str); Flags::NAMES.len()] = [
         Flags::OUTSIDE_VALIDITY,
         "an input left the validity range of a model or of a measured map",
     ),
-    (
-        Flags::RATIO_LIMIT,
-        "the belt ratio is at one of its limits",
-    ),
+    (Flags::RATIO_LIMIT, "the belt ratio is at one of its limits"),
     (Flags::CLUTCH_SLIPPING, "the launch clutch slips"),
     (Flags::CLUTCH_OPEN, "the launch clutch is open"),
     (Flags::OVERRUN, "the wheels drive the transmission"),

@@ -136,7 +136,7 @@ fn val_blocks_of_saltelli() {
             let shown = format!("{want:.3}");
             let line = printed
                 .lines()
-                .skip_while(|line| !line.starts_with("What moves headline"))
+                .skip_while(|line| !line.starts_with("Effects on headline"))
                 .find(|line| line.contains(name));
             assert!(
                 line.unwrap().contains(shown.trim_start_matches('-')),
@@ -149,7 +149,13 @@ fn val_blocks_of_saltelli() {
         );
     }
     // The most important one is named first in the answer.
-    assert!(printed.contains("most is decided by start ("), "{printed}");
+    let strongest = printed
+        .lines()
+        .find(|line| line.starts_with("Largest effects on the difference to "));
+    assert!(
+        strongest.is_some_and(|line| line.contains(": start (")),
+        "{printed}"
+    );
     assert!(
         printed.contains("Which of them moves the fuel?")
             && printed.contains("Saltelli blocks of 32 samples, seed 3")
@@ -203,7 +209,7 @@ fn val_one_at_a_time() {
         widths.push((swing, name));
         let line = printed
             .lines()
-            .skip_while(|line| !line.starts_with("What moves headline"))
+            .skip_while(|line| !line.starts_with("Effects on headline"))
             .find(|line| line.contains(name))
             .unwrap();
         assert!(
@@ -254,7 +260,7 @@ fn val_words_of_a_grid_are_told_by_group() {
         let of = |f: fn(f64, f64) -> f64| fuels.iter().copied().reduce(f).unwrap();
         let line = printed
             .lines()
-            .skip_while(|line| !line.starts_with("What moves headline"))
+            .skip_while(|line| !line.starts_with("Effects on headline"))
             .find(|line| line.contains(oil))
             .unwrap();
         let cells: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
@@ -276,7 +282,7 @@ fn another_draw_than_the_plans() {
     let dir = folder(&plan("[study.design.saltelli]\nsamples = 32\nseed = 3\n"));
     let (printed, own) = studied(dir.path(), &["--samples", "4", "--seed", "9"]);
     assert!(
-        own.len() == 20 && printed.contains("Saltelli's blocks of 4 samples, seed 9"),
+        own.len() == 20 && printed.contains("Saltelli blocks of 4 samples, seed 9"),
         "{printed}"
     );
     let (_, other) = studied(dir.path(), &["--samples", "4", "--force"]);
