@@ -625,7 +625,7 @@ fn explain_knows_keys_columns_flags_and_equations() {
 #[test]
 fn explain_knows_the_terms_of_the_field_and_the_summary() {
     for (term, name) in [
-        ("clamping force", "transmission.cvt.clamp.map.base_bar"),
+        ("clamping force", "transmission.cvt.clamp"),
         ("spin-loss", "pump_loss_w"),
         ("drag_torque", "transmission.cvt.reverse_clutch.drag_nm"),
         ("Road load", "road_load.mass_kg"),

@@ -399,7 +399,7 @@ fn refusals() {
         ),
         (
             vec!["--formulation", "appendix_c", "--ratio", "0.5,1"],
-            "exactly 1",
+            "not defined at ratio 1",
         ),
         (
             vec!["--formulation", "chapter_8", "--speed", "0"],

@@ -304,7 +304,7 @@ fn another_draw_than_the_plans() {
             "[study.design.one_at_a_time]\n",
             &["--seed", "2"],
             2,
-            "draws nothing",
+            "draws no samples",
         ),
         (
             "[study.design.latin_hypercube]\nsamples = 3\n",

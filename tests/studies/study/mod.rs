@@ -324,7 +324,7 @@ values = [2.2, 2.417]
     let failed = answer["runs"]["failed"].as_u64().unwrap();
     let words = String::from_utf8(ends(dir.path(), &["study", "show", "out"], 1).stdout).unwrap();
     let told = format!(
-        "{} runs have no good numbers ({failed} failed a check, 3 could not be run) and are left out below",
+        "{} runs are left out ({failed} failed a check, 3 could not be run)",
         failed + 3
     );
     assert!(words.contains(&told), "{told} is not in {words}");
