@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use cvtcycle::config::{Problem, Problems};
-use cvtcycle::report::found::StudyFound;
+use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::Study;
 use cvtcycle::study::plan::{Design, Plan};
 
@@ -150,13 +150,13 @@ struct StudyShowArgs {
 }
 
 impl Execute for StudyShowArgs {
-    type Plan = StudyFound;
+    type Plan = StudyResults;
 
-    fn plan(&self, problems: &mut Problems) -> Option<StudyFound> {
-        problems.take(StudyFound::open(&self.dir))
+    fn plan(&self, problems: &mut Problems) -> Option<StudyResults> {
+        problems.take(StudyResults::open(&self.dir))
     }
 
-    fn run(&self, study: StudyFound, terminal: Terminal) -> CommandResult {
+    fn run(&self, study: StudyResults, terminal: Terminal) -> CommandResult {
         let tables = || tables::tables(&study, terminal.stdout);
         Ok(results(&study)?.output(&self.output, tables))
     }

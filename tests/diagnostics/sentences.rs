@@ -26,7 +26,9 @@ const OUTSIDE: &[(&str, &str)] = &[
     ("output::file", "output"),
     ("output::files", "output"),
     ("report::compare", "directories that the program wrote"),
-    ("report::found", "directories that the program wrote"),
+    ("report::consistency", "directories that the program wrote"),
+    ("report::problems", "directories that the program wrote"),
+    ("report::results", "directories that the program wrote"),
     (
         "study::check::judge",
         "found by computing only: tests/results/validate.rs",

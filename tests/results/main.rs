@@ -7,7 +7,7 @@ mod fixtures;
 
 mod history;
 mod outputs;
-mod plots;
+mod pictures;
 mod record;
 mod report;
 mod validate;

@@ -6,7 +6,7 @@
 //! author = "A. Engineer"
 //! organisation = "Example Ltd"
 //! date = "2026-11-21"
-//! logo = "logo.svg"        # PNG, JPEG or SVG, up to 500 kB, beside this file
+//! logo = "logo.svg"        # PNG, JPEG or SVG, up to 500 kB, in the folder of this file
 //! logo_words = "Example Ltd"
 //! [remarks]
 //! answer = "First paragraph.\nSecond paragraph."
@@ -39,7 +39,7 @@ pub const SECTIONS: [&str; 13] = [
     "reproducibility",
 ];
 
-/// What stands on the cover, and remarks on sections.
+/// The cover, and remarks on sections.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cover {
     /// Title in place of the report's own.
@@ -81,7 +81,7 @@ impl Cover {
         ] {
             cover.byline.extend(text(key, doc));
         }
-        let logo = text("logo", "file of the logo, beside this file");
+        let logo = text("logo", "file of the logo, in the folder of this file");
         let words = text("logo_words", "the logo in words");
         if let Some(name) = logo {
             match logo_data(path, &name) {
@@ -107,7 +107,7 @@ impl Cover {
         Ok(cover)
     }
 
-    /// Puts the cover on a report. Remarks on sections that it does not have are told as warnings.
+    /// Puts the cover on a report. Remarks on sections that it does not have become warnings.
     pub fn apply(&self, document: &mut Document) {
         if let Some(title) = &self.title {
             document.title.clone_from(title);
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn all_that_is_wrong_is_told_at_once() {
+    fn all_problems_are_reported_at_once() {
         let (_dir, path) = written(
             "titel = \"x\"\nauthor = 3\nlogo = \"logo.svg\"\n[remarks]\nloses = \"x\"",
             b"GIF89a",

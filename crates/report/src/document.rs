@@ -26,7 +26,7 @@ pub struct Section {
     pub id: String,
     /// Title.
     pub title: String,
-    /// What stands in it.
+    /// Its parts.
     pub blocks: Vec<Block>,
 }
 
@@ -45,32 +45,32 @@ pub enum Block {
     Heading(String),
     /// Points.
     List(Vec<String>),
-    /// Names and what stands behind them.
+    /// Names and values.
     Facts(Vec<(String, String)>),
     /// A table.
-    Table(Table),
+    Table(ReportTable),
     /// A table that is folded away.
-    Folded(Table),
+    Folded(ReportTable),
     /// A figure.
     Figure(Figure),
 }
 
 /// A table. The first column names the row.
 #[derive(Clone, Debug, Default)]
-pub struct Table {
+pub struct ReportTable {
     /// What it holds.
     pub caption: String,
     /// Columns.
-    pub columns: Vec<Column>,
+    pub columns: Vec<ReportColumn>,
     /// Cells, row by row.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ReportRow>,
     /// What has to be known of it; may be empty.
     pub note: String,
 }
 
 /// Head of a column.
 #[derive(Clone, Debug, Default)]
-pub struct Column {
+pub struct ReportColumn {
     /// Name.
     pub name: String,
     /// Unit; may be empty.
@@ -81,10 +81,10 @@ pub struct Column {
 
 /// A row of a table.
 #[derive(Clone, Debug, Default)]
-pub struct Row {
+pub struct ReportRow {
     /// Cells.
     pub cells: Vec<String>,
-    /// Whether it is a sum or else stands out.
+    /// Whether it is emphasised, for example as a sum.
     pub strong: bool,
 }
 
@@ -110,9 +110,39 @@ impl Section {
         }
     }
 
+    /// Adds a sentence that says what matters.
+    pub fn lead(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Lead(text.into()));
+    }
+
     /// Adds a paragraph.
     pub fn text(&mut self, text: impl Into<String>) {
         self.blocks.push(Block::Text(text.into()));
+    }
+
+    /// Adds a paragraph that must not be missed.
+    pub fn alert(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Alert(text.into()));
+    }
+
+    /// Adds a heading.
+    pub fn heading(&mut self, text: impl Into<String>) {
+        self.blocks.push(Block::Heading(text.into()));
+    }
+
+    /// Adds points.
+    pub fn list(&mut self, points: Vec<String>) {
+        self.blocks.push(Block::List(points));
+    }
+
+    /// Adds names and values.
+    pub fn facts(&mut self, facts: Vec<(String, String)>) {
+        self.blocks.push(Block::Facts(facts));
+    }
+
+    /// Adds a table that is folded away.
+    pub fn folded(&mut self, table: ReportTable) {
+        self.blocks.push(Block::Folded(table));
     }
 
     /// Adds a figure.
@@ -130,12 +160,12 @@ impl Section {
     }
 
     /// Adds a table.
-    pub fn table(&mut self, table: Table) {
+    pub fn table(&mut self, table: ReportTable) {
         self.blocks.push(Block::Table(table));
     }
 }
 
-impl Table {
+impl ReportTable {
     /// A table of a column of names and columns of numbers with their units.
     #[must_use]
     pub fn of_numbers(
@@ -143,33 +173,33 @@ impl Table {
         first: &str,
         columns: impl IntoIterator<Item = (String, String)>,
     ) -> Self {
-        let first = Column {
+        let first = ReportColumn {
             name: first.to_owned(),
-            ..Column::default()
+            ..ReportColumn::default()
         };
-        let rest = columns.into_iter().map(|(name, unit)| Column {
+        let rest = columns.into_iter().map(|(name, unit)| ReportColumn {
             name,
             unit,
             number: true,
         });
-        Table {
+        ReportTable {
             caption: caption.to_owned(),
             columns: [first].into_iter().chain(rest).collect(),
-            ..Table::default()
+            ..ReportTable::default()
         }
     }
 
     /// A table of words.
     #[must_use]
     pub fn of_words(caption: &str, columns: &[&str]) -> Self {
-        let column = |name: &&str| Column {
+        let column = |name: &&str| ReportColumn {
             name: (*name).to_owned(),
-            ..Column::default()
+            ..ReportColumn::default()
         };
-        Table {
+        ReportTable {
             caption: caption.to_owned(),
             columns: columns.iter().map(column).collect(),
-            ..Table::default()
+            ..ReportTable::default()
         }
     }
 
@@ -191,24 +221,33 @@ impl Table {
 
     /// Adds a row.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.rows.push(Row {
-            cells: cells.into_iter().collect(),
-            strong: false,
-        });
+        self.add(cells, false);
     }
 
-    /// Adds a row that stands out.
+    /// Adds an emphasised row.
     pub fn strong_row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.rows.push(Row {
-            cells: cells.into_iter().collect(),
-            strong: true,
-        });
+        self.add(cells, true);
+    }
+
+    /// Adds a row that begins with its name.
+    pub fn named(&mut self, name: impl Into<String>, cells: impl IntoIterator<Item = String>) {
+        self.add([name.into()].into_iter().chain(cells), false);
+    }
+
+    /// Adds an emphasised row that begins with its name.
+    pub fn strong(&mut self, name: impl Into<String>, cells: impl IntoIterator<Item = String>) {
+        self.add([name.into()].into_iter().chain(cells), true);
+    }
+
+    fn add(&mut self, cells: impl IntoIterator<Item = String>, strong: bool) {
+        let cells = cells.into_iter().collect();
+        self.rows.push(ReportRow { cells, strong });
     }
 }
 
 /// The numbers of a picture as a table of a report.
 #[must_use]
-pub fn table_of(caption: &str, table: &PictureTable) -> Table {
+pub fn table_of(caption: &str, table: &PictureTable) -> ReportTable {
     // A column holds numbers if all its cells are some.
     let numeric = |k: usize| {
         let cells = || {
@@ -221,18 +260,18 @@ pub fn table_of(caption: &str, table: &PictureTable) -> Table {
         cells().next().is_some()
             && cells().all(|cell| cell.replace('\u{2212}', "-").parse::<f64>().is_ok())
     };
-    let column = |(k, (name, unit)): (usize, &(String, &'static str))| Column {
+    let column = |(k, (name, unit)): (usize, &(String, &'static str))| ReportColumn {
         name: name.clone(),
         unit: (*unit).to_owned(),
         number: numeric(k),
     };
-    Table {
+    ReportTable {
         caption: caption.to_owned(),
         columns: table.columns.iter().enumerate().map(column).collect(),
         rows: table
             .rows
             .iter()
-            .map(|cells| Row {
+            .map(|cells| ReportRow {
                 cells: cells.clone(),
                 strong: false,
             })

@@ -1,12 +1,13 @@
 //! The design-review report: a directory of results to a document, and the document to HTML or Markdown.
 //!
-//! | module | what stands there |
+//! | module | content |
 //! |---|---|
-//! | `found` | a directory to what is in it: a run or a study, with studies and validation beside it |
+//! | `results` | reads a directory: a run with its studies and validation, or a study |
 //! | `cover` | the user's own title, logo, author and remarks |
-//! | `document` | sections, paragraphs, tables, figures: what a report consists of, without its form |
-//! | `number` | numbers to text with their unit, each kind in one place |
-//! | `run`, `compare`, `study`, `validation` | what a run, two runs, a study, a validation have to say |
+//! | `document` | sections, paragraphs, tables, figures: the content of a report, without its form |
+//! | `number` | numbers to text with their unit |
+//! | `run`, `compare`, `study`, `validation` | the sections on a run, two runs, a study, a validation |
+//! | `study_answers` | the results of a study in sentences |
 //! | `study_pictures` | the pictures of a study |
 //! | `write` | the files of a report |
 //! | `render` | the document as HTML or Markdown (templates in `reports/`) |
@@ -15,13 +16,16 @@
 
 pub mod charts;
 pub mod compare;
+mod consistency;
 pub mod cover;
 pub mod document;
-pub mod found;
+pub mod results;
 pub mod number;
+mod problems;
 pub mod render;
 pub mod run;
 pub mod study;
+pub mod study_answers;
 pub mod study_pictures;
 pub mod validation;
 pub mod validation_page;
@@ -32,11 +36,11 @@ use std::path::PathBuf;
 use cover::Cover;
 use cvtcycle_config::{Problem, Problems};
 use document::Document;
-use found::{Found, find};
+use results::{ResultDir, find};
 
 /// The report of one directory, or of two runs against each other.
 ///
-/// `with` names studies and validations that stand elsewhere, `cover` the user's title page.
+/// `with` names studies and validations in other directories, `cover` the user's title page.
 ///
 /// # Errors
 /// All problems of all inputs.
@@ -46,7 +50,7 @@ pub fn report(
     cover: Option<&str>,
 ) -> Result<Document, Problems> {
     let cover = cover.map(Cover::read).transpose();
-    let looked: Vec<Result<Found, Problems>> = dirs.iter().map(|dir| find(dir, with)).collect();
+    let looked: Vec<Result<ResultDir, Problems>> = dirs.iter().map(|dir| find(dir, with)).collect();
     let mut problems: Problems = cover.as_ref().err().cloned().unwrap_or_default();
     problems.extend(
         looked
@@ -61,21 +65,22 @@ pub fn report(
     if let ([_, other], [first, ..]) = (dirs, with) {
         let hint = "leave it out, or make the report of one run";
         let message = format!(
-            "a study stands beside one run, not beside {} and another one",
+            "a study can be added to the report of one run, not of two: {} is the second one",
             other.display()
         );
-        return Err(found::problem(first, &message, hint).into());
+        return Err(problems::problem(first, &message, hint).into());
     }
-    let pair: Vec<Found> = looked.into_iter().flatten().collect();
+    let pair: Vec<ResultDir> = looked.into_iter().flatten().collect();
     let one = |problem: Problem| vec![problem];
     let mut document = match &pair[..] {
-        [Found::Run(run)] => run::document(run).map_err(one)?,
-        [Found::Study(study)] => study::document(study).map_err(one)?,
-        [Found::Run(a), Found::Run(b)] => compare::document(a, b)?,
+        [ResultDir::Run(run)] => run::document(run).map_err(one)?,
+        [ResultDir::Study(study)] => study::document(study).map_err(one)?,
+        [ResultDir::Run(a), ResultDir::Run(b)] => compare::document(a, b)?,
         _ => {
-            let hint = "two directories are compared if both are runs; a study stands beside a run by --with";
+            let hint =
+                "two directories are compared if both are runs; add a study to a run by --with";
             return Err(
-                found::problem(&dirs[dirs.len() - 1], "this is no pair of runs", hint).into(),
+                problems::problem(&dirs[dirs.len() - 1], "these are not two runs", hint).into(),
             );
         }
     };

@@ -7,7 +7,7 @@ const MINUS: char = '\u{2212}';
 /// Where there is no number.
 pub const NONE: &str = "\u{2013}";
 
-/// Energies from here on, kJ, are told in whole kJ.
+/// Energies from here on, kJ, are written in whole kJ.
 const GROUPED: f64 = 999.95;
 
 /// A kind of quantity.
@@ -171,7 +171,12 @@ pub fn phase(name: &str) -> String {
 /// The same, as the beginning of a line.
 #[must_use]
 pub fn capital(name: &str) -> String {
-    let text = words(name);
+    capital_first(&words(name))
+}
+
+/// A text with a capital first letter.
+#[must_use]
+pub fn capital_first(text: &str) -> String {
     let mut letters = text.chars();
     letters
         .next()

@@ -2,9 +2,8 @@
 
 use askama::Template;
 
+use super::document::{Block, Document, Figure, ReportTable, table_of};
 use cvtcycle_output::PROGRAM;
-
-use super::document::{Block, Document, Figure, Table, table_of};
 
 #[derive(Template)]
 #[template(path = "review.html")]
@@ -45,7 +44,7 @@ enum Shown<'a> {
 }
 
 struct ShownTable {
-    table: Table,
+    table: ReportTable,
     label: String,
 }
 
@@ -115,7 +114,7 @@ fn sections(document: &Document) -> Vec<ShownSection<'_>> {
 }
 
 fn shown<'a>(block: &'a Block, figures: &mut usize, tables: &mut usize) -> Shown<'a> {
-    let mut labelled = |table: &Table| {
+    let mut labelled = |table: &ReportTable| {
         *tables += 1;
         ShownTable {
             table: table.clone(),
@@ -178,7 +177,7 @@ mod filters {
     }
 }
 
-/// Text with everything that Markdown or HTML could take for a mark told apart from it.
+/// Text with everything that Markdown or HTML could take for markup escaped.
 fn plain_markdown(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,261 +1,30 @@
-//! What a study says: as a section of a run's report, or as a report of its own.
+//! The results of a study: as a section of a run's report, or as a report of its own.
 
 use serde_json::Value;
 
-use super::document::{Block, Document, Section, Table};
-use super::found::StudyFound;
+use super::document::{Block, Document, ReportTable, Section};
 use super::number::{NONE, Quantity, degc, phase, words};
-use super::run::unfinished;
+use super::results::StudyResults;
+use super::study_answers::answers;
 use super::study_pictures::study_pictures;
 use cvtcycle_config::Problem;
-use cvtcycle_output::summary::{StartWord, Summary};
 use cvtcycle_study::ambient::Matrix;
-use cvtcycle_study::answer::{Comparison, OutputAnswer};
-use cvtcycle_study::outputs::EXCESS;
 use cvtcycle_study::plan::Design;
-
-/// Factors told in words.
-const TOLD: usize = 3;
-
-/// In what a study is another case than a run; none if it is the same.
-///
-/// Ambient and start count only where no factor sets them.
-#[must_use]
-pub fn other_case(study: &StudyFound, run: &Summary) -> Option<String> {
-    let (manifest, base) = (&study.manifest, &study.manifest["base"]);
-    let free = |key: &str| {
-        study
-            .outline
-            .plan
-            .factors
-            .iter()
-            .all(|factor| factor.key != key)
-    };
-    let mut list = Vec::new();
-    let cycles: Vec<&str> = manifest["cycles"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(|cycle| cycle["name"].as_str())
-        .collect();
-    if !cycles.contains(&run.cycle.as_str()) {
-        list.push(format!(
-            "cycle {} instead of {}",
-            cycles.join(", "),
-            run.cycle
-        ));
-    }
-    let subject = run.runs.first().map_or("", |run| run.vehicle.as_str());
-    let own = study.outline.cars.first().map_or("", String::as_str);
-    if own != subject {
-        list.push(format!("subject {own} instead of {subject}"));
-    }
-    if let Some(ambient) = base["ambient_degc"]
-        .as_f64()
-        .filter(|_| free("ambient_degc"))
-        && (ambient - run.ambient_degc).abs() > 1e-9
-    {
-        list.push(format!(
-            "ambient {} instead of {}",
-            degc(ambient),
-            degc(run.ambient_degc)
-        ));
-    }
-    let start = match &run.start {
-        StartWord::Word(word) => word.clone(),
-        StartWord::Degc(degc) => degc.to_string(),
-    };
-    if free("start") && base["start"].as_str().is_some_and(|own| own != start) {
-        list.push(format!(
-            "start {} instead of {start}",
-            text_of(&base["start"])
-        ));
-    }
-    let set = |value: &Value| -> Vec<String> {
-        value
-            .as_array()
-            .into_iter()
-            .flatten()
-            .filter_map(Value::as_str)
-            .map(str::to_owned)
-            .collect()
-    };
-    if set(&base["set"]) != run.settings.set || set(&base["set_all"]) != run.settings.set_all {
-        list.push("other values set".to_owned());
-    }
-    (!list.is_empty()).then(|| list.join(", "))
-}
-
-/// The answer of a study in sentences.
-#[must_use]
-pub fn answers(study: &StudyFound) -> Vec<String> {
-    let answer = &study.answer;
-    if answer.points_done == 0 {
-        return Vec::new();
-    }
-    if let Some(matrix) = &answer.matrix {
-        return matrix_answers(matrix);
-    }
-    answer
-        .comparisons
-        .iter()
-        .flat_map(|comparison| {
-            [
-                Some(compared(study, comparison)),
-                decided(study, comparison),
-            ]
-        })
-        .flatten()
-        .collect()
-}
-
-/// In how many pairs the subject uses more, and how much more.
-///
-/// Points that nobody has drawn are no sample: of a grid the share says nothing beyond its own points.
-fn compared(study: &StudyFound, of: &Comparison) -> String {
-    let subject = study
-        .outline
-        .cars
-        .first()
-        .map_or("the subject", String::as_str);
-    let (excess, worse) = (&of.excess_percent, &of.worse);
-    let signed = |x: f64| Quantity::Percent.signed(x);
-    if worse.n == 0 {
-        return format!(
-            "The study \u{201c}{}\u{201d} has no pair of good runs of {subject} and {}.",
-            study.answer.title, of.baseline
-        );
-    }
-    let head = format!(
-        "In the study \u{201c}{}\u{201d} {subject} uses more fuel than {}",
-        study.answer.title, of.baseline
-    );
-    if !study.outline.plan.design.is_sampled() {
-        let mean = signed(excess.mean);
-        return format!(
-            "{head} at {} of {} points; the excess is {} to {}, {mean} on average.",
-            worse.k,
-            worse.n,
-            signed(excess.min),
-            signed(excess.max)
-        );
-    }
-    let percent = |share: f64| Quantity::Percent.bare(100.0 * share);
-    let [low, high] = worse.interval95;
-    format!(
-        "{head} in {} of {} pairs, {} % (95 % interval {} to {} %). The excess is {} on average with a standard deviation of {} points; 90 % of the pairs lie between {} and {}.",
-        worse.k,
-        worse.n,
-        percent(worse.share),
-        percent(low),
-        percent(high),
-        signed(excess.mean),
-        Quantity::Percent.bare(excess.sd),
-        signed(excess.quantile(0.05)),
-        signed(excess.quantile(0.95))
-    )
-}
-
-/// Which factors decide the excess.
-fn decided(study: &StudyFound, of: &Comparison) -> Option<String> {
-    let output = study
-        .answer
-        .outputs
-        .iter()
-        .find(|o| o.output == EXCESS && o.car == of.baseline)?;
-    let (measure, mut ranked) = ranked(study, output)?;
-    ranked.retain(|(_, x)| x.is_finite());
-    ranked.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let told: Vec<String> = ranked
-        .iter()
-        .take(TOLD)
-        .map(|(name, x)| format!("{name} ({})", Quantity::Index.bare(*x)))
-        .collect();
-    (!told.is_empty()).then(|| format!("Most decided by {} [{measure}].", told.join(", ")))
-}
-
-fn ranked(study: &StudyFound, output: &OutputAnswer) -> Option<(&'static str, Vec<(String, f64)>)> {
-    if let Some(indices) = output.sobol.last() {
-        let factors = study.outline.plan.factors.iter().zip(&indices.factors);
-        return Some((
-            "total share of the variance",
-            factors
-                .map(|(factor, i)| (factor.name.clone(), i.total.value))
-                .collect(),
-        ));
-    }
-    if let Some(tornado) = &output.tornado {
-        return Some((
-            "swing in percentage points",
-            tornado
-                .bars
-                .iter()
-                .map(|bar| (bar.name.clone(), bar.swing))
-                .collect(),
-        ));
-    }
-    let rank = output.rank.as_ref()?;
-    Some((
-        "rank correlation",
-        rank.factors
-            .iter()
-            .zip(&rank.of.factors)
-            .map(|(name, f)| (name.clone(), f.spearman.value))
-            .collect(),
-    ))
-}
-
-/// The excess at the coldest and the warmest ambient, for each start.
-fn matrix_answers(matrix: &Matrix) -> Vec<String> {
-    let (Some(subject), Some(total)) = (matrix.cars.first(), matrix.fuel.first()) else {
-        return Vec::new();
-    };
-    let mut order: Vec<usize> = (0..matrix.ambient_degc.len()).collect();
-    order.sort_by(|a, b| matrix.ambient_degc[*a].total_cmp(&matrix.ambient_degc[*b]));
-    let (Some(&cold), Some(&warm)) = (order.first(), order.last()) else {
-        return Vec::new();
-    };
-    let at = |numbers: &[f64], k: usize| {
-        Quantity::Percent.signed(numbers.get(k).copied().unwrap_or(f64::NAN))
-    };
-    let mut list = Vec::new();
-    for (baseline, by_start) in matrix.cars.iter().skip(1).zip(&total.excess_percent) {
-        let told: Vec<String> = matrix
-            .starts
-            .iter()
-            .zip(by_start)
-            .map(|(start, numbers)| {
-                let (cold_degc, warm_degc) = (
-                    degc(matrix.ambient_degc[cold]),
-                    degc(matrix.ambient_degc[warm]),
-                );
-                format!(
-                    "{} at {cold_degc} and {} at {warm_degc} (start {start})",
-                    at(numbers, cold),
-                    at(numbers, warm)
-                )
-            })
-            .collect();
-        list.push(format!(
-            "Fuel of {subject} over {baseline}: {}.",
-            told.join("; ")
-        ));
-    }
-    list
-}
 
 /// The study as a section of a report.
 ///
 /// # Errors
 /// A part that cannot be read.
-pub fn section(study: &StudyFound) -> Result<Section, Problem> {
+pub fn section(study: &StudyResults) -> Result<Section, Problem> {
     let mut section = details(study)?;
     let mut blocks = Vec::new();
     if !study.answer.question.is_empty() {
         blocks.push(Block::Text(study.answer.question.clone()));
     }
     blocks.extend(
-        unfinished(study).map(|text| Block::Alert(format!("{text}; what follows is theirs."))),
+        study
+            .unfinished()
+            .map(|text| Block::Alert(format!("{text}; what follows is theirs."))),
     );
     blocks.push(Block::Text(extent(study)));
     blocks.extend(answers(study).into_iter().map(Block::Text));
@@ -264,7 +33,7 @@ pub fn section(study: &StudyFound) -> Result<Section, Problem> {
 }
 
 /// Tables and pictures of a study.
-fn details(study: &StudyFound) -> Result<Section, Problem> {
+fn details(study: &StudyResults) -> Result<Section, Problem> {
     let answer = &study.answer;
     let mut section = match &answer.matrix {
         Some(_) => Section::new("ambient", "Ambient temperatures"),
@@ -272,7 +41,7 @@ fn details(study: &StudyFound) -> Result<Section, Problem> {
     };
     if answer.points_done == 0 {
         section.text("No part of the study is there yet.");
-        section.blocks.push(Block::Folded(factors(study)));
+        section.folded(factors(study));
         return Ok(section);
     }
     if let Some(matrix) = &answer.matrix {
@@ -285,11 +54,11 @@ fn details(study: &StudyFound) -> Result<Section, Problem> {
         let caption = caption(&name, study);
         section.figure(name, caption, picture);
     }
-    section.blocks.push(Block::Folded(factors(study)));
+    section.folded(factors(study));
     Ok(section)
 }
 
-fn caption(name: &str, study: &StudyFound) -> String {
+fn caption(name: &str, study: &StudyResults) -> String {
     let of = &study.answer.title;
     match name.split('_').next().unwrap_or_default() {
         "distribution" => format!("How the output is distributed over the samples of \u{201c}{of}\u{201d}."),
@@ -306,7 +75,7 @@ fn caption(name: &str, study: &StudyFound) -> String {
 }
 
 /// How many points and runs, and how they ended.
-fn extent(study: &StudyFound) -> String {
+fn extent(study: &StudyResults) -> String {
     let (answer, outline) = (&study.answer, &study.outline);
     let runs = outline.points * outline.cars.len() as u64;
     let mut text = format!(
@@ -348,7 +117,7 @@ fn tables(section: &mut Section, matrix: &Matrix) {
             .iter()
             .skip(1)
             .map(|car| (format!("over {car}"), "%".to_owned()));
-        let mut table = Table::of_numbers(
+        let mut table = ReportTable::of_numbers(
             &format!("Fuel, {name}"),
             "Start, ambient",
             fuel_columns.chain(excess),
@@ -363,12 +132,7 @@ fn tables(section: &mut Section, matrix: &Matrix) {
                     .excess_percent
                     .iter()
                     .map(|by| Quantity::Percent.bare_signed(by[s][a]));
-                table.row(
-                    [format!("{start}, {}", degc(*ambient))]
-                        .into_iter()
-                        .chain(fuel)
-                        .chain(excess),
-                );
+                table.named(format!("{start}, {}", degc(*ambient)), fuel.chain(excess));
             }
         }
         section.table(table);
@@ -381,24 +145,20 @@ fn tables(section: &mut Section, matrix: &Matrix) {
             )
         })
     });
-    let mut table = Table::of_numbers("Temperatures at the end", "Start, ambient", columns);
+    let mut table = ReportTable::of_numbers("Temperatures at the end", "Start, ambient", columns);
     for (s, start) in matrix.starts.iter().enumerate() {
         for (a, ambient) in matrix.ambient_degc.iter().enumerate() {
             let cells = matrix
                 .ends
                 .iter()
                 .flat_map(|end| end.degc.iter().map(|by| Quantity::Degc.bare(by[s][a])));
-            table.row(
-                [format!("{start}, {}", degc(*ambient))]
-                    .into_iter()
-                    .chain(cells),
-            );
+            table.named(format!("{start}, {}", degc(*ambient)), cells);
         }
     }
-    section.blocks.push(Block::Folded(table));
+    section.folded(table);
 }
 
-fn outputs(study: &StudyFound) -> Table {
+fn outputs(study: &StudyResults) -> ReportTable {
     // Of one factor at a time the base would count many times in everything but the extremes.
     let one_by_one = matches!(study.outline.plan.design, Design::OneAtATime { .. });
     let names: &[&str] = if one_by_one {
@@ -407,7 +167,7 @@ fn outputs(study: &StudyFound) -> Table {
         &["runs", "mean", "standard deviation", "5 %", "95 %"]
     };
     let columns = names.iter().map(|name| ((*name).to_owned(), String::new()));
-    let mut table = Table::of_numbers("Outputs", "Output", columns);
+    let mut table = ReportTable::of_numbers("Outputs", "Output", columns);
     for output in &study.answer.outputs {
         let s = &output.summary;
         let digits = |x: f64| {
@@ -428,16 +188,13 @@ fn outputs(study: &StudyFound) -> Table {
         } else {
             vec![s.mean, s.sd, s.quantile(0.05), s.quantile(0.95)]
         };
-        table.row(
-            [name, s.n.to_string()]
-                .into_iter()
-                .chain(numbers.into_iter().map(digits)),
-        );
+        let numbers = numbers.into_iter().map(digits);
+        table.named(name, [s.n.to_string()].into_iter().chain(numbers));
     }
     table
 }
 
-/// An output without its unit, which stands beside it.
+/// Name of an output without its unit.
 fn output_name(column: &str) -> String {
     let units = [
         "_l_per_100km",
@@ -457,12 +214,12 @@ fn output_name(column: &str) -> String {
     )
 }
 
-fn factors(study: &StudyFound) -> Table {
+fn factors(study: &StudyResults) -> ReportTable {
     let list = study.manifest["factors"]
         .as_array()
         .cloned()
         .unwrap_or_default();
-    let mut table = Table::of_words(
+    let mut table = ReportTable::of_words(
         &format!("Factors of the study ({})", list.len()),
         &[
             "Factor",
@@ -500,14 +257,15 @@ fn factors(study: &StudyFound) -> Table {
 ///
 /// # Errors
 /// A part that cannot be read.
-pub fn document(study: &StudyFound) -> Result<Document, Problem> {
+pub fn document(study: &StudyResults) -> Result<Document, Problem> {
     let answer = &study.answer;
     let mut first = Section::new("answer", "Answer");
     if !answer.question.is_empty() {
-        first.blocks.push(Block::Lead(answer.question.clone()));
+        first.lead(answer.question.clone());
     }
     first.blocks.extend(
-        unfinished(study)
+        study
+            .unfinished()
             .map(|text| Block::Alert(format!("{text}; what follows is what they say."))),
     );
     first
@@ -523,7 +281,7 @@ pub fn document(study: &StudyFound) -> Result<Document, Problem> {
         title: answer.title.clone(),
         subtitle: format!("study of {}", study.outline.cars.join(", ")),
         sections,
-        warnings: unfinished(study).into_iter().collect(),
+        warnings: study.unfinished().into_iter().collect(),
         ..Document::default()
     })
 }
@@ -542,7 +300,7 @@ fn text_of(value: &Value) -> String {
     }
 }
 
-fn conditions(study: &StudyFound) -> Section {
+fn conditions(study: &StudyResults) -> Section {
     let mut section = Section::new("conditions", "Conditions");
     let base = &study.manifest["base"];
     let names = [
@@ -558,12 +316,13 @@ fn conditions(study: &StudyFound) -> Section {
         ("dt_s", "Longest step [s]"),
         ("formulation", "Belt model"),
     ];
-    let told = names.iter().filter(|(key, _)| !base[*key].is_null());
-    section.blocks.push(Block::Facts(
-        told.map(|(key, name)| ((*name).to_owned(), text_of(&base[*key])))
+    let known = names.iter().filter(|(key, _)| !base[*key].is_null());
+    section.facts(
+        known
+            .map(|(key, name)| ((*name).to_owned(), text_of(&base[*key])))
             .collect(),
-    ));
-    let mut table = Table::of_words(
+    );
+    let mut table = ReportTable::of_words(
         "Cars",
         &[
             "Car",
@@ -582,7 +341,7 @@ fn conditions(study: &StudyFound) -> Section {
     section
 }
 
-fn reproduce(study: &StudyFound) -> Section {
+fn reproduce(study: &StudyResults) -> Section {
     let mut section = Section::new("reproducibility", "Reproducibility");
     let manifest = &study.manifest;
     let design = &manifest["design"];
@@ -615,6 +374,6 @@ fn reproduce(study: &StudyFound) -> Section {
             ));
         }
     }
-    section.blocks.push(Block::Facts(facts));
+    section.facts(facts);
     section
 }

@@ -181,58 +181,48 @@ fn of_output(output: &OutputAnswer, outline: &StudyManifest) -> Vec<(&'static st
         unit: &output.unit,
         subject: &outline.title,
     };
-    let names: Vec<String> = outline
-        .plan
-        .factors
+    let factors = &outline.plan.factors;
+    let names: &[String] = &factors
         .iter()
         .map(|factor| factor.name.clone())
-        .collect();
+        .collect::<Vec<_>>();
     let mut list = Vec::new();
     if let Some(indices) = output.sobol.last() {
+        let steps = &output.sobol;
         list.push((
             "sobol",
             sobol_plot(&SobolPlot {
                 shown,
-                names: &names,
+                names,
                 indices,
             }),
         ));
-        list.push((
-            "convergence",
-            convergence_plot(&ConvergencePlot {
-                shown,
-                names: &names,
-                steps: &output.sobol,
-            }),
-        ));
+        let plot = ConvergencePlot {
+            shown,
+            names,
+            steps,
+        };
+        list.push(("convergence", convergence_plot(&plot)));
     }
     if let Some(tornado) = &output.tornado {
         list.push(("tornado", tornado_plot(&TornadoPlot { shown, tornado })));
     }
     if let Some(rank) = &output.rank {
+        let (names, ranks) = (&rank.factors, &rank.of);
         list.push((
             "ranks",
             rank_plot(&RankPlot {
                 shown,
-                names: &rank.factors,
-                ranks: &rank.of,
+                names,
+                ranks,
             }),
         ));
     }
     if !output.levels.is_empty() {
-        let factor = |(name, groups)| effect(name, groups, outline);
-        let factors: Vec<EffectFactor> = output
-            .levels
-            .iter()
-            .map(|(name, groups)| factor((name.as_str(), groups)))
-            .collect();
-        list.push((
-            "effects",
-            effects_plot(&EffectsPlot {
-                shown,
-                factors: &factors,
-            }),
-        ));
+        let levels = output.levels.iter();
+        let factors = levels.map(|(name, groups)| effect(name, groups, outline));
+        let factors: &[EffectFactor] = &factors.collect::<Vec<_>>();
+        list.push(("effects", effects_plot(&EffectsPlot { shown, factors })));
     }
     list
 }

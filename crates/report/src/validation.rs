@@ -1,8 +1,8 @@
-//! The answer of `validate` beside a run.
+//! The results of `validate` as a section of a report.
 
 use serde_json::Value;
 
-use super::document::{Block, Section, Table};
+use super::document::{ReportTable, Section};
 
 fn count(value: &Value, verdict: &str) -> u64 {
     value["counts"][verdict].as_u64().unwrap_or(0)
@@ -23,7 +23,7 @@ fn counts(value: &Value) -> String {
     )
 }
 
-/// What the validation leaves open, in one line.
+/// The verdicts in one line.
 #[must_use]
 pub fn doubt(value: &Value) -> String {
     format!("Held against the thesis, {}.", counts(value))
@@ -53,18 +53,18 @@ pub fn section(value: &Value) -> Section {
         rows.iter().filter(differs).copied(),
         true,
     ));
-    section.blocks.push(Block::Folded(table(
+    section.folded(table(
         "All other rows",
         rows.iter().filter(|row| !differs(row)).copied(),
         false,
-    )));
+    ));
     section
 }
 
-fn table<'a>(caption: &str, rows: impl Iterator<Item = &'a Value>, reasons: bool) -> Table {
+fn table<'a>(caption: &str, rows: impl Iterator<Item = &'a Value>, reasons: bool) -> ReportTable {
     let mut columns = vec!["Row", "What", "Printed", "Computed", "Unit"];
     columns.push(if reasons { "Reason" } else { "Verdict" });
-    let mut table = Table::of_words(caption, &columns);
+    let mut table = ReportTable::of_words(caption, &columns);
     for row in rows {
         let text = |key: &str| row[key].as_str().unwrap_or_default().to_owned();
         let condition = text("condition");

@@ -1,4 +1,4 @@
-//! The files of a report: the document, and its figures in a folder beside it. All of them appear, or none.
+//! The files of a report: the document, and its figures in a folder next to it. All of them appear, or none.
 
 use std::fs;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -14,7 +14,7 @@ use cvtcycle_output::files::{failed, list, names_in, problem, sync_directory, te
 pub enum Form {
     /// One HTML page.
     Html,
-    /// Markdown with the figures beside it.
+    /// Markdown with a folder of figures.
     Markdown,
 }
 
@@ -31,7 +31,7 @@ impl Form {
         }
     }
 
-    /// The form that a file's ending stands for.
+    /// The form of a file by its ending.
     #[must_use]
     pub fn of(file: &Path) -> Option<Form> {
         [Form::Html, Form::Markdown]
@@ -87,76 +87,78 @@ impl Target {
     pub fn new(file: &Path, form: Form, force: bool) -> Result<Self, Problem> {
         let stem = file
             .file_stem()
-            .map(|stem| stem.to_string_lossy().into_owned())
-            .filter(|stem| !stem.is_empty());
-        let Some(stem) = stem else {
-            return Err(problem(
-                file,
-                "the name of the report is empty",
-                "name a file, for example --out report.html",
-            ));
+            .map(|stem| stem.to_string_lossy().into_owned());
+        let Some(stem) = stem.filter(|stem| !stem.is_empty()) else {
+            let hint = "name a file, for example --out report.html";
+            return Err(problem(file, "the name of the report is empty", hint));
         };
         let folder = format!("{stem}_figures");
         let parent = match file.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
             _ => PathBuf::from("."),
         };
-        if file.is_dir() {
-            return Err(problem(
-                file,
-                &format!("{} is a directory", file.display()),
-                "name a file, for example report.html in it",
-            ));
-        }
-        if !parent.is_dir() {
-            return Err(problem(
-                file,
-                &format!("there is no directory {}", parent.display()),
-                "make it first, or choose another place",
-            ));
-        }
-        let figures = parent.join(&folder);
         let target = Target {
             file: file.to_path_buf(),
-            figures,
+            figures: parent.join(&folder),
             folder,
             form,
         };
-        if !form.endings().contains(&ending(file).as_str()) {
-            let message = format!("{} has not the ending of its form", file.display());
-            let hint = format!(
-                "end its name in .{}, or choose the other --format",
-                form.endings().join(" or .")
-            );
-            return Err(problem(file, &message, &hint));
-        }
-        if let Ok(there) = fs::symlink_metadata(file) {
-            if !force {
-                return Err(problem(
-                    file,
-                    &format!("{} is there already", file.display()),
-                    "choose another name, or replace it with --force",
-                ));
-            }
-            // What somebody else has written, or a device, is not replaced by any word.
-            if !there.is_file() || !is_report(file) {
-                return Err(problem(
-                    file,
-                    &format!("{} is no report of this program", file.display()),
-                    "choose another name",
-                ));
-            }
-        }
+        target.check_place(&parent)?;
+        target.check_earlier(force)?;
         target.check_figures()?;
-        // Better to learn now than after the work that nothing can be written here.
-        temporary_in(&parent).map_err(|error| {
-            failed(
-                file,
-                &format!("cannot write in {}", parent.display()),
-                &error,
-            )
-        })?;
+        // Before the work, not after it.
+        let shown = parent.display();
+        temporary_in(&parent)
+            .map_err(|error| failed(file, &format!("cannot write in {shown}"), &error))?;
         Ok(target)
+    }
+
+    fn check_place(&self, parent: &Path) -> Result<(), Problem> {
+        let (file, shown) = (&self.file, self.file.display());
+        if file.is_dir() {
+            let hint = "name a file, for example report.html in it";
+            return Err(problem(file, &format!("{shown} is a directory"), hint));
+        }
+        if !parent.is_dir() {
+            let message = format!("there is no directory {}", parent.display());
+            return Err(problem(
+                file,
+                &message,
+                "make it first, or choose another place",
+            ));
+        }
+        let endings = self.form.endings();
+        if endings.contains(&ending(file).as_str()) {
+            return Ok(());
+        }
+        let hint = format!(
+            "end its name in .{}, or choose the other --format",
+            endings.join(" or .")
+        );
+        Err(problem(
+            file,
+            &format!("{shown} has not the ending of its form"),
+            &hint,
+        ))
+    }
+
+    /// Only an earlier report is replaced, and only with `force`.
+    fn check_earlier(&self, force: bool) -> Result<(), Problem> {
+        let (file, shown) = (&self.file, self.file.display());
+        match fs::symlink_metadata(file) {
+            Err(_) => Ok(()),
+            Ok(_) if !force => Err(problem(
+                file,
+                &format!("{shown} is there already"),
+                "choose another name, or replace it with --force",
+            )),
+            Ok(there) if there.is_file() && is_report(file) => Ok(()),
+            Ok(_) => Err(problem(
+                file,
+                &format!("{shown} is no report of this program"),
+                "choose another name",
+            )),
+        }
     }
 
     fn check_figures(&self) -> Result<(), Problem> {

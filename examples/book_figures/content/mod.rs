@@ -9,7 +9,7 @@ mod parts;
 mod reference;
 pub mod tables;
 
-use cvtcycle::report::charts::chart::{Chart, ChartPanel, Look, Points, chart};
+use cvtcycle::report::charts::lines::{self, LineChart, Look, Points, line_chart};
 use std::path::Path;
 
 /// A page of the book.
@@ -160,7 +160,7 @@ fn plot(title: &str, subject: &str, desc: &str, legend: &str, panels: Vec<LinePa
         index: names.iter().position(|other| other == name).unwrap_or(0),
         dotted: false,
     };
-    let panel = |of: LinePanel| ChartPanel {
+    let panel = |of: LinePanel| lines::LinePanel {
         heading: of.heading,
         x_title: of.x,
         y_title: of.y,
@@ -173,7 +173,7 @@ fn plot(title: &str, subject: &str, desc: &str, legend: &str, panels: Vec<LinePa
         stacked: false,
     };
     let text = |s: &str| s.to_owned();
-    let picture = chart(&Chart {
+    let picture = line_chart(&LineChart {
         title: text(title),
         subject: text(subject),
         description: text(desc),
@@ -184,7 +184,7 @@ fn plot(title: &str, subject: &str, desc: &str, legend: &str, panels: Vec<LinePa
             .iter()
             .map(|name| (look(name), name.clone()))
             .collect(),
-        ..Chart::default()
+        ..LineChart::default()
     });
     picture.svg
 }

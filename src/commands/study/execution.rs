@@ -5,7 +5,7 @@ use std::path::Path;
 
 use clap::Args;
 use cvtcycle::config::{Problem, Problems};
-use cvtcycle::report::found::StudyFound;
+use cvtcycle::report::results::StudyResults;
 use cvtcycle::report::study_pictures::study_pictures;
 use cvtcycle::study::disk::DirWriter;
 use cvtcycle::study::plan::Plan;
@@ -89,7 +89,7 @@ impl StudyRunArgs {
             return Ok(self.stopped(study, &dir));
         }
         let found = dir.study()?;
-        let found = StudyFound::of(StudyManifest::of(study), found)?;
+        let found = StudyResults::of(StudyManifest::of(study), found)?;
         let files = match &self.out.out {
             Some(_) => dir.finish(&files(&found)?)?,
             None => Vec::new(),
@@ -156,7 +156,7 @@ fn temporary_dir() -> Result<TempDir, Problems> {
 }
 
 /// Results of a study, finished or partial.
-pub fn results(study: &StudyFound) -> Result<Results, Problems> {
+pub fn results(study: &StudyResults) -> Result<Results, Problems> {
     Ok(Results {
         json: json_text(&study.answer)?,
         failures: tables::failures(&study.answer),
@@ -165,7 +165,7 @@ pub fn results(study: &StudyFound) -> Result<Results, Problems> {
 }
 
 /// Files of a finished study: numbers and figures.
-fn files(study: &StudyFound) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+fn files(study: &StudyResults) -> Result<Vec<(String, Vec<u8>)>, Problems> {
     let statistics = json_text(&study.answer)?.into_bytes();
     let mut files = vec![("statistics.json".to_owned(), statistics)];
     files.extend(cvtcycle::study::tables::tables(

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cvtcycle::report::found::StudyFound;
+use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::answer::{Comparison, OutputAnswer};
 use cvtcycle::study::outputs::EXCESS;
 use cvtcycle::study::plan::Design;
@@ -22,7 +22,7 @@ const MAX_FACTORS: usize = 10;
 const MAX_REASONS: usize = 5;
 
 /// Everything that a person wants to see of a study.
-pub fn tables(study: &StudyFound, paint: Paint) -> String {
+pub fn tables(study: &StudyResults, paint: Paint) -> String {
     let (answer, outline) = (&study.answer, &study.outline);
     let mut text = head(study, paint);
     if let Some(matrix) = &answer.matrix {
@@ -39,7 +39,7 @@ pub fn tables(study: &StudyFound, paint: Paint) -> String {
         + &factors(answer, outline, paint)
 }
 
-fn head(study: &StudyFound, paint: Paint) -> String {
+fn head(study: &StudyResults, paint: Paint) -> String {
     let (answer, outline) = (&study.answer, &study.outline);
     let mut text = format!("{}\n", paint.heading(&answer.title));
     if !answer.question.is_empty() {

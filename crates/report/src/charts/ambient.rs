@@ -1,12 +1,12 @@
 //! Pictures of a matrix of ambient temperatures: fuel, the subject's excess, warm-up side by side.
 
-use super::chart::{Chart, ChartPanel, Look, Points, chart};
+use super::lines::{LineChart, LinePanel, Look, Points, line_chart};
 use super::picture::Picture;
 use cvtcycle_study::ambient::{FuelPart, Matrix, WarmUp};
 
 const AMBIENT: &str = "Ambient temperature [\u{b0}C]";
 
-/// Ambient temperatures, degC, and a number at each, from cold to warm in whatever order they were asked for.
+/// Ambient temperatures, degC, and a number at each, sorted from cold to warm.
 fn points(x: &[f64], y: &[f64]) -> Points {
     let mut list: Points = x
         .iter()
@@ -39,10 +39,7 @@ fn look(matrix: &Matrix, car: usize, start: usize) -> Look {
             index: car,
             dotted: start == 1,
         },
-        starts => Look {
-            index: car * starts + start,
-            dotted: false,
-        },
+        starts => solid(car * starts + start),
     }
 }
 
@@ -62,14 +59,14 @@ fn names(matrix: &Matrix, cars: &[String], first_look: usize) -> Vec<(Look, Stri
 /// Fuel against ambient temperature: whole cycle and phases.
 #[must_use]
 pub fn ambient_fuel(matrix: &Matrix, title: &str) -> Picture {
-    let panel = |part: &FuelPart| ChartPanel {
+    let panel = |part: &FuelPart| LinePanel {
         heading: heading(&part.name),
         y_title: "Fuel [L/100 km]",
         series: series(matrix, &part.l_per_100km, 0),
-        ..ChartPanel::default()
+        ..LinePanel::default()
     };
-    let told = |part: &FuelPart| {
-        told(
+    let describe = |part: &FuelPart| {
+        describe(
             matrix,
             &part.name,
             &part.l_per_100km,
@@ -77,16 +74,21 @@ pub fn ambient_fuel(matrix: &Matrix, title: &str) -> Picture {
             "L/100 km",
         )
     };
-    chart(&Chart {
+    line_chart(&LineChart {
         title: "Fuel against ambient temperature".into(),
         subject: title.to_owned(),
-        description: matrix.fuel.iter().map(told).collect::<Vec<_>>().join(". "),
+        description: matrix
+            .fuel
+            .iter()
+            .map(describe)
+            .collect::<Vec<_>>()
+            .join(". "),
         x_title: AMBIENT,
         panels: matrix.fuel.iter().map(panel).collect(),
         marked: true,
         legend: "Car, start".into(),
         names: names(matrix, &matrix.cars, 0),
-        ..Chart::default()
+        ..LineChart::default()
     })
 }
 
@@ -97,29 +99,35 @@ pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<Picture> {
     if baselines.is_empty() {
         return None;
     }
-    let panel = |part: &FuelPart| ChartPanel {
+    let panel = |part: &FuelPart| LinePanel {
         heading: heading(&part.name),
         y_title: "Excess fuel [%]",
         with_y: vec![0.0],
         series: series(matrix, &part.excess_percent, 1),
-        ..ChartPanel::default()
+        ..LinePanel::default()
     };
-    let told = |part: &FuelPart| told(matrix, &part.name, &part.excess_percent, baselines, "%");
+    let describe =
+        |part: &FuelPart| describe(matrix, &part.name, &part.excess_percent, baselines, "%");
     let over: Vec<String> = baselines
         .iter()
         .map(|name| format!("over {name}"))
         .collect();
-    Some(chart(&Chart {
+    Some(line_chart(&LineChart {
         title: format!("Fuel of {subject} over that of its baselines"),
         subject: title.to_owned(),
-        description: matrix.fuel.iter().map(told).collect::<Vec<_>>().join(". "),
+        description: matrix
+            .fuel
+            .iter()
+            .map(describe)
+            .collect::<Vec<_>>()
+            .join(". "),
         x_title: AMBIENT,
         panels: matrix.fuel.iter().map(panel).collect(),
         same_y: true,
         marked: true,
         legend: "Baseline, start".into(),
         names: names(matrix, &over, 1),
-        ..Chart::default()
+        ..LineChart::default()
     }))
 }
 
@@ -128,63 +136,26 @@ pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<Picture> {
 pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> Picture {
     let mut panels = Vec::new();
     for (car, name) in matrix.cars.iter().enumerate() {
-        let node = |what: &str, of: fn(&WarmUp) -> &[f64]| {
-            let line = |run: &WarmUp| {
-                let seconds = run.time_s.iter().copied();
-                (
-                    Look {
-                        index: run.ambient,
-                        dotted: false,
-                    },
-                    seconds.zip(of(run).iter().copied()).collect(),
-                )
-            };
-            let own = runs
-                .iter()
-                .filter(|run| run.car == car && run.start == start);
-            ChartPanel {
-                heading: format!("{name}: {what}"),
-                y_title: "Temperature [\u{b0}C]",
-                series: own.map(line).collect(),
-                ..ChartPanel::default()
-            }
+        let own = || {
+            runs.iter()
+                .filter(|run| run.car == car && run.start == start)
         };
-        panels.push(node("transmission sump", |run| &run.sump_degc));
-        panels.push(node("engine oil", |run| &run.engine_oil_degc));
+        let panel = |what: &str, of: fn(&WarmUp) -> &[f64]| LinePanel {
+            heading: format!("{name}: {what}"),
+            y_title: "Temperature [\u{b0}C]",
+            series: own().map(|run| warm_up_line(run, of(run))).collect(),
+            ..LinePanel::default()
+        };
+        panels.push(panel("transmission sump", |run| &run.sump_degc));
+        panels.push(panel("engine oil", |run| &run.engine_oil_degc));
     }
-    let end = |run: &WarmUp| {
-        let last = |list: &[f64]| list.last().copied().unwrap_or(f64::NAN);
-        let ambient = matrix
-            .ambient_degc
-            .get(run.ambient)
-            .copied()
-            .unwrap_or(f64::NAN);
-        let car = matrix.cars.get(run.car).map_or("", String::as_str);
-        let (sump, oil) = (last(&run.sump_degc), last(&run.engine_oil_degc));
-        format!(
-            "{car} at {}: sump ends at {sump:.0}, engine oil at {oil:.0} \u{b0}C",
-            degrees(ambient)
-        )
-    };
-    let ends: Vec<String> = runs
-        .iter()
-        .filter(|run| run.start == start)
-        .map(end)
-        .collect();
-    let name = |(index, degc): (usize, &f64)| {
-        (
-            Look {
-                index,
-                dotted: false,
-            },
-            degrees(*degc),
-        )
-    };
-    chart(&Chart {
-        title: format!(
-            "Warm-up, start {}",
-            matrix.starts.get(start).map_or("", String::as_str)
-        ),
+    let ends = runs.iter().filter(|run| run.start == start);
+    let ends: Vec<String> = ends.map(|run| warm_up_end(matrix, run)).collect();
+    let names = matrix.ambient_degc.iter().enumerate();
+    let names = names.map(|(index, degc)| (solid(index), degrees(*degc)));
+    let word = matrix.starts.get(start).map_or("", String::as_str);
+    line_chart(&LineChart {
+        title: format!("Warm-up, start {word}"),
         subject: title.to_owned(),
         description: ends.join(". "),
         x_title: "Time [s]",
@@ -192,9 +163,35 @@ pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> P
         same_y: true,
         tight: true,
         legend: "Ambient temperature".into(),
-        names: matrix.ambient_degc.iter().enumerate().map(name).collect(),
-        ..Chart::default()
+        names: names.collect(),
+        ..LineChart::default()
     })
+}
+
+fn solid(index: usize) -> Look {
+    let dotted = false;
+    Look { index, dotted }
+}
+
+fn warm_up_line(run: &WarmUp, degc: &[f64]) -> (Look, Points) {
+    let points = run.time_s.iter().copied().zip(degc.iter().copied());
+    (solid(run.ambient), points.collect())
+}
+
+/// The temperatures at the end of a run in words.
+fn warm_up_end(matrix: &Matrix, run: &WarmUp) -> String {
+    let last = |list: &[f64]| list.last().copied().unwrap_or(f64::NAN);
+    let ambient = matrix
+        .ambient_degc
+        .get(run.ambient)
+        .copied()
+        .unwrap_or(f64::NAN);
+    let car = matrix.cars.get(run.car).map_or("", String::as_str);
+    let (sump, oil) = (last(&run.sump_degc), last(&run.engine_oil_degc));
+    format!(
+        "{car} at {}: sump ends at {sump:.0}, engine oil at {oil:.0} \u{b0}C",
+        degrees(ambient)
+    )
 }
 
 /// "−10 °C".
@@ -210,7 +207,8 @@ fn heading(part: &str) -> String {
     }
 }
 
-fn told(
+/// The numbers of a panel in words.
+fn describe(
     matrix: &Matrix,
     part: &str,
     by_car: &[Vec<Vec<f64>>],

@@ -1,12 +1,10 @@
-//! A picture with the numbers behind it: what is drawn can be read as a table, and the table answers what the pointer stands on.
-
-use super::axis::number;
+//! A picture with the table of its numbers, which also fills the box under the pointer.
 
 /// A picture and its numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
-    /// The drawing. A panel's frame (`class="plot"`) bears `data-x0` and `data-x1`, the values at its left and right edge, where the
-    /// first column of the table is its horizontal axis; every other mark bears `data-row`, the index of its row.
+    /// The drawing. Where the first column of the table is the horizontal axis of a panel, its frame (`class="plot"`) has `data-x0` and
+    /// `data-x1`, the values at its left and right edge; every other mark has `data-row`, the index of its row.
     pub svg: String,
     /// The numbers.
     pub table: PictureTable,
@@ -17,9 +15,9 @@ pub struct Picture {
 pub struct PictureTable {
     /// Name and unit of each column; no unit for words and plain numbers.
     pub columns: Vec<(String, &'static str)>,
-    /// Cells, row by row, as they are shown.
+    /// Cells as they are shown, row by row.
     pub rows: Vec<Vec<String>>,
-    /// What a reader has to know of the table, such as which rows are left out; may be empty.
+    /// Remark on the table, such as which rows are left out; may be empty.
     pub note: String,
 }
 
@@ -36,19 +34,19 @@ impl PictureTable {
         }
     }
 
+    /// A table with names and units of its columns that are made at run time, and a note.
+    #[must_use]
+    pub fn with_columns(columns: Vec<(String, &'static str)>, note: String) -> Self {
+        PictureTable {
+            columns,
+            note,
+            ..PictureTable::default()
+        }
+    }
+
     /// Adds a row and returns its index, for `data-row`.
     pub fn push(&mut self, cells: Vec<String>) -> usize {
         self.rows.push(cells);
         self.rows.len() - 1
-    }
-}
-
-/// A number for a cell, with as many decimals as `step` between neighbours needs; empty where there is none.
-#[must_use]
-pub fn cell(value: f64, step: f64) -> String {
-    if value.is_finite() {
-        number(value, step)
-    } else {
-        String::new()
     }
 }

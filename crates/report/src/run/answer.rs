@@ -1,42 +1,39 @@
-//! Half a page that answers the question.
+//! Half a page of results.
 
-use super::super::document::{Block, Section, Table};
-use super::super::found::{RunFound, StudyFound};
+use super::super::document::{Block, ReportTable, Section};
 use super::super::number::{Quantity, percent, phase, words};
-use super::super::{study, validation};
+use super::super::results::{RunResults, StudyResults};
+use super::super::{study_answers, validation};
 use super::{Car, conditions_line, cycle_title, energy};
 use cvtcycle_output::summary::{Comparison, Summary};
 
-pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
+pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("answer", "Answer");
     let (summary, record) = (&found.summary, found.record.as_ref());
-    section.blocks.push(Block::Lead(lead(
-        summary,
-        brief(&cycle_title(summary, record)),
-    )));
+    section.lead(lead(summary, brief(&cycle_title(summary, record))));
     for line in checks(summary) {
-        section.blocks.push(Block::Alert(line));
+        section.alert(line);
     }
     for line in &found.missing {
-        section.blocks.push(Block::Alert(capital_first(line)));
+        section.alert(capital_first(line));
     }
     section.table(fuel(summary));
-    for beside in &found.studies {
+    for own in &found.studies {
         // A study of another case says nothing about this run; its section says what it is.
-        if let Some(why) = study::other_case(beside, summary) {
-            section.blocks.push(Block::Alert(format!(
+        if let Some(why) = study_answers::other_case(own, summary) {
+            section.alert(format!(
                 "The study \u{201c}{}\u{201d} is of another case: {why}.",
-                beside.answer.title
-            )));
+                own.answer.title
+            ));
             continue;
         }
         section.blocks.extend(
-            super::unfinished(beside)
+            own.unfinished()
                 .map(|text| Block::Alert(format!("{text}; what it says here is of these."))),
         );
         section
             .blocks
-            .extend(study::answers(beside).into_iter().map(Block::Text));
+            .extend(study_answers::answers(own).into_iter().map(Block::Text));
     }
     section.text(where_it_went(cars));
     if let Some((subject, baseline)) = cars
@@ -46,10 +43,8 @@ pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
         section.text(energy::difference(subject, baseline));
     }
     section.text(ends(cars));
-    section
-        .blocks
-        .push(Block::Heading("What to doubt".to_owned()));
-    section.blocks.push(Block::List(doubts(found, cars)));
+    section.heading("What to doubt".to_owned());
+    section.list(doubts(found, cars));
     section
 }
 
@@ -83,7 +78,7 @@ fn lead(summary: &Summary, cycle: &str) -> String {
         subject.title,
         conditions_line(summary)
     );
-    let told: Vec<String> = baselines
+    let differences: Vec<String> = baselines
         .iter()
         .zip(&summary.comparison)
         .filter_map(|(baseline, comparison)| {
@@ -95,11 +90,11 @@ fn lead(summary: &Summary, cycle: &str) -> String {
             ))
         })
         .collect();
-    if told.is_empty() {
+    if differences.is_empty() {
         return text + ".";
     }
     text += ": ";
-    text + &told.join(", and ") + "."
+    text + &differences.join(", and ") + "."
 }
 
 /// "5.9 % more", by the sign of the difference.
@@ -121,17 +116,17 @@ fn checks(summary: &Summary) -> Vec<String> {
         .map(|run| {
             let seconds = |check: &String| run.flags_s.get(check).map_or(String::new(), |s| format!(" for {}", Quantity::Seconds.text(s)));
             let list: Vec<String> = run.failed_checks.iter().map(|check| words(check) + &seconds(check)).collect();
-            format!("A check failed for {}: {}. Its numbers do not stand for a car that has driven this cycle.", run.title, list.join(", "))
+            format!("A check failed for {}: {}. Its numbers are not those of a car that has driven this cycle.", run.title, list.join(", "))
         })
         .collect()
 }
 
 /// Fuel, distance and difference of each car, by phase.
-fn fuel(summary: &Summary) -> Table {
+fn fuel(summary: &Summary) -> ReportTable {
     let runs = &summary.runs;
     let q = Quantity::Fuel;
     let columns = runs.iter().map(|run| (run.vehicle.clone(), String::new()));
-    let mut table = Table::of_numbers("Fuel and distance", "", columns);
+    let mut table = ReportTable::of_numbers("Fuel and distance", "", columns);
     let name = |what: &str, unit: &str| format!("{what} [{unit}]");
     let mut add =
         |what: &str, quantity: Quantity, strong: bool, of: &dyn Fn(usize) -> Option<f64>| {
@@ -219,7 +214,7 @@ fn where_it_went(cars: &[Car]) -> String {
 }
 
 fn ends(cars: &[Car]) -> String {
-    let told = |car: &Car| {
+    let temperatures = |car: &Car| {
         let end = |node: &str| Quantity::Degc.text(car.run.end_degc.get(node));
         format!(
             "{}: transmission sump {}, engine oil {}, coolant {}",
@@ -234,41 +229,35 @@ fn ends(cars: &[Car]) -> String {
     });
     format!(
         "At the end, after {seconds}: {}.",
-        cars.iter().map(told).collect::<Vec<_>>().join("; ")
+        cars.iter().map(temperatures).collect::<Vec<_>>().join("; ")
     )
 }
 
 /// Temperature below which the thesis measured trends only, degC.
 const MEASURED_FROM_DEGC: f64 = 25.0;
 
-fn doubts(found: &RunFound, cars: &[Car]) -> Vec<String> {
-    let mut list = Vec::new();
-    let mut below = Vec::new();
-    for car in cars {
-        if car.run.outside_validity_s > 0.0 {
-            let seconds = Quantity::Seconds.text(car.run.outside_validity_s);
-            list.push(format!(
-                "{} ran outside the validity of a model for {seconds}.",
-                car.run.vehicle
-            ));
-        }
-        if let Some(history) = car.history {
-            let cold: f64 = history
-                .column("transmission_sump_degc")
-                .iter()
-                .zip(history.column("dt_s"))
-                .filter(|(degc, _)| **degc < MEASURED_FROM_DEGC)
-                .map(|(_, dt)| dt)
-                .sum();
-            if cold > 0.0 {
-                let (cold, whole) = (
-                    Quantity::Seconds.text(cold),
-                    Quantity::Seconds.text(car.run.duration_s),
-                );
-                below.push(format!("{cold} of {whole} in {}", car.run.vehicle));
-            }
-        }
-    }
+/// Time of a car with transmission oil below the measured temperatures, if there is any.
+fn cold_time(car: &Car) -> Option<String> {
+    let history = car.history?;
+    let degc = history.column("transmission_sump_degc").iter();
+    let steps = degc.zip(history.column("dt_s"));
+    let cold: f64 = steps
+        .filter(|(degc, _)| **degc < MEASURED_FROM_DEGC)
+        .map(|(_, dt)| dt)
+        .sum();
+    let [cold_text, whole] = [cold, car.run.duration_s].map(|s| Quantity::Seconds.text(s));
+    (cold > 0.0).then(|| format!("{cold_text} of {whole} in {}", car.run.vehicle))
+}
+
+fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
+    let outside = cars.iter().filter(|car| car.run.outside_validity_s > 0.0);
+    let outside = outside.map(|car| {
+        let seconds = Quantity::Seconds.text(car.run.outside_validity_s);
+        let name = &car.run.vehicle;
+        format!("{name} ran outside the validity of a model for {seconds}.")
+    });
+    let mut list: Vec<String> = outside.collect();
+    let below: Vec<String> = cars.iter().filter_map(cold_time).collect();
     if !below.is_empty() {
         list.push(format!(
             "The transmission oil was below {} for {}: there the thesis measured trends only (5.3.3), and the losses are extrapolated.",
@@ -277,16 +266,23 @@ fn doubts(found: &RunFound, cars: &[Car]) -> Vec<String> {
         ));
     }
     list.extend(super::values::doubt(found, cars));
-    let tells = |study: &&StudyFound| {
+    let has_interval = |study: &&StudyResults| {
         let sampled =
             study.outline.plan.design.is_sampled() && !study.answer.comparisons.is_empty();
         sampled
             && study.answer.points_done > 0
-            && study::other_case(study, &found.summary).is_none()
+            && study_answers::other_case(study, &found.summary).is_none()
     };
-    match found.studies.iter().find(tells) {
-        None => list.push("No study of uncertainty of this case stands beside this run: the difference has no interval.".to_owned()),
-        Some(study) => list.extend(super::unfinished(study).map(|text| format!("Its interval is preliminary: {text}."))),
+    match found.studies.iter().find(has_interval) {
+        None => list.push(
+            "There is no study of uncertainty of this case: the difference has no interval."
+                .to_owned(),
+        ),
+        Some(study) => list.extend(
+            study
+                .unfinished()
+                .map(|text| format!("Its interval is preliminary: {text}.")),
+        ),
     }
     list.extend(found.validation.as_ref().map(validation::doubt));
     let worst = cars

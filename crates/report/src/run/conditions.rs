@@ -1,15 +1,15 @@
-//! Under which conditions: cycle, ambient, cars, fluids, and what differs from the shipped files.
+//! Conditions: cycle, ambient, cars, fluids, and values that differ from the shipped files.
 
-use super::super::document::{Block, Section, Table};
-use super::super::found::RunFound;
+use super::super::document::{ReportTable, Section};
 use super::super::number::{NONE, Quantity, degc, words};
+use super::super::results::RunResults;
 use super::{Car, cycle_title, start_line};
 use cvtcycle_output::record::{CarRecord, Change};
 
 /// Changes shown before the rest is folded away.
 const SHOWN: usize = 25;
 
-pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
+pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("conditions", "Conditions");
     let summary = &found.summary;
     let settings = &summary.settings;
@@ -35,13 +35,13 @@ pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
             facts.push((option.to_owned(), list.join(", ")));
         }
     }
-    section.blocks.push(Block::Facts(facts));
+    section.facts(facts);
     section.table(table(cars));
-    section.blocks.push(Block::Facts(
+    section.facts(
         cars.iter()
             .filter_map(|car| controller(car.record?))
             .collect(),
-    ));
+    );
     for car in cars {
         if let Some(record) = car.record {
             changes(&mut section, car, record);
@@ -50,8 +50,8 @@ pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
     section
 }
 
-fn table(cars: &[Car]) -> Table {
-    let mut table = Table::of_words(
+fn table(cars: &[Car]) -> ReportTable {
+    let mut table = ReportTable::of_words(
         "Cars and fluids",
         &[
             "Car",
@@ -89,7 +89,7 @@ fn controller(record: &CarRecord) -> Option<(String, String)> {
         .values
         .iter()
         .find(|value| value.key == "transmission.cvt.clamp")?;
-    let told = record.values.iter().filter_map(|value| {
+    let parts = record.values.iter().filter_map(|value| {
         let name = words(
             value
                 .key
@@ -104,7 +104,7 @@ fn controller(record: &CarRecord) -> Option<(String, String)> {
         };
         Some(format!("{name} {}{unit}", value.value))
     });
-    let list = told.collect::<Vec<_>>().join(", ");
+    let list = parts.collect::<Vec<_>>().join(", ");
     Some((
         format!("Controller of {}", record.name),
         format!("clamp law {}; ratio: {list}", words(&law.value)),
@@ -138,17 +138,13 @@ fn changes(section: &mut Section, car: &Car, record: &CarRecord) {
             rest.len(),
             car.run.vehicle
         );
-        section.blocks.push(Block::Folded(change_table(
-            &caption,
-            rest,
-            ["shipped", "here"],
-        )));
+        section.folded(change_table(&caption, rest, ["shipped", "here"]));
     }
 }
 
 /// Values that differ, side by side.
-pub(crate) fn change_table(caption: &str, changes: &[Change], names: [&str; 2]) -> Table {
-    let mut table = Table::of_words(caption, &["Key", "Unit", names[0], names[1]]);
+pub(crate) fn change_table(caption: &str, changes: &[Change], names: [&str; 2]) -> ReportTable {
+    let mut table = ReportTable::of_words(caption, &["Key", "Unit", names[0], names[1]]);
     let cell = |text: &String| {
         if text.is_empty() {
             NONE.to_owned()

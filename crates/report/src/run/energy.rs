@@ -1,11 +1,11 @@
-//! Where the energy went, and what a difference of fuel consists of.
+//! Energy balance, and the terms of a difference of fuel.
 
-use super::super::document::{Block, Section, Table};
+use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, percent};
 use super::Car;
-use crate::charts::review_figures::{CarEnergy, energy_flow, transmission_flow};
+use crate::charts::figures::{CarEnergy, energy_flow, transmission_flow};
 
-/// Terms of the power ledger beside the losses, and what people call them.
+/// Terms of the power ledger with their names.
 pub const TERMS: [(&str, &str); 7] = [
     ("wheels", "rolling and air, net"),
     ("brake", "brakes"),
@@ -42,7 +42,7 @@ pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
         .map(|(name, words)| (*words, term(subject, name) - term(baseline, name)))
         .collect();
     parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let told: Vec<String> = parts
+    let terms: Vec<String> = parts
         .iter()
         .filter(|(_, kj)| kj.abs() >= 0.5)
         .map(|(words, kj)| format!("{words} {}", Quantity::Energy.signed(*kj)))
@@ -61,7 +61,7 @@ pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
         "Against {} the fuel's energy differs by {}: {}.{drive}",
         baseline.run.vehicle,
         Quantity::Energy.signed(fuel),
-        told.join(", ")
+        terms.join(", ")
     )
 }
 
@@ -74,7 +74,7 @@ pub(super) fn section(cars: &[Car]) -> Section {
     section.table(balance(cars));
     for car in cars {
         let (name, energy) = (&car.run.vehicle, car_energy(car));
-        section.blocks.push(Block::Heading(car.run.title.clone()));
+        section.heading(car.run.title.clone());
         section.figure(
             format!("energy_flow_{name}"),
             format!("Energy of {name} from the fuel to the road."),
@@ -92,14 +92,14 @@ pub(super) fn section(cars: &[Car]) -> Section {
     section
 }
 
-fn balance(cars: &[Car]) -> Table {
+fn balance(cars: &[Car]) -> ReportTable {
     let columns = cars.iter().flat_map(|car| {
         [
             (car.run.vehicle.clone(), "kJ".to_owned()),
             ("of fuel".to_owned(), "%".to_owned()),
         ]
     });
-    let mut table = Table::of_numbers("Energy balance", "Term", columns);
+    let mut table = ReportTable::of_numbers("Energy balance", "Term", columns);
     let cells = |of: &dyn Fn(&Car) -> Option<f64>| -> Vec<String> {
         cars.iter()
             .flat_map(|car| {
@@ -111,16 +111,11 @@ fn balance(cars: &[Car]) -> Table {
             .collect()
     };
     for (term, words) in TERMS {
-        table.row(
-            [words.to_owned()]
-                .into_iter()
-                .chain(cells(&|car| car.run.ledger_kj.get(term))),
-        );
+        table.named(words.to_owned(), cells(&|car| car.run.ledger_kj.get(term)));
     }
-    table.strong_row(
-        ["fuel".to_owned()]
-            .into_iter()
-            .chain(cells(&|car| Some(car.run.fuel_energy_kj))),
+    table.strong(
+        "fuel".to_owned(),
+        cells(&|car| Some(car.run.fuel_energy_kj)),
     );
     table
 }

@@ -1,10 +1,10 @@
 //! The sections that are mostly figures: energy, losses, warm-up, driveline, engine.
 
-use super::super::document::{Block, Section, Table};
-use super::super::found::RunFound;
+use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, capital, percent, phase as phase_name};
+use super::super::results::RunResults;
 use super::{Car, cars, energy};
-use crate::charts::review_figures::{
+use crate::charts::figures::{
     CarLosses, GuideLine, LossTrace, PhaseLosses, Variogram, loss_by_component, loss_by_phase,
     loss_by_temperature, variogram,
 };
@@ -43,7 +43,7 @@ pub fn fuel_map(record: &FuelMapRecord) -> FuelMap {
     }
 }
 
-pub(super) fn sections(found: &RunFound, all: &[Car]) -> Vec<Section> {
+pub(super) fn sections(found: &RunResults, all: &[Car]) -> Vec<Section> {
     let plots: Vec<PlotRun> = cars(found).iter().filter_map(plot).collect();
     let mut answer_energy = energy::section(all);
     if plots.len() == all.len() {
@@ -116,7 +116,7 @@ fn losses_section(all: &[Car]) -> Section {
         let (Some(run), Some(history), name) = (plot(car), car.history, &car.run.vehicle) else {
             continue;
         };
-        section.blocks.push(Block::Heading(car.run.title.clone()));
+        section.heading(car.run.title.clone());
         section.figure(
             format!("losses_{name}"),
             format!("Loss power of {name} over time, averaged over stretches of the cycle."),
@@ -135,14 +135,14 @@ fn losses_section(all: &[Car]) -> Section {
     section
 }
 
-fn loss_table(all: &[Car]) -> Table {
+fn loss_table(all: &[Car]) -> ReportTable {
     let columns = all.iter().flat_map(|car| {
         [
             (car.run.vehicle.clone(), "kJ".to_owned()),
             ("of its transmission".to_owned(), "%".to_owned()),
         ]
     });
-    let mut table = Table::of_numbers("Losses over the whole cycle", "Component", columns);
+    let mut table = ReportTable::of_numbers("Losses over the whole cycle", "Component", columns);
     for component in Component::ALL {
         let of = |car: &Car| car.run.loss_kj.get(component.name());
         if all.iter().any(|car| of(car).is_some()) {
@@ -153,7 +153,7 @@ fn loss_table(all: &[Car]) -> Table {
                 ],
                 None => [String::new(), String::new()],
             });
-            table.row([capital(component.name())].into_iter().chain(cells));
+            table.named(capital(component.name()), cells);
         }
     }
     let sums = all.iter().flat_map(|car| {
@@ -162,7 +162,7 @@ fn loss_table(all: &[Car]) -> Table {
             percent(1.0, 1.0),
         ]
     });
-    table.strong_row(["Transmission".to_owned()].into_iter().chain(sums));
+    table.strong("Transmission".to_owned(), sums);
     table
 }
 
@@ -240,7 +240,7 @@ fn warm_up(all: &[Car]) -> Section {
     let columns = all
         .iter()
         .map(|car| (car.run.vehicle.clone(), Quantity::Degc.unit().to_owned()));
-    let mut table = Table::of_numbers("Temperatures at the end", "Node", columns);
+    let mut table = ReportTable::of_numbers("Temperatures at the end", "Node", columns);
     let mut nodes: Vec<&str> = Vec::new();
     for (name, _) in all.iter().flat_map(|car| car.run.end_degc.iter()) {
         if !nodes.contains(&name) {
@@ -248,11 +248,10 @@ fn warm_up(all: &[Car]) -> Section {
         }
     }
     for node in nodes {
-        table.row(
-            [capital(node)].into_iter().chain(
-                all.iter()
-                    .map(|car| Quantity::Degc.bare(car.run.end_degc.get(node))),
-            ),
+        table.named(
+            capital(node),
+            all.iter()
+                .map(|car| Quantity::Degc.bare(car.run.end_degc.get(node))),
         );
     }
     section.table(table);
@@ -272,7 +271,7 @@ fn drive(all: &[Car]) -> Section {
     for car in all {
         let Some(run) = plot(car) else { continue };
         let name = run.name;
-        section.blocks.push(Block::Heading(car.run.title.clone()));
+        section.heading(car.run.title.clone());
         section.figure(
             format!("driveline_{name}"),
             format!("Speed, ratio, engine speed and throttle of {name}."),

@@ -1,4 +1,4 @@
-//! The report of a run: the answer first, then what it rests on.
+//! The report of a run: results first, then details.
 
 mod answer;
 mod conditions;
@@ -8,8 +8,8 @@ mod reproduce;
 mod values;
 
 use super::document::{Document, Section};
-use super::found::{RunFound, StudyFound};
 use super::number::{degc, words};
+use super::results::RunResults;
 use super::{study, validation};
 use cvtcycle_config::Problem;
 use cvtcycle_output::Component;
@@ -27,14 +27,14 @@ pub use reproduce::hashes;
 pub struct Car<'a> {
     /// Its numbers.
     pub run: &'a RunSummary,
-    /// What it was made from.
+    /// Its inputs.
     pub record: Option<&'a CarRecord>,
     /// Its trace.
     pub history: Option<&'a History>,
 }
 
 impl Car<'_> {
-    /// Losses of the transmission that the run tells, kJ, in the order of the power flow.
+    /// Losses of the transmission, kJ, in the order of the power flow.
     #[must_use]
     pub fn losses_kj(&self) -> Vec<(Component, f64)> {
         Component::ALL
@@ -46,7 +46,7 @@ impl Car<'_> {
 
 /// The cars of a run, the subject first.
 #[must_use]
-pub fn cars(found: &RunFound) -> Vec<Car<'_>> {
+pub fn cars(found: &RunResults) -> Vec<Car<'_>> {
     let record = |name: &str| {
         found
             .record
@@ -76,8 +76,8 @@ pub fn cars(found: &RunFound) -> Vec<Car<'_>> {
 /// The report of a run.
 ///
 /// # Errors
-/// A part of a study beside it that cannot be read.
-pub fn document(found: &RunFound) -> Result<Document, Problem> {
+/// A part of a study that cannot be read.
+pub fn document(found: &RunResults) -> Result<Document, Problem> {
     let cars = cars(found);
     let mut document = Document {
         title: title(&found.summary),
@@ -94,8 +94,8 @@ pub fn document(found: &RunFound) -> Result<Document, Problem> {
         conditions::section(found, &cars),
     ];
     sections.extend(figures::sections(found, &cars));
-    for (k, beside) in found.studies.iter().enumerate() {
-        let mut section = study::section(beside)?;
+    for (k, own) in found.studies.iter().enumerate() {
+        let mut section = study::section(own)?;
         // Of several studies of a kind the first keeps the plain name.
         if sections
             .iter()
@@ -103,7 +103,7 @@ pub fn document(found: &RunFound) -> Result<Document, Problem> {
         {
             section.id = format!("{}-{k}", section.id);
         }
-        document.warnings.extend(unfinished(beside));
+        document.warnings.extend(own.unfinished());
         sections.push(section);
     }
     sections.extend(values::section(found, &cars));
@@ -111,18 +111,6 @@ pub fn document(found: &RunFound) -> Result<Document, Problem> {
     sections.push(reproduce::section(found, &cars));
     document.sections = sections;
     Ok(document)
-}
-
-/// A word about a study that is not finished.
-#[must_use]
-pub fn unfinished(study: &StudyFound) -> Option<String> {
-    let (there, all) = study.parts();
-    (there < all).then(|| {
-        format!(
-            "the study in {} is not finished: {there} of {all} parts",
-            study.path.display()
-        )
-    })
 }
 
 fn title(summary: &Summary) -> String {

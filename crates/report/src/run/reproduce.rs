@@ -1,13 +1,13 @@
 //! What is needed to get the same numbers again.
 
-use super::super::document::{Block, Section, Table};
-use super::super::found::RunFound;
+use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, tiny, words};
+use super::super::results::RunResults;
 use super::Car;
 use cvtcycle_output::number::finite;
 use cvtcycle_output::record::Record;
 
-pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
+pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("reproducibility", "Reproducibility");
     let mut facts = vec![(
         "Program of the run".to_owned(),
@@ -20,17 +20,16 @@ pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
             record.cycle.sha256.clone(),
         ));
     }
-    section.blocks.push(Block::Facts(facts));
+    section.facts(facts);
     if let Some(record) = &found.record {
         section.table(hashes(record, "Inputs"));
     }
     let columns = cars
         .iter()
         .map(|car| (car.run.vehicle.clone(), String::new()));
-    let mut table = Table::of_numbers("Ledgers and solution", "", columns);
-    let mut add = |name: &str, of: &dyn Fn(&Car) -> String| {
-        table.row([name.to_owned()].into_iter().chain(cars.iter().map(of)))
-    };
+    let mut table = ReportTable::of_numbers("Ledgers and solution", "", columns);
+    let mut add =
+        |name: &str, of: &dyn Fn(&Car) -> String| table.named(name.to_owned(), cars.iter().map(of));
     add("Energy ledger, worst row", &|car| {
         tiny(car.run.ledger_error)
     });
@@ -51,8 +50,8 @@ pub(super) fn section(found: &RunFound, cars: &[Car]) -> Section {
 
 /// Files of every car with their hashes.
 #[must_use]
-pub fn hashes(record: &Record, caption: &str) -> Table {
-    let mut table = Table::of_words(caption, &["Car", "What", "File", "SHA-256"]);
+pub fn hashes(record: &Record, caption: &str) -> ReportTable {
+    let mut table = ReportTable::of_words(caption, &["Car", "What", "File", "SHA-256"]);
     for car in &record.cars {
         for (what, file) in [
             ("vehicle", &car.vehicle),
@@ -76,11 +75,11 @@ pub fn hashes(record: &Record, caption: &str) -> Table {
     table
 }
 
-fn flags(cars: &[Car]) -> Table {
+fn flags(cars: &[Car]) -> ReportTable {
     let columns = cars
         .iter()
         .map(|car| (car.run.vehicle.clone(), "s".to_owned()));
-    let mut table = Table::of_numbers("Time with each flag", "Flag", columns);
+    let mut table = ReportTable::of_numbers("Time with each flag", "Flag", columns);
     let names: Vec<&str> = cars
         .first()
         .map(|car| car.run.flags_s.iter().map(|(name, _)| name).collect())
@@ -88,10 +87,9 @@ fn flags(cars: &[Car]) -> Table {
     for name in names {
         let of = |car: &Car| car.run.flags_s.get(name);
         if cars.iter().any(|car| of(car).is_some_and(|s| s > 0.0)) {
-            table.row(
-                [words(name)]
-                    .into_iter()
-                    .chain(cars.iter().map(|car| Quantity::Seconds.bare(of(car)))),
+            table.named(
+                words(name),
+                cars.iter().map(|car| Quantity::Seconds.bare(of(car))),
             );
         }
     }

@@ -1,29 +1,29 @@
-//! Values with their status, and how much each matters.
+//! Values with their status and their effect on fuel.
 
 use std::collections::BTreeMap;
 
-use super::super::document::{Block, Section, Table};
-use super::super::found::RunFound;
+use super::super::document::{ReportTable, Section};
 use super::super::number::{NONE, Quantity};
+use super::super::results::RunResults;
 use super::Car;
 use cvtcycle_output::record::{CarRecord, Effect, Record, Sensitivity, ValueRecord};
 
 /// Assumptions and fits shown before the rest is folded away.
 const SHOWN: usize = 20;
-/// Effects below this, per cent of fuel, are told together.
+/// Effects below this, per cent of fuel, are written as 0.
 const SMALL_PERCENT: f64 = 0.005;
 
-/// Whether a value rests on judgement or on a fit, rather than on a source.
+/// True for a value from judgement or a fit, not from a source.
 fn is_doubtful(value: &ValueRecord) -> bool {
     ["assumed", "fitted", "default"].contains(&value.status.as_str())
 }
 
-/// Whether there is a value at all: neither a choice of a model nor an optional key that nobody has set.
+/// True if there is a value: neither a choice of a model nor an optional key without a value.
 fn is_given(value: &ValueRecord) -> bool {
     value.status != "choice" && !value.value.is_empty()
 }
 
-pub(super) fn section(found: &RunFound, cars: &[Car]) -> Option<Section> {
+pub(super) fn section(found: &RunResults, cars: &[Car]) -> Option<Section> {
     let record = found.record.as_ref()?;
     let mut section = Section::new("values", "Assumptions, and how much each matters");
     section.text(format!(
@@ -34,11 +34,11 @@ pub(super) fn section(found: &RunFound, cars: &[Car]) -> Option<Section> {
         Some(sensitivity) => {
             section.text(format!(
                 "Each number was changed by itself by {} down and up, and the cycle driven again: the effect is the change of that car's fuel. \
-                 An efficiency was changed through its loss, a temperature by 5\u{a0}K; a dash stands where the value cannot be so. The step is the same for all; how uncertain each value is, is another question (docs/uncertainty.md).",
+                 An efficiency was changed through its loss, a temperature by 5\u{a0}K; a dash where the value cannot be so. The step is the same for all; how uncertain each value is, is another question (docs/uncertainty.md).",
                 percent_text(sensitivity.step_percent)
             ));
         }
-        None => section.text("How much each value matters was not computed for this run: cvtcycle run --sensitivity always asks for it."),
+        None => section.text("How much each value matters was not computed for this run: use cvtcycle run --sensitivity always."),
     }
     for car in cars {
         if let Some(record) = car.record {
@@ -104,9 +104,7 @@ fn of_car(section: &mut Section, car: &CarRecord, sensitivity: Option<&Sensitivi
     section.table(table(&caption, first, sensitivity));
     if !rest.is_empty() {
         let caption = format!("{} more of {}", rest.len(), car.name);
-        section
-            .blocks
-            .push(Block::Folded(table(&caption, rest, sensitivity)));
+        section.folded(table(&caption, rest, sensitivity));
     }
     let sourced: Vec<_> = car
         .values
@@ -130,16 +128,14 @@ fn of_car(section: &mut Section, car: &CarRecord, sensitivity: Option<&Sensitivi
         sourced.len(),
         car.name
     );
-    section
-        .blocks
-        .push(Block::Folded(table(&caption, &sourced, sensitivity)));
+    section.folded(table(&caption, &sourced, sensitivity));
 }
 
 fn table(
     caption: &str,
     list: &[(&ValueRecord, Option<&Effect>)],
     sensitivity: Option<&Sensitivity>,
-) -> Table {
+) -> ReportTable {
     let step = sensitivity.map_or(String::new(), |s| percent_text(s.step_percent));
     let heads = [
         format!("fuel with it {step} lower, %"),
@@ -149,7 +145,7 @@ fn table(
     if sensitivity.is_some() {
         columns.extend(heads.iter().map(String::as_str));
     }
-    let mut table = Table::of_words(caption, &columns);
+    let mut table = ReportTable::of_words(caption, &columns);
     table
         .columns
         .iter_mut()
@@ -191,8 +187,8 @@ fn short(text: &str) -> String {
     }
 }
 
-/// What the values leave open, in one line.
-pub(super) fn doubt(found: &RunFound, cars: &[Car]) -> Option<String> {
+/// The number of doubtful values, and the one with the largest effect.
+pub(super) fn doubt(found: &RunResults, cars: &[Car]) -> Option<String> {
     let (record, subject) = (found.record.as_ref()?, cars.first()?.record?);
     let numbers = subject
         .values

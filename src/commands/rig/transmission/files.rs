@@ -5,6 +5,7 @@ use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::rig::{steady_columns, strip_columns, transient_columns, two_box_columns};
 use cvtcycle::output::table::{Column, write_csv};
 use cvtcycle::report::charts::rig_transmission::plots::{self, Picture, Subject};
+use cvtcycle::report::charts::rig_transmission::strip_down;
 
 use super::{RigPlan, RigResults};
 use crate::print::WrittenFiles;
@@ -32,7 +33,7 @@ pub fn write(
         &strip_columns(),
         &found.strip_down,
     )?;
-    pictures.extend(plots::strip_down(&found.strip_down, &subject));
+    pictures.extend(strip_down::strip_down(&found.strip_down, &subject));
     let moments: Vec<_> = found
         .loops
         .iter()

@@ -1,14 +1,15 @@
 //! Correlation of the parameters as coloured cells.
 
-use super::super::figure::{Anchor, Figure, INK, Rect, text_width};
-use super::super::picture::{Picture, PictureTable, cell};
-use super::super::study::text::{foot_height, middle};
-use super::super::style::between;
-use super::{MARGIN, RIGHT, TOP, WIDTH, key, subject};
+use super::{MARGIN, RIGHT, TOP, WIDE_FOOT, subject};
+use crate::charts::engine::{
+    Axis, Block, Chart, Cut, DIVERGING, Key, Label, Panel, Rect, Shape, Style, at, between, cell,
+    stroke, text_width,
+};
+use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::fit::outcome::Outcome;
 
 /// Most parameters that are drawn: more could not be read.
-const MOST: usize = 50;
+const MAX_DRAWN: usize = 50;
 /// Numbers are written from this correlation on.
 const STRONG: f64 = 0.5;
 /// Room for names: of few parameters, and of so many that cells need it to hold their numbers, pixels.
@@ -18,18 +19,9 @@ const TEXT: f64 = 11.0;
 /// Largest cell, and the smallest one that holds a number, pixels.
 const CELL: f64 = 40.0;
 const HOLDS: f64 = 24.0;
-/// Room between the names and the last row of cells, and the key, pixels.
+/// Room above the cells for the numbers of the columns, pixels.
 const HEAD: f64 = 20.0;
-const KEY: f64 = 52.0;
 const SLICES: usize = 40;
-/// From -1 over 0 to 1: blue, white, brown, which the colour-blind tell apart, and the darker the stronger.
-const DIVERGING: [(f64, f64, f64); 5] = [
-    (5.0, 80.0, 150.0),
-    (125.0, 180.0, 220.0),
-    (247.0, 247.0, 247.0),
-    (243.0, 175.0, 105.0),
-    (160.0, 72.0, 5.0),
-];
 /// Ink on light cells: no text colour of the page, for the cells keep their colours where a dark page turns those around.
 const ON_LIGHT: &str = "#111111";
 const ON_DARK: &str = "#ffffff";
@@ -38,14 +30,14 @@ const ON_DARK: &str = "#ffffff";
 #[must_use]
 pub fn correlation_plot(outcome: &Outcome) -> Picture {
     let count = outcome.parameters.len();
-    let n = count.min(MOST);
+    let n = count.min(MAX_DRAWN);
     let mut table = PictureTable::new(&[
         ("Parameter", ""),
         ("Other parameter", ""),
         ("Correlation", ""),
     ]);
     let mut notes =
-        vec!["Columns bear the numbers of the rows. Crossed out: not known, for the data do not tell the parameter.".to_owned()];
+        vec!["Columns bear the numbers of the rows. Crossed out: not known, for the data do not determine the parameter.".to_owned()];
     if n < count {
         notes.push(format!(
             "The first {n} of {count} parameters; correlation.csv has all."
@@ -54,87 +46,58 @@ pub fn correlation_plot(outcome: &Outcome) -> Picture {
     table.note = notes.join(" ");
     let names = NAMES[usize::from(n > FEW)];
     let size = ((RIGHT - MARGIN - names) / n.max(1) as f64).min(CELL);
-    let (left, top) = (MARGIN + names, TOP + HEAD);
-    let bottom = top + n as f64 * size;
-    let (strip, wide) = ((MARGIN, bottom + 14.0), RIGHT - MARGIN);
-    let tall = strip.1 + KEY + foot_height(std::iter::empty(), wide, &notes);
-    let mut figure = Figure::new(
-        (WIDTH, tall),
-        MARGIN,
-        "Correlation of the parameters",
-        &subject(outcome),
-        &describe(outcome),
-    );
-    for (i, p) in outcome.parameters.iter().take(n).enumerate() {
-        let middle_y = top + (i as f64 + 0.5) * size;
-        // Names of rows that are lower than a line of text would run into each other.
-        let every = (13.0 / size).ceil().max(1.0) as usize;
-        if i.is_multiple_of(every) {
-            let y = middle_y + 4.0;
-            key(
-                &mut figure,
-                (left - 30.0, y),
-                names - 36.0,
-                "class=\"row\"",
-                &p.name,
-            );
-            figure.text(
-                (left - 7.0, y),
-                TEXT,
-                Anchor::End,
-                "font-weight=\"bold\"",
-                INK,
-                &(i + 1).to_string(),
-            );
-            let x = left + (i as f64 + 0.5) * size;
-            if size >= text_width("00", TEXT) {
-                figure.text(
-                    (x, top - 6.0),
-                    TEXT,
-                    Anchor::Middle,
-                    "font-weight=\"bold\"",
-                    INK,
-                    &(i + 1).to_string(),
-                );
-            }
-        }
-        for j in 0..n {
-            let rect = Rect {
-                left: left + j as f64 * size,
-                right: left + (j + 1) as f64 * size,
-                top: middle_y - 0.5 * size,
-                bottom: middle_y + 0.5 * size,
-            };
-            let r = correlation(outcome, i, j);
-            let row = (j < i).then(|| table.push(cells(outcome, i, j)));
-            draw(&mut figure, rect, r, i == j, row);
-        }
-    }
-    let frame = Rect {
-        left,
-        right: left + n as f64 * size,
-        top,
-        bottom,
+    let rect = Rect::new(MARGIN + names, TOP + HEAD, n as f64 * size, n as f64 * size);
+    let mut panel = Panel {
+        x_labels: false,
+        below: 14.0,
+        ..Panel::new(rect, Axis::bare(0.0, n as f64), Axis::bare(n as f64, 0.0))
     };
-    figure.rect(
-        frame,
-        &format!("class=\"plot\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"3\""),
-    );
-    colour_key(&mut figure, strip);
-    for (k, line) in notes.iter().enumerate() {
-        let at = (MARGIN, strip.1 + KEY + 11.0 + 20.0 * k as f64);
-        figure.text(
-            at,
-            TEXT,
-            Anchor::Start,
-            "",
-            super::super::figure::QUIET,
-            &middle(line, TEXT, wide),
-        );
+    for i in 0..n {
+        name(&mut panel, outcome, i, size);
+        for j in 0..n {
+            let row = (j < i).then(|| table.push(cells(outcome, i, j)));
+            draw(&mut panel, outcome, (i, j), size, row);
+        }
     }
-    Picture {
-        svg: figure.finish(),
+    let colour = |k: usize| colour(2.0 * (k as f64 + 0.5) / SLICES as f64 - 1.0);
+    let label = |r: f64| (0.5 + 0.5 * r, cell(r, 0.1));
+    let key = Key {
+        heading: "Correlation [-]".to_owned(),
+        colours: (0..SLICES).map(colour).collect(),
+        labels: [-1.0, -0.5, 0.0, 0.5, 1.0].map(label).into(),
+    };
+    let chart = Chart {
+        title: "Correlation of the parameters".to_owned(),
+        subject: subject(outcome),
+        description: describe(outcome),
+        left: MARGIN,
+        panels: vec![panel],
+        foot: vec![
+            Block::key((MARGIN + 8.0, 260.0), key),
+            Block::notes(WIDE_FOOT, notes),
+        ],
         table,
+        ..Chart::default()
+    };
+    chart.picture()
+}
+
+/// Writes name and number of a row, and the number of its column.
+fn name(panel: &mut Panel, outcome: &Outcome, i: usize, size: f64) {
+    // Names of rows that are lower than a line of text would run into each other.
+    let every = (13.0 / size).ceil().max(1.0) as usize;
+    if !i.is_multiple_of(every) {
+        return;
+    }
+    let (middle, number) = (i as f64 + 0.5, (i + 1).to_string());
+    let left = at(f64::NEG_INFINITY, middle);
+    let name = Label::new(left.shift(-30.0, 4.0), &outcome.parameters[i].name).end();
+    let room = panel.rect.left - MARGIN - 36.0;
+    panel.label(name.class("row").cut(Cut::Start, room));
+    panel.label(Label::new(left.shift(-7.0, 4.0), &number).end().bold(true));
+    if size >= text_width("00", TEXT) {
+        let above = at(middle, f64::INFINITY).shift(0.0, -6.0);
+        panel.label(Label::new(above, number).middle().bold(true));
     }
 }
 
@@ -155,91 +118,48 @@ fn cells(outcome: &Outcome, i: usize, j: usize) -> Vec<String> {
 }
 
 fn colour(r: f64) -> String {
-    between(&DIVERGING, 0.5 + 0.5 * r)
+    between(DIVERGING, 0.5 + 0.5 * r)
 }
 
-/// Draws a cell; only those below the diagonal stand in the table, each pair once.
-fn draw(figure: &mut Figure, rect: Rect, r: Option<f64>, own: bool, row: Option<usize>) {
-    let of_row = row.map_or_else(String::new, |row| format!(" data-row=\"{row}\""));
+/// Adds a cell; only those below the diagonal are in the table, each pair once.
+fn draw(
+    panel: &mut Panel,
+    outcome: &Outcome,
+    (i, j): (usize, usize),
+    size: f64,
+    row: Option<usize>,
+) {
+    let r = correlation(outcome, i, j);
+    let (x, y, own) = (j as f64, i as f64, i == j);
     let fill = match r {
-        _ if own => "#b0b0b0".to_owned(),
-        Some(r) => colour(r),
-        None => "none".to_owned(),
+        _ if own => Style::colour("#b0b0b0"),
+        Some(r) => Style::colour(&colour(r)),
+        None => Style::default(),
     };
-    figure.rect(
-        rect,
-        &format!("class=\"cell\" fill=\"{fill}\" stroke=\"#dedede\" stroke-width=\"1\"{of_row}"),
-    );
-    let (x, y) = (
-        0.5 * (rect.left + rect.right),
-        0.5 * (rect.top + rect.bottom),
-    );
+    let style = Style {
+        stroke: Some(stroke("#dedede", 0.25, &[])),
+        row,
+        ..fill.class("cell")
+    };
+    panel.add(Shape::Rect(at(x, y), at(x + 1.0, y + 1.0)), style);
     match r {
         _ if own => {}
-        Some(r) if r.abs() >= STRONG && rect.right - rect.left >= HOLDS => {
+        Some(r) if r.abs() >= STRONG && size >= HOLDS => {
             let ink = if r.abs() > 0.75 { ON_DARK } else { ON_LIGHT };
             let text = cell(r, 0.01).replacen("0.", ".", 1);
-            figure.text((x, y + 4.0), TEXT, Anchor::Middle, "", ink, &text);
+            let middle = at(x + 0.5, y + 0.5).shift(0.0, 4.0);
+            panel.label(Label::new(middle, text).middle().colour(ink));
         }
         Some(_) => {}
-        None => figure.line(
-            (rect.left + 3.0, rect.bottom - 3.0),
-            (rect.right - 3.0, rect.top + 3.0),
-            "stroke=\"#8c8c8c\" stroke-width=\"3\"",
-        ),
+        None => {
+            let (low, high) = (
+                at(x, y + 1.0).shift(3.0, -3.0),
+                at(x + 1.0, y).shift(-3.0, 3.0),
+            );
+            let line = Style::line(stroke("#8c8c8c", 0.75, &[]));
+            panel.add(Shape::Segment(low, high), line);
+        }
     }
-}
-
-fn colour_key(figure: &mut Figure, (left, top): (f64, f64)) {
-    figure.open("legend");
-    figure.text(
-        (left, top + TEXT),
-        TEXT,
-        Anchor::Start,
-        "",
-        INK,
-        "Correlation [-]",
-    );
-    let strip = Rect {
-        left: left + 8.0,
-        right: left + 268.0,
-        top: top + 17.0,
-        bottom: top + 29.0,
-    };
-    let place = |share: f64| strip.left + (strip.right - strip.left) * share;
-    for k in 0..SLICES {
-        let slice = Rect {
-            left: place(k as f64 / SLICES as f64),
-            right: place((k + 1) as f64 / SLICES as f64),
-            ..strip
-        };
-        let fill = colour(2.0 * (k as f64 + 0.5) / SLICES as f64 - 1.0);
-        figure.rect(
-            slice,
-            &format!("fill=\"{fill}\" shape-rendering=\"crispEdges\""),
-        );
-    }
-    figure.rect(
-        strip,
-        &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\""),
-    );
-    for r in [-1.0, -0.5, 0.0, 0.5, 1.0] {
-        let x = place(0.5 + 0.5 * r);
-        figure.line(
-            (x, strip.bottom),
-            (x, strip.bottom + 3.0),
-            &format!("stroke=\"{INK}\" stroke-width=\"3\""),
-        );
-        figure.text(
-            (x, strip.bottom + 15.0),
-            TEXT,
-            Anchor::Middle,
-            "",
-            INK,
-            &cell(r, 0.1),
-        );
-    }
-    figure.close();
 }
 
 fn describe(outcome: &Outcome) -> String {
@@ -249,7 +169,7 @@ fn describe(outcome: &Outcome) -> String {
         .filter_map(|(i, j)| Some((correlation(outcome, i, j)?, i, j)))
         .collect();
     pairs.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
-    let told = |(r, i, j): &(f64, usize, usize)| {
+    let pair = |(r, i, j): &(f64, usize, usize)| {
         format!(
             "{} with {}: {}",
             outcome.parameters[*i].name,
@@ -257,7 +177,7 @@ fn describe(outcome: &Outcome) -> String {
             cell(*r, 0.01)
         )
     };
-    let list: Vec<String> = pairs.iter().take(12).map(told).collect();
+    let list: Vec<String> = pairs.iter().take(12).map(pair).collect();
     let words = if list.is_empty() {
         "None is known".to_owned()
     } else {

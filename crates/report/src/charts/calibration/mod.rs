@@ -4,15 +4,10 @@ mod correlation;
 mod parameters;
 mod residuals;
 mod scatter;
-#[cfg(test)]
-mod tests;
 mod trace;
 
-use super::Picture;
-use super::axis::round_step;
-use super::figure::{Anchor, Figure, INK, escape, text_width};
-use super::picture::cell;
-use super::symbol::Symbol;
+use super::engine::{PLOT_LEFT, Symbol, WIDTH, cell, round_step};
+use super::picture::Picture;
 use cvtcycle_study::fit::outcome::{Outcome, Residual};
 
 pub use correlation::correlation_plot;
@@ -21,13 +16,15 @@ pub use residuals::residuals_plot;
 pub use scatter::scatter_plot;
 pub use trace::trace_plots;
 
-/// Width of the pictures, pixels: on A4 their text is still read.
-const WIDTH: f64 = 880.0;
+/// Edges of the plots, and left edge of titles and notes of pictures with rows, pixels.
 const RIGHT: f64 = WIDTH - 24.0;
 const TOP: f64 = 58.0;
 const MARGIN: f64 = 12.0;
+/// Left edge and width of what lies below the plots, pixels.
+const FOOT: (f64, f64) = (PLOT_LEFT, RIGHT - PLOT_LEFT);
+const WIDE_FOOT: (f64, f64) = (MARGIN, RIGHT - MARGIN);
 /// Most observations that a picture shows; of traces with more, every second or third value and so on is shown.
-const MOST_SHOWN: usize = 600;
+const MAX_SHOWN: usize = 600;
 /// Colours of what is computed: with the files' values, fitted, predicted.
 const BEFORE: &str = "#777777";
 const AFTER: &str = "#0072b2";
@@ -51,7 +48,7 @@ pub fn calibration_pictures(outcome: &Outcome) -> Vec<(String, Picture)> {
     list
 }
 
-/// What a picture is of.
+/// The line below the title.
 fn subject(outcome: &Outcome) -> String {
     let (data, free) = (outcome.residuals.len(), outcome.parameters.len());
     let s = |n: usize| if n == 1 { "" } else { "s" };
@@ -76,20 +73,20 @@ fn groups(outcome: &Outcome) -> Vec<&str> {
 }
 
 /// The symbol of a group, the same in every picture.
-fn symbol(groups: &[&str], name: &str) -> Symbol {
-    Symbol::of(groups.iter().position(|group| *group == name).unwrap_or(0))
+fn symbol(groups: &[&str], name: &str) -> (Symbol, &'static str) {
+    Symbol::nth(groups.iter().position(|group| *group == name).unwrap_or(0))
 }
 
-/// Indices of the observations that are shown, by group, and a word about what is left out.
+/// Indices of the observations that are shown, by group, and a remark on what is left out.
 fn shown(outcome: &Outcome) -> (Vec<usize>, Option<String>) {
     let all = &outcome.residuals;
     let traced = all.iter().filter(|r| r.time_s.is_some()).count();
     let single = all.len() - traced;
     // Traces first: their neighbours look alike.
     let of_traces = traced
-        .div_ceil(MOST_SHOWN.saturating_sub(single).max(MOST_SHOWN / 2))
+        .div_ceil(MAX_SHOWN.saturating_sub(single).max(MAX_SHOWN / 2))
         .max(1);
-    let of_single = single.div_ceil(MOST_SHOWN).max(1);
+    let of_single = single.div_ceil(MAX_SHOWN).max(1);
     let names = groups(outcome);
     let (mut counts, mut kept) = ([0_usize; 2], Vec::new());
     for name in names {
@@ -112,27 +109,6 @@ fn shown(outcome: &Outcome) -> (Vec<usize>, Option<String>) {
     (kept, note)
 }
 
-/// Writes a name that ends at a place. Keys begin alike: one that is too wide loses its beginning, and shows whole under the pointer.
-fn key(figure: &mut Figure, at: (f64, f64), width: f64, attributes: &str, name: &str) {
-    let size = super::study::text::SIZE;
-    let mut ends = name
-        .char_indices()
-        .map(|(at, _)| format!("\u{2026}{}", &name[at..]));
-    let short = if text_width(name, size) <= width {
-        name.to_owned()
-    } else {
-        ends.find(|end| text_width(end, size) <= width)
-            .unwrap_or_default()
-    };
-    if short != name {
-        figure.raw(&format!("<g><title>{}</title>", escape(name)));
-    }
-    figure.text(at, size, Anchor::End, attributes, INK, &short);
-    if short != name {
-        figure.close();
-    }
-}
-
 /// Unit for a bracket.
 fn unit(unit: &str) -> &str {
     match unit {
@@ -143,7 +119,7 @@ fn unit(unit: &str) -> &str {
     }
 }
 
-/// What tells an observation from the others.
+/// Name of an observation.
 fn label(r: &Residual) -> String {
     if r.what.is_empty() {
         r.label.clone()

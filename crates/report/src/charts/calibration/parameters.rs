@@ -1,54 +1,33 @@
 //! Parameters: what was known before and what the fit found, between their bounds.
 
-use super::super::axis::{Axis, round_step};
-use super::super::figure::{Anchor, Figure, INK, QUIET, Rect};
-use super::super::legend::Mark;
-use super::super::panel::{BELOW, Panel};
-use super::super::picture::{Picture, PictureTable, cell};
-use super::super::study::text::{foot, foot_height, middle, value};
-use super::super::style::Stroke;
-use super::super::symbol::Symbol;
-use super::{AFTER, BEFORE, MARGIN, RIGHT, TOP, WIDTH, key, subject, unit};
+use super::{AFTER, BEFORE, MARGIN, RIGHT, TOP, WIDE_FOOT, subject, unit};
+use crate::charts::engine::{
+    Axis, Block, Chart, Cut, Entry, INK, Label, Panel, RULE, Shape, Stroke, Style, Symbol, at,
+    cell, round_step, row_middle, rows_panel, stroke,
+};
+use crate::charts::picture::{Picture, PictureTable};
+use crate::charts::study::value;
 use cvtcycle_study::fit::outcome::{Outcome, Parameter};
 
 const ROW: f64 = 32.0;
 /// Room for names on the left and for numbers on the right, pixels.
 const NAMES: f64 = 290.0;
 const NUMBERS: f64 = 172.0;
-const TEXT: f64 = 11.0;
 /// The axis ends so far beyond the bounds, as a share of their distance.
 const BEYOND: f64 = 0.08;
 /// Most rows: more do not fit on a page.
-const MOST: usize = 50;
+const MAX_ROWS: usize = 50;
 /// Errors are drawn to so many standard deviations.
 const WIDE: f64 = 2.0;
-const PRIOR: Stroke = Stroke {
-    colour: BEFORE,
-    width: 3.2,
-    dash: &[],
-};
-const FITTED: Stroke = Stroke {
-    colour: AFTER,
-    width: 2.2,
-    dash: &[],
-};
-const BOUND: Stroke = Stroke {
-    colour: INK,
-    width: 1.2,
-    dash: &[5.0, 3.0],
-};
-const KEYS: [&str; 4] = [
-    "Known before: mean and 2 sd",
-    "Fitted, and 2 standard errors",
-    "Value of the files",
-    "Bounds",
-];
+const PRIOR: Stroke = stroke(BEFORE, 3.2, &[]);
+const FITTED: Stroke = stroke(AFTER, 2.2, &[]);
+const BOUND: Stroke = stroke(INK, 1.2, &[5.0, 3.0]);
 
 /// Draws a row for each parameter: prior above, fitted value below, both with two standard deviations, on an axis from bound to bound.
 #[must_use]
 pub fn parameters_plot(outcome: &Outcome) -> Picture {
     let all = &outcome.parameters;
-    let rows = &all[..all.len().min(MOST)];
+    let rows = &all[..all.len().min(MAX_ROWS)];
     let mut table = PictureTable::new(&[
         ("Parameter", ""),
         ("Unit", ""),
@@ -61,9 +40,7 @@ pub fn parameters_plot(outcome: &Outcome) -> Picture {
         ("Prior sd", ""),
         ("Share of the prior", "%"),
     ]);
-    for p in all {
-        table.push(cells(p));
-    }
+    table.rows = all.iter().map(cells).collect();
     let mut notes = vec!["Share of the prior: variance after the fit over variance before; near 100 % the data say nothing.".to_owned()];
     if rows.len() < all.len() {
         notes.push(format!(
@@ -72,54 +49,36 @@ pub fn parameters_plot(outcome: &Outcome) -> Picture {
         ));
     }
     table.note = notes.join(" ");
-    let rect = Rect {
-        left: MARGIN + NAMES,
-        right: RIGHT - NUMBERS,
-        top: TOP,
-        bottom: TOP + 6.0 + ROW * rows.len().max(2) as f64,
-    };
-    let (end, wide) = ((MARGIN, rect.bottom + BELOW + 8.0), RIGHT - MARGIN);
-    let tall = end.1 + foot_height(KEYS.into_iter(), wide, &notes);
-    let mut figure = Figure::new(
-        (WIDTH, tall),
-        MARGIN,
-        "Parameters",
-        &subject(outcome),
-        &describe(outcome),
-    );
-    let mut y = Axis::exact("", 0.0, 1.0, 2);
-    y.ticks.clear();
     let x = Axis::exact("Place between the bounds [-]", -BEYOND, 1.0 + BEYOND, 6);
-    let panel = Panel::draw(&mut figure, rect, x, y, true);
+    let corner = (MARGIN + NAMES, TOP);
+    let mut panel = rows_panel(corner, RIGHT - NUMBERS, rows.len().max(2), ROW, x);
     for bound in [0.0, 1.0] {
-        panel.line_any(&mut figure, &[(bound, 0.0), (bound, 1.0)], BOUND);
+        panel.upright(bound, BOUND);
     }
     for (k, p) in rows.iter().enumerate() {
-        draw(
-            &mut figure,
-            &panel,
-            (k, rect.top + 3.0 + (k as f64 + 0.5) * ROW),
-            p,
-        );
+        draw(&mut panel, k, p);
+        describe_row(&mut panel, k, p);
     }
-    panel.outline(&mut figure);
-    let marks = [
-        Mark::Line(PRIOR),
-        Mark::Line(FITTED),
-        Mark::Point(Symbol::plain(0, INK), false),
-        Mark::Line(BOUND),
+    let entries = vec![
+        Entry::line(PRIOR, "Known before: mean and 2 sd"),
+        Entry::line(FITTED, "Fitted, and 2 standard errors"),
+        Entry::symbol(Symbol::CIRCLE, Symbol::open(INK), "Value of the files"),
+        Entry::line(BOUND, "Bounds"),
     ];
-    foot(
-        &mut figure,
-        end,
-        wide,
-        marks.into_iter().zip(KEYS).collect(),
-        &notes,
-    );
-    Picture {
-        svg: figure.finish(),
+    let chart = Chart {
+        title: "Parameters".to_owned(),
+        subject: subject(outcome),
+        description: describe(outcome),
+        left: MARGIN,
+        panels: vec![panel],
+        foot: vec![
+            Block::legend(WIDE_FOOT, "", entries),
+            Block::notes(WIDE_FOOT, notes),
+        ],
         table,
-    }
+        ..Chart::default()
+    };
+    chart.picture()
 }
 
 /// A step that leaves three digits of what a parameter is known to.
@@ -147,97 +106,65 @@ fn cells(p: &Parameter) -> Vec<String> {
     ]
 }
 
-fn draw(figure: &mut Figure, panel: &Panel, (row, y): (usize, f64), p: &Parameter) {
-    let of_row = format!("data-row=\"{row}\"");
-    let rect = panel.rect;
-    let span = p.high - p.low;
-    let at = |x: f64| panel.px(((x - p.low) / span).clamp(panel.x.low, panel.x.high));
-    let sound = |x: f64| x.is_finite() && span > 0.0;
+/// Adds the marks of a parameter.
+fn draw(panel: &mut Panel, row: usize, p: &Parameter) {
+    let (span, ends) = (p.high - p.low, (panel.x.low, panel.x.high));
+    let place = |x: f64, down: f64| {
+        let share = ((x - p.low) / span).clamp(ends.0, ends.1);
+        at(share, row_middle(row)).shift(0.0, down)
+    };
+    let known = |x: f64| x.is_finite() && span > 0.0;
     if row > 0 {
-        let line = y - 0.5 * ROW;
-        figure.line(
-            (rect.left, line),
-            (rect.right, line),
-            "stroke=\"#dedede\" stroke-width=\"2\"",
+        panel.level(row as f64, RULE);
+    }
+    let style = |stroke: Stroke| Style::line(stroke).row(row);
+    if let Some([mean, sd]) = p.prior.filter(|[mean, sd]| known(*mean) && sd.is_finite()) {
+        let ends = (place(mean - WIDE * sd, -6.0), place(mean + WIDE * sd, -6.0));
+        panel.add(Shape::Segment(ends.0, ends.1), style(PRIOR));
+        panel.add(
+            Shape::Segment(place(mean, -11.0), place(mean, -1.0)),
+            style(PRIOR),
         );
     }
-    if let Some([mean, sd]) = p.prior.filter(|[mean, sd]| sound(*mean) && sd.is_finite()) {
-        let y = y - 6.0;
-        span_of(
-            figure,
-            (at(mean - WIDE * sd), at(mean + WIDE * sd), y),
-            PRIOR,
-            &of_row,
-        );
-        figure.line(
-            (at(mean), y - 5.0),
-            (at(mean), y + 5.0),
-            &format!("{} {of_row}", PRIOR.attributes()),
-        );
+    if known(p.file_value) {
+        let style = Symbol::open(INK).row(row);
+        panel.symbol(Symbol::CIRCLE, place(p.file_value, 6.0), 4.6, style);
     }
-    if sound(p.file_value) {
-        Symbol::plain(0, INK).open(figure, (at(p.file_value), y + 6.0), 4.6, &of_row);
-    }
-    if sound(p.value) {
+    if known(p.value) {
         if let Some(error) = p.standard_error.filter(|x| x.is_finite()) {
-            span_of(
-                figure,
-                (
-                    at(p.value - WIDE * error),
-                    at(p.value + WIDE * error),
-                    y + 6.0,
-                ),
-                FITTED,
-                &of_row,
+            let (low, high) = (p.value - WIDE * error, p.value + WIDE * error);
+            panel.add(
+                Shape::Segment(place(low, 6.0), place(high, 6.0)),
+                style(FITTED),
             );
         }
-        Symbol::plain(0, AFTER).filled(figure, (at(p.value), y + 6.0), 3.2, &of_row);
+        let style = Symbol::filled(AFTER).row(row);
+        panel.symbol(Symbol::CIRCLE, place(p.value, 6.0), 3.2, style);
     }
-    let left = (rect.left - 10.0, y - 3.0);
-    key(
-        figure,
-        left,
-        NAMES - 14.0,
-        &format!("class=\"row\" {of_row}"),
-        &p.name,
-    );
+}
+
+/// Writes name and bounds of a parameter on the left, value and remark on the right.
+fn describe_row(panel: &mut Panel, row: usize, p: &Parameter) {
+    let span = p.high - p.low;
     let bounds = format!(
         "{} to {}{}",
         value(p.low, span),
         value(p.high, span),
         after(p)
     );
-    figure.text(
-        (left.0, y + 11.0),
-        TEXT,
-        Anchor::End,
-        "",
-        QUIET,
-        &middle(&bounds, TEXT, NAMES - 14.0),
+    let left = |down: f64| at(f64::NEG_INFINITY, row_middle(row)).shift(-10.0, down);
+    let right = |down: f64| at(f64::INFINITY, row_middle(row)).shift(10.0, down);
+    let name = Label::new(left(-3.0), &p.name).end().class("row").row(row);
+    panel.label(name.cut(Cut::Start, NAMES - 14.0));
+    let bounds = Label::new(left(11.0), bounds).end().quiet();
+    panel.label(bounds.cut(Cut::Middle, NAMES - 14.0));
+    let room = NUMBERS - 10.0;
+    panel.label(Label::new(right(-3.0), found(p)).cut(Cut::Middle, room));
+    panel.label(
+        Label::new(right(11.0), remark(p))
+            .quiet()
+            .cut(Cut::Middle, room),
     );
-    let right = rect.right + 10.0;
-    figure.text(
-        (right, y - 3.0),
-        TEXT,
-        Anchor::Start,
-        "",
-        INK,
-        &middle(&found(p), TEXT, NUMBERS - 10.0),
-    );
-    figure.text(
-        (right, y + 11.0),
-        TEXT,
-        Anchor::Start,
-        "",
-        QUIET,
-        &middle(&remark(p), TEXT, NUMBERS - 10.0),
-    );
-}
-
-/// A line with end marks.
-fn span_of(figure: &mut Figure, (from, to, y): (f64, f64, f64), stroke: Stroke, attributes: &str) {
-    let paint = format!("{} {attributes}", stroke.attributes());
-    figure.line((from, y), (to, y), &paint);
 }
 
 /// The unit after a number.
@@ -258,19 +185,19 @@ fn found(p: &Parameter) -> String {
     format!("{}{error}{}", cell(p.value, step), after(p))
 }
 
-/// What has to be known of a parameter beside its value.
+/// Remark on the fit of a parameter.
 fn remark(p: &Parameter) -> String {
     match (p.is_dead, p.at_bound, p.standard_error, p.prior_share) {
         (true, ..) => "moves no observation".to_owned(),
         (_, Some(end), ..) => format!("at its {end} bound"),
-        (.., None, _) => "the data do not tell it".to_owned(),
+        (.., None, _) => "not determined by the data".to_owned(),
         (.., Some(share)) => format!("share of the prior {} %", cell(100.0 * share, 1.0)),
         _ => "no prior".to_owned(),
     }
 }
 
 fn describe(outcome: &Outcome) -> String {
-    let told = |p: &Parameter| {
+    let parameter = |p: &Parameter| {
         format!(
             "{}: {}, {} to {}, {}",
             p.name,
@@ -285,7 +212,7 @@ fn describe(outcome: &Outcome) -> String {
         outcome
             .parameters
             .iter()
-            .map(told)
+            .map(parameter)
             .collect::<Vec<_>>()
             .join("; ")
     )

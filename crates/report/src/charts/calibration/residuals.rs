@@ -1,21 +1,19 @@
 //! Residuals in standard deviations, observation by observation.
 
-use super::super::axis::{Axis, range};
-use super::super::figure::{Anchor, Figure, INK, QUIET, Rect, escape, fit};
-use super::super::legend::Mark;
-use super::super::panel::{BELOW, Panel};
-use super::super::picture::{Picture, PictureTable, cell};
-use super::super::study::text::{foot, foot_height};
-use super::super::style::{CONTEXT, Stroke};
-use super::super::symbol::Symbol;
-use super::{AFTER, BEFORE, LEFT_OUT, MARGIN, RIGHT, TOP, WIDTH, groups, label, shown, subject};
+use super::{
+    AFTER, BEFORE, LEFT_OUT, MARGIN, RIGHT, TOP, WIDE_FOOT, groups, label, shown, subject,
+};
+use crate::charts::engine::{
+    Axis, Block, CONTEXT, Chart, Cut, Entry, Label, Panel, Place, RULE, Rect, Shape, Style, Symbol,
+    at, cell, range, stroke,
+};
+use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::fit::outcome::{Outcome, Residual};
 
 /// Residuals within so many standard deviations are no surprise.
 const BAND: f64 = 2.0;
 /// Room for names, pixels.
 const NAMES: f64 = 330.0;
-const TEXT: f64 = 11.0;
 /// Height of an observation where there are few, and of the name of a group; least distance of two names, pixels.
 const ROW: f64 = 15.0;
 const HEADING: f64 = 19.0;
@@ -30,14 +28,7 @@ const CLIP: f64 = 3.0;
 const DENSE: f64 = 2.0;
 const FEW: f64 = 40.0;
 /// Most groups that bear their names.
-const MOST_NAMED: usize = 24;
-
-const MARKS: [(usize, &str); 3] = [(0, BEFORE), (0, AFTER), (3, LEFT_OUT)];
-const KEYS: [&str; 3] = [
-    "With the files' values",
-    "Fitted",
-    "Predicted: fitted without its fold",
-];
+const MAX_NAMED: usize = 24;
 
 /// One line of the picture; a group of one observation has no name above it, only a line.
 enum Line<'a> {
@@ -83,23 +74,10 @@ impl Pitch {
 #[must_use]
 pub fn residuals_plot(outcome: &Outcome) -> Picture {
     let (kept, thinned) = shown(outcome);
-    let sds = "standard deviations";
-    let mut table = PictureTable::new(&[
-        ("Group", ""),
-        ("Observation", ""),
-        ("Fold", ""),
-        (&format!("Files' values, {sds}"), ""),
-        (&format!("Fitted, {sds}"), ""),
-        (&format!("Predicted, {sds}"), ""),
-    ]);
-    let lines = lines(
-        outcome,
-        kept.iter()
-            .map(|k| &outcome.residuals[*k])
-            .map(|r| (r, table.push(cells(r)))),
-    );
+    let mut table = table();
+    let rows = kept.iter().map(|k| &outcome.residuals[*k]);
+    let lines = lines(outcome, rows.map(|r| (r, table.push(cells(r)))));
     let axis = axis(&lines);
-    let predicted = outcome.residuals.iter().any(|r| r.left_out_sd.is_some());
     let mut notes = vec![
         "Grey band: two standard deviations. Within a measured range the residual is 0.".to_owned(),
     ];
@@ -109,46 +87,45 @@ pub fn residuals_plot(outcome: &Outcome) -> Picture {
     }
     notes.extend(thinned);
     table.note = notes.join(" ");
-    let keys = if predicted { 3 } else { 2 };
-    let entries: Vec<(Mark, &str)> = (0..keys)
-        .map(|k| {
-            (
-                Mark::Point(Symbol::plain(MARKS[k].0, MARKS[k].1), k > 0),
-                KEYS[k],
-            )
-        })
-        .collect();
-    let pitch = Pitch::of(&lines);
-    let left = MARGIN + NAMES;
-    let rect = Rect {
-        left,
-        right: RIGHT,
-        top: TOP,
-        bottom: TOP
-            + 6.0
-            + lines
-                .iter()
-                .map(|line| pitch.height(line))
-                .sum::<f64>()
-                .max(60.0),
-    };
-    let (end, wide) = ((MARGIN, rect.bottom + BELOW + 8.0), RIGHT - MARGIN);
-    let tall = end.1 + foot_height(KEYS[..keys].iter().copied(), wide, &notes);
-    let mut figure = Figure::new(
-        (WIDTH, tall),
-        MARGIN,
-        "Residuals",
-        &subject(outcome),
-        &describe(outcome),
-    );
-    let panel = frame(&mut figure, rect, axis);
-    draw(&mut figure, &panel, &lines, &pitch);
-    panel.outline(&mut figure);
-    foot(&mut figure, end, wide, entries, &notes);
-    Picture {
-        svg: figure.finish(),
-        table,
+    let circle = |style: Style, name: &str| Entry::symbol(Symbol::CIRCLE, style, name);
+    let mut entries = vec![
+        circle(Symbol::open(BEFORE), "With the files' values"),
+        circle(Symbol::filled(AFTER), "Fitted"),
+    ];
+    if outcome.residuals.iter().any(|r| r.left_out_sd.is_some()) {
+        let name = "Predicted: fitted without its fold";
+        entries.push(Entry::symbol(
+            Symbol::DIAMOND,
+            Symbol::filled(LEFT_OUT),
+            name,
+        ));
     }
+    let chart = Chart {
+        title: "Residuals".to_owned(),
+        subject: subject(outcome),
+        description: describe(outcome),
+        left: MARGIN,
+        panels: vec![panel(&lines, axis)],
+        foot: vec![
+            Block::legend(WIDE_FOOT, "", entries),
+            Block::notes(WIDE_FOOT, notes),
+        ],
+        table,
+        ..Chart::default()
+    };
+    chart.picture()
+}
+
+fn table() -> PictureTable {
+    let sd = |whose: &str| format!("{whose}, standard deviations");
+    PictureTable::new(&[
+        ("Group", ""),
+        ("Observation", ""),
+        ("Fold", ""),
+        (&sd("Files' values"), ""),
+        (&sd("Fitted"), ""),
+        (&sd("Predicted"), ""),
+    ])
 }
 
 /// Observations by group; where there are not too many groups, each has its name above it, unless it has one observation only.
@@ -164,8 +141,8 @@ fn lines<'a>(
             .count()
     };
     let names = groups(outcome);
-    let named = names.len() <= 3 * MOST_NAMED
-        && names.into_iter().filter(|name| size(name) > 1).count() <= MOST_NAMED;
+    let named = names.len() <= 3 * MAX_NAMED
+        && names.into_iter().filter(|name| size(name) > 1).count() <= MAX_NAMED;
     let mut lines: Vec<Line> = Vec::new();
     let mut last = "";
     for (r, row) in rows {
@@ -224,136 +201,87 @@ fn axis(lines: &[Line]) -> Axis {
     Axis::exact("Residual [standard deviations]", low - room, high + room, 9)
 }
 
-fn frame(figure: &mut Figure, rect: Rect, x: Axis) -> Panel {
-    let mut y = Axis::exact("", 0.0, 1.0, 2);
-    // Rows have names in place of numbers.
-    y.ticks.clear();
-    let panel = Panel::draw(figure, rect, x, y, true);
-    let band = Rect {
-        left: panel.px(-BAND).max(rect.left),
-        right: panel.px(BAND).min(rect.right),
-        ..rect
-    };
-    figure.rect(
-        band,
-        "class=\"band\" fill=\"#777777\" fill-opacity=\"0.16\" stroke=\"none\"",
-    );
-    panel.line(
-        figure,
-        &[(0.0, 0.0), (0.0, 1.0)],
-        Stroke {
-            width: 1.4,
-            ..CONTEXT
-        },
-    );
-    panel
-}
-
-fn draw(figure: &mut Figure, panel: &Panel, lines: &[Line], pitches: &Pitch) {
-    let rect = panel.rect;
-    let mut top = rect.top + 3.0;
-    let mut last = f64::NEG_INFINITY;
+/// The panel of all lines; its vertical axis counts pixels from the top.
+fn panel(lines: &[Line], x: Axis) -> Panel {
+    let pitches = Pitch::of(lines);
+    let tall = lines
+        .iter()
+        .map(|line| pitches.height(line))
+        .sum::<f64>()
+        .max(60.0)
+        + 6.0;
+    let rect = Rect::new(MARGIN + NAMES, TOP, RIGHT - MARGIN - NAMES, tall);
+    let mut panel = Panel::new(rect, x, Axis::bare(tall, 0.0));
+    let corners = (at(-BAND, f64::NEG_INFINITY), at(BAND, f64::INFINITY));
+    let band = Style::colour(CONTEXT.colour)
+        .fill_opacity(0.16)
+        .class("band");
+    panel.add(Shape::Rect(corners.0, corners.1), band);
+    panel.upright(0.0, stroke(CONTEXT.colour, 1.4, &[]));
+    let left = |y: f64| at(f64::NEG_INFINITY, y).shift(-NAMES, 0.0);
+    let name = |y: f64, text: &str| Label::new(left(y), text).cut(Cut::End, NAMES - 12.0);
+    let (mut top, mut last) = (3.0, f64::NEG_INFINITY);
     for line in lines {
         let pitch = pitches.height(line);
         if !matches!(line, Line::Observation(..)) {
-            figure.line(
-                (MARGIN, top + 1.0),
-                (rect.right, top + 1.0),
-                "stroke=\"#dedede\" stroke-width=\"3\"",
-            );
+            let end = at(f64::INFINITY, top + 1.0);
+            panel.add(Shape::Segment(left(top + 1.0), end), Style::line(RULE));
         }
         match line {
             Line::Alone => {}
-            Line::Group(name) => {
-                let y = top + 14.0;
-                text(figure, (MARGIN, y), "font-weight=\"bold\"", INK, name);
-                last = y;
+            Line::Group(group) => {
+                last = top + 14.0;
+                panel.label(name(last, group).bold(true));
             }
             Line::Observation(r, row) => {
                 let y = top + 0.5 * pitch;
                 if y + 4.0 - last >= APART {
                     last = y + 4.0;
-                    text(
-                        figure,
-                        (MARGIN, last),
-                        &format!("class=\"row\" data-row=\"{row}\""),
-                        QUIET,
-                        &label(r),
-                    );
+                    panel.label(name(last, &label(r)).quiet().class("row").row(*row));
                 }
-                marks(
-                    figure,
-                    panel,
-                    r,
-                    (*row, y),
-                    ((0.3 * pitch).clamp(1.6, 3.6), pitch),
-                );
+                marks(&mut panel, r, (*row, y), pitch);
             }
         }
         top += pitch;
     }
+    panel
 }
 
-/// A name cut at its end; the full one shows under the pointer.
-fn text(figure: &mut Figure, at: (f64, f64), attributes: &str, colour: &str, name: &str) {
-    let short = fit(name, TEXT, NAMES - 12.0);
-    let cut = short != name;
-    if cut {
-        figure.raw(&format!("<g><title>{}</title>", escape(name)));
-    }
-    figure.text(at, TEXT, Anchor::Start, attributes, colour, &short);
-    if cut {
-        figure.close();
-    }
-}
-
-fn marks(
-    figure: &mut Figure,
-    panel: &Panel,
-    r: &Residual,
-    (row, y): (usize, f64),
-    (radius, pitch): (f64, f64),
-) {
-    let of_row = format!("data-row=\"{row}\"");
-    let [before, after, left_out] = MARKS.map(|(shape, colour)| Symbol::plain(shape, colour));
-    let at = |x: f64| panel.px(x.clamp(panel.x.low, panel.x.high));
+/// Adds the marks of an observation at a height.
+fn marks(panel: &mut Panel, r: &Residual, (row, y): (usize, f64), pitch: f64) {
+    let radius = (0.3 * pitch).clamp(1.6, 3.6);
+    let ends = (panel.x.low, panel.x.high);
+    let place = |x: f64| -> Place { at(x.clamp(ends.0, ends.1), y) };
     if let Some(x) = r.before_sd.filter(|x| x.is_finite()) {
         if pitch > 8.0 && r.after_sd.is_finite() {
-            let paint =
-                format!("stroke=\"{BEFORE}\" stroke-width=\"2\" stroke-opacity=\"0.5\" {of_row}");
-            figure.line((at(x), y), (at(r.after_sd), y), &paint);
+            let style = Style::line(stroke(BEFORE, 0.5, &[])).stroke_opacity(0.5);
+            panel.add(Shape::Segment(place(x), place(r.after_sd)), style.row(row));
         }
-        if off(&panel.x, x) {
-            edge(figure, (at(x), y), x > 0.0, radius, &of_row);
+        // A triangle at the edge, for what lies beyond it.
+        let (symbol, style) = if off(&panel.x, x) {
+            (Symbol::edge(x > 0.0), Style::colour(BEFORE))
         } else {
-            before.open(figure, (at(x), y), radius, &of_row);
+            (Symbol::CIRCLE, Symbol::open(BEFORE))
+        };
+        panel.symbol(symbol, place(x), radius, style.row(row));
+    }
+    let mut filled = |symbol: Symbol, x: f64, colour: &'static str| {
+        if x.is_finite() {
+            panel.symbol(
+                symbol,
+                place(x),
+                0.9 * radius,
+                Symbol::filled(colour).row(row),
+            );
         }
-    }
-    if let Some(x) = r.left_out_sd.filter(|x| x.is_finite()) {
-        left_out.filled(figure, (at(x), y), 0.9 * radius, &of_row);
-    }
-    if r.after_sd.is_finite() {
-        after.filled(figure, (at(r.after_sd), y), 0.9 * radius, &of_row);
-    }
-}
-
-/// A triangle at the edge, for what lies beyond it.
-fn edge(figure: &mut Figure, (x, y): (f64, f64), right: bool, size: f64, attributes: &str) {
-    let mut path = super::super::figure::Path::default();
-    let back = if right { -2.0 * size } else { 2.0 * size };
-    for (dx, dy) in [(0.0, 0.0), (back, -size), (back, size)] {
-        path.line_to(x + dx, y + dy);
-    }
-    path.close();
-    let data = path.finish();
-    figure.raw(&format!(
-        "<path d=\"{data}\" fill=\"{BEFORE}\" stroke=\"none\" {attributes}/>"
-    ));
+    };
+    filled(Symbol::DIAMOND, r.left_out_sd.unwrap_or(f64::NAN), LEFT_OUT);
+    filled(Symbol::CIRCLE, r.after_sd, AFTER);
 }
 
 fn describe(outcome: &Outcome) -> String {
-    let told = |x: Option<f64>| x.map_or_else(|| "not known".to_owned(), |x| format!("{x:.2}"));
-    let [before, after, left_out] = outcome.rms_sd().map(told);
+    let number = |x: Option<f64>| x.map_or_else(|| "not known".to_owned(), |x| format!("{x:.2}"));
+    let [before, after, left_out] = outcome.rms_sd().map(number);
     format!(
         "Distance of computed from measured numbers over their standard deviation, by group. Root mean square: {before} with the files' values, \
          {after} fitted, {left_out} predicted."

@@ -1,21 +1,18 @@
-//! Measured against computed: a panel a unit, a mark an observation.
+//! Measured against computed: a panel for each unit, a mark for each observation.
 
-use super::super::axis::{Axis, range};
-use super::super::figure::{Figure, Rect};
-use super::super::legend::Mark;
-use super::super::panel::{BELOW, LEFT, Panel};
-use super::super::picture::{Picture, PictureTable};
-use super::super::study::text::{foot, foot_height};
-use super::super::style::CONTEXT;
-use super::super::symbol::Symbol;
 use super::{
-    BEFORE, RIGHT, TOP, WIDTH, common_note, groups, in_sd, label, measured_cells, shown, subject,
+    BEFORE, FOOT, RIGHT, TOP, common_note, groups, in_sd, label, measured_cells, shown, subject,
     symbol, unit,
 };
+use crate::charts::engine::{
+    Axis, BELOW, Block, CONTEXT, Chart, Entry, LEFT, PLOT_LEFT, Panel, Rect, Shape, Style, Symbol,
+    at, grid, range, stroke,
+};
+use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::fit::outcome::{Outcome, Residual};
 
 /// Most panels: more do not fit on a page.
-const MOST: usize = 8;
+const MAX_PANELS: usize = 8;
 const GAP: (f64, f64) = (18.0, 10.0);
 const RADIUS: f64 = 3.4;
 
@@ -23,21 +20,9 @@ const RADIUS: f64 = 3.4;
 #[must_use]
 pub fn scatter_plot(outcome: &Outcome) -> Picture {
     let (kept, thinned) = shown(outcome);
-    let mut table = PictureTable::new(&[
-        ("Group", ""),
-        ("Observation", ""),
-        ("Unit", ""),
-        ("Measured, or from", ""),
-        ("Measured, or to", ""),
-        ("Standard deviation", ""),
-        ("Files' values", ""),
-        ("Fitted", ""),
-    ]);
-    let rows: Vec<(&Residual, usize)> = kept
-        .iter()
-        .map(|k| &outcome.residuals[*k])
-        .map(|r| (r, table.push(cells(r))))
-        .collect();
+    let mut table = table();
+    let rows = kept.iter().map(|k| &outcome.residuals[*k]);
+    let rows: Vec<(&Residual, usize)> = rows.map(|r| (r, table.push(cells(r)))).collect();
     let mut units: Vec<&str> = Vec::new();
     for (r, _) in &rows {
         if !units.contains(&unit(&r.unit)) {
@@ -47,45 +32,64 @@ pub fn scatter_plot(outcome: &Outcome) -> Picture {
     let mut notes = vec!["Bars: a standard deviation on either side, or the measured range. Thin line: computed = measured.".to_owned()];
     notes.extend(thinned);
     notes.extend(common_note(outcome));
-    if units.len() > MOST {
-        notes.push(format!("In the table only: {}.", units[MOST..].join(", ")));
-        units.truncate(MOST);
+    if units.len() > MAX_PANELS {
+        notes.push(format!(
+            "In the table only: {}.",
+            units[MAX_PANELS..].join(", ")
+        ));
+        units.truncate(MAX_PANELS);
     }
     table.note = notes.join(" ");
-    let names = groups(outcome);
-    let mut entries: Vec<(Mark, &str)> = names
-        .iter()
-        .map(|name| (Mark::Point(symbol(&names, name), true), *name))
-        .collect();
-    entries.push((
-        Mark::Point(Symbol::plain(0, BEFORE), false),
+    let groups = groups(outcome);
+    let entry = |name: &&str| {
+        let (symbol, colour) = symbol(&groups, name);
+        Entry::symbol(symbol, Symbol::filled(colour), *name)
+    };
+    let open = Entry::symbol(
+        Symbol::CIRCLE,
+        Symbol::open(BEFORE),
         "open: with the files' values",
-    ));
-    let layout = Layout::of(units.len());
-    let end = (LEFT + 8.0, layout.bottom());
-    let wide = RIGHT - end.0;
-    let tall = end.1 + foot_height(entries.iter().map(|(_, name)| *name), wide, &notes);
-    let desc = describe(outcome, &units);
-    let mut figure = Figure::new(
-        (WIDTH, tall),
-        LEFT + 8.0,
-        "Measured and computed",
-        &subject(outcome),
-        &desc,
     );
-    for (k, name) in units.iter().enumerate() {
-        let own: Vec<(&Residual, usize)> = rows
-            .iter()
-            .copied()
-            .filter(|(r, _)| unit(&r.unit) == *name)
-            .collect();
-        draw(&mut figure, layout.rect(k), name, &own, &names);
-    }
-    foot(&mut figure, end, wide, entries, &notes);
-    Picture {
-        svg: figure.finish(),
+    // A lone panel is larger.
+    let room = (RIGHT - 8.0 - 2.0 * LEFT - GAP.0) / 2.0;
+    let size = if units.len() > 1 {
+        (room, 290.0)
+    } else {
+        (560.0, 440.0)
+    };
+    let pitch = (LEFT + size.0 + GAP.0, size.1 + BELOW + GAP.1);
+    let place = grid((PLOT_LEFT, TOP), size, pitch, 2);
+    let panel = |(k, name): (usize, &&str)| {
+        let own = rows.iter().filter(|(r, _)| unit(&r.unit) == *name);
+        draw(place(k), name, &own.copied().collect::<Vec<_>>(), &groups)
+    };
+    let chart = Chart {
+        title: "Measured and computed".to_owned(),
+        subject: subject(outcome),
+        description: describe(outcome, &units),
+        left: PLOT_LEFT,
+        panels: units.iter().enumerate().map(panel).collect(),
+        foot: vec![
+            Block::legend(FOOT, "", groups.iter().map(entry).chain([open]).collect()),
+            Block::notes(FOOT, notes),
+        ],
         table,
-    }
+        ..Chart::default()
+    };
+    chart.picture()
+}
+
+fn table() -> PictureTable {
+    PictureTable::new(&[
+        ("Group", ""),
+        ("Observation", ""),
+        ("Unit", ""),
+        ("Measured, or from", ""),
+        ("Measured, or to", ""),
+        ("Standard deviation", ""),
+        ("Files' values", ""),
+        ("Fitted", ""),
+    ])
 }
 
 fn cells(r: &Residual) -> Vec<String> {
@@ -107,42 +111,7 @@ fn cells(r: &Residual) -> Vec<String> {
     .collect()
 }
 
-/// How panels stand: a lone one is larger.
-struct Layout {
-    panels: usize,
-    size: (f64, f64),
-}
-
-impl Layout {
-    fn of(panels: usize) -> Self {
-        let room = (RIGHT - 8.0 - 2.0 * LEFT - GAP.0) / 2.0;
-        Layout {
-            panels: panels.max(1),
-            size: if panels > 1 {
-                (room, 290.0)
-            } else {
-                (560.0, 440.0)
-            },
-        }
-    }
-
-    fn rect(&self, k: usize) -> Rect {
-        let left = 8.0 + LEFT + (LEFT + self.size.0 + GAP.0) * (k % 2) as f64;
-        let top = TOP + (self.size.1 + BELOW + GAP.1) * (k / 2) as f64;
-        Rect {
-            left,
-            right: left + self.size.0,
-            top,
-            bottom: top + self.size.1,
-        }
-    }
-
-    fn bottom(&self) -> f64 {
-        TOP + (self.size.1 + BELOW + GAP.1) * self.panels.div_ceil(2) as f64
-    }
-}
-
-/// Where the mark of an observation stands on the measured axis: in the middle of a range, or at the end that there is.
+/// Place of the mark of an observation on the measured axis: in the middle of a range, or at the end that there is.
 fn place(r: &Residual) -> Option<f64> {
     let finite = |x: Option<f64>| x.filter(|x| x.is_finite());
     match (finite(r.low), finite(r.high)) {
@@ -164,54 +133,50 @@ fn bar(r: &Residual) -> [Option<f64>; 2] {
     }
 }
 
-fn draw(figure: &mut Figure, rect: Rect, name: &str, rows: &[(&Residual, usize)], groups: &[&str]) {
+fn draw(rect: Rect, name: &str, rows: &[(&Residual, usize)], groups: &[&str]) -> Panel {
     let seen = |r: &Residual| {
+        let computed = [r.after].into_iter().chain(r.before);
         bar(r)
             .into_iter()
             .flatten()
-            .chain([r.after])
-            .chain(r.before)
+            .chain(computed)
             .collect::<Vec<f64>>()
     };
     let (low, high) = range(rows.iter().flat_map(|(r, _)| seen(r))).unwrap_or((0.0, 1.0));
     let span = high - low;
-    let room = if span > 1e-9 * high.abs() {
+    let wide = span > 1e-9 * high.abs();
+    let room = if wide {
         0.05 * span
     } else {
         0.1 * high.abs() + 1e-3
     };
     let axis = |what: &str| Axis::exact(&format!("{what} [{name}]"), low - room, high + room, 7);
-    let panel = Panel::draw(figure, rect, axis("Measured"), axis("Computed"), true);
-    panel.line(
-        figure,
-        &[(panel.x.low, panel.y.low), (panel.x.high, panel.y.high)],
-        CONTEXT,
+    let mut panel = Panel::new(rect, axis("Measured"), axis("Computed"));
+    let corners = (
+        at(f64::NEG_INFINITY, f64::NEG_INFINITY),
+        at(f64::INFINITY, f64::INFINITY),
     );
+    panel.add(Shape::Segment(corners.0, corners.1), Style::line(CONTEXT));
     for (r, row) in rows {
-        let (Some(x), mark) = (place(r), symbol(groups, &r.group)) else {
+        let (Some(x), (symbol, colour)) = (place(r), symbol(groups, &r.group)) else {
             continue;
         };
-        let of_row = format!("data-row=\"{row}\"");
-        if let Some(y) = r.before.filter(|y| y.is_finite()) {
-            mark.open(figure, (panel.px(x), panel.py(y)), RADIUS, &of_row);
-        }
-        if !r.after.is_finite() {
-            continue;
-        }
-        let y = panel.py(r.after);
+        let before = at(x, r.before.unwrap_or(f64::NAN));
+        panel.symbol(symbol, before, RADIUS, Symbol::open(colour).row(*row));
+        // An open end goes on to the edge.
         let [from, to] = bar(r);
-        let ends = [
-            from.map_or(rect.left, |x| panel.px(x)),
-            to.map_or(rect.right, |x| panel.px(x)),
-        ];
-        let paint = format!(
-            "stroke=\"{}\" stroke-width=\"3\" stroke-opacity=\"0.6\" {of_row}",
-            mark.colour()
+        let from = at(from.unwrap_or(f64::NEG_INFINITY), r.after);
+        let to = at(to.unwrap_or(f64::INFINITY), r.after);
+        let style = Style::line(stroke(colour, 0.75, &[])).stroke_opacity(0.6);
+        panel.add(Shape::Segment(from, to), style.row(*row));
+        panel.symbol(
+            symbol,
+            at(x, r.after),
+            RADIUS,
+            Symbol::filled(colour).row(*row),
         );
-        figure.line((ends[0], y), (ends[1], y), &paint);
-        mark.filled(figure, (panel.px(x), y), RADIUS, &of_row);
     }
-    panel.outline(figure);
+    panel
 }
 
 fn describe(outcome: &Outcome, units: &[&str]) -> String {

@@ -1,48 +1,27 @@
 //! Measured traces against time, with what is computed.
 
-use super::super::axis::Axis;
-use super::super::figure::{Figure, INK, Path, Rect};
-use super::super::legend::Mark;
-use super::super::panel::{BELOW, LEFT, Panel};
-use super::super::picture::{Picture, PictureTable, cell};
-use super::super::study::text::{foot, foot_height};
-use super::super::style::Stroke;
-use super::{AFTER, BEFORE, LEFT_OUT, RIGHT, TOP, WIDTH, common_note, in_sd, subject, unit};
+use super::{AFTER, BEFORE, FOOT, LEFT_OUT, TOP, common_note, in_sd, subject, unit};
+use crate::charts::engine::{
+    Axis, Block, Chart, Entry, INK, PLOT_LEFT, Panel, Rect, Shape, Stroke, Style, cell, stroke,
+};
+use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::fit::outcome::{Outcome, Residual};
 
 const TALL: f64 = 330.0;
 /// Standard deviations on either side of what was measured.
 const BAND: f64 = 2.0;
 const BAND_COLOUR: &str = "#8c8c8c";
-/// Most rows of a table.
-const MOST_ROWS: usize = 600;
-const STROKES: [Stroke; 4] = [
-    Stroke {
-        colour: INK,
-        width: 1.2,
-        dash: &[],
-    },
-    Stroke {
-        colour: BEFORE,
-        width: 1.5,
-        dash: &[5.0, 3.0],
-    },
-    Stroke {
-        colour: AFTER,
-        width: 2.0,
-        dash: &[],
-    },
-    Stroke {
-        colour: LEFT_OUT,
-        width: 1.5,
-        dash: &[2.0, 2.5],
-    },
-];
-const KEYS: [&str; 4] = [
-    "Measured",
-    "With the files' values",
-    "Fitted",
-    "Predicted: fitted without its fold",
+/// Most rows of a table, and most points of the band.
+const MAX_ROWS: usize = 600;
+const MAX_BAND: usize = 1500;
+const LINES: [(Stroke, &str); 4] = [
+    (stroke(INK, 1.2, &[]), "Measured"),
+    (stroke(BEFORE, 1.5, &[5.0, 3.0]), "With the files' values"),
+    (stroke(AFTER, 2.0, &[]), "Fitted"),
+    (
+        stroke(LEFT_OUT, 1.5, &[2.0, 2.5]),
+        "Predicted: fitted without its fold",
+    ),
 ];
 
 /// Draws each measured column of each trace over time, with its name.
@@ -101,75 +80,58 @@ fn numbers(r: &Residual) -> [Option<f64>; 4] {
 fn trace(outcome: &Outcome, group: &str, column: &str, list: &[&Residual]) -> Picture {
     let table = table(list);
     let unit = unit(list.first().map_or("", |r| &r.unit));
-    let there: Vec<usize> = (0..4)
-        .filter(|k| list.iter().any(|r| numbers(r)[*k].is_some()))
-        .collect();
     let mut notes =
         vec!["Grey band: two standard deviations on either side of what was measured.".to_owned()];
     notes.extend(common_note(outcome));
     notes.extend((!table.note.is_empty()).then(|| table.note.clone()));
-    let rect = Rect {
-        left: LEFT + 8.0,
-        right: RIGHT,
-        top: TOP,
-        bottom: TOP + TALL,
+    let ends_of_band = |r: &&Residual| band(r).into_iter().flatten().collect::<Vec<f64>>();
+    let values = list.iter().flat_map(|r| numbers(r).into_iter().flatten());
+    let values = values.chain(list.iter().flat_map(ends_of_band));
+    let y = Axis::round(&format!("{column} [{unit}]"), values, 8);
+    let rect = Rect::new(PLOT_LEFT, TOP, FOOT.1, TALL);
+    let mut panel = Panel {
+        over_table: true,
+        ..Panel::new(rect, x_axis(list), y)
     };
-    let (end, wide) = ((rect.left, rect.bottom + BELOW + 8.0), RIGHT - rect.left);
-    let names: Vec<&str> = there.iter().map(|k| KEYS[*k]).collect();
-    let tall = end.1 + foot_height(names.iter().copied(), wide, &notes);
-    let desc = format!(
-        "{column} of the data {group} over time: measured with two standard deviations, and computed. {}",
-        ends(list, unit)
-    );
-    let mut figure = Figure::new(
-        (WIDTH, tall),
-        rect.left,
-        &format!("{column}, {group}"),
-        &subject(outcome),
-        &desc,
-    );
-    let time = |r: &&Residual| r.time_s.unwrap_or(0.0);
-    let (from, to) = (
-        list.first().map_or(0.0, time),
-        list.last().map_or(1.0, time),
-    );
-    let all = list.iter().flat_map(|r| {
-        numbers(r)
-            .into_iter()
-            .flatten()
-            .chain(band(r).into_iter().flatten())
-    });
-    let x = if to > from {
-        Axis::exact("Time [s]", from, to, 9)
-    } else {
-        Axis::exact("Time [s]", from - 1.0, to + 1.0, 9)
-    };
-    let panel = Panel::over_table(
-        &mut figure,
-        rect,
-        x,
-        Axis::round(&format!("{column} [{unit}]"), all, 8),
-        true,
-    );
-    draw_band(&mut figure, &panel, list);
-    for k in &there {
-        let points: Vec<(f64, f64)> = list
-            .iter()
-            .map(|r| (time(r), numbers(r)[*k].unwrap_or(f64::NAN)))
-            .collect();
-        panel.line(&mut figure, &points, STROKES[*k]);
+    let seen = band_points(list);
+    if seen.len() > 1 {
+        let style = Style::colour(BAND_COLOUR).fill_opacity(0.3).class("band");
+        panel.add(Shape::between(&seen), style);
     }
-    panel.outline(&mut figure);
-    let marks = there
-        .iter()
-        .map(|k| Mark::Line(STROKES[*k]))
-        .zip(names)
-        .collect();
-    foot(&mut figure, end, wide, marks, &notes);
-    Picture {
-        svg: figure.finish(),
+    let mut entries = Vec::new();
+    for (k, (stroke, name)) in LINES.into_iter().enumerate() {
+        let point = |r: &&Residual| (time(r), numbers(r)[k].unwrap_or(f64::NAN));
+        let points: Vec<(f64, f64)> = list.iter().map(point).collect();
+        if points.iter().any(|p| p.1.is_finite()) {
+            panel.series(points, stroke);
+            entries.push(Entry::line(stroke, name));
+        }
+    }
+    let chart = Chart {
+        title: format!("{column}, {group}"),
+        subject: subject(outcome),
+        description: format!(
+            "{column} of the data {group} over time: measured with two standard deviations, and computed. {}",
+            ends(list, unit)
+        ),
+        left: PLOT_LEFT,
+        panels: vec![panel],
+        foot: vec![Block::legend(FOOT, "", entries), Block::notes(FOOT, notes)],
         table,
-    }
+        ..Chart::default()
+    };
+    chart.picture()
+}
+
+fn time(r: &Residual) -> f64 {
+    r.time_s.unwrap_or(0.0)
+}
+
+fn x_axis(list: &[&Residual]) -> Axis {
+    let from = list.first().map_or(0.0, |r| time(r));
+    let to = list.last().map_or(1.0, |r| time(r));
+    let room = if to > from { 0.0 } else { 1.0 };
+    Axis::exact("Time [s]", from - room, to + room, 9)
 }
 
 /// The ends of the band.
@@ -179,33 +141,15 @@ fn band(r: &Residual) -> [Option<f64>; 2] {
 }
 
 /// The band where something was measured, thinned to what can be seen.
-fn draw_band(figure: &mut Figure, panel: &Panel, list: &[&Residual]) {
-    let every = list.len().div_ceil(1500).max(1);
-    let seen: Vec<(f64, f64, f64)> = list
-        .iter()
-        .enumerate()
-        .filter(|(k, _)| k.is_multiple_of(every) || k + 1 == list.len())
-        .filter_map(|(_, r)| {
-            let [low, high] = band(r);
-            Some((
-                r.time_s?,
-                low.filter(|x| x.is_finite())?,
-                high.filter(|x| x.is_finite())?,
-            ))
-        })
-        .collect();
-    let mut path = Path::default();
-    for (t, _, high) in &seen {
-        path.line_to(panel.px(*t), panel.py(*high));
-    }
-    for (t, low, _) in seen.iter().rev() {
-        path.line_to(panel.px(*t), panel.py(*low));
-    }
-    path.close();
-    let data = path.finish();
-    if seen.len() > 1 {
-        figure.raw(&format!("<path class=\"band\" d=\"{data}\" fill=\"{BAND_COLOUR}\" fill-opacity=\"0.3\" stroke=\"none\"/>"));
-    }
+fn band_points(list: &[&Residual]) -> Vec<(f64, f64, f64)> {
+    let every = list.len().div_ceil(MAX_BAND).max(1);
+    let kept = list.iter().enumerate();
+    let kept = kept.filter(|(k, _)| k.is_multiple_of(every) || k + 1 == list.len());
+    let ends = |(_, r): (usize, &&Residual)| {
+        let [low, high] = band(r).map(|x| x.filter(|x| x.is_finite()));
+        Some((r.time_s?, low?, high?))
+    };
+    kept.filter_map(ends).collect()
 }
 
 fn table(list: &[&Residual]) -> PictureTable {
@@ -217,7 +161,7 @@ fn table(list: &[&Residual]) -> PictureTable {
         ("Fitted", ""),
         ("Predicted", ""),
     ]);
-    let every = list.len().div_ceil(MOST_ROWS).max(1);
+    let every = list.len().div_ceil(MAX_ROWS).max(1);
     for r in list.iter().step_by(every) {
         let [measured, before, after, left_out] = numbers(r).map(|x| in_sd(x, r));
         table.push(vec![
@@ -236,7 +180,7 @@ fn table(list: &[&Residual]) -> PictureTable {
 }
 
 fn ends(list: &[&Residual], unit: &str) -> String {
-    let told = |r: &Residual| {
+    let end = |r: &Residual| {
         let number = |x: Option<f64>| x.map_or_else(|| "nothing".to_owned(), |x| in_sd(Some(x), r));
         let [measured, _, after, _] = numbers(r).map(number);
         format!(
@@ -248,7 +192,7 @@ fn ends(list: &[&Residual], unit: &str) -> String {
         .first()
         .into_iter()
         .chain(list.last())
-        .map(|r| told(r))
+        .map(|r| end(r))
         .collect();
     format!("{} [{unit}].", list.join("; "))
 }

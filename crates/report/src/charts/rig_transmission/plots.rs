@@ -1,9 +1,9 @@
 //! Pictures of the transmission rig's tests, after the figures of thesis chapter 5.
 
-use crate::charts::chart::{Chart, ChartPanel, Look, Points, chart};
+use crate::charts::lines::{LineChart, LinePanel, Look, Points, line_chart};
 use cvtcycle_model::bench::BenchPoint;
 use cvtcycle_model::bench::transmission::{
-    Branch, Conditions, Loop, Piece, Stage, SteadyPoint, StripDown, TwoBoxes,
+    Branch, Conditions, Loop, Moment, SteadyPoint, TwoBoxes,
 };
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_output::rig::{clean, oil_degc, rpm};
@@ -11,9 +11,9 @@ use cvtcycle_output::rig::{clean, oil_degc, rpm};
 /// File name and SVG text.
 pub type Picture = (String, String);
 
-const SPEED: &str = "Input speed [rpm]";
-const LOSS: &str = "Torque loss [Nm]";
-const PRESSURE: &str = "Secondary pressure [bar]";
+pub(super) const SPEED: &str = "Input speed [rpm]";
+pub(super) const LOSS: &str = "Torque loss [Nm]";
+pub(super) const PRESSURE: &str = "Secondary pressure [bar]";
 
 /// What all pictures say of their subject.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    fn of(&self, ratio: f64, more: &str) -> String {
+    pub(super) fn of(&self, ratio: f64, more: &str) -> String {
         format!("{}, {}{more}", self.vehicle, self.ratio(ratio))
     }
 
@@ -39,7 +39,7 @@ impl Subject<'_> {
         }
     }
 
-    fn file(&self, kind: &str, ratio: f64) -> String {
+    pub(super) fn file(&self, kind: &str, ratio: f64) -> String {
         format!(
             "{kind}_{}.svg",
             self.conditions.ratio_name(ratio).replace('.', "_")
@@ -48,7 +48,7 @@ impl Subject<'_> {
 }
 
 /// Distinct values in the order in which they come.
-fn distinct<T>(rows: &[T], of: impl Fn(&T) -> f64) -> Vec<f64> {
+pub(super) fn distinct<T>(rows: &[T], of: impl Fn(&T) -> f64) -> Vec<f64> {
     let mut values: Vec<f64> = Vec::new();
     for x in rows.iter().map(of) {
         if !values.iter().any(|y| (x - y).abs() < 1e-9) {
@@ -58,18 +58,18 @@ fn distinct<T>(rows: &[T], of: impl Fn(&T) -> f64) -> Vec<f64> {
     values
 }
 
-fn same(a: f64, b: f64) -> bool {
+pub(super) fn same(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-9
 }
 
-fn line(index: usize) -> Look {
+pub(super) fn line(index: usize) -> Look {
     Look {
         index,
         dotted: false,
     }
 }
 
-fn degrees(temps: &[f64]) -> Vec<(Look, String)> {
+pub(super) fn degrees(temps: &[f64]) -> Vec<(Look, String)> {
     temps
         .iter()
         .enumerate()
@@ -78,7 +78,7 @@ fn degrees(temps: &[f64]) -> Vec<(Look, String)> {
 }
 
 /// A line a temperature against speed.
-fn by_temperature<T>(
+pub(super) fn by_temperature<T>(
     rows: &[T],
     set: fn(&T) -> &BenchPoint,
     ratio: f64,
@@ -97,104 +97,116 @@ fn by_temperature<T>(
         .collect()
 }
 
-fn panel(heading: &str, y_title: &'static str, series: Vec<(Look, Points)>) -> ChartPanel {
-    ChartPanel {
+pub(super) fn panel(
+    heading: &str,
+    y_title: &'static str,
+    series: Vec<(Look, Points)>,
+) -> LinePanel {
+    LinePanel {
         heading: heading.to_owned(),
         y_title,
         series,
-        ..ChartPanel::default()
+        ..LinePanel::default()
     }
 }
 
-fn words(what: &str, names: &[(Look, String)]) -> String {
+pub(super) fn words(what: &str, names: &[(Look, String)]) -> String {
     let list: Vec<&str> = names.iter().map(|(_, name)| name.as_str()).collect();
     format!("{what}: {}.", list.join(", "))
 }
 
-/// Something of the steady points against speed; file, title and axis.
-fn against_speed(
-    rows: &[SteadyPoint],
-    subject: &Subject,
-    ratio: f64,
-    (file, title, y_title): (&str, &str, &'static str),
-    y: fn(&SteadyPoint) -> f64,
-) -> Picture {
-    let names = degrees(&distinct(rows, |r| oil_degc(&r.set)));
-    let picture = chart(&Chart {
-        title: title.to_owned(),
-        subject: subject.of(ratio, ""),
-        description: words(
-            &format!("{title} against input speed, a line for each temperature of the bulk oil"),
-            &names,
-        ),
-        x_title: SPEED,
-        panels: vec![panel(
-            "",
-            y_title,
-            by_temperature(rows, |r| &r.set, ratio, y),
-        )],
-        legend: "Bulk oil".to_owned(),
-        names,
-        ..Chart::default()
-    });
-    (subject.file(file, ratio), picture.svg)
+/// A chart with its file name.
+pub(super) fn picture(subject: &Subject, kind: &str, ratio: f64, chart: &LineChart) -> Picture {
+    (subject.file(kind, ratio), line_chart(chart).svg)
 }
 
-/// Torque loss and secondary pressure against speed, a line a temperature (Figs 5-1 to 5-4).
+/// Points of rows against speed.
+pub(super) fn points<'r, T: 'r>(
+    rows: impl Iterator<Item = &'r T>,
+    set: fn(&T) -> &BenchPoint,
+    y: impl Fn(&T) -> f64,
+) -> Points {
+    rows.map(|row| (rpm(set(row)), y(row))).collect()
+}
+
+/// Heading of a panel of one temperature.
+pub(super) fn bulk_oil(degc: f64) -> String {
+    format!("Bulk oil {degc} \u{b0}C")
+}
+
+/// Torque loss and secondary pressure against speed, a line for each temperature (Figs 5-1 to 5-4).
 #[must_use]
 pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
-    let mut pictures = Vec::new();
-    for ratio in distinct(rows, |r| r.set.ratio) {
-        pictures.push(against_speed(
-            rows,
-            subject,
-            ratio,
-            ("steady_loss", "Torque loss without load", LOSS),
-            |r| r.answer.total_nm(),
-        ));
-        let pressure = (
+    type Quantity = (
+        &'static str,
+        &'static str,
+        &'static str,
+        fn(&SteadyPoint) -> f64,
+    );
+    let quantities: [Quantity; 2] = [
+        ("steady_loss", "Torque loss without load", LOSS, |r| {
+            r.answer.total_nm()
+        }),
+        (
             "steady_pressure",
             "Secondary pressure without load",
             PRESSURE,
-        );
-        pictures.push(against_speed(rows, subject, ratio, pressure, |r| {
-            r.answer.secondary_pa / 1e5
-        }));
+            |r| r.answer.secondary_pa / 1e5,
+        ),
+    ];
+    let names = degrees(&distinct(rows, |r| oil_degc(&r.set)));
+    let mut pictures = Vec::new();
+    for ratio in distinct(rows, |r| r.set.ratio) {
+        for (kind, title, y_title, y) in quantities {
+            let what =
+                format!("{title} against input speed, a line for each temperature of the bulk oil");
+            let chart = LineChart {
+                title: title.to_owned(),
+                subject: subject.of(ratio, ""),
+                description: words(&what, &names),
+                x_title: SPEED,
+                panels: vec![panel(
+                    "",
+                    y_title,
+                    by_temperature(rows, |r| &r.set, ratio, y),
+                )],
+                legend: "Bulk oil".to_owned(),
+                names: names.clone(),
+                ..LineChart::default()
+            };
+            pictures.push(picture(subject, kind, ratio, &chart));
+        }
     }
     pictures
 }
 
-/// Torque loss under load against speed, a line a torque, a panel a temperature.
+/// Torque loss under load against speed, a line for each torque, a panel for each temperature.
 #[must_use]
 pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
     let torques = distinct(rows, |r| r.set.output_nm);
-    let names: Vec<(Look, String)> = torques
+    let names = torques
         .iter()
         .enumerate()
-        .map(|(k, t)| (line(k), format!("{t} Nm")))
-        .collect();
+        .map(|(k, t)| (line(k), format!("{t} Nm")));
+    let names: Vec<(Look, String)> = names.collect();
+    let lines = |ratio: f64, degc: f64| {
+        let at = |nm: f64| {
+            let own = rows.iter().filter(move |r| {
+                same(r.set.ratio, ratio)
+                    && same(oil_degc(&r.set), degc)
+                    && same(r.set.output_nm, nm)
+            });
+            points(own, |r| &r.set, |r| r.answer.total_nm())
+        };
+        torques
+            .iter()
+            .enumerate()
+            .map(|(k, nm)| (line(k), at(*nm)))
+            .collect()
+    };
     let of_ratio = |ratio: f64| {
-        let on = move |r: &&SteadyPoint, t: f64, nm: f64| {
-            same(r.set.ratio, ratio) && same(oil_degc(&r.set), t) && same(r.set.output_nm, nm)
-        };
-        let lines = |t: f64| {
-            let at = |nm: f64| {
-                rows.iter()
-                    .filter(move |r| on(r, t, nm))
-                    .map(|r| (rpm(&r.set), r.answer.total_nm()))
-                    .collect()
-            };
-            torques
-                .iter()
-                .enumerate()
-                .map(|(k, nm)| (line(k), at(*nm)))
-                .collect()
-        };
-        let panels = distinct(rows, |r| oil_degc(&r.set))
-            .into_iter()
-            .map(|t| panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, lines(t)))
-            .collect();
-        let picture = chart(&Chart {
+        let temps = distinct(rows, |r| oil_degc(&r.set)).into_iter();
+        let chart = LineChart {
             title: "Torque loss under load".to_owned(),
             subject: subject.of(ratio, ""),
             description: words(
@@ -202,13 +214,15 @@ pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
                 &names,
             ),
             x_title: SPEED,
-            panels,
+            panels: temps
+                .map(|t| panel(&bulk_oil(t), LOSS, lines(ratio, t)))
+                .collect(),
             same_y: true,
             legend: "Output torque".to_owned(),
             names: names.clone(),
-            ..Chart::default()
-        });
-        (subject.file("loaded_loss", ratio), picture.svg)
+            ..LineChart::default()
+        };
+        picture(subject, "loaded_loss", ratio, &chart)
     };
     distinct(rows, |r| r.set.ratio)
         .into_iter()
@@ -224,21 +238,21 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
         (line(2), "Cooling by the rig's cooler".to_owned()),
     ];
     let speed = clean(subject.conditions.transient.speed_rad_s * 30.0 / std::f64::consts::PI);
-    let picture = |l: &Loop| {
-        let on = |branch: Branch, y: fn(&cvtcycle_model::bench::transmission::Moment) -> f64| {
-            l.moments
-                .iter()
-                .filter(|m| m.branch == branch)
-                .map(|m| (m.sump_k - ZERO_DEGC_K, y(m)))
-                .collect::<Points>()
-        };
-        let both = |y| {
+    let of_loop = |l: &Loop| {
+        let both = |y: fn(&Moment) -> f64| {
+            let on = |branch: Branch| {
+                let moments = l.moments.iter().filter(|m| m.branch == branch);
+                moments
+                    .map(|m| (m.sump_k - ZERO_DEGC_K, y(m)))
+                    .collect::<Points>()
+            };
             vec![
-                (line(1), on(Branch::Warming, y)),
-                (line(2), on(Branch::Cooling, y)),
+                (line(1), on(Branch::Warming)),
+                (line(2), on(Branch::Cooling)),
             ]
         };
-        let picture = chart(&Chart {
+        let belt = both(|m| m.answer.belt_k - ZERO_DEGC_K);
+        let chart = LineChart {
             title: "Temperature transient without load".to_owned(),
             subject: subject.of(l.ratio, &format!(", {speed} rpm")),
             description: words(
@@ -249,234 +263,56 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
             panels: vec![
                 panel("Complete box", LOSS, both(|m| m.answer.total_nm())),
                 panel("Belt alone", LOSS, both(|m| m.answer.belt_nm())),
-                panel(
-                    "Belt and spray",
-                    "Temperature [\u{b0}C]",
-                    both(|m| m.answer.belt_k - ZERO_DEGC_K),
-                ),
+                panel("Belt and spray", "Temperature [\u{b0}C]", belt),
             ],
             names: names.clone(),
-            ..Chart::default()
-        });
-        (subject.file("transient", l.ratio), picture.svg)
+            ..LineChart::default()
+        };
+        picture(subject, "transient", l.ratio, &chart)
     };
-    loops.iter().map(picture).collect()
+    loops.iter().map(of_loop).collect()
 }
 
-/// Torque loss of both boxes against speed, a panel a temperature (Figs 5-7 to 5-14).
+/// Torque loss of both boxes against speed, a panel for each temperature (Figs 5-7 to 5-14).
 #[must_use]
 pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
     let names = vec![
         (line(0), "First box".to_owned()),
         (line(1), "Second box".to_owned()),
     ];
-    let picture = |ratio: f64| {
-        let on = |t: f64, y: fn(&TwoBoxes) -> f64| {
-            let here = rows
-                .iter()
-                .filter(|r| same(r.first.set.ratio, ratio) && same(oil_degc(&r.first.set), t));
-            here.map(|r| (rpm(&r.first.set), y(r))).collect::<Points>()
-        };
-        let lines = |t: f64| {
+    let pressure = subject.conditions.pressure.second_box;
+    let of_ratio = |ratio: f64| {
+        let lines = |degc: f64| {
+            let on = |y: fn(&TwoBoxes) -> f64| {
+                let own = rows.iter().filter(|r| {
+                    same(r.first.set.ratio, ratio) && same(oil_degc(&r.first.set), degc)
+                });
+                points(own, |r| &r.first.set, y)
+            };
             vec![
-                (line(0), on(t, |r| r.first.answer.total_nm())),
-                (line(1), on(t, |r| r.second.answer.total_nm())),
+                (line(0), on(|r| r.first.answer.total_nm())),
+                (line(1), on(|r| r.second.answer.total_nm())),
             ]
         };
-        let temps = distinct(rows, |r| oil_degc(&r.first.set));
-        let picture = chart(&Chart {
+        let temps = distinct(rows, |r| oil_degc(&r.first.set)).into_iter();
+        let more = format!(", pressure of the second {pressure} of the first");
+        let chart = LineChart {
             title: "Torque loss of two boxes without load".to_owned(),
-            subject: subject.of(
-                ratio,
-                &format!(
-                    ", pressure of the second {} of the first",
-                    subject.conditions.pressure.second_box
-                ),
-            ),
+            subject: subject.of(ratio, &more),
             description: words(
                 "Torque loss against input speed, a panel for each temperature of the bulk oil",
                 &names,
             ),
             x_title: SPEED,
-            panels: temps
-                .into_iter()
-                .map(|t| panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, lines(t)))
-                .collect(),
+            panels: temps.map(|t| panel(&bulk_oil(t), LOSS, lines(t))).collect(),
             same_y: true,
             names: names.clone(),
-            ..Chart::default()
-        });
-        (subject.file("second_box", ratio), picture.svg)
+            ..LineChart::default()
+        };
+        picture(subject, "second_box", ratio, &chart)
     };
     distinct(rows, |r| r.first.set.ratio)
         .into_iter()
-        .map(picture)
+        .map(of_ratio)
         .collect()
-}
-
-/// The strip-down: stages (Figs 5-17 to 5-27), contributions (5-33 to 5-40), components (5-41 to 5-45).
-#[must_use]
-pub fn strip_down(rows: &[StripDown], subject: &Subject) -> Vec<Picture> {
-    let mut pictures = Vec::new();
-    for ratio in distinct(rows, |r| r.set.ratio) {
-        pictures.push((
-            subject.file("strip_down", ratio),
-            stages(rows, subject, ratio),
-        ));
-        pictures.push((
-            subject.file("contributions", ratio),
-            contributions(rows, subject, ratio),
-        ));
-        pictures.push((
-            subject.file("components", ratio),
-            components(rows, subject, ratio),
-        ));
-    }
-    pictures
-}
-
-fn stage_words(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Complete => "Complete",
-        Stage::FinalDriveRemoved => "Final drive removed",
-        Stage::BeltRemoved => "Belt removed",
-        Stage::ClutchRemoved => "Clutch removed (in low)",
-        Stage::PumpRemoved => "Pump removed: input shaft",
-    }
-}
-
-fn piece_words(piece: Piece) -> &'static str {
-    match piece {
-        Piece::Pump => "Pump",
-        Piece::InputShaft => "Input shaft",
-        Piece::Clutch => "Reverse clutch",
-        Piece::Belt => "Belt",
-        Piece::FinalDrive => "Final drive",
-    }
-}
-
-fn stages(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
-    let names = degrees(&distinct(rows, |r| oil_degc(&r.set)));
-    let mut panels = Vec::new();
-    for stage in Stage::ALL {
-        let words = stage_words(stage);
-        panels.push(panel(
-            words,
-            LOSS,
-            by_temperature(rows, |r| &r.set, ratio, |r| r.stage(stage).total_nm()),
-        ));
-        if stage != Stage::PumpRemoved {
-            panels.push(panel(
-                words,
-                PRESSURE,
-                by_temperature(
-                    rows,
-                    |r| &r.set,
-                    ratio,
-                    |r| r.stage(stage).secondary_pa / 1e5,
-                ),
-            ));
-        }
-    }
-    chart(&Chart {
-        title: "Strip-down: torque loss and pressure of each stage".to_owned(),
-        subject: subject.of(ratio, ""),
-        description: words(
-            "Torque loss and secondary pressure against input speed after each part removed, a line for each temperature",
-            &names,
-        ),
-        x_title: SPEED,
-        panels,
-        legend: "Bulk oil".to_owned(),
-        names,
-        ..Chart::default()
-    })
-    .svg
-}
-
-fn contributions(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
-    let names: Vec<(Look, String)> = Piece::ALL
-        .iter()
-        .enumerate()
-        .map(|(k, p)| (line(k), piece_words(*p).to_owned()))
-        .collect();
-    let layers = |t: f64| {
-        let here = || {
-            rows.iter()
-                .filter(move |r| same(r.set.ratio, ratio) && same(oil_degc(&r.set), t))
-        };
-        let of = |piece: Piece| {
-            here()
-                .map(|r| (rpm(&r.set), r.piece(piece).corrected_nm))
-                .collect::<Points>()
-        };
-        Piece::ALL
-            .iter()
-            .enumerate()
-            .map(|(k, piece)| (line(k), of(*piece)))
-            .collect()
-    };
-    let temps = distinct(rows, |r| oil_degc(&r.set));
-    let of = |t: f64| ChartPanel {
-        stacked: true,
-        ..panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, layers(t))
-    };
-    chart(&Chart {
-        title: "Contributions to the torque loss, from the strip-down".to_owned(),
-        subject: subject.of(ratio, ", corrected for pressure"),
-        description: words("Losses found by the strip-down, stacked, against input speed, a panel for each temperature", &names),
-        x_title: SPEED,
-        panels: temps.into_iter().map(of).collect(),
-        same_y: true,
-        legend: "From the strip-down".to_owned(),
-        names,
-        ..Chart::default()
-    })
-    .svg
-}
-
-fn components(rows: &[StripDown], subject: &Subject, ratio: f64) -> String {
-    let temps = distinct(rows, |r| oil_degc(&r.set));
-    let mut names = degrees(&temps);
-    names.extend(temps.iter().enumerate().map(|(index, t)| {
-        (
-            Look {
-                index,
-                dotted: true,
-            },
-            format!("{t} \u{b0}C, true"),
-        )
-    }));
-    let lines = |piece: Piece| {
-        let mut lines = by_temperature(rows, |r| &r.set, ratio, |r| r.piece(piece).corrected_nm);
-        let own = by_temperature(rows, |r| &r.set, ratio, |r| r.piece(piece).true_nm);
-        lines.extend(own.into_iter().map(|(look, points)| {
-            (
-                Look {
-                    dotted: true,
-                    ..look
-                },
-                points,
-            )
-        }));
-        lines
-    };
-    let of = |piece: Piece| ChartPanel {
-        with_y: vec![0.0],
-        ..panel(piece_words(piece), LOSS, lines(piece))
-    };
-    chart(&Chart {
-        title: "Components from the strip-down, beside those of the model".to_owned(),
-        subject: subject.of(ratio, ", corrected for pressure"),
-        description: words(
-            "Loss of each component against input speed; dotted: its own loss in the complete box",
-            &names,
-        ),
-        x_title: SPEED,
-        panels: Piece::ALL.into_iter().map(of).collect(),
-        legend: "Bulk oil".to_owned(),
-        names,
-        ..Chart::default()
-    })
-    .svg
 }

@@ -1,12 +1,11 @@
-//! Bars of two measures a factor, with intervals: Sobol indices, rank correlations.
+//! Bars of two measures of each factor, with intervals: Sobol indices, rank correlations.
 
-use super::super::axis::Axis;
-use super::super::legend::Mark;
-use super::super::picture::{Picture, PictureTable, cell};
-use super::super::style::fill;
-use super::rows::{Frame, MOST_ROWS, Rows};
-use super::text::value;
-use super::{Shown, interval_cells};
+use super::{MARGIN, MAX_ROWS, RIGHT, ROW, Shown, interval_cells, value};
+use crate::charts::engine::{
+    Axis, Block, Chart, Entry, Fill, INK, Label, Style, WIDTH, at, cell, rows_left, rows_panel,
+    stroke,
+};
+use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::statistics::{Estimate, RankSensitivity, SobolIndices};
 
 /// Sobol indices of an output.
@@ -31,91 +30,11 @@ pub struct RankPlot<'a> {
     pub ranks: &'a RankSensitivity,
 }
 
-/// A row of the picture.
-struct Row<'a> {
-    name: &'a str,
-    values: [Estimate; 2],
-}
+/// A factor with its two measures.
+type FactorBars<'a> = (&'a str, [Estimate; 2]);
 
-/// Draws first-order and total Sobol indices with their intervals, the largest total index first.
-#[must_use]
-pub fn sobol_plot(plot: &SobolPlot) -> Picture {
-    let of = plot.indices;
-    let rows = plot
-        .names
-        .iter()
-        .zip(&of.factors)
-        .map(|(name, f)| Row {
-            name,
-            values: [f.first, f.total],
-        })
-        .collect();
-    let mut notes = vec![format!("{} samples{}", of.samples, left_out(of.missing))];
-    if of.samples > 1 && of.variance <= 0.0 {
-        notes.push("The output does not vary: it has no indices.".to_owned());
-    } else {
-        notes.push(format!(
-            "Sum of first-order indices {}. What is missing to 1 is the work of factors together.",
-            told(&of.sum_first)
-        ));
-        notes.push(format!(
-            "Bars: estimates. Whiskers: intervals of 95 % from {} resamples.",
-            of.resamples
-        ));
-    }
-    let title = format!("Sobol indices: {}", plot.shown.output);
-    let kinds = ["First order: alone", "Total: also with others"];
-    draw(
-        rows,
-        &plot.shown,
-        &Words {
-            title,
-            axis: "Share of the variance [-]",
-            kinds,
-            short: ["First order", "Total"],
-            key: 1,
-            notes,
-        },
-    )
-}
-
-/// Draws rank correlations and rank regression coefficients with their intervals, the strongest correlation first.
-#[must_use]
-pub fn rank_plot(plot: &RankPlot) -> Picture {
-    let of = plot.ranks;
-    let rows = plot
-        .names
-        .iter()
-        .zip(&of.factors)
-        .map(|(name, f)| Row {
-            name,
-            values: [f.spearman, f.regression],
-        })
-        .collect();
-    let mut notes = vec![format!("{} rows{}", of.n, left_out(of.missing))];
-    notes.push(match of.r_squared {
-        r if r.is_finite() => format!("R\u{b2} of the regression on ranks: {r:.3}"),
-        _ => "No regression: too few rows, or factors that follow from each other.".to_owned(),
-    });
-    notes.push("Whiskers: intervals of 95 %".to_owned());
-    let title = format!("Rank sensitivity: {}", plot.shown.output);
-    let kinds = ["Rank correlation", "Rank regression coefficient"];
-    draw(
-        rows,
-        &plot.shown,
-        &Words {
-            title,
-            axis: "Coefficient [-]",
-            kinds,
-            short: ["Correlation", "Regression"],
-            key: 0,
-            notes,
-        },
-    )
-}
-
-/// What a picture says.
-struct Words<'a> {
+/// The texts of a picture.
+struct Texts<'a> {
     title: String,
     axis: &'a str,
     kinds: [&'a str; 2],
@@ -126,77 +45,134 @@ struct Words<'a> {
     notes: Vec<String>,
 }
 
-fn draw(mut rows: Vec<Row>, shown: &Shown, words: &Words) -> Picture {
-    let size = |row: &Row| row.values[words.key].value.abs();
+/// Draws first-order and total Sobol indices with their intervals, the largest total index first.
+#[must_use]
+pub fn sobol_plot(plot: &SobolPlot) -> Picture {
+    let of = plot.indices;
+    let factors = plot.names.iter().zip(&of.factors);
+    let rows = factors
+        .map(|(name, f)| (name.as_str(), [f.first, f.total]))
+        .collect();
+    let mut notes = vec![format!("{} samples{}", of.samples, left_out(of.missing))];
+    if of.samples > 1 && of.variance <= 0.0 {
+        notes.push("The output does not vary: it has no indices.".to_owned());
+    } else {
+        notes.push(format!(
+            "Sum of first-order indices {}. What is missing to 1 is the work of factors together.",
+            with_interval(&of.sum_first)
+        ));
+        notes.push(format!(
+            "Bars: estimates. Whiskers: intervals of 95 % from {} resamples.",
+            of.resamples
+        ));
+    }
+    let texts = Texts {
+        title: format!("Sobol indices: {}", plot.shown.output),
+        axis: "Share of the variance [-]",
+        kinds: ["First order: alone", "Total: also with others"],
+        short: ["First order", "Total"],
+        key: 1,
+        notes,
+    };
+    draw(rows, &plot.shown, texts)
+}
+
+/// Draws rank correlations and rank regression coefficients with their intervals, the strongest correlation first.
+#[must_use]
+pub fn rank_plot(plot: &RankPlot) -> Picture {
+    let of = plot.ranks;
+    let factors = plot.names.iter().zip(&of.factors);
+    let rows = factors
+        .map(|(name, f)| (name.as_str(), [f.spearman, f.regression]))
+        .collect();
+    let fit = match of.r_squared {
+        r if r.is_finite() => format!("R\u{b2} of the regression on ranks: {r:.3}"),
+        _ => "No regression: too few rows, or factors that follow from each other.".to_owned(),
+    };
+    let texts = Texts {
+        title: format!("Rank sensitivity: {}", plot.shown.output),
+        axis: "Coefficient [-]",
+        kinds: ["Rank correlation", "Rank regression coefficient"],
+        short: ["Correlation", "Regression"],
+        key: 0,
+        notes: vec![
+            format!("{} rows{}", of.n, left_out(of.missing)),
+            fit,
+            "Whiskers: intervals of 95 %".to_owned(),
+        ],
+    };
+    draw(rows, &plot.shown, texts)
+}
+
+fn draw(mut rows: Vec<FactorBars>, shown: &Shown, texts: Texts) -> Picture {
+    let size = |row: &FactorBars| row.1[texts.key].value.abs();
     rows.sort_by(|a, b| {
-        size(a)
-            .is_nan()
-            .cmp(&size(b).is_nan())
-            .then(size(b).total_cmp(&size(a)))
+        let last = size(a).is_nan().cmp(&size(b).is_nan());
+        last.then(size(b).total_cmp(&size(a)))
     });
-    let (desc, table) = (describe(&rows, words), table(&rows, words));
-    let mut notes = words.notes.clone();
-    if rows.len() > MOST_ROWS + 1 {
-        let rest = rows.split_off(MOST_ROWS);
-        let largest = rest.first().map_or(0.0, &size);
+    let (description, table) = (describe(&rows, &texts), table(&rows, &texts));
+    let mut notes = texts.notes.clone();
+    if rows.len() > MAX_ROWS + 1 {
+        let rest = rows.split_off(MAX_ROWS);
+        let largest = rest.first().map_or(0.0, size);
         notes.push(format!(
             "{} more factors in the table, each at most {}.",
             rest.len(),
             value(largest, 0.9)
         ));
     }
-    let ends = rows
-        .iter()
-        .flat_map(|row| &row.values)
-        .flat_map(|e| e.interval95.into_iter().flatten().chain([e.value, 0.0]));
-    let frame = Frame {
-        title: words.title.clone(),
-        subject: shown.subject,
-        desc,
-        x: Axis::round(words.axis, ends, 8),
-        names: rows.iter().map(|row| row.name).collect(),
-        entries: words.kinds,
-        notes,
-    };
-    let mut paints = Vec::new();
-    let mut picture = Rows::new(frame, |figure| {
-        paints = (0..2).map(|k| fill(figure, "measure", k, 2)).collect();
-        paints.iter().cloned().map(Mark::Fill).collect()
-    });
-    for (k, row) in rows.iter().enumerate() {
-        let middle = picture.middle(k);
-        for ((estimate, paint), top) in row.values.iter().zip(&paints).zip([middle - 10.0, middle])
-        {
-            picture.bar(k, (0.0, estimate.value), (top, top + 10.0), paint);
+    let estimates = rows.iter().flat_map(|row| &row.1);
+    let ends = estimates.flat_map(|e| e.interval95.into_iter().flatten().chain([e.value, 0.0]));
+    let left = rows_left(rows.iter().map(|row| row.0), 11.0);
+    let x = Axis::round(texts.axis, ends, 8);
+    let mut panel = rows_panel((left, 58.0), RIGHT, rows.len().max(2), ROW, x);
+    panel.no_data = rows.is_empty();
+    for (k, (name, estimates)) in rows.iter().enumerate() {
+        panel.row_name(k, Label::new(at(0.0, 0.0), *name).class("row").row(k));
+        for (i, (estimate, top)) in estimates.iter().zip([-10.0, 0.0]).enumerate() {
+            let style = Style::edged(Fill::nth(i, 2), 0.5).row(k);
+            panel.bar(k, (0.0, estimate.value), (top, top + 10.0), style);
             if let Some(interval) = estimate.interval95 {
-                picture.whisker(k, interval, top + 5.0);
+                panel.whisker(k, interval, top + 5.0, k);
             }
         }
     }
-    picture.mark(0.0);
-    picture.finish(table)
+    panel.upright(0.0, stroke(INK, 1.0, &[]));
+    let entries = texts.kinds.iter().enumerate();
+    let entries = entries
+        .map(|(k, kind)| Entry::fill(Fill::nth(k, 2), *kind))
+        .collect();
+    let place = (MARGIN, WIDTH - 28.0 - MARGIN);
+    let chart = Chart {
+        title: texts.title,
+        subject: shown.subject.to_owned(),
+        description,
+        left: MARGIN,
+        panels: vec![panel],
+        foot: vec![
+            Block::legend(place, "", entries),
+            Block::notes(place, notes),
+        ],
+        table,
+        ..Chart::default()
+    };
+    chart.picture()
 }
 
-fn table(rows: &[Row], words: &Words) -> PictureTable {
+fn table(rows: &[FactorBars], texts: &Texts) -> PictureTable {
     let mut columns = vec![("Factor".to_owned(), "")];
-    for kind in words.short {
-        columns.extend(
-            [
-                kind.to_owned(),
-                format!("{kind}: 95 % from"),
-                format!("{kind}: to"),
-            ]
-            .map(|name| (name, "")),
-        );
+    for kind in texts.short {
+        let names = [
+            kind.to_owned(),
+            format!("{kind}: 95 % from"),
+            format!("{kind}: to"),
+        ];
+        columns.extend(names.map(|name| (name, "")));
     }
-    let mut table = PictureTable {
-        columns,
-        note: words.notes.join(" "),
-        ..PictureTable::default()
-    };
-    for row in rows {
-        let mut cells = vec![row.name.to_owned()];
-        for estimate in &row.values {
+    let mut table = PictureTable::with_columns(columns, texts.notes.join(" "));
+    for (name, estimates) in rows {
+        let mut cells = vec![(*name).to_owned()];
+        for estimate in estimates {
             cells.push(cell(estimate.value, 1e-3));
             cells.extend(interval_cells(estimate.interval95, 1e-3));
         }
@@ -214,31 +190,27 @@ fn left_out(missing: usize) -> String {
 }
 
 /// "0.314 (0.290 to 0.338)".
-fn told(estimate: &Estimate) -> String {
+fn with_interval(estimate: &Estimate) -> String {
     let digits = |x: f64| value(x, 0.9);
+    let own = digits(estimate.value);
     match estimate.interval95 {
-        Some([low, high]) => format!(
-            "{} ({} to {})",
-            digits(estimate.value),
-            digits(low),
-            digits(high)
-        ),
-        None => digits(estimate.value),
+        Some([low, high]) => format!("{own} ({} to {})", digits(low), digits(high)),
+        None => own,
     }
 }
 
-fn describe(rows: &[Row], words: &Words) -> String {
-    let row = |row: &Row| {
+fn describe(rows: &[FactorBars], texts: &Texts) -> String {
+    let row = |(name, [first, second]): &FactorBars| {
         format!(
-            "{}: {} and {}",
-            row.name,
-            told(&row.values[0]),
-            told(&row.values[1])
+            "{name}: {} and {}",
+            with_interval(first),
+            with_interval(second)
         )
     };
-    let [first, second] = words.kinds;
+    let rows: Vec<String> = rows.iter().map(row).collect();
+    let [first, second] = texts.kinds;
     format!(
         "For each factor two bars with intervals of 95 %, {first} and {second}. {}.",
-        rows.iter().map(row).collect::<Vec<_>>().join("; ")
+        rows.join("; ")
     )
 }

@@ -1,13 +1,11 @@
 //! Sobol indices against the number of samples: whether they have settled.
 
-use super::super::axis::Axis;
-use super::super::figure::{Anchor, Figure, INK, Path, QUIET, Rect, UNITS, units};
-use super::super::legend::Mark;
-use super::super::panel::{BELOW, LEFT, Panel};
-use super::super::picture::{Picture, PictureTable, cell};
-use super::super::style::{STROKES, Stroke};
-use super::text::{foot, foot_height, value};
-use super::{RIGHT, Shown, WIDTH, interval_cells};
+use super::{RIGHT, Shown, WIDE, interval_cells, value};
+use crate::charts::engine::{
+    Axis, Block, Chart, Entry, PLOT_LEFT, Panel, Rect, STROKES, Shape, Style, Symbol, ZERO, at,
+    cell,
+};
+use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::statistics::{Estimate, SobolIndices};
 
 /// Indices at growing numbers of samples.
@@ -26,12 +24,8 @@ const TALL: f64 = 230.0;
 const GAP: f64 = 20.0;
 /// Bands of at least the last number of samples over 2 to this power lie in the plot in full.
 const SEEN: f64 = 2.5;
-const ZERO: Stroke = Stroke {
-    colour: "#000000",
-    width: 0.8,
-    dash: &[],
-};
 
+/// One of the two indices of a factor at a number of samples.
 type Pick = fn(&SobolIndices, usize) -> Option<Estimate>;
 
 /// Draws first-order indices over total ones against the number of samples, with their intervals as bands. Of more than seven factors
@@ -39,72 +33,45 @@ type Pick = fn(&SobolIndices, usize) -> Option<Estimate>;
 #[must_use]
 pub fn convergence_plot(plot: &ConvergencePlot) -> Picture {
     let chosen = chosen(plot);
-    let mut told = vec![
+    let mut notes = vec![
         "Bands: intervals of 95 %. Those of few samples may leave the plot; the table has them."
             .to_owned(),
     ];
     if chosen.len() < plot.names.len() {
-        told.push(format!(
+        notes.push(format!(
             "{} of {} factors, those with the largest total indices.",
             chosen.len(),
             plot.names.len()
         ));
     }
-    let left = LEFT + 8.0;
-    let place = |k: f64| Rect {
-        left,
-        right: RIGHT,
-        top: TOP + k * (TALL + GAP),
-        bottom: TOP + k * (TALL + GAP) + TALL,
-    };
-    let (upper, lower) = (place(0.0), place(1.0));
-    let below = (left, lower.bottom + BELOW + 8.0);
-    let tall = below.1
-        + foot_height(
-            chosen.iter().map(|&i| plot.names[i].as_str()),
-            RIGHT - left,
-            &told,
-        );
-    let title = format!("Convergence of Sobol indices: {}", plot.shown.output);
-    let mut figure = Figure::new(
-        (WIDTH, tall),
-        left,
-        &title,
-        plot.shown.subject,
-        &describe(plot, &chosen),
-    );
-    draw(
-        &mut figure,
-        plot,
-        &chosen,
-        upper,
+    let indices: [(&str, Pick); 2] = [
         ("First-order index [-]", |s, i| {
             s.factors.get(i).map(|f| f.first)
         }),
-    );
-    let panel = draw(
-        &mut figure,
-        plot,
-        &chosen,
-        lower,
         ("Total index [-]", |s, i| s.factors.get(i).map(|f| f.total)),
-    );
-    for step in plot.steps {
-        let at = (panel.px(place_of(step)), lower.bottom + 17.0);
-        figure.text(at, 11.0, Anchor::Middle, "", INK, &step.samples.to_string());
+    ];
+    let mut panels = indices.map(|(title, pick)| draw(plot, &chosen, title, pick));
+    for (k, panel) in panels.iter_mut().enumerate() {
+        let top = TOP + k as f64 * (TALL + GAP);
+        panel.rect = Rect::new(PLOT_LEFT, top, WIDE, TALL);
+        panel.x_labels = k == 1;
     }
-    let under = (0.5 * (lower.left + lower.right), lower.bottom + 36.0);
-    figure.text(under, 12.0, Anchor::Middle, "", INK, "Samples [-]");
-    let lines = chosen
-        .iter()
-        .enumerate()
-        .map(|(k, &i)| (Mark::Line(STROKES[k]), plot.names[i].as_str()))
+    let lines = chosen.iter().enumerate();
+    let lines = lines
+        .map(|(k, &i)| Entry::line(STROKES[k], &plot.names[i]))
         .collect();
-    foot(&mut figure, below, RIGHT - left, lines, &told);
-    Picture {
-        svg: figure.finish(),
+    let place = (PLOT_LEFT, RIGHT - PLOT_LEFT);
+    let chart = Chart {
+        title: format!("Convergence of Sobol indices: {}", plot.shown.output),
+        subject: plot.shown.subject.to_owned(),
+        description: describe(plot, &chosen),
+        left: PLOT_LEFT,
+        panels: panels.into(),
+        foot: vec![Block::legend(place, "", lines), Block::notes(place, notes)],
         table: table(plot),
-    }
+        ..Chart::default()
+    };
+    chart.picture()
 }
 
 /// A row for each number of samples and factor, in this order.
@@ -123,13 +90,8 @@ fn table(plot: &ConvergencePlot) -> PictureTable {
     for step in plot.steps {
         for (i, name) in plot.names.iter().enumerate() {
             let mut cells = vec![step.samples.to_string(), name.clone()];
-            for estimate in step
-                .factors
-                .get(i)
-                .map(|f| [f.first, f.total])
-                .into_iter()
-                .flatten()
-            {
+            let estimates = step.factors.get(i).map(|f| [f.first, f.total]);
+            for estimate in estimates.into_iter().flatten() {
                 cells.push(cell(estimate.value, 1e-3));
                 cells.extend(interval_cells(estimate.interval95, 1e-3));
             }
@@ -140,7 +102,7 @@ fn table(plot: &ConvergencePlot) -> PictureTable {
     table
 }
 
-/// Where a step stands: doublings are equally far apart.
+/// Place of a number of samples: doublings are equally far apart.
 fn place_of(step: &SobolIndices) -> f64 {
     (step.samples.max(1) as f64).log2()
 }
@@ -148,138 +110,80 @@ fn place_of(step: &SobolIndices) -> f64 {
 /// The factors that are drawn, the largest total index of the last step first.
 fn chosen(plot: &ConvergencePlot) -> Vec<usize> {
     let total = |i: usize| {
-        plot.steps
-            .last()
-            .and_then(|s| s.factors.get(i))
-            .map_or(f64::NAN, |f| f.total.value)
+        let last = plot.steps.last().and_then(|s| s.factors.get(i));
+        last.map_or(f64::NAN, |f| f.total.value)
     };
     let mut order: Vec<usize> = (0..plot.names.len()).collect();
     order.sort_by(|&i, &j| {
-        total(i)
-            .is_nan()
-            .cmp(&total(j).is_nan())
-            .then(total(j).total_cmp(&total(i)))
+        let last = total(i).is_nan().cmp(&total(j).is_nan());
+        last.then(total(j).total_cmp(&total(i)))
     });
     order.truncate(STROKES.len());
     order
 }
 
-fn draw(
-    figure: &mut Figure,
-    plot: &ConvergencePlot,
-    chosen: &[usize],
-    rect: Rect,
-    (title, pick): (&str, Pick),
-) -> Panel {
+fn draw(plot: &ConvergencePlot, chosen: &[usize], title: &str, pick: Pick) -> Panel {
     let estimates = |i: usize| {
-        plot.steps
-            .iter()
-            .filter_map(move |s| pick(s, i).map(|e| (place_of(s), e)))
+        let steps = plot.steps.iter().enumerate();
+        steps.filter_map(move |(k, s)| pick(s, i).map(|e| (k, place_of(s), e)))
     };
-    let places: Vec<f64> = plot.steps.iter().map(place_of).collect();
-    let (first, last) = (
-        places.first().copied().unwrap_or(0.0),
-        places.last().copied().unwrap_or(1.0),
-    );
+    let first = plot.steps.first().map_or(0.0, place_of);
+    let last = plot.steps.last().map_or(1.0, place_of);
     // The bands of few samples are so wide that nothing else would be seen: they may leave the plot.
-    let seen = |x: f64, e: Estimate| {
-        e.interval95
-            .filter(|_| x > last - SEEN)
-            .into_iter()
-            .flatten()
-            .chain([e.value, 0.0])
+    let seen = |(_, x, e): (usize, f64, Estimate)| {
+        let ends = e.interval95.filter(|_| x > last - SEEN);
+        ends.into_iter().flatten().chain([e.value, 0.0])
     };
     let y = Axis::round(
         title,
-        chosen
-            .iter()
-            .flat_map(|&i| estimates(i))
-            .flat_map(|(x, e)| seen(x, e)),
+        chosen.iter().flat_map(|&i| estimates(i)).flat_map(seen),
         6,
     );
-    let mut x = Axis::exact("", first - 0.25, last + 0.25, 6);
-    x.ticks = places;
-    let panel = Panel::draw(figure, rect, x, y, false);
-    let (left, top) = (units(rect.left), units(rect.top));
-    let (wide, tall) = (units(rect.right) - left, units(rect.bottom) - top);
-    figure
-        .define(&format!("<clipPath id=\"within-{top}\"><rect x=\"{left}\" y=\"{top}\" width=\"{wide}\" height=\"{tall}\"/></clipPath>\n"));
-    figure.raw(&format!("<g clip-path=\"url(#within-{top})\">"));
-    for (k, &i) in chosen.iter().enumerate().rev() {
-        let bounds: Vec<(f64, [f64; 2])> = estimates(i)
-            .filter_map(|(x, e)| e.interval95.map(|ends| (x, ends)))
-            .collect();
-        band(figure, &panel, &bounds, STROKES[k].colour);
-    }
-    figure.close();
-    panel.line(figure, &[(panel.x.low, 0.0), (panel.x.high, 0.0)], ZERO);
-    for (k, &i) in chosen.iter().enumerate().rev() {
-        panel.line(
-            figure,
-            &estimates(i).map(|(x, e)| (x, e.value)).collect::<Vec<_>>(),
-            STROKES[k],
-        );
-        for (at, step) in plot.steps.iter().enumerate() {
-            let Some(estimate) = pick(step, i).filter(|e| e.value.is_finite()) else {
-                continue;
-            };
-            let (cx, cy, r) = (
-                units(panel.px(place_of(step))),
-                units(panel.py(estimate.value)),
-                2.8 * UNITS,
-            );
-            let (row, colour) = (at * plot.names.len() + i, STROKES[k].colour);
-            figure.raw(&format!("<circle class=\"mark\" data-row=\"{row}\" cx=\"{cx}\" cy=\"{cy}\" r=\"{r:.1}\" fill=\"{colour}\"/>"));
+    let ticks = plot
+        .steps
+        .iter()
+        .map(|step| (place_of(step), step.samples.to_string()));
+    let x = Axis::labelled("Samples [-]", (first - 0.25, last + 0.25), ticks.collect());
+    let mut panel = Panel::new(Rect::default(), x, y);
+    panel.no_data = plot.steps.is_empty() || chosen.is_empty();
+    let order = || chosen.iter().enumerate().rev();
+    for (k, &i) in order() {
+        let ends =
+            |(_, x, e): (usize, f64, Estimate)| e.interval95.map(|[low, high]| (x, low, high));
+        let bounds: Vec<(f64, f64, f64)> = estimates(i).filter_map(ends).collect();
+        if bounds.len() > 1 {
+            let style = Style::colour(STROKES[k].colour)
+                .fill_opacity(0.14)
+                .class("band");
+            panel.add(Shape::between(&bounds), style);
         }
     }
-    if plot.steps.is_empty() || chosen.is_empty() {
-        let at = (
-            0.5 * (rect.left + rect.right),
-            0.5 * (rect.top + rect.bottom),
+    let bands = std::mem::take(&mut panel.items);
+    panel.add(Shape::Within(None, bands), Style::default());
+    panel.level(0.0, ZERO);
+    for (k, &i) in order() {
+        panel.series(
+            estimates(i).map(|(_, x, e)| (x, e.value)).collect(),
+            STROKES[k],
         );
-        figure.text(at, 12.0, Anchor::Middle, "", QUIET, "no data");
+        for (step, x, e) in estimates(i) {
+            let style = Style::colour(STROKES[k].colour).class("mark");
+            let row = step * plot.names.len() + i;
+            panel.symbol(Symbol::CIRCLE, at(x, e.value), 2.8, style.row(row));
+        }
     }
-    panel.outline(figure);
     panel
-}
-
-/// The area between lower and upper bounds.
-fn band(figure: &mut Figure, panel: &Panel, bounds: &[(f64, [f64; 2])], colour: &str) {
-    let mut path = Path::default();
-    for (x, [_, high]) in bounds {
-        path.line_to(panel.px(*x), panel.py(*high));
-    }
-    for (x, [low, _]) in bounds.iter().rev() {
-        path.line_to(panel.px(*x), panel.py(*low));
-    }
-    path.close();
-    let data = path.finish();
-    if bounds.len() > 1 {
-        figure.raw(&format!("<path class=\"band\" d=\"{data}\" fill=\"{colour}\" fill-opacity=\"0.14\" stroke=\"none\"/>"));
-    }
 }
 
 fn describe(plot: &ConvergencePlot, chosen: &[usize]) -> String {
     let at = |step: &SobolIndices| {
-        let total = |&i: &usize| {
-            step.factors.get(i).map(|f| {
-                format!(
-                    "{} {} and {}",
-                    plot.names[i],
-                    value(f.first.value, 0.9),
-                    value(f.total.value, 0.9)
-                )
-            })
+        let indices = |&i: &usize| {
+            let f = step.factors.get(i)?;
+            let (first, total) = (value(f.first.value, 0.9), value(f.total.value, 0.9));
+            Some(format!("{} {first} and {total}", plot.names[i]))
         };
-        format!(
-            "{} samples: {}",
-            step.samples,
-            chosen
-                .iter()
-                .filter_map(total)
-                .collect::<Vec<_>>()
-                .join(", ")
-        )
+        let factors: Vec<String> = chosen.iter().filter_map(indices).collect();
+        format!("{} samples: {}", step.samples, factors.join(", "))
     };
     format!(
         "First-order and total indices of factors. {}.",

@@ -1,13 +1,12 @@
 //! How an output, or a difference of pairs, is distributed: histogram over cumulative curve.
 
-use super::super::axis::{Axis, range, round_step};
-use super::super::figure::{Anchor, Figure, INK, Path, Rect, UNITS, units};
-use super::super::legend::Mark;
-use super::super::panel::{BELOW, LEFT, Panel};
-use super::super::picture::{Picture, PictureTable, cell};
-use super::super::style::{STROKES, Stroke};
-use super::text::{foot, foot_height, lines, middle, percent, value};
-use super::{RIGHT, Shown, WIDTH, capital};
+use super::{RIGHT, Shown, WIDE, percent, value};
+use crate::charts::engine::{
+    Axis, Block, Chart, Cut, Entry, INK, Label, PLOT_LEFT, Panel, Point, QUIET, Rect, STROKES,
+    Shape, Stroke, Style, Symbol, at, cell, lines, range, round_step, stroke,
+};
+use crate::charts::picture::{Picture, PictureTable};
+use crate::number::capital_first;
 use cvtcycle_study::statistics::{Share, Summary, quantile_of_sorted};
 
 /// Values of an output and what they are of.
@@ -39,8 +38,6 @@ struct Drawn<'a> {
 }
 
 const TOP: f64 = 58.0;
-const PLOT_LEFT: f64 = LEFT + 8.0;
-const WIDE: f64 = RIGHT - PLOT_LEFT;
 const TALL: f64 = 230.0;
 const GAP: f64 = 16.0;
 /// Most steps of a cumulative curve: more could not be seen.
@@ -52,16 +49,8 @@ const NEAREST: f64 = 1.6;
 /// Quantiles with a mark.
 const MARKED: [f64; 3] = [0.05, 0.5, 0.95];
 /// Dashed, so that it stays apart from the frame.
-const ZERO: Stroke = Stroke {
-    colour: "#000000",
-    width: 1.4,
-    dash: &[6.0, 2.0],
-};
-const GUIDE: Stroke = Stroke {
-    colour: "#555555",
-    width: 0.9,
-    dash: &[3.0, 3.0],
-};
+const ZERO: Stroke = stroke(INK, 1.4, &[6.0, 2.0]);
+const GUIDE: Stroke = stroke(QUIET, 0.9, &[3.0, 3.0]);
 
 /// Draws histogram and cumulative curve of each series over one axis, with the 5, 50 and 95 % quantiles marked.
 #[must_use]
@@ -74,79 +63,56 @@ pub fn distribution_plot(plot: &DistributionPlot) -> Picture {
         .collect();
     let edges = edges(&series, plot.differences);
     let shares: Vec<Vec<f64>> = series.iter().map(|s| shares(s, &edges)).collect();
-    let told = told(plot, &series);
-    let mut marks: Vec<(Mark, &str)> = series
+    let (headline, notes) = (headline(plot, &series), notes(plot, &series));
+    let lines = lines(&headline, 12.0, WIDE);
+    let head = if lines.is_empty() {
+        0.0
+    } else {
+        16.0 * lines.len() as f64 + 6.0
+    };
+    let (what, output) = if plot.differences {
+        let output = format!("Difference: {}", plot.shown.output);
+        ("Distribution of the difference", output)
+    } else {
+        ("Distribution", capital_first(plot.shown.output))
+    };
+    let title = plot
+        .shown
+        .axis(&Cut::Middle.apply(&output, 12.0, WIDE - 90.0));
+    let x = Axis::exact(&title, edges[0], edges[edges.len() - 1], 9);
+    let rect = Rect::new(PLOT_LEFT, TOP + head, WIDE, TALL);
+    let mut upper = histogram((rect, x.clone()), &series, &shares, &edges);
+    for (k, line) in lines.into_iter().enumerate() {
+        let place = at(f64::NEG_INFINITY, f64::INFINITY);
+        let place = place.shift(0.0, 6.0 - head + 16.0 * k as f64);
+        upper.label(Label::new(place, line).size(12.0).bold(true));
+    }
+    let rect = Rect::new(PLOT_LEFT, rect.bottom + GAP, WIDE, TALL);
+    let lower = cumulative(rect, x, &series);
+    let names = series
         .iter()
-        .enumerate()
-        .map(|(k, s)| (Mark::Line(STROKES[k]), s.name))
-        .collect();
-    if plot.differences {
-        marks.push((Mark::Line(ZERO), "No difference"));
-    }
-    let headline = headline(plot, &series);
-    let head = lines(&headline, 12.0, WIDE);
-    let top = TOP
-        + if head.is_empty() {
-            0.0
-        } else {
-            16.0 * head.len() as f64 + 6.0
-        };
-    let upper = Rect {
-        left: PLOT_LEFT,
-        right: RIGHT,
-        top,
-        bottom: top + TALL,
-    };
-    let lower = Rect {
-        top: upper.bottom + GAP,
-        bottom: upper.bottom + GAP + TALL,
-        ..upper
-    };
-    let below = (PLOT_LEFT, lower.bottom + BELOW + 8.0);
-    let names: Vec<&str> = marks.iter().map(|(_, name)| *name).collect();
-    let tall = below.1 + foot_height(names.into_iter(), WIDE, &told);
-    let what = if plot.differences {
-        "Distribution of the difference"
-    } else {
-        "Distribution"
-    };
-    let title = format!("{what}: {}", plot.shown.output);
-    let desc = format!(
-        "Histogram over cumulative curve, quantiles of 5, 50 and 95 % marked. {headline} {}",
-        told.join(" ")
-    )
-    .replace('\u{a0}', " ");
-    let mut figure = Figure::new((WIDTH, tall), PLOT_LEFT, &title, plot.shown.subject, &desc);
-    for (k, line) in head.iter().enumerate() {
-        figure.text(
-            (PLOT_LEFT, TOP + 6.0 + 16.0 * k as f64),
-            12.0,
-            Anchor::Start,
-            "font-weight=\"bold\"",
-            INK,
-            line,
-        );
-    }
-    let output = if plot.differences {
-        format!("Difference: {}", plot.shown.output)
-    } else {
-        capital(plot.shown.output)
-    };
-    let x = || {
-        Axis::exact(
-            &plot.shown.axis(&middle(&output, 12.0, WIDE - 90.0)),
-            edges[0],
-            edges[edges.len() - 1],
-            9,
+        .zip(STROKES)
+        .map(|(s, stroke)| Entry::line(stroke, s.name));
+    let zero = plot.differences.then(|| Entry::line(ZERO, "No difference"));
+    let place = (PLOT_LEFT, RIGHT - PLOT_LEFT);
+    let chart = Chart {
+        title: format!("{what}: {}", plot.shown.output),
+        subject: plot.shown.subject.to_owned(),
+        description: format!(
+            "Histogram over cumulative curve, quantiles of 5, 50 and 95 % marked. {headline} {}",
+            notes.join(" ")
         )
+        .replace('\u{a0}', " "),
+        left: PLOT_LEFT,
+        panels: vec![upper, lower],
+        table: table(plot, &output, &series, (&edges, &shares), &notes),
+        foot: vec![
+            Block::legend(place, "", names.chain(zero).collect()),
+            Block::notes(place, notes),
+        ],
+        ..Chart::default()
     };
-    histogram(&mut figure, (upper, x()), &series, &shares, &edges);
-    cumulative(&mut figure, lower, x(), &series);
-    foot(&mut figure, below, WIDE, marks, &told);
-    Picture {
-        svg: figure.finish(),
-        table: table(plot, &output, &series, &edges, &shares, &told),
-    }
+    chart.picture()
 }
 
 /// A row for each bin, its middle first.
@@ -154,9 +120,8 @@ fn table(
     plot: &DistributionPlot,
     output: &str,
     series: &[Drawn],
-    edges: &[f64],
-    shares: &[Vec<f64>],
-    told: &[String],
+    (edges, shares): (&[f64], &[Vec<f64>]),
+    notes: &[String],
 ) -> PictureTable {
     let mut columns = vec![
         plot.shown.column(format!("{output}, middle")),
@@ -169,15 +134,13 @@ fn table(
             (format!("{}: runs up to its end", s.name), "%"),
         ]);
     }
-    let mut table = PictureTable {
-        columns,
-        note: told.join(" ").replace('\u{a0}', " "),
-        ..PictureTable::default()
-    };
+    let note = notes.join(" ").replace('\u{a0}', " ");
+    let mut table = PictureTable::with_columns(columns, note);
     for (k, pair) in edges.windows(2).enumerate() {
         let step = pair[1] - pair[0];
+        let middle = 0.5 * (pair[0] + pair[1]);
         let mut cells = vec![
-            cell(0.5 * (pair[0] + pair[1]), 0.1 * step),
+            cell(middle, 0.1 * step),
             cell(pair[0], step),
             cell(pair[1], step),
         ];
@@ -249,7 +212,7 @@ fn edges(series: &[Drawn], with_zero: bool) -> Vec<f64> {
 fn shares(series: &Drawn, edges: &[f64]) -> Vec<f64> {
     let sorted = &series.sorted;
     let last = edges.len() - 2;
-    // The outer bins take in what lies on the outer edges, or beside them by rounding.
+    // The outer bins take in what lies on the outer edges, or next to them by rounding.
     let upto = |k: usize| {
         if k > last {
             sorted.len()
@@ -264,80 +227,70 @@ fn shares(series: &Drawn, edges: &[f64]) -> Vec<f64> {
 }
 
 fn histogram(
-    figure: &mut Figure,
     (rect, x): (Rect, Axis),
     series: &[Drawn],
     shares: &[Vec<f64>],
     edges: &[f64],
-) {
-    let y = Axis::round(
-        "Runs in a bin [%]",
-        shares.iter().flatten().copied().chain([0.0]),
-        6,
-    );
-    let panel = Panel::over_table(figure, rect, x, y, false);
+) -> Panel {
+    let heights = shares.iter().flatten().copied();
+    let y = Axis::round("Runs in a bin [%]", heights.chain([0.0]), 6);
+    let mut panel = Panel {
+        over_table: true,
+        x_labels: false,
+        no_data: series.iter().all(|s| s.sorted.is_empty()),
+        ..Panel::new(rect, x, y)
+    };
     for (k, shares) in shares.iter().enumerate().rev() {
         if series[k].sorted.is_empty() {
             continue;
         }
-        let mut path = Path::default();
-        path.move_to(panel.px(edges[0]), panel.py(0.0));
-        for (pair, share) in edges.windows(2).zip(shares) {
-            path.line_to(panel.px(pair[0]), panel.py(*share));
-            path.line_to(panel.px(pair[1]), panel.py(*share));
-        }
-        path.line_to(panel.px(edges[edges.len() - 1]), panel.py(0.0));
-        let (data, line, colour) = (path.finish(), STROKES[k].attributes(), STROKES[k].colour);
-        figure.raw(&format!("<path class=\"area\" d=\"{data}\" fill=\"{colour}\" fill-opacity=\"0.12\" stroke=\"none\"/>"));
-        figure.raw(&format!("<path class=\"series\" d=\"{data}\" {line}/>"));
+        let bins = edges.windows(2).zip(shares);
+        let steps = bins.flat_map(|(pair, share)| [(pair[0], *share), (pair[1], *share)]);
+        let ends = [edges[0], edges[edges.len() - 1]].map(|x| (x, 0.0));
+        let outline: Vec<Point> = [ends[0]]
+            .into_iter()
+            .chain(steps)
+            .chain([ends[1]])
+            .collect();
+        let area = Style::colour(STROKES[k].colour)
+            .fill_opacity(0.12)
+            .class("area");
+        panel.add(Shape::Area(vec![outline.clone()]), area);
+        panel.series(outline, STROKES[k]);
     }
-    if series.iter().all(|s| s.sorted.is_empty()) {
-        panel.empty(figure);
-    } else {
-        zero(figure, &panel);
-        quantile_lines(figure, &panel, series);
+    if !panel.no_data {
+        zero(&mut panel);
+        quantile_lines(&mut panel, series);
     }
-    panel.outline(figure);
+    panel
 }
 
-fn cumulative(figure: &mut Figure, rect: Rect, x: Axis, series: &[Drawn]) {
-    let panel = Panel::over_table(
-        figure,
-        rect,
-        x,
-        Axis::exact("Runs at or below [%]", 0.0, 104.0, 6),
-        true,
-    );
+fn cumulative(rect: Rect, x: Axis, series: &[Drawn]) -> Panel {
+    let y = Axis::exact("Runs at or below [%]", 0.0, 104.0, 6);
+    let mut panel = Panel {
+        over_table: true,
+        ..Panel::new(rect, x, y)
+    };
     for p in MARKED {
-        panel.line(
-            figure,
-            &[(panel.x.low, 100.0 * p), (panel.x.high, 100.0 * p)],
-            GUIDE,
-        );
+        panel.level(100.0 * p, GUIDE);
     }
-    zero(figure, &panel);
-    quantile_lines(figure, &panel, series);
+    zero(&mut panel);
+    quantile_lines(&mut panel, series);
     for (k, s) in series.iter().enumerate().rev() {
-        panel.line_any(figure, &steps(&s.sorted), STROKES[k]);
+        panel.add(Shape::Line(steps(&s.sorted)), Style::line(STROKES[k]));
     }
-    for (k, s) in series
+    for (s, stroke) in series
         .iter()
-        .enumerate()
-        .filter(|(_, s)| !s.sorted.is_empty())
+        .zip(STROKES)
+        .filter(|(s, _)| !s.sorted.is_empty())
     {
         for p in MARKED {
-            let (cx, cy, r) = (
-                units(panel.px(s.summary.quantile(p))),
-                units(panel.py(100.0 * p)),
-                3.4 * UNITS,
-            );
-            let colour = STROKES[k].colour;
-            figure.raw(&format!(
-                "<circle class=\"mark\" cx=\"{cx}\" cy=\"{cy}\" r=\"{r:.1}\" fill=\"#ffffff\" stroke=\"{colour}\" stroke-width=\"6\"/>"
-            ));
+            let place = at(s.summary.quantile(p), 100.0 * p);
+            let style = Symbol::white(stroke.colour).class("mark");
+            panel.symbol(Symbol::CIRCLE, place, 3.4, style);
         }
     }
-    panel.outline(figure);
+    panel
 }
 
 /// The cumulative curve as far as it can be seen: a stair of few values, a line through quantiles of many.
@@ -357,26 +310,21 @@ fn steps(sorted: &[f64]) -> Vec<(f64, f64)> {
 }
 
 /// The line of no difference, where zero lies within.
-fn zero(figure: &mut Figure, panel: &Panel) {
+fn zero(panel: &mut Panel) {
     if panel.x.low <= 0.0 && 0.0 <= panel.x.high && panel.x.low < panel.x.high {
-        let at = panel.px(0.0);
-        figure.line(
-            (at, panel.rect.top),
-            (at, panel.rect.bottom),
-            &format!("class=\"zero\" {}", ZERO.attributes()),
+        let ends = (at(0.0, f64::NEG_INFINITY), at(0.0, f64::INFINITY));
+        panel.add(
+            Shape::Segment(ends.0, ends.1),
+            Style::line(ZERO).class("zero"),
         );
     }
 }
 
 /// Of a lone series the marked quantiles run through both panels.
-fn quantile_lines(figure: &mut Figure, panel: &Panel, series: &[Drawn]) {
+fn quantile_lines(panel: &mut Panel, series: &[Drawn]) {
     if let [s] = series {
-        for x in MARKED
-            .map(|p| s.summary.quantile(p))
-            .into_iter()
-            .filter(|x| x.is_finite())
-        {
-            panel.line_any(figure, &[(x, panel.y.low), (x, panel.y.high)], GUIDE);
+        for p in MARKED {
+            panel.upright(s.summary.quantile(p), GUIDE);
         }
     }
 }
@@ -400,7 +348,7 @@ fn above(share: &Share) -> String {
     )
 }
 
-fn told(plot: &DistributionPlot, series: &[Drawn]) -> Vec<String> {
+fn notes(plot: &DistributionPlot, series: &[Drawn]) -> Vec<String> {
     let spread = series
         .iter()
         .map(|s| s.summary.quantile(0.975) - s.summary.quantile(0.025))

@@ -1,16 +1,14 @@
-//! Main effects of a grid: the mean over everything else, level by level, a panel a factor.
+//! Main effects of a grid: the mean over everything else, level by level, a panel for each factor.
 
-use super::super::axis::{Axis, round_step};
-use super::super::figure::{Anchor, Figure, INK, Path, Rect, UNITS, escape, text_width, units};
-use super::super::legend::Mark;
-use super::super::panel::{BELOW, LEFT, Panel};
-use super::super::picture::{Picture, PictureTable, cell};
-use super::super::style::{PLAIN, Stroke};
-use super::text::{Side, foot, foot_height, middle, name, value};
-use super::{RIGHT, Shown, WIDTH, sign};
+use super::{RIGHT, Shown, sign, value};
+use crate::charts::engine::{
+    Axis, BELOW, Block, Chart, Cut, Entry, Fill, LEFT, Label, PLAIN, PLOT_LEFT, Panel, Rect, Shape,
+    Style, Symbol, at, cell, round_step, stroke, text_width,
+};
+use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::statistics::{Group, Groups};
 
-/// Main effects and what they are on.
+/// Main effects on an output.
 #[derive(Clone, Copy, Debug)]
 pub struct EffectsPlot<'a> {
     /// Output and study.
@@ -36,13 +34,12 @@ const TOP: f64 = 58.0;
 const GAP: f64 = 14.0;
 /// Widest panel, pixels.
 const WIDEST: f64 = 480.0;
-/// Room below a panel whose words stand upright, pixels.
-const UPRIGHT: f64 = 108.0;
+/// Room below a panel whose words are turned, pixels.
+const TURNED: f64 = 108.0;
 const LEVEL: f64 = 11.0;
 const TITLE: f64 = 12.0;
-const BAND: &str = "#1f3b73";
 /// Most factors that are drawn: more do not fit on a page.
-const MOST: usize = 12;
+const MAX_FACTORS: usize = 12;
 
 /// Draws the mean of the output at each level of each factor with its spread over all others, the factor with the largest effect first. All
 /// panels have one vertical axis, so that effects can be compared.
@@ -51,108 +48,80 @@ pub fn effects_plot(plot: &EffectsPlot) -> Picture {
     let mut factors: Vec<&EffectFactor> = plot.factors.iter().collect();
     let range = |f: &EffectFactor| f.groups.range;
     factors.sort_by(|a, b| {
-        range(a)
-            .is_nan()
-            .cmp(&range(b).is_nan())
-            .then(range(b).total_cmp(&range(a)))
+        let last = range(a).is_nan().cmp(&range(b).is_nan());
+        last.then(range(b).total_cmp(&range(a)))
     });
-    let (table, desc) = (table(plot, &factors), describe(plot, &factors));
+    let (table, description) = (table(plot, &factors), describe(plot, &factors));
     let mut note = "Over all levels of the other factors. Equal vertical axes; the largest range of means first.".to_owned();
-    if factors.len() > MOST {
-        note += &format!(" {} more factors in the table.", factors.len() - MOST);
-        factors.truncate(MOST);
+    if factors.len() > MAX_FACTORS {
+        note += &format!(
+            " {} more factors in the table.",
+            factors.len() - MAX_FACTORS
+        );
+        factors.truncate(MAX_FACTORS);
     }
-    let grid = Grid::of(&factors);
-    let tall: f64 = factors
-        .chunks(grid.columns)
-        .map(|row| grid.tall + below(row, grid.wide) + GAP)
-        .sum::<f64>()
-        .max(grid.tall + GAP);
-    let end = (LEFT + 8.0, TOP + tall);
-    let keys = ["Mean", "Standard deviation"];
-    let wide = RIGHT - end.0;
-    let size = (
-        WIDTH,
-        end.1 + foot_height(keys.into_iter(), wide, std::slice::from_ref(&note)),
-    );
-    let title = format!("Main effects: {}", plot.shown.output);
-    let mut figure = Figure::new(size, LEFT + 8.0, &title, plot.shown.subject, &desc);
+    let entries = vec![
+        Entry::line(PLAIN, "Mean"),
+        Entry::fill(Fill::plain("#dfe3eb"), "Standard deviation"),
+    ];
+    let place = (PLOT_LEFT, RIGHT - PLOT_LEFT);
+    let chart = Chart {
+        title: format!("Main effects: {}", plot.shown.output),
+        subject: plot.shown.subject.to_owned(),
+        description,
+        left: PLOT_LEFT,
+        panels: panels(plot, &factors),
+        foot: vec![
+            Block::legend(place, "", entries),
+            Block::notes(place, vec![note]),
+        ],
+        table,
+        ..Chart::default()
+    };
+    chart.picture()
+}
+
+/// A panel for each factor, in rows.
+fn panels(plot: &EffectsPlot, factors: &[&EffectFactor]) -> Vec<Panel> {
+    let (columns, tall) = match factors.len() {
+        0 | 1 => (1, 230.0),
+        2..=4 => (2, 200.0),
+        _ => (3, 150.0),
+    };
+    let room = RIGHT - 8.0 - columns as f64 * LEFT - (columns - 1) as f64 * GAP;
+    let wide = (room / columns as f64).min(WIDEST);
     let ends = |g: &Group| [g.mean, g.mean - spread(g), g.mean + spread(g)];
-    let all: Vec<f64> = factors
-        .iter()
-        .flat_map(|f| &f.groups.groups)
-        .flat_map(ends)
-        .collect();
-    let (mut top, mut first_row) = (TOP, 0);
-    for row in factors.chunks(grid.columns) {
+    let groups = factors.iter().flat_map(|f| &f.groups.groups);
+    let y = Axis::round(&plot.shown.axis("Mean"), groups.flat_map(ends), 5);
+    let (mut panels, mut top, mut table_row) = (Vec::new(), TOP, 0);
+    for row in factors.chunks(columns) {
+        let below = row.iter().map(|f| below(f, wide)).fold(BELOW, f64::max);
         for (column, factor) in row.iter().enumerate() {
-            let y = Axis::round(&plot.shown.axis("Mean"), all.iter().copied(), 5);
-            draw(&mut figure, grid.rect(column, top), factor, y, first_row);
-            first_row += factor.groups.groups.len();
+            let left = PLOT_LEFT + (LEFT + wide + GAP) * column as f64;
+            let rect = Rect::new(left, top, wide, tall);
+            panels.push(Panel {
+                below: below + GAP,
+                ..draw(rect, factor, y.clone(), table_row)
+            });
+            table_row += factor.groups.groups.len();
         }
-        top += grid.tall + below(row, grid.wide) + GAP;
+        top += tall + below + GAP;
     }
     if factors.is_empty() {
-        Panel::draw(
-            &mut figure,
-            grid.rect(0, top),
-            Axis::exact("", 0.0, 1.0, 3),
-            Axis::exact("", 0.0, 1.0, 3),
-            false,
-        )
-        .empty(&mut figure);
+        let axis = || Axis::exact("", 0.0, 1.0, 3);
+        panels.push(Panel {
+            no_data: true,
+            x_labels: false,
+            ..Panel::new(Rect::new(PLOT_LEFT, top, wide, tall), axis(), axis())
+        });
     }
-    let marks = [Mark::Line(PLAIN), Mark::Fill("#dfe3eb".to_owned())];
-    foot(
-        &mut figure,
-        end,
-        wide,
-        marks.into_iter().zip(keys).collect(),
-        &[note],
-    );
-    Picture {
-        svg: figure.finish(),
-        table,
-    }
+    panels
 }
 
-/// How panels stand.
-struct Grid {
-    columns: usize,
-    wide: f64,
-    tall: f64,
-}
-
-impl Grid {
-    fn of(factors: &[&EffectFactor]) -> Self {
-        let (columns, tall) = match factors.len() {
-            0 | 1 => (1, 230.0),
-            2..=4 => (2, 200.0),
-            _ => (3, 150.0),
-        };
-        let room = RIGHT - 8.0 - columns as f64 * LEFT - (columns - 1) as f64 * GAP;
-        Grid {
-            columns,
-            wide: (room / columns as f64).min(WIDEST),
-            tall,
-        }
-    }
-
-    fn rect(&self, column: usize, top: f64) -> Rect {
-        let left = 8.0 + LEFT + (LEFT + self.wide + GAP) * column as f64;
-        Rect {
-            left,
-            right: left + self.wide,
-            top,
-            bottom: top + self.tall,
-        }
-    }
-}
-
-/// Room below a row of panels, pixels.
-fn below(row: &[&EffectFactor], wide: f64) -> f64 {
-    if row.iter().any(|f| words(f) && upright(f, wide)) {
-        UPRIGHT
+/// Room below a panel, pixels.
+fn below(factor: &EffectFactor, wide: f64) -> f64 {
+    if words(factor) && turned(factor, wide) {
+        TURNED
     } else {
         BELOW
     }
@@ -160,32 +129,26 @@ fn below(row: &[&EffectFactor], wide: f64) -> f64 {
 
 /// A row for each level of each factor.
 fn table(plot: &EffectsPlot, factors: &[&EffectFactor]) -> PictureTable {
-    let mut columns = vec![("Factor".to_owned(), ""), ("Level".to_owned(), "")];
-    columns.extend([
+    let columns = vec![
+        ("Factor".to_owned(), ""),
+        ("Level".to_owned(), ""),
         plot.shown.column("Mean"),
         plot.shown.column("Standard deviation"),
         ("Runs".to_owned(), ""),
-    ]);
-    let mut table = PictureTable {
-        columns,
-        ..PictureTable::default()
-    };
-    let widest = factors
-        .iter()
-        .map(|f| f.groups.range)
-        .filter(|r| *r > 0.0)
-        .fold(f64::NAN, f64::max);
+    ];
+    let mut table = PictureTable::with_columns(columns, String::new());
+    let widest = widest(factors);
     let step = round_step(if widest > 0.0 { widest / 500.0 } else { 1e-3 });
     for factor in factors {
         for group in &factor.groups.groups {
-            let level = if words(factor) {
-                group.label.clone()
+            let unit = if words(factor) {
+                String::new()
             } else {
-                format!("{}{}", group.label, unit_after(factor))
+                unit_after(factor)
             };
             table.push(vec![
                 factor.name.to_owned(),
-                level,
+                format!("{}{unit}", group.label),
                 cell(group.mean, step),
                 cell(group.sd, step),
                 group.n.to_string(),
@@ -193,6 +156,12 @@ fn table(plot: &EffectsPlot, factors: &[&EffectFactor]) -> PictureTable {
         }
     }
     table
+}
+
+/// The largest range of means; NaN without one.
+fn widest(factors: &[&EffectFactor]) -> f64 {
+    let ranges = factors.iter().map(|f| f.groups.range);
+    ranges.filter(|r| *r > 0.0).fold(f64::NAN, f64::max)
 }
 
 fn unit_after(factor: &EffectFactor) -> String {
@@ -217,209 +186,141 @@ fn slot(factor: &EffectFactor, wide: f64) -> f64 {
     wide / factor.groups.groups.len().max(1) as f64
 }
 
-/// Whether words have to stand upright: they do not fit beside each other, and cut they would say too little.
-fn upright(factor: &EffectFactor, wide: f64) -> bool {
+/// Whether words have to be turned: they do not fit next to each other, and cut they would say too little.
+fn turned(factor: &EffectFactor, wide: f64) -> bool {
     let room = slot(factor, wide) - 6.0;
-    room < 60.0
-        && factor
-            .groups
-            .groups
-            .iter()
-            .any(|g| text_width(&g.label, LEVEL) > room)
+    let mut labels = factor.groups.groups.iter().map(|g| &g.label);
+    room < 60.0 && labels.any(|label| text_width(label, LEVEL) > room)
 }
 
-/// Draws a factor, whose levels stand in the table from a row on.
-fn draw(figure: &mut Figure, rect: Rect, factor: &EffectFactor, y: Axis, row: usize) {
-    let groups = &factor.groups.groups;
-    let words = words(factor);
-    let at = |k: usize| if words { k as f64 } else { factor.at[k] };
-    let mut order: Vec<usize> = (0..groups.len()).collect();
-    order.sort_by(|&i, &j| at(i).total_cmp(&at(j)));
-    let (low, high) = (
-        order.first().map_or(0.0, |&k| at(k)),
-        order.last().map_or(1.0, |&k| at(k)),
-    );
-    // Half a slot beside words; a little beside numbers, more beside a lone one.
-    let room = match high - low {
-        _ if words => 0.5,
-        span if span > 1e-9 * high.abs() => 0.06 * span,
-        _ => (0.5 * high.abs()).max(1e-3),
-    };
-    let mut x = Axis::exact(
-        "",
-        low - room,
-        high + room,
-        if rect.right - rect.left > 300.0 { 6 } else { 3 },
-    );
-    if words {
-        x.ticks.clear();
-    }
-    let panel = Panel::draw(figure, rect, x, y, !words);
-    axis_title(figure, rect, factor);
-    let told: Vec<usize> = order
-        .into_iter()
-        .filter(|&k| groups[k].mean.is_finite())
-        .collect();
-    let spots: Vec<(f64, usize, &Group)> = told.iter().map(|&k| (at(k), k, &groups[k])).collect();
-    if words {
-        whiskers(figure, &panel, &spots, row);
+/// Place of each level on the horizontal axis.
+fn places(factor: &EffectFactor) -> Vec<f64> {
+    if words(factor) {
+        (0..factor.groups.groups.len()).map(|k| k as f64).collect()
     } else {
-        band(figure, &panel, &spots, row);
+        factor.at.clone()
+    }
+}
+
+fn x_axis(factor: &EffectFactor, wide: f64) -> Axis {
+    let places = places(factor);
+    let low = places.iter().copied().min_by(f64::total_cmp).unwrap_or(0.0);
+    let high = places.iter().copied().max_by(f64::total_cmp).unwrap_or(1.0);
+    // Half a slot next to words; a little next to numbers, more next to a lone one.
+    match high - low {
+        _ if words(factor) => Axis::bare(low - 0.5, high + 0.5),
+        span => {
+            let wider = span > 1e-9 * high.abs();
+            let room = if wider {
+                0.06 * span
+            } else {
+                (0.5 * high.abs()).max(1e-3)
+            };
+            Axis::exact(
+                "",
+                low - room,
+                high + room,
+                if wide > 300.0 { 6 } else { 3 },
+            )
+        }
+    }
+}
+
+/// Draws a factor, whose levels are in the table from a row on.
+fn draw(rect: Rect, factor: &EffectFactor, y: Axis, row: usize) -> Panel {
+    let (words, places) = (words(factor), places(factor));
+    let mut panel = Panel::new(rect, x_axis(factor, rect.width()), y);
+    panel.x_labels = !words;
+    axis_title(&mut panel, factor);
+    let groups = factor.groups.groups.iter().enumerate();
+    let levels = groups.map(|(k, group)| (places[k], row + k, group));
+    let mut levels: Vec<(f64, usize, &Group)> = levels.filter(|l| l.2.mean.is_finite()).collect();
+    levels.sort_by(|a, b| a.0.total_cmp(&b.0));
+    panel.no_data = levels.is_empty();
+    let style = Style::colour(PLAIN.colour).fill_opacity(0.14).class("band");
+    if words || levels.len() < 2 {
+        // A box of the spread at each word, for there is nothing between words.
+        for (x, row, g) in &levels {
+            let (low, high) = (at(*x, g.mean - spread(g)), at(*x, g.mean + spread(g)));
+            let corners = (low.shift(-5.0, 0.0), high.shift(5.0, 0.0));
+            panel.add(Shape::Rect(corners.0, corners.1), style.clone().row(*row));
+        }
+    } else {
+        let ends = levels
+            .iter()
+            .map(|(x, _, g)| (*x, g.mean - spread(g), g.mean + spread(g)));
+        panel.add(Shape::between(&ends.collect::<Vec<_>>()), style);
     }
     // Words have no order: the line between them only leads the eye.
-    let stroke = if words {
-        Stroke {
-            width: 0.7,
-            dash: &[2.0, 2.5],
-            ..PLAIN
-        }
+    let line = if words {
+        stroke(PLAIN.colour, 0.7, &[2.0, 2.5])
     } else {
         PLAIN
     };
-    panel.line_any(
-        figure,
-        &told
-            .iter()
-            .map(|&k| (at(k), groups[k].mean))
-            .collect::<Vec<_>>(),
-        stroke,
-    );
-    for &k in &told {
-        let (cx, cy, r) = (
-            units(panel.px(at(k))),
-            units(panel.py(groups[k].mean)),
-            3.2 * UNITS,
-        );
-        let (row, colour) = (row + k, PLAIN.colour);
-        figure.raw(&format!("<circle class=\"mark\" data-row=\"{row}\" cx=\"{cx}\" cy=\"{cy}\" r=\"{r:.1}\" fill=\"{colour}\"/>"));
-    }
-    if told.is_empty() {
-        panel.empty(figure);
+    let means = levels.iter().map(|(x, _, g)| (*x, g.mean)).collect();
+    panel.add(Shape::Line(means), Style::line(line));
+    for (x, row, g) in levels {
+        let style = Style::colour(PLAIN.colour).class("mark").row(row);
+        panel.symbol(Symbol::CIRCLE, at(x, g.mean), 3.2, style);
     }
     if words {
-        level_names(figure, &panel, factor);
+        level_names(&mut panel, factor);
     }
-    panel.outline(figure);
+    panel
 }
 
 /// Writes the factor and its unit under the levels, cut to the width of the panel.
-fn axis_title(figure: &mut Figure, rect: Rect, factor: &EffectFactor) {
+fn axis_title(panel: &mut Panel, factor: &EffectFactor) {
     let unit = match (words(factor), unit_after(factor)) {
         (true, _) => String::new(),
         (false, unit) if unit.is_empty() => " [-]".to_owned(),
         (false, unit) => format!(" [{}]", unit.trim_start()),
     };
-    let wide = rect.right - rect.left;
-    let shown = format!(
-        "{}{unit}",
-        middle(factor.name, TITLE, wide - text_width(&unit, TITLE))
+    let wide = panel.rect.width();
+    let down = below(factor, wide) - 4.0;
+    let place = at(f64::NEG_INFINITY, f64::NEG_INFINITY).shift(0.5 * wide, down);
+    let label = Label::new(place, format!("{}{unit}", factor.name));
+    panel.label(
+        label
+            .size(TITLE)
+            .middle()
+            .class("factor")
+            .cut(Cut::Middle, wide),
     );
-    let full = format!("{}{unit}", factor.name);
-    let down = if words(factor) && upright(factor, wide) {
-        UPRIGHT
-    } else {
-        BELOW
-    };
-    let at = (0.5 * (rect.left + rect.right), rect.bottom + down - 4.0);
-    if shown != full {
-        figure.raw(&format!("<g><title>{}</title>", escape(&full)));
-    }
-    figure.text(at, TITLE, Anchor::Middle, "class=\"factor\"", INK, &shown);
-    if shown != full {
-        figure.close();
-    }
 }
 
-fn band(figure: &mut Figure, panel: &Panel, spots: &[(f64, usize, &Group)], row: usize) {
-    if spots.len() < 2 {
-        return whiskers(figure, panel, spots, row);
-    }
-    let mut path = Path::default();
-    for (x, _, g) in spots {
-        path.line_to(panel.px(*x), panel.py(g.mean + spread(g)));
-    }
-    for (x, _, g) in spots.iter().rev() {
-        path.line_to(panel.px(*x), panel.py(g.mean - spread(g)));
-    }
-    path.close();
-    let data = path.finish();
-    figure.raw(&format!(
-        "<path class=\"band\" d=\"{data}\" fill=\"{BAND}\" fill-opacity=\"0.14\" stroke=\"none\"/>"
-    ));
-}
-
-/// A box of the spread at each word, for there is nothing between words.
-fn whiskers(figure: &mut Figure, panel: &Panel, spots: &[(f64, usize, &Group)], row: usize) {
-    for (x, k, g) in spots {
-        let (top, bottom) = (panel.py(g.mean + spread(g)), panel.py(g.mean - spread(g)));
-        let rect = Rect {
-            left: panel.px(*x) - 5.0,
-            right: panel.px(*x) + 5.0,
-            top,
-            bottom,
-        };
-        let row = row + k;
-        figure.rect(rect, &format!("class=\"band\" data-row=\"{row}\" fill=\"{BAND}\" fill-opacity=\"0.14\" stroke=\"none\""));
-    }
-}
-
-fn level_names(figure: &mut Figure, panel: &Panel, factor: &EffectFactor) {
-    let wide = panel.rect.right - panel.rect.left;
-    let upright = upright(factor, wide);
+fn level_names(panel: &mut Panel, factor: &EffectFactor) {
+    let wide = panel.rect.width();
     for (k, group) in factor.groups.groups.iter().enumerate() {
-        let x = panel.px(k as f64);
-        if upright {
-            let at = (x + 4.0, panel.rect.bottom + 8.0);
-            let turn = format!(
-                "class=\"level\" transform=\"rotate(-90 {} {})\"",
-                units(at.0),
-                units(at.1)
-            );
-            name(
-                figure,
-                at,
-                Side::Left,
-                (LEVEL, UPRIGHT - 30.0),
-                &turn,
-                &group.label,
-            );
+        let place = at(k as f64, f64::NEG_INFINITY);
+        let label = Label::new(place, &group.label).class("level");
+        panel.label(if turned(factor, wide) {
+            let at = place.shift(4.0, 8.0);
+            Label { at, ..label }
+                .turned()
+                .end()
+                .cut(Cut::Middle, TURNED - 30.0)
         } else {
-            let at = (x, panel.rect.bottom + 16.0);
-            name(
-                figure,
-                at,
-                Side::Over,
-                (LEVEL, slot(factor, wide) - 6.0),
-                "class=\"level\"",
-                &group.label,
-            );
-        }
+            let at = place.shift(0.0, 16.0);
+            Label { at, ..label }
+                .middle()
+                .cut(Cut::Middle, slot(factor, wide) - 6.0)
+        });
     }
 }
 
 fn describe(plot: &EffectsPlot, factors: &[&EffectFactor]) -> String {
-    let all = factors
-        .iter()
-        .map(|f| f.groups.range)
-        .filter(|r| *r > 0.0)
-        .fold(f64::NAN, f64::max);
+    let all = widest(factors);
     let level = |g: &Group| format!("{} at {}", value(g.mean, all), g.label);
-    let told = |f: &&EffectFactor| {
-        format!(
-            "{}: {}",
-            f.name,
-            f.groups
-                .groups
-                .iter()
-                .map(level)
-                .collect::<Vec<_>>()
-                .join(", ")
-        )
+    let factor = |f: &&EffectFactor| {
+        let levels: Vec<String> = f.groups.groups.iter().map(level).collect();
+        format!("{}: {}", f.name, levels.join(", "))
     };
+    let factors: Vec<String> = factors.iter().map(factor).collect();
     format!(
         "Mean of {}{} at each level of each factor. {}.",
         plot.shown.output,
         plot.shown.after().replace('\u{a0}', " "),
-        factors.iter().map(told).collect::<Vec<_>>().join("; ")
+        factors.join("; ")
     )
 }

@@ -1,14 +1,11 @@
 //! Pictures of the statistics of studies.
 //!
 //! Data come in the units that the axes name. Names that do not fit are cut in the middle; the full name shows up under the pointer.
-//! Legend and notes stand below the plots.
 
 mod bars;
 mod convergence;
 mod distribution;
 mod effects;
-mod rows;
-pub(super) mod text;
 mod tornado;
 
 pub use bars::{RankPlot, SobolPlot, rank_plot, sobol_plot};
@@ -17,12 +14,19 @@ pub use distribution::{DistributionPlot, DistributionSeries, distribution_plot};
 pub use effects::{EffectFactor, EffectsPlot, effects_plot};
 pub use tornado::{TornadoPlot, tornado_plot};
 
-/// Width of the pictures, pixels: on A4 their text is still read.
-const WIDTH: f64 = 880.0;
-/// Right edge of their plots.
-const RIGHT: f64 = WIDTH - 28.0;
+use super::engine::{PLOT_LEFT, WIDTH, cell, number, round_step};
 
-/// What a picture shows, and of what.
+/// Right edge of the plots, and their width, pixels.
+const RIGHT: f64 = WIDTH - 28.0;
+const WIDE: f64 = RIGHT - PLOT_LEFT;
+/// Left edge of titles, legends and notes of pictures with rows, pixels.
+const MARGIN: f64 = 12.0;
+/// Height of a row, pixels.
+const ROW: f64 = 27.0;
+/// Most rows that fit on a page.
+const MAX_ROWS: usize = 30;
+
+/// What a picture shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shown<'a> {
     /// The output, as people name it: `Fuel, total`.
@@ -63,7 +67,8 @@ impl Shown<'_> {
     }
 }
 
-pub(super) fn sign(unit: &str) -> &str {
+/// A unit as it is written.
+pub(crate) fn sign(unit: &str) -> &str {
     if unit == "degC" { "\u{b0}C" } else { unit }
 }
 
@@ -79,15 +84,51 @@ fn column(name: String, unit: &str) -> (String, &'static str) {
     }
 }
 
-/// The words with a capital first letter.
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(letters).collect()
-    })
-}
-
 /// The two ends of an interval as cells; empty without one.
 fn interval_cells(interval: Option<[f64; 2]>, step: f64) -> [String; 2] {
-    interval.map_or_else(Default::default, |ends| ends.map(|x| super::cell(x, step)))
+    interval.map_or_else(Default::default, |ends| ends.map(|x| cell(x, step)))
+}
+
+/// A value with the digits that a spread of that size leaves meaningful.
+pub(crate) fn value(x: f64, spread: f64) -> String {
+    if !x.is_finite() {
+        return "not known".to_owned();
+    }
+    let scale = if spread.is_finite() && spread > 1e-12 * x.abs() {
+        spread
+    } else {
+        x.abs().max(1e-300)
+    };
+    number(x, round_step(scale / 200.0))
+}
+
+/// A share of 0 to 1 in percent, with a decimal; more where it is close to an end.
+fn percent(share: f64) -> String {
+    let off = share.min(1.0 - share);
+    if share.is_finite() && off > 0.0 && off < 0.001 {
+        format!("{:.3}", 100.0 * share)
+    } else {
+        format!("{:.1}", 100.0 * share)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_digits_of_their_spread() {
+        assert_eq!(value(7.214_3, 0.9), "7.214");
+        assert_eq!(value(-0.5, 0.0), "\u{2212}0.500");
+        assert_eq!(value(1234.0, 800.0), "1234");
+        assert_eq!(value(f64::NAN, 1.0), "not known");
+        assert_eq!(
+            (
+                percent(0.934_2).as_str(),
+                percent(0.999_7).as_str(),
+                percent(1.0).as_str()
+            ),
+            ("93.4", "99.970", "100.0")
+        );
+    }
 }

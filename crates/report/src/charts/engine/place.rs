@@ -1,0 +1,133 @@
+//! Places in a panel, and texts at them.
+
+use super::style::{INK, QUIET};
+use super::text::Cut;
+
+/// A place in the units of the axes with an offset in pixels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub x: f64,
+    pub y: f64,
+    pub dx: f64,
+    pub dy: f64,
+}
+
+/// A place in the units of the axes; infinite ones are the edges of the panel.
+pub(crate) fn at(x: f64, y: f64) -> Place {
+    Place {
+        x,
+        y,
+        dx: 0.0,
+        dy: 0.0,
+    }
+}
+
+impl Place {
+    /// The place so many pixels to the right and down.
+    pub fn shift(self, dx: f64, dy: f64) -> Self {
+        Place { dx, dy, ..self }
+    }
+}
+
+/// Which part of a text lies at its place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    #[default]
+    Start,
+    Middle,
+    End,
+}
+
+/// A line of text at its base line.
+#[derive(Clone, Debug)]
+pub(crate) struct Label {
+    pub at: Place,
+    pub text: String,
+    pub size: f64,
+    pub anchor: Anchor,
+    pub bold: bool,
+    /// Whether it is turned to be read from the right.
+    pub turned: bool,
+    /// Whether it has a white ground, so that it can be read on lines and cells.
+    pub ground: bool,
+    pub colour: &'static str,
+    /// How a text that is wider than `room` pixels is cut; the full one shows under the pointer.
+    pub cut: Cut,
+    pub room: f64,
+    pub class: &'static str,
+    pub row: Option<usize>,
+}
+
+impl Label {
+    /// Text of 11 px that begins at a place.
+    pub fn new(at: Place, text: impl Into<String>) -> Self {
+        Label {
+            at,
+            text: text.into(),
+            size: 11.0,
+            anchor: Anchor::Start,
+            bold: false,
+            turned: false,
+            ground: false,
+            colour: INK,
+            cut: Cut::End,
+            room: f64::INFINITY,
+            class: "",
+            row: None,
+        }
+    }
+
+    /// The text ends at its place.
+    pub fn end(self) -> Self {
+        Label {
+            anchor: Anchor::End,
+            ..self
+        }
+    }
+
+    /// The middle of the text lies at its place.
+    pub fn middle(self) -> Self {
+        Label {
+            anchor: Anchor::Middle,
+            ..self
+        }
+    }
+
+    pub fn size(self, size: f64) -> Self {
+        Label { size, ..self }
+    }
+
+    pub fn bold(self, bold: bool) -> Self {
+        Label { bold, ..self }
+    }
+
+    pub fn turned(self) -> Self {
+        Label {
+            turned: true,
+            ..self
+        }
+    }
+
+    pub fn quiet(self) -> Self {
+        self.colour(QUIET)
+    }
+
+    pub fn colour(self, colour: &'static str) -> Self {
+        Label { colour, ..self }
+    }
+
+    pub fn cut(self, cut: Cut, room: f64) -> Self {
+        Label { cut, room, ..self }
+    }
+
+    pub fn class(self, class: &'static str) -> Self {
+        Label { class, ..self }
+    }
+
+    pub fn row(self, row: usize) -> Self {
+        Label {
+            row: Some(row),
+            ..self
+        }
+    }
+}

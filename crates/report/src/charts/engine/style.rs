@@ -1,0 +1,314 @@
+//! Lines and fills that stay apart in black and white and for the colour-blind.
+
+use super::svg::{Svg, UNITS};
+use cvtcycle_output::Component;
+
+/// Colour of text and of frames.
+pub(crate) const INK: &str = "#000000";
+/// Colour of what is context only.
+pub(crate) const QUIET: &str = "#555555";
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stroke {
+    /// Colour.
+    pub colour: &'static str,
+    /// Width, pixels.
+    pub width: f64,
+    /// Dash pattern, pixels; empty for a solid line.
+    pub dash: &'static [f64],
+}
+
+/// A line of a colour, a width and a dash pattern in pixels.
+pub(crate) const fn stroke(colour: &'static str, width: f64, dash: &'static [f64]) -> Stroke {
+    Stroke {
+        colour,
+        width,
+        dash,
+    }
+}
+
+/// The line of a plot with one series.
+pub(crate) const PLAIN: Stroke = stroke("#1f3b73", 1.3, &[]);
+/// A line that is only context.
+pub(crate) const CONTEXT: Stroke = stroke("#777777", 1.0, &[]);
+/// A line at zero.
+pub(crate) const ZERO: Stroke = stroke(INK, 0.8, &[]);
+/// A line between groups of rows.
+pub(crate) const RULE: Stroke = stroke("#dedede", 0.5, &[]);
+
+/// Lines of a plot with several series: each differs in colour, lightness and dashes.
+pub(crate) const STROKES: [Stroke; 7] = [
+    stroke(INK, 2.2, &[]),
+    stroke("#d55e00", 1.5, &[]),
+    stroke("#0072b2", 1.9, &[9.0, 4.0]),
+    stroke("#009e73", 1.9, &[9.0, 3.0, 2.0, 3.0]),
+    stroke("#aa4499", 1.7, &[4.0, 2.5]),
+    stroke("#666666", 2.0, &[1.5, 2.5]),
+    stroke("#4b2991", 1.5, &[14.0, 3.0, 2.0, 3.0, 2.0, 3.0]),
+];
+
+impl Stroke {
+    fn attributes(&self) -> String {
+        let mut text = format!(
+            "stroke=\"{}\" stroke-width=\"{:.1}\" stroke-linejoin=\"round\"",
+            self.colour,
+            self.width * UNITS
+        );
+        if !self.dash.is_empty() {
+            let dashes = self.dash.iter().map(|d| format!("{:.0}", d * UNITS));
+            text += &format!(
+                " stroke-dasharray=\"{}\"",
+                dashes.collect::<Vec<_>>().join(" ")
+            );
+        }
+        text
+    }
+}
+
+/// Anchors of a ramp of colours.
+type Ramp = &'static [(f64, f64, f64)];
+
+/// A ramp whose lightness rises evenly, and that the colour-blind see rising too.
+const RAMP: Ramp = &[
+    (52.0, 20.0, 94.0),
+    (69.0, 74.0, 139.0),
+    (49.0, 113.0, 145.0),
+    (36.0, 149.0, 139.0),
+    (75.0, 187.0, 112.0),
+    (155.0, 217.0, 75.0),
+    (245.0, 230.0, 90.0),
+];
+
+/// A second ramp of the same kind, for the parts of a manual box next to those of a CVT.
+const WARM: Ramp = &[
+    (82.0, 8.0, 24.0),
+    (152.0, 38.0, 18.0),
+    (208.0, 88.0, 28.0),
+    (238.0, 156.0, 62.0),
+    (250.0, 222.0, 150.0),
+];
+
+/// From -1 over 0 to 1: blue, white, brown, which the colour-blind can distinguish, and the darker the stronger.
+pub(crate) const DIVERGING: Ramp = &[
+    (5.0, 80.0, 150.0),
+    (125.0, 180.0, 220.0),
+    (247.0, 247.0, 247.0),
+    (243.0, 175.0, 105.0),
+    (160.0, 72.0, 5.0),
+];
+
+/// Colour of the ramp at a share of 0 to 1.
+pub(crate) fn ramp(share: f64) -> String {
+    between(RAMP, share)
+}
+
+/// Colour between anchors at a share of 0 to 1.
+pub(crate) fn between(anchors: &[(f64, f64, f64)], share: f64) -> String {
+    let place = share.clamp(0.0, 1.0) * (anchors.len() - 1) as f64;
+    let cell = (place.floor() as usize).min(anchors.len() - 2);
+    let (a, b, t) = (anchors[cell], anchors[cell + 1], place - cell as f64);
+    let mix = |a: f64, b: f64| (a + (b - a) * t).round() as u8;
+    format!(
+        "#{:02x}{:02x}{:02x}",
+        mix(a.0, b.0),
+        mix(a.1, b.1),
+        mix(a.2, b.2)
+    )
+}
+
+/// What an area is filled with: a colour, and a hatch that distinguishes it from its neighbours in print.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Fill {
+    colour: String,
+    /// Number of the hatch; zero is none.
+    hatch: usize,
+    /// Whether the hatch is white.
+    dark: bool,
+}
+
+impl Fill {
+    /// A plain colour.
+    pub fn plain(colour: &str) -> Self {
+        Fill {
+            colour: colour.to_owned(),
+            hatch: 0,
+            dark: false,
+        }
+    }
+
+    /// The fill `index` of `count`: lightness rises with the index; neighbours differ in their hatch too.
+    pub fn nth(index: usize, count: usize) -> Self {
+        let share = if count > 1 {
+            index as f64 / (count - 1) as f64
+        } else {
+            0.4
+        };
+        Fill::hatched(RAMP, share, index)
+    }
+
+    /// The fill of a component, the same in every picture: within a car lightness rises in the order of the power flow.
+    pub fn component(component: Component) -> Self {
+        use Component as C;
+        let (anchors, index, last) = match component {
+            C::LaunchClutch => (RAMP, 0, 9.0),
+            C::Pump => (RAMP, 1, 9.0),
+            C::InputShaft => (RAMP, 2, 9.0),
+            C::ClutchDrag => (RAMP, 3, 9.0),
+            C::BeltBand | C::BeltMap => (RAMP, 4, 9.0),
+            C::BeltFilm => (RAMP, 5, 9.0),
+            C::BeltSlip => (RAMP, 6, 9.0),
+            C::BeltWedge => (RAMP, 7, 9.0),
+            C::BeltPenetration => (RAMP, 8, 9.0),
+            C::FinalDrive => (RAMP, 9, 9.0),
+            C::GearMesh | C::BoxMap => (WARM, 1, 4.0),
+            C::Bearing => (WARM, 2, 4.0),
+            C::Churning => (WARM, 3, 4.0),
+            C::Seal => (WARM, 4, 4.0),
+        };
+        Fill::hatched(anchors, index as f64 / last, index)
+    }
+
+    fn hatched(anchors: Ramp, share: f64, index: usize) -> Self {
+        Fill {
+            colour: between(anchors, share),
+            hatch: index % 5,
+            dark: share < 0.55,
+        }
+    }
+
+    /// Its SVG paint; a hatch is defined on first use.
+    fn paint(&self, svg: &mut Svg) -> String {
+        let marks = match self.hatch {
+            0 => return self.colour.clone(),
+            1 => "<path d=\"M-6 6L6 -6M0 24L24 0M18 30L30 18\"/>",
+            2 => "<path d=\"M5 6h2M17 18h2\" stroke-linecap=\"round\" stroke-width=\"6\"/>",
+            3 => "<path d=\"M-6 18L6 30M0 0L24 24M18 -6L30 6\"/>",
+            _ => "<path d=\"M0 6H24M0 18H24\"/>",
+        };
+        let (base, ink) = (&self.colour, if self.dark { "#ffffff" } else { INK });
+        let id = format!("hatch-{}-{}", self.hatch, base.trim_start_matches('#'));
+        svg.define(&id, || format!(
+            "<pattern id=\"{id}\" width=\"24\" height=\"24\" patternUnits=\"userSpaceOnUse\">\
+             <rect width=\"24\" height=\"24\" fill=\"{base}\"/>\
+             <g stroke=\"{ink}\" stroke-opacity=\"0.7\" stroke-width=\"2\" fill=\"none\">{marks}</g></pattern>\n"
+        ));
+        format!("url(#{id})")
+    }
+}
+
+/// Colours, lines and meaning of a shape.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Style {
+    pub fill: Option<Fill>,
+    /// Opacity of the fill; zero is full.
+    pub fill_opacity: f64,
+    pub stroke: Option<Stroke>,
+    /// Opacity of the stroke; zero is full.
+    pub stroke_opacity: f64,
+    /// Whether edges are not to be blended with the ground.
+    pub crisp: bool,
+    /// Class for the style sheet and for tests; may be empty.
+    pub class: &'static str,
+    /// Row of the table that has its numbers.
+    pub row: Option<usize>,
+}
+
+impl Style {
+    /// A line.
+    pub fn line(stroke: Stroke) -> Self {
+        Style {
+            stroke: Some(stroke),
+            ..Style::default()
+        }
+    }
+
+    /// A filled area without an edge.
+    pub fn fill(fill: Fill) -> Self {
+        Style {
+            fill: Some(fill),
+            ..Style::default()
+        }
+    }
+
+    /// An area of a plain colour.
+    pub fn colour(colour: &str) -> Self {
+        Style::fill(Fill::plain(colour))
+    }
+
+    /// A filled area with a black edge of a width in pixels.
+    pub fn edged(fill: Fill, width: f64) -> Self {
+        Style {
+            stroke: Some(stroke(INK, width, &[])),
+            ..Style::fill(fill)
+        }
+    }
+
+    pub fn class(self, class: &'static str) -> Self {
+        Style { class, ..self }
+    }
+
+    pub fn row(self, row: usize) -> Self {
+        Style {
+            row: Some(row),
+            ..self
+        }
+    }
+
+    pub fn fill_opacity(self, fill_opacity: f64) -> Self {
+        Style {
+            fill_opacity,
+            ..self
+        }
+    }
+
+    pub fn stroke_opacity(self, stroke_opacity: f64) -> Self {
+        Style {
+            stroke_opacity,
+            ..self
+        }
+    }
+
+    pub fn crisp(self) -> Self {
+        Style {
+            crisp: true,
+            ..self
+        }
+    }
+
+    /// Its SVG attributes.
+    pub fn attributes(&self, svg: &mut Svg) -> String {
+        let mut text = marks(self.class, self.row);
+        let fill = self.fill.as_ref().map(|fill| fill.paint(svg));
+        text += &format!("fill=\"{}\"", fill.as_deref().unwrap_or("none"));
+        if self.fill_opacity > 0.0 {
+            text += &format!(" fill-opacity=\"{}\"", self.fill_opacity);
+        }
+        if let Some(stroke) = &self.stroke {
+            text += " ";
+            text += &stroke.attributes();
+            if stroke.dash.is_empty() && self.fill.is_none() {
+                text += " stroke-linecap=\"round\"";
+            }
+        }
+        if self.stroke_opacity > 0.0 {
+            text += &format!(" stroke-opacity=\"{}\"", self.stroke_opacity);
+        }
+        if self.crisp {
+            text += " shape-rendering=\"crispEdges\"";
+        }
+        text
+    }
+}
+
+/// The attributes of a class and of a row of the table.
+pub(super) fn marks(class: &str, row: Option<usize>) -> String {
+    let mut text = String::new();
+    if !class.is_empty() {
+        text += &format!("class=\"{class}\" ");
+    }
+    if let Some(row) = row {
+        text += &format!("data-row=\"{row}\" ");
+    }
+    text
+}

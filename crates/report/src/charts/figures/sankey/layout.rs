@@ -1,0 +1,129 @@
+//! Places of the flows.
+
+use super::super::TOP;
+use super::{BAND, SHARE, Sankey, SankeyBranch, SankeyStage, scale};
+use crate::charts::engine::WIDTH;
+
+/// Least distance between the middles of two ends, pixels.
+const PITCH: f64 = 19.0;
+
+/// The same at the left, where a label has three lines.
+const LEFT_PITCH: f64 = 60.0;
+
+const GAP: f64 = 3.0;
+
+/// A flow with its place: upper edge at either end.
+pub(super) struct Ribbon<'a> {
+    pub of: &'a SankeyBranch,
+    pub stage: usize,
+    pub wide: f64,
+    pub at_trunk: f64,
+    pub at_end: f64,
+}
+
+impl Ribbon<'_> {
+    /// Middle of the outer end.
+    pub fn middle(&self) -> f64 {
+        self.at_end + 0.5 * self.wide
+    }
+}
+
+/// The trunk before a stage.
+pub(super) struct Trunk {
+    pub top: f64,
+    pub bottom: f64,
+    /// Energy that arrives at the stage, kJ.
+    pub kj: f64,
+}
+
+/// All flows in their places.
+pub(super) struct Flows<'a> {
+    pub of: &'a Sankey,
+    pub trunk: Vec<Trunk>,
+    pub leaving: Vec<Ribbon<'a>>,
+    pub entering: Vec<Ribbon<'a>>,
+    pub bottom: f64,
+    /// Where ribbons end at the right, and right edges of the columns of energies and of shares.
+    pub end: f64,
+    pub energy: f64,
+    pub shares: Vec<f64>,
+}
+
+/// Room between the names of the stages and the trunk, for the labels of what flows in above that of the source, pixels.
+fn room_above(of: &Sankey, per_kj: f64) -> f64 {
+    let branches = of.stages.iter().flat_map(|stage| &stage.branches);
+    let room = |b: &SankeyBranch| (-b.kj * per_kj + GAP).max(LEFT_PITCH);
+    let room: f64 = branches.filter(|b| b.kj < 0.0).map(room).sum();
+    let tall = if room > 0.0 { LEFT_PITCH } else { 40.0 };
+    room + (0.5 * (tall - of.source.1 * per_kj)).max(0.0)
+}
+
+pub(super) fn lay_out(of: &Sankey) -> Flows<'_> {
+    let per_kj = scale(of);
+    let wide = of.source.1 * per_kj;
+    let first = TOP + BAND + room_above(of, per_kj);
+    let (mut trunk, mut leaving, mut entering) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut top, mut bottom, mut kj) = (first, first + wide, of.source.1);
+    let mut left = (first, first + 0.5 * wide);
+    for (stage, SankeyStage { branches, .. }) in of.stages.iter().enumerate() {
+        let came: f64 = branches.iter().map(|b| (-b.kj).max(0.0)).sum();
+        trunk.push(Trunk {
+            top,
+            bottom,
+            kj: kj + came,
+        });
+        for of in branches {
+            let wide = of.kj.abs() * per_kj;
+            kj -= of.kj;
+            let (at_trunk, at_end);
+            if of.kj < 0.0 {
+                top -= wide;
+                let end = (left.0 - GAP - wide).min(left.1 - LEFT_PITCH - 0.5 * wide);
+                left = (end, end + 0.5 * wide);
+                (at_trunk, at_end) = (top, end);
+            } else {
+                bottom -= wide;
+                (at_trunk, at_end) = (bottom, bottom);
+            }
+            let list = if of.kj < 0.0 {
+                &mut entering
+            } else {
+                &mut leaving
+            };
+            list.push(Ribbon {
+                of,
+                stage,
+                wide,
+                at_trunk,
+                at_end,
+            });
+        }
+    }
+    leaving.reverse();
+    let lowest = part(&mut leaving).max(TOP + BAND + 90.0);
+    let columns = of.shares_of.len().min(2);
+    let right = |k: usize| WIDTH - 10.0 - SHARE * k as f64;
+    Flows {
+        of,
+        trunk,
+        leaving,
+        entering,
+        bottom: lowest.max(first + wide).max(first + 0.5 * wide + 24.0),
+        end: right(columns) - 224.0,
+        energy: right(columns),
+        shares: (0..columns).rev().map(right).collect(),
+    }
+}
+
+/// Moves the ends of ribbons so far apart that each has room for its label; returns the lowest edge.
+fn part(leaving: &mut [Ribbon]) -> f64 {
+    let mut free: Option<(f64, f64)> = None;
+    for ribbon in leaving {
+        if let Some((edge, middle)) = free {
+            let apart = (edge + GAP).max(middle + PITCH - 0.5 * ribbon.wide);
+            ribbon.at_end = ribbon.at_end.max(apart);
+        }
+        free = Some((ribbon.at_end + ribbon.wide, ribbon.middle()));
+    }
+    free.map_or(0.0, |(edge, middle)| edge.max(middle + 10.0))
+}

@@ -1,0 +1,250 @@
+//! Where the engine runs against road speed: time in cells, over the lines between which the transmission can or wants to run.
+
+use super::TOP;
+use crate::charts::engine::{
+    Axis, Block, Chart, Entry, PLOT_LEFT, Panel, Point, Rect, STROKES, Shape, Stroke, Style, WIDTH,
+    cell, number, stroke,
+};
+use crate::charts::grids::Density;
+use crate::charts::picture::{Picture, PictureTable};
+
+/// Operating points of one car, and the lines that explain them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Variogram<'a> {
+    /// Name of the car.
+    pub subject: String,
+    /// Vehicle speed of each step, km/h.
+    pub speed_kmh: &'a [f64],
+    /// Engine speed of each step, rpm; zero or not finite where the engine is off, and then left out.
+    pub engine_rpm: &'a [f64],
+    /// Length of each step, s.
+    pub seconds: &'a [f64],
+    /// Lines, up to seven that stay apart: lowest and highest ratio and the controller's targets, or the gears of a manual box.
+    pub lines: Vec<GuideLine>,
+}
+
+/// A line of engine speed against vehicle speed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GuideLine {
+    /// Name with its condition, such as `30 % of rated power`.
+    pub name: String,
+    /// Vehicle speed, km/h, and engine speed, rpm, by rising vehicle speed.
+    pub points: Vec<(f64, f64)>,
+    /// Whether the vertical axis takes the line in as far as the car drove; otherwise it may run out of the picture.
+    pub whole: bool,
+}
+
+const WIDE: f64 = WIDTH - 20.0 - PLOT_LEFT;
+const TALL: f64 = 400.0;
+/// Most cells along each axis.
+const CELLS: (usize, usize) = (80, 40);
+/// Width of the light seam along a line, which parts it from dark cells, pixels.
+const SEAM: f64 = 1.6;
+
+impl Variogram<'_> {
+    /// Vehicle speed, engine speed and length of the steps in which the engine ran.
+    fn steps(&self) -> impl Iterator<Item = (f64, f64, f64)> {
+        let speeds = self.speed_kmh.iter().zip(self.engine_rpm);
+        let steps = speeds.zip(self.seconds).map(|((v, n), dt)| (*v, *n, *dt));
+        steps.filter(|p| p.1 > 0.0)
+    }
+}
+
+/// Engine speed against vehicle speed: time spent in each cell, with lines over it.
+#[must_use]
+pub fn variogram(of: &Variogram) -> Picture {
+    let (x, y) = axes(of);
+    let cells = (
+        Density::size_for(&x, CELLS.0),
+        Density::size_for(&y, CELLS.1),
+    );
+    let density = Density::new(cells, of.steps());
+    let (seen, outside) = seen(of, &x, &y);
+    let mut table = table(cells, &outside);
+    let mut panel = Panel {
+        no_data: density.total_s() <= 0.0,
+        ..Panel::new(Rect::new(PLOT_LEFT, TOP, WIDE, TALL), x, y)
+    };
+    panel.items = density.items(|of| {
+        let step = |(low, high): (f64, f64)| if high - low < 1.0 { 0.01 } else { 1.0 };
+        let mut cells = [of.x.0, of.x.1].map(|x| cell(x, step(of.x))).to_vec();
+        cells.extend([of.y.0, of.y.1].map(|y| cell(y, step(of.y))));
+        cells.push(cell(of.seconds, 0.01));
+        table.push(cells)
+    });
+    // All seams below all lines; the first of the list ends up on top.
+    for (_, points, line) in &seen {
+        let seam = Style::line(stroke("#ffffff", line.width + 2.0 * SEAM, &[]));
+        panel.add(
+            Shape::Line(points.clone()),
+            seam.stroke_opacity(0.75).class("seam"),
+        );
+    }
+    for (_, points, line) in seen.iter().rev() {
+        panel.add(
+            Shape::Line(points.clone()),
+            Style::line(*line).class("series"),
+        );
+    }
+    let entries = seen
+        .iter()
+        .map(|(name, _, line)| Entry::line(*line, *name))
+        .collect();
+    let chart = Chart {
+        title: "Engine speed against vehicle speed".to_owned(),
+        subject: of.subject.clone(),
+        description: describe(of, &density),
+        left: PLOT_LEFT,
+        panels: vec![panel],
+        foot: vec![
+            Block::legend((PLOT_LEFT, WIDE), "", entries),
+            Block::key((PLOT_LEFT, 360.0), density.key()),
+        ],
+        table,
+        ..Chart::default()
+    };
+    chart.picture()
+}
+
+fn table(cells: (f64, f64), outside: &str) -> PictureTable {
+    let mut table = PictureTable::new(&[
+        ("speed from", "km/h"),
+        ("to", "km/h"),
+        ("engine speed from", "rpm"),
+        ("to", "rpm"),
+        ("time", "s"),
+    ]);
+    let (wide, tall) = (cell(cells.0, cells.0), cell(cells.1, cells.1));
+    table.note = format!(
+        "Cells are {wide} km/h wide and {tall} rpm tall; those in which no time was spent are left out.{outside}"
+    );
+    table
+}
+
+/// Axes over the steps in which the engine ran, and over those lines that are to be seen as a whole as far as the car drove.
+fn axes(of: &Variogram) -> (Axis, Axis) {
+    let finite = |p: &(f64, f64, f64)| p.0.is_finite() && p.1.is_finite() && p.2 > 0.0;
+    let steps = of.steps().filter(finite).map(|p| (p.0, p.1));
+    let (mut speeds, mut revs): (Vec<f64>, Vec<f64>) = steps.unzip();
+    let alone = speeds.is_empty();
+    let points = || {
+        let lines = of.lines.iter().filter(|line| line.whole || alone);
+        lines.flat_map(|line| &line.points).copied()
+    };
+    if alone {
+        speeds.extend(points().map(|p| p.0));
+    }
+    let x = Axis::round("Vehicle speed [km/h]", speeds.into_iter().chain([0.0]), 9);
+    revs.extend(points().filter(|p| p.0 <= x.high).map(|p| p.1));
+    let y = Axis::round("Engine speed [rpm]", revs.into_iter().chain([0.0]), 8);
+    (x, y)
+}
+
+/// A line with its name, the points that can be seen, and its look.
+type SeenLine<'a> = (&'a str, Vec<Point>, Stroke);
+
+/// Lines of which a part lies within the axes, and a remark on the others.
+fn seen<'a>(of: &'a Variogram, x: &Axis, y: &Axis) -> (Vec<SeenLine<'a>>, String) {
+    let (mut seen, mut others) = (Vec::new(), Vec::new());
+    for (line, stroke) in of.lines.iter().zip(STROKES.into_iter().cycle()) {
+        let points = within((x, y), &line.points);
+        if points.is_empty() {
+            others.push(line.name.as_str());
+        } else {
+            seen.push((line.name.as_str(), points, stroke));
+        }
+    }
+    let remark = if others.is_empty() {
+        String::new()
+    } else {
+        format!(" Outside the picture: {}.", others.join(", "))
+    };
+    (seen, remark)
+}
+
+/// The parts of a line within the axes, with gaps between them.
+fn within(axes: (&Axis, &Axis), points: &[Point]) -> Vec<Point> {
+    let mut out: Vec<Point> = Vec::new();
+    for pair in points.windows(2) {
+        let Some((from, to)) = clipped(axes, pair[0], pair[1]) else {
+            continue;
+        };
+        match out.last() {
+            Some(last) if (last.0 - from.0).abs() <= 1e-9 && (last.1 - from.1).abs() <= 1e-9 => {}
+            Some(_) => out.extend([(f64::NAN, f64::NAN), from]),
+            None => out.push(from),
+        }
+        out.push(to);
+    }
+    out
+}
+
+/// The part of a piece of line that lies within the axes.
+fn clipped((x, y): (&Axis, &Axis), a: Point, b: Point) -> Option<(Point, Point)> {
+    if ![a.0, a.1, b.0, b.1].iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    // Liang and Barsky: each side of the panel shortens the piece.
+    for (start, change, low, high) in [
+        (a.0, b.0 - a.0, x.low, x.high),
+        (a.1, b.1 - a.1, y.low, y.high),
+    ] {
+        if change.abs() > 0.0 {
+            let (one, other) = ((low - start) / change, (high - start) / change);
+            from = from.max(one.min(other));
+            to = to.min(one.max(other));
+        } else if start < low || start > high {
+            return None;
+        }
+    }
+    let at = |t: f64| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1));
+    (from <= to).then(|| (at(from), at(to)))
+}
+
+fn describe(of: &Variogram, density: &Density) -> String {
+    let lines: Vec<&str> = of.lines.iter().map(|line| line.name.as_str()).collect();
+    let over = if lines.is_empty() {
+        String::new()
+    } else {
+        format!(", over lines for {}", lines.join(", "))
+    };
+    let longest = density
+        .cells()
+        .max_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    let longest = longest.map_or_else(
+        || "no time at all".to_owned(),
+        |c| {
+            let [s, v0, v1, n0, n1] =
+                [c.seconds, c.x.0, c.x.1, c.y.0, c.y.1].map(|x| number(x, 1.0));
+            format!("most, {s} s, at {v0} to {v1} km/h and {n0} to {n1} rpm")
+        },
+    );
+    format!(
+        "Engine speed against vehicle speed{over}. Cells are coloured by the time spent in them, {} s in all; {longest}.",
+        number(density.total_s(), 1.0)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_cut_at_the_frame() {
+        let axes = (
+            &Axis::exact("", 0.0, 10.0, 5),
+            &Axis::exact("", 0.0, 10.0, 5),
+        );
+        let (from, to) = clipped(axes, (-5.0, 5.0), (5.0, 15.0)).expect("it touches the corner");
+        assert!(
+            from.0.abs() < 1e-9 && (from.1 - 10.0).abs() < 1e-9 && (to.0 - from.0).abs() < 1e-9
+        );
+        let (from, to) = clipped(axes, (0.0, 0.0), (20.0, 10.0)).expect("half of it is within");
+        assert!(from.1.abs() < 1e-9 && (to.0 - 10.0).abs() < 1e-9 && (to.1 - 5.0).abs() < 1e-9);
+        assert!(
+            clipped(axes, (11.0, 0.0), (11.0, 5.0)).is_none()
+                && clipped(axes, (f64::NAN, 0.0), (1.0, 1.0)).is_none()
+        );
+    }
+}

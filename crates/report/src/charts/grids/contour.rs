@@ -1,0 +1,183 @@
+//! Lines of equal value on a grid, by marching squares.
+use std::collections::BTreeMap;
+
+/// Values on a grid: `values[i][j]` at `x[i]`, `y[j]`.
+pub(crate) struct Grid<'a> {
+    pub x: &'a [f64],
+    pub y: &'a [f64],
+    pub values: &'a [Vec<f64>],
+}
+
+type Point = (f64, f64);
+/// An edge of the grid: its lower node, and whether it runs along y.
+type Edge = (usize, usize, bool);
+
+impl Grid<'_> {
+    fn at(&self, i: usize, j: usize) -> f64 {
+        self.values
+            .get(i)
+            .and_then(|column| column.get(j))
+            .copied()
+            .unwrap_or(f64::NAN)
+    }
+
+    /// The connected lines on which the values are `level`. Cells with a corner that is not finite
+    /// have none.
+    pub fn lines(&self, level: f64) -> Vec<Vec<Point>> {
+        let mut next: BTreeMap<Edge, Vec<Edge>> = BTreeMap::new();
+        for i in 1..self.x.len() {
+            for j in 1..self.y.len() {
+                for (a, b) in self.cell(i - 1, j - 1, level) {
+                    next.entry(a).or_default().push(b);
+                    next.entry(b).or_default().push(a);
+                }
+            }
+        }
+        let mut lines = Vec::new();
+        // Open lines from one of their ends first; what then is left are rings.
+        for open in [true, false] {
+            loop {
+                let start = next
+                    .iter()
+                    .find(|(_, to)| !to.is_empty() && (!open || to.len() == 1));
+                let Some((&start, _)) = start else { break };
+                let edges = walk(&mut next, start);
+                lines.push(
+                    edges
+                        .into_iter()
+                        .map(|edge| self.crossing(edge, level))
+                        .collect(),
+                );
+            }
+        }
+        lines
+    }
+
+    /// The pieces of line in one cell, each from edge to edge.
+    fn cell(&self, i: usize, j: usize, level: f64) -> Vec<(Edge, Edge)> {
+        let corners = [
+            self.at(i, j),
+            self.at(i + 1, j),
+            self.at(i + 1, j + 1),
+            self.at(i, j + 1),
+        ];
+        if corners.iter().any(|value| !value.is_finite()) {
+            return Vec::new();
+        }
+        // Bottom, right, top, left: edge k lies between corners k and k + 1.
+        let edges: [Edge; 4] = [
+            (i, j, false),
+            (i + 1, j, true),
+            (i, j + 1, false),
+            (i, j, true),
+        ];
+        let above = corners.map(|value| value >= level);
+        let crossed: Vec<usize> = (0..4).filter(|&k| above[k] != above[(k + 1) % 4]).collect();
+        match crossed[..] {
+            [a, b] => vec![(edges[a], edges[b])],
+            [_, _, _, _] => {
+                // A saddle: the middle decides which corners belong together.
+                let middle = corners.iter().sum::<f64>() / 4.0 >= level;
+                if middle == above[0] {
+                    vec![(edges[0], edges[1]), (edges[2], edges[3])]
+                } else {
+                    vec![(edges[3], edges[0]), (edges[1], edges[2])]
+                }
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Where the level lies on an edge.
+    fn crossing(&self, (i, j, along_y): Edge, level: f64) -> Point {
+        let (i1, j1) = if along_y { (i, j + 1) } else { (i + 1, j) };
+        let (a, b) = (self.at(i, j), self.at(i1, j1));
+        let t = ((level - a) / (b - a)).clamp(0.0, 1.0);
+        (
+            self.x[i] + t * (self.x[i1] - self.x[i]),
+            self.y[j] + t * (self.y[j1] - self.y[j]),
+        )
+    }
+}
+
+/// Follows a line to its other end, and takes its pieces out of `next`.
+fn walk(next: &mut BTreeMap<Edge, Vec<Edge>>, start: Edge) -> Vec<Edge> {
+    let mut edges = vec![start];
+    let mut here = start;
+    while let Some(there) = next.get_mut(&here).and_then(Vec::pop) {
+        if let Some(back) = next.get_mut(&there)
+            && let Some(at) = back.iter().position(|edge| *edge == here)
+        {
+            back.swap_remove(at);
+        }
+        edges.push(there);
+        here = there;
+    }
+    edges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cone_gives_one_ring_at_its_radius() {
+        let axis: Vec<f64> = (0..41).map(|i| -2.0 + 0.1 * f64::from(i)).collect();
+        let values: Vec<Vec<f64>> = axis
+            .iter()
+            .map(|x| axis.iter().map(|y| x.hypot(*y)).collect())
+            .collect();
+        let grid = Grid {
+            x: &axis,
+            y: &axis,
+            values: &values,
+        };
+        let lines = grid.lines(1.23);
+        assert_eq!(lines.len(), 1);
+        assert_eq!(lines[0].first(), lines[0].last());
+        for (x, y) in &lines[0] {
+            assert!((x.hypot(*y) - 1.23).abs() < 0.005);
+        }
+    }
+
+    #[test]
+    fn a_slope_gives_one_open_line_and_gaps_where_values_miss() {
+        let axis: Vec<f64> = (0..11).map(f64::from).collect();
+        let mut values: Vec<Vec<f64>> = axis.iter().map(|_| axis.clone()).collect();
+        let grid = Grid {
+            x: &axis,
+            y: &axis,
+            values: &values,
+        };
+        let lines = grid.lines(4.5);
+        assert_eq!((lines.len(), lines[0].len()), (1, 11));
+        values[5][4] = f64::NAN;
+        let grid = Grid {
+            x: &axis,
+            y: &axis,
+            values: &values,
+        };
+        assert_eq!(grid.lines(4.5).len(), 2);
+        assert!(
+            Grid {
+                x: &[],
+                y: &axis,
+                values: &[]
+            }
+            .lines(1.0)
+            .is_empty()
+        );
+    }
+
+    #[test]
+    fn a_saddle_is_cut_without_crossing() {
+        let values = vec![vec![0.0, 1.0], vec![1.0, 0.0]];
+        let grid = Grid {
+            x: &[0.0, 1.0],
+            y: &[0.0, 1.0],
+            values: &values,
+        };
+        assert_eq!(grid.lines(0.4).len(), 2);
+        assert_eq!(grid.lines(0.6).len(), 2);
+    }
+}

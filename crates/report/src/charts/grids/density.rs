@@ -1,0 +1,251 @@
+//! Time spent in the cells of a grid, coloured by its seconds: little is light, much is dark.
+
+use std::collections::BTreeMap;
+
+use crate::charts::engine::{Axis, Item, Key, Shape, Style, at, number, ramp, round_step};
+
+/// Time spans beyond this ratio are coloured by their logarithm.
+const LINEAR_UP_TO: f64 = 100.0;
+const SLICES: usize = 64;
+
+/// One cell and the time spent in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DensityCell {
+    /// Lower and upper edge on the horizontal axis, in its unit.
+    pub x: (f64, f64),
+    /// Lower and upper edge on the vertical axis, in its unit.
+    pub y: (f64, f64),
+    /// Time, s.
+    pub seconds: f64,
+}
+
+/// Seconds by cell. Cell edges lie on multiples of the cell's size, so that two cars share a grid.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Density {
+    size: (f64, f64),
+    seconds: BTreeMap<(i64, i64), f64>,
+}
+
+impl Density {
+    /// Adds up points of x, y and seconds in cells of that size. Points without finite place or positive time are ignored.
+    pub(crate) fn new(size: (f64, f64), points: impl Iterator<Item = (f64, f64, f64)>) -> Self {
+        let mut seconds: BTreeMap<(i64, i64), f64> = BTreeMap::new();
+        for (x, y, dt) in points {
+            if x.is_finite() && y.is_finite() && dt.is_finite() && dt > 0.0 {
+                *seconds
+                    .entry(((x / size.0).floor() as i64, (y / size.1).floor() as i64))
+                    .or_default() += dt;
+            }
+        }
+        Density { size, seconds }
+    }
+
+    /// A round size with at most `max` cells along an axis.
+    pub(crate) fn size_for(axis: &Axis, max: usize) -> f64 {
+        round_step((axis.high - axis.low) / max.max(1) as f64)
+    }
+
+    /// Time in all cells, s.
+    pub(crate) fn total_s(&self) -> f64 {
+        self.seconds.values().sum()
+    }
+
+    /// The cells in which time was spent, by x and then y.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = DensityCell> {
+        let edges = |k: i64, size: f64| (k as f64 * size, (k + 1) as f64 * size);
+        self.seconds
+            .iter()
+            .map(move |(&(i, j), &seconds)| DensityCell {
+                x: edges(i, self.size.0),
+                y: edges(j, self.size.1),
+                seconds,
+            })
+    }
+
+    /// The cells as shapes; `row` gives the row of the table that has a cell's numbers.
+    pub(crate) fn items(&self, mut row: impl FnMut(&DensityCell) -> usize) -> Vec<Item> {
+        let scale = self.scale();
+        let item = |cell: DensityCell| {
+            let style = Style::colour(&scale.colour(cell.seconds))
+                .crisp()
+                .class("cell");
+            Item {
+                shape: Shape::Rect(at(cell.x.0, cell.y.0), at(cell.x.1, cell.y.1)),
+                style: style.row(row(&cell)),
+            }
+        };
+        self.cells().map(item).collect()
+    }
+
+    /// The key of the colours: times in seconds.
+    pub(crate) fn key(&self) -> Key {
+        let scale = self.scale();
+        let colour = |k: usize| scale.colour(scale.seconds((k as f64 + 0.5) / SLICES as f64));
+        let step = |seconds: f64| match scale.log {
+            true => seconds.max(1e-4),
+            false => round_step(scale.high / 5.0),
+        };
+        let label = |seconds: f64| (scale.share(seconds), number(seconds, step(seconds)));
+        let log = if scale.log { ", logarithmic" } else { "" };
+        Key {
+            heading: format!("Time spent in a cell [s]{log}"),
+            colours: (0..SLICES).map(colour).collect(),
+            labels: scale.marks().into_iter().map(label).collect(),
+        }
+    }
+
+    /// How seconds become a colour.
+    fn scale(&self) -> TimeScale {
+        let max = self.seconds.values().copied().fold(0.0, f64::max);
+        let min = self.seconds.values().copied().fold(f64::INFINITY, f64::min);
+        TimeScale::new(min, max)
+    }
+}
+
+/// How seconds become a colour: in proportion, or by the logarithm over more than two decades.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct TimeScale {
+    low: f64,
+    high: f64,
+    log: bool,
+}
+
+impl TimeScale {
+    /// A scale for times from `least` to `max`, s; several panels share one made of the extremes of all.
+    pub(crate) fn new(least: f64, most: f64) -> Self {
+        let high = if most.is_finite() && most > 0.0 {
+            most
+        } else {
+            1.0
+        };
+        let log = least > 0.0 && high / least > LINEAR_UP_TO;
+        TimeScale {
+            low: if log { least } else { 0.0 },
+            high,
+            log,
+        }
+    }
+
+    /// Where a time lies on the scale, 0 to 1.
+    fn share(&self, seconds: f64) -> f64 {
+        let share = if self.log {
+            (seconds / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (seconds - self.low) / (self.high - self.low)
+        };
+        share.clamp(0.0, 1.0)
+    }
+
+    /// The time at a place on the scale, s.
+    fn seconds(&self, share: f64) -> f64 {
+        if self.log {
+            self.low * (self.high / self.low).powf(share)
+        } else {
+            self.low + share * (self.high - self.low)
+        }
+    }
+
+    /// The colour of a time.
+    fn colour(&self, seconds: f64) -> String {
+        // The ends of the ramp are left out: as yellow as paper, as dark as lines.
+        ramp(0.97 - 0.9 * self.share(seconds))
+    }
+
+    /// Times that are marked on the key: its ends and round numbers between.
+    fn marks(&self) -> Vec<f64> {
+        if !self.log {
+            let step = round_step(self.high / 5.0);
+            return (0..=5)
+                .map(|k| f64::from(k) * step)
+                .filter(|s| *s <= self.high * (1.0 + 1e-9))
+                .collect();
+        }
+        let (from, to) = (
+            self.low.log10().floor() as i32,
+            self.high.log10().ceil() as i32,
+        );
+        let round =
+            (from..=to).flat_map(|power| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(power)));
+        round
+            .filter(|s| *s >= self.low * (1.0 - 1e-9) && *s <= self.high * (1.0 + 1e-9))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_time_is_in_the_cells_and_borders_belong_to_one_cell() {
+        let points = [
+            (0.0, 0.0, 1.0),
+            (9.99, 4.9, 0.5),
+            (10.0, 5.0, 2.0),
+            (-0.1, -5.0, 4.0),
+            (f64::NAN, 0.0, 8.0),
+            (1.0, 1.0, -1.0),
+        ];
+        let density = Density::new((10.0, 5.0), points.into_iter());
+        assert!((density.total_s() - 7.5).abs() < 1e-12);
+        let cells: Vec<_> = density.cells().collect();
+        assert_eq!(cells.len(), 3);
+        assert_eq!(
+            cells[0],
+            DensityCell {
+                x: (-10.0, 0.0),
+                y: (-5.0, 0.0),
+                seconds: 4.0
+            }
+        );
+        assert_eq!(
+            cells[1],
+            DensityCell {
+                x: (0.0, 10.0),
+                y: (0.0, 5.0),
+                seconds: 1.5
+            }
+        );
+    }
+
+    #[test]
+    fn more_time_is_darker_and_marks_lie_on_the_key() {
+        let light = |colour: &str| {
+            let part =
+                |at: usize| f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap_or(0));
+            0.2126 * part(1) + 0.7152 * part(3) + 0.0722 * part(5)
+        };
+        for (scale, log) in [
+            (TimeScale::new(0.1, 400.0), true),
+            (TimeScale::new(1.0, 40.0), false),
+        ] {
+            assert_eq!(scale.log, log);
+            let seen: Vec<f64> = (0..=20)
+                .map(|k| light(&scale.colour(scale.seconds(f64::from(k) / 20.0))))
+                .collect();
+            assert!(seen.windows(2).all(|pair| pair[1] < pair[0]), "{seen:?}");
+            let marks = scale.marks();
+            assert!(
+                marks.len() >= 3
+                    && marks
+                        .iter()
+                        .all(|s| *s >= scale.low - 1e-12 && *s <= scale.high + 1e-9),
+                "{marks:?}"
+            );
+            for share in [0.0, 0.3, 1.0] {
+                assert!((scale.share(scale.seconds(share)) - share).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn no_time_at_all_still_has_a_key() {
+        let key = Density::new((1.0, 1.0), std::iter::empty()).key();
+        assert!(
+            key.labels
+                .iter()
+                .all(|(share, label)| share.is_finite() && !label.is_empty())
+        );
+        assert_eq!(key.colours.len(), SLICES);
+    }
+}

@@ -1,0 +1,11 @@
+//! Quantities over two axes: lines of equal value, filled bands, time spent in cells.
+
+mod contour;
+mod density;
+mod iso;
+mod labels;
+mod map;
+
+pub(crate) use density::{Density, DensityCell};
+pub(crate) use iso::{ISO, iso_lines};
+pub use map::{MapFigure, map_figure};

@@ -1,0 +1,295 @@
+//! Line charts: one or more panels in rows of two with one legend; lines or stacked areas.
+//!
+//! Everything that is a line over a quantity and not over time is drawn here: ambient temperatures, tests of rigs, figures of the book.
+
+mod curves;
+mod stack;
+mod table;
+
+pub use curves::{CurveFigure, CurvePanel, CurveSeries, curve_figure};
+pub use stack::{StackFigure, stack_figure};
+
+use super::engine::{
+    Axis, BELOW, Block, CONTEXT, Chart, Entry, Fill, LEFT, PLOT_LEFT, Panel, Rect, STROKES, Shape,
+    Side, Stroke, Style, Symbol, WIDTH, at, grid, range, stroke,
+};
+use super::picture::Picture;
+
+const WIDE: f64 = WIDTH - 22.0 - PLOT_LEFT;
+const TOP: f64 = 60.0;
+const HEADING: f64 = 22.0;
+/// Room between two panels of a row, and between rows, pixels.
+const GAP: (f64, f64) = (14.0, 8.0);
+/// Heights of a lone panel, and of one of several, pixels.
+const TALL: [f64; 2] = [340.0, 210.0];
+/// Ticks of the axes at most: of a lone panel, and of one of several.
+const TICKS: [(usize, usize); 2] = [(9, 8), (6, 7)];
+
+/// A series' points in the units of its axes.
+pub type Points = Vec<(f64, f64)>;
+
+/// How a series looks: the same number looks the same in all panels of a chart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Look {
+    /// Number of the colour and dash pattern; the eighth begins again with the first.
+    pub index: usize,
+    /// A thin dotted line of that colour, for a reference.
+    pub dotted: bool,
+}
+
+/// One panel.
+#[derive(Clone, Debug, Default)]
+pub struct LinePanel {
+    /// Name of the panel; may be empty.
+    pub heading: String,
+    /// Title of its horizontal axis as `Quantity [unit]`; that of the chart if empty.
+    pub x_title: &'static str,
+    /// Title of the vertical axis as `Quantity [unit]`.
+    pub y_title: &'static str,
+    /// Values that the vertical axis includes in addition to those of the series; a line marks zero where it is one of them.
+    pub with_y: Vec<f64>,
+    /// Whether series are stacked areas, from the bottom; else lines.
+    pub stacked: bool,
+    /// Look and points of each series, with a gap where a value is not finite; stacked ones share their horizontal values.
+    pub series: Vec<(Look, Points)>,
+}
+
+/// A chart of lines.
+#[derive(Clone, Debug, Default)]
+pub struct LineChart {
+    /// What it shows.
+    pub title: String,
+    /// Of what, and under which conditions.
+    pub subject: String,
+    /// The picture in words, for those who cannot see it.
+    pub description: String,
+    /// Title of the horizontal axes as `Quantity [unit]`.
+    pub x_title: &'static str,
+    /// Panels, in rows of two.
+    pub panels: Vec<LinePanel>,
+    /// Whether every panel has a horizontal range of its own, else all have one.
+    pub own_x: bool,
+    /// Whether all panels have one vertical range.
+    pub same_y: bool,
+    /// Whether vertical axes are only as wide as the data, else they end on round numbers.
+    pub tight: bool,
+    /// Whether points are marked: where there are few of them, and what lies between is only a line.
+    pub marked: bool,
+    /// Heading of the legend; may be empty.
+    pub legend: String,
+    /// Look and name of each series.
+    pub names: Vec<(Look, String)>,
+}
+
+/// Draws a chart of lines.
+#[must_use]
+pub fn line_chart(of: &LineChart) -> Picture {
+    let (table, columns) = table::table(of);
+    let rects = layout(of);
+    let panels = of.panels.iter().zip(&rects).zip(columns);
+    let panels = panels.map(|((panel, rect), columns)| Panel {
+        columns,
+        ..draw(of, panel, *rect)
+    });
+    let stacked = of.panels.iter().any(|panel| panel.stacked);
+    let mut entries: Vec<Entry> = Vec::new();
+    for (look, name) in &of.names {
+        entries.push(match stacked {
+            true => Entry::fill(Fill::nth(look.index, of.names.len()), name),
+            false => Entry::line(look.stroke(), name),
+        });
+    }
+    if stacked {
+        entries.reverse(); // listed as they lie
+    }
+    let mut chart = Chart {
+        title: of.title.clone(),
+        subject: of.subject.clone(),
+        description: of.description.clone(),
+        left: PLOT_LEFT,
+        panels: panels.collect(),
+        table,
+        ..Chart::default()
+    };
+    let side = Side {
+        heading: of.legend.clone(),
+        entries,
+        ..Side::default()
+    };
+    match free_place(&rects, side) {
+        Ok(side) => chart.sides.push(side),
+        Err(entries) => chart
+            .foot
+            .push(Block::legend((PLOT_LEFT, WIDE), &of.legend, entries)),
+    }
+    chart.picture()
+}
+
+/// Rectangles of the panels.
+fn layout(of: &LineChart) -> Vec<Rect> {
+    let several = of.panels.len() > 1;
+    let columns = 1 + usize::from(several);
+    let wide = if several {
+        (WIDE - LEFT - GAP.0) / 2.0
+    } else {
+        WIDE
+    };
+    let tall = TALL[usize::from(several)];
+    let headed = of.panels.iter().any(|panel| !panel.heading.is_empty());
+    let heading = if headed { HEADING } else { 0.0 };
+    let pitch = (wide + LEFT + GAP.0, tall + heading + BELOW + GAP.1);
+    let place = grid((PLOT_LEFT, TOP + heading), (wide, tall), pitch, columns);
+    (0..of.panels.len()).map(place).collect()
+}
+
+/// The legend in the place that an odd number of panels leaves free, or its entries if it does not fit in there.
+fn free_place(rects: &[Rect], side: Side) -> Result<Side, Vec<Entry>> {
+    match rects {
+        [first, .., last] if rects.len() % 2 == 1 => {
+            let (corner, width) = ((first.right + GAP.0 + LEFT, last.top), last.width());
+            let side = Side {
+                corner,
+                width,
+                ..side
+            };
+            if side.height() <= last.height() {
+                Ok(side)
+            } else {
+                Err(side.entries)
+            }
+        }
+        _ => Err(side.entries),
+    }
+}
+
+impl LineChart {
+    /// Title of the horizontal axis of a panel.
+    fn x_title(&self, panel: &LinePanel) -> &'static str {
+        if panel.x_title.is_empty() {
+            self.x_title
+        } else {
+            panel.x_title
+        }
+    }
+
+    /// Whether all panels share one quantity as horizontal axis.
+    fn one_x(&self) -> bool {
+        let mut titles = self.panels.iter().map(|panel| self.x_title(panel));
+        let first = titles.next();
+        titles.all(|title| Some(title) == first)
+    }
+}
+
+impl Look {
+    fn stroke(self) -> Stroke {
+        let full = STROKES[self.index % STROKES.len()];
+        if self.dotted {
+            stroke(full.colour, 1.2, &[1.5, 2.5])
+        } else {
+            full
+        }
+    }
+}
+
+fn draw(of: &LineChart, panel: &LinePanel, rect: Rect) -> Panel {
+    let ticks = TICKS[usize::from(of.panels.len() > 1)];
+    let own = std::slice::from_ref(panel);
+    let x_of = if of.own_x { own } else { &of.panels };
+    let y_of = if of.same_y { &of.panels } else { own };
+    let x = x_axis(of.x_title(panel), x_of, of.marked, ticks.0);
+    let mut drawn = Panel {
+        heading: panel.heading.clone(),
+        over_table: of.one_x(),
+        ..Panel::new(rect, x, y_axis(panel.y_title, y_of, of.tight, ticks.1))
+    };
+    let y = &drawn.y;
+    if y.low < 0.0 && y.high > 0.0 && panel.with_y.iter().any(|y| y.abs() <= 0.0) {
+        drawn.level(0.0, CONTEXT);
+    }
+    if panel.stacked {
+        stack_layers(&mut drawn, panel, of.names.len());
+    } else {
+        // The first of the list ends up on top.
+        for (look, points) in panel.series.iter().rev() {
+            drawn.series(points.clone(), look.stroke());
+            for (x, y) in points.iter().filter(|_| of.marked) {
+                let style = Style::colour(look.stroke().colour).class("mark");
+                drawn.symbol(Symbol::CIRCLE, at(*x, *y), 2.6, style);
+            }
+        }
+    }
+    let finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
+    drawn.no_data = !panel
+        .series
+        .iter()
+        .flat_map(|(_, points)| points)
+        .any(finite);
+    drawn
+}
+
+fn x_axis(title: &str, panels: &[LinePanel], marked: bool, ticks: usize) -> Axis {
+    let points = panels
+        .iter()
+        .flat_map(|p| &p.series)
+        .flat_map(|(_, points)| points);
+    let (low, high) = range(points.map(|p| p.0)).unwrap_or((0.0, 1.0));
+    let room = match high - low {
+        span if span > 0.0 && marked => 0.03 * span,
+        span if span > 0.0 => 0.0,
+        // A lone value lies in the middle.
+        _ => 0.1 * low.abs() + 1e-3,
+    };
+    Axis::exact(title, low - room, high + room, ticks)
+}
+
+fn y_axis(title: &str, panels: &[LinePanel], tight: bool, ticks: usize) -> Axis {
+    let all = || panels.iter().flat_map(heights);
+    match range(all()) {
+        // So narrow that lines keep off the frame.
+        Some((low, high)) if tight && high - low > 1e-9 * high.abs() => {
+            let room = 0.04 * (high - low);
+            Axis::exact(title, low - room, high + room, ticks)
+        }
+        _ => Axis::round(title, all(), ticks),
+    }
+}
+
+/// Every height that has to fit into a panel.
+fn heights(panel: &LinePanel) -> Vec<f64> {
+    let mut all = panel.with_y.clone();
+    let series = || panel.series.iter().map(|(_, points)| points);
+    if panel.stacked {
+        all.push(0.0);
+        let count = series().map(Vec::len).max().unwrap_or(0);
+        let sum = |i: usize| {
+            series()
+                .filter_map(|points| points.get(i))
+                .map(|p| p.1)
+                .sum::<f64>()
+        };
+        all.extend((0..count).map(sum));
+    } else {
+        all.extend(series().flatten().map(|p| p.1));
+    }
+    all
+}
+
+/// Adds the series of a panel as areas upon each other; a value that is not finite counts as nothing.
+fn stack_layers(drawn: &mut Panel, panel: &LinePanel, count: usize) {
+    let longest = panel.series.iter().map(|(_, points)| points.len()).max();
+    let mut base = vec![0.0; longest.unwrap_or(0)];
+    for (look, points) in &panel.series {
+        let height = |y: f64| if y.is_finite() { y } else { 0.0 };
+        let layer: Vec<_> = points
+            .iter()
+            .zip(&mut base)
+            .map(|(p, base)| {
+                let low = *base;
+                *base += height(p.1);
+                (p.0, low, *base)
+            })
+            .collect();
+        let style = Style::edged(Fill::nth(look.index, count), 0.4).class("layer");
+        drawn.add(Shape::between(&layer), style);
+    }
+}

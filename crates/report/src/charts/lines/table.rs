@@ -1,0 +1,149 @@
+//! The numbers behind a chart: a column for each line, a row for each value of the horizontal axis.
+
+use super::super::engine::{cell, range, round_step};
+use super::super::picture::PictureTable;
+use super::{LineChart, LinePanel, Look};
+
+/// Rows at most, and cells: a table of many columns has fewer rows.
+const MAX_ROWS: usize = 600;
+const MAX_CELLS: usize = 8000;
+
+/// A chart's table, and for each panel the columns that it draws.
+///
+/// Panels over one quantity share its column, the first one. Where a chart has panels over several quantities, each quantity has a column
+/// and rows of its own.
+pub(super) fn table(chart: &LineChart) -> (PictureTable, Vec<Vec<usize>>) {
+    let mut quantities: Vec<&'static str> = Vec::new();
+    for title in chart.panels.iter().map(|panel| chart.x_title(panel)) {
+        if !quantities.contains(&title) {
+            quantities.push(title);
+        }
+    }
+    let mut table = PictureTable {
+        columns: quantities.iter().map(|title| split(title)).collect(),
+        ..PictureTable::default()
+    };
+    let mut places = Vec::new();
+    for panel in &chart.panels {
+        let first = table.columns.len();
+        places.push(first);
+        table.columns.extend(
+            panel
+                .series
+                .iter()
+                .map(|(look, _)| column(chart, panel, *look)),
+        );
+    }
+    let mut every = 1;
+    for (k, title) in quantities.iter().enumerate() {
+        let own: Vec<(&LinePanel, usize)> = chart
+            .panels
+            .iter()
+            .zip(places.iter().copied())
+            .filter(|(panel, _)| chart.x_title(panel) == *title)
+            .collect();
+        every = every.max(rows(&mut table, k, &own));
+    }
+    if every > 1 {
+        table.note = format!("One row in {every} is listed; lines are drawn from all.");
+    }
+    let drawn =
+        |(panel, first): (&LinePanel, &usize)| (*first..*first + panel.series.len()).collect();
+    let columns = chart.panels.iter().zip(&places).map(drawn).collect();
+    (table, columns)
+}
+
+/// Adds the rows of panels over one quantity, each with its first column; one in so many as are returned.
+fn rows(table: &mut PictureTable, place: usize, panels: &[(&LinePanel, usize)]) -> usize {
+    let series = || {
+        panels
+            .iter()
+            .flat_map(|(panel, first)| panel.series.iter().zip(*first..))
+    };
+    // Adding zero turns a negative zero into a plain one, its equal.
+    let mut xs: Vec<f64> = series()
+        .flat_map(|((_, points), _)| points.iter().map(|p| p.0 + 0.0))
+        .filter(|x| x.is_finite())
+        .collect();
+    xs.sort_by(f64::total_cmp);
+    xs.dedup_by(|a, b| a.total_cmp(b).is_eq());
+    let width = table.columns.len();
+    let mut cells: Vec<Vec<String>> = vec![vec![String::new(); width]; xs.len()];
+    let step = exact_step(&xs);
+    for (row, x) in cells.iter_mut().zip(&xs) {
+        row[place] = cell(*x, step);
+    }
+    for ((_, points), column) in series() {
+        let step = step_of(points.iter().map(|p| p.1));
+        for (x, y) in points {
+            if let Ok(at) = xs.binary_search_by(|probe| probe.total_cmp(&(x + 0.0))) {
+                cells[at][column] = cell(*y, step);
+            }
+        }
+    }
+    let most = (MAX_CELLS / width.max(1)).clamp(1, MAX_ROWS);
+    let every = cells.len().div_ceil(most).max(1);
+    table.rows.extend(cells.into_iter().step_by(every));
+    every
+}
+
+/// "Torque loss [Nm]" as name and unit; `-` is none.
+fn split(title: &'static str) -> (String, &'static str) {
+    match title
+        .strip_suffix(']')
+        .and_then(|rest| rest.rsplit_once(" ["))
+    {
+        Some((name, unit)) => (name.to_owned(), if unit == "-" { "" } else { unit }),
+        None => (title.to_owned(), ""),
+    }
+}
+
+/// Name and unit of the column of a line.
+fn column(chart: &LineChart, panel: &LinePanel, look: Look) -> (String, &'static str) {
+    let (quantity, unit) = split(panel.y_title);
+    let name = chart
+        .names
+        .iter()
+        .find(|(other, _)| *other == look)
+        .map_or("", |(_, name)| name.as_str());
+    let alike = chart
+        .panels
+        .iter()
+        .filter(|other| other.heading == panel.heading)
+        .count()
+        > 1;
+    let named = alike || name.is_empty() && panel.heading.is_empty();
+    let parts = [
+        panel.heading.as_str(),
+        if named { &quantity } else { "" },
+        name,
+    ];
+    let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    (parts.join(": "), unit)
+}
+
+/// About a five-hundredth of what values span: what the eye could distinguish in the drawing.
+fn step_of(values: impl Iterator<Item = f64>) -> f64 {
+    let Some((low, high)) = range(values) else {
+        return 1.0;
+    };
+    let size = low.abs().max(high.abs());
+    if high - low > 1e-9 * size {
+        round_step((high - low) / 500.0)
+    } else {
+        round_step((size / 1000.0).max(1e-300))
+    }
+}
+
+/// A step with as few decimals as write all values exactly, or else that of [`step_of`].
+fn exact_step(values: &[f64]) -> f64 {
+    let exact = |step: &f64| {
+        values
+            .iter()
+            .all(|x| ((x / step).round() * step - x).abs() <= 1e-9 * x.abs().max(*step))
+    };
+    [1.0, 0.1, 0.01, 0.001]
+        .into_iter()
+        .find(exact)
+        .unwrap_or_else(|| step_of(values.iter().copied()))
+}

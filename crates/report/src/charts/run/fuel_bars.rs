@@ -1,0 +1,144 @@
+//! Fuel of several runs side by side.
+
+use super::PlotRun;
+use crate::charts::engine::{
+    Axis, Block, Chart, Cut, Entry, Fill, Label, PLOT_LEFT, Panel, Rect, Shape, Style, at, cell,
+    text_width,
+};
+use crate::charts::picture::{Picture, PictureTable};
+
+const TOP: f64 = 58.0;
+const TALL: f64 = 340.0;
+/// Widths of the plot: room for names, and no more than fits on a page.
+const WIDTHS: (f64, f64) = (480.0, 786.0);
+const LABEL: f64 = 11.0;
+/// Bars thinner than this have their values in the table alone, pixels.
+const TURNED: f64 = 15.0;
+/// Width of a group's share that stays empty.
+const GAP: f64 = 0.28;
+
+/// Fuel in L/100 km by phase group and in total, one bar per vehicle.
+#[must_use]
+pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
+    let groups = groups(runs);
+    let bars = (groups.len() * runs.len()).max(1) as f64;
+    // Wide enough for the values over the bars, as long as the page is.
+    let plot = (bars * 40.0 / (1.0 - GAP)).clamp(WIDTHS.0, WIDTHS.1);
+    let x = Axis::bare(0.0, groups.len().max(1) as f64);
+    let mut panel = Panel {
+        no_data: groups.is_empty(),
+        x_labels: false,
+        below: 34.0,
+        ..Panel::new(Rect::new(PLOT_LEFT, TOP, plot, TALL), x, axis(runs))
+    };
+    let table = draw_groups(&mut panel, runs, &groups);
+    let entries = runs.iter().enumerate();
+    let entries = entries
+        .map(|(i, run)| Entry::fill(Fill::nth(i, runs.len()), run.name))
+        .collect();
+    let chart = Chart {
+        title: "Fuel consumption".to_owned(),
+        subject: match runs {
+            [run] => run.name.to_owned(),
+            _ => format!("{} vehicles", runs.len()),
+        },
+        description: describe(runs),
+        left: PLOT_LEFT,
+        width: PLOT_LEFT + plot + 20.0,
+        panels: vec![panel],
+        foot: vec![Block::legend((PLOT_LEFT, plot), "Vehicle", entries)],
+        table,
+        ..Chart::default()
+    };
+    chart.picture()
+}
+
+/// Adds the bars of all groups; returns their values.
+fn draw_groups(panel: &mut Panel, runs: &[PlotRun], groups: &[String]) -> PictureTable {
+    let columns = [
+        ("Part of the cycle", ""),
+        ("Vehicle", ""),
+        ("Fuel", "L/100 km"),
+    ];
+    let mut table = PictureTable::new(&columns);
+    let width = (1.0 - GAP) / runs.len().max(1) as f64;
+    for (g, group) in groups.iter().enumerate() {
+        for (i, run) in runs.iter().enumerate() {
+            let from = g as f64 + 0.5 * GAP + i as f64 * width;
+            let value = value_of(run, group);
+            let number = cell(value.unwrap_or(f64::NAN), 0.01);
+            let row = table.push(vec![group.clone(), run.name.to_owned(), number]);
+            if let Some(value) = value {
+                let style = Style::edged(Fill::nth(i, runs.len()), 0.75)
+                    .class("bar")
+                    .row(row);
+                bar(panel, (from, from + width), value, style);
+            }
+        }
+        let place = at(g as f64 + 0.5, f64::NEG_INFINITY).shift(0.0, 20.0);
+        let room = panel.px(1.0) - panel.px(0.0) - 6.0;
+        let name = Label::new(place, group)
+            .size(12.0)
+            .middle()
+            .bold(group == "total");
+        panel.label(name.cut(Cut::End, room));
+    }
+    table
+}
+
+/// From zero, with room for the values over the highest bar.
+fn axis(runs: &[PlotRun]) -> Axis {
+    let values = runs
+        .iter()
+        .flat_map(|run| run.group_fuel.iter().map(|(_, fuel)| *fuel));
+    let highest = values.filter(|x| x.is_finite()).fold(0.0, f64::max);
+    Axis::round("Fuel [L/100 km]", [0.0, 1.12 * highest].into_iter(), 8)
+}
+
+fn bar(panel: &mut Panel, (from, to): (f64, f64), value: f64, style: Style) {
+    panel.add(
+        Shape::Rect(at(from, value), at(to, f64::NEG_INFINITY)),
+        style,
+    );
+    let wide = panel.px(to) - panel.px(from);
+    let (text, top) = (format!("{value:.2}"), at(0.5 * (from + to), value));
+    if text_width(&text, LABEL) < wide {
+        panel.label(Label::new(top.shift(0.0, -4.0), text).middle());
+    } else if wide >= TURNED {
+        // Turned where the bars are thinner than their values are wide.
+        panel.label(Label::new(top.shift(3.5, -4.0), text).turned());
+    }
+}
+
+/// Finite and not negative, or there is no bar.
+fn value_of(run: &PlotRun, group: &str) -> Option<f64> {
+    let (_, fuel) = run.group_fuel.iter().find(|(name, _)| name == group)?;
+    (fuel.is_finite() && *fuel >= 0.0).then_some(*fuel)
+}
+
+/// The groups of all runs in the order of their first mention, the total last.
+fn groups(runs: &[PlotRun]) -> Vec<String> {
+    let mut groups: Vec<String> = Vec::new();
+    for (name, _) in runs.iter().flat_map(|run| &run.group_fuel) {
+        if !groups.contains(name) {
+            groups.push(name.clone());
+        }
+    }
+    groups.sort_by_key(|name| name == "total");
+    groups
+}
+
+fn describe(runs: &[PlotRun]) -> String {
+    let run = |run: &PlotRun| {
+        let fuel = run
+            .group_fuel
+            .iter()
+            .map(|(name, fuel)| format!("{name} {fuel:.2}"));
+        format!("{}: {}", run.name, fuel.collect::<Vec<_>>().join(", "))
+    };
+    let runs: Vec<String> = runs.iter().map(run).collect();
+    format!(
+        "Fuel in L/100 km by part of the cycle, one bar per vehicle. {}.",
+        runs.join("; ")
+    )
+}

@@ -1,0 +1,282 @@
+//! Pictures over time: panels below each other over one axis, and the steps as a table.
+
+use super::PlotRun;
+use crate::charts::engine::{
+    Axis, Block, Chart, Cut, Entry, Label, PLOT_LEFT, Panel, QUIET, Rect, Shape, Stroke, Style,
+    WIDTH, at, cell, number, range, stroke, text_width,
+};
+use crate::charts::picture::{Picture, PictureTable};
+use cvtcycle_output::History;
+use cvtcycle_output::trace::column;
+
+/// Width of the plots, pixels.
+pub(super) const PLOT_WIDE: f64 = WIDTH - 28.0 - PLOT_LEFT;
+/// Upper edge of the first plot: below the title and the names of the phases, pixels.
+pub(super) const PLOT_TOP: f64 = 72.0;
+const GAP: f64 = 16.0;
+/// Rows of a table at most.
+const MAX_ROWS: usize = 600;
+/// The line of a marked value.
+const LEVEL: Stroke = stroke(QUIET, 0.8, &[4.0, 2.0]);
+/// The line where a phase begins.
+const PHASE: Stroke = stroke(QUIET, 0.75, &[1.0, 2.5]);
+const PHASE_TEXT: f64 = 11.0;
+
+/// A column of the trace as a line.
+pub(super) struct Series {
+    pub column: &'static str,
+    pub title: &'static str,
+    pub stroke: Stroke,
+}
+
+/// One panel.
+pub(super) struct Strip {
+    /// Title of the vertical axis, without unit.
+    pub title: &'static str,
+    /// Height, pixels.
+    pub tall: f64,
+    /// Its lines, all in one unit; the first ends up on top.
+    pub lines: Vec<Series>,
+    /// Values that the axis includes in addition to the data.
+    pub with: &'static [f64],
+    /// Beyond this value lines leave the panel.
+    pub max: f64,
+    /// A value that is marked with a thin line, and its name in the legend.
+    pub mark: Option<(f64, &'static str)>,
+    /// Whether its lines are listed in the legend.
+    pub legend: bool,
+}
+
+impl Strip {
+    /// A panel of one line that begins at zero.
+    pub fn of(column: &'static str, title: &'static str, tall: f64, stroke: Stroke) -> Self {
+        let line = Series {
+            column,
+            title,
+            stroke,
+        };
+        Strip {
+            title,
+            tall,
+            lines: vec![line],
+            with: &[0.0],
+            max: f64::INFINITY,
+            mark: None,
+            legend: false,
+        }
+    }
+
+    fn axis(&self, history: &History) -> Axis {
+        let title = match self.lines.first().map_or("", |line| unit(line.column)) {
+            "" => self.title.to_owned(),
+            unit => format!("{} [{unit}]", self.title),
+        };
+        let values = self
+            .lines
+            .iter()
+            .flat_map(|line| history.column(line.column));
+        let values = values.map(|y| y.min(self.max)).filter(|y| y.is_finite());
+        let ticks = (self.tall / 28.0) as usize;
+        Axis::round(&title, values.chain(self.with.iter().copied()), ticks)
+    }
+
+    /// A line in the legend: one that has its panel alone is named by the axis.
+    fn entries(&self) -> impl Iterator<Item = Entry> {
+        let lines = self.lines.iter().filter(|_| self.legend);
+        lines.map(|line| Entry::line(line.stroke, line.title))
+    }
+
+    fn panel(&self, rect: Rect, history: &History) -> Panel {
+        let mut panel = Panel {
+            over_table: true,
+            ..Panel::new(rect, time_axis(history), self.axis(history))
+        };
+        if let Some((level, _)) = self.mark {
+            panel.level(level, LEVEL);
+        }
+        let first = panel.items.len();
+        for line in self.lines.iter().rev() {
+            panel.series(points(history, line.column), line.stroke);
+        }
+        if self.max.is_finite() {
+            let lines = panel.items.split_off(first);
+            panel.add(Shape::Within(None, lines), Style::default());
+        }
+        let mut values = self
+            .lines
+            .iter()
+            .flat_map(|line| history.column(line.column));
+        panel.no_data = !values.any(|y| y.is_finite());
+        panel
+    }
+}
+
+/// Draws the panels of a run, with one legend below.
+pub(super) fn timeline(run: &PlotRun, title: &str, about: &str, strips: &[Strip]) -> Picture {
+    let lines: Vec<&Series> = strips.iter().flat_map(|strip| &strip.lines).collect();
+    let described: Vec<String> = lines
+        .iter()
+        .map(|line| describe(run.history, line))
+        .collect();
+    let levels = strips.iter().filter_map(|strip| strip.mark);
+    let levels = levels.map(|(_, name)| Entry::line(LEVEL, name));
+    let entries = strips
+        .iter()
+        .flat_map(Strip::entries)
+        .chain(levels)
+        .collect();
+    let mut panels = Vec::new();
+    let mut top = PLOT_TOP;
+    for strip in strips {
+        let rect = Rect::new(PLOT_LEFT, top, PLOT_WIDE, strip.tall);
+        let mut panel = strip.panel(rect, run.history);
+        phases(&mut panel, run.history, panels.is_empty());
+        panel.x_labels = panels.len() + 1 == strips.len();
+        panels.push(panel);
+        top += strip.tall + GAP;
+    }
+    let chart = Chart {
+        title: title.to_owned(),
+        subject: run.name.to_owned(),
+        description: format!("{about} {}.", described.join("; ")),
+        left: PLOT_LEFT,
+        panels,
+        foot: vec![Block::legend((PLOT_LEFT, PLOT_WIDE), "", entries)],
+        table: table(run, &lines),
+        ..Chart::default()
+    };
+    chart.picture()
+}
+
+/// Unit of a column.
+fn unit(name: &str) -> &'static str {
+    match column(name).map_or("", |column| column.unit) {
+        "degC" => "\u{b0}C",
+        unit => unit,
+    }
+}
+
+/// The points of a column: means lie in the middle of their step, temperatures at its end, a gear holds for the whole of it.
+fn points(history: &History, name: &str) -> Vec<(f64, f64)> {
+    let times = history.time_s().iter().zip(history.dt_s());
+    let steps = times.zip(history.column(name));
+    if name == "gear" {
+        return steps
+            .flat_map(|((end, dt), y)| [(end - dt, *y), (*end, *y)])
+            .collect();
+    }
+    let back = if name.ends_with("_degc") { 0.0 } else { 0.5 };
+    steps.map(|((end, dt), y)| (end - back * dt, *y)).collect()
+}
+
+/// Beginning of a trace, s.
+fn start_s(history: &History) -> Option<f64> {
+    let first = history.time_s().first().zip(history.dt_s().first());
+    first.map(|(end, dt)| end - dt)
+}
+
+/// The time axis of a trace: all of it, no more.
+pub(super) fn time_axis(history: &History) -> Axis {
+    let end = history.time_s().last().copied().unwrap_or(1.0);
+    Axis::exact("Time [s]", start_s(history).unwrap_or(0.0), end, 10)
+}
+
+/// A series in words, for those who cannot see the picture.
+fn describe(history: &History, line: &Series) -> String {
+    let values = history.column(line.column);
+    let Some((low, high)) = range(values.iter().copied()) else {
+        return format!("{} without data", line.title);
+    };
+    let unit = match unit(line.column) {
+        "-" | "" => String::new(),
+        unit => format!(" {unit}"),
+    };
+    let step = if high - low < 20.0 { 0.01 } else { 1.0 };
+    let last = values.iter().rev().find(|y| y.is_finite());
+    let last = last.filter(|_| line.column.ends_with("_degc"));
+    let end = last.map_or(String::new(), |y| {
+        format!(" and {} at the end", number(*y, 1.0))
+    });
+    let (low, high) = (number(low, step), number(high, step));
+    format!("{} from {low} to {high}{unit}{end}", line.title)
+}
+
+/// Marks where phases begin, with their names above the plot where these fit.
+pub(super) fn phases(panel: &mut Panel, history: &History, named: bool) {
+    let Some(mut from) = start_s(history) else {
+        return;
+    };
+    let steps: Vec<usize> = (0..history.len()).collect();
+    let parts: Vec<&[usize]> = steps
+        .chunk_by(|a, b| history.phase(*a) == history.phase(*b))
+        .collect();
+    for (i, part) in parts.iter().enumerate() {
+        let (first, to) = (part[0], history.time_s()[part[part.len() - 1]]);
+        let wide = panel.px(to) - panel.px(from);
+        if i > 0 && wide > 3.0 {
+            panel.upright(from, PHASE);
+        }
+        let name = history
+            .phases()
+            .get(history.phase(first))
+            .map_or("", String::as_str);
+        let short = Cut::End.apply(name, PHASE_TEXT, wide - 4.0);
+        // A name cut to a few letters says nothing.
+        let readable = short == name || text_width(&short, PHASE_TEXT) > 40.0;
+        if named && parts.len() > 1 && readable {
+            let place = at(from, f64::INFINITY).shift(0.5 * wide, -5.0);
+            panel.label(Label::new(place, short).middle().class("phase"));
+        }
+        from = to;
+    }
+}
+
+/// Every so many steps with all columns that are drawn.
+fn table(run: &PlotRun, lines: &[&Series]) -> PictureTable {
+    let plain = |unit: &'static str| if unit == "-" { "" } else { unit };
+    let mut columns = vec![("Time", "s")];
+    columns.extend(
+        lines
+            .iter()
+            .map(|line| (line.title, plain(unit(line.column)))),
+    );
+    let mut table = PictureTable::new(&columns);
+    let history = run.history;
+    let every = history.len().div_ceil(MAX_ROWS).max(1);
+    // Steps are hardly ever shorter than a hundredth of a second; times differ in any case.
+    let step_s = range(history.dt_s().iter().copied()).map_or(1.0, |(least, _)| {
+        if least >= 0.999_999 { 0.1 } else { 0.01 }
+    });
+    for (i, time) in history.time_s().iter().enumerate().step_by(every) {
+        let value = |name: &str| history.column(name).get(i).copied().unwrap_or(f64::NAN);
+        let cells = lines
+            .iter()
+            .map(|line| cell(value(line.column), resolution(line.column)));
+        table.push([cell(*time, step_s)].into_iter().chain(cells).collect());
+    }
+    table.note =
+        "A row is the step that ends at its time: temperatures at its end, all else its mean."
+            .to_owned();
+    if every > 1 {
+        let ordinal = match every {
+            2 => "second".to_owned(),
+            3 => "third".to_owned(),
+            n => format!("{n}th"),
+        };
+        table.note += &format!(
+            " Every {ordinal} step is listed; all of them are in trace_{}.csv; the lines are drawn from all steps.",
+            run.name
+        );
+    }
+    table
+}
+
+/// Step of the last digit in a table.
+fn resolution(name: &str) -> f64 {
+    match unit(name) {
+        "rpm" | "W" | "" => 1.0,
+        "-" => 0.001,
+        "bar" | "%" => 0.01,
+        _ => 0.1,
+    }
+}

@@ -1,0 +1,119 @@
+//! The quantities of a run over time.
+
+use super::PlotRun;
+use super::timeline::{Series, Strip, timeline};
+use crate::charts::engine::{CONTEXT, INK, PLAIN, STROKES, Stroke, stroke};
+use crate::charts::picture::Picture;
+
+/// Secondary and primary pressure.
+const PRESSURES: [Stroke; 2] = [stroke(INK, 1.6, &[]), stroke("#d55e00", 1.3, &[4.0, 2.0])];
+
+/// Clamp safety beyond which the line leaves its panel, as a multiple of the smallest one and within limits: at low torque it has no
+/// bound, and what matters is how near it comes to 1.
+const MAX_SAFETY: (f64, f64, f64) = (4.0, 4.0, 30.0);
+
+/// Vehicle speed, ratio or gear, engine speed and throttle over time.
+#[must_use]
+pub fn driveline(run: &PlotRun) -> Picture {
+    let ratio = if run.history.is_cvt() {
+        ("belt_ratio", "Belt ratio")
+    } else {
+        ("gear", "Gear")
+    };
+    let strips = [
+        ("speed_kmh", "Vehicle speed"),
+        ratio,
+        ("engine_speed_rpm", "Engine speed"),
+        ("throttle", "Throttle"),
+    ]
+    .map(|(column, title)| Strip::of(column, title, 140.0, PLAIN));
+    timeline(
+        run,
+        "Vehicle speed, ratio, engine speed and throttle",
+        "Four panels over time.",
+        &strips,
+    )
+}
+
+/// Pulley pressures, belt slip and clamp safety over time, with the vehicle speed for context.
+#[must_use]
+pub fn pressure(run: &PlotRun) -> Picture {
+    let pressures = [
+        ("secondary_pressure_bar", "Secondary pressure"),
+        ("primary_pressure_bar", "Primary pressure"),
+    ];
+    let lines = pressures
+        .into_iter()
+        .zip(PRESSURES)
+        .map(|((column, title), stroke)| Series {
+            column,
+            title,
+            stroke,
+        });
+    let (times, low, high) = MAX_SAFETY;
+    let least = run
+        .history
+        .column("clamp_safety")
+        .iter()
+        .copied()
+        .filter(|x| x.is_finite())
+        .fold(f64::INFINITY, f64::min);
+    let max = (times * least).clamp(low, high).round();
+    let strips = [
+        Strip {
+            lines: lines.collect(),
+            legend: true,
+            ..Strip::of("", "Pressure", 220.0, PLAIN)
+        },
+        Strip::of("slip_percent", "Belt slip", 130.0, PLAIN),
+        Strip {
+            max,
+            mark: Some((1.0, "Clamp safety 1: belt at its limit")),
+            ..Strip::of("clamp_safety", "Clamp safety", 130.0, PLAIN)
+        },
+        Strip {
+            title: "Speed",
+            ..Strip::of("speed_kmh", "Vehicle speed", 100.0, CONTEXT)
+        },
+    ];
+    let about = format!(
+        "Pulley pressures, belt slip, clamp safety and vehicle speed over time; clamp safety is cut at {max}, and a broken line marks 1."
+    );
+    timeline(
+        run,
+        "Pulley pressures, slip and clamp safety",
+        &about,
+        &strips,
+    )
+}
+
+/// Temperatures over time.
+#[must_use]
+pub fn temperatures(run: &PlotRun) -> Picture {
+    let names = [
+        ("coolant_degc", "Coolant"),
+        ("engine_oil_degc", "Engine oil"),
+        ("transmission_sump_degc", "Transmission sump"),
+        ("transmission_metal_degc", "Transmission metal"),
+        ("belt_spray_degc", "Belt spray"),
+        ("cooler_out_degc", "Cooler outlet"),
+    ];
+    let there = |column: &str| run.history.column(column).iter().any(|y| y.is_finite());
+    let lines: Vec<Series> = names
+        .into_iter()
+        .zip(STROKES)
+        .filter(|((column, _), _)| there(column))
+        .map(|((column, title), stroke)| Series {
+            column,
+            title,
+            stroke,
+        })
+        .collect();
+    let strip = Strip {
+        lines,
+        with: &[],
+        legend: true,
+        ..Strip::of("coolant_degc", "Temperature", 400.0, PLAIN)
+    };
+    timeline(run, "Temperatures", "Temperatures over time.", &[strip])
+}

@@ -1,0 +1,371 @@
+//! Comparison of two runs of one cycle: two fluids, two pumps, two offsets.
+
+mod figures;
+
+use figures::{difference, traces};
+
+use super::document::{Document, ReportTable, Section};
+use super::number::{Quantity, phase, words};
+use super::results::RunResults;
+use super::run::{Car, cars, change_table, conditions_line, cycle_title, hashes};
+use cvtcycle_config::{Place, Problem, Problems};
+use cvtcycle_output::Component;
+use cvtcycle_output::record::{CarRecord, Change, ValueRecord};
+use cvtcycle_output::summary::RunSummary;
+
+/// Relative difference of driven distances above which the report says that a fuel difference includes one of distance.
+const DISTANCE: f64 = 1e-4;
+
+/// A car in both runs.
+struct Pair<'a> {
+    a: Car<'a>,
+    b: Car<'a>,
+}
+
+/// The report of two runs, A and B.
+///
+/// # Errors
+/// Runs of different cycles; runs without a car in common.
+pub fn document(a: &RunResults, b: &RunResults) -> Result<Document, Problems> {
+    if a.summary.cycle != b.summary.cycle {
+        let message = format!(
+            "{} drives {}, {} drives {}: runs of different cycles cannot be compared",
+            a.path.display(),
+            a.summary.cycle,
+            b.path.display(),
+            b.summary.cycle
+        );
+        let place = Place::file(b.path.display().to_string());
+        let hint = "compare runs of one cycle".to_owned();
+        return Err(Problem::invalid(message)
+            .at(place)
+            .value(b.summary.cycle.clone())
+            .allowed(a.summary.cycle.clone())
+            .hint(hint)
+            .into());
+    }
+    let (cars_a, cars_b) = (cars(a), cars(b));
+    let pairs = pairs(&cars_a, &cars_b);
+    let names = names(a, b);
+    let mut sections = vec![
+        answer(a, b, &pairs, &names),
+        conditions(a, b, &pairs, &names),
+    ];
+    if let Some(subject) = pairs.first() {
+        sections.push(difference(subject, &names));
+        sections.push(traces(subject, &names));
+    }
+    sections.push(reproduce(a, b, &names));
+    let missing = |found: &RunResults, name: &String| {
+        found
+            .missing
+            .iter()
+            .map(|text| format!("{name}: {text}"))
+            .collect::<Vec<_>>()
+    };
+    let warnings = [missing(a, &names[0]), missing(b, &names[1])].concat();
+    Ok(Document {
+        title: format!("{} against {}", names[1], names[0]),
+        subtitle: format!(
+            "{}; {}",
+            cycle_title(&a.summary, a.record.as_ref()),
+            subtitle(a, b)
+        ),
+        sections,
+        warnings,
+        ..Document::default()
+    })
+}
+
+/// What the two are called: the names of their directories, with letters where these are the same.
+fn names(a: &RunResults, b: &RunResults) -> [String; 2] {
+    let name = |found: &RunResults| {
+        found.path.file_name().map_or_else(
+            || found.path.display().to_string(),
+            |n| n.to_string_lossy().into_owned(),
+        )
+    };
+    let (a, b) = (name(a), name(b));
+    if a == b {
+        [format!("A ({a})"), format!("B ({b})")]
+    } else {
+        [a, b]
+    }
+}
+
+fn subtitle(a: &RunResults, b: &RunResults) -> String {
+    let lines = [conditions_line(&a.summary), conditions_line(&b.summary)];
+    if lines[0] == lines[1] {
+        lines[0].clone()
+    } else {
+        format!("{} against {}", lines[1], lines[0])
+    }
+}
+
+/// Subjects with each other, baselines by their names.
+fn pairs<'a>(a: &[Car<'a>], b: &[Car<'a>]) -> Vec<Pair<'a>> {
+    let (Some((subject_a, rest_a)), Some((subject_b, rest_b))) = (a.split_first(), b.split_first())
+    else {
+        return Vec::new();
+    };
+    let mut pairs = vec![Pair {
+        a: *subject_a,
+        b: *subject_b,
+    }];
+    for a in rest_a {
+        pairs.extend(
+            rest_b
+                .iter()
+                .find(|b| b.run.vehicle == a.run.vehicle)
+                .map(|b| Pair { a: *a, b: *b }),
+        );
+    }
+    pairs
+}
+
+fn answer(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -> Section {
+    let mut section = Section::new("answer", "Answer");
+    // The fuel for a kJ of loss is known of one car under one set of conditions only.
+    let same_conditions = (a.summary.ambient_degc - b.summary.ambient_degc).abs() < 1e-9
+        && a.summary.start == b.summary.start;
+    let alike = same_conditions
+        && pairs
+            .first()
+            .is_some_and(|pair| pair.a.run.vehicle == pair.b.run.vehicle);
+    let fuel = |run: &RunSummary| run.headline_fuel().unwrap_or(f64::NAN);
+    if let Some(Pair { a, b }) = pairs.first() {
+        let change = fuel(b.run) - fuel(a.run);
+        let percent = 100.0 * change / fuel(a.run);
+        section.lead(format!(
+            "The subject of {} uses {}: {} or {} {} than that of {} ({}).",
+            names[1],
+            Quantity::Fuel.text(fuel(b.run)),
+            Quantity::FuelShare.text(change.abs()),
+            Quantity::Effect.text(percent.abs()),
+            if change < 0.0 { "less" } else { "more" },
+            names[0],
+            Quantity::Fuel.text(fuel(a.run))
+        ));
+        let (km_a, km_b) = (a.run.distance_km, b.run.distance_km);
+        if ((km_b - km_a) / km_a).abs() > DISTANCE {
+            section.alert(format!(
+                "The two drive different distances ({} and {}): a part of the difference is one of road.",
+                Quantity::Distance.text(km_a),
+                Quantity::Distance.text(km_b)
+            ));
+        }
+        section.text(largest(a, b, alike));
+    }
+    for (found, name) in [(a, &names[0]), (b, &names[1])] {
+        for run in found
+            .summary
+            .runs
+            .iter()
+            .filter(|run| !run.failed_checks.is_empty())
+        {
+            let list: Vec<String> = run.failed_checks.iter().map(|check| words(check)).collect();
+            section.alert(format!(
+                "A check failed in {name} for {}: {}.",
+                run.vehicle,
+                list.join(", ")
+            ));
+        }
+        for line in &found.missing {
+            section.alert(format!("{name}: {line}."));
+        }
+    }
+    section.table(fuel_table(pairs, names));
+    section
+}
+
+/// The components that moved most.
+fn largest(a: &Car, b: &Car, alike: bool) -> String {
+    let kj = |car: &Car, c: Component| car.run.loss_kj.get(c.name()).unwrap_or(0.0);
+    let mut moved: Vec<(Component, f64)> = Component::ALL
+        .iter()
+        .map(|c| (*c, kj(b, *c) - kj(a, *c)))
+        .collect();
+    moved.sort_by(|x, y| y.1.abs().total_cmp(&x.1.abs()));
+    let largest: Vec<String> = moved
+        .iter()
+        .take(3)
+        .filter(|(_, kj)| kj.abs() >= 0.05)
+        .map(|(component, kj)| {
+            format!(
+                "{} {}",
+                words(component.name()),
+                Quantity::Energy.signed(*kj)
+            )
+        })
+        .collect();
+    let transmission = b.run.transmission_loss_kj() - a.run.transmission_loss_kj();
+    let fuel = b.run.fuel_energy_kj - a.run.fuel_energy_kj;
+    let mut text = format!(
+        "Its transmission loses {} {}",
+        Quantity::Energy.text(transmission.abs()),
+        if transmission < 0.0 { "less" } else { "more" }
+    );
+    if !largest.is_empty() {
+        text += &format!(" ({})", largest.join(", "));
+    }
+    text += &format!(
+        "; its fuel's energy differs by {}",
+        Quantity::Energy.signed(fuel)
+    );
+    if alike && transmission.abs() > 0.05 {
+        text += &format!(
+            ", {} for each kJ of transmission loss",
+            Quantity::Energy.text(fuel / transmission)
+        );
+    }
+    text + "."
+}
+
+fn fuel_table(pairs: &[Pair], names: &[String; 2]) -> ReportTable {
+    let unit = Quantity::Fuel.unit();
+    let columns = [
+        (names[0].as_str(), unit),
+        (&names[1], unit),
+        ("difference", unit),
+        ("difference", "%"),
+    ];
+    let columns = columns.map(|(name, unit)| (name.to_owned(), unit.to_owned()));
+    let mut table = ReportTable::of_numbers("Fuel", "Car, phase", columns);
+    for Pair { a, b } in pairs {
+        let car = if a.run.vehicle == b.run.vehicle {
+            a.run.vehicle.clone()
+        } else {
+            format!("{} / {}", a.run.vehicle, b.run.vehicle)
+        };
+        let phases = a.run.phases.iter().zip(&b.run.phases);
+        for (x, y) in phases.filter(|_| a.run.phases.len() > 1) {
+            let name = format!("{car}, {}", phase(&x.name));
+            table.named(name, fuel_cells(x.fuel_l_per_100km, y.fuel_l_per_100km));
+        }
+        let whole = fuel_cells(a.run.fuel_l_per_100km, b.run.fuel_l_per_100km);
+        table.strong(format!("{car}, whole cycle"), whole);
+        let (x, y) = (
+            a.run.weighted_fuel_l_per_100km,
+            b.run.weighted_fuel_l_per_100km,
+        );
+        if x.is_some() {
+            table.strong(format!("{car}, weighted"), fuel_cells(x, y));
+        }
+    }
+    table
+}
+
+/// Fuel of A and of B, and the difference in both units.
+fn fuel_cells(a: Option<f64>, b: Option<f64>) -> [String; 4] {
+    let both = a.zip(b);
+    [
+        Quantity::Fuel.bare(a),
+        Quantity::Fuel.bare(b),
+        Quantity::FuelShare.bare_signed(both.map(|(a, b)| b - a)),
+        Quantity::Effect.bare_signed(both.map(|(a, b)| 100.0 * (b / a - 1.0))),
+    ]
+}
+
+/// Name of a condition and its value in a run.
+type Condition = (&'static str, fn(&RunResults) -> String);
+
+const CONDITIONS: [Condition; 10] = [
+    ("Cycle", |run| {
+        cycle_title(&run.summary, run.record.as_ref())
+    }),
+    ("Conditions", |run| conditions_line(&run.summary)),
+    ("Subject", |run| of_subject(run, |car| &car.title)),
+    ("Transmission oil", |run| {
+        of_subject(run, |car| &car.lubricant)
+    }),
+    ("Engine oil", |run| of_subject(run, |car| &car.engine_oil)),
+    ("Longest step", |run| {
+        format!("{} s", run.summary.settings.dt_s)
+    }),
+    ("Belt model", |run| run.summary.settings.formulation.clone()),
+    ("Set for the subject", |run| {
+        run.summary.settings.set.join(", ")
+    }),
+    ("Set for all cars", |run| {
+        run.summary.settings.set_all.join(", ")
+    }),
+    ("Program", |run| run.summary.program.clone()),
+];
+
+fn of_subject(run: &RunResults, of: fn(&RunSummary) -> &String) -> String {
+    run.summary
+        .runs
+        .first()
+        .map_or(String::new(), |car| of(car).clone())
+}
+
+fn conditions(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -> Section {
+    let mut section = Section::new("conditions", "Conditions, and what differs");
+    let mut table = ReportTable::of_words("Conditions", &["", &names[0], &names[1]]);
+    for (name, of) in CONDITIONS {
+        let (a, b) = (of(a), of(b));
+        if !(a.is_empty() && b.is_empty()) {
+            table.row([name.to_owned(), a, b]);
+        }
+    }
+    section.table(table);
+    let records = pairs
+        .first()
+        .and_then(|pair| pair.a.record.zip(pair.b.record));
+    let Some((a, b)) = records else {
+        return section;
+    };
+    let changes = changes(a, b);
+    if changes.is_empty() {
+        section.text("Every value of the two subjects is the same.");
+    } else {
+        let (count, all) = (changes.len(), a.values.len());
+        let caption = format!("Values of the subjects that differ ({count} of {all})");
+        let heads = [names[0].as_str(), &names[1]];
+        section.table(change_table(&caption, &changes, heads));
+    }
+    section
+}
+
+/// Values that differ between two cars: those of the first one, then those that only the second one has.
+fn changes(a: &CarRecord, b: &CarRecord) -> Vec<Change> {
+    let find = |car: &CarRecord, key: &str| {
+        let value = car.values.iter().find(|value| value.key == key);
+        value.map_or(String::new(), |value| value.value.clone())
+    };
+    let only_b = b
+        .values
+        .iter()
+        .filter(|v| a.values.iter().all(|other| other.key != v.key));
+    let change = |value: &ValueRecord| Change {
+        key: value.key.clone(),
+        unit: value.unit.clone(),
+        shipped: find(a, &value.key),
+        here: find(b, &value.key),
+    };
+    let changes = a
+        .values
+        .iter()
+        .map(change)
+        .filter(|change| change.here != change.shipped);
+    changes.chain(only_b.map(change)).collect()
+}
+
+fn reproduce(a: &RunResults, b: &RunResults, names: &[String; 2]) -> Section {
+    let mut section = Section::new("reproducibility", "Reproducibility");
+    for (found, name) in [(a, &names[0]), (b, &names[1])] {
+        let mut facts = vec![(format!("Program of {name}"), found.summary.program.clone())];
+        if let Some(record) = &found.record {
+            facts.push((format!("Command of {name}"), record.command.clone()));
+            facts.push((
+                format!("Cycle of {name}, SHA-256"),
+                record.cycle.sha256.clone(),
+            ));
+        }
+        section.facts(facts);
+        if let Some(record) = &found.record {
+            section.folded(hashes(record, &format!("Inputs of {name}")));
+        }
+    }
+    section
+}

@@ -1,0 +1,355 @@
+//! Reads a directory of results.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::consistency::{belongs, consistent};
+use super::problems::{problem, unreadable};
+use cvtcycle_config::bounded;
+use cvtcycle_config::{Place, Problem, Problems};
+use cvtcycle_output::history::History;
+use cvtcycle_output::record::{self, Record};
+use cvtcycle_output::summary::{SCHEMA, Summary};
+use cvtcycle_study::ambient::{WarmUp, warm_ups};
+use cvtcycle_study::manifest::TRACES;
+use cvtcycle_study::store::{self, is_study, read_trace_parquet};
+use cvtcycle_study::{Answer, StudyManifest, StudyTable, answer};
+
+/// The file of numbers of a run or a validation.
+const SUMMARY: &str = "summary.json";
+/// The manifest of a study.
+const STUDY: &str = "study.json";
+
+/// The results in a directory.
+#[derive(Debug)]
+pub enum ResultDir {
+    /// A run.
+    Run(Box<RunResults>),
+    /// A study.
+    Study(Box<StudyResults>),
+}
+
+/// A run, with the studies and the validation in its directory.
+#[derive(Debug)]
+pub struct RunResults {
+    /// The directory.
+    pub path: PathBuf,
+    /// Its numbers.
+    pub summary: Summary,
+    /// Its inputs; none of a directory of an early version.
+    pub record: Option<Record>,
+    /// The trace of each car.
+    pub histories: Vec<Option<History>>,
+    /// Studies of the run.
+    pub studies: Vec<StudyResults>,
+    /// A validation of its model.
+    pub validation: Option<Value>,
+    /// Sentences on what is missing.
+    pub missing: Vec<String>,
+}
+
+/// A study, finished or not.
+#[derive(Debug)]
+pub struct StudyResults {
+    /// The directory.
+    pub path: PathBuf,
+    /// Its plan, design and cars.
+    pub outline: StudyManifest,
+    /// Its manifest.
+    pub manifest: Value,
+    /// Its parts.
+    pub store: store::Study,
+    /// Its statistics.
+    pub answer: Answer,
+    /// Warm-up of each run, where it is a matrix with traces.
+    pub warm_ups: Vec<WarmUp>,
+}
+
+impl StudyResults {
+    /// Opens and answers.
+    ///
+    /// # Errors
+    /// A directory that is no study, a manifest or a part that cannot be read.
+    pub fn open(path: &Path) -> Result<Self, Problem> {
+        let store = store::Study::open(path)?;
+        let text = String::from_utf8_lossy(&store.plan()?).into_owned();
+        let file = path.join("plan.toml").display().to_string();
+        let outline = StudyManifest::read(store.manifest(), &file, &text).map_err(|words| {
+            problem(
+                &path.join(STUDY),
+                &format!("cannot read the study: {words}"),
+                "read it with the program that wrote it, or run it again",
+            )
+        })?;
+        Self::of(outline, store)
+    }
+
+    /// Answers from the parts that are there.
+    ///
+    /// # Errors
+    /// A part that cannot be read.
+    pub fn of(outline: StudyManifest, store: store::Study) -> Result<Self, Problem> {
+        let frame = StudyTable::new(&outline, &store)?;
+        let answer = answer(&frame)?;
+        let traced = store.layout().tables.iter().any(|table| table == TRACES);
+        let warm_ups = match &answer.matrix {
+            Some(matrix) if traced => warm_ups(&frame, matrix).unwrap_or_default(),
+            _ => Vec::new(),
+        };
+        let (path, manifest) = (store.path().to_path_buf(), store.manifest().clone());
+        Ok(StudyResults {
+            path,
+            outline,
+            manifest,
+            store,
+            answer,
+            warm_ups,
+        })
+    }
+
+    /// Its table.
+    ///
+    /// # Errors
+    /// A part that cannot be read.
+    pub fn frame(&self) -> Result<StudyTable<'_>, Problem> {
+        StudyTable::new(&self.outline, &self.store)
+    }
+
+    /// A sentence on the parts that are missing, if the study is not finished.
+    #[must_use]
+    pub fn unfinished(&self) -> Option<String> {
+        let (there, all) = self.parts();
+        let path = self.path.display();
+        (there < all)
+            .then(|| format!("the study in {path} is not finished: {there} of {all} parts"))
+    }
+
+    /// Parts that are there, and that there will be.
+    #[must_use]
+    pub fn parts(&self) -> (usize, usize) {
+        let status = self.store.status();
+        (status.present, status.expected)
+    }
+}
+
+/// Looks into a directory: a study, or a run with studies (`DIR/*/study.json`) and a validation (`DIR/*/summary.json` of `validate`)
+/// in subdirectories. `extra` names more such directories.
+///
+/// # Errors
+/// All problems: no such directory, nothing of this program in it, a newer schema, damaged files.
+pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
+    let entries = fs::read_dir(path).map_err(|error| unreadable(path, &error.into()))?;
+    if is_study(path) {
+        return StudyResults::open(path)
+            .map(|study| ResultDir::Study(Box::new(study)))
+            .map_err(Problems::from);
+    }
+    let file = path.join(SUMMARY);
+    if !file.exists() {
+        let hint =
+            "name the directory that was given to --out of `cvtcycle run` or `cvtcycle study`";
+        return Err(problem(
+            path,
+            &format!(
+                "{} holds no run and no study: it has neither {SUMMARY} nor {STUDY}",
+                path.display()
+            ),
+            hint,
+        )
+        .into());
+    }
+    let value = json(&file).map_err(|problem| vec![problem])?;
+    if is_validation(&value) {
+        let hint = "its report is validation.html in that directory; add it to the report of a run: `cvtcycle report RUN --with DIR`";
+        return Err(problem(
+            path,
+            "this is the answer of `cvtcycle validate`, not of a run",
+            hint,
+        )
+        .into());
+    }
+    let mut found = run(path, &file, value)?;
+    let mut subdirectories: Vec<PathBuf> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.is_dir())
+        .collect();
+    subdirectories.sort();
+    let mut problems = Problems::new();
+    let mut seen = std::collections::BTreeSet::new();
+    for (dir, required) in extra
+        .iter()
+        .map(|dir| (dir, true))
+        .chain(subdirectories.iter().map(|dir| (dir, false)))
+    {
+        // One study may be named twice, and lie in the directory of the run as well.
+        if seen.insert(dir.canonicalize().unwrap_or_else(|_| dir.clone())) {
+            problems.extend(add(&mut found, dir, required).err());
+        }
+    }
+    if problems.is_empty() {
+        Ok(ResultDir::Run(Box::new(found)))
+    } else {
+        Err(problems)
+    }
+}
+
+/// Adds the study or the validation of a directory; one that is not required may hold something else.
+fn add(found: &mut RunResults, dir: &Path, required: bool) -> Result<(), Problem> {
+    if is_study(dir) {
+        found.studies.push(StudyResults::open(dir)?);
+        return Ok(());
+    }
+    let file = dir.join(SUMMARY);
+    let value = if file.exists() {
+        json(&file).ok()
+    } else {
+        None
+    };
+    match value.filter(is_validation) {
+        Some(value) => found.validation = Some(value),
+        None if required => {
+            let hint = "name the directory that was given to --out of `cvtcycle study` or `cvtcycle validate`";
+            return Err(problem(
+                dir,
+                &format!("{} holds neither a study nor a validation", dir.display()),
+                hint,
+            ));
+        }
+        None => {}
+    }
+    Ok(())
+}
+
+fn is_validation(value: &Value) -> bool {
+    value["counts"].is_object() && value["rows"].is_array()
+}
+
+fn run(path: &Path, file: &Path, value: Value) -> Result<RunResults, Problems> {
+    let summary: Summary = typed(file, value, SCHEMA).map_err(|problem| vec![problem])?;
+    let mut missing = Vec::new();
+    let record_file = path.join(record::FILE);
+    let record = if record_file.exists() {
+        let value = json(&record_file).map_err(|problem| vec![problem])?;
+        Some(
+            typed::<Record>(&record_file, value, record::SCHEMA)
+                .map_err(|problem| vec![problem])?,
+        )
+    } else {
+        missing.push(format!(
+            "{} is not there: hashes, changed values, the fuel map and what matters are left out",
+            record::FILE
+        ));
+        None
+    };
+    if summary.runs.is_empty() {
+        return Err(problem(file, "the summary names no car", "run it again").into());
+    }
+    let mut problems: Problems = summary
+        .runs
+        .iter()
+        .filter_map(|run| consistent(file, run).err())
+        .collect();
+    let mut histories = Vec::new();
+    for run in &summary.runs {
+        match history(path, &run.vehicle) {
+            Ok(Some(history)) => {
+                problems.extend(belongs(path, run, &history).err());
+                histories.push(Some(history));
+            }
+            Ok(None) => {
+                missing.push(format!(
+                    "the trace of {} is not there (trace_{}.csv): its figures over time are left out",
+                    run.vehicle, run.vehicle
+                ));
+                histories.push(None);
+            }
+            Err(found) => problems.extend(found),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    Ok(RunResults {
+        path: path.to_path_buf(),
+        summary,
+        record,
+        histories,
+        studies: Vec::new(),
+        validation: None,
+        missing,
+    })
+}
+
+/// The trace of a car, from whichever file there is.
+fn history(path: &Path, vehicle: &str) -> Result<Option<History>, Problems> {
+    // A name is the middle of a file name and must not lead anywhere else.
+    if vehicle.is_empty() || vehicle.contains(['/', '\\', ':']) {
+        let message =
+            format!("`{vehicle}` cannot be the name of a vehicle: no file can be named after it");
+        return Err(problem(&path.join(SUMMARY), &message, "run it again").into());
+    }
+    let csv = path.join(format!("trace_{vehicle}.csv"));
+    if csv.exists() {
+        let bytes =
+            bounded::read_file(&csv, bounded::TRACE).map_err(|error| unreadable(&csv, &error))?;
+        return History::read_csv(&csv.display().to_string(), &bytes).map(Some);
+    }
+    let parquet = path.join(format!("trace_{vehicle}.parquet"));
+    if parquet.exists() {
+        read_trace_parquet(&parquet).map(Some)
+    } else {
+        Ok(None)
+    }
+}
+
+fn json(path: &Path) -> Result<Value, Problem> {
+    let bytes =
+        bounded::read_file(path, bounded::RECORD).map_err(|error| unreadable(path, &error))?;
+    serde_json::from_slice(&bytes).map_err(|error| {
+        let place = Place {
+            file: path.display().to_string(),
+            line: error.line(),
+            column: error.column(),
+            ..Place::default()
+        };
+        Problem::invalid(format!("this is no whole JSON: {error}"))
+            .at(place)
+            .hint("the file is damaged; run it again")
+    })
+}
+
+/// Parses JSON of a known schema.
+fn typed<T: serde::de::DeserializeOwned>(
+    path: &Path,
+    value: Value,
+    known: u32,
+) -> Result<T, Problem> {
+    match value["schema"].as_u64() {
+        Some(schema) if schema > u64::from(known) => {
+            let program = value["program"].as_str().unwrap_or("a newer version");
+            let message = format!(
+                "it has schema {schema}, written by {program}; this program reads schema {known}"
+            );
+            Err(problem(
+                path,
+                &message,
+                "make the report with the program that wrote it",
+            ))
+        }
+        Some(_) => serde_json::from_value(value).map_err(|error| {
+            problem(
+                path,
+                &format!("the file is not as this program writes it: {error}"),
+                "it is damaged; run it again",
+            )
+        }),
+        None => Err(problem(
+            path,
+            "the file has no `schema`: it was not written by this program",
+            "name a directory of `cvtcycle run`",
+        )),
+    }
+}

@@ -1,0 +1,270 @@
+//! Pictures of calibrations.
+
+use super::svg_checks::{check, numbers};
+use cvtcycle::report::charts::calibration::{
+    calibration_pictures, correlation_plot, parameters_plot, residuals_plot, scatter_plot,
+    trace_plots,
+};
+use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
+
+#[path = "../../fixtures/outcome.rs"]
+mod outcomes;
+use outcomes::{every, noise};
+
+fn ordinary(name: &str) -> Outcome {
+    every()
+        .into_iter()
+        .find(|(own, _)| *own == name)
+        .map(|(_, outcome)| outcome)
+        .expect("a made-up outcome")
+}
+
+#[test]
+fn every_picture_is_tidy() {
+    for (name, outcome) in every() {
+        for (plot, picture) in calibration_pictures(&outcome) {
+            println!("{name}: {plot}"); // shown where a check fails
+            check(&picture);
+            assert!(
+                picture.svg.len() < 400_000,
+                "{name}: {plot}: {} bytes",
+                picture.svg.len()
+            );
+        }
+    }
+}
+
+#[test]
+fn a_picture_is_there_where_it_has_data() {
+    let names = |name: &str| {
+        calibration_pictures(&ordinary(name))
+            .into_iter()
+            .map(|(plot, _)| plot)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        names("ordinary"),
+        [
+            "measured_computed",
+            "residuals",
+            "parameters",
+            "correlation"
+        ]
+    );
+    let traces = [
+        "trace_warm_up_transmission_sump_degc",
+        "trace_warm_up_engine_coolant_degc",
+    ];
+    assert_eq!(names("mixed")[4..], traces);
+    assert_eq!(
+        names("one"),
+        ["measured_computed", "residuals", "parameters"]
+    );
+    assert!(names("nothing").is_empty());
+}
+
+/// A cell against the number of the outcome, to half of its last digit.
+fn same(cell: &str, wanted: Option<f64>) {
+    match wanted {
+        None => assert_eq!(cell, ""),
+        Some(x) => {
+            let decimals = cell.split_once('.').map_or(0, |(_, after)| after.len());
+            let step = 0.500_001 * 10f64.powi(-i32::try_from(decimals).unwrap_or(0));
+            assert!((numbers(cell) - x).abs() <= step, "{cell} for {x}");
+        }
+    }
+}
+
+#[test]
+fn tables_have_the_numbers_of_the_outcome() {
+    let outcome = ordinary("ordinary");
+    let (scatter, residuals) = (scatter_plot(&outcome).table, residuals_plot(&outcome).table);
+    assert_eq!((scatter.rows.len(), residuals.rows.len()), (24, 24));
+    for ((r, row), of_sd) in outcome
+        .residuals
+        .iter()
+        .zip(&scatter.rows)
+        .zip(&residuals.rows)
+    {
+        assert_eq!((&row[0], &of_sd[0]), (&r.group, &r.group));
+        for (cell, x) in row[3..]
+            .iter()
+            .zip([r.low, r.high, Some(r.sd), r.before, Some(r.after)])
+        {
+            same(cell, x);
+        }
+        for (cell, x) in of_sd[3..]
+            .iter()
+            .zip([r.before_sd, Some(r.after_sd), r.left_out_sd])
+        {
+            same(cell, x);
+        }
+    }
+    for (p, row) in outcome
+        .parameters
+        .iter()
+        .zip(&parameters_plot(&outcome).table.rows)
+    {
+        let prior = [
+            p.prior.map(|x| x[0]),
+            p.prior.map(|x| x[1]),
+            p.prior_share.map(|x| 100.0 * x),
+        ];
+        let own = [
+            Some(p.file_value),
+            Some(p.value),
+            p.standard_error,
+            Some(p.low),
+            Some(p.high),
+        ];
+        for (cell, x) in row[2..].iter().zip(own.into_iter().chain(prior)) {
+            same(cell, x);
+        }
+    }
+    let pairs = correlation_plot(&outcome).table.rows;
+    assert_eq!(pairs.len(), 10);
+    for (row, (i, j)) in pairs
+        .iter()
+        .zip((0..5).flat_map(|i| (0..i).map(move |j| (i, j))))
+    {
+        assert_eq!(
+            (&row[0], &row[1]),
+            (&outcome.parameters[i].name, &outcome.parameters[j].name)
+        );
+        same(&row[2], outcome.correlation[i][j]);
+    }
+}
+
+#[test]
+fn a_trace_has_a_row_for_each_value_up_to_600_and_draws_its_deviation() {
+    let outcome = ordinary("mixed");
+    let (name, picture) = trace_plots(&outcome).remove(0);
+    assert_eq!(
+        (name.as_str(), picture.table.rows.len()),
+        ("trace_warm_up_transmission_sump_degc", 590)
+    );
+    let own: Vec<&Residual> = outcome
+        .residuals
+        .iter()
+        .filter(|r| r.column == "transmission_sump_degc")
+        .collect();
+    for (r, row) in own.iter().zip(&picture.table.rows) {
+        for (cell, x) in row.iter().zip([
+            r.time_s,
+            r.low,
+            Some(r.sd),
+            r.before,
+            Some(r.after),
+            r.left_out,
+        ]) {
+            same(cell, x);
+        }
+    }
+    assert!(picture.svg.contains("class=\"band\"") && !picture.svg.contains("Predicted"));
+    assert_eq!(picture.svg.matches("class=\"series\"").count(), 3);
+}
+
+#[test]
+fn marks_stand_where_the_numbers_are() {
+    // A fitted residual of zero stands in the middle of the grey band, for the band is as wide on both sides.
+    let mut outcome = ordinary("one");
+    (
+        outcome.residuals[0].after_sd,
+        outcome.residuals[0].before_sd,
+        outcome.residuals[0].left_out_sd,
+    ) = (0.0, Some(40.0), None);
+    let picture = residuals_plot(&outcome);
+    let doc = roxmltree::Document::parse(&picture.svg).expect("well-formed");
+    let number = |node: &roxmltree::Node, name: &str| {
+        node.attribute(name)
+            .and_then(|x| x.parse::<f64>().ok())
+            .expect("a number")
+    };
+    let band = doc
+        .descendants()
+        .find(|node| node.attribute("class") == Some("band"))
+        .expect("a band");
+    let mark = doc
+        .descendants()
+        .find(|n| n.has_tag_name("circle") && n.has_attribute("data-row"))
+        .expect("a mark");
+    let centre = number(&band, "x") + 0.5 * number(&band, "width");
+    assert!((number(&mark, "cx") - centre).abs() <= 2.0);
+    // 40 standard deviations are beyond three times the others, and told as such.
+    assert!(
+        picture.table.note.contains("1 residuals"),
+        "{}",
+        picture.table.note
+    );
+    // With what is computed = measured the mark stands on the line of agreement, which goes from corner to corner.
+    outcome.residuals[0].low = Some(outcome.residuals[0].after);
+    outcome.residuals[0].high = outcome.residuals[0].low;
+    let picture = scatter_plot(&outcome);
+    let doc = roxmltree::Document::parse(&picture.svg).expect("well-formed");
+    let plot = doc
+        .descendants()
+        .find(|node| node.attribute("class") == Some("plot"))
+        .expect("a frame");
+    let mark = doc
+        .descendants()
+        .rfind(|n| n.has_tag_name("circle") && n.has_attribute("data-row"))
+        .expect("a mark");
+    let across = (number(&mark, "cx") - number(&plot, "x")) / number(&plot, "width");
+    let up = 1.0 - (number(&mark, "cy") - number(&plot, "y")) / number(&plot, "height");
+    assert!((across - up).abs() < 0.005, "{across} {up}");
+}
+
+#[test]
+fn long_data_are_thinned_and_say_so() {
+    const MAX_SHOWN: usize = 600;
+    let outcome = ordinary("mixed");
+    let table = scatter_plot(&outcome).table;
+    let shown = table.rows.len();
+    assert!(shown <= MAX_SHOWN + 10 && shown > MAX_SHOWN / 2, "{shown}");
+    let single = outcome.residuals.iter().filter(|r| r.time_s.is_none());
+    let single: Vec<&str> = single.map(|r| r.label.as_str()).collect();
+    let listed = table.rows.iter().filter(|row| {
+        single
+            .iter()
+            .any(|label| row[1] == *label || row[1].starts_with(&format!("{label}: ")))
+    });
+    assert_eq!(listed.count(), 40, "single numbers are all shown");
+    assert!(table.note.contains("of 1220 observations"));
+    let all = scatter_plot(&ordinary("hundred")).table;
+    assert_eq!(all.rows.len(), ordinary("hundred").residuals.len());
+    assert!(!all.note.contains("observations are shown"));
+    assert!(noise(3).abs() <= 1.0);
+}
+
+#[test]
+fn unknown_correlations_are_crossed_out_and_strong_ones_written() {
+    let outcome = ordinary("ordinary");
+    let picture = correlation_plot(&outcome);
+    let unknown = outcome
+        .correlation
+        .iter()
+        .flatten()
+        .filter(|r| r.is_none())
+        .count();
+    assert_eq!(
+        picture.svg.matches("stroke=\"#8c8c8c\"").count(),
+        unknown - 1,
+        "all but the diagonal"
+    );
+    let strong = (0..5)
+        .flat_map(|i| (0..5).map(move |j| (i, j)))
+        .filter(|(i, j)| i != j);
+    let strong = strong
+        .filter(|(i, j)| outcome.correlation[*i][*j].is_some_and(|r| r.abs() >= 0.5))
+        .count();
+    let doc = roxmltree::Document::parse(&picture.svg).expect("well-formed");
+    let written = doc
+        .descendants()
+        .filter(|n| n.has_tag_name("text"))
+        .filter_map(|n| n.text());
+    let written = written
+        .filter(|text| text.trim_start_matches('\u{2212}').starts_with('.'))
+        .count();
+    assert!(strong > 0);
+    assert_eq!(written, strong);
+}

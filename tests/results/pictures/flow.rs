@@ -1,0 +1,148 @@
+//! Energy flows.
+
+use super::svg_checks::{check, numbers};
+use cvtcycle::output::Component;
+use cvtcycle::report::charts::Picture;
+use cvtcycle::report::charts::figures::{CarEnergy, energy_flow, transmission_flow};
+
+fn car() -> CarEnergy {
+    let losses = [
+        (Component::LaunchClutch, 225.0),
+        (Component::Pump, 556.0),
+        (Component::BeltFilm, 0.02),
+        (Component::FinalDrive, 507.0),
+    ];
+    let mut car = CarEnergy {
+        subject: "A < B & \"C\"".to_owned(),
+        exhaust_kj: 6030.0,
+        engine_heat_kj: 15784.0,
+        accessories_kj: 562.0,
+        kinetic_kj: -0.8,
+        losses_kj: losses.to_vec(),
+        brake_kj: 203.0,
+        wheels_kj: 2301.0,
+        ..CarEnergy::default()
+    };
+    car.fuel_kj = 6030.0 + 15784.0 + 562.0 - 0.8 + car.flywheel_kj();
+    car
+}
+
+/// Energy of the rows of one way, kJ.
+fn sum(picture: &Picture, way: &str) -> f64 {
+    picture
+        .table
+        .rows
+        .iter()
+        .filter(|row| row[1] == way)
+        .map(|row| numbers(&row[2]))
+        .sum()
+}
+
+/// Heights of the ribbons at both ends, canvas units, by row of the table.
+fn widths(svg: &str) -> Vec<(usize, f64, f64)> {
+    let doc = roxmltree::Document::parse(svg).expect("well-formed");
+    let ribbons = doc
+        .descendants()
+        .filter(|n| n.attribute("class") == Some("ribbon"));
+    ribbons
+        .map(|node| {
+            let d: Vec<f64> = node
+                .attribute("d")
+                .unwrap_or("")
+                .split(|c: char| !c.is_ascii_digit())
+                .filter_map(|n| n.parse().ok())
+                .collect();
+            let row = node
+                .attribute("data-row")
+                .and_then(|row| row.parse().ok())
+                .expect("a row");
+            // M x0 a C m a m c x1 c V d C m d m b x0 b
+            (row, d[14] - d[1], d[8] - d[7])
+        })
+        .collect()
+}
+
+#[test]
+fn what_enters_leaves_and_widths_are_in_proportion() {
+    for picture in [energy_flow(&car()), transmission_flow(&car())] {
+        check(&picture);
+        let (entered, left) = (sum(&picture, "enters"), sum(&picture, "leaves"));
+        assert!((entered - left).abs() < 0.06, "{entered} {left}");
+        let widths = widths(&picture.svg);
+        assert_eq!(
+            widths.len(),
+            picture
+                .table
+                .rows
+                .iter()
+                .filter(|row| row[1] != "arrives")
+                .count()
+                - 1,
+            "a ribbon for each but the source"
+        );
+        for (row, start, end) in widths {
+            let wanted = 4.0 * 300.0 * numbers(&picture.table.rows[row][2]) / entered;
+            assert!(
+                (start - wanted).abs() <= 1.1 && (end - wanted).abs() <= 1.1,
+                "{:?}: {start} {end} {wanted}",
+                picture.table.rows[row]
+            );
+        }
+    }
+}
+
+#[test]
+fn every_flow_has_its_label_however_thin() {
+    let picture = transmission_flow(&car());
+    for word in [
+        "Belt film",
+        "0.02 kJ",
+        "&lt; 0.1 %",
+        "Rolling and air",
+        "A &lt; B &amp; &quot;C&quot;",
+    ] {
+        assert!(picture.svg.contains(word), "{word}");
+    }
+    assert!(
+        energy_flow(&car()).svg.contains("0.80 kJ"),
+        "what flows in is labelled too"
+    );
+}
+
+#[test]
+fn odd_energies_are_still_pictures() {
+    let nothing = CarEnergy::default();
+    let driven = CarEnergy {
+        wheels_kj: -900.0,
+        losses_kj: vec![(Component::Churning, 100.0)],
+        brake_kj: 500.0,
+        ..CarEnergy::default()
+    };
+    let broken = CarEnergy {
+        fuel_kj: f64::NAN,
+        exhaust_kj: f64::INFINITY,
+        ..car()
+    };
+    let huge = CarEnergy {
+        fuel_kj: 1e12,
+        exhaust_kj: 1e12,
+        subject: "n".repeat(400),
+        ..CarEnergy::default()
+    };
+    for car in [nothing, driven, broken, huge] {
+        for picture in [energy_flow(&car), transmission_flow(&car)] {
+            check(&picture);
+        }
+    }
+}
+
+#[test]
+fn energy_that_is_missing_is_shown() {
+    let mut car = car();
+    car.fuel_kj += 100.0;
+    let picture = energy_flow(&car);
+    assert!(
+        picture.svg.contains("Not accounted for")
+            && (sum(&picture, "enters") - sum(&picture, "leaves")).abs() < 0.06
+    );
+}

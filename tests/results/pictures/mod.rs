@@ -1,0 +1,20 @@
+//! Every picture, ordinary and not: sound, readable and true to its numbers.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::too_many_lines,
+    reason = "helpers and tables of tests"
+)]
+
+mod calibration;
+mod difference;
+mod flow;
+mod lines;
+mod loss_bars;
+mod overlay;
+mod phase_bars;
+mod runs;
+mod svg_checks;
+mod temperature_bars;
+mod variogram;
