@@ -155,9 +155,9 @@ fn thermal_advance(bencher: Bencher) {
     bencher.bench_local(|| car.network.advance(black_box(&heat), black_box(&input)));
 }
 
-struct Nobody;
+struct NullRecorder;
 
-impl Recorder for Nobody {
+impl Recorder for NullRecorder {
     fn record(&mut self, row: &Row, _: &Terms) {
         black_box(row.fuel_kg_s);
     }
@@ -171,7 +171,7 @@ fn step_of_a_cycle(bencher: Bencher, name: &str) {
     let trace = cycle.trace_for(car.transmission.is_cvt());
     bencher
         .counter(ItemsCount::new(trace.step_count(1.0)))
-        .bench_local(|| simulate(&car, trace, 1.0, State::at(COLD_K), &mut Nobody));
+        .bench_local(|| simulate(&car, trace, 1.0, State::at(COLD_K), &mut NullRecorder));
 }
 
 fn whole(bencher: Bencher, name: &str, cycle_name: &str, keep_rows: bool) {

@@ -66,7 +66,7 @@ fn words(status: &str) -> Vec<&'static str> {
 }
 
 #[test]
-fn every_label_of_the_code_stands_once_as_an_equation_and_none_else() {
+fn every_label_of_the_code_is_one_equation_of_the_book() {
     let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();
     let mut wrong = Vec::new();
     for (name, text) in pages() {
@@ -92,7 +92,7 @@ fn every_label_of_the_code_stands_once_as_an_equation_and_none_else() {
             )),
             Some([_]) => {}
             Some(places) => wrong.push(format!(
-                "{} stands more than once: {}",
+                "{} is there more than once: {}",
                 e.label,
                 places.join(", ")
             )),
@@ -276,7 +276,7 @@ fn every_mechanism_has_its_parts() {
 }
 
 #[test]
-fn every_value_of_the_car_stands_on_a_page() {
+fn every_value_of_the_car_is_on_a_page() {
     let mut shown: BTreeSet<String> = BTreeSet::new();
     for page in &PAGES {
         let text = text_of(&format!("{}.md", page.stem));

@@ -131,7 +131,7 @@ fn every_mistake_is_found_at_its_line_and_nothing_else() {
     let mut files = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        // The folders beside them belong to diagnostics_corpus.rs.
+        // The folders belong to diagnostics_corpus.rs.
         if path.extension().is_none_or(|ending| ending != "toml") {
             continue;
         }

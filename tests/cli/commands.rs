@@ -196,7 +196,7 @@ fn val_ftp75_is_weighted_by_bag() {
 }
 
 #[test]
-fn the_table_says_what_a_person_asks_first() {
+fn the_table_has_the_fuel_of_every_car() {
     let text = stdout(&run(&["run", "--ambient", "-10"]));
     for part in [
         "rover_216_cvt",
@@ -221,7 +221,7 @@ fn the_table_says_what_a_person_asks_first() {
 
 #[test]
 fn all_bad_inputs_are_reported_at_once() {
-    let told = refused(&[
+    let message = refused(&[
         "run",
         "--cycle",
         "ece15_euds",
@@ -258,13 +258,13 @@ fn all_bad_inputs_are_reported_at_once() {
         "9 problems in",
     ];
     for part in parts {
-        assert!(told.contains(part), "{part} is not in\n{told}");
+        assert!(message.contains(part), "{part} is not in\n{message}");
     }
 }
 
 #[test]
 fn unknown_and_impossible_overrides_name_the_key() {
-    let told = refused(&[
+    let message = refused(&[
         "run",
         "--set",
         "transmission.cvt.belt.band_ofset_mm=2",
@@ -272,23 +272,24 @@ fn unknown_and_impossible_overrides_name_the_key() {
         "road_load.mass_kg=nan",
     ]);
     assert!(
-        told.contains("transmission.cvt.belt.band_offset_mm") && told.contains("road_load.mass_kg"),
-        "{told}"
+        message.contains("transmission.cvt.belt.band_offset_mm")
+            && message.contains("road_load.mass_kg"),
+        "{message}"
     );
-    let told = refused(&[
+    let message = refused(&[
         "run",
         "--set-all",
         "transmission.cvt.pump.displacement_cc_rev=8",
     ]);
     assert!(
-        told.contains("--set-all transmission.cvt") && told.contains("rover_216_5mt"),
-        "{told}"
+        message.contains("--set-all transmission.cvt") && message.contains("rover_216_5mt"),
+        "{message}"
     );
     for bad in ["nan", "inf", "-273", "20,5", "", "20C"] {
-        let told = refused(&["run", "--ambient", bad]);
+        let message = refused(&["run", "--ambient", bad]);
         assert!(
-            told.contains("--ambient") && told.contains("-40 to 60"),
-            "{told}"
+            message.contains("--ambient") && message.contains("-40 to 60"),
+            "{message}"
         );
     }
     assert!(
@@ -424,11 +425,11 @@ fn files_appear_together_and_are_not_overwritten() {
 fn nothing_is_left_after_a_failure() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("file"), "").unwrap();
-    let told = stderr(&run_in(dir.path(), &["run", "--out", "file/below"]));
-    assert!(told.contains("--out"), "{told}");
+    let message = stderr(&run_in(dir.path(), &["run", "--out", "file/below"]));
+    assert!(message.contains("--out"), "{message}");
     let output = run_in(
         dir.path(),
-        &["run", "--out", "new/run", "--vehicle", "nobody"],
+        &["run", "--out", "new/run", "--vehicle", "no_such_car"],
     );
     assert_eq!(output.status.code(), Some(2));
     let left: Vec<_> = fs::read_dir(dir.path())
@@ -440,7 +441,7 @@ fn nothing_is_left_after_a_failure() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_told() {
+fn a_full_disk_is_reported() {
     for words in [
         &["run"][..],
         &["list", "cycles"],
@@ -694,7 +695,7 @@ fn check_reports_every_file() {
         (bad.status.code(), stdout(&bad).as_str()),
         (Some(2), "ok  car.toml (vehicle)\n")
     );
-    let told = stderr(&bad);
+    let message = stderr(&bad);
     let parts = [
         "semicolons.csv:1",
         "back.csv:4",
@@ -707,7 +708,7 @@ fn check_reports_every_file() {
         "name a file in that directory",
     ];
     for part in parts {
-        assert!(told.contains(part), "{part} is not in\n{told}");
+        assert!(message.contains(part), "{part} is not in\n{message}");
     }
     let listed = run_in(dir.path(), &["check", "--json", "car.toml", "back.csv"]);
     let listed: Value = serde_json::from_slice(&listed.stdout).unwrap();
@@ -767,15 +768,15 @@ fn check_knows_the_plan_of_a_study() {
         text.replace("belt.band_offset_mm", "belt.band_ofset_mm"),
     )
     .unwrap();
-    for (file, told) in [
+    for (file, message) in [
         ("head.toml", "did you mean `study`?"),
         ("key.toml", "did you mean"),
     ] {
         let bad = run_in(dir.path(), &["check", file]);
         assert_eq!((bad.status.code(), stdout(&bad).as_str()), (Some(2), ""));
         assert!(
-            stderr(&bad).contains(told),
-            "{told} is not in\n{}",
+            stderr(&bad).contains(message),
+            "{message} is not in\n{}",
             stderr(&bad)
         );
     }
@@ -914,7 +915,7 @@ fn the_examples_of_the_help_work() {
 }
 
 #[test]
-fn the_files_that_a_vehicle_names_are_looked_for_beside_it() {
+fn the_files_that_a_vehicle_names_are_read_from_its_folder() {
     let dir = tempfile::tempdir().unwrap();
     let embedded = |name: &str| {
         fs::read_to_string(
@@ -935,7 +936,7 @@ fn the_files_that_a_vehicle_names_are_looked_for_beside_it() {
     .unwrap();
     fs::write(
         cars.join("bad.toml"),
-        car.replace("rover_216_5mt, mondeo_20_5mt", "nobody"),
+        car.replace("rover_216_5mt, mondeo_20_5mt", "no_such_car"),
     )
     .unwrap();
     let good = run_in(
@@ -958,7 +959,7 @@ fn the_files_that_a_vehicle_names_are_looked_for_beside_it() {
         let bad = run_in(dir.path(), words);
         assert_eq!(bad.status.code(), Some(2));
         assert!(
-            stderr(&bad).contains("cars/bad.toml: there is no vehicle named `nobody`"),
+            stderr(&bad).contains("cars/bad.toml: there is no vehicle named `no_such_car`"),
             "{}",
             stderr(&bad)
         );

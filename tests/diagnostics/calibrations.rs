@@ -4,9 +4,9 @@ use cvtcycle::config::Problems;
 use cvtcycle::config::setup::{self, Options};
 use cvtcycle::study::fit;
 
-use super::kinds::{made_file, told_by};
+use super::kinds::{made_file, rendered};
 
-/// A data file, named by a sound plan that lies beside it.
+/// A data file, named by a sound plan in the same folder.
 pub fn data(kind: &str, case: &str) -> Option<Problems> {
     let (folder, name) = case.rsplit_once('/').unwrap();
     let way = kind.trim_start_matches("calibration_");
@@ -32,22 +32,22 @@ pub fn ran(case: &str) -> String {
         .arg(folder.path())
         .output()
         .unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
+    let shown = String::from_utf8(output.stderr).unwrap();
     if case.contains("no_answer") {
-        assert_eq!(output.status.code(), Some(2), "{case}: {told}");
+        assert_eq!(output.status.code(), Some(2), "{case}: {shown}");
         assert_eq!(
             std::fs::read_dir(folder.path()).unwrap().count(),
             0,
             "{case}"
         );
-        return told;
+        return shown;
     }
-    assert_eq!(output.status.code(), Some(1), "{case}: {told}");
+    assert_eq!(output.status.code(), Some(1), "{case}: {shown}");
     let text = std::fs::read_to_string(folder.path().join("calibration.json")).unwrap();
     let outcome: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(
         outcome["converged"],
-        !told.contains("did not converge"),
+        !shown.contains("did not converge"),
         "{case}"
     );
     let best = outcome["parameters"][0]["value"].as_f64().unwrap();
@@ -70,10 +70,10 @@ pub fn ran(case: &str) -> String {
         outcome["cost_after"].as_f64().unwrap() <= outcome["cost_before"].as_f64().unwrap(),
         "{case}"
     );
-    told
+    shown
 }
 
-/// Files that are no text, or too large to be kept: name and what is told.
+/// Files that are no text, or too large to be kept: name and what is shown.
 pub fn made(kind: &str) -> Vec<(String, String)> {
     if kind == "calibration" {
         return plans();
@@ -85,7 +85,7 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
         ("latin1.csv", b"time_s,comment\n1,\xe9\n"),
         ("old_line_ends.csv", b"time_s,total_nm\r1,2\r"),
     ];
-    let open = |path: &str, _: &[u8]| told_by(data(kind, path));
+    let open = |path: &str, _: &[u8]| rendered(data(kind, path));
     let mut all: Vec<(String, String)> = files
         .into_iter()
         .map(|(name, bytes)| made_file(name, bytes, open))
@@ -109,7 +109,7 @@ fn plans() -> Vec<(String, String)> {
     let named = |name: &str, word: &str| {
         (
             format!("made_{name}"),
-            told_by(fit::open(word, "PLAN").err()),
+            rendered(fit::open(word, "PLAN").err()),
         )
     };
     let mut all = vec![
@@ -125,7 +125,7 @@ fn plans() -> Vec<(String, String)> {
         ("binary.toml", b"PK\x03\x04\0\x9f"),
         ("latin1.toml", b"# \xe9\n"),
     ];
-    let open = |path: &str, _: &[u8]| told_by(fit::open(path, "PLAN").err());
+    let open = |path: &str, _: &[u8]| rendered(fit::open(path, "PLAN").err());
     all.extend(
         binary
             .into_iter()

@@ -24,7 +24,7 @@ struct Plain {
     tables: BTreeMap<String, Vec<(String, String)>>,
 }
 
-/// A text and where a key's line stands in it.
+/// A text and the place of a key's line in it.
 struct Text {
     text: String,
     line: usize,
@@ -121,7 +121,7 @@ impl Plain {
         .unwrap_or_default()
     }
 
-    /// Every key that reading it asks for.
+    /// Every key that its reader reads.
     fn keys(&self, path: &str) -> Vec<KeyInfo> {
         let text = self.text("", &[]).text;
         assert!(
@@ -266,7 +266,7 @@ fn bad_values(info: &KeyInfo) -> Vec<(&'static str, String)> {
     list
 }
 
-/// Keys whose mistakes are told with more than one problem: key and reason.
+/// Keys whose mistakes are shown with more than one problem: key and reason.
 const SEVERAL: [(&str, &str); 2] = [
     (
         "transmission",
@@ -304,7 +304,7 @@ impl Tried<'_> {
             return;
         }
         let [problem] = &*problems else {
-            let told: Vec<String> = problems
+            let shown: Vec<String> = problems
                 .iter()
                 .map(|p| format!("    {}: {}", p.place.line, p.message))
                 .collect();
@@ -312,7 +312,7 @@ impl Tried<'_> {
                 "{} {sort} {lines:?}: {} problems\n{}",
                 info.key,
                 problems.len(),
-                told.join("\n")
+                shown.join("\n")
             ));
             return;
         };
@@ -362,7 +362,7 @@ impl Tried<'_> {
                 |problem, text| {
                     let place = (problem.place.line, problem.place.column) == (text.line, column)
                         && problem.place.line_text == line;
-                    let told = problem.message.contains(&info.key)
+                    let shown = problem.message.contains(&info.key)
                         || problem.place.line_text.starts_with(name);
                     // A message of a type says itself what is wanted, where that is all.
                     let range = problem.allowed == info.allowed
@@ -373,7 +373,7 @@ impl Tried<'_> {
                             .contains(&format!("expected {}", info.allowed));
                     let all = [
                         (place, "place"),
-                        (problem.key == info.key && told, "key"),
+                        (problem.key == info.key && shown, "key"),
                         (problem.value == item, "value"),
                         (range || said, "range"),
                         (sort != "word" || !problem.hint.is_empty(), "hint"),

@@ -115,7 +115,7 @@ fn vehicle(case: &str, text: &str) -> String {
         .keys
         .iter()
         .filter(|info| !info.key.starts_with("lubricant.") && !info.key.starts_with("engine_oil."));
-    // A folder of its own: what the file names is looked for beside it.
+    // A folder of its own: the reader looks there for files that it names.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("car.toml");
     std::fs::write(&path, completed(text, own)).unwrap();
@@ -140,7 +140,7 @@ fn rig(case: &str, text: &str) -> Option<Problems> {
     Some(problems)
 }
 
-/// What is told stands in the bad file itself: the shipped file below it has its own reasons to change.
+/// Messages are about the bad file itself: the shipped file below it changes for its own reasons.
 fn within(case: &str, text: &str, problems: &[Problem]) {
     let beyond: Vec<&Problem> = problems
         .iter()
@@ -192,7 +192,7 @@ fn completed<'k>(text: &str, keys: impl Iterator<Item = &'k KeyInfo>) -> String 
     whole
 }
 
-/// A value as it stands in a file.
+/// A value as written in a file.
 pub fn written(info: &KeyInfo) -> String {
     let is_text = info.allowed == "text" || info.allowed.starts_with("one of ");
     if is_text {
@@ -202,7 +202,7 @@ pub fn written(info: &KeyInfo) -> String {
     }
 }
 
-/// Bad files that are too large to be kept, or that hold every column of a trace: name and what is told.
+/// Bad files that are too large to be kept, or that hold every column of a trace: name and message.
 pub fn made(kind: &str) -> Vec<(String, String)> {
     match kind {
         "trace" => traces(),
@@ -215,25 +215,25 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
                     (0..factors).map(factor).collect::<String>()
                 )
             };
-            let told = |name: &str, text: String| {
+            let case = |name: &str, text: String| {
                 (
                     format!("made_{name}"),
-                    told_by(Plan::read(name, &text).err()),
+                    rendered(Plan::read(name, &text).err()),
                 )
             };
             vec![
-                told(
+                case(
                     "too_many_factors.toml",
                     plan("sobol]\nsamples = 4", 257, "[0, 1]"),
                 ),
-                told("too_many_points.toml", plan("grid]", 32, "[0, 1, 2, 3]")),
+                case("too_many_points.toml", plan("grid]", 32, "[0, 1, 2, 3]")),
             ]
         }
         "cycle" => {
             let text: String = std::iter::once("time_s,speed_kmh\n".to_owned())
                 .chain((0..=2_000_000).map(|k| format!("{k},0\n")))
                 .collect();
-            let read = |path: &str, bytes: &[u8]| told_by(cycle::read_csv(path, bytes).err());
+            let read = |path: &str, bytes: &[u8]| rendered(cycle::read_csv(path, bytes).err());
             let columns = format!("time_s,speed_kmh{}\n0,0\n", ",".repeat(999));
             let line = format!("time_s,speed_kmh\n0,0\n1,{}\n", "1".repeat(1 << 20));
             vec![
@@ -244,7 +244,7 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
         }
         "lubricant" => {
             let read = |path: &str, _: &[u8]| {
-                told_by(setup::load_lubricant(path, "--lubricant", &[], "").err())
+                rendered(setup::load_lubricant(path, "--lubricant", &[], "").err())
             };
             vec![
                 made_file(
@@ -265,7 +265,7 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
             vec![made_file(
                 "belt_too_many_rows.csv",
                 text.as_bytes(),
-                |path, _| told_by(map(path, "belt_")),
+                |path, _| rendered(map(path, "belt_")),
             )]
         }
         _ if kind.starts_with("calibration") => calibration::made(kind),
@@ -286,18 +286,18 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
                     vec![0; 500_001],
                 )
                 .unwrap();
-                told_by(Cover::read(path).err())
+                rendered(Cover::read(path).err())
             })]
         }
         _ => Vec::new(),
     }
 }
 
-pub fn told_by(problems: Option<Problems>) -> String {
+pub fn rendered(problems: Option<Problems>) -> String {
     render(&problems.unwrap_or_default(), false)
 }
 
-/// Writes a file into a folder of its own, reads it, and leaves the folder out of what is told.
+/// Writes a file into a folder of its own, reads it, and removes the folder from the message.
 pub fn made_file(
     name: &str,
     bytes: &[u8],
@@ -337,7 +337,7 @@ fn traces() -> Vec<(String, String)> {
         let path = format!("made_{name}.csv");
         (
             path.clone(),
-            told_by(History::read_csv(&path, text.as_bytes()).err()),
+            rendered(History::read_csv(&path, text.as_bytes()).err()),
         )
     };
     let good = row("1", "1", "", "0");

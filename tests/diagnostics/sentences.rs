@@ -335,7 +335,7 @@ fn take(open: &mut Vec<Bracket>, word: &mut String, sign: char, next: char) {
             word.push(':');
             return;
         }
-        // The name of a struct stands a blank before its bracket.
+        // A blank separates the name of a struct from its bracket.
         ' ' if next == '{' => return,
         _ => {}
     }

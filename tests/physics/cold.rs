@@ -320,7 +320,7 @@ fn losses_in_the_cold_are_continuous() {
 
 /// Driving at -40 degC with an inlet that starves: flow falls short and is said to, both ledgers close, nothing turns into what is no number.
 #[test]
-fn a_starved_pump_is_told_and_its_ledgers_close() {
+fn a_starved_pump_is_flagged_and_its_ledgers_close() {
     let run = |bar: f64, c: &Cycle| {
         let setup = car(
             CVT,

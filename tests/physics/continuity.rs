@@ -396,7 +396,7 @@ fn standstill_is_the_limit_of_creeping() {
         .collect::<Vec<_>>()
     {
         let ratio = 2.4169;
-        let stands = values(&bench.solve(&Setting {
+        let rests = values(&bench.solve(&Setting {
             ratio,
             wheel_rad_s: 0.0,
             coupled: false,
@@ -419,11 +419,11 @@ fn standstill_is_the_limit_of_creeping() {
             if label == "slip" {
                 continue; // a standing belt is said not to slip
             }
-            let scale = stands[k].abs() + creeps[k].abs();
+            let scale = rests[k].abs() + creeps[k].abs();
             assert!(
-                (stands[k] - creeps[k]).abs() < 1e-4 * scale + 1e-4,
+                (rests[k] - creeps[k]).abs() < 1e-4 * scale + 1e-4,
                 "{name} {label}: {} standing, {} creeping",
-                stands[k],
+                rests[k],
                 creeps[k]
             );
         }

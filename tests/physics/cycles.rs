@@ -416,7 +416,7 @@ fn automatics_drive_the_ece_cycles_without_gear_change_plateaux() {
 }
 
 #[test]
-fn ftp75_stands_with_its_engine_off_for_600_s_between_its_bags() {
+fn ftp75_rests_with_its_engine_off_for_600_s_between_its_bags() {
     let cycle = embedded("ftp75").unwrap();
     assert_eq!(
         cycle.phases,

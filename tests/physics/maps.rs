@@ -1,4 +1,4 @@
-//! Measured torque-loss maps in place of models, read from CSV files beside a vehicle file.
+//! Measured torque-loss maps in place of models, read from CSV files in the folder of a vehicle file.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use cvtcycle::config::cycle::embedded;
@@ -7,7 +7,7 @@ use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::model::drive::{Conditions, Outcome, Start, components, drive};
 use cvtcycle::output::Component;
 
-/// A vehicle file in its own folder with a map beside it; the overrides name the map.
+/// A vehicle file in its own folder with a map; the overrides name the map.
 fn car(vehicle: &str, csv: &str, set: &str) -> Result<Setup, String> {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("car.toml");
@@ -89,7 +89,7 @@ fn a_belt_map_replaces_every_belt_part() {
     assert!(one.rows.iter().all(|r| r.slip.abs() < 1e-12));
 }
 
-/// Hand calculation: a box map of 3 Nm loses 3 Nm times the input speed in gear; it stands for all of the box's parts, which are then not there.
+/// Hand calculation: a box map of 3 Nm loses 3 Nm times the input speed in gear; it replaces all of the box's parts, whose losses are then absent.
 #[test]
 fn val_a_constant_box_map() {
     let csv = "gear,input_torque_nm,torque_loss_nm\n1,-100,3\n1,200,3\n5,-100,3\n5,200,3\n";

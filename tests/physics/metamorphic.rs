@@ -199,7 +199,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
     Vec::new()
 }
 
-/// Keys that need another key before they can matter: (end of the key, what is set beside it, why).
+/// Keys that need another key before they can matter: (end of the key, what is set with it, why).
 const NEEDS: [(&str, &[&str], &str); 19] = [
     (
         "variator.piston_outer_mm",
@@ -392,7 +392,7 @@ fn no_input_is_dead() {
                 .iter()
                 .find(|(end, _, _)| info.key.ends_with(end))
                 .map_or(&[][..], |n| n.1);
-            let beside: Vec<String> = needs
+            let with: Vec<String> = needs
                 .iter()
                 .filter(|n| !n.starts_with(&format!("{}=", info.key)))
                 .map(|n| (*n).to_owned())
@@ -400,7 +400,7 @@ fn no_input_is_dead() {
             let own: Option<&&str> = needs
                 .iter()
                 .find(|n| n.starts_with(&format!("{}=", info.key)));
-            let mut start: Vec<String> = beside.clone();
+            let mut start: Vec<String> = with.clone();
             start.extend(own.map(|o| (*o).to_owned()));
             let base = match try_car(name, &start) {
                 Ok(base) => base,
@@ -425,7 +425,7 @@ fn no_input_is_dead() {
             let mut accepted = 0;
             let mut refused = String::new();
             'search: for candidate in &candidates {
-                let mut sets = beside.clone();
+                let mut sets = with.clone();
                 sets.push(candidate.clone());
                 let other = match try_car(name, &sets) {
                     Ok(other) => other,

@@ -133,7 +133,7 @@ fn replace(lines: &mut [String], line: usize, column: &str, cell: &str) {
 }
 
 #[test]
-fn everything_that_is_wrong_is_told_at_once_with_its_place() {
+fn everything_that_is_wrong_is_reported_at_once_with_its_place() {
     let mut bad = lines();
     replace(&mut bad, 1, "throttle", "thrott1e");
     replace(&mut bad, 3, "speed_kmh", "12;5");
@@ -179,7 +179,7 @@ fn everything_that_is_wrong_is_told_at_once_with_its_place() {
             && found[2].hint.contains("fuel_cut")
             && found[3].allowed.contains("above 4")
     );
-    // The column counts characters: the bad value stands there.
+    // The column counts characters: the bad value is there.
     assert_eq!(
         bad[2]
             .chars()
@@ -270,26 +270,34 @@ fn what_is_no_trace_is_refused_in_one_line() {
 }
 
 #[test]
-fn a_bad_parquet_trace_is_told_too() {
+fn a_bad_parquet_trace_is_reported_too() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("trace.parquet");
-    let told = || read_trace_parquet(&path).map(|_| ()).unwrap_err();
-    assert!(told()[0].message.contains("cannot read"), "{:?}", told());
+    let read_problems = || read_trace_parquet(&path).map(|_| ()).unwrap_err();
+    assert!(
+        read_problems()[0].message.contains("cannot read"),
+        "{:?}",
+        read_problems()
+    );
     fs::write(&path, "time_s,dt_s").unwrap();
-    assert_eq!(told().len(), 1);
+    assert_eq!(read_problems().len(), 1);
     let columns = columns_for(true, &[]);
     let write = |columns: &[_], rows: &[Row]| {
         write_trace_parquet(fs::File::create(&path).unwrap(), columns, rows, &[]).unwrap()
     };
     write(&columns, &[]);
-    assert!(told()[0].message.contains("no rows"), "{:?}", told());
+    assert!(
+        read_problems()[0].message.contains("no rows"),
+        "{:?}",
+        read_problems()
+    );
     let step = |time_s: f64, dt_s: f64| Row {
         time_s,
         dt_s,
         ..Row::default()
     };
     write(&columns, &[step(1.0, 1.0), step(3.0, 1.0), step(2.0, -1.0)]);
-    let keys: Vec<String> = told()
+    let keys: Vec<String> = read_problems()
         .into_iter()
         .map(|p| format!("{} {}", p.key, p.message))
         .collect();
@@ -305,7 +313,12 @@ fn a_bad_parquet_trace_is_told_too() {
         .filter(|column| column.name == "time_s")
         .collect();
     write(&few, &[step(1.0, 1.0)]);
-    assert!(told().len() > 20 && told().iter().all(|p| p.message.contains("missing")));
+    assert!(
+        read_problems().len() > 20
+            && read_problems()
+                .iter()
+                .all(|p| p.message.contains("missing"))
+    );
     write(&columns, &[step(1.0, 1.0), step(2.0, 1.0)]);
     assert_eq!(read_trace_parquet(&path).unwrap().time_s(), [1.0, 2.0]);
 }

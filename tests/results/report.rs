@@ -194,7 +194,7 @@ fn val_figures_are_whole_and_their_tables_are_the_trace() {
         let width: f64 = root.attribute("width").unwrap().parse().unwrap();
         assert!(width <= 880.0, "{width} px is too wide for A4");
     }
-    // One name for one thing: no id stands twice in the page.
+    // One name for one thing: no id is used twice in the page.
     let mut ids: Vec<&str> = page
         .match_indices(" id=\"")
         .map(|(at, _)| page[at + 5..].split('"').next().unwrap())

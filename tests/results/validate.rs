@@ -304,7 +304,7 @@ fn users_rows_reach_every_source() {
         computed(4)
     );
     assert!((computed(5) - 3.0).abs() < 1e-12);
-    // A vehicle file of the user's stands beside the rows.
+    // A vehicle file of the user in the folder of the rows.
     let car = include_str!("../../vehicles/rover_216_cvt.toml").replace(
         "band_offset_mm = { value = 3.0",
         "band_offset_mm = { value = 2.0",
@@ -321,9 +321,9 @@ fn users_rows_reach_every_source() {
     let found: Value = serde_json::from_slice(&output.stdout)
         .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
     assert!((found["rows"][0]["computed_low"].as_f64().unwrap() - 2.0).abs() < 1e-12);
-    let beside = cvtcycle(&["validate", "--json", "--rows", &own.path()]);
-    let beside: Value = serde_json::from_slice(&beside.stdout).unwrap();
-    assert!(beside["rows"].as_array().unwrap().len() > 100);
+    let added = cvtcycle(&["validate", "--json", "--rows", &own.path()]);
+    let added: Value = serde_json::from_slice(&added.stdout).unwrap();
+    assert!(added["rows"].as_array().unwrap().len() > 100);
 }
 
 #[test]
@@ -342,7 +342,7 @@ source = "bench"
 ratio = "4..2"
 
 [sources.lost]
-like = "nobody"
+like = "no_such_form"
 "#;
     let rows = [
         row("a", "value = 3\ncompute = \"1 + max(lwo: y)\""),
@@ -435,9 +435,9 @@ fn what_cannot_be_computed_is_a_problem_and_no_verdict() {
     );
 }
 
-/// A ratio that the box does not have is computed and told.
+/// A ratio that the box does not have is computed and reported.
 #[test]
-fn points_outside_validity_are_told() {
+fn points_outside_validity_are_reported() {
     let source =
         "[sources.b]\nsource = \"bench\"\nratio = [2.4, 2.9]\nspeed_rpm = 2000\ntemp_degc = 80\n";
     let own = Own::new(
@@ -447,8 +447,8 @@ fn points_outside_validity_are_told() {
                 "low = 0\ncompute = \"mean(b: total_nm)\"\ntolerance = \"exact\"",
             )),
     );
-    let told: Value = serde_json::from_slice(&own.run(&["--json"]).stdout).unwrap();
-    assert_eq!(told["rows"][0]["outside_validity"], 1, "{told}");
+    let message: Value = serde_json::from_slice(&own.run(&["--json"]).stdout).unwrap();
+    assert_eq!(message["rows"][0]["outside_validity"], 1, "{message}");
     assert!(text(&own.run(&[]).stdout).contains("1 points outside the validity"));
 }
 
@@ -490,7 +490,7 @@ fn csv_json_and_html_have_the_same_rows() {
             .collect::<Vec<_>>()
     );
     for never in ["<script", "http:", "https:", "<link", "<img"] {
-        assert!(!html.contains(never), "{never}: the page stands alone");
+        assert!(!html.contains(never), "{never}: the page loads nothing");
     }
     for word in [
         "prefers-color-scheme: dark",
@@ -631,13 +631,13 @@ fn the_book_shows_the_rows_of_every_mechanism() {
 #[test]
 fn the_programs_rows_need_a_cvt() {
     let output = cvtcycle(&["validate", "--vehicle", "rover_216_5mt"]);
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{told}");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(
-        told.contains("manual gearbox")
-            && told.contains("--only-rows")
-            && told.contains("1 problem in --vehicle"),
-        "{told}"
+        message.contains("manual gearbox")
+            && message.contains("--only-rows")
+            && message.contains("1 problem in --vehicle"),
+        "{message}"
     );
     let own = Own::new(&row("own.1", "kind = \"O\"\ncompute = \"2 > 1\""));
     assert_eq!(

@@ -209,13 +209,13 @@ fn csv_json_and_library_agree() {
         .iter()
         .map(str::to_owned)
         .collect();
-    let told: Vec<&str> = json["columns"]
+    let shown: Vec<&str> = json["columns"]
         .as_array()
         .unwrap()
         .iter()
         .map(|c| c["name"].as_str().unwrap())
         .collect();
-    assert_eq!(names, told);
+    assert_eq!(names, shown);
     assert_eq!(
         (json["schema"].as_u64(), json["count"].as_u64()),
         (Some(1), Some(12))
@@ -224,7 +224,7 @@ fn csv_json_and_library_agree() {
     let setup = car("rover_216_cvt", &[]);
     let bench = Bench::new(&setup);
     let library = columns(setup.transmission());
-    assert_eq!(library.iter().map(|c| &*c.name).collect::<Vec<_>>(), told);
+    assert_eq!(library.iter().map(|c| &*c.name).collect::<Vec<_>>(), shown);
     let mut count = 0;
     for (record, point) in reader.records().zip(points) {
         let record = record.unwrap();
@@ -344,7 +344,7 @@ fn refusals() {
     ] {
         assert!(all.contains(word), "{word}: {all}");
     }
-    for (words, told) in [
+    for (words, shown) in [
         (vec!["--gear", "3"], "has no gears"),
         (
             vec!["--pressure", "30", "--throttle", "0.5"],
@@ -408,7 +408,7 @@ fn refusals() {
         (vec!["--json", "--format", "csv"], "cannot be used"),
     ] {
         let text = refused(&words);
-        assert!(text.contains(told), "{words:?}: {text}");
+        assert!(text.contains(shown), "{words:?}: {text}");
     }
 }
 
@@ -468,7 +468,7 @@ fn output_directory() {
     );
 }
 
-/// Whatever is varied stands below the picture and in its column.
+/// What is varied is named below the picture and has a column.
 #[test]
 fn every_axis_can_be_drawn() {
     let axes = [
@@ -566,19 +566,19 @@ fn a_map_has_its_column() {
     }
     let of_cvt = columns(setup.transmission());
     let row = grid.rows(&Bench::new(&setup)).next().unwrap();
-    let told = |name: &str| {
+    let shown = |name: &str| {
         let column = of_cvt
             .iter()
             .find(|column| column.name == name)
             .unwrap_or_else(|| panic!("no {name}"));
         (&column.doc, column.cell(&row))
     };
-    let (doc, loss) = told("belt_map_loss_nm");
+    let (doc, loss) = shown("belt_map_loss_nm");
     assert!(
         doc.contains("measured map") && matches!(loss, Cell::Number(nm) if (nm - 6.0).abs() < 1e-9),
         "{loss:?}"
     );
-    assert!(matches!(told("belt_status").1, Cell::Text(word) if word.is_empty()));
+    assert!(matches!(shown("belt_status").1, Cell::Text(word) if word.is_empty()));
     assert!(
         of_cvt
             .iter()
@@ -599,7 +599,7 @@ fn a_map_has_its_column() {
     );
 }
 
-/// A setup whose vehicle file lies in a folder with a map beside it.
+/// A setup whose vehicle file is in a folder with a map.
 fn with_map(vehicle: &str, csv: &[u8], key: &str) -> Setup {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("car.toml");

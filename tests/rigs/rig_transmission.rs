@@ -637,7 +637,7 @@ fn overrides_reach_rig_oil_and_vehicle() {
 }
 
 #[test]
-fn everything_wrong_is_told_at_once_and_nothing_is_written() {
+fn everything_wrong_is_reported_at_once_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let (code, stdout, err) = run(&[
@@ -698,13 +698,13 @@ fn a_belt_that_does_not_fit_is_refused() {
 }
 
 /// A point outside the models' validity is computed and flagged, in the tables and in the files.
-/// Thesis 5.3.1 prints the range of 25 to 95 degC: colder points are no part of what stands beside it.
+/// Thesis 5.3.1 prints the range of 25 to 95 degC: colder points are not compared with it.
 #[test]
 fn val_printed_totals_are_held_against_their_own_temperatures() {
     let here = |temps: &str| {
-        let (code, told, _) = run(&["--test", "steady", "--ratio", "low", "--temp", temps]);
+        let (code, table, _) = run(&["--test", "steady", "--ratio", "low", "--temp", temps]);
         assert_eq!(code, 0);
-        let line = told
+        let line = table
             .lines()
             .find(|line| line.starts_with("low"))
             .unwrap()

@@ -1,7 +1,7 @@
 //! A car built from a blueprint is the car that the ordinary load makes of the same overrides, and is refused in the same words.
 //!
 //! Truth of all comparisons: `setup::load` with `--set KEY=NUMBER`; what is compared is the Debug text of the whole car, in which every
-//! number stands with all its digits.
+//! number is written with all its digits.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use std::collections::BTreeSet;
@@ -43,7 +43,7 @@ fn text(setup: Setup) -> String {
     format!("{names} {:?}", setup.vehicle.into_car(AMBIENT_K))
 }
 
-/// What the ordinary load makes of numbers beside the options.
+/// What the ordinary load computes from numbers given in addition to the options.
 fn ordinary(word: &str, options: &Options, numbers: &[(&str, f64)]) -> Result<String, Problems> {
     let mut options = options.clone();
     options.set.extend(
@@ -286,7 +286,7 @@ fn numbers_of_options_that_stand_as_a_word_or_not_at_all() {
     assert_eq!(built(&mut bench), base);
 }
 
-/// A number chooses the option to which it belongs, as on the command line, and leaves no key behind that nobody reads.
+/// A number chooses the option to which it belongs, as on the command line, and leaves no unread key behind.
 #[test]
 fn numbers_of_options_that_the_file_does_not_choose() {
     let (blueprint, setup) = blueprint(CARS[0], &Options::default());

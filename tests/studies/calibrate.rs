@@ -1,4 +1,4 @@
-//! Calibrations: truth put in comes out within its intervals, what cannot be told is called so, and the shipped values are what the shipped
+//! Calibrations: truth put in comes out within its intervals, what the data do not identify is reported so, and the shipped values are what the shipped
 //! plans give.
 
 use std::collections::BTreeSet;
@@ -14,7 +14,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// A plan over a data file that lies beside it.
+/// A plan over a data file in the same folder.
 fn plan_with(folder: &tempfile::TempDir, data: &str, text: &str) -> Plan {
     std::fs::write(folder.path().join("data.csv"), data).expect("written");
     let file = folder.path().join("plan.toml");
@@ -243,9 +243,9 @@ fn a_denser_trace_says_no_more() {
 }
 
 /// Outside truth: pump torque is displacement times pressure (PU-1), so at one speed, with the clamp law's pressure and without what else
-/// depends on it, only their product can be told.
+/// depends on it, only their product is identified.
 #[test]
-fn pump_displacement_and_pressure_are_told_as_a_product() {
+fn pump_displacement_and_pressure_are_identified_as_a_product() {
     let folder = tempfile::tempdir().expect("a folder");
     let data: String = [2.4, 2.0, 1.6, 1.2]
         .iter()
@@ -310,9 +310,9 @@ fn a_parameter_without_effect_is_named() {
     );
 }
 
-/// Property: an error that all data have in common is found as such, and widens what hangs on their level.
+/// Property: an error that all data have in common is found as such, and widens what depends on their level.
 #[test]
-fn a_common_error_is_told_apart() {
+fn a_common_error_is_separated() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = SPIN_PLAN.replace("sd = 0.1", "sd = 0.1\ncommon_sd = 0.5");
     let mut plain = plan_with(&folder, &spin_points(), SPIN_PLAN);

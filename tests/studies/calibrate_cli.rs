@@ -123,7 +123,7 @@ fn without_folds_nothing_is_predicted_and_starts_and_seed_are_obeyed() {
     assert_ne!(printed["starts"][1]["from"], other["starts"][1]["from"]);
 }
 
-/// What the plan sets stands in the fitted files, and files beside the vehicle are found from wherever they lie: the bench loses with the
+/// What the plan sets is in the fitted files, and files in the folder of the vehicle are found from wherever they lie: the bench loses with the
 /// fitted car what it loses with the plan's own car, overrides and fitted values.
 #[test]
 fn fitted_files_hold_what_the_plan_sets() {
@@ -267,7 +267,7 @@ fn a_parameter_that_moves_nothing_ends_with_code_1_and_everything_is_written() {
 }
 
 #[test]
-fn bad_input_is_told_at_once_and_leaves_no_directory() {
+fn bad_input_is_reported_at_once_and_leaves_no_directory() {
     let dir = tempfile::tempdir().unwrap();
     let plan = dir.path().join("plan.toml");
     fs::write(

@@ -1,4 +1,4 @@
-//! An independent reader, pyarrow, finds in the Parquet files what stands in the CSV.
+//! An independent reader, pyarrow, finds in the Parquet files the values of the CSV.
 //!
 //! It runs where `target/parquet-venv` is there, as `.ci/run` makes it, or where CVTCYCLE_PYTHON names a Python with pyarrow; elsewhere it
 //! says so and checks nothing, unless CVTCYCLE_REQUIRE_PARQUET_READER is set.
@@ -103,7 +103,7 @@ fn compare(python: &Path, base: &Path) -> Result<serde_json::Value, String> {
     }
 }
 
-/// What the reader must find beside the cells.
+/// What the reader must find in addition to the cells.
 struct Wanted<'a> {
     columns: &'a [Head],
     rows: u64,

@@ -140,7 +140,7 @@ impl PartWriter for Slow {
             let wait =
                 self.changed
                     .wait_timeout_while(by_drivers, Duration::from_secs(120), |count| *count == 0);
-            assert!(!wait.unwrap().1.timed_out(), "nobody else writes");
+            assert!(!wait.unwrap().1.timed_out(), "no other thread writes");
         }
         Ok(())
     }

@@ -73,7 +73,7 @@ fn expectations(text: &str) -> Vec<Expected> {
 }
 
 #[test]
-fn every_problem_of_a_bad_plan_is_told_at_its_place() {
+fn every_problem_of_a_bad_plan_is_reported_at_its_place() {
     let all = include_str!("../plans/bad.txt");
     let plans: Vec<&str> = all.split("====\n").skip(1).collect();
     assert!(plans.len() > 20);

@@ -229,7 +229,7 @@ fn litres(car: &str, sets: &[String], cycle: &Cycle) -> (f64, f64) {
     )
 }
 
-/// The plan asks the question of the issue: cold soak, both Rovers, at least 10 000 pairs, few enough runs to start without asking.
+/// The plan: cold soak, both Rovers, at least 10 000 pairs, few enough runs to start without `--yes`.
 #[test]
 fn the_design_has_its_ten_thousand_pairs() {
     let plan = plan();

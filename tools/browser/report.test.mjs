@@ -64,7 +64,7 @@ const badTexts = () => {
 
 for (const file of reports) {
   describe(basename(file), () => {
-    test("loads without a word on the console and asks for nothing but itself", async () => {
+    test("loads without a message on the console and requests only itself", async () => {
       const { context, heard } = await open(file, { bypassCSP: false });
       assert.deepEqual(heard.console, []);
       assert.deepEqual(heard.requests, [pathToFileURL(file).href]);

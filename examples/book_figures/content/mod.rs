@@ -18,7 +18,7 @@ pub struct Page {
     pub stem: &'static str,
     /// Vehicle whose values it shows.
     pub vehicle: &'static str,
-    /// Keys that belong to it beside those whose meaning cites one of its labels: a table where it ends in a dot.
+    /// Keys that belong to it in addition to those whose meaning cites one of its labels: a table where it ends in a dot.
     pub keys: &'static [&'static str],
 }
 
@@ -128,7 +128,7 @@ struct LinePanel {
     heading: String,
     x: &'static str,
     y: &'static str,
-    /// Values that the vertical axis takes in beside those of the lines.
+    /// Values in the range of the vertical axis in addition to those of the lines.
     with_y: Vec<f64>,
     lines: Vec<Line>,
 }

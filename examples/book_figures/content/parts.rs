@@ -254,7 +254,7 @@ fn manual(r: &Reference) -> String {
     plot(
         "Manual box at no load",
         "gear oil of the sister car (MB-2 to MB-4)",
-        "Sum of seal, bearing and churning torque against speed at three temperatures, and the parts at 80 degC beside the published line.",
+        "Sum of seal, bearing and churning torque against speed at three temperatures, and the parts at 80 degC with the published line.",
         "",
         vec![
             axes("Sum", SPEED, y, [-10.0, 25.0, 80.0].map(sum).to_vec()),

@@ -93,7 +93,7 @@ fn bare_and_foreign_environments_change_nothing() {
 
 /// A study without --out needs a folder of temporary files; without one it says so.
 #[test]
-fn no_folder_for_temporary_files_is_told() {
+fn no_folder_for_temporary_files_is_reported() {
     let dir = folder();
     let output = program(dir.path(), &words("study plan.toml --quiet"))
         .env("TMPDIR", "/nonexistent")
@@ -114,7 +114,7 @@ fn no_folder_for_temporary_files_is_told() {
 
 /// A current folder that is gone is no reason to fail for what needs none.
 #[test]
-fn a_folder_that_is_gone_is_told_or_not_needed() {
+fn a_folder_that_is_gone_is_reported_or_not_needed() {
     for (line, code) in [
         ("run --quiet", 0),
         ("list cycles", 0),

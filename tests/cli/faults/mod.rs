@@ -1,5 +1,5 @@
 //! What goes wrong around the program: no room, no right to write, readers that go away, signals, clocks, threads, bare environments, names
-//! that are no text, and names in files that lead elsewhere. Nothing is lost, nothing half written stands under a final name, the exit code
+//! that are no text, and names in files that lead elsewhere. Nothing is lost, no half-written file has a final name, the exit code
 //! is right.
 //!
 //! Full and read-only places are small file systems in memory, mounted for the child alone; where that is not allowed those tests say that
@@ -32,7 +32,7 @@ const PLAN: &str = "[study]\ntitle = \"t\"\nbaselines = [\"rover_216_5mt\"]\ncyc
     distribution.uniform = { low = 100, high = 500 }\n";
 const POINTS: &str = "ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm\n2.4,2000,30,60\n0.5,3000,12,40\n";
 
-/// Commands that write, each to the name that stands in place of `OUT`; beside them directories of a finished run and study.
+/// Commands that write, each to the name in place of `OUT`; then directories of a finished run and study.
 const WRITERS: [&str; 12] = [
     "run --cycle minute.csv --sensitivity never --quiet --out OUT",
     "run --cycle minute.csv --sensitivity never --quiet --format both --out OUT",
@@ -48,7 +48,7 @@ const WRITERS: [&str; 12] = [
     "belt --points many.csv --quiet --out OUT.csv",
 ];
 
-/// The program, as it stands in shell scripts.
+/// The program, as shell scripts start it.
 fn bin() -> PathBuf {
     assert_cmd::cargo::cargo_bin("cvtcycle")
 }

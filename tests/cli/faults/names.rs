@@ -78,15 +78,15 @@ fn inputs_with_names_that_are_no_text_are_refused() {
         "explain keyODD",
     ] {
         let output = with_odd(dir.path(), line);
-        let told = stderr(&output);
+        let message = stderr(&output);
         assert_eq!(
             (output.status.code(), output.stdout.len()),
             (Some(2), 0),
-            "{line}: {told}"
+            "{line}: {message}"
         );
         assert!(
-            told.contains("is not UTF-8") && told.contains("= help: "),
-            "{line}: {told}"
+            message.contains("is not UTF-8") && message.contains("= help: "),
+            "{line}: {message}"
         );
     }
     assert_eq!(tree(dir.path()), before);

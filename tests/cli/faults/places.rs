@@ -12,7 +12,7 @@ fn script(place: &str, options: &str, before: &str) -> String {
     for (k, line) in WRITERS.iter().enumerate() {
         let line = line.replace("OUT", &format!("{place}/out"));
         text += &format!(
-            "'{}' {line} 2>told.{k} >printed.{k}; echo $? >code.{k}; find {place} -type f >left.{k}\n",
+            "'{}' {line} 2>message.{k} >printed.{k}; echo $? >code.{k}; find {place} -type f >left.{k}\n",
             bin().display()
         );
     }
@@ -24,11 +24,11 @@ fn text(dir: &Path, name: &str, k: usize) -> String {
 }
 
 fn refused(dir: &Path, k: usize, reason: &str) {
-    let (line, told) = (WRITERS[k], text(dir, "told", k));
-    assert_eq!(text(dir, "code", k).trim(), "2", "{line}: {told}");
+    let (line, message) = (WRITERS[k], text(dir, "message", k));
+    assert_eq!(text(dir, "code", k).trim(), "2", "{line}: {message}");
     assert!(
-        told.contains(reason) && told.contains("= help: "),
-        "{line}: {told}"
+        message.contains(reason) && message.contains("= help: "),
+        "{line}: {message}"
     );
     assert_eq!(text(dir, "printed", k), "", "{line}");
     assert_eq!(text(dir, "left", k), "", "{line} left something");
@@ -51,7 +51,7 @@ fn a_full_disk_does_not_cost_the_earlier_run() {
     let script = format!(
         "mkdir small && mount -t tmpfs -o size=1500k none small && cp -r made_run small/run && cp -r small/run before || exit 77\n\
          dd if=/dev/zero of=small/filler bs=1k 2>/dev/null; truncate -s -24k small/filler\n\
-         '{}' run --cycle minute.csv --sensitivity never --ambient 0 --quiet --out small/run --force 2>told.0; echo $? >code.0\n\
+         '{}' run --cycle minute.csv --sensitivity never --ambient 0 --quiet --out small/run --force 2>message.0; echo $? >code.0\n\
          cp -r small/run after\n",
         bin().display()
     );
@@ -60,7 +60,7 @@ fn a_full_disk_does_not_cost_the_earlier_run() {
             text(dir.path(), "code", 0).trim(),
             "2",
             "{}",
-            text(dir.path(), "told", 0)
+            text(dir.path(), "message", 0)
         );
         super::same(&dir.path().join("before"), &dir.path().join("after"));
     }
@@ -90,11 +90,11 @@ fn a_read_only_home_and_folder_are_enough_to_read() {
         "mkdir home tmp && mount -t tmpfs -o size=4m none home && cp minute.csv plan.toml points.csv home && mount -o remount,ro none home || exit 77\n\
          export HOME=\"$PWD/home\" TMPDIR=\"$PWD/tmp\"; cd home\n\
          for line in 'run --cycle minute.csv' 'study plan.toml --quiet' 'belt --points points.csv' 'losses' 'list cycles'; do\n\
-         '{}' $line >/dev/null 2>>../told.0 || echo \"$line\" >>../told.0; done\nls -A ../tmp >>../told.0; exit 0\n",
+         '{}' $line >/dev/null 2>>../message.0 || echo \"$line\" >>../message.0; done\nls -A ../tmp >>../message.0; exit 0\n",
         bin().display()
     );
     if with_mounts(dir.path(), &script) {
-        assert_eq!(text(dir.path(), "told", 0), "");
+        assert_eq!(text(dir.path(), "message", 0), "");
     }
 }
 

@@ -13,7 +13,7 @@ const TERM: i32 = 15;
 const INT: i32 = 2;
 const HUP: i32 = 1;
 
-/// Whether a signal is ignored by whoever started the tests, and so by the children: SIGHUP under `nohup`, SIGINT in the background of a script.
+/// True if the parent of the tests ignores a signal, and so do the children: SIGHUP under `nohup`, SIGINT in the background of a script.
 fn is_ignored(number: i32) -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status
@@ -68,7 +68,7 @@ fn a_study_that_is_ended_is_resumed_to_the_same_bytes() {
         send(&child, signal);
         let status = child.wait().unwrap();
         if is_ignored(number) {
-            // As `nohup` asks for, it goes on.
+            // It goes on, as under `nohup`.
             assert_eq!(status.code(), Some(0), "{signal}");
             same(&dir.path().join("whole"), &out);
             continue;
@@ -88,8 +88,8 @@ fn a_study_that_is_ended_is_resumed_to_the_same_bytes() {
     }
 }
 
-/// A run and a report that are ended at many moments: what stands under a final name is whole and that of an undisturbed one; where the mark
-/// stands, all of them do; and the same command works afterwards.
+/// A run and a report that are ended at many moments: a file under a final name is whole and that of an undisturbed one; where the mark
+/// exists, all of them do; and the same command works afterwards.
 #[test]
 fn what_is_ended_leaves_whole_files_or_none() {
     let dir = made();

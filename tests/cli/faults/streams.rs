@@ -35,7 +35,7 @@ const PRINTERS: [&str; 23] = [
 
 /// Code 2 and a word on standard error; files that were asked for are there all the same.
 #[test]
-fn a_full_standard_output_is_told() {
+fn a_full_standard_output_is_reported() {
     let dir = made();
     for line in PRINTERS {
         let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
@@ -83,7 +83,7 @@ fn a_reader_that_has_seen_enough_is_no_error() {
     }
 }
 
-/// No streams at all: the code is all that can be told.
+/// No streams at all: only the exit code is left.
 #[test]
 fn closed_streams_are_no_error() {
     let dir = made();
@@ -102,7 +102,7 @@ fn closed_streams_are_no_error() {
     }
 }
 
-/// Complaints that nobody hears do not change the code.
+/// Messages without a reader do not change the exit code.
 #[test]
 fn a_full_or_closed_standard_error_does_not_change_the_code() {
     let dir = made();

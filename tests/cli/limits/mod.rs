@@ -62,24 +62,24 @@ pub fn within(dir: &Path, mib: u64, line: &str) -> Output {
 /// What the program says to bad input, which it must refuse.
 pub fn refused(dir: &Path, mib: u64, line: &str) -> String {
     let output = within(dir, mib, line);
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(
         output.status.code(),
         Some(2),
         "{line}: {:?}\n{}",
         output.status,
-        told.chars().take(2000).collect::<String>()
+        printed.chars().take(2000).collect::<String>()
     );
-    told
+    printed
 }
 
 /// The same, with these words and one problem.
 pub fn refused_once(dir: &Path, mib: u64, line: &str, words: &[&str]) {
-    let told = refused(dir, mib, line);
+    let printed = refused(dir, mib, line);
     for word in words {
-        assert!(told.contains(word), "{line}: no {word:?} in\n{told}");
+        assert!(printed.contains(word), "{line}: no {word:?} in\n{printed}");
     }
-    let last = told.lines().last().unwrap_or_default();
-    assert!(last.starts_with("1 problem"), "{line}:\n{told}");
-    assert!(told.len() < 3000, "{line}: {} bytes", told.len());
+    let last = printed.lines().last().unwrap_or_default();
+    assert!(last.starts_with("1 problem"), "{line}:\n{printed}");
+    assert!(printed.len() < 3000, "{line}: {} bytes", printed.len());
 }

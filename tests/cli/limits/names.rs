@@ -40,7 +40,7 @@ fn devices_and_pipes_without_end_are_read_up_to_the_limit() {
         "run --cycle endless.csv --baseline none",
         &["it has more than 64 MiB"],
     );
-    // It ended when nobody read on.
+    // It ended when its reader closed the pipe.
     writer.wait().unwrap();
 }
 

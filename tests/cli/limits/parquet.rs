@@ -1,4 +1,4 @@
-//! Parquet files whose footers lie: about their rows, about where a column stands, about their own length.
+//! Parquet files whose footers lie: about their rows, about the place of a column, about their own length.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
@@ -94,8 +94,8 @@ fn rows_that_are_not_there_make_no_room() {
         forge(&path, |group| {
             group.into_builder().set_num_rows(rows).build().unwrap()
         });
-        let told = read(&path).unwrap_err().message;
-        assert!(told.contains(words), "{rows}: {told}");
+        let printed = read(&path).unwrap_err().message;
+        assert!(printed.contains(words), "{rows}: {printed}");
     }
 }
 
@@ -139,17 +139,17 @@ fn a_column_beyond_the_end_of_the_file_is_not_read() {
 #[test]
 fn a_trace_has_a_bounded_number_of_steps() {
     let dir = tempfile::tempdir().unwrap();
-    let told = read_trace_parquet(&table(&dir, 2_000_001)).unwrap_err();
+    let printed = read_trace_parquet(&table(&dir, 2_000_001)).unwrap_err();
     assert_eq!(
-        (told.len(), told[0].allowed.as_str()),
+        (printed.len(), printed[0].allowed.as_str()),
         (1, "up to 2000000"),
-        "{told:?}"
+        "{printed:?}"
     );
     assert!(
-        told[0]
+        printed[0]
             .message
             .contains("the file says that it has 2000001 rows"),
-        "{told:?}"
+        "{printed:?}"
     );
     // So many are read; what else a trace has is missing.
     assert!(
@@ -181,6 +181,6 @@ fn a_footer_as_long_as_the_file_is_not_read() {
     file.seek(SeekFrom::End(-8)).unwrap();
     file.write_all(&(0x7000_0000_u32).to_le_bytes()).unwrap();
     file.write_all(b"PAR1").unwrap();
-    let told = refused(dir.path(), 64, "report made --out r.html");
-    assert!(told.contains(DAMAGED), "{told}");
+    let printed = refused(dir.path(), 64, "report made --out r.html");
+    assert!(printed.contains(DAMAGED), "{printed}");
 }

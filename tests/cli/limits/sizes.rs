@@ -98,8 +98,8 @@ fn results_of_a_gigabyte_are_refused_without_being_read() {
     // A footer of zeros is none.
     fs::remove_file(path("trace_rover_216_cvt.csv")).unwrap();
     sparse(&path("trace_rover_216_cvt.parquet"), GIGABYTE);
-    let told = refused(dir.path(), 64, "report made --out r.html");
-    assert!(told.contains("trace_rover_216_cvt.parquet"), "{told}");
+    let message = refused(dir.path(), 64, "report made --out r.html");
+    assert!(message.contains("trace_rover_216_cvt.parquet"), "{message}");
     fs::remove_file(path("trace_rover_216_cvt.parquet")).unwrap();
     sparse(&path("study.json"), GIGABYTE);
     for line in [

@@ -29,7 +29,7 @@ fn numbered(piece: impl Fn(usize) -> String) -> String {
     text
 }
 
-fn told(dir: &Path, text: &str, line: &str) -> String {
+fn message(dir: &Path, text: &str, line: &str) -> String {
     fs::write(dir.join("big.toml"), text).unwrap();
     refused(dir, TOML_MIB, line)
 }
@@ -91,7 +91,7 @@ fn tables_without_end_are_one_problem() {
 }
 
 #[test]
-fn as_many_keys_values_and_mistakes_as_fit_are_told_in_bounded_memory() {
+fn as_many_keys_values_and_mistakes_as_fit_are_reported_in_bounded_memory() {
     let dir = folder();
     for (text, words) in [
         // Each unknown key is compared with the known ones.
@@ -121,18 +121,18 @@ fn as_many_keys_values_and_mistakes_as_fit_are_told_in_bounded_memory() {
         ),
         (filled("#", "b", "\n[vehicle]\n"), "missing key"),
     ] {
-        let told = told(dir.path(), &text, VEHICLE);
+        let message = message(dir.path(), &text, VEHICLE);
         assert!(
-            told.contains(words),
+            message.contains(words),
             "{:.40}...: no {words:?} in\n{:.3000}",
             text,
-            told
+            message
         );
     }
 }
 
 #[test]
-fn lists_of_tables_without_end_are_told_in_bounded_memory() {
+fn lists_of_tables_without_end_are_reported_in_bounded_memory() {
     let dir = folder();
     // Below the bound for tables, each item with problems of its own.
     let many = |head: &str, item: &str| {
@@ -161,18 +161,18 @@ fn lists_of_tables_without_end_are_told_in_bounded_memory() {
             "validate --rows big.toml",
         ),
     ] {
-        let told = told(dir.path(), &text, line);
+        let message = message(dir.path(), &text, line);
         assert!(
-            told.contains("more problems are not shown"),
+            message.contains("more problems are not shown"),
             "{line}: {:.2000}",
-            told
+            message
         );
     }
     assert!(!dir.path().join("nowhere").exists());
 }
 
 #[test]
-fn a_table_of_nothing_but_mistakes_is_told_in_bounded_memory() {
+fn a_table_of_nothing_but_mistakes_is_reported_in_bounded_memory() {
     let dir = folder();
     let big = |head: &str, row: &str| {
         fs::write(
@@ -196,11 +196,11 @@ fn a_table_of_nothing_but_mistakes_is_told_in_bounded_memory() {
         ("ratio,speed_rpm,total_nm\n", "x,y,z\n", data, 400),
     ] {
         big(head, row);
-        let told = refused(dir.path(), mib, line);
+        let message = refused(dir.path(), mib, line);
         assert!(
-            told.contains("more problems are not shown"),
+            message.contains("more problems are not shown"),
             "{line}: {:.2000}",
-            told
+            message
         );
     }
     // One line of column names, as long as a line may be, and rows of nothing but commas.
@@ -216,10 +216,10 @@ fn a_table_of_nothing_but_mistakes_is_told_in_bounded_memory() {
         "time_s,speed_kmh\n",
         &format!("{}\n", ",".repeat((1 << 20) - 2)),
     );
-    let told = refused(dir.path(), 200, cycle);
+    let message = refused(dir.path(), 200, cycle);
     assert!(
-        told.contains("this row has 1048575 values"),
+        message.contains("this row has 1048575 values"),
         "{:.2000}",
-        told
+        message
     );
 }

@@ -108,8 +108,8 @@ proptest! {
     #[test]
     fn standing_is_the_limit_of_creeping(p in any_point()) {
         let belt = thesis_belt(Formulation::Smooth);
-        let (stands, creeps) = (values(&Point { rpm: 0.0, ..p }.state(&belt)), values(&Point { rpm: 1e-5, ..p }.state(&belt)));
-        for ((a, b), name) in stands.iter().zip(&creeps).zip(NAMES) {
+        let (rests, creeps) = (values(&Point { rpm: 0.0, ..p }.state(&belt)), values(&Point { rpm: 1e-5, ..p }.state(&belt)));
+        for ((a, b), name) in rests.iter().zip(&creeps).zip(NAMES) {
             hold((a - b).abs() <= 1e-6 * (a.abs() + b.abs()) + 1e-6, || format!("{name}: {a} standing, {b} creeping"))?;
         }
     }

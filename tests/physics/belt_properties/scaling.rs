@@ -19,7 +19,7 @@
 //! Everything but slip is free of it, so (a, b, c) are free for geometry, tension, bands, film, wedge, penetration, capacity. The
 //! whole belt rescales where A_arc stays as it is: with b = 1 at any C_x, or with any b where \|C_x\| is beyond the 4492 N at which SL-3
 //! is held. There E must grow by b and the areas not at all: the strut's as given, the bands' n w t by a width that grows by 1/a; the
-//! film then asks for a viscosity of b c.
+//! film then needs a viscosity of b c.
 
 use super::*;
 

@@ -482,7 +482,7 @@ fn val_shift_of_the_shipped_box() {
                     ..WheelDemand::default()
                 };
                 let (d, demand) = shifted(&b, from, &wheel, pa, degc);
-                // Kick-down asks again with 10 % less efficiency each time (RC-7).
+                // Kick-down tries again with 10 % less efficiency each time (RC-7).
                 let asked = (0..9).map(|k| {
                     let share = b.cvt().ratio.route_efficiency * 0.9f64.powi(k) * 0.8;
                     b.cvt().ratio.step(&RatioDemand {
@@ -815,9 +815,9 @@ fn an_engine_too_weak_to_idle_is_flagged() {
     }
 }
 
-/// The engine stands: nothing turns, the ratio stays.
+/// The engine is off: nothing turns, the ratio stays.
 #[test]
-fn an_engine_that_stands_turns_nothing() {
+fn an_engine_at_rest_turns_nothing() {
     let setup = car("rover_216_cvt", &[]);
     let car = setup.car(293.15);
     let engine = car.engine.at(300.0, 300.0, &car.engine_oil, 1.0);

@@ -86,7 +86,7 @@ fn repeated(car: &Car, cycle: &Cycle, start_k: f64, seconds: f64) -> ([f64; NODE
         let before = state.heat;
         state = State {
             drive: None,
-            ..simulate(car, trace, 1.0, state, &mut Nobody)
+            ..simulate(car, trace, 1.0, state, &mut NullRecorder)
         };
         moved = (0..NODES)
             .map(|k| (state.heat.node_k[k] - before.node_k[k]).abs())
@@ -95,9 +95,9 @@ fn repeated(car: &Car, cycle: &Cycle, start_k: f64, seconds: f64) -> ([f64; NODE
     (state.heat.node_k, moved)
 }
 
-struct Nobody;
+struct NullRecorder;
 
-impl cvtcycle::model::drive::Recorder for Nobody {
+impl cvtcycle::model::drive::Recorder for NullRecorder {
     fn record(&mut self, _: &cvtcycle::output::Row, _: &cvtcycle::output::Terms) {}
 }
 

@@ -99,7 +99,7 @@ fn inputs() -> impl Strategy<Value = HeatInput> {
         )
 }
 
-/// Node temperatures as they count: the unused node of a manual box stands for none.
+/// Node temperatures as they count: the unused node of a manual box is left out.
 fn used(network: &Network) -> impl Iterator<Item = usize> + '_ {
     (0..NODES).filter(|k| network.capacity_j_k[*k] > 0.0)
 }

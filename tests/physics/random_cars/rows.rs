@@ -17,7 +17,7 @@ use super::hold;
 use super::traces::traces;
 use crate::common::{Keep, ZERO, larger};
 
-type Told = Result<(), TestCaseError>;
+type Checked = Result<(), TestCaseError>;
 
 /// Work at the wheels of a step over its length, W: Simpson's rule, exact for the cubic that power is.
 fn simpson_w(road: &RoadLoad, step: &Step) -> f64 {
@@ -36,7 +36,7 @@ fn simpson_w(road: &RoadLoad, step: &Step) -> f64 {
 }
 
 /// Both ledgers, and that each term is what the row shows.
-fn books(step: &Step, row: &Row, t: &Terms, car: &Car) -> Told {
+fn books(step: &Step, row: &Row, t: &Terms, car: &Car) -> Checked {
     prop_assert!(
         t.power_error() <= 1e-9 && t.heat_error() <= 1e-9,
         "ledgers {:e} {:e} in {t:?}",
@@ -64,7 +64,7 @@ fn books(step: &Step, row: &Row, t: &Terms, car: &Car) -> Told {
 }
 
 /// Nothing that only flows one way is negative.
-fn signs(row: &Row) -> Told {
+fn signs(row: &Row) -> Checked {
     for component in Component::ALL {
         let loss = row.loss_w[component as usize];
         prop_assert!(loss >= 0.0, "{} loses {loss} W", component.name());
@@ -92,7 +92,7 @@ fn signs(row: &Row) -> Told {
 
 /// Torque at the flywheel against that of a box without losses at the same speeds: not smaller in drive; in overrun of smaller magnitude,
 /// or even driving. The difference is the losses, which add up.
-fn torque_in(row: &Row) -> Told {
+fn torque_in(row: &Row) -> Checked {
     let wheels_w = row.wheel_power_w - row.deficit_w + row.brake_w;
     let input_w = row.engine_torque_nm * row.engine_speed_rad_s;
     let losses: f64 = row.loss_w.iter().sum();
@@ -128,7 +128,7 @@ fn torque_in(row: &Row) -> Told {
 }
 
 /// The engine takes up no more in overrun than its drag, and gives no more than full load, beyond what the solve left.
-fn engine_bounds(row: &Row, car: &Car, before: &Heat) -> Told {
+fn engine_bounds(row: &Row, car: &Car, before: &Heat) -> Checked {
     let engine = car.engine.at(
         before.node_k[COOLANT],
         before.node_k[ENGINE_OIL],
@@ -147,10 +147,10 @@ fn engine_bounds(row: &Row, car: &Car, before: &Heat) -> Told {
         "crank {crank_nm} Nm, drag {} Nm",
         engine.drag_nm(w)
     );
-    // An engine that cannot turn its own pump in the cold is nobody's; the row says so.
-    let told = row.flags.contains(Flags::OUTSIDE_VALIDITY);
+    // An engine that cannot turn its own pump in the cold is outside validity; the row has the flag.
+    let flagged = row.flags.contains(Flags::OUTSIDE_VALIDITY);
     prop_assert!(
-        crank_nm <= full + rest || told,
+        crank_nm <= full + rest || flagged,
         "crank {crank_nm} Nm of {full} Nm"
     );
     Ok(())
@@ -185,7 +185,7 @@ fn most_heat_w(row: &Row, car: &Car) -> [f64; NODES] {
 
 /// Second law, step by step: no node falls below the coldest of nodes and air, none rises above the hottest of them by more than its own
 /// heat warms it. (Maximum principle of TH-5: its matrix has no positive entry off the diagonal, and is dominated by it.)
-fn temperatures(row: &Row, before: &Heat, after: &Heat, car: &Car) -> Told {
+fn temperatures(row: &Row, before: &Heat, after: &Heat, car: &Car) -> Checked {
     let used = |k: usize| car.network.capacity_j_k[k] > 0.0;
     let all = || {
         (0..NODES)
@@ -279,12 +279,12 @@ fn every_row(wide: f64, cases: u32) {
             prop_assert_eq!(keep.rows.len(), trace.step_count(dt));
             for ((step, row), terms) in trace.steps(dt).zip(&keep.rows).zip(&keep.terms) {
                 let next = after(row, &before);
-                let told = books(&step, row, terms, &car)
+                let checked = books(&step, row, terms, &car)
                     .and_then(|()| signs(row))
                     .and_then(|()| torque_in(row))
                     .and_then(|()| engine_bounds(row, &car, &before))
                     .and_then(|()| temperatures(row, &before, &next, &car));
-                told.map_err(|error| {
+                checked.map_err(|error| {
                     TestCaseError::fail(format!(
                         "{} s: {error}\n{row:?}\nbefore {before:?}",
                         row.time_s

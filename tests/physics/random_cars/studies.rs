@@ -128,9 +128,9 @@ fn cell(values: &Values, at: usize) -> String {
 /// Every row as text with its heads, without the number of its point, and how often it is there: a baseline does not feel what is varied of
 /// the subject.
 fn rows(factors: &[Factor]) -> BTreeMap<String, u64> {
-    let told = |problems: Problems| -> String { panic!("{}", render(&problems, false)) };
-    let plan = Plan::read("p.toml", &plan(factors)).map_err(told).unwrap();
-    let study = Study::prepare(plan).map_err(told).unwrap();
+    let fail = |problems: Problems| -> String { panic!("{}", render(&problems, false)) };
+    let plan = Plan::read("p.toml", &plan(factors)).map_err(fail).unwrap();
+    let study = Study::prepare(plan).map_err(fail).unwrap();
     let shelf = Shelf::default();
     assert_eq!(
         study

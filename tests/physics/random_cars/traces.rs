@@ -83,10 +83,10 @@ fn add(rows: &mut Vec<Point>, leg: &Leg) {
     let from = rows[last];
     let least_s = (leg.to_kmh - from.kmh).abs() / 3.6 / leg.hard_m_s2;
     let seconds = (4.0 * least_s).ceil() / 4.0 + 0.25 * f64::from(leg.more) + 0.25;
-    let stands = from.kmh <= 0.0 && leg.to_kmh <= 0.0;
+    let at_rest = from.kmh <= 0.0 && leg.to_kmh <= 0.0;
     // A row's slope and switch hold until the next one.
     rows[last].grade = leg.grade;
-    rows[last].engine_off = stands && leg.engine_off;
+    rows[last].engine_off = at_rest && leg.engine_off;
     rows.push(Point {
         time_s: from.time_s + seconds,
         kmh: leg.to_kmh,

@@ -79,7 +79,7 @@ fn files_appear_complete_or_not_at_all() {
 }
 
 #[test]
-fn a_file_of_bad_rows_is_told_up_to_a_number() {
+fn a_file_of_bad_rows_is_reported_up_to_a_number() {
     let rows = vec!["0.5,x,12,10"; 300].join("\n");
     let said = refused(format!("{NAMES}\n{rows}\n").as_bytes(), &[]);
     assert!(said.contains("250 more problems are not shown"), "{said}");

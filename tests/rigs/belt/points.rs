@@ -1,4 +1,4 @@
-//! What a row asks for is what it gets, wherever it stands.
+//! A row gives the same result at any place in the table.
 
 use cvtcycle::model::transmission::cvt::variator::Geometry;
 
@@ -6,7 +6,7 @@ use super::table::close;
 use super::{EDGES, NAMES, POINTS, belt, made, one, refused, text};
 
 #[test]
-fn a_row_gives_the_same_wherever_it_stands() {
+fn a_row_gives_the_same_at_any_place() {
     let lines: Vec<&str> = POINTS.lines().chain(EDGES.lines().skip(1)).collect();
     let plain = text(&belt((lines.join("\n") + "\n").as_bytes(), &["--quiet"]).stdout);
     let plain: Vec<&str> = plain.lines().collect();

@@ -231,7 +231,7 @@ fn bad_tables_are_refused_with_their_place() {
 }
 
 #[test]
-fn bad_options_and_bad_rows_are_told_together() {
+fn bad_options_and_bad_rows_are_reported_together() {
     let said = refused(
         format!("{NAMES}\n0.5,2000,12,10\n").as_bytes(),
         &["--set", "lubricant.friction.lift_off.enable=false"],

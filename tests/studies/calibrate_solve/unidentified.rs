@@ -85,7 +85,7 @@ fn products_ratios_and_powers_have_their_names() {
 }
 
 #[test]
-fn groups_are_told_apart() {
+fn groups_are_separated() {
     let five = several(&["a", "b", "c", "d", "e"]);
     let f = |v: &[f64], x: f64| v[0] * v[2] * x + v[1] / v[4] * x * x + v[3];
     let want = [
@@ -99,7 +99,7 @@ fn groups_are_told_apart() {
         found[0],
         "a, b, c and d trade against each other: only 2 combinations of them are known"
     );
-    // b and c stand in both terms; d stands beside them in one only, and acts nearly like them over these x.
+    // b and c are in both terms; d is in one of them only, and acts nearly like them over these x.
     assert_eq!(
         found[1],
         "b and c act alike: nearly only their product is known"

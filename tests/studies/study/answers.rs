@@ -117,13 +117,13 @@ fn val_blocks_of_saltelli() {
             first += y(&block[1]) * step / 32.0;
             total += step * step / 32.0;
         }
-        let told = |row: &&BTreeMap<String, String>| {
+        let named = |row: &&BTreeMap<String, String>| {
             row["factor"] == name
                 && row["car"] == CVT
                 && row["output"] == FUEL
                 && row["samples"] == "32"
         };
-        let row = file.iter().find(told).unwrap();
+        let row = file.iter().find(named).unwrap();
         for (column, want) in [
             ("first", first / variance),
             ("total", total / (2.0 * variance)),
@@ -241,7 +241,7 @@ fn val_one_at_a_time() {
 
 /// Truth: means of the rows by word.
 #[test]
-fn val_words_of_a_grid_are_told_by_group() {
+fn val_words_of_a_grid_are_compared_by_group() {
     let factor = "[[factor]]\nkey = \"lubricant\"\nname = \"oil\"\nvalues = [\"dexron_ii\", \"cvtf_ezl799_class\"]\n\
         [[factor]]\nkey = \"ambient_degc\"\nname = \"air\"\nvalues = [-20, 0, 20]\n";
     let dir = folder(&format!(
@@ -287,7 +287,7 @@ fn another_draw_than_the_plans() {
     );
     let (_, other) = studied(dir.path(), &["--samples", "4", "--force"]);
     assert!(other[0]["engine.electrical_w"] != own[0]["engine.electrical_w"]);
-    for (design, words, code, told) in [
+    for (design, words, code, expected) in [
         (
             "[study.design.saltelli]\nsamples = 32\n",
             &["--samples", "1"][..],
@@ -328,8 +328,8 @@ fn another_draw_than_the_plans() {
         fs::write(dir.path().join("plan.toml"), plan(design)).unwrap();
         let output = ends(dir.path(), &[&["study", "plan.toml"], words].concat(), code);
         assert!(
-            stderr(&output).contains(told),
-            "{told} is not in {}",
+            stderr(&output).contains(expected),
+            "{expected} is not in {}",
             stderr(&output)
         );
         assert_eq!(output.stdout.is_empty(), code == 2);
@@ -337,7 +337,7 @@ fn another_draw_than_the_plans() {
     assert!(stderr(&ends(dir.path(), &["study"], 2)).contains("no plan is named"));
 }
 
-/// What is there of an unfinished study is told, with how much is missing.
+/// The finished part of an unfinished study is reported, with how much is missing.
 #[test]
 fn an_unfinished_study_can_be_shown() {
     let dir = folder(&plan("[study.design.monte_carlo]\nsamples = 400\n"));

@@ -116,7 +116,7 @@ fn wait_for_parts(child: &mut Child, dir: &Path, count: usize) {
 }
 
 /// The property that resuming rests on: killed again and again, at moments that move through the writing of a part, a study ends with
-/// the bytes of one that nobody disturbed; and one thread gives the bytes of three.
+/// the bytes of an undisturbed one; and one thread gives the bytes of three.
 #[test]
 fn killed_at_many_moments_it_ends_with_the_same_bytes() {
     let dir = folder(&PLAN);
@@ -323,11 +323,11 @@ values = [2.2, 2.417]
     );
     let failed = answer["runs"]["failed"].as_u64().unwrap();
     let words = String::from_utf8(ends(dir.path(), &["study", "show", "out"], 1).stdout).unwrap();
-    let told = format!(
+    let message = format!(
         "{} runs are left out ({failed} failed a check, 3 could not be run)",
         failed + 3
     );
-    assert!(words.contains(&told), "{told} is not in {words}");
+    assert!(words.contains(&message), "{message} is not in {words}");
     ends(
         dir.path(),
         &["study", "export", "out", "--out", "runs.csv"],
@@ -497,7 +497,7 @@ cars = "all"
 values = [1]
 "#;
     let dir = folder(plan);
-    let told = stderr(&ends(
+    let message = stderr(&ends(
         dir.path(),
         &["study", "plan.toml", "--out", "out"],
         2,
@@ -510,19 +510,19 @@ values = [1]
         "rover_216_5mt",
         "plan.toml:14",
     ] {
-        assert!(told.contains(words), "{words} in\n{told}");
+        assert!(message.contains(words), "{words} in\n{message}");
     }
     assert!(!dir.path().join("out").exists());
     let large = PLAN.replace("samples = 5000", "samples = 60000");
     let dir = folder(&large);
-    let told = stderr(&ends(
+    let message = stderr(&ends(
         dir.path(),
         &["study", "plan.toml", "--out", "out"],
         2,
     ));
     assert!(
-        told.contains("120000 runs") && told.contains("--yes"),
-        "{told}"
+        message.contains("120000 runs") && message.contains("--yes"),
+        "{message}"
     );
     assert!(!dir.path().join("out").exists());
 }
@@ -537,7 +537,7 @@ fn resume_wants_the_same_study() {
         &["study", "plan.toml", "--out", "out", "--quiet"],
         0,
     );
-    let told = stderr(&ends(
+    let message = stderr(&ends(
         dir.path(),
         &[
             "study",
@@ -550,33 +550,33 @@ fn resume_wants_the_same_study() {
         ],
         2,
     ));
-    assert!(told.contains("seed"), "{told}");
-    let told = stderr(&ends(
+    assert!(message.contains("seed"), "{message}");
+    let message = stderr(&ends(
         dir.path(),
         &["study", "plan.toml", "--out", "out"],
         2,
     ));
     assert!(
-        told.contains("--resume") && told.contains("--force"),
-        "{told}"
+        message.contains("--resume") && message.contains("--force"),
+        "{message}"
     );
     fs::write(
         dir.path().join("minute.csv"),
         CYCLE.replace("70,road", "71,road"),
     )
     .unwrap();
-    let told = stderr(&ends(
+    let message = stderr(&ends(
         dir.path(),
         &["study", "plan.toml", "--out", "out", "--resume"],
         2,
     ));
-    assert!(told.contains("cycles"), "{told}");
-    let told = stderr(&ends(
+    assert!(message.contains("cycles"), "{message}");
+    let message = stderr(&ends(
         dir.path(),
         &["study", "plan.toml", "--out", "nothing", "--resume"],
         2,
     ));
-    assert!(told.contains("there is no study"), "{told}");
+    assert!(message.contains("there is no study"), "{message}");
     ends(
         dir.path(),
         &["study", "plan.toml", "--out", "out", "--force", "--quiet"],
@@ -628,16 +628,16 @@ fn the_ambient_matrix() {
         roxmltree::Document::parse(&svg).unwrap();
         assert!(!svg.contains("NaN"), "{name}");
     }
-    let told = stderr(&ends(
+    let message = stderr(&ends(
         dir.path(),
         &["study", "ambient", "--ambient", "-10,80", "--start", "cold"],
         2,
     ));
     assert!(
-        told.contains("--ambient")
-            && told.contains("80")
-            && told.contains("--start")
-            && told.contains("cold"),
-        "{told}"
+        message.contains("--ambient")
+            && message.contains("80")
+            && message.contains("--start")
+            && message.contains("cold"),
+        "{message}"
     );
 }

@@ -130,7 +130,7 @@ fn golden() -> (Outputs, Vec<[f64; 2]>) {
     (Outputs(columns), indices.map(pair).collect())
 }
 
-/// The truth is SALib 1.6.0: `sobol.analyze` of the table beside it.
+/// The truth is SALib 1.6.0: `sobol.analyze` of the table in the same folder.
 #[test]
 fn val_indices_of_a_table_as_in_salib() {
     let (outputs, truth) = golden();

@@ -74,7 +74,7 @@ fn csv_has_units_in_its_header_and_all_rows() {
 }
 
 #[test]
-fn a_byte_order_mark_stands_where_a_letter_is_beyond_ascii() {
+fn a_byte_order_mark_is_written_where_a_letter_is_beyond_ascii() {
     let dir = TempDir::new().unwrap();
     for (name, word, marked) in [("plain", "a", false), ("umlaut", "Öl", true)] {
         let columns = [head("word", "", Kind::Text)];

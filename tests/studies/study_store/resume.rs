@@ -165,7 +165,7 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
         said.contains("`seed` is 7 there and 8 now (and 2 more values)"),
         "{said}"
     );
-    // A plan that is another one is told by its line, not by what follows from it.
+    // A plan that is another one is reported by its line, not by what follows from it.
     let mut other: Value = serde_json::from_slice(&manifest(PARTS)).unwrap();
     other["plan_sha256"] = "abc".into();
     let problem = StudyDir::resume(

@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A copy, and what stands in it.
+/// A copy, and its mutants.
 pub struct Copy {
     /// Where it is.
     pub root: PathBuf,

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// What stands at a place.
+/// The code at a place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// `left op right` of values: arithmetic.
@@ -78,7 +78,7 @@ pub struct Point {
     pub nth: usize,
     /// Bytes of the whole expression.
     pub span: Range<usize>,
-    /// What stands there.
+    /// The code there.
     pub shape: Shape,
     /// The original operator, method or expression.
     pub was: String,

@@ -134,7 +134,7 @@ fn numbers_in_range(mut bytes: Bytes, formulation: Formulation) {
         let comma = if names.is_empty() { "" } else { "," };
         let _ = write!(names, "{comma}{}", number.name);
         let _ = write!(row, "{comma}");
-        // A number that is not given stands at the vehicle's own.
+        // A number that is not given is the vehicle's own.
         if number.name.starts_with("output_torque") || comma.is_empty() || !bytes.one_in(4) {
             let _ = write!(row, "{value:?}");
         }

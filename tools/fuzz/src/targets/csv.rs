@@ -14,7 +14,7 @@ use cvtcycle::study::points::{self, Job, Model, Solved, Take};
 use super::within_memory;
 
 /// A refusal has at least one problem, and its words can be made.
-fn told<T>(answer: Result<T, Problems>) -> Option<T> {
+fn checked<T>(answer: Result<T, Problems>) -> Option<T> {
     answer
         .map_err(|problems| {
             assert!(!problems.is_empty(), "refused without a word");
@@ -25,7 +25,7 @@ fn told<T>(answer: Result<T, Problems>) -> Option<T> {
 
 pub fn cycle(data: &[u8]) {
     within_memory(data.len(), || {
-        let Some(cycle) = told(read_csv("fuzz.csv", data)) else {
+        let Some(cycle) = checked(read_csv("fuzz.csv", data)) else {
             return;
         };
         for automatic in [false, true] {
@@ -78,7 +78,7 @@ pub fn map(data: &[u8]) {
     };
     let bytes: Arc<[u8]> = rest.into();
     within_memory(rest.len(), || {
-        told(setup::read(
+        checked(setup::read(
             "fuzz.toml",
             cars[car],
             Box::new(Only(Arc::clone(&bytes))),
@@ -146,7 +146,7 @@ pub fn table_of_points(text: &[u8], formulation: Formulation) {
             formulation,
             rows: &mut look,
         };
-        told(points::read("fuzz.csv", text, job))
+        checked(points::read("fuzz.csv", text, job))
     });
 }
 
@@ -165,9 +165,11 @@ pub fn measured(data: &[u8]) {
         return;
     };
     let form = Form::ALL[usize::from(*which) % Form::ALL.len()];
-    within_memory(rest.len(), || told(data::check(form, "fuzz.csv", rest)));
+    within_memory(rest.len(), || checked(data::check(form, "fuzz.csv", rest)));
 }
 
 pub fn history(data: &[u8]) {
-    within_memory(data.len(), || told(History::read_csv("history.csv", data)));
+    within_memory(data.len(), || {
+        checked(History::read_csv("history.csv", data))
+    });
 }

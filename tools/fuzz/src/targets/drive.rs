@@ -104,10 +104,10 @@ fn car((name, words): (&str, &[&str])) -> Car {
     }
 }
 
-/// Whether cars and cycles are printed, for whoever looks into an input: `CVTCYCLE_FUZZ_TELL=1`.
+/// True if the car and the cycle of an input are printed: `CVTCYCLE_FUZZ_PRINT=1`.
 fn tells() -> bool {
     static TELLS: OnceLock<bool> = OnceLock::new();
-    *TELLS.get_or_init(|| std::env::var_os("CVTCYCLE_FUZZ_TELL").is_some())
+    *TELLS.get_or_init(|| std::env::var_os("CVTCYCLE_FUZZ_PRINT").is_some())
 }
 
 /// The car with its numbers moved; the first half of the changes, or of that half, where all of them make no possible car.

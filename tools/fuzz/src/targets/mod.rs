@@ -38,7 +38,7 @@ pub const TARGETS: [(&str, Target); 12] = [
 ];
 
 /// Memory that reading an input of so many bytes may hold at any time, bytes: a constant for the program's own files, which it may read
-/// beside the input, and a multiple of the input for its values with their places.
+/// in addition to the input, and a multiple of the input for its values with their places.
 #[must_use]
 pub fn most_bytes(input_len: usize) -> u64 {
     (16 << 20) + 1200 * input_len as u64

@@ -34,12 +34,12 @@ fn read<T>(bytes: &[u8], reader: impl Fn(&str) -> Result<T, Problems>) {
             Ok(text) => reader(&text).err(),
             Err(problems) => Some(problems),
         };
-        told(refused);
+        checked(refused);
     });
 }
 
 /// A refusal has at least one problem, and its words can be made.
-fn told(refused: Option<Problems>) {
+fn checked(refused: Option<Problems>) {
     if let Some(problems) = refused {
         assert!(!problems.is_empty(), "refused without a word");
         assert!(!render(&problems, false).is_empty());
@@ -92,6 +92,6 @@ pub fn overrides(data: &[u8]) {
         ..Options::default()
     };
     within_memory(rest.len(), || {
-        told(setup::load(name, "--vehicle", &options).err())
+        checked(setup::load(name, "--vehicle", &options).err())
     });
 }
