@@ -9,7 +9,8 @@ use std::ops::Range;
 use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::point::{Filler, Worker};
+use super::filler::Filler;
+use super::point::Worker;
 use super::prepare::Study;
 use super::progress::Progress;
 use super::table::Rows;

@@ -33,6 +33,7 @@ pub mod design;
 pub mod disk;
 pub mod execute;
 pub mod export;
+mod filler;
 pub mod manifest;
 pub mod outputs;
 pub mod plan;
