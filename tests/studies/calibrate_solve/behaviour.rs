@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cvtcycle::study::fit::solve::{
-    End, Fit, Options, Residuals, fit, leave_out, uncertainty, words,
+    Fit, FitEnd, Options, Residuals, fit, leave_out, not_identified, uncertainty,
 };
 use cvtcycle::study::{NoProgress, Progress};
 
@@ -31,7 +31,7 @@ fn steps_into_failing_regions_are_refused() {
         parameter("b", 0.1, [0.0, 10.0]),
     ];
     let found = fitted(&rooted([1.02, 1.9], 2.0), &parameters);
-    assert_eq!(found.end, End::Converged);
+    assert_eq!(found.end, FitEnd::Converged);
     assert!(
         near(found.values[0], 1.02, 1e-6) && near(found.values[1], 1.9, 1e-6),
         "{found:?}"
@@ -47,7 +47,7 @@ fn a_minimum_beyond_the_failing_edge_is_no_convergence() {
     let found = fitted(&rooted([2.0, 3.0], 2.0), &parameters);
     assert_eq!(
         (found.end, found.starts[0].failure.as_deref()),
-        (End::NoProgress, Some("no operating point above b = 2"))
+        (FitEnd::Stalled, Some("no operating point above b = 2"))
     );
     assert!(
         found.values[1] > 1.5 && found.values[1] <= 2.0 && found.cost < found_cost(&[2.0, 0.1]),
@@ -76,7 +76,7 @@ fn starts_that_fail_say_why_and_the_others_go_on() {
     let first = &found.starts[0];
     assert_eq!(
         (first.end, first.failure.as_deref(), first.evaluations),
-        (End::NoProgress, Some("no operating point above b = 2"), 1)
+        (FitEnd::Stalled, Some("no operating point above b = 2"), 1)
     );
     assert!(
         first.cost.is_infinite() && found.best != 0 && near(found.values[0], 3.0, 1e-6),
@@ -164,7 +164,7 @@ fn wave_fit(options: &Options) -> Fit {
 #[test]
 fn several_starts_find_the_better_minimum() {
     let (one, many) = (wave_fit(&ONCE), wave_fit(&Options { starts: 16, ..ONCE }));
-    assert_eq!(one.end, End::Converged);
+    assert_eq!(one.end, FitEnd::Converged);
     assert_eq!(many.starts[0], one.starts[0]);
     assert!(
         many.best != 0 && many.cost < 0.01 * one.cost && near(many.values[1], 2.3, 1e-2),
@@ -193,8 +193,8 @@ fn the_same_on_any_number_of_threads() {
 struct Patience(AtomicUsize, usize);
 
 impl Progress for Patience {
-    fn advance(&self, count: u64) {
-        self.0.fetch_add(count as usize, Ordering::Relaxed);
+    fn advance(&self, _: u64) {
+        self.0.fetch_add(1, Ordering::Relaxed);
     }
 
     fn stopped(&self) -> bool {
@@ -218,11 +218,11 @@ fn who_stops_keeps_the_best_so_far_and_limits_hold() {
     };
     let (whole, seen) = watched(usize::MAX);
     let whole = whole.expect("a fit");
-    assert_eq!((whole.evaluations, whole.end), (seen, End::Converged));
+    assert_eq!((whole.evaluations, whole.end), (seen, FitEnd::Converged));
     let (stopped, seen) = watched(14);
     let stopped = stopped.expect("the best so far");
     assert!(
-        stopped.end == End::Stopped && (14..=16).contains(&seen),
+        stopped.end == FitEnd::Stopped && (14..=16).contains(&seen),
         "{seen} {stopped:?}"
     );
     assert!(
@@ -237,7 +237,7 @@ fn who_stops_keeps_the_best_so_far_and_limits_hold() {
             && worth.dead.is_empty()
     );
     assert!(
-        words(&stopped, &parameters)
+        not_identified(&stopped, &parameters)
             .iter()
             .all(|sentence| sentence.contains("no derivative"))
     );
@@ -247,24 +247,29 @@ fn who_stops_keeps_the_best_so_far_and_limits_hold() {
         &model,
         &parameters,
         &Options {
-            most_evaluations: 12,
+            max_evaluations: 12,
             ..ONCE
         },
         &NoProgress,
     )
     .expect("the best so far");
-    assert_eq!(few.end, End::OutOfEvaluations);
+    assert_eq!(few.end, FitEnd::OutOfEvaluations);
     let mut before = f64::INFINITY;
-    for most_evaluations in 1..60 {
+    for max_evaluations in 1..60 {
         let limited = wave_fit(&Options {
-            most_evaluations,
+            max_evaluations,
             ..ONCE
         });
         let within = limited.starts[0].evaluations
-            <= most_evaluations + if limited.end == End::Converged { 4 } else { 0 };
+            <= max_evaluations
+                + if limited.end == FitEnd::Converged {
+                    4
+                } else {
+                    0
+                };
         assert!(
             limited.cost <= before && within,
-            "{most_evaluations}: {limited:?}"
+            "{max_evaluations}: {limited:?}"
         );
         before = limited.cost;
     }
@@ -322,7 +327,7 @@ fn groups_left_out_are_predicted_as_by_a_fit_by_hand() {
             .collect();
         assert_eq!(
             (fold.end, fold.failure, fold.residuals.len()),
-            (End::Converged, None, want.len())
+            (FitEnd::Converged, None, want.len())
         );
         assert!(
             want.iter()

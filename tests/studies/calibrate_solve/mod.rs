@@ -2,6 +2,7 @@
 
 mod behaviour;
 mod nist;
+mod starts;
 mod unidentified;
 mod worth;
 
@@ -37,13 +38,7 @@ fn curve(
 }
 
 fn parameter(name: &str, start: f64, [low, high]: [f64; 2]) -> Parameter {
-    Parameter {
-        name: name.into(),
-        start,
-        low,
-        high,
-        prior: None,
-    }
+    Parameter::new(name, start, low, high)
 }
 
 fn with_prior(parameter: Parameter, mean: f64, sd: f64) -> Parameter {
@@ -56,7 +51,7 @@ fn with_prior(parameter: Parameter, mean: f64, sd: f64) -> Parameter {
 const ONCE: Options = Options {
     starts: 1,
     seed: 1,
-    most_evaluations: 2000,
+    max_evaluations: 2000,
     tolerance: 1e-10,
 };
 

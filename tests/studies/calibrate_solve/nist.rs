@@ -1,7 +1,7 @@
 //! Statistical Reference Datasets of NIST, nonlinear regression (<https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml>, public domain): data,
 //! starts, certified values and certified standard deviations. These are scaled by the residual standard deviation, so it is the data's here.
 
-use cvtcycle::study::fit::solve::{End, uncertainty};
+use cvtcycle::study::fit::solve::{FitEnd, uncertainty};
 
 use super::{curve, fitted, near, parameter};
 
@@ -25,7 +25,7 @@ fn holds(truth: &Certified, f: fn(&[f64], f64) -> f64) {
             .collect();
         let found = fitted(&model, &parameters);
         let worth = uncertainty(&found, &parameters);
-        assert_eq!(found.end, End::Converged);
+        assert_eq!(found.end, FitEnd::Converged);
         for (k, (value, deviation)) in truth.values.iter().zip(truth.deviations).enumerate() {
             let error = worth.standard_error[k].expect("identified");
             // Derivatives are differences, so a minimum is met to a small part of what it is known by.

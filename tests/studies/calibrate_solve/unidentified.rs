@@ -1,6 +1,6 @@
 //! Set-ups that the data do not identify are called so, with a solver's noise in the model.
 
-use cvtcycle::study::fit::solve::{End, Parameter, Residuals, uncertainty, words};
+use cvtcycle::study::fit::solve::{FitEnd, Parameter, Residuals, not_identified, uncertainty};
 
 use super::{Model, fitted, parameter, with_prior};
 
@@ -30,8 +30,8 @@ fn noisy_at(sd: f64, f: fn(&[f64], f64) -> f64, truth: &'static [f64]) -> impl R
 
 fn said(f: fn(&[f64], f64) -> f64, truth: &'static [f64], parameters: &[Parameter]) -> Vec<String> {
     let found = fitted(&noisy(f, truth), parameters);
-    assert_eq!(found.end, End::Converged);
-    words(&found, parameters)
+    assert_eq!(found.end, FitEnd::Converged);
+    not_identified(&found, parameters)
 }
 
 fn several(names: &[&str]) -> Vec<Parameter> {
@@ -128,7 +128,7 @@ fn weak_and_dead_parameters_are_not_identified() {
     let model = noisy(|v, x| v[0] * x + 1e-4 * v[1] * x * x, &[1.0, 1.0]);
     let found = fitted(&model, &three);
     let worth = uncertainty(&found, &three);
-    let sentences = words(&found, &three);
+    let sentences = not_identified(&found, &three);
     assert_eq!(sentences.len(), 2, "{sentences:?}");
     assert!(
         sentences[0]
@@ -180,7 +180,7 @@ fn a_prior_gives_errors_but_the_data_still_say_nothing() {
             && worth.prior_share[1].is_some_and(|share| (share - 1.0).abs() < 1e-6)
     );
     assert_eq!(
-        words(&found, &two),
+        not_identified(&found, &two),
         ["pump and pressure: only their product is known"]
     );
 }
@@ -197,7 +197,7 @@ fn noise_is_not_taken_for_knowledge_where_data_are_very_precise() {
         worth.directions
     );
     assert_eq!(
-        words(&found, &two),
+        not_identified(&found, &two),
         ["pump and pressure: only their product is known"]
     );
 }

@@ -1,6 +1,6 @@
 //! Bounds, priors and intervals against closed forms and counting.
 
-use cvtcycle::study::fit::solve::{Bound, End, uncertainty};
+use cvtcycle::study::fit::solve::{Bound, FitEnd, uncertainty};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use statrs::distribution::{Binomial, ChiSquared, ContinuousCDF, DiscreteCDF, Normal};
@@ -34,7 +34,7 @@ fn val_an_active_bound_leaves_the_linear_fit_of_the_other() {
             let worth = uncertainty(&found, &parameters);
             assert_eq!(
                 (found.end, found.values[1].to_bits()),
-                (End::Converged, held.to_bits()),
+                (FitEnd::Converged, held.to_bits()),
                 "{found:?}"
             );
             assert_eq!(

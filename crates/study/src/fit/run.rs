@@ -4,10 +4,10 @@ use sha2::{Digest, Sha256};
 
 use super::model::{Answer, Model};
 use super::outcome::{self, Direction, Fold, Outcome, Residual, SCHEMA, Start, rms};
-use super::plan::{Measured, Plan, What, problem};
-use super::solve::{self, Bound, End, Fit, Options, Uncertainty};
+use super::plan::{Measured, Plan, What};
+use super::solve::{self, Bound, Failure, Fit, FitEnd, Options, Uncertainty};
 use crate::progress::Progress;
-use cvtcycle_config::{ProblemKind, Problems};
+use cvtcycle_config::{Problem, Problems};
 
 /// Probability below which the data scatter more than their standard deviations say.
 const UNLIKELY: f64 = 0.01;
@@ -26,21 +26,12 @@ pub fn calibrate(plan: &Plan, progress: &dyn Progress) -> Result<Outcome, Proble
     let options = Options {
         starts: search.starts,
         seed: search.seed,
-        most_evaluations: search.most_evaluations,
+        max_evaluations: search.max_evaluations,
         tolerance: search.tolerance,
     };
-    let fit = solve::fit(&model, model.parameters(), &options, progress).map_err(|failure| {
-        let hint = "leave out data where the model has no number; the first start is at the values of the files";
-        // Each cause once: the starts and their many values say no more.
-        let whys = failure.starts.iter().filter_map(|start| start.failure.clone());
-        let mut whys: Vec<String> = if failure.starts.is_empty() { failure.reasons } else { whys.collect() };
-        whys.sort();
-        whys.dedup();
-        let kind = if progress.stopped() { ProblemKind::Stopped } else { ProblemKind::Failed };
-        let no_answer = |why| problem(&plan.place, "", "", format!("the model has no answer: {why}"), hint).kind(kind);
-        whys.into_iter().map(no_answer).collect::<Problems>()
-    })?;
-    let folds = if search.leave_out && plan.folds.len() > 1 && fit.end != End::Stopped {
+    let fit = solve::fit(&model, model.parameters(), &options, progress)
+        .map_err(|failure| problems_of(failure, plan))?;
+    let folds = if search.leave_out && plan.folds.len() > 1 && fit.end != FitEnd::Stopped {
         let groups: Vec<usize> = plan
             .observations
             .iter()
@@ -66,6 +57,27 @@ pub fn calibrate(plan: &Plan, progress: &dyn Progress) -> Result<Outcome, Proble
     .outcome())
 }
 
+/// Each cause of a fit without result once, whatever the number of starts with it.
+fn problems_of(failure: Failure, plan: &Plan) -> Problems {
+    if failure.is_stop() {
+        return Problem::stopped("stopped before the model gave an answer").into();
+    }
+    let mut causes = failure.reasons;
+    if !failure.starts.is_empty() {
+        let starts = failure.starts.into_iter();
+        causes = starts.filter_map(|start| start.failure).collect();
+    }
+    causes.sort();
+    causes.dedup();
+    let hint = "leave out data where the model has no number; the first start is at the values of the files";
+    let problem = |why: String| {
+        Problem::failed(format!("the model has no answer: {why}"))
+            .at(plan.place.clone())
+            .hint(hint)
+    };
+    causes.into_iter().map(problem).collect()
+}
+
 /// A finished fit with its model.
 struct Found<'m> {
     model: &'m Model<'m>,
@@ -87,7 +99,7 @@ impl Found<'_> {
             .filter_map(|p| p.prior.map(|[mean, sd]| (p.file_value - mean) / sd)));
         let mut outcome = Outcome {
             schema: SCHEMA,
-            program: cvtcycle_output::PROGRAM.to_owned(),
+            program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")).to_owned(),
             title: plan.title.clone(),
             plan: plan.file.clone(),
             plan_sha256: Sha256::digest(plan.text.as_bytes())
@@ -100,8 +112,8 @@ impl Found<'_> {
                 .map(|(path, hash)| [path.clone(), hash.clone()])
                 .collect(),
             vehicle: plan.vehicle.clone(),
-            end: end_words(fit.end).to_owned(),
-            converged: fit.end == End::Converged,
+            end: fit.end.name().to_owned(),
+            converged: fit.end == FitEnd::Converged,
             cost_before: residuals
                 .iter()
                 .map(|r| r.before_sd)
@@ -125,7 +137,7 @@ impl Found<'_> {
                     weights: d.weights.clone(),
                 })
                 .collect(),
-            not_identified: solve::words(fit, self.model.parameters()),
+            not_identified: solve::not_identified(fit, self.model.parameters()),
             folds: Vec::new(),
             starts: fit.starts.iter().map(start).collect(),
             evaluations: fit.evaluations,
@@ -241,7 +253,7 @@ impl Found<'_> {
                 end: fold
                     .failure
                     .clone()
-                    .unwrap_or_else(|| end_words(fold.end).to_owned()),
+                    .unwrap_or_else(|| fold.end.name().to_owned()),
                 name,
             }
         };
@@ -249,20 +261,10 @@ impl Found<'_> {
     }
 }
 
-/// How a search ended, in words.
-fn end_words(end: End) -> &'static str {
-    match end {
-        End::Converged => "converged",
-        End::OutOfEvaluations => "out of evaluations",
-        End::Stopped => "stopped",
-        End::NoProgress => "no progress",
-    }
-}
-
 fn start(start: &solve::Start) -> Start {
     let end = start.failure.as_ref().map_or_else(
-        || end_words(start.end).to_owned(),
-        |why| format!("{}: {why}", end_words(start.end)),
+        || start.end.name().to_owned(),
+        |why| format!("{}: {why}", start.end.name()),
     );
     Start {
         from: start.from.clone(),

@@ -2,10 +2,11 @@
 
 use std::rc::Rc;
 
-use super::reduce::reduce;
-use super::{Expr, Function, Gives, Order, Reduction, Table};
+use super::functions::{Form, truth};
+use super::reduce::{Point, Points, Table, least, most, short};
+use super::syntax::{Expr, Gives, Order, Reduce};
 
-/// Where the numbers come from.
+/// Source of the numbers.
 pub trait Tables {
     /// The table of a source, or of its totals.
     ///
@@ -19,10 +20,10 @@ pub trait Tables {
     /// Why there is none.
     fn key(&self, source: Option<usize>, path: &str, item: Option<usize>) -> Result<f64, String>;
 
-    /// Takes note of rows of a source that would count but for gross slip.
+    /// Records rows of a source that would count but for gross slip.
     fn left_out(&self, rows: usize);
 
-    /// Takes note of rows that count though they lie outside the validity of a model.
+    /// Records rows that count although they lie outside the validity of a model.
     fn outside(&self, rows: usize);
 }
 
@@ -33,17 +34,17 @@ pub enum Computed {
     Number(f64),
     /// From the smallest to the largest.
     Range(f64, f64),
-    /// Whether an order or sign holds, and the numbers behind it.
+    /// True if an order or sign holds, and the numbers behind it.
     Truth(bool, String),
 }
 
-/// Where an expression is computed: the row of the table around it, the variables of the loops around it.
-pub struct Here<'a> {
-    pub tables: &'a dyn Tables,
-    pub row: Option<(&'a Table, usize)>,
-    pub variables: Vec<f64>,
-    /// Whether rows at gross slip are noted; they are once, not again for the numbers behind a truth.
-    pub noting: bool,
+/// Context of an evaluation: the row of the innermost table, the variables of the loops.
+struct Context<'a> {
+    tables: &'a dyn Tables,
+    row: Option<(&'a Table, usize)>,
+    variables: Vec<f64>,
+    /// True while rows at gross slip are recorded: once, not again for the numbers behind a truth.
+    recording: bool,
 }
 
 /// Computes an expression.
@@ -51,38 +52,28 @@ pub struct Here<'a> {
 /// # Errors
 /// A sentence: no such row, no number.
 pub fn compute(expr: &Expr, tables: &dyn Tables) -> Result<Computed, String> {
-    let mut here = Here {
+    let mut context = Context {
         tables,
         row: None,
         variables: Vec::new(),
-        noting: true,
+        recording: true,
     };
     match expr.gives() {
-        Gives::Number => Ok(Computed::Number(finite(here.eval(expr)?)?)),
+        Gives::Number => Ok(Computed::Number(finite(context.eval(expr)?)?)),
         Gives::Truth => {
-            let holds = here.eval(expr)? > 0.5;
-            here.noting = false;
-            Ok(Computed::Truth(holds, here.behind(expr)))
+            let holds = context.eval(expr)? > 0.5;
+            context.recording = false;
+            Ok(Computed::Truth(holds, context.behind(expr)))
         }
         Gives::Range => {
-            let values = match expr {
-                Expr::Loop(_, list, body) => here.looped(list, body)?,
+            let (low, high) = match expr {
+                Expr::Loop(_, list, body) => ends(context.looped(list, body)?.into_iter()),
                 Expr::Reduce(r) => {
-                    let mut low = r.clone();
-                    low.kind = Reduction::Min;
-                    let mut high = r.clone();
-                    high.kind = Reduction::Max;
-                    let low = here.eval(&Expr::Reduce(low))?;
-                    here.noting = false;
-                    vec![low, here.eval(&Expr::Reduce(high))?]
+                    let points = context.points(r)?;
+                    (points.min(), points.max())
                 }
-                _ => Vec::new(),
+                _ => (f64::NAN, f64::NAN),
             };
-            let (low, high) = values
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
-                    (least(*x, l), most(*x, h))
-                });
             Ok(Computed::Range(finite(low)?, finite(high)?))
         }
     }
@@ -96,29 +87,19 @@ fn finite(x: f64) -> Result<f64, String> {
     }
 }
 
-/// The smaller number; NaN if one is NaN.
-pub fn least(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a < b { a } else { b }
+fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let both = (f64::INFINITY, f64::NEG_INFINITY);
+    values.fold(both, |(low, high), x| (least(x, low), most(x, high)))
 }
 
-/// The larger number; NaN if one is NaN.
-pub fn most(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
-}
-
-fn truth(holds: bool) -> f64 {
-    f64::from(u8::from(holds))
-}
-
-impl Here<'_> {
+impl Context<'_> {
     /// The number of an expression; 1 and 0 for yes and no.
-    pub fn eval(&mut self, expr: &Expr) -> Result<f64, String> {
+    fn eval(&mut self, expr: &Expr) -> Result<f64, String> {
         Ok(match expr {
             Expr::Number(x) => *x,
-            Expr::Column(k) => match self.row {
-                Some((table, row)) => table.columns[*k][row],
-                None => f64::NAN,
-            },
+            Expr::Column(k) => self
+                .row
+                .map_or(f64::NAN, |(table, row)| table.columns[*k][row]),
             Expr::Variable(k) => self.variables.get(*k).copied().unwrap_or(f64::NAN),
             Expr::Previous(inner) => match self.row {
                 Some((table, row)) if row > 0 => {
@@ -135,15 +116,18 @@ impl Here<'_> {
             Expr::Compare(list, orders) => self.compare(list, orders)?,
             Expr::And(list) => self.both(list, true)?,
             Expr::Or(list) => self.both(list, false)?,
-            Expr::Call(function, list) => {
-                let values: Result<Vec<f64>, String> =
-                    list.iter().map(|part| self.eval(part)).collect();
-                call(*function, &values?)
+            Expr::Call(function, list) => (function.compute)(&self.all(list)?),
+            Expr::Reduce(r) => {
+                let points = self.points(r)?;
+                (r.of.compute)(points)?
             }
-            Expr::Reduce(r) => reduce(self, r)?,
             Expr::Loop(_, list, body) => truth(self.looped(list, body)?.iter().all(|x| *x > 0.5)),
             Expr::Key(source, path, item) => self.tables.key(*source, path, *item)?,
         })
+    }
+
+    fn all(&mut self, list: &[Expr]) -> Result<Vec<f64>, String> {
+        list.iter().map(|part| self.eval(part)).collect()
     }
 
     fn both(&mut self, list: &[Expr], all: bool) -> Result<f64, String> {
@@ -156,17 +140,14 @@ impl Here<'_> {
     }
 
     fn compare(&mut self, list: &[Expr], orders: &[Order]) -> Result<f64, String> {
-        let values: Result<Vec<f64>, String> = list.iter().map(|part| self.eval(part)).collect();
-        let values = values?;
+        let values = self.all(list)?;
         // Within a table a row without the number does not count; outside of one a missing number must not pass for a "no".
         if self.row.is_none() && values.iter().any(|x| x.is_nan()) {
             return Err("a number of the comparison does not exist".to_owned());
         }
+        let mut pairs = values.windows(2).zip(orders);
         Ok(truth(
-            values
-                .windows(2)
-                .zip(orders)
-                .all(|(pair, order)| order.holds(pair[0], pair[1])),
+            pairs.all(|(pair, order)| order.holds(pair[0], pair[1])),
         ))
     }
 
@@ -182,17 +163,73 @@ impl Here<'_> {
         Ok(found)
     }
 
+    /// The rows that a reduction uses, checked.
+    fn points(&mut self, r: &Reduce) -> Result<Points, String> {
+        let table = self.tables.table(r.source, r.of.form == Form::Total)?;
+        let points = self.rows(r, &table)?;
+        let is_condition = r.of.form == Form::Condition;
+        if points.is_empty() && !matches!(r.of.name, "count" | "any") {
+            let gross = table.gross.iter().filter(|gross| **gross).count();
+            let left_out = if gross > 0 {
+                format!("; {gross} rows of the source are at gross slip and left out")
+            } else {
+                String::new()
+            };
+            return Err(format!("no row is left to look at{left_out}"));
+        }
+        if !is_condition && points.iter().any(|p| p.value.is_nan() || p.over.is_nan()) {
+            return Err("a row has no number there".to_owned());
+        }
+        let at = r.at.as_ref().map_or(Ok(f64::NAN), |at| self.eval(at))?;
+        Ok(Points(points, at))
+    }
+
+    fn rows(&mut self, r: &Reduce, table: &Table) -> Result<Vec<Point>, String> {
+        let mut found = Vec::new();
+        let (mut left_out, mut outside) = (0, 0);
+        let mut inner = Context {
+            tables: self.tables,
+            row: None,
+            variables: self.variables.clone(),
+            recording: self.recording,
+        };
+        for row in 0..table.columns.first().map_or(0, Vec::len) {
+            inner.row = Some((table, row));
+            if let Some(filter) = &r.filter
+                && inner.eval(filter)? <= 0.5
+            {
+                continue;
+            }
+            if table.gross.get(row) == Some(&true) {
+                left_out += 1;
+                continue;
+            }
+            outside += usize::from(table.outside.get(row) == Some(&true));
+            found.push(Point {
+                value: inner.eval(&r.value)?,
+                over: r.over.as_ref().map_or(Ok(0.0), |over| inner.eval(over))?,
+                weight: table.weight.get(row).copied().unwrap_or(1.0),
+                group: inner.all(&r.by)?,
+            });
+        }
+        if self.recording {
+            self.tables.left_out(left_out);
+            self.tables.outside(outside);
+        }
+        Ok(found)
+    }
+
+    fn text(&mut self, expr: &Expr) -> String {
+        self.eval(expr).map_or_else(|_| "-".into(), short)
+    }
+
     /// The numbers behind a truth.
     fn behind(&mut self, expr: &Expr) -> String {
         match expr {
             Expr::Compare(list, orders) => {
-                let numbers: Vec<String> = list
-                    .iter()
-                    .map(|part| self.eval(part).map_or_else(|_| "-".into(), short))
-                    .collect();
-                let mut text = numbers[0].clone();
-                for (order, number) in orders.iter().zip(&numbers[1..]) {
-                    text += &format!(" {} {number}", order.sign());
+                let mut text = self.text(&list[0]);
+                for (order, part) in orders.iter().zip(&list[1..]) {
+                    text += &format!(" {} {}", order.sign(), self.text(part));
                 }
                 text
             }
@@ -211,9 +248,26 @@ impl Here<'_> {
                 }
                 parts.join("; ")
             }
-            Expr::Reduce(r) => super::reduce::behind(self, r),
-            other => self.eval(other).map_or_else(|_| "-".into(), short),
+            Expr::Reduce(r) if r.of.gives == Gives::Truth => self.behind_rows(r),
+            other => self.text(other),
         }
+    }
+
+    /// The numbers behind a truth over rows.
+    fn behind_rows(&mut self, r: &Reduce) -> String {
+        let Ok(table) = self.tables.table(r.source, false) else {
+            return "-".to_owned();
+        };
+        let Ok(rows) = self.rows(r, &table) else {
+            return "-".to_owned();
+        };
+        let points = Points(rows, f64::NAN);
+        let count = points.0.len();
+        if r.of.form == Form::Condition {
+            return format!("{} of {count} rows", points.met().count());
+        }
+        let (low, high) = (short(points.min()), short(points.max()));
+        format!("{low} to {high} over {count} rows")
     }
 }
 
@@ -247,47 +301,5 @@ fn binary(sign: char, a: f64, b: f64) -> f64 {
         '*' => a * b,
         '/' => a / b,
         _ => a.powf(b),
-    }
-}
-
-fn call(function: Function, list: &[f64]) -> f64 {
-    let x = list.first().copied().unwrap_or(f64::NAN);
-    match function {
-        Function::Abs => x.abs(),
-        Function::Sqrt => x.sqrt(),
-        Function::Ln => x.ln(),
-        Function::Exp => x.exp(),
-        Function::Sin => x.to_radians().sin(),
-        Function::Cos => x.to_radians().cos(),
-        Function::Tan => x.to_radians().tan(),
-        Function::Min => list.iter().copied().fold(f64::INFINITY, least),
-        Function::Max => list.iter().copied().fold(f64::NEG_INFINITY, most),
-    }
-}
-
-/// A number with four significant figures. What is below 1e-9 is rounding in every unit of the rows and shown as 0.
-#[must_use]
-pub fn short(x: f64) -> String {
-    let size = x.abs();
-    if !x.is_finite() {
-        return "-".to_owned();
-    }
-    if size < 1e-9 {
-        return "0".to_owned();
-    }
-    if !(1e-3..1e6).contains(&size) {
-        return format!("{x:.3e}");
-    }
-    let whole = if size >= 1.0 {
-        size.log10().floor() as i32 + 1
-    } else {
-        0
-    };
-    let decimals = usize::try_from((4 - whole).clamp(0, 4)).unwrap_or(0);
-    let text = format!("{x:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
     }
 }

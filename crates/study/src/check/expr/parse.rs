@@ -1,85 +1,43 @@
-//! Words to an expression, every name looked up on the way.
+//! Tokens to an expression; every name is looked up on the way.
 
-use super::words::{What, Word, words};
-use super::{Expr, Fault, Gives, Order};
+use super::functions::{FUNCTIONS, Form, REDUCTIONS, Reduction, function, reduction};
+use super::lexer::{Token, TokenKind};
+use super::parser::{Names, Parser, fault};
+use super::syntax::{Expr, Fault, Gives, Loop, Order, Reduce};
 use cvtcycle_config::near;
 
-/// The names that an expression may use.
-pub trait Names {
-    /// Names of all sources.
-    fn sources(&self) -> Vec<&str>;
-    /// Columns of a source, or of its totals.
-    fn columns(&self, source: usize, totals: bool) -> Vec<&'static str>;
-    /// Known keys of vehicles and fluids.
-    fn keys(&self) -> &[String];
-}
-
-/// Brackets may nest this deep: more than anyone writes, few enough to recurse over.
-const DEEPEST: usize = 40;
-
-/// The state of the parsing.
-pub struct Parser<'a> {
-    pub(super) words: Vec<Word>,
-    pub(super) next: usize,
-    pub(super) names: &'a dyn Names,
-    /// Columns in force, innermost reduction last.
-    pub(super) scopes: Vec<Vec<&'static str>>,
-    pub(super) variables: Vec<String>,
-    depth: usize,
-    /// Unknown names, which do not stop the parsing.
-    pub(super) faults: Vec<Fault>,
-}
-
+/// Deepest nesting of brackets, which limits the recursion.
+const MAX_DEPTH: usize = 40;
 /// Parses a text.
 ///
 /// # Errors
 /// All unknown names, or the first place that cannot be read.
 pub fn parse(text: &str, names: &dyn Names) -> Result<Expr, Vec<Fault>> {
-    let words = words(text).map_err(|fault| vec![fault])?;
-    let mut parser = Parser {
-        words,
-        next: 0,
-        names,
-        scopes: Vec::new(),
-        variables: Vec::new(),
-        depth: 0,
-        faults: Vec::new(),
-    };
-    let result = parser.any_of().and_then(|expr| {
-        if parser.peek() == &What::End {
-            Ok(expr)
-        } else {
-            Err(parser.unexpected("an operator or the end"))
-        }
+    let mut parser = Parser::new(text, names).map_err(|fault| vec![fault])?;
+    let result = parser.any_of().and_then(|expr| match parser.peek() {
+        TokenKind::End => Ok(expr),
+        _ => Err(parser.unexpected("an operator or the end")),
     });
     match result {
-        Ok(expr) if parser.faults.is_empty() => {
-            lone_ranges(&expr, true).map(|()| expr).map_err(|message| {
-                vec![Fault {
-                    at: 0,
-                    width: text.chars().count().max(1),
-                    word: text.to_owned(),
-                    message,
-                    hint: "use min(...) or max(...) within a larger expression".to_owned(),
-                }]
-            })
-        }
+        Ok(expr) if parser.faults.is_empty() && has_inner_range(&expr) => Err(vec![Fault {
+            at: 0,
+            width: text.chars().count().max(1),
+            word: text.to_owned(),
+            message: "`range` and `span` stand alone, they are no number to go on with".to_owned(),
+            hint: "use min(...) or max(...) within a larger expression".to_owned(),
+        }]),
+        Ok(expr) if parser.faults.is_empty() => Ok(expr),
         Ok(_) => Err(parser.faults),
         Err(fault) => Err(parser.faults.into_iter().chain([fault]).collect()),
     }
 }
 
-/// A range may only be the whole expression: nothing can be computed with it.
-fn lone_ranges(expr: &Expr, top: bool) -> Result<(), String> {
-    if !top && expr.gives() == Gives::Range {
-        return Err("`range` and `span` stand alone, they are no number to go on with".to_owned());
-    }
-    let parts: Vec<&Expr> = match expr {
-        Expr::Previous(a) | Expr::Negate(a) | Expr::Not(a) | Expr::Loop(_, _, a) => vec![a],
-        Expr::Binary(_, a, b) => vec![a, b],
-        Expr::Compare(list, _) | Expr::And(list) | Expr::Or(list) | Expr::Call(_, list) => {
-            list.iter().collect()
-        }
+/// True if a range is part of a larger expression: nothing can be computed with it.
+fn has_inner_range(expr: &Expr) -> bool {
+    let is_range = |part: &Expr| part.gives() == Gives::Range || has_inner_range(part);
+    // The numbers of a loop and the columns of groups are not computed with.
+    match expr {
+        Expr::Loop(_, _, body) => is_range(body),
         Expr::Reduce(r) => [
             Some(&r.value),
             r.over.as_ref(),
@@ -88,137 +46,52 @@ fn lone_ranges(expr: &Expr, top: bool) -> Result<(), String> {
         ]
         .into_iter()
         .flatten()
-        .collect(),
-        Expr::Number(_) | Expr::Column(_) | Expr::Variable(_) | Expr::Key(..) => Vec::new(),
-    };
-    parts
-        .into_iter()
-        .try_for_each(|part| lone_ranges(part, false))
+        .any(is_range),
+        _ => expr.parts().into_iter().any(is_range),
+    }
+}
+
+/// A single part as it is, several as a list.
+fn one_or(mut list: Vec<Expr>, several: fn(Vec<Expr>) -> Expr) -> Expr {
+    if list.len() > 1 {
+        several(list)
+    } else {
+        list.remove(0)
+    }
 }
 
 impl Parser<'_> {
-    pub(super) fn peek(&self) -> &What {
-        self.words
-            .get(self.next)
-            .map_or(&What::End, |word| &word.what)
-    }
-
-    pub(super) fn word(&self) -> Word {
-        self.words.get(self.next).cloned().unwrap_or(Word {
-            what: What::End,
-            at: 0,
-            width: 1,
-        })
-    }
-
-    pub(super) fn take(&mut self, sign: &str) -> bool {
-        let found = matches!(self.peek(), What::Sign(s) if *s == sign);
-        self.next += usize::from(found);
-        found
-    }
-
-    pub(super) fn take_name(&mut self, name: &str) -> bool {
-        let found = matches!(self.peek(), What::Name(n) if n == name);
-        self.next += usize::from(found);
-        found
-    }
-
-    pub(super) fn need(&mut self, sign: &str) -> Result<(), Fault> {
-        if self.take(sign) {
-            Ok(())
-        } else {
-            Err(self.unexpected(&format!("`{sign}`")))
-        }
-    }
-
-    pub(super) fn unexpected(&self, wanted: &str) -> Fault {
-        let word = self.word();
-        let text = match &word.what {
-            What::Number(x) => x.to_string(),
-            What::Name(name) => name.clone(),
-            What::Sign(sign) => (*sign).to_owned(),
-            What::End => String::new(),
-        };
-        let found = if text.is_empty() {
-            "the end".to_owned()
-        } else {
-            format!("`{text}`")
-        };
-        let message = format!("expected {wanted}, found {found}");
-        Fault {
-            at: word.at,
-            width: word.width,
-            word: text,
-            message,
-            hint: String::new(),
-        }
-    }
-
-    /// Notes an unknown name and goes on.
-    pub(super) fn unknown(&mut self, word: &Word, name: &str, what: &str, known: &[&str]) {
-        let close = near(name, known.iter().copied());
-        let quoted: Vec<String> = close.iter().map(|n| format!("`{n}`")).collect();
-        let hint = match (close.is_empty(), known.len()) {
-            (false, _) => format!("did you mean {}?", quoted.join(" or ")),
-            (true, 0) => String::new(),
-            (true, _) => format!(
-                "known here: {}",
-                known
-                    .iter()
-                    .take(40)
-                    .copied()
-                    .collect::<Vec<_>>()
-                    .join(", ")
-            ),
-        };
-        self.faults.push(Fault {
-            at: word.at,
-            width: word.width,
-            word: name.to_owned(),
-            message: format!("{what} `{name}` is not known"),
-            hint,
-        });
-    }
-
-    pub(super) fn any_of(&mut self) -> Result<Expr, Fault> {
+    fn any_of(&mut self) -> Result<Expr, Fault> {
         self.depth += 1;
-        if self.depth > DEEPEST {
+        if self.depth > MAX_DEPTH {
             return Err(Fault {
                 message: "brackets nest too deep".to_owned(),
                 ..self.unexpected("")
             });
         }
         let mut list = vec![self.all_of()?];
-        while self.take_name("or") {
+        while self.take_word("or") {
             list.push(self.all_of()?);
         }
         self.depth -= 1;
-        Ok(if list.len() > 1 {
-            Expr::Or(list)
-        } else {
-            list.remove(0)
-        })
+        Ok(one_or(list, Expr::Or))
     }
 
     fn all_of(&mut self) -> Result<Expr, Fault> {
-        let mut list = vec![self.compared()?];
-        while self.take_name("and") {
-            list.push(self.compared()?);
+        let mut list = vec![self.negated()?];
+        while self.take_word("and") {
+            list.push(self.negated()?);
         }
-        Ok(if list.len() > 1 {
-            Expr::And(list)
-        } else {
-            list.remove(0)
-        })
+        Ok(one_or(list, Expr::And))
     }
 
-    fn compared(&mut self) -> Result<Expr, Fault> {
-        let mut denied = false;
-        while self.take_name("not") {
-            denied = !denied;
+    fn negated(&mut self) -> Result<Expr, Fault> {
+        let mut negated = false;
+        while self.take_word("not") {
+            negated = !negated;
         }
         let inner = self.chain()?;
-        Ok(if denied {
+        Ok(if negated {
             Expr::Not(Box::new(inner))
         } else {
             inner
@@ -249,10 +122,8 @@ impl Parser<'_> {
             ("<", Order::Less),
             (">", Order::More),
         ];
-        orders
-            .into_iter()
-            .find(|(sign, _)| self.take(sign))
-            .map(|(_, order)| order)
+        let found = orders.into_iter().find(|(sign, _)| self.take(sign));
+        found.map(|(_, order)| order)
     }
 
     fn binary(
@@ -263,16 +134,13 @@ impl Parser<'_> {
         let mut left = part(self)?;
         while let Some(sign) = signs.iter().find(|sign| self.take(sign)) {
             let right = part(self)?;
-            left = Expr::Binary(
-                sign.chars().next().unwrap_or('+'),
-                Box::new(left),
-                Box::new(right),
-            );
+            let sign = sign.chars().next().unwrap_or('+');
+            left = Expr::Binary(sign, Box::new(left), Box::new(right));
         }
         Ok(left)
     }
 
-    pub(super) fn sum(&mut self) -> Result<Expr, Fault> {
+    fn sum(&mut self) -> Result<Expr, Fault> {
         self.binary(&["+", "-"], Self::product)
     }
 
@@ -281,7 +149,7 @@ impl Parser<'_> {
     }
 
     fn signed(&mut self) -> Result<Expr, Fault> {
-        // A row of signs is counted, not recursed over.
+        // A sequence of signs is counted, without recursion.
         let mut minus = false;
         while self.take("-") {
             minus = !minus;
@@ -295,56 +163,187 @@ impl Parser<'_> {
     }
 
     fn atom(&mut self) -> Result<Expr, Fault> {
-        let word = self.word();
-        match &word.what {
-            What::Number(x) => {
-                self.next += 1;
-                Ok(Expr::Number(*x))
-            }
-            What::Sign("(") => {
-                self.next += 1;
-                let inner = self.any_of()?;
-                self.need(")")?;
-                Ok(inner)
-            }
-            What::Name(name) => {
-                self.next += 1;
-                if self.take("(") {
-                    let inner = self.called(&word, name)?;
-                    self.need(")")?;
-                    return Ok(inner);
-                }
-                Ok(self.named(&word, name))
-            }
-            _ => Err(self.unexpected("a number, a name or a bracket")),
+        if let TokenKind::Number(x) = *self.peek() {
+            self.next += 1;
+            return Ok(Expr::Number(x));
         }
+        if self.take("(") {
+            let inner = self.any_of()?;
+            self.need(")")?;
+            return Ok(inner);
+        }
+        let (token, name) = self.take_name("a number, a name or a bracket")?;
+        if self.take("(") {
+            let inner = self.called(&token, &name)?;
+            self.need(")")?;
+            return Ok(inner);
+        }
+        Ok(self.named(&token, &name))
     }
 
-    fn named(&mut self, word: &Word, name: &str) -> Expr {
+    fn named(&mut self, token: &Token, name: &str) -> Expr {
         if name == "pi" {
             return Expr::Number(std::f64::consts::PI);
         }
         if let Some(k) = self.variables.iter().position(|variable| variable == name) {
             return Expr::Variable(k);
         }
-        match self.scopes.last().cloned() {
-            Some(columns) => match columns.iter().position(|column| *column == name) {
-                Some(k) => return Expr::Column(k),
-                None => self.unknown(word, name, "the column", &columns),
-            },
-            None => {
-                let hint =
-                    "a name stands within a reduction such as max(SOURCE: COLUMN)".to_owned();
-                let message = format!("`{name}` stands outside of any source");
-                self.faults.push(Fault {
-                    at: word.at,
-                    width: word.width,
-                    word: name.to_owned(),
-                    message,
-                    hint,
-                });
+        if let Some(columns) = self.scopes.last().cloned() {
+            if let Some(k) = columns.iter().position(|column| *column == name) {
+                return Expr::Column(k);
             }
+            self.unknown(token, "the column", &columns);
+        } else {
+            let hint = "a name stands within a reduction such as max(SOURCE: COLUMN)".to_owned();
+            let message = format!("`{name}` stands outside of any source");
+            self.faults.push(fault(token, name, message, hint));
         }
         Expr::Number(f64::NAN)
+    }
+
+    /// Everything with a name and a bracket.
+    fn called(&mut self, token: &Token, name: &str) -> Result<Expr, Fault> {
+        match name {
+            "key" => return self.key(),
+            "prev" => return Ok(Expr::Previous(Box::new(self.any_of()?))),
+            "each" => return self.looped(Loop::Each),
+            "span" => return self.looped(Loop::Span),
+            _ => {}
+        }
+        let of_source = matches!(self.peek(), TokenKind::Name(_)) && self.colon_follows();
+        let reduction = reduction(name);
+        if let Some(reduction) = reduction.filter(|_| of_source) {
+            return self.reduction(reduction);
+        }
+        let Some(function) = function(name) else {
+            if reduction.is_some() {
+                return Err(Fault {
+                    hint: format!("write {name}(SOURCE: COLUMN)"),
+                    ..self.unexpected("the name of a source and `:`")
+                });
+            }
+            let known: Vec<&str> = (REDUCTIONS.iter().map(|r| r.name))
+                .chain(FUNCTIONS.iter().map(|f| f.name))
+                .chain(["key", "prev", "each", "span"])
+                .collect();
+            self.unknown(token, "the function", &known);
+            let fault = self.faults.pop();
+            return Err(fault.unwrap_or_else(|| self.unexpected("a function")));
+        };
+        let list = self.arguments()?;
+        if (list.len() > 1) == function.several {
+            return Ok(Expr::Call(function, list));
+        }
+        Err(self.unexpected(if function.several {
+            "more arguments, or `SOURCE:`"
+        } else {
+            "one argument"
+        }))
+    }
+
+    fn arguments(&mut self) -> Result<Vec<Expr>, Fault> {
+        let mut list = vec![self.any_of()?];
+        while self.take(",") {
+            list.push(self.any_of()?);
+        }
+        Ok(list)
+    }
+
+    /// `NAME in a, b, c: BODY`.
+    fn looped(&mut self, kind: Loop) -> Result<Expr, Fault> {
+        let (_, name) = self.take_name("a name, as in each(t in 25, 95: ...)")?;
+        if !self.take_word("in") {
+            return Err(self.unexpected("`in`"));
+        }
+        let values = self.arguments()?;
+        self.need(":")?;
+        self.variables.push(name);
+        let body = self.any_of();
+        self.variables.pop();
+        Ok(Expr::Loop(kind, values, Box::new(body?)))
+    }
+
+    /// `NAME:`; none if there is no such source.
+    fn source(&mut self) -> Result<Option<usize>, Fault> {
+        let (token, name) = self.take_name("the name of a source")?;
+        let names = self.names.sources();
+        let found = names.iter().position(|known| *known == name);
+        if found.is_none() {
+            self.unknown(&token, "the source", &names);
+        }
+        self.need(":")?;
+        Ok(found)
+    }
+
+    /// `SOURCE: VALUE over X at Y where CONDITION by A, B`.
+    fn reduction(&mut self, of: &'static Reduction) -> Result<Expr, Fault> {
+        let source = self.source()?;
+        let totals = of.form == Form::Total;
+        let columns = source.map(|source| self.names.columns(source, totals));
+        let before = self.faults.len();
+        self.scopes.push(columns.unwrap_or_default());
+        let mut r = Reduce {
+            of,
+            source: source.unwrap_or(usize::MAX),
+            value: self.any_of()?,
+            over: None,
+            at: None,
+            filter: None,
+            by: Vec::new(),
+        };
+        loop {
+            if self.take_word("over") {
+                r.over = Some(self.sum()?);
+            } else if self.take_word("at") {
+                r.at = Some(self.sum()?);
+            } else if self.take_word("where") {
+                r.filter = Some(self.any_of()?);
+            } else if self.take_word("by") {
+                r.by = self.arguments()?;
+            } else {
+                break;
+            }
+        }
+        self.scopes.pop();
+        if source.is_none() {
+            // The columns of an unknown source are unknown, too.
+            self.faults.truncate(before);
+        }
+        let (over, at, form) = match of.form {
+            Form::OverAt => (true, true, "VALUE over COLUMN at NUMBER)"),
+            Form::Over => (true, false, "VALUE over COLUMN), without `at`"),
+            _ => (false, false, "VALUE), without `over` and `at`"),
+        };
+        if r.over.is_some() == over && r.at.is_some() == at {
+            return Ok(Expr::Reduce(Box::new(r)));
+        }
+        Err(Fault {
+            hint: format!("write {}(SOURCE: {form}", of.name),
+            ..self.unexpected("another form")
+        })
+    }
+
+    /// `key(PATH)`, `key(SOURCE: PATH)`, `key(SOURCE: PATH, INDEX)`.
+    fn key(&mut self) -> Result<Expr, Fault> {
+        let source = if self.colon_follows() {
+            self.source()?.or(Some(usize::MAX))
+        } else {
+            None
+        };
+        let (token, path) = self.take_name("a key such as transmission.cvt.ratio.low")?;
+        let keys = self.names.keys();
+        if !keys.contains(&path) {
+            let close = near(&path, keys.iter().map(String::as_str));
+            self.unknown(&token, "the key", &close);
+        }
+        let mut item = None;
+        if self.take(",") {
+            let TokenKind::Number(x) = *self.peek() else {
+                return Err(self.unexpected("the number of an item, counted from 0"));
+            };
+            self.next += 1;
+            item = Some(x as usize);
+        }
+        Ok(Expr::Key(source, path, item))
     }
 }

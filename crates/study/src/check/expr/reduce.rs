@@ -1,237 +1,180 @@
-//! The rows of a table to one number.
+//! Statistics over the rows of a table.
 
-use super::eval::{Here, least, most, short};
-use super::{Reduce, Reduction, Table};
+/// A table of numbers: one list for each column.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Columns in the order of their names.
+    pub columns: Vec<Vec<f64>>,
+    /// Weight of each row in means, sums and shares (seconds in a run, 1 elsewhere).
+    pub weight: Vec<f64>,
+    /// Rows at gross slip of the belt, which no reduction uses; empty if there are none.
+    pub gross: Vec<bool>,
+    /// Rows outside the validity of a model, which count and are reported; empty if that is not known.
+    pub outside: Vec<bool>,
+}
 
 /// One row that counts.
-struct Point {
-    value: f64,
-    over: f64,
-    weight: f64,
-    group: Vec<f64>,
+pub struct Point {
+    pub value: f64,
+    pub over: f64,
+    pub weight: f64,
+    pub group: Vec<f64>,
 }
+
+/// The rows that count, and the place or level of `at` (NaN without one).
+pub struct Points(pub Vec<Point>, pub f64);
 
 /// A step against the direction of rising or falling that is no more than rounding, as a share of the values' size.
 const STILL: f64 = 1e-9;
 
-/// Reduces a source.
-pub fn reduce(here: &mut Here, r: &Reduce) -> Result<f64, String> {
-    let table = here.tables.table(r.source, r.kind == Reduction::Total)?;
-    let points = points(here, r, &table)?;
-    if points.is_empty() {
-        if matches!(r.kind, Reduction::Count | Reduction::Any) {
-            return Ok(0.0);
+impl Points {
+    pub fn min(&self) -> f64 {
+        self.0.iter().map(|p| p.value).fold(f64::INFINITY, least)
+    }
+
+    pub fn max(&self) -> f64 {
+        self.0.iter().map(|p| p.value).fold(f64::NEG_INFINITY, most)
+    }
+
+    pub fn weight(&self) -> f64 {
+        self.0.iter().map(|p| p.weight).sum()
+    }
+
+    pub fn weighted_sum(&self) -> f64 {
+        self.0.iter().map(|p| p.value * p.weight).sum()
+    }
+
+    /// Rows that meet the condition.
+    pub fn met(&self) -> impl Iterator<Item = &Point> {
+        self.0.iter().filter(|p| p.value > 0.5)
+    }
+
+    pub fn only(self) -> Result<f64, String> {
+        match self.0.as_slice() {
+            [one] => Ok(one.value),
+            rows => Err(format!("{} rows where one was expected", rows.len())),
         }
-        let gross = table.gross.iter().filter(|gross| **gross).count();
-        let left = if gross > 0 {
-            format!("; {gross} rows of the source are at gross slip and left out")
+    }
+
+    /// Slope and squared correlation of the regression line.
+    pub fn regression(self) -> Result<(f64, f64), String> {
+        let (points, n) = (&self.0, self.0.len() as f64);
+        let mx = points.iter().map(|p| p.over).sum::<f64>() / n;
+        let my = points.iter().map(|p| p.value).sum::<f64>() / n;
+        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+        for p in points {
+            let (dx, dy) = (p.over - mx, p.value - my);
+            (xx, xy, yy) = (xx + dx * dx, xy + dx * dy, yy + dy * dy);
+        }
+        if points.len() < 2 || xx <= 0.0 {
+            return Err("a slope needs two different places".to_owned());
+        }
+        Ok((xy / xx, if yy > 0.0 { xy * xy / (xx * yy) } else { 1.0 }))
+    }
+
+    /// Sorted by group, then by the other column.
+    fn sorted(mut self) -> Vec<Point> {
+        let by_group = |a: &Point, b: &Point| {
+            let pairs = a.group.iter().zip(&b.group);
+            pairs
+                .map(|(x, y)| x.total_cmp(y))
+                .find(|order| order.is_ne())
+                .unwrap_or(std::cmp::Ordering::Equal)
+        };
+        self.0
+            .sort_by(|a, b| by_group(a, b).then(a.over.total_cmp(&b.over)));
+        self.0
+    }
+
+    /// True if the value goes one way with `over` in every group: no step back, and somewhere a step.
+    pub fn monotone(self, sign: f64) -> Result<bool, String> {
+        let points = self.sorted();
+        let same = |a: &Point, b: &Point| {
+            let mut pairs = a.group.iter().zip(&b.group);
+            pairs.all(|(x, y)| (x - y).abs() <= 1e-9 * most(x.abs(), y.abs()))
+        };
+        let size = points.iter().map(|p| p.value.abs()).fold(0.0, most);
+        let (mut pairs, mut good, mut moved) = (0, true, false);
+        for group in points.chunk_by(same) {
+            for pair in group.windows(2) {
+                let step = sign * (pair[1].value - pair[0].value);
+                (pairs, good) = (pairs + 1, good && step >= -STILL * size);
+                moved |= step > STILL * size;
+            }
+        }
+        if pairs == 0 {
+            Err("rising and falling need two rows in a group".to_owned())
         } else {
-            String::new()
-        };
-        return Err(format!("no row is left to look at{left}"));
-    }
-    let conditional = matches!(
-        r.kind,
-        Reduction::Count | Reduction::Share | Reduction::All | Reduction::Any
-    );
-    if !conditional && points.iter().any(|p| p.value.is_nan() || p.over.is_nan()) {
-        return Err("a row has no number there".to_owned());
-    }
-    let at = match &r.at {
-        Some(at) => here.eval(at)?,
-        None => f64::NAN,
-    };
-    of_points(r.kind, points, at)
-}
-
-fn of_points(kind: Reduction, mut points: Vec<Point>, at: f64) -> Result<f64, String> {
-    let values = || points.iter().map(|p| p.value);
-    let weight: f64 = points.iter().map(|p| p.weight).sum();
-    let meets = |p: &&Point| p.value > 0.5;
-    Ok(match kind {
-        Reduction::Min => values().fold(f64::INFINITY, least),
-        Reduction::Max => values().fold(f64::NEG_INFINITY, most),
-        Reduction::Range | Reduction::Spread => {
-            values().fold(f64::NEG_INFINITY, most) - values().fold(f64::INFINITY, least)
-        }
-        Reduction::Sum => points.iter().map(|p| p.value * p.weight).sum(),
-        Reduction::Mean => points.iter().map(|p| p.value * p.weight).sum::<f64>() / weight,
-        Reduction::First => points[0].value,
-        Reduction::Last => points[points.len() - 1].value,
-        Reduction::One | Reduction::Total if points.len() == 1 => points[0].value,
-        Reduction::One | Reduction::Total => {
-            return Err(format!("{} rows where one was expected", points.len()));
-        }
-        Reduction::Count => points.iter().filter(meets).count() as f64,
-        Reduction::Share => points.iter().filter(meets).map(|p| p.weight).sum::<f64>() / weight,
-        Reduction::All => f64::from(u8::from(points.iter().all(|p| p.value > 0.5))),
-        Reduction::Any => f64::from(u8::from(points.iter().any(|p| p.value > 0.5))),
-        Reduction::Slope => regression(&points)?.0,
-        Reduction::R2 => regression(&points)?.1,
-        Reduction::Rising => f64::from(u8::from(monotone(&mut points, 1.0)?)),
-        Reduction::Falling => f64::from(u8::from(monotone(&mut points, -1.0)?)),
-        Reduction::Interp => interp(&mut points, at)?,
-        Reduction::Cross => cross(&mut points, at)?,
-    })
-}
-
-fn points(here: &mut Here, r: &Reduce, table: &Table) -> Result<Vec<Point>, String> {
-    let mut found = Vec::new();
-    let (mut left_out, mut outside) = (0, 0);
-    let rows = table.columns.first().map_or(0, Vec::len);
-    for row in 0..rows {
-        let mut inner = Here {
-            tables: here.tables,
-            row: Some((table, row)),
-            variables: here.variables.clone(),
-            noting: here.noting,
-        };
-        if let Some(filter) = &r.filter
-            && inner.eval(filter)? <= 0.5
-        {
-            continue;
-        }
-        if table.gross.get(row) == Some(&true) {
-            left_out += 1;
-            continue;
-        }
-        outside += usize::from(table.outside.get(row) == Some(&true));
-        let value = inner.eval(&r.value)?;
-        let over = r.over.as_ref().map_or(Ok(0.0), |over| inner.eval(over))?;
-        let group: Result<Vec<f64>, String> = r.by.iter().map(|by| inner.eval(by)).collect();
-        found.push(Point {
-            value,
-            over,
-            weight: table.weight.get(row).copied().unwrap_or(1.0),
-            group: group?,
-        });
-    }
-    if here.noting {
-        here.tables.left_out(left_out);
-        here.tables.outside(outside);
-    }
-    Ok(found)
-}
-
-/// Slope and squared correlation of the regression line.
-fn regression(points: &[Point]) -> Result<(f64, f64), String> {
-    let n = points.len() as f64;
-    let (mx, my) = (
-        points.iter().map(|p| p.over).sum::<f64>() / n,
-        points.iter().map(|p| p.value).sum::<f64>() / n,
-    );
-    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-    for p in points {
-        let (dx, dy) = (p.over - mx, p.value - my);
-        (xx, xy, yy) = (xx + dx * dx, xy + dx * dy, yy + dy * dy);
-    }
-    if points.len() < 2 || xx <= 0.0 {
-        return Err("a slope needs two different places".to_owned());
-    }
-    Ok((xy / xx, if yy > 0.0 { xy * xy / (xx * yy) } else { 1.0 }))
-}
-
-fn sort(points: &mut [Point]) {
-    let by_group = |a: &[f64], b: &[f64]| {
-        a.iter()
-            .zip(b)
-            .map(|(x, y)| x.total_cmp(y))
-            .find(|order| order.is_ne())
-            .unwrap_or(std::cmp::Ordering::Equal)
-    };
-    points.sort_by(|a, b| by_group(&a.group, &b.group).then(a.over.total_cmp(&b.over)));
-}
-
-/// Whether the value goes one way with `over` in every group: no step back, and somewhere a step.
-fn monotone(points: &mut [Point], sign: f64) -> Result<bool, String> {
-    sort(points);
-    let same = |a: &Point, b: &Point| {
-        a.group
-            .iter()
-            .zip(&b.group)
-            .all(|(x, y)| (x - y).abs() <= 1e-9 * most(x.abs(), y.abs()))
-    };
-    let size = points.iter().map(|p| p.value.abs()).fold(0.0, most);
-    let (mut pairs, mut good, mut moved) = (0, true, false);
-    for group in points.chunk_by(same) {
-        for pair in group.windows(2) {
-            let step = sign * (pair[1].value - pair[0].value);
-            (pairs, good) = (pairs + 1, good && step >= -STILL * size);
-            moved |= step > STILL * size;
+            Ok(good && moved)
         }
     }
-    if pairs == 0 {
-        Err("rising and falling need two rows in a group".to_owned())
+
+    pub fn interp(self) -> Result<f64, String> {
+        let (at, points) = (self.1, self.sorted());
+        for pair in points.windows(2) {
+            let (a, b) = (&pair[0], &pair[1]);
+            if a.over <= at && at <= b.over {
+                let share = if b.over > a.over {
+                    (at - a.over) / (b.over - a.over)
+                } else {
+                    0.0
+                };
+                return Ok(a.value + share * (b.value - a.value));
+            }
+        }
+        match points.as_slice() {
+            [only] if (only.over - at).abs() <= 1e-9 * at.abs() => Ok(only.value),
+            _ => Err(format!("{} lies outside of the rows", short(at))),
+        }
+    }
+
+    /// Place where the value first passes the level.
+    pub fn cross(self) -> Result<f64, String> {
+        let (level, points) = (self.1, self.sorted());
+        for pair in points.windows(2) {
+            let (a, b) = (pair[0].value - level, pair[1].value - level);
+            if (a <= 0.0) != (b <= 0.0) {
+                return Ok(pair[0].over + (pair[1].over - pair[0].over) * a / (a - b));
+            }
+        }
+        let level = short(level);
+        Err(format!("the value does not pass {level} in these rows"))
+    }
+}
+
+/// The smaller number; NaN if one is NaN.
+pub fn least(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a < b { a } else { b }
+}
+
+/// The larger number; NaN if one is NaN.
+pub fn most(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+/// A number with four significant figures. Below 1e-9 it is rounding in every unit of the rows and shown as 0.
+#[must_use]
+pub fn short(x: f64) -> String {
+    let size = x.abs();
+    if !x.is_finite() {
+        return "-".to_owned();
+    }
+    if size < 1e-9 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e6).contains(&size) {
+        return format!("{x:.3e}");
+    }
+    let whole = if size >= 1.0 {
+        size.log10().floor() as i32 + 1
     } else {
-        Ok(good && moved)
-    }
-}
-
-fn interp(points: &mut [Point], at: f64) -> Result<f64, String> {
-    sort(points);
-    for pair in points.windows(2) {
-        let (a, b) = (&pair[0], &pair[1]);
-        if a.over <= at && at <= b.over {
-            let share = if b.over > a.over {
-                (at - a.over) / (b.over - a.over)
-            } else {
-                0.0
-            };
-            return Ok(a.value + share * (b.value - a.value));
-        }
-    }
-    match points {
-        [only] if (only.over - at).abs() <= 1e-9 * at.abs() => Ok(only.value),
-        _ => Err(format!("{} lies outside of the rows", short(at))),
-    }
-}
-
-/// Where the value first passes the level.
-fn cross(points: &mut [Point], level: f64) -> Result<f64, String> {
-    sort(points);
-    for pair in points.windows(2) {
-        let (a, b) = (pair[0].value - level, pair[1].value - level);
-        if (a <= 0.0) != (b <= 0.0) {
-            return Ok(pair[0].over + (pair[1].over - pair[0].over) * a / (a - b));
-        }
-    }
-    Err(format!(
-        "the value does not pass {} in these rows",
-        short(level)
-    ))
-}
-
-/// The numbers behind a yes or no over rows.
-pub fn behind(here: &mut Here, r: &Reduce) -> String {
-    let Ok(table) = here.tables.table(r.source, r.kind == Reduction::Total) else {
-        return "-".to_owned();
+        0
     };
-    let Ok(points) = points(here, r, &table) else {
-        return "-".to_owned();
-    };
-    match r.kind {
-        Reduction::All | Reduction::Any => {
-            format!(
-                "{} of {} rows",
-                points.iter().filter(|p| p.value > 0.5).count(),
-                points.len()
-            )
-        }
-        Reduction::Rising | Reduction::Falling => {
-            let ends = points
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| {
-                    (least(p.value, l), most(p.value, h))
-                });
-            format!(
-                "{} to {} over {} rows",
-                short(ends.0),
-                short(ends.1),
-                points.len()
-            )
-        }
-        _ => here
-            .eval(&super::Expr::Reduce(Box::new(r.clone())))
-            .map_or_else(|_| "-".to_owned(), short),
+    let decimals = usize::try_from((4 - whole).clamp(0, 4)).unwrap_or(0);
+    let text = format!("{x:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
     }
 }

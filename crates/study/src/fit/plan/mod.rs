@@ -29,7 +29,7 @@ pub struct Search {
     /// Seed of the other starts.
     pub seed: u64,
     /// Most evaluations of the model a start.
-    pub most_evaluations: usize,
+    pub max_evaluations: usize,
     /// Relative change at which a start ends.
     pub tolerance: f64,
     /// Whether each fold is predicted by a fit to the others.

@@ -166,7 +166,7 @@ fn head_of(s: &Section, file: &str, text: &str) -> Plan {
         ))
         .unwrap_or(1),
         seed: integer("seed", 0..=i64::MAX, 1, "seed of the other starts").unsigned_abs(),
-        most_evaluations: usize::try_from(integer(
+        max_evaluations: usize::try_from(integer(
             "most_evaluations",
             1..=1_000_000,
             5000,

@@ -1,86 +1,60 @@
 //! All starts, and the best of them.
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::ask::Ask;
-use super::descend::descend;
-use super::point::prior_residuals;
+use super::jacobian::jacobian_with_gaps;
+use super::objective::{Objective, prior_residuals};
+use super::search::search;
 use super::starts::starts;
-use super::{End, Failure, Fit, Options, Parameter, Residuals, slope};
+use super::types::{Failure, Fit, FitEnd, Options, Parameter, Residuals, Start};
 use crate::progress::Progress;
 
-/// Fits the parameters: least squares of the residuals and of the priors between the bounds. Starts go in parallel, and so do the columns
-/// of each Jacobian; the best start is the one of least cost, the earlier of equal ones.
+/// Fits the parameters: least squares of the residuals and of the priors between the bounds. Starts run in parallel, and so do the
+/// columns of each Jacobian; the best start is the one of least cost, the earlier of equal ones.
 ///
 /// # Errors
-/// What is wrong with the parameters (all at once), or why no start gave an answer.
+/// All faults of the parameters, or why no start had a result.
 pub fn fit(
     model: &dyn Residuals,
     parameters: &[Parameter],
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Fit, Failure> {
-    let reasons = wrong(model, parameters);
+    let reasons = faults(model, parameters);
     if !reasons.is_empty() {
-        return Err(Failure {
-            reasons,
-            starts: Vec::new(),
-        });
+        let starts = Vec::new();
+        return Err(Failure { reasons, starts });
     }
-    let from = starts(parameters, options.starts, options.seed);
-    let descents: Vec<_> = from
+    let objective = || Objective::new(model, parameters, progress);
+    let (starts, points): (Vec<_>, Vec<_>) = starts(parameters, options.starts, options.seed)
         .into_par_iter()
-        .map(|from| descend(&Ask::new(model, progress), parameters, options, from))
-        .collect();
-    let mut evaluations = descents
-        .iter()
-        .map(|descent| descent.start.evaluations)
-        .sum();
-    let (starts, points): (Vec<_>, Vec<_>) = descents
-        .into_iter()
-        .map(|descent| (descent.start, descent.best))
+        .map(|from| search(&objective(), options, from))
+        .map(|search| (search.start, search.best))
         .unzip();
-    let found = points
-        .into_iter()
-        .enumerate()
-        .filter_map(|(i, point)| point.map(|point| (i, point)));
+    let mut evaluations = starts.iter().map(|start| start.evaluations).sum();
+    let found = points.into_iter().enumerate();
+    let found = found.filter_map(|(i, point)| point.map(|point| (i, point)));
     let Some((best, (point, jacobian))) =
         found.min_by(|(_, (a, _)), (_, (b, _))| a.cost.total_cmp(&b.cost))
     else {
-        let reason = |(i, start): (usize, &super::Start)| {
-            let values = parameters
-                .iter()
-                .zip(&start.from)
-                .map(|(p, x)| format!("{} = {x}", p.name))
-                .collect::<Vec<_>>()
-                .join(", ");
-            format!(
-                "start {} at {values}: {}",
-                i + 1,
-                start.failure.as_deref().unwrap_or("no answer")
-            )
-        };
-        return Err(Failure {
-            reasons: starts.iter().enumerate().map(reason).collect(),
-            starts,
-        });
+        return Err(without_result(parameters, starts));
     };
     let end = starts[best].end;
     let jacobian = jacobian.unwrap_or_else(|| {
-        // Who stops does not wait for derivatives.
-        if end == End::Stopped {
-            return nalgebra::DMatrix::from_element(point.rows.len(), parameters.len(), f64::NAN);
+        // After a stop there are no more evaluations.
+        if end == FitEnd::Stopped {
+            return DMatrix::from_element(point.residuals.len(), parameters.len(), f64::NAN);
         }
-        let ask = Ask::new(model, progress);
-        let columns = slope::columns(&ask, parameters, &point.values, &point.rows);
-        evaluations += ask.evaluations();
-        slope::matrix_with_gaps(columns, point.rows.len())
+        let objective = objective();
+        let jacobian = jacobian_with_gaps(&objective, &point);
+        evaluations += objective.evaluations();
+        jacobian
     });
-    let prior_residuals = prior_residuals(parameters, &point.values);
     Ok(Fit {
+        prior_residuals: prior_residuals(parameters, &point.values),
         values: point.values,
-        residuals: point.rows,
-        prior_residuals,
+        residuals: point.residuals,
         cost: point.cost,
         jacobian,
         starts,
@@ -90,24 +64,39 @@ pub fn fit(
     })
 }
 
-/// What is wrong with what was asked for.
-fn wrong(model: &dyn Residuals, parameters: &[Parameter]) -> Vec<String> {
-    let mut wrong = Vec::new();
+fn without_result(parameters: &[Parameter], starts: Vec<Start>) -> Failure {
+    let reason = |(i, start): (usize, &Start)| {
+        let values = parameters
+            .iter()
+            .zip(&start.from)
+            .map(|(p, x)| format!("{} = {x}", p.name))
+            .collect::<Vec<_>>()
+            .join(", ");
+        let why = start.failure.as_deref().unwrap_or("no answer");
+        format!("start {} at {values}: {why}", i + 1)
+    };
+    let reasons = starts.iter().enumerate().map(reason).collect();
+    Failure { reasons, starts }
+}
+
+/// Faults of the problem, one sentence each.
+fn faults(model: &dyn Residuals, parameters: &[Parameter]) -> Vec<String> {
+    let mut faults = Vec::new();
     if parameters.is_empty() {
-        wrong.push("no parameter is free: name at least one".to_string());
+        faults.push("no parameter is free: name at least one".to_string());
     }
     if model.count() == 0 {
-        wrong.push("there is nothing to fit to: give at least one observation".to_string());
+        faults.push("there is nothing to fit to: give at least one observation".to_string());
     }
     for p in parameters {
         if !(p.low.is_finite() && p.high.is_finite() && p.low < p.high && p.range().is_finite()) {
-            wrong.push(format!(
+            faults.push(format!(
                 "{}: bounds are {} and {}; both must be finite, the low one below the high one",
                 p.name, p.low, p.high
             ));
         }
         if !p.start.is_finite() {
-            wrong.push(format!(
+            faults.push(format!(
                 "{}: the start is {}; it must be finite",
                 p.name, p.start
             ));
@@ -116,11 +105,11 @@ fn wrong(model: &dyn Residuals, parameters: &[Parameter]) -> Vec<String> {
             .prior
             .filter(|prior| !(prior.mean.is_finite() && prior.sd.is_finite() && prior.sd > 0.0))
         {
-            wrong.push(format!(
+            faults.push(format!(
                 "{}: the prior is {} with sd {}; both must be finite, the sd above 0",
                 p.name, prior.mean, prior.sd
             ));
         }
     }
-    wrong
+    faults
 }

@@ -1,4 +1,4 @@
-//! Fitted without a group of observations, compared with it: what a prediction is worth.
+//! Fit without a group of observations, compared with it: the error of a prediction.
 //!
 //! | label | statement | known from |
 //! |---|---|---|
@@ -6,8 +6,9 @@
 
 use rayon::prelude::*;
 
-use super::ask::{Ask, Refusal};
-use super::{End, Fit, Options, Parameter, Residuals, fit};
+use super::fit::fit;
+use super::objective::{EvalError, Objective, wrong_count};
+use super::types::{Fit, FitEnd, Options, Parameter, Residuals};
 use crate::progress::Progress;
 
 /// A group left out.
@@ -17,12 +18,12 @@ pub struct Fold {
     pub group: usize,
     /// Values fitted without it.
     pub values: Vec<f64>,
-    /// Residuals of its observations at these values, in the order of the observations: predicted, not fitted. Empty where the model has no
-    /// answer.
+    /// Residuals of its observations at these values, in the order of the observations: predicted, not fitted. Empty where the model
+    /// has no result.
     pub residuals: Vec<f64>,
     /// How the fit ended.
-    pub end: End,
-    /// What the model said, where it had no answer or no way on.
+    pub end: FitEnd,
+    /// Reason of the model, where it failed or the search stalled.
     pub failure: Option<String>,
 }
 
@@ -39,23 +40,15 @@ impl Residuals for Without<'_> {
 
     fn at(&self, values: &[f64]) -> Result<Vec<f64>, String> {
         let all = self.model.at(values)?;
-        let wrong = || {
-            format!(
-                "the model gives {} residuals in place of {}",
-                all.len(),
-                self.model.count()
-            )
-        };
-        self.kept
-            .iter()
-            .map(|&i| all.get(i).copied().ok_or_else(wrong))
-            .collect()
+        let kept = self.kept.iter().map(|&i| all.get(i).copied());
+        kept.collect::<Option<_>>()
+            .ok_or_else(|| wrong_count(all.len(), self.model.count()))
     }
 }
 
-/// One fold for each group that occurs, in ascending order (CA-19); `groups` has the group of each residual, a residual beyond its end has group 0.
+/// One fold for each group, in ascending order (CA-19); `groups` has the group of each residual, a residual beyond its end has group 0.
 /// Each fold starts at the solution only (moved off its bounds, CA-4), whatever `options.starts` says: it finds the minimum next to the
-/// solution. With one group only nothing is left to fit to, and the fold says so.
+/// solution. With one group only there is nothing left to fit to, and the fold has that failure.
 #[must_use]
 pub fn leave_out(
     model: &dyn Residuals,
@@ -65,64 +58,51 @@ pub fn leave_out(
     options: &Options,
     progress: &dyn Progress,
 ) -> Vec<Fold> {
-    let of = |i: usize| groups.get(i).copied().unwrap_or(0);
-    let mut all: Vec<usize> = (0..model.count()).map(of).collect();
+    let group_of = |i: usize| groups.get(i).copied().unwrap_or(0);
+    let mut all: Vec<usize> = (0..model.count()).map(group_of).collect();
     all.sort_unstable();
     all.dedup();
-    let parameters: Vec<Parameter> = parameters
-        .iter()
-        .zip(&solution.values)
-        .map(|(p, x)| Parameter {
-            start: *x,
-            ..p.clone()
-        })
-        .collect();
+    let mut parameters = parameters.to_vec();
+    for (p, x) in parameters.iter_mut().zip(&solution.values) {
+        p.start = *x;
+    }
     let options = Options {
         starts: 1,
         ..*options
     };
     let fold = |group: usize| {
-        let without = Without {
-            model,
-            kept: (0..model.count()).filter(|i| of(*i) != group).collect(),
-        };
-        let none = |values, end, failure| Fold {
+        let kept = (0..model.count()).filter(|i| group_of(*i) != group);
+        let kept = kept.collect();
+        let mut fold = Fold {
             group,
-            values,
+            values: solution.values.clone(),
             residuals: Vec::new(),
-            end,
-            failure: Some(failure),
+            end: FitEnd::Stalled,
+            failure: None,
         };
-        let fitted = match fit(&without, &parameters, &options, progress) {
-            Ok(fitted) => fitted,
+        match fit(&Without { model, kept }, &parameters, &options, progress) {
             Err(failure) => {
-                let end = failure
-                    .starts
-                    .first()
-                    .map_or(End::NoProgress, |start| start.end);
-                return none(solution.values.clone(), end, failure.to_string());
+                fold.end = failure.starts.first().map_or(fold.end, |start| start.end);
+                fold.failure = Some(failure.to_string());
+                return fold;
             }
-        };
-        match Ask::new(model, progress).at(&fitted.values) {
-            Ok(rows) => {
-                let residuals = rows
-                    .into_iter()
-                    .enumerate()
-                    .filter(|(i, _)| of(*i) == group)
-                    .map(|(_, r)| r)
-                    .collect(); // CA-19
-                let failure = fitted.starts[fitted.best].failure.clone();
-                Fold {
-                    group,
-                    values: fitted.values,
-                    residuals,
-                    end: fitted.end,
-                    failure,
-                }
+            Ok(fitted) => {
+                (fold.values, fold.end) = (fitted.values, fitted.end);
+                fold.failure = fitted.starts[fitted.best].failure.clone();
             }
-            Err(Refusal::Stopped) => none(fitted.values, End::Stopped, "stopped".into()),
-            Err(Refusal::Model(why)) => none(fitted.values, fitted.end, why),
         }
+        match Objective::new(model, &parameters, progress).residuals(&fold.values) {
+            Ok(rows) => {
+                let own = rows.into_iter().enumerate();
+                let own = own.filter(|(i, _)| group_of(*i) == group);
+                fold.residuals = own.map(|(_, r)| r).collect(); // CA-19
+            }
+            Err(EvalError::Stopped) => {
+                (fold.end, fold.failure) = (FitEnd::Stopped, Some("stopped".into()));
+            }
+            Err(EvalError::Model(why)) => fold.failure = Some(why),
+        }
+        fold
     };
     all.into_par_iter().map(fold).collect()
 }

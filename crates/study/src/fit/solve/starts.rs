@@ -1,4 +1,4 @@
-//! Where the starts of a fit are.
+//! First values of the starts.
 //!
 //! | label | statement | known from |
 //! |---|---|---|
@@ -7,7 +7,8 @@
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::{Parameter, bounded};
+use super::bounded;
+use super::types::Parameter;
 
 /// Half the width of a region in standard deviations of the prior (CA-9).
 const REACH: f64 = 2.0;
@@ -46,42 +47,4 @@ pub(super) fn starts(parameters: &[Parameter], number: usize, seed: u64) -> Vec<
         }
     }
     all
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::fit::solve::Prior;
-
-    #[test]
-    fn one_value_in_each_part_of_the_region_and_another_seed_elsewhere() {
-        let parameter = |low, high, prior| Parameter {
-            name: "p".into(),
-            start: 1.0,
-            low,
-            high,
-            prior,
-        };
-        let prior = |mean, sd| Some(Prior { mean, sd });
-        let parameters = [
-            parameter(0.0, 10.0, None),
-            parameter(0.0, 10.0, prior(5.0, 1.0)),
-            parameter(0.0, 10.0, prior(9.0, 1.0)),
-            parameter(0.0, 10.0, prior(50.0, 1.0)),
-        ];
-        let regions = [[0.0, 10.0], [3.0, 7.0], [7.0, 10.0], [0.0, 10.0]];
-        let all = starts(&parameters, 9, 7);
-        assert_eq!((all.len(), &all[0]), (9, &vec![1.0; 4]));
-        for (k, [low, high]) in regions.into_iter().enumerate() {
-            let mut parts: Vec<usize> = all[1..]
-                .iter()
-                .map(|start| ((start[k] - low) / (high - low) * 8.0) as usize)
-                .collect();
-            parts.sort_unstable();
-            assert_eq!(parts, (0..8).collect::<Vec<_>>(), "{k}");
-        }
-        assert_eq!(all, starts(&parameters, 9, 7));
-        assert_ne!(all, starts(&parameters, 9, 8));
-        assert_eq!(starts(&parameters, 0, 7).len(), 1);
-    }
 }

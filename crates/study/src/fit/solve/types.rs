@@ -1,10 +1,10 @@
-//! What goes into a fit and what comes out of it.
+//! Input and result of a fit.
 
 use std::fmt;
 
 use nalgebra::DMatrix;
 
-/// What is known of a parameter without the data: a normal distribution.
+/// Knowledge of a parameter without the data: a normal distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prior {
     /// Mean, in the parameter's unit.
@@ -16,7 +16,7 @@ pub struct Prior {
 /// A parameter to be fitted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// Name as people know it.
+    /// Name in messages and tables.
     pub name: String,
     /// Value of the first start. At a bound or beyond it is moved inside by a hundredth of the range (CA-4).
     pub start: f64,
@@ -24,11 +24,23 @@ pub struct Parameter {
     pub low: f64,
     /// Greatest value, finite and above `low`. Bounds more than three decades apart make the steps of the derivative coarse (CA-6).
     pub high: f64,
-    /// What is known beforehand.
+    /// Prior knowledge.
     pub prior: Option<Prior>,
 }
 
 impl Parameter {
+    /// A parameter without prior.
+    #[must_use]
+    pub fn new(name: impl Into<String>, start: f64, low: f64, high: f64) -> Self {
+        Parameter {
+            name: name.into(),
+            start,
+            low,
+            high,
+            prior: None,
+        }
+    }
+
     /// Distance between the bounds.
     #[must_use]
     pub fn range(&self) -> f64 {
@@ -44,11 +56,11 @@ pub trait Residuals: Sync {
     /// (computed - measured) / standard deviation of each observation at these values, which are in the parameters' own units.
     ///
     /// # Errors
-    /// Why the model has no answer there. The fit refuses the step and goes on.
+    /// Why the model has no result there. The fit rejects the step and goes on.
     fn at(&self, values: &[f64]) -> Result<Vec<f64>, String>;
 }
 
-/// How to fit.
+/// Settings of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Number of starts, the given one included; 0 counts as 1.
@@ -56,7 +68,7 @@ pub struct Options {
     /// Seed of where the other starts are.
     pub seed: u64,
     /// Evaluations of the model after which a start ends; one Jacobian may go beyond it.
-    pub most_evaluations: usize,
+    pub max_evaluations: usize,
     /// Relative change of cost and of parameters, and cosine between residuals and columns of the Jacobian, at which a start ends. Below 1e-14
     /// it counts as 1e-14; below the model's own noise it costs evaluations and gains nothing.
     pub tolerance: f64,
@@ -64,15 +76,15 @@ pub struct Options {
 
 /// How a start ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum FitEnd {
     /// Cost, parameters or angles changed by no more than the tolerance: a minimum, perhaps one of several.
     Converged,
     /// The evaluations of the start are spent. The best point so far may be far from a minimum.
     OutOfEvaluations,
-    /// Stopped by the caller. The best point so far is kept.
+    /// Stopped from outside. The best point so far is kept.
     Stopped,
-    /// No way on, and no minimum: the model failed at the start, or wherever the next step led, or on both sides of the point.
-    NoProgress,
+    /// No further step, and no minimum: the model failed at the start, at the end of every next step, or on both sides of the point.
+    Stalled,
 }
 
 /// One start and where it led.
@@ -80,22 +92,22 @@ pub enum End {
 pub struct Start {
     /// Values at the start, inside the bounds.
     pub from: Vec<f64>,
-    /// Best values found; those of `from` where the model gave no answer.
+    /// Best values found; those of `from` where the model has no result.
     pub to: Vec<f64>,
-    /// Sum of squares at `to`, priors included (CA-7); infinite without an answer.
+    /// Sum of squares at `to`, priors included (CA-7); infinite without a result.
     pub cost: f64,
     /// How it ended.
-    pub end: End,
+    pub end: FitEnd,
     /// Evaluations of the model.
     pub evaluations: usize,
-    /// What the model said, where it had no answer at the start or no way on.
+    /// Reason of the model, where it failed at the start or the search stalled.
     pub failure: Option<String>,
 }
 
 /// A fit: the best of its starts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// Values of the parameters; exactly a bound where it holds the fit.
+    /// Values of the parameters; exactly the bound where one limits the fit.
     pub values: Vec<f64>,
     /// Residuals of the data.
     pub residuals: Vec<f64>,
@@ -103,26 +115,48 @@ pub struct Fit {
     pub prior_residuals: Vec<f64>,
     /// Sum of squares of both (CA-7).
     pub cost: f64,
-    /// Change of each residual of the data (row) by each parameter (column) at the solution, per own unit. NaN in a column where the model has
-    /// no answer on either side, or where the fit was stopped before.
+    /// Change of each residual of the data (row) by each parameter (column) at the solution, per own unit. NaN in a column where the model
+    /// fails on either side, or where the fit was stopped before.
     pub jacobian: DMatrix<f64>,
     /// All starts, the given one first.
     pub starts: Vec<Start>,
     /// Index of the start that led here.
     pub best: usize,
     /// How that start ended.
-    pub end: End,
+    pub end: FitEnd,
     /// Evaluations of the model by all starts and for the last Jacobian.
     pub evaluations: usize,
 }
 
-/// No start gave an answer.
+/// The error of a fit without result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
-    /// What is wrong with the parameters, or why each start failed.
+    /// Faults of the parameters, or why each start failed.
     pub reasons: Vec<String>,
-    /// The starts, where there were any.
+    /// The starts; empty if the parameters have faults.
     pub starts: Vec<Start>,
+}
+
+impl FitEnd {
+    /// Name in tables and files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            FitEnd::Converged => "converged",
+            FitEnd::OutOfEvaluations => "out of evaluations",
+            FitEnd::Stopped => "stopped",
+            FitEnd::Stalled => "no progress",
+        }
+    }
+}
+
+impl Failure {
+    /// True if every start was stopped before its first result.
+    #[must_use]
+    pub fn is_stop(&self) -> bool {
+        let stopped = |start: &Start| start.end == FitEnd::Stopped;
+        !self.starts.is_empty() && self.starts.iter().all(stopped)
+    }
 }
 
 impl fmt::Display for Failure {

@@ -1,4 +1,4 @@
-//! What a fit is worth.
+//! Uncertainty of a fit.
 //!
 //! | label | statement | known from |
 //! |---|---|---|
@@ -7,14 +7,14 @@
 //! | CA-12 | a parameter on a bound (1e-6 of its range) is held there: it has no variance, the others have theirs given its value | ASSUMED |
 //! | CA-13 | reduced chi squared = cost / nu; nu = residuals + priors - known directions of the parameters that are not held | source: e.g. Bevington and Robinson 2003 |
 //! | CA-14 | probability of a cost of at least this: 1 - F(cost), F of chi squared with nu degrees of freedom | source: Pearson 1900 (statrs) |
-//! | CA-15 | prior share = C_kk / sd^2 of the prior: 1 where the data say nothing | derived |
+//! | CA-15 | prior share = C_kk / sd^2 of the prior: 1 where the data have no influence | derived |
+//! | CA-16 | columns scaled to relative changes: x dr/dx; where start or x is 0, by the range | ASSUMED |
 
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::descend::ON_BOUND;
-use super::words::relative_scales;
-use super::{Fit, Parameter};
+use super::search::ON_BOUND;
+use super::types::{Fit, Parameter};
 
 /// Share of the largest singular value that is no more than the error of derivatives (CA-11).
 pub(super) const NOISE: f64 = 1e-6;
@@ -32,7 +32,7 @@ pub enum Bound {
     High,
 }
 
-/// A direction in the space of relative changes, and how far the data see it.
+/// A direction in the space of relative changes, and how well the data determine it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
     /// Length of the change of the data's residuals by a unit step along it: 1 / its standard deviation from the data alone.
@@ -41,12 +41,12 @@ pub struct Direction {
     pub weights: Vec<f64>,
 }
 
-/// What is known after the fit, in the linear approximation at the solution.
+/// Uncertainty in the linear approximation at the solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Covariance in own units (CA-10); NaN in rows and columns of parameters without a standard error.
     pub covariance: DMatrix<f64>,
-    /// Standard error in own unit; `None` where neither data nor prior know the parameter (CA-11) or a bound holds it (CA-12).
+    /// Standard error in own unit; `None` where neither data nor prior determine the parameter (CA-11) or it lies on a bound (CA-12).
     pub standard_error: Vec<Option<f64>>,
     /// Correlation, NaN like the covariance.
     pub correlation: DMatrix<f64>,
@@ -59,7 +59,7 @@ pub struct Uncertainty {
     /// Probability of a cost at least as large if the model is right and all standard deviations are (CA-14); `None` without a degree of
     /// freedom.
     pub chi2_probability: Option<f64>,
-    /// What the data alone see (no priors), the best seen direction first; as many as parameters.
+    /// Directions of the data alone (no priors), the best determined first; as many as parameters.
     pub directions: Vec<Direction>,
     /// The bound that a parameter is on.
     pub at_bound: Vec<Option<Bound>>,
@@ -209,6 +209,19 @@ pub(super) fn dead(fit: &Fit, parameters: &[Parameter]) -> Vec<usize> {
     (0..moved.len())
         .filter(|&k| moved[k] <= NOISE * most)
         .collect()
+}
+
+/// Scale of each parameter's changes, and whether it is the value (CA-16).
+pub(super) fn relative_scales(fit: &Fit, parameters: &[Parameter]) -> (Vec<f64>, Vec<bool>) {
+    let is_zero = |x: f64| x.abs() <= f64::MIN_POSITIVE;
+    let scale = |(p, x): (&Parameter, &f64)| {
+        if is_zero(p.start) || is_zero(*x) {
+            (p.range(), false)
+        } else {
+            (*x, true)
+        }
+    }; // CA-16
+    parameters.iter().zip(&fit.values).map(scale).unzip()
 }
 
 fn directions(jacobian: &DMatrix<f64>, scales: &[f64]) -> Vec<Direction> {

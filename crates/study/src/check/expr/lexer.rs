@@ -1,22 +1,34 @@
-//! A text to words: numbers, names, signs.
+//! A text to tokens: numbers, names, signs.
 
-use super::Fault;
+use super::syntax::Fault;
 
-/// A word with its place.
+/// A token with its place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Word {
-    pub what: What,
+pub struct Token {
+    pub kind: TokenKind,
     pub at: usize,
     pub width: usize,
 }
 
-/// What a word is.
+/// Kind of a token.
 #[derive(Clone, Debug, PartialEq)]
-pub enum What {
+pub enum TokenKind {
     Number(f64),
     Name(String),
     Sign(&'static str),
     End,
+}
+
+impl TokenKind {
+    /// The text of the token; empty at the end.
+    pub fn text(&self) -> String {
+        match self {
+            TokenKind::Number(x) => x.to_string(),
+            TokenKind::Name(name) => name.clone(),
+            TokenKind::Sign(sign) => (*sign).to_owned(),
+            TokenKind::End => String::new(),
+        }
+    }
 }
 
 /// Signs, longer ones first.
@@ -24,12 +36,13 @@ const SIGNS: [&str; 15] = [
     "<=", ">=", "==", "<", ">", "+", "-", "*", "/", "^", "(", ")", ",", ":", "=",
 ];
 
-/// Splits a text.
+/// Splits a text; the last token is the end.
 ///
 /// # Errors
-/// The first character that belongs to no word.
-pub fn words(text: &str) -> Result<Vec<Word>, Fault> {
+/// The first character that belongs to no token.
+pub fn tokens(text: &str) -> Result<Vec<Token>, Fault> {
     let chars: Vec<char> = text.chars().collect();
+    let digit = |at: usize| chars.get(at).is_some_and(char::is_ascii_digit);
     let mut found = Vec::new();
     let mut at = 0;
     while at < chars.len() {
@@ -39,40 +52,32 @@ pub fn words(text: &str) -> Result<Vec<Word>, Fault> {
             at += 1;
             continue;
         }
-        let what = if c.is_ascii_digit()
-            || (c == '.' && chars.get(at + 1).is_some_and(char::is_ascii_digit))
-        {
+        let kind = if digit(at) || (c == '.' && digit(at + 1)) {
             at = number_end(&chars, at);
-            let word: String = chars[start..at].iter().collect();
-            What::Number(
-                word.parse()
-                    .map_err(|_| fault(&chars, start, at, "is no number"))?,
-            )
+            let number = chars[start..at].iter().collect::<String>().parse();
+            TokenKind::Number(number.map_err(|_| fault(&chars, start, at, "is no number"))?)
         } else if c.is_ascii_alphabetic() || c == '_' {
-            while at < chars.len()
-                && (chars[at].is_ascii_alphanumeric() || chars[at] == '_' || chars[at] == '.')
-            {
-                at += 1;
-            }
-            What::Name(chars[start..at].iter().collect())
+            let in_name = |c: &&char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.');
+            at += chars[at..].iter().take_while(in_name).count();
+            TokenKind::Name(chars[start..at].iter().collect())
         } else {
-            let sign = SIGNS.iter().find(|sign| {
+            let here = |sign: &&&str| {
                 sign.chars()
-                    .enumerate()
-                    .all(|(k, s)| chars.get(at + k) == Some(&s))
-            });
+                    .eq(chars[at..].iter().copied().take(sign.len()))
+            };
+            let sign = SIGNS.iter().find(here);
             let sign = sign.ok_or_else(|| fault(&chars, at, at + 1, "has no meaning here"))?;
             at += sign.len();
-            What::Sign(sign)
+            TokenKind::Sign(sign)
         };
-        found.push(Word {
-            what,
+        found.push(Token {
+            kind,
             at: start,
             width: at - start,
         });
     }
-    found.push(Word {
-        what: What::End,
+    found.push(Token {
+        kind: TokenKind::End,
         at: chars.len(),
         width: 1,
     });

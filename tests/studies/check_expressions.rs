@@ -1,9 +1,12 @@
-//! The expressions over a table that is known by heart.
+//! Expressions of the validation rows, over a small table; the rule from numbers to a verdict.
 
 use std::cell::Cell;
 use std::rc::Rc;
 
-use super::{Computed, Fault, Gives, Names, Table, Tables, compute, parse};
+use cvtcycle::study::check::expr::{
+    Computed, FUNCTIONS, Fault, Gives, Names, REDUCTIONS, Table, Tables, compute, parse,
+};
+use cvtcycle::study::check::{Printed, Verdict, rule};
 
 struct Fixed {
     left_out: Cell<usize>,
@@ -245,5 +248,84 @@ fn a_total_gives_what_its_value_gives() {
     assert_eq!(
         parse("total(trip: fuel) > 1", &names).map(|e| e.gives()),
         Ok(Gives::Truth)
+    );
+}
+
+#[test]
+fn the_page_names_every_function_and_reduction() {
+    let page = include_str!("../docs/validation_format.md");
+    let names = FUNCTIONS.iter().map(|f| f.name);
+    for name in names.chain(REDUCTIONS.iter().map(|r| r.name)) {
+        let word = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+        assert!(page.split(word).any(|found| found == name), "{name}");
+    }
+}
+
+/// By hand: 8.5 to 13 with 0.5 on both sides.
+#[test]
+fn distance_in_widths() {
+    let off = |computed: Computed| rule::off(&computed, Printed::Range(8.5, 13.0), [0.5, 0.5]);
+    assert_eq!(off(Computed::Number(10.0)), Some(0.0));
+    assert_eq!(off(Computed::Number(8.25)), Some(0.5));
+    assert_eq!(off(Computed::Number(14.0)), Some(2.0));
+    assert_eq!(off(Computed::Range(8.0, 13.25)), Some(1.0));
+    assert_eq!(off(Computed::Truth(true, String::new())), None);
+}
+
+#[test]
+fn numbers_ranges_and_truths() {
+    let v =
+        |computed: Computed, printed, fitted| rule::verdict(&computed, printed, [0.5; 2], fitted);
+    let printed = Printed::Range(8.5, 13.0);
+    assert_eq!(v(Computed::Number(8.0), printed, false), Verdict::Agrees);
+    assert_eq!(v(Computed::Number(7.99), printed, false), Verdict::Differs);
+    assert_eq!(
+        v(Computed::Range(8.2, 13.4), printed, false),
+        Verdict::Agrees
+    );
+    assert_eq!(
+        v(Computed::Range(8.2, 13.6), printed, false),
+        Verdict::Differs
+    );
+    assert_eq!(
+        v(Computed::Range(7.9, 13.0), printed, true),
+        Verdict::Differs
+    );
+    assert_eq!(v(Computed::Range(9.0, 13.0), printed, true), Verdict::Fit);
+    assert_eq!(
+        v(
+            Computed::Number(1e9),
+            Printed::Range(3.0, f64::INFINITY),
+            false
+        ),
+        Verdict::Agrees
+    );
+    assert_eq!(
+        v(Computed::Number(f64::NAN), printed, false),
+        Verdict::Differs
+    );
+    assert_eq!(
+        v(
+            Computed::Truth(true, String::new()),
+            Printed::Truth(true),
+            true
+        ),
+        Verdict::Fit
+    );
+    assert_eq!(
+        v(
+            Computed::Truth(false, String::new()),
+            Printed::Truth(true),
+            false
+        ),
+        Verdict::Differs
+    );
+    assert_eq!(
+        v(
+            Computed::Truth(false, String::new()),
+            Printed::Truth(false),
+            false
+        ),
+        Verdict::Agrees
     );
 }

@@ -1,0 +1,162 @@
+//! The functions and reductions of the expressions: name, form, meaning and computation, each once.
+
+use super::reduce::{Points, least, most};
+
+/// Kind of the result of an expression.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gives {
+    /// A number.
+    Number,
+    /// A smallest and a largest number.
+    Range,
+    /// Yes or no.
+    Truth,
+}
+
+/// A function of numbers.
+#[derive(Debug)]
+pub struct Function {
+    /// Name.
+    pub name: &'static str,
+    /// True for two or more arguments, false for one.
+    pub several: bool,
+    /// Meaning, one phrase.
+    pub doc: &'static str,
+    /// The value.
+    pub compute: fn(&[f64]) -> f64,
+}
+
+impl PartialEq for Function {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+/// Functions of numbers.
+pub static FUNCTIONS: [Function; 9] = [
+    of_one("abs", "magnitude", |x| x[0].abs()),
+    of_one("sqrt", "square root", |x| x[0].sqrt()),
+    of_one("ln", "natural logarithm", |x| x[0].ln()),
+    of_one("exp", "exponential", |x| x[0].exp()),
+    of_one("sin", "sine of an angle in degrees", |x| {
+        x[0].to_radians().sin()
+    }),
+    of_one("cos", "cosine of an angle in degrees", |x| {
+        x[0].to_radians().cos()
+    }),
+    of_one("tan", "tangent of an angle in degrees", |x| {
+        x[0].to_radians().tan()
+    }),
+    of_several("min", "smallest argument", |x| {
+        x.iter().copied().fold(f64::INFINITY, least)
+    }),
+    of_several("max", "largest argument", |x| {
+        x.iter().copied().fold(f64::NEG_INFINITY, most)
+    }),
+];
+
+const fn of_one(name: &'static str, doc: &'static str, compute: fn(&[f64]) -> f64) -> Function {
+    Function {
+        name,
+        several: false,
+        doc,
+        compute,
+    }
+}
+
+const fn of_several(name: &'static str, doc: &'static str, compute: fn(&[f64]) -> f64) -> Function {
+    Function {
+        name,
+        several: true,
+        doc,
+        compute,
+    }
+}
+
+/// Form of a reduction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// `VALUE`
+    Value,
+    /// `CONDITION`
+    Condition,
+    /// `VALUE over COLUMN`
+    Over,
+    /// `VALUE over COLUMN at NUMBER`
+    OverAt,
+    /// `VALUE`, of the totals of a run instead of its trace.
+    Total,
+}
+
+/// A reduction of the rows of a source.
+#[derive(Debug)]
+pub struct Reduction {
+    /// Name.
+    pub name: &'static str,
+    /// Form.
+    pub form: Form,
+    /// Kind of the result; that of the value for [`Form::Total`].
+    pub gives: Gives,
+    /// Meaning, one phrase.
+    pub doc: &'static str,
+    /// The number, 1 and 0 for yes and no; of a range its width. Never called without rows, except for `count` and `any`.
+    pub(super) compute: fn(Points) -> Result<f64, String>,
+}
+
+impl PartialEq for Reduction {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+macro_rules! reductions {
+    ($($name:literal $form:ident $gives:ident $doc:literal $compute:expr;)*) => {
+        /// Reductions.
+        pub static REDUCTIONS: &[Reduction] = &[$(Reduction {
+            name: $name,
+            form: Form::$form,
+            gives: Gives::$gives,
+            doc: $doc,
+            compute: $compute,
+        }),*];
+    };
+}
+
+reductions! {
+    "min" Value Number "smallest value" |p| Ok(p.min());
+    "max" Value Number "largest value" |p| Ok(p.max());
+    "range" Value Range "smallest and largest value" |p| Ok(p.max() - p.min());
+    "spread" Value Number "largest minus smallest value" |p| Ok(p.max() - p.min());
+    "mean" Value Number "weighted mean" |p| Ok(p.weighted_sum() / p.weight());
+    "sum" Value Number "sum of value times weight" |p| Ok(p.weighted_sum());
+    "first" Value Number "value of the first row" |p| Ok(p.0[0].value);
+    "last" Value Number "value of the last row" |p| Ok(p.0[p.0.len() - 1].value);
+    "one" Value Number "value of the only row" |p| p.only();
+    "count" Condition Number "rows that meet the condition" |p| Ok(p.met().count() as f64);
+    "share" Condition Number "weight of the rows that meet the condition over the weight of all rows"
+        |p| Ok(p.met().map(|p| p.weight).sum::<f64>() / p.weight());
+    "all" Condition Truth "true if every row meets the condition" |p| Ok(truth(p.met().count() == p.0.len()));
+    "any" Condition Truth "true if some row meets the condition" |p| Ok(truth(p.met().next().is_some()));
+    "slope" Over Number "slope of the regression line over another column" |p| Ok(p.regression()?.0);
+    "r2" Over Number "square of the correlation with another column" |p| Ok(p.regression()?.1);
+    "rising" Over Truth "true if the value rises with another column, in every group" |p| p.monotone(1.0).map(truth);
+    "falling" Over Truth "true if the value falls with another column, in every group" |p| p.monotone(-1.0).map(truth);
+    "interp" OverAt Number "value interpolated where another column has a value" Points::interp;
+    "cross" OverAt Number "place in another column where the value first crosses a level" Points::cross;
+    "total" Total Number "value of the totals of a run" |p| p.only();
+}
+
+/// 1 for true, 0 for false.
+pub(super) fn truth(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
+/// The function of that name.
+pub(super) fn function(name: &str) -> Option<&'static Function> {
+    FUNCTIONS.iter().find(|function| function.name == name)
+}
+
+/// The reduction of that name.
+pub(super) fn reduction(name: &str) -> Option<&'static Reduction> {
+    REDUCTIONS.iter().find(|reduction| reduction.name == name)
+}
