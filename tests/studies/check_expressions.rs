@@ -253,7 +253,7 @@ fn a_total_gives_what_its_value_gives() {
 
 #[test]
 fn the_page_names_every_function_and_reduction() {
-    let page = include_str!("../docs/validation_format.md");
+    let page = include_str!("../../docs/validation_format.md");
     let names = FUNCTIONS.iter().map(|f| f.name);
     for name in names.chain(REDUCTIONS.iter().map(|r| r.name)) {
         let word = |c: char| !c.is_ascii_alphanumeric() && c != '_';

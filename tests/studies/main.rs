@@ -13,6 +13,7 @@ mod calibrate;
 mod calibrate_cli;
 mod calibrate_solve;
 mod calibrate_tables;
+mod check_expressions;
 mod parquet_readers;
 mod study;
 mod study_design;

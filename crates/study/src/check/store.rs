@@ -95,7 +95,7 @@ impl<'a> Store<'a> {
             Rc::new(tables::drive(&whole, &setup))
         });
         match driven.as_ref() {
-            Ok(driven) => tables::of_run(source, driven, totals),
+            Ok(driven) => Ok(tables::of_run(source, driven, totals)),
             Err(why) => Err(why.clone()),
         }
     }

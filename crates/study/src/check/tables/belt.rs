@@ -1,6 +1,6 @@
 //! The belt alone as a table.
 
-use super::{Marks, Table, combinations, from_rows, rpm, truth};
+use super::{Column, Table, TableRow, combinations, from_rows, numbers, rpm};
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::fluid::{BandFriction, Friction, Lubricant, ZERO_DEGC_K};
@@ -16,78 +16,127 @@ const PRINTED_BAND: f64 = 0.13;
 /// Belt temperature where none is given, K.
 const REFERENCE_K: f64 = 85.0 + ZERO_DEGC_K;
 
-const COLUMNS: [&str; 53] = [
+/// Axes in the order of a row of settings.
+const AXES: [&str; 9] = [
     "ratio",
     "speed_rpm",
     "pressure_bar",
-    "torque_nm",
     "belt_degc",
-    "band_speed_share",
     "band_friction",
-    "primary_radius_mm",
-    "secondary_radius_mm",
-    "primary_wrap_deg",
-    "secondary_wrap_deg",
-    "strut_length_mm",
-    "belt_speed_m_s",
-    "primary_clamp_n",
-    "secondary_clamp_n",
-    "primary_shoulder_n",
-    "secondary_shoulder_n",
-    "band_tension_1_n",
-    "band_tension_2_n",
-    "band_tension_step_n",
-    "segment_compression_n",
-    "band_1_travel_mm",
-    "band_i_travel_mm",
-    "band_nm",
-    "film_nm",
-    "slip_nm",
-    "wedge_nm",
-    "penetration_nm",
-    "wedge_primary_nm",
-    "wedge_secondary_nm",
-    "penetration_primary_nm",
-    "penetration_secondary_nm",
-    "loss_nm",
-    "input_torque_nm",
-    "active_segments",
-    "active_arc_mm",
-    "gap_slip_m_s",
-    "primary_slip_m_s",
-    "secondary_slip_m_s",
-    "slip_percent",
-    "capacity_nm",
-    "primary_arc_mm",
-    "secondary_arc_mm",
-    "primary_deflection_mm",
-    "secondary_deflection_mm",
-    "sliding_m_s",
-    "film_share",
-    "dynamic_viscosity_mpa_s",
-    "primary_segment_force_n",
-    "secondary_segment_force_n",
-    "band_1_share",
-    "shoulder_pressure_bar",
-    "band_pressure_bar",
+    "segment_friction",
+    "on_stop",
+    "band_speed_share",
+    "torque_nm",
 ];
 
-const GROSS: usize = COLUMNS.len();
-
-/// Names of the columns.
-pub fn columns() -> Vec<&'static str> {
-    COLUMNS.to_vec()
+/// A solved point; settings in the order of [`AXES`], NaN where none is given.
+pub struct Solved {
+    x: Vec<f64>,
+    belt: Belt,
+    at: BeltAtRatio,
+    load: BeltLoad,
+    belt_k: f64,
+    point: BeltPoint,
 }
 
-/// Whether a belt runs at a ratio at all.
+/// Columns.
+pub fn columns() -> Vec<Column<Solved>> {
+    columns! { Solved;
+        "ratio" s => s.x[0];
+        "speed_rpm" s => rpm(s.x[1]);
+        "pressure_bar" s => s.x[2] / 1e5;
+        "torque_nm" s => s.x[8];
+        "belt_degc" s => s.belt_k - ZERO_DEGC_K;
+        "band_speed_share" s => or(s.x[7], 0.0);
+        "band_friction" s => s.load.band.mu;
+        "primary_radius_mm" s => 1e3 * s.point.geometry.primary_radius_m;
+        "secondary_radius_mm" s => 1e3 * s.point.geometry.secondary_radius_m;
+        "primary_wrap_deg" s => s.point.geometry.primary_wrap_rad.to_degrees();
+        "secondary_wrap_deg" s => s.point.geometry.secondary_wrap_rad.to_degrees();
+        "strut_length_mm" s => 1e3 * s.point.geometry.strut_m;
+        "belt_speed_m_s" s => s.point.belt_speed_m_s;
+        "primary_clamp_n" s => s.point.tension.primary_clamp_n;
+        "secondary_clamp_n" s => s.point.tension.secondary_clamp_n;
+        "primary_shoulder_n" s => s.point.tension.primary_shoulder_n;
+        "secondary_shoulder_n" s => s.point.tension.secondary_shoulder_n;
+        "band_tension_1_n" s => s.point.band_tension_n[0];
+        "band_tension_2_n" s => s.point.band_tension_n[1];
+        "band_tension_step_n" s => s.point.tension.step_n;
+        "segment_compression_n" s => s.point.tension.compression_n;
+        "band_1_travel_mm" s => 1e3 * s.point.band_travel_m[0];
+        "band_i_travel_mm" s => 1e3 * s.point.band_travel_m[1];
+        "band_nm" s => sum(s.point.band_loss_nm);
+        "film_nm" s => sum(s.point.film_loss_nm);
+        "slip_nm" s => sum(s.point.slip_loss_nm);
+        "wedge_nm" s => sum(s.point.wedge_loss_nm);
+        "penetration_nm" s => sum(s.point.penetration_loss_nm);
+        "wedge_primary_nm" s => s.point.wedge_loss_nm[0];
+        "wedge_secondary_nm" s => s.point.wedge_loss_nm[1];
+        "penetration_primary_nm" s => s.point.penetration_loss_nm[0];
+        "penetration_secondary_nm" s => s.point.penetration_loss_nm[1];
+        "loss_nm" s => s.point.loss_nm;
+        "input_torque_nm" s => s.point.input_torque_nm;
+        "active_segments" s => s.point.active_segments;
+        "active_arc_mm" s => 1e3 * s.point.active_segments * s.belt.segment_thickness_m;
+        "gap_slip_m_s" s => s.point.gap_slip_m_s;
+        "primary_slip_m_s" s => s.point.slip_m_s[0];
+        "secondary_slip_m_s" s => s.point.slip_m_s[1];
+        "slip_percent" s => 100.0 * s.point.slip_total;
+        "capacity_nm" s => s.point.capacity_nm;
+        "primary_arc_mm" s => 1e3 * s.at.prepared.arc_m[0];
+        "secondary_arc_mm" s => 1e3 * s.at.prepared.arc_m[1];
+        "primary_deflection_mm" s => s.deflection_mm(0);
+        "secondary_deflection_mm" s => s.deflection_mm(1);
+        "sliding_m_s" s => sliding_speed_m_s(&s.belt, s.point.geometry.ratio, s.load.primary_speed_rad_s);
+        "film_share" s => s.load.band.film_share;
+        "dynamic_viscosity_mpa_s" s => 1e3 * s.load.eta_pa_s;
+        "primary_segment_force_n" s => s.point.tension.primary_clamp_n * s.at.prepared.normal_per_clamp[0];
+        "secondary_segment_force_n" s => s.point.tension.secondary_clamp_n * s.at.prepared.normal_per_clamp[1];
+        "band_1_share" s => s.band_1_share();
+        "shoulder_pressure_bar" s => s.shoulder_pressure_bar();
+        "band_pressure_bar" s => s.shoulder_pressure_bar() / s.belt.band_count;
+    }
+}
+
+fn sum(pair: [f64; 2]) -> f64 {
+    pair[0] + pair[1]
+}
+
+impl Solved {
+    fn deflection_mm(&self, pulley: usize) -> f64 {
+        let (g, t) = (&self.point.geometry, &self.point.tension);
+        if pulley == 0 {
+            let per_n = self.belt.primary_compliance_per_n;
+            1e3 * self.at.prepared.stop * g.primary_radius_m * t.primary_clamp_n * per_n
+        } else {
+            let per_n = self.belt.secondary_compliance_per_n;
+            1e3 * g.secondary_radius_m * t.secondary_clamp_n * per_n
+        }
+    }
+
+    /// Share of the innermost interface in a loss that falls in equal steps outwards: d over d + t (n-1)/2 (BT-2, BT-3).
+    fn band_1_share(&self) -> f64 {
+        let belt = &self.belt;
+        let outer = belt.band_thickness_m * (belt.band_count - 1.0) / 2.0;
+        belt.band_offset_m / (belt.band_offset_m + outer)
+    }
+
+    fn shoulder_pressure_bar(&self) -> f64 {
+        let area_m2 = self.at.prepared.arc_m[0] * self.belt.band_width_m;
+        self.point.tension.primary_shoulder_n / area_m2 / 1e5
+    }
+}
+
+/// An error if a belt cannot run at a ratio.
 pub fn fits(belt: &Belt, ratio: f64) -> Result<(), String> {
     let g = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
-    let good = |x: f64| x.is_finite() && x > 0.0;
-    let runs = good(g.primary_radius_m)
-        && good(g.secondary_radius_m)
-        && good(g.strut_m)
-        && good(g.primary_wrap_rad);
-    if runs {
+    let lengths = [
+        g.primary_radius_m,
+        g.secondary_radius_m,
+        g.strut_m,
+        g.primary_wrap_rad,
+    ];
+    if lengths.iter().all(|x| x.is_finite() && *x > 0.0) {
         Ok(())
     } else {
         Err(format!("the belt cannot run at ratio {ratio}"))
@@ -110,36 +159,26 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
         oil: setup.oils().0,
         formulation: source.formulation,
     };
-    let nan = |key: &str| source.axis_or_none(key).unwrap_or_else(|| vec![f64::NAN]);
-    let axes = [
-        nan("ratio"),
-        nan("speed_rpm"),
-        nan("pressure_bar"),
-        nan("belt_degc"),
-        nan("band_friction"),
-        nan("segment_friction"),
-        nan("on_stop"),
-        nan("band_speed_share"),
-        nan("torque_nm"),
-    ];
+    let axes = AXES.map(|key| source.axis(key, f64::NAN));
+    let printed = source.formulation != Formulation::Smooth;
     for ratio in &axes[0] {
         fits(&cvt.belt, *ratio)?;
-        if source.formulation != Formulation::Smooth && (ratio - 1.0).abs() <= 0.0 {
+        if printed && (ratio - 1.0).abs() <= 0.0 {
             return Err("the printed forms are not defined at ratio 1".to_owned());
         }
     }
-    if source.formulation != Formulation::Smooth && axes[1].iter().any(|speed| *speed <= 0.0) {
+    if printed && axes[1].iter().any(|speed| *speed <= 0.0) {
         return Err("the printed forms are not defined at rest".to_owned());
     }
-    let rows = combinations(&axes).into_iter().map(|x| (one.row(&x), 1.0));
-    Ok(from_rows(
-        GROSS,
-        rows,
-        Marks {
-            gross: Some(GROSS),
-            outside: None,
-        },
-    ))
+    let columns = columns();
+    let rows = combinations(&axes).into_iter().map(|x| {
+        let solved = one.solve(x);
+        TableRow {
+            gross: solved.point.status != PointStatus::Ok,
+            ..TableRow::new(numbers(&columns, &solved))
+        }
+    });
+    Ok(from_rows(columns.len(), rows))
 }
 
 fn or(x: f64, other: f64) -> f64 {
@@ -165,7 +204,7 @@ impl OneBelt<'_> {
         Friction { band: mu, ..*fluid }.band(belt_k, eta_pa_s, sliding)
     }
 
-    fn row(&self, x: &[f64]) -> Vec<f64> {
+    fn solve(&self, x: Vec<f64>) -> Solved {
         let belt = Belt {
             formulation: self.formulation,
             ..self.cvt.belt.clone()
@@ -185,106 +224,23 @@ impl OneBelt<'_> {
             primary_speed_rad_s: x[1],
             output_torque_nm: x[8],
             secondary_clamp_n: self.cvt.secondary_clamp_n(x[2], x[1] / x[0]),
-            band: self.band(x, belt_k, eta_pa_s),
+            band: self.band(&x, belt_k, eta_pa_s),
             eta_pa_s,
             film_thickness_m: fluid.film_thickness_m,
             segment_friction: or(x[5], segment),
             flank_friction: fluid.flank,
         };
-        let point = belt_point(&belt, &at, &load);
-        let point = if x[7].is_nan() {
-            point
-        } else {
-            point.with_band_speed(&belt, x[7])
-        };
-        let gross = truth(point.status != PointStatus::Ok);
-        let head = [
-            x[0],
-            rpm(x[1]),
-            x[2] / 1e5,
-            x[8],
-            belt_k - ZERO_DEGC_K,
-            or(x[7], 0.0),
-            load.band.mu,
-        ];
-        head.into_iter()
-            .chain(forces(&point))
-            .chain(losses(&point))
-            .chain(rest(&belt, &at, &load, &point))
-            .chain([gross])
-            .collect()
+        let mut point = belt_point(&belt, &at, &load);
+        if !x[7].is_nan() {
+            point = point.with_band_speed(&belt, x[7]);
+        }
+        Solved {
+            x,
+            belt,
+            at,
+            load,
+            belt_k,
+            point,
+        }
     }
-}
-
-fn forces(p: &BeltPoint) -> [f64; 16] {
-    let (g, t) = (&p.geometry, &p.tension);
-    [
-        1e3 * g.primary_radius_m,
-        1e3 * g.secondary_radius_m,
-        g.primary_wrap_rad.to_degrees(),
-        g.secondary_wrap_rad.to_degrees(),
-        1e3 * g.strut_m,
-        p.belt_speed_m_s,
-        t.primary_clamp_n,
-        t.secondary_clamp_n,
-        t.primary_shoulder_n,
-        t.secondary_shoulder_n,
-        p.band_tension_n[0],
-        p.band_tension_n[1],
-        t.step_n,
-        t.compression_n,
-        1e3 * p.band_travel_m[0],
-        1e3 * p.band_travel_m[1],
-    ]
-}
-
-fn losses(p: &BeltPoint) -> [f64; 11] {
-    let sum = |pair: [f64; 2]| pair[0] + pair[1];
-    [
-        sum(p.band_loss_nm),
-        sum(p.film_loss_nm),
-        sum(p.slip_loss_nm),
-        sum(p.wedge_loss_nm),
-        sum(p.penetration_loss_nm),
-        p.wedge_loss_nm[0],
-        p.wedge_loss_nm[1],
-        p.penetration_loss_nm[0],
-        p.penetration_loss_nm[1],
-        p.loss_nm,
-        p.input_torque_nm,
-    ]
-}
-
-fn rest(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, p: &BeltPoint) -> [f64; 19] {
-    let (g, t) = (&p.geometry, &p.tension);
-    let sliding = sliding_speed_m_s(belt, g.ratio, load.primary_speed_rad_s);
-    // Share of the innermost interface in a loss that falls in equal steps outwards: d over d + t (n-1)/2 (BT-2, BT-3).
-    let outer = belt.band_thickness_m * (belt.band_count - 1.0) / 2.0;
-    let normal = |clamp: f64, k: usize| clamp * at.prepared.normal_per_clamp[k];
-    let pressure = |force: f64, arc_m: f64| force / (arc_m * belt.band_width_m) / 1e5;
-    let shoulder = pressure(t.primary_shoulder_n, at.prepared.arc_m[0]);
-    [
-        p.active_segments,
-        1e3 * p.active_segments * belt.segment_thickness_m,
-        p.gap_slip_m_s,
-        p.slip_m_s[0],
-        p.slip_m_s[1],
-        100.0 * p.slip_total,
-        p.capacity_nm,
-        1e3 * at.prepared.arc_m[0],
-        1e3 * at.prepared.arc_m[1],
-        1e3 * at.prepared.stop
-            * g.primary_radius_m
-            * t.primary_clamp_n
-            * belt.primary_compliance_per_n,
-        1e3 * g.secondary_radius_m * t.secondary_clamp_n * belt.secondary_compliance_per_n,
-        sliding,
-        load.band.film_share,
-        1e3 * load.eta_pa_s,
-        normal(t.primary_clamp_n, 0),
-        normal(t.secondary_clamp_n, 1),
-        belt.band_offset_m / (belt.band_offset_m + outer),
-        shoulder,
-        shoulder / belt.band_count,
-    ]
 }

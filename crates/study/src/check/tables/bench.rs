@@ -1,76 +1,84 @@
 //! A transmission on the bench as a table.
 
-use super::{Marks, Table, combinations, from_rows, rpm, truth};
+use std::sync::LazyLock;
+
+use super::{Column, Table, TableRow, combinations, component_names, from_rows, numbers};
+use super::{belt, rpm, truth};
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
+use cvtcycle_model::drive::Flags;
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::transmission::Transmission;
-use cvtcycle_output::{Component, Flags};
 
-/// Components in the order of [`Component::ALL`] as columns.
-const COMPONENTS: [&str; Component::COUNT] = [
-    "launch_clutch_nm",
-    "pump_nm",
-    "input_shaft_nm",
-    "clutch_drag_nm",
-    "belt_band_nm",
-    "belt_film_nm",
-    "belt_slip_nm",
-    "belt_wedge_nm",
-    "belt_penetration_nm",
-    "belt_map_nm",
-    "final_drive_nm",
-    "gear_mesh_nm",
-    "bearing_nm",
-    "churning_nm",
-    "seal_nm",
-    "box_map_nm",
-];
+/// A point and its solution.
+pub type Solved = (BenchPoint, BenchAnswer);
 
-const OTHERS: [&str; 21] = [
-    "ratio",
-    "speed_rpm",
-    "temp_degc",
-    "torque_nm",
-    "throttle",
-    "pressure_factor",
-    "total_nm",
-    "belt_nm",
-    "input_torque_nm",
-    "input_power_w",
-    "efficiency_percent",
-    "output_speed_rpm",
-    "pressure_bar",
-    "belt_degc",
-    "belt_above_sump_k",
-    "slip_percent",
-    "capacity_nm",
-    "flow_l_min",
-    "segment_compression_n",
-    "flow_limited",
-    "outside_validity",
-];
+/// Columns before those of the components.
+static COLUMNS: LazyLock<Vec<Column<Solved>>> = LazyLock::new(|| {
+    columns! { Solved;
+        "ratio" (p, _) => p.ratio;
+        "speed_rpm" (p, _) => rpm(p.input_rad_s);
+        "temp_degc" (p, _) => p.sump_k - ZERO_DEGC_K;
+        "torque_nm" (p, _) => p.output_nm;
+        "throttle" (p, _) => p.throttle;
+        "pressure_factor" (p, _) => p.pressure_factor;
+        "total_nm" (_, a) => a.total_nm();
+        "belt_nm" (_, a) => a.belt_nm();
+        "input_torque_nm" (_, a) => a.input_nm;
+        "input_power_w" (p, a) => a.input_nm * p.input_rad_s;
+        "efficiency_percent" (p, a) => 100.0 * efficiency(p, a);
+        "output_speed_rpm" (_, a) => rpm(a.output_rad_s);
+        "pressure_bar" (_, a) => a.secondary_pa / 1e5;
+        "belt_degc" (_, a) => a.belt_k - ZERO_DEGC_K;
+        "belt_above_sump_k" (p, a) => a.belt_k - p.sump_k;
+        "slip_percent" (_, a) => a.belt.map_or(f64::NAN, |belt| 100.0 * belt.slip_total);
+        "capacity_nm" (_, a) => a.belt.map_or(f64::NAN, |belt| belt.capacity_nm);
+        "flow_l_min" (_, a) => a.oil_flow_m3_s * 6e4;
+        "segment_compression_n" (_, a) => a.belt.map_or(f64::NAN, |belt| belt.tension.compression_n);
+        "flow_limited" (_, a) => truth(a.flags.contains(Flags::FLOW_LIMITED));
+        "outside_validity" (_, a) => truth(a.flags.contains(Flags::OUTSIDE_VALIDITY));
+    }
+});
 
-/// Index of the mark of points outside validity.
-pub const OUTSIDE: usize = OTHERS.len() - 1;
-/// Index of gross slip behind the named columns.
-pub const GROSS: usize = OTHERS.len() + Component::COUNT;
+static LOSSES: LazyLock<Vec<&'static str>> = LazyLock::new(|| component_names("nm"));
 
 /// Names of the columns.
 pub fn columns() -> Vec<&'static str> {
-    OTHERS.into_iter().chain(COMPONENTS).collect()
+    COLUMNS
+        .iter()
+        .map(|column| column.name)
+        .chain(LOSSES.iter().copied())
+        .collect()
 }
 
-/// Solves all points.
+fn efficiency(p: &BenchPoint, a: &BenchAnswer) -> f64 {
+    let input_w = a.input_nm * p.input_rad_s;
+    let output_w = p.output_nm * a.output_rad_s;
+    if p.output_nm < 0.0 {
+        input_w / output_w
+    } else {
+        output_w / input_w
+    }
+}
+
+/// The row of a solved point, with further numbers before its own.
+pub(super) fn row(head: impl IntoIterator<Item = f64>, solved: &Solved) -> TableRow {
+    let (_, answer) = solved;
+    let own = numbers(&COLUMNS, solved).chain(answer.loss_nm);
+    TableRow {
+        gross: answer.flags.contains(Flags::GROSS_SLIP),
+        outside: answer.flags.contains(Flags::OUTSIDE_VALIDITY),
+        ..TableRow::new(head.into_iter().chain(own))
+    }
+}
+
+/// Solves all points of a source.
 pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
-    let bench = Bench::new(setup);
     let parts = parts(source);
-    let ratios = source.axis("ratio", 1.0);
-    fits(&bench, &ratios)?;
     let nan = || vec![f64::NAN];
     let axes = [
-        ratios,
+        source.axis("ratio", 1.0),
         source.axis("torque_nm", 0.0),
         source.axis("throttle", 0.0),
         source.axis_or_none("pressure_bar").unwrap_or_else(nan),
@@ -81,7 +89,7 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
         source.axis("speed_rpm", f64::NAN),
     ];
     let given = |x: f64| (!x.is_nan()).then_some(x);
-    let points = combinations(&axes).into_iter().map(|x| BenchPoint {
+    let point = |x: Vec<f64>| BenchPoint {
         ratio: x[0],
         output_nm: x[1],
         throttle: x[2],
@@ -91,8 +99,9 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
         sump_k: x[7],
         input_rad_s: x[8],
         parts,
-    });
-    Ok(solved(&bench, points))
+    };
+    let points: Vec<BenchPoint> = combinations(&axes).into_iter().map(point).collect();
+    of_points(&points, setup)
 }
 
 /// Parts in the box.
@@ -106,42 +115,28 @@ pub fn parts(source: &Source) -> Parts {
     }
 }
 
-/// Solves points that were not made from axes.
+/// Solves points.
 ///
 /// # Errors
 /// A sentence: a ratio or gear that the box does not have.
 pub fn of_points(points: &[BenchPoint], setup: &Setup) -> Result<Table, String> {
     let bench = Bench::new(setup);
-    fits(
-        &bench,
-        &points.iter().map(|point| point.ratio).collect::<Vec<f64>>(),
-    )?;
-    Ok(solved(&bench, points.iter().copied()))
+    points
+        .iter()
+        .try_for_each(|point| fits(&bench, point.ratio))?;
+    let rows = points
+        .iter()
+        .map(|point| row([], &(*point, bench.solve(point))));
+    Ok(from_rows(COLUMNS.len() + LOSSES.len(), rows))
 }
 
-fn solved(bench: &Bench, points: impl Iterator<Item = BenchPoint>) -> Table {
-    let rows = points.map(|point| (row(&point, &bench.solve(&point)), 1.0));
-    from_rows(
-        GROSS,
-        rows,
-        Marks {
-            gross: Some(GROSS),
-            outside: Some(OUTSIDE),
-        },
-    )
-}
-
-/// Whether the box has these ratios or gears.
-fn fits(bench: &Bench, ratios: &[f64]) -> Result<(), String> {
+/// An error if the box does not have this ratio or gear.
+fn fits(bench: &Bench, ratio: f64) -> Result<(), String> {
     match &bench.car().transmission {
-        Transmission::Cvt(cvt) => ratios
-            .iter()
-            .try_for_each(|ratio| super::belt::fits(&cvt.belt, *ratio)),
+        Transmission::Cvt(cvt) => belt::fits(&cvt.belt, ratio),
         Transmission::Manual(manual) => {
             let gears = manual.overall.len();
-            let good =
-                |ratio: &f64| ratio.fract().abs() <= 0.0 && *ratio >= 1.0 && *ratio <= gears as f64;
-            if ratios.iter().all(good) {
+            if ratio.fract().abs() <= 0.0 && ratio >= 1.0 && ratio <= gears as f64 {
                 Ok(())
             } else {
                 Err(format!(
@@ -149,55 +144,5 @@ fn fits(bench: &Bench, ratios: &[f64]) -> Result<(), String> {
                 ))
             }
         }
-    }
-}
-
-/// Numbers of a point: the columns, then gross slip.
-pub fn row(p: &BenchPoint, a: &BenchAnswer) -> Vec<f64> {
-    let input_w = a.input_nm * p.input_rad_s;
-    let output_w = p.output_nm * a.output_rad_s;
-    let efficiency = if p.output_nm < 0.0 {
-        input_w / output_w
-    } else {
-        output_w / input_w
-    };
-    let head = [
-        p.ratio,
-        rpm(p.input_rad_s),
-        p.sump_k - ZERO_DEGC_K,
-        p.output_nm,
-        p.throttle,
-        p.pressure_factor,
-        a.total_nm(),
-        a.belt_nm(),
-        a.input_nm,
-        input_w,
-        100.0 * efficiency,
-        rpm(a.output_rad_s),
-        a.secondary_pa / 1e5,
-        a.belt_k - ZERO_DEGC_K,
-        a.belt_k - p.sump_k,
-        a.belt.map_or(f64::NAN, |belt| 100.0 * belt.slip_total),
-        a.belt.map_or(f64::NAN, |belt| belt.capacity_nm),
-        a.oil_flow_m3_s * 6e4,
-        a.belt.map_or(f64::NAN, |belt| belt.tension.compression_n),
-        truth(a.flags.contains(Flags::FLOW_LIMITED)),
-        truth(a.flags.contains(Flags::OUTSIDE_VALIDITY)),
-    ];
-    let gross = truth(a.flags.contains(Flags::GROSS_SLIP));
-    head.into_iter().chain(a.loss_nm).chain([gross]).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_are_named_after_the_components() {
-        let names: Vec<String> = Component::ALL
-            .iter()
-            .map(|c| format!("{}_nm", c.name()))
-            .collect();
-        assert_eq!(COMPONENTS.to_vec(), names);
     }
 }

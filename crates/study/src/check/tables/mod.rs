@@ -1,7 +1,14 @@
 //! Sources to tables of numbers in engineer's units.
 
-pub mod bench;
+/// Columns of rows `R`, one a line: `NAME ROW => NUMBER;`.
+macro_rules! columns {
+    ($row:ty; $($name:literal $r:pat => $value:expr;)*) => {
+        vec![$(Column::<$row> { name: $name, get: |$r: &$row| $value }),*]
+    };
+}
+
 mod belt;
+pub mod bench;
 mod fluid;
 mod rig;
 mod run;
@@ -10,6 +17,7 @@ use super::expr::Table;
 use super::source::{Kind, Source};
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::bench::transmission::Conditions;
+use cvtcycle_model::drive::Component;
 
 pub use run::{Driven, drive};
 
@@ -18,17 +26,17 @@ pub use run::{Driven, drive};
 pub fn columns(kind: Kind, totals: bool) -> Vec<&'static str> {
     match kind {
         Kind::Bench => bench::columns(),
-        Kind::Belt => belt::columns(),
+        Kind::Belt => names(belt::columns()).collect(),
         Kind::Run if totals => run::total_columns(),
         Kind::Run => run::columns(),
-        Kind::Fluid => fluid::columns(),
+        Kind::Fluid => names(fluid::columns()).collect(),
         Kind::Transient => rig::transient_columns(),
         Kind::StripDown => rig::strip_down_columns(),
         Kind::Vehicle => Vec::new(),
     }
 }
 
-/// The table of a source that is no run; `conditions` are those of the transmission rig.
+/// The table of a source other than a run; `conditions` are those of the transmission rig.
 ///
 /// # Errors
 /// A sentence: the vehicle or the point does not fit the source.
@@ -44,18 +52,36 @@ pub fn table(source: &Source, setup: &Setup, conditions: &Conditions) -> Result<
 }
 
 /// The trace or the totals of a run.
-///
-/// # Errors
-/// Never for phases that the cycle has.
-pub fn of_run(source: &Source, driven: &Driven, totals: bool) -> Result<Table, String> {
+#[must_use]
+pub fn of_run(source: &Source, driven: &Driven, totals: bool) -> Table {
     if totals {
         run::totals(source, driven)
     } else {
-        Ok(run::trace(source, driven))
+        run::trace(source, driven)
     }
 }
 
-/// Every combination of the values of some axes, the last axis running fastest.
+/// A column: its name with the unit, and the number of a row.
+struct Column<R> {
+    name: &'static str,
+    get: fn(&R) -> f64,
+}
+
+fn names<R>(columns: Vec<Column<R>>) -> impl Iterator<Item = &'static str> {
+    columns.into_iter().map(|column| column.name)
+}
+
+fn numbers<R>(columns: &[Column<R>], row: &R) -> impl Iterator<Item = f64> {
+    columns.iter().map(move |column| (column.get)(row))
+}
+
+/// Names of the components with the ending of a unit, in the order of [`Component::ALL`]. Called once for each ending.
+fn component_names(ending: &str) -> Vec<&'static str> {
+    let name = |c: &Component| &*format!("{}_{ending}", c.name()).leak();
+    Component::ALL.iter().map(name).collect()
+}
+
+/// Every combination of the values of some axes, the last axis fastest.
 fn combinations(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
     axes.iter().fold(vec![Vec::new()], |rows, axis| {
         let with = |row: &Vec<f64>, x: f64| row.iter().copied().chain([x]).collect::<Vec<f64>>();
@@ -65,28 +91,40 @@ fn combinations(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
     })
 }
 
-/// Places in a row of the numbers that mark it where they are above 0.
-#[derive(Clone, Copy, Default)]
-struct Marks {
+/// A row of a table.
+struct TableRow {
+    numbers: Vec<f64>,
+    weight: f64,
     /// The belt slips grossly.
-    gross: Option<usize>,
+    gross: bool,
     /// Outside the validity of a model.
-    outside: Option<usize>,
+    outside: bool,
 }
 
-/// A table from rows of equal length.
-fn from_rows(count: usize, rows: impl Iterator<Item = (Vec<f64>, f64)>, marks: Marks) -> Table {
+impl TableRow {
+    fn new(numbers: impl Iterator<Item = f64>) -> Self {
+        TableRow {
+            numbers: numbers.collect(),
+            weight: 1.0,
+            gross: false,
+            outside: false,
+        }
+    }
+}
+
+/// A table of `count` columns.
+fn from_rows(count: usize, rows: impl Iterator<Item = TableRow>) -> Table {
     let mut table = Table {
         columns: vec![Vec::new(); count],
         ..Table::default()
     };
-    for (row, weight) in rows {
-        table.gross.extend(marks.gross.map(|k| row[k] > 0.5));
-        table.outside.extend(marks.outside.map(|k| row[k] > 0.5));
-        for (column, x) in table.columns.iter_mut().zip(row) {
+    for row in rows {
+        for (column, x) in table.columns.iter_mut().zip(row.numbers) {
             column.push(x);
         }
-        table.weight.push(weight);
+        table.weight.push(row.weight);
+        table.gross.push(row.gross);
+        table.outside.push(row.outside);
     }
     table
 }

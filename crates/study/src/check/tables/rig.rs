@@ -1,7 +1,8 @@
 //! The transmission rig's transients and strip-down as tables.
 
-use super::bench::{self, row};
-use super::{Marks, Table, from_rows, rpm, truth};
+use std::sync::LazyLock;
+
+use super::{Table, TableRow, bench, from_rows, rpm, truth};
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::bench::transmission::{Branch, Conditions, Piece, Plan, strip_down, transient};
@@ -11,26 +12,16 @@ use cvtcycle_model::fluid::ZERO_DEGC_K;
 /// Columns of a transient before those of the bench.
 const TRANSIENT: [&str; 4] = ["time_s", "cooling", "metal_degc", "gap_nm"];
 
-const STRIP_DOWN: [&str; 18] = [
-    "ratio",
-    "speed_rpm",
-    "temp_degc",
-    "pump_found_nm",
-    "pump_true_nm",
-    "pump_interaction_nm",
-    "input_shaft_found_nm",
-    "input_shaft_true_nm",
-    "input_shaft_interaction_nm",
-    "clutch_drag_found_nm",
-    "clutch_drag_true_nm",
-    "clutch_drag_interaction_nm",
-    "belt_found_nm",
-    "belt_true_nm",
-    "belt_interaction_nm",
-    "final_drive_found_nm",
-    "final_drive_true_nm",
-    "final_drive_interaction_nm",
-];
+/// Columns of a strip-down before those of the pieces.
+const STRIP_DOWN: [&str; 3] = ["ratio", "speed_rpm", "temp_degc"];
+
+/// What is computed of a piece.
+const OF_PIECE: [&str; 3] = ["found", "true", "interaction"];
+
+static PIECES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
+    let of_piece = |p: &Piece| OF_PIECE.map(|what| &*format!("{}_{what}_nm", p.name()).leak());
+    Piece::ALL.iter().flat_map(of_piece).collect()
+});
 
 /// Names of the columns of a transient.
 pub fn transient_columns() -> Vec<&'static str> {
@@ -39,7 +30,10 @@ pub fn transient_columns() -> Vec<&'static str> {
 
 /// Names of the columns of a strip-down.
 pub fn strip_down_columns() -> Vec<&'static str> {
-    STRIP_DOWN.to_vec()
+    STRIP_DOWN
+        .into_iter()
+        .chain(PIECES.iter().copied())
+        .collect()
 }
 
 /// Warm-up and cooling at each ratio, a row a second.
@@ -62,30 +56,16 @@ pub fn transients(
                 sump_k: m.sump_k,
                 ..BenchPoint::default()
             };
-            let gap_nm = result.gap_nm(m.sump_k).unwrap_or(f64::NAN);
             let head = [
                 m.time_s,
                 truth(m.branch == Branch::Cooling),
                 m.metal_k - ZERO_DEGC_K,
-                gap_nm,
+                result.gap_nm(m.sump_k).unwrap_or(f64::NAN),
             ];
-            rows.push((
-                head.into_iter()
-                    .chain(row(&point, &m.answer))
-                    .collect::<Vec<f64>>(),
-                1.0,
-            ));
+            rows.push(bench::row(head, &(point, m.answer)));
         }
     }
-    let count = TRANSIENT.len() + bench::GROSS;
-    Ok(from_rows(
-        count,
-        rows.into_iter(),
-        Marks {
-            gross: Some(count),
-            outside: Some(TRANSIENT.len() + bench::OUTSIDE),
-        },
-    ))
+    Ok(from_rows(transient_columns().len(), rows.into_iter()))
 }
 
 /// The box taken apart, a row a point.
@@ -103,43 +83,21 @@ pub fn strip_downs(
         torques_nm: own.torques_nm,
     };
     cvt_only(&bench, &plan.ratios)?;
-    let rows = strip_down(&bench, conditions, &plan)
-        .into_iter()
-        .map(|found| {
-            let head = [
-                found.set.ratio,
-                rpm(found.set.input_rad_s),
-                found.set.sump_k - ZERO_DEGC_K,
-            ];
-            let pieces = Piece::ALL
-                .map(|piece| found.piece(piece))
-                .map(|f| [f.corrected_nm, f.true_nm, f.interaction_nm()]);
-            (
-                head.into_iter()
-                    .chain(pieces.into_iter().flatten())
-                    .collect(),
-                1.0,
-            )
+    let found = strip_down(&bench, conditions, &plan).into_iter();
+    let rows = found.map(|found| {
+        let set = &found.set;
+        let head = [set.ratio, rpm(set.input_rad_s), set.sump_k - ZERO_DEGC_K];
+        let pieces = Piece::ALL.iter().flat_map(|piece| {
+            let f = found.piece(*piece);
+            [f.corrected_nm, f.true_nm, f.interaction_nm()]
         });
-    Ok(from_rows(STRIP_DOWN.len(), rows, Marks::default()))
+        TableRow::new(head.into_iter().chain(pieces))
+    });
+    Ok(from_rows(strip_down_columns().len(), rows))
 }
 
 fn cvt_only(bench: &Bench, ratios: &[f64]) -> Result<(), String> {
     let cvt = bench.cvt().ok_or("the transmission rig is for a CVT")?;
-    ratios
-        .iter()
-        .try_for_each(|ratio| super::belt::fits(&cvt.belt, *ratio))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_are_named_after_the_pieces() {
-        let named = Piece::ALL.iter().flat_map(|p| {
-            ["found", "true", "interaction"].map(|what| format!("{}_{what}_nm", p.name()))
-        });
-        assert_eq!(STRIP_DOWN[3..].to_vec(), named.collect::<Vec<String>>());
-    }
+    let mut ratios = ratios.iter();
+    ratios.try_for_each(|ratio| super::belt::fits(&cvt.belt, *ratio))
 }

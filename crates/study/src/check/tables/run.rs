@@ -1,14 +1,18 @@
 //! A car through a cycle as a table: its trace, or its totals.
 
-use super::{Marks, Table, from_rows, truth};
+use std::sync::LazyLock;
+
+use super::{Column, Table, TableRow, component_names, from_rows, names, numbers, truth};
 use crate::check::source::{Source, cycle};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::drive::{Conditions, Outcome, Start, litres_per_100km};
+use cvtcycle_model::bench::BELT_PARTS;
+use cvtcycle_model::drive::{
+    Conditions, Flags, Outcome, PhaseTotals, Row, Start, litres_per_100km,
+};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 use cvtcycle_output::trace::COLUMNS;
-use cvtcycle_output::{Component, Flags, Row};
 
 /// A finished run.
 #[derive(Clone, Debug)]
@@ -20,67 +24,65 @@ pub struct Driven {
     co2_per_fuel: f64,
 }
 
-/// Columns beside those of the trace.
-const MORE: [&str; 6] = [
-    "moving",
-    "coupled",
-    "launch",
-    "since_launch_s",
-    "power_share",
-    "transmission_loss_w",
-];
+/// A row of the trace in its run.
+struct Step<'a> {
+    row: &'a Row,
+    rated_w: f64,
+    /// Number of the launch, counted from 1.
+    launch: f64,
+    since_launch_s: f64,
+}
 
-const TOTALS: [&str; 17] = [
-    "fuel_l_per_100km",
-    "fuel_kg",
-    "fuel_energy_kj",
-    "co2_g_per_km",
-    "distance_km",
-    "duration_s",
-    "standstill_fuel_kg",
-    "wheel_work_positive_kj",
-    "wheel_work_negative_kj",
-    "transmission_kj",
-    "belt_kj",
-    "end_sump_degc",
-    "end_engine_oil_degc",
-    "end_coolant_degc",
-    "end_metal_degc",
-    "end_belt_degc",
-    "missed_trace_s",
-];
+/// Columns after those of the trace and its flags.
+fn more<'a>() -> Vec<Column<Step<'a>>> {
+    columns! { Step;
+    "moving" s => truth(s.row.speed_m_s > 0.0);
+    "coupled" s => truth(!s.row.flags.contains(Flags::CLUTCH_SLIPPING) && !s.row.flags.contains(Flags::CLUTCH_OPEN));
+    "launch" s => s.launch;
+    "since_launch_s" s => s.since_launch_s;
+    "power_share" s => s.row.wheel_power_w / s.rated_w;
+    "transmission_loss_w" s => s.row.loss_w.iter().sum::<f64>();
+    }
+}
 
-const LOSSES: [&str; Component::COUNT] = [
-    "launch_clutch_kj",
-    "pump_kj",
-    "input_shaft_kj",
-    "clutch_drag_kj",
-    "belt_band_kj",
-    "belt_film_kj",
-    "belt_slip_kj",
-    "belt_wedge_kj",
-    "belt_penetration_kj",
-    "belt_map_kj",
-    "final_drive_kj",
-    "gear_mesh_kj",
-    "bearing_kj",
-    "churning_kj",
-    "seal_kj",
-    "box_map_kj",
-];
+/// Totals of some phases of a run. Temperatures and the missed trace are those of the whole run.
+type Totals<'a> = (&'a Driven, &'a PhaseTotals);
+
+/// Columns of the totals before those of the components.
+fn of_totals<'a>() -> Vec<Column<Totals<'a>>> {
+    columns! { Totals;
+    "fuel_l_per_100km" (d, t) => litres_per_100km(t.fuel_kg, d.fuel_density_kg_m3, t.distance_m);
+    "fuel_kg" (_, t) => t.fuel_kg;
+    "fuel_energy_kj" (_, t) => t.terms.fuel / 1e3;
+    "co2_g_per_km" (d, t) => 1e3 * t.fuel_kg * d.co2_per_fuel / (t.distance_m / 1e3);
+    "distance_km" (_, t) => t.distance_m / 1e3;
+    "duration_s" (_, t) => t.duration_s;
+    "standstill_fuel_kg" (_, t) => t.standstill_fuel_kg;
+    "wheel_work_positive_kj" (_, t) => t.wheel_positive_j / 1e3;
+    "wheel_work_negative_kj" (_, t) => t.wheel_negative_j / 1e3;
+    "transmission_kj" (_, t) => t.loss_j.iter().sum::<f64>() / 1e3;
+    "belt_kj" (_, t) => BELT_PARTS.iter().map(|c| t.loss_j[*c as usize]).sum::<f64>() / 1e3;
+    "end_sump_degc" (d, _) => d.end_degc(SUMP);
+    "end_engine_oil_degc" (d, _) => d.end_degc(ENGINE_OIL);
+    "end_coolant_degc" (d, _) => d.end_degc(COOLANT);
+    "end_metal_degc" (d, _) => d.end_degc(METAL);
+    "end_belt_degc" (d, _) => d.end_degc(BELT);
+    "missed_trace_s" (d, _) => d.outcome.totals.seconds(Flags::MISSED_TRACE);
+    }
+}
+
+static LOSSES: LazyLock<Vec<&'static str>> = LazyLock::new(|| component_names("kj"));
 
 /// Names of the columns of the trace.
 pub fn columns() -> Vec<&'static str> {
     let trace = COLUMNS.iter().map(|column| &*column.name);
-    trace
-        .chain(Flags::NAMES.iter().map(|(_, name)| *name))
-        .chain(MORE)
-        .collect()
+    let flags = Flags::NAMES.iter().map(|(_, name)| *name);
+    trace.chain(flags).chain(names(more())).collect()
 }
 
 /// Names of the columns of the totals.
 pub fn total_columns() -> Vec<&'static str> {
-    TOTALS.into_iter().chain(LOSSES).collect()
+    names(of_totals()).chain(LOSSES.iter().copied()).collect()
 }
 
 /// Drives a source's cycle.
@@ -94,158 +96,86 @@ pub fn drive(source: &Source, setup: &Setup) -> Result<Driven, String> {
         (None, "warm") => Start::Warm,
         _ => Start::Soak,
     };
-    let max_dt_s = source.axis("dt_s", 1.0).first().copied().unwrap_or(1.0);
     let conditions = Conditions {
         ambient_k: source.ambient_k(),
         start,
-        max_dt_s,
+        max_dt_s: source.axis("dt_s", 1.0).first().copied().unwrap_or(1.0),
         keep_rows: true,
     };
     let outcome = cvtcycle_model::drive::drive(setup, &cycle, &conditions);
     let engine = setup.car(source.ambient_k()).engine;
-    let number = |key: &str| {
-        setup
-            .keys
-            .iter()
-            .find(|info| info.key == key)
-            .and_then(|info| info.si)
-            .unwrap_or(f64::NAN)
-    };
+    let co2 = |info: &&cvtcycle_config::KeyInfo| info.key == "engine.fuel.co2_per_fuel";
+    let co2 = setup.keys.iter().find(co2).and_then(|info| info.si);
     Ok(Driven {
         cycle,
         outcome,
         rated_w: engine.rated_w,
         fuel_density_kg_m3: engine.fuel_density_kg_m3,
-        co2_per_fuel: number("engine.fuel.co2_per_fuel"),
+        co2_per_fuel: co2.unwrap_or(f64::NAN),
     })
 }
 
-/// Indices of the phases that count.
-fn phases(source: &Source, cycle: &Cycle) -> Vec<u16> {
-    let groups = cycle.phase_groups();
-    groups
-        .into_iter()
-        .filter(|(name, _)| source.phase.is_empty() || *name == source.phase)
-        .flat_map(|(_, list)| list)
-        .collect()
+impl Driven {
+    fn end_degc(&self, node: usize) -> f64 {
+        self.outcome.end.node_k[node] - ZERO_DEGC_K
+    }
+
+    /// Indices of the phases that count.
+    fn phases(&self, source: &Source) -> Vec<u16> {
+        let groups = self.cycle.phase_groups().into_iter();
+        groups
+            .filter(|(name, _)| source.phase.is_empty() || *name == source.phase)
+            .flat_map(|(_, list)| list)
+            .collect()
+    }
 }
 
 /// The trace of a run, weighted with the length of the steps.
 pub fn trace(source: &Source, driven: &Driven) -> Table {
-    let wanted = phases(source, &driven.cycle);
-    let mut launch = 0.0;
-    let mut since = f64::NAN;
-    let mut rows = Vec::new();
-    let mut stood = true;
-    for r in &driven.outcome.rows {
-        let moving = r.speed_m_s > 0.0;
-        if moving && stood {
-            (launch, since) = (launch + 1.0, 0.0);
+    let wanted = driven.phases(source);
+    let (mut launch, mut since_launch_s, mut at_rest) = (0.0, f64::NAN, true);
+    let (more, mut rows) = (more(), Vec::new());
+    for row in &driven.outcome.rows {
+        let moving = row.speed_m_s > 0.0;
+        if moving && at_rest {
+            (launch, since_launch_s) = (launch + 1.0, 0.0);
         }
-        since += r.dt_s;
-        stood = !moving;
-        if wanted.contains(&r.phase) {
-            rows.push((row(r, driven.rated_w, launch, since), r.dt_s));
+        since_launch_s += row.dt_s;
+        at_rest = !moving;
+        if wanted.contains(&row.phase) {
+            let rated_w = driven.rated_w;
+            rows.push(step(
+                &more,
+                &Step {
+                    row,
+                    rated_w,
+                    launch,
+                    since_launch_s,
+                },
+            ));
         }
     }
-    let place = |flag: Flags| {
-        Flags::NAMES
-            .iter()
-            .position(|(name, _)| *name == flag)
-            .map(|k| COLUMNS.len() + k)
-    };
-    let marks = Marks {
-        gross: place(Flags::GROSS_SLIP),
-        outside: place(Flags::OUTSIDE_VALIDITY),
-    };
-    from_rows(columns().len(), rows.into_iter(), marks)
+    from_rows(columns().len(), rows.into_iter())
 }
 
-fn row(r: &Row, rated_w: f64, launch: f64, since_s: f64) -> Vec<f64> {
-    let coupled =
-        !r.flags.contains(Flags::CLUTCH_SLIPPING) && !r.flags.contains(Flags::CLUTCH_OPEN);
-    let more = [
-        truth(r.speed_m_s > 0.0),
-        truth(coupled),
-        launch,
-        since_s,
-        r.wheel_power_w / rated_w,
-        r.loss_w.iter().sum::<f64>(),
-    ];
-    let trace = COLUMNS.iter().map(|column| column.number_of(r));
-    trace
-        .chain(
-            Flags::NAMES
-                .iter()
-                .map(|(flag, _)| truth(r.flags.contains(*flag))),
-        )
-        .chain(more)
-        .collect()
-}
-
-/// The totals of a run as a table of one row. Temperatures and the missed trace are those of the whole run.
-///
-/// # Errors
-/// Never for phases that the cycle has.
-pub fn totals(source: &Source, driven: &Driven) -> Result<Table, String> {
-    let outcome = &driven.outcome;
-    let sum = outcome.totals.over(&phases(source, &driven.cycle));
-    let degc = |node: usize| outcome.end.node_k[node] - ZERO_DEGC_K;
-    let km = sum.distance_m / 1e3;
-    let belt = cvtcycle_model::bench::BELT_PARTS
+fn step<'a>(more: &[Column<Step<'a>>], step: &Step<'a>) -> TableRow {
+    let flags = step.row.flags;
+    let trace = COLUMNS.iter().map(|column| column.number_of(step.row));
+    let set = Flags::NAMES
         .iter()
-        .map(|c| sum.loss_j[*c as usize])
-        .sum::<f64>();
-    let head = [
-        litres_per_100km(sum.fuel_kg, driven.fuel_density_kg_m3, sum.distance_m),
-        sum.fuel_kg,
-        sum.terms.fuel / 1e3,
-        1e3 * sum.fuel_kg * driven.co2_per_fuel / km,
-        km,
-        sum.duration_s,
-        sum.standstill_fuel_kg,
-        sum.wheel_positive_j / 1e3,
-        sum.wheel_negative_j / 1e3,
-        sum.loss_j.iter().sum::<f64>() / 1e3,
-        belt / 1e3,
-        degc(SUMP),
-        degc(ENGINE_OIL),
-        degc(COOLANT),
-        degc(METAL),
-        degc(BELT),
-        outcome.totals.seconds(Flags::MISSED_TRACE),
-    ];
-    let row: Vec<f64> = head
-        .into_iter()
-        .chain(sum.loss_j.iter().map(|j| j / 1e3))
-        .collect();
-    Ok(from_rows(
-        row.len(),
-        [(row, 1.0)].into_iter(),
-        Marks::default(),
-    ))
+        .map(|(flag, _)| truth(flags.contains(*flag)));
+    TableRow {
+        weight: step.row.dt_s,
+        gross: flags.contains(Flags::GROSS_SLIP),
+        outside: flags.contains(Flags::OUTSIDE_VALIDITY),
+        ..TableRow::new(trace.chain(set).chain(numbers(more, step)))
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn losses_are_named_after_the_components() {
-        let names: Vec<String> = Component::ALL
-            .iter()
-            .map(|c| format!("{}_kj", c.name()))
-            .collect();
-        assert_eq!(LOSSES.to_vec(), names);
-    }
-
-    #[test]
-    fn no_column_is_named_twice() {
-        for names in [columns(), total_columns()] {
-            let mut sorted = names.clone();
-            sorted.sort_unstable();
-            sorted.dedup();
-            assert_eq!(sorted.len(), names.len());
-        }
-    }
+/// The totals of a run as a table of one row.
+pub fn totals(source: &Source, driven: &Driven) -> Table {
+    let sum = driven.outcome.totals.over(&driven.phases(source));
+    let losses = sum.loss_j.iter().map(|j| j / 1e3);
+    let row = TableRow::new(numbers(&of_totals(), &(driven, &sum)).chain(losses));
+    from_rows(total_columns().len(), [row].into_iter())
 }
