@@ -9,7 +9,7 @@ mod tests;
 use clap::Args;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::study::fit::outcome::Outcome;
-use cvtcycle::study::fit::plan::Plan;
+use cvtcycle::study::fit::plan::CalibrationPlan;
 use cvtcycle::study::fit::{calibrate, open};
 
 use super::Execute;
@@ -57,7 +57,7 @@ pub struct CalibrateArgs {
 }
 
 impl Execute for CalibrateArgs {
-    type Plan = (Plan, Option<OutputDir>);
+    type Plan = (CalibrationPlan, Option<OutputDir>);
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         handle_interrupts();

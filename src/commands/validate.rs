@@ -8,7 +8,7 @@ use cvtcycle::config::{Problem, Problems, bounded, decode};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::validation_page::page;
 use cvtcycle::study::check::{
-    COMMON, File, MECHANISMS, Report, Row, Subject, csv, embedded_rows, json, judge, markdown, read,
+    COMMON, CandidateVehicle, MECHANISMS, Report, RowFile, ValidationRow, csv, embedded_rows, json, judge, markdown, read,
 };
 
 use super::Execute;
@@ -94,7 +94,7 @@ fn mechanisms() -> Vec<&'static str> {
 /// Checked input of `validate`.
 pub struct ValidatePlan {
     form: ValidationForm,
-    files: Vec<File>,
+    files: Vec<RowFile>,
     out: Option<OutputDir>,
 }
 
@@ -123,12 +123,13 @@ impl Execute for ValidateArgs {
     }
 
     fn run(&self, plan: ValidatePlan, terminal: Terminal) -> CommandResult {
-        let subject = Subject {
+        let candidate = CandidateVehicle {
             vehicle: self.car.vehicle.clone(),
             lubricant: self.car.lubricant.clone(),
             set: self.car.set.clone(),
+            engine_oil: None,
         };
-        let report = judge(&plan.files, &subject, |row| self.is_wanted(row))?;
+        let report = judge(&plan.files, &candidate, |row| self.is_wanted(row))?;
         let files = match plan.out {
             Some(dir) => write(dir, &report)?,
             None => WrittenFiles::default(),
@@ -181,7 +182,7 @@ impl ValidateArgs {
         if complete { texts } else { Vec::new() }
     }
 
-    fn is_wanted(&self, row: &Row) -> bool {
+    fn is_wanted(&self, row: &ValidationRow) -> bool {
         let is = |wanted: Option<&String>, own: &str| {
             wanted.is_none_or(|wanted| wanted.eq_ignore_ascii_case(own))
         };
@@ -192,7 +193,7 @@ impl ValidateArgs {
     }
 
     /// Reports an unknown chapter or mechanism; a known mechanism without rows is none.
-    fn check_filters(&self, files: &[File], problems: &mut Problems) {
+    fn check_filters(&self, files: &[RowFile], problems: &mut Problems) {
         let rows = || files.iter().flat_map(|file| &file.rows);
         if let Some(chapter) = &self.chapter
             && !rows().any(|row| row.chapter.eq_ignore_ascii_case(chapter))

@@ -34,10 +34,6 @@ const OUTSIDE: &[(&str, &str)] = &[
         "found by computing only: tests/results/validate.rs",
     ),
     ("study::export", "output"),
-    (
-        "study::fit::solve::descend",
-        "the search: tests/studies/calibrate_solve",
-    ),
     ("study::store", "files that the program wrote"),
 ];
 

@@ -7,7 +7,7 @@ use cvtcycle::config::setup::{self, Options};
 use cvtcycle::study::NoProgress;
 use cvtcycle::study::fit::model::Model;
 use cvtcycle::study::fit::outcome::Outcome;
-use cvtcycle::study::fit::plan::{Measured, Plan, load, read};
+use cvtcycle::study::fit::plan::{CalibrationPlan, Measured, load, read};
 use cvtcycle::study::fit::solve::Residuals;
 use cvtcycle::study::fit::{calibrate, embedded_calibrations, fitted};
 use rand::{RngExt, SeedableRng};
@@ -15,7 +15,7 @@ use rand_pcg::Pcg64Mcg;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// A plan over a data file in the same folder.
-fn plan_with(folder: &tempfile::TempDir, data: &str, text: &str) -> Plan {
+fn plan_with(folder: &tempfile::TempDir, data: &str, text: &str) -> CalibrationPlan {
     std::fs::write(folder.path().join("data.csv"), data).expect("written");
     let file = folder.path().join("plan.toml");
     read(&file.to_string_lossy(), text)
@@ -23,10 +23,10 @@ fn plan_with(folder: &tempfile::TempDir, data: &str, text: &str) -> Plan {
 }
 
 /// Puts what the program computes at `truth` in the place of what was measured, with errors of the plan's own standard deviations.
-fn measure(plan: &mut Plan, truth: &[f64], seed: u64) {
+fn measure(plan: &mut CalibrationPlan, truth: &[f64], seed: u64) {
     let computed = Model::new(plan)
         .expect("a sound plan")
-        .answer(truth)
+        .predict(truth)
         .expect("an answer")
         .computed;
     let mut random = Pcg64Mcg::seed_from_u64(seed);
@@ -37,7 +37,7 @@ fn measure(plan: &mut Plan, truth: &[f64], seed: u64) {
     }
 }
 
-fn solved(plan: &Plan) -> Outcome {
+fn solved(plan: &CalibrationPlan) -> Outcome {
     calibrate(plan, &NoProgress)
         .unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)))
 }
@@ -122,7 +122,7 @@ fn truth_without_noise_is_found_from_every_start() {
     let truth = [12.0, 2.0, 0.9];
     let computed = Model::new(&plan)
         .expect("sound")
-        .answer(&truth)
+        .predict(&truth)
         .expect("an answer")
         .computed;
     plan.observations
@@ -374,10 +374,8 @@ fn fitted_files_hold_what_was_fitted() {
             found.source
         );
     }
-    let again = Plan {
-        vehicle: path.to_string_lossy().into_owned(),
-        ..plan
-    };
+    let mut again = plan;
+    again.car.vehicle = path.to_string_lossy().into_owned();
     let model = Model::new(&again).expect("sound");
     let cost: f64 = model
         .at(&model.file_values())

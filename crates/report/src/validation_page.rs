@@ -46,8 +46,8 @@ struct Line {
 pub fn page(report: &Report) -> Result<String, String> {
     let page = Page {
         program: cvtcycle_output::PROGRAM,
-        vehicle: report.subject.vehicle.clone(),
-        set: report.subject.set.clone(),
+        vehicle: report.candidate.vehicle.clone(),
+        set: report.candidate.set.clone(),
         counts: Counts::of(report.rows.iter()),
         total: report.rows.len(),
         moved: report.moved().map(|judged| judged.row.id.clone()).collect(),

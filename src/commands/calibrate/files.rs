@@ -5,7 +5,7 @@ use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::charts::calibration::calibration_pictures;
 use cvtcycle::study::fit::fitted;
 use cvtcycle::study::fit::outcome::Outcome;
-use cvtcycle::study::fit::plan::Plan;
+use cvtcycle::study::fit::plan::CalibrationPlan;
 use cvtcycle::study::fit::tables::tables;
 
 use crate::print::{WrittenFiles, json_text};
@@ -16,7 +16,7 @@ use crate::print::{WrittenFiles, json_text};
 /// A fitted file that cannot be made, or a directory that cannot be written.
 pub fn write(
     mut dir: OutputDir,
-    plan: &Plan,
+    plan: &CalibrationPlan,
     outcome: &Outcome,
     date: &str,
 ) -> Result<WrittenFiles, Problems> {
@@ -27,7 +27,11 @@ pub fn write(
 }
 
 /// Names and contents: the fitted files first.
-fn all(plan: &Plan, outcome: &Outcome, date: &str) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+fn all(
+    plan: &CalibrationPlan,
+    outcome: &Outcome,
+    date: &str,
+) -> Result<Vec<(String, Vec<u8>)>, Problems> {
     let fitted = fitted::files(plan, outcome, date)?;
     let mut files: Vec<(String, Vec<u8>)> = fitted
         .into_iter()

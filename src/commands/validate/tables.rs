@@ -11,10 +11,10 @@ const MAX_VALUE_LEN: usize = 20;
 
 /// A table for each chapter with its notes, and counts at the end.
 pub fn tables(report: &Report, paint: Paint) -> String {
-    let subject = &report.subject;
+    let candidate = &report.candidate;
     let heading = paint.heading("Published values compared with the model");
-    let mut text = format!("{heading}  {}\n", subject.vehicle);
-    text.extend(subject.set.iter().map(|set| format!("--set {set}\n")));
+    let mut text = format!("{heading}  {}\n", candidate.vehicle);
+    text.extend(candidate.set.iter().map(|set| format!("--set {set}\n")));
     let mut chapters: Vec<&str> = Vec::new();
     for judged in &report.rows {
         if !chapters.contains(&judged.row.chapter.as_str()) {

@@ -1,7 +1,7 @@
 //! Keys of a row that depend on each other.
 
 use super::expr::{Expr, Gives};
-use super::row::Row;
+use super::rows::ValidationRow;
 use super::rule::{Printed, Verdict};
 use cvtcycle_config::{Bound, Section, near};
 
@@ -67,19 +67,12 @@ pub fn verdict(s: &Section) -> Option<Verdict> {
     found
 }
 
-/// What is printed, in numbers. Of an expression that is `broken` nobody knows what it would give.
-pub fn printed(s: &Section, compute: Option<&Expr>, broken: bool) -> Option<Printed> {
+/// A number or range: `value`, or `low` and `high`, of which one may be absent.
+pub fn number_or_range(s: &Section, kind: &str) -> Option<(f64, f64)> {
     let any = Bound::any();
-    let value = s.optional_number("value", any, "printed number");
-    let low = s.optional_number("low", any, "smallest printed number");
-    let high = s.optional_number("high", any, "largest printed number");
-    let expect = s.has("expect").then(|| {
-        s.boolean_or(
-            "expect",
-            true,
-            "whether the order or sign is printed as holding",
-        )
-    });
+    let value = s.optional_number("value", any, &format!("{kind} number"));
+    let low = s.optional_number("low", any, &format!("smallest {kind} number"));
+    let high = s.optional_number("high", any, &format!("largest {kind} number"));
     if value.is_some() && (low.is_some() || high.is_some()) {
         s.complain(
             "value",
@@ -98,14 +91,26 @@ pub fn printed(s: &Section, compute: Option<&Expr>, broken: bool) -> Option<Prin
             "swap them",
         );
     }
-    let numbers = match (value, low, high) {
-        (Some(x), _, _) => Some(Printed::Range(x, x)),
+    match (value, low, high) {
+        (Some(x), ..) => Some((x, x)),
         (None, None, None) => None,
-        (None, low, high) => Some(Printed::Range(
+        _ => Some((
             low.unwrap_or(f64::NEG_INFINITY),
             high.unwrap_or(f64::INFINITY),
         )),
-    };
+    }
+}
+
+/// The printed numbers. Of an expression that is `broken` the kind of result is not known.
+pub fn printed(s: &Section, compute: Option<&Expr>, broken: bool) -> Option<Printed> {
+    let numbers = number_or_range(s, "printed").map(|(low, high)| Printed::Range(low, high));
+    let expect = s.has("expect").then(|| {
+        s.boolean_or(
+            "expect",
+            true,
+            "whether the order or sign is printed as holding",
+        )
+    });
     match (compute.map(Expr::gives), numbers) {
         (Some(Gives::Truth), Some(_)) => {
             s.complain(
@@ -142,7 +147,7 @@ pub fn printed(s: &Section, compute: Option<&Expr>, broken: bool) -> Option<Prin
 }
 
 /// What a row needs besides its keys.
-pub fn complete(s: &Section, row: &Row) {
+pub fn complete(s: &Section, row: &ValidationRow) {
     let bare = row.compute_text.trim().is_empty();
     let compared = row.recorded != Some(Verdict::NotComparable);
     if bare && compared {

@@ -4,32 +4,21 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
+use super::candidate::CandidateVehicle;
 use super::expr::{Computed, compute};
-use super::row::{File, Row};
+use super::rows::{RowFile, ValidationRow};
 use super::rule::{Verdict, off, verdict};
 use super::source::Source;
 use super::store::{Cars, Store, View, once};
-use cvtcycle_config::rig::PREFIX;
-use cvtcycle_config::setup::{Options, Setup, load};
+use cvtcycle_config::setup::{Setup, load};
 use cvtcycle_config::{KeyInfo, Problem, Problems};
 use cvtcycle_model::bench::transmission::Conditions;
 
-/// The vehicle that is validated: sources that name none are computed for it.
-#[derive(Clone, Debug, Default)]
-pub struct Subject {
-    /// Name or path.
-    pub vehicle: String,
-    /// Transmission oil in place of its own.
-    pub lubricant: Option<String>,
-    /// Overrides.
-    pub set: Vec<String>,
-}
-
-/// A row with what came out.
+/// A row with its result.
 #[derive(Clone, Debug)]
 pub struct Judged {
     /// The row.
-    pub row: Row,
+    pub row: ValidationRow,
     /// Its file.
     pub file: String,
     /// Computed; none for what cannot be compared.
@@ -42,12 +31,12 @@ pub struct Judged {
     pub cause: Option<Computed>,
     /// Points of its sources left out because the belt slips grossly there.
     pub left_out: usize,
-    /// Points that count though they lie outside the validity of a model.
+    /// Points that count although they lie outside the validity of a model.
     pub outside: usize,
 }
 
 impl Judged {
-    /// How far it is off, in widths of its tolerance.
+    /// Distance from the printed range, in widths of its tolerance.
     #[must_use]
     pub fn off(&self) -> Option<f64> {
         off(
@@ -58,7 +47,7 @@ impl Judged {
     }
 }
 
-/// What the rows that nothing was fitted to say.
+/// Result of the rows to which no parameter was fitted.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct HeldOut {
     /// Rows.
@@ -67,7 +56,7 @@ pub struct HeldOut {
     pub agree: usize,
     /// Rows with a number and a tolerance.
     pub numbers: usize,
-    /// Median of how far these are off, in widths of their tolerances; none without numbers.
+    /// Median of their distances in widths of their tolerances; none without numbers.
     pub median_off: Option<f64>,
     /// Numbers within one width, thus agreeing.
     pub numbers_agree: usize,
@@ -77,7 +66,7 @@ pub struct HeldOut {
 #[derive(Clone, Debug)]
 pub struct Report {
     /// The vehicle that was validated.
-    pub subject: Subject,
+    pub candidate: CandidateVehicle,
     /// Rows in order.
     pub rows: Vec<Judged>,
 }
@@ -92,7 +81,7 @@ impl Report {
             .count()
     }
 
-    /// What the rows that nothing was fitted to say.
+    /// Result of the rows to which no parameter was fitted.
     #[must_use]
     pub fn held_out(&self) -> HeldOut {
         let rows: Vec<&Judged> = self
@@ -128,48 +117,34 @@ impl Report {
     }
 }
 
-/// Judges the rows of some files that `wanted` picks.
+/// Judges the rows of some files for which `wanted` is true.
 ///
 /// # Errors
 /// Sources whose vehicle cannot be loaded, rows that cannot be computed.
 pub fn judge(
-    files: &[File],
-    subject: &Subject,
-    wanted: impl Fn(&Row) -> bool,
+    files: &[RowFile],
+    candidate: &CandidateVehicle,
+    wanted: impl Fn(&ValidationRow) -> bool,
 ) -> Result<Report, Problems> {
     let cars = FromFiles {
-        subject,
+        candidate,
         setups: RefCell::default(),
     };
-    let store = Store::new(&cars);
-    let mut problems = Problems::new();
-    // Once for all: what is wrong with the subject is no problem of a file.
-    load(&subject.vehicle, "--vehicle", &cars.options(None))?;
+    // Once for all: a problem of the candidate is no problem of a file.
+    load(&candidate.vehicle, "--vehicle", &candidate.options(None))?;
     cars.conditions(None)?;
+    let mut problems = Problems::new();
     for source in files.iter().flat_map(|file| &file.sources) {
-        let loaded = cars
-            .setup(Some(source))
-            .and_then(|_| cars.conditions(Some(source)));
-        if let Err(found) = loaded {
-            for problem in found.iter() {
-                let place = if problem.place.line > 0 {
-                    problem.place.clone()
-                } else {
-                    source.place.clone()
-                };
-                let problem = problem
-                    .clone()
-                    .at(place)
-                    .message(format!("source `{}`: {}", source.name, problem.message));
-                if !problems.contains(&problem) {
-                    problems.push(problem);
-                }
+        for problem in cars.problems(source) {
+            if !problems.contains(&problem) {
+                problems.push(problem);
             }
         }
     }
     if !problems.is_empty() {
         return Err(problems);
     }
+    let store = Store::new(&cars);
     let mut rows = Vec::new();
     for file in files {
         let view = View::new(&store, &file.sources);
@@ -180,57 +155,43 @@ pub fn judge(
             }
         }
     }
-    if problems.is_empty() {
-        Ok(Report {
-            subject: subject.clone(),
-            rows,
-        })
-    } else {
-        Err(problems)
+    if !problems.is_empty() {
+        return Err(problems);
     }
+    let candidate = candidate.clone();
+    Ok(Report { candidate, rows })
 }
 
-/// A car, or what is wrong with its files.
+/// A car, or the problems of its files.
 type Loaded = Result<Rc<Setup>, Problems>;
 
 /// Cars from their files, each read once.
 struct FromFiles<'a> {
-    subject: &'a Subject,
+    candidate: &'a CandidateVehicle,
     setups: RefCell<HashMap<String, Loaded>>,
 }
 
 impl FromFiles<'_> {
-    fn options(&self, source: Option<&Source>) -> Options {
-        let own = source.is_none_or(|source| source.vehicle.is_none());
-        let subject_set = if own {
-            self.subject.set.as_slice()
-        } else {
-            &[]
-        };
-        let source_set = source
-            .map(|source| source.set.as_slice())
-            .unwrap_or_default();
-        let lubricant = source.and_then(|source| source.lubricant.clone());
-        Options {
-            lubricant: lubricant.or_else(|| self.subject.lubricant.clone().filter(|_| own)),
-            engine_oil: None,
-            set: subject_set
-                .iter()
-                .chain(source_set)
-                .filter(|set| !set.starts_with(PREFIX))
-                .cloned()
-                .collect(),
-            formulation: source.map(|source| source.formulation).unwrap_or_default(),
-        }
+    /// Problems of the car and the rig of a source.
+    fn problems(&self, source: &Source) -> Problems {
+        let rig = || self.conditions(Some(source));
+        let loaded = self.setup(Some(source)).and_then(|_| rig());
+        loaded.err().unwrap_or_default().map(|problem| {
+            let place = if problem.place.line > 0 {
+                problem.place.clone()
+            } else {
+                source.place.clone()
+            };
+            let context = format!("source `{}`: ", source.name);
+            problem.at(place).with_context(&context)
+        })
     }
 }
 
 impl Cars for FromFiles<'_> {
     fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Problems> {
-        let vehicle = source
-            .and_then(|source| source.vehicle.as_deref())
-            .unwrap_or(&self.subject.vehicle);
-        let options = self.options(source);
+        let vehicle = self.candidate.vehicle_of(source);
+        let options = self.candidate.options(source);
         let key = format!("{vehicle} {options:?}");
         once(&self.setups, key, || {
             load(vehicle, "vehicle", &options).map(Rc::new)
@@ -238,15 +199,11 @@ impl Cars for FromFiles<'_> {
     }
 
     fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Problems> {
-        let own = source
-            .map(|source| source.set.as_slice())
-            .unwrap_or_default();
-        let sets: Vec<String> = self.subject.set.iter().chain(own).cloned().collect();
-        cvtcycle_config::rig::load(&sets)
+        self.candidate.conditions(source)
     }
 }
 
-fn judged(view: &View, file: &File, row: &Row) -> Result<Judged, Problem> {
+fn judged(view: &View, file: &RowFile, row: &ValidationRow) -> Result<Judged, Problem> {
     let problem = |what: &str, why: String| {
         Problem::invalid(format!(
             "row {}: `{what}` cannot be computed: {why}",

@@ -1,8 +1,9 @@
-//! The names that a file's expressions may use.
+//! The expressions of a file: the names that they may use, and their faults as problems.
 
-use super::expr::Names;
+use super::expr::{Expr, Fault, Names, parse};
 use super::source::{Kind, Source};
 use super::tables;
+use cvtcycle_config::{Place, Problem, Section};
 
 /// Sources of a file, and the known keys.
 pub struct FileNames<'a> {
@@ -35,4 +36,49 @@ impl Names for FileNames<'_> {
     fn keys(&self) -> &[String] {
         self.keys
     }
+}
+
+/// Parses the expression of a key; its faults are reported as problems with their place in the text. None for an empty text.
+pub fn expression(s: &Section, key: &str, text: &str, names: &FileNames) -> Option<Expr> {
+    if text.trim().is_empty() {
+        return None;
+    }
+    let report = |fault| s.report_problem(within(s.place(key), key, text, fault));
+    parse(text, names)
+        .map_err(|faults| faults.into_iter().for_each(report))
+        .ok()
+}
+
+/// Hint where an expression cannot be read.
+const GRAMMAR: &str = "docs/validation_format.md shows what an expression may hold";
+
+/// A fault in an expression as a problem at its place.
+fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
+    // The place is exact where the text stands on one line as it is.
+    let quoted: String = place
+        .line_text
+        .chars()
+        .skip(place.column.saturating_sub(1))
+        .collect();
+    let plain = quoted
+        .strip_prefix(['"', '\''])
+        .is_some_and(|rest| rest.starts_with(text));
+    let place = if plain {
+        Place {
+            column: place.column + 1 + fault.at,
+            width: fault.width,
+            ..place
+        }
+    } else {
+        place
+    };
+    Problem::invalid(format!("`{key}`: {}", fault.message))
+        .at(place)
+        .key(key)
+        .value(fault.word)
+        .hint(if fault.hint.is_empty() {
+            GRAMMAR.to_owned()
+        } else {
+            fault.hint
+        })
 }

@@ -93,8 +93,8 @@ pub fn json(report: &Report) -> Json {
     Json {
         schema: SCHEMA,
         program: cvtcycle_output::PROGRAM,
-        vehicle: report.subject.vehicle.clone(),
-        set: report.subject.set.clone(),
+        vehicle: report.candidate.vehicle.clone(),
+        set: report.candidate.set.clone(),
         counts: Counts::of(report.rows.iter()),
         held_out: report.held_out(),
         moved: report.moved().map(|row| row.row.id.clone()).collect(),

@@ -1,7 +1,9 @@
-//! Sources: what the rows look at, read from `[sources.NAME]`.
+//! Sources of computed values, read from `[sources.NAME]`.
+
+use std::path::Path;
 
 use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, names, read_csv};
-use cvtcycle_config::setup::AMBIENT;
+use cvtcycle_config::setup::{AMBIENT, is_path};
 use cvtcycle_config::{Bound, Place, Section, near, unit_of};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
@@ -43,11 +45,11 @@ impl Kind {
 pub struct Source {
     /// Name in the expressions.
     pub name: String,
-    /// Where it stands.
+    /// Place of its overrides, or of its kind.
     pub place: Place,
     /// What it computes.
     pub kind: Kind,
-    /// Vehicle; none for the subject of the validation.
+    /// Vehicle; none for the candidate vehicle.
     pub vehicle: Option<String>,
     /// Transmission oil in place of the vehicle's.
     pub lubricant: Option<String>,
@@ -220,7 +222,7 @@ const STRIP_DOWN: [Axis; 3] = [
 const FLUID: [Axis; 1] = [("temp_degc", TEMP, true, "temperature of the fluid")];
 
 /// Most points of a source.
-const MOST_POINTS: usize = 200_000;
+const MAX_POINTS: usize = 200_000;
 
 fn axes(kind: Kind) -> &'static [Axis] {
     match kind {
@@ -282,6 +284,16 @@ pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
         }
     }
     done
+}
+
+/// Makes the paths of vehicles and fluids, which are relative to the file that names them, relative to the working directory.
+pub fn resolve_paths(sources: &mut [Source], file: &str) {
+    let folder = Path::new(file).parent().unwrap_or(Path::new(""));
+    let named = sources.iter_mut();
+    let named = named.flat_map(|source| [&mut source.vehicle, &mut source.lubricant]);
+    for path in named.flatten().filter(|path| is_path(path)) {
+        *path = folder.join(&*path).to_string_lossy().into_owned();
+    }
 }
 
 /// Counts all keys of a source as read, where it is not known what they mean.
@@ -352,16 +364,16 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
         .iter()
         .map(|(_, list)| list.as_ref().map_or(1, Vec::len))
         .fold(1_usize, usize::saturating_mul);
-    if count > MOST_POINTS {
+    if count > MAX_POINTS {
         s.complain(
             "source",
-            &format!("up to {MOST_POINTS} points"),
+            &format!("up to {MAX_POINTS} points"),
             &format!("source `{name}` has {count} points"),
             "use wider steps",
         );
     }
     match kind {
-        Kind::Bench => bench(s, &mut source),
+        Kind::Bench if s.has("without") => source.without = without(s),
         Kind::Run => run(s, &mut source),
         _ => {}
     }
@@ -417,25 +429,19 @@ pub fn empty(name: &str, kind: Kind) -> Source {
 }
 
 /// Parts that can be taken out of the box.
-pub const PARTS: [&str; 4] = ["final_drive", "belt", "reverse_clutch", "pump"];
+const PARTS: [&str; 4] = ["final_drive", "belt", "reverse_clutch", "pump"];
 
-fn bench(s: &Section, source: &mut Source) {
-    if !s.has("without") {
-        return;
-    }
-    source.without = s.texts("without", "parts that are not in the box");
-    for part in source
-        .without
+/// Parts that are taken out of the box.
+pub fn without(s: &Section) -> Vec<String> {
+    let without = s.texts("without", "parts that are not in the box");
+    for part in without
         .iter()
         .filter(|part| !PARTS.contains(&part.as_str()))
     {
-        s.complain(
-            "without",
-            &PARTS.join(", "),
-            &format!("there is no part `{part}`"),
-            "",
-        );
+        let message = format!("there is no part `{part}`");
+        s.complain("without", &PARTS.join(", "), &message, "");
     }
+    without
 }
 
 fn run(s: &Section, source: &mut Source) {

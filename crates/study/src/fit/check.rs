@@ -1,17 +1,17 @@
 //! A plan read and held against its cars, so that all its problems are told at once.
 
 use super::model::Model;
-use super::plan::{self, Plan};
+use super::plan::{self, CalibrationPlan};
 use cvtcycle_config::Problems;
 
 /// Reads the plan that a word of the user means, and loads its cars.
 ///
 /// # Errors
 /// All problems of the plan, of its data files and of its cars.
-pub fn open(word: &str, option: &str) -> Result<Plan, Problems> {
+pub fn open(word: &str, option: &str) -> Result<CalibrationPlan, Problems> {
     let (plan, mut problems) = plan::gather(word, option)?;
     // Without a vehicle, and that is told already, every key would be unknown.
-    if !plan.vehicle.is_empty() {
+    if !plan.car.vehicle.is_empty() {
         problems.extend(Model::new(&plan).err().unwrap_or_default());
     }
     if problems.is_empty() {

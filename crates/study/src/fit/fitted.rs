@@ -1,15 +1,15 @@
 //! The vehicle file, and the fluid files, with the fitted values in them.
 //!
 //! A file keeps its form and comments. A fitted value gets the status `fitted`, the plan, the date and its standard error as its source.
-//! What the plan sets is written in with the status `assumed`. Names of files within the vehicle file stay right from wherever the fitted
-//! one lies: those that stand beside the vehicle file become whole paths.
+//! What the plan sets gets the status `assumed`. Paths in the vehicle file that are relative to it become
+//! absolute, so that the fitted file may be in any folder.
 
 use std::path::Path;
 
-use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
+use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
 use super::outcome::{Outcome, Parameter};
-use super::plan::{Plan, problem};
+use super::plan::{CalibrationPlan, problem};
 use cvtcycle_config::Problems;
 use cvtcycle_config::setup::{Kind, is_path, text_of};
 
@@ -25,96 +25,33 @@ const FLUIDS: [(&str, &str); 2] = [
 /// Names and texts of the fitted files: the vehicle first. `date` is written beside each value.
 ///
 /// # Errors
-/// A file that is no longer there, or in which a value cannot be put.
+/// A file that does not exist any more, or in which a value cannot be put.
 pub fn files(
-    plan: &Plan,
+    plan: &CalibrationPlan,
     outcome: &Outcome,
     date: &str,
 ) -> Result<Vec<(String, String)>, Problems> {
-    let (_, text, disk) = text_of(&plan.vehicle, Kind::Vehicle, "calibration.vehicle")?;
-    let mut vehicle = parsed(plan, &text)?;
-    beside(vehicle.as_item_mut(), &disk.folder);
-    let source = |p: &Parameter| {
-        let error = p.standard_error.map_or_else(
-            || "no standard error".to_owned(),
-            |x| format!("standard error {} {}", digits(x, 3), p.unit),
-        );
-        format!(
-            "fitted to {} on {date}; {}",
-            plan.file,
-            error.trim_end_matches(" -")
-        )
+    let (_, text, disk) = text_of(&plan.car.vehicle, Kind::Vehicle, "calibration.vehicle")?;
+    let job = Job {
+        plan,
+        outcome,
+        date,
+        folder: &disk.folder,
     };
+    let mut vehicle = parsed(plan, &text)?;
+    make_absolute(vehicle.as_item_mut(), job.folder);
     let mut written = Vec::new();
     for (prefix, name) in FLUIDS {
-        let own: Vec<&Parameter> = outcome
-            .parameters
-            .iter()
-            .filter(|p| p.is_key && p.name.starts_with(prefix))
-            .collect();
-        let given = if prefix == FLUIDS[0].0 {
-            &plan.lubricant
-        } else {
-            &plan.engine_oil
-        };
-        let named = text_at(&vehicle, &["vehicle", name]);
-        let word = given.clone().unwrap_or(named);
-        let sets = plan.set.iter().filter_map(|set| set.strip_prefix(prefix));
-        if own.is_empty() && sets.clone().next().is_none() {
-            if given.is_some() {
-                let word = if is_path(&word) {
-                    whole(Path::new(""), &word)
-                } else {
-                    word
-                };
-                put(
-                    &mut vehicle,
-                    &["vehicle", name],
-                    Value::from(word),
-                    "assumed",
-                    &format!("set by {}", plan.file),
-                );
-            }
-            continue;
-        }
-        let (_, text, _) = text_of(&word, Kind::Lubricant, "calibration.lubricant")?;
-        let mut fluid = parsed(plan, &text)?;
-        for set in sets {
-            assign(&mut fluid, set, plan, &disk.folder);
-        }
-        for p in own {
-            let path: Vec<&str> = p.name[prefix.len()..].split('.').collect();
-            put(&mut fluid, &path, number(p.value), "fitted", &source(p));
-        }
-        let file = format!("{}_fitted.toml", stem(&word));
-        put(
-            &mut vehicle,
-            &["vehicle", name],
-            Value::from(file.clone()),
-            "fitted",
-            &format!("{word} with values fitted to {}", plan.file),
-        );
-        written.push((file, fluid.to_string()));
+        written.extend(job.fluid(&mut vehicle, prefix, name)?);
     }
-    for set in plan.set.iter().filter(|set| {
-        !FLUIDS.iter().any(|(prefix, _)| set.starts_with(prefix)) && !set.starts_with("rig.")
-    }) {
-        assign(&mut vehicle, set, plan, &disk.folder);
+    let is_fluid = |key: &str| FLUIDS.iter().any(|(prefix, _)| key.starts_with(prefix));
+    let sets = plan.car.set.iter();
+    for set in sets.filter(|set| !is_fluid(set) && !set.starts_with("rig.")) {
+        job.assign(&mut vehicle, set);
     }
-    for p in outcome
-        .parameters
-        .iter()
-        .filter(|p| p.is_key && !FLUIDS.iter().any(|(prefix, _)| p.name.starts_with(prefix)))
-    {
-        put(
-            &mut vehicle,
-            &p.name.split('.').collect::<Vec<&str>>(),
-            number(p.value),
-            "fitted",
-            &source(p),
-        );
-    }
-    let mut name = format!("{}_fitted.toml", stem(&plan.vehicle));
+    let fitted = job.fitted().filter(|p| !is_fluid(&p.name));
+    fitted.for_each(|p| job.put_fitted(&mut vehicle, &p.name, p));
+    let mut name = format!("{}_fitted.toml", stem(&plan.car.vehicle));
     if written.iter().any(|(other, _)| *other == name) {
         name = format!("vehicle_{name}");
     }
@@ -122,7 +59,97 @@ pub fn files(
     Ok(written)
 }
 
-fn parsed(plan: &Plan, text: &str) -> Result<DocumentMut, Problems> {
+/// The values to be written.
+struct Job<'a> {
+    plan: &'a CalibrationPlan,
+    outcome: &'a Outcome,
+    date: &'a str,
+    /// Folder of the vehicle file.
+    folder: &'a Path,
+}
+
+impl Job<'_> {
+    fn fitted(&self) -> impl Iterator<Item = &Parameter> {
+        self.outcome.parameters.iter().filter(|p| p.is_key)
+    }
+
+    /// The file of a fluid with its values, named in the vehicle file; none if nothing of it changes.
+    fn fluid(
+        &self,
+        vehicle: &mut DocumentMut,
+        prefix: &str,
+        name: &str,
+    ) -> Result<Option<(String, String)>, Problems> {
+        let car = &self.plan.car;
+        let own: Vec<&Parameter> = self
+            .fitted()
+            .filter(|p| p.name.starts_with(prefix))
+            .collect();
+        let given = if prefix == FLUIDS[0].0 {
+            &car.lubricant
+        } else {
+            &car.engine_oil
+        };
+        let path = ["vehicle", name];
+        let sets: Vec<&str> = car
+            .set
+            .iter()
+            .filter_map(|set| set.strip_prefix(prefix))
+            .collect();
+        if own.is_empty() && sets.is_empty() {
+            if let Some(word) = given {
+                let word = if is_path(word) {
+                    absolute(Path::new(""), word)
+                } else {
+                    word.clone()
+                };
+                let source = format!("set by {}", self.plan.file);
+                put(vehicle, &path, Value::from(word), "assumed", &source);
+            }
+            return Ok(None);
+        }
+        let word = given.clone().unwrap_or_else(|| text_at(vehicle, &path));
+        let (_, text, _) = text_of(&word, Kind::Lubricant, "calibration.lubricant")?;
+        let mut fluid = parsed(self.plan, &text)?;
+        sets.into_iter()
+            .for_each(|set| self.assign(&mut fluid, set));
+        for p in own {
+            self.put_fitted(&mut fluid, &p.name[prefix.len()..], p);
+        }
+        let file = format!("{}_fitted.toml", stem(&word));
+        let source = format!("{word} with values fitted to {}", self.plan.file);
+        put(vehicle, &path, Value::from(file.clone()), "fitted", &source);
+        Ok(Some((file, fluid.to_string())))
+    }
+
+    /// Puts a fitted value at its key.
+    fn put_fitted(&self, document: &mut DocumentMut, key: &str, p: &Parameter) {
+        let error = p.standard_error.map_or_else(
+            || "no standard error".to_owned(),
+            |x| format!("standard error {} {}", digits(x, 3), p.unit),
+        );
+        let error = error.trim_end_matches(" -");
+        let source = format!("fitted to {} on {}; {error}", self.plan.file, self.date);
+        let path: Vec<&str> = key.split('.').collect();
+        put(document, &path, number(p.value), "fitted", &source);
+    }
+
+    /// Puts the value of an assignment `KEY=VALUE` of the plan.
+    fn assign(&self, document: &mut DocumentMut, set: &str) {
+        let Some((key, text)) = set.split_once('=') else {
+            return;
+        };
+        let value = text.trim().parse::<Value>();
+        let mut item = Item::Value(value.unwrap_or_else(|_| Value::from(text.trim())));
+        make_absolute(&mut item, self.folder);
+        let Ok(value) = item.into_value() else { return };
+        let path: Vec<&str> = key.trim().split('.').map(str::trim).collect();
+        let source = format!("set by {}", self.plan.file);
+        put(document, &path, value, "assumed", &source);
+    }
+}
+
+fn parsed(plan: &CalibrationPlan, text: &str) -> Result<DocumentMut, Problems> {
     // The model was loaded from it before.
     text.parse().map_err(|error| {
         problem(
@@ -167,28 +194,6 @@ fn text_at(document: &DocumentMut, path: &[&str]) -> String {
     inner.as_str().unwrap_or_default().to_owned()
 }
 
-/// Writes what the plan sets by `KEY=VALUE`; a file that it names lies beside the vehicle file.
-fn assign(document: &mut DocumentMut, set: &str, plan: &Plan, folder: &Path) {
-    let Some((key, text)) = set.split_once('=') else {
-        return;
-    };
-    let mut item = Item::Value(
-        text.trim()
-            .parse::<Value>()
-            .unwrap_or_else(|_| Value::from(text.trim())),
-    );
-    beside(&mut item, folder);
-    let Ok(value) = item.into_value() else { return };
-    let path: Vec<&str> = key.trim().split('.').map(str::trim).collect();
-    put(
-        document,
-        &path,
-        value,
-        "assumed",
-        &format!("set by {}", plan.file),
-    );
-}
-
 /// Puts a value with its status and source at a path, keeping the comments around it. A note of the old value does not hold any more.
 fn put(document: &mut DocumentMut, path: &[&str], value: Value, status: &str, source: &str) {
     let Some((last, tables)) = path.split_last() else {
@@ -196,48 +201,46 @@ fn put(document: &mut DocumentMut, path: &[&str], value: Value, status: &str, so
     };
     let mut item = document.as_item_mut();
     for part in tables {
-        if !item.is_table_like() {
-            *item = Item::Table(Table::new());
-        }
-        let Some(table) = item.as_table_like_mut() else {
-            return;
-        };
+        let Some(table) = as_table(item) else { return };
         item = table.entry(part).or_insert_with(|| {
             let mut table = Table::new();
             table.set_implicit(true);
             Item::Table(table)
         });
     }
+    let Some(table) = as_table(item) else { return };
+    let mut entry = InlineTable::new();
+    entry.insert("value", value);
+    entry.insert("status", Value::from(status));
+    entry.insert("source", Value::from(source));
+    let mut entry = Value::from(entry);
+    if let Some(old) = table.get(last).and_then(Item::as_value) {
+        *entry.decor_mut() = old.decor().clone();
+    }
+    table.insert(last, Item::Value(entry));
+}
+
+/// The table of an item, which becomes one if it is something else.
+fn as_table(item: &mut Item) -> Option<&mut dyn TableLike> {
     if !item.is_table_like() {
         *item = Item::Table(Table::new());
     }
-    let Some(table) = item.as_table_like_mut() else {
-        return;
-    };
-    let mut told = InlineTable::new();
-    told.insert("value", value);
-    told.insert("status", Value::from(status));
-    told.insert("source", Value::from(source));
-    let mut told = Value::from(told);
-    if let Some(old) = table.get(last).and_then(Item::as_value) {
-        *told.decor_mut() = old.decor().clone();
-    }
-    table.insert(last, Item::Value(told));
+    item.as_table_like_mut()
 }
 
-/// A path as seen from anywhere, where there is such a file.
-fn whole(folder: &Path, word: &str) -> String {
+/// The absolute path of a file; the word itself if there is no such file.
+fn absolute(folder: &Path, word: &str) -> String {
     std::fs::canonicalize(folder.join(word)).map_or_else(
         |_| word.to_owned(),
         |path| path.to_string_lossy().into_owned(),
     )
 }
 
-/// Makes the names of files beside the vehicle file whole paths, in all values below an item.
-fn beside(item: &mut Item, folder: &Path) {
+/// Makes the paths of files in a folder absolute, in all values below an item.
+fn make_absolute(item: &mut Item, folder: &Path) {
     let is_file = |text: &str| is_path(text) && !text.contains('\n') && folder.join(text).is_file();
     if let Some(text) = item.as_str().filter(|text| is_file(text)) {
-        let path = whole(folder, text);
+        let path = absolute(folder, text);
         if let Some(value) = item.as_value_mut() {
             let decor = value.decor().clone();
             *value = Value::from(path);
@@ -246,6 +249,8 @@ fn beside(item: &mut Item, folder: &Path) {
         return;
     }
     if let Some(table) = item.as_table_like_mut() {
-        table.iter_mut().for_each(|(_, item)| beside(item, folder));
+        table
+            .iter_mut()
+            .for_each(|(_, item)| make_absolute(item, folder));
     }
 }

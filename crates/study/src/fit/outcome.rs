@@ -1,10 +1,13 @@
-//! Everything that a calibration found, ready for tables, files and pictures.
+//! Result of a calibration, for tables, files and pictures.
 //!
 //! | label | statement | known from |
 //! |---|---|---|
 //! | CO-1 | root mean square of residuals over their standard deviations, of a group, of a fold, of all | convention |
 
 use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+use super::plan::CalibrationPlan;
 
 /// Version of the form of `calibration.json`.
 pub const SCHEMA: u32 = 1;
@@ -22,7 +25,7 @@ pub struct Parameter {
     pub file_value: f64,
     /// Fitted value.
     pub value: f64,
-    /// Standard error; none where nothing tells the parameter.
+    /// Standard error; none for a parameter that is not identified.
     pub standard_error: Option<f64>,
     /// Bounds.
     pub low: f64,
@@ -34,7 +37,7 @@ pub struct Parameter {
     pub prior_status: String,
     /// Reason for bounds and prior.
     pub source: String,
-    /// Variance after over variance before: near 1 where the data say nothing.
+    /// Variance after over variance before: near 1 if the data have no influence.
     pub prior_share: Option<f64>,
     /// `low` or `high` where the value lies at a bound.
     pub at_bound: Option<&'static str>,
@@ -51,7 +54,7 @@ pub struct Residual {
     pub fold: String,
     /// Identifier of a row, or column and place in a file.
     pub label: String,
-    /// What it is.
+    /// Meaning.
     pub what: String,
     /// Measured column; empty for expressions.
     pub column: String,
@@ -105,7 +108,7 @@ pub struct Start {
     pub from: Vec<f64>,
     /// Values at its end.
     pub to: Vec<f64>,
-    /// Sum of squares; none where the model gave no answer.
+    /// Sum of squares; none where the model has no result.
     pub cost: Option<f64>,
     /// How it ended.
     pub end: String,
@@ -113,23 +116,23 @@ pub struct Start {
     pub evaluations: usize,
 }
 
-/// A direction in the space of the parameters, and how well the data alone know it.
+/// A direction in the space of the parameters, and how well the data alone determine it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Direction {
-    /// Singular value of the scaled Jacobian; 0 for what no datum sees.
+    /// Singular value of the scaled Jacobian; 0 without an effect on the data.
     pub singular_value: f64,
     /// Weight of each parameter.
     pub weights: Vec<f64>,
 }
 
 /// A finished calibration.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Outcome {
     /// Version of this form.
     pub schema: u32,
     /// Program and version.
     pub program: String,
-    /// Name for people.
+    /// Title.
     pub title: String,
     /// Plan as cited.
     pub plan: String,
@@ -143,7 +146,7 @@ pub struct Outcome {
     pub end: String,
     /// Whether it converged.
     pub converged: bool,
-    /// Sum of squares of the residuals of data and priors with the file's values; none where the model has no answer there.
+    /// Sum of squares of the residuals of data and priors with the file's values; none where the model has no result there.
     pub cost_before: Option<f64>,
     /// The same after the fit.
     pub cost_after: f64,
@@ -161,9 +164,9 @@ pub struct Outcome {
     pub correlation: Vec<Vec<Option<f64>>>,
     /// Covariance of the parameters in their units, row by row.
     pub covariance: Vec<Vec<Option<f64>>>,
-    /// Directions, least known first.
+    /// Directions, least determined first.
     pub directions: Vec<Direction>,
-    /// What the data alone do not identify, in words.
+    /// What the data alone do not identify, as sentences.
     pub not_identified: Vec<String>,
     /// Folds.
     pub folds: Vec<Fold>,
@@ -171,11 +174,40 @@ pub struct Outcome {
     pub starts: Vec<Start>,
     /// Evaluations of the model in all starts.
     pub evaluations: usize,
-    /// What a reader must not overlook, one sentence each: not converged, at a bound, outside validity, scatter beyond the deviations.
+    /// Warnings, one sentence each: not converged, at a bound, outside validity, scatter beyond the deviations.
     pub warnings: Vec<String>,
 }
 
 impl Outcome {
+    /// Version, program, plan and files, without results.
+    pub(super) fn of_plan(plan: &CalibrationPlan) -> Self {
+        let hash = Sha256::digest(plan.text.as_bytes());
+        let files = plan.files.iter();
+        Outcome {
+            schema: SCHEMA,
+            program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")).to_owned(),
+            title: plan.title.clone(),
+            plan: plan.file.clone(),
+            plan_sha256: hash.iter().map(|byte| format!("{byte:02x}")).collect(),
+            files: files
+                .map(|(path, hash)| [path.clone(), hash.clone()])
+                .collect(),
+            vehicle: plan.car.vehicle.clone(),
+            ..Outcome::default()
+        }
+    }
+
+    /// The observations with doubtful points, as `FIRST and N more`.
+    #[must_use]
+    pub fn doubtful(&self) -> Option<String> {
+        let mut doubtful = self.residuals.iter().filter(|r| r.doubtful > 0);
+        let first = &doubtful.next()?.label;
+        Some(match doubtful.count() {
+            0 => first.clone(),
+            more => format!("{first} and {more} more"),
+        })
+    }
+
     /// Root mean square of all residuals in standard deviations: with the files' values, fitted, predicted fold by fold (CO-1).
     #[must_use]
     pub fn rms_sd(&self) -> [Option<f64>; 3] {

@@ -1,26 +1,24 @@
 //! A plan to its outcome.
 
-use sha2::{Digest, Sha256};
-
-use super::model::{Answer, Model};
-use super::outcome::{self, Direction, Fold, Outcome, Residual, SCHEMA, Start, rms};
-use super::plan::{Measured, Plan, What};
+use super::model::{Model, Prediction};
+use super::outcome::{self, Direction, Fold, Outcome, Residual, Start, rms};
+use super::plan::{CalibrationPlan, Measured, Observable};
 use super::solve::{self, Bound, Failure, Fit, FitEnd, Options, Uncertainty};
 use crate::progress::Progress;
 use cvtcycle_config::{Problem, Problems};
 
-/// Probability below which the data scatter more than their standard deviations say.
+/// Probability of the sum of squares below which there is a warning.
 const UNLIKELY: f64 = 0.01;
 /// A start within this share of the least cost found the same minimum.
 const SAME_COST: f64 = 1e-3;
-/// Distance from its prior, in its standard deviations, that a reader should know of.
+/// Distance from its prior, in its standard deviations, above which there is a warning.
 const FAR: f64 = 3.0;
 
 /// Fits the parameters of a plan, and says what the fit is worth.
 ///
 /// # Errors
 /// What is wrong with the plan's vehicle, keys, bounds and sources; a problem if the model has no answer at any start.
-pub fn calibrate(plan: &Plan, progress: &dyn Progress) -> Result<Outcome, Problems> {
+pub fn calibrate(plan: &CalibrationPlan, progress: &dyn Progress) -> Result<Outcome, Problems> {
     let model = Model::new(plan)?;
     let search = &plan.search;
     let options = Options {
@@ -58,7 +56,7 @@ pub fn calibrate(plan: &Plan, progress: &dyn Progress) -> Result<Outcome, Proble
 }
 
 /// Each cause of a fit without result once, whatever the number of starts with it.
-fn problems_of(failure: Failure, plan: &Plan) -> Problems {
+fn problems_of(failure: Failure, plan: &CalibrationPlan) -> Problems {
     if failure.is_stop() {
         return Problem::stopped("stopped before the model gave an answer").into();
     }
@@ -88,62 +86,35 @@ struct Found<'m> {
 
 impl Found<'_> {
     fn outcome(&self) -> Outcome {
-        let (plan, fit) = (self.model.plan(), &self.fit);
+        let (fit, u) = (&self.fit, &self.uncertainty);
         let file_values = self.model.file_values();
-        let before = self.model.answer(&file_values).ok();
+        let before = self.model.predict(&file_values).ok();
         let residuals = self.residuals(before.as_ref(), &file_values);
         let parameters = self.parameters(&file_values);
-        let sum = |list: &mut dyn Iterator<Item = f64>| list.map(|x| x * x).sum::<f64>();
-        let prior_before = sum(&mut parameters
-            .iter()
-            .filter_map(|p| p.prior.map(|[mean, sd]| (p.file_value - mean) / sd)));
+        let best_first = u.directions.iter().rev();
+        let directions = best_first.map(|d| Direction {
+            singular_value: d.singular_value,
+            weights: d.weights.clone(),
+        });
         let mut outcome = Outcome {
-            schema: SCHEMA,
-            program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")).to_owned(),
-            title: plan.title.clone(),
-            plan: plan.file.clone(),
-            plan_sha256: Sha256::digest(plan.text.as_bytes())
-                .iter()
-                .map(|byte| format!("{byte:02x}"))
-                .collect(),
-            files: plan
-                .files
-                .iter()
-                .map(|(path, hash)| [path.clone(), hash.clone()])
-                .collect(),
-            vehicle: plan.vehicle.clone(),
             end: fit.end.name().to_owned(),
             converged: fit.end == FitEnd::Converged,
-            cost_before: residuals
-                .iter()
-                .map(|r| r.before_sd)
-                .collect::<Option<Vec<f64>>>()
-                .map(|list| sum(&mut list.into_iter()) + prior_before),
+            cost_before: cost_before(&residuals, &parameters),
             cost_after: fit.cost,
-            chi2: sum(&mut fit.residuals.iter().copied()),
-            degrees_of_freedom: self.uncertainty.degrees_of_freedom,
-            chi2_probability: self.uncertainty.chi2_probability,
+            chi2: sum_of_squares(fit.residuals.iter().copied()),
+            degrees_of_freedom: u.degrees_of_freedom,
+            chi2_probability: u.chi2_probability,
             parameters,
+            folds: self.folds_of(&residuals),
             residuals,
-            correlation: matrix(&self.uncertainty.correlation),
-            covariance: matrix(&self.uncertainty.covariance),
-            directions: self
-                .uncertainty
-                .directions
-                .iter()
-                .rev()
-                .map(|d| Direction {
-                    singular_value: d.singular_value,
-                    weights: d.weights.clone(),
-                })
-                .collect(),
+            correlation: matrix(&u.correlation),
+            covariance: matrix(&u.covariance),
+            directions: directions.collect(),
             not_identified: solve::not_identified(fit, self.model.parameters()),
-            folds: Vec::new(),
             starts: fit.starts.iter().map(start).collect(),
             evaluations: fit.evaluations,
-            warnings: Vec::new(),
+            ..Outcome::of_plan(self.model.plan())
         };
-        outcome.folds = self.folds_of(&outcome.residuals);
         outcome.warnings = warnings(&outcome);
         outcome
     }
@@ -182,13 +153,10 @@ impl Found<'_> {
             .collect()
     }
 
-    fn residuals(&self, before: Option<&Answer>, file_values: &[f64]) -> Vec<Residual> {
+    fn residuals(&self, before: Option<&Prediction>, file_values: &[f64]) -> Vec<Residual> {
         let plan = self.model.plan();
-        // The fit ended where the model has an answer.
-        let after = self.model.answer(&self.fit.values).unwrap_or(Answer {
-            computed: Vec::new(),
-            doubtful: Vec::new(),
-        });
+        // The model has a result at the end of the fit.
+        let after = self.model.predict(&self.fit.values).unwrap_or_default();
         let left_out = self.left_out();
         let before_distances =
             before.map(|answer| self.model.distances(&answer.computed, file_values));
@@ -203,7 +171,7 @@ impl Found<'_> {
                 label: o.label.clone(),
                 what: o.what.clone(),
                 column: o.column.clone(),
-                time_s: if let What::Trace { time_s, .. } = o.what_computed {
+                time_s: if let Observable::Trace { time_s, .. } = o.observable {
                     Some(time_s)
                 } else {
                     None
@@ -230,7 +198,7 @@ impl Found<'_> {
         let plan = self.model.plan();
         let mut all = vec![(None, None); plan.observations.len()];
         for fold in &self.folds {
-            let Ok(answer) = self.model.answer(&fold.values) else {
+            let Ok(answer) = self.model.predict(&fold.values) else {
                 continue;
             };
             let own = (0..all.len()).filter(|k| plan.observations[*k].fold == fold.group);
@@ -261,6 +229,18 @@ impl Found<'_> {
     }
 }
 
+fn sum_of_squares(list: impl Iterator<Item = f64>) -> f64 {
+    list.map(|x| x * x).sum()
+}
+
+/// Sum of squares of data and priors with the values of the files.
+fn cost_before(residuals: &[Residual], parameters: &[outcome::Parameter]) -> Option<f64> {
+    let before: Option<Vec<f64>> = residuals.iter().map(|r| r.before_sd).collect();
+    let priors = parameters.iter();
+    let priors = priors.filter_map(|p| p.prior.map(|[mean, sd]| (p.file_value - mean) / sd));
+    Some(sum_of_squares(before?.into_iter()) + sum_of_squares(priors))
+}
+
 fn start(start: &solve::Start) -> Start {
     let end = start.failure.as_ref().map_or_else(
         || start.end.name().to_owned(),
@@ -281,74 +261,63 @@ fn matrix(m: &nalgebra::DMatrix<f64>) -> Vec<Vec<Option<f64>>> {
         .collect()
 }
 
-/// What a reader must not overlook.
+/// Warnings, one sentence each.
 fn warnings(o: &Outcome) -> Vec<String> {
-    let mut said = Vec::new();
+    let mut warnings = Vec::new();
     if !o.converged {
-        said.push(format!(
+        warnings.push(format!(
             "the search did not converge ({}): the values are the best point so far, no minimum",
             o.end
         ));
     }
     for p in o.parameters.iter().filter(|p| p.is_dead) {
-        said.push(format!(
-            "{} moves no datum: it is not fitted by these data",
-            p.name
+        let name = &p.name;
+        warnings.push(format!(
+            "{name} moves no datum: it is not fitted by these data"
         ));
     }
-    for p in &o.parameters {
-        if let Some(bound) = p.at_bound {
-            said.push(format!(
-                "{} lies at its {bound} bound, {}: the data would carry it further",
-                p.name, p.value
-            ));
-        }
-        if let Some([mean, sd]) = p.prior
-            && (p.value - mean).abs() > FAR * sd
-        {
-            said.push(format!(
+    warnings.extend(o.parameters.iter().flat_map(of_parameter));
+    if let Some(p) = o.chi2_probability.filter(|p| *p < UNLIKELY) {
+        let factor = (o.cost_after / o.degrees_of_freedom as f64).sqrt();
+        warnings.push(format!(
+            "the data scatter more than their standard deviations say: a sum of squares of {:.1} with {} degrees of freedom has a probability of {p:.1e}; \
+             the standard errors are too small by a factor of about {factor:.1}",
+            o.cost_after, o.degrees_of_freedom
+        ));
+    }
+    if let Some(observations) = o.doubtful() {
+        warnings.push(format!("{observations}: computed outside the validity of a model, or with points left out at gross slip"));
+    }
+    let same = |cost: f64| cost <= o.cost_after * (1.0 + SAME_COST) + 1e-9;
+    let starts = o.starts.iter();
+    let elsewhere = starts.filter(|s| !s.cost.is_some_and(same)).count();
+    if elsewhere > 0 {
+        let all = o.starts.len();
+        warnings.push(format!(
+            "{elsewhere} of {all} starts ended in another place, with a larger sum of squares"
+        ));
+    }
+    warnings
+}
+
+/// A parameter at a bound, or far from its prior.
+fn of_parameter(p: &outcome::Parameter) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Some(bound) = p.at_bound {
+        warnings.push(format!(
+            "{} lies at its {bound} bound, {}: the data would carry it further",
+            p.name, p.value
+        ));
+    }
+    if let Some([mean, sd]) = p.prior {
+        let away = (p.value - mean).abs();
+        if away > FAR * sd {
+            warnings.push(format!(
                 "{} is {:.1} standard deviations away from its prior",
                 p.name,
-                (p.value - mean).abs() / sd
+                away / sd
             ));
         }
     }
-    if let Some(p) = o.chi2_probability.filter(|p| *p < UNLIKELY) {
-        said.push(format!(
-            "the data scatter more than their standard deviations say: a sum of squares of {:.1} with {} degrees of freedom has a probability of {p:.1e}; \
-             the standard errors are too small by a factor of about {:.1}",
-            o.cost_after,
-            o.degrees_of_freedom,
-            (o.cost_after / o.degrees_of_freedom as f64).sqrt()
-        ));
-    }
-    let doubtful: Vec<&str> = o
-        .residuals
-        .iter()
-        .filter(|r| r.doubtful > 0)
-        .map(|r| r.label.as_str())
-        .collect();
-    if let Some(first) = doubtful.first() {
-        let more = if doubtful.len() > 1 {
-            format!(" and {} more", doubtful.len() - 1)
-        } else {
-            String::new()
-        };
-        said.push(format!("{first}{more}: computed outside the validity of a model, or with points left out at gross slip"));
-    }
-    let elsewhere = o
-        .starts
-        .iter()
-        .filter(|s| {
-            s.cost
-                .is_none_or(|cost| cost > o.cost_after * (1.0 + SAME_COST) + 1e-9)
-        })
-        .count();
-    if elsewhere > 0 {
-        said.push(format!(
-            "{elsewhere} of {} starts ended in another place, with a larger sum of squares",
-            o.starts.len()
-        ));
-    }
-    said
+    warnings
 }

@@ -1,6 +1,7 @@
 //! The belt alone as a table.
 
-use super::{Column, Table, TableRow, combinations, from_rows, numbers, rpm};
+use super::columns::{Column, TableRow, combinations, from_rows, numbers, rpm};
+use crate::check::expr::Table;
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::fluid::{BandFriction, Friction, Lubricant, ZERO_DEGC_K};

@@ -2,8 +2,11 @@
 
 use std::sync::LazyLock;
 
-use super::{Column, Table, TableRow, combinations, component_names, from_rows, numbers};
-use super::{belt, rpm, truth};
+use super::belt;
+use super::columns::{
+    Column, TableRow, combinations, component_names, from_rows, numbers, rpm, truth,
+};
+use crate::check::expr::Table;
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};

@@ -1,6 +1,7 @@
 //! A fluid over temperature as a table.
 
-use super::{Column, Table, TableRow, from_rows, numbers};
+use super::columns::{Column, TableRow, from_rows, numbers};
+use crate::check::expr::Table;
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::fluid::{Lubricant, ZERO_DEGC_K};

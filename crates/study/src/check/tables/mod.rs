@@ -1,12 +1,7 @@
 //! Sources to tables of numbers in engineer's units.
 
-/// Columns of rows `R`, one a line: `NAME ROW => NUMBER;`.
-macro_rules! columns {
-    ($row:ty; $($name:literal $r:pat => $value:expr;)*) => {
-        vec![$(Column::<$row> { name: $name, get: |$r: &$row| $value }),*]
-    };
-}
-
+#[macro_use]
+mod columns;
 mod belt;
 pub mod bench;
 mod fluid;
@@ -17,7 +12,8 @@ use super::expr::Table;
 use super::source::{Kind, Source};
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::bench::transmission::Conditions;
-use cvtcycle_model::drive::Component;
+
+use columns::names;
 
 pub use run::{Driven, drive};
 
@@ -59,80 +55,4 @@ pub fn of_run(source: &Source, driven: &Driven, totals: bool) -> Table {
     } else {
         run::trace(source, driven)
     }
-}
-
-/// A column: its name with the unit, and the number of a row.
-struct Column<R> {
-    name: &'static str,
-    get: fn(&R) -> f64,
-}
-
-fn names<R>(columns: Vec<Column<R>>) -> impl Iterator<Item = &'static str> {
-    columns.into_iter().map(|column| column.name)
-}
-
-fn numbers<R>(columns: &[Column<R>], row: &R) -> impl Iterator<Item = f64> {
-    columns.iter().map(move |column| (column.get)(row))
-}
-
-/// Names of the components with the ending of a unit, in the order of [`Component::ALL`]. Called once for each ending.
-fn component_names(ending: &str) -> Vec<&'static str> {
-    let name = |c: &Component| &*format!("{}_{ending}", c.name()).leak();
-    Component::ALL.iter().map(name).collect()
-}
-
-/// Every combination of the values of some axes, the last axis fastest.
-fn combinations(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    axes.iter().fold(vec![Vec::new()], |rows, axis| {
-        let with = |row: &Vec<f64>, x: f64| row.iter().copied().chain([x]).collect::<Vec<f64>>();
-        rows.iter()
-            .flat_map(|row| axis.iter().map(move |x| with(row, *x)))
-            .collect()
-    })
-}
-
-/// A row of a table.
-struct TableRow {
-    numbers: Vec<f64>,
-    weight: f64,
-    /// The belt slips grossly.
-    gross: bool,
-    /// Outside the validity of a model.
-    outside: bool,
-}
-
-impl TableRow {
-    fn new(numbers: impl Iterator<Item = f64>) -> Self {
-        TableRow {
-            numbers: numbers.collect(),
-            weight: 1.0,
-            gross: false,
-            outside: false,
-        }
-    }
-}
-
-/// A table of `count` columns.
-fn from_rows(count: usize, rows: impl Iterator<Item = TableRow>) -> Table {
-    let mut table = Table {
-        columns: vec![Vec::new(); count],
-        ..Table::default()
-    };
-    for row in rows {
-        for (column, x) in table.columns.iter_mut().zip(row.numbers) {
-            column.push(x);
-        }
-        table.weight.push(row.weight);
-        table.gross.push(row.gross);
-        table.outside.push(row.outside);
-    }
-    table
-}
-
-fn truth(on: bool) -> f64 {
-    f64::from(u8::from(on))
-}
-
-fn rpm(rad_s: f64) -> f64 {
-    rad_s * 30.0 / std::f64::consts::PI
 }

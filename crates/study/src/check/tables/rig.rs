@@ -2,7 +2,9 @@
 
 use std::sync::LazyLock;
 
-use super::{Table, TableRow, bench, from_rows, rpm, truth};
+use super::bench;
+use super::columns::{TableRow, from_rows, rpm, truth};
+use crate::check::expr::Table;
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::bench::transmission::{Branch, Conditions, Piece, Plan, strip_down, transient};

@@ -2,7 +2,8 @@
 
 use std::sync::LazyLock;
 
-use super::{Column, Table, TableRow, component_names, from_rows, names, numbers, truth};
+use super::columns::{Column, TableRow, component_names, from_rows, names, numbers, truth};
+use crate::check::expr::Table;
 use crate::check::source::{Source, cycle};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;

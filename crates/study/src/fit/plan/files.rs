@@ -2,9 +2,9 @@
 
 use sha2::{Digest, Sha256};
 
-use super::group::{About, Around, Found, observation};
-use super::{BenchPoints, Measured, What};
-use crate::check::source::{self, Kind, PARTS, Source};
+use super::group::{About, Context, Found, observation};
+use super::types::{BenchPoints, Measured, Observable};
+use crate::check::source::{self, Kind, Source};
 use crate::check::tables;
 use crate::fit::data::points::SD;
 use crate::fit::data::sheet::Sheet;
@@ -25,7 +25,7 @@ pub(super) struct Made {
 }
 
 /// Reads the file of a group; what is wrong is reported to `s`.
-pub(super) fn read(s: &Section, way: &str, around: &Around, found: &mut Found) {
+pub(super) fn read(s: &Section, way: &str, context: &Context, found: &mut Found) {
     let word = s.text(way, "CSV file, relative to the plan");
     if word.is_empty() {
         // What else stands here is not looked at.
@@ -34,7 +34,7 @@ pub(super) fn read(s: &Section, way: &str, around: &Around, found: &mut Found) {
             .for_each(|key| drop(s.raw(key, "", "")));
         return;
     }
-    let folder = std::path::Path::new(around.file)
+    let folder = std::path::Path::new(context.file)
         .parent()
         .unwrap_or(std::path::Path::new(""));
     let path = folder.join(&word).to_string_lossy().into_owned();
@@ -45,8 +45,8 @@ pub(super) fn read(s: &Section, way: &str, around: &Around, found: &mut Found) {
             // The keys are read all the same: they may be wrong, too, and are no strangers.
             match way {
                 "points" => drop((sds(s), bench_of(s), fold_by(s))),
-                "trace" => drop((sds(s), apart_s(s), source_of(s, way, around))),
-                _ => drop(source_of(s, way, around)),
+                "trace" => drop((sds(s), apart_s(s), source_of(s, way, context))),
+                _ => drop(source_of(s, way, context)),
             }
             return;
         }
@@ -57,8 +57,8 @@ pub(super) fn read(s: &Section, way: &str, around: &Around, found: &mut Found) {
     ));
     match way {
         "points" => of_points(s, &path, &bytes, found),
-        "trace" => of_trace(s, (&path, &bytes), around, found),
-        _ => of_scalars(s, (&path, &bytes), around, found),
+        "trace" => of_trace(s, (&path, &bytes), context, found),
+        _ => of_scalars(s, (&path, &bytes), context, found),
     }
 }
 
@@ -165,19 +165,7 @@ fn bench_of(s: &Section) -> Source {
     own.place = s.place("points");
     own.lubricant = s.optional_text("lubricant", "transmission oil in place of the vehicle's");
     own.set = s.texts("set", "overrides KEY=VALUE of the car on the bench");
-    own.without = s.texts("without", "parts that are not in the box");
-    for part in own
-        .without
-        .iter()
-        .filter(|part| !PARTS.contains(&part.as_str()))
-    {
-        s.complain(
-            "without",
-            &PARTS.join(", "),
-            &format!("there is no part `{part}`"),
-            "",
-        );
-    }
+    own.without = source::without(s);
     own
 }
 
@@ -218,7 +206,7 @@ fn of_points(s: &Section, path: &str, bytes: &[u8], found: &mut Found) {
                 continue;
             };
             let sd = deviations.of(&sheet, row, name).unwrap_or(f64::NAN);
-            let what = What::Point {
+            let what = Observable::Point {
                 bench: 0,
                 row,
                 column: names.iter().position(|column| column == name).unwrap_or(0),
@@ -267,7 +255,7 @@ fn setting(sheet: &Sheet, row: usize) -> String {
 }
 
 /// The source that a trace or totals belong to.
-fn source_of(s: &Section, way: &str, around: &Around) -> Option<Source> {
+fn source_of(s: &Section, way: &str, context: &Context) -> Option<Source> {
     if way == "points" {
         return None;
     }
@@ -278,13 +266,13 @@ fn source_of(s: &Section, way: &str, around: &Around) -> Option<Source> {
         &[Kind::Run]
     };
     let fitting = || {
-        around
+        context
             .sources
             .iter()
             .filter(|source| kinds.contains(&source.kind))
             .map(|source| source.name.as_str())
     };
-    let source = around
+    let source = context
         .sources
         .iter()
         .find(|source| source.name == name && kinds.contains(&source.kind));
@@ -321,10 +309,10 @@ fn source_of(s: &Section, way: &str, around: &Around) -> Option<Source> {
     source.cloned()
 }
 
-fn of_trace(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found: &mut Found) {
+fn of_trace(s: &Section, (path, bytes): (&str, &[u8]), context: &Context, found: &mut Found) {
     let deviations = Deviations { given: sds(s) };
     let apart_s = apart_s(s);
-    let source = source_of(s, "trace", around);
+    let source = source_of(s, "trace", context);
     // Without a source a column of any is as good as known.
     let kinds = source
         .as_ref()
@@ -381,7 +369,7 @@ fn of_trace(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found: &
                 unit: unit_of(name).to_owned(),
                 place: sheet.place(row, *k),
             };
-            let what = What::Trace {
+            let what = Observable::Trace {
                 run: 0,
                 column,
                 time_s: at(row),
@@ -418,8 +406,8 @@ fn end_of(source: &Source) -> Option<f64> {
         .reduce(f64::max)
 }
 
-fn of_scalars(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found: &mut Found) {
-    let source = source_of(s, "scalars", around);
+fn of_scalars(s: &Section, (path, bytes): (&str, &[u8]), context: &Context, found: &mut Found) {
+    let source = source_of(s, "scalars", context);
     let names = tables::columns(Kind::Run, true);
     let cycle = source
         .as_ref()
@@ -448,7 +436,7 @@ fn of_scalars(s: &Section, (path, bytes): (&str, &[u8]), around: &Around, found:
         ) else {
             continue;
         };
-        let what = What::Total {
+        let what = Observable::Total {
             run: found.made.runs.len(),
             column: names.iter().position(|name| *name == quantity).unwrap_or(0),
         };

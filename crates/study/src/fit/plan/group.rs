@@ -3,29 +3,31 @@
 use std::sync::Arc;
 
 use super::files::{self, Made};
-use super::{Group, Measured, Observation, What, at_item, problem};
-use crate::check::expr::{Expr, Gives, parse};
-use crate::check::names::FileNames;
+use super::types::{Group, Measured, Observable, Observation, at_item, problem};
+use crate::check::checks::number_or_range;
+use crate::check::expr::{Expr, Gives};
+use crate::check::names::{FileNames, expression};
+use crate::check::rows::{RowFile, ValidationRow};
+use crate::check::rule::Printed;
 use crate::check::source::Source;
-use crate::check::{File, Printed, within};
 use cvtcycle_config::{Bound, Document, Place, Problem, Problems, Reader, Section, near};
 
-/// Ways to give data, just one of which a group has.
+/// Forms of data, one of which a group has.
 const WAYS: [&str; 5] = ["rows", "compute", "points", "trace", "scalars"];
 
-/// What the groups of a plan look at.
-pub(super) struct Around<'a> {
+/// Sources, keys and rows that the groups of a plan may use.
+pub(super) struct Context<'a> {
     /// The plan's own sources, then the common ones.
     pub sources: &'a [Source],
     /// Known keys.
     pub keys: &'a [String],
     /// Validation rows of the program.
-    pub rows: &'a [File],
+    pub rows: &'a [RowFile],
     /// The plan, as problems cite it.
     pub file: &'a str,
 }
 
-/// What a group gives; views, benches and runs are counted within it.
+/// Content of a group; views, benches and runs are counted within it.
 #[derive(Default)]
 pub(super) struct Found {
     pub group: Option<Group>,
@@ -42,7 +44,7 @@ pub(super) struct Found {
 ///
 /// # Errors
 /// All its problems.
-pub(super) fn read(document: &Document, around: &Around) -> Result<Found, Problems> {
+pub(super) fn read(document: &Document, context: &Context) -> Result<Found, Problems> {
     let reader = Reader::new(document);
     let s = reader.root();
     let ways: Vec<&str> = WAYS.into_iter().filter(|way| s.has(way)).collect();
@@ -72,9 +74,9 @@ pub(super) fn read(document: &Document, around: &Around) -> Result<Found, Proble
         ..Found::default()
     };
     match ways.as_slice() {
-        ["rows"] => rows(&s, around, &mut found),
-        ["compute"] => statement(&s, around, &mut found),
-        [way] => files::read(&s, way, around, &mut found),
+        ["rows"] => rows(&s, context, &mut found),
+        ["compute"] => statement(&s, context, &mut found),
+        [way] => files::read(&s, way, context, &mut found),
         [] => {
             let hint = "give `rows`, `compute`, `points`, `trace` or `scalars`";
             s.report_problem(problem(
@@ -119,12 +121,12 @@ pub(super) fn read(document: &Document, around: &Around) -> Result<Found, Proble
                 message,
                 hint,
             );
-            Err(told(nothing, &name, around.file).into())
+            Err(told(nothing, &name, context.file).into())
         }
         Ok(_) => Ok(found),
         Err(problems) => Err(problems
             .into_iter()
-            .map(|p| told(p, &name, around.file))
+            .map(|p| told(p, &name, context.file))
             .collect()),
     }
 }
@@ -177,7 +179,7 @@ fn sd_of(s: &Section) -> impl Fn(f64) -> f64 {
 }
 
 /// Reports a share of a number of 0, which leaves no standard deviation.
-fn share_of_nothing(s: &Section, what: &str, size: f64) {
+fn share_of_zero(s: &Section, what: &str, size: f64) {
     // Just 0: a small number has a small deviation, as was asked for.
     if s.has("sd_share") && size.abs() < f64::MIN_POSITIVE {
         let message =
@@ -192,87 +194,78 @@ fn share_of_nothing(s: &Section, what: &str, size: f64) {
 }
 
 /// Printed numbers of the program's own validation rows.
-fn rows(s: &Section, around: &Around, found: &mut Found) {
+fn rows(s: &Section, context: &Context, found: &mut Found) {
     let ids = s.texts("rows", "identifiers of validation rows");
     let sd = sd_of(s);
-    let all = || {
-        around
-            .rows
-            .iter()
-            .flat_map(|file| file.rows.iter().map(move |row| (file, row)))
-    };
     for id in ids {
         let place = at_item(s.place("rows"), &format!("{id:?}"));
-        let complain = |message: String, hint: &str| {
-            let value = format!("{id:?}");
-            s.report_problem(
-                problem(&place, "rows", "rows that compute a number", message, hint).value(value),
-            );
-        };
-        let Some((file, row)) = all().find(|(_, row)| row.id == id) else {
-            let close = near(&id, all().map(|(_, row)| row.id.as_str()));
-            let hint = if close.is_empty() {
-                "`cvtcycle validate` lists them".to_owned()
-            } else {
-                format!("did you mean {}?", close.join(" or "))
-            };
-            complain(format!("there is no validation row `{id}`"), &hint);
-            continue;
-        };
-        let (Some(expr), Some(Printed::Range(low, high))) = (&row.compute, row.printed) else {
-            complain(
-                format!("row {id} computes no number"),
-                "an order or a sign has no residual: write its margin as a `compute` of your own",
-            );
-            continue;
-        };
-        if expr.gives() != Gives::Number {
-            complain(
-                format!("row {id} computes a range"),
-                "write its ends as `compute = \"min(...)\"` and `\"max(...)\"`",
-            );
-            continue;
+        match row(&id, context, found) {
+            Ok((file, row, expr, measured)) => {
+                let size = measured.size();
+                share_of_zero(s, &format!("row {id}"), size);
+                found.views.push(Some(file.sources.clone()));
+                let view = found.views.len() - 1;
+                let expr = Arc::new(expr.clone());
+                let about = About {
+                    label: id.clone(),
+                    what: row.what.clone(),
+                    unit: row.unit.clone(),
+                    place,
+                };
+                let observable = Observable::Expression { view, expr };
+                found
+                    .observations
+                    .push(observation(about, measured, sd(size), observable));
+                found.rows.push(id);
+            }
+            Err((message, hint)) => {
+                let allowed = "rows that compute a number";
+                let problem = problem(&place, "rows", allowed, message, &hint);
+                s.report_problem(problem.value(format!("{id:?}")));
+            }
         }
-        if found.rows.contains(&id) {
-            complain(format!("row {id} stands twice"), "remove one");
-            continue;
-        }
-        let measured = if low < high {
-            Measured::Within(low, high)
-        } else {
-            Measured::Value(low)
-        };
-        // Of a range the end that the print gives counts.
-        let size = if low.is_finite() && high.is_finite() {
-            f64::midpoint(low, high)
-        } else if low.is_finite() {
-            low
-        } else {
-            high
-        };
-        share_of_nothing(s, &format!("row {id}"), size);
-        found.views.push(Some(file.sources.clone()));
-        let view = found.views.len() - 1;
-        let about = About {
-            label: id.clone(),
-            what: row.what.clone(),
-            unit: row.unit.clone(),
-            place,
-        };
-        found.observations.push(observation(
-            about,
-            measured,
-            sd(size),
-            What::Expression {
-                view,
-                expr: Arc::new(expr.clone()),
-            },
-        ));
-        found.rows.push(id);
     }
 }
 
-/// What a reader sees of an observation.
+/// A validation row that gives a number, or message and hint.
+fn row<'a>(
+    id: &String,
+    context: &Context<'a>,
+    found: &Found,
+) -> Result<(&'a RowFile, &'a ValidationRow, &'a Expr, Measured), (String, String)> {
+    let all = || {
+        let files = context.rows.iter();
+        files.flat_map(|file| file.rows.iter().map(move |row| (file, row)))
+    };
+    let refuse = |message: String, hint: &str| Err((message, hint.to_owned()));
+    let Some((file, row)) = all().find(|(_, row)| row.id == *id) else {
+        let close = near(id, all().map(|(_, row)| row.id.as_str()));
+        let hint = if close.is_empty() {
+            "`cvtcycle validate` lists them".to_owned()
+        } else {
+            format!("did you mean {}?", close.join(" or "))
+        };
+        return Err((format!("there is no validation row `{id}`"), hint));
+    };
+    let (Some(expr), Some(Printed::Range(low, high))) = (&row.compute, row.printed) else {
+        return refuse(
+            format!("row {id} computes no number"),
+            "an order or a sign has no residual: write its margin as a `compute` of your own",
+        );
+    };
+    if expr.gives() != Gives::Number {
+        return refuse(
+            format!("row {id} computes a range"),
+            "write its ends as `compute = \"min(...)\"` and `\"max(...)\"`",
+        );
+    }
+    if found.rows.contains(id) {
+        return refuse(format!("row {id} stands twice"), "remove one");
+    }
+    Ok((file, row, expr, Measured::between(low, high)))
+}
+
+/// Labels of an observation.
 pub(super) struct About {
     pub label: String,
     pub what: String,
@@ -280,12 +273,12 @@ pub(super) struct About {
     pub place: Place,
 }
 
-/// An observation of the group that is read.
+/// An observation of the group.
 pub(super) fn observation(
     about: About,
     measured: Measured,
     sd: f64,
-    what_computed: What,
+    observable: Observable,
 ) -> Observation {
     let About {
         label,
@@ -303,77 +296,39 @@ pub(super) fn observation(
         measured,
         sd,
         weight_sd: sd,
-        what_computed,
+        observable,
         place,
     }
 }
 
 /// An expression of the plan's own.
-fn statement(s: &Section, around: &Around, found: &mut Found) {
+fn statement(s: &Section, context: &Context, found: &mut Found) {
     let text = s.text(
         "compute",
         "expression over the sources; docs/validation_format.md",
     );
     let unit = s.text_or("unit", "-", "unit of measured and computed numbers");
     let meaning = s.text_or("what", "", "what it is");
-    let any = Bound::any();
-    let value = s.optional_number("value", any, "measured number");
-    let (low, high) = (
-        s.optional_number("low", any, "least measured number"),
-        s.optional_number("high", any, "largest measured number"),
-    );
-    let measured = match (value, low, high) {
-        (Some(x), None, None) => Measured::Value(x),
-        (None, None, None) => {
-            s.complain(
-                "value",
-                "value, or low and high",
-                "nothing was measured",
-                "add `value`, or `low` and `high`",
-            );
-            Measured::Value(f64::NAN)
-        }
-        (Some(_), ..) => {
-            s.complain(
-                "value",
-                "value, or low and high",
-                "`value` beside `low` or `high`",
-                "keep one of the forms",
-            );
-            Measured::Value(f64::NAN)
-        }
-        (None, low, high) => {
-            let (low, high) = (
-                low.unwrap_or(f64::NEG_INFINITY),
-                high.unwrap_or(f64::INFINITY),
-            );
-            if low > high {
-                s.complain(
-                    "low",
-                    "at most `high`",
-                    "`low` is above `high`",
-                    "swap them",
-                );
-            }
-            Measured::Within(low, high)
-        }
-    };
-    let size = match measured {
-        Measured::Value(x) => x,
-        Measured::Within(low, high) if low.is_finite() && high.is_finite() => {
-            f64::midpoint(low, high)
-        }
-        Measured::Within(low, high) => {
-            if low.is_finite() {
-                low
-            } else {
-                high
-            }
-        }
-    };
+    let measured = number_or_range(s, "measured");
+    if measured.is_none() {
+        let hint = "add `value`, or `low` and `high`";
+        s.complain(
+            "value",
+            "value, or low and high",
+            "nothing was measured",
+            hint,
+        );
+    }
+    let (low, high) = measured.unwrap_or((f64::NAN, f64::NAN));
+    let measured = Measured::between(low, high);
+    let size = measured.size();
     let sd = sd_of(s)(size);
-    share_of_nothing(s, "the number", size);
-    let Some(expr) = expression(s, &text, around) else {
+    share_of_zero(s, "the number", size);
+    let names = FileNames {
+        sources: context.sources,
+        keys: context.keys,
+    };
+    let Some(expr) = expression(s, "compute", &text, &names) else {
         return;
     };
     if expr.gives() != Gives::Number {
@@ -399,30 +354,9 @@ fn statement(s: &Section, around: &Around, found: &mut Found) {
         about,
         measured,
         sd,
-        What::Expression {
+        Observable::Expression {
             view: 0,
             expr: Arc::new(expr),
         },
     ));
-}
-
-fn expression(s: &Section, text: &str, around: &Around) -> Option<Expr> {
-    if text.trim().is_empty() {
-        return None;
-    }
-    match parse(
-        text,
-        &FileNames {
-            sources: around.sources,
-            keys: around.keys,
-        },
-    ) {
-        Ok(expr) => Some(expr),
-        Err(faults) => {
-            faults.into_iter().for_each(|fault| {
-                s.report_problem(within(s.place("compute"), "compute", text, fault))
-            });
-            None
-        }
-    }
 }

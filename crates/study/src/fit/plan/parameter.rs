@@ -1,6 +1,6 @@
 //! One `[[parameter]]` of a plan.
 
-use super::Free;
+use super::types::FreeParameter;
 use crate::fit::solve::Prior;
 use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section};
 
@@ -11,7 +11,7 @@ const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
 ///
 /// # Errors
 /// All its problems.
-pub(super) fn read(document: &Document) -> Result<Free, Problems> {
+pub(super) fn read(document: &Document) -> Result<FreeParameter, Problems> {
     let reader = Reader::new(document);
     let s = reader.root();
     let any = Bound::any();
@@ -69,7 +69,7 @@ pub(super) fn read(document: &Document) -> Result<Free, Problems> {
     } else {
         String::new()
     };
-    let free = Free {
+    let free = FreeParameter {
         low,
         high,
         start,

@@ -2,10 +2,13 @@
 
 use std::sync::OnceLock;
 
-use super::group::{self, Around, Found};
-use super::{Plan, Search, What, parameter, problem};
+use super::group::{self, Context, Found};
+use super::parameter;
+use super::types::{CalibrationPlan, Observable, Search, problem};
+use crate::check::candidate::CandidateVehicle;
+use crate::check::rows::RowFile;
 use crate::check::source::{self, Source};
-use crate::check::{COMMON, File, embedded_rows};
+use crate::check::{COMMON, embedded_rows};
 use cvtcycle_config::setup::{Kind, catalogue, is_path, text_of};
 use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section, near};
 
@@ -16,11 +19,11 @@ const MOST_STARTS: i64 = 1000;
 ///
 /// # Errors
 /// Unknown name, unreadable path, and all problems of the file and of the data that it names.
-pub fn load(word: &str, option: &str) -> Result<Plan, Problems> {
+pub fn load(word: &str, option: &str) -> Result<CalibrationPlan, Problems> {
     sound(gather(word, option)?)
 }
 
-fn sound((plan, problems): (Plan, Problems)) -> Result<Plan, Problems> {
+fn sound((plan, problems): (CalibrationPlan, Problems)) -> Result<CalibrationPlan, Problems> {
     if problems.is_empty() {
         Ok(plan)
     } else {
@@ -32,7 +35,7 @@ fn sound((plan, problems): (Plan, Problems)) -> Result<Plan, Problems> {
 ///
 /// # Errors
 /// What leaves nothing to be understood: an unknown name, an unreadable path, a text that is no TOML.
-pub fn gather(word: &str, option: &str) -> Result<(Plan, Problems), Problems> {
+pub fn gather(word: &str, option: &str) -> Result<(CalibrationPlan, Problems), Problems> {
     let (file, text, _) = text_of(word, Kind::Calibration, option)?;
     partly(&file, &text)
 }
@@ -41,11 +44,11 @@ pub fn gather(word: &str, option: &str) -> Result<(Plan, Problems), Problems> {
 ///
 /// # Errors
 /// All problems of all of them.
-pub fn read(file: &str, text: &str) -> Result<Plan, Problems> {
+pub fn read(file: &str, text: &str) -> Result<CalibrationPlan, Problems> {
     sound(partly(file, text)?)
 }
 
-fn partly(file: &str, text: &str) -> Result<(Plan, Problems), Problems> {
+fn partly(file: &str, text: &str) -> Result<(CalibrationPlan, Problems), Problems> {
     let mut document = Document::parse(file, text)?;
     let (parameters, data) = (
         document.take_tables("parameter"),
@@ -91,8 +94,8 @@ fn partly(file: &str, text: &str) -> Result<(Plan, Problems), Problems> {
             Err(found) => problems.append(found),
         }
     }
-    relative(&mut sources, file);
-    let around = Around {
+    source::resolve_paths(&mut sources, file);
+    let context = Context {
         sources: &sources,
         keys: catalogue::known_names(),
         rows,
@@ -100,7 +103,7 @@ fn partly(file: &str, text: &str) -> Result<(Plan, Problems), Problems> {
     };
     plan.views.push(sources.clone());
     for document in &data {
-        match group::read(document, &around) {
+        match group::read(document, &context) {
             Ok(found) => join(&mut plan, found),
             // Two groups may name the same bad file.
             Err(mut found) => {
@@ -115,8 +118,8 @@ fn partly(file: &str, text: &str) -> Result<(Plan, Problems), Problems> {
 }
 
 /// The rows that the program carries: the same for every plan, read once.
-fn shipped_rows() -> &'static Result<Vec<File>, Problems> {
-    static ROWS: OnceLock<Result<Vec<File>, Problems>> = OnceLock::new();
+fn shipped_rows() -> &'static Result<Vec<RowFile>, Problems> {
+    static ROWS: OnceLock<Result<Vec<RowFile>, Problems>> = OnceLock::new();
     let texts = || {
         embedded_rows()
             .iter()
@@ -139,23 +142,7 @@ fn common_sources() -> &'static Result<Vec<Source>, Problems> {
     })
 }
 
-/// A path in a plan is relative to that plan.
-fn relative(sources: &mut [Source], file: &str) {
-    let Some(folder) = std::path::Path::new(file).parent() else {
-        return;
-    };
-    for named in sources
-        .iter_mut()
-        .flat_map(|source| [&mut source.vehicle, &mut source.lubricant])
-        .flatten()
-    {
-        if is_path(named) {
-            *named = folder.join(&*named).to_string_lossy().into_owned();
-        }
-    }
-}
-
-fn head_of(s: &Section, file: &str, text: &str) -> Plan {
+fn head_of(s: &Section, file: &str, text: &str) -> CalibrationPlan {
     let integer = |key: &str, range, default, doc: &str| s.integer_or(key, range, default, doc);
     let search = Search {
         starts: usize::try_from(integer(
@@ -199,18 +186,20 @@ fn head_of(s: &Section, file: &str, text: &str) -> Plan {
             |folder| folder.join(&word).to_string_lossy().into_owned(),
         )
     };
-    Plan {
+    CalibrationPlan {
         file: file.to_owned(),
         text: text.to_owned(),
         title: s.text_or("title", &stem(file), "name for people"),
-        vehicle: within(vehicle),
-        lubricant: s
-            .optional_text("lubricant", "transmission oil in place of the vehicle's")
-            .map(within),
-        engine_oil: s
-            .optional_text("engine_oil", "engine oil in place of the vehicle's")
-            .map(within),
-        set: s.texts("set", "overrides KEY=VALUE, held during the fit"),
+        car: CandidateVehicle {
+            vehicle: within(vehicle),
+            lubricant: s
+                .optional_text("lubricant", "transmission oil in place of the vehicle's")
+                .map(within),
+            engine_oil: s
+                .optional_text("engine_oil", "engine oil in place of the vehicle's")
+                .map(within),
+            set: s.texts("set", "overrides KEY=VALUE, held during the fit"),
+        },
         search,
         parameters: Vec::new(),
         groups: Vec::new(),
@@ -258,7 +247,7 @@ fn fitting(problem: Problem) -> Problem {
 }
 
 /// Adds a group to the plan, counting on what is there.
-fn join(plan: &mut Plan, found: Found) {
+fn join(plan: &mut CalibrationPlan, found: Found) {
     let (views, benches, runs) = (plan.views.len(), plan.benches.len(), plan.runs.len());
     // The plan's own list of sources is the first one.
     let mut places = Vec::new();
@@ -288,10 +277,10 @@ fn join(plan: &mut Plan, found: Found) {
                 plan.folds.push(fold);
                 plan.folds.len() - 1
             });
-        match &mut observation.what_computed {
-            What::Expression { view, .. } => *view = places[*view],
-            What::Point { bench, .. } => *bench += benches,
-            What::Trace { run, .. } | What::Total { run, .. } => *run += runs,
+        match &mut observation.observable {
+            Observable::Expression { view, .. } => *view = places[*view],
+            Observable::Point { bench, .. } => *bench += benches,
+            Observable::Trace { run, .. } | Observable::Total { run, .. } => *run += runs,
         }
         plan.observations.push(observation);
     }
@@ -311,7 +300,7 @@ fn same(a: &[Source], b: &[Source]) -> bool {
 }
 
 /// What is wrong between the parts, `[parameters, groups]` being how many were written.
-fn clashes(plan: &Plan, [parameters, groups]: [usize; 2], sound: bool) -> Problems {
+fn clashes(plan: &CalibrationPlan, [parameters, groups]: [usize; 2], sound: bool) -> Problems {
     let mut problems = Problems::new();
     if parameters == 0 {
         problems.push(problem(

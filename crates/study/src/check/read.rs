@@ -1,112 +1,20 @@
-//! Files of rows as read: tolerances and sources at the head, then `[[row]]` by `[[row]]`.
+//! Reading of validation files: tolerances and sources at the head, then `[[row]]` by `[[row]]`.
 
 use std::collections::HashMap;
 
 use super::checks::{KINDS, complete, mechanism, printed, verdict};
-use super::expr::{Expr, Fault, parse};
-use super::names::FileNames;
-use super::rule::{Printed, Verdict};
+use super::names::{FileNames, expression};
+use super::rows::{Cause, RowFile, Tolerance, ValidationRow};
+use super::rule::Printed;
 use super::source::{self, Source};
-use cvtcycle_config::setup::{catalogue, is_path};
-use cvtcycle_config::{Bound, Document, Place, Problem, Problems, Reader, Section, near};
-
-/// A named tolerance.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Tolerance {
-    /// Name.
-    pub name: String,
-    /// Width in the unit of the row.
-    pub absolute: f64,
-    /// Width as a share of the printed number, of each end of a range for itself.
-    pub relative: f64,
-    /// Unit of `absolute`; `-` for any.
-    pub unit: String,
-    /// Where the width comes from.
-    pub source: String,
-}
-
-/// A computed number that supports the reason of a row that differs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Cause {
-    /// What it is.
-    pub what: String,
-    /// Its unit.
-    pub unit: String,
-    /// How it is computed.
-    pub compute: Expr,
-}
-
-/// One row.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// Identifier, such as `5.18a`.
-    pub id: String,
-    /// Where it stands: its expression, or its identifier.
-    pub place: Place,
-    /// Where its identifier stands.
-    pub id_place: Place,
-    /// Chapter.
-    pub chapter: String,
-    /// Page of the book.
-    pub mechanism: String,
-    /// What is compared.
-    pub what: String,
-    /// At which condition.
-    pub condition: String,
-    /// The printed text.
-    pub printed_text: String,
-    /// Unit of printed and computed numbers.
-    pub unit: String,
-    /// Kind of the statement: N number, O order or sign, C constant, L quoted from others, X record only.
-    pub kind: String,
-    /// Printed in numbers; none for what cannot be compared.
-    pub printed: Option<Printed>,
-    /// Name of the tolerance; empty for orders and signs.
-    pub tolerance: String,
-    /// Its widths below the lower and above the upper printed number, in the unit of the row.
-    pub tolerance_widths: [f64; 2],
-    /// Parameters that were fitted to this number.
-    pub fitted_to: Vec<String>,
-    /// Recorded verdict.
-    pub recorded: Option<Verdict>,
-    /// Why it differs or cannot be compared.
-    pub reason: String,
-    /// What else a reader should know.
-    pub remark: String,
-    /// Number behind the reason.
-    pub cause: Option<Cause>,
-    /// How it is computed, as written.
-    pub compute_text: String,
-    /// How it is computed.
-    pub compute: Option<Expr>,
-}
-
-impl Row {
-    /// Whether the row tests the program: computed, no parameter was fitted to it, and no constant that the program was given.
-    #[must_use]
-    pub fn is_held_out(&self) -> bool {
-        self.compute.is_some() && self.fitted_to.is_empty() && self.kind != "C"
-    }
-}
-
-/// A file of rows.
-#[derive(Clone, Debug)]
-pub struct File {
-    /// Name.
-    pub name: String,
-    /// Own tolerances, then those of the common file.
-    pub tolerances: Vec<Tolerance>,
-    /// Own sources, then those of the common file.
-    pub sources: Vec<Source>,
-    /// Rows in order.
-    pub rows: Vec<Row>,
-}
+use cvtcycle_config::setup::catalogue;
+use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section, near};
 
 /// Reads files: name and text each. `common` comes first and lends its tolerances and sources.
 ///
 /// # Errors
 /// All problems of all files.
-pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File>, Problems> {
+pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<RowFile>, Problems> {
     let keys = catalogue::known_names();
     let mut problems = Problems::new();
     let lent = file(common.0, common.1, &Lent::default(), keys, &mut problems);
@@ -114,11 +22,11 @@ pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<File
         tolerances: lent.tolerances,
         sources: lent.sources,
     };
-    let read: Vec<File> = files
+    let read: Vec<RowFile> = files
         .iter()
         .map(|(name, text)| file(name, text, &lent, keys, &mut problems))
         .collect();
-    let mut seen: HashMap<&str, &Row> = HashMap::new();
+    let mut seen: HashMap<&str, &ValidationRow> = HashMap::new();
     for row in read
         .iter()
         .flat_map(|file| &file.rows)
@@ -153,8 +61,8 @@ struct Lent {
     sources: Vec<Source>,
 }
 
-fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Problems) -> File {
-    let mut read = File {
+fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Problems) -> RowFile {
+    let mut read = RowFile {
         name: name.to_owned(),
         tolerances: Vec::new(),
         sources: Vec::new(),
@@ -185,19 +93,7 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Pro
             p.hint(hint)
         }));
     }
-    // A path in a file is relative to that file.
-    for named in read
-        .sources
-        .iter_mut()
-        .flat_map(|source| [&mut source.vehicle, &mut source.lubricant])
-        .flatten()
-    {
-        if is_path(named)
-            && let Some(folder) = std::path::Path::new(name).parent()
-        {
-            *named = folder.join(&*named).to_string_lossy().into_owned();
-        }
-    }
+    source::resolve_paths(&mut read.sources, name);
     read.tolerances.extend(lent.tolerances.iter().cloned());
     read.sources.extend(lent.sources.iter().cloned());
     let head = Head {
@@ -270,7 +166,7 @@ struct Head<'a> {
 }
 
 impl Head<'_> {
-    fn row(&self, s: &Section) -> Row {
+    fn row(&self, s: &Section) -> ValidationRow {
         let id = s.text("id", "identifier, unique over all files");
         let chapter = s.text(
             "chapter",
@@ -288,14 +184,14 @@ impl Head<'_> {
         let compute_text = s
             .optional_text("compute", "how it is computed")
             .unwrap_or_default();
-        let compute = self.expression(s, "compute", &compute_text);
+        let compute = expression(s, "compute", &compute_text, &self.names);
         let unit = s.text_or("unit", "-", "unit of printed and computed numbers");
         let broken = compute.is_none() && !compute_text.trim().is_empty();
         let printed = printed(s, compute.as_ref(), broken);
         let recorded = verdict(s);
         let reason = s.text_or("reason", "", "why it differs or cannot be compared");
         let (tolerance, tolerance_widths) = self.tolerance(s, printed, &unit, broken);
-        let row = Row {
+        let row = ValidationRow {
             id,
             id_place: s.place("id"),
             place: s.place(if compute_text.is_empty() {
@@ -323,22 +219,6 @@ impl Head<'_> {
         };
         complete(s, &row);
         row
-    }
-
-    /// Parses the expression at a key; its faults become problems with their place in the text.
-    fn expression(&self, s: &Section, key: &str, text: &str) -> Option<Expr> {
-        if text.trim().is_empty() {
-            return None;
-        }
-        match parse(text, &self.names) {
-            Ok(expr) => Some(expr),
-            Err(faults) => {
-                faults
-                    .into_iter()
-                    .for_each(|fault| s.report_problem(within(s.place(key), key, text, fault)));
-                None
-            }
-        }
     }
 
     fn tolerance(
@@ -432,42 +312,8 @@ impl Head<'_> {
         let cause = Cause {
             what: table.text("what", "what the number is"),
             unit: table.text_or("unit", "-", "its unit"),
-            compute: self.expression(&table, "compute", &text)?,
+            compute: expression(&table, "compute", &text, &self.names)?,
         };
         Some(cause)
     }
-}
-
-/// What helps where an expression cannot be read.
-const GRAMMAR: &str = "docs/validation_format.md shows what an expression may hold";
-
-/// A fault in an expression as a problem at its place.
-pub fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
-    // The place is exact where the text stands on one line as it is.
-    let quoted: String = place
-        .line_text
-        .chars()
-        .skip(place.column.saturating_sub(1))
-        .collect();
-    let plain = quoted
-        .strip_prefix(['"', '\''])
-        .is_some_and(|rest| rest.starts_with(text));
-    let place = if plain {
-        Place {
-            column: place.column + 1 + fault.at,
-            width: fault.width,
-            ..place
-        }
-    } else {
-        place
-    };
-    Problem::invalid(format!("`{key}`: {}", fault.message))
-        .at(place)
-        .key(key)
-        .value(fault.word)
-        .hint(if fault.hint.is_empty() {
-            GRAMMAR.to_owned()
-        } else {
-            fault.hint
-        })
 }
