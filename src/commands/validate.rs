@@ -8,7 +8,8 @@ use cvtcycle::config::{Problem, Problems, bounded, decode};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::validation_page::page;
 use cvtcycle::study::check::{
-    COMMON, CandidateVehicle, MECHANISMS, Report, RowFile, ValidationRow, csv, embedded_rows, json, judge, markdown, read,
+    COMMON, CandidateVehicle, MECHANISMS, Report, RowFile, ValidationRow, csv, embedded_rows, json,
+    judge, markdown, read,
 };
 
 use super::Execute;

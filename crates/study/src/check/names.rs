@@ -54,7 +54,7 @@ const GRAMMAR: &str = "docs/validation_format.md shows what an expression may ho
 
 /// A fault in an expression as a problem at its place.
 fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
-    // The place is exact where the text stands on one line as it is.
+    // The place is exact if the text is on one line without escapes.
     let quoted: String = place
         .line_text
         .chars()

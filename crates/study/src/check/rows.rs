@@ -36,9 +36,9 @@ pub struct Cause {
 pub struct ValidationRow {
     /// Identifier, such as `5.18a`.
     pub id: String,
-    /// Where it stands: its expression, or its identifier.
+    /// Place of its expression, or of its identifier.
     pub place: Place,
-    /// Where its identifier stands.
+    /// Place of its identifier.
     pub id_place: Place,
     /// Chapter.
     pub chapter: String,

@@ -239,7 +239,7 @@ fn axes(kind: Kind) -> &'static [Axis] {
 /// Reads all sources of a file; `common` are those of the common file, which a source may continue with `like`.
 pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
     let names = sources.names();
-    // A source may stand on another one of the same file, in whatever order they are written.
+    // A source may continue another one of the same file, in any order.
     let mut done: Vec<Source> = Vec::new();
     let mut waiting: Vec<&str> = names.clone();
     loop {

@@ -1,4 +1,4 @@
-//! A plan read and held against its cars, so that all its problems are told at once.
+//! A plan with its cars: all problems at once.
 
 use super::model::Model;
 use super::plan::{self, CalibrationPlan};
@@ -10,7 +10,7 @@ use cvtcycle_config::Problems;
 /// All problems of the plan, of its data files and of its cars.
 pub fn open(word: &str, option: &str) -> Result<CalibrationPlan, Problems> {
     let (plan, mut problems) = plan::gather(word, option)?;
-    // Without a vehicle, and that is told already, every key would be unknown.
+    // Without a vehicle, reported already, every key would be unknown.
     if !plan.car.vehicle.is_empty() {
         problems.extend(Model::new(&plan).err().unwrap_or_default());
     }

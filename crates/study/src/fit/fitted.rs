@@ -22,7 +22,7 @@ const FLUIDS: [(&str, &str); 2] = [
     ("engine_oil.", "engine_oil"),
 ];
 
-/// Names and texts of the fitted files: the vehicle first. `date` is written beside each value.
+/// Names and texts of the fitted files: the vehicle first. `date` is written with each value.
 ///
 /// # Errors
 /// A file that does not exist any more, or in which a value cannot be put.

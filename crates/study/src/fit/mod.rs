@@ -1,6 +1,6 @@
 //! Parameters fitted to measurements: plan -> data -> residuals -> least squares -> what the fit is worth -> fitted files.
 //!
-//! | part | what stands there |
+//! | part | content |
 //! |---|---|
 //! | `plan` | a TOML file to a plan: free parameters, groups of data |
 //! | `data` | measured CSV files to observations |

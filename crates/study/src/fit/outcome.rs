@@ -185,7 +185,7 @@ impl Outcome {
         let files = plan.files.iter();
         Outcome {
             schema: SCHEMA,
-            program: concat!("cvtcycle ", env!("CARGO_PKG_VERSION")).to_owned(),
+            program: cvtcycle_output::PROGRAM.to_owned(),
             title: plan.title.clone(),
             plan: plan.file.clone(),
             plan_sha256: hash.iter().map(|byte| format!("{byte:02x}")).collect(),

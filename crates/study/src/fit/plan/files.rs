@@ -1,4 +1,4 @@
-//! Groups of data that stand in CSV files.
+//! Groups of data in CSV files.
 
 use sha2::{Digest, Sha256};
 
@@ -15,7 +15,7 @@ use cvtcycle_config::{Bound, Problems, Section, near, unit_of};
 /// Seconds after which two values of a trace are independent, where the plan does not say.
 const INDEPENDENT_S: f64 = 30.0;
 
-/// What files need beside observations, counted within the group.
+/// Benches, runs and files of the observations, counted within the group.
 #[derive(Default)]
 pub(super) struct Made {
     pub benches: Vec<BenchPoints>,
@@ -28,7 +28,7 @@ pub(super) struct Made {
 pub(super) fn read(s: &Section, way: &str, context: &Context, found: &mut Found) {
     let word = s.text(way, "CSV file, relative to the plan");
     if word.is_empty() {
-        // What else stands here is not looked at.
+        // The other keys are not checked.
         s.names()
             .into_iter()
             .for_each(|key| drop(s.raw(key, "", "")));
@@ -120,7 +120,7 @@ impl Deviations {
 
     /// Reports columns without one, and names of the plan that no column has.
     fn check(&self, s: &Section, sheet: &Sheet, measured: &[(usize, &str)]) {
-        // A column that nobody knows, told already, may be the one that is meant.
+        // An unknown column, reported already, may be the one that is meant.
         let strange = sheet.columns.iter().any(|column| column.name.is_empty());
         for (name, _) in &self.given {
             if !strange && !name.is_empty() && !measured.iter().any(|(_, column)| column == name) {
@@ -159,7 +159,7 @@ impl Deviations {
     }
 }
 
-/// What stands on the bench.
+/// The box on the bench.
 fn bench_of(s: &Section) -> Source {
     let mut own = source::empty("points", Kind::Bench);
     own.place = s.place("points");

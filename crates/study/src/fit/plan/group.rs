@@ -34,7 +34,7 @@ pub(super) struct Found {
     /// Fold of each observation by name.
     pub folds: Vec<String>,
     pub observations: Vec<Observation>,
-    /// Lists of sources: none stands for the plan's own.
+    /// Lists of sources; none for the plan's own.
     pub views: Vec<Option<Vec<Source>>>,
     pub made: Made,
     pub rows: Vec<String>,
@@ -121,19 +121,19 @@ pub(super) fn read(document: &Document, context: &Context) -> Result<Found, Prob
                 message,
                 hint,
             );
-            Err(told(nothing, &name, context.file).into())
+            Err(in_group(nothing, &name, context.file).into())
         }
         Ok(_) => Ok(found),
         Err(problems) => Err(problems
             .into_iter()
-            .map(|p| told(p, &name, context.file))
+            .map(|p| in_group(p, &name, context.file))
             .collect()),
     }
 }
 
 /// A problem under the name of its group.
-fn told(problem: Problem, name: &str, plan: &str) -> Problem {
-    // What stands in another file says so itself.
+fn in_group(problem: Problem, name: &str, plan: &str) -> Problem {
+    // The problem of another file has that file's place.
     if problem.place.file != plan {
         return problem;
     }
@@ -180,7 +180,7 @@ fn sd_of(s: &Section) -> impl Fn(f64) -> f64 {
 
 /// Reports a share of a number of 0, which leaves no standard deviation.
 fn share_of_zero(s: &Section, what: &str, size: f64) {
-    // Just 0: a small number has a small deviation, as was asked for.
+    // Only 0: a small number has a small deviation.
     if s.has("sd_share") && size.abs() < f64::MIN_POSITIVE {
         let message =
             format!("{what} is 0, or a range about 0: no share of it is a standard deviation");

@@ -31,10 +31,10 @@ fn sound((plan, problems): (CalibrationPlan, Problems)) -> Result<CalibrationPla
     }
 }
 
-/// As [`load`], but what can be understood of a bad plan is given beside its problems, so that more can be said of it.
+/// As [`load`], but returns the readable part of a bad plan with its problems, for further checks.
 ///
 /// # Errors
-/// What leaves nothing to be understood: an unknown name, an unreadable path, a text that is no TOML.
+/// An unknown name, an unreadable path, a text that is no TOML.
 pub fn gather(word: &str, option: &str) -> Result<(CalibrationPlan, Problems), Problems> {
     let (file, text, _) = text_of(word, Kind::Calibration, option)?;
     partly(&file, &text)
@@ -368,7 +368,7 @@ fn clashes(plan: &CalibrationPlan, [parameters, groups]: [usize; 2], sound: bool
             ));
         }
     }
-    // Too few data to say anything, with all that is known beside them.
+    // Fewer data and priors than parameters.
     let known = plan.observations.len()
         + plan
             .parameters
