@@ -8,6 +8,7 @@
 //! | `corpus` | reads and writes the files of the corpus |
 //! | `kinds`, `calibration` | read each kind of bad file |
 //! | `keys` | every key of every shipped file and of every option: too low, too high, nan, of another type, missing, misspelt, twice |
+//! | `texts` | no code looks into the text of a problem |
 //! | `sentences` | every sentence of a message in the source is in an expected text |
 #![allow(clippy::unwrap_used, reason = "tests say what they found")]
 
@@ -25,6 +26,8 @@ mod schema;
 mod sentences;
 #[path = "common/sources.rs"]
 mod sources;
+#[path = "diagnostics/texts.rs"]
+mod texts;
 
 use std::path::Path;
 

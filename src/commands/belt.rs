@@ -174,7 +174,7 @@ fn open(points: &str) -> Result<Box<dyn BufRead>, Problems> {
 }
 
 /// The first names, and how many more there are.
-fn listed(names: &[&str]) -> String {
+fn listed(names: &[String]) -> String {
     let more = names.len().saturating_sub(MAX_LISTED);
     let list = names[..names.len() - more].join(", ");
     if more > 0 {

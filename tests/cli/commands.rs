@@ -244,15 +244,15 @@ fn all_bad_inputs_are_reported_at_once() {
     ]);
     let parts = [
         "--cycle: there is no cycle named `ece15_euds`",
-        "did you mean ece15_eudc",
-        "did you mean rover_216_cvt",
+        "did you mean `ece15_eudc",
+        "did you mean `rover_216_cvt",
         "--ambient: `hot`",
         "-40 to 60",
-        "did you mean warm",
+        "did you mean `warm",
         "--dt: `0` is out of range",
         "0.01 to 10 s",
-        "did you mean smooth",
-        "did you mean dexron_ii",
+        "did you mean `smooth",
+        "did you mean `dexron_ii",
         "--set nonsense",
         "there is no vehicle named `mondeo`",
         "9 problems in",
@@ -584,7 +584,7 @@ fn show_prints_values_with_status_and_source() {
     }
     assert!(stdout(&run(&["show", "dexron_iii"])).contains("kv40_mm2_s"));
     assert!(stdout(&run(&["show", "ece15_eudc"])).contains("eudc"));
-    assert!(refused(&["show", "dexron_4"]).contains("did you mean dexron_ii"));
+    assert!(refused(&["show", "dexron_4"]).contains("did you mean `dexron_ii"));
 }
 
 #[test]
@@ -851,7 +851,7 @@ fn packagers_get_completions_and_manual_pages() {
     }
     assert!(stdout(&run(&["man"])).contains(".TH"));
     assert!(stdout(&run(&["man", "run"])).contains("ambient"));
-    assert!(refused(&["man", "rum"]).contains("did you mean run"));
+    assert!(refused(&["man", "rum"]).contains("did you mean `run"));
 }
 
 #[test]

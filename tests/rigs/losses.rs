@@ -376,7 +376,7 @@ fn refusals() {
             "no gear",
         ),
         (vec!["--vehicle", "rover_216_cvx"], "rover_216_cvt"),
-        (vec!["--formulation", "smoth"], "did you mean smooth"),
+        (vec!["--formulation", "smoth"], "did you mean `smooth"),
         (
             vec!["--set", "transmission.cvt.pump.x=1"],
             "transmission.cvt.pump.x",
@@ -387,7 +387,7 @@ fn refusals() {
         ),
         (vec!["--speed", "0..4000:100"], "out of range"),
         (vec!["--ratio", "0.01"], "out of range"),
-        (vec!["--as-map", "belts"], "did you mean belt"),
+        (vec!["--as-map", "belts"], "did you mean `belt"),
         (vec!["--as-map", "box"], "no component `box`"),
         (
             vec!["--as-map", "belt", "--throttle", "0,1"],

@@ -543,7 +543,7 @@ fn words_that_name_no_plan() {
     let problems = Plan::open("pump_and_ofset", "PLAN").unwrap_err();
     assert!(
         problems[0].place.file == "PLAN"
-            && problems[0].hint.contains("did you mean pump_and_offset?"),
+            && problems[0].hint.contains("did you mean `pump_and_offset`?"),
         "{problems:?}"
     );
     let problems = Plan::open("no/such.toml", "PLAN").unwrap_err();

@@ -95,6 +95,8 @@ pub struct Document {
     pub(super) root: Table,
     /// Header of the table, where the document is one item of a list ([`Document::take_tables`]).
     pub(super) header: Option<Span>,
+    /// `[[NAME]]` of a table of a list.
+    pub(super) title: Option<String>,
 }
 
 impl Document {
@@ -123,6 +125,7 @@ impl Document {
                 sources: vec![Arc::new(source)],
                 root,
                 header: None,
+                title: None,
             }),
         }
     }
@@ -150,6 +153,7 @@ impl Document {
                 sources: self.sources.clone(),
                 root,
                 header: Some(item.span),
+                title: Some(format!("[[{key}]]")),
             }),
             _ => None,
         };

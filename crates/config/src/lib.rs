@@ -4,6 +4,7 @@
 //! keys of vehicles, lubricants and rigs are rows of the model (`cvtcycle_model::keys`); messages,
 //! `explain`, the schema and the book of assumptions come from the same rows as the reading.
 mod assign;
+pub mod csv;
 pub mod cycle;
 pub mod setup;
 pub mod rig;
@@ -29,7 +30,7 @@ mod raw_value;
 pub use cvtcycle_model::keys::Bound;
 use cvtcycle_model::keys::Quantity;
 pub use document::Document;
-pub use near::near;
+pub use near::{did_you_mean, near, suggestion};
 pub use patched::{KeyPath, PatchedDocument};
 
 pub use problem::{Place, Problem, ProblemKind, Problems, readable};

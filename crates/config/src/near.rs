@@ -1,12 +1,12 @@
 //! Names that a mistyped one may have meant.
 
-/// Likeness below which a known name is no is_suggestion reading of the written one.
-const SUGGESTED: f64 = 0.6;
+/// Similarity below which a known name is no plausible reading of the written one.
+const MIN_SIMILARITY: f64 = 0.6;
 
-/// Bytes of a longer word are not compared with names: the time grows with its length, and no mistyped name is that long.
+/// A longer word is no mistyped name and is not compared with names: that takes time with its length.
 const MAX_LEN: usize = 200;
 
-/// Likeness of two names, from 0 to 1.
+/// Similarity of two names, from 0 to 1.
 pub(super) fn similarity(a: &str, b: &str) -> f64 {
     if a.len().max(b.len()) > MAX_LEN {
         return 0.0;
@@ -20,10 +20,10 @@ pub(super) fn similarity(a: &str, b: &str) -> f64 {
 
 /// Whether a similarity is high enough to suggest the name.
 pub(super) fn is_suggestion(similarity: f64) -> bool {
-    similarity >= SUGGESTED
+    similarity >= MIN_SIMILARITY
 }
 
-/// Up to three of the `known` names that are is_suggestion readings of `wanted`, best first.
+/// Up to three of the `known` names that are plausible readings of `wanted`, best first.
 pub fn near<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     if wanted.len() > MAX_LEN {
         return Vec::new();
@@ -38,16 +38,17 @@ pub fn near<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a s
     rated.into_iter().take(3).map(|(_, name)| name).collect()
 }
 
-/// "did you mean `a` or `b`?", or nothing without names.
-pub(super) fn question<S: AsRef<str>>(names: &[S]) -> String {
-    if names.is_empty() {
-        return String::new();
-    }
-    let quoted: Vec<String> = names
-        .iter()
-        .map(|name| format!("`{}`", name.as_ref()))
-        .collect();
-    format!("did you mean {}?", quoted.join(" or "))
+/// "did you mean `a` or `b`?"; none without names.
+#[must_use]
+pub fn suggestion(names: &[&str]) -> Option<String> {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    (!names.is_empty()).then(|| format!("did you mean {}?", quoted.join(" or ")))
+}
+
+/// [`suggestion`] of the known names that are close to `wanted`.
+#[must_use]
+pub fn did_you_mean<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    suggestion(&near(wanted, known.into_iter()))
 }
 
 /// "one of a, b, c".
@@ -57,12 +58,8 @@ pub(super) fn one_of(words: &[&str]) -> String {
 
 /// Question for near names, else the list of what is known.
 pub(super) fn suggest(wanted: &str, known: &[&str]) -> String {
-    let names = near(wanted, known.iter().copied());
-    if names.is_empty() {
-        format!("write {}", one_of(known))
-    } else {
-        question(&names)
-    }
+    did_you_mean(wanted, known.iter().copied())
+        .unwrap_or_else(|| format!("write {}", one_of(known)))
 }
 
 #[cfg(test)]

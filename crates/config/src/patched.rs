@@ -37,6 +37,7 @@ impl PatchedDocument {
             sources: vec![without_text; source + 1],
             root: bare(&document.root),
             header: document.header.clone(),
+            title: document.title.clone(),
         };
         PatchedDocument {
             document,

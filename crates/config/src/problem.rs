@@ -91,6 +91,8 @@ pub struct Problem {
     pub message: String,
     /// What to do about it; empty if nothing useful can be said.
     pub hint: String,
+    /// Known names that may have been meant, the most likely first.
+    pub suggested: Vec<String>,
 }
 
 impl Problem {
@@ -168,6 +170,13 @@ impl Problem {
     pub fn hint(self, hint: impl Into<String>) -> Self {
         let hint = hint.into();
         Problem { hint, ..self }
+    }
+
+    /// With known names that may have been meant.
+    #[must_use]
+    pub fn suggest(self, names: &[&str]) -> Self {
+        let suggested = names.iter().map(|name| (*name).to_owned()).collect();
+        Problem { suggested, ..self }
     }
 
     /// The last entry of a list that would be too long: how many more problems the file has.

@@ -3,7 +3,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, HashMap};
 
 use super::document::{Document, Entry, Span, Table, Value};
-use super::near::{is_suggestion, question, similarity};
+use super::near::{is_suggestion, similarity, suggestion};
 use super::problem::{Place, Problem, Problems};
 use super::section::Section;
 use crate::setup::Files;
@@ -37,7 +37,7 @@ pub struct KeyInfo {
 /// Problems of one document that are put into words; the rest is counted.
 const MAX_SHOWN: usize = 500;
 
-/// Likeness above which a name in another table may be what was meant: short names of all tables are like each other.
+/// Similarity above which a name in another table may be what was meant: short names of all tables are like each other.
 const ELSEWHERE: f64 = 0.75;
 
 #[derive(Default)]
@@ -284,10 +284,11 @@ impl Log {
             .first()
             .filter(|name| span.is_set() || parent(name) == parent(path));
         let shown: Vec<&str> = names.iter().map(|name| shown(path, name, span)).collect();
+        problem = problem.suggest(&shown);
         problem.hint = if names.is_empty() {
             self.neighbours(path)
         } else {
-            question(&shown)
+            suggestion(&shown).unwrap_or_default()
         };
         (problem, meant.map(|name| (*name).to_string()))
     }

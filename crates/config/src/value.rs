@@ -2,7 +2,7 @@
 use std::fmt::Display;
 
 use super::document::{Node, Span, Table, Value};
-use super::near::{near, one_of, question, suggest};
+use super::near::{near, one_of, suggest, suggestion};
 use super::problem::{Place, Problem};
 use super::reader::{KeyInfo, join};
 use super::section::Section;
@@ -196,7 +196,7 @@ impl<'r> Section<'r> {
                 key,
                 &one_of(&STATUSES),
                 message,
-                question(&names),
+                suggestion(&names).unwrap_or_default(),
             );
         } else if *status != "set" {
             *status = text;
@@ -301,7 +301,10 @@ impl<'r> Section<'r> {
         }
         self.reader.report_missing(|| {
             let table = if self.path.is_empty() {
-                "the top of the file".to_string()
+                let title = self.reader.document.title.as_ref();
+                title.map_or("the top of the file".to_string(), |title| {
+                    format!("its {title}")
+                })
             } else {
                 format!("[{}]", self.path)
             };

@@ -144,7 +144,6 @@ impl StudyCar {
                 .transpose();
             variant.slots.push(found.unwrap_or_else(|problem| {
                 let place = factor.place.clone();
-                let message = format!("{}: {}", self.name, problem.message);
                 let hint = match problem.kind {
                     ProblemKind::WrongTransmission => format!(
                         "{}; `cars = \"baselines\"` varies the baselines alone",
@@ -152,14 +151,9 @@ impl StudyCar {
                     ),
                     _ => problem.hint.clone(),
                 };
-                variant.unknown.push((
-                    index,
-                    problem
-                        .at(place)
-                        .key(factor.key.clone())
-                        .message(message)
-                        .hint(hint),
-                ));
+                let problem = problem.at(place).key(factor.key.clone());
+                let problem = problem.with_context(&format!("{}: ", self.name));
+                variant.unknown.push((index, problem.hint(hint)));
                 None
             }));
         }

@@ -9,7 +9,7 @@ use super::plan::{Keep, Plan};
 use super::table::{Head, Kind};
 use cvtcycle_config::cycle::{self, Cycle};
 use cvtcycle_config::setup::is_path;
-use cvtcycle_config::{Problem, Problems};
+use cvtcycle_config::{Problem, Problems, did_you_mean};
 use cvtcycle_model::drive::components;
 use cvtcycle_output::Component;
 use cvtcycle_output::table::Column;
@@ -155,12 +155,8 @@ impl Study {
             .filter(|name| !known.contains(&name.as_str()));
         unknown
             .map(|name| {
-                let close = cvtcycle_config::near(name, known.iter().copied());
-                let hint = if close.is_empty() {
-                    String::new()
-                } else {
-                    format!("did you mean {}? ", close.join(", "))
-                };
+                let hint = did_you_mean(name, known.iter().copied())
+                    .map_or_else(String::new, |question| question + " ");
                 let problem = of_plan(
                     &self.plan,
                     "analyse",

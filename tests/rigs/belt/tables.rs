@@ -128,7 +128,7 @@ fn bad_tables_are_refused_with_their_place() {
             "ratio,input_speed,output_torque_nm\n0.5,2000,10\n".into(),
             vec![
                 "no such column",
-                "did you mean input_speed_rpm",
+                "did you mean `input_speed_rpm",
                 "input_speed_rpm is missing",
                 "secondary_pressure_bar is missing",
             ],
@@ -182,7 +182,7 @@ fn bad_tables_are_refused_with_their_place() {
         ),
         (
             row("0.5,2000,12,10,apendix_c,,"),
-            vec!["formulation is not known", "did you mean appendix_c"],
+            vec!["formulation is not known", "did you mean `appendix_c"],
         ),
         (
             row("0.5,2000,12,10,,2,"),

@@ -98,7 +98,7 @@ fn a_format_is_one_of_three_and_needs_a_directory() {
     assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0));
     assert!(
         said.contains("--format: `parket` is not known")
-            && said.contains("did you mean parquet?")
+            && said.contains("did you mean `parquet`?")
             && said.contains("2 problems"),
         "{said}"
     );

@@ -3,7 +3,7 @@
 use super::{Cycle, constant_speed, embedded, names, read_csv};
 use crate::bounded::{self, Limit};
 use crate::setup::is_path;
-use crate::{Place, Problem, Problems, near};
+use crate::{Place, Problem, Problems, did_you_mean};
 
 /// A cycle by name (`ece15_eudc`, `constant_90`), or from the CSV file at a path. `option` is cited where the word itself is bad.
 ///
@@ -19,12 +19,8 @@ pub fn find(option: &str, value: &str) -> Result<Cycle, Problems> {
     if is_path(value) {
         return read_csv(value, &bytes(option, value, bounded::TABLE)?);
     }
-    let close = near(value, names().iter().copied());
-    let question = if close.is_empty() {
-        String::new()
-    } else {
-        format!("did you mean {}? ", close.join(" or "))
-    };
+    let question = did_you_mean(value, names().iter().copied())
+        .map_or_else(String::new, |question| question + " ");
     let quoted = if value.is_empty() {
         "an empty value".to_owned()
     } else {

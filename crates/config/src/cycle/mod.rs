@@ -5,17 +5,14 @@
 //! | `embedded` | the regulations' cycles that the program carries |
 //! | `find` | a cycle by name or path |
 //! | `constant` | `constant_90` and other constant speeds |
-//! | `read` | a CSV file to a checked cycle; `header`, `row` and `table` are its parts; `text` and `problems` serve other tables too |
+//! | `read` | a CSV file to a checked cycle; `schema` has its columns, `row` checks its rows |
 
 mod constant;
 mod embedded;
 mod find;
-mod header;
-pub mod problems;
 mod read;
 mod row;
-mod table;
-pub mod text;
+mod schema;
 
 pub use constant::constant_speed;
 pub use cvtcycle_model::cycle::*;

@@ -3,12 +3,11 @@
 use std::path::Path;
 
 use super::gears::{GearColumns, GearCommand, commands};
-use super::header::{Column, Header};
-use super::problems::Collector;
-use super::row::Row;
-use super::table::Table;
+use super::row::{Row, Rows};
+use super::schema::{GEARS, NOTE, schema};
 use super::{Cycle, Interval, Trace, Weighting};
-use crate::Problems;
+use crate::csv::{self, Collector, Line, Table};
+use crate::{Problem, Problems};
 
 /// Reads a drive cycle from the bytes of a CSV file called `file`.
 ///
@@ -45,38 +44,57 @@ pub(super) fn read_trace(
     phases: &mut Vec<String>,
 ) -> Result<Trace, Problems> {
     let mut problems = Collector::new(file);
-    let Some(mut lines) = problems.lines(bytes) else {
+    let mut rows = Rows::new(phases);
+    let schema = schema();
+    let table = csv::read(
+        bytes,
+        &schema,
+        &mut problems,
+        check_notes,
+        |cells, problems| {
+            rows.add(cells, problems);
+            true
+        },
+    );
+    rows.finish();
+    let Some(table) = table else {
         return Err(problems.finish());
     };
-    let header = lines
-        .next()
-        .and_then(|line| Header::read(line, &mut problems));
-    let Some(header) = header else {
-        return Err(problems.finish());
-    };
-    let (rows, problems) = Table::read(&header, phases, problems, lines);
-    if problems.is_empty() {
-        Ok(trace(&header, &rows))
-    } else {
-        Err(problems.finish())
+    let rows = rows.rows;
+    if rows.len() == 1 {
+        problems.file(
+            Problem::missing("the file has one row only")
+                .allowed("at least two rows")
+                .hint("a row holds until the next one: add one for the end"),
+        );
+    }
+    problems.finish().finish()?;
+    Ok(trace(&table, &rows))
+}
+
+/// Reports notes without a column of the gears that they are on.
+fn check_notes(table: &Table, header: Line<'_>, problems: &mut Collector<'_>) {
+    if table.has(NOTE) && !GEARS.iter().any(|k| table.has(*k)) {
+        problems.line(header, "gear_note", || {
+            Problem::missing("gear_note needs a column with the gears")
+                .allowed("gear, gear_5mt or gear_6mt")
+                .hint("add a column gear, 0 where none is engaged")
+        });
     }
 }
 
-fn trace(header: &Header, rows: &[Row]) -> Trace {
+fn trace(table: &Table, rows: &[Row]) -> Trace {
     let intervals = rows
         .windows(2)
         .map(|pair| interval(&pair[0], &pair[1]))
         .collect();
-    let column = |column: Column, gear: fn(&Row) -> u8| -> Option<Vec<GearCommand>> {
-        header.has(column).then(|| {
-            let mut list = commands(rows.iter().map(|row| (gear(row), row.note)));
+    let [plain, five, six] = [0, 1, 2].map(|k| -> Option<Vec<GearCommand>> {
+        table.has(GEARS[k]).then(|| {
+            let mut list = commands(rows.iter().map(|row| (row.gears[k], row.note)));
             list.truncate(rows.len().saturating_sub(1));
             list
         })
-    };
-    let five = column(Column::Gear5, |row| row.gear_5);
-    let six = column(Column::Gear6, |row| row.gear_6);
-    let plain = column(Column::Gear, |row| row.gear);
+    });
     Trace::with_gears(intervals, GearColumns::new(five, six, plain))
 }
 

@@ -1,19 +1,21 @@
-//! One row of the table: its values, each checked for itself.
+//! The rows of a cycle file: each checked for itself and against the one above.
 
 use super::gears::Note;
-use super::header::{Column, Header, SpeedUnit};
-use super::problems::{Cell, Collector, Complaint, Line};
-use super::text::Field;
-use crate::readable;
+use super::schema::{ENGINE_OFF, GEARS, GRADE, NOTE, PHASE, SPEED, TIME, highest_gear, speed};
+use crate::csv::{self, Collector};
+use crate::{Problem, readable};
 
 /// Faster is no road car; a higher number is nearly always a wrong unit.
-const HIGHEST_KMH: f64 = 300.0;
-/// The steepest streets stay below this slope (rise over run).
-const STEEPEST: f64 = 0.35;
+const MAX_SPEED_KMH: f64 = 300.0;
 /// A file with more phases has its row number or its time in the column.
 const MAX_PHASES: usize = 200;
+/// Tyres cannot do more; a higher value is a wrong unit or a lost sample.
+const MAX_ACCEL_M_S2: f64 = 12.0;
+/// A longer gap is a lost recording.
+const MAX_INTERVAL_S: f64 = 3600.0;
+const MAX_DURATION_S: f64 = 1e6;
 
-/// The values of a row, in SI. What a column does not give, or gives badly, stays at its default.
+/// The values of a row, in SI. What a column does not give, or gives badly, is at its default.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Row {
     pub(super) time_s: Option<f64>,
@@ -21,163 +23,143 @@ pub(super) struct Row {
     pub(super) phase: u16,
     pub(super) grade: f64,
     pub(super) engine_off: bool,
-    pub(super) gear: u8,
-    pub(super) gear_5: u8,
-    pub(super) gear_6: u8,
+    /// In the order of [`GEARS`].
+    pub(super) gears: [u8; 3],
     pub(super) note: Note,
 }
 
-/// Reads the fields of a line that has as many as the header.
-pub(super) fn read<'t>(
-    line: Line<'t>,
-    fields: &[Field<'t>],
-    header: &Header,
-    phases: &mut Vec<String>,
-    problems: &mut Collector<'_>,
-) -> Row {
-    let mut row = Row::default();
-    for (&field, &column) in fields.iter().zip(&header.columns) {
-        let Some((column, key)) = column else {
-            continue;
-        };
-        let cell = Cell { line, key, field };
-        match column {
-            Column::Time => row.time_s = number(&cell, "a time in s", problems),
-            Column::Speed(unit) => row.speed_m_s = speed(&cell, unit, problems),
-            Column::Phase => row.phase = phase(&cell, row.phase, phases, problems),
-            Column::Gear => row.gear = gear(&cell, 10, problems),
-            Column::Gear5 => row.gear_5 = gear(&cell, 5, problems),
-            Column::Gear6 => row.gear_6 = gear(&cell, 6, problems),
-            Column::GearNote => row.note = note(&cell, header.highest_gear(), problems),
-            Column::Operation => {}
-            Column::Grade(divisor) => row.grade = grade(&cell, divisor, problems),
-            Column::EngineOff => row.engine_off = engine_off(&cell, problems),
+/// Rows that were read.
+pub(super) struct Rows<'p> {
+    /// Names of the phases.
+    pub(super) phases: &'p mut Vec<String>,
+    /// They form a trace only if there are no problems.
+    pub(super) rows: Vec<Row>,
+    first_time_s: Option<f64>,
+    too_long: bool,
+    /// Number of phases before the last row.
+    phases_before: usize,
+}
+
+impl<'p> Rows<'p> {
+    pub(super) fn new(phases: &'p mut Vec<String>) -> Self {
+        Rows {
+            phases_before: phases.len(),
+            phases,
+            rows: Vec::new(),
+            first_time_s: None,
+            too_long: false,
         }
     }
-    check_note(line, &row, problems);
-    row
-}
 
-fn check_note(line: Line<'_>, row: &Row, problems: &mut Collector<'_>) {
-    if let Note::Gear(gear) = row.note
-        && gear > 0
-        && row.gear.max(row.gear_5).max(row.gear_6) == 0
-    {
-        problems.line(line, "gear_note", || {
-            let message = format!("the note says gear {gear} and the gear column says none");
-            Complaint::new(
-                message,
-                "the same gear",
-                "write the gear into the gear column",
-            )
-        });
+    /// Ends the reading: the last row holds over nothing, so a phase that only it names has no interval.
+    pub(super) fn finish(&mut self) {
+        self.phases.truncate(self.phases_before);
     }
-}
 
-fn number(cell: &Cell<'_>, allowed: &str, problems: &mut Collector<'_>) -> Option<f64> {
-    let text = cell.field.text;
-    let (message, hint) = match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => return Some(value),
-        Ok(value) if value.is_nan() => ("this is not a number", "fill the gap or remove the row"),
-        Ok(_) => (
-            "this is not a finite number",
-            "fill the gap or remove the row",
-        ),
-        Err(_) if text.is_empty() => ("the value is missing", "fill the gap or remove the row"),
-        Err(_) if text.contains(',') => (
-            "this is not a number",
-            "write a decimal point: 12.5 and not 12,5",
-        ),
-        Err(_) => (
-            "this is not a number",
-            "write the bare number; the unit is in the column's name",
-        ),
-    };
-    problems.cell(cell, || Complaint::new(message, allowed, hint));
-    None
-}
-
-fn speed(cell: &Cell<'_>, unit: SpeedUnit, problems: &mut Collector<'_>) -> Option<f64> {
-    let value = number(cell, "a speed from 0 to 300 km/h", problems)?;
-    let kmh = unit.kmh(value);
-    if (0.0..=HIGHEST_KMH).contains(&kmh) {
-        // turns -0 into 0
-        return Some(unit.m_s(value) + 0.0);
-    }
-    problems.cell(cell, || {
-        let (message, hint) = if value < 0.0 {
-            (
-                "the speed is negative".to_owned(),
-                "set a sensor's small negative values to 0; reversing cannot be driven".to_owned(),
-            )
-        } else {
-            (
-                format!("{} km/h is too fast", readable(kmh, 1)),
-                format!("is the column in another unit than {} says?", cell.key),
-            )
+    pub(super) fn add(&mut self, cells: &csv::Row<'_, '_>, problems: &mut Collector<'_>) {
+        self.phases_before = self.phases.len();
+        let time_s = cells.number(TIME);
+        let first_s = self.first_time_s.or(time_s);
+        self.first_time_s = first_s;
+        let whole = |column| cells.number(column).unwrap_or_default() as u8;
+        let table = cells.table();
+        let row = Row {
+            time_s: time_s
+                .zip(first_s)
+                .map(|(time_s, first_s)| time_s - first_s),
+            speed_m_s: speed_m_s(cells, problems),
+            phase: self.phase(cells, problems),
+            grade: table.of_group(GRADE).map_or(0.0, |column| {
+                let percent = table.name(column) == "grade_percent";
+                cells.number(column).unwrap_or_default() / if percent { 100.0 } else { 1.0 }
+            }),
+            engine_off: whole(ENGINE_OFF) == 1,
+            gears: GEARS.map(whole),
+            note: note(cells, problems),
         };
-        Complaint::new(message, "0 to 300 km/h", hint)
-    });
+        check_note(&row, cells, problems);
+        // Neighbours are compared one to the next, so that one bad row does not condemn all that follow.
+        let before = self.rows.last().copied().unwrap_or_default();
+        if let Some(dt_s) = self.check_time(&row, &before, cells, problems) {
+            check_jump(&row, &before, dt_s, cells, problems);
+        }
+        check_engine_off(&row, &before, cells, problems);
+        self.rows.push(row);
+    }
+
+    fn phase(&mut self, cells: &csv::Row<'_, '_>, problems: &mut Collector<'_>) -> u16 {
+        let name = cells.word(PHASE);
+        let known = self.phases.iter().position(|known| known == name);
+        if known.is_none() && !name.is_empty() {
+            if self.phases.len() < MAX_PHASES {
+                self.phases.push(name.to_owned());
+                return u16::try_from(self.phases.len() - 1).unwrap_or_default();
+            }
+            let problem = Problem::too_large("there are too many phases")
+                .allowed(format!("up to {MAX_PHASES} different names"))
+                .hint("a phase is a part of the cycle that is reported by itself");
+            cells.report(PHASE, problems, problem);
+        }
+        known
+            .and_then(|k| u16::try_from(k).ok())
+            .unwrap_or_default()
+    }
+
+    /// The time since the row above, if it can be used.
+    fn check_time(
+        &mut self,
+        row: &Row,
+        before: &Row,
+        cells: &csv::Row<'_, '_>,
+        problems: &mut Collector<'_>,
+    ) -> Option<f64> {
+        let time_s = row.time_s?;
+        if !self.too_long && time_s > MAX_DURATION_S {
+            self.too_long = true;
+            let problem = Problem::out_of_range("the cycle is too long")
+                .allowed("up to 1000000 s after the first row")
+                .hint("is the time in milliseconds?");
+            cells.report(TIME, problems, problem);
+        }
+        let dt_s = time_s - before.time_s?;
+        let problem = if dt_s > 0.0 && dt_s <= MAX_INTERVAL_S {
+            return Some(dt_s);
+        } else if dt_s > 0.0 {
+            Problem::out_of_range("the gap to the row above is too long")
+                .allowed("up to 3600 s")
+                .hint("is the time in milliseconds? otherwise fill the gap with rows")
+        } else {
+            Problem::invalid("the time does not rise")
+                .allowed("more than in the row above")
+                .hint("sort the rows by time and remove doubled ones")
+        };
+        cells.report(TIME, problems, problem);
+        None
+    }
+}
+
+fn speed_m_s(cells: &csv::Row<'_, '_>, problems: &mut Collector<'_>) -> Option<f64> {
+    let column = cells.table().of_group(SPEED)?;
+    let value = cells.number(column)?;
+    let name = cells.table().name(column);
+    let (kmh, m_s) = speed(name, value);
+    if (0.0..=MAX_SPEED_KMH).contains(&kmh) {
+        return Some(m_s);
+    }
+    let problem = if value < 0.0 {
+        Problem::out_of_range("the speed is negative")
+            .hint("set a sensor's small negative values to 0; reversing cannot be driven")
+    } else {
+        Problem::out_of_range(format!("{} km/h is too fast", readable(kmh, 1)))
+            .hint(format!("is the column in another unit than {name} says?"))
+    };
+    cells.report(column, problems, problem.allowed("0 to 300 km/h"));
     None
 }
 
-fn phase(
-    cell: &Cell<'_>,
-    last: u16,
-    phases: &mut Vec<String>,
-    problems: &mut Collector<'_>,
-) -> u16 {
-    let name = cell.field.text;
-    if let Some(found) = phases.iter().position(|known| known == name) {
-        return u16::try_from(found).unwrap_or(last);
-    }
-    if name.is_empty() {
-        problems.cell(cell, || {
-            Complaint::new(
-                "the phase has no name",
-                "a name in each row",
-                "repeat the name in each row of the phase",
-            )
-        });
-    } else if phases.len() >= MAX_PHASES {
-        let allowed = format!("up to {MAX_PHASES} different names");
-        problems.cell(cell, || {
-            Complaint::new(
-                "there are too many phases",
-                allowed,
-                "a phase is a part of the cycle that is reported by itself",
-            )
-        });
-    } else {
-        phases.push(name.to_owned());
-        return u16::try_from(phases.len() - 1).unwrap_or(last);
-    }
-    last
-}
-
-fn gear(cell: &Cell<'_>, highest: u8, problems: &mut Collector<'_>) -> u8 {
-    let text = cell.field.text;
-    // other programs write whole numbers as 3.0
-    let value = text
-        .parse::<f64>()
-        .ok()
-        .filter(|value| value.fract() == 0.0 && (0.0..=f64::from(highest)).contains(value));
-    if let Some(value) = value {
-        return value as u8;
-    }
-    let hint = "write the number alone, and 0 where no gear is engaged";
-    problems.cell(cell, || {
-        Complaint::new(
-            "this is no gear",
-            format!("a whole number from 0 to {highest}; 0: no gear engaged"),
-            hint,
-        )
-    });
-    0
-}
-
-fn note(cell: &Cell<'_>, highest: u8, problems: &mut Collector<'_>) -> Note {
-    match Note::parse(cell.field.text) {
+fn note(cells: &csv::Row<'_, '_>, problems: &mut Collector<'_>) -> Note {
+    let highest = highest_gear(cells.table());
+    match Note::parse(cells.word(NOTE)) {
         Some(Note::Declutched(gear)) if gear > highest => {}
         Some(note) => return note,
         None => {}
@@ -185,49 +167,78 @@ fn note(cell: &Cell<'_>, highest: u8, problems: &mut Collector<'_>) -> Note {
     let allowed = format!(
         "PM (neutral), K1 to K{highest} (clutch disengaged in that gear), GC (gear change), the gear again or nothing"
     );
-    problems.cell(cell, || {
-        Complaint::new(
-            "this note is not known",
-            allowed,
-            "leave the cell empty where the gear column says all",
-        )
-    });
+    let problem = Problem::unknown_name("this note is not known").allowed(allowed);
+    let hint = "leave the cell empty where the gear column says all";
+    cells.report(NOTE, problems, problem.hint(hint));
     Note::Blank
 }
 
-fn grade(cell: &Cell<'_>, divisor: f64, problems: &mut Collector<'_>) -> f64 {
-    let limit = STEEPEST * divisor;
-    let allowed = format!("-{limit} to {limit}");
-    let Some(value) = number(cell, &allowed, problems) else {
-        return 0.0;
-    };
-    if value.abs() <= limit {
-        return value / divisor;
+fn check_note(row: &Row, cells: &csv::Row<'_, '_>, problems: &mut Collector<'_>) {
+    if let Note::Gear(gear) = row.note
+        && gear > 0
+        && row.gears == [0; 3]
+    {
+        problems.line(cells.line, "gear_note", || {
+            Problem::conflict(format!(
+                "the note says gear {gear} and the gear column says none"
+            ))
+            .allowed("the same gear")
+            .hint("write the gear into the gear column")
+        });
     }
-    let hint = if divisor > 1.0 {
-        "is the column in per mille or in degrees?"
-    } else {
-        "is the column in percent? then name it grade_percent"
-    };
-    problems.cell(cell, || {
-        Complaint::new("the road is too steep", allowed, hint)
-    });
-    0.0
 }
 
-fn engine_off(cell: &Cell<'_>, problems: &mut Collector<'_>) -> bool {
-    match cell.field.text {
-        "1" => true,
-        "0" => false,
-        _ => {
-            problems.cell(cell, || {
-                Complaint::new(
-                    "this is neither 0 nor 1",
-                    "0 (engine on) or 1 (engine off)",
-                    "write 1 only where the driver stops the engine",
-                )
-            });
-            false
-        }
+fn check_jump(
+    row: &Row,
+    before: &Row,
+    dt_s: f64,
+    cells: &csv::Row<'_, '_>,
+    problems: &mut Collector<'_>,
+) {
+    let (Some(from), Some(to)) = (before.speed_m_s, row.speed_m_s) else {
+        return;
+    };
+    let accel_m_s2 = (to - from) / dt_s;
+    if !(-MAX_ACCEL_M_S2..=MAX_ACCEL_M_S2).contains(&accel_m_s2)
+        && let Some(column) = cells.table().of_group(SPEED)
+    {
+        let hint = match cells.table().name(column) {
+            "speed_kmh" | "speed_km_h" => {
+                "is the column in km/h? is the time in seconds? or are samples lost?"
+            }
+            _ => "is the column in km/h? then name it speed_kmh",
+        };
+        let accel = readable(accel_m_s2, 1);
+        let problem =
+            Problem::out_of_range(format!("the speed jumps: {accel} m/s2 from the row above"));
+        cells.report(
+            column,
+            problems,
+            problem.allowed("-12 to 12 m/s2").hint(hint),
+        );
+    }
+}
+
+fn check_engine_off(
+    row: &Row,
+    before: &Row,
+    cells: &csv::Row<'_, '_>,
+    problems: &mut Collector<'_>,
+) {
+    if row.speed_m_s.is_none_or(|speed_m_s| speed_m_s <= 0.0) {
+        return;
+    }
+    if row.engine_off {
+        let problem = Problem::conflict("the engine is off while the car moves")
+            .allowed("0 where the speed is above 0")
+            .hint("only a standing car can have its engine off");
+        cells.report(ENGINE_OFF, problems, problem);
+    } else if before.engine_off
+        && let Some(column) = cells.table().of_group(SPEED)
+    {
+        let problem = Problem::conflict("the car starts with its engine off")
+            .allowed("0 up to the end of engine_off")
+            .hint("set engine_off to 0 in the row above: it holds until this row");
+        cells.report(column, problems, problem);
     }
 }

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use crate::bounded::{self, ReadError};
 use crate::embedded;
-use crate::{Bound, Document, KeyInfo, Problem, Problems, Reader, decode, near};
+use crate::{Bound, Document, KeyInfo, Problem, Problems, Reader, decode, did_you_mean};
 use cvtcycle_model::drive::Vehicle;
 use cvtcycle_model::fluid::Lubricant;
 use cvtcycle_model::keys::{self, Table};
@@ -196,12 +196,8 @@ pub fn text_of(word: &str, kind: Kind, option: &str) -> Result<(String, String, 
 
 fn unknown_name(word: &str, kind: Kind, option: &str) -> Problem {
     let names = kind.names();
-    let close = near(word, names.iter().copied());
-    let hint = if close.is_empty() {
-        String::new()
-    } else {
-        format!("did you mean {}? ", close.join(", "))
-    };
+    let hint = did_you_mean(word, names.iter().copied())
+        .map_or_else(String::new, |question| question + " ");
     Problem::unknown_name(format!("there is no {} named `{word}`", kind.word()))
         .in_file(option)
         .key(option)

@@ -4,10 +4,11 @@ use std::io::ErrorKind;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::Files;
-use super::map_csv::{self, Column, Form};
-use crate::Section;
+use super::map_csv::{self, MAX_ROWS};
 use crate::bounded::ReadError;
+use crate::csv::{Column, Schema};
 use crate::embedded;
+use crate::{Bound, Section};
 use cvtcycle_model::engine::BsfcMap;
 use cvtcycle_model::keys::Quantity;
 use cvtcycle_model::math::{GRID_AXES, Grid};
@@ -16,7 +17,8 @@ use cvtcycle_model::transmission::loss_map::LossMap;
 /// A CSV of numbers with a header, read whole, and the map that was made of it.
 #[derive(Debug)]
 pub struct Table {
-    names: Vec<&'static str>,
+    /// Indices of the columns in the schema.
+    columns: Vec<usize>,
     rows: Vec<Vec<f64>>,
     loss: OnceLock<LossMap>,
     /// With the bits of heating value and displacement, which are parts of its numbers.
@@ -24,12 +26,19 @@ pub struct Table {
 }
 
 impl Table {
-    fn index(&self, name: &str) -> Option<usize> {
-        self.names.iter().position(|n| *n == name)
+    /// Index of a column of the schema in each row.
+    fn index(&self, column: usize) -> Option<usize> {
+        self.columns.iter().position(|k| *k == column)
     }
 }
 
-fn read(s: &Section, key: &str, file: &str, form: &Form) -> Option<Arc<Table>> {
+fn read(
+    s: &Section,
+    key: &str,
+    file: &str,
+    kind: &'static str,
+    columns: Vec<Column>,
+) -> Option<Arc<Table>> {
     if file.trim().is_empty() {
         s.complain(
             key,
@@ -39,6 +48,12 @@ fn read(s: &Section, key: &str, file: &str, form: &Form) -> Option<Arc<Table>> {
         );
         return None;
     }
+    let schema = Schema {
+        columns,
+        max_rows: MAX_ROWS,
+        rows: "a row for every point of the grid",
+        ..Schema::default()
+    };
     let mut make = || {
         let read;
         let bytes = match embedded::text(embedded::maps(), file) {
@@ -59,9 +74,9 @@ fn read(s: &Section, key: &str, file: &str, form: &Form) -> Option<Arc<Table>> {
                 }
             },
         };
-        match map_csv::read(file, bytes, form) {
+        match map_csv::read(file, bytes, &schema) {
             Ok(map) => Some(Arc::new(Table {
-                names: map.names,
+                columns: map.columns,
                 rows: map.rows,
                 loss: OnceLock::new(),
                 bsfc: Mutex::default(),
@@ -75,7 +90,7 @@ fn read(s: &Section, key: &str, file: &str, form: &Form) -> Option<Arc<Table>> {
         }
     };
     match s.reader.files {
-        Some(files) => files.table(form.columns[0].name, file, &mut make),
+        Some(files) => files.table(kind, file, &mut make),
         None => make(),
     }
 }
@@ -97,47 +112,23 @@ pub fn bsfc_map(
     heating_value_j_kg: f64,
     displacement_m3: f64,
 ) -> Option<BsfcMap> {
-    let columns = [
-        Column {
-            name: "speed_rpm",
-            low: 100.0,
-            high: 20_000.0,
-        },
-        Column {
-            name: "bmep_bar",
-            low: 0.05,
-            high: 40.0,
-        },
-        Column {
-            name: "torque_nm",
-            low: 0.1,
-            high: 5000.0,
-        },
-        Column {
-            name: "bsfc_g_kwh",
-            low: 100.0,
-            high: 3000.0,
-        },
+    let column = |name, low, high| Column::number(name, Bound::closed(low, high)).required();
+    let columns = vec![
+        column("speed_rpm", 100.0, 20_000.0),
+        column("bmep_bar", 0.05, 40.0).group("load"),
+        column("torque_nm", 0.1, 5000.0).group("load"),
+        column("bsfc_g_kwh", 100.0, 3000.0),
     ];
-    let required: [&[&str]; 3] = [&["speed_rpm"], &["bmep_bar", "torque_nm"], &["bsfc_g_kwh"]];
-    let table = read(
-        s,
-        key,
-        file,
-        &Form {
-            columns: &columns,
-            required: &required,
-        },
-    )?;
+    let table = read(s, key, file, "bsfc", columns)?;
     let scale = [heating_value_j_kg.to_bits(), displacement_m3.to_bits()];
     let mut made = table.bsfc.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, map)) = made.as_ref().filter(|(of, _)| *of == scale) {
         return Some(map.clone());
     }
-    let (speed, bsfc) = (table.index("speed_rpm"), table.index("bsfc_g_kwh"));
-    let load = table.index("bmep_bar").map(|i| (i, 1e5));
+    let (speed, bsfc) = (table.index(0), table.index(3));
+    let load = table.index(1).map(|i| (i, 1e5));
     let per_torque = 4.0 * std::f64::consts::PI / displacement_m3;
-    let load = load.or_else(|| table.index("torque_nm").map(|i| (i, per_torque)));
+    let load = load.or_else(|| table.index(2).map(|i| (i, per_torque)));
     let (Some(speed), Some(bsfc), Some((load, factor))) = (speed, bsfc, load) else {
         return None;
     };
@@ -162,54 +153,26 @@ pub fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) -> Opti
     } else {
         "output_torque_nm"
     };
-    let columns = [
-        Column {
-            name: first,
-            low: 0.2,
-            high: 12.0,
-        },
-        Column {
-            name: "input_speed_rpm",
-            low: 0.0,
-            high: 20_000.0,
-        },
-        Column {
-            name: torque,
-            low: -3000.0,
-            high: 3000.0,
-        },
-        Column {
-            name: "secondary_pressure_bar",
-            low: 0.0,
-            high: 200.0,
-        },
-        Column {
-            name: "oil_temp_degc",
-            low: -60.0,
-            high: 200.0,
-        },
-        Column {
-            name: "torque_loss_nm",
-            low: 0.0,
-            high: 1000.0,
-        },
+    let column = |name, low, high| Column::number(name, Bound::closed(low, high));
+    let columns = vec![
+        column(first, 0.2, 12.0),
+        column("input_speed_rpm", 0.0, 20_000.0),
+        column(torque, -3000.0, 3000.0),
+        column("secondary_pressure_bar", 0.0, 200.0),
+        column("oil_temp_degc", -60.0, 200.0),
+        column("torque_loss_nm", 0.0, 1000.0).required(),
     ];
-    let table = read(
-        s,
-        key,
-        file,
-        &Form {
-            columns: &columns,
-            required: &[&["torque_loss_nm"]],
-        },
-    )?;
+    let quantities: Vec<Quantity> = columns.iter().map(|c| Quantity::of(&c.name)).collect();
+    let table = read(s, key, file, first, columns)?;
     if let Some(map) = table.loss.get() {
         return Some(map.clone());
     }
-    let loss = table.index("torque_loss_nm")?;
-    let axes: Vec<(Option<usize>, Quantity)> = columns[..GRID_AXES]
-        .iter()
-        .map(|c| (table.index(c.name), Quantity::of(c.name)))
+    let loss = table.index(GRID_AXES)?;
+    let axes: Vec<(Option<usize>, Quantity)> = quantities
+        .into_iter()
+        .take(GRID_AXES)
+        .enumerate()
+        .map(|(k, quantity)| (table.index(k), quantity))
         .collect();
     let rows: Vec<([f64; GRID_AXES], f64)> = table
         .rows

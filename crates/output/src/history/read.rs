@@ -2,36 +2,32 @@
 
 use super::{History, MAX_PHASES, MAX_STEPS, SHORTER, flags_of, is_number, known, missing};
 use crate::Flags;
-use crate::trace::column;
-use cvtcycle_config::Problems;
-use cvtcycle_config::cycle::problems::{Collector, Complaint, Line};
-use cvtcycle_config::cycle::text::Field;
+use crate::trace::{COLUMNS, TraceColumn};
+use cvtcycle_config::csv::{self, Cells, Collector, Column, Line, Schema, Table};
+use cvtcycle_config::{Bound, Problem, Problems};
 
 /// What helps with a trace that cannot be read.
 pub const AGAIN: &str = "write it anew with `cvtcycle run ... --out DIR --force`";
-/// What a cell of numbers may hold.
-const NUMBER: &str = "a number with a decimal point, or nothing";
 /// What a cell of the column of flags may hold.
 pub const FLAGS: &str = "names of flags joined by |";
 
-/// What a column of the file is for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Use {
-    /// The numbers of that index.
-    Number(usize),
-    Phase,
-    Flags,
-    /// A column of a newer version.
-    Nothing,
-}
-
-/// The columns of the file.
-struct Header<'t> {
-    names: Vec<&'t str>,
-    uses: Vec<Use>,
-    numbers: usize,
-    time: Option<usize>,
-    dt: Option<usize>,
+fn schema() -> Schema {
+    let column = |own: &'static TraceColumn| match &*own.name {
+        "time_s" => Column::number(&*own.name, Bound::any()).hint(AGAIN),
+        "dt_s" => Column::number(&*own.name, Bound::positive()).hint(AGAIN),
+        name if is_number(own) => Column::number(name, Bound::any())
+            .or_empty()
+            .allowed("a number with a decimal point, or nothing")
+            .hint(AGAIN),
+        name => Column::new(name, Cells::Word).or_empty(),
+    };
+    Schema {
+        columns: COLUMNS.iter().map(column).collect(),
+        names: "time_s,dt_s,phase,...".into(),
+        lenient: Some(("trace of cvtcycle", AGAIN)),
+        max_rows: (MAX_STEPS, SHORTER),
+        ..Schema::default()
+    }
 }
 
 impl History {
@@ -43,225 +39,121 @@ impl History {
     /// After 50 the rest is counted in one last entry.
     pub fn read_csv(file_name: &str, bytes: &[u8]) -> Result<Self, Problems> {
         let mut problems = Collector::new(file_name);
-        let Some(mut lines) = problems.lines(bytes) else {
-            return Err(problems.finish());
-        };
-        let Some(header) = lines.next().and_then(|line| header(line, &mut problems)) else {
-            return Err(problems.finish());
-        };
-        let history = rows(&header, lines, &mut problems);
-        if history.is_empty() && problems.is_empty() {
-            problems.file(Complaint::new(
-                "the file has column names and no rows",
-                "at least one row",
-                AGAIN,
-            ));
-        }
-        if problems.is_empty() {
-            Ok(history)
-        } else {
-            Err(problems.finish())
-        }
+        let schema = schema();
+        let mut reading = None;
+        csv::read(bytes, &schema, &mut problems, check, |row, problems| {
+            let reading = reading.get_or_insert_with(|| Reading::new(row.table()));
+            reading.add(row, problems)
+        });
+        problems.finish().finish()?;
+        Ok(reading.map(|reading| reading.history).unwrap_or_default())
     }
 }
 
-/// Reads the names of the columns; none where the lines below them could not be understood.
-fn header<'t>(line: Line<'t>, problems: &mut Collector) -> Option<Header<'t>> {
-    let fields = problems.names(line)?;
-    let columns = known(fields.iter().map(|field| field.text));
-    if columns.is_empty() {
-        problems.line(line, "", || {
-            Complaint::new(
-                "this is no trace of cvtcycle: it has none of its columns",
-                "time_s,dt_s,phase,...",
-                AGAIN,
-            )
-        });
-        return None;
-    }
-    for own in missing(&columns) {
-        problems.line(line, &own.name, || {
-            Complaint::new(
-                format!("the column {} is missing", own.name),
-                format!("with {}: {}", own.name, own.doc),
-                AGAIN,
-            )
+/// Reports columns that every trace has and this one has not.
+fn check(table: &Table, header: Line<'_>, problems: &mut Collector<'_>) {
+    for own in missing(&columns_of(table)) {
+        problems.line(header, &own.name, || {
+            Problem::missing(format!("the column {} is missing", own.name))
+                .allowed(format!("with {}: {}", own.name, own.doc))
+                .hint(AGAIN)
         });
     }
-    let numbers: Vec<&str> = columns
-        .iter()
-        .filter(|column| is_number(column))
-        .map(|column| &*column.name)
-        .collect();
-    let mut uses = Vec::new();
-    for (k, field) in fields.iter().enumerate() {
-        let known = column(field.text).is_some();
-        if known && fields[..k].iter().any(|other| other.text == field.text) {
-            problems.value(line, *field, field.text, || {
-                Complaint::new(
-                    format!("the column {} is there twice", field.text),
-                    "once",
-                    AGAIN,
-                )
-            });
-        }
-        uses.push(
-            match (
-                field.text,
-                numbers.iter().position(|name| *name == field.text),
-            ) {
-                (_, Some(index)) => Use::Number(index),
-                ("phase", None) => Use::Phase,
-                ("flags", None) => Use::Flags,
-                _ => Use::Nothing,
-            },
-        );
-    }
-    let at = |name: &str| numbers.iter().position(|own| *own == name);
-    let (time, dt) = (at("time_s"), at("dt_s"));
-    Some(Header {
-        names: fields.iter().map(|field| field.text).collect(),
-        uses,
-        numbers: numbers.len(),
-        time,
-        dt,
-    })
 }
 
-fn rows<'t>(
-    header: &Header,
-    lines: impl Iterator<Item = Line<'t>>,
-    problems: &mut Collector,
-) -> History {
-    let mut history = History::empty(
-        &known(header.names.iter().copied())
-            .into_iter()
-            .filter(|column| is_number(column))
-            .collect::<Vec<_>>(),
-    );
-    let mut fields: Vec<Field> = Vec::new();
-    let mut before_s = f64::NAN;
-    let mut numbers = vec![f64::NAN; header.numbers];
-    for line in lines {
-        if history.len() == MAX_STEPS {
-            problems.line(line, "", || {
-                Complaint::new(
-                    "the trace has too many steps",
-                    format!("up to {MAX_STEPS}"),
-                    SHORTER,
-                )
-            });
-            break;
-        }
-        if !problems.split(line, header.names.len(), &mut fields) {
-            before_s = f64::NAN;
-            continue;
-        }
-        let (mut phase, mut flags) = (String::new(), Flags::default());
-        for ((field, name), kind) in fields.iter().zip(&header.names).zip(&header.uses) {
-            match kind {
-                Use::Number(index) => {
-                    let least = if Some(*index) == header.time {
-                        Least::Above(before_s)
-                    } else if Some(*index) == header.dt {
-                        Least::Above(0.0)
-                    } else {
-                        Least::Anything
-                    };
-                    numbers[*index] = number(line, *field, name, least, problems);
-                }
-                Use::Phase => phase = word(line, *field),
-                Use::Flags => flags = flags_in(line, *field, problems),
-                Use::Nothing => {}
-            }
-        }
-        before_s = header.time.map_or(f64::NAN, |time| numbers[time]);
-        for ((_, column), number) in history.columns.iter_mut().zip(&numbers) {
-            column.push(*number);
-        }
-        history.step(&phase, flags);
-        if let Some(complaint) = too_many_phases(&history) {
-            problems.line(line, "phase", || complaint);
-            break;
+fn columns_of(table: &Table) -> Vec<&'static TraceColumn> {
+    known(table.columns().flatten().map(|column| &*column.name))
+}
+
+/// A trace while it is read; columns are indices in [`COLUMNS`].
+struct Reading {
+    history: History,
+    numbers: Vec<usize>,
+    time: usize,
+    phase: usize,
+    flags: usize,
+    before_s: Option<f64>,
+}
+
+fn index(name: &str) -> usize {
+    let found = COLUMNS.iter().position(|column| column.name == name);
+    found.unwrap_or_default()
+}
+
+impl Reading {
+    fn new(table: &Table) -> Self {
+        let mut numbers = columns_of(table);
+        numbers.retain(|own| is_number(own));
+        Reading {
+            history: History::empty(&numbers),
+            numbers: numbers.iter().map(|own| index(&own.name)).collect(),
+            time: index("time_s"),
+            phase: index("phase"),
+            flags: index("flags"),
+            before_s: None,
         }
     }
-    history
+
+    /// Adds a row; false where no further one is to be read.
+    fn add(&mut self, row: &csv::Row<'_, '_>, problems: &mut Collector<'_>) -> bool {
+        let time_s = row.number(self.time);
+        if let (Some(before_s), Some(time_s)) = (self.before_s, time_s)
+            && time_s <= before_s
+        {
+            let problem = Problem::invalid("the time does not rise")
+                .allowed(format!("above {before_s}, the time of the row above"))
+                .hint("are rows doubled or out of order?");
+            row.report(self.time, problems, problem);
+        }
+        self.before_s = time_s;
+        for ((_, column), k) in self.history.columns.iter_mut().zip(&self.numbers) {
+            column.push(row.number(*k).unwrap_or(f64::NAN));
+        }
+        let raised = flags_of(row.word(self.flags)).unwrap_or_else(|word| {
+            row.report(self.flags, problems, unknown_flag(word));
+            Flags::default()
+        });
+        self.history.step(&unquoted(row, self.phase), raised);
+        if let Some(problem) = too_many_phases(&self.history) {
+            problems.line(row.line, "phase", || problem);
+            return false;
+        }
+        true
+    }
 }
 
 /// What is wrong where nearly every step has a phase of its own.
-pub fn too_many_phases(history: &History) -> Option<Complaint> {
+pub fn too_many_phases(history: &History) -> Option<Problem> {
     let message = "there are too many phases";
     (history.phases().len() > MAX_PHASES).then(|| {
-        Complaint::new(
-            message,
-            format!("up to {MAX_PHASES} different names"),
-            AGAIN,
-        )
+        Problem::invalid(message)
+            .allowed(format!("up to {MAX_PHASES} different names"))
+            .hint(AGAIN)
     })
-}
-
-/// What a number has to be.
-#[derive(Clone, Copy)]
-enum Least {
-    /// Anything, or nothing.
-    Anything,
-    /// A number above this one; any number where this is none.
-    Above(f64),
-}
-
-fn number(line: Line, field: Field, name: &str, least: Least, problems: &mut Collector) -> f64 {
-    if field.text.is_empty() {
-        if let Least::Above(_) = least {
-            problems.value(line, field, name, || {
-                Complaint::new("the cell is empty", "a number", AGAIN)
-            });
-        }
-        return f64::NAN;
-    }
-    let Some(number) = field.text.parse::<f64>().ok().filter(|x| x.is_finite()) else {
-        problems.value(line, field, name, || {
-            Complaint::new("this is no number", NUMBER, AGAIN)
-        });
-        return f64::NAN;
-    };
-    if let Least::Above(low) = least
-        && number <= low
-    {
-        let complaint = match name {
-            "time_s" => Complaint::new(
-                "the time does not rise",
-                format!("above {low}, the time of the row above"),
-                "are rows doubled or out of order?",
-            ),
-            _ => Complaint::new("the length of the step is not positive", "above 0 s", AGAIN),
-        };
-        problems.value(line, field, name, || complaint);
-    }
-    number
 }
 
 /// A word, with the quotes in it as they were before it was written.
-fn word(line: Line, field: Field) -> String {
-    let quoted = line.text[..field.start].ends_with('"');
+fn unquoted(row: &csv::Row<'_, '_>, column: usize) -> String {
+    let quoted = row.cell(column).is_some_and(|cell| {
+        let before = &cell.line.text[..cell.field.start];
+        before.ends_with('"')
+    });
+    let word = row.word(column);
     if quoted {
-        field.text.replace("\"\"", "\"")
+        word.replace("\"\"", "\"")
     } else {
-        field.text.to_owned()
+        word.to_owned()
     }
 }
 
-fn flags_in(line: Line, field: Field, problems: &mut Collector) -> Flags {
-    flags_of(field.text).unwrap_or_else(|word| {
-        let names: Vec<&str> = Flags::NAMES.iter().map(|(_, name)| *name).collect();
-        let hint = format!("known are {}", names.join(", "));
-        let message = if word.is_empty() {
-            "a flag without a name".to_owned()
-        } else {
-            format!("the flag `{word}` is unknown")
-        };
-        problems.value(line, field, "flags", || {
-            Complaint::new(message, FLAGS, hint)
-        });
-        Flags::default()
-    })
+fn unknown_flag(word: &str) -> Problem {
+    let names: Vec<&str> = Flags::NAMES.iter().map(|(_, name)| *name).collect();
+    let message = if word.is_empty() {
+        "a flag without a name".to_owned()
+    } else {
+        format!("the flag `{word}` is unknown")
+    };
+    Problem::unknown_name(message)
+        .allowed(FLAGS)
+        .hint(format!("known are {}", names.join(", ")))
 }

@@ -3,7 +3,7 @@
 use super::expr::{Expr, Gives};
 use super::rows::ValidationRow;
 use super::rule::{Printed, Verdict};
-use cvtcycle_config::{Bound, Section, near};
+use cvtcycle_config::{Bound, Section, did_you_mean};
 
 /// Pages of the book that a row may belong to.
 pub const MECHANISMS: [&str; 28] = [
@@ -51,12 +51,7 @@ pub fn verdict(s: &Section) -> Option<Verdict> {
     let word = s.optional_text("verdict", "recorded verdict")?;
     let found = Verdict::from_word(&word);
     if found.is_none() {
-        let close = near(&word, Verdict::WORDS.into_iter());
-        let hint = if close.is_empty() {
-            String::new()
-        } else {
-            format!("did you mean `{}`?", close.join("` or `"))
-        };
+        let hint = did_you_mean(&word, Verdict::WORDS.into_iter()).unwrap_or_default();
         s.complain(
             "verdict",
             &Verdict::WORDS.join(", "),

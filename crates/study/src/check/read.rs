@@ -8,7 +8,7 @@ use super::rows::{Cause, RowFile, Tolerance, ValidationRow};
 use super::rule::Printed;
 use super::source::{self, Source};
 use cvtcycle_config::setup::catalogue;
-use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section, near};
+use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section, did_you_mean};
 
 /// Reads files: name and text each. `common` comes first and lends its tolerances and sources.
 ///
@@ -251,12 +251,7 @@ impl Head<'_> {
             return (String::new(), [0.0; 2]);
         };
         let Some(found) = self.tolerances.iter().find(|t| t.name == name) else {
-            let close = near(&name, known.iter().copied());
-            let hint = if close.is_empty() {
-                String::new()
-            } else {
-                format!("did you mean {}?", close.join(" or "))
-            };
+            let hint = did_you_mean(&name, known.iter().copied()).unwrap_or_default();
             s.complain(
                 "tolerance",
                 &known.join(", "),
@@ -287,12 +282,8 @@ impl Head<'_> {
     fn fitted(&self, s: &Section) -> Vec<String> {
         let keys = s.texts("fitted_to", "parameters that were fitted to this number");
         for key in keys.iter().filter(|key| !self.names.keys.contains(key)) {
-            let close = near(key, self.names.keys.iter().map(String::as_str));
-            let hint = if close.is_empty() {
-                String::new()
-            } else {
-                format!("did you mean {}?", close.join(" or "))
-            };
+            let hint =
+                did_you_mean(key, self.names.keys.iter().map(String::as_str)).unwrap_or_default();
             s.complain(
                 "fitted_to",
                 "keys of a vehicle or lubricant",

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, names, read_csv};
 use cvtcycle_config::setup::{AMBIENT, is_path};
-use cvtcycle_config::{Bound, Place, Section, near, unit_of};
+use cvtcycle_config::{Bound, Place, Section, unit_of, did_you_mean};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
@@ -475,12 +475,8 @@ fn run(s: &Section, source: &mut Source) {
             s.complain("points", "rows [time s, speed km/h] of a cycle", &why, hint);
         }
         Err(why) => {
-            let close = near(&source.cycle, names().iter().copied());
-            let hint = if close.is_empty() {
-                "`cvtcycle list cycles` shows all".to_owned()
-            } else {
-                format!("did you mean {}?", close.join(" or "))
-            };
+            let hint = did_you_mean(&source.cycle, names().iter().copied())
+                .unwrap_or_else(|| "`cvtcycle list cycles` shows all".to_owned());
             s.complain("cycle", "the name of an embedded cycle, or constant_V with V in km/h, above 0 and up to 300", &why, &hint);
         }
         Ok(cycle) => {

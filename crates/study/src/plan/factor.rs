@@ -2,7 +2,7 @@
 
 use super::values::{self, Of};
 use super::{Acts, Cars, Factor, FactorValue, FactorValues, Places, RUN_OPTIONS, options};
-use cvtcycle_config::{Document, Problem, Problems, Reader, Section, unit_of};
+use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean, unit_of};
 
 const CARS: [(&str, Cars); 3] = [
     ("subject", Cars::Subject),
@@ -88,18 +88,16 @@ fn of_factor(problems: Problems, document: &Document) -> Problems {
     let of = key.map_or_else(String::new, |key| format!("factor {key}: "));
     // A mistyped `values` explains that there are none.
     let meant = |p: &Problem| {
-        p.message.starts_with("unknown") && values::WAYS.iter().any(|way| p.hint.contains(way))
+        let suggested = p.suggested.iter().map(String::as_str);
+        suggested
+            .into_iter()
+            .any(|name| values::WAYS.contains(&name))
     };
     let mistyped = problems.iter().any(meant);
     let shown = problems
         .into_iter()
         .filter(|p| !(mistyped && p.message == values::NONE));
-    shown
-        .map(|p| {
-            let hint = p.hint.replace("the top of the file", "its [[factor]]");
-            p.with_context(&of).hint(hint)
-        })
-        .collect()
+    shown.map(|p| p.with_context(&of)).collect()
 }
 
 fn key(s: &Section) -> String {
@@ -125,11 +123,8 @@ fn key(s: &Section) -> String {
             "write, for example, transmission.cvt.pump.displacement_cc_rev",
         );
     } else if !key.contains('.') {
-        let hint = options::did_you_mean(
-            &key,
-            RUN_OPTIONS.into_iter(),
-            "`cvtcycle show` lists the keys",
-        );
+        let hint = did_you_mean(&key, RUN_OPTIONS)
+            .unwrap_or_else(|| "`cvtcycle show` lists the keys".to_owned());
         s.complain(
             "key",
             &allowed,

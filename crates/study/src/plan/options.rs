@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{FactorValue, RUN_OPTIONS};
 use cvtcycle_config::cycle;
 use cvtcycle_config::setup::{AMBIENT, embedded_lubricants, embedded_vehicles, is_path};
-use cvtcycle_config::{Bound, RawValue, near, unit_of};
+use cvtcycle_config::{Bound, RawValue, did_you_mean, unit_of};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Range of start temperatures, degC.
@@ -119,7 +119,7 @@ fn unknown(option: &str, word: &str, known: &[&str]) -> Option<String> {
 }
 
 fn hint(option: &str, word: &str, known: &[&str]) -> String {
-    let question = did_you_mean(word, known.iter().copied(), "");
+    let question = did_you_mean(word, known.iter().copied()).unwrap_or_default();
     match option {
         "start" if word.trim().parse::<f64>().is_ok() => {
             format!("write {} without quotes", word.trim())
@@ -129,20 +129,6 @@ fn hint(option: &str, word: &str, known: &[&str]) -> String {
         "start" | "formulation" => question,
         _ if question.is_empty() => "a path needs a / or an ending".to_owned(),
         _ => format!("{question} a path needs a / or an ending"),
-    }
-}
-
-/// Question for the known names that are like the given one; `otherwise` without such.
-pub(super) fn did_you_mean<'a>(
-    word: &str,
-    known: impl Iterator<Item = &'a str>,
-    otherwise: &str,
-) -> String {
-    let close = near(word, known);
-    if close.is_empty() {
-        otherwise.to_owned()
-    } else {
-        format!("did you mean {}?", close.join(" or "))
     }
 }
 

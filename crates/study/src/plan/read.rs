@@ -1,7 +1,7 @@
 //! The head of a plan, and all its parts together.
 
 use super::{Base, FactorValue, Keep, Places, Plan, design, factor, options};
-use cvtcycle_config::{Document, Problem, Problems, RawValue, Reader, Section};
+use cvtcycle_config::{Document, Problem, Problems, RawValue, Reader, Section, did_you_mean};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_output::trace::COLUMNS;
 
@@ -220,7 +220,7 @@ fn keep(s: &Section) -> Keep {
         (_, Some(items)) => Keep::Columns(columns(&written, &items, what)),
         (Some(word), None) => {
             let columns = format!("write keep = [{}] for columns", written.text());
-            let hint = options::did_you_mean(word, ["summary", "everything"].into_iter(), &columns);
+            let hint = did_you_mean(word, ["summary", "everything"]).unwrap_or(columns);
             written.complain(
                 what,
                 &format!("`{word}` is not known for `study.keep`"),
@@ -250,11 +250,8 @@ fn columns(whole: &RawValue, items: &[RawValue], what: &str) -> Vec<String> {
             continue;
         };
         if !COLUMNS.iter().any(|column| column.name == word) {
-            let hint = options::did_you_mean(
-                word,
-                COLUMNS.iter().map(|column| &*column.name),
-                "the trace of `run --out` shows all",
-            );
+            let hint = did_you_mean(word, COLUMNS.iter().map(|column| &*column.name))
+                .unwrap_or_else(|| "the trace of `run --out` shows all".to_owned());
             item.complain(
                 "columns of the trace",
                 &format!("the trace has no column `{word}`"),

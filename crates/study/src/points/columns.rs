@@ -1,34 +1,16 @@
-//! The columns of belt points: what is read, what is computed, and the line of their names.
+//! The columns of belt points: what is read and what is computed.
 
 use std::sync::LazyLock;
 
-use cvtcycle_config::cycle::problems::{Collector, Complaint, Line};
-use cvtcycle_config::cycle::text::Field;
-use cvtcycle_config::{Bound, near};
+use cvtcycle_config::Bound;
+use cvtcycle_config::csv::{Cells, Column, Schema};
 use cvtcycle_output::columns;
 use cvtcycle_output::table::{self, Cell};
 
 use super::model::{Solved, name};
 
-/// A number that a row gives.
-#[derive(Debug)]
-pub struct Number {
-    pub name: &'static str,
-    pub allowed: Bound,
-    pub unit: &'static str,
-    pub whole: bool,
-}
-
-impl Number {
-    const fn new(name: &'static str, allowed: Bound, unit: &'static str) -> Self {
-        Number {
-            name,
-            allowed,
-            unit,
-            whole: false,
-        }
-    }
-}
+/// A number that a row gives: name, unit, and range in that unit.
+type Number = (&'static str, &'static str, Bound);
 
 pub const RATIO: usize = 0;
 pub const SPEED: usize = 1;
@@ -49,36 +31,26 @@ pub const REQUIRED: usize = 4;
 /// what is merely outside the vehicle's or the model's validity is computed and flagged.
 pub const NUMBERS: [Number; 12] = [
     // What the belt can run at is the model's to say.
-    Number::new("ratio", Bound::any(), ""),
-    Number::new("input_speed_rpm", Bound::closed(0.0, 100_000.0), "rpm"),
-    Number::new(
+    ("ratio", "", Bound::any()),
+    ("input_speed_rpm", "rpm", Bound::closed(0.0, 100_000.0)),
+    (
         "secondary_pressure_bar",
-        Bound::closed(0.0, 10_000.0),
         "bar",
+        Bound::closed(0.0, 10_000.0),
     ),
-    Number::new(
+    (
         "output_torque_nm",
-        Bound::closed(-100_000.0, 100_000.0),
         "Nm",
+        Bound::closed(-100_000.0, 100_000.0),
     ),
-    Number::new("pulley_half_angle_deg", Bound::closed(1.0, 45.0), "degrees"),
-    Number::new("wedge_half_angle_deg", Bound::closed(1.0, 45.0), "degrees"),
-    Number::new("band_offset_mm", Bound::closed(0.0, 50.0), "mm"),
-    Number::new("band_friction", Bound::closed(0.0, 0.5), ""),
-    Number::new("segment_friction", Bound::closed(0.01, 1.0), ""),
-    Number {
-        name: "band_count",
-        allowed: Bound::closed(1.0, 100.0),
-        unit: "",
-        whole: true,
-    },
-    Number {
-        name: "primary_on_stop",
-        allowed: Bound::closed(0.0, 1.0),
-        unit: "",
-        whole: true,
-    },
-    Number::new("belt_temp_degc", Bound::closed(-60.0, 200.0), "degC"),
+    ("pulley_half_angle_deg", "degrees", Bound::closed(1.0, 45.0)),
+    ("wedge_half_angle_deg", "degrees", Bound::closed(1.0, 45.0)),
+    ("band_offset_mm", "mm", Bound::closed(0.0, 50.0)),
+    ("band_friction", "", Bound::closed(0.0, 0.5)),
+    ("segment_friction", "", Bound::closed(0.01, 1.0)),
+    ("band_count", "", Bound::closed(1.0, 100.0)),
+    ("primary_on_stop", "", Bound::closed(0.0, 1.0)),
+    ("belt_temp_degc", "degC", Bound::closed(-60.0, 200.0)),
 ];
 
 /// Name of the column that is passed through.
@@ -142,174 +114,43 @@ pub fn output_columns(with_case: bool) -> Vec<table::Column<Point>> {
     if !with_case {
         list.remove(0);
     }
-    list.extend(NUMBERS.iter().enumerate().map(|(k, number)| {
-        table::Column::number(number.name, number.unit, "", move |(_, s): &Point| {
-            s.numbers[k]
-        })
+    list.extend(NUMBERS.iter().enumerate().map(|(k, (name, unit, _))| {
+        table::Column::number(*name, *unit, "", move |(_, s): &Point| s.numbers[k])
     }));
     list.extend(OUTPUTS.iter().cloned());
     list
 }
 
-/// What a column of the input says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Column {
-    Case,
-    Formulation,
-    /// Place in [`NUMBERS`].
-    Number(usize),
-    /// A column that this command computes.
-    Output(&'static str),
-}
-
-impl Column {
-    fn of(name: &str) -> Option<Self> {
-        if name == CASE {
-            return Some(Column::Case);
+/// The columns of a table of points: the numbers in their order, then `case`, `formulation` and what is computed.
+pub fn schema() -> Schema {
+    let number = |(place, (name, _, range)): (usize, Number)| {
+        let column = match place {
+            BAND_COUNT => Column::new(name, Cells::Whole(range)),
+            ON_STOP => Column::new(name, Cells::Whole(range))
+                .allowed("1 (no deflection), 0 (full deflection) or nothing"),
+            _ => Column::number(name, range),
+        };
+        match place {
+            0..REQUIRED => column.required(),
+            _ => column.or_empty(),
         }
-        if name == FORMULATION {
-            return Some(Column::Formulation);
-        }
-        if let Some(place) = NUMBERS.iter().position(|number| number.name == name) {
-            return Some(Column::Number(place));
-        }
-        computed().find(|known| *known == name).map(Column::Output)
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Column::Case => CASE,
-            Column::Formulation => FORMULATION,
-            Column::Number(place) => NUMBERS[place].name,
-            Column::Output(name) => name,
-        }
+    };
+    let word = |name| Column::new(name, Cells::Word).or_empty();
+    let computed = computed().map(|name| Column::new(name, Cells::Ignored));
+    Schema {
+        columns: (NUMBERS.into_iter().enumerate().map(number))
+            .chain([word(CASE), word(FORMULATION)])
+            .chain(computed)
+            .collect(),
+        ..Schema::default()
     }
 }
+
+/// Index of the column `case` in the schema.
+pub const CASE_INDEX: usize = NUMBERS.len();
+/// Index of the column `formulation` in the schema.
+pub const FORMULATION_INDEX: usize = CASE_INDEX + 1;
 
 fn computed() -> impl Iterator<Item = &'static str> {
     OUTPUTS.iter().map(|column| &*column.name)
-}
-
-fn read() -> impl Iterator<Item = &'static str> {
-    [CASE, FORMULATION]
-        .into_iter()
-        .chain(NUMBERS.iter().map(|number| number.name))
-}
-
-/// The columns of a file, in its order; `None` for one that is not known.
-#[derive(Debug)]
-pub struct Header {
-    pub columns: Vec<Option<Column>>,
-}
-
-impl Header {
-    /// Reads the column names. `None` where the rest of the file cannot be understood without them.
-    pub fn read(line: Line<'_>, problems: &mut Collector<'_>) -> Option<Self> {
-        if line.text.contains('\r') {
-            let message = "the lines end with a carriage return alone";
-            problems.file(Complaint::new(
-                message,
-                "lines that end with LF or CR LF",
-                "save it with the line ends of today",
-            ));
-            return None;
-        }
-        let fields = problems.names(line)?;
-        if fields.iter().all(|field| field.text.parse::<f64>().is_ok()) {
-            let hint = "put the names above the numbers: ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm";
-            problems.line(line, "", || {
-                Complaint::new("the first line has numbers and no column names", "", hint)
-            });
-            return None;
-        }
-        let mut header = Header {
-            columns: Vec::with_capacity(fields.len()),
-        };
-        for field in fields {
-            let column = header.column(line, field, problems);
-            header.columns.push(column);
-        }
-        for number in NUMBERS
-            .iter()
-            .take(REQUIRED)
-            .filter(|number| !header.names().any(|name| name == number.name))
-        {
-            problems.line(line, number.name, || {
-                let allowed = NUMBERS
-                    .iter()
-                    .take(REQUIRED)
-                    .map(|number| number.name)
-                    .collect::<Vec<_>>()
-                    .join(", ");
-                Complaint::new(
-                    format!("the column {} is missing", number.name),
-                    allowed,
-                    "add it; the unit is in the name",
-                )
-            });
-        }
-        Some(header)
-    }
-
-    fn column(
-        &self,
-        line: Line<'_>,
-        field: Field<'_>,
-        problems: &mut Collector<'_>,
-    ) -> Option<Column> {
-        let Some(column) = Column::of(field.text) else {
-            problems.value(line, field, field.text, || unknown(field.text));
-            return None;
-        };
-        if self.columns.contains(&Some(column)) {
-            let twice = || {
-                Complaint::new(
-                    "this column stands here twice",
-                    "each column once",
-                    "remove one of them",
-                )
-            };
-            problems.value(line, field, column.name(), twice);
-        }
-        Some(column)
-    }
-
-    fn names(&self) -> impl Iterator<Item = &'static str> {
-        self.columns.iter().flatten().map(|column| column.name())
-    }
-
-    pub fn has(&self, column: Column) -> bool {
-        self.columns.contains(&Some(column))
-    }
-
-    /// Columns of the input that are computed and not read.
-    pub fn ignored(&self) -> Vec<&'static str> {
-        self.columns
-            .iter()
-            .flatten()
-            .filter(|column| matches!(column, Column::Output(_)))
-            .map(|column| column.name())
-            .collect()
-    }
-}
-
-fn unknown(name: &str) -> Complaint {
-    if name.is_empty() {
-        return Complaint::new(
-            "this column has no name",
-            "",
-            "remove the comma or name the column",
-        );
-    }
-    let names = near(name, read());
-    let hint = if names.is_empty() {
-        "remove it or rename it".to_owned()
-    } else {
-        format!("did you mean {}?", names.join(" or "))
-    };
-    Complaint::new(
-        "there is no such column",
-        read().collect::<Vec<_>>().join(", "),
-        hint,
-    )
 }

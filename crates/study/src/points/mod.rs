@@ -3,7 +3,6 @@
 //! A table may have any length: one line is in memory at a time.
 
 mod columns;
-mod lines;
 mod model;
 mod rows;
 mod table;

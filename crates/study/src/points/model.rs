@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use cvtcycle_config::cycle::problems::Complaint;
+use cvtcycle_config::Problem;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::fluid::{BandFriction, Lubricant, ZERO_DEGC_K};
 use cvtcycle_model::transmission::Transmission;
@@ -81,7 +81,7 @@ impl Model {
     }
 
     /// Everything that stands against computing a row, with the number that is meant; also of a row that lacks some values.
-    pub fn check(&self, given: &Given, fallback: Formulation) -> Vec<(usize, Complaint)> {
+    pub fn check(&self, given: &Given, fallback: Formulation) -> Vec<(usize, Problem)> {
         let formulation = given.formulation.unwrap_or(fallback);
         let mut found = Vec::new();
         if let Some(ratio) = given.numbers[RATIO] {
@@ -91,7 +91,9 @@ impl Model {
                 let message = format!("{} is not defined at ratio 1 (PR-1)", name(formulation));
                 found.push((
                     RATIO,
-                    Complaint::new(message, "a ratio other than exactly 1", DEFINED),
+                    Problem::invalid(message)
+                        .allowed("a ratio other than exactly 1")
+                        .hint(DEFINED),
                 ));
             }
         }
@@ -99,11 +101,9 @@ impl Model {
         {
             found.push((
                 SPEED,
-                Complaint::new(
-                    format!("{} is not defined at rest", name(formulation)),
-                    "above 0 rpm",
-                    DEFINED,
-                ),
+                Problem::invalid(format!("{} is not defined at rest", name(formulation)))
+                    .allowed("above 0 rpm")
+                    .hint(DEFINED),
             ));
         }
         found
@@ -114,7 +114,7 @@ impl Model {
         &mut self,
         given: &Given,
         fallback: Formulation,
-    ) -> Result<Solved, (usize, Complaint)> {
+    ) -> Result<Solved, (usize, Problem)> {
         let formulation = given.formulation.unwrap_or(fallback);
         let ratio = given.required(RATIO);
         let vehicle = &self.cvt.belt;
@@ -168,7 +168,7 @@ impl Model {
             );
             return Err((
                 BAND_FRICTION,
-                Complaint::new("the bands would block themselves (TE-5)", allowed, ""),
+                Problem::invalid("the bands would block themselves (TE-5)").allowed(allowed),
             ));
         }
         let point = belt_point(belt, &at, &load);
@@ -253,21 +253,18 @@ pub fn name(formulation: Formulation) -> &'static str {
         .map_or("", |(name, _)| *name)
 }
 
-fn no_geometry(ratios: [f64; 2]) -> Complaint {
+fn no_geometry(ratios: [f64; 2]) -> Problem {
     if ratios[0].is_nan() {
         let hint = "check length_m of the belt against centre_distance_mm";
-        return Complaint::new(
-            "this belt does not fit round these pulleys at any ratio",
-            "",
-            hint,
-        );
+        return Problem::invalid("this belt does not fit round these pulleys at any ratio")
+            .hint(hint);
     }
     let allowed = format!("{:.4} to {:.4}", ratios[0], ratios[1]);
-    Complaint::new(
+    Problem::invalid(
         "the belt cannot run at this ratio: no radii on which both pulleys carry a segment",
-        allowed,
-        "I = R_sec / R_pri",
     )
+    .allowed(allowed)
+    .hint("I = R_sec / R_pri")
 }
 
 /// Whether the belt has radii at this ratio.

@@ -3,14 +3,13 @@
 use std::io::BufRead;
 
 use cvtcycle_config::Problems;
-use cvtcycle_config::cycle::problems::{Cell, Collector, Complaint, Line};
+use cvtcycle_config::csv::{Cells, Collector, Lines, Row, Table};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_model::transmission::cvt::variator::point::{PointFlags, PointStatus};
 
-use super::columns::{Column, Header, NUMBERS};
-use super::lines::{Broken, Lines};
+use super::columns::{CASE_INDEX, schema};
 use super::model::{Model, Solved};
-use super::rows;
+use super::rows::Given;
 
 /// Takes computed rows in the order of the table. What it cannot do ends the reading.
 pub trait Take {
@@ -44,7 +43,7 @@ pub struct Done {
     /// Points by status and flag.
     pub counts: Counts,
     /// Columns of the input that were not read.
-    pub ignored: Vec<&'static str>,
+    pub ignored: Vec<String>,
 }
 
 /// Points by status and by flag.
@@ -105,129 +104,75 @@ impl Counts {
     }
 }
 
-/// A table on its way.
-struct Table<'f, 't> {
-    found: Collector<'f>,
-    job: Job<'t>,
-    counts: Counts,
-}
-
 /// Reads the table called `file`, one line at a time, and gives away its rows.
 ///
 /// # Errors
 /// All problems of the table, or why a row could not be taken.
-pub fn read(file: &str, reader: impl BufRead, job: Job<'_>) -> Result<Done, Problems> {
-    let mut table = Table {
-        found: Collector::new(file),
-        job,
+pub fn read(file: &str, reader: impl BufRead, mut job: Job<'_>) -> Result<Done, Problems> {
+    let mut problems = Collector::new(file);
+    let mut done = Done {
         counts: Counts::default(),
+        ignored: Vec::new(),
     };
-    let ignored = table.read(Lines::new(reader))?;
-    let Table { found, counts, .. } = table;
-    if found.is_empty() {
-        Ok(Done { counts, ignored })
-    } else {
-        Err(found.finish())
+    let (schema, mut lines) = (schema(), Lines::new(reader));
+    let table = match lines.next(&mut problems) {
+        Some(line) => Table::open(line, &schema, &mut problems),
+        None => {
+            problems.no_text();
+            None
+        }
+    };
+    let Some(mut table) = table else {
+        return Err(problems.finish());
+    };
+    let columns = table.columns().flatten();
+    let ignored = columns.filter(|column| column.cells == Cells::Ignored);
+    done.ignored = ignored.map(|column| column.name.to_string()).collect();
+    if job.model.is_some() && problems.is_empty() {
+        job.rows.begin(table.has(CASE_INDEX))?;
     }
+    let before = problems.count();
+    while let Some(line) = lines.next(&mut problems) {
+        done.counts.points += 1;
+        let row = table.row(line, &mut problems);
+        job.row(&row, &mut problems, &mut done.counts)?;
+    }
+    if done.counts.points == 0 && problems.count() == before {
+        problems.no_rows(&schema);
+    }
+    problems.finish().finish()?;
+    Ok(done)
 }
 
-impl Table<'_, '_> {
-    /// Goes through the lines; gives the columns of the input that are computed and not read.
-    fn read(&mut self, mut lines: Lines<impl BufRead>) -> Result<Vec<&'static str>, Problems> {
-        let header = match lines.next() {
-            None => {
-                self.found.file(Complaint::new(
-                    "the file is empty",
-                    "",
-                    "it needs a line of column names and at least one row",
-                ));
-                None
-            }
-            Some(Err(broken)) => {
-                self.broken(broken);
-                None
-            }
-            Some(Ok(line)) => Header::read(line, &mut self.found),
-        };
-        let Some(header) = header else {
-            return Ok(Vec::new());
-        };
-        if self.job.model.is_some() && self.found.is_empty() {
-            self.job.rows.begin(header.has(Column::Case))?;
-        }
-        while let Some(line) = lines.next() {
-            self.counts.points += 1;
-            match line {
-                Ok(line) => self.row(line, &header)?,
-                Err(broken) => {
-                    if !self.broken(broken) {
-                        return Ok(Vec::new());
-                    }
-                }
-            }
-        }
-        if self.counts.points == 0 {
-            self.found.file(Complaint::new(
-                "the file has column names and no rows",
-                "at least one row",
-                "",
-            ));
-        }
-        Ok(header.ignored())
-    }
-
-    fn row(&mut self, line: Line<'_>, header: &Header) -> Result<(), Problems> {
-        let mut fields = Vec::with_capacity(header.columns.len());
-        if !self.found.split(line, header.columns.len(), &mut fields) {
-            return Ok(());
-        }
-        let (given, mut good) = rows::read(line, &fields, header, &mut self.found);
-        let Some(model) = &mut self.job.model else {
+impl Job<'_> {
+    fn row(
+        &mut self,
+        row: &Row<'_, '_>,
+        problems: &mut Collector<'_>,
+        counts: &mut Counts,
+    ) -> Result<(), Problems> {
+        let given = Given::read(row, problems);
+        let Some(model) = &mut self.model else {
             return Ok(());
         };
-        let found = &mut self.found;
-        let mut complain = |(place, complaint): (usize, Complaint)| {
-            let at = header
-                .columns
-                .iter()
-                .position(|column| *column == Some(Column::Number(place)));
-            let key = NUMBERS[place].name;
-            match at.and_then(|at| fields.get(at)) {
-                Some(&field) => found.cell(&Cell { line, key, field }, || complaint),
-                None => found.line(line, key, || complaint),
-            }
-        };
-        for complaint in model.check(&given, self.job.formulation) {
-            good = false;
-            complain(complaint);
+        let found = model.check(&given, self.formulation);
+        let is_good = found.is_empty() && !row.has_bad();
+        for (place, problem) in found {
+            row.report(place, problems, problem);
         }
         // A row that lacks a required column says nothing more than the line of names did.
-        if !good || !given.is_whole() {
+        if !is_good || !given.is_whole() {
             return Ok(());
         }
-        match model.solve(&given, self.job.formulation) {
-            Err(complaint) => complain(complaint),
+        match model.solve(&given, self.formulation) {
+            Err((place, problem)) => row.report(place, problems, problem),
             // What will not be written need not be formatted.
-            Ok(row) if self.found.is_empty() => {
-                self.counts.add(&row);
-                self.job.rows.put(given.case, &row)?;
+            Ok(solved) if problems.is_empty() => {
+                counts.add(&solved);
+                self.rows.put(given.case, &solved)?;
             }
             Ok(_) => {}
         }
         Ok(())
-    }
-
-    /// Notes what is broken; whether the next line can be read.
-    fn broken(&mut self, broken: Broken) -> bool {
-        match broken {
-            Broken::Line(number, complaint) => {
-                self.found.line(Line { number, text: "" }, "", || complaint);
-                true
-            }
-            Broken::File(complaint) => {
-                self.found.file(complaint);
-                false
-            }
-        }
     }
 }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use super::parquet_read::{ParquetFile, unreadable};
 use super::{Values, file_problem};
-use cvtcycle_config::cycle::problems::Complaint;
 use cvtcycle_config::{Problem, Problems, bounded};
 use cvtcycle_output::Flags;
 use cvtcycle_output::history::{
@@ -98,17 +97,9 @@ fn steps(
             Flags::default()
         });
         history.step(phase, found);
-        if let Some(Complaint {
-            message,
-            allowed,
-            hint,
-        }) = too_many_phases(history)
-        {
-            problems.push(
-                file_problem(path, message, &hint)
-                    .key("phase")
-                    .allowed(allowed),
-            );
+        if let Some(problem) = too_many_phases(history) {
+            let path = path.display().to_string();
+            problems.push(problem.key("phase").value(path.as_str()).in_file(path));
             return;
         }
     }

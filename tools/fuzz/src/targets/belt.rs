@@ -124,18 +124,19 @@ fn any_numbers(mut bytes: Bytes, formulation: Formulation) {
 fn numbers_in_range(mut bytes: Bytes, formulation: Formulation) {
     let mut names = String::new();
     let mut row = String::new();
-    for number in &NUMBERS {
-        let Some((low, high)) = range(&number.allowed.to_string()) else {
+    for (name, _, allowed) in &NUMBERS {
+        let Some((low, high)) = range(&allowed.to_string()) else {
             continue;
         };
         let share = bytes.share();
         let value = low + share * (high - low);
-        let value = if number.whole { value.round() } else { value };
+        let is_whole = ["band_count", "primary_on_stop"].contains(name);
+        let value = if is_whole { value.round() } else { value };
         let comma = if names.is_empty() { "" } else { "," };
-        let _ = write!(names, "{comma}{}", number.name);
+        let _ = write!(names, "{comma}{}", name);
         let _ = write!(row, "{comma}");
         // A number that is not given is the vehicle's own.
-        if number.name.starts_with("output_torque") || comma.is_empty() || !bytes.one_in(4) {
+        if name.starts_with("output_torque") || comma.is_empty() || !bytes.one_in(4) {
             let _ = write!(row, "{value:?}");
         }
     }

@@ -16,8 +16,7 @@ pub(super) mod trace;
 
 use crate::check::source::Kind;
 use crate::check::tables;
-use cvtcycle_config::cycle::problems::Complaint;
-use cvtcycle_config::{Place, Problem, Problems, bounded, near};
+use cvtcycle_config::{Place, Problem, Problems, bounded};
 
 /// Forms of a measured file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,45 +70,4 @@ pub(super) fn bytes_of(path: &str, place: &Place, key: &str) -> Result<Vec<u8>, 
             .hint(hint)
             .into()
     })
-}
-
-/// A column that nobody knows.
-pub(super) fn unknown(name: &str, known: &[&str], what: &str) -> Complaint {
-    if name.trim().is_empty() {
-        return Complaint::new(
-            "this column has no name",
-            what,
-            "remove the comma or name the column",
-        );
-    }
-    let close = near(name, known.iter().copied());
-    // What is meant may be there with its unit.
-    let unit: Vec<&str> = known
-        .iter()
-        .copied()
-        .filter(|full| {
-            full.strip_prefix(name)
-                .is_some_and(|rest| rest.starts_with('_'))
-        })
-        .collect();
-    if let [full] = unit.as_slice() {
-        return Complaint::new(
-            "this column has no unit",
-            format!("`{full}`"),
-            format!("if it is in that unit, name it {full}"),
-        );
-    }
-    if !unit.is_empty() {
-        return Complaint::new(
-            "this column has no unit",
-            unit.join(", "),
-            "name it by its unit",
-        );
-    }
-    let hint = if close.is_empty() {
-        "remove it or rename it".to_owned()
-    } else {
-        format!("did you mean {}?", close.join(" or "))
-    };
-    Complaint::new("there is no such column", what, hint)
 }

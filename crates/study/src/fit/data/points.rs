@@ -1,10 +1,10 @@
 //! A CSV file of points on the bench: settings, and what was measured there.
 
-use super::sheet::{self, Column, Rules, Sheet};
-use super::unknown;
+use super::sheet::{self, Measured, Sheet};
 use crate::check::source::BENCH;
 use crate::check::tables::bench;
-use cvtcycle_config::{Bound, Problems, to_si};
+use cvtcycle_config::csv::Column;
+use cvtcycle_config::{Problems, to_si};
 use cvtcycle_model::bench::{BenchPoint, Parts};
 
 /// Prefix of the column of standard deviations.
@@ -21,46 +21,21 @@ fn measurable() -> Vec<&'static str> {
 /// Reads points as far as they can be understood, and all problems of the file.
 pub fn read(file: &str, bytes: &[u8]) -> (Option<Sheet>, Problems) {
     let measurable = measurable();
-    let settings: Vec<&str> = BENCH.iter().map(|(key, ..)| *key).collect();
-    let known = |name: &str| {
-        let column = |range, may_be_empty| {
-            Ok(Column {
-                name: name.to_owned(),
-                range: Some(range),
-                may_be_empty,
-            })
-        };
-        if let Some((_, range, required, _)) = BENCH.iter().find(|(key, ..)| *key == name) {
-            return column(*range, !*required);
+    let settings = BENCH.iter().map(|(key, range, required, _)| {
+        let column = Column::number(*key, *range);
+        if *required {
+            column.required()
+        } else {
+            column.or_empty()
         }
-        let (range, measured) = match name.strip_prefix(SD) {
-            Some(rest) => (Bound::positive(), rest),
-            None => (Bound::any(), name),
-        };
-        if measurable.contains(&measured) {
-            return column(range, true);
-        }
-        let all: Vec<&str> = settings.iter().chain(&measurable).copied().collect();
-        Err(unknown(
-            measured,
-            &all,
-            "settings and columns of the bench: docs/calibration.md lists them",
-        ))
+    });
+    let columns = settings.chain(sheet::measured(&measurable)).collect();
+    let measured = Measured {
+        is_measured: &|name| measurable.contains(&name),
+        example: "total_nm: the torque loss at the input shaft",
     };
-    let required: Vec<&str> = BENCH
-        .iter()
-        .filter(|(_, _, required, _)| *required)
-        .map(|(key, ..)| *key)
-        .collect();
-    let measured = |name: &str| measurable.contains(&name);
-    let example = "total_nm: the torque loss at the input shaft";
-    let rules = Rules {
-        known: &known,
-        required: &required,
-        is_measured: Some(&measured),
-        example,
-    };
-    let (sheet, problems) = sheet::read(file, bytes, &rules);
+    let names = "settings and columns of the bench: docs/calibration.md lists them";
+    let (sheet, problems) = sheet::read(file, bytes, columns, names, Some(measured));
     (sheet, problems.finish())
 }
 
@@ -71,7 +46,7 @@ pub fn measured(sheet: &Sheet) -> Vec<(usize, &str)> {
         .columns
         .iter()
         .enumerate()
-        .map(|(k, column)| (k, column.name.as_str()));
+        .map(|(k, column)| (k, column.as_str()));
     named
         .filter(|(_, name)| measurable.contains(name))
         .collect()

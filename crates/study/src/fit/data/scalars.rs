@@ -1,9 +1,8 @@
 //! A CSV file of totals of a run: `quantity`, `value`, `sd`, and `phase` where a phase alone is meant.
 
-use super::sheet::{self, Column, Rules, Sheet};
-use super::unknown;
-use cvtcycle_config::cycle::problems::Complaint;
-use cvtcycle_config::{Bound, Problems, near};
+use super::sheet::{self, Sheet};
+use cvtcycle_config::csv::{Cells, Column};
+use cvtcycle_config::{Bound, Problem, Problems, did_you_mean};
 
 /// Reads totals of a run with these quantities and, where they are known, phases, as far as they can be understood; and all problems of the
 /// file.
@@ -13,33 +12,13 @@ pub fn read(
     quantities: &[&'static str],
     phases: Option<&[String]>,
 ) -> (Option<Sheet>, Problems) {
-    let known = |name: &str| {
-        let column = |range, may_be_empty| {
-            Ok(Column {
-                name: name.to_owned(),
-                range,
-                may_be_empty,
-            })
-        };
-        match name {
-            "quantity" => column(None, false),
-            "phase" => column(None, true),
-            "value" => column(Some(Bound::any()), false),
-            "sd" => column(Some(Bound::positive()), false),
-            _ => Err(unknown(
-                name,
-                &["quantity", "phase", "value", "sd"],
-                "quantity, value, sd, phase",
-            )),
-        }
-    };
-    let rules = Rules {
-        known: &known,
-        required: &["quantity", "value", "sd"],
-        is_measured: None,
-        example: "",
-    };
-    let (sheet, mut problems) = sheet::read(file, bytes, &rules);
+    let columns = vec![
+        Column::new("quantity", Cells::Word).required(),
+        Column::number("value", Bound::any()).required(),
+        Column::number("sd", Bound::positive()).required(),
+        Column::new("phase", Cells::Word).or_empty(),
+    ];
+    let (sheet, mut problems) = sheet::read(file, bytes, columns, "", None);
     let Some(sheet) = sheet else {
         return (None, problems.finish());
     };
@@ -55,17 +34,21 @@ pub fn read(
         {
             let message = format!("the cycle has no phase `{word}`");
             let hint = "leave the cell empty for the whole cycle";
-            problems.add(sheet.problem(
-                row,
-                phase.unwrap_or(0),
-                Complaint::new(message, phases.join(", "), hint),
-            ));
+            problems.add(
+                sheet.problem(
+                    row,
+                    phase.unwrap_or(0),
+                    Problem::invalid(message)
+                        .allowed(phases.join(", "))
+                        .hint(hint),
+                ),
+            );
         }
     }
     (Some(sheet), problems.finish())
 }
 
-fn no_quantity(word: &str, quantities: &[&'static str]) -> Complaint {
+fn no_quantity(word: &str, quantities: &[&'static str]) -> Problem {
     let unit: Vec<&str> = quantities
         .iter()
         .copied()
@@ -75,18 +58,14 @@ fn no_quantity(word: &str, quantities: &[&'static str]) -> Complaint {
         })
         .collect();
     if !unit.is_empty() {
-        return Complaint::new(
-            "this quantity has no unit",
-            unit.join(", "),
-            "name it by its unit, and see that the value is in it",
-        );
+        return Problem::invalid("this quantity has no unit")
+            .allowed(unit.join(", "))
+            .hint("name it by its unit, and see that the value is in it");
     }
-    let close = near(word, quantities.iter().copied());
-    let hint = if close.is_empty() {
-        "remove the row or rename it".to_owned()
-    } else {
-        format!("did you mean {}?", close.join(" or "))
-    };
+    let hint = did_you_mean(word, quantities.iter().copied());
+    let hint = hint.unwrap_or_else(|| "remove the row or rename it".to_owned());
     let allowed = "totals of a run, such as fuel_l_per_100km or end_sump_degc: docs/calibration.md lists them";
-    Complaint::new("there is no such quantity", allowed, hint)
+    Problem::invalid("there is no such quantity")
+        .allowed(allowed)
+        .hint(hint)
 }

@@ -1,20 +1,10 @@
 //! A CSV file of numbers and words in known columns.
 
-use super::points::SD;
-use cvtcycle_config::cycle::problems::{Collector, Complaint, Line};
-use cvtcycle_config::cycle::text::Field;
-use cvtcycle_config::{Bound, Place, Problem, unit_of};
+use std::borrow::Cow;
 
-/// What a column may hold.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Column {
-    /// Name; empty for a column that nobody knows.
-    pub name: String,
-    /// Range of numbers, in the unit of the name; none for words.
-    pub range: Option<Bound>,
-    /// Whether a cell may be empty.
-    pub may_be_empty: bool,
-}
+use super::points::SD;
+use cvtcycle_config::csv::{self, Collector, Column, Line, Schema, Table, Value};
+use cvtcycle_config::{Bound, Place, Problem};
 
 /// One cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +15,7 @@ pub enum Cell {
     Word(String),
     /// Nothing.
     Empty,
-    /// Something that was complained of.
+    /// A problem was reported.
     Bad,
 }
 
@@ -45,8 +35,8 @@ pub struct Row {
 pub struct Sheet {
     /// Name of the file.
     pub file: String,
-    /// Columns in order.
-    pub columns: Vec<Column>,
+    /// Names of the columns in order; empty for one that is not known.
+    pub columns: Vec<String>,
     /// Rows in order.
     pub rows: Vec<Row>,
 }
@@ -54,7 +44,7 @@ pub struct Sheet {
 impl Sheet {
     /// Index of a column.
     pub fn find(&self, name: &str) -> Option<usize> {
-        self.columns.iter().position(|column| column.name == name)
+        self.columns.iter().position(|column| column == name)
     }
 
     /// The number of a cell; none where it is empty or the column is not there.
@@ -65,7 +55,7 @@ impl Sheet {
         }
     }
 
-    /// Whether a cell was complained of.
+    /// True if a problem of the cell was reported.
     pub fn is_bad(&self, row: usize, column: Option<usize>) -> bool {
         let cell = column.and_then(|k| self.rows.get(row)?.cells.get(k));
         matches!(cell, Some((Cell::Bad, ..)))
@@ -79,13 +69,10 @@ impl Sheet {
         }
     }
 
-    /// Where a cell stands.
+    /// The place of a cell.
     pub fn place(&self, row: usize, column: usize) -> Place {
         let Some(row) = self.rows.get(row) else {
-            return Place {
-                file: self.file.clone(),
-                ..Place::default()
-            };
+            return Place::file(&self.file);
         };
         let (start, width) = row
             .cells
@@ -102,251 +89,130 @@ impl Sheet {
         }
     }
 
-    /// A problem of a cell.
-    pub fn problem(&self, row: usize, column: usize, complaint: Complaint) -> Problem {
-        let key = self
-            .columns
-            .get(column)
-            .map(|column| column.name.clone())
-            .unwrap_or_default();
+    /// A problem with the place of a cell.
+    pub fn problem(&self, row: usize, column: usize, problem: Problem) -> Problem {
+        let key = self.columns.get(column).cloned().unwrap_or_default();
         let value = match self.rows.get(row).and_then(|row| row.cells.get(column)) {
             Some((Cell::Number(x), ..)) => x.to_string(),
             Some((Cell::Word(word), ..)) => word.clone(),
             _ => String::new(),
         };
-        let Complaint {
-            message,
-            allowed,
-            hint,
-        } = complaint;
-        Problem::invalid(message)
-            .at(self.place(row, column))
-            .key(key)
-            .value(value)
-            .allowed(allowed)
-            .hint(hint)
+        problem.at(self.place(row, column)).key(key).value(value)
     }
 }
 
-/// What a sort of file has to look like.
-pub struct Rules<'r> {
-    /// What a column of a name may hold.
-    pub known: &'r dyn Fn(&str) -> Result<Column, Complaint>,
-    /// Columns that have to be there.
-    pub required: &'r [&'r str],
-    /// Which columns are measured; none where rows say what was measured.
-    pub is_measured: Option<&'r dyn Fn(&str) -> bool>,
+/// What is measured in a sort of file.
+#[derive(Clone, Copy)]
+pub struct Measured<'r> {
+    /// True for the name of a measured column.
+    pub is_measured: &'r dyn Fn(&str) -> bool,
     /// One of these columns.
     pub example: &'static str,
 }
 
-/// Most values of a file, rows times columns: each is kept with its place.
-const MOST_VALUES: usize = 500_000;
+/// Largest number of values of a file, rows times columns: each is kept with its place.
+const MAX_VALUES: usize = 500_000;
 
 /// Longest line of which the text is kept for carets.
-const LONGEST_KEPT: usize = 300;
+const MAX_KEPT_LEN: usize = 300;
 
 /// Reads a file and all its problems, with line, column and value; after 50 the rest is counted. What can be understood of a bad file is
 /// given, so that more can be said of it; no sheet where that is nothing.
-pub fn read<'f>(file: &'f str, bytes: &[u8], rules: &Rules) -> (Option<Sheet>, Collector<'f>) {
+pub fn read<'f>(
+    file: &'f str,
+    bytes: &[u8],
+    columns: Vec<Column>,
+    names: impl Into<Cow<'static, str>>,
+    measured: Option<Measured>,
+) -> (Option<Sheet>, Collector<'f>) {
+    let schema = Schema {
+        columns,
+        names: names.into(),
+        max_rows: (
+            usize::MAX,
+            "leave out columns that are not needed, or rows: values that are close in time say the same",
+        ),
+        max_values: MAX_VALUES,
+        rows: "a row for every measurement",
+        ..Schema::default()
+    };
     let mut problems = Collector::new(file);
-    if std::str::from_utf8(bytes)
-        .is_ok_and(|text| text.trim_start_matches('\u{feff}').trim().is_empty())
-    {
-        problems.file(Complaint::new(
-            "the file is empty",
-            "a line of column names, then a row for every measurement",
-            "was it cut off?",
-        ));
-        return (None, problems);
-    }
-    let Some(mut lines) = problems.lines(bytes) else {
-        return (None, problems);
-    };
-    let Some(columns) = lines
-        .next()
-        .and_then(|line| header(line, rules, &mut problems))
-    else {
-        return (None, problems);
-    };
     let mut rows = Vec::new();
-    let mut fields = Vec::new();
-    let mut values = 0;
-    for line in lines {
-        values += columns.len();
-        if values > MOST_VALUES {
-            let hint = "leave out columns that are not needed, or rows: values that are close in time say the same";
-            problems.line(line, "", || {
-                Complaint::new(
-                    "the file has too many values",
-                    format!("up to {MOST_VALUES}, rows times columns"),
-                    hint,
-                )
-            });
-            break;
+    let check = |table: &Table, header: Line<'_>, problems: &mut Collector<'_>| {
+        if let Some(measured) = measured {
+            check_measured(table, header, measured, problems);
         }
-        if problems.split(line, columns.len(), &mut fields) {
-            let cells = fields
-                .iter()
-                .zip(&columns)
-                .map(|(field, column)| match column {
-                    Some(column) => (
-                        cell(line, *field, column, &mut problems),
-                        start(line, *field),
-                        field.text.chars().count().max(1),
-                    ),
-                    None => (Cell::Bad, 1, 1),
-                });
-            let text = if line.text.len() <= LONGEST_KEPT {
-                line.text.to_owned()
-            } else {
-                String::new()
-            };
-            rows.push(Row {
-                line: line.number,
-                text,
-                cells: cells.collect(),
-            });
-        }
-    }
-    if rows.is_empty() && problems.is_empty() {
-        problems.file(Complaint::new(
-            "the file has column names and no rows",
-            "a row for every measurement",
-            "add the rows",
-        ));
-    }
-    let columns = columns.into_iter().map(Option::unwrap_or_default).collect();
-    (
-        Some(Sheet {
-            file: file.to_owned(),
-            columns,
-            rows,
-        }),
-        problems,
-    )
-}
-
-fn start(line: Line, field: Field) -> usize {
-    line.text
-        .get(..field.start)
-        .unwrap_or_default()
-        .chars()
-        .count()
-        + 1
-}
-
-/// The columns; none where the lines below cannot be understood, none in place of a column that nobody knows.
-fn header(line: Line, rules: &Rules, problems: &mut Collector) -> Option<Vec<Option<Column>>> {
-    let fields = problems.names(line)?;
-    let mut columns: Vec<Option<Column>> = Vec::new();
-    for field in &fields {
-        let (field, found) = (*field, (rules.known)(field.text));
-        match &found {
-            Err(complaint) => problems.value(line, field, field.text, || complaint.clone()),
-            Ok(_)
-                if columns
-                    .iter()
-                    .flatten()
-                    .any(|column| column.name == field.text) =>
-            {
-                problems.value(line, field, field.text, || {
-                    Complaint::new(
-                        "this column stands here twice",
-                        "each column once",
-                        "remove one of them",
-                    )
-                })
-            }
-            Ok(_) => {}
-        }
-        columns.push(found.ok());
-    }
-    // A name that is not known may be the misspelt one.
-    let none = |is: &dyn Fn(&str) -> bool| {
-        columns
-            .iter()
-            .all(|column| column.as_ref().is_some_and(|column| !is(&column.name)))
     };
-    for name in rules.required {
-        if none(&|column| column == *name) {
-            let message = format!("a column {name} is missing");
-            problems.line(line, name, || {
-                Complaint::new(message, "", "add it; the unit is in the name")
-            });
-        }
-    }
-    if let Some(is_measured) = rules.is_measured {
-        if none(is_measured) {
-            let hint = format!("add what was measured, for example {}", rules.example);
-            problems.line(line, "", || {
-                Complaint::new("no column was measured", "", hint)
-            });
-        }
-        for (field, column) in fields.iter().zip(&columns) {
-            let of = column
-                .as_ref()
-                .and_then(|column| column.name.strip_prefix(SD));
-            if let Some(of) = of.filter(|of| none(&|column| column == *of)) {
-                let message = format!("this column stands without a column {of}");
-                problems.value(line, *field, field.text, || {
-                    Complaint::new(message, "", format!("add the measured {of}, or remove it"))
-                });
-            }
-        }
-    }
-    Some(columns)
-}
-
-fn cell(line: Line, field: Field, column: &Column, problems: &mut Collector) -> Cell {
-    if field.text.is_empty() && column.may_be_empty {
-        return Cell::Empty;
-    }
-    let Some(range) = column.range else {
-        if field.text.is_empty() {
-            problems.value(line, field, &column.name, || {
-                Complaint::new(
-                    "the value is missing",
-                    "a word",
-                    "fill the gap or remove the row",
-                )
-            });
-        }
-        return if field.text.is_empty() {
-            Cell::Bad
-        } else {
-            Cell::Word(field.text.to_owned())
-        };
-    };
-    let (message, hint) = match field.text.parse::<f64>() {
-        // turns -0 into 0
-        Ok(x) if range.contains(x) => return Cell::Number(x + 0.0),
-        Ok(x) if x.is_finite() => (
-            "this value is out of range",
-            "the unit is in the column's name",
-        ),
-        Ok(_) if column.may_be_empty => (
-            "this is not a finite number",
-            "leave the cell empty where nothing was measured",
-        ),
-        Ok(_) => (
-            "this is not a finite number",
-            "remove the row where nothing was measured",
-        ),
-        Err(_) if field.text.is_empty() => {
-            ("the value is missing", "fill the gap or remove the row")
-        }
-        Err(_) if field.text.contains(',') => (
-            "this is not a number",
-            "write a decimal point: 12.5 and not 12,5",
-        ),
-        Err(_) => (
-            "this is not a number",
-            "write the bare number; the unit is in the column's name",
-        ),
-    };
-    problems.value(line, field, &column.name, || {
-        Complaint::new(message, range.in_unit(unit_of(&column.name)), hint)
+    let table = csv::read(bytes, &schema, &mut problems, check, |row, _| {
+        rows.push(Row::new(row));
+        true
     });
-    Cell::Bad
+    let sheet = table.map(|table| Sheet {
+        file: file.to_owned(),
+        columns: (table.columns())
+            .map(|column| column.map_or_else(String::new, |column| column.name.to_string()))
+            .collect(),
+        rows,
+    });
+    (sheet, problems)
+}
+
+/// Columns of what can be measured, each with the one of its standard deviation.
+pub fn measured(names: &[&'static str]) -> impl Iterator<Item = Column> {
+    names.iter().flat_map(|name| {
+        let deviation = Column::number(format!("{SD}{name}"), Bound::positive());
+        [Column::number(*name, Bound::any()), deviation].map(Column::or_empty)
+    })
+}
+
+impl Row {
+    fn new(row: &csv::Row<'_, '_>) -> Self {
+        let line = row.line;
+        let cells = row.fields().iter().zip(row.values()).map(|(field, value)| {
+            let cell = match value {
+                Value::Number(x) => Cell::Number(*x),
+                Value::Word => Cell::Word(line.text_of(*field).to_owned()),
+                Value::Empty => Cell::Empty,
+                Value::Bad => Cell::Bad,
+            };
+            let (start, width) = line.columns_of(*field);
+            (cell, start, width)
+        });
+        Row {
+            line: line.number,
+            cells: cells.collect(),
+            text: match line.text.len() {
+                0..=MAX_KEPT_LEN => line.text.to_owned(),
+                _ => String::new(),
+            },
+        }
+    }
+}
+
+/// Reports that nothing was measured, and standard deviations without what was measured. A name that is not known may be the misspelt one.
+fn check_measured(
+    table: &Table,
+    header: Line<'_>,
+    measured: Measured,
+    problems: &mut Collector<'_>,
+) {
+    let Some(names) = (table.columns())
+        .map(|column| column.map(|column| &*column.name))
+        .collect::<Option<Vec<&str>>>()
+    else {
+        return;
+    };
+    if !names.iter().any(|name| (measured.is_measured)(name)) {
+        let hint = format!("add what was measured, for example {}", measured.example);
+        let problem = Problem::missing("no column was measured");
+        problems.line(header, "", || problem.hint(hint));
+    }
+    for (name, field) in names.iter().zip(table.fields()) {
+        if let Some(of) = name.strip_prefix(SD).filter(|of| !names.contains(of)) {
+            problems.value(header, *field, name, || {
+                Problem::missing(format!("a standard deviation without a column {of}"))
+                    .hint(format!("add the measured {of}, or remove it"))
+            });
+        }
+    }
 }

@@ -1,10 +1,9 @@
 //! A CSV file of measured traces: `time_s` and columns of the computed trace by their names.
 
 use super::points::SD;
-use super::sheet::{self, Column, Rules, Sheet};
-use super::unknown;
-use cvtcycle_config::cycle::problems::Complaint;
-use cvtcycle_config::{Bound, Problems};
+use super::sheet::{self, Measured, Sheet};
+use cvtcycle_config::csv::Column;
+use cvtcycle_config::{Bound, Problem, Problems};
 
 /// Name of the column of times.
 pub const TIME: &str = "time_s";
@@ -15,44 +14,22 @@ const FEW: usize = 40;
 /// Reads a trace, of which the columns `computed` can be computed, as far as it can be understood, and all problems of the file: also times
 /// that do not rise.
 pub fn read(file: &str, bytes: &[u8], computed: &[&'static str]) -> (Option<Sheet>, Problems) {
-    let known = |name: &str| {
-        let column = |range, may_be_empty| {
-            Ok(Column {
-                name: name.to_owned(),
-                range: Some(range),
-                may_be_empty,
-            })
-        };
-        if name == TIME {
-            return column(Bound::closed(0.0, 1e6), false);
-        }
-        let (range, measured) = match name.strip_prefix(SD) {
-            Some(rest) => (Bound::positive(), rest),
-            None => (Bound::any(), name),
-        };
-        if measured != TIME && computed.contains(&measured) {
-            return column(range, true);
-        }
-        let columns: Vec<&str> = computed
-            .iter()
-            .copied()
-            .filter(|name| name.contains('_'))
-            .collect();
-        let few = columns.len() <= FEW;
-        let what = if few {
-            columns.join(", ")
-        } else {
-            "time_s and columns of the trace: `cvtcycle explain COLUMN`".to_owned()
-        };
-        Err(unknown(measured, &columns, &what))
+    let measurable: Vec<&str> = (computed.iter().copied())
+        .filter(|name| *name != TIME)
+        .collect();
+    let time = Column::number(TIME, Bound::closed(0.0, 1e6)).required();
+    let columns = std::iter::once(time).chain(sheet::measured(&measurable));
+    let with_unit = measurable.iter().filter(|name| name.contains('_'));
+    let names = if with_unit.clone().count() <= FEW {
+        with_unit.copied().collect::<Vec<_>>().join(", ")
+    } else {
+        "time_s and columns of the trace: `cvtcycle explain COLUMN`".to_owned()
     };
-    let rules = Rules {
-        known: &known,
-        required: &[TIME],
-        is_measured: Some(&is_measured),
+    let measured = Measured {
+        is_measured: &is_measured,
         example: "transmission_sump_degc",
     };
-    let (sheet, mut problems) = sheet::read(file, bytes, &rules);
+    let (sheet, mut problems) = sheet::read(file, bytes, columns.collect(), names, Some(measured));
     if let Some(sheet) = &sheet
         && let Some(time) = sheet.find(TIME)
     {
@@ -65,11 +42,9 @@ pub fn read(file: &str, bytes: &[u8], computed: &[&'static str]) -> (Option<Shee
             .collect();
         if let Some([(_, before), (row, _)]) = falls.first() {
             let message = format!("the time does not rise{}", and_more(falls.len()));
-            let complaint = Complaint::new(
-                message,
-                format!("above {before} s"),
-                "sort the rows, remove repeated ones",
-            );
+            let complaint = Problem::invalid(message)
+                .allowed(format!("above {before} s"))
+                .hint("sort the rows, remove repeated ones");
             problems.add(sheet.problem(*row, time, complaint));
         }
     }
@@ -95,6 +70,6 @@ pub fn measured(sheet: &Sheet) -> Vec<(usize, &str)> {
         .columns
         .iter()
         .enumerate()
-        .map(|(k, column)| (k, column.name.as_str()));
+        .map(|(k, column)| (k, column.as_str()));
     named.filter(|(_, name)| is_measured(name)).collect()
 }

@@ -9,8 +9,7 @@ use crate::check::tables;
 use crate::fit::data::points::SD;
 use crate::fit::data::sheet::Sheet;
 use crate::fit::data::{bytes_of, points, scalars, trace};
-use cvtcycle_config::cycle::problems::Complaint;
-use cvtcycle_config::{Bound, Problems, Section, near, unit_of};
+use cvtcycle_config::{Bound, Problem, Problems, Section, did_you_mean, unit_of};
 
 /// Seconds after which two values of a trace are independent, where the plan does not say.
 const INDEPENDENT_S: f64 = 30.0;
@@ -121,15 +120,11 @@ impl Deviations {
     /// Reports columns without one, and names of the plan that no column has.
     fn check(&self, s: &Section, sheet: &Sheet, measured: &[(usize, &str)]) {
         // An unknown column, reported already, may be the one that is meant.
-        let strange = sheet.columns.iter().any(|column| column.name.is_empty());
+        let strange = sheet.columns.iter().any(String::is_empty);
         for (name, _) in &self.given {
             if !strange && !name.is_empty() && !measured.iter().any(|(_, column)| column == name) {
-                let close = near(name, measured.iter().map(|(_, column)| *column));
-                let hint = if close.is_empty() {
-                    "remove it".to_owned()
-                } else {
-                    format!("did you mean {}?", close.join(" or "))
-                };
+                let hint = did_you_mean(name, measured.iter().map(|(_, column)| *column))
+                    .unwrap_or_else(|| "remove it".to_owned());
                 s.table("sd_by_column").complain(
                     name,
                     "measured columns of the file",
@@ -149,11 +144,15 @@ impl Deviations {
             if let Some(row) = without {
                 let message = format!("{name} has no standard deviation here");
                 let hint = format!("add a column {SD}{name}, or `sd` to the [[data]] of the plan");
-                s.report_problem(sheet.problem(
-                    row,
-                    *k,
-                    Complaint::new(message, "a standard deviation", hint),
-                ));
+                s.report_problem(
+                    sheet.problem(
+                        row,
+                        *k,
+                        Problem::invalid(message)
+                            .allowed("a standard deviation")
+                            .hint(hint),
+                    ),
+                );
             }
         }
     }
@@ -189,7 +188,7 @@ fn of_points(s: &Section, path: &str, bytes: &[u8], found: &mut Found) {
         let columns: Vec<&str> = sheet
             .columns
             .iter()
-            .map(|column| column.name.as_str())
+            .map(String::as_str)
             .filter(|name| !name.is_empty())
             .collect();
         s.complain(
@@ -278,12 +277,9 @@ fn source_of(s: &Section, way: &str, context: &Context) -> Option<Source> {
         .find(|source| source.name == name && kinds.contains(&source.kind));
     if source.is_none() && !name.is_empty() {
         let all: Vec<&str> = fitting().collect();
-        let close = near(&name, fitting());
-        let hint = if close.is_empty() {
+        let hint = did_you_mean(&name, fitting()).unwrap_or_else(|| {
             "add [sources.NAME] with source = \"run\", its cycle, ambient and start".to_owned()
-        } else {
-            format!("did you mean {}?", close.join(" or "))
-        };
+        });
         s.complain(
             "source",
             &all.join(", "),
@@ -340,11 +336,15 @@ fn of_trace(s: &Section, (path, bytes): (&str, &[u8]), context: &Context, found:
                 trace::and_more(late.len())
             );
             let hint = "cut the trace, or name the cycle that was driven";
-            s.report_problem(sheet.problem(
-                *first,
-                time.unwrap_or(0),
-                Complaint::new(message, format!("up to {end_s} s"), hint),
-            ));
+            s.report_problem(
+                sheet.problem(
+                    *first,
+                    time.unwrap_or(0),
+                    Problem::invalid(message)
+                        .allowed(format!("up to {end_s} s"))
+                        .hint(hint),
+                ),
+            );
         }
     }
     for (k, name) in &measured {

@@ -137,8 +137,7 @@ fn in_group(problem: Problem, name: &str, plan: &str) -> Problem {
     if problem.place.file != plan {
         return problem;
     }
-    let hint = problem.hint.replace("the top of the file", "its [[data]]");
-    problem.with_context(&format!("data `{name}`: ")).hint(hint)
+    problem.with_context(&format!("data `{name}`: "))
 }
 
 /// The standard deviation that a whole group has: `sd`, or a share of what was measured.

@@ -2,7 +2,7 @@
 
 use super::types::FreeParameter;
 use crate::fit::solve::Prior;
-use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section};
+use cvtcycle_config::{Bound, Document, Problems, Reader, Section};
 
 /// How a prior may be known.
 const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
@@ -86,14 +86,7 @@ pub(super) fn read(document: &Document) -> Result<FreeParameter, Problems> {
         } else {
             format!("parameter {}: ", free.key)
         };
-        let hint = |p: &Problem| p.hint.replace("the top of the file", "its [[parameter]]");
-        problems
-            .into_iter()
-            .map(|p| {
-                let hint = hint(&p);
-                p.with_context(&of).hint(hint)
-            })
-            .collect()
+        problems.into_iter().map(|p| p.with_context(&of)).collect()
     })
 }
 

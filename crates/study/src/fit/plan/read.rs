@@ -10,7 +10,7 @@ use crate::check::rows::RowFile;
 use crate::check::source::{self, Source};
 use crate::check::{COMMON, embedded_rows};
 use cvtcycle_config::setup::{Kind, catalogue, is_path, text_of};
-use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section, near};
+use cvtcycle_config::{Bound, Document, Problem, ProblemKind, Problems, Reader, Section, near};
 
 /// Most starts.
 const MOST_STARTS: i64 = 1000;
@@ -71,7 +71,10 @@ fn partly(file: &str, text: &str) -> Result<(CalibrationPlan, Problems), Problem
         .map(fitting)
         .collect();
     let hinted = |problems: &[Problem], word: &str| {
-        problems.iter().any(|problem| problem.hint.contains(word))
+        problems
+            .iter()
+            .flat_map(|problem| &problem.suggested)
+            .any(|name| name == word)
     };
     if !exists && !hinted(&problems, "[calibration]") {
         let hint = "add [calibration] with the vehicle that is fitted";
@@ -237,13 +240,16 @@ fn fitting(problem: Problem) -> Problem {
         .unwrap_or(problem.key.as_str());
     let table = TABLES
         .iter()
-        .find(|(key, _)| *key == meant && problem.message.starts_with("unknown"));
-    let hint = match table {
-        Some((key, header)) if *key == problem.key => format!("it is written as {header}"),
-        Some((_, header)) => format!("did you mean {header}?"),
-        None => problem.hint.clone(),
+        .find(|(key, _)| *key == meant && problem.kind == ProblemKind::UnknownKey);
+    let Some((key, header)) = table else {
+        return problem;
     };
-    problem.hint(hint)
+    let hint = if *key == problem.key {
+        format!("it is written as {header}")
+    } else {
+        format!("did you mean {header}?")
+    };
+    problem.suggest(&[header]).hint(hint)
 }
 
 /// Adds a group to the plan, counting on what is there.

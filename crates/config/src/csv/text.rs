@@ -1,69 +1,62 @@
 //! Bytes to text, lines to fields.
 //!
-//! Written here and not taken from a CSV library because a complaint needs the character at which a value stands.
+//! Written here and not taken from a CSV library because a problem states the character at which a value begins.
 
-use super::problems::Complaint;
+use crate::Problem;
 
-/// A value of a line, without surrounding blanks and quotes.
+/// The bytes of a value in its line, without surrounding blanks and quotes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Field<'t> {
-    /// The value.
-    pub text: &'t str,
-    /// Byte at which it begins in its line.
+pub struct Field {
+    /// First byte.
     pub start: usize,
+    /// The byte after the last one.
+    pub end: usize,
 }
 
 /// The text of a file, without byte order mark.
 ///
 /// # Errors
 /// An empty or binary file, or one in another encoding than UTF-8.
-pub fn decode(bytes: &[u8]) -> Result<&str, Complaint> {
+pub fn decode(bytes: &[u8]) -> Result<&str, Problem> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        return Err(Complaint::new(
-            "the file is UTF-16 text",
-            "UTF-8 text",
-            "save it as CSV UTF-8",
-        ));
+        return Err(Problem::invalid("the file is UTF-16 text")
+            .allowed("UTF-8 text")
+            .hint("save it as CSV UTF-8"));
     }
     if let Some(at) = bytes.iter().position(|&byte| byte == 0) {
         let message = format!(
             "the file is not text: it has a zero byte in line {}",
             line_of(bytes, at)
         );
-        return Err(Complaint::new(
-            message,
-            "UTF-8 text",
-            "save the table as CSV; a spreadsheet's own format cannot be read",
-        ));
+        return Err(Problem::invalid(message)
+            .allowed("UTF-8 text")
+            .hint("save the table as CSV; a spreadsheet's own format cannot be read"));
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let message = format!(
             "the file is not UTF-8 text: line {} has a byte that is none",
             line_of(bytes, error.valid_up_to())
         );
-        Complaint::new(
-            message,
-            "UTF-8 text",
-            "save it as CSV UTF-8; a spreadsheet's own format cannot be read",
-        )
+        Problem::invalid(message)
+            .allowed("UTF-8 text")
+            .hint("save it as CSV UTF-8; a spreadsheet's own format cannot be read")
     })?;
     if text.trim().is_empty() {
-        return Err(Complaint::new(
-            "the file is empty",
-            "",
-            "it needs a line of column names and at least two rows",
-        ));
+        return Err(empty());
     }
     if text.contains('\r') && !text.contains('\n') {
         let message = "the lines end with a carriage return alone";
-        return Err(Complaint::new(
-            message,
-            "lines that end with LF or CR LF",
-            "save it with the line ends of today",
-        ));
+        return Err(Problem::invalid(message)
+            .allowed("lines that end with LF or CR LF")
+            .hint("save it with the line ends of today"));
     }
     Ok(text)
+}
+
+/// The file has no text.
+pub fn empty() -> Problem {
+    Problem::missing("the file is empty").hint("it needs a line of column names and rows below it")
 }
 
 fn line_of(bytes: &[u8], at: usize) -> usize {
@@ -75,7 +68,7 @@ fn line_of(bytes: &[u8], at: usize) -> usize {
 ///
 /// # Errors
 /// The byte of a quote that is not closed, or after which something follows.
-pub fn split<'t>(line: &'t str, fields: &mut Vec<Field<'t>>) -> Result<(), usize> {
+pub fn split(line: &str, fields: &mut Vec<Field>) -> Result<(), usize> {
     fields.clear();
     let mut at = 0;
     loop {
@@ -84,10 +77,7 @@ pub fn split<'t>(line: &'t str, fields: &mut Vec<Field<'t>>) -> Result<(), usize
         let end = if rest[blanks..].starts_with('"') {
             let start = at + blanks + 1;
             let close = closing_quote(line, start).ok_or(start - 1)?;
-            fields.push(Field {
-                text: &line[start..close],
-                start,
-            });
+            fields.push(Field { start, end: close });
             let after = &line[close + 1..];
             let comma = after.find(',').unwrap_or(after.len());
             if !after[..comma].trim().is_empty() {
@@ -97,10 +87,8 @@ pub fn split<'t>(line: &'t str, fields: &mut Vec<Field<'t>>) -> Result<(), usize
         } else {
             let comma = rest.find(',').unwrap_or(rest.len());
             let start = at + blanks.min(comma);
-            fields.push(Field {
-                text: rest[..comma].trim(),
-                start,
-            });
+            let end = start + rest[..comma].trim().len();
+            fields.push(Field { start, end });
             at + comma
         };
         if end >= line.len() {
@@ -134,7 +122,7 @@ mod tests {
         split(line, &mut fields).unwrap();
         fields
             .into_iter()
-            .map(|field| (field.text, field.start))
+            .map(|field| (&line[field.start..field.end], field.start))
             .collect()
     }
 

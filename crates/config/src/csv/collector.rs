@@ -1,17 +1,18 @@
 //! Collecting the problems of a CSV file and saying where each stands.
 
-use super::text::{Field, decode, split};
+use super::schema::Schema;
+use super::text::{Field, decode, empty, split};
 use crate::{Place, Problem, Problems};
 
-/// More than these help nobody; the rest is counted.
-const SHOWN: usize = 50;
+/// Most problems that are described; the rest is counted.
+const MAX_SHOWN: usize = 50;
 /// A longer line is no row of a table, but another file.
-const MAX_LINE: usize = 1 << 20;
+pub(super) const MAX_LINE_LEN: usize = 1 << 20;
 /// No table has as many columns; each unknown one is compared with all known ones.
 const MAX_COLUMNS: usize = 1000;
 // a longer line would only fill the screen
-const MAX_SHOWN: usize = 500;
-const MAX_VALUE: usize = 60;
+const MAX_SHOWN_LEN: usize = 500;
+const MAX_VALUE_LEN: usize = 60;
 
 /// One line of the file.
 #[derive(Clone, Copy, Debug)]
@@ -22,41 +23,38 @@ pub struct Line<'t> {
     pub text: &'t str,
 }
 
-/// One value in its column, for reading and for complaining.
+/// One value in its column.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell<'t> {
     /// Its line.
     pub line: Line<'t>,
     /// Its column.
-    pub key: &'static str,
+    pub key: &'t str,
     /// Its value.
-    pub field: Field<'t>,
+    pub field: Field,
 }
 
-/// What is wrong, without the place.
-#[derive(Clone, Debug, Default)]
-pub struct Complaint {
-    /// What is wrong, one sentence.
-    pub message: String,
-    /// What would be accepted; empty where there is nothing to say.
-    pub allowed: String,
-    /// What to do about it; may be empty.
-    pub hint: String,
-}
-
-impl Complaint {
-    /// From its three texts.
+impl<'t> Line<'t> {
+    /// The value of a field of this line.
     #[must_use]
-    pub fn new(
-        message: impl Into<String>,
-        allowed: impl Into<String>,
-        hint: impl Into<String>,
-    ) -> Self {
-        Self {
-            message: message.into(),
-            allowed: allowed.into(),
-            hint: hint.into(),
-        }
+    pub fn text_of(&self, field: Field) -> &'t str {
+        self.text.get(field.start..field.end).unwrap_or_default()
+    }
+
+    /// Column of the first character of a field, counted from 1, and its number of characters, at least 1.
+    #[must_use]
+    pub fn columns_of(&self, field: Field) -> (usize, usize) {
+        let before = self.text.get(..field.start).unwrap_or_default();
+        let width = self.text_of(field).chars().count();
+        (before.chars().count() + 1, width.max(1))
+    }
+}
+
+impl<'t> Cell<'t> {
+    /// Its value.
+    #[must_use]
+    pub fn text(&self) -> &'t str {
+        self.line.text_of(self.field)
     }
 }
 
@@ -79,7 +77,7 @@ impl<'f> Collector<'f> {
         }
     }
 
-    /// The lines of a file that have something on them; none, and said so, where the bytes are no text or a line is too long for a table.
+    /// The lines that are not blank; none where the bytes are no text or a line is too long for a table, which is reported.
     pub fn lines<'t>(
         &mut self,
         bytes: &'t [u8],
@@ -98,21 +96,29 @@ impl<'f> Collector<'f> {
         }
     }
 
-    /// Whether none was found.
+    /// Number of problems so far.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.list.len() + self.more
+    }
+
+    /// True if there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Whether the line of column names has commas between them, and no other separator.
-    pub fn is_table(&mut self, line: Line<'_>) -> bool {
+    /// True if commas and no other characters separate the column names.
+    fn is_table(&mut self, line: Line<'_>) -> bool {
         let count = |separator| line.text.matches(separator).count();
         for (separator, name) in [(';', ";"), ('\t', "tabs")] {
             if count(separator) > count(',') {
                 let message = format!("this file uses {name} - save it with commas");
                 let hint = "and with decimal points: 12.5 and not 12,5";
                 self.line(line, "", || {
-                    Complaint::new(message, "commas between the columns", hint)
+                    Problem::invalid(message)
+                        .allowed("commas between the columns")
+                        .hint(hint)
                 });
                 return false;
             }
@@ -120,8 +126,8 @@ impl<'f> Collector<'f> {
         true
     }
 
-    /// The column names of the first line; none, and said so, where the lines below it cannot be understood.
-    pub fn names<'t>(&mut self, line: Line<'t>) -> Option<Vec<Field<'t>>> {
+    /// The column names of the first line; none where the lines below it cannot be understood, which is reported.
+    pub(super) fn names(&mut self, line: Line<'_>) -> Option<Vec<Field>> {
         if !self.is_table(line) {
             return None;
         }
@@ -131,7 +137,9 @@ impl<'f> Collector<'f> {
                 let message = format!("this line has {} column names", fields.len());
                 let hint = "keep the columns that are needed, with a row for every point";
                 self.line(line, "", || {
-                    Complaint::new(message, format!("up to {MAX_COLUMNS}"), hint)
+                    Problem::invalid(message)
+                        .allowed(format!("up to {MAX_COLUMNS}"))
+                        .hint(hint)
                 });
                 None
             }
@@ -143,13 +151,8 @@ impl<'f> Collector<'f> {
         }
     }
 
-    /// Splits a row into as many fields as there are column names; says what is wrong where that fails.
-    pub fn split<'t>(
-        &mut self,
-        line: Line<'t>,
-        wanted: usize,
-        fields: &mut Vec<Field<'t>>,
-    ) -> bool {
+    /// Splits a row into as many fields as there are column names; false after reporting that it has others.
+    pub(super) fn split(&mut self, line: Line<'_>, wanted: usize, fields: &mut Vec<Field>) -> bool {
         if let Err(start) = split(line.text, fields) {
             self.open_quote(line, start);
             return false;
@@ -166,106 +169,86 @@ impl<'f> Collector<'f> {
                     "this row has {found} {}",
                     if found == 1 { "value" } else { "values" }
                 );
-                Complaint::new(
-                    message,
-                    format!("{wanted}, as the line of column names has"),
-                    hint,
-                )
+                Problem::invalid(message)
+                    .allowed(format!("{wanted}, as the line of column names has"))
+                    .hint(hint)
             });
         }
         found == wanted
     }
 
-    /// A quote at that byte of the line is not closed.
-    pub fn open_quote(&mut self, line: Line<'_>, start: usize) {
+    /// Reports that the quote at that byte of the line is not closed.
+    fn open_quote(&mut self, line: Line<'_>, start: usize) {
         let field = Field {
-            text: &line.text[start..],
             start,
+            end: line.text.len(),
         };
         self.value(line, field, "", || {
-            Complaint::new(
-                "this quote is not closed",
-                "",
-                "close it behind the value, or remove it",
-            )
+            Problem::invalid("this quote is not closed")
+                .hint("close it behind the value, or remove it")
         });
     }
 
-    /// A problem of the whole file.
-    pub fn file(&mut self, complaint: Complaint) {
-        self.push("", |file| {
-            (
-                Place {
-                    file: file.to_owned(),
-                    ..Place::default()
-                },
-                String::new(),
-                complaint,
-            )
-        });
+    /// Reports a problem of the whole file.
+    pub fn file(&mut self, problem: Problem) {
+        self.push(|file| problem.in_file(file));
     }
 
-    /// A problem of a whole line; `key` is the column that is meant, if any.
-    pub fn line(&mut self, line: Line<'_>, key: &str, complaint: impl FnOnce() -> Complaint) {
+    /// Reports that the file is empty; nothing after another problem of the whole file.
+    pub fn no_text(&mut self) {
+        if self.is_empty() {
+            self.file(empty());
+        }
+    }
+
+    /// Reports that there are column names only.
+    pub fn no_rows(&mut self, schema: &Schema) {
+        let problem = Problem::missing("the file has column names and no rows");
+        self.file(problem.allowed(schema.rows).hint("add the rows"));
+    }
+
+    /// Reports a problem of a whole line; `key` is the column that is meant, if any.
+    pub fn line(&mut self, line: Line<'_>, key: &str, problem: impl FnOnce() -> Problem) {
         let whole = Field {
-            text: line.text,
             start: 0,
+            end: line.text.len(),
         };
-        self.push(key, |file| {
-            (place(file, line, whole), String::new(), complaint())
-        });
+        self.push(|file| problem().at(place(file, line, whole)).key(key));
     }
 
-    /// A problem of one value, `key` being its column.
+    /// Reports a problem of one value of the column `key`.
     pub fn value(
         &mut self,
         line: Line<'_>,
-        field: Field<'_>,
+        field: Field,
         key: &str,
-        complaint: impl FnOnce() -> Complaint,
+        problem: impl FnOnce() -> Problem,
     ) {
-        self.push(key, |file| {
-            (place(file, line, field), shortened(field.text), complaint())
+        self.push(|file| {
+            problem()
+                .at(place(file, line, field))
+                .key(key)
+                .value(shortened(line.text_of(field)))
         });
     }
 
-    /// A problem of one table cell.
-    pub fn cell(&mut self, cell: &Cell<'_>, complaint: impl FnOnce() -> Complaint) {
-        self.value(cell.line, cell.field, cell.key, complaint);
+    /// Reports a problem of one cell.
+    pub fn cell(&mut self, cell: &Cell<'_>, problem: impl FnOnce() -> Problem) {
+        self.value(cell.line, cell.field, cell.key, problem);
     }
 
-    /// Adds one that is made already.
+    /// Adds a problem that has its place.
     pub fn add(&mut self, problem: Problem) {
-        if self.list.len() >= SHOWN {
-            self.more += 1;
-            return;
-        }
-        self.list.push(problem);
+        self.push(|_| problem);
     }
 
-    // built only while it will be shown, so that a file of a million bad rows costs nothing
-    fn push(&mut self, key: &str, build: impl FnOnce(&str) -> (Place, String, Complaint)) {
-        if self.list.len() >= SHOWN {
+    // made only if it will be shown, so that a file of a million bad rows costs nothing
+    fn push(&mut self, make: impl FnOnce(&str) -> Problem) {
+        if self.list.len() >= MAX_SHOWN {
             self.more += 1;
-            return;
+        } else {
+            self.list.push(make(self.file));
         }
-        let (
-            place,
-            value,
-            Complaint {
-                message,
-                allowed,
-                hint,
-            },
-        ) = build(self.file);
-        self.list.push(
-            Problem::invalid(message)
-                .at(place)
-                .key(key)
-                .value(value)
-                .allowed(allowed)
-                .hint(hint),
-        );
     }
 
     /// All of them; beyond the first 50, one last entry says how many more there are.
@@ -278,38 +261,36 @@ impl<'f> Collector<'f> {
     }
 }
 
-fn no_long_line(text: &str) -> Result<&str, Complaint> {
-    match text.split('\n').position(|line| line.len() >= MAX_LINE) {
+fn no_long_line(text: &str) -> Result<&str, Problem> {
+    match text.split('\n').position(|line| line.len() >= MAX_LINE_LEN) {
         Some(before) => {
             let message = format!("line {} is too long for a row of a table", before + 1);
-            Err(Complaint::new(
-                message,
-                format!("up to {MAX_LINE} bytes"),
-                "is this a CSV file?",
-            ))
+            Err(Problem::invalid(message)
+                .allowed(format!("up to {MAX_LINE_LEN} bytes"))
+                .hint("is this a CSV file?"))
         }
         None => Ok(text),
     }
 }
 
-fn place(file: &str, line: Line<'_>, field: Field<'_>) -> Place {
-    let before = line.text.get(..field.start).unwrap_or_default();
-    let shown = line.text.len() <= MAX_SHOWN;
+fn place(file: &str, line: Line<'_>, field: Field) -> Place {
+    let (column, width) = line.columns_of(field);
+    let shown = line.text.len() <= MAX_SHOWN_LEN;
     Place {
         file: file.to_owned(),
         line: line.number,
-        column: before.chars().count() + 1,
+        column,
         line_text: if shown {
             line.text.to_owned()
         } else {
             String::new()
         },
-        width: field.text.chars().count().max(1),
+        width,
     }
 }
 
 fn shortened(text: &str) -> String {
-    match text.char_indices().nth(MAX_VALUE) {
+    match text.char_indices().nth(MAX_VALUE_LEN) {
         Some((end, _)) => format!("{}...", &text[..end]),
         None => text.to_owned(),
     }
@@ -326,15 +307,9 @@ mod tests {
             text: "é,ü,12",
         };
         let mut problems = Collector::new("f.csv");
-        problems.value(
-            line,
-            Field {
-                text: "12",
-                start: 6,
-            },
-            "k",
-            Complaint::default,
-        );
+        problems.value(line, Field { start: 6, end: 8 }, "k", || {
+            Problem::invalid("")
+        });
         let place = &problems.finish()[0].place;
         assert_eq!(
             (
@@ -357,11 +332,11 @@ mod tests {
                 text: &text,
             },
             Field {
-                text: &text,
                 start: 0,
+                end: text.len(),
             },
             "k",
-            Complaint::default,
+            || Problem::invalid(""),
         );
         let problem = &problems.finish()[0];
         assert_eq!(
@@ -375,7 +350,7 @@ mod tests {
 
     #[test]
     fn a_long_line_and_many_columns_are_refused() {
-        for (length, taken) in [(MAX_LINE - 1, true), (MAX_LINE, false)] {
+        for (length, taken) in [(MAX_LINE_LEN - 1, true), (MAX_LINE_LEN, false)] {
             let text = format!("a,b\n{}\n1,2\n", "1".repeat(length));
             let mut problems = Collector::new("f.csv");
             assert_eq!(
@@ -413,7 +388,7 @@ mod tests {
         ] {
             let mut problems = Collector::new("f.csv");
             for _ in 0..count {
-                problems.file(Complaint::default());
+                problems.file(Problem::invalid(""));
             }
             let list = problems.finish();
             assert_eq!(list.len(), count.min(50) + usize::from(last.is_some()));

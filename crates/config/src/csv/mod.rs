@@ -1,0 +1,21 @@
+//! CSV tables of the user: a schema states the columns, one reader checks header and rows and finds all problems at once.
+//!
+//! | file | content |
+//! |---|---|
+//! | `schema` | columns as data: name, cells, range, group; the checks of the line of column names |
+//! | `table` | rows of a table against its schema; tables that are in memory |
+//! | `stream` | tables of any length, one line in memory at a time |
+//! | `text` | bytes to text, lines to fields |
+//! | `collector` | problems with their places, limited in number |
+
+mod collector;
+mod schema;
+mod stream;
+mod table;
+mod text;
+
+pub use collector::{Cell, Collector, Line};
+pub use schema::{Cells, Column, Schema};
+pub use stream::Lines;
+pub use table::{Row, Table, Value, read};
+pub use text::Field;

@@ -1,0 +1,251 @@
+//! Rows of a table against its schema.
+
+use super::collector::{Cell, Collector, Line};
+use super::schema::{Cells, Column, Schema};
+use super::text::Field;
+use crate::Problem;
+
+/// What was read from a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// A word.
+    Word,
+    /// Nothing, where that is allowed.
+    Empty,
+    /// A problem was reported.
+    Bad,
+}
+
+/// A table whose column names were read.
+#[derive(Debug)]
+pub struct Table<'s> {
+    schema: &'s Schema,
+    /// Index in the schema of each column of the file.
+    columns: Vec<Option<usize>>,
+    /// Column of the file of each column of the schema.
+    positions: Vec<Option<usize>>,
+    fields: Vec<Field>,
+    values: Vec<Value>,
+}
+
+impl<'s> Table<'s> {
+    /// Reads the line of column names; none where the rows cannot be understood without them.
+    pub fn open(
+        line: Line<'_>,
+        schema: &'s Schema,
+        problems: &mut Collector<'_>,
+    ) -> Option<Table<'s>> {
+        let (columns, fields) = schema.header(line, problems)?;
+        let position = |index| columns.iter().position(|known| *known == Some(index));
+        Some(Table {
+            schema,
+            positions: (0..schema.columns.len()).map(position).collect(),
+            values: vec![Value::Bad; columns.len()],
+            columns,
+            fields,
+        })
+    }
+
+    /// The columns of the file in its order; `None` for one that is not known.
+    pub fn columns(&self) -> impl Iterator<Item = Option<&'s Column>> {
+        let column = |index: &Option<usize>| index.map(|index| &self.schema.columns[index]);
+        self.columns.iter().map(column)
+    }
+
+    /// The fields of the line that was read last.
+    pub fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    /// True if the file has that column of the schema.
+    pub fn has(&self, column: usize) -> bool {
+        self.positions[column].is_some()
+    }
+
+    /// The column of a group that the file has, as index of the schema.
+    pub fn of_group(&self, group: &str) -> Option<usize> {
+        let is_in = |index: &usize| self.schema.columns[*index].group == group;
+        self.columns.iter().flatten().copied().find(is_in)
+    }
+
+    /// Name of a column of the schema.
+    pub fn name(&self, column: usize) -> &'s str {
+        &self.schema.columns[column].name
+    }
+
+    /// Reads a row. After a problem of the whole line every value is bad.
+    pub fn row<'a, 't>(&'a mut self, line: Line<'t>, problems: &mut Collector<'_>) -> Row<'a, 't> {
+        self.values.fill(Value::Bad);
+        if problems.split(line, self.columns.len(), &mut self.fields) {
+            for (at, value) in self.values.iter_mut().enumerate() {
+                *value = match self.columns[at] {
+                    Some(index) => {
+                        let column = &self.schema.columns[index];
+                        read_cell(line, self.fields[at], column, problems)
+                    }
+                    None => Value::Word,
+                };
+            }
+        } else {
+            self.fields.clear();
+        }
+        Row { table: self, line }
+    }
+}
+
+fn read_cell(line: Line<'_>, field: Field, column: &Column, problems: &mut Collector<'_>) -> Value {
+    let text = line.text_of(field);
+    let found = match column.cells {
+        Cells::Ignored => return Value::Word,
+        _ if text.is_empty() && column.may_be_empty => return Value::Empty,
+        Cells::Word if text.is_empty() => Err(Problem::missing("the value is missing")
+            .allowed(if column.allowed.is_empty() {
+                "a word"
+            } else {
+                column.allowed
+            })
+            .hint(if column.hint.is_empty() {
+                "fill the gap or remove the row"
+            } else {
+                column.hint
+            })),
+        Cells::Word => return Value::Word,
+        Cells::Number(_) | Cells::Whole(_) => column.parse(text),
+    };
+    found.map_or_else(
+        |problem| {
+            problems.value(line, field, &column.name, || problem);
+            Value::Bad
+        },
+        Value::Number,
+    )
+}
+
+/// A row that was read; columns are indices of the schema.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<'a, 't> {
+    table: &'a Table<'a>,
+    /// Its line.
+    pub line: Line<'t>,
+}
+
+impl<'a, 't> Row<'a, 't> {
+    /// The table that it is of.
+    pub fn table(&self) -> &'a Table<'a> {
+        self.table
+    }
+
+    /// Values in the order of the file's columns.
+    pub fn values(&self) -> &'a [Value] {
+        &self.table.values
+    }
+
+    /// Fields in the order of the file's columns; none after a problem of the whole line.
+    pub fn fields(&self) -> &'a [Field] {
+        &self.table.fields
+    }
+
+    fn value(&self, column: usize) -> Option<Value> {
+        self.table.positions[column].map(|at| self.table.values[at])
+    }
+
+    /// The number of a cell; none where it is empty, bad or not in the file.
+    pub fn number(&self, column: usize) -> Option<f64> {
+        match self.value(column) {
+            Some(Value::Number(x)) => Some(x),
+            _ => None,
+        }
+    }
+
+    /// The word of a cell; empty where there is none.
+    pub fn word(&self, column: usize) -> &'t str {
+        match (self.value(column), self.field(column)) {
+            (Some(Value::Word), Some(field)) => self.line.text_of(field),
+            _ => "",
+        }
+    }
+
+    fn field(&self, column: usize) -> Option<Field> {
+        self.table
+            .fields
+            .get(self.table.positions[column]?)
+            .copied()
+    }
+
+    /// True if a problem of the cell, or of the whole row, was reported.
+    pub fn is_bad(&self, column: usize) -> bool {
+        self.value(column) == Some(Value::Bad)
+    }
+
+    /// True if a problem of any cell was reported.
+    pub fn has_bad(&self) -> bool {
+        self.table.values.contains(&Value::Bad)
+    }
+
+    /// The cell with its place; none where the file has no such column or the line could not be split.
+    pub fn cell<'c>(&self, column: usize) -> Option<Cell<'c>>
+    where
+        'a: 'c,
+        't: 'c,
+    {
+        Some(Cell {
+            line: self.line,
+            key: &self.table.schema.columns[column].name,
+            field: self.field(column)?,
+        })
+    }
+
+    /// Reports a problem of a cell; of the whole line where the file has no such column.
+    pub fn report(&self, column: usize, problems: &mut Collector<'_>, problem: Problem) {
+        match self.cell(column) {
+            Some(cell) => problems.cell(&cell, || problem),
+            None => {
+                let key = &self.table.schema.columns[column].name;
+                problems.line(self.line, key, || problem);
+            }
+        }
+    }
+}
+
+/// Reads a table that is in memory. `check` receives the line of column names; `take` receives every row and returns false to end the
+/// reading. None where the column names could not be read.
+pub fn read<'s, 't>(
+    bytes: &'t [u8],
+    schema: &'s Schema,
+    problems: &mut Collector<'_>,
+    check: impl FnOnce(&Table<'s>, Line<'t>, &mut Collector<'_>),
+    mut take: impl FnMut(&Row<'_, 't>, &mut Collector<'_>) -> bool,
+) -> Option<Table<'s>> {
+    let mut lines = problems.lines(bytes)?;
+    let header = lines.next()?;
+    let mut table = Table::open(header, schema, problems)?;
+    check(&table, header, problems);
+    let (max_rows, hint) = schema.max_rows;
+    let mut count = 0;
+    for line in lines {
+        if count == max_rows || (count + 1) * table.columns.len() > schema.max_values {
+            problems.line(line, "", || {
+                if count == max_rows {
+                    Problem::too_large("the file has too many rows")
+                        .allowed(format!("up to {max_rows} rows"))
+                } else {
+                    Problem::too_large("the file has too many values")
+                        .allowed(format!("up to {}, rows times columns", schema.max_values))
+                }
+                .hint(hint)
+            });
+            return Some(table);
+        }
+        count += 1;
+        let row = table.row(line, problems);
+        if !take(&row, problems) {
+            return Some(table);
+        }
+    }
+    if count == 0 {
+        problems.no_rows(schema);
+    }
+    Some(table)
+}

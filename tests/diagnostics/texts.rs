@@ -1,0 +1,67 @@
+//! The texts of a problem are for people: code decides by its kind, its key and its suggested names.
+
+use crate::sources::sources;
+
+/// Texts of a problem.
+const FIELDS: [&str; 3] = ["message", "hint", "allowed"];
+/// Methods that look into a text.
+const METHODS: [&str; 10] = [
+    "contains",
+    "ends_with",
+    "find",
+    "matches",
+    "replace",
+    "split",
+    "split_once",
+    "starts_with",
+    "strip_prefix",
+    "strip_suffix",
+];
+/// `allowed` is a range of numbers in some places.
+const RANGE: &str = ".allowed.contains(";
+/// Modules that may, with the reason.
+const EXCUSED: [(&str, &str); 1] = [(
+    "config::render",
+    "a key that the message names already is not printed twice",
+)];
+
+/// What a source does with the texts of problems, outside comments.
+fn looks_into(source: &str) -> Vec<String> {
+    let code: String = source
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .flat_map(|line| line.chars().filter(|c| !c.is_whitespace()))
+        .collect();
+    let mut found = Vec::new();
+    for field in FIELDS {
+        for method in METHODS {
+            for text in ["", ".as_str()", ".trim()"] {
+                let pattern = format!(".{field}{text}.{method}(");
+                if code.contains(&pattern) && pattern != RANGE {
+                    found.push(pattern);
+                }
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn no_code_looks_into_the_text_of_a_problem() {
+    let mut wrong = Vec::new();
+    for source in sources() {
+        let (name, found) = (&source.module, looks_into(&source.code));
+        match EXCUSED.iter().any(|(excused, _)| excused == name) {
+            true => assert!(!found.is_empty(), "{name} is excused for nothing"),
+            false => wrong.extend(found.iter().map(|pattern| format!("{name}: {pattern}"))),
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn looking_into_a_text_is_seen() {
+    let bad = "if problem\n    .message\n    .contains(\"stopped\") {}";
+    assert_eq!(looks_into(bad), [".message.contains("]);
+    assert!(looks_into("// problem.message.contains(x)\nself.allowed.contains(1.0)").is_empty());
+}
