@@ -1,6 +1,6 @@
 //! Problems of options.
 
-use cvtcycle::config::{Problem, near};
+use cvtcycle::config::Problem;
 
 /// A problem of an option or argument.
 pub fn problem(option: &str, message: &str, hint: &str) -> Problem {
@@ -17,8 +17,5 @@ pub fn bad_value(option: &str, value: &str, allowed: &str, message: &str, hint: 
 
 /// A question for the known names that are similar to the given one; empty if there are none.
 pub fn did_you_mean(value: &str, known: &[&str]) -> String {
-    match near(value, known.iter().copied()) {
-        close if close.is_empty() => String::new(),
-        close => format!("did you mean {}?", close.join(" or ")),
-    }
+    cvtcycle::config::did_you_mean(value, known.iter().copied()).unwrap_or_default()
 }

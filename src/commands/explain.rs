@@ -7,7 +7,7 @@ use clap::Args;
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
 use cvtcycle::config::setup::equations::{Equation, by_label, cited, equations};
-use cvtcycle::config::{KeyInfo, Problem, Problems, near};
+use cvtcycle::config::{KeyInfo, Problem, Problems, near, suggestion};
 use cvtcycle::output::table::Head;
 use cvtcycle::output::trace::{COLUMNS, column};
 use cvtcycle::output::{Component, Flags};
@@ -312,10 +312,8 @@ fn unknown(word: &str) -> Problem {
     let mut full: Vec<&str> = close.iter().flat_map(full).collect();
     full.dedup();
     full.truncate(4);
-    let hint = match full.is_empty() {
-        true => "`cvtcycle show rover_216_cvt` prints all keys of a vehicle".to_owned(),
-        false => format!("did you mean {}?", full.join(" or ")),
-    };
+    let hint = suggestion(&full)
+        .unwrap_or_else(|| "`cvtcycle show rover_216_cvt` prints all keys of a vehicle".to_owned());
     let allowed = "a key, table, column, flag, label of an equation, or term";
     bad_value(
         "explain",
