@@ -21,8 +21,8 @@ use cvtcycle::model::thermal::{Heat, HeatInput};
 use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, Formulation, belt_point, belt_state,
 };
-use cvtcycle::model::transmission::{DriveState, Surroundings, Transmission};
-use cvtcycle::output::{Row, Terms};
+use cvtcycle::model::transmission::{StepInput, Transmission, TransmissionState};
+use cvtcycle::output::{EnergyTerms, Row};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::table::Rows;
 use cvtcycle::study::{NoProgress, PartWriter, Study};
@@ -121,7 +121,7 @@ fn driveline_step(bencher: Bencher, name: &str) {
         ..WheelDemand::default()
     };
     let wheels = [demand(6000.0), demand(7000.0)];
-    let around = |k: usize| Surroundings {
+    let around = |k: usize| StepInput {
         wheel: &wheels[k],
         engine: &engine,
         oil: &car.oil,
@@ -130,7 +130,7 @@ fn driveline_step(bencher: Bencher, name: &str) {
         dt_s: 1.0,
         engine_off: false,
     };
-    let mut state: DriveState = car.transmission.start(&around(0));
+    let mut state: TransmissionState = car.transmission.start(&around(0));
     let mut k = 0;
     bencher.bench_local(|| {
         k = 1 - k;
@@ -158,7 +158,7 @@ fn thermal_advance(bencher: Bencher) {
 struct NullRecorder;
 
 impl Recorder for NullRecorder {
-    fn record(&mut self, row: &Row, _: &Terms) {
+    fn record(&mut self, row: &Row, _: &EnergyTerms) {
         black_box(row.fuel_kg_s);
     }
 }

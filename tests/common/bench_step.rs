@@ -6,8 +6,9 @@ use cvtcycle::model::drive::Car;
 use cvtcycle::model::road::WheelDemand;
 use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, METAL, SUMP};
 use cvtcycle::model::transmission::cvt::Cvt;
+use cvtcycle::model::transmission::cvt::CvtState;
 use cvtcycle::model::transmission::cvt::variator::BeltAtRatio;
-use cvtcycle::model::transmission::{Drive, DriveState, Surroundings, Transmission};
+use cvtcycle::model::transmission::{StepInput, StepOutput, Transmission, TransmissionState};
 
 use super::ZERO;
 
@@ -77,7 +78,7 @@ impl Bench {
     }
 
     /// Solves one step from a fresh memory.
-    pub fn solve(&self, s: &Setting) -> Drive {
+    pub fn solve(&self, s: &Setting) -> StepOutput {
         let mut node_k = [0.0; 5];
         node_k[COOLANT] = s.engine_degc + ZERO;
         node_k[ENGINE_OIL] = s.engine_degc + ZERO;
@@ -88,7 +89,7 @@ impl Bench {
     }
 
     /// Solves one step at given temperatures of the nodes.
-    pub fn solve_at(&self, s: &Setting, heat: &Heat) -> Drive {
+    pub fn solve_at(&self, s: &Setting, heat: &Heat) -> StepOutput {
         let car = &self.car;
         let engine = car.engine.at(
             heat.node_k[COOLANT],
@@ -103,7 +104,7 @@ impl Bench {
             ..WheelDemand::default()
         };
         let cvt = car.transmission.is_cvt();
-        let around = Surroundings {
+        let around = StepInput {
             wheel: &wheel,
             engine: &engine,
             oil: &car.oil,
@@ -112,17 +113,17 @@ impl Bench {
             dt_s: 100.0, // long enough for any change of engine speed
             engine_off: false,
         };
-        let mut state: DriveState = car.transmission.start(&around);
+        let mut state: TransmissionState = car.transmission.start(&around);
         if let Transmission::Cvt(cvt) = &car.transmission {
-            state.belt = Some(BeltAtRatio::new(&cvt.belt, s.ratio));
+            state.cvt = Some(CvtState::new(BeltAtRatio::new(&cvt.belt, s.ratio)));
         } else {
-            state.past.gear = s.ratio as u8;
+            state.driveline.gear = s.ratio as u8;
         }
-        state.past.engine_rad_s = engine.idle_rad_s;
-        state.past.throttle = 0.1;
-        state.past.secondary_pa = 10e5;
-        state.past.coupled = s.coupled;
-        state.past.stood = false;
+        state.driveline.engine_rad_s = engine.idle_rad_s;
+        state.driveline.throttle = 0.1;
+        state.driveline.secondary_pa = 10e5;
+        state.driveline.coupled = s.coupled;
+        state.driveline.stood = false;
         car.transmission.solve(&around, &mut state)
     }
 }

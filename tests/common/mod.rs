@@ -13,7 +13,7 @@ use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::model::drive::Recorder;
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive, litres_per_100km};
-use cvtcycle::output::{Component, Row, Terms};
+use cvtcycle::output::{Component, EnergyTerms, Row};
 
 /// Shipped vehicles.
 pub const CARS: [&str; 3] = ["rover_216_cvt", "rover_216_5mt", "mondeo_20_5mt"];
@@ -97,11 +97,11 @@ pub fn consumption(outcome: &Outcome, cycle: &Cycle, group: Option<&str>) -> f64
 #[derive(Default)]
 pub struct Keep {
     pub rows: Vec<Row>,
-    pub terms: Vec<Terms>,
+    pub terms: Vec<EnergyTerms>,
 }
 
 impl Recorder for Keep {
-    fn record(&mut self, row: &Row, terms: &Terms) {
+    fn record(&mut self, row: &Row, terms: &EnergyTerms) {
         self.rows.push(*row);
         self.terms.push(*terms);
     }

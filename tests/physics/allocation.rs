@@ -2,7 +2,7 @@
 
 use crate::common::{CARS, ZERO, car, cycle};
 use cvtcycle::model::drive::{Recorder, State, simulate};
-use cvtcycle::output::{Row, Terms, Totals};
+use cvtcycle::output::{EnergyTerms, Row, Totals};
 
 /// Keeps rows within a capacity that was reserved before.
 struct Reserved {
@@ -11,7 +11,7 @@ struct Reserved {
 }
 
 impl Recorder for Reserved {
-    fn record(&mut self, row: &Row, terms: &Terms) {
+    fn record(&mut self, row: &Row, terms: &EnergyTerms) {
         self.rows.push(*row);
         self.totals.record(row, terms);
     }

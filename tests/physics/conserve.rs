@@ -16,7 +16,7 @@ use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::model::drive::{State, simulate};
 use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, METAL, NODES, SUMP};
 use cvtcycle::model::transmission::Transmission;
-use cvtcycle::output::{Component, Flags, Row, TERM_NAMES, Terms};
+use cvtcycle::output::{Component, EnergyTerms, Flags, Row, TERM_NAMES};
 
 const AMBIENTS: [f64; 2] = [-10.0, 25.0];
 
@@ -53,7 +53,7 @@ fn must_be_numbers(row: &Row, cvt: bool) -> Vec<(&'static str, f64)> {
         ("heat_ledger", row.heat_ledger_error),
         ("residual", row.solve_residual),
     ];
-    list.extend(Component::ALL.map(|c| (c.name(), row.loss_w[c as usize])));
+    list.extend(Component::ALL.map(|c| (c.name(), row.loss_w[c])));
     if cvt {
         list.extend([
             ("belt_ratio", row.belt_ratio),
@@ -79,7 +79,7 @@ fn never_negative(row: &Row) -> Vec<(&'static str, f64)> {
         ("engine_speed", row.engine_speed_rad_s),
         ("throttle", row.throttle),
     ];
-    list.extend(Component::ALL.map(|c| (c.name(), row.loss_w[c as usize])));
+    list.extend(Component::ALL.map(|c| (c.name(), row.loss_w[c])));
     list
 }
 
@@ -566,7 +566,7 @@ fn a_wrong_term_shows() {
                     for factor in [0.0, 2.0] {
                         let mut wrong = right;
                         wrong[k] *= factor;
-                        let wrong = Terms::from_array(wrong);
+                        let wrong = EnergyTerms::from_array(wrong);
                         let error = if heat {
                             wrong.heat_error()
                         } else {

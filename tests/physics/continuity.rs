@@ -10,7 +10,7 @@
 use crate::common::bench_step::{Bench, Setting};
 use crate::common::{RPM, ZERO, car, component_names, larger};
 use cvtcycle::model::thermal::{COOLANT, Heat, HeatInput, SUMP};
-use cvtcycle::model::transmission::{Drive, Transmission};
+use cvtcycle::model::transmission::{StepOutput, Transmission};
 use cvtcycle::output::{Component, Flags};
 
 /// What must be continuous: losses W, engine speed rad/s, flywheel torque Nm, throttle, pressure bar, slip, output W, brake W, deficit W.
@@ -29,10 +29,10 @@ const EXTRA: [&str; 9] = [
 const NOT_CONVERGED: &str = "not_converged";
 const COUNT: usize = Component::COUNT + EXTRA.len();
 
-fn values(d: &Drive) -> [f64; COUNT] {
+fn values(d: &StepOutput) -> [f64; COUNT] {
     let number = |x: f64| if x.is_finite() { x } else { 0.0 };
     let mut v = [0.0; COUNT];
-    v[..Component::COUNT].copy_from_slice(&d.loss_w);
+    v[..Component::COUNT].copy_from_slice(&d.loss_w.0);
     let extra = [
         d.engine_rad_s,
         d.shaft_nm,

@@ -9,10 +9,10 @@
 
 use crate::common::{at, car, cycle, try_car};
 use cvtcycle::model::drive::{Start, drive};
-use cvtcycle::model::transmission::cvt::pump::{Pump, PumpKind, PumpNow};
+use cvtcycle::model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
+use cvtcycle::model::transmission::cvt::pump::{Pump, PumpAtTemperature, PumpKind};
 use cvtcycle::model::transmission::cvt::spin::{NU_REFERENCE_M2_S, Spin};
 use cvtcycle::model::transmission::film_heating::FilmHeating;
-use cvtcycle::model::transmission::launch::{FrictionClutch, Launch};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -97,7 +97,7 @@ fn any_pump() -> impl Strategy<Value = Pump> {
 }
 
 /// The pump's oil at a viscous factor; the inlet's drop follows it, as both follow the viscosity.
-fn oil(pump: &Pump, factor: f64) -> PumpNow {
+fn oil(pump: &Pump, factor: f64) -> PumpAtTemperature {
     pump.with_factor(0.01 * factor, factor)
 }
 
@@ -154,7 +154,7 @@ proptest! {
         let pump = Pump { constant_nm: 0.0, heating: FilmHeating::NONE, ..pump };
         let twice = Pump { displacement_m3_rad: 2.0 * pump.displacement_m3_rad, ..pump };
         let now = oil(&pump, factor);
-        let viscous = pump.state(&now, w, p, need).torque_nm - pump.state(&PumpNow { viscous_factor: 0.0, ..now }, w, p, need).torque_nm;
+        let viscous = pump.state(&now, w, p, need).torque_nm - pump.state(&PumpAtTemperature { viscous_factor: 0.0, ..now }, w, p, need).torque_nm;
         let (small, large) = (pump.state(&now, w, p, need), twice.state(&now, 0.5 * w, p, need));
         prop_assert!((large.torque_nm - (2.0 * small.torque_nm - viscous)).abs() <= 1e-9 * (small.torque_nm + 1.0));
         prop_assert!((large.working_m3_s - small.working_m3_s).abs() <= 1e-12 * small.flow_m3_s);
@@ -243,7 +243,7 @@ proptest! {
     #[test]
     fn drags_rise_with_viscosity(spin in any_spin(), (a, b) in pair(1e-6, 5e-3), w in 0.0..1500.0f64) {
         let (thin, thick) = (spin.at(a), spin.at(b));
-        let drags = |now: &cvtcycle::model::transmission::cvt::spin::SpinNow| [now.shaft_nm(w), now.clutch_nm, spin.drive_nm(now, w)];
+        let drags = |now: &cvtcycle::model::transmission::cvt::spin::SpinAtTemperature| [now.shaft_nm(w), now.clutch_nm, spin.drive_nm(now, w)];
         for (x, y) in drags(&thin).iter().zip(drags(&thick)) {
             prop_assert!(x.is_finite() && *x >= 0.0 && y >= x * (1.0 - 1e-12), "{x} then {y}");
         }
@@ -310,11 +310,11 @@ proptest! {
         c in any_clutch(), torque in -200.0..300.0f64, input in prop_oneof![1 => Just(0.0), 9 => 0.0..600.0f64],
         idle in 50.0..160.0f64, coupled in any::<bool>()
     ) {
-        let engine = c.engine_speed_rad_s(torque, input, idle, coupled);
+        let engine = c.engine_rad_s(&CouplingLoad::new(torque, input, idle, coupled));
         prop_assert!(engine.is_finite() && engine >= input && engine >= idle * (1.0 - 1e-12), "{engine} over {input}, idle {idle}");
-        prop_assert!(!(coupled && c.holds(input, idle)) || engine == input);
+        prop_assert!(!(coupled && (input >= c.locked_from_rad_s(idle))) || engine == input);
         let share = c.overrun_share(input, idle);
-        let creep = c.creep_torque_nm(input, idle);
+        let creep = c.creep_nm(input, idle);
         prop_assert!((0.0..=1.0).contains(&share) && (0.0..=c.creep_nm).contains(&creep));
         prop_assert!(share == 0.0 || creep == 0.0, "creeps and brakes at once");
     }
@@ -322,9 +322,9 @@ proptest! {
     /// More torque takes no less engine speed; more input speed no more creep and no less of the overrun.
     #[test]
     fn launch_is_monotone(c in any_clutch(), (a, b) in pair(0.0, 1.0), input in 0.0..600.0f64, idle in 50.0..160.0f64, coupled in any::<bool>()) {
-        let engine = |torque: f64| c.engine_speed_rad_s(torque, input, idle, coupled);
+        let engine = |torque: f64| c.engine_rad_s(&CouplingLoad::new(torque, input, idle, coupled));
         prop_assert!(engine(300.0 * a) <= engine(300.0 * b));
-        prop_assert!(c.creep_torque_nm(300.0 * a, idle) >= c.creep_torque_nm(300.0 * b, idle));
+        prop_assert!(c.creep_nm(300.0 * a, idle) >= c.creep_nm(300.0 * b, idle));
         prop_assert!(c.overrun_share(300.0 * a, idle) <= c.overrun_share(300.0 * b, idle));
     }
 
@@ -336,9 +336,9 @@ proptest! {
     /// Engine speed has no jump over torque (creep, engagement) nor over input speed (lock-up; the clutch that once coupled slips again).
     #[test]
     fn launch_is_continuous(c in any_clutch(), torque in 0.0..300.0f64, input in 0.0..600.0f64, idle in 50.0..160.0f64, coupled in any::<bool>()) {
-        let by_torque = largest_jump(-50.0, 300.0, &|t| c.engine_speed_rad_s(t, input, idle, coupled));
-        let by_speed = largest_jump(0.0, 600.0, &|w| c.engine_speed_rad_s(torque, w, idle, coupled));
-        let share = largest_jump(0.0, 600.0, &|w| c.overrun_share(w, idle) + c.creep_torque_nm(w, idle));
+        let by_torque = largest_jump(-50.0, 300.0, &|t| c.engine_rad_s(&CouplingLoad::new(t, input, idle, coupled)));
+        let by_speed = largest_jump(0.0, 600.0, &|w| c.engine_rad_s(&CouplingLoad::new(torque, w, idle, coupled)));
+        let share = largest_jump(0.0, 600.0, &|w| c.overrun_share(w, idle) + c.creep_nm(w, idle));
         prop_assert!(by_torque < 1e-6 && by_speed < 1e-6 && share < 1e-6, "{by_torque} {by_speed} {share}");
     }
 }

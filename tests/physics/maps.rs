@@ -4,7 +4,7 @@
 use cvtcycle::config::cycle::embedded;
 use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, Setup, load};
-use cvtcycle::model::drive::{Conditions, Outcome, Start, components, drive};
+use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
 use cvtcycle::output::Component;
 
 /// A vehicle file in its own folder with a map; the overrides name the map.
@@ -41,7 +41,7 @@ fn val_a_constant_pump_map() {
     let o = driven(&car("rover_216_cvt", csv, "transmission.cvt.maps.pump").unwrap());
     for r in &o.rows {
         let want = 2.0 * r.engine_speed_rad_s;
-        let got = r.loss_w[Component::Pump as usize];
+        let got = r.loss_w[Component::Pump];
         assert!(
             (got - want).abs() <= 1e-9 * want,
             "{} s: {got} instead of {want}",
@@ -72,7 +72,10 @@ fn a_belt_map_replaces_every_belt_part() {
         driven(&car("rover_216_cvt", &csv(2.0), key).unwrap()),
     );
     let (a, b) = (one.totals.total(), two.totals.total());
-    let listed = components(car("rover_216_cvt", &csv(1.0), key).unwrap().transmission());
+    let listed = car("rover_216_cvt", &csv(1.0), key)
+        .unwrap()
+        .transmission()
+        .components();
     assert!(listed.contains(&Component::BeltMap));
     for part in [
         Component::BeltBand,
@@ -81,9 +84,9 @@ fn a_belt_map_replaces_every_belt_part() {
         Component::BeltWedge,
         Component::BeltPenetration,
     ] {
-        assert!(a.loss_j[part as usize].abs() < 1e-12 && !listed.contains(&part));
+        assert!(a.loss_j[part].abs() < 1e-12 && !listed.contains(&part));
     }
-    let doubled = b.loss_j[Component::BeltMap as usize] / a.loss_j[Component::BeltMap as usize];
+    let doubled = b.loss_j[Component::BeltMap] / a.loss_j[Component::BeltMap];
     assert!((doubled - 2.0).abs() < 0.02, "{doubled}");
     assert!(b.fuel_kg > a.fuel_kg && two.totals.ledger_error < 1e-9);
     assert!(one.rows.iter().all(|r| r.slip.abs() < 1e-12));
@@ -101,10 +104,9 @@ fn val_a_constant_box_map() {
     let mut count = 0;
     for r in locked {
         let want = 3.0 * r.engine_speed_rad_s;
-        let got = r.loss_w[Component::BoxMap as usize];
+        let got = r.loss_w[Component::BoxMap];
         assert!(
-            r.loss_w[Component::GearMesh as usize].abs() < 1e-12
-                && r.loss_w[Component::Seal as usize].abs() < 1e-12
+            r.loss_w[Component::GearMesh].abs() < 1e-12 && r.loss_w[Component::Seal].abs() < 1e-12
         );
         assert!(
             (got - want).abs() <= 1e-6 * want,

@@ -592,8 +592,8 @@ fn zero_parameters_give_zero_loss() {
             .totals
             .total();
         let k = Component::ALL
-            .iter()
-            .position(|k| k.name() == component)
+            .into_iter()
+            .find(|k| k.name() == component)
             .unwrap();
         println!(
             "{component}: {:.1} kJ -> {:.3e} kJ",
@@ -616,12 +616,9 @@ fn zero_parameters_give_zero_loss() {
             "{component}: fuel does not fall"
         ); // without film, boundary friction stays whole
         for other in Component::ALL.iter().filter(|o| {
-            **o as usize != k && !(component.starts_with("belt_") && o.name().starts_with("belt_"))
+            **o != k && !(component.starts_with("belt_") && o.name().starts_with("belt_"))
         }) {
-            let (a, b) = (
-                plain.loss_j[*other as usize],
-                without.loss_j[*other as usize],
-            );
+            let (a, b) = (plain.loss_j[*other], without.loss_j[*other]);
             // Only through torque, pressure and temperature; launch speed follows torque, the film's share is steep in temperature.
             let share = if *other == Component::LaunchClutch {
                 0.15
@@ -648,18 +645,18 @@ fn zero_parameters_give_zero_loss() {
         "transmission.cvt.pump.viscous_coefficient=0",
         "transmission.cvt.pump.lubrication_l_min=0",
         "transmission.cvt.pump.leakage_l_min_per_bar=0",
-        "transmission.cvt.launch.friction_clutch.creep_nm=0",
+        "transmission.cvt.coupling.friction_clutch.creep_nm=0",
     ]);
     let t = drive(&car("rover_216_cvt", &all), &c, &at(25.0, Start::Soak))
         .totals
         .total();
     let rest: Vec<String> = Component::ALL
         .iter()
-        .filter(|k| t.loss_j[**k as usize] > 0.0)
-        .map(|k| format!("{} {:.2} kJ", k.name(), t.loss_j[*k as usize] / 1e3))
+        .filter(|k| t.loss_j[**k] > 0.0)
+        .map(|k| format!("{} {:.2} kJ", k.name(), t.loss_j[*k] / 1e3))
         .collect();
     println!("all at once, left: {rest:?}");
-    let lost: f64 = t.loss_j.iter().sum::<f64>() - t.loss_j[Component::LaunchClutch as usize];
+    let lost: f64 = t.loss_j.iter().sum::<f64>() - t.loss_j[Component::LaunchClutch];
     assert!(lost < 0.03 * t.wheel_positive_j, "{rest:?}");
 }
 

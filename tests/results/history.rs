@@ -5,7 +5,6 @@ use std::fs;
 
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
-use cvtcycle::model::drive::components;
 use cvtcycle::output::table::Cell;
 use cvtcycle::output::trace::write_trace;
 use cvtcycle::output::trace::{COLUMNS, columns_for};
@@ -50,7 +49,7 @@ fn driven(name: &str, cycle: &Cycle) -> (Vec<Row>, bool, Vec<Component>) {
     (
         rows,
         setup.transmission().is_cvt(),
-        components(setup.transmission()),
+        setup.transmission().components(),
     )
 }
 

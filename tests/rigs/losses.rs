@@ -9,7 +9,7 @@ use crate::common::{RPM, ZERO, car};
 use assert_cmd::Command;
 use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, Setup, load};
-use cvtcycle::model::bench::{BELT_PARTS, Bench, BenchPoint};
+use cvtcycle::model::bench::{Bench, BenchPoint};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::loss_table::{MapPart, write_map};
 use cvtcycle::output::losses::{Axis, LossGrid, columns};
@@ -88,7 +88,7 @@ fn val_the_bench_loses_what_a_step_of_driving_loses() {
             ..BenchPoint::default()
         });
         for component in Component::ALL {
-            let driving = drive.loss_w[component as usize] / drive.engine_rad_s;
+            let driving = drive.loss_w[component] / drive.engine_rad_s;
             let rig = answer.part_nm(component);
             assert!(
                 (driving - rig).abs() < 5e-4 * (1.0 + rig),
@@ -681,10 +681,10 @@ fn part_of_map(part: MapPart, bench: &Bench, point: &BenchPoint) -> f64 {
             belt_k: None,
             ..*point
         });
-        let others = BELT_PARTS
-            .iter()
-            .filter(|c| **c != Component::BeltMap)
-            .map(|c| answer.part_nm(*c))
+        let others = Component::ALL
+            .into_iter()
+            .filter(|c| c.is_belt() && *c != Component::BeltMap)
+            .map(|c| answer.part_nm(c))
             .sum::<f64>();
         assert!(
             others.abs() < 1e-15,

@@ -454,8 +454,7 @@ fn the_bench_equals_a_step_of_driving() {
 fn compare(bench: &Bench, step: &bench_step::Bench, s: &Setting, film: bool) -> bool {
     let d = step.solve(s);
     assert!(
-        !d.flags.contains(Flags::NOT_CONVERGED)
-            && d.loss_w[Component::LaunchClutch as usize].abs() < 1e-3,
+        !d.flags.contains(Flags::NOT_CONVERGED) && d.loss_w[Component::LaunchClutch].abs() < 1e-3,
         "{s:?}"
     );
     let w = d.engine_rad_s;
@@ -477,7 +476,7 @@ fn compare(bench: &Bench, step: &bench_step::Bench, s: &Setting, film: bool) -> 
     );
     let mut allowed_nm = 1e-3;
     for component in Component::ALL {
-        let (bench_nm, step_nm) = (b.part_nm(component), d.loss_w[component as usize] / w);
+        let (bench_nm, step_nm) = (b.part_nm(component), d.loss_w[component] / w);
         // Friction and shear of a film go with the sliding speed to a power of about 3 at most.
         let slid = film
             && matches!(

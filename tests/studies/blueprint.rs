@@ -243,7 +243,9 @@ fn numbers_of_options_that_stand_as_a_word_or_not_at_all() {
     let folder = tempfile::tempdir().unwrap();
     let launch = ["engage_rpm", "gain_nm_per_rpm2", "creep_nm", "release_rpm"];
     let word = edited(&folder, |line| match line {
-        "[transmission.cvt.launch.friction_clutch]" | "[transmission.cvt.pump.kind.fixed]" => None,
+        "[transmission.cvt.coupling.friction_clutch]" | "[transmission.cvt.pump.kind.fixed]" => {
+            None
+        }
         "[transmission.cvt.pump]" => Some(format!(
             "{line}\nkind = {{ value = \"variable\", status = \"assumed\" }}"
         )),
@@ -253,7 +255,7 @@ fn numbers_of_options_that_stand_as_a_word_or_not_at_all() {
     let mut bench = blueprint.bench();
     let base = built(&mut bench);
     let (gain, share) = (
-        "transmission.cvt.launch.friction_clutch.gain_nm_per_rpm2",
+        "transmission.cvt.coupling.friction_clutch.gain_nm_per_rpm2",
         "transmission.cvt.pump.kind.variable.least_share",
     );
     assert_eq!(slot(&blueprint, share).base().to_string(), "0.25");

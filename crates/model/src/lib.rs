@@ -1,14 +1,16 @@
 //! Physics of a car with its transmission: cycle, fluids, road load, transmission, engine, heat, drives and test benches.
 //!
-//! No input or output, SI units throughout. The modules are listed in the order of the power flow.
+//! No input or output, SI units throughout. The modules are listed in the order of their use: each uses those above it only.
 
 pub mod math;
 pub mod keys;
+pub mod flags;
+pub mod prime_mover;
 pub mod cycle;
 pub mod fluid;
 pub mod road;
+pub mod thermal;
 pub mod transmission;
 pub mod engine;
-pub mod thermal;
 pub mod drive;
 pub mod bench;

@@ -15,7 +15,9 @@ pub mod table;
 pub mod trace;
 pub mod variator;
 
-pub use cvtcycle_model::drive::{Component, Flags, PhaseTotals, Row, TERM_NAMES, Terms, Totals};
+pub use cvtcycle_model::drive::{EnergyTerms, PhaseTotals, Row, TERM_NAMES, Totals};
+pub use cvtcycle_model::flags::Flags;
+pub use cvtcycle_model::transmission::component::{ByComponent, Component};
 pub use history::History;
 
 /// Name and version of the program, as the result files cite it.

@@ -3,11 +3,10 @@
 //! The values of a grid stay in the units of their columns: what the user wrote is written back unchanged.
 
 use crate::table::{Cell, Column, Scope};
-use crate::trace::{bar, component_doc, degc, rpm};
+use crate::trace::{bar, degc, rpm};
 use crate::{Component, Flags, columns};
 use cvtcycle_config::to_si;
 use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
-use cvtcycle_model::drive::components;
 use cvtcycle_model::transmission::Transmission;
 
 /// Most points of a grid.
@@ -231,7 +230,8 @@ impl LossRow {
 /// Components that a bench knows: all but the launch clutch, which is locked.
 #[must_use]
 pub fn bench_components(transmission: &Transmission) -> Vec<Component> {
-    components(transmission)
+    transmission
+        .components()
         .into_iter()
         .filter(|c| *c != Component::LaunchClutch)
         .collect()
@@ -257,7 +257,7 @@ pub fn columns(transmission: &Transmission) -> Vec<Column<LossRow>> {
     };
     list.retain(|column| column.scope.includes(transmission.is_cvt(), &components));
     list.extend(components.into_iter().map(|component| {
-        let doc = format!("{}, torque at the input shaft", component_doc(component));
+        let doc = format!("{}, torque at the input shaft", component.doc());
         let name = format!("{}_loss_nm", component.name());
         Column::number(name, "Nm", doc, move |r: &LossRow| {
             r.answer.part_nm(component)

@@ -78,34 +78,13 @@ pub static COLUMNS: LazyLock<Vec<TraceColumn>> = LazyLock::new(|| {
 });
 
 fn loss(component: Component) -> TraceColumn {
-    let name = format!("{}_loss_w", component.name());
-    Column::number(name, "W", component_doc(component), move |row: &Row| {
-        row.loss_w[component as usize]
+    let name = component.columns().loss_w;
+    Column::number(name, "W", component.doc(), move |row: &Row| {
+        row.loss_w[component]
     })
     .only(Scope::Has(component))
 }
 
-/// Meaning of a component's loss.
-pub(crate) fn component_doc(component: Component) -> &'static str {
-    match component {
-        Component::LaunchClutch => "loss of launch clutch slip and creep",
-        Component::Pump => "loss of the oil pump",
-        Component::InputShaft => "loss of the input shaft's bearings and seals",
-        Component::ClutchDrag => "drag of the open reverse clutch",
-        Component::BeltBand => "boundary friction between bands and between band and segments",
-        Component::BeltFilm => "viscous shear between the bands",
-        Component::BeltSlip => "sliding of the segments along the pulleys",
-        Component::BeltWedge => "wedging at pulley entry and exit",
-        Component::BeltPenetration => "penetration into the deflected pulleys",
-        Component::BeltMap => "loss of the whole belt, from its measured map",
-        Component::FinalDrive => "loss of the final drive of the CVT",
-        Component::GearMesh => "gear mesh loss of the manual box, with its final drive",
-        Component::Bearing => "bearing loss of the manual box",
-        Component::Churning => "churning loss of the manual box",
-        Component::Seal => "seal loss of the manual box",
-        Component::BoxMap => "loss of the whole manual box, from its measured map",
-    }
-}
 
 /// The columns of a run, in the order of the table.
 #[must_use]

@@ -10,7 +10,6 @@ use super::table::{Head, Kind};
 use cvtcycle_config::cycle::{self, Cycle};
 use cvtcycle_config::setup::is_path;
 use cvtcycle_config::{Problem, Problems, did_you_mean};
-use cvtcycle_model::drive::components;
 use cvtcycle_output::Component;
 use cvtcycle_output::table::Column;
 use cvtcycle_output::trace::{COLUMNS, TraceColumn, columns_for};
@@ -320,7 +319,7 @@ fn parts(cars: &[StudyCar], plan: &Plan) -> Vec<Component> {
     let mut found = Vec::new();
     for car in cars {
         for setup in car.setups(&plan.factors) {
-            found.extend(components(setup.transmission()));
+            found.extend(setup.transmission().components());
         }
     }
     Component::ALL

@@ -6,6 +6,7 @@ use cvtcycle::config::cycle;
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::math::Grid;
+use cvtcycle::model::prime_mover::PrimeMover;
 use cvtcycle::model::road::{Ambient, Surface};
 use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 use cvtcycle::model::transmission::loss_map::{LossMap, MapPoint};

@@ -5,6 +5,7 @@ use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::model::bench::{Bench, BenchPoint};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::prime_mover::PrimeMover;
 use cvtcycle::output::Component;
 use std::fmt::Write as _;
 

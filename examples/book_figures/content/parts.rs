@@ -3,6 +3,7 @@
 use super::reference::{RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::transmission::coupling::CouplingLoad;
 use cvtcycle::model::transmission::cvt::pump::{Pump, PumpKind};
 use cvtcycle::output::Component;
 
@@ -172,11 +173,11 @@ fn final_drive(r: &Reference) -> String {
 }
 
 fn launch(r: &Reference) -> String {
-    let launch = &r.cvt().launch;
+    let launch = &r.cvt().coupling;
     let idle = r.cvt_car.car(298.15).engine.idle_hot_rad_s;
     let line = |rpm: f64, coupled: bool, name: &str| {
         sweep(name, 0.0, 100.0, 200, |t| {
-            launch.engine_speed_rad_s(t, rpm * RPM, idle, coupled) / RPM
+            launch.engine_rad_s(&CouplingLoad::new(t, rpm * RPM, idle, coupled)) / RPM
         })
     };
     let speeds = vec![
@@ -190,7 +191,7 @@ fn launch(r: &Reference) -> String {
             0.0,
             1500.0,
             300,
-            |n| launch.creep_torque_nm(n * RPM, idle) / launch.creep_torque_nm(0.0, idle),
+            |n| launch.creep_nm(n * RPM, idle) / launch.creep_nm(0.0, idle),
         ),
         sweep("share of overrun torque carried", 0.0, 1500.0, 300, |n| {
             launch.overrun_share(n * RPM, idle)

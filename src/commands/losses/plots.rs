@@ -5,7 +5,7 @@ use cvtcycle::output::losses::{Axis, LossRow, bench_components};
 use cvtcycle::report::charts::{MapFigure, StackFigure, map_figure, stack_figure};
 
 use super::plan::LossesPlan;
-use super::tables::{component_name, groups, held};
+use super::tables::{groups, held};
 
 /// Smallest number of values on an axis of a map: values between two points are unknown.
 const MIN_ON_MAP: usize = 3;
@@ -218,7 +218,7 @@ fn stack(plan: &LossesPlan, layout: &Layout) -> String {
         subject: &layout.subject,
         value: "Loss at the input shaft [Nm]",
         x: (layout.x.0.title(plan.is_cvt()), &layout.x.1),
-        parts: components.iter().map(|c| component_name(*c)).collect(),
+        parts: components.iter().map(|c| c.title().to_owned()).collect(),
         panels: panels.collect(),
     })
 }

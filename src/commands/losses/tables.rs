@@ -1,6 +1,5 @@
 //! Losses as tables.
 
-use cvtcycle::model::bench::BELT_PARTS;
 use cvtcycle::output::losses::{Axis, LossRow, bench_components};
 use cvtcycle::output::{Component, Flags};
 
@@ -47,13 +46,6 @@ pub fn held(plan: &LossesPlan, asked: &[f64; Axis::COUNT], axes: &[Axis]) -> Str
         .join(", ")
 }
 
-/// Name of a component, capitalised.
-pub fn component_name(component: Component) -> String {
-    let words = component.name().replace('_', " ");
-    let (first, rest) = words.split_at(1);
-    first.to_uppercase() + rest
-}
-
 fn flag_text(flags: Flags) -> String {
     flags.names().collect::<Vec<_>>().join("|")
 }
@@ -61,7 +53,7 @@ fn flag_text(flags: Flags) -> String {
 fn one(plan: &LossesPlan, row: &LossRow) -> String {
     let (w, total) = (row.point.input_rad_s, row.answer.total_nm());
     let components = bench_components(plan.setup.transmission()).into_iter();
-    let parts = components.map(|part| (component_name(part), row.answer.part_nm(part)));
+    let parts = components.map(|part| (part.title().to_owned(), row.answer.part_nm(part)));
     let parts: Vec<(String, f64)> = parts.chain([("All losses".to_owned(), total)]).collect();
     let losses = TextColumns::new()
         .left("", |part: &(String, f64)| part.0.clone())
@@ -126,8 +118,8 @@ fn state(plan: &LossesPlan, row: &LossRow) -> String {
 pub fn groups(plan: &LossesPlan) -> Vec<(String, Vec<Component>)> {
     let mut list: Vec<(String, Vec<Component>)> = Vec::new();
     for component in bench_components(plan.setup.transmission()) {
-        if !BELT_PARTS.contains(&component) {
-            list.push((component_name(component), vec![component]));
+        if !component.is_belt() {
+            list.push((component.title().to_owned(), vec![component]));
         } else if let Some((_, parts)) = list.iter_mut().find(|(name, _)| name == "Belt") {
             parts.push(component);
         } else {

@@ -2,7 +2,7 @@
 
 use cvtcycle::config::Problem;
 use cvtcycle::config::cycle::Cycle;
-use cvtcycle::model::drive::{components, fuel_map};
+use cvtcycle::model::drive::fuel_map;
 use cvtcycle::output::History;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::summary::{Driven, RunSummary, Summary};
@@ -53,7 +53,7 @@ pub fn write(
     let columns = |car: &Driven| {
         columns_for(
             car.setup.transmission().is_cvt(),
-            &components(car.setup.transmission()),
+            &car.setup.transmission().components(),
         )
     };
     let histories: Vec<History> = driven

@@ -9,7 +9,7 @@ use cvtcycle::model::thermal::{Heat, NODES};
 use cvtcycle::model::transmission::cvt::Cvt;
 use cvtcycle::model::transmission::cvt::controller::{ClampLaw, ClampSignals};
 use cvtcycle::model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, belt_state};
-use cvtcycle::model::transmission::{DriveState, Surroundings, Transmission};
+use cvtcycle::model::transmission::{StepInput, Transmission, TransmissionState};
 
 fn shipped() -> Car {
     car(CARS[0], &[]).car(293.15)
@@ -151,7 +151,7 @@ fn val_slip_limited_against_a_fine_walk() {
     assert!(met > 2 && floor > 2 && none > 2, "{met} {floor} {none}");
 }
 
-fn begin(car: &Car, wheel_rad_s: f64, power_w: f64) -> DriveState {
+fn begin(car: &Car, wheel_rad_s: f64, power_w: f64) -> TransmissionState {
     let engine = car.engine.at(300.0, 300.0, &car.engine_oil, 1.0);
     let wheel = WheelDemand {
         speed_m_s: wheel_rad_s * 0.28,
@@ -162,7 +162,7 @@ fn begin(car: &Car, wheel_rad_s: f64, power_w: f64) -> DriveState {
     let heat = Heat {
         node_k: [20.0 + ZERO; NODES],
     };
-    car.transmission.start(&Surroundings {
+    car.transmission.start(&StepInput {
         wheel: &wheel,
         engine: &engine,
         oil: &car.oil,
@@ -204,14 +204,18 @@ fn val_start_by_hand() {
         } else {
             c.low
         };
-        same(state.belt.unwrap().geometry.ratio, ratio);
-        same(state.past.engine_rad_s, (ratio * ws).max(idle));
+        same(state.cvt.unwrap().belt.geometry.ratio, ratio);
+        same(state.driveline.engine_rad_s, (ratio * ws).max(idle));
         assert_eq!(
-            (state.past.coupled, state.past.stood, state.past.overrun),
+            (
+                state.driveline.coupled,
+                state.driveline.stood,
+                state.cvt.unwrap().warm_start.overrun
+            ),
             (ratio * ws > idle, wheel == 0.0, false),
             "{wheel}"
         );
-        same(state.past.secondary_pa, cvt.floor_pa);
+        same(state.driveline.secondary_pa, cvt.floor_pa);
     }
     let manual = crate::common::car(CARS[1], &[]).car(293.15);
     let Transmission::Manual(m) = &manual.transmission else {
@@ -222,7 +226,7 @@ fn val_start_by_hand() {
         .at(300.0, 300.0, &manual.engine_oil, 1.0)
         .idle_rad_s;
     for wheel in [0.0, 4.0, 40.0, 120.0] {
-        let past = begin(&manual, wheel, 0.0).past;
+        let past = begin(&manual, wheel, 0.0).driveline;
         let gear = if wheel > 0.0 {
             m.shifts.for_speed(wheel * 0.28, 1, m.overall.len())
         } else {
@@ -234,8 +238,8 @@ fn val_start_by_hand() {
             0.0
         };
         assert_eq!(
-            (past.gear, past.coupled, past.stood, past.overrun),
-            (gear, input > idle, true, false)
+            (past.gear, past.coupled, past.stood),
+            (gear, input > idle, true)
         );
         same(past.engine_rad_s, input.max(idle));
     }

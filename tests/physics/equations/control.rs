@@ -1,10 +1,10 @@
 //! Ratio control RC-1 to RC-8, clamp map PC-1 and PC-2, launch clutch LC-1 to LC-5.
 
 use super::same;
+use cvtcycle::model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
 use cvtcycle::model::transmission::cvt::controller::{
     ClampSignals, MapLaw, RatioControl, RatioDemand,
 };
-use cvtcycle::model::transmission::launch::{FrictionClutch, Launch};
 
 fn control() -> RatioControl {
     RatioControl {
@@ -263,7 +263,9 @@ fn val_launch_clutch_by_hand() {
         idle + 15.0 * (1.0 - (-above / 5.0f64).exp()) + (above / 0.002 + 20.944f64.powi(2)).sqrt()
             - 20.944
     };
-    let speed = |nm: f64, input: f64, coupled: bool| c.engine_speed_rad_s(nm, input, idle, coupled);
+    let speed = |nm: f64, input: f64, coupled: bool| {
+        c.engine_rad_s(&CouplingLoad::new(nm, input, idle, coupled))
+    };
     for nm in [-20.0, 0.0, 5.0] {
         same(speed(nm, 20.0, false), idle);
     }
@@ -277,19 +279,19 @@ fn val_launch_clutch_by_hand() {
     same(speed(20.0, 99.0, true), 99.0 + 0.5 * (launch(20.0) - 99.0));
     same(speed(20.0, 90.0, true), launch(20.0));
     same(speed(20.0, 99.0, false), launch(20.0));
-    same(c.holds_from_rad_s(idle), 108.0);
-    assert!(c.holds(108.0, idle) && !c.holds(107.9, idle));
+    same(c.locked_from_rad_s(idle), 108.0);
+    assert!((108.0 >= c.locked_from_rad_s(idle)) && !(107.9 >= c.locked_from_rad_s(idle)));
     // An engaging speed below idle lifts nothing.
     let low = FrictionClutch {
         engage_rad_s: 60.0,
         ..c
     };
     same(
-        low.engine_speed_rad_s(20.0, 0.0, idle, false),
+        low.engine_rad_s(&CouplingLoad::new(20.0, 0.0, idle, false)),
         idle + (15.0 / 0.002 + 20.944f64.powi(2)).sqrt() - 20.944,
     );
     for (input, nm) in [(0.0, 5.0), (45.0, 2.5), (90.0, 0.0), (200.0, 0.0)] {
-        same(c.creep_torque_nm(input, idle), nm);
+        same(c.creep_nm(input, idle), nm);
     }
     // Release at 110: from 99 (1.1 idle) to 128; released earlier than that: from 99 to 117.
     for (input, share) in [

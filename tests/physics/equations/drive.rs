@@ -5,18 +5,21 @@ use super::{near, same};
 use crate::common::bench_step::{Bench, Setting};
 use crate::common::{RPM, ZERO, car};
 use cvtcycle::config::cycle::GearCommand;
-use cvtcycle::model::engine::{EngineNow, FULL};
+use cvtcycle::model::engine::EngineAtTemperature;
 use cvtcycle::model::math::{Curve, Grid};
+use cvtcycle::model::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use cvtcycle::model::road::WheelDemand;
 use cvtcycle::model::thermal::{Heat, NODES};
+use cvtcycle::model::transmission::coupling::CouplingLoad;
 use cvtcycle::model::transmission::cvt::Cvt;
 use cvtcycle::model::transmission::cvt::controller::{ClampLaw, ClampSignals, RatioDemand};
 use cvtcycle::model::transmission::cvt::pump::PumpKind;
 use cvtcycle::model::transmission::cvt::variator::{
     BeltAtRatio, BeltLoad, Geometry, belt_state, sliding_speed_m_s,
 };
+use cvtcycle::model::transmission::cvt::{CvtMaps, CvtState};
 use cvtcycle::model::transmission::loss_map::LossMap;
-use cvtcycle::model::transmission::{Drive, DriveState, Surroundings, Transmission};
+use cvtcycle::model::transmission::{StepInput, StepOutput, Transmission, TransmissionState};
 use cvtcycle::output::{Component, Flags};
 
 /// What fixes the output torque.
@@ -75,7 +78,7 @@ fn engine_side(primary_nm: f64, wp: f64, we: f64) -> f64 {
 }
 
 /// Works out every loss, torque and flag of a moving step again. Answers with what bound the output torque.
-fn check(b: &Bench, s: &Setting, d: &Drive) -> Bind {
+fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
     let (cvt, o) = (b.cvt(), oil(b, s));
     let engine = b.car.engine.at(
         s.engine_degc + ZERO,
@@ -103,7 +106,7 @@ fn check(b: &Bench, s: &Setting, d: &Drive) -> Bind {
     let at = BeltAtRatio::new(&cvt.belt, s.ratio);
     let load = belt_load(b, s, wp, secondary_nm, cvt.secondary_clamp_n(pa, ws));
     let belt = belt_state(&cvt.belt, &at, &load);
-    let lost = |c: Component| d.loss_w[c as usize];
+    let lost = |c: Component| d.loss_w[c];
     let watts = |got: f64, want: f64| {
         assert!(
             (got - want).abs() <= 2e-6 * want.abs() + 2e-5,
@@ -151,9 +154,9 @@ fn check(b: &Bench, s: &Setting, d: &Drive) -> Bind {
     let together = 1.0 - ((we / wp - 1.0) / 0.02).clamp(0.0, 1.0);
     let dragged = engine.drag_nm(we) + engine.accessories_nm(we) + spin_nm;
     let least = if wp < idle {
-        cvt.launch.creep_torque_nm(wp, idle)
+        cvt.coupling.creep_nm(wp, idle)
     } else {
-        -together * cvt.launch.overrun_share(wp, idle) * dragged
+        -together * cvt.coupling.overrun_share(wp, idle) * dragged
     };
     let most = engine.full_load_nm(we) - engine.accessories_nm(we) - spin_nm;
     let power = s.wheel_nm * s.wheel_rad_s;
@@ -215,8 +218,8 @@ fn check(b: &Bench, s: &Setting, d: &Drive) -> Bind {
 struct Solved<'a> {
     b: &'a Bench,
     s: &'a Setting,
-    d: &'a Drive,
-    engine: &'a EngineNow<'a>,
+    d: &'a StepOutput,
+    engine: &'a EngineAtTemperature<'a>,
     wp: f64,
     primary_nm: f64,
     secondary_nm: f64,
@@ -229,8 +232,8 @@ fn engine_and_clamp(x: &Solved) {
     let (cvt, d, engine, wp) = (x.b.cvt(), x.d, x.engine, x.wp);
     let (we, idle) = (d.engine_rad_s, engine.idle_rad_s);
     let wanted = cvt
-        .launch
-        .engine_speed_rad_s(x.primary_nm, wp, idle, x.s.coupled);
+        .coupling
+        .engine_rad_s(&CouplingLoad::new(x.primary_nm, wp, idle, x.s.coupled));
     near(we, wanted.max(wp), 1e-5);
     let throttle =
         ((d.shaft_nm + engine.accessories_nm(we)) / engine.full_load_nm(we)).clamp(0.0, 1.0);
@@ -296,7 +299,7 @@ fn flags(x: &Solved, bind: Bind, gross: bool, capacity_nm: f64, short: bool) {
         ),
         (
             Flags::OUTSIDE_VALIDITY,
-            cold(x.s.sump_degc) || cold(x.s.belt_degc) || share > FULL,
+            cold(x.s.sump_degc) || cold(x.s.belt_degc) || share > FULL_LOAD_LIMIT,
         ),
         (Flags::ENGINE_OFF, false),
     ];
@@ -389,12 +392,12 @@ fn shifted(
     wheel: &WheelDemand,
     past_pa: f64,
     sump_degc: f64,
-) -> (Drive, RatioDemand) {
+) -> (StepOutput, RatioDemand) {
     let (cvt, car) = (cvt_car.cvt(), &cvt_car.car);
     let k = sump_degc + ZERO;
     let engine = car.engine.at(k, k, &car.engine_oil, 0.8);
     let heat = Heat { node_k: [k; NODES] };
-    let around = Surroundings {
+    let around = StepInput {
         wheel,
         engine: &engine,
         oil: &car.oil,
@@ -404,12 +407,12 @@ fn shifted(
         engine_off: false,
     };
     let mut state = car.transmission.start(&around);
-    state.belt = Some(BeltAtRatio::new(&cvt.belt, from));
-    state.past.secondary_pa = past_pa;
+    state.cvt = Some(CvtState::new(BeltAtRatio::new(&cvt.belt, from)));
+    state.driveline.secondary_pa = past_pa;
     (
-        state.past.engine_rad_s,
-        state.past.coupled,
-        state.past.stood,
+        state.driveline.engine_rad_s,
+        state.driveline.coupled,
+        state.driveline.stood,
     ) = (160.0, true, true);
     let eta = car.oil.dynamic_pa_s(k);
     let drawn = cvt
@@ -521,7 +524,7 @@ fn val_shift_of_the_shipped_box() {
                     .pump
                     .state(&cvt.pump.at(eta), d.engine_rad_s, d.secondary_pa, need);
                 near(
-                    d.loss_w[Component::Pump as usize],
+                    d.loss_w[Component::Pump],
                     pump.torque_nm * d.engine_rad_s,
                     1e-9,
                 );
@@ -578,7 +581,7 @@ fn standing(b: &Bench) {
             .at(degc + ZERO, degc + ZERO, &b.car.engine_oil, 1.0);
         let idle = engine.idle_rad_s;
         same(d.engine_rad_s, idle);
-        let creep = cvt.launch.creep_torque_nm(0.0, idle);
+        let creep = cvt.coupling.creep_nm(0.0, idle);
         let spin = cvt.spin.at(o.nu_sump);
         let pump = cvt.pump.state(
             &cvt.pump.at(o.eta_sump),
@@ -587,12 +590,9 @@ fn standing(b: &Bench) {
             cvt.pump.steady_need_m3_s(d.secondary_pa, o.eta_sump),
         );
         same(d.shaft_nm, creep + pump.torque_nm + spin.shaft_nm(idle));
-        same(d.loss_w[Component::LaunchClutch as usize], creep * idle);
-        same(d.loss_w[Component::Pump as usize], pump.torque_nm * idle);
-        same(
-            d.loss_w[Component::InputShaft as usize],
-            spin.shaft_nm(idle) * idle,
-        );
+        same(d.loss_w[Component::LaunchClutch], creep * idle);
+        same(d.loss_w[Component::Pump], pump.torque_nm * idle);
+        same(d.loss_w[Component::InputShaft], spin.shaft_nm(idle) * idle);
         same(d.oil_flow_m3_s, pump.working_m3_s);
         let share = (d.shaft_nm + engine.accessories_nm(idle)) / engine.full_load_nm(idle);
         assert!(
@@ -632,7 +632,7 @@ fn standing(b: &Bench) {
             (Flags::NOT_CONVERGED, false),
             (
                 Flags::OUTSIDE_VALIDITY,
-                !(-40.0..=160.0).contains(&degc) || share > FULL,
+                !(-40.0..=160.0).contains(&degc) || share > FULL_LOAD_LIMIT,
             ),
             (Flags::RATIO_LIMIT, cvt_ratio >= 3.0),
             (Flags::OVERSPEED, false),
@@ -651,7 +651,7 @@ fn after(
     before_rad_s: f64,
     coupled: bool,
     dt_s: f64,
-) -> (Drive, DriveState) {
+) -> (StepOutput, TransmissionState) {
     let k = 60.0 + ZERO;
     let engine = b.car.engine.at(k, k, &b.car.engine_oil, 1.0);
     let wheel = WheelDemand {
@@ -661,7 +661,7 @@ fn after(
         ..WheelDemand::default()
     };
     let heat = Heat { node_k: [k; NODES] };
-    let around = Surroundings {
+    let around = StepInput {
         wheel: &wheel,
         engine: &engine,
         oil: &b.car.oil,
@@ -671,8 +671,8 @@ fn after(
         engine_off: false,
     };
     let mut state = b.car.transmission.start(&around);
-    state.belt = Some(BeltAtRatio::new(&b.cvt().belt, 1.0));
-    (state.past.engine_rad_s, state.past.coupled) = (before_rad_s, coupled);
+    state.cvt = Some(CvtState::new(BeltAtRatio::new(&b.cvt().belt, 1.0)));
+    (state.driveline.engine_rad_s, state.driveline.coupled) = (before_rad_s, coupled);
     let d = b.car.transmission.solve(&around, &mut state);
     (d, state)
 }
@@ -688,7 +688,7 @@ fn a_step_is_remembered() {
         (3.0, 200.0, 120.0, false),
     ] {
         let (d, state) = after(&b, wheel, nm, before, coupled, 1.0);
-        let past = state.past;
+        let past = state.driveline;
         assert_eq!(
             (past.engine_rad_s, past.throttle, past.secondary_pa),
             (d.engine_rad_s, d.throttle, d.secondary_pa)
@@ -733,7 +733,7 @@ fn val_overrun_fades_in_over_two_per_cent() {
         );
         let spin_nm = pump.torque_nm + cvt.spin.at(o.nu_sump).shaft_nm(we);
         let carried = share
-            * cvt.launch.overrun_share(wp, engine.idle_rad_s)
+            * cvt.coupling.overrun_share(wp, engine.idle_rad_s)
             * (engine.drag_nm(we) + engine.accessories_nm(we) + spin_nm);
         let want = -carried * wp / we + spin_nm;
         assert!(
@@ -756,8 +756,10 @@ fn val_maps_in_a_step() {
         .to_vec();
     let map = LossMap::new(Grid::from_rows(&rows).unwrap());
     if let Transmission::Cvt(cvt) = &mut b.car.transmission {
-        cvt.maps.final_drive = Some(map.clone());
-        cvt.maps.pump = Some(map);
+        let mut maps = CvtMaps::default();
+        maps[Component::FinalDrive] = Some(map.clone());
+        maps[Component::Pump] = Some(map);
+        cvt.maps = Some(Box::new(maps));
     }
     for (sump_degc, wheel_rad_s) in [(60.0, 30.0), (110.0, 30.0), (60.0, 0.0), (10.0, 0.0)] {
         let s = Setting {
@@ -773,16 +775,8 @@ fn val_maps_in_a_step() {
             "{s:?}"
         );
         let wp = b.cvt().final_drive * wheel_rad_s / (1.0 - d.slip);
-        near(
-            d.loss_w[Component::FinalDrive as usize] + 1.0,
-            0.7 * wp + 1.0,
-            1e-9,
-        );
-        near(
-            d.loss_w[Component::Pump as usize],
-            0.7 * d.engine_rad_s,
-            1e-9,
-        );
+        near(d.loss_w[Component::FinalDrive] + 1.0, 0.7 * wp + 1.0, 1e-9);
+        near(d.loss_w[Component::Pump], 0.7 * d.engine_rad_s, 1e-9);
     }
 }
 
@@ -825,7 +819,7 @@ fn an_engine_at_rest_turns_nothing() {
     let heat = Heat {
         node_k: [300.0; NODES],
     };
-    let around = Surroundings {
+    let around = StepInput {
         wheel: &wheel,
         engine: &engine,
         oil: &car.oil,
@@ -838,11 +832,11 @@ fn an_engine_at_rest_turns_nothing() {
     let Transmission::Cvt(cvt) = &car.transmission else {
         panic!("a CVT")
     };
-    state.belt = Some(BeltAtRatio::new(&cvt.belt, 1.4));
+    state.cvt = Some(CvtState::new(BeltAtRatio::new(&cvt.belt, 1.4)));
     (
-        state.past.engine_rad_s,
-        state.past.coupled,
-        state.past.stood,
+        state.driveline.engine_rad_s,
+        state.driveline.coupled,
+        state.driveline.stood,
     ) = (400.0, true, false);
     let d = car.transmission.solve(&around, &mut state);
     assert!(
@@ -858,6 +852,8 @@ fn an_engine_at_rest_turns_nothing() {
             && d.loss_w.iter().all(|w| *w == 0.0)
     );
     assert!(
-        state.past.engine_rad_s == engine.idle_rad_s && state.past.stood && !state.past.coupled
+        state.driveline.engine_rad_s == engine.idle_rad_s
+            && state.driveline.stood
+            && !state.driveline.coupled
     );
 }

@@ -3,7 +3,8 @@
 use super::same;
 use crate::common::{ZERO, car};
 use cvtcycle::config::setup::Setup;
-use cvtcycle::model::engine::{Engine, EngineNow};
+use cvtcycle::model::engine::{Engine, EngineAtTemperature};
+use cvtcycle::model::prime_mover::PrimeMover;
 use std::f64::consts::PI;
 
 fn engine() -> (Setup, Engine) {
@@ -25,7 +26,12 @@ fn engine() -> (Setup, Engine) {
     (setup, engine)
 }
 
-fn at<'a>(setup: &Setup, e: &'a Engine, coolant_degc: f64, oil_degc: f64) -> EngineNow<'a> {
+fn at<'a>(
+    setup: &Setup,
+    e: &'a Engine,
+    coolant_degc: f64,
+    oil_degc: f64,
+) -> EngineAtTemperature<'a> {
     e.at(coolant_degc + ZERO, oil_degc + ZERO, setup.oils().1, 0.9)
 }
 

@@ -4,13 +4,14 @@ use super::{near, same};
 use crate::common::{CARS, ZERO, car};
 use cvtcycle::config::cycle::GearCommand;
 use cvtcycle::model::drive::Car;
-use cvtcycle::model::engine::{EngineNow, FULL};
+use cvtcycle::model::engine::EngineAtTemperature;
+use cvtcycle::model::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use cvtcycle::model::road::WheelDemand;
 use cvtcycle::model::thermal::{Heat, NODES};
+use cvtcycle::model::transmission::coupling::{CouplingLoad, FrictionClutch};
 use cvtcycle::model::transmission::film_heating::FilmHeating;
-use cvtcycle::model::transmission::launch::FrictionClutch;
 use cvtcycle::model::transmission::manual::{Manual, ShiftSpeeds};
-use cvtcycle::model::transmission::{Drive, DriveState, Surroundings, Transmission};
+use cvtcycle::model::transmission::{StepInput, StepOutput, Transmission, TransmissionState};
 use cvtcycle::output::Component;
 use cvtcycle::output::Flags;
 use std::f64::consts::PI;
@@ -32,7 +33,7 @@ pub fn manual() -> Manual {
             up_m_s: vec![4.2, 9.7, 13.9, 19.4],
             down_m_s: vec![3.0, 7.0, 11.0, 15.0],
         },
-        launch: Arc::new(FrictionClutch {
+        coupling: Arc::new(FrictionClutch {
             engage_rad_s: 105.0,
             gain_nm_s2: 0.0019,
             creep_nm: 0.0,
@@ -135,7 +136,7 @@ const STEP: Step = Step {
 };
 
 /// The step's answer, and what the box remembers.
-fn solve(car: &Car, s: &Step) -> (Drive, DriveState) {
+fn solve(car: &Car, s: &Step) -> (StepOutput, TransmissionState) {
     let k = s.degc + ZERO;
     let engine = car.engine.at(k, k, &car.engine_oil, 1.0);
     let wheel = WheelDemand {
@@ -145,7 +146,7 @@ fn solve(car: &Car, s: &Step) -> (Drive, DriveState) {
         ..WheelDemand::default()
     };
     let heat = Heat { node_k: [k; NODES] };
-    let around = Surroundings {
+    let around = StepInput {
         wheel: &wheel,
         engine: &engine,
         oil: &car.oil,
@@ -155,8 +156,11 @@ fn solve(car: &Car, s: &Step) -> (Drive, DriveState) {
         engine_off: s.engine_off,
     };
     let mut state = car.transmission.start(&around);
-    (state.past.gear, state.past.engine_rad_s, state.past.coupled) =
-        (s.before_gear, s.before_rad_s, s.coupled);
+    (
+        state.driveline.gear,
+        state.driveline.engine_rad_s,
+        state.driveline.coupled,
+    ) = (s.before_gear, s.before_rad_s, s.coupled);
     let drive = car.transmission.solve(&around, &mut state);
     (drive, state)
 }
@@ -178,10 +182,10 @@ fn spin(m: &Manual, speed: f64, nu: f64) -> f64 {
 }
 
 /// A step in gear against MB-1, LC-1 to LC-4 and the bounds of the engine. Answers with what bound it: 0 demand, 1 least, 2 full load.
-fn check(car: &Car, s: &Step, d: &Drive, gear: u8) -> usize {
+fn check(car: &Car, s: &Step, d: &StepOutput, gear: u8) -> usize {
     let (m, place) = (box_of(car), format!("{s:?} {d:?}"));
     let k = s.degc + ZERO;
-    let engine: EngineNow = car.engine.at(k, k, &car.engine_oil, 1.0);
+    let engine: EngineAtTemperature = car.engine.at(k, k, &car.engine_oil, 1.0);
     let nu = car.oil.kinematic_m2_s(k);
     assert_eq!(d.gear, gear, "{place}");
     let input = m.overall[usize::from(gear) - 1] * s.wheel_rad_s;
@@ -199,14 +203,11 @@ fn check(car: &Car, s: &Step, d: &Drive, gear: u8) -> usize {
         )
     };
     for (part, nm) in parts {
-        tight(d.loss_w[part as usize], nm * input);
+        tight(d.loss_w[part], nm * input);
     }
     let input_nm = output + parts.iter().map(|p| p.1).sum::<f64>();
     tight(d.shaft_nm, input_nm);
-    tight(
-        d.loss_w[Component::LaunchClutch as usize],
-        input_nm * (w - input),
-    ); // LC-4
+    tight(d.loss_w[Component::LaunchClutch], input_nm * (w - input)); // LC-4
     let pace = car.engine.inertia_torque_nm / car.engine.inertia_kg_m2 * s.dt_s;
     let reach = |wanted: f64| {
         if wanted > input {
@@ -217,7 +218,12 @@ fn check(car: &Car, s: &Step, d: &Drive, gear: u8) -> usize {
             input
         }
     };
-    let speed = |nm: f64| reach(m.launch.engine_speed_rad_s(nm, input, idle, s.coupled));
+    let speed = |nm: f64| {
+        reach(
+            m.coupling
+                .engine_rad_s(&CouplingLoad::new(nm, input, idle, s.coupled)),
+        )
+    };
     let demand_nm = power / input;
     let demanded = demand_nm
         + m.part_losses_nm(gear, input, demand_nm, nu, k)
@@ -227,9 +233,9 @@ fn check(car: &Car, s: &Step, d: &Drive, gear: u8) -> usize {
             .sum::<f64>();
     let first = speed(demanded);
     let least = if input < idle {
-        m.launch.creep_torque_nm(input, idle)
+        m.coupling.creep_nm(input, idle)
     } else {
-        -m.launch.overrun_share(input, idle)
+        -m.coupling.overrun_share(input, idle)
             * (engine.drag_nm(first) + engine.accessories_nm(first))
     };
     let most = engine.full_load_nm(first) - engine.accessories_nm(first);
@@ -271,7 +277,7 @@ fn check(car: &Car, s: &Step, d: &Drive, gear: u8) -> usize {
         (Flags::OVERSPEED, w > car.engine.highest_rad_s),
         (
             Flags::OUTSIDE_VALIDITY,
-            !(-40.0..=160.0).contains(&s.degc) || share > FULL,
+            !(-40.0..=160.0).contains(&s.degc) || share > FULL_LOAD_LIMIT,
         ),
         (Flags::ENGINE_OFF, false),
     ] {
@@ -386,8 +392,12 @@ fn val_commands_of_gears() {
             wheel_rad_s: 60.0,
             ..STEP
         });
-        assert_eq!((d.gear, state.past.gear), (gear, gear), "{command:?}");
-        assert!(!d.flags.contains(Flags::CLUTCH_OPEN) && state.past.coupled && !state.past.stood);
+        assert_eq!((d.gear, state.driveline.gear), (gear, gear), "{command:?}");
+        assert!(
+            !d.flags.contains(Flags::CLUTCH_OPEN)
+                && state.driveline.coupled
+                && !state.driveline.stood
+        );
     }
     let nu = car.oil.kinematic_m2_s(k);
     let open = |s: Step, gear: u8| {
@@ -396,7 +406,7 @@ fn val_commands_of_gears() {
         assert!(
             d.flags.contains(Flags::CLUTCH_OPEN)
                 && d.gear == gear
-                && !state.past.coupled
+                && !state.driveline.coupled
                 && d.shaft_nm == 0.0,
             "{s:?} {d:?}"
         );
@@ -409,7 +419,7 @@ fn val_commands_of_gears() {
             d.engine_rad_s,
             idle.clamp(s.before_rad_s - pace, s.before_rad_s + pace),
         );
-        assert_eq!(state.past.gear, gear);
+        assert_eq!(state.driveline.gear, gear);
     };
     for dt_s in [0.02, 5.0] {
         open(
@@ -505,8 +515,8 @@ fn val_commands_of_gears() {
     assert!(
         d.flags.contains(Flags::CLUTCH_OPEN)
             && d.loss_w.iter().all(|w| *w == 0.0)
-            && state.past.stood
-            && !state.past.coupled
+            && state.driveline.stood
+            && !state.driveline.coupled
     );
     // Neutral at rest: the engine turns a share of the box.
     for command in [Some(Neutral), None] {
@@ -523,9 +533,9 @@ fn val_commands_of_gears() {
         same(d.loss_w.iter().sum::<f64>(), nm * idle);
         assert!(
             d.gear == 0
-                && state.past.gear == 2
-                && !state.past.coupled
-                && state.past.stood
+                && state.driveline.gear == 2
+                && !state.driveline.coupled
+                && state.driveline.stood
                 && d.output_w == 0.0
         );
     }
@@ -572,8 +582,8 @@ fn val_commands_of_gears() {
     assert!(
         d.flags.contains(Flags::ENGINE_OFF)
             && d.engine_rad_s == 0.0
-            && state.past.stood
-            && !state.past.coupled
+            && state.driveline.stood
+            && !state.driveline.coupled
     );
-    same(state.past.engine_rad_s, idle);
+    same(state.driveline.engine_rad_s, idle);
 }

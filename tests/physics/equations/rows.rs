@@ -6,6 +6,7 @@ use crate::common::{CARS, Keep, ZERO, at, car, cycle, hill};
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::model::drive::{Car, State, simulate};
 use cvtcycle::model::drive::{Start, drive, fuel_map, litres_per_100km};
+use cvtcycle::model::prime_mover::PrimeMover;
 use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, NODES, SUMP};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::output::{Component, Flags, Row};
@@ -19,7 +20,7 @@ fn close(got: f64, want: f64, scale: f64, place: &str) {
 }
 
 fn sum(row: &Row, parts: &[Component]) -> f64 {
-    parts.iter().map(|c| row.loss_w[*c as usize]).sum()
+    parts.iter().map(|c| row.loss_w[*c]).sum()
 }
 
 /// SI-3 by the words of the table.
@@ -41,7 +42,7 @@ fn heat_w(car: &Car, row: &Row) -> [f64; NODES] {
     power[BELT] = car.belt_heat_share * belt;
     power[METAL] = sum(row, &[C::InputShaft, C::Bearing, C::Seal]);
     let all: f64 = row.loss_w.iter().sum();
-    let clutch = row.loss_w[C::LaunchClutch as usize];
+    let clutch = row.loss_w[C::LaunchClutch];
     power[SUMP] = all - power[BELT] - power[METAL] - if cvt { 0.0 } else { clutch };
     power[COOLANT] = if cvt { 0.0 } else { clutch };
     power

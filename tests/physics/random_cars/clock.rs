@@ -85,7 +85,7 @@ fn repeated(car: &Car, cycle: &Cycle, start_k: f64, seconds: f64) -> ([f64; NODE
     for _ in 0..count {
         let before = state.heat;
         state = State {
-            drive: None,
+            transmission: None,
             ..simulate(car, trace, 1.0, state, &mut NullRecorder)
         };
         moved = (0..NODES)
@@ -98,7 +98,7 @@ fn repeated(car: &Car, cycle: &Cycle, start_k: f64, seconds: f64) -> ([f64; NODE
 struct NullRecorder;
 
 impl cvtcycle::model::drive::Recorder for NullRecorder {
-    fn record(&mut self, _: &cvtcycle::output::Row, _: &cvtcycle::output::Terms) {}
+    fn record(&mut self, _: &cvtcycle::output::Row, _: &cvtcycle::output::EnergyTerms) {}
 }
 
 /// A cycle that is repeated comes to a periodic state: temperatures stop changing from one drive to the next, and it is the same state from a

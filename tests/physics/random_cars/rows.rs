@@ -6,9 +6,10 @@ use std::collections::BTreeMap;
 use cvtcycle::config::cycle::Step;
 use cvtcycle::model::drive::{Car, State, simulate};
 use cvtcycle::model::drive::{Conditions, Start, drive};
+use cvtcycle::model::prime_mover::PrimeMover;
 use cvtcycle::model::road::RoadLoad;
 use cvtcycle::model::thermal::{COOLANT, ENGINE_OIL, Heat, METAL, NODES, SUMP};
-use cvtcycle::output::{Component, Flags, Row, Terms};
+use cvtcycle::output::{Component, EnergyTerms, Flags, Row};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 
@@ -36,7 +37,7 @@ fn simpson_w(road: &RoadLoad, step: &Step) -> f64 {
 }
 
 /// Both ledgers, and that each term is what the row shows.
-fn books(step: &Step, row: &Row, t: &Terms, car: &Car) -> Checked {
+fn books(step: &Step, row: &Row, t: &EnergyTerms, car: &Car) -> Checked {
     prop_assert!(
         t.power_error() <= 1e-9 && t.heat_error() <= 1e-9,
         "ledgers {:e} {:e} in {t:?}",
@@ -66,7 +67,7 @@ fn books(step: &Step, row: &Row, t: &Terms, car: &Car) -> Checked {
 /// Nothing that only flows one way is negative.
 fn signs(row: &Row) -> Checked {
     for component in Component::ALL {
-        let loss = row.loss_w[component as usize];
+        let loss = row.loss_w[component];
         prop_assert!(loss >= 0.0, "{} loses {loss} W", component.name());
     }
     let named = [
@@ -158,7 +159,7 @@ fn engine_bounds(row: &Row, car: &Car, before: &Heat) -> Checked {
 
 /// Heat into each node by SI-3, with engine heat as a whole: an upper bound for coolant and for engine oil each.
 fn most_heat_w(row: &Row, car: &Car) -> [f64; NODES] {
-    let of = |list: &[Component]| list.iter().map(|c| row.loss_w[*c as usize]).sum::<f64>();
+    let of = |list: &[Component]| list.iter().map(|c| row.loss_w[*c]).sum::<f64>();
     use Component as C;
     let belt = of(&[
         C::BeltBand,
@@ -246,7 +247,7 @@ struct Seen {
 }
 
 impl Seen {
-    fn row(&self, row: &Row, terms: &Terms) {
+    fn row(&self, row: &Row, terms: &EnergyTerms) {
         self.rows.set(self.rows.get() + 1);
         self.ledger.set(larger(
             larger(terms.power_error(), terms.heat_error()),

@@ -320,7 +320,7 @@ fn stacked_losses_keep_their_energy() {
         for component in CVT {
             let sum: f64 = rows
                 .iter()
-                .map(|row| row.loss_w[component as usize] * row.dt_s)
+                .map(|row| row.loss_w[component] * row.dt_s)
                 .sum();
             let error = (bins.energy_j(component) - sum).abs();
             assert!(

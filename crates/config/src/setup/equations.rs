@@ -24,7 +24,7 @@ macro_rules! source {
 /// Model files in the order in which power and heat flow, then the rigs and the studies.
 const SOURCES: &[(&str, &str)] = &[
     source!("crates/model/src/road.rs"),
-    source!("crates/model/src/transmission/launch.rs"),
+    source!("crates/model/src/transmission/coupling/friction_clutch.rs"),
     source!("crates/model/src/transmission/film_heating.rs"),
     source!("crates/model/src/transmission/cvt/mod.rs"),
     source!("crates/model/src/transmission/cvt/controller/ratio.rs"),
@@ -43,7 +43,7 @@ const SOURCES: &[(&str, &str)] = &[
     source!("crates/model/src/engine/fuel.rs"),
     source!("crates/model/src/fluid/mod.rs"),
     source!("crates/model/src/thermal/mod.rs"),
-    source!("crates/model/src/drive/simulate.rs"),
+    source!("crates/model/src/drive/step.rs"),
     source!("crates/model/src/drive/balance.rs"),
     source!("crates/model/src/bench/bench.rs"),
     source!("crates/model/src/bench/transmission/transient.rs"),

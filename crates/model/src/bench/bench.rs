@@ -11,35 +11,13 @@
 
 use super::cvt_bench;
 use crate::drive::{Car, Vehicle};
-use crate::drive::{Component, Flags};
+use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::transmission::Transmission;
-use crate::transmission::cvt::Cvt;
+use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::cvt::variator::{BeltState, Formulation};
+use crate::transmission::cvt::{Cvt, Parts};
 use crate::transmission::manual::Manual;
-
-/// Which parts of a CVT are in the box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Parts {
-    /// Final drive.
-    pub final_drive: bool,
-    /// Belt; without it nothing behind the primary turns.
-    pub belt: bool,
-    /// Plates of the reverse clutch.
-    pub reverse_clutch: bool,
-    /// Pump; without it the circuit has no pressure.
-    pub pump: bool,
-}
-
-impl Parts {
-    /// The complete box.
-    pub const ALL: Parts = Parts {
-        final_drive: true,
-        belt: true,
-        reverse_clutch: true,
-        pump: true,
-    };
-}
 
 /// What the bench is set to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,7 +62,7 @@ impl Default for BenchPoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchAnswer {
     /// Loss of each component, Nm at the input shaft.
-    pub loss_nm: [f64; Component::COUNT],
+    pub loss_nm: ByComponent<f64>,
     /// Torque at the input shaft, Nm (RB-1, RB-3).
     pub input_nm: f64,
     /// Speed of the output shaft, rad/s.
@@ -101,21 +79,11 @@ pub struct BenchAnswer {
     pub flags: Flags,
 }
 
-/// Components that make up the belt.
-pub const BELT_PARTS: [Component; 6] = [
-    Component::BeltBand,
-    Component::BeltFilm,
-    Component::BeltSlip,
-    Component::BeltWedge,
-    Component::BeltPenetration,
-    Component::BeltMap,
-];
-
 impl BenchAnswer {
     /// Loss of one component, Nm at the input shaft.
     #[must_use]
     pub fn part_nm(&self, component: Component) -> f64 {
-        self.loss_nm[component as usize]
+        self.loss_nm[component]
     }
 
     /// All losses, Nm at the input shaft.
@@ -127,7 +95,7 @@ impl BenchAnswer {
     /// All belt losses, Nm at the input shaft.
     #[must_use]
     pub fn belt_nm(&self) -> f64 {
-        BELT_PARTS.iter().map(|c| self.part_nm(*c)).sum()
+        cvt_bench::belt_nm(&self.loss_nm)
     }
 }
 
@@ -189,9 +157,9 @@ impl Bench {
         let nu = self.car.oil.kinematic_m2_s(p.sump_k);
         let output_nm = p.output_nm / overall;
         let (parts, inside) = manual.part_losses_nm(gear, p.input_rad_s, output_nm, nu, p.sump_k);
-        let mut loss_nm = [0.0; Component::COUNT];
+        let mut loss_nm = ByComponent::default();
         for (component, loss) in parts {
-            loss_nm[component as usize] = loss;
+            loss_nm[component] = loss;
         }
         let input_nm = output_nm + loss_nm.iter().sum::<f64>(); // RB-3
         let mut flags = Flags::default();

@@ -1,22 +1,19 @@
 //! One operating point of a CVT on the bench: a fixed point in slip, pressure and belt temperature (RB-1, RB-2).
 
-use super::bench::{BELT_PARTS, BenchAnswer, BenchPoint};
+use super::bench::{BenchAnswer, BenchPoint};
 use crate::drive::Car;
-use crate::drive::{Component, Flags};
+use crate::flags::Flags;
 use crate::fluid::VALID_K;
+use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::cvt::Cvt;
-use crate::transmission::cvt::controller::ClampSignals;
-use crate::transmission::cvt::pump::PumpNow;
-use crate::transmission::cvt::spin::SpinNow;
-use crate::transmission::cvt::variator::point::LIMIT_SLACK;
-use crate::transmission::cvt::variator::point::PointStatus;
+use crate::transmission::cvt::driveline::{Driveline, PartTorques, Shaft};
+use crate::transmission::cvt::variator::point::{LIMIT_SLACK, PointStatus};
 use crate::transmission::cvt::variator::{
-    Belt, BeltAtRatio, BeltLoad, BeltState, Slip, belt_point, belt_state, sliding_speed_m_s,
+    Belt, BeltAtRatio, BeltLoad, BeltState, Slip, belt_point, belt_state,
 };
-use crate::transmission::loss_map::{LossMap, MapPoint};
 
-/// Most passes of the fixed point; its contraction is below 0.2 in the shipped box, so far fewer are used.
-const MOST_PASSES: u32 = 120;
+/// Largest number of passes of the fixed point; its contraction is below 0.2 in the shipped box, so far fewer are used.
+const MAX_PASSES: u32 = 120;
 /// Passes after which it goes on in half steps.
 const DAMPED_FROM: u32 = 30;
 /// It stops when slip and belt temperature (K) move less than this, and the pressure (Pa) 1e5 times as much.
@@ -87,19 +84,15 @@ fn printed_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
 /// What does not change during the fixed point.
 struct OnBench<'a> {
     car: &'a Car,
-    cvt: &'a Cvt,
     point: &'a BenchPoint,
-    at: BeltAtRatio,
-    spin: SpinNow,
-    pump: PumpNow,
-    eta_sump: f64,
+    line: Driveline<'a>,
     printed: bool,
 }
 
-/// One pass with what the pass before left.
+/// One pass with the result of the pass before.
 struct Pass {
     next: Unknown,
-    loss_nm: [f64; Component::COUNT],
+    loss_nm: ByComponent<f64>,
     secondary_rad_s: f64,
     secondary_nm: f64,
     oil_flow_m3_s: f64,
@@ -110,16 +103,12 @@ struct Pass {
 
 /// Solves one operating point of a CVT.
 pub(super) fn solve(car: &Car, cvt: &Cvt, point: &BenchPoint, printed: bool) -> BenchAnswer {
-    let eta_sump = car.oil.dynamic_pa_s(point.sump_k);
+    let at = BeltAtRatio::new(&cvt.belt, point.ratio);
     let this = OnBench {
         car,
-        cvt,
         point,
         printed,
-        at: BeltAtRatio::new(&cvt.belt, point.ratio),
-        spin: cvt.spin.at(car.oil.kinematic_m2_s(point.sump_k)),
-        pump: cvt.pump.at(eta_sump),
-        eta_sump,
+        line: Driveline::new(cvt, &at, &car.oil, point.sump_k, point.parts),
     };
     let mut unknown = Unknown {
         slip: 0.0,
@@ -130,7 +119,7 @@ pub(super) fn solve(car: &Car, cvt: &Cvt, point: &BenchPoint, printed: bool) -> 
     let pass = loop {
         let pass = this.pass(&unknown);
         count += 1;
-        if !unknown.moved(&pass.next) || count >= MOST_PASSES {
+        if !unknown.moved(&pass.next) || count >= MAX_PASSES {
             break pass;
         }
         unknown = if count > DAMPED_FROM {
@@ -139,191 +128,122 @@ pub(super) fn solve(car: &Car, cvt: &Cvt, point: &BenchPoint, printed: bool) -> 
             pass.next
         };
     };
-    this.answer(&unknown, &pass, count < MOST_PASSES)
+    this.answer(&unknown, &pass, count < MAX_PASSES)
 }
 
 impl OnBench<'_> {
-    /// Loss that a measured map gives at the input shaft, Nm, if there is one.
-    fn mapped(
-        &self,
-        map: Option<&LossMap>,
-        torque_nm: f64,
-        pressure_pa: f64,
-        inside: &mut bool,
-    ) -> Option<f64> {
-        let p = self.point;
-        let (loss, ok) = map?.loss_nm(&MapPoint {
-            ratio: p.ratio,
-            input_speed_rad_s: p.input_rad_s,
-            torque_nm,
-            pressure_pa,
-            oil_k: p.sump_k,
-        });
-        *inside &= ok;
-        Some(loss)
-    }
-
     fn pass(&self, u: &Unknown) -> Pass {
-        let (cvt, p, w) = (self.cvt, self.point, self.point.input_rad_s);
+        let (line, p, w) = (&self.line, self.point, self.point.input_rad_s);
+        let (cvt, pa) = (line.cvt, u.pressure_pa);
         let mut inside_maps = true;
         let secondary_rad_s = w * (1.0 - u.slip) / p.ratio; // CV-1
-        let output_nm = p.output_nm / cvt.final_drive;
-        let secondary_nm = if !p.parts.final_drive {
-            output_nm
-        } else if let Some(loss) = self.mapped(
-            cvt.maps.final_drive.as_ref(),
-            output_nm,
-            u.pressure_pa,
+        let output = p.output_nm / cvt.final_drive;
+        let secondary = line.secondary_nm(
+            output,
+            || cvt.spin.drive_nm(&line.spin, secondary_rad_s),
+            (w, secondary_rad_s),
+            pa,
             &mut inside_maps,
-        ) {
-            output_nm + loss * w / secondary_rad_s
-        } else {
-            cvt.spin
-                .secondary_torque_nm(cvt.spin.drive_nm(&self.spin, secondary_rad_s), output_nm)
+        );
+        let load = self.load(u, secondary, secondary_rad_s);
+        let mut next = Unknown {
+            slip: 0.0,
+            belt_k: p.belt_k.unwrap_or(p.sump_k),
+            pressure_pa: self.pressure_pa(&load, secondary_rad_s),
         };
-        let load = self.load(u, secondary_nm, secondary_rad_s);
-        let held_k = p.belt_k.unwrap_or(p.sump_k);
-        let mut pass = Pass {
-            next: Unknown {
-                slip: 0.0,
-                belt_k: held_k,
-                pressure_pa: self.pressure_pa(&load, secondary_rad_s),
-            },
-            loss_nm: [0.0; Component::COUNT],
-            secondary_rad_s,
-            secondary_nm,
-            oil_flow_m3_s: 0.0,
-            belt: None,
-            flow_limited: false,
-            inside_maps,
+        let mut torques = PartTorques {
+            output: if p.parts.belt { output } else { secondary },
+            secondary,
+            ..PartTorques::default()
         };
+        let mut belt = None;
         if p.parts.belt {
-            pass.loss_nm[Component::FinalDrive as usize] =
-                (secondary_nm - output_nm) * secondary_rad_s / w;
-            self.belt(&mut pass, &load, u);
+            torques.belt_map = line.belt_map_nm(secondary, w, pa, &mut inside_maps);
+            if torques.belt_map.is_none() {
+                let state = self.belt_state(&load);
+                torques.belt = state.losses();
+                belt = Some(state);
+            }
         }
-        self.engine_side(&mut pass, u);
-        pass
+        torques.clutch = line.clutch_nm(w, pa, &mut inside_maps);
+        let (pump, shaft_nm) = line.pump_and_shaft(w, pa, 0.0, &mut inside_maps);
+        (torques.pump, torques.shaft) = (pump.torque_nm, shaft_nm);
+        let mut loss_nm = ByComponent::default();
+        torques.for_each_loss(|component, shaft, torque_nm| {
+            loss_nm[component] = match shaft {
+                Shaft::Engine | Shaft::Primary => torque_nm,
+                Shaft::Secondary => torque_nm * secondary_rad_s / w,
+            };
+        });
+        if p.parts.belt {
+            self.follow_belt(&mut next, &loss_nm, belt.as_ref());
+        }
+        Pass {
+            next,
+            loss_nm,
+            secondary_rad_s,
+            secondary_nm: secondary,
+            oil_flow_m3_s: pump.working_m3_s,
+            belt,
+            flow_limited: pump.flow_limited,
+            inside_maps,
+        }
     }
 
-    /// Belt losses, and the belt temperature that they keep up (RB-2).
-    fn belt(&self, pass: &mut Pass, load: &BeltLoad, u: &Unknown) {
-        let (cvt, p) = (self.cvt, self.point);
-        let mut tells = true;
-        let state = if self.printed {
-            printed_state(&cvt.belt, &self.at, load)
+    fn belt_state(&self, load: &BeltLoad) -> BeltState {
+        let belt = &self.line.cvt.belt;
+        if self.printed {
+            printed_state(belt, self.line.at, load)
         } else {
-            belt_state(&cvt.belt, &self.at, load)
-        };
-        if let Some(loss) = self.mapped(
-            cvt.maps.belt.as_ref(),
-            load.output_torque_nm,
-            u.pressure_pa,
-            &mut pass.inside_maps,
-        ) {
-            pass.loss_nm[Component::BeltMap as usize] = loss;
-        } else {
-            // Where a printed form has no meaning, it must not carry speeds and belt temperature away with it.
-            tells = !(self.printed && state.gross_slip);
-            pass.next.slip = if tells { state.slip_total } else { 0.0 };
-            pass.loss_nm[Component::BeltBand as usize] = state.band_nm;
-            pass.loss_nm[Component::BeltFilm as usize] = state.film_nm;
-            pass.loss_nm[Component::BeltSlip as usize] = state.slip_nm;
-            pass.loss_nm[Component::BeltWedge as usize] = state.wedge_nm;
-            pass.loss_nm[Component::BeltPenetration as usize] = state.penetration_nm;
-            pass.belt = Some(state);
+            belt_state(belt, self.line.at, load)
+        }
+    }
+
+    /// Slip of the belt, and the belt temperature that its losses keep up (RB-2).
+    fn follow_belt(
+        &self,
+        next: &mut Unknown,
+        loss_nm: &ByComponent<f64>,
+        belt: Option<&BeltState>,
+    ) {
+        let p = self.point;
+        // Where a printed form has no meaning, it must not carry speeds and belt temperature away with it.
+        let valid = !(self.printed && belt.is_some_and(|state| state.gross_slip));
+        if let Some(state) = belt {
+            next.slip = if valid { state.slip_total } else { 0.0 };
         }
         if p.belt_k.is_none() {
-            let belt_w = BELT_PARTS
-                .iter()
-                .map(|c| pass.loss_nm[*c as usize])
-                .sum::<f64>()
-                * p.input_rad_s;
+            let belt_w = belt_nm(loss_nm) * p.input_rad_s;
             let rise_k =
                 self.car.belt_heat_share * belt_w / self.car.network.spray_now_w_k(p.input_rad_s); // RB-2
-            pass.next.belt_k = p.sump_k + if tells { rise_k } else { 0.0 };
+            next.belt_k = p.sump_k + if valid { rise_k } else { 0.0 };
         }
-    }
-
-    /// Losses of the parts that turn with the input shaft.
-    fn engine_side(&self, pass: &mut Pass, u: &Unknown) {
-        let (cvt, p, w) = (self.cvt, self.point, self.point.input_rad_s);
-        let maps = &cvt.maps;
-        if p.parts.reverse_clutch {
-            let mapped = self.mapped(
-                maps.clutch_drag.as_ref(),
-                0.0,
-                u.pressure_pa,
-                &mut pass.inside_maps,
-            );
-            pass.loss_nm[Component::ClutchDrag as usize] = mapped.unwrap_or(self.spin.clutch_nm);
-        }
-        if p.parts.pump {
-            let need = cvt.pump.steady_need_m3_s(u.pressure_pa, self.eta_sump);
-            let pump = cvt.pump.state(&self.pump, w, u.pressure_pa, need);
-            let mapped = self.mapped(
-                maps.pump.as_ref(),
-                0.0,
-                u.pressure_pa,
-                &mut pass.inside_maps,
-            );
-            pass.loss_nm[Component::Pump as usize] = mapped.unwrap_or(pump.torque_nm);
-            pass.oil_flow_m3_s = pump.working_m3_s;
-            pass.flow_limited = pump.flow_limited;
-        }
-        let mapped = self.mapped(
-            maps.input_shaft.as_ref(),
-            0.0,
-            u.pressure_pa,
-            &mut pass.inside_maps,
-        );
-        pass.loss_nm[Component::InputShaft as usize] =
-            mapped.unwrap_or_else(|| self.spin.shaft_nm(w));
     }
 
     fn load(&self, u: &Unknown, output_torque_nm: f64, secondary_rad_s: f64) -> BeltLoad {
-        let (cvt, p, oil) = (self.cvt, self.point, &self.car.oil);
-        let eta_pa_s = oil.dynamic_pa_s(u.belt_k);
-        let film = cvt.belt.formulation.has_film();
-        let sliding = if film {
-            sliding_speed_m_s(&cvt.belt, p.ratio, p.input_rad_s)
-        } else {
-            0.0
-        };
+        let (cvt, p) = (self.line.cvt, self.point);
+        let pressure_pa = if p.parts.pump { u.pressure_pa } else { 0.0 };
         BeltLoad {
-            primary_speed_rad_s: p.input_rad_s,
             output_torque_nm,
-            secondary_clamp_n: cvt.secondary_clamp_n(
-                if p.parts.pump { u.pressure_pa } else { 0.0 },
-                secondary_rad_s,
-            ),
-            band: oil.friction.band(u.belt_k, eta_pa_s, sliding),
-            eta_pa_s,
-            film_thickness_m: oil.friction.film_thickness_m,
-            segment_friction: oil.friction.segment,
-            flank_friction: oil.friction.flank,
+            secondary_clamp_n: cvt.secondary_clamp_n(pressure_pa, secondary_rad_s),
+            ..BeltLoad::turning(&cvt.belt, &self.car.oil, u.belt_k, p.ratio, p.input_rad_s)
         }
     }
 
     /// Pressure given, or the clamp law's for this box.
     fn pressure_pa(&self, load: &BeltLoad, secondary_rad_s: f64) -> f64 {
-        let p = self.point;
-        let signals = ClampSignals {
-            throttle: p.throttle,
-            engine_rad_s: p.input_rad_s,
-            oil_k: p.sump_k,
-            radius_factor: self.cvt.radius_factor(&self.at),
-        };
+        let (line, p) = (&self.line, self.point);
         p.pressure_pa.unwrap_or_else(|| {
+            let signals = line.signals(p.throttle, p.input_rad_s);
             p.pressure_factor
-                * self
+                * line
                     .cvt
-                    .pressure_pa(&signals, &self.at, || *load, secondary_rad_s)
+                    .pressure_pa(&signals, line.at, || *load, secondary_rad_s)
         })
     }
 
     fn answer(&self, u: &Unknown, pass: &Pass, converged: bool) -> BenchAnswer {
-        let (cvt, p) = (self.cvt, self.point);
+        let (cvt, p) = (self.line.cvt, self.point);
         let through = if p.parts.belt {
             p.output_nm / cvt.final_drive * pass.secondary_rad_s / p.input_rad_s
         } else {
@@ -335,34 +255,31 @@ impl OnBench<'_> {
             && VALID_K.contains(&u.belt_k)
             && pass.inside_maps
             && limits.contains(&p.ratio);
+        let belt = pass.belt;
+        let low_clamp = belt.is_some_and(|b| b.capacity_nm < pass.secondary_nm.abs());
         let mut flags = Flags::default();
         flags.set(Flags::NOT_CONVERGED, !converged);
-        flags.set(Flags::GROSS_SLIP, pass.belt.is_some_and(|b| b.gross_slip));
-        flags.set(
-            Flags::LOW_CLAMP,
-            pass.belt
-                .is_some_and(|b| b.capacity_nm < pass.secondary_nm.abs()),
-        );
+        flags.set(Flags::GROSS_SLIP, belt.is_some_and(|b| b.gross_slip));
+        flags.set(Flags::LOW_CLAMP, low_clamp);
         flags.set(Flags::FLOW_LIMITED, pass.flow_limited);
         flags.set(Flags::OVERRUN, input_nm < 0.0);
         flags.set(Flags::OUTSIDE_VALIDITY, !valid);
+        let with = |part: bool, value: f64, without: f64| if part { value } else { without };
         BenchAnswer {
             loss_nm: pass.loss_nm,
             input_nm,
-            output_rad_s: if p.parts.belt {
-                pass.secondary_rad_s / cvt.final_drive
-            } else {
-                0.0
-            },
-            secondary_pa: if p.parts.pump {
-                u.pressure_pa
-            } else {
-                f64::NAN
-            },
-            belt_k: if p.parts.belt { u.belt_k } else { f64::NAN },
-            belt: pass.belt,
+            output_rad_s: with(p.parts.belt, pass.secondary_rad_s / cvt.final_drive, 0.0),
+            secondary_pa: with(p.parts.pump, u.pressure_pa, f64::NAN),
+            belt_k: with(p.parts.belt, u.belt_k, f64::NAN),
+            belt,
             oil_flow_m3_s: pass.oil_flow_m3_s,
             flags,
         }
     }
+}
+
+/// All belt losses, Nm at the input shaft.
+pub(super) fn belt_nm(loss_nm: &ByComponent<f64>) -> f64 {
+    let belt = Component::ALL.into_iter().filter(|c| c.is_belt());
+    belt.map(|c| loss_nm[c]).sum()
 }

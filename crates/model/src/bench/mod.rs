@@ -8,5 +8,6 @@ mod limits;
 pub mod transmission;
 pub mod variator;
 
-pub use bench::{BELT_PARTS, Bench, BenchAnswer, BenchPoint, Parts};
+pub use crate::transmission::cvt::Parts;
+pub use bench::{Bench, BenchAnswer, BenchPoint};
 pub use limits::solvable_ratios;

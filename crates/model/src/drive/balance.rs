@@ -8,7 +8,7 @@
 
 /// Terms of both ledgers in one row, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Terms {
+pub struct EnergyTerms {
     /// Fuel power.
     pub fuel: f64,
     /// Power at the wheels as delivered; negative when the wheels drive.
@@ -53,7 +53,7 @@ fn error(difference: f64, scale: f64) -> f64 {
     if scale > 0.0 { difference / scale } else { 0.0 } // LE-3
 }
 
-impl Terms {
+impl EnergyTerms {
     /// Relative error of the power ledger (LE-1).
     #[must_use]
     #[inline]
@@ -114,7 +114,7 @@ impl Terms {
     #[must_use]
     #[inline]
     pub fn from_array(a: [f64; 11]) -> Self {
-        Terms {
+        EnergyTerms {
             fuel: a[0],
             wheels: a[1],
             brake: a[2],
@@ -131,11 +131,11 @@ impl Terms {
 
     /// Adds another row's terms, weighted by its length, J.
     #[inline]
-    pub fn add(&mut self, other: &Terms, dt_s: f64) {
+    pub fn add(&mut self, other: &EnergyTerms, dt_s: f64) {
         let mut sum = self.as_array();
         for (s, o) in sum.iter_mut().zip(other.as_array()) {
             *s += o * dt_s;
         }
-        *self = Terms::from_array(sum);
+        *self = EnergyTerms::from_array(sum);
     }
 }

@@ -1,18 +1,21 @@
 //! A car through a cycle: the loop over the steps, its rows, energy balances and totals.
 
 mod balance;
+mod car;
 mod row;
 mod run;
 mod simulate;
+mod step;
 mod totals;
 mod vehicle;
 
-pub use balance::{TERM_NAMES, Terms};
-pub use row::{Component, Flags, Row};
+pub use balance::{EnergyTerms, TERM_NAMES};
+pub use car::Car;
+pub use row::Row;
 pub use run::{
-    Conditions, FuelMap, Give, Outcome, Start, components, drive, drive_into, fuel_map,
-    litres_per_100km,
+    Conditions, FuelMap, Give, Outcome, Start, drive, drive_into, fuel_map, litres_per_100km,
 };
-pub use simulate::{Car, Recorder, State, loss_heat_w, simulate};
+pub use simulate::{Recorder, State, simulate};
+pub use step::{Drive, loss_heat_w};
 pub use totals::{PhaseTotals, Totals};
 pub use vehicle::Vehicle;

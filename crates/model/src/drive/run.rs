@@ -2,7 +2,8 @@
 
 use crate::cycle::{Cycle, Trace};
 use crate::drive::{Car, Recorder, State, Vehicle, simulate};
-use crate::drive::{Component, Row, Terms, Totals};
+use crate::drive::{EnergyTerms, Row, Totals};
+use crate::prime_mover::PrimeMover;
 use crate::thermal::Heat;
 use crate::transmission::Transmission;
 
@@ -57,7 +58,7 @@ struct Lots<'g> {
 }
 
 impl Recorder for Lots<'_> {
-    fn record(&mut self, row: &Row, terms: &Terms) {
+    fn record(&mut self, row: &Row, terms: &EnergyTerms) {
         self.totals.record(row, terms);
         self.lot.push(*row);
         if self.lot.len() == LOT {
@@ -71,7 +72,7 @@ impl Recorder for Lots<'_> {
 struct Nobody;
 
 impl Recorder for Nobody {
-    fn record(&mut self, _: &Row, _: &Terms) {}
+    fn record(&mut self, _: &Row, _: &EnergyTerms) {}
 }
 
 /// Drives a car through a cycle.
@@ -117,7 +118,7 @@ pub fn drive_into(
     };
     // A car at rest begins a new cycle in its own start state; only heat and rotating energy carry over.
     let start = State {
-        drive: None,
+        transmission: None,
         ..start
     };
     let mut totals = Totals::new(cycle.phases.len());
@@ -153,38 +154,6 @@ fn gear_schedule(car: &Car, trace: &Trace) -> &'static str {
             "shift speeds of the vehicle file: the cycle's gear column does not fit this box"
         }
         Transmission::Manual(_) => "shift speeds of the vehicle file",
-    }
-}
-
-/// Components that a transmission has, in the order of the power flow.
-#[must_use]
-pub fn components(transmission: &Transmission) -> Vec<Component> {
-    use Component as C;
-    match transmission {
-        Transmission::Cvt(cvt) => {
-            let mut list = vec![C::LaunchClutch, C::Pump, C::InputShaft, C::ClutchDrag];
-            if cvt.maps.belt.is_some() {
-                list.push(C::BeltMap);
-            } else {
-                list.extend([
-                    C::BeltBand,
-                    C::BeltFilm,
-                    C::BeltSlip,
-                    C::BeltWedge,
-                    C::BeltPenetration,
-                ]);
-            }
-            list.push(C::FinalDrive);
-            list
-        }
-        Transmission::Manual(manual) if manual.map.is_some() => vec![C::LaunchClutch, C::BoxMap],
-        Transmission::Manual(_) => vec![
-            C::LaunchClutch,
-            C::GearMesh,
-            C::Bearing,
-            C::Churning,
-            C::Seal,
-        ],
     }
 }
 

@@ -1,7 +1,8 @@
 //! Sums of a run by phase, gathered row by row without keeping the rows.
 
-use super::{Component, Flags, Row, Terms};
-use crate::drive::Recorder;
+use super::{EnergyTerms, Recorder, Row};
+use crate::flags::Flags;
+use crate::transmission::component::ByComponent;
 
 /// Sums over one phase.
 #[derive(Clone, Debug, Default)]
@@ -19,9 +20,9 @@ pub struct PhaseTotals {
     /// Demanded wheel work in braking, J.
     pub wheel_negative_j: f64,
     /// Loss of each component, J.
-    pub loss_j: [f64; Component::COUNT],
+    pub loss_j: ByComponent<f64>,
     /// Ledger terms, J.
-    pub terms: Terms,
+    pub terms: EnergyTerms,
 }
 
 /// Sums and extremes over a whole run.
@@ -140,7 +141,7 @@ impl PhaseTotals {
 impl Recorder for Totals {
     // Within the loop, so that the parts of a row that no total looks at are never put together.
     #[inline(always)]
-    fn record(&mut self, row: &Row, terms: &Terms) {
+    fn record(&mut self, row: &Row, terms: &EnergyTerms) {
         let index = usize::from(row.phase).min(self.phases.len() - 1);
         let p = &mut self.phases[index];
         p.duration_s += row.dt_s;

@@ -21,10 +21,7 @@ pub use keys::EngineKeys;
 
 use crate::fluid::{Lubricant, Viscosity, ZERO_DEGC_K};
 use crate::math::{Curve, exp, held, ln};
-
-/// Share of full load above which an engine is asked for what it cannot give, beyond what a solve leaves: one that cannot turn its own pump
-/// and accessories in the cold. Such rows are flagged outside validity.
-pub const FULL: f64 = 1.0 + 1e-5;
+use crate::prime_mover::PrimeMover;
 
 /// The checked engine.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,7 +80,7 @@ pub struct Engine {
 
 /// The engine at one temperature state and altitude.
 #[derive(Clone, Copy, Debug)]
-pub struct EngineNow<'a> {
+pub struct EngineAtTemperature<'a> {
     /// The engine.
     pub engine: &'a Engine,
     /// Friction over hot friction (EN-2).
@@ -118,7 +115,7 @@ pub struct Burn {
 impl Engine {
     /// The oil in use, where its viscosity is not that of the reference oil: then EN-2 has its second factor.
     #[must_use]
-    pub fn unlike_reference<'a>(&self, oil: &'a Lubricant) -> Option<&'a Lubricant> {
+    pub fn non_reference_oil<'a>(&self, oil: &'a Lubricant) -> Option<&'a Lubricant> {
         (oil.viscosity != self.reference_oil).then_some(oil)
     }
 
@@ -130,16 +127,16 @@ impl Engine {
         oil_k: f64,
         oil: &Lubricant,
         pressure_factor: f64,
-    ) -> EngineNow<'_> {
+    ) -> EngineAtTemperature<'_> {
         self.at_temperatures(
             coolant_k,
             oil_k,
-            self.unlike_reference(oil),
+            self.non_reference_oil(oil),
             pressure_factor,
         )
     }
 
-    /// The same, with what [`Engine::unlike_reference`] says of the oil: it holds for a whole drive.
+    /// The same, with what [`Engine::non_reference_oil`] says of the oil: it holds for a whole drive.
     #[must_use]
     #[inline(always)]
     pub fn at_temperatures(
@@ -148,7 +145,7 @@ impl Engine {
         oil_k: f64,
         unlike: Option<&Lubricant>,
         pressure_factor: f64,
-    ) -> EngineNow<'_> {
+    ) -> EngineAtTemperature<'_> {
         let theta = 0.5 * (coolant_k + oil_k) / self.hot_k;
         let viscous = unlike.map_or(1.0, |oil| {
             let relative = oil.kinematic_m2_s(oil_k) / self.reference_oil.kinematic_m2_s(oil_k);
@@ -161,7 +158,7 @@ impl Engine {
         };
         let cold = held((60.0 + ZERO_DEGC_K - coolant_k) / 70.0, 0.0, 1.0);
         let enrich = (60.0 + ZERO_DEGC_K - coolant_k) / 60.0;
-        EngineNow {
+        EngineAtTemperature {
             engine: self,
             friction_factor: thick * viscous, // EN-2
             idle_rad_s: self.idle_hot_rad_s + (self.idle_cold_rad_s - self.idle_hot_rad_s) * cold, // EN-1
@@ -223,18 +220,40 @@ impl Engine {
     }
 }
 
-impl EngineNow<'_> {
-    /// Full-load torque, Nm.
-    #[must_use]
+impl PrimeMover for EngineAtTemperature<'_> {
     #[inline]
-    pub fn full_load_nm(&self, speed_rad_s: f64) -> f64 {
+    fn idle_rad_s(&self) -> f64 {
+        self.idle_rad_s
+    }
+
+    #[inline]
+    fn max_rad_s(&self) -> f64 {
+        self.engine.highest_rad_s
+    }
+
+    #[inline]
+    fn rated_w(&self) -> f64 {
+        self.engine.rated_w
+    }
+
+    #[inline]
+    fn full_load_factor(&self) -> f64 {
+        self.full_load_factor
+    }
+
+    #[inline]
+    fn max_accel_rad_s2(&self) -> f64 {
+        self.engine.inertia_torque_nm / self.engine.inertia_kg_m2
+    }
+
+    #[inline]
+    fn full_load_nm(&self, speed_rad_s: f64) -> f64 {
         self.engine.full_load.at(speed_rad_s) * self.full_load_factor // EN-5
     }
 
-    /// Torque of the accessories, Nm; none at standstill (EN-4).
-    #[must_use]
+    /// EN-4: none at standstill.
     #[inline]
-    pub fn accessories_nm(&self, speed_rad_s: f64) -> f64 {
+    fn accessories_nm(&self, speed_rad_s: f64) -> f64 {
         let least = 0.5 * self.engine.idle_hot_rad_s;
         let w = if speed_rad_s > least {
             speed_rad_s
@@ -248,6 +267,14 @@ impl EngineNow<'_> {
         } // EN-4
     }
 
+    /// EN-7: in overrun with fuel cut off.
+    #[inline]
+    fn drag_nm(&self, speed_rad_s: f64) -> f64 {
+        self.engine.torque_nm(self.friction_pa(speed_rad_s)) * self.engine.overrun_drag // EN-7
+    }
+}
+
+impl EngineAtTemperature<'_> {
     /// Friction mean effective pressure at the present temperature, Pa.
     #[must_use]
     #[inline]
@@ -256,13 +283,6 @@ impl EngineNow<'_> {
             .fuel
             .hot_friction_pa(self.engine.piston_m_s(speed_rad_s))
             * self.friction_factor
-    }
-
-    /// Torque that the engine takes up in overrun with fuel cut off, Nm, positive (EN-7).
-    #[must_use]
-    #[inline]
-    pub fn drag_nm(&self, speed_rad_s: f64) -> f64 {
-        self.engine.torque_nm(self.friction_pa(speed_rad_s)) * self.engine.overrun_drag // EN-7
     }
 
     /// Fuel and heat at a speed and crankshaft torque (with accessories and inertia), Nm.

@@ -7,7 +7,7 @@ use super::{
 use crate::number::finite;
 use crate::{Component, Flags, PhaseTotals, TERM_NAMES};
 use cvtcycle_config::cycle::{Cycle, Weighting};
-use cvtcycle_model::drive::{Outcome, components, litres_per_100km};
+use cvtcycle_model::drive::{Outcome, litres_per_100km};
 use cvtcycle_model::engine::Engine;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
@@ -199,13 +199,13 @@ fn losses(driven: &Driven, settings: &Settings, all: &PhaseTotals) -> Named {
     // The verification formulations know no film of its own: whatever shear there is belongs to the bands.
     let film =
         settings.formulation.is_empty() || settings.formulation == name_of(Formulation::Smooth);
-    let joules = |c: Component| all.loss_j[c as usize];
+    let joules = |c: Component| all.loss_j[c];
     let part = |c: Component| match c {
         Component::BeltFilm if !film => None,
         Component::BeltBand if !film => finite((joules(c) + joules(Component::BeltFilm)) / 1e3),
         _ => finite(joules(c) / 1e3),
     };
-    let components = components(driven.setup.transmission());
+    let components = driven.setup.transmission().components();
     let rest = [
         ("accessories", all.terms.accessories),
         ("brake", all.terms.brake),

@@ -10,7 +10,7 @@ use cvtcycle::config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle::config::setup::{Options, Setup};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::model::drive::{Recorder, State, simulate};
-use cvtcycle::output::{Component, Row, Terms};
+use cvtcycle::output::{Component, EnergyTerms, Row};
 
 use super::range::range;
 use super::{Bytes, within_memory};
@@ -184,13 +184,13 @@ fn cycle(bytes: &mut Bytes) -> Option<Cycle> {
 struct Look;
 
 impl Recorder for Look {
-    fn record(&mut self, row: &Row, terms: &Terms) {
+    fn record(&mut self, row: &Row, terms: &EnergyTerms) {
         assert!(
             terms.power_error() <= 1e-9 && terms.heat_error() <= 1e-9,
             "ledgers {terms:?} in {row:?}"
         );
         for component in Component::ALL {
-            let loss = row.loss_w[component as usize];
+            let loss = row.loss_w[component];
             assert!(
                 loss >= 0.0 && loss.is_finite(),
                 "{} loses {loss} W in {row:?}",

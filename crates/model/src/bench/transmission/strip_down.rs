@@ -14,7 +14,7 @@
 use super::conditions::Conditions;
 use super::steady::Plan;
 use crate::bench::{Bench, BenchAnswer, BenchPoint, Parts};
-use crate::drive::Component;
+use crate::transmission::component::Component;
 
 /// Stages of the sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

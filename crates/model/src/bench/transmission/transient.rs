@@ -10,7 +10,6 @@
 
 use super::conditions::Conditions;
 use crate::bench::{Bench, BenchAnswer, BenchPoint};
-use crate::drive::Component;
 use crate::drive::loss_heat_w;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, Network, SUMP};
 
@@ -294,7 +293,7 @@ impl Running<'_> {
     fn step(&mut self, moment: &Moment, energy: &mut LoopEnergy) {
         let car = self.bench.car();
         let w = self.conditions.transient.speed_rad_s;
-        let loss_w: [f64; Component::COUNT] = moment.answer.loss_nm.map(|nm| nm * w);
+        let loss_w = moment.answer.loss_nm.map(|nm| nm * w);
         let mut power_w = loss_heat_w(car, &loss_w);
         let oil_volume_heat_j_m3k =
             car.oil.density_kg_m3(moment.sump_k) * car.oil.heat_capacity_j_kgk(moment.sump_k);

@@ -20,9 +20,7 @@ use crate::drive::Vehicle;
 use crate::fluid::{Lubricant, VALID_K};
 use crate::transmission::Transmission;
 use crate::transmission::cvt::Cvt;
-use crate::transmission::cvt::variator::{
-    BeltAtRatio, BeltLoad, BeltState, Geometry, belt_state, sliding_speed_m_s,
-};
+use crate::transmission::cvt::variator::{BeltAtRatio, BeltLoad, BeltState, Geometry, belt_state};
 
 /// Largest torque at the secondary pulley, Nm (Table 6-1).
 pub const MOST_OUTPUT_NM: f64 = 400.0;
@@ -218,26 +216,14 @@ impl VariatorRig {
 
     /// Clamping and friction at a point, with the slip of the pass before.
     fn load(&self, held: &Held, output_nm: f64, slip: f64) -> BeltLoad {
-        let eta_pa_s = self.oil.dynamic_pa_s(held.belt_k);
-        let film = self.cvt.belt.formulation.has_film();
-        let sliding = if film {
-            sliding_speed_m_s(&self.cvt.belt, held.ratio, held.input_rad_s)
-        } else {
-            0.0
-        };
-        let friction = &self.oil.friction;
+        let belt = &self.cvt.belt;
         BeltLoad {
-            primary_speed_rad_s: held.input_rad_s,
             output_torque_nm: output_nm,
             secondary_clamp_n: self.cvt.secondary_clamp_n(
                 held.pressure_pa,
                 held.input_rad_s * (1.0 - slip) / held.ratio,
             ),
-            band: friction.band(held.belt_k, eta_pa_s, sliding),
-            eta_pa_s,
-            film_thickness_m: friction.film_thickness_m,
-            segment_friction: friction.segment,
-            flank_friction: friction.flank,
+            ..BeltLoad::turning(belt, &self.oil, held.belt_k, held.ratio, held.input_rad_s)
         }
     }
 

@@ -8,7 +8,7 @@ use super::{Cvt, CvtMaps};
 use crate::engine::Engine;
 use crate::fluid::Lubricant;
 use crate::keys::{Values, keys};
-use crate::transmission::launch::{self, LAUNCH};
+use crate::transmission::coupling::{self, LAUNCH};
 
 keys! {
     /// Keys of `[transmission.cvt]` and its tables.
@@ -81,9 +81,9 @@ impl Cvt {
             floor_pa,
             cap_pa,
             low_radius_m: low.primary_radius_m,
-            launch: launch::from_values(s, &CVT.launch, 5.0),
+            coupling: coupling::from_values(s, &CVT.launch, 5.0),
             full_load_route,
-            maps: CvtMaps::from_values(&s.table("maps")),
+            maps: maps(&s.table("maps")),
             belt_heat_share: s.number(&CVT.belt_heat_share),
             belt,
         }
@@ -147,15 +147,12 @@ fn centrifugal<V: Values>(v: &V, oil: &Lubricant) -> f64 {
     std::f64::consts::PI * oil.density_kg_m3(353.15) * (outer.powi(4) - inner.powi(4)) / 4.0 // VA-3
 }
 
-impl CvtMaps {
-    /// The measured maps that `[transmission.cvt.maps]` names.
-    fn from_values<V: Values>(s: &V) -> Self {
-        CvtMaps {
-            belt: s.loss_map(&MAPS.belt, "ratio"),
-            pump: s.loss_map(&MAPS.pump, "ratio"),
-            input_shaft: s.loss_map(&MAPS.input_shaft, "ratio"),
-            clutch_drag: s.loss_map(&MAPS.clutch_drag, "ratio"),
-            final_drive: s.loss_map(&MAPS.final_drive, "ratio"),
-        }
-    }
+/// The measured maps that `[transmission.cvt.maps]` names.
+fn maps<V: Values>(s: &V) -> Option<Box<CvtMaps>> {
+    let maps = CvtMaps::from_fn(|component| {
+        let name = component.map_key().filter(|_| component.part().is_cvt())?;
+        let key = MapKeys::TABLE.keys.iter().find(|key| key.name == name)?;
+        s.loss_map(key, "ratio")
+    });
+    maps.iter().any(Option::is_some).then(|| Box::new(maps))
 }

@@ -15,57 +15,32 @@ pub mod controller;
 pub mod pump;
 pub mod spin;
 pub mod variator;
-mod answer;
+pub(crate) mod driveline;
 mod evaluate;
 mod keys;
 mod prepare;
 mod secant;
 mod solve;
+mod step_output;
 
+pub use driveline::Parts;
 pub use keys::CvtKeys;
-pub use secant::{Slopes, Trend};
+pub use secant::{Slopes, Trend, WarmStart};
 
 use self::controller::{ClampLaw, ClampSignals, RatioControl};
 use self::pump::Pump;
 use self::spin::Spin;
 use self::variator::{Belt, BeltAtRatio, BeltLoad, belt_state};
-use super::launch::Launch;
+use super::component::{ByComponent, Component};
+use super::coupling::Coupling;
 use super::loss_map::LossMap;
-use super::{Drive, DriveState, Past, Surroundings};
+use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::math::{Curve, exp, ln};
+use crate::prime_mover::PrimeMover;
 use std::sync::Arc;
 
-/// Measured maps in place of models.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CvtMaps {
-    /// Whole belt.
-    pub belt: Option<LossMap>,
-    /// Pump.
-    pub pump: Option<LossMap>,
-    /// Input shaft.
-    pub input_shaft: Option<LossMap>,
-    /// Reverse clutch drag.
-    pub clutch_drag: Option<LossMap>,
-    /// Final drive.
-    pub final_drive: Option<LossMap>,
-}
-
-impl CvtMaps {
-    /// Whether there is one.
-    #[must_use]
-    #[inline]
-    pub fn any(&self) -> bool {
-        [
-            &self.belt,
-            &self.pump,
-            &self.input_shaft,
-            &self.clutch_drag,
-            &self.final_drive,
-        ]
-        .iter()
-        .any(|map| map.is_some())
-    }
-}
+/// Measured maps in place of models, by component.
+pub type CvtMaps = ByComponent<Option<LossMap>>;
 
 /// The checked CVT.
 #[derive(Clone, Debug)]
@@ -98,14 +73,34 @@ pub struct Cvt {
     pub cap_pa: f64,
     /// Primary radius in low, m.
     pub low_radius_m: f64,
-    /// Launch device.
-    pub launch: Arc<dyn Launch>,
+    /// Coupling to the engine.
+    pub coupling: Arc<dyn Coupling>,
     /// Engine speed for a power at full load, W to rad/s.
     pub full_load_route: Curve,
-    /// Measured maps in place of models.
-    pub maps: CvtMaps,
+    /// Measured maps in place of models, if there are any.
+    pub maps: Option<Box<CvtMaps>>,
     /// Share of belt loss that heats the belt node.
     pub belt_heat_share: f64,
+}
+
+/// What the CVT keeps of the step before.
+#[derive(Clone, Copy, Debug)]
+pub struct CvtState {
+    /// Belt at the ratio in force.
+    pub belt: BeltAtRatio,
+    /// Start of the solve.
+    pub warm_start: WarmStart,
+}
+
+impl CvtState {
+    /// A belt at a ratio before its first step.
+    #[must_use]
+    pub fn new(belt: BeltAtRatio) -> Self {
+        CvtState {
+            belt,
+            warm_start: WarmStart::default(),
+        }
+    }
 }
 
 /// Steps of the slip-limited law's walk from its lowest pressure to the cap.
@@ -127,45 +122,48 @@ impl Cvt {
         exp(self.radius_exponent * ln(self.low_radius_m / at.geometry.primary_radius_m))
     }
 
-    /// State at the beginning of a cycle: in low at rest, in the ratio that the variogram asks for when rolling.
+    /// True where a measured map replaces the model of a component.
     #[must_use]
-    pub fn start(&self, around: &Surroundings) -> DriveState {
-        let secondary = self.final_drive * around.wheel.wheel_rad_s;
+    pub fn has_map(&self, component: Component) -> bool {
+        self.maps
+            .as_ref()
+            .is_some_and(|maps| maps[component].is_some())
+    }
+
+    /// State at the beginning of a cycle: in low at rest, in the ratio of the variogram when rolling.
+    #[must_use]
+    pub fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> (CvtState, DrivelineState) {
+        let secondary = self.final_drive * input.wheel.wheel_rad_s;
         let demand = controller::RatioDemand {
             secondary_rad_s: secondary,
-            power_w: around.wheel.power_w,
-            rated_w: around.engine.engine.rated_w,
+            power_w: input.wheel.power_w,
+            rated_w: input.engine.rated_w(),
             full_load_rad_s: self
                 .full_load_route
-                .at(around.wheel.power_w / self.ratio.route_efficiency),
+                .at(input.wheel.power_w / self.ratio.route_efficiency),
             ratio_before: self.ratio.low,
             flow_down_per_s: 0.0,
             flow_up_per_s: 0.0,
             coupled: true,
-            dt_s: around.dt_s,
+            dt_s: input.dt_s,
         };
         let ratio = if secondary > 0.0 {
             (self.ratio.target_rad_s(&demand) / secondary).clamp(self.ratio.high, self.ratio.low)
         } else {
             self.ratio.low
         };
-        let idle = around.engine.idle_rad_s;
+        let idle = input.engine.idle_rad_s();
         let primary = ratio * secondary;
-        let past = Past {
+        let own = CvtState::new(BeltAtRatio::new(&self.belt, ratio));
+        let driveline = DrivelineState {
             gear: 0,
             engine_rad_s: if primary > idle { primary } else { idle },
             throttle: 0.1,
-            trend: Trend::default(),
-            slopes: Slopes::default(),
-            overrun: false,
             secondary_pa: self.floor_pa,
             coupled: primary > idle,
             stood: secondary <= 0.0,
         };
-        DriveState {
-            belt: Some(BeltAtRatio::new(&self.belt, ratio)),
-            past,
-        }
+        (own, driveline)
     }
 
     /// Pressure that the clamp law asks for, Pa (PC-1 to PC-4), within floor and cap; `load` is asked by the laws that look at the belt.
@@ -301,11 +299,13 @@ impl Cvt {
 
     /// Solves one step (CV-1 to CV-5).
     #[must_use]
-    pub fn solve(&self, around: &Surroundings, state: &mut DriveState) -> Drive {
-        match &mut state.belt {
-            Some(belt) => solve::solve(self, around, belt, &mut state.past),
-            None => Drive::at_rest(),
-        }
+    pub fn solve<P: PrimeMover>(
+        &self,
+        input: &StepInput<P>,
+        own: &mut CvtState,
+        past: &mut DrivelineState,
+    ) -> StepOutput {
+        solve::solve(self, input, own, past)
     }
 }
 

@@ -2,13 +2,15 @@
 
 use super::Cvt;
 use super::controller::RatioDemand;
+use super::driveline::{Driveline, Parts};
 use super::evaluate::Step;
-use super::pump::{ETA_REFERENCE_PA_S, PumpNow};
-use super::spin::{NU_REFERENCE_M2_S, SpinNow};
-use super::variator::{BeltAtRatio, BeltLoad, Geometry, sliding_speed_m_s};
+use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
+use super::spin::{NU_REFERENCE_M2_S, SpinAtTemperature};
+use super::variator::{BeltAtRatio, BeltLoad, Geometry};
 use crate::math::{exp_each, ln_each};
+use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, SUMP};
-use crate::transmission::{Past, Surroundings};
+use crate::transmission::step::{DrivelineState, StepInput};
 
 /// Oil volume for a unit of ln I: secondary cylinder towards low, primary cylinder towards high, m3 (PU-3).
 fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
@@ -24,7 +26,7 @@ fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
 /// What the shift reckons with: leakage and inlet for the pump's free flow, efficiency for the full-load route.
 struct Route {
     leakage_m3_s_pa: f64,
-    pump: PumpNow,
+    pump: PumpAtTemperature,
     efficiency: f64,
 }
 
@@ -32,12 +34,18 @@ struct Route {
 struct Shift {
     ratio: f64,
     flow_m3_s: f64,
-    /// Whether pump flow held it back.
+    /// True where pump flow held it back.
     held: bool,
 }
 
-fn shift(cvt: &Cvt, around: &Surroundings, past: &Past, before: &Geometry, route: Route) -> Shift {
-    if around.wheel.wheel_rad_s <= 0.0 {
+fn shift<P: PrimeMover>(
+    cvt: &Cvt,
+    input: &StepInput<P>,
+    past: &DrivelineState,
+    before: &Geometry,
+    route: Route,
+) -> Shift {
+    if input.wheel.wheel_rad_s <= 0.0 {
         return Shift {
             ratio: before.ratio,
             flow_m3_s: 0.0,
@@ -51,17 +59,17 @@ fn shift(cvt: &Cvt, around: &Surroundings, past: &Past, before: &Geometry, route
     let free = drawn - cvt.pump.need_m3_s(past.secondary_pa, route.leakage_m3_s_pa);
     let free = if free > 0.0 { free } else { 0.0 };
     let demand = RatioDemand {
-        secondary_rad_s: cvt.final_drive * around.wheel.wheel_rad_s,
-        power_w: around.wheel.power_w,
-        rated_w: around.engine.engine.rated_w,
+        secondary_rad_s: cvt.final_drive * input.wheel.wheel_rad_s,
+        power_w: input.wheel.power_w,
+        rated_w: input.engine.rated_w(),
         full_load_rad_s: cvt
             .full_load_route
-            .at(around.wheel.power_w / (route.efficiency * around.engine.full_load_factor)),
+            .at(input.wheel.power_w / (route.efficiency * input.engine.full_load_factor())),
         ratio_before: before.ratio,
         flow_down_per_s: free / down_m3, // RC-5
         flow_up_per_s: free / up_m3,     // RC-5
         coupled: past.coupled,
-        dt_s: around.dt_s,
+        dt_s: input.dt_s,
     };
     let (ratio, change, held) = cvt.ratio.step(&demand);
     let volume = if change > 0.0 {
@@ -71,14 +79,14 @@ fn shift(cvt: &Cvt, around: &Surroundings, past: &Past, before: &Geometry, route
     };
     Shift {
         ratio,
-        flow_m3_s: volume / around.dt_s,
+        flow_m3_s: volume / input.dt_s,
         held,
     }
 }
 
 /// Powers and exponentials of a step.
 struct Powers {
-    spin: SpinNow,
+    spin: SpinAtTemperature,
     drive_nm: f64,
     viscous_factor: f64,
     radius_factor: f64,
@@ -135,20 +143,20 @@ impl Powers {
     }
 }
 
-/// Prepares a step: shifts from the geometry `before` it, brings the belt to the new ratio, and works out what the solve does not change.
+/// Prepares a step: shifts from the geometry `before` it, brings the belt to the new ratio, and evaluates what the solve does not change.
 #[inline(never)]
-pub(super) fn prepare<'a>(
+pub(super) fn prepare<'a, P: PrimeMover>(
     cvt: &'a Cvt,
-    around: &'a Surroundings<'a>,
-    past: &Past,
+    input: &'a StepInput<'a, P>,
+    past: &DrivelineState,
     before: &Geometry,
     belt: &'a mut BeltAtRatio,
     efficiency: f64,
-) -> Step<'a> {
-    let (oil, friction) = (around.oil, &around.oil.friction);
-    let (sump_k, belt_k) = (around.heat.node_k[SUMP], around.heat.node_k[BELT]);
+) -> Step<'a, P> {
+    let (oil, friction) = (input.oil, &input.oil.friction);
+    let (sump_k, belt_k) = (input.heat.node_k[SUMP], input.heat.node_k[BELT]);
     let locked_from_rad_s = if past.coupled {
-        cvt.launch.holds_from_rad_s(around.engine.idle_rad_s)
+        cvt.coupling.locked_from_rad_s(input.engine.idle_rad_s())
     } else {
         f64::INFINITY
     };
@@ -157,31 +165,20 @@ pub(super) fn prepare<'a>(
     let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
     let leakage_m3_s_pa = cvt.pump.leakage_now_m3_s_pa(eta_sump);
     let inlet = cvt.pump.with_factor(eta_sump, 1.0);
-    let Shift {
-        ratio,
-        flow_m3_s,
-        held,
-    } = shift(
-        cvt,
-        around,
-        past,
-        before,
-        Route {
-            leakage_m3_s_pa,
-            pump: inlet,
-            efficiency,
-        },
-    );
-    if ratio.to_bits() != belt.geometry.ratio.to_bits() {
-        *belt = BeltAtRatio::new(&cvt.belt, ratio);
+    let route = Route {
+        leakage_m3_s_pa,
+        pump: inlet,
+        efficiency,
+    };
+    let shift = shift(cvt, input, past, before, route);
+    if shift.ratio.to_bits() != belt.geometry.ratio.to_bits() {
+        *belt = BeltAtRatio::new(&cvt.belt, shift.ratio);
     }
     let at = &*belt;
-    let secondary_rad_s = cvt.final_drive * around.wheel.wheel_rad_s;
-    let sliding = if cvt.belt.formulation.has_film() {
-        sliding_speed_m_s(&cvt.belt, ratio, ratio * secondary_rad_s)
-    } else {
-        0.0
-    };
+    let secondary_rad_s = cvt.final_drive * input.wheel.wheel_rad_s;
+    let sliding = cvt
+        .belt
+        .sliding_m_s(shift.ratio, shift.ratio * secondary_rad_s);
     let bases = Bases {
         nu_m2_s: nu_sump,
         eta_pa_s: eta_sump,
@@ -189,36 +186,30 @@ pub(super) fn prepare<'a>(
         secondary_rad_s,
     };
     let powers = Powers::new(cvt, at, friction.lift_exponent, &bases);
-    let engine = around.engine.engine;
     Step {
-        cvt,
-        around,
+        line: Driveline {
+            cvt,
+            at,
+            parts: Parts::ALL,
+            spin: powers.spin,
+            pump: PumpAtTemperature {
+                viscous_factor: powers.viscous_factor,
+                ..inlet
+            },
+            leakage_m3_s_pa,
+            radius_factor: powers.radius_factor,
+            oil_k: sump_k,
+            maps: cvt.maps.as_deref(),
+        },
+        input,
         secondary_rad_s,
         drive_nm: powers.drive_nm,
-        spin: powers.spin,
-        pump: PumpNow {
-            viscous_factor: powers.viscous_factor,
-            ..inlet
-        },
-        leakage_m3_s_pa,
-        load: BeltLoad {
-            primary_speed_rad_s: 0.0,
-            output_torque_nm: 0.0,
-            secondary_clamp_n: 0.0,
-            band: friction.band_on_film(belt_k, powers.film),
-            eta_pa_s: eta_belt,
-            film_thickness_m: friction.film_thickness_m,
-            segment_friction: friction.segment,
-            flank_friction: friction.flank,
-        },
-        radius_factor: powers.radius_factor,
-        at,
-        shift_flow_m3_s: flow_m3_s,
-        shift_held: held,
-        engine_before: past.engine_rad_s,
-        pace_rad_s: engine.inertia_torque_nm / engine.inertia_kg_m2 * around.dt_s,
+        load: BeltLoad::unloaded(oil, eta_belt, friction.band_on_film(belt_k, powers.film)),
+        shift_flow_m3_s: shift.flow_m3_s,
+        shift_held: shift.held,
+        reach: input.reach(past.engine_rad_s),
+        pressure_before_pa: past.secondary_pa,
         coupled: past.coupled,
         locked_from_rad_s,
-        maps: cvt.maps.any().then_some(&cvt.maps),
     }
 }

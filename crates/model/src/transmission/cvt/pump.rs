@@ -74,14 +74,14 @@ const INLET_DEPRESSION_PA: f64 = 0.7e5;
 
 /// What the pump's oil does at one temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PumpNow {
+pub struct PumpAtTemperature {
     /// Factor (eta/eta_r)^m of PU-1.
     pub viscous_factor: f64,
     /// One over the largest flow that the inlet passes, s/m3; 0 without a bound (PU-5).
     pub per_inlet_m3_s: f64,
 }
 
-impl PumpNow {
+impl PumpAtTemperature {
     /// Flow that is drawn of the flow of a displacement, m3/s (PU-5).
     #[must_use]
     #[inline]
@@ -93,7 +93,7 @@ impl PumpNow {
 }
 
 /// State of the pump at one operating point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PumpState {
     /// Torque at the pump shaft, Nm.
     pub torque_nm: f64,
@@ -130,7 +130,7 @@ impl Pump {
     /// What the oil does at a viscosity (PU-1, PU-5).
     #[must_use]
     #[inline]
-    pub fn at(&self, eta_pa_s: f64) -> PumpNow {
+    pub fn at(&self, eta_pa_s: f64) -> PumpAtTemperature {
         self.with_factor(
             eta_pa_s,
             exp(self.viscous_exponent * ln(eta_pa_s / ETA_REFERENCE_PA_S)),
@@ -140,9 +140,9 @@ impl Pump {
     /// The same with the factor (eta/eta_r)^m of PU-1 known.
     #[must_use]
     #[inline]
-    pub fn with_factor(&self, eta_pa_s: f64, viscous_factor: f64) -> PumpNow {
+    pub fn with_factor(&self, eta_pa_s: f64, viscous_factor: f64) -> PumpAtTemperature {
         let drop_pa_s_m3 = self.inlet_pa_s_m3 * eta_pa_s / ETA_REFERENCE_PA_S;
-        PumpNow {
+        PumpAtTemperature {
             viscous_factor,
             per_inlet_m3_s: drop_pa_s_m3 / INLET_DEPRESSION_PA,
         } // PU-5
@@ -169,7 +169,7 @@ impl Pump {
     #[inline(always)]
     pub fn state(
         &self,
-        now: &PumpNow,
+        now: &PumpAtTemperature,
         speed_rad_s: f64,
         secondary_pa: f64,
         need_m3_s: f64,

@@ -39,6 +39,17 @@ pub struct Trend {
     slip: Series,
 }
 
+/// What a solve begins with, from the step before.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WarmStart {
+    /// Losses and slip.
+    pub trend: Trend,
+    /// Slopes of the secants.
+    pub slopes: Slopes,
+    /// True where the engine's drag fixed the output torque.
+    pub overrun: bool,
+}
+
 /// Last value of a smooth series and its differences.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Series {
@@ -50,7 +61,7 @@ struct Series {
 impl Series {
     /// The value that follows, with as many differences as there are steps alike before the last.
     #[inline]
-    fn onward(&self, alike: u32) -> f64 {
+    fn next(&self, alike: u32) -> f64 {
         let first = if alike > 0 { self.first } else { 0.0 };
         self.value + first + if alike > 1 { self.second } else { 0.0 }
     }
@@ -69,13 +80,13 @@ impl Series {
 impl Trend {
     /// Slip and loss torque in Nm to begin a step with: those of the step before, carried on where the car is driven alike.
     #[inline]
-    pub(super) fn onward(&self, accel_m_s2: f64) -> (f64, f64) {
+    pub(super) fn next(&self, accel_m_s2: f64) -> (f64, f64) {
         let alike = if (accel_m_s2 - self.accel_m_s2).abs() < ALIKE_M_S2 {
             self.alike
         } else {
             0
         };
-        (self.slip.onward(alike), self.loss.onward(alike))
+        (self.slip.next(alike), self.loss.next(alike))
     }
 
     /// Takes a step at standstill: nothing slips, and what follows is not like it.
@@ -117,7 +128,7 @@ impl Default for Slopes {
 impl Slopes {
     /// Takes the slopes between two evaluations, the earlier one given by its guess and the pressure that followed from it.
     #[inline]
-    pub(super) fn learn(&mut self, before: &Guess, before_next_pa: f64, now: &Point) {
+    pub(super) fn update(&mut self, before: &Guess, before_next_pa: f64, now: &Point) {
         let step_pa = now.guess.pressure_pa - before.pressure_pa;
         if step_pa.abs() > SECANT_FROM_PA {
             self.pressure = held(
@@ -169,7 +180,7 @@ impl TorqueSecant {
         }
         self.last = Some((x, miss_nm));
         let slope = if plain { 1.0 } else { slopes.torque };
-        let carried = 1.05 * now.belt.capacity_nm;
+        let carried = 1.05 * now.torques.belt.capacity_nm;
         let carried = if carried > self.allowed_nm {
             carried
         } else {
@@ -192,19 +203,19 @@ mod tests {
         for k in 0..4 {
             trend.push(0.5, slip(f64::from(k)), 2.0 * slip(f64::from(k)));
         }
-        let (next_slip, next_nm) = trend.onward(0.5);
+        let (next_slip, next_nm) = trend.next(0.5);
         assert!(
             (next_slip / slip(4.0) - 1.0).abs() < 1e-12
                 && (next_nm / slip(4.0) - 2.0).abs() < 1e-12
         );
-        assert!((trend.onward(0.6).0 / slip(3.0) - 1.0).abs() < 1e-15);
+        assert!((trend.next(0.6).0 / slip(3.0) - 1.0).abs() < 1e-15);
         trend.push(0.6, 0.02, 1.0);
         assert!(
-            (trend.onward(0.6).0 - 0.02).abs() < 1e-15,
+            (trend.next(0.6).0 - 0.02).abs() < 1e-15,
             "one step alone has no trend"
         );
         trend.stand();
-        let (slip, loss_nm) = trend.onward(0.6);
+        let (slip, loss_nm) = trend.next(0.6);
         assert!(slip.abs() < 1e-15 && (loss_nm - 1.0).abs() < 1e-15);
     }
 }

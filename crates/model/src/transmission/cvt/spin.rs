@@ -51,7 +51,7 @@ pub struct Spin {
 
 /// The constants at one oil temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpinNow {
+pub struct SpinAtTemperature {
     shaft_constant_nm: f64,
     shaft_slope_nm_s: f64,
     shaft_heating: FilmHeating,
@@ -64,7 +64,7 @@ impl Spin {
     /// The constants at a viscosity.
     #[must_use]
     #[inline]
-    pub fn at(&self, nu_m2_s: f64) -> SpinNow {
+    pub fn at(&self, nu_m2_s: f64) -> SpinAtTemperature {
         self.with_powers(exp_each(self.exponents(ln(nu_m2_s / NU_REFERENCE_M2_S))))
     }
 
@@ -82,9 +82,9 @@ impl Spin {
     /// The constants with the powers of viscosity known.
     #[must_use]
     #[inline]
-    pub fn with_powers(&self, [shaft, clutch, drive]: [f64; 3]) -> SpinNow {
+    pub fn with_powers(&self, [shaft, clutch, drive]: [f64; 3]) -> SpinAtTemperature {
         let clutch_nm = self.clutch_nm * clutch;
-        SpinNow {
+        SpinAtTemperature {
             shaft_constant_nm: self.shaft_constant_nm,
             shaft_slope_nm_s: self.shaft_viscous_nm_s * shaft,
             shaft_heating: self.shaft_heating,
@@ -100,7 +100,7 @@ impl Spin {
     /// Load-independent torque of the final drive at the secondary shaft, Nm (FD-1).
     #[must_use]
     #[inline]
-    pub fn drive_nm(&self, now: &SpinNow, secondary_rad_s: f64) -> f64 {
+    pub fn drive_nm(&self, now: &SpinAtTemperature, secondary_rad_s: f64) -> f64 {
         self.drive_with_fall_nm(
             now,
             secondary_rad_s,
@@ -118,7 +118,12 @@ impl Spin {
     /// The same torque, Nm, with exp(-n/n0) known (FD-1).
     #[must_use]
     #[inline]
-    pub fn drive_with_fall_nm(&self, now: &SpinNow, secondary_rad_s: f64, fall: f64) -> f64 {
+    pub fn drive_with_fall_nm(
+        &self,
+        now: &SpinAtTemperature,
+        secondary_rad_s: f64,
+        fall: f64,
+    ) -> f64 {
         self.drive_boundary_nm * fall
             + self
                 .drive_heating
@@ -139,7 +144,7 @@ impl Spin {
     }
 }
 
-impl SpinNow {
+impl SpinAtTemperature {
     /// Input shaft torque, Nm (IS-1).
     #[must_use]
     #[inline]

@@ -2,8 +2,8 @@
 
 use super::{Manual, ShiftSpeeds};
 use crate::keys::{Key, Kind, Values, keys};
+use crate::transmission::coupling::{self, LAUNCH};
 use crate::transmission::film_heating::{FILM_HEATING, FilmHeating};
-use crate::transmission::launch::{self, LAUNCH};
 
 keys! {
     /// Keys of `[transmission.manual]` and its tables.
@@ -88,7 +88,7 @@ impl Manual {
             churning_exponent: churning.number(&CHURNING.viscous_exponent),
             reference_m2_s: s.number(&MANUAL.reference_mm2_s),
             neutral_share: s.number(&MANUAL.neutral_share),
-            launch: launch::from_values(s, &MANUAL.launch, 0.0),
+            coupling: coupling::from_values(s, &MANUAL.launch, 0.0),
             map: s.table("maps").loss_map(&MAPS.r#box, "gear"),
         }
     }

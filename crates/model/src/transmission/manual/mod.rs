@@ -18,16 +18,16 @@ mod keys;
 pub use gears::ShiftSpeeds;
 pub use keys::ManualKeys;
 
-use super::cvt::{Slopes, Trend};
+use super::component::Component;
+use super::coupling::{Coupling, CouplingLoad, EngineSide};
 use super::film_heating::FilmHeating;
-use super::launch::Launch;
 use super::loss_map::{LossMap, MapPoint};
-use super::{Drive, Past, Surroundings};
+use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::cycle::GearCommand;
-use crate::drive::{Component, Flags};
-use crate::engine::FULL;
+use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::math::{exp, held, ln};
+use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use std::sync::Arc;
 
@@ -56,8 +56,8 @@ pub struct Manual {
     pub neutral_share: f64,
     /// Shift speeds where the cycle prescribes no gears.
     pub shifts: ShiftSpeeds,
-    /// Launch clutch.
-    pub launch: Arc<dyn Launch>,
+    /// Coupling to the engine.
+    pub coupling: Arc<dyn Coupling>,
     /// Measured map of the whole box in place of bearings, churning, seals and mesh.
     pub map: Option<LossMap>,
 }
@@ -115,26 +115,23 @@ impl Manual {
 
     /// State at the beginning of a cycle.
     #[must_use]
-    pub fn start(&self, around: &Surroundings) -> Past {
-        let gear = if around.wheel.wheel_rad_s > 0.0 {
+    pub fn start<P: PrimeMover>(&self, step: &StepInput<P>) -> DrivelineState {
+        let gear = if step.wheel.wheel_rad_s > 0.0 {
             self.shifts
-                .for_speed(around.wheel.speed_m_s, 1, self.overall.len())
+                .for_speed(step.wheel.speed_m_s, 1, self.overall.len())
         } else {
             0
         };
         let input = if gear > 0 {
-            self.overall[usize::from(gear) - 1] * around.wheel.wheel_rad_s
+            self.overall[usize::from(gear) - 1] * step.wheel.wheel_rad_s
         } else {
             0.0
         };
-        let idle = around.engine.idle_rad_s;
-        Past {
+        let idle = step.engine.idle_rad_s();
+        DrivelineState {
             gear,
             engine_rad_s: if input > idle { input } else { idle },
             throttle: 0.0,
-            trend: Trend::default(),
-            slopes: Slopes::default(),
-            overrun: false,
             secondary_pa: 0.0,
             coupled: input > idle,
             stood: true,
@@ -142,9 +139,9 @@ impl Manual {
     }
 
     /// Command in force: the cycle's, else from the shift speeds (MB-5).
-    fn command(&self, around: &Surroundings, state: &Past) -> GearCommand {
+    fn command<P: PrimeMover>(&self, step: &StepInput<P>, state: &DrivelineState) -> GearCommand {
         let count = self.overall.len();
-        match around.gear {
+        match step.gear {
             Some(GearCommand::Change(g)) => GearCommand::InGear(g),
             Some(GearCommand::InGear(g)) if usize::from(g) > count => {
                 GearCommand::InGear(count as u8)
@@ -153,13 +150,13 @@ impl Manual {
                 GearCommand::Declutched(count as u8)
             }
             Some(command) => command,
-            None if around.wheel.wheel_rad_s <= 0.0 => GearCommand::Neutral,
+            None if step.wheel.wheel_rad_s <= 0.0 => GearCommand::Neutral,
             None => {
                 let gear = self
                     .shifts
-                    .for_speed(around.wheel.speed_m_s, state.gear, count);
-                let input = self.overall[usize::from(gear) - 1] * around.wheel.wheel_rad_s;
-                if around.wheel.power_w <= 0.0 && input < 1.05 * around.engine.idle_rad_s {
+                    .for_speed(step.wheel.speed_m_s, state.gear, count);
+                let input = self.overall[usize::from(gear) - 1] * step.wheel.wheel_rad_s;
+                if step.wheel.power_w <= 0.0 && input < 1.05 * step.engine.idle_rad_s() {
                     GearCommand::Declutched(gear)
                 } else {
                     GearCommand::InGear(gear)
@@ -170,124 +167,138 @@ impl Manual {
 
     /// Solves one step.
     #[must_use]
-    pub fn solve(&self, around: &Surroundings, state: &mut Past) -> Drive {
-        if around.engine_off {
-            state.engine_rad_s = around.engine.idle_rad_s; // the starter brings it back there
+    pub fn solve<P: PrimeMover>(
+        &self,
+        step: &StepInput<P>,
+        state: &mut DrivelineState,
+    ) -> StepOutput {
+        if step.engine_off {
+            state.engine_rad_s = step.engine.idle_rad_s(); // the starter brings it back there
             state.stood = true;
             state.coupled = false;
-            let mut rest = Drive::at_rest();
+            let mut rest = StepOutput::at_rest();
             rest.flags.set(Flags::ENGINE_OFF, true);
             return rest;
         }
-        let nu = around.oil.kinematic_m2_s(around.heat.node_k[SUMP]);
-        let command = self.command(around, state);
-        let mut drive = match command {
+        let nu = step.oil.kinematic_m2_s(step.heat.node_k[SUMP]);
+        let command = self.command(step, state);
+        let mut output = match command {
             GearCommand::InGear(gear) | GearCommand::Change(gear)
-                if around.wheel.wheel_rad_s > 0.0 && gear > 0 =>
+                if step.wheel.wheel_rad_s > 0.0 && gear > 0 =>
             {
-                self.engaged(around, state, gear, nu)
+                self.engaged(step, state, gear, nu)
             }
-            GearCommand::Neutral if around.wheel.wheel_rad_s <= 0.0 => {
-                self.neutral(around, state, nu)
-            }
+            GearCommand::Neutral if step.wheel.wheel_rad_s <= 0.0 => self.neutral(step, state, nu),
             GearCommand::Declutched(gear)
             | GearCommand::InGear(gear)
-            | GearCommand::Change(gear) => self.coasting(around, state, gear, nu),
-            GearCommand::Neutral => self.coasting(around, state, state.gear, nu),
+            | GearCommand::Change(gear) => self.coasting(step, state, gear, nu),
+            GearCommand::Neutral => self.coasting(step, state, state.gear, nu),
         };
-        drive.flags.set(
+        output.flags.set(
             Flags::OVERSPEED,
-            drive.engine_rad_s > around.engine.engine.highest_rad_s,
+            output.engine_rad_s > step.engine.max_rad_s(),
         );
-        let crank_nm = drive.shaft_nm + around.engine.accessories_nm(drive.engine_rad_s);
-        let share = crank_nm / around.engine.full_load_nm(drive.engine_rad_s);
-        drive.throttle = held(share, 0.0, 1.0);
-        drive.flags.set(
+        let crank_nm = output.shaft_nm + step.engine.accessories_nm(output.engine_rad_s);
+        let share = crank_nm / step.engine.full_load_nm(output.engine_rad_s);
+        output.throttle = held(share, 0.0, 1.0);
+        output.flags.set(
             Flags::OUTSIDE_VALIDITY,
-            !VALID_K.contains(&around.heat.node_k[SUMP]) || share > FULL,
+            !VALID_K.contains(&step.heat.node_k[SUMP]) || share > FULL_LOAD_LIMIT,
         );
-        state.gear = if drive.gear > 0 {
-            drive.gear
+        state.gear = if output.gear > 0 {
+            output.gear
         } else {
             state.gear
         };
-        state.engine_rad_s = drive.engine_rad_s;
-        let turning = drive.gear > 0 && !drive.flags.contains(Flags::CLUTCH_OPEN);
-        state.coupled = turning && !drive.flags.contains(Flags::CLUTCH_SLIPPING);
-        state.stood = around.wheel.wheel_rad_s <= 0.0;
-        drive
+        state.engine_rad_s = output.engine_rad_s;
+        let turning = output.gear > 0 && !output.flags.contains(Flags::CLUTCH_OPEN);
+        state.coupled = turning && !output.flags.contains(Flags::CLUTCH_SLIPPING);
+        state.stood = step.wheel.wheel_rad_s <= 0.0;
+        output
     }
 
-    /// Engine speed that the free engine reaches within the step, rad/s.
-    fn free_engine_rad_s(around: &Surroundings, state: &Past) -> f64 {
-        let e = around.engine;
-        let pace = e.engine.inertia_torque_nm / e.engine.inertia_kg_m2 * around.dt_s;
-        held(
-            e.idle_rad_s,
-            state.engine_rad_s - pace,
-            state.engine_rad_s + pace,
-        )
+    /// Speed of the free engine at the end of the step, rad/s.
+    fn free_engine_rad_s<P: PrimeMover>(step: &StepInput<P>, state: &DrivelineState) -> f64 {
+        step.reach(state.engine_rad_s)
+            .nearest(step.engine.idle_rad_s())
     }
 
     /// Losses of the unloaded box: the model's, or the map's at no torque.
-    fn unloaded(&self, around: &Surroundings, gear: u8, speed: f64, nu: f64) -> Spin {
+    fn unloaded<P: PrimeMover>(&self, step: &StepInput<P>, gear: u8, speed: f64, nu: f64) -> Spin {
         match &self.map {
-            Some(map) => Spin::mapped(map_loss(map, gear, speed, 0.0, around.heat.node_k[SUMP]).0),
+            Some(map) => Spin::mapped(map_loss(map, gear, speed, 0.0, step.heat.node_k[SUMP]).0),
             None => self.spin(speed, nu),
         }
     }
 
     /// Declutched, unless the car would then slow down more than it should: the driver lets the clutch slip in that gear or a lower one.
-    fn coasting(&self, around: &Surroundings, state: &Past, gear: u8, nu: f64) -> Drive {
-        let drive = self.declutched(around, state, gear, nu);
-        if drive.deficit_w > 0.0 {
-            self.engaged(around, state, gear.max(1), nu)
+    fn coasting<P: PrimeMover>(
+        &self,
+        step: &StepInput<P>,
+        state: &DrivelineState,
+        gear: u8,
+        nu: f64,
+    ) -> StepOutput {
+        let output = self.declutched(step, state, gear, nu);
+        if output.deficit_w > 0.0 {
+            self.engaged(step, state, gear.max(1), nu)
         } else {
-            drive
+            output
         }
     }
 
-    fn neutral(&self, around: &Surroundings, state: &Past, nu: f64) -> Drive {
-        let w = Self::free_engine_rad_s(around, state);
-        let spin = self.unloaded(around, 1, w, nu);
+    fn neutral<P: PrimeMover>(
+        &self,
+        step: &StepInput<P>,
+        state: &DrivelineState,
+        nu: f64,
+    ) -> StepOutput {
+        let w = Self::free_engine_rad_s(step, state);
+        let spin = self.unloaded(step, 1, w, nu);
         let share = self.neutral_share;
-        let mut drive = Drive {
+        let mut output = StepOutput {
             engine_rad_s: w,
             shaft_nm: share * spin.sum(),
-            ..Drive::at_rest()
+            ..StepOutput::at_rest()
         };
-        self.lose_spin(&mut drive, &spin, share * w);
-        drive
+        self.lose_spin(&mut output, &spin, share * w);
+        output
     }
 
     /// Clutch open, the wheels turn the box in `gear` (0: its highest), the engine idles.
-    fn declutched(&self, around: &Surroundings, state: &Past, gear: u8, nu: f64) -> Drive {
+    fn declutched<P: PrimeMover>(
+        &self,
+        step: &StepInput<P>,
+        state: &DrivelineState,
+        gear: u8,
+        nu: f64,
+    ) -> StepOutput {
         let gear = if gear == 0 {
             self.overall.len() as u8
         } else {
             gear
         };
-        let input = self.overall[usize::from(gear) - 1] * around.wheel.wheel_rad_s;
-        let spin = self.unloaded(around, gear, input, nu);
-        let mut drive = Drive {
-            engine_rad_s: Self::free_engine_rad_s(around, state),
+        let input = self.overall[usize::from(gear) - 1] * step.wheel.wheel_rad_s;
+        let spin = self.unloaded(step, gear, input, nu);
+        let mut output = StepOutput {
+            engine_rad_s: Self::free_engine_rad_s(step, state),
             gear,
-            ..Drive::at_rest()
+            ..StepOutput::at_rest()
         };
-        drive.flags.set(Flags::CLUTCH_OPEN, true);
+        output.flags.set(Flags::CLUTCH_OPEN, true);
         if input > 0.0 {
             let output_nm = -spin.sum();
-            self.lose_spin(&mut drive, &spin, input);
-            drive.settle(around.wheel, output_nm * input);
+            self.lose_spin(&mut output, &spin, input);
+            output.split_brake_and_shortfall(step.wheel, output_nm * input);
         }
-        drive
+        output
     }
 
-    fn lose_spin(&self, drive: &mut Drive, spin: &Spin, speed: f64) {
-        drive.lose(Component::Seal, spin.seal * speed);
-        drive.lose(Component::Bearing, spin.bearing * speed);
-        drive.lose(Component::Churning, spin.churning * speed);
-        drive.lose(Component::BoxMap, spin.map * speed);
+    fn lose_spin(&self, output: &mut StepOutput, spin: &Spin, speed: f64) {
+        output.add_loss(Component::Seal, spin.seal * speed);
+        output.add_loss(Component::Bearing, spin.bearing * speed);
+        output.add_loss(Component::Churning, spin.churning * speed);
+        output.add_loss(Component::BoxMap, spin.map * speed);
     }
 
     /// The engaged box at a speed and an oil temperature.
@@ -331,92 +342,128 @@ impl Manual {
         (parts, inside)
     }
 
-    fn engaged(&self, around: &Surroundings, state: &Past, gear: u8, nu: f64) -> Drive {
+    fn engaged<P: PrimeMover>(
+        &self,
+        step: &StepInput<P>,
+        state: &DrivelineState,
+        gear: u8,
+        nu: f64,
+    ) -> StepOutput {
         let mut gear = gear;
         loop {
-            let drive = self.in_gear(around, state, gear, nu);
+            let output = self.in_gear(step, state, gear, nu);
             let next = self
                 .overall
                 .get(usize::from(gear).wrapping_sub(2))
-                .map(|r| r * around.wheel.wheel_rad_s);
+                .map(|r| r * step.wheel.wheel_rad_s);
             match next {
                 Some(speed)
-                    if drive.flags.contains(Flags::MISSED_TRACE)
-                        && speed < around.engine.engine.highest_rad_s =>
+                    if output.flags.contains(Flags::MISSED_TRACE)
+                        && speed < step.engine.max_rad_s() =>
                 {
                     gear -= 1
                 }
-                _ => return drive,
+                _ => return output,
             }
         }
     }
 
-    fn in_gear(&self, around: &Surroundings, state: &Past, gear: u8, nu: f64) -> Drive {
-        let (engine, wheel) = (around.engine, around.wheel);
-        let oil_k = around.heat.node_k[SUMP];
+    /// The box in a gear: the torque demanded, or the one at the engine's limit.
+    fn in_gear<P: PrimeMover>(
+        &self,
+        step: &StepInput<P>,
+        state: &DrivelineState,
+        gear: u8,
+        nu: f64,
+    ) -> StepOutput {
+        let (engine, wheel) = (step.engine, step.wheel);
         let input = self.overall[usize::from(gear) - 1] * wheel.wheel_rad_s;
-        let idle = engine.idle_rad_s;
-        let mut output_nm = wheel.power_w / input;
-        let turning = self.turning(gear, input, nu, oil_k);
-        let (mut spin, mut mesh, mut inside) = turning.losses(output_nm);
-        let mut input_nm = output_nm + spin.sum() + mesh; // MB-1
-        let speed = |torque: f64| {
-            let wanted = self
-                .launch
-                .engine_speed_rad_s(torque, input, idle, state.coupled);
-            let pace = engine.engine.inertia_torque_nm / engine.engine.inertia_kg_m2 * around.dt_s;
-            let limited = held(wanted, state.engine_rad_s - pace, state.engine_rad_s + pace);
-            if limited > input && wanted > input {
-                limited
-            } else {
-                input
-            }
-        };
-        let mut w = speed(input_nm);
-        let least = if input < idle {
-            self.launch.creep_torque_nm(input, idle)
-        } else {
-            -self.launch.overrun_share(input, idle) * (engine.drag_nm(w) + engine.accessories_nm(w))
-        };
-        let most = engine.full_load_nm(w) - engine.accessories_nm(w);
-        let bound = if input_nm < least {
+        let turning = self.turning(gear, input, nu, step.heat.node_k[SUMP]);
+        let mut at = turning.at(wheel.power_w / input); // MB-1
+        let mut w = self.engine_rad_s(step, state, at.input_nm, input);
+        let accessories_nm = engine.accessories_nm(w);
+        let absorbed_nm = engine.drag_nm(w) + accessories_nm;
+        let least = self
+            .coupling
+            .min_output_nm(input, w, engine.idle_rad_s(), absorbed_nm);
+        let engine_nm = engine.full_load_nm(w) - accessories_nm;
+        let most = self.coupling.output_nm(engine_nm, input, w);
+        let limit = if at.input_nm < least {
             Some(least)
-        } else if input_nm > most {
+        } else if at.input_nm > most {
             Some(most)
         } else {
             None
         };
-        let mut drive = Drive {
+        let mut output = StepOutput {
             gear,
             iterations: 1,
-            ..Drive::at_rest()
+            ..StepOutput::at_rest()
         };
-        if let Some(torque) = bound {
-            drive.flags.set(Flags::MISSED_TRACE, input_nm > most);
-            (output_nm, drive.iterations) = turning.output_for(torque);
-            (spin, mesh, inside) = turning.losses(output_nm);
-            input_nm = output_nm + spin.sum() + mesh;
-            drive.residual = (input_nm - torque).abs() / engine.full_load_nm(w);
-            w = if torque > least { w } else { speed(torque) };
+        if let Some(torque) = limit {
+            output.flags.set(Flags::MISSED_TRACE, at.input_nm > most);
+            let output_nm;
+            (output_nm, output.iterations) = turning.output_for(torque);
+            at = turning.at(output_nm);
+            output.residual = (at.input_nm - torque).abs() / engine.full_load_nm(w);
+            w = if torque > least {
+                w
+            } else {
+                self.engine_rad_s(step, state, torque, input)
+            };
         }
-        drive.engine_rad_s = w;
-        drive.shaft_nm = input_nm;
-        self.lose_spin(&mut drive, &spin, input);
-        drive.lose(Component::GearMesh, mesh * input);
-        drive.lose(Component::LaunchClutch, input_nm * (w - input)); // LC-4
-        if bound.is_some() {
-            drive.settle(wheel, output_nm * input);
+        output.engine_rad_s = w;
+        // A box that drives the engine has it at one torque with its input; below a limit's zero there is only rounding.
+        let side = if at.input_nm < 0.0 {
+            EngineSide {
+                engine_nm: at.input_nm,
+                engine_rad_s: w,
+                loss_w: at.input_nm * (w - input), // LC-4
+            }
         } else {
-            drive.output_w = wheel.power_w;
+            self.coupling.engine_side(at.input_nm, input, w)
+        };
+        output.shaft_nm = side.engine_nm;
+        output.add_loss(Component::LaunchClutch, side.loss_w);
+        self.lose_spin(&mut output, &at.spin, input);
+        output.add_loss(Component::GearMesh, at.mesh_nm * input);
+        if limit.is_some() {
+            output.split_brake_and_shortfall(wheel, at.output_nm * input);
+        } else {
+            output.output_w = wheel.power_w;
         }
-        drive.flags.set(
+        let flags = &mut output.flags;
+        flags.set(
             Flags::CLUTCH_SLIPPING,
-            w > input * (1.0 + 1e-9) && input_nm > 0.0,
+            w > input * (1.0 + 1e-9) && at.input_nm > 0.0,
         );
-        drive.flags.set(Flags::OVERRUN, input_nm < 0.0);
-        drive.flags.set(Flags::OUTSIDE_VALIDITY, !inside);
-        drive.flags.set(Flags::NOT_CONVERGED, drive.residual > 1e-8);
-        drive
+        flags.set(Flags::OVERRUN, at.input_nm < 0.0);
+        flags.set(Flags::OUTSIDE_VALIDITY, !at.inside_map);
+        flags.set(Flags::NOT_CONVERGED, output.residual > 1e-8);
+        output
+    }
+
+    /// Engine speed over the coupling, rad/s; a coupling that locks takes the engine along at once.
+    fn engine_rad_s<P: PrimeMover>(
+        &self,
+        step: &StepInput<P>,
+        state: &DrivelineState,
+        input_nm: f64,
+        input_rad_s: f64,
+    ) -> f64 {
+        let wanted = self.coupling.engine_rad_s(&CouplingLoad {
+            output_nm: input_nm,
+            output_rad_s: input_rad_s,
+            idle_rad_s: step.engine.idle_rad_s(),
+            coupled: state.coupled,
+        });
+        let least = self.coupling.min_engine_rad_s(input_rad_s);
+        let reached = step.reach(state.engine_rad_s).nearest(wanted);
+        if reached > least && wanted > least {
+            reached
+        } else {
+            least
+        }
     }
 }
 
@@ -430,7 +477,28 @@ struct Turning<'a> {
     spin: Spin,
 }
 
+/// The engaged box at a torque, Nm at the input shaft.
+struct Loaded {
+    output_nm: f64,
+    input_nm: f64,
+    spin: Spin,
+    mesh_nm: f64,
+    inside_map: bool,
+}
+
 impl Turning<'_> {
+    /// Input torque and losses for an output torque referred to the input (MB-1).
+    fn at(&self, output_nm: f64) -> Loaded {
+        let (spin, mesh_nm, inside_map) = self.losses(output_nm);
+        Loaded {
+            output_nm,
+            input_nm: output_nm + spin.sum() + mesh_nm, // MB-1
+            spin,
+            mesh_nm,
+            inside_map,
+        }
+    }
+
     /// Box loss torque at the input for an output torque referred to the input: (spin, mesh, inside map).
     fn losses(&self, output_nm: f64) -> (Spin, f64, bool) {
         if let Some(map) = &self.manual.map {
@@ -490,7 +558,7 @@ fn map_loss(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::transmission::launch::FrictionClutch;
+    use crate::transmission::coupling::FrictionClutch;
 
     fn manual() -> Manual {
         Manual {
@@ -508,7 +576,7 @@ mod tests {
                 up_m_s: vec![4.2, 9.7, 13.9, 19.4],
                 down_m_s: vec![3.0, 7.0, 11.0, 15.0],
             },
-            launch: Arc::new(FrictionClutch {
+            coupling: Arc::new(FrictionClutch {
                 engage_rad_s: 105.0,
                 gain_nm_s2: 0.0019,
                 creep_nm: 0.0,

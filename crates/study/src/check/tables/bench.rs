@@ -4,15 +4,16 @@ use std::sync::LazyLock;
 
 use super::belt;
 use super::columns::{
-    Column, TableRow, combinations, component_names, from_rows, numbers, rpm, truth,
+    Column, TableRow, combinations, from_rows, numbers, rpm, truth,
 };
 use crate::check::expr::Table;
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
-use cvtcycle_model::drive::Flags;
+use cvtcycle_model::flags::Flags;
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::component::Component;
 
 /// A point and its solution.
 pub type Solved = (BenchPoint, BenchAnswer);
@@ -44,7 +45,7 @@ static COLUMNS: LazyLock<Vec<Column<Solved>>> = LazyLock::new(|| {
     }
 });
 
-static LOSSES: LazyLock<Vec<&'static str>> = LazyLock::new(|| component_names("nm"));
+static LOSSES: LazyLock<Vec<&'static str>> = LazyLock::new(|| Component::ALL.iter().map(|c| c.columns().nm).collect());
 
 /// Names of the columns.
 pub fn columns() -> Vec<&'static str> {

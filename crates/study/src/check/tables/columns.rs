@@ -1,7 +1,6 @@
 //! Columns of rows of any type, and tables made of them.
 
 use crate::check::expr::Table;
-use cvtcycle_model::drive::Component;
 
 /// Columns of rows `R`, one a line: `NAME ROW => NUMBER;`.
 macro_rules! columns {
@@ -22,12 +21,6 @@ pub fn names<R>(columns: Vec<Column<R>>) -> impl Iterator<Item = &'static str> {
 
 pub fn numbers<R>(columns: &[Column<R>], row: &R) -> impl Iterator<Item = f64> {
     columns.iter().map(move |column| (column.get)(row))
-}
-
-/// Names of the components with the ending of a unit, in the order of [`Component::ALL`]. Called once for each ending.
-pub fn component_names(ending: &str) -> Vec<&'static str> {
-    let name = |c: &Component| &*format!("{}_{ending}", c.name()).leak();
-    Component::ALL.iter().map(name).collect()
 }
 
 /// Every combination of the values of some axes, the last axis fastest.

@@ -2,16 +2,17 @@
 
 use std::sync::LazyLock;
 
-use super::columns::{Column, TableRow, component_names, from_rows, names, numbers, truth};
+use super::columns::{Column, TableRow, from_rows, names, numbers, truth};
 use crate::check::expr::Table;
 use crate::check::source::{Source, cycle};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::bench::BELT_PARTS;
 use cvtcycle_model::drive::{
-    Conditions, Flags, Outcome, PhaseTotals, Row, Start, litres_per_100km,
+    Conditions, Outcome, PhaseTotals, Row, Start, litres_per_100km,
 };
+use cvtcycle_model::flags::Flags;
 use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 use cvtcycle_output::trace::COLUMNS;
 
@@ -62,7 +63,7 @@ fn of_totals<'a>() -> Vec<Column<Totals<'a>>> {
     "wheel_work_positive_kj" (_, t) => t.wheel_positive_j / 1e3;
     "wheel_work_negative_kj" (_, t) => t.wheel_negative_j / 1e3;
     "transmission_kj" (_, t) => t.loss_j.iter().sum::<f64>() / 1e3;
-    "belt_kj" (_, t) => BELT_PARTS.iter().map(|c| t.loss_j[*c as usize]).sum::<f64>() / 1e3;
+    "belt_kj" (_, t) => Component::ALL.into_iter().filter(|c| c.is_belt()).map(|c| t.loss_j[c]).sum::<f64>() / 1e3;
     "end_sump_degc" (d, _) => d.end_degc(SUMP);
     "end_engine_oil_degc" (d, _) => d.end_degc(ENGINE_OIL);
     "end_coolant_degc" (d, _) => d.end_degc(COOLANT);
@@ -72,7 +73,7 @@ fn of_totals<'a>() -> Vec<Column<Totals<'a>>> {
     }
 }
 
-static LOSSES: LazyLock<Vec<&'static str>> = LazyLock::new(|| component_names("kj"));
+static LOSSES: LazyLock<Vec<&'static str>> = LazyLock::new(|| Component::ALL.iter().map(|c| c.columns().kj).collect());
 
 /// Names of the columns of the trace.
 pub fn columns() -> Vec<&'static str> {

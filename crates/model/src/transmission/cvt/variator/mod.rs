@@ -27,7 +27,7 @@ pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::{Tension, TensionInput};
 
-use crate::fluid::BandFriction;
+use crate::fluid::{BandFriction, Lubricant};
 use crate::math::{Curve, ln, ramp};
 
 /// The checked belt and pulleys.
@@ -85,6 +85,17 @@ impl Belt {
     #[inline]
     pub fn band_area_m2(&self) -> f64 {
         self.band_count * self.band_width_m * self.band_thickness_m
+    }
+
+    /// Sliding speed of the innermost band that can carry a film, m/s; 0 for formulations without a film.
+    #[must_use]
+    #[inline]
+    pub fn sliding_m_s(&self, ratio: f64, primary_rad_s: f64) -> f64 {
+        if self.formulation.has_film() {
+            sliding_speed_m_s(self, ratio, primary_rad_s)
+        } else {
+            0.0
+        }
     }
 }
 
@@ -225,6 +236,41 @@ pub struct BeltLoad {
     pub flank_friction: f64,
 }
 
+impl BeltLoad {
+    /// The lubricated belt without speed, torque and clamping force, for a viscosity at belt temperature and a band friction.
+    #[must_use]
+    #[inline]
+    pub fn unloaded(oil: &Lubricant, eta_pa_s: f64, band: BandFriction) -> Self {
+        BeltLoad {
+            primary_speed_rad_s: 0.0,
+            output_torque_nm: 0.0,
+            secondary_clamp_n: 0.0,
+            band,
+            eta_pa_s,
+            film_thickness_m: oil.friction.film_thickness_m,
+            segment_friction: oil.friction.segment,
+            flank_friction: oil.friction.flank,
+        }
+    }
+
+    /// The lubricated belt at a temperature, K, that turns at a ratio and primary speed, without torque and clamping force.
+    #[must_use]
+    pub fn turning(
+        belt: &Belt,
+        oil: &Lubricant,
+        belt_k: f64,
+        ratio: f64,
+        primary_rad_s: f64,
+    ) -> Self {
+        let eta_pa_s = oil.dynamic_pa_s(belt_k);
+        let sliding = belt.sliding_m_s(ratio, primary_rad_s);
+        BeltLoad {
+            primary_speed_rad_s: primary_rad_s,
+            ..BeltLoad::unloaded(oil, eta_pa_s, oil.friction.band(belt_k, eta_pa_s, sliding))
+        }
+    }
+}
+
 /// The belt's answer: losses are torques at the primary shaft, Nm, never negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeltState {
@@ -283,6 +329,21 @@ impl BeltLosses {
 }
 
 impl BeltState {
+    /// Losses, slip and capacity without the detail.
+    #[must_use]
+    pub fn losses(&self) -> BeltLosses {
+        BeltLosses {
+            band_nm: self.band_nm,
+            film_nm: self.film_nm,
+            slip_nm: self.slip_nm,
+            wedge_nm: self.wedge_nm,
+            penetration_nm: self.penetration_nm,
+            slip_total: self.slip_total,
+            capacity_nm: self.capacity_nm,
+            gross_slip: self.gross_slip,
+        }
+    }
+
     /// All belt losses, Nm at the primary shaft.
     #[must_use]
     #[inline]

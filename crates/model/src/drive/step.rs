@@ -1,0 +1,351 @@
+//! One step of a drive: wheel to fuel, and the heat that results.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | SI-1 | crank torque = flywheel torque + accessories + T_k, T_k w = change of rotating energy / dt | derived |
+//! | SI-2 | T_k within the engine's room (drag below, full load above) and its largest value; rotating energy follows later otherwise | ASSUMED: a clutch slips in a shift; keeps the inertia bounded for any step |
+//! | SI-4 | braking with the clutch locked, rotating energy that the engine cannot take up goes to the brakes | derived |
+//! | SI-3 | heat: engine to coolant and oil, 70 % of belt loss to the belt, input shaft to the metal, other losses to the sump | fitted share; rest ASSUMED |
+
+use super::{Car, EnergyTerms, Row, State};
+use crate::cycle::{GearCommand, Step, Trace};
+use crate::engine::{Burn, EngineAtTemperature};
+use crate::flags::Flags;
+use crate::fluid::Lubricant;
+use crate::math::held;
+use crate::prime_mover::PrimeMover;
+use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
+use crate::transmission::component::{ByComponent, Component, HeatTo};
+use crate::transmission::{StepInput, StepOutput, Transmission};
+
+/// A car on its way: steps in, rows out.
+#[derive(Clone, Debug)]
+pub struct Drive<'a> {
+    car: &'a Car,
+    /// Gears of the cycle, one an interval.
+    gears: Option<&'a [GearCommand]>,
+    /// Engine oil, where its viscosity is not that of the reference oil.
+    engine_oil: Option<&'a Lubricant>,
+    state: State,
+}
+
+impl<'a> Drive<'a> {
+    /// A car in a state; a manual box shifts by its shift speeds.
+    #[must_use]
+    pub fn new(car: &'a Car, state: State) -> Self {
+        Drive {
+            car,
+            gears: None,
+            engine_oil: car.engine.non_reference_oil(&car.engine_oil),
+            state,
+        }
+    }
+
+    /// A car in a state at the beginning of a trace, whose gears a manual box follows.
+    #[must_use]
+    pub fn along(car: &'a Car, trace: &'a Trace, state: State) -> Self {
+        let gears = match &car.transmission {
+            Transmission::Manual(manual) => trace.gears(manual.overall.len()),
+            Transmission::Cvt(_) => None,
+        };
+        Drive {
+            gears,
+            ..Drive::new(car, state)
+        }
+    }
+
+    /// The state after the last step.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Drives one step: its row and its energy terms.
+    #[inline(always)]
+    pub fn step(&mut self, step: &Step) -> (Row, EnergyTerms) {
+        let car = self.car;
+        let State {
+            heat,
+            transmission,
+            kinetic_j,
+        } = &mut self.state;
+        let wheel = car.road_load.wheel(step);
+        let engine = car.engine.at_temperatures(
+            heat.node_k[COOLANT],
+            heat.node_k[ENGINE_OIL],
+            self.engine_oil,
+            car.full_load_factor,
+        );
+        let input = StepInput {
+            wheel: &wheel,
+            engine: &engine,
+            oil: &car.oil,
+            heat,
+            gear: self.gears.and_then(|g| g.get(step.interval).copied()),
+            dt_s: step.dt_s,
+            engine_off: step.engine_off,
+        };
+        let transmission = transmission.get_or_insert_with(|| car.transmission.start(&input));
+        if kinetic_j.is_nan() {
+            let w = transmission.driveline.engine_rad_s;
+            let idling = 0.5 * car.engine.inertia_kg_m2 * w * w;
+            *kinetic_j = if step.engine_off { 0.0 } else { idling };
+        }
+        let mut output = car.transmission.solve(&input, transmission);
+        let inertia = inertia(
+            car,
+            &input,
+            &output,
+            *kinetic_j,
+            transmission.driveline.coupled,
+        );
+        output.brake_w += inertia.to_brake_w;
+        let mut burn = engine.burn(output.engine_rad_s, inertia.crank_nm);
+        if step.engine_off {
+            burn.to_coolant_w = -inertia.kinetic_w; // the engine runs out against its own friction
+        }
+        let power_w = node_power(car, &output, &burn);
+        let heat_step = advance(car, power_w, &output, &input, step.motion.speed_power_07);
+        let result = row(
+            car,
+            step,
+            &input,
+            &Solved {
+                output: &output,
+                inertia: &inertia,
+                burn: &burn,
+                power_w,
+                heat: &heat_step,
+            },
+        );
+        *heat = heat_step.heat;
+        // An engine at rest has no rotating energy, not even a rest of rounding.
+        *kinetic_j = if output.engine_rad_s <= 0.0 {
+            0.0
+        } else {
+            *kinetic_j + inertia.kinetic_w * step.dt_s
+        };
+        result
+    }
+}
+
+type Input<'a> = StepInput<'a, EngineAtTemperature<'a>>;
+
+/// Rotating energy and crank torque of a step.
+struct Inertia {
+    crank_nm: f64,
+    accessories_nm: f64,
+    kinetic_w: f64,
+    /// Rotating energy that the brakes take up with the car's (SI-4).
+    to_brake_w: f64,
+}
+
+#[inline(always)]
+fn inertia(
+    car: &Car,
+    input: &Input,
+    output: &StepOutput,
+    kinetic_j: f64,
+    coupled: bool,
+) -> Inertia {
+    let w = output.engine_rad_s;
+    if w <= 0.0 {
+        return Inertia {
+            crank_nm: 0.0,
+            accessories_nm: 0.0,
+            kinetic_w: -kinetic_j / input.dt_s,
+            to_brake_w: 0.0,
+        };
+    }
+    let engine = input.engine;
+    let accessories_nm = engine.accessories_nm(w);
+    let steady = output.shaft_nm + accessories_nm;
+    let wanted = (0.5 * car.engine.inertia_kg_m2 * w * w - kinetic_j) / input.dt_s / w;
+    let bound = car.engine.inertia_torque_nm;
+    // Faster takes what is left below full load, slower what drag is left; never less than nothing, never more than the bound.
+    let torque = if wanted > 0.0 {
+        held(
+            engine.full_load_nm(w) - steady,
+            0.0,
+            if wanted < bound { wanted } else { bound },
+        ) // SI-2
+    } else {
+        held(
+            -(steady + engine.drag_nm(w)),
+            if wanted > -bound { wanted } else { -bound },
+            0.0,
+        ) // SI-2
+    };
+    let over = if coupled && output.brake_w > 0.0 && wanted < torque {
+        torque - wanted
+    } else {
+        0.0
+    };
+    Inertia {
+        crank_nm: steady + torque,
+        accessories_nm,
+        kinetic_w: (torque - over) * w,
+        to_brake_w: over * w,
+    } // SI-1, SI-4
+}
+
+#[inline(always)]
+fn advance(
+    car: &Car,
+    power_w: [f64; NODES],
+    output: &StepOutput,
+    input: &Input,
+    speed_power_07: f64,
+) -> HeatStep {
+    let sump_k = input.heat.node_k[SUMP];
+    let oil_volume_heat_j_m3k = car.oil.density_kg_m3(sump_k) * car.oil.heat_capacity_j_kgk(sump_k);
+    car.network.advance_in_wind(
+        input.heat,
+        &HeatInput {
+            power_w,
+            ambient_k: car.ambient_k,
+            speed_m_s: input.wheel.speed_m_s,
+            pump_rad_s: output.engine_rad_s,
+            oil_flow_m3_s: output.oil_flow_m3_s,
+            oil_volume_heat_j_m3k,
+            running: !input.engine_off,
+            dt_s: input.dt_s,
+        },
+        speed_power_07,
+    )
+}
+
+/// Heat into each node, W (SI-3).
+#[inline(always)]
+fn node_power(car: &Car, output: &StepOutput, burn: &Burn) -> [f64; NODES] {
+    let mut power = loss_heat_w(car, &output.loss_w);
+    power[COOLANT] += burn.to_coolant_w;
+    power[ENGINE_OIL] += burn.to_oil_w;
+    power
+}
+
+/// Heat that the transmission's losses, W, put into each node, W (SI-3).
+#[inline]
+pub fn loss_heat_w(car: &Car, loss_w: &ByComponent<f64>) -> [f64; NODES] {
+    // First the sums of what goes the same way.
+    let (mut belt, mut metal, mut coupling, mut sump) = (0.0, 0.0, 0.0, 0.0);
+    for component in Component::ALL {
+        *match component.heat() {
+            HeatTo::Belt => &mut belt,
+            HeatTo::Metal => &mut metal,
+            HeatTo::Coupling => &mut coupling,
+            HeatTo::Sump => &mut sump,
+        } += loss_w[component];
+    }
+    let mut power = [0.0; NODES];
+    power[BELT] = car.belt_heat_share * belt;
+    power[METAL] = metal;
+    power[SUMP] = sump + (1.0 - car.belt_heat_share) * belt;
+    power[if car.transmission.is_cvt() {
+        SUMP
+    } else {
+        COOLANT
+    }] += coupling;
+    power
+}
+
+/// Everything that a step computed.
+struct Solved<'a> {
+    output: &'a StepOutput,
+    inertia: &'a Inertia,
+    burn: &'a Burn,
+    /// Heat into each node, as the network received it.
+    power_w: [f64; NODES],
+    heat: &'a HeatStep,
+}
+
+/// Energy terms of a step, each from the model that owns it.
+#[inline]
+fn terms(input: &Input, a: &Solved) -> EnergyTerms {
+    let (d, b, wheel) = (a.output, a.burn, input.wheel);
+    let node_heat: f64 = a.power_w.iter().sum();
+    let losses: f64 = d.loss_w.iter().sum();
+    let engine_heat = b.to_coolant_w + b.to_oil_w;
+    let accessories = a.inertia.accessories_nm * d.engine_rad_s;
+    EnergyTerms {
+        fuel: b.fuel_w,
+        wheels: wheel.power_w - d.deficit_w,
+        brake: d.brake_w,
+        accessories,
+        losses,
+        kinetic: a.inertia.kinetic_w,
+        engine_heat,
+        exhaust: b.exhaust_w,
+        node_heat,
+        stored: a.heat.stored_w,
+        to_air: a.heat.to_air_w,
+    }
+}
+
+#[inline(always)]
+fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, EnergyTerms) {
+    let terms = terms(input, a);
+    let (d, b, wheel) = (a.output, a.burn, input.wheel);
+    let mut flags = d.flags;
+    flags.set(Flags::FUEL_CUT, b.cut && d.engine_rad_s > 0.0);
+    flags.set(Flags::OUTSIDE_VALIDITY, b.outside);
+    let t = &a.heat.heat.node_k;
+    let row = Row {
+        time_s: step.time_s,
+        dt_s: step.dt_s,
+        phase: step.phase,
+        speed_m_s: wheel.speed_m_s,
+        accel_m_s2: wheel.accel_m_s2,
+        distance_m: wheel.speed_m_s * step.dt_s,
+        wheel_torque_nm: if wheel.wheel_rad_s > 0.0 {
+            wheel.power_w / wheel.wheel_rad_s
+        } else {
+            0.0
+        },
+        wheel_power_w: wheel.power_w,
+        wheel_work_positive_j: wheel.positive_j,
+        wheel_work_negative_j: wheel.negative_j,
+        deficit_w: d.deficit_w,
+        engine_speed_rad_s: d.engine_rad_s,
+        engine_torque_nm: d.shaft_nm,
+        throttle: d.throttle,
+        gear: d.gear,
+        belt_ratio: d.belt_ratio,
+        overall_ratio: if wheel.wheel_rad_s > 0.0 {
+            d.engine_rad_s / wheel.wheel_rad_s
+        } else {
+            f64::NAN
+        },
+        primary_pressure_pa: d.primary_pa,
+        secondary_pressure_pa: d.secondary_pa,
+        slip: d.slip,
+        clamp_safety: d.clamp_safety,
+        loss_w: d.loss_w,
+        accessories_w: terms.accessories,
+        brake_w: d.brake_w,
+        kinetic_w: a.inertia.kinetic_w,
+        fuel_kg_s: b.fuel_kg_s,
+        fuel_power_w: b.fuel_w,
+        engine_heat_w: terms.engine_heat,
+        exhaust_w: b.exhaust_w,
+        coolant_k: t[COOLANT],
+        engine_oil_k: t[ENGINE_OIL],
+        sump_k: t[SUMP],
+        metal_k: t[METAL],
+        belt_spray_k: if car.transmission.is_cvt() {
+            t[BELT]
+        } else {
+            f64::NAN
+        },
+        cooler_in_k: a.heat.cooler_in_k,
+        cooler_out_k: a.heat.cooler_out_k,
+        stored_w: a.heat.stored_w,
+        to_air_w: a.heat.to_air_w,
+        power_ledger_error: terms.power_error(),
+        heat_ledger_error: terms.heat_error(),
+        solve_residual: d.residual,
+        iterations: d.iterations,
+        flags,
+    };
+    (row, terms)
+}

@@ -1,0 +1,25 @@
+//! What a transmission knows of the machine that drives it.
+
+/// Share of full load above which a prime mover is asked for more than it can give, with a margin for what a solve leaves: an engine
+/// that cannot turn its own pump and accessories in the cold. Such rows are flagged outside validity.
+pub const FULL_LOAD_LIMIT: f64 = 1.0 + 1e-5;
+
+/// An engine or motor at its temperature and altitude; speeds in rad/s at its shaft, torques in Nm.
+pub trait PrimeMover {
+    /// Idle speed.
+    fn idle_rad_s(&self) -> f64;
+    /// Highest speed.
+    fn max_rad_s(&self) -> f64;
+    /// Rated power, W.
+    fn rated_w(&self) -> f64;
+    /// Full-load torque over that at sea level.
+    fn full_load_factor(&self) -> f64;
+    /// Full-load torque at a speed.
+    fn full_load_nm(&self, speed_rad_s: f64) -> f64;
+    /// Torque of the accessories at a speed.
+    fn accessories_nm(&self, speed_rad_s: f64) -> f64;
+    /// Drag torque at a speed without fuel, positive.
+    fn drag_nm(&self, speed_rad_s: f64) -> f64;
+    /// Largest acceleration of the free shaft, rad/s2.
+    fn max_accel_rad_s2(&self) -> f64;
+}

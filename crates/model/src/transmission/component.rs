@@ -1,0 +1,257 @@
+//! The loss components of all transmissions: one table with a row each.
+//!
+//! Columns of traces, benches and studies, fills of charts, the split of heat and the list of a car's components are made from it.
+
+use std::ops::{Index, IndexMut};
+
+/// The transmissions that have a component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Coupling between engine and box: every transmission.
+    Coupling,
+    /// CVT, outside the belt.
+    Cvt,
+    /// CVT: a part of the belt's loss, absent where a map replaces the belt.
+    Belt,
+    /// CVT whose belt is replaced by a measured map.
+    BeltMap,
+    /// Manual box, absent where a map replaces the box.
+    Manual,
+    /// Manual box that is replaced by a measured map.
+    ManualMap,
+}
+
+impl Part {
+    /// True for the components of a CVT without its coupling.
+    #[must_use]
+    pub const fn is_cvt(self) -> bool {
+        matches!(self, Part::Cvt | Part::Belt | Part::BeltMap)
+    }
+}
+
+/// The thermal node that receives the heat of a component (SI-3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeatTo {
+    /// Belt node and sump, by the car's share.
+    Belt,
+    /// Case and shafts.
+    Metal,
+    /// Sump.
+    Sump,
+    /// Sump of a CVT, coolant of a car with a dry clutch.
+    Coupling,
+}
+
+/// Fill of a component in charts: a place on one of two colour ramps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fill {
+    /// Place on the ramp of the CVT's components.
+    Cvt(u8),
+    /// Place on the ramp of the manual box's components.
+    Manual(u8),
+}
+
+/// One row of the table of components.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    name: &'static str,
+    title: &'static str,
+    doc: &'static str,
+    columns: LossColumns,
+    part: Part,
+    heat: HeatTo,
+    fill: Fill,
+    map_key: Option<&'static str>,
+}
+
+/// Names of the columns that hold a component's loss.
+#[derive(Clone, Copy, Debug)]
+pub struct LossColumns {
+    /// Power in a trace, `pump_loss_w`.
+    pub loss_w: &'static str,
+    /// Torque at the input shaft of a bench, `pump_loss_nm`.
+    pub loss_nm: &'static str,
+    /// Energy in a study, `pump_loss_kj`.
+    pub loss_kj: &'static str,
+    /// Torque in a check's table, `pump_nm`.
+    pub nm: &'static str,
+    /// Energy in a check's table, `pump_kj`.
+    pub kj: &'static str,
+}
+
+macro_rules! components {
+    ($($variant:ident: $name:literal, $title:literal, $part:ident, $heat:ident, $fill:expr, $map:expr, $doc:literal;)*) => {
+        /// A loss component of the transmission, in the order of the power flow from the engine to the wheels.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(usize)]
+        pub enum Component {
+            $(#[doc = $doc] $variant,)*
+        }
+
+        impl Component {
+            /// All components, in the order of the power flow.
+            pub const ALL: [Component; Self::COUNT] = [$(Component::$variant),*];
+            /// Number of components.
+            pub const COUNT: usize = [$(Component::$variant),*].len();
+        }
+
+        static TABLE: [Entry; Component::COUNT] = [$(Entry {
+            name: $name,
+            title: $title,
+            doc: $doc,
+            columns: LossColumns {
+                loss_w: concat!($name, "_loss_w"),
+                loss_nm: concat!($name, "_loss_nm"),
+                loss_kj: concat!($name, "_loss_kj"),
+                nm: concat!($name, "_nm"),
+                kj: concat!($name, "_kj"),
+            },
+            part: Part::$part,
+            heat: HeatTo::$heat,
+            fill: $fill,
+            map_key: $map,
+        }),*];
+    };
+}
+
+// name, title, transmission, heat, fill, key of the map that replaces the model, what the loss is
+components! {
+    LaunchClutch: "launch_clutch", "Launch clutch", Coupling, Coupling, Fill::Cvt(0), None, "loss of launch clutch slip and creep";
+    Pump: "pump", "Pump", Cvt, Sump, Fill::Cvt(1), Some("pump"), "loss of the oil pump";
+    InputShaft: "input_shaft", "Input shaft", Cvt, Metal, Fill::Cvt(2), Some("input_shaft"), "loss of the input shaft's bearings and seals";
+    ClutchDrag: "clutch_drag", "Clutch drag", Cvt, Sump, Fill::Cvt(3), Some("clutch_drag"), "drag of the open reverse clutch";
+    BeltBand: "belt_band", "Belt band", Belt, Belt, Fill::Cvt(4), None, "boundary friction between bands and between band and segments";
+    BeltFilm: "belt_film", "Belt film", Belt, Belt, Fill::Cvt(5), None, "viscous shear between the bands";
+    BeltSlip: "belt_slip", "Belt slip", Belt, Belt, Fill::Cvt(6), None, "sliding of the segments along the pulleys";
+    BeltWedge: "belt_wedge", "Belt wedge", Belt, Belt, Fill::Cvt(7), None, "wedging at pulley entry and exit";
+    BeltPenetration: "belt_penetration", "Belt penetration", Belt, Belt, Fill::Cvt(8), None, "penetration into the deflected pulleys";
+    BeltMap: "belt_map", "Belt map", BeltMap, Belt, Fill::Cvt(4), Some("belt"), "loss of the whole belt, from its measured map";
+    FinalDrive: "final_drive", "Final drive", Cvt, Sump, Fill::Cvt(9), Some("final_drive"), "loss of the final drive of the CVT";
+    GearMesh: "gear_mesh", "Gear mesh", Manual, Sump, Fill::Manual(1), None, "gear mesh loss of the manual box, with its final drive";
+    Bearing: "bearing", "Bearing", Manual, Metal, Fill::Manual(2), None, "bearing loss of the manual box";
+    Churning: "churning", "Churning", Manual, Sump, Fill::Manual(3), None, "churning loss of the manual box";
+    Seal: "seal", "Seal", Manual, Metal, Fill::Manual(4), None, "seal loss of the manual box";
+    BoxMap: "box_map", "Box map", ManualMap, Sump, Fill::Manual(1), Some("box"), "loss of the whole manual box, from its measured map";
+}
+
+impl Component {
+    const fn entry(self) -> &'static Entry {
+        &TABLE[self as usize]
+    }
+
+    /// Name as in JSON keys and CSV columns.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.entry().name
+    }
+
+    /// Name in words, with a capital.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        self.entry().title
+    }
+
+    /// What the loss is, one phrase.
+    #[must_use]
+    pub const fn doc(self) -> &'static str {
+        self.entry().doc
+    }
+
+    /// Names of the columns that hold the loss.
+    #[must_use]
+    pub const fn columns(self) -> LossColumns {
+        self.entry().columns
+    }
+
+    /// The transmissions that have the component.
+    #[must_use]
+    pub const fn part(self) -> Part {
+        self.entry().part
+    }
+
+    /// The thermal node that receives the heat.
+    #[must_use]
+    pub const fn heat(self) -> HeatTo {
+        self.entry().heat
+    }
+
+    /// Fill in charts.
+    #[must_use]
+    pub const fn fill(self) -> Fill {
+        self.entry().fill
+    }
+
+    /// Key of the measured map that replaces the component's model, below `maps` of its transmission.
+    #[must_use]
+    pub const fn map_key(self) -> Option<&'static str> {
+        self.entry().map_key
+    }
+
+    /// True for the parts of the belt's loss and for its map.
+    #[must_use]
+    pub const fn is_belt(self) -> bool {
+        matches!(self.part(), Part::Belt | Part::BeltMap)
+    }
+}
+
+/// One value for each component.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ByComponent<T>(pub [T; Component::COUNT]);
+
+impl<T> ByComponent<T> {
+    /// A value of each component.
+    #[must_use]
+    pub fn from_fn(mut value: impl FnMut(Component) -> T) -> Self {
+        ByComponent(Component::ALL.map(&mut value))
+    }
+
+    /// The values in the order of [`Component::ALL`].
+    pub fn iter(&self) -> std::slice::Iter<'_, T> {
+        self.0.iter()
+    }
+
+    /// The values in the order of [`Component::ALL`], to be changed.
+    pub fn iter_mut(&mut self) -> std::slice::IterMut<'_, T> {
+        self.0.iter_mut()
+    }
+
+    /// Another value made of each.
+    #[must_use]
+    pub fn map<U>(self, f: impl FnMut(T) -> U) -> ByComponent<U> {
+        ByComponent(self.0.map(f))
+    }
+}
+
+impl<T> Index<Component> for ByComponent<T> {
+    type Output = T;
+
+    #[inline]
+    fn index(&self, component: Component) -> &T {
+        &self.0[component as usize]
+    }
+}
+
+impl<T> IndexMut<Component> for ByComponent<T> {
+    #[inline]
+    fn index_mut(&mut self, component: Component) -> &mut T {
+        &mut self.0[component as usize]
+    }
+}
+
+impl<T> IntoIterator for ByComponent<T> {
+    type Item = T;
+    type IntoIter = std::array::IntoIter<T, { Component::COUNT }>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.into_iter()
+    }
+}
+
+impl<'a, T> IntoIterator for &'a ByComponent<T> {
+    type Item = &'a T;
+    type IntoIter = std::slice::Iter<'a, T>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter()
+    }
+}

@@ -1,0 +1,139 @@
+//! The coupling between engine and box: friction clutch, torque converter.
+//!
+//! Torques and speeds at the box's side are called output, those at the flywheel engine. A coupling may multiply torque: a box sees
+//! the engine's torque only through [`Coupling::engine_side`] and [`Coupling::output_nm`].
+
+mod friction_clutch;
+
+pub use friction_clutch::FrictionClutch;
+
+use self::friction_clutch::FrictionClutchKeys;
+use crate::keys::{Choice, Key, Values, spec};
+use crate::math::{held, ramp};
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// Row of the key `launch`, which every box has.
+pub(super) const LAUNCH: spec::Spec = spec::or_word(
+    "friction_clutch",
+    spec::options(&[Choice::new(
+        "friction_clutch",
+        "friction clutch, wet or dry",
+        FrictionClutchKeys::TABLE,
+    )]),
+);
+
+/// The coupling of a box; `creep_nm` is the default of a clutch's creep torque.
+pub(super) fn from_values<V: Values>(s: &V, key: &Key<'_>, creep_nm: f64) -> Arc<dyn Coupling> {
+    let (_, own) = s.choose(key);
+    Arc::new(FrictionClutch::from_values(&own, creep_nm))
+}
+
+/// What the coupling is to pass on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CouplingLoad {
+    /// Torque into the box, Nm; negative in overrun.
+    pub output_nm: f64,
+    /// Speed of the box's input shaft, rad/s.
+    pub output_rad_s: f64,
+    /// Idle speed of the engine, rad/s.
+    pub idle_rad_s: f64,
+    /// True where the coupling had locked before the step.
+    pub coupled: bool,
+}
+
+impl CouplingLoad {
+    /// A torque into the box, Nm, at its speed over an engine with an idle speed, rad/s.
+    #[must_use]
+    pub fn new(output_nm: f64, output_rad_s: f64, idle_rad_s: f64, coupled: bool) -> Self {
+        CouplingLoad {
+            output_nm,
+            output_rad_s,
+            idle_rad_s,
+            coupled,
+        }
+    }
+}
+
+/// The engine's side of a coupling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EngineSide {
+    /// Torque at the flywheel, Nm.
+    pub engine_nm: f64,
+    /// Engine speed, rad/s.
+    pub engine_rad_s: f64,
+    /// Loss of the coupling, W.
+    pub loss_w: f64,
+}
+
+/// A coupling between engine and box.
+pub trait Coupling: Debug + Send + Sync {
+    /// Engine speed in steady state for a torque into the box, rad/s.
+    fn engine_rad_s(&self, load: &CouplingLoad) -> f64;
+
+    /// Lowest engine speed over a box that turns at a speed, rad/s. A clutch cannot give energy back: its engine is never slower.
+    fn min_engine_rad_s(&self, output_rad_s: f64) -> f64 {
+        output_rad_s
+    }
+
+    /// Output speed from which a locked coupling stays locked, rad/s; infinite for one that never locks.
+    fn locked_from_rad_s(&self, idle_rad_s: f64) -> f64;
+
+    /// The engine's side for a torque into the box at known speeds; `output_nm` over its torque is the torque ratio.
+    fn engine_side(&self, output_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> EngineSide;
+
+    /// Torque into the box for a torque of the driving engine, Nm: the inverse of [`Coupling::engine_side`].
+    fn output_nm(&self, engine_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> f64;
+
+    /// Torque into the box that the idling engine passes on, Nm.
+    fn creep_nm(&self, output_rad_s: f64, idle_rad_s: f64) -> f64;
+
+    /// Share of the engine's overrun torque that the coupling carries, 0..1.
+    fn overrun_share(&self, output_rad_s: f64, idle_rad_s: f64) -> f64;
+
+    /// Least torque into the box, Nm, with an engine that absorbs `absorbed_nm`: the creep torque below idle speed, the overrun above.
+    fn min_output_nm(
+        &self,
+        output_rad_s: f64,
+        engine_rad_s: f64,
+        idle_rad_s: f64,
+        absorbed_nm: f64,
+    ) -> f64 {
+        if output_rad_s < idle_rad_s {
+            return self.creep_nm(output_rad_s, idle_rad_s);
+        }
+        // A slipping clutch whose engine is faster cannot take torque from the box; faded in, so that a solve sees no step.
+        let together = 1.0 - ramp(engine_rad_s / output_rad_s, 1.0, 1.02);
+        -together * self.overrun_share(output_rad_s, idle_rad_s) * absorbed_nm
+    }
+
+    /// The engine's side for a torque into the box, its speed the one of steady state as far as `reach` has it.
+    fn solve(&self, load: &CouplingLoad, reach: &Reach) -> EngineSide {
+        let reached = reach.nearest(self.engine_rad_s(load));
+        let least = self.min_engine_rad_s(load.output_rad_s);
+        let engine_rad_s = if reached > least { reached } else { least };
+        self.engine_side(load.output_nm, load.output_rad_s, engine_rad_s)
+    }
+}
+
+/// Engine speeds that its inertia allows within a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Speed before the step, rad/s.
+    pub from_rad_s: f64,
+    /// Largest change of speed, rad/s.
+    pub change_rad_s: f64,
+}
+
+impl Reach {
+    /// The nearest speed within reach, rad/s.
+    #[must_use]
+    #[inline]
+    pub fn nearest(&self, wanted_rad_s: f64) -> f64 {
+        held(
+            wanted_rad_s,
+            self.from_rad_s - self.change_rad_s,
+            self.from_rad_s + self.change_rad_s,
+        )
+    }
+}

@@ -1,0 +1,258 @@
+//! From the solved point to the driveline's output: powers, brake, flags, state; and the step at standstill.
+
+use super::WarmStart;
+use super::driveline::{PartTorques, Shaft};
+use super::evaluate::{Limit, Point, Step};
+use super::solve::{MAX_EVALUATIONS, TOLERANCE};
+use super::variator::{BeltLoad, belt_capacity_nm};
+use crate::flags::Flags;
+use crate::fluid::VALID_K;
+use crate::math::held;
+use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
+use crate::thermal::{BELT, SUMP};
+use crate::transmission::component::Component;
+use crate::transmission::step::{DrivelineState, StepOutput};
+
+/// What pump and clamp law settle on with the car at rest in gear.
+struct Idling {
+    pressure_pa: f64,
+    torques: PartTorques,
+    throttle: f64,
+    /// Engine torque over full load.
+    load_share: f64,
+    residual: f64,
+    evaluations: u16,
+    inside_maps: bool,
+    flow_limited: bool,
+    oil_flow_m3_s: f64,
+}
+
+/// Fixed point of throttle and pressure with an engine at `w` that passes on `creep_nm` and takes `coupling_nm` for it.
+fn idling<P: PrimeMover>(
+    step: &Step<P>,
+    w: f64,
+    (creep_nm, coupling_nm): (f64, f64),
+    throttle: f64,
+) -> Idling {
+    let (line, engine) = (&step.line, step.input.engine);
+    let mut at = Idling {
+        pressure_pa: 0.0,
+        torques: PartTorques::default(),
+        throttle,
+        load_share: 0.0,
+        residual: f64::INFINITY,
+        evaluations: 0,
+        inside_maps: true,
+        flow_limited: false,
+        oil_flow_m3_s: 0.0,
+    };
+    let load = || BeltLoad {
+        output_torque_nm: creep_nm * line.at.geometry.ratio,
+        ..step.load
+    };
+    while at.residual > TOLERANCE && at.evaluations < MAX_EVALUATIONS {
+        let signals = line.signals(at.throttle, w);
+        at.pressure_pa = line.cvt.pressure_pa(&signals, line.at, load, 0.0);
+        let (pump, shaft) =
+            line.pump_and_shaft(w, at.pressure_pa, step.shift_flow_m3_s, &mut at.inside_maps);
+        (at.torques.pump, at.torques.shaft) = (pump.torque_nm, shaft);
+        (at.flow_limited, at.oil_flow_m3_s) = (pump.flow_limited, pump.working_m3_s);
+        at.load_share = (coupling_nm + pump.torque_nm + shaft + engine.accessories_nm(w))
+            / engine.full_load_nm(w);
+        let next = held(at.load_share, 0.0, 1.0);
+        at.residual = (next - at.throttle).abs();
+        at.throttle = next;
+        at.evaluations += 1;
+    }
+    at
+}
+
+/// The car is at rest in gear: the coupling slips at creep torque, pump and shaft turn.
+pub(super) fn standstill<P: PrimeMover>(
+    step: &Step<P>,
+    past: &mut DrivelineState,
+    warm_start: &mut WarmStart,
+) -> StepOutput {
+    let (line, cvt) = (&step.line, step.line.cvt);
+    let idle = step.input.engine.idle_rad_s();
+    let creep = cvt.coupling.creep_nm(0.0, idle);
+    let w = step.reach.nearest(idle);
+    let side = cvt.coupling.engine_side(creep, 0.0, w);
+    let at = idling(step, w, (creep, side.engine_nm), past.throttle);
+    let clamped = BeltLoad {
+        secondary_clamp_n: cvt.secondary_clamp_n(at.pressure_pa, 0.0),
+        ..step.load
+    };
+    let capacity = belt_capacity_nm(&cvt.belt, line.at, &clamped);
+    let ratio = line.at.geometry.ratio;
+    let mut output = StepOutput {
+        engine_rad_s: w,
+        shaft_nm: side.engine_nm + at.torques.pump + at.torques.shaft,
+        throttle: at.throttle,
+        belt_ratio: ratio,
+        primary_pa: primary_pa(step, at.pressure_pa),
+        secondary_pa: at.pressure_pa,
+        slip: 0.0,
+        clamp_safety: if creep > 0.0 {
+            capacity / (creep * ratio)
+        } else {
+            f64::INFINITY
+        },
+        oil_flow_m3_s: at.oil_flow_m3_s,
+        residual: at.residual,
+        iterations: at.evaluations,
+        ..StepOutput::at_rest()
+    };
+    output.add_loss(Component::LaunchClutch, side.loss_w);
+    add_part_losses(&mut output, &at.torques, (w, 0.0, 0.0));
+    let flags = &mut output.flags;
+    flags.set(Flags::CLUTCH_SLIPPING, true);
+    flags.set(Flags::FLOW_LIMITED, at.flow_limited);
+    flags.set(Flags::NOT_CONVERGED, !converged(at.residual));
+    let valid = at.inside_maps && at.load_share <= FULL_LOAD_LIMIT;
+    common_flags(step, &mut output, valid);
+    remember(past, &output, true);
+    warm_start.trend.stand();
+    past.coupled = false;
+    output
+}
+
+/// Adds the losses of all parts at the speeds of engine, primary and secondary, rad/s.
+#[inline(always)]
+fn add_part_losses(
+    output: &mut StepOutput,
+    torques: &PartTorques,
+    (engine, primary, secondary): (f64, f64, f64),
+) {
+    torques.for_each_loss(|component, shaft, torque_nm| {
+        let speed_rad_s = match shaft {
+            Shaft::Engine => engine,
+            Shaft::Primary => primary,
+            Shaft::Secondary => secondary,
+        };
+        output.add_loss(component, torque_nm * speed_rad_s);
+    });
+}
+
+fn primary_pa<P>(step: &Step<P>, pa: f64) -> f64 {
+    let cvt = step.line.cvt;
+    cvt.secondary_clamp_n(pa, step.secondary_rad_s) * step.line.at.thrust_ratio
+        / cvt.primary_piston_m2
+}
+
+/// True for a residual within tolerance, false for NaN.
+fn converged(residual: f64) -> bool {
+    residual <= TOLERANCE
+}
+
+/// How the solve ended.
+pub(super) struct Outcome {
+    pub limit: Limit,
+    pub residual: f64,
+    pub evaluations: u16,
+}
+
+/// Output of a solved step.
+pub(super) fn finish<P: PrimeMover>(
+    step: &Step<P>,
+    p: &Point,
+    past: &mut DrivelineState,
+    warm_start: &mut WarmStart,
+    outcome: Outcome,
+) -> StepOutput {
+    let (g, ratio) = (&p.guess, step.line.at.geometry.ratio);
+    let (wp, we) = (p.primary_rad_s, g.engine_rad_s);
+    let mut output = StepOutput {
+        engine_rad_s: we,
+        shaft_nm: p.flywheel_nm,
+        throttle: p.throttle,
+        belt_ratio: ratio,
+        primary_pa: primary_pa(step, g.pressure_pa),
+        secondary_pa: g.pressure_pa,
+        slip: g.slip,
+        clamp_safety: p.torques.belt.capacity_nm / p.torques.secondary.abs(),
+        oil_flow_m3_s: p.oil_flow_m3_s,
+        residual: outcome.residual,
+        iterations: outcome.evaluations,
+        ..StepOutput::at_rest()
+    };
+    add_part_losses(&mut output, &p.torques, (we, wp, step.secondary_rad_s));
+    output.add_loss(Component::LaunchClutch, p.coupling_w);
+    if outcome.limit == Limit::None {
+        output.output_w = step.input.wheel.power_w;
+    } else {
+        output.split_brake_and_shortfall(step.input.wheel, g.output_nm * step.secondary_rad_s);
+    }
+    solve_flags(step, p, past, &outcome, &mut output);
+    let loss_nm = output.shaft_nm - g.output_nm / ratio;
+    warm_start
+        .trend
+        .push(step.input.wheel.accel_m_s2, g.slip, loss_nm);
+    remember(past, &output, false);
+    past.coupled = p.locked || we <= wp * (1.0 + 1e-4);
+    output
+}
+
+/// Flags of a solved step.
+#[inline(always)]
+fn solve_flags<P: PrimeMover>(
+    step: &Step<P>,
+    p: &Point,
+    past: &DrivelineState,
+    outcome: &Outcome,
+    output: &mut StepOutput,
+) {
+    let (wp, we) = (p.primary_rad_s, p.guess.engine_rad_s);
+    let (belt, ratio) = (&p.torques.belt, step.line.at.geometry.ratio);
+    let flags = &mut output.flags;
+    flags.set(Flags::MISSED_TRACE, outcome.limit == Limit::FullLoad);
+    flags.set(
+        Flags::GROSS_SLIP,
+        belt.gross_slip && p.torques.belt_map.is_none(),
+    );
+    flags.set(
+        Flags::LOW_CLAMP,
+        belt.capacity_nm < p.torques.secondary.abs(),
+    );
+    flags.set(Flags::FLOW_LIMITED, p.flow_limited || step.shift_held);
+    flags.set(
+        Flags::CLUTCH_SLIPPING,
+        we > wp * (1.0 + 1e-9) && p.primary_nm > 0.0,
+    );
+    flags.set(
+        Flags::CLUTCH_OPEN,
+        outcome.limit == Limit::EngineDrag && wp < step.input.engine.idle_rad_s(),
+    );
+    flags.set(Flags::OVERRUN, p.primary_nm < 0.0);
+    flags.set(Flags::NOT_CONVERGED, !converged(outcome.residual));
+    flags.set(
+        Flags::LAUNCH_NOT_IN_LOW,
+        past.stood && ratio < 0.99 * step.line.cvt.ratio.low,
+    );
+    let share = (p.flywheel_nm + step.input.engine.accessories_nm(we)) / p.full_load_nm;
+    common_flags(step, output, p.inside_maps && share <= FULL_LOAD_LIMIT);
+}
+
+/// Flags of any step; `valid` from maps and full load.
+fn common_flags<P: PrimeMover>(step: &Step<P>, output: &mut StepOutput, valid: bool) {
+    let t = &step.input.heat.node_k;
+    let valid = VALID_K.contains(&t[SUMP]) && VALID_K.contains(&t[BELT]) && valid;
+    let ratio = step.line.at.geometry.ratio;
+    let limits = &step.line.cvt.ratio;
+    output.flags.set(Flags::OUTSIDE_VALIDITY, !valid);
+    output.flags.set(
+        Flags::RATIO_LIMIT,
+        ratio <= limits.high * (1.0 + 1e-9) || ratio >= limits.low * (1.0 - 1e-9),
+    );
+    output.flags.set(
+        Flags::OVERSPEED,
+        output.engine_rad_s > step.input.engine.max_rad_s(),
+    );
+}
+
+fn remember(past: &mut DrivelineState, output: &StepOutput, stood: bool) {
+    past.engine_rad_s = output.engine_rad_s;
+    past.throttle = output.throttle;
+    past.secondary_pa = output.secondary_pa;
+    past.stood = stood;
+}
