@@ -5,9 +5,9 @@ use super::reader::join;
 use super::section::Section;
 use super::tables;
 use super::value::Lookup;
-use cvtcycle_model::engine::BsfcMap;
 use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Values};
-use cvtcycle_model::transmission::loss_map::LossMap;
+use cvtcycle_model::maps::BsfcMap;
+use cvtcycle_model::maps::LossMap;
 
 /// The range of a key that holds numbers.
 pub(super) fn range(key: &Key<'_>) -> Bound {

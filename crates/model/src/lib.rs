@@ -3,6 +3,7 @@
 //! No input or output, SI units throughout. The modules are listed in the order of their use: each uses those above it only.
 
 pub mod math;
+pub mod maps;
 pub mod keys;
 pub mod flags;
 pub mod prime_mover;
@@ -14,3 +15,4 @@ pub mod transmission;
 pub mod engine;
 pub mod drive;
 pub mod bench;
+pub mod files;

@@ -85,7 +85,6 @@ fn loss(component: Component) -> TraceColumn {
     .only(Scope::Has(component))
 }
 
-
 /// The columns of a run, in the order of the table.
 #[must_use]
 pub fn columns_for(cvt: bool, components: &[Component]) -> Vec<&'static TraceColumn> {

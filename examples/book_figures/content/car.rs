@@ -5,11 +5,11 @@ use super::{Line, LinePanel, axes, plot, sweep};
 use cvtcycle::config::cycle;
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::maps::{LossMap, MapPoint};
 use cvtcycle::model::math::Grid;
 use cvtcycle::model::prime_mover::PrimeMover;
 use cvtcycle::model::road::{Ambient, Surface};
 use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
-use cvtcycle::model::transmission::loss_map::{LossMap, MapPoint};
 
 /// All of them, by file name.
 pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {

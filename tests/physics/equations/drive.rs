@@ -6,6 +6,7 @@ use crate::common::bench_step::{Bench, Setting};
 use crate::common::{RPM, ZERO, car};
 use cvtcycle::config::cycle::GearCommand;
 use cvtcycle::model::engine::EngineAtTemperature;
+use cvtcycle::model::maps::LossMap;
 use cvtcycle::model::math::{Curve, Grid};
 use cvtcycle::model::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use cvtcycle::model::road::WheelDemand;
@@ -18,7 +19,6 @@ use cvtcycle::model::transmission::cvt::variator::{
     BeltAtRatio, BeltLoad, Geometry, belt_state, sliding_speed_m_s,
 };
 use cvtcycle::model::transmission::cvt::{CvtMaps, CvtState};
-use cvtcycle::model::transmission::loss_map::LossMap;
 use cvtcycle::model::transmission::{StepInput, StepOutput, Transmission, TransmissionState};
 use cvtcycle::output::{Component, Flags};
 

@@ -1,7 +1,8 @@
 //! Fuel: WI-1, WI-2, BM-1 to BM-3, and the bounds of both.
 
 use super::same;
-use cvtcycle::model::engine::{BsfcMap, FuelModel, Willans};
+use cvtcycle::model::engine::{FuelModel, Willans};
+use cvtcycle::model::maps::BsfcMap;
 
 /// Rubbing friction of the default line, which does not matter here.
 const FRICTION: (f64, f64) = (2.398_82, 0.002_86);

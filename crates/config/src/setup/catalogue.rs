@@ -9,8 +9,8 @@ use super::inputs::{head, parts};
 use crate::embedded;
 use crate::rig;
 use crate::{Document, KeyInfo, Reader};
+use cvtcycle_model::files;
 use cvtcycle_model::fluid::Lubricant;
-use cvtcycle_model::keys;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Prefix of the keys of the transmission oil, as in `--set lubricant.KEY=VALUE`.
@@ -71,7 +71,11 @@ pub fn known_names() -> &'static [String] {
 
 fn gathered() -> Vec<KeyInfo> {
     let mut known = Vec::new();
-    for (prefix, table) in [("", keys::VEHICLE), (OIL, keys::LUBRICANT), ("", keys::RIG)] {
+    for (prefix, table) in [
+        ("", files::VEHICLE),
+        (OIL, files::LUBRICANT),
+        ("", files::RIG),
+    ] {
         table.walk("", &mut |path, key| {
             known.push(KeyInfo {
                 key: format!("{prefix}{path}"),

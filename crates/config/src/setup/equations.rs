@@ -41,6 +41,7 @@ const SOURCES: &[(&str, &str)] = &[
     source!("crates/model/src/transmission/manual/mod.rs"),
     source!("crates/model/src/engine/mod.rs"),
     source!("crates/model/src/engine/fuel.rs"),
+    source!("crates/model/src/maps/bsfc.rs"),
     source!("crates/model/src/fluid/mod.rs"),
     source!("crates/model/src/thermal/mod.rs"),
     source!("crates/model/src/drive/step.rs"),

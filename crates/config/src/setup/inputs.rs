@@ -10,8 +10,9 @@ use super::{
 use crate::{Document, KeyInfo, Problems, Reader};
 use cvtcycle_model::drive::{Car, Vehicle};
 use cvtcycle_model::engine::Engine;
+use cvtcycle_model::files::{HEAD, VEHICLE_FILE};
 use cvtcycle_model::fluid::Lubricant;
-use cvtcycle_model::keys::{HEAD, VEHICLE_FILE, Values};
+use cvtcycle_model::keys::Values;
 use cvtcycle_model::road::RoadLoadInput;
 use cvtcycle_model::thermal::Network;
 use cvtcycle_model::transmission::Transmission;

@@ -9,10 +9,10 @@ use crate::bounded::ReadError;
 use crate::csv::{Column, Schema};
 use crate::embedded;
 use crate::{Bound, Section};
-use cvtcycle_model::engine::BsfcMap;
 use cvtcycle_model::keys::Quantity;
+use cvtcycle_model::maps::BsfcMap;
+use cvtcycle_model::maps::LossMap;
 use cvtcycle_model::math::{GRID_AXES, Grid};
-use cvtcycle_model::transmission::loss_map::LossMap;
 
 /// A CSV of numbers with a header, read whole, and the map that was made of it.
 #[derive(Debug)]

@@ -1,8 +1,9 @@
 //! Keys of `[engine]`, and an engine from their values.
 
-use super::{BsfcMap, EFFICIENCY, Engine, FuelModel, Willans};
-use crate::fluid::Viscosity;
-use crate::keys::{Bound, Choice, Values, curve, keys, viscosity};
+use super::{EFFICIENCY, Engine, FuelModel, Willans};
+use crate::fluid::{Viscosity, viscosity};
+use crate::keys::{Bound, Choice, Values, curve, keys};
+use crate::maps::BsfcMap;
 use crate::math::{Curve, held};
 
 keys! {

@@ -16,7 +16,7 @@
 mod fuel;
 mod keys;
 
-pub use fuel::{BsfcMap, EFFICIENCY, FuelModel, FuelPoint, Willans};
+pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
 pub use keys::EngineKeys;
 
 use crate::fluid::{Lubricant, Viscosity, ZERO_DEGC_K};

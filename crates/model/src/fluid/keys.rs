@@ -1,7 +1,7 @@
 //! Keys of a lubricant file, and a lubricant from their values.
 
 use super::{Friction, Lubricant, Viscosity, ZERO_DEGC_K};
-use crate::keys::{Bound, Values, any_viscosity, keys, viscosity};
+use crate::keys::{Bound, Key, Values, keys};
 
 keys! {
     /// Keys of a lubricant file.
@@ -118,4 +118,27 @@ impl Friction {
             film_thickness_m: lift.number(&LIFT.film_thickness_um),
         }
     }
+}
+
+/// A viscosity from points of temperature in K and kinematic viscosity in m2/s. If the points are
+/// finite and do not make one, a problem at the key with what is allowed and a hint; points that are
+/// not finite have a problem already.
+pub(crate) fn viscosity<V: Values>(
+    s: &V,
+    key: &Key<'_>,
+    points: &[(f64, f64)],
+    [allowed, hint]: [&str; 2],
+) -> Viscosity {
+    Viscosity::new(points).unwrap_or_else(|why| {
+        if points.iter().all(|p| p.0.is_finite() && p.1.is_finite()) {
+            s.complain(key.name, allowed, &why, hint);
+        }
+        any_viscosity()
+    })
+}
+
+/// Replaces a viscosity after a problem, so that reading goes on.
+fn any_viscosity() -> Viscosity {
+    Viscosity::new(&[(313.15, 36e-6), (373.15, 7.2e-6)])
+        .unwrap_or_else(|_| unreachable!("constant points"))
 }

@@ -17,6 +17,7 @@ mod keys;
 mod viscosity;
 
 pub use keys::FluidKeys;
+pub(crate) use keys::viscosity;
 pub use viscosity::Viscosity;
 
 use crate::math::{exp, held, ln};

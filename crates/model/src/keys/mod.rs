@@ -3,19 +3,15 @@
 //! A part of the model states its keys with [`keys!`], one row each, and is built from [`Values`]. TOML
 //! reading, `explain`, JSON Schema, overrides, studies and fits use the same rows.
 mod allowed;
-mod make;
 mod quantity;
 mod range;
-mod roots;
 
 pub use allowed::count;
-pub(crate) use make::{any_viscosity, curve, viscosity};
 pub use quantity::{Quantity, RPM, stem};
 pub use range::Bound;
-pub use roots::{HEAD, HeadKeys, LUBRICANT, RIG, VEHICLE, VEHICLE_FILE, VehicleKeys};
 
-use crate::engine::BsfcMap;
-use crate::transmission::loss_map::LossMap;
+use crate::maps::{BsfcMap, LossMap};
+use crate::math::Curve;
 
 /// One parameter.
 #[derive(Clone, Copy, Debug)]
@@ -366,3 +362,17 @@ macro_rules! keys {
     };
 }
 pub(crate) use keys;
+
+/// A curve from two-column rows; a problem at the key if they do not make one.
+pub(crate) fn curve<V: Values>(s: &V, key: &Key<'_>, rows: &[Vec<f64>]) -> Curve {
+    let points: Vec<(f64, f64)> = rows.iter().map(|r| (r[0], r[1])).collect();
+    Curve::new(&points).unwrap_or_else(|why| {
+        s.complain(
+            key.name,
+            "rows [x, y] with rising x",
+            &why,
+            "give at least one row; sort them by their first number and remove doubled ones",
+        );
+        Curve::constant(1.0)
+    })
+}

@@ -4,7 +4,6 @@ pub mod component;
 pub mod coupling;
 pub mod cvt;
 pub mod film_heating;
-pub mod loss_map;
 pub mod manual;
 mod step;
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, names, read_csv};
 use cvtcycle_config::setup::{AMBIENT, is_path};
-use cvtcycle_config::{Bound, Place, Section, unit_of, did_you_mean};
+use cvtcycle_config::{Bound, Place, Section, did_you_mean, unit_of};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 

@@ -6,8 +6,8 @@ use super::spin::SpinAtTemperature;
 use super::variator::{BeltAtRatio, BeltLosses};
 use super::{Cvt, CvtMaps};
 use crate::fluid::Lubricant;
+use crate::maps::MapPoint;
 use crate::transmission::component::Component;
-use crate::transmission::loss_map::MapPoint;
 
 /// The parts of a CVT that are in the box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,9 +3,7 @@
 use std::sync::LazyLock;
 
 use super::belt;
-use super::columns::{
-    Column, TableRow, combinations, from_rows, numbers, rpm, truth,
-};
+use super::columns::{Column, TableRow, combinations, from_rows, numbers, rpm, truth};
 use crate::check::expr::Table;
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
@@ -45,7 +43,8 @@ static COLUMNS: LazyLock<Vec<Column<Solved>>> = LazyLock::new(|| {
     }
 });
 
-static LOSSES: LazyLock<Vec<&'static str>> = LazyLock::new(|| Component::ALL.iter().map(|c| c.columns().nm).collect());
+static LOSSES: LazyLock<Vec<&'static str>> =
+    LazyLock::new(|| Component::ALL.iter().map(|c| c.columns().nm).collect());
 
 /// Names of the columns.
 pub fn columns() -> Vec<&'static str> {

@@ -7,13 +7,11 @@ use crate::check::expr::Table;
 use crate::check::source::{Source, cycle};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::drive::{
-    Conditions, Outcome, PhaseTotals, Row, Start, litres_per_100km,
-};
+use cvtcycle_model::drive::{Conditions, Outcome, PhaseTotals, Row, Start, litres_per_100km};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::fluid::ZERO_DEGC_K;
-use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
+use cvtcycle_model::transmission::component::Component;
 use cvtcycle_output::trace::COLUMNS;
 
 /// A finished run.
@@ -73,7 +71,8 @@ fn of_totals<'a>() -> Vec<Column<Totals<'a>>> {
     }
 }
 
-static LOSSES: LazyLock<Vec<&'static str>> = LazyLock::new(|| Component::ALL.iter().map(|c| c.columns().kj).collect());
+static LOSSES: LazyLock<Vec<&'static str>> =
+    LazyLock::new(|| Component::ALL.iter().map(|c| c.columns().kj).collect());
 
 /// Names of the columns of the trace.
 pub fn columns() -> Vec<&'static str> {

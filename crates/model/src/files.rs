@@ -1,9 +1,9 @@
-//! The tables of whole files.
+//! Keys of whole files: vehicle, lubricant, rig.
 
-use super::{Choice, Table, keys};
 use crate::bench::transmission::RigKeys;
 use crate::engine::EngineKeys;
 use crate::fluid::FluidKeys;
+use crate::keys::{Choice, Table, keys};
 use crate::road::RoadLoadKeys;
 use crate::thermal::ThermalKeys;
 use crate::transmission::cvt::CvtKeys;
