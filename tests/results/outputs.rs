@@ -14,7 +14,7 @@ use cvtcycle::output::number::{fixed, percent, plain, signed, tiny};
 use cvtcycle::output::table::{Cell, Scope};
 use cvtcycle::output::trace::write_trace;
 use cvtcycle::output::trace::{COLUMNS, column, columns_for, loss_column};
-use cvtcycle::output::{Component, Flags, Row};
+use cvtcycle::output::{ByComponent, Component, Flags, Row};
 
 #[allow(dead_code, reason = "shared with other tests")]
 use crate::fixtures::{CVT, MANUAL, phases, rows};
@@ -283,7 +283,7 @@ fn every_component_has_its_column_in_the_order_of_the_power_flow() {
     assert_eq!(names, wanted);
     for component in Component::ALL {
         let mut row = Row::default();
-        row.loss_w[component as usize] = 7.5;
+        row.loss_w[component] = 7.5;
         let loss = |c: Component| loss_column(c).map_or(f64::NAN, |column| column.number_of(&row));
         let sum: f64 = Component::ALL.into_iter().map(loss).sum();
         assert!((loss(component) - 7.5).abs() < 1e-15 && (sum - 7.5).abs() < 1e-15);
@@ -297,7 +297,7 @@ fn many_numbers_are_those_of_single_rows() {
         phase: u16::from(k),
         gear: k,
         slip: f64::NAN,
-        loss_w: [0.5; 16],
+        loss_w: ByComponent([0.5; Component::COUNT]),
         ..Row::default()
     };
     let rows: Vec<Row> = (0..5).map(row).collect();

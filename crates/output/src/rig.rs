@@ -1,8 +1,9 @@
 //! The tables of the transmission rig's tests.
 
 use cvtcycle_model::bench::transmission::{Moment, Piece, Stage, SteadyPoint, StripDown, TwoBoxes};
-use cvtcycle_model::bench::{BELT_PARTS, BenchAnswer, BenchPoint};
+use cvtcycle_model::bench::{BenchAnswer, BenchPoint};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::transmission::component::Component;
 
 use crate::table::{Cell, Column};
 use crate::trace::bar;
@@ -51,9 +52,9 @@ fn part_columns<T: 'static>(answer: fn(&T) -> &BenchAnswer) -> Vec<Column<T>> {
             piece.loss_nm(answer(row))
         })
     });
-    let parts = BELT_PARTS.map(|part| {
-        let doc = crate::trace::component_doc(part);
-        Column::number(name(part.name()), "Nm", doc, move |row| {
+    let belt = Component::ALL.into_iter().filter(|c| c.is_belt());
+    let parts = belt.map(|part| {
+        Column::number(part.columns().nm, "Nm", part.doc(), move |row| {
             answer(row).part_nm(part)
         })
     });
