@@ -1,6 +1,7 @@
 //! Lines and fills that stay apart in black and white and for the colour-blind.
 
 use super::svg::{Svg, UNITS};
+use cvtcycle_model::transmission::component::Fill as Place;
 use cvtcycle_output::Component;
 
 /// Colour of text and of frames.
@@ -149,22 +150,9 @@ impl Fill {
 
     /// The fill of a component, the same in every picture: within a car lightness rises in the order of the power flow.
     pub fn component(component: Component) -> Self {
-        use Component as C;
-        let (anchors, index, last) = match component {
-            C::LaunchClutch => (RAMP, 0, 9.0),
-            C::Pump => (RAMP, 1, 9.0),
-            C::InputShaft => (RAMP, 2, 9.0),
-            C::ClutchDrag => (RAMP, 3, 9.0),
-            C::BeltBand | C::BeltMap => (RAMP, 4, 9.0),
-            C::BeltFilm => (RAMP, 5, 9.0),
-            C::BeltSlip => (RAMP, 6, 9.0),
-            C::BeltWedge => (RAMP, 7, 9.0),
-            C::BeltPenetration => (RAMP, 8, 9.0),
-            C::FinalDrive => (RAMP, 9, 9.0),
-            C::GearMesh | C::BoxMap => (WARM, 1, 4.0),
-            C::Bearing => (WARM, 2, 4.0),
-            C::Churning => (WARM, 3, 4.0),
-            C::Seal => (WARM, 4, 4.0),
+        let (anchors, index, last) = match component.fill() {
+            Place::Cvt(place) => (RAMP, usize::from(place), 9.0),
+            Place::Manual(place) => (WARM, usize::from(place), 4.0),
         };
         Fill::hatched(anchors, index as f64 / last, index)
     }
