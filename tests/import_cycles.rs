@@ -9,6 +9,28 @@ use std::path::{Path, PathBuf};
 
 type Graph = BTreeMap<String, BTreeSet<String>>;
 
+/// Imports that still close a cycle: crate, module, imported module, reason.
+const EXCEPTIONS: &[(&str, &str, &str, &str)] = &[
+    (
+        "crates/config/src",
+        "reader",
+        "section",
+        "a reader gives its root section, and a section reports to its reader",
+    ),
+    (
+        "crates/config/src",
+        "cycle",
+        "setup",
+        "names of cycles and of vehicles share the rule for a path",
+    ),
+    (
+        "crates/study/src",
+        "plan",
+        "design",
+        "a plan holds its design, and a design is drawn from a plan's factors",
+    ),
+];
+
 /// All source files below a folder.
 fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
     let mut entries: Vec<_> = fs::read_dir(folder)
@@ -193,7 +215,14 @@ fn cycle(graph: &Graph) -> Option<Vec<String>> {
 
 fn complaint(src: &str, root: &[&str]) -> Option<String> {
     let root: Vec<String> = root.iter().map(|&s| s.to_owned()).collect();
-    let found = graph(&Path::new(env!("CARGO_MANIFEST_DIR")).join(src), &root);
+    let mut found = graph(&Path::new(env!("CARGO_MANIFEST_DIR")).join(src), &root);
+    for (_, from, to, _) in EXCEPTIONS.iter().filter(|(room, ..)| *room == src) {
+        let known = found.get_mut(*from).is_some_and(|list| list.remove(*to));
+        assert!(
+            known,
+            "{src}: {from} no longer imports {to}: remove the exception"
+        );
+    }
     assert!(!found.is_empty(), "no imports below {src}");
     cycle(&found).map(|way| {
         format!(
