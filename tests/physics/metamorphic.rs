@@ -645,7 +645,7 @@ fn zero_parameters_give_zero_loss() {
         "transmission.cvt.pump.viscous_coefficient=0",
         "transmission.cvt.pump.lubrication_l_min=0",
         "transmission.cvt.pump.leakage_l_min_per_bar=0",
-        "transmission.cvt.coupling.friction_clutch.creep_nm=0",
+        "transmission.cvt.launch.friction_clutch.creep_nm=0",
     ]);
     let t = drive(&car("rover_216_cvt", &all), &c, &at(25.0, Start::Soak))
         .totals

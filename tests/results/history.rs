@@ -226,10 +226,12 @@ fn every_column_that_a_trace_must_have_is_missed() {
         .iter()
         .map(|line| format!("{line},{}", line.split(',').next().unwrap()))
         .collect();
-    assert!(
-        problems(&twice)[0]
-            .message
-            .contains("time_s is there twice")
+    assert_eq!(
+        (
+            problems(&twice)[0].message.as_str(),
+            problems(&twice)[0].key.as_str()
+        ),
+        ("duplicate column", "time_s")
     );
 }
 

@@ -243,9 +243,7 @@ fn numbers_of_options_that_stand_as_a_word_or_not_at_all() {
     let folder = tempfile::tempdir().unwrap();
     let launch = ["engage_rpm", "gain_nm_per_rpm2", "creep_nm", "release_rpm"];
     let word = edited(&folder, |line| match line {
-        "[transmission.cvt.coupling.friction_clutch]" | "[transmission.cvt.pump.kind.fixed]" => {
-            None
-        }
+        "[transmission.cvt.launch.friction_clutch]" | "[transmission.cvt.pump.kind.fixed]" => None,
         "[transmission.cvt.pump]" => Some(format!(
             "{line}\nkind = {{ value = \"variable\", status = \"assumed\" }}"
         )),
@@ -255,7 +253,7 @@ fn numbers_of_options_that_stand_as_a_word_or_not_at_all() {
     let mut bench = blueprint.bench();
     let base = built(&mut bench);
     let (gain, share) = (
-        "transmission.cvt.coupling.friction_clutch.gain_nm_per_rpm2",
+        "transmission.cvt.launch.friction_clutch.gain_nm_per_rpm2",
         "transmission.cvt.pump.kind.variable.least_share",
     );
     assert_eq!(slot(&blueprint, share).base().to_string(), "0.25");
@@ -446,8 +444,16 @@ fn keys_without_a_slot() {
         ),
         (CARS[0], "lubricant.kv41_mm2_s", "kv40_mm2_s"),
         (CARS[0], "zebra", "remove it"),
-        (CARS[0], "transmission.manual.mesh.efficiency", "--set-all"),
-        (CARS[1], "transmission.cvt.belt.band_offset_mm", "--set-all"),
+        (
+            CARS[0],
+            "transmission.manual.mesh.efficiency",
+            "or take another vehicle",
+        ),
+        (
+            CARS[1],
+            "transmission.cvt.belt.band_offset_mm",
+            "or take another vehicle",
+        ),
         (
             CARS[1],
             "thermal.transmission.belt_kj_k",
