@@ -10,7 +10,11 @@
 //! | `keys` | every key of every shipped file and of every option: too low, too high, nan, of another type, missing, misspelt, twice |
 //! | `texts` | no code looks into the text of a problem |
 //! | `sentences` | every sentence of a message in the source is in an expected text |
-#![allow(clippy::unwrap_used, reason = "tests say what they found")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::too_many_lines,
+    reason = "helpers and tables of tests"
+)]
 
 #[path = "diagnostics/calibrations.rs"]
 mod calibration;

@@ -3,6 +3,8 @@
 //! A module is a file or folder directly under `src`; under `crates/model/src/transmission` those one level deeper as well. Unit tests
 //! below `#[cfg(test)]` do not count.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,11 @@
 //! The models: laws, bounds, printed numbers, and every equation once more.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::too_many_lines,
+    reason = "helpers and tables of tests"
+)]
+
 #[path = "../common/mod.rs"]
 mod common;
 

@@ -1,5 +1,11 @@
 //! Output files, plots, reports and the comparison with published values.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::too_many_lines,
+    reason = "helpers and tables of tests"
+)]
+
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../fixtures/mod.rs"]

@@ -1,5 +1,11 @@
 //! Plans, designs, execution and statistics of studies; fits to measurements.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::too_many_lines,
+    reason = "helpers and tables of tests"
+)]
+
 #[path = "../common/mod.rs"]
 mod common;
 #[allow(dead_code, reason = "the pictures of runs are used by tests/results")]

@@ -118,7 +118,7 @@ pub fn export(
         Format::Xlsx => parts.write(&mut *out, |out, _| XlsxTable::new(out, table, &heads)),
     };
     written.map_err(|failure| match failure {
-        Failure::Reading(problem) => problem,
+        Failure::Reading(problem) => *problem,
         // A cell that no workbook can hold.
         Failure::Writing(error) if error.kind() == io::ErrorKind::InvalidInput => problem(
             out.path(),
@@ -156,7 +156,7 @@ table!(XlsxTable, Write);
 
 /// What went wrong, and on which side.
 enum Failure {
-    Reading(Problem),
+    Reading(Box<Problem>),
     Writing(io::Error),
 }
 
@@ -183,7 +183,7 @@ impl Parts<'_> {
             self.study
                 .part(index, self.table)
                 .and_then(|part| part.read(&names))
-                .map_err(Failure::Reading)
+                .map_err(|problem| Failure::Reading(Box::new(problem)))
         };
         let mut parts = self.study.present().iter().copied();
         let first = parts

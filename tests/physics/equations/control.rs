@@ -280,7 +280,7 @@ fn val_launch_clutch_by_hand() {
     same(speed(20.0, 90.0, true), launch(20.0));
     same(speed(20.0, 99.0, false), launch(20.0));
     same(c.locked_from_rad_s(idle), 108.0);
-    assert!((108.0 >= c.locked_from_rad_s(idle)) && !(107.9 >= c.locked_from_rad_s(idle)));
+    assert!((108.0 >= c.locked_from_rad_s(idle)) && 107.9 < c.locked_from_rad_s(idle));
     // An engaging speed below idle lifts nothing.
     let low = FrictionClutch {
         engage_rad_s: 60.0,

@@ -46,7 +46,7 @@ const SOURCES: &[(&str, &str)] = &[
     source!("crates/model/src/thermal/mod.rs"),
     source!("crates/model/src/drive/step.rs"),
     source!("crates/model/src/drive/balance.rs"),
-    source!("crates/model/src/bench/bench.rs"),
+    source!("crates/model/src/bench/held_point.rs"),
     source!("crates/model/src/bench/transmission/transient.rs"),
     source!("crates/model/src/bench/transmission/strip_down.rs"),
     source!("crates/model/src/bench/variator/mod.rs"),

@@ -1,6 +1,6 @@
 //! One operating point of a CVT on the bench: a fixed point in slip, pressure and belt temperature (RB-1, RB-2).
 
-use super::bench::{BenchAnswer, BenchPoint};
+use super::held_point::{BenchAnswer, BenchPoint};
 use crate::drive::Car;
 use crate::flags::Flags;
 use crate::fluid::VALID_K;

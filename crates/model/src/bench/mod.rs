@@ -2,12 +2,12 @@
 //!
 //! [`Bench`] answers one operating point of a whole box, part by part; the rigs of chapters 4 to 6 are series of such points.
 
-mod bench;
+mod held_point;
 mod cvt_bench;
 mod limits;
 pub mod transmission;
 pub mod variator;
 
 pub use crate::transmission::cvt::Parts;
-pub use bench::{Bench, BenchAnswer, BenchPoint};
+pub use held_point::{Bench, BenchAnswer, BenchPoint};
 pub use limits::solvable_ratios;

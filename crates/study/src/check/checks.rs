@@ -51,7 +51,7 @@ pub fn verdict(s: &Section) -> Option<Verdict> {
     let word = s.optional_text("verdict", "recorded verdict")?;
     let found = Verdict::from_word(&word);
     if found.is_none() {
-        let hint = did_you_mean(&word, Verdict::WORDS.into_iter()).unwrap_or_default();
+        let hint = did_you_mean(&word, Verdict::WORDS).unwrap_or_default();
         s.complain(
             "verdict",
             &Verdict::WORDS.join(", "),

@@ -67,18 +67,16 @@ fn residuals() -> Vec<Column<Residual>> {
     }
 }
 
+/// Name of a parameter and its correlations.
+type NamedRow<'a> = (&'a str, &'a [Option<f64>]);
+
 /// Row and column by the names of the parameters; an empty cell where a correlation is not known.
-fn correlation<'a>(outcome: &Outcome) -> Vec<Column<(&'a str, &'a [Option<f64>])>> {
-    let name = Column::text("parameter", "", "", |row: &(&str, &[Option<f64>])| {
-        row.0.to_owned()
-    });
+fn correlation<'a>(outcome: &Outcome) -> Vec<Column<NamedRow<'a>>> {
+    let name = Column::text("parameter", "", "", |row: &NamedRow| row.0.to_owned());
     let of = |(k, p): (usize, &Parameter)| {
-        Column::optional(
-            p.name.clone(),
-            "",
-            "",
-            move |row: &(&str, &[Option<f64>])| row.1.get(k).copied().flatten(),
-        )
+        Column::optional(p.name.clone(), "", "", move |row: &NamedRow| {
+            row.1.get(k).copied().flatten()
+        })
     };
     std::iter::once(name)
         .chain(outcome.parameters.iter().enumerate().map(of))

@@ -115,7 +115,7 @@ pub fn output_columns(with_case: bool) -> Vec<table::Column<Point>> {
         list.remove(0);
     }
     list.extend(NUMBERS.iter().enumerate().map(|(k, (name, unit, _))| {
-        table::Column::number(*name, *unit, "", move |(_, s): &Point| s.numbers[k])
+        table::Column::number(*name, unit, "", move |(_, s): &Point| s.numbers[k])
     }));
     list.extend(OUTPUTS.iter().cloned());
     list

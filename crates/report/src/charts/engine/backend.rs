@@ -183,7 +183,11 @@ impl Ranged for Scale<'_> {
 
 impl ValueFormatter<f64> for Scale<'_> {
     fn format_ext(&self, value: &f64) -> String {
-        let tick = self.0.ticks.iter().find(|(tick, _)| tick == value);
+        let tick = self
+            .0
+            .ticks
+            .iter()
+            .find(|(tick, _)| tick.to_bits() == value.to_bits());
         tick.map_or_else(String::new, |(_, label)| label.clone())
     }
 }

@@ -125,7 +125,7 @@ pub fn difference_bars(of: &Difference) -> Picture {
         let (a, b, litres) = of.litres(term.a_kj, term.b_kj);
         let kj = [term.a_kj, term.b_kj, change].map(|kj| cell(kj, 0.01));
         let fuel = [a, b, litres].map(|l| cell(l, 0.0001));
-        let at_row = table.push([&[term.name.clone()], &kj[..], &fuel[..]].concat());
+        let at_row = table.push([std::slice::from_ref(&term.name), &kj[..], &fuel[..]].concat());
         if sum {
             let start = at(f64::NEG_INFINITY, row as f64).shift(MARGIN - left, 0.0);
             let rule = Style::line(stroke(QUIET, 0.75, &[]));
