@@ -33,7 +33,7 @@ pub struct EnergyTerms {
     pub to_air: f64,
 }
 
-/// Names of the terms, in the order of [`Terms::as_array`].
+/// Names of the terms, in the order of [`EnergyTerms::as_array`].
 pub const TERM_NAMES: [&str; 11] = [
     "fuel",
     "wheels",

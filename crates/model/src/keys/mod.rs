@@ -1,6 +1,6 @@
 //! Parameters as data: every key of vehicle, lubricant and rig files with unit, range, default and meaning.
 //!
-//! A part of the model states its keys with [`keys!`], one row each, and is built from [`Values`]. TOML
+//! A part of the model states its keys with `keys!`, one row each, and is built from [`Values`]. TOML
 //! reading, `explain`, JSON Schema, overrides, studies and fits use the same rows.
 mod allowed;
 mod quantity;

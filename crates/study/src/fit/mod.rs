@@ -10,7 +10,7 @@
 //! | `outcome` | everything that a calibration found |
 //! | `fitted` | vehicle and lubricant files with the fitted values |
 //!
-//! A residual is (computed - measured) / sd. What is computed comes from the sources and expressions of [`crate::validate`], so that a
+//! A residual is (computed - measured) / sd. What is computed comes from the sources and expressions of [`crate::check`], so that a
 //! number is computed in the same way for a fit and for a verdict. A measured range has no residual within it.
 
 mod check;
