@@ -4,12 +4,10 @@
 //! |---|---|---|
 //! | `.csv` | anything | names with units; begins with a byte order mark if and only if there is a letter beyond ASCII, since Excel takes such a file for another encoding without it; pandas, polars, DuckDB and Excel skip the mark |
 //! | `.parquet` | programs | names without units, which stand in the metadata with the manifest; a row group a part |
-//! | `.xlsx` | Excel, LibreOffice | names with units, numbers as numbers whatever the decimal sign of the country; at most 1 048 575 rows |
+//! | `.xlsx` | Excel, LibreOffice | names with units, numbers as numbers whatever the decimal sign of the country; at most 1 048 575 rows, 16 384 columns and 5 000 000 cells |
 
 mod xlsx;
-mod xml;
 
-use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -18,7 +16,7 @@ use super::table::{Head, Kind, Rows, Values};
 use cvtcycle_config::Problem;
 use cvtcycle_output::file::OutputFile;
 use cvtcycle_output::files::problem;
-use xlsx::{MOST_COLUMNS, MOST_ROWS, XlsxTable};
+use xlsx::{MAX_CELLS, MAX_COLUMNS, MAX_ROWS, XlsxTable};
 
 /// Byte order mark, as UTF-8.
 const BOM: &[u8] = b"\xEF\xBB\xBF";
@@ -199,30 +197,27 @@ impl Parts<'_> {
     }
 }
 
-/// Refuses what does not fit into a sheet.
+/// Refuses what does not fit into a sheet, or into memory as a workbook.
 fn check_size(path: &Path, rows: u64, columns: usize) -> Result<(), Problem> {
-    let refused = |what: &dyn Display, most: &dyn Display| {
-        let message =
-            format!("a sheet of Excel holds at most {most} below its header, the study has {what}");
-        Err(problem(
-            path,
-            &message,
-            "write .csv or .parquet, which have no such limit",
-        ))
+    let columns = columns as u64;
+    let cells = rows.saturating_mul(columns);
+    let message = if rows > MAX_ROWS {
+        format!(
+            "a sheet of Excel holds at most {MAX_ROWS} rows below its header, the study has {rows} rows"
+        )
+    } else if columns > MAX_COLUMNS {
+        format!(
+            "a sheet of Excel holds at most {MAX_COLUMNS} columns, the study has {columns} columns"
+        )
+    } else if cells > MAX_CELLS {
+        format!(
+            "a workbook is built in memory, with at most {MAX_CELLS} cells; the study has {rows} rows of {columns} columns, {cells} cells"
+        )
+    } else {
+        return Ok(());
     };
-    if rows > MOST_ROWS {
-        return refused(
-            &format_args!("{rows} rows"),
-            &format_args!("{MOST_ROWS} rows"),
-        );
-    }
-    if columns > MOST_COLUMNS {
-        return refused(
-            &format_args!("{columns} columns"),
-            &format_args!("{MOST_COLUMNS} columns"),
-        );
-    }
-    Ok(())
+    let hint = "write .csv or .parquet, which have no such limit";
+    Err(problem(path, &message, hint))
 }
 
 /// True if a head or a cell has a letter beyond ASCII.

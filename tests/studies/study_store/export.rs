@@ -149,26 +149,33 @@ fn inside(file: &Path, name: &str) -> String {
 
 /// The cells of a sheet: place, whether it is a number, and its text.
 fn sheet(file: &Path, name: &str) -> Vec<(String, bool, String)> {
-    let text = inside(file, name);
-    let document = roxmltree::Document::parse(&text).unwrap();
-    assert!(
-        !document.descendants().any(|node| node.has_tag_name("f")),
-        "a formula"
-    );
+    fn text(node: roxmltree::Node) -> String {
+        let texts = node.descendants().filter(roxmltree::Node::is_text);
+        texts.filter_map(|node| node.text()).collect()
+    }
+    let strings = inside(file, "xl/sharedStrings.xml");
+    let strings = roxmltree::Document::parse(&strings).unwrap();
+    let strings = strings
+        .descendants()
+        .filter(|node| node.tag_name().name() == "si");
+    let strings: Vec<String> = strings.map(text).collect();
+    let xml = inside(file, name);
+    let document = roxmltree::Document::parse(&xml).unwrap();
+    let formula = |node: roxmltree::Node| node.tag_name().name() == "f";
+    assert!(!document.descendants().any(formula), "a formula");
     let cells = document
         .descendants()
         .filter(|node| node.tag_name().name() == "c");
     let cell = |node: roxmltree::Node| {
-        let text: String = node
-            .descendants()
-            .filter(roxmltree::Node::is_text)
-            .filter_map(|text| text.text())
-            .collect();
-        (
-            node.attribute("r").unwrap().to_owned(),
-            node.attribute("t").is_none(),
-            text,
-        )
+        let number = node.attribute("t").is_none();
+        let content = text(node);
+        let place = node.attribute("r").unwrap().to_owned();
+        let content = if number {
+            content
+        } else {
+            strings[content.parse::<usize>().unwrap()].clone()
+        };
+        (place, number, content)
     };
     cells.map(cell).collect()
 }
@@ -253,6 +260,29 @@ fn what_excel_cannot_hold_is_refused_before_anything_is_written() {
         "{}",
         problem.hint
     );
+    let few = dir.path().join("few");
+    let columns: Vec<_> = (0..50)
+        .map(|k| head(&format!("n{k}"), "", Kind::Count))
+        .collect();
+    let study = StudyDir::create(&few, &manifest_of(1, &["runs"], false), PLAN, false).unwrap();
+    let rows = Rows {
+        values: vec![Values::Count(vec![7; 100_001]); 50],
+    };
+    let table = PartTable {
+        name: "runs",
+        columns: &columns,
+        rows: &rows,
+        metadata: &[],
+    };
+    study.write_part(0, &[table]).unwrap();
+    let cells = exported(&few, "runs", &dir.path().join("runs.xlsx")).unwrap_err();
+    assert!(
+        cells.message.contains("100001 rows of 50 columns"),
+        "{}",
+        cells.message
+    );
+    assert!(cells.hint.contains(".csv or .parquet"), "{}", cells.hint);
+    fs::remove_dir_all(&few).unwrap();
     let mut names: Vec<_> = fs::read_dir(dir.path())
         .unwrap()
         .map(|entry| entry.unwrap().file_name())

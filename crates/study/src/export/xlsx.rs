@@ -1,249 +1,129 @@
-//! A workbook with one big table, row by row into the file: Office Open XML (ECMA-376), the few parts that it needs.
-//!
-//! Own, since the crates tried keep all cells in memory, or write through a temporary file and panic when the disk is full.
+//! A workbook with one large table and a sheet with the meaning of its columns, built in memory.
 
-use std::cell::RefCell;
 use std::io::{self, Write};
-use std::rc::Rc;
 
-use zip::write::{SimpleFileOptions, StreamWriter, ZipWriter};
+use rust_xlsxwriter::{DocProperties, ExcelDateTime, Format, Workbook, Worksheet, XlsxError};
 
-use super::xml::{column_letters, escaped, frame, sheet_head};
 use crate::store::Header;
 use crate::table::{Head, Rows, Values};
-use cvtcycle_output::number::exact;
+use cvtcycle_output::number::finite;
 
-/// Most rows of a sheet below its header.
-pub const MOST_ROWS: u64 = (1 << 20) - 1;
-/// Most columns of a sheet.
-pub const MOST_COLUMNS: usize = 1 << 14;
-/// Most UTF-16 units of a cell.
-const MOST_LETTERS: usize = 32_767;
-/// Most bytes of a sheet's XML: archives with larger ones are not read everywhere.
-const MOST_BYTES: usize = u32::MAX as usize;
-/// Whole numbers up to here are cells with a number; larger ones, which a number of Excel would change, are words.
-const EXACT: u64 = 1 << 53;
-/// A workbook that is written row by row: the table, with its header frozen, and a sheet with the meaning of its columns.
+/// Limit of the rows of a sheet below its header.
+pub const MAX_ROWS: u64 = (1 << 20) - 1;
+/// Limit of the columns of a sheet.
+pub const MAX_COLUMNS: u64 = 1 << 14;
+/// Limit of the cells: a number takes some 120 bytes of memory, a text of its own twice as many.
+pub const MAX_CELLS: u64 = 5_000_000;
+/// Whole numbers up to here are numbers in a cell; Excel would round larger ones, so they are text.
+const MAX_EXACT: u64 = 1 << 53;
+
+/// A workbook: the table with a frozen header, and the meaning of its columns.
 pub struct XlsxTable<W: Write> {
-    zip: ZipWriter<StreamWriter<FirstError<W>>>,
-    error: Rc<RefCell<Option<io::Error>>>,
-    columns: Vec<Head>,
-    letters: Vec<String>,
-    row: u64,
-    text: String,
-    bytes: usize,
+    out: W,
+    book: Workbook,
+    row: u32,
 }
 
 impl<W: Write> XlsxTable<W> {
-    /// Writes all but the rows. The name of the sheet is that of the table, up to Excel's 31 letters.
+    /// A workbook without rows. The name of the sheet is that of the table, up to the 31 letters of Excel.
     ///
     /// # Errors
-    /// Whatever `out` reports.
+    /// [`io::ErrorKind::InvalidInput`] for a name or a cell that a workbook cannot hold.
     pub fn new(out: W, name: &str, columns: &[Head]) -> io::Result<Self> {
-        let error = Rc::new(RefCell::new(None));
-        let zip = ZipWriter::new_stream(FirstError {
-            out,
-            error: error.clone(),
-        });
-        let letters = (0..columns.len()).map(column_letters).collect();
-        let mut table = XlsxTable {
-            zip,
-            error,
-            columns: columns.to_vec(),
-            letters,
-            row: 0,
-            text: String::new(),
-            bytes: 0,
-        };
+        let mut book = Workbook::new();
+        // The same table gives the same bytes at any time.
+        let date = ExcelDateTime::from_ymd(1980, 1, 1).map_err(refused)?;
+        book.set_properties(&DocProperties::new().set_creation_datetime(&date));
+        let names: Vec<String> = columns.iter().map(|head| Header::Units.of(head)).collect();
         let name: String = name.chars().take(31).collect();
-        for (file, text) in frame(&name) {
-            table.entry(file, &text)?;
+        begin(book.add_worksheet(), &name, &names)?;
+        let meanings = book.add_worksheet();
+        let header = ["column", "unit", "meaning"].map(str::to_owned);
+        begin(meanings, "meaning of columns", &header)?;
+        for (row, head) in (1..).zip(columns) {
+            for (column, text) in (0..).zip([&head.name, &head.unit, &head.doc]) {
+                write_text(meanings, row, column, text)?;
+            }
         }
-        table.meanings()?;
-        table.entry("xl/worksheets/sheet1.xml", &sheet_head(columns.len(), true))?;
-        let header: Vec<String> = columns
-            .iter()
-            .map(|column| Header::Units.of(column))
-            .collect();
-        table.header(&header)?;
-        Ok(table)
+        Ok(Self { out, book, row: 0 })
     }
 
-    /// Writes some rows.
+    /// Adds some rows.
     ///
     /// # Errors
-    /// Whatever the file reports; [`io::ErrorKind::InvalidInput`] for a word that is too long for a cell.
+    /// [`io::ErrorKind::InvalidInput`] for a text that is too long for a cell, or rows beyond the sheet.
     pub fn write(&mut self, rows: &Rows) -> io::Result<()> {
-        for row in 0..rows.len() {
-            self.begin_row();
-            for (k, values) in rows.values.iter().enumerate() {
+        let sheet = self.book.worksheet_from_index(0).map_err(refused)?;
+        for at in 0..rows.len() {
+            self.row += 1;
+            for (column, values) in (0..).zip(&rows.values) {
                 match values {
-                    Values::Number(numbers) => self.number(k, numbers[row]),
-                    Values::Count(counts) if counts[row].unsigned_abs() <= EXACT => {
-                        self.raw(k, &counts[row].to_string())
+                    Values::Number(numbers) => {
+                        if let Some(number) = finite(numbers[at]) {
+                            sheet
+                                .write_number(self.row, column, number)
+                                .map_err(refused)?;
+                        }
                     }
-                    Values::Count(counts) => self.word(k, &counts[row].to_string(), 0)?,
-                    Values::Text(words) => self.word(k, &words[row], 0)?,
+                    Values::Count(counts) if counts[at].unsigned_abs() <= MAX_EXACT => {
+                        sheet
+                            .write_number(self.row, column, counts[at] as f64)
+                            .map_err(refused)?;
+                    }
+                    Values::Count(counts) => {
+                        write_text(sheet, self.row, column, &counts[at].to_string())?;
+                    }
+                    Values::Text(texts) => write_text(sheet, self.row, column, &texts[at])?,
                 }
             }
-            self.end_row()?;
         }
         Ok(())
     }
 
-    /// Writes the end of the workbook.
+    /// Writes the file.
     ///
     /// # Errors
-    /// Whatever the file reports.
+    /// Those of the file.
     pub fn finish(mut self) -> io::Result<()> {
-        self.put("</sheetData></worksheet>")?;
-        let XlsxTable { zip, error, .. } = self;
-        let done = zip.finish();
-        if let Some(error) = error.take() {
-            return Err(error);
-        }
-        done?.into_inner().flush()?;
-        error.take().map_or(Ok(()), Err)
+        let bytes = self.book.save_to_buffer().map_err(refused)?;
+        self.out.write_all(&bytes)?;
+        self.out.flush()
     }
+}
 
-    /// The sheet with the meanings.
-    fn meanings(&mut self) -> io::Result<()> {
-        self.entry("xl/worksheets/sheet2.xml", &sheet_head(3, false))?;
-        self.header(&["column", "unit", "meaning"].map(str::to_owned))?;
-        for column in self.columns.clone() {
-            self.begin_row();
-            for (k, text) in [&column.name, &column.unit, &column.doc]
-                .into_iter()
-                .enumerate()
-            {
-                self.word(k, text, 0)?;
-            }
-            self.end_row()?;
-        }
-        self.row = 0;
-        self.put("</sheetData></worksheet>")
+/// Names the sheet and writes its header.
+fn begin(sheet: &mut Worksheet, name: &str, header: &[String]) -> io::Result<()> {
+    let bold = Format::new().set_bold();
+    sheet.set_name(name).map_err(refused)?;
+    sheet.set_freeze_panes(1, 0).map_err(refused)?;
+    for (column, name) in (0..).zip(header) {
+        sheet.set_column_width(column, 24).map_err(refused)?;
+        sheet
+            .write_string_with_format(0, column, name, &bold)
+            .map_err(refused)?;
     }
+    Ok(())
+}
 
-    fn header(&mut self, names: &[String]) -> io::Result<()> {
-        self.begin_row();
-        for (k, name) in names.iter().enumerate() {
-            self.word(k, name, 1)?;
-        }
-        self.end_row()
-    }
-
-    fn entry(&mut self, name: &str, text: &str) -> io::Result<()> {
-        // No times: the same table gives the same bytes.
-        let options = SimpleFileOptions::default()
-            .last_modified_time(zip::DateTime::default())
-            .unix_permissions(0o644);
-        self.zip.start_file(name, options)?;
-        self.bytes = 0;
-        self.put(text)
-    }
-
-    /// Into the file; fails where any byte before could not be written.
-    fn put(&mut self, text: &str) -> io::Result<()> {
-        self.bytes += text.len();
-        if self.bytes > MOST_BYTES {
-            return Err(io::Error::new(
-                io::ErrorKind::InvalidInput,
-                "the table is too large for a workbook: its sheet would have 4 GiB",
-            ));
-        }
-        self.zip.write_all(text.as_bytes())?;
-        self.error.take().map_or(Ok(()), |error| {
-            // Kept, so that the end of the archive is not believed either.
-            let again = io::Error::new(error.kind(), error.to_string());
-            *self.error.borrow_mut() = Some(error);
-            Err(again)
-        })
-    }
-
-    fn begin_row(&mut self) {
-        self.row += 1;
-        self.text.clear();
-        self.text += &format!("<row r=\"{}\">", self.row);
-    }
-
-    fn end_row(&mut self) -> io::Result<()> {
-        self.text += "</row>";
-        let text = std::mem::take(&mut self.text);
-        let done = self.put(&text);
-        self.text = text;
-        done
-    }
-
-    /// Where a cell stands, `AB12`.
-    fn place(&self, column: usize) -> String {
-        let letters = self
-            .letters
-            .get(column)
-            .cloned()
-            .unwrap_or_else(|| column_letters(column));
-        format!("{letters}{}", self.row)
-    }
-
-    fn number(&mut self, column: usize, x: f64) {
-        let digits = exact(x);
-        if !digits.is_empty() {
-            self.raw(column, &digits);
-        }
-    }
-
-    fn raw(&mut self, column: usize, digits: &str) {
-        self.text += &format!("<c r=\"{}\"><v>{digits}</v></c>", self.place(column));
-    }
-
-    /// A cell with words, which Excel never takes for a formula, whatever they begin with.
-    fn word(&mut self, column: usize, word: &str, style: u8) -> io::Result<()> {
-        if word.is_empty() {
-            return Ok(());
-        }
-        if word.encode_utf16().count() > MOST_LETTERS {
+/// A cell with text, which Excel never evaluates as a formula.
+fn write_text(sheet: &mut Worksheet, row: u32, column: u16, text: &str) -> io::Result<()> {
+    match sheet.write_string(row, column, text) {
+        Ok(_) => Ok(()),
+        Err(XlsxError::MaxStringLengthExceeded) => {
             let message = format!(
-                "a cell of Excel holds at most {MOST_LETTERS} letters, one of row {} has more",
-                self.row
+                "a cell of Excel holds at most 32767 letters, one of row {} has more",
+                row + 1
             );
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+            Err(io::Error::new(io::ErrorKind::InvalidInput, message))
         }
-        let place = self.place(column);
-        self.text += &format!(
-            "<c r=\"{place}\" s=\"{style}\" t=\"inlineStr\"><is><t xml:space=\"preserve\">{}</t></is></c>",
-            escaped(word)
-        );
-        Ok(())
+        Err(error) => Err(refused(error)),
     }
 }
 
-/// Keeps the first error of a file and takes everything after it without a word: the archive's own end would complain on standard error.
-struct FirstError<W> {
-    out: W,
-    error: Rc<RefCell<Option<io::Error>>>,
-}
-
-impl<W: Write> FirstError<W> {
-    fn guard(&mut self, done: usize, f: impl FnOnce(&mut W) -> io::Result<usize>) -> usize {
-        if self.error.borrow().is_some() {
-            return done;
-        }
-        f(&mut self.out).unwrap_or_else(|error| {
-            *self.error.borrow_mut() = Some(error);
-            done
-        })
-    }
-}
-
-impl<W: Write> Write for FirstError<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        Ok(self.guard(bytes.len(), |out| {
-            out.write_all(bytes).map(|()| bytes.len())
-        }))
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.guard(0, |out| out.flush().map(|()| 0));
-        Ok(())
+fn refused(error: XlsxError) -> io::Error {
+    match error {
+        XlsxError::IoError(error) => error,
+        error => io::Error::new(io::ErrorKind::InvalidInput, error.to_string()),
     }
 }
 
@@ -253,34 +133,27 @@ mod tests {
     use crate::table::Kind;
     use std::io::ErrorKind;
 
-    fn columns() -> Vec<Head> {
+    fn write(mut out: impl Write, text: &str) -> io::Result<()> {
         let head = |name: &str, kind| Head {
             name: name.to_owned(),
             unit: "mm".to_owned(),
             doc: "a < b & c".to_owned(),
             kind,
         };
-        vec![
+        let heads = [
             head("count", Kind::Count),
             head("number", Kind::Number),
-            head("word", Kind::Text),
-        ]
-    }
-
-    fn rows(word: &str) -> Rows {
-        let numbers: Vec<f64> = (0..200).map(|k| f64::from(k).sqrt()).collect();
-        Rows {
+            head("text", Kind::Text),
+        ];
+        let rows = Rows {
             values: vec![
-                Values::Count(vec![i64::MAX; 200]),
-                Values::Number(numbers),
-                Values::Text(vec![word.into(); 200]),
+                Values::Count(vec![i64::MAX; 20]),
+                Values::Number((0..20).map(|k| f64::from(k).sqrt()).collect()),
+                Values::Text(vec![text.into(); 20]),
             ],
-        }
-    }
-
-    fn write(out: impl Write, word: &str) -> io::Result<()> {
-        let mut table = XlsxTable::new(out, "runs", &columns())?;
-        table.write(&rows(word))?;
+        };
+        let mut table = XlsxTable::new(&mut out, "runs", &heads)?;
+        table.write(&rows)?;
         table.finish()
     }
 
@@ -306,10 +179,11 @@ mod tests {
     fn a_full_disk_is_an_error_wherever_it_is_full() {
         let mut whole = Vec::new();
         write(&mut whole, "a").expect("room enough");
-        for room in 0..whole.len() {
+        for room in (0..whole.len()).step_by(97) {
+            let error = write(Small(room), "a").expect_err("full");
             assert_eq!(
-                write(Small(room), "a").map_err(|error| error.kind()),
-                Err(ErrorKind::StorageFull),
+                error.kind(),
+                ErrorKind::StorageFull,
                 "{room} of {}",
                 whole.len()
             );
@@ -318,9 +192,9 @@ mod tests {
     }
 
     #[test]
-    fn words_that_are_too_long_are_refused() {
-        assert!(write(Vec::new(), &"ä".repeat(MOST_LETTERS)).is_ok());
-        let error = write(Vec::new(), &"ä".repeat(MOST_LETTERS + 1)).expect_err("too long");
+    fn text_that_is_too_long_is_refused() {
+        assert!(write(Vec::new(), &"ä".repeat(32_767)).is_ok());
+        let error = write(Vec::new(), &"ä".repeat(32_768)).expect_err("too long");
         assert_eq!(error.kind(), ErrorKind::InvalidInput);
         assert!(error.to_string().contains("of row 2"), "{error}");
     }
