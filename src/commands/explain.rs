@@ -6,7 +6,7 @@ mod terms;
 use clap::Args;
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
-use cvtcycle::config::setup::equations::{Equation, by_label, cited, equations};
+use cvtcycle::study::equations::{Equation, by_label, cited, equations};
 use cvtcycle::config::{KeyInfo, Problem, Problems, near, suggestion};
 use cvtcycle::output::table::Head;
 use cvtcycle::output::trace::{COLUMNS, column};
@@ -128,7 +128,7 @@ impl Meanings {
     }
 
     fn json(&self, word: &str) -> Value {
-        let equation = |e: &Equation| json!({ "label": e.label, "statement": e.statement, "status": e.status, "file": e.file });
+        let equation = |e: &Equation| json!({ "label": e.label, "statement": e.statement, "status": e.status, "module": e.module });
         let key = |found: &ExplainedKey| {
             let entry = |(file, info): &(&str, KeyInfo)| json!({ "file": file, "entry": KeyLine::from(info) });
             json!({
@@ -174,7 +174,7 @@ impl Meanings {
                 ("what", "equation of the model"),
                 ("statement", &*e.statement.replace("\\|", "|")),
                 ("status", e.status),
-                ("file", e.file),
+                ("module", e.module),
             ];
             parts.push(paragraph(e.label, &facts, paint));
         }

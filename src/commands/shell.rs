@@ -2,6 +2,7 @@
 
 use clap::{Args, CommandFactory};
 use cvtcycle::config::setup::assumptions::book;
+use cvtcycle::study::equations::equations;
 
 use super::Cli;
 use crate::args::JsonArgs;
@@ -70,8 +71,10 @@ pub fn man(args: &ManArgs) -> CommandResult {
 
 /// Runs `assumptions`.
 pub fn assumptions(args: &AssumptionsArgs) -> CommandResult {
+    let equations: Vec<_> = equations().collect();
+    let text = book(&equations);
     if args.output.json {
-        return CommandOutput::json(&serde_json::json!({ "markdown": book() }));
+        return CommandOutput::json(&serde_json::json!({ "markdown": text }));
     }
-    Ok(CommandOutput::text(book()))
+    Ok(CommandOutput::text(text))
 }

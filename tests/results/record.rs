@@ -30,7 +30,7 @@ fn a_shipped_car_differs_from_itself_in_nothing() {
 }
 
 #[test]
-fn what_was_set_is_told_first_and_another_oil_in_full() {
+fn what_was_set_comes_first_and_another_oil_in_full() {
     let key = "transmission.cvt.belt.band_offset_mm";
     let record = record_of(
         "rover_216_cvt",

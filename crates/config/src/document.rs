@@ -196,7 +196,7 @@ fn too_much(source: &Source, excess: Excess) -> Problem {
             hint,
         ),
         Excess::Names(at) => {
-            let hint = "a dotted key is `table.table.key`; text stands in quotes";
+            let hint = "a dotted key is `table.table.key`; text is written in quotes";
             (
                 at,
                 format!("up to {} names", shape::MAX_NAMES),

@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn every_problem_of_an_override_is_told() {
+    fn every_problem_of_an_override_is_reported() {
         let sets = [
             "rig.transient.end_degc=10",
             "rig.ratio.low=9",

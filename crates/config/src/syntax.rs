@@ -88,7 +88,7 @@ fn syntax_problem(source: &Source, span: Range<usize>, parser: &str) -> Problem 
         Some((range, hint)) => (Some(start + range.start..start + range.end), hint),
         None if parser.contains("recurs") => (None, "no input is nested as deep: is a bracket too many open?".to_string()),
         None if parser.contains("duplicate key") => (None, "remove one of the two entries".to_string()),
-        None => (None, "a line is `key = value` or a `[table]`; text stands in quotes, every bracket is closed".to_string()),
+        None => (None, "a line is `key = value` or a `[table]`; text is written in quotes, every bracket is closed".to_string()),
     };
     let message = match &slip {
         Some(_) => "not a valid value".to_string(),
@@ -130,7 +130,7 @@ fn slip(line: &str) -> Option<(Range<usize>, String)> {
         bare.then(|| {
             (
                 at..at + value.len(),
-                format!("text stands in quotes: \"{value}\""),
+                format!("text is written in quotes: \"{value}\""),
             )
         })
     })
@@ -161,7 +161,7 @@ pub(super) fn number_with_unit(text: &str) -> Option<(&str, &str)> {
 /// What to write instead of a number with its unit.
 pub(super) fn number_hint(figure: &str, unit: &str) -> String {
     let figure = figure.replace(',', ".");
-    format!("write {figure} without `{unit}`: the unit stands at the end of the key's name")
+    format!("write {figure} without `{unit}`: the unit is at the end of the key's name")
 }
 
 #[cfg(test)]

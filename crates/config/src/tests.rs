@@ -108,7 +108,7 @@ fn columns_count_characters() {
 }
 
 #[test]
-fn a_missing_key_stands_at_the_header() {
+fn a_missing_key_is_reported_at_the_header() {
     let (si, result) = belt(&document(HEAD));
     assert!(si.is_nan());
     let problem = only(result);

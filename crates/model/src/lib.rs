@@ -5,6 +5,7 @@
 pub mod math;
 pub mod maps;
 pub mod keys;
+pub mod equations;
 pub mod flags;
 pub mod prime_mover;
 pub mod cycle;

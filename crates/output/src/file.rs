@@ -9,7 +9,7 @@ use tempfile::NamedTempFile;
 use super::files::{failed, problem, sync_directory, temporary_in};
 use cvtcycle_config::Problem;
 
-/// A file that is written under a temporary name beside its own; dropped before [`OutputFile::commit`], it goes again.
+/// A file that is written under a temporary name in its own directory; dropped before [`OutputFile::commit`], it goes again.
 #[derive(Debug)]
 pub struct OutputFile {
     path: PathBuf,

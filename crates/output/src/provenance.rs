@@ -54,12 +54,12 @@ pub fn car_record(
             .iter()
             .find(|info| info.key == key)
             .map_or("", |info| info.value.as_str());
-        let beside = if is_path(own) {
+        let default = if is_path(own) {
             disk.folder.join(own).to_string_lossy().into_owned()
         } else {
             own.to_owned()
         };
-        let (file, text, _) = text_of(asked.as_ref().unwrap_or(&beside), Kind::Lubricant, key)?;
+        let (file, text, _) = text_of(asked.as_ref().unwrap_or(&default), Kind::Lubricant, key)?;
         Ok::<_, Problems>(FileRecord {
             file,
             sha256: hash(text.as_bytes()),

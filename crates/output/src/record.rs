@@ -1,6 +1,6 @@
 //! What a run was made from: command, files with their hashes, every value with its status, and how much each of them matters.
 //!
-//! Written as `inputs.json` beside the summary, so that a report needs nothing but the directory.
+//! Written as `inputs.json` next to the summary, so that a report needs nothing but the directory.
 
 use serde::{Deserialize, Serialize};
 

@@ -58,7 +58,7 @@ pub enum StartWord {
     Degc(f64),
 }
 
-/// What was asked for beside cycle, ambient and start.
+/// Settings other than cycle, ambient and start.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Largest step, s.

@@ -218,7 +218,7 @@ impl Target {
 
     fn put(&self, document: &Document, text: &str) -> io::Result<Vec<PathBuf>> {
         let parent = self.figures.parent().unwrap_or(Path::new("."));
-        // Beside the target, so that a rename is all that is left to do.
+        // In the directory of the target, so that only a rename is left to do.
         let fresh = tempfile::Builder::new()
             .prefix(".cvtcycle-")
             .suffix(".tmp")

@@ -20,6 +20,7 @@
 //! | `statistics` | pure functions: description, Sobol indices, tornado, ranks |
 //! | `answer`, `ambient` | what the study says |
 //! | `export` | all rows as one file |
+//! | `equations` | the labelled equations of model and statistics |
 
 pub mod ambient;
 pub mod answer;
@@ -31,6 +32,7 @@ pub mod points;
 pub mod sensitivity;
 pub mod design;
 pub mod disk;
+pub mod equations;
 pub mod execute;
 pub mod export;
 mod filler;

@@ -96,7 +96,7 @@ impl Study {
             "transmission": if setup.transmission().is_cvt() { "cvt" } else { "manual" },
             "lubricant": setup.oils().0.name,
             "engine_oil": setup.oils().1.name,
-            // Files beside the vehicle's own, such as measured maps, are in the car though not in its keys.
+            // Other files, such as measured maps, are in the car though not in its keys.
             "sha256": hash(format!("{:?}", setup.car(cvtcycle_model::road::REFERENCE_K)).as_bytes()),
             "values": values,
         })

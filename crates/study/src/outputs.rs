@@ -50,7 +50,7 @@ pub fn outputs(phases: &[String], components: &[Component]) -> Vec<Column<Run>> 
 
 fn fuel(phases: &[String]) -> Vec<Column<Run>> {
     let mut list = columns! { Run;
-        optional FUEL, "L/100 km", "fuel that stands for the car: weighted where the cycle is, else over the whole cycle", (r, _) => r.headline_fuel();
+        optional FUEL, "L/100 km", "fuel of the car: weighted where the cycle is, else over the whole cycle", (r, _) => r.headline_fuel();
         optional "fuel_l_per_100km", "L/100 km", "fuel over the whole cycle", (r, _) => r.fuel_l_per_100km;
     };
     list.extend(phases.iter().map(|phase| {

@@ -75,7 +75,7 @@ fn goes_with_another(
 ) -> bool {
     let mut bench = variant.blueprint.bench();
     let mut possible = |other: usize, number: f64| {
-        let (Some(slot), Some(beside), Binding::Number(acts)) = (
+        let (Some(slot), Some(partner), Binding::Number(acts)) = (
             &variant.slots[index],
             &variant.slots[other],
             car.bindings[other],
@@ -84,7 +84,7 @@ fn goes_with_another(
         };
         bench.reset();
         bench.set(slot, value);
-        bench.set(beside, resolved(acts, beside.base(), number));
+        bench.set(partner, resolved(acts, partner.base(), number));
         bench.build().is_ok()
     };
     let others = (0..plan.factors.len()).filter(|other| *other != index);

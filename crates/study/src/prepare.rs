@@ -189,7 +189,7 @@ pub(super) fn of_plan(plan: &Plan, key: &str, message: &str, hint: &str) -> Prob
 }
 
 /// A file that the plan names, seen from the current directory.
-pub(super) fn beside(folder: &Path, word: &str) -> String {
+pub(super) fn in_folder(folder: &Path, word: &str) -> String {
     if is_path(word) {
         folder.join(word).to_string_lossy().into_owned()
     } else {
@@ -200,14 +200,14 @@ pub(super) fn beside(folder: &Path, word: &str) -> String {
 /// A car's file as the study cites it.
 fn cars(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<StudyCar> {
     let mut cars: Vec<StudyCar> = Vec::new();
-    let subject = beside(folder, &plan.base.vehicle);
+    let subject = in_folder(folder, &plan.base.vehicle);
     let own = add(&subject, "vehicle", true, plan, &mut cars, problems);
     let named = match &plan.base.baselines {
-        Some(list) => list.iter().map(|name| beside(folder, name)).collect(),
+        Some(list) => list.iter().map(|name| in_folder(folder, name)).collect(),
         // Names in the vehicle's file are relative to that file.
         None => own
             .iter()
-            .map(|name| beside(Path::new(&subject).parent().unwrap_or(Path::new("")), name))
+            .map(|name| in_folder(Path::new(&subject).parent().unwrap_or(Path::new("")), name))
             .collect::<Vec<_>>(),
     };
     for word in named {
@@ -275,7 +275,7 @@ fn cycles(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<Cycle> {
         .chain(words)
         .enumerate()
     {
-        match cycle::find("cycle", &beside(folder, &word)) {
+        match cycle::find("cycle", &in_folder(folder, &word)) {
             Ok(cycle) => list.push(cycle),
             Err(found) => {
                 let place = factor

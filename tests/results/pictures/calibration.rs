@@ -166,7 +166,7 @@ fn a_trace_has_a_row_for_each_value_up_to_600_and_draws_its_deviation() {
 
 #[test]
 fn marks_stand_where_the_numbers_are() {
-    // A fitted residual of zero stands in the middle of the grey band, for the band is as wide on both sides.
+    // A fitted residual of zero is in the middle of the grey band, for the band is as wide on both sides.
     let mut outcome = ordinary("one");
     (
         outcome.residuals[0].after_sd,
@@ -190,13 +190,13 @@ fn marks_stand_where_the_numbers_are() {
         .expect("a mark");
     let centre = number(&band, "x") + 0.5 * number(&band, "width");
     assert!((number(&mark, "cx") - centre).abs() <= 2.0);
-    // 40 standard deviations are beyond three times the others, and told as such.
+    // 40 standard deviations are beyond three times the others, and marked as such.
     assert!(
         picture.table.note.contains("1 residuals"),
         "{}",
         picture.table.note
     );
-    // With what is computed = measured the mark stands on the line of agreement, which goes from corner to corner.
+    // With what is computed = measured the mark is on the line of agreement, which goes from corner to corner.
     outcome.residuals[0].low = Some(outcome.residuals[0].after);
     outcome.residuals[0].high = outcome.residuals[0].low;
     let picture = scatter_plot(&outcome);

@@ -7,10 +7,14 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+/// The package whose code is changed, and the name of its unit tests.
+const PACKAGE: &str = "cvtcycle-model";
+const UNIT_TESTS: &str = "cvtcycle_model";
+
 /// A test program.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// `lib`, or the name of a file in `tests/`.
+    /// `cvtcycle_model` for the unit tests of the model, or the name of a file or folder in `tests/`.
     pub name: String,
     /// The executable.
     pub path: PathBuf,
@@ -57,7 +61,7 @@ pub fn compiling(
 ) -> Result<(Copy, HashSet<String>), String> {
     loop {
         let copy = copy::make(root, to, config, &dropped)?;
-        let (good, messages) = cargo(to, &["check", "--lib"])?;
+        let (good, messages) = cargo(to, &["check", "--lib", "-p", PACKAGE])?;
         if good {
             return Ok((copy, dropped));
         }
@@ -122,10 +126,10 @@ fn guilty(copy: &Copy, span: &Value, dropped: &HashSet<String>) -> Option<String
 /// # Errors
 /// They do not build.
 pub fn tests(copy: &Copy, config: &Config) -> Result<Vec<Program>, String> {
-    let mut args = vec!["test", "--no-run", "--bin", "cvtcycle"];
+    let mut args = vec!["test", "--no-run", "-p", "cvtcycle", "-p", PACKAGE, "--bin", "cvtcycle"];
     for test in &config.tests {
         match test.as_str() {
-            "lib" => args.push("--lib"),
+            UNIT_TESTS => args.push("--lib"),
             other => args.extend(["--test", other]),
         }
     }
@@ -148,7 +152,6 @@ pub fn tests(copy: &Copy, config: &Config) -> Result<Vec<Program>, String> {
             m["target"]["kind"][0].as_str(),
             m["target"]["name"].as_str(),
         ) {
-            let name = if kind == "lib" { "lib" } else { name };
             if config.tests.iter().any(|t| t == name) && kind != "bin" {
                 programs.push(Program {
                     name: name.to_owned(),

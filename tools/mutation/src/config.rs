@@ -13,7 +13,7 @@ pub struct Config {
     pub leave: Vec<Left>,
     /// Files among them whose operators are changed and whose literals are not.
     pub keep_literals: Vec<String>,
-    /// Test programs that may catch a mutant; `lib` is the unit tests.
+    /// Test programs that may catch a mutant; `cvtcycle_model` is the unit tests.
     pub tests: Vec<String>,
     /// Tests that take longer are not run, s.
     pub most_seconds: f64,
@@ -37,7 +37,7 @@ pub struct Left {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Skipped {
-    /// Program and beginning of the test's name: `lib::report::`.
+    /// Program and beginning of the test's name: `physics::conserve::`.
     pub test: String,
     /// Why.
     pub because: String,

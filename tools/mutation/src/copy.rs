@@ -9,6 +9,9 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// Folder of the package whose code is changed.
+const CRATE: &str = "crates/model";
+
 /// A copy, and its mutants.
 pub struct Copy {
     /// Where it is.
@@ -78,7 +81,7 @@ pub fn points(root: &Path, config: &Config, files: &[String]) -> Result<Vec<Poin
     let mut texts = Vec::new();
     for file in files
         .iter()
-        .filter(|f| f.starts_with("src/") && f.ends_with(".rs"))
+        .filter(|f| f.starts_with(&format!("{CRATE}/src/")) && f.ends_with(".rs"))
     {
         let text = read(&root.join(file))?;
         constants.extend(find::constants(&text));
@@ -98,6 +101,15 @@ pub fn points(root: &Path, config: &Config, files: &[String]) -> Result<Vec<Poin
         let found = find::points(&source, next)?;
         next += found.iter().map(|p| p.choices.len() as u32).sum::<u32>();
         all.extend(found);
+    }
+    let mut keys = BTreeSet::new();
+    for point in &all {
+        for choice in &point.choices {
+            let key = point.key(choice);
+            if !keys.insert(key.clone()) {
+                return Err(format!("{}: two mutants have the name {key}", point.file));
+            }
+        }
     }
     Ok(all)
 }
@@ -122,15 +134,19 @@ pub fn make(
             _ if points.iter().any(|p| p.file == *file) => {
                 mutated(file, &bytes, &points, dropped, &mut ranges)?
             }
-            "src/lib.rs" => [&bytes, "\n/// Mutants.\npub mod mutant;\n".as_bytes()].concat(),
-            "Cargo.toml" => without_lints(&String::from_utf8_lossy(&bytes)).into_bytes(),
+            name if name == format!("{CRATE}/src/lib.rs") => {
+                [&bytes, "\n/// Mutants.\npub mod mutant;\n".as_bytes()].concat()
+            }
+            name if name.ends_with("Cargo.toml") => {
+                without_lints(&String::from_utf8_lossy(&bytes)).into_bytes()
+            }
             _ => bytes,
         };
         keep(&to.join(file), &bytes)?;
     }
     let module = include_str!("template.rs.txt").replace("@COUNT@", &count.to_string());
-    keep(&to.join("src/mutant.rs"), module.as_bytes())?;
-    for folder in ["src", "tests"] {
+    keep(&to.join(CRATE).join("src/mutant.rs"), module.as_bytes())?;
+    for folder in ["src", "crates", "tests"] {
         remove_others(to, &to.join(folder), &files)?;
     }
     Ok(Copy {
@@ -173,7 +189,7 @@ fn without_lints(text: &str) -> String {
     let mut inside = false;
     let keep = text.lines().filter(|line| {
         if line.starts_with('[') {
-            inside = line.starts_with("[lints");
+            inside = line.starts_with("[lints") || line.starts_with("[workspace.lints");
         }
         !inside
     });

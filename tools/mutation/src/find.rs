@@ -37,6 +37,12 @@ pub fn points(source: &Source, first: u32) -> Result<Vec<Point>, String> {
     Ok(finder.points)
 }
 
+/// The last part of the module path of a file.
+fn module(file: &str) -> &str {
+    let path = file.trim_end_matches(".rs").trim_end_matches("/mod");
+    path.rsplit('/').next().unwrap_or(path)
+}
+
 /// Names of constants of type f64 in a file.
 #[must_use]
 pub fn constants(text: &str) -> Vec<String> {
@@ -69,7 +75,7 @@ impl Finder<'_> {
         with: &[(&str, String)],
     ) {
         let file = self.source.file.to_owned();
-        let function = self.function.join("::");
+        let item = format!("{}::{}", module(&file), self.function.join("::"));
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         let text = if text.chars().count() > 90 {
             text.chars().take(87).collect::<String>() + "..."
@@ -80,7 +86,7 @@ impl Finder<'_> {
         let kind = with.first().map_or("", |w| &w.1);
         let seen = self
             .seen
-            .entry((function.clone(), format!("{text}{kind}")))
+            .entry((item.clone(), format!("{text}{kind}")))
             .or_default();
         let nth = *seen;
         *seen += 1;
@@ -96,7 +102,7 @@ impl Finder<'_> {
         self.points.push(Point {
             file,
             line,
-            function,
+            item,
             text,
             nth,
             span,

@@ -70,8 +70,8 @@ pub struct Point {
     pub file: String,
     /// Line, from 1.
     pub line: usize,
-    /// Function around it, with its type.
-    pub function: String,
+    /// Function around it, with its type and the last part of its module: `fuel::Willans::fuel`.
+    pub item: String,
     /// The original expression, with single spaces.
     pub text: String,
     /// How often the same text stood in the same function before.
@@ -87,7 +87,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// Name of a mutant that survives edits elsewhere in the file.
+    /// Name of a mutant that does not change with edits elsewhere, or when the file moves.
     #[must_use]
     pub fn key(&self, choice: &Choice) -> String {
         let nth = if self.nth > 0 {
@@ -95,10 +95,7 @@ impl Point {
         } else {
             String::new()
         };
-        format!(
-            "{} | {} | {}{nth} | {}",
-            self.file, self.function, self.text, choice.mutation
-        )
+        format!("{} | {}{nth} | {}", self.item, self.text, choice.mutation)
     }
 
     /// `if on(1) { a } else if on(2) { b } else { original }`, each written by `write`.

@@ -1,4 +1,4 @@
-//! Collecting the problems of a CSV file and saying where each stands.
+//! Collects the problems of a CSV file with their places.
 
 use super::schema::Schema;
 use super::text::{Field, decode, empty, split};

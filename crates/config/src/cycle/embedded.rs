@@ -21,11 +21,11 @@ enum Automatic {
     IdleThen { idle_s: f64, name: &'static str },
 }
 
-/// What a car with six gears is told, where the table has no column for it.
+/// Gears of a car with six gears, where the table has no column for it.
 #[derive(Clone, Copy)]
 enum SixGears {
     AsTable,
-    /// The regulation's table asks for the same gears whatever the gearbox.
+    /// The regulation's table prescribes the same gears for every gearbox.
     LikeFive,
     /// The first `idle_s` like five gears, then those of another table.
     IdleThen {
@@ -230,7 +230,7 @@ fn shifted(interval: &Interval, by_s: f64) -> Interval {
     }
 }
 
-// The part stands alone, as a cycle without phases.
+// The part is a cycle of its own, without phases.
 fn tail(whole: &Trace, duration_s: f64) -> Trace {
     let from_s = whole.duration_s() - duration_s;
     let part = whole
@@ -289,8 +289,8 @@ mod tests {
     }
 
     #[test]
-    fn the_urban_part_asks_six_gears_for_the_same_as_five() {
-        // what SixGears::LikeFive stands on
+    fn the_urban_part_prescribes_the_same_for_six_gears_as_for_five() {
+        // what SixGears::LikeFive is based on
         let trace = table(entry("ece15_eudc").unwrap(), &mut Vec::new()).unwrap();
         assert_eq!(
             trace.gears(5).unwrap()[..780],

@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::catalogue::{self, File};
-use super::equations::{Equation, equations};
 use crate::KeyInfo;
+use cvtcycle_model::equations::Equation;
 
 /// Statuses in the order in which a reader should worry about them.
 const STATUSES: [(&str, &str); 4] = [
     (
         "assumed",
-        "nobody measured it here; a judgement, with its reason",
+        "not measured; a judgement, with its reason",
     ),
     (
         "fitted",
@@ -21,9 +21,9 @@ const STATUSES: [(&str, &str); 4] = [
     ("source", "printed or published"),
 ];
 
-/// The whole book. The same program gives the same text.
+/// The whole book, with these equations. The same program gives the same text.
 #[must_use]
-pub fn book() -> String {
+pub fn book(equations: &[Equation]) -> String {
     let files = catalogue::files();
     let mut text = "# Book of assumptions\n\n\
         Printed by `cvtcycle assumptions` from the vehicle files, the lubricant files, the rig files and the heads of the model files; do not \
@@ -40,7 +40,7 @@ pub fn book() -> String {
         of_file(&mut text, file);
     }
     defaults(&mut text, &files);
-    of_equations(&mut text);
+    of_equations(&mut text, equations);
     text
 }
 
@@ -123,15 +123,16 @@ fn defaults(text: &mut String, files: &[File]) {
     }
 }
 
-fn of_equations(text: &mut String) {
+fn of_equations(text: &mut String, equations: &[Equation]) {
     text.push_str("\n## Equations and what is built into them\n");
     let fitted = |e: &Equation| !is_assumed(e) && e.status.contains("fitted");
-    group(text, "with an assumed part", equations().filter(is_assumed));
-    group(text, "with a fitted part", equations().filter(fitted));
+    let all = || equations.iter().copied();
+    group(text, "with an assumed part", all().filter(is_assumed));
+    group(text, "with a fitted part", all().filter(fitted));
     group(
         text,
         "source or derived",
-        equations().filter(|e| !is_assumed(e) && !fitted(e)),
+        all().filter(|e| !is_assumed(e) && !fitted(e)),
     );
 }
 
@@ -174,7 +175,7 @@ mod tests {
 
     #[test]
     fn the_book_names_every_assumed_value_and_label() {
-        let book = book();
+        let book = book(cvtcycle_model::equations::EQUATIONS);
         for file in catalogue::files() {
             for info in file.keys.iter().filter(|info| info.status == "assumed") {
                 assert!(

@@ -93,13 +93,13 @@ impl Inputs {
         let mut fluids = [Input::default(), Input::default()];
         for (k, (own, asked, option)) in asked.into_iter().enumerate() {
             // A path in the vehicle file is relative to that file, one on the command line to the current folder.
-            let beside = if is_path(&own) {
+            let default = if is_path(&own) {
                 folder.join(&own).to_string_lossy().into_owned()
             } else {
                 own
             };
             let option = if asked.is_some() { option } else { file };
-            words[k] = asked.clone().unwrap_or(beside);
+            words[k] = asked.clone().unwrap_or(default);
             fluids[k] = match fluid_document(&words[k], option, &options.set, FLUIDS[k]) {
                 Ok(document) => Input {
                     document: Some(document),

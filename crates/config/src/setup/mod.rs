@@ -9,7 +9,6 @@ mod inputs;
 mod map_csv;
 mod wrong_transmission;
 mod table_cache;
-pub mod equations;
 pub mod tables;
 
 pub use crate::embedded::{lubricants as embedded_lubricants, vehicles as embedded_vehicles};

@@ -73,7 +73,7 @@ fn path(key: &str) -> KeyPath {
     key.split('.').map(Into::into).collect()
 }
 
-/// Numbers where a value, a default, a word or nothing stands; put in twice; taken back.
+/// Numbers in place of a value, a default, a word or nothing; put in twice; taken back.
 #[test]
 fn drafts_are_what_assignments_make() {
     let base = document(GOOD);

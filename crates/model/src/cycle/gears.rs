@@ -25,7 +25,7 @@ impl GearCommand {
     }
 }
 
-/// The note beside a gear number.
+/// The note with a gear number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Note {
     /// No note: the gear number says all.
@@ -103,7 +103,7 @@ pub struct GearColumns {
     five: Option<Vec<GearCommand>>,
     /// `gear_6mt`: for six gears only.
     pub six: Option<Vec<GearCommand>>,
-    /// `gear`: for every gearbox that has the gears it asks for.
+    /// `gear`: for every gearbox that has these gears.
     plain: Option<Vec<GearCommand>>,
     plain_highest: u8,
 }

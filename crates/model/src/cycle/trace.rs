@@ -18,7 +18,7 @@ pub struct Interval {
     pub phase: u16,
     /// Slope of the road, rise over run; uphill is positive.
     pub grade: f64,
-    /// Whether the engine stands still by prescription (the soak of FTP75).
+    /// True if the engine is off by prescription (the soak of FTP75).
     pub engine_off: bool,
 }
 
@@ -126,7 +126,7 @@ pub struct Motion {
     pub square_m2_s2: f64,
     /// Mean cube of the speed, m3/s3.
     pub cube_m3_s3: f64,
-    /// Mean speed in m/s to the power of 0.7, as heat transfer to the air asks for it; 0 at standstill.
+    /// Mean speed in m/s to the power of 0.7, as heat transfer to the air needs it; 0 at standstill.
     pub speed_power_07: f64,
 }
 
@@ -168,7 +168,7 @@ pub struct Step {
     pub phase: u16,
     /// Slope of the road, rise over run.
     pub grade: f64,
-    /// Whether the engine stands still by prescription.
+    /// True if the engine is off by prescription.
     pub engine_off: bool,
     /// Index into [`Trace::intervals`] and into [`Trace::gears`].
     pub interval: usize,

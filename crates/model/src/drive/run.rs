@@ -69,9 +69,9 @@ impl Recorder for Lots<'_> {
 }
 
 /// Drops everything.
-struct Nobody;
+struct NullRecorder;
 
-impl Recorder for Nobody {
+impl Recorder for NullRecorder {
     fn record(&mut self, _: &Row, _: &EnergyTerms) {}
 }
 
@@ -113,7 +113,7 @@ pub fn drive_into(
             trace,
             conditions.max_dt_s,
             State::at(conditions.ambient_k),
-            &mut Nobody,
+            &mut NullRecorder,
         ),
     };
     // A car at rest begins a new cycle in its own start state; only heat and rotating energy carry over.

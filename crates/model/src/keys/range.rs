@@ -63,7 +63,7 @@ impl Bound {
         above && x <= self.high && x.is_finite()
     }
 
-    /// The range in words with its unit, such as "0.5 to 10 mm"; `-` stands for no unit.
+    /// The range in words with its unit, such as "0.5 to 10 mm"; `-` for no unit.
     pub fn in_unit(&self, unit: &str) -> String {
         if unit == "-" || unit.is_empty() || *self == Bound::any() {
             self.to_string()

@@ -24,7 +24,7 @@ struct Piece {
 
 /// Cells of the look-up table, a power of two.
 const CELLS: usize = 128;
-/// Adding this rounds to a whole number, which then stands in the lowest bits: 1.5 2^52.
+/// Adding this rounds to a whole number, which is then in the lowest bits: 1.5 2^52.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 impl Curve {

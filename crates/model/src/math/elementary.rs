@@ -16,7 +16,7 @@ const LN_2_HIGH: f64 = f64::from_bits(LN_2.to_bits() & !0x1f_ffff);
 const LN_2_LOW: f64 = (LN_2 - LN_2_HIGH) + 2.319_046_813_846_299_6e-17;
 /// Largest magnitude that exp's own arithmetic takes.
 const EXP_REACH: f64 = 700.0;
-/// Adding this rounds to a whole number, which then stands in the lowest bits: 1.5 2^52.
+/// Adding this rounds to a whole number, which is then in the lowest bits: 1.5 2^52.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 /// Parts of a power of two.
 const PARTS: usize = 64;

@@ -44,7 +44,7 @@ impl Grid {
                 values[index] = *value;
             } else {
                 return Err(format!(
-                    "the combination {x:?} stands twice, another is missing"
+                    "the combination {x:?} is there twice, another is missing"
                 ));
             }
         }

@@ -1,6 +1,6 @@
 //! Links between the nodes, and the linear system that they make of a step (TH-5).
 //!
-//! The network is a tree with one loop: engine oil hangs on the coolant, the belt on the sump. Both are eliminated first; coolant, sump
+//! The network is a tree with one loop: engine oil is linked to the coolant, the belt to the sump. Both are eliminated first; coolant, sump
 //! and metal are left for Gauss. The matrix is symmetric and diagonally dominant, so no pivot is zero.
 
 use super::{BELT, COOLANT, ENGINE_OIL, METAL, NODES, SUMP};

@@ -72,7 +72,7 @@ pub fn number_or_range(s: &Section, kind: &str) -> Option<(f64, f64)> {
         s.complain(
             "value",
             "value, or low and high",
-            "`value` beside `low` or `high`",
+            "`value` with `low` or `high`",
             "keep one of the forms",
         );
     }

@@ -46,7 +46,7 @@ pub struct Plan {
     pub factors: Vec<Factor>,
     /// Which combinations are driven.
     pub design: Design,
-    /// What is kept of each run beside its summary.
+    /// What is kept of each run in addition to its summary.
     pub keep: Keep,
     /// Columns of the summary that are analysed, in their order; the fuel columns if there are none.
     pub analyse: Vec<String>,
@@ -321,7 +321,7 @@ pub enum Design {
     },
 }
 
-/// What is kept of each run beside its row.
+/// What is kept of each run in addition to its row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Keep {
     /// Nothing.

@@ -73,7 +73,7 @@ pub(super) fn read(s: &Section, of: Of, places: &mut Places) -> Option<FactorVal
             s.complain(
                 last,
                 one_of,
-                &format!("`{last}` beside `{first}`"),
+                &format!("`{last}` with `{first}`"),
                 "keep one of them",
             );
             None
@@ -118,7 +118,7 @@ fn list(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
         {
             items[k].complain(
                 "numbers alone, or none",
-                "`values` has numbers beside other values",
+                "`values` mixes numbers with other values",
                 "make two factors of it",
             );
             return None;
@@ -226,7 +226,7 @@ fn range(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
             table.complain(
                 "step",
                 "count or step",
-                "`step` beside `count`",
+                "`step` with `count`",
                 "keep one of them",
             );
             return None;

@@ -18,7 +18,7 @@ use super::columns::{
 };
 use super::rows::Given;
 
-/// Belt temperature at which the friction of a fluid stands, degC.
+/// Belt temperature to which the friction of a fluid refers, degC.
 const REFERENCE_DEGC: f64 = 85.0;
 /// Boundary friction of the bands in the printed forms.
 const PRINTED_BAND_FRICTION: f64 = 0.13;
@@ -80,7 +80,7 @@ impl Model {
         })
     }
 
-    /// Everything that stands against computing a row, with the number that is meant; also of a row that lacks some values.
+    /// Every reason not to compute a row, with the number concerned; also of a row that lacks some values.
     pub fn check(&self, given: &Given, fallback: Formulation) -> Vec<(usize, Problem)> {
         let formulation = given.formulation.unwrap_or(fallback);
         let mut found = Vec::new();
@@ -109,7 +109,7 @@ impl Model {
         found
     }
 
-    /// Computes a whole row that passed [`Model::check`], or says what stands against it after all and in which number.
+    /// Computes a whole row that passed [`Model::check`], or returns the reason why not and the number concerned.
     pub fn solve(
         &mut self,
         given: &Given,

@@ -1,4 +1,4 @@
-//! A table of points from its lines to whoever takes the rows.
+//! A table of points, from its lines to the consumer of the rows.
 
 use std::io::BufRead;
 
@@ -20,7 +20,7 @@ pub trait Take {
     fn begin(&mut self, with_case: bool) -> Result<(), Problems>;
 
     /// A row and its `case` as it stood in the input, quotes within doubled; empty where there is none. Rows that come before a bad one
-    /// are given too: whoever keeps them drops them when the table turns out bad.
+    /// are given too: the consumer drops them when the table turns out bad.
     ///
     /// # Errors
     /// Why the row cannot be taken.

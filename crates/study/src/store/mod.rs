@@ -3,7 +3,7 @@
 //! ```text
 //! DIR/study.json                 manifest; marks the directory as a study, written before anything else
 //! DIR/plan.toml                  the plan, byte for byte
-//! DIR/parts/runs_00000.parquet   a table of a part; `.csv` beside it where CSV was asked for; `trace_00000...` where traces are kept
+//! DIR/parts/runs_00000.parquet   a table of a part; also `.csv` where the format is CSV; `trace_00000...` where traces are kept
 //! DIR/parts/part_00000.sha256    checksums of the files of a part; written last, marks the part as whole
 //! DIR/statistics.json, ...       results over all parts, at the end
 //! DIR/results.sha256             checksums of the results; written last, marks the study as finished

@@ -166,7 +166,7 @@ impl Cvt {
         (own, driveline)
     }
 
-    /// Pressure that the clamp law asks for, Pa (PC-1 to PC-4), within floor and cap; `load` is asked by the laws that look at the belt.
+    /// Pressure demand of the clamp law, Pa (PC-1 to PC-4), within floor and cap; `load` is called by the laws that use the belt.
     #[must_use]
     #[inline(always)]
     pub fn pressure_pa(

@@ -2,10 +2,10 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | PU-1 | T = D (1 + C_f) p + C_v eta_r (eta/eta_r)^m w D + T_c, eta_r = 10 mPa s, the second term by FH-1 | source: thesis 7.4 (Schlosser, Wilson); C_v and m fitted, C_f and T_c not identifiable beside D |
+//! | PU-1 | T = D (1 + C_f) p + C_v eta_r (eta/eta_r)^m w D + T_c, eta_r = 10 mPa s, the second term by FH-1 | source: thesis 7.4 (Schlosser, Wilson); C_v and m fitted, C_f and T_c not identifiable with D |
 //! | PU-2 | flow need = lubrication + leakage p (eta_80/eta) + shift flow | ASSUMED values |
-//! | PU-3 | shift flow = A \|dx/dt\|, x = 2 tan th R | derived: thesis 9.1 asks for it |
-//! | PU-4 | dual cavity and variable: only the share of D that the need asks for works against p, the rest against a residual pressure | source: thesis 9.1 in words; control ASSUMED |
+//! | PU-3 | shift flow = A \|dx/dt\|, x = 2 tan th R | derived: thesis 9.1 requires it |
+//! | PU-4 | dual cavity and variable: only the share of D that the need requires works against p, the rest against a residual pressure | source: thesis 9.1 in words; control ASSUMED |
 //! | PU-5 | drawn flow = V/(1 + (V/V_max)^4)^(1/4), V_max = 0.7 bar/(k eta/eta_r) | derived: laminar drop k eta V in strainer and suction line, bounded by the air's pressure; k and 0.7 bar ASSUMED |
 //!
 //! D displacement per radian m3/rad, p pump outlet pressure Pa, w rad/s, V flow of the displacement that draws. Valid for p >= 0, w >= 0.

@@ -19,7 +19,7 @@ const ALIKE_M_S2: f64 = 1e-3;
 /// Slopes at the last evaluations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slopes {
-    /// Pressure that the clamp law asks for against pressure in force.
+    /// Pressure demand of the clamp law against the present pressure.
     pub pressure: f64,
     /// Slip against pressure, 1/Pa.
     pub slip_per_pa: f64,

@@ -228,7 +228,7 @@ struct Work {
     slopes: Slopes,
 }
 
-/// The engine stands still.
+/// The engine is off.
 fn engine_off<P: PrimeMover>(
     input: &StepInput<P>,
     ratio: f64,

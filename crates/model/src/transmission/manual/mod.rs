@@ -68,7 +68,7 @@ struct Spin {
     seal: f64,
     bearing: f64,
     churning: f64,
-    /// The whole box by its map, which then stands for the others.
+    /// The whole box by its map, which then replaces the others.
     map: f64,
 }
 

@@ -6,7 +6,7 @@
 //! | `trace` | `time_s`, then measured columns of the trace |
 //! | `scalars` | `quantity`, `value`, `sd`, `phase` |
 //!
-//! Every column's unit is in its name. A measured column may have its standard deviation beside it, in `sd_COLUMN`; an empty cell was not
+//! Every column's unit is in its name. A measured column may have its standard deviation in `sd_COLUMN`; an empty cell was not
 //! measured.
 
 pub(super) mod points;

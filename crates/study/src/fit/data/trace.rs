@@ -8,7 +8,7 @@ use cvtcycle_config::{Bound, Problem, Problems};
 /// Name of the column of times.
 pub const TIME: &str = "time_s";
 
-/// So many columns can be told one by one.
+/// So many columns are listed one by one.
 const FEW: usize = 40;
 
 /// Reads a trace, of which the columns `computed` can be computed, as far as it can be understood, and all problems of the file: also times

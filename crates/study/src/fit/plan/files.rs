@@ -134,10 +134,10 @@ impl Deviations {
             }
         }
         for (k, name) in measured {
-            let beside = sheet.find(&format!("{SD}{name}"));
+            let deviation = sheet.find(&format!("{SD}{name}"));
             let lacks = |row: &usize| {
                 sheet.number(*row, Some(*k)).is_some()
-                    && !sheet.is_bad(*row, beside)
+                    && !sheet.is_bad(*row, deviation)
                     && self.of(sheet, *row, name).is_none()
             };
             let without = (0..sheet.rows.len()).find(lacks);

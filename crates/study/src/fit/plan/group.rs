@@ -156,7 +156,7 @@ fn sd_of(s: &Section) -> impl Fn(f64) -> f64 {
         (Some(_), Some(_)) => s.complain(
             "sd_share",
             "`sd` or `sd_share`",
-            "`sd` beside `sd_share`",
+            "`sd` with `sd_share`",
             "keep one of them",
         ),
         (None, None) => {
@@ -259,7 +259,7 @@ fn row<'a>(
         );
     }
     if found.rows.contains(id) {
-        return refuse(format!("row {id} stands twice"), "remove one");
+        return refuse(format!("row {id} is there twice"), "remove one");
     }
     Ok((file, row, expr, Measured::between(low, high)))
 }

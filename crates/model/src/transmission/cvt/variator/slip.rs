@@ -43,7 +43,7 @@ pub struct Slip {
 /// Grip never below this share of the friction limit (ASSUMED): keeps the active arc finite where the bands' pull alone takes it up.
 const LEAST_GRIP: f64 = 0.05;
 
-/// Grip never below this force, N (ASSUMED; nothing beside any real one): without clamping slip is at its bound and not 0/0.
+/// Grip never below this force, N (ASSUMED; negligible against any real one): without clamping slip is at its bound and not 0/0.
 const NO_GRIP_N: f64 = 1e-6;
 
 /// Blend beyond which one branch alone counts: the other's weight is below 2e-8.

@@ -4,11 +4,10 @@
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
-    reason = "a preprocessor speaks on standard output"
+    reason = "a preprocessor writes to standard output"
 )]
 
-mod latex;
-
+use cvtcycle_book::latex;
 use serde_json::Value;
 use std::process::ExitCode;
 

@@ -9,23 +9,18 @@ use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use cvtcycle::config::setup::equations::{by_label, equations};
+use cvtcycle::study::equations::{by_label, equations};
 
-#[allow(dead_code, reason = "the example uses all of it")]
-#[path = "../examples/book_figures/content/mod.rs"]
-mod content;
-#[path = "../examples/book_math/latex.rs"]
-mod latex;
-
-use content::tables::{keys, labelled};
-use content::{PAGES, files};
+use cvtcycle_book::figures::tables::{keys, labelled};
+use cvtcycle_book::figures::{PAGES, files};
+use cvtcycle_book::latex;
 
 /// Figures and tables as `tools/docs` writes them: name below `src`, text.
 static MADE: LazyLock<BTreeMap<String, String>> =
     LazyLock::new(|| files(&folder()).unwrap().into_iter().collect());
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/book/src")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/book/src")
 }
 
 fn text_of(name: &str) -> String {
@@ -83,9 +78,9 @@ fn every_label_of_the_code_is_one_equation_of_the_book() {
     for e in equations() {
         match found.get(e.label).map(Vec::as_slice) {
             None => wrong.push(format!(
-                "{} (src/{}: {}) is not in the book: add `**{}** ({})` and its equation to a page",
+                "{} ({}: {}) is not in the book: add `**{}** ({})` and its equation to a page",
                 e.label,
-                e.file,
+                e.module,
                 e.statement,
                 e.label,
                 words(e.status).join(", ")

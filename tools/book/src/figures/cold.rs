@@ -211,7 +211,7 @@ fn lines(
 
 /// The table.
 pub fn table() -> Result<String, String> {
-    let mut text = "<!-- Written by `cargo run --release --example book_figures` from the bench at 2000 rpm without load. -->\n\n\
+    let mut text = "<!-- Written by `tools/docs` from the bench at 2000 rpm without load. -->\n\n\
         | part | what carries it below 25 degC | what bounds it | 25 degC | 0 degC | -10 degC | -30 degC | -30 degC without FH-1, PU-5 | measured |\n\
         |---|---|---|---|---|---|---|---|---|\n"
         .to_owned();

@@ -2,14 +2,14 @@
 
 use super::{PAGES, Page};
 use cvtcycle::config::setup::assumptions::value;
-use cvtcycle::config::setup::equations::{by_label, cited};
+use cvtcycle::study::equations::{by_label, cited};
 use cvtcycle::config::setup::{Options, load};
 use cvtcycle::config::{KeyInfo, render};
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// First line of the tables of labels.
-const MADE_FROM_HEADS: &str = "<!-- Written by `cargo run --release --example book_figures` from the heads of the model files. -->\n";
+const MADE_FROM_HEADS: &str = "<!-- Written by `tools/docs` from the heads of the model files. -->\n";
 
 /// A labelled equation as a page has it: `**BT-3** (derived)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -127,7 +127,7 @@ pub fn keys(page: &Page, labels: &[Labelled]) -> Result<Vec<KeyInfo>, String> {
 
 fn value_table(page: &Page, labels: &[Labelled]) -> Result<String, String> {
     let mut text = format!(
-        "<!-- Written by `cargo run --release --example book_figures` from vehicle `{}`. -->\n",
+        "<!-- Written by `tools/docs` from vehicle `{}`. -->\n",
         page.vehicle
     );
     let keys = keys(page, labels)?;
@@ -162,7 +162,7 @@ fn label_table(labels: &[Labelled]) -> String {
         text += "\nNo equations of its own.\n";
         return text;
     }
-    text += "\n| label | statement in the code | status | file |\n|---|---|---|---|\n";
+    text += "\n| label | statement in the code | status | module |\n|---|---|---|---|\n";
     for Labelled { label, .. } in labels {
         match by_label(label) {
             Some(e) => {

@@ -1,20 +1,18 @@
-//! Writes the figures and the generated tables of the book: `cargo run --release --example book_figures`.
+//! Writes the figures and the generated tables of the book: `cargo run --release -p cvtcycle-book --bin book_figures`.
 //!
 //! `tools/docs` runs it; the files are not in git.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
-    reason = "an example is a program"
+    reason = "a program that prints"
 )]
-
-mod content;
 
 use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/book/src");
-    let files = match content::files(&folder) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/book/src");
+    let files = match cvtcycle_book::figures::files(&folder) {
         Ok(files) => files,
         Err(why) => {
             eprintln!("{why}");
