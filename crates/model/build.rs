@@ -11,7 +11,11 @@ fn main() {
     let variable = |name: &str| env::var(name).unwrap_or_else(|error| panic!("{name}: {error}"));
     let name = variable("CARGO_PKG_NAME").replace("cvtcycle-", "");
     let mut list = "&[\n".to_owned();
-    walk(&Path::new(&variable("CARGO_MANIFEST_DIR")).join("src/lib.rs"), &name, &mut list);
+    walk(
+        &Path::new(&variable("CARGO_MANIFEST_DIR")).join("src/lib.rs"),
+        &name,
+        &mut list,
+    );
     list += "]\n";
     let out = Path::new(&variable("OUT_DIR")).join("equations.rs");
     fs::write(&out, list).unwrap_or_else(|error| panic!("{}: {error}", out.display()));
@@ -19,7 +23,8 @@ fn main() {
 
 /// Adds the equations of a file, then those of the modules that it declares.
 fn walk(file: &Path, module: &str, list: &mut String) {
-    let text = fs::read_to_string(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    let text =
+        fs::read_to_string(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
     for [label, statement, status] in text.lines().filter_map(equation) {
         // Writing into a String cannot fail.
         let _ = writeln!(
@@ -29,10 +34,18 @@ fn walk(file: &Path, module: &str, list: &mut String) {
     }
     let stem = file.file_stem().unwrap_or_default();
     let own = ["lib", "mod"].iter().any(|name| stem == *name);
-    let folder = if own { file.with_file_name("") } else { file.with_extension("") };
+    let folder = if own {
+        file.with_file_name("")
+    } else {
+        file.with_extension("")
+    };
     for name in text.lines().filter_map(declared) {
         let flat = folder.join(format!("{name}.rs"));
-        let inner = if flat.exists() { flat } else { folder.join(name).join("mod.rs") };
+        let inner = if flat.exists() {
+            flat
+        } else {
+            folder.join(name).join("mod.rs")
+        };
         if inner.exists() {
             walk(&inner, &format!("{module}::{name}"), list);
         }

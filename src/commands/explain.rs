@@ -6,11 +6,11 @@ mod terms;
 use clap::Args;
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
-use cvtcycle::study::equations::{Equation, by_label, cited, equations};
 use cvtcycle::config::{KeyInfo, Problem, Problems, near, suggestion};
 use cvtcycle::output::table::Head;
 use cvtcycle::output::trace::{COLUMNS, column};
 use cvtcycle::output::{Component, Flags};
+use cvtcycle::study::equations::{Equation, by_label, cited, equations};
 use cvtcycle::study::outputs::outputs;
 use serde_json::{Value, json};
 

@@ -7,7 +7,10 @@ const EQUATIONS: &[Equation] = include!(concat!(env!("OUT_DIR"), "/equations.rs"
 
 /// All equations: those of the model, then those of this crate.
 pub fn equations() -> impl Iterator<Item = Equation> {
-    cvtcycle_model::equations::EQUATIONS.iter().chain(EQUATIONS).copied()
+    cvtcycle_model::equations::EQUATIONS
+        .iter()
+        .chain(EQUATIONS)
+        .copied()
 }
 
 /// The equation of a label.
@@ -20,7 +23,10 @@ pub fn by_label(label: &str) -> Option<Equation> {
 #[must_use]
 pub fn cited(text: &str) -> Vec<Equation> {
     let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'));
-    words.filter(|word| word.bytes().all(|b| !b.is_ascii_lowercase())).filter_map(by_label).collect()
+    words
+        .filter(|word| word.bytes().all(|b| !b.is_ascii_lowercase()))
+        .filter_map(by_label)
+        .collect()
 }
 
 #[cfg(test)]

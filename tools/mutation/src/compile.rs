@@ -126,7 +126,9 @@ fn guilty(copy: &Copy, span: &Value, dropped: &HashSet<String>) -> Option<String
 /// # Errors
 /// They do not build.
 pub fn tests(copy: &Copy, config: &Config) -> Result<Vec<Program>, String> {
-    let mut args = vec!["test", "--no-run", "-p", "cvtcycle", "-p", PACKAGE, "--bin", "cvtcycle"];
+    let mut args = vec![
+        "test", "--no-run", "-p", "cvtcycle", "-p", PACKAGE, "--bin", "cvtcycle",
+    ];
     for test in &config.tests {
         match test.as_str() {
             UNIT_TESTS => args.push("--lib"),

@@ -9,10 +9,7 @@ use cvtcycle_model::equations::Equation;
 
 /// Statuses in the order in which a reader should worry about them.
 const STATUSES: [(&str, &str); 4] = [
-    (
-        "assumed",
-        "not measured; a judgement, with its reason",
-    ),
+    ("assumed", "not measured; a judgement, with its reason"),
     (
         "fitted",
         "chosen so that the model meets a measured statement",
@@ -139,14 +136,14 @@ fn of_equations(text: &mut String, equations: &[Equation]) {
 fn group(text: &mut String, title: &str, list: impl Iterator<Item = Equation>) {
     let _ = writeln!(
         text,
-        "\n### {title}\n\n| label | statement | status | file |\n|---|---|---|---|"
+        "\n### {title}\n\n| label | statement | status | module |\n|---|---|---|---|"
     );
     for e in list {
         // Statements come out of a Markdown table: their bars are escaped already.
         let _ = writeln!(
             text,
             "| {} | {} | {} | `{}` |",
-            e.label, e.statement, e.status, e.file
+            e.label, e.statement, e.status, e.module
         );
     }
 }

@@ -86,7 +86,9 @@ impl BsfcMap {
             fuel[i][j] = bsfc * load * heating_value_j_kg; // BM-1
         }
         if fuel.iter().flatten().any(|f| f.is_nan()) {
-            return Err("a combination of speed and load is there twice, another is missing".into());
+            return Err(
+                "a combination of speed and load is there twice, another is missing".into(),
+            );
         }
         if fuel.iter().any(|row| row.windows(2).any(|f| f[0] >= f[1])) {
             return Err("fuel (BSFC times BMEP) must rise with load at every speed".into());

@@ -2,14 +2,15 @@
 
 use super::{PAGES, Page};
 use cvtcycle::config::setup::assumptions::value;
-use cvtcycle::study::equations::{by_label, cited};
 use cvtcycle::config::setup::{Options, load};
 use cvtcycle::config::{KeyInfo, render};
+use cvtcycle::study::equations::{by_label, cited};
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// First line of the tables of labels.
-const MADE_FROM_HEADS: &str = "<!-- Written by `tools/docs` from the heads of the model files. -->\n";
+const MADE_FROM_HEADS: &str =
+    "<!-- Written by `tools/docs` from the heads of the model files. -->\n";
 
 /// A labelled equation as a page has it: `**BT-3** (derived)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -173,7 +174,7 @@ fn label_table(labels: &[Labelled]) -> String {
                     e.label,
                     plain(e.statement),
                     plain(e.status),
-                    e.file
+                    e.module
                 );
             }
             None => {

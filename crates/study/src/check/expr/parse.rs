@@ -194,7 +194,8 @@ impl Parser<'_> {
             }
             self.unknown(token, "the column", &columns);
         } else {
-            let hint = "a name is written within a reduction such as max(SOURCE: COLUMN)".to_owned();
+            let hint =
+                "a name is written within a reduction such as max(SOURCE: COLUMN)".to_owned();
             let message = format!("`{name}` is outside of any source");
             self.faults.push(fault(token, name, message, hint));
         }
