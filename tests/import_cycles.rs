@@ -218,7 +218,8 @@ fn cycle(graph: &Graph) -> Option<Vec<String>> {
 fn complaint(src: &str, root: &[&str]) -> Option<String> {
     let root: Vec<String> = root.iter().map(|&s| s.to_owned()).collect();
     let mut found = graph(&Path::new(env!("CARGO_MANIFEST_DIR")).join(src), &root);
-    for (_, from, to, _) in EXCEPTIONS.iter().filter(|(room, ..)| *room == src) {
+    let here = |room: &str| room == src && root.is_empty();
+    for (_, from, to, _) in EXCEPTIONS.iter().filter(|(room, ..)| here(room)) {
         let known = found.get_mut(*from).is_some_and(|list| list.remove(*to));
         assert!(
             known,
@@ -239,12 +240,19 @@ fn complaint(src: &str, root: &[&str]) -> Option<String> {
 /// Property: the modules of each crate can be put in an order in which each imports those before it only.
 #[test]
 fn modules_import_in_one_direction() {
-    let rooms: [(&str, &[&str]); 6] = [
+    let rooms: [(&str, &[&str]); 13] = [
         ("crates/model/src", &[]),
         ("crates/model/src", &["transmission"]),
         ("crates/config/src", &[]),
         ("crates/output/src", &[]),
         ("crates/study/src", &[]),
+        ("crates/study/src", &["check"]),
+        ("crates/study/src", &["check", "expr"]),
+        ("crates/study/src", &["check", "tables"]),
+        ("crates/study/src", &["fit"]),
+        ("crates/study/src", &["fit", "model"]),
+        ("crates/study/src", &["fit", "plan"]),
+        ("crates/study/src", &["fit", "solve"]),
         ("crates/report/src", &[]),
     ];
     let found: Vec<String> = rooms

@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use super::group::{About, Context, Found, observation};
+use super::found::{About, Context, Found, observation};
 use super::types::{BenchPoints, Measured, Observable};
 use crate::check::source::{self, Kind, Source};
 use crate::check::tables;
@@ -13,15 +13,6 @@ use cvtcycle_config::{Bound, Problem, Problems, Section, did_you_mean, unit_of};
 
 /// Seconds after which two values of a trace are independent, where the plan does not say.
 const INDEPENDENT_S: f64 = 30.0;
-
-/// Benches, runs and files of the observations, counted within the group.
-#[derive(Default)]
-pub(super) struct Made {
-    pub benches: Vec<BenchPoints>,
-    pub runs: Vec<Source>,
-    /// Path and SHA-256 of each file.
-    pub files: Vec<(String, String)>,
-}
 
 /// Reads the file of a group; what is wrong is reported to `s`.
 pub(super) fn read(s: &Section, way: &str, context: &Context, found: &mut Found) {

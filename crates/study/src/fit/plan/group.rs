@@ -2,43 +2,18 @@
 
 use std::sync::Arc;
 
-use super::files::{self, Made};
-use super::types::{Group, Measured, Observable, Observation, at_item, problem};
+use super::files;
+use super::found::{About, Context, Found, observation};
+use super::types::{Group, Measured, Observable, at_item, problem};
 use crate::check::checks::number_or_range;
 use crate::check::expr::{Expr, Gives};
 use crate::check::names::{FileNames, expression};
 use crate::check::rows::{RowFile, ValidationRow};
 use crate::check::rule::Printed;
-use crate::check::source::Source;
-use cvtcycle_config::{Bound, Document, Place, Problem, Problems, Reader, Section, near};
+use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section, near};
 
 /// Forms of data, one of which a group has.
 const WAYS: [&str; 5] = ["rows", "compute", "points", "trace", "scalars"];
-
-/// Sources, keys and rows that the groups of a plan may use.
-pub(super) struct Context<'a> {
-    /// The plan's own sources, then the common ones.
-    pub sources: &'a [Source],
-    /// Known keys.
-    pub keys: &'a [String],
-    /// Validation rows of the program.
-    pub rows: &'a [RowFile],
-    /// The plan, as problems cite it.
-    pub file: &'a str,
-}
-
-/// Content of a group; views, benches and runs are counted within it.
-#[derive(Default)]
-pub(super) struct Found {
-    pub group: Option<Group>,
-    /// Fold of each observation by name.
-    pub folds: Vec<String>,
-    pub observations: Vec<Observation>,
-    /// Lists of sources; none for the plan's own.
-    pub views: Vec<Option<Vec<Source>>>,
-    pub made: Made,
-    pub rows: Vec<String>,
-}
 
 /// Reads a group.
 ///
@@ -262,42 +237,6 @@ fn row<'a>(
         return refuse(format!("row {id} is there twice"), "remove one");
     }
     Ok((file, row, expr, Measured::between(low, high)))
-}
-
-/// Labels of an observation.
-pub(super) struct About {
-    pub label: String,
-    pub what: String,
-    pub unit: String,
-    pub place: Place,
-}
-
-/// An observation of the group.
-pub(super) fn observation(
-    about: About,
-    measured: Measured,
-    sd: f64,
-    observable: Observable,
-) -> Observation {
-    let About {
-        label,
-        what,
-        unit,
-        place,
-    } = about;
-    Observation {
-        group: 0,
-        fold: 0,
-        label,
-        what,
-        column: String::new(),
-        unit,
-        measured,
-        sd,
-        weight_sd: sd,
-        observable,
-        place,
-    }
 }
 
 /// An expression of the plan's own.

@@ -8,6 +8,7 @@
 //! | `group`, `files` | one `[[data]]` to observations |
 
 mod files;
+mod found;
 mod group;
 mod parameter;
 mod read;

@@ -2,7 +2,8 @@
 
 use std::sync::OnceLock;
 
-use super::group::{self, Context, Found};
+use super::found::{Context, Found};
+use super::group;
 use super::parameter;
 use super::types::{CalibrationPlan, Observable, Search, problem};
 use crate::check::candidate::CandidateVehicle;
