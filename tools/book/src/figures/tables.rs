@@ -15,6 +15,7 @@ const MADE_FROM_HEADS: &str =
 /// A labelled equation as a page has it: `**BT-3** (derived)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Labelled {
+    /// Label of the equation or table.
     pub label: String,
     /// Status words in brackets.
     pub status: String,

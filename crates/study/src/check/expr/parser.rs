@@ -2,7 +2,7 @@
 
 use super::lexer::{Token, TokenKind, tokens};
 use super::syntax::Fault;
-use cvtcycle_config::near;
+use cvtcycle_config::did_you_mean;
 
 /// The names that an expression may use.
 pub trait Names {
@@ -102,12 +102,10 @@ impl<'a> Parser<'a> {
     /// Records an unknown name; the parsing goes on.
     pub fn unknown(&mut self, token: &Token, what: &str, known: &[&str]) {
         let name = token.kind.text();
-        let close = near(&name, known.iter().copied());
-        let quoted: Vec<String> = close.iter().map(|n| format!("`{n}`")).collect();
-        let hint = match (close.is_empty(), known.len()) {
-            (false, _) => format!("did you mean {}?", quoted.join(" or ")),
-            (true, 0) => String::new(),
-            (true, n) => format!("known here: {}", known[..n.min(MAX_LISTED)].join(", ")),
+        let hint = match (did_you_mean(&name, known.iter().copied()), known.len()) {
+            (Some(question), _) => question,
+            (None, 0) => String::new(),
+            (None, n) => format!("known here: {}", known[..n.min(MAX_LISTED)].join(", ")),
         };
         let message = format!("{what} `{name}` is not known");
         self.faults.push(fault(token, &name, message, hint));

@@ -10,7 +10,7 @@ use crate::check::expr::{Expr, Gives};
 use crate::check::names::{FileNames, expression};
 use crate::check::rows::{RowFile, ValidationRow};
 use crate::check::rule::Printed;
-use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section, near};
+use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section, did_you_mean};
 
 /// Forms of data, one of which a group has.
 const WAYS: [&str; 5] = ["rows", "compute", "points", "trace", "scalars"];
@@ -213,12 +213,8 @@ fn row<'a>(
     };
     let refuse = |message: String, hint: &str| Err((message, hint.to_owned()));
     let Some((file, row)) = all().find(|(_, row)| row.id == *id) else {
-        let close = near(id, all().map(|(_, row)| row.id.as_str()));
-        let hint = if close.is_empty() {
-            "`cvtcycle validate` lists them".to_owned()
-        } else {
-            format!("did you mean {}?", close.join(" or "))
-        };
+        let hint = did_you_mean(id, all().map(|(_, row)| row.id.as_str()))
+            .unwrap_or_else(|| "`cvtcycle validate` lists them".to_owned());
         return Err((format!("there is no validation row `{id}`"), hint));
     };
     let (Some(expr), Some(Printed::Range(low, high))) = (&row.compute, row.printed) else {
