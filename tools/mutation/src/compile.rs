@@ -153,13 +153,13 @@ pub fn tests(copy: &Copy, config: &Config) -> Result<Vec<Program>, String> {
             m["executable"].as_str(),
             m["target"]["kind"][0].as_str(),
             m["target"]["name"].as_str(),
-        ) {
-            if config.tests.iter().any(|t| t == name) && kind != "bin" {
-                programs.push(Program {
-                    name: name.to_owned(),
-                    path: path.into(),
-                });
-            }
+        ) && kind != "bin"
+            && config.tests.iter().any(|t| t == name)
+        {
+            programs.push(Program {
+                name: name.to_owned(),
+                path: path.into(),
+            });
         }
     }
     let place = |p: &Program| config.tests.iter().position(|t| *t == p.name);
