@@ -1,14 +1,14 @@
 //! One step of a driveline, set up by hand: speeds, torques and temperatures as on a test bench, ratio held.
 
-use cvtcycle::config::cycle::GearCommand;
-use cvtcycle::config::setup::Setup;
-use cvtcycle::model::drive::Car;
-use cvtcycle::model::road::WheelDemand;
-use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, METAL, SUMP};
-use cvtcycle::model::transmission::cvt::Cvt;
-use cvtcycle::model::transmission::cvt::CvtState;
-use cvtcycle::model::transmission::cvt::variator::BeltAtRatio;
-use cvtcycle::model::transmission::{StepInput, StepOutput, Transmission, TransmissionState};
+use cvtcycle_config::cycle::GearCommand;
+use cvtcycle_config::setup::Setup;
+use cvtcycle_model::drive::Car;
+use cvtcycle_model::road::WheelDemand;
+use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, METAL, SUMP};
+use cvtcycle_model::transmission::cvt::Cvt;
+use cvtcycle_model::transmission::cvt::CvtState;
+use cvtcycle_model::transmission::cvt::variator::BeltAtRatio;
+use cvtcycle_model::transmission::{StepInput, StepOutput, Transmission, TransmissionState};
 
 use super::ZERO;
 

@@ -8,12 +8,13 @@
 pub mod bench_step;
 pub mod range;
 
-use cvtcycle::config::cycle::{Cycle, constant_speed, embedded, read_csv};
-use cvtcycle::config::render;
-use cvtcycle::config::setup::{Options, Setup, load};
-use cvtcycle::model::drive::Recorder;
-use cvtcycle::model::drive::{Conditions, Outcome, Start, drive, litres_per_100km};
-use cvtcycle::output::{Component, EnergyTerms, Row};
+use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, read_csv};
+use cvtcycle_config::render;
+use cvtcycle_config::setup::{Options, Setup, load};
+use cvtcycle_model::drive::Recorder;
+use cvtcycle_model::drive::{Conditions, Outcome, Start, drive, litres_per_100km};
+use cvtcycle_model::drive::{EnergyTerms, Row};
+use cvtcycle_model::transmission::component::Component;
 
 /// Shipped vehicles.
 pub const CARS: [&str; 3] = ["rover_216_cvt", "rover_216_5mt", "mondeo_20_5mt"];

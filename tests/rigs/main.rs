@@ -10,6 +10,7 @@
 mod common;
 
 mod belt;
+mod loss_columns;
 mod losses;
 mod rig_transmission;
 mod rig_variator;

@@ -20,6 +20,7 @@ mod calibrate_cli;
 mod calibrate_solve;
 mod calibrate_tables;
 mod check_expressions;
+mod order_of_factors;
 mod parquet_readers;
 mod study;
 mod study_design;

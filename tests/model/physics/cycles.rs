@@ -1,0 +1,898 @@
+//! The embedded cycles against the regulations' tables and published figures, and `read_csv` against all a user may hand in.
+#![allow(clippy::unwrap_used, reason = "a test ends at the first surprise")]
+
+use std::collections::HashMap;
+use std::fmt::Write;
+
+use cvtcycle_config::cycle::{Cycle, GearCommand, Trace, Weighting, embedded, names, read_csv};
+use cvtcycle_config::{Problem, Problems};
+use proptest::prelude::*;
+
+/// Rows of a CSV file as maps from column name to text.
+fn table(text: &str) -> Vec<HashMap<String, String>> {
+    csv::Reader::from_reader(text.as_bytes())
+        .deserialize()
+        .map(Result::unwrap)
+        .collect()
+}
+
+fn number(row: &HashMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap()
+}
+
+// ---------------------------------------------------------------- embedded cycles against outside truth
+
+fn stats() -> Vec<(HashMap<String, String>, Cycle, Trace)> {
+    let rows = table(include_str!("../../../cycles/stats.csv"));
+    let cycle = |row: &HashMap<String, String>| match row["cycle"].as_str() {
+        "eudc_low_auto" => (embedded("eudc_low").unwrap(), true),
+        name => (embedded(name).unwrap(), false),
+    };
+    rows.into_iter()
+        .map(|row| {
+            let (cycle, automatic) = cycle(&row);
+            let trace = cycle.trace_for(automatic).clone();
+            (row, cycle, trace)
+        })
+        .collect()
+}
+
+#[test]
+fn val_stats_hold_every_shipped_cycle() {
+    let rows = stats();
+    assert_eq!(rows.len(), names().len() + 1);
+    assert!(
+        names()
+            .iter()
+            .all(|name| rows.iter().any(|row| row.0["cycle"] == *name))
+    );
+}
+
+#[test]
+fn val_durations_distances_and_top_speeds_are_those_of_the_stats_table() {
+    for (row, cycle, trace) in stats() {
+        let name = &row["cycle"];
+        assert!(
+            (trace.duration_s() - number(&row, "duration_s")).abs() < 1e-9,
+            "{name}"
+        );
+        assert!(
+            (trace.distance_m() / 1000.0 - number(&row, "distance_km")).abs() <= 0.5001e-4,
+            "{name}"
+        );
+        assert!(
+            (trace.max_speed_m_s() * 3.6 - number(&row, "vmax_km_h")).abs() <= 0.501e-3,
+            "{name}"
+        );
+        for part in row["phase_distances"]
+            .split("; ")
+            .filter(|part| !part.is_empty())
+        {
+            let [phase, km, _] = part.split(' ').collect::<Vec<_>>().try_into().unwrap();
+            let index =
+                u16::try_from(cycle.phases.iter().position(|p| p == phase).unwrap()).unwrap();
+            assert!(
+                (trace.phase_distance_m(index) / 1000.0 - km.parse::<f64>().unwrap()).abs()
+                    <= 0.5001e-4,
+                "{name} {part}"
+            );
+        }
+    }
+}
+
+#[test]
+fn val_accelerations_and_idle_shares_are_those_of_the_stats_table() {
+    for (row, _, trace) in stats() {
+        let accels: Vec<f64> = trace
+            .intervals
+            .iter()
+            .map(|i| (i.end_speed_m_s - i.start_speed_m_s) / (i.end_s - i.start_s))
+            .collect();
+        let highest = accels.iter().copied().fold(f64::MIN, f64::max);
+        let lowest = accels.iter().copied().fold(f64::MAX, f64::min);
+        assert!(
+            (highest - number(&row, "amax_m_s2")).abs() <= 0.501e-3,
+            "{}",
+            row["cycle"]
+        );
+        assert!(
+            (lowest - number(&row, "amin_m_s2")).abs() <= 0.501e-3,
+            "{}",
+            row["cycle"]
+        );
+        let idle = trace
+            .intervals
+            .iter()
+            .filter(|i| i.start_speed_m_s + i.end_speed_m_s <= 0.0);
+        let percent = idle.count() as f64 / trace.duration_s() * 100.0;
+        assert!(
+            (percent - number(&row, "idle_pct")).abs() <= 0.0501,
+            "{}: {percent}",
+            row["cycle"]
+        );
+    }
+}
+
+#[test]
+fn val_published_distances_are_met_within_the_known_differences() {
+    let known = |name: &str| match name {
+        name if name.starts_with("wltc") => 0.003,
+        "nycc" => 0.14,
+        "jc08" => 0.15,
+        "jp_10_15_mode" => 0.14,
+        name if name.starts_with("artemis") => 0.09,
+        // the law's 11.007 km belongs to none of the ECE traces
+        name if name.starts_with("ece15")
+            || name.starts_with("eudc")
+            || name.starts_with("mvega") =>
+        {
+            0.73
+        }
+        _ => 0.041,
+    };
+    for (row, _, trace) in stats()
+        .into_iter()
+        .filter(|row| !row.0["published_km"].is_empty())
+    {
+        let percent = (trace.distance_m() / 1000.0 / number(&row, "published_km") - 1.0) * 100.0;
+        assert!(
+            percent.abs() <= known(&row["cycle"]),
+            "{}: {percent:.4} %",
+            row["cycle"]
+        );
+    }
+}
+
+#[test]
+fn val_wltc_speed_sums_are_the_checksums_of_gtr15() {
+    for (name, sum_kmh) in [("wltc_class3a", 83_496.9), ("wltc_class3b", 83_758.6)] {
+        let cycle = embedded(name).unwrap();
+        let sum: f64 = cycle
+            .trace_for(true)
+            .intervals
+            .iter()
+            .map(|i| i.end_speed_m_s * 3.6)
+            .sum();
+        assert!((sum - sum_kmh).abs() < 1e-6, "{name}: {sum}");
+    }
+}
+
+#[test]
+fn val_nedc_distances_are_11_028_km_manual_and_10_937_km_automatic() {
+    let cycle = embedded("ece15_eudc").unwrap();
+    assert!((cycle.trace_for(false).distance_m() - 11_028.2).abs() < 0.1);
+    assert!((cycle.trace_for(true).distance_m() - 10_936.7).abs() < 0.1);
+    assert_eq!(
+        cycle.trace_for(true),
+        embedded("ece15_eudc_auto").unwrap().trace_for(false)
+    );
+}
+
+// ---------------------------------------------------------------- the regulation's operation tables
+
+fn commands_of(gear_text: &str, operation: &str, next: u8) -> Vec<(Option<usize>, GearCommand)> {
+    let one = |text: &str| match text.trim() {
+        "" => {
+            assert_eq!(operation, "gear change");
+            GearCommand::Change(next)
+        }
+        "PM" => GearCommand::Neutral,
+        text => match text.strip_prefix('K') {
+            Some(gear) => GearCommand::Declutched(gear.parse().unwrap()),
+            None => GearCommand::InGear(text.trim_end_matches("(2)").trim().parse().unwrap()),
+        },
+    };
+    let part = |text: &str| match text.trim().split_once(" s ") {
+        Some((seconds, gear)) => (Some(seconds.trim().parse().unwrap()), one(gear)),
+        None => (None, one(text)),
+    };
+    gear_text.split('+').map(part).collect()
+}
+
+/// Speeds (km/h) and commands second by second, from the operations alone.
+fn driven(operations: &str) -> (Vec<f64>, Vec<GearCommand>) {
+    let rows = table(operations);
+    let (mut speeds, mut gears) = (vec![0.0], Vec::new());
+    for (at, row) in rows.iter().enumerate() {
+        let seconds = number(row, "duration_s") as usize;
+        let (from, to) = (
+            number(row, "speed_start_km_h"),
+            number(row, "speed_end_km_h"),
+        );
+        assert!((from - speeds.last().unwrap()).abs() < 1e-9);
+        speeds.extend((1..=seconds).map(|s| from + (to - from) * s as f64 / seconds as f64));
+        let accel = (to - from) / 3.6 / seconds as f64;
+        assert!(
+            (accel - number(row, "accel_m_s2")).abs() < 0.02,
+            "printed acceleration {row:?}"
+        );
+        let next = rows[at + 1..]
+            .iter()
+            .find_map(|row| row["gear_text"].chars().find(char::is_ascii_digit));
+        let next = next.map_or(0, |digit| digit as u8 - b'0');
+        for (part, command) in commands_of(&row["gear_text"], &row["operation"], next) {
+            gears.extend(std::iter::repeat_n(command, part.unwrap_or(seconds)));
+        }
+        assert_eq!(speeds.len(), number(row, "cumulative_s") as usize + 1);
+        assert_eq!(gears.len(), number(row, "cumulative_s") as usize);
+    }
+    (speeds, gears)
+}
+
+fn assert_driven(
+    trace: &[cvtcycle_config::cycle::Interval],
+    commands: &[GearCommand],
+    operations: &str,
+) {
+    let (speeds, gears) = driven(operations);
+    assert_eq!(commands, gears);
+    for (interval, pair) in trace.iter().zip(speeds.windows(2)) {
+        assert!(
+            (interval.start_speed_m_s * 3.6 - pair[0]).abs() <= 0.501e-4,
+            "{interval:?}"
+        );
+        assert!(
+            (interval.end_speed_m_s * 3.6 - pair[1]).abs() <= 0.501e-4,
+            "{interval:?}"
+        );
+    }
+}
+
+const ECE15: &str = include_str!("../../../cycles/ece15_operations.csv");
+const EUDC: &str = include_str!("../../../cycles/eudc_operations.csv");
+const EUDC_LOW: &str = include_str!("../../../cycles/eudc_low_operations.csv");
+
+#[test]
+fn val_ece_cycles_are_the_operation_tables_of_un_r83() {
+    for (name, operations) in [("ece15", ECE15), ("eudc", EUDC), ("eudc_low", EUDC_LOW)] {
+        let cycle = embedded(name).unwrap();
+        let trace = cycle.trace_for(false);
+        assert_driven(&trace.intervals, trace.gears(5).unwrap(), operations);
+    }
+    for (name, last, idle_s) in [
+        ("ece15_eudc", EUDC, 0),
+        ("ece15_eudc_low", EUDC_LOW, 0),
+        ("mvega_idle40", EUDC, 40),
+    ] {
+        let cycle = embedded(name).unwrap();
+        let trace = cycle.trace_for(false);
+        let gears = trace.gears(5).unwrap();
+        for part in 0..4 {
+            let range = idle_s + part * 195..idle_s + (part + 1) * 195;
+            assert_driven(&trace.intervals[range.clone()], &gears[range], ECE15);
+        }
+        assert_driven(
+            &trace.intervals[idle_s + 780..],
+            &gears[idle_s + 780..],
+            last,
+        );
+    }
+}
+
+#[test]
+fn val_ece15_time_totals_are_those_printed_in_un_r83() {
+    let cycle = embedded("ece15").unwrap();
+    let trace = cycle.trace_for(false);
+    let mut totals = [0; 6];
+    let mut in_gear = [0; 3];
+    for (interval, command) in trace.intervals.iter().zip(trace.gears(5).unwrap()) {
+        let moving = interval.start_speed_m_s + interval.end_speed_m_s > 0.0;
+        let change = interval.end_speed_m_s - interval.start_speed_m_s;
+        let kind = match command {
+            _ if !moving => 0,
+            GearCommand::Declutched(_) => 1,
+            GearCommand::Change(_) => 2,
+            _ if change > 0.0 => 3,
+            _ if change < 0.0 => 5,
+            _ => 4,
+        };
+        totals[kind] += 1;
+        if let GearCommand::InGear(gear) = command {
+            in_gear[usize::from(*gear) - 1] += 1;
+        }
+    }
+    assert_eq!(totals, [60, 9, 8, 36, 57, 25]);
+    assert_eq!(in_gear, [24, 53, 41]);
+}
+
+#[test]
+fn val_six_gears_change_up_above_100_kmh_only() {
+    let cycle = embedded("ece15_eudc").unwrap();
+    let trace = cycle.trace_for(false);
+    let (five, six) = (trace.gears(5).unwrap(), trace.gears(6).unwrap());
+    let differing: Vec<usize> = (0..five.len()).filter(|&at| five[at] != six[at]).collect();
+    assert_eq!(
+        (differing.first(), differing.last(), differing.len()),
+        (Some(&1066), Some(&1149), 84)
+    );
+    assert!(
+        differing
+            .iter()
+            .all(|&at| (five[at], six[at]) == (GearCommand::InGear(5), GearCommand::InGear(6)))
+    );
+    let idle = embedded("mvega_idle40").unwrap();
+    assert_eq!(idle.trace_for(false).gears(6).unwrap()[40..], *six);
+    assert_eq!(
+        embedded("ece15").unwrap().trace_for(false).gears(6),
+        Some(&six[585..780])
+    );
+    assert_eq!(trace.gears(4), None);
+}
+
+// ---------------------------------------------------------------- the two traces, phases, the soak
+
+#[test]
+fn names_are_sorted_and_only_they_are_known() {
+    assert_eq!(names().len(), 27);
+    assert!(names().is_sorted());
+    assert!(
+        names()
+            .iter()
+            .all(|name| embedded(name).unwrap().name == *name)
+    );
+    for name in [
+        "",
+        "nedc",
+        "eudc_low_auto",
+        "ftp75_no_soak",
+        "stats",
+        "ECE15",
+        "constant_90",
+    ] {
+        assert!(embedded(name).is_none(), "{name}");
+    }
+}
+
+#[test]
+fn every_trace_is_gapless_from_zero_with_one_command_an_interval() {
+    for name in names() {
+        let cycle = embedded(name).unwrap();
+        for trace in [cycle.trace_for(false), cycle.trace_for(true)] {
+            assert!(trace.intervals[0].start_s.abs() < 1e-12);
+            assert!(
+                trace
+                    .intervals
+                    .windows(2)
+                    .all(|pair| (pair[1].start_s - pair[0].end_s).abs() < 1e-12),
+                "{name}"
+            );
+            assert!(
+                trace
+                    .intervals
+                    .windows(2)
+                    .all(|pair| (pair[1].start_speed_m_s - pair[0].end_speed_m_s).abs() < 1e-12),
+                "{name}"
+            );
+            assert!(
+                trace
+                    .intervals
+                    .iter()
+                    .all(|i| usize::from(i.phase) < cycle.phases.len().max(1))
+            );
+            for gears in [5, 6].into_iter().filter_map(|count| trace.gears(count)) {
+                assert_eq!(gears.len(), trace.intervals.len());
+            }
+        }
+        let gears = [
+            "ece15",
+            "ece15_eudc",
+            "ece15_eudc_low",
+            "eudc",
+            "eudc_low",
+            "mvega_idle40",
+        ]
+        .contains(name);
+        assert_eq!(cycle.has_gears(), gears, "{name}");
+        assert_eq!(cycle.weighting == Weighting::Ftp75, *name == "ftp75");
+    }
+}
+
+#[test]
+fn automatics_drive_the_ece_cycles_without_gear_change_plateaux() {
+    let metres = |name: &str, automatic| embedded(name).unwrap().trace_for(automatic).distance_m();
+    for name in ["ece15", "ece15_eudc", "ece15_eudc_low", "eudc"] {
+        let auto = format!("{name}_auto");
+        assert!(
+            (metres(name, true) - metres(&auto, true)).abs() < 1e-9
+                && metres(name, false) > metres(name, true) + 10.0
+        );
+        if auto != "eudc_auto" {
+            assert_eq!(
+                embedded(name).unwrap().phases,
+                embedded(&auto).unwrap().phases
+            );
+        }
+    }
+    assert!((metres("mvega_idle40", true) - metres("ece15_eudc_auto", true)).abs() < 1e-9);
+    let idle = embedded("mvega_idle40").unwrap();
+    let (manual, automatic) = (idle.trace_for(false), idle.trace_for(true));
+    assert!((automatic.duration_s() - 1220.0).abs() < 1e-12 && !automatic.intervals.is_empty());
+    let phases = |trace: &Trace| trace.intervals.iter().map(|i| i.phase).collect::<Vec<_>>();
+    assert_eq!(phases(manual), phases(automatic));
+    assert!(
+        embedded("wltc_class3b").unwrap().trace_for(false)
+            == embedded("wltc_class3b").unwrap().trace_for(true)
+    );
+}
+
+#[test]
+fn ftp75_rests_with_its_engine_off_for_600_s_between_its_bags() {
+    let cycle = embedded("ftp75").unwrap();
+    assert_eq!(
+        cycle.phases,
+        ["cold_transient", "stabilised", "hot_soak", "hot_transient"]
+    );
+    let trace = cycle.trace_for(true);
+    let off: Vec<_> = trace
+        .intervals
+        .iter()
+        .filter(|interval| interval.engine_off)
+        .collect();
+    assert_eq!(off.len(), 600);
+    assert!(
+        off.iter()
+            .all(|i| i.phase == 2 && i.start_speed_m_s + i.end_speed_m_s <= 0.0)
+    );
+    assert!((off[0].start_s - 1369.0).abs() < 1e-12 && (off[599].end_s - 1969.0).abs() < 1e-12);
+    let seconds = |phase| trace.intervals.iter().filter(|i| i.phase == phase).count();
+    assert_eq!(
+        [seconds(0), seconds(1), seconds(2), seconds(3)],
+        [505, 864, 600, 505]
+    );
+    assert!((Weighting::FTP75_COLD + Weighting::FTP75_HOT - 1.0).abs() < 1e-15);
+}
+
+#[test]
+fn groups_of_the_nedc_are_its_two_parts() {
+    let groups = embedded("ece15_eudc").unwrap().phase_groups();
+    assert_eq!(
+        groups,
+        [
+            ("ece15".to_owned(), vec![0, 1, 2, 3]),
+            ("eudc".to_owned(), vec![4])
+        ]
+    );
+    let groups = embedded("us06").unwrap().phase_groups();
+    assert_eq!(
+        groups,
+        [
+            ("city".to_owned(), vec![0]),
+            ("highway".to_owned(), vec![1])
+        ]
+    );
+    assert_eq!(
+        embedded("hwfet").unwrap().phase_groups(),
+        [("hwfet".to_owned(), vec![0])]
+    );
+}
+
+#[test]
+fn an_embedded_table_is_a_valid_file_of_a_user() {
+    let text = include_str!("../../../cycles/ece15_eudc.csv");
+    let ours = embedded("ece15_eudc").unwrap();
+    let theirs = read_csv("dir/ece15_eudc.csv", text.as_bytes()).unwrap();
+    assert_eq!(
+        (theirs.name.as_str(), theirs.title.as_str()),
+        ("ece15_eudc", "ece15_eudc.csv")
+    );
+    assert_eq!(theirs.trace_for(false), ours.trace_for(false));
+    assert_eq!(theirs.trace_for(true), theirs.trace_for(false));
+    assert_eq!(theirs.phases, ours.phases);
+}
+
+// ---------------------------------------------------------------- a user's file
+
+fn good(text: &str) -> Cycle {
+    read_csv("town.csv", text.as_bytes()).unwrap_or_else(|problems| panic!("{problems:#?}"))
+}
+
+fn bad(text: &str) -> Problems {
+    read_csv("town.csv", text.as_bytes()).unwrap_err()
+}
+
+/// The only problem: line, column, key, value, message.
+fn one(text: &str) -> (usize, usize, String, String, String) {
+    let problems = bad(text);
+    assert_eq!(problems.len(), 1, "{problems:#?}");
+    let Problem {
+        place,
+        key,
+        value,
+        message,
+        ..
+    } = problems.into_iter().next().unwrap();
+    assert_eq!(place.file, "town.csv");
+    (place.line, place.column, key, value, message)
+}
+
+#[test]
+fn all_units_of_speed_mean_the_same() {
+    let kmh = 80.467_2;
+    for (column, value) in [
+        ("speed_kmh", kmh),
+        ("speed_km_h", kmh),
+        ("speed_m_s", kmh / 3.6),
+        ("speed_mph", 50.0),
+    ] {
+        let cycle = good(&format!("time_s,{column}\n0,{value}\n10,{value}\n"));
+        assert!(
+            (cycle.trace_for(true).distance_m() - 223.52).abs() < 1e-9,
+            "{column}"
+        );
+    }
+}
+
+#[test]
+fn any_time_step_and_any_start_is_taken() {
+    let cycle = good("\u{feff}speed_m_s, time_s\r\n1,-7.5\r\n2,-7.25\r\n\r\n2,100\r\n");
+    let intervals = &cycle.trace_for(false).intervals;
+    let times: Vec<[f64; 2]> = intervals.iter().map(|i| [i.start_s, i.end_s]).collect();
+    assert_eq!(times, [[0.0, 0.25], [0.25, 107.5]]);
+    assert!((cycle.trace_for(true).distance_m() - (0.375 + 214.5)).abs() < 1e-12);
+}
+
+#[test]
+fn values_hold_from_their_row_to_the_next() {
+    let text = "time_s,speed_kmh,phase,gear,gear_note,grade_percent,engine_off,operation\n\
+                0,0,a,0,PM,0,1,x\n1,0,a,1,GC,0,0,\n2,3.6,\"b, c\",1,,-3.5,0,y\n3,3.6,b,2.0,2,35,0,\n4,0,end,0,,0,1,\n";
+    let cycle = good(text);
+    let trace = cycle.trace_for(false);
+    // the last row holds over nothing, so its phase is none
+    assert_eq!(cycle.phases, ["a", "b, c", "b"]);
+    let held: Vec<_> = trace
+        .intervals
+        .iter()
+        .map(|i| (i.phase, i.grade, i.engine_off))
+        .collect();
+    assert_eq!(
+        held,
+        [
+            (0, 0.0, true),
+            (0, 0.0, false),
+            (1, -0.035, false),
+            (2, 0.35, false)
+        ]
+    );
+    let gears = [
+        GearCommand::Neutral,
+        GearCommand::Change(1),
+        GearCommand::InGear(1),
+        GearCommand::InGear(2),
+    ];
+    for count in [2, 4, 5, 6, 7] {
+        assert_eq!(trace.gears(count), Some(&gears[..]));
+    }
+    assert_eq!(trace.gears(1), None);
+    let cycle = good("time_s,speed_kmh,grade\n0,0,0.02\n1,0,0.35\n2,0,0\n");
+    assert!((cycle.trace_for(true).intervals[0].grade - 0.02).abs() < 1e-15);
+}
+
+#[rustfmt::skip]
+const BAD_VALUES: [(&str, usize, usize, &str, &str, &str); 26] = [
+    ("time_s,speed_kmh\n0,0\n1,nan\n2,0", 3, 3, "speed_kmh", "nan", "not a number"),
+    ("time_s,speed_kmh\n0,0\n1, inf\n2,0", 3, 4, "speed_kmh", "inf", "finite"),
+    ("time_s,speed_kmh\n0,0\n1,1e999\n2,0", 3, 3, "speed_kmh", "1e999", "finite"),
+    ("time_s,speed_kmh\n0,0\n1,fast\n2,0", 3, 3, "speed_kmh", "fast", "not a number"),
+    ("time_s,speed_kmh\n0,0\n1,\n2,0", 3, 3, "speed_kmh", "", "missing"),
+    ("time_s,speed_kmh\n0,0\n1,\"2,5\"\n2,0", 3, 4, "speed_kmh", "2,5", "not a number"),
+    ("time_s,speed_kmh\n0,0\n1,-0.1\n2,0", 3, 3, "speed_kmh", "-0.1", "negative"),
+    ("time_s,speed_kmh\n0,299\n1,300.1\n2,299", 3, 3, "speed_kmh", "300.1", "too fast"),
+    ("time_s,speed_m_s\n0,83\n1,83.4\n2,83", 3, 3, "speed_m_s", "83.4", "too fast"),
+    ("time_s,speed_mph\n0,186\n1,186.5\n2,186", 3, 3, "speed_mph", "186.5", "too fast"),
+    ("speed_kmh,time_s\n0,0\n0,NaN\n0,2", 3, 3, "time_s", "NaN", "not a number"),
+    ("time_s,speed_kmh\n0,0\n1,0\n1,0", 4, 1, "time_s", "1", "does not rise"),
+    ("time_s,speed_kmh\n5,0\n4,0\n6,0", 3, 1, "time_s", "4", "does not rise"),
+    ("time_s,speed_kmh\n0,0\n3600.5,0", 3, 1, "time_s", "3600.5", "gap"),
+    ("time_s,speed_m_s\n0,0\n1,12.5", 3, 3, "speed_m_s", "12.5", "jumps"),
+    ("time_s,speed_kmh\n0,20\n\n0.1,0", 4, 5, "speed_kmh", "0", "jumps"),
+    ("time_s,speed_kmh,gear\n0,0,11\n1,0,0", 2, 5, "gear", "11", "out of range"),
+    ("time_s,speed_kmh,gear_5mt\n0,0,6\n1,0,0", 2, 5, "gear_5mt", "6", "out of range"),
+    ("time_s,speed_kmh,gear\n0,0,1.5\n1,0,0", 2, 5, "gear", "1.5", "not a whole number"),
+    ("time_s,speed_kmh,gear,gear_note\n0,0,1,R\n1,0,0,", 2, 7, "gear_note", "R", "not known"),
+    ("time_s,speed_kmh,gear_5mt,gear_note\n0,0,1,K6\n1,0,0,", 2, 7, "gear_note", "K6", "not known"),
+    ("time_s,speed_kmh,grade_percent\n0,0,-35.1\n1,0,0", 2, 5, "grade_percent", "-35.1", "out of range"),
+    ("time_s,speed_kmh,grade\n0,0,3\n1,0,0", 2, 5, "grade", "3", "out of range"),
+    ("time_s,speed_kmh,engine_off\n0,0,yes\n1,0,0", 2, 5, "engine_off", "yes", "not a number"),
+    ("time_s,speed_kmh,engine_off\n0,2,1\n1,0,0", 2, 5, "engine_off", "1", "moves"),
+    ("time_s,speed_kmh,engine_off\n0,0,1\n1,2,0", 3, 3, "speed_kmh", "2", "starts with its engine off"),
+];
+
+#[test]
+fn each_bad_value_is_named_with_its_place() {
+    for (text, line, column, key, value, message) in BAD_VALUES {
+        let found = one(text);
+        assert_eq!(
+            (found.0, found.1, found.2.as_str(), found.3.as_str()),
+            (line, column, key, value),
+            "{text}"
+        );
+        assert!(found.4.contains(message), "{text}: {}", found.4);
+    }
+}
+
+#[test]
+fn files_that_are_no_table_are_named() {
+    let cases: [(&[u8], &str); 13] = [
+        (b"", "empty"),
+        (b"\xef\xbb\xbf\r\n \n", "empty"),
+        (b"time_s,speed_kmh\n0,0\0\n", "zero byte in line 2"),
+        (b"time_s,speed_kmh\n0,\xff\n", "not UTF-8 text: line 2"),
+        (b"\xff\xfet\0", "UTF-16"),
+        (
+            b"time_s;speed_kmh\n0;0,5\n1;1,5\n",
+            "this file uses ; - save it with commas",
+        ),
+        (b"time_s,speed_kmh\n", "no rows"),
+        (b"time_s,speed_kmh\n0,0\n", "one row only"),
+        (b"0,0\n1,0\n", "no column names"),
+        (b"speed_kmh\n0\n1\n", "time_s is missing"),
+        (
+            b"time_s\n0\n1\n",
+            "speed_kmh or speed_km_h or speed_m_s or speed_mph is missing",
+        ),
+        (
+            b"time_s,speed_kmh,speed_m_s\n0,0,0\n1,0,0\n",
+            "speed_m_s and speed_kmh say the same thing",
+        ),
+        (
+            b"time_s,speed_kmh,time_s\n0,0,0\n1,0,0\n",
+            "duplicate column",
+        ),
+    ];
+    for (bytes, message) in cases {
+        let problems = read_csv("town.csv", bytes).unwrap_err();
+        assert_eq!(problems.len(), 1, "{problems:#?}");
+        assert!(problems[0].message.contains(message), "{problems:#?}");
+    }
+}
+
+#[test]
+fn all_problems_come_at_once_in_the_order_of_the_lines() {
+    let text = "time_s,speed_kmh,gradient,phase\n0,0,0,a\n1,x,0,a\n2,0,0\n3,0,0,a\n2,0,0,\n4,999,0,a\n5,0,0,a,b\n6,0,0,\"a\n";
+    let found: Vec<(usize, String)> = bad(text)
+        .into_iter()
+        .map(|p| (p.place.line, p.key))
+        .collect();
+    let expected = [
+        (1, "gradient"),
+        (3, "speed_kmh"),
+        (4, ""),
+        (6, "phase"),
+        (6, "time_s"),
+        (7, "speed_kmh"),
+        (8, ""),
+        (9, ""),
+    ];
+    assert_eq!(found, expected.map(|(line, key)| (line, key.to_owned())));
+}
+
+#[test]
+fn hints_speak_of_the_likely_cause() {
+    let hint = |text: &str| bad(text).remove(0).hint;
+    assert!(hint("time_s,speed_m_s\n0,0\n1,50\n").contains("is the column in km/h?"));
+    assert!(hint("time_s,speed_kmh\n0,0\n1,50\n").contains("is the column in km/h?"));
+    assert!(
+        bad("time_s,speed\n0,0\n1,0\n")
+            .remove(0)
+            .allowed
+            .contains("speed_kmh")
+    );
+    assert!(hint("time_s,speed_kmh\n0,5,1,5\n1,0\n").contains("decimal commas"));
+    assert!(hint("time_s,speed_kmh\n0,0\n4000,0\n").contains("milliseconds"));
+    assert!(hint("time_s,speed_kmh,grade\n0,0,3\n1,0,0\n").contains("grade_percent"));
+}
+
+#[test]
+fn after_fifty_problems_the_rest_is_counted() {
+    let mut text = "time_s,speed_kmh\n".to_owned();
+    for time in 0..500 {
+        writeln!(text, "{time},-1").unwrap();
+    }
+    let problems = bad(&text);
+    assert_eq!(problems.len(), 51);
+    assert_eq!(problems[50].message, "450 more problems are not shown");
+}
+
+#[test]
+fn limits_of_length_are_kept() {
+    let long = |seconds: u64| {
+        (0..=seconds / 1000).fold("time_s,speed_kmh\n".to_owned(), |text, row| {
+            text + &format!("{},0\n", row * 1000)
+        })
+    };
+    assert!((good(&long(1_000_000)).trace_for(true).duration_s() - 1e6).abs() < 1e-6);
+    assert!(one(&long(1_002_000)).4.contains("too long"));
+    let rows = |count: usize| {
+        "time_s,speed_kmh\n".to_owned()
+            + &(0..count)
+                .map(|row| format!("{},0\n", row as f64 / 4.0))
+                .collect::<String>()
+    };
+    assert_eq!(
+        good(&rows(2_000_000)).trace_for(true).intervals.len(),
+        1_999_999
+    );
+    let found = one(&rows(2_000_001));
+    assert!(found.0 == 2_000_002 && found.4.contains("too many rows"));
+}
+
+#[test]
+fn times_that_fall_together_after_the_shift_do_not_rise() {
+    assert!(
+        one("time_s,speed_kmh\n-1000,0\n1e-20,0\n2e-20,0\n")
+            .4
+            .contains("does not rise")
+    );
+    assert!(!bad("time_s,speed_kmh\n-1.7e308,0\n1.7e308,0\n").is_empty());
+}
+
+// ---------------------------------------------------------------- any bytes at all
+
+fn check(cycle: &Cycle) {
+    for trace in [cycle.trace_for(false), cycle.trace_for(true)] {
+        assert!(!trace.intervals.is_empty());
+        let mut end_s = 0.0;
+        for step in trace.steps(1.0).take(10_000) {
+            assert!(step.dt_s > 0.0 && step.dt_s < 1.0 + 1e-6 && step.time_s > end_s);
+            assert!(
+                (0.0..=84.0).contains(&step.start_speed_m_s)
+                    && (0.0..=84.0).contains(&step.end_speed_m_s)
+            );
+            assert!(step.grade.abs() <= 0.35 + 1e-12 && step.interval < trace.intervals.len());
+            end_s = step.time_s;
+        }
+        for count in 0..12 {
+            assert!(
+                trace
+                    .gears(count)
+                    .is_none_or(|gears| gears.len() == trace.intervals.len())
+            );
+        }
+    }
+    assert!(
+        cycle
+            .phase_groups()
+            .iter()
+            .flat_map(|group| &group.1)
+            .all(|&p| usize::from(p) < cycle.phases.len().max(1))
+    );
+}
+
+fn check_bytes(bytes: &[u8]) {
+    match read_csv("any.csv", bytes) {
+        Ok(cycle) => check(&cycle),
+        Err(problems) => {
+            assert!((1..=51).contains(&problems.len()));
+            assert!(
+                problems
+                    .iter()
+                    .all(|problem| !problem.message.is_empty() && problem.place.file == "any.csv")
+            );
+        }
+    }
+}
+
+fn word() -> impl Strategy<Value = String> {
+    let words = [
+        "0",
+        "1",
+        "2",
+        "2.5",
+        "-1",
+        "1e300",
+        "-1e308",
+        "1e-300",
+        "nan",
+        "inf",
+        "",
+        " ",
+        "\"",
+        "\"\"",
+        "\"a,b\"",
+        "é",
+        "PM",
+        "K1",
+        "K9",
+        "GC",
+        "\r",
+        ";",
+        "\u{feff}",
+        "time_s",
+        "speed_kmh",
+        "speed_m_s",
+        "phase",
+        "gear",
+        "gear_note",
+        "gear_6mt",
+        "grade",
+        "engine_off",
+    ];
+    prop::sample::select(words.to_vec()).prop_map(str::to_owned)
+}
+
+fn table_text() -> impl Strategy<Value = String> {
+    let names = [
+        "time_s",
+        "speed_m_s",
+        "phase",
+        "gear",
+        "gear_5mt",
+        "gear_note",
+        "grade",
+        "engine_off",
+    ];
+    let header = prop::sample::subsequence(names.to_vec(), 1..=names.len()).prop_shuffle();
+    let row = prop::collection::vec(word(), 0..9);
+    (header, prop::collection::vec(row, 0..12), any::<bool>()).prop_map(|(header, rows, crlf)| {
+        let end = if crlf { "\r\n" } else { "\n" };
+        rows.into_iter().fold(header.join(",") + end, |text, row| {
+            text + &row.join(",") + end
+        })
+    })
+}
+
+/// Mostly sensible tables, so that good cycles are reached as well.
+fn sensible() -> impl Strategy<Value = String> {
+    let row = (
+        0.001..30.0_f64,
+        0.0..3.0_f64,
+        0..4_u8,
+        prop::sample::select(vec!["", "PM", "K2", "GC"]),
+        -0.4..0.36_f64,
+    );
+    prop::collection::vec(row, 1..20).prop_map(|rows| {
+        let mut time_s = -50.0;
+        let mut text = "time_s,speed_m_s,gear,gear_note,grade,phase\n".to_owned();
+        for (dt_s, speed, gear, note, grade) in rows {
+            time_s += dt_s;
+            writeln!(
+                text,
+                "{time_s},{speed},{gear},{note},{},p{gear}",
+                f64::max(grade, -0.35)
+            )
+            .unwrap();
+        }
+        text
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(400) })]
+
+    #[test]
+    fn read_csv_never_panics_on_bytes(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        check_bytes(&bytes);
+        // past the header and past the check of the encoding as well
+        let text = format!("time_s,speed_kmh\n{}", String::from_utf8_lossy(&bytes));
+        check_bytes(text.as_bytes());
+    }
+
+    #[test]
+    fn read_csv_never_panics_on_nearly_tables(text in table_text()) {
+        check_bytes(text.as_bytes());
+    }
+
+    #[test]
+    fn read_csv_never_panics_on_words(words in prop::collection::vec(word(), 0..60), separators in prop::collection::vec(0..3_usize, 60)) {
+        let text: String = words.iter().zip(separators).map(|(word, s)| word.clone() + [",", "\n", "\r\n"][s]).collect();
+        check_bytes(text.as_bytes());
+    }
+
+    #[test]
+    fn sensible_tables_give_sound_traces(text in sensible()) {
+        check_bytes(text.as_bytes());
+    }
+
+    #[test]
+    fn steps_add_up_to_the_trace(text in sensible(), max_dt_s in 0.01..40.0_f64) {
+        if let Ok(cycle) = read_csv("any.csv", text.as_bytes()) {
+            let trace = cycle.trace_for(false);
+            let steps: Vec<_> = trace.steps(max_dt_s).collect();
+            prop_assert_eq!(steps.len(), trace.step_count(max_dt_s));
+            let distance: f64 = steps.iter().map(|s| 0.5 * (s.start_speed_m_s + s.end_speed_m_s) * s.dt_s).sum();
+            prop_assert!((distance - trace.distance_m()).abs() < 1e-9 * (1.0 + distance));
+            prop_assert!(steps.windows(2).all(|p| (p[1].start_speed_m_s - p[0].end_speed_m_s).abs() < 1e-12));
+            prop_assert!((steps.last().unwrap().time_s - trace.duration_s()).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! Ratio control RC-1 to RC-8, clamp map PC-1 and PC-2, launch clutch LC-1 to LC-5.
+
+use super::same;
+use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
+use cvtcycle_model::transmission::cvt::controller::{
+    ClampSignals, MapLaw, RatioControl, RatioDemand,
+};
+
+fn control() -> RatioControl {
+    RatioControl {
+        low: 2.4,
+        high: 0.41,
+        gentle_rad_s: 180.0,
+        gentle_share: 0.15,
+        rise_rad_s: 420.0,
+        overrun_rad_s: 150.0,
+        highest_rad_s: 600.0,
+        route_efficiency: 0.85,
+        up_per_s: 0.35,
+        down_per_s: 0.9,
+        rate_speed_rad_s: 100.0,
+    }
+}
+
+fn demand(power_share: f64, secondary_rad_s: f64, before: f64) -> RatioDemand {
+    RatioDemand {
+        secondary_rad_s,
+        power_w: power_share * 80e3,
+        rated_w: 80e3,
+        full_load_rad_s: 0.0,
+        ratio_before: before,
+        flow_down_per_s: 9.0,
+        flow_up_per_s: 9.0,
+        coupled: true,
+        dt_s: 0.5,
+    }
+}
+
+/// RC-1, RC-2, RC-3, RC-8.
+#[test]
+fn val_target_by_hand() {
+    let c = control();
+    for (share, want) in [
+        (-0.1, 150.0),
+        (0.0, 150.0),
+        (0.004, 162.0),
+        (0.01, 180.0),
+        (0.15, 180.0),
+        (0.45, 180.0 + 420.0 * 0.3),
+        (1.4, 600.0),
+    ] {
+        same(c.target_rad_s(&demand(share, 100.0, 1.0)), want);
+    }
+    let route = |share: f64, full_load_rad_s: f64| {
+        c.target_rad_s(&RatioDemand {
+            full_load_rad_s,
+            ..demand(share, 100.0, 1.0)
+        })
+    };
+    same(route(0.2, 350.0), 350.0);
+    same(route(0.2, 190.0), 201.0);
+    same(route(0.2, 800.0), 600.0);
+    same(route(-0.2, 350.0), 150.0);
+    same(route(0.0, 350.0), 150.0);
+}
+
+/// RC-4, RC-5, RC-6: rate towards both ends, by pace, by flow and free, with the flag where flow holds.
+#[test]
+fn val_shift_by_hand() {
+    let c = control();
+    let step = |d: RatioDemand| c.step(&d);
+    let check = |d: RatioDemand, change: f64, held: bool| {
+        let got = step(d);
+        same(got.1, change);
+        same(got.0, d.ratio_before * change.exp());
+        assert_eq!(got.2, held, "{d:?}");
+    };
+    // Towards high: target 180/300 = 0.6.
+    check(demand(0.1, 300.0, 1.0), -0.175, false);
+    check(demand(0.1, 300.0, 0.65), (0.6f64 / 0.65).ln(), false);
+    check(
+        RatioDemand {
+            flow_up_per_s: 0.2,
+            ..demand(0.1, 300.0, 1.0)
+        },
+        -0.1,
+        true,
+    );
+    check(
+        RatioDemand {
+            flow_up_per_s: 0.2,
+            ..demand(0.1, 300.0, 0.61)
+        },
+        (0.6f64 / 0.61).ln(),
+        false,
+    );
+    check(
+        RatioDemand {
+            flow_down_per_s: 0.0,
+            ..demand(0.1, 300.0, 1.0)
+        },
+        -0.175,
+        false,
+    );
+    // Towards low: target 180/100 = 1.8.
+    check(demand(0.1, 100.0, 1.0), 0.45, false);
+    check(demand(0.1, 100.0, 1.7), (1.8f64 / 1.7).ln(), false);
+    check(
+        RatioDemand {
+            flow_down_per_s: 0.3,
+            ..demand(0.1, 100.0, 1.0)
+        },
+        0.15,
+        true,
+    );
+    check(
+        RatioDemand {
+            flow_down_per_s: 0.3,
+            ..demand(0.1, 100.0, 1.75)
+        },
+        (1.8f64 / 1.75).ln(),
+        false,
+    );
+    check(
+        RatioDemand {
+            flow_up_per_s: 0.0,
+            ..demand(0.1, 100.0, 1.0)
+        },
+        0.45,
+        false,
+    );
+    // Flow above the rate is not what holds.
+    check(
+        RatioDemand {
+            flow_down_per_s: 0.95,
+            ..demand(0.1, 100.0, 1.0)
+        },
+        0.45,
+        false,
+    );
+    check(
+        RatioDemand {
+            flow_up_per_s: 0.36,
+            ..demand(0.1, 300.0, 1.0)
+        },
+        -0.175,
+        false,
+    );
+    // Slow primary: 0.8 of 50 rad/s are 40 % of the speed of the full rates.
+    check(demand(0.1, 50.0, 0.8), 0.9 * 0.4 * 0.5, false);
+    // Towards high with a slow primary: 300 of 400 rad/s; and flow that holds a change between what it gives in a step and in a second.
+    let slow = RatioControl {
+        rate_speed_rad_s: 400.0,
+        ..c
+    };
+    same(slow.step(&demand(0.1, 300.0, 1.0)).1, -0.35 * 0.75 * 0.5);
+    check(
+        RatioDemand {
+            flow_up_per_s: 0.2,
+            ..demand(0.1, 300.0, 0.75)
+        },
+        -0.1,
+        true,
+    );
+    check(
+        RatioDemand {
+            flow_down_per_s: 0.2,
+            ..demand(0.1, 100.0, 1.44)
+        },
+        0.1,
+        true,
+    );
+    // The ends of the ratio.
+    let (low, _, _) = step(demand(0.1, 20.0, 2.39));
+    same(low, 2.4);
+    let (high, _, _) = step(demand(0.1, 900.0, 0.42));
+    same(high, 0.41);
+    // Not coupled: no up-shift, down-shift allowed.
+    assert_eq!(
+        step(RatioDemand {
+            coupled: false,
+            ..demand(0.1, 300.0, 1.0)
+        }),
+        (1.0, 0.0, false)
+    );
+    check(
+        RatioDemand {
+            coupled: false,
+            ..demand(0.1, 100.0, 1.0)
+        },
+        0.45,
+        false,
+    );
+    // At rest, and where nothing is wanted.
+    assert_eq!(step(demand(0.1, 0.0, 1.3)), (1.3, 0.0, false));
+    assert_eq!(step(demand(0.1, 100.0, 1.8)), (1.8, 0.0, false));
+    // An unchanged ratio outside the limits comes back within them.
+    same(step(demand(0.1, 300.0, 3.0)).0, 2.4);
+}
+
+/// PC-1 and PC-2 in each piece of f(n).
+#[test]
+fn val_clamp_map_by_hand() {
+    let law = MapLaw {
+        base_pa: 20e5,
+        throttle_pa: 14e5,
+        cold_per_k: 0.002,
+        slow_factor: 0.6,
+        slow_rad_s: 100.0,
+        full_rad_s: 220.0,
+        fall_s: 4e-4,
+    };
+    let f = |speed: f64| {
+        let rise = 0.6 + 0.4 * ((speed - 100.0) / 120.0).clamp(0.0, 1.0);
+        if speed > 220.0 {
+            (rise - 4e-4 * (speed - 220.0)).max(0.6)
+        } else {
+            rise
+        }
+    };
+    for speed in [
+        50.0, 100.0, 160.0, 220.0, 221.0, 500.0, 1219.0, 1221.0, 2000.0,
+    ] {
+        for (throttle, degc, radius) in [(0.0, 80.0, 1.0), (0.3, 20.0, 0.4), (1.0, 110.0, 0.7)] {
+            let s = ClampSignals {
+                throttle,
+                engine_rad_s: speed,
+                oil_k: degc + 273.15,
+                radius_factor: radius,
+            };
+            same(
+                law.pressure_pa(&s),
+                f(speed) * (20e5 + 14e5 * throttle) * radius * (1.0 + 0.002 * (80.0 - degc)),
+            );
+        }
+    }
+    // A law whose slow factor is above 1 holds nothing back below the full speed.
+    let odd = MapLaw {
+        slow_factor: 1.5,
+        ..law
+    };
+    let s = ClampSignals {
+        throttle: 0.0,
+        engine_rad_s: 160.0,
+        oil_k: 353.15,
+        radius_factor: 1.0,
+    };
+    same(odd.pressure_pa(&s), 1.25 * 20e5);
+}
+
+/// LC-1, LC-2, LC-3, LC-5 in each regime.
+#[test]
+fn val_launch_clutch_by_hand() {
+    let c = FrictionClutch {
+        engage_rad_s: 105.0,
+        gain_nm_s2: 0.002,
+        creep_nm: 5.0,
+        release_rad_s: 110.0,
+    };
+    let idle = 90.0;
+    let launch = |nm: f64| {
+        let above = nm - 5.0;
+        idle + 15.0 * (1.0 - (-above / 5.0f64).exp()) + (above / 0.002 + 20.944f64.powi(2)).sqrt()
+            - 20.944
+    };
+    let speed = |nm: f64, input: f64, coupled: bool| {
+        c.engine_rad_s(&CouplingLoad::new(nm, input, idle, coupled))
+    };
+    for nm in [-20.0, 0.0, 5.0] {
+        same(speed(nm, 20.0, false), idle);
+    }
+    for nm in [5.5, 20.0, 90.0] {
+        same(speed(nm, 20.0, false), launch(nm));
+    }
+    same(speed(20.0, 300.0, false), 300.0);
+    same(speed(20.0, 300.0, true), 300.0);
+    // Coupled: held from 1.2 idle on, free at idle, between them linear.
+    same(speed(20.0, 108.0, true), 108.0);
+    same(speed(20.0, 99.0, true), 99.0 + 0.5 * (launch(20.0) - 99.0));
+    same(speed(20.0, 90.0, true), launch(20.0));
+    same(speed(20.0, 99.0, false), launch(20.0));
+    same(c.locked_from_rad_s(idle), 108.0);
+    assert!((108.0 >= c.locked_from_rad_s(idle)) && 107.9 < c.locked_from_rad_s(idle));
+    // An engaging speed below idle lifts nothing.
+    let low = FrictionClutch {
+        engage_rad_s: 60.0,
+        ..c
+    };
+    same(
+        low.engine_rad_s(&CouplingLoad::new(20.0, 0.0, idle, false)),
+        idle + (15.0 / 0.002 + 20.944f64.powi(2)).sqrt() - 20.944,
+    );
+    for (input, nm) in [(0.0, 5.0), (45.0, 2.5), (90.0, 0.0), (200.0, 0.0)] {
+        same(c.creep_nm(input, idle), nm);
+    }
+    // Release at 110: from 99 (1.1 idle) to 128; released earlier than that: from 99 to 117.
+    for (input, share) in [
+        (80.0, 0.0),
+        (99.0, 0.0),
+        (113.5, 0.5),
+        (128.0, 1.0),
+        (300.0, 1.0),
+    ] {
+        same(c.overrun_share(input, idle), share);
+    }
+    let early = FrictionClutch {
+        release_rad_s: 50.0,
+        ..c
+    };
+    same(early.overrun_share(108.0, idle), 0.5);
+}

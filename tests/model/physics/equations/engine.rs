@@ -1,0 +1,215 @@
+//! Engine: EN-1 to EN-7.
+
+use super::same;
+use crate::common::{ZERO, car};
+use cvtcycle_config::setup::Setup;
+use cvtcycle_model::engine::{Engine, EngineAtTemperature};
+use cvtcycle_model::prime_mover::PrimeMover;
+use std::f64::consts::PI;
+
+fn engine() -> (Setup, Engine) {
+    let setup = car("rover_216_cvt", &[]);
+    let engine = Engine {
+        idle_cold_rad_s: 130.0,
+        idle_hot_rad_s: 85.0,
+        enrichment: 0.3,
+        viscous_share: 0.4,
+        viscous_exponent: 0.35,
+        electrical_w: 250.0,
+        accessory_nm: 0.7,
+        overrun_drag: 1.3,
+        exhaust_idle: 0.42,
+        exhaust_fast: 0.31,
+        friction_to_oil: 0.37,
+        ..setup.engine().clone()
+    };
+    (setup, engine)
+}
+
+fn at<'a>(
+    setup: &Setup,
+    e: &'a Engine,
+    coolant_degc: f64,
+    oil_degc: f64,
+) -> EngineAtTemperature<'a> {
+    e.at(coolant_degc + ZERO, oil_degc + ZERO, setup.oils().1, 0.9)
+}
+
+/// EN-1: linear from 60 degC down to -10 degC, held outside.
+#[test]
+fn val_idle_speed_by_hand() {
+    let (setup, e) = engine();
+    for (degc, share) in [
+        (90.0, 0.0),
+        (60.0, 0.0),
+        (25.0, 0.5),
+        (-3.0, 0.9),
+        (-10.0, 1.0),
+        (-30.0, 1.0),
+    ] {
+        same(at(&setup, &e, degc, 20.0).idle_rad_s, 85.0 + 45.0 * share);
+    }
+}
+
+/// EN-3: nothing from 60 degC on, e at 0 degC, more below.
+#[test]
+fn val_enrichment_by_hand() {
+    let (setup, e) = engine();
+    for (degc, factor) in [
+        (90.0, 1.0),
+        (60.0, 1.0),
+        (30.0, 1.15),
+        (0.0, 1.3),
+        (-30.0, 1.45),
+    ] {
+        same(at(&setup, &e, degc, 20.0).enrichment, factor);
+    }
+}
+
+/// EN-2: the published law with the reference oil, and its second factor with another one.
+#[test]
+fn val_cold_friction_by_hand() {
+    let (setup, e) = engine();
+    let own = setup.oils().1.clone();
+    let other = setup.oils().0.clone();
+    let reference = Engine {
+        reference_oil: own.viscosity.clone(),
+        ..e.clone()
+    };
+    for (coolant, oil) in [(80.0, 60.0), (-10.0, -14.0), (20.0, 40.0)] {
+        let theta = (0.5 * (coolant + oil) + ZERO) / e.hot_k;
+        let plain = if theta < 1.0 {
+            theta.powf(-e.friction_exponent)
+        } else {
+            1.0
+        };
+        same(
+            reference
+                .at(coolant + ZERO, oil + ZERO, &own, 1.0)
+                .friction_factor,
+            plain,
+        );
+        let ratio = other.kinematic_m2_s(oil + ZERO) / own.kinematic_m2_s(oil + ZERO);
+        let second = 1.0 + 0.4 * (ratio.powf(0.35) - 1.0);
+        same(
+            reference
+                .at(coolant + ZERO, oil + ZERO, &other, 1.0)
+                .friction_factor,
+            plain * second,
+        );
+    }
+    let hot = e.hot_k - ZERO;
+    same(
+        reference
+            .at(hot + 20.0 + ZERO, hot + ZERO, &own, 1.0)
+            .friction_factor,
+        1.0,
+    );
+}
+
+/// EN-4, EN-5, EN-7 and the relation of torque, pressure and piston speed of a four-stroke engine.
+#[test]
+fn val_torques_by_hand() {
+    let (setup, e) = engine();
+    let now = at(&setup, &e, 50.0, 40.0);
+    same(e.torque_nm(8e5), 8e5 * e.displacement_m3 / (2.0 * 2.0 * PI));
+    same(e.mep_pa(e.torque_nm(3.3e5)), 3.3e5);
+    same(e.piston_m_s(200.0), 2.0 * e.stroke_m * 200.0 / (2.0 * PI));
+    for (speed, nm) in [
+        (200.0, 250.0 / 200.0 + 0.7),
+        (43.0, 250.0 / 43.0 + 0.7),
+        (42.5, 250.0 / 42.5 + 0.7),
+        (20.0, 250.0 / 42.5 + 0.7),
+        (0.0, 0.0),
+    ] {
+        same(now.accessories_nm(speed), nm);
+    }
+    same(now.full_load_nm(300.0), 0.9 * e.full_load.at(300.0));
+    let friction = e.fuel.hot_friction_pa(e.piston_m_s(300.0)) * now.friction_factor;
+    same(now.friction_pa(300.0), friction);
+    same(
+        now.drag_nm(300.0),
+        1.3 * friction * e.displacement_m3 / (4.0 * PI),
+    );
+}
+
+/// EN-6 with the heat of EN-3 and EN-7: where every watt of fuel goes, fired and with fuel cut.
+#[test]
+fn val_heat_by_hand() {
+    let (setup, e) = engine();
+    let now = at(&setup, &e, 30.0, 20.0);
+    for (speed, nm) in [
+        (60.0, 5.0),
+        (85.0, 20.0),
+        (250.0, 60.0),
+        (500.0, 90.0),
+        (900.0, 10.0),
+    ] {
+        let watts = e.displacement_m3 * speed / (4.0 * PI);
+        let brake = nm * speed / watts;
+        let friction = now.friction_pa(speed);
+        let p = e.fuel.fuel_mep(e.piston_m_s(speed), speed, brake, friction);
+        let share: f64 = (speed - 85.0) / (e.highest_rad_s - 85.0);
+        let exhaust = 0.42 - 0.11 * share.clamp(0.0, 1.0);
+        let waste = (p.fuel_pa - p.indicated_pa) * watts;
+        let burn = now.burn(speed, nm);
+        same(burn.fuel_w, 1.15 * p.fuel_pa * watts);
+        same(burn.fuel_kg_s, burn.fuel_w / e.heating_value_j_kg);
+        same(burn.to_oil_w, 0.37 * friction * watts);
+        same(
+            burn.to_coolant_w,
+            (1.0 - exhaust) * waste + 0.63 * friction * watts,
+        );
+        same(burn.exhaust_w, exhaust * waste + 0.15 * p.fuel_pa * watts);
+        assert!(!burn.cut && burn.outside == p.outside);
+    }
+    // Fuel cut: the drag itself becomes heat; more drag than the closed throttle explains is flagged, with the margin of the flag.
+    let drag = now.drag_nm(250.0);
+    let edge = drag * (1.0 + 1e-4) + 1e-3;
+    for (nm, outside) in [
+        (0.9 * drag, false),
+        (edge - 1e-6, false),
+        (edge + 1e-6, true),
+    ] {
+        let burn = now.burn(250.0, -nm);
+        assert!(
+            burn.cut && burn.fuel_w == 0.0 && burn.exhaust_w == 0.0 && burn.outside == outside,
+            "{nm}: {burn:?}"
+        );
+        same(burn.to_oil_w, 0.37 * nm * 250.0);
+        same(burn.to_coolant_w, 0.63 * nm * 250.0);
+    }
+    let rest = now.burn(0.0, 10.0);
+    assert!(rest.fuel_w == 0.0 && rest.to_coolant_w == 0.0 && !rest.cut);
+}
+
+/// The grid of [`Engine::speed_for_power`]: 400 parts from idle to the highest speed; the route ends at the peak of the grid.
+#[test]
+fn val_route_by_hand() {
+    let (_, e) = engine();
+    let route = e.speed_for_power();
+    let grid: Vec<(f64, f64)> = (0..=400)
+        .map(|i| e.idle_hot_rad_s + (e.highest_rad_s - e.idle_hot_rad_s) * f64::from(i) / 400.0)
+        .map(|w| (w * e.full_load.at(w), w))
+        .collect();
+    let best = grid.iter().fold(grid[0], |best, p| {
+        if p.0 > best.0 * (1.0 + 1e-9) {
+            *p
+        } else {
+            best
+        }
+    });
+    same(e.peak_power_rad_s(), best.1);
+    same(route.at(best.0), best.1);
+    same(route.at(2.0 * best.0), best.1);
+    same(route.at(0.0), e.idle_hot_rad_s);
+    for p in grid.iter().step_by(37).filter(|p| p.1 <= best.1) {
+        assert!(
+            route.at(p.0) <= p.1 * (1.0 + 1e-12),
+            "a lower speed gives {} W",
+            p.0
+        );
+    }
+    let first = grid.iter().find(|p| p.0 > 20e3).unwrap();
+    same(route.at(first.0), first.1);
+}

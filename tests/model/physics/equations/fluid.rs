@@ -1,0 +1,174 @@
+//! Lubricant: LU-1 to LU-5.
+
+use super::same;
+use crate::common::{ZERO, car};
+use cvtcycle_model::fluid::{Friction, Lubricant, Viscosity};
+
+fn friction() -> Friction {
+    Friction {
+        band: 0.12,
+        band_rise_per_k: 0.004,
+        band_floor: 0.8,
+        band_ceiling: 1.25,
+        segment: 0.125,
+        flank: 0.13,
+        lift_off: true,
+        lift_reduction: 0.6,
+        lift_n_m: 0.02,
+        lift_exponent: 1.4,
+        film_thickness_m: 5e-7,
+    }
+}
+
+/// LU-1 through three points: its own form between each pair, the outer pieces beyond.
+#[test]
+fn val_walther_by_hand() {
+    let points = [(263.15, 600e-6), (313.15, 36e-6), (373.15, 7.2e-6)];
+    let v = Viscosity::new(&points).unwrap();
+    let w = |nu: f64| (nu * 1e6 + 0.7).ln().ln();
+    for (t, i) in [
+        (233.15, 0),
+        (255.0, 0),
+        (290.0, 0),
+        (313.15, 0),
+        (314.0, 1),
+        (350.0, 1),
+        (373.15, 1),
+        (420.0, 1),
+    ] {
+        let (a, b) = (points[i], points[i + 1]);
+        let slope = (w(b.1) - w(a.1)) / (b.0 / a.0).ln();
+        let line = w(a.1) + slope * (t / a.0).ln();
+        same(v.kinematic_m2_s(t), (line.exp().exp() - 0.7) * 1e-6);
+    }
+}
+
+/// What the viscosity's points must be, on both sides of each bound.
+#[test]
+fn refuses_what_is_no_oil() {
+    let ok = |points: &[(f64, f64)]| Viscosity::new(points).is_ok();
+    assert!(ok(&[(313.15, 36e-6), (373.15, 7.2e-6)]));
+    assert!(!ok(&[(313.15, 36e-6)]) && !ok(&[]));
+    assert!(!ok(&[(0.0, 36e-6), (373.15, 7.2e-6)]) && !ok(&[(-5.0, 36e-6), (373.15, 7.2e-6)]));
+    assert!(!ok(&[(313.15, 36e-6), (313.15, 7.2e-6)]) && !ok(&[(313.15, 36e-6), (373.15, 36e-6)]));
+    assert!(
+        ok(&[(313.15, 0.7e-6), (373.15, 0.51e-6)])
+            && !ok(&[(313.15, 0.7e-6), (373.15, 0.5e-6)])
+            && !ok(&[(313.15, 0.7e-6), (373.15, 0.4e-6)])
+    );
+    assert!(
+        !ok(&[(f64::NAN, 36e-6), (373.15, 7.2e-6)]) && !ok(&[(313.15, f64::NAN), (373.15, 7.2e-6)])
+    );
+    // Slope 5 of LU-1 is the steepest oil.
+    let w0 = (36.7f64).ln().ln();
+    for (slope, good) in [(4.99, true), (5.01, false)] {
+        let nu = ((w0 - slope * (373.15f64 / 313.15).ln()).exp().exp() - 0.7) * 1e-6;
+        assert_eq!(ok(&[(313.15, 36e-6), (373.15, nu)]), good, "{slope}");
+    }
+}
+
+/// LU-2 and LU-3.
+#[test]
+fn val_density_and_heat_by_hand() {
+    let setup = car("rover_216_cvt", &[]);
+    let oil = Lubricant {
+        density15_kg_m3: 860.0,
+        ..setup.oils().0.clone()
+    };
+    for degc in [-20.0, 15.0, 90.0] {
+        same(
+            oil.density_kg_m3(degc + ZERO),
+            860.0 * (1.0 - 0.00068 * (degc - 15.0)),
+        );
+        same(
+            oil.dynamic_pa_s(degc + ZERO),
+            oil.kinematic_m2_s(degc + ZERO) * 860.0 * (1.0 - 0.00068 * (degc - 15.0)),
+        );
+        same(
+            oil.heat_capacity_j_kgk(degc + ZERO),
+            1000.0 * (1.685 + 0.0034 * degc) / 0.86f64.sqrt(),
+        );
+    }
+    same(
+        oil.density_kg_m3(1040.0 + ZERO),
+        860.0 * (1.0 - 0.00068 * 1025.0),
+    );
+    same(oil.density_kg_m3(3000.0 + ZERO), 860.0 * 0.3);
+}
+
+/// LU-4 and LU-5: floor, slope and ceiling; no film, some, all.
+#[test]
+fn val_band_friction_by_hand() {
+    let f = friction();
+    for (degc, warm) in [
+        (20.0, 0.8),
+        (35.0, 0.8),
+        (60.0, 0.9),
+        (85.0, 1.0),
+        (135.0, 1.2),
+        (150.0, 1.25),
+    ] {
+        for (eta, sliding) in [(0.01, 0.0), (0.01, 0.7), (0.02, 1.0), (0.5, 2.0)] {
+            let z = (eta * sliding / 0.02f64).powf(1.4);
+            let share = z / (1.0 + z);
+            let got = f.band(degc + ZERO, eta, sliding);
+            same(got.film_share, share);
+            same(got.mu, 0.12 * warm * (1.0 - 0.6 * share));
+            same(f.film_load(eta, sliding), eta * sliding / 0.02);
+        }
+    }
+    let dry = Friction {
+        lift_off: false,
+        ..f
+    };
+    assert!(dry.film_load(0.5, 2.0) == 0.0 && dry.band(358.15, 0.5, 2.0).film_share == 0.0);
+    same(dry.band(358.15, 0.5, 2.0).mu, 0.12);
+    same(f.band_on_film(358.15, f64::INFINITY).mu, 0.12 * 0.4);
+}
+
+/// Ramps in both orders of their ends, and the step that equal ends make.
+#[test]
+fn val_ramps_by_hand() {
+    use cvtcycle_model::math::{held, ramp, smooth_ramp};
+    for (x, from, to, want) in [
+        (0.25, 0.0, 1.0, 0.25),
+        (0.25, 1.0, 0.0, 0.75),
+        (3.0, 1.0, 0.0, 0.0),
+        (-3.0, 1.0, 0.0, 1.0),
+        (2.0, 2.0, 2.0, 1.0),
+        (1.9, 2.0, 2.0, 0.0),
+    ] {
+        same(ramp(x, from, to), want);
+        same(smooth_ramp(x, from, to), want * want * (3.0 - 2.0 * want));
+    }
+    assert!(
+        held(f64::NAN, 0.0, 1.0).is_nan()
+            && held(2.0, 0.0, 1.0) == 1.0
+            && held(-2.0, 0.0, 1.0) == 0.0
+    );
+}
+
+/// A curve of one point has its value everywhere; one of two points is straight between them, wherever they lie.
+#[test]
+fn val_curves_by_hand() {
+    let one = cvtcycle_model::math::Curve::constant(5.0);
+    assert!(
+        [-1e9, 0.0, 3.0, 1e9].iter().all(|x| one.at(*x) == 5.0)
+            && one.at(f64::NAN).is_nan() == one.at(f64::NAN).is_nan()
+    );
+    for from in [-700.0, -3.0, 0.0, 250.0] {
+        let points: Vec<(f64, f64)> = (0..9)
+            .map(|i| (from + 10.0 * f64::from(i * i), f64::from(7 * i % 5)))
+            .collect();
+        let curve = cvtcycle_model::math::Curve::new(&points).unwrap();
+        for p in points.windows(2) {
+            for share in [0.0, 0.25, 0.5, 0.99] {
+                let x = p[0].0 + share * (p[1].0 - p[0].0);
+                assert!(
+                    (curve.at(x) - (p[0].1 + share * (p[1].1 - p[0].1))).abs() < 1e-12,
+                    "{x}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Pump PU-1, PU-2, PU-4, PU-5 (PU-3: `belt`); shaft, reverse clutch and final drive: IS-1, CD-1, FD-1, FD-2, FH-1.
+
+use super::same;
+use cvtcycle_model::transmission::cvt::pump::{ETA_REFERENCE_PA_S, Pump, PumpKind};
+use cvtcycle_model::transmission::cvt::spin::{NU_REFERENCE_M2_S, Spin};
+use cvtcycle_model::transmission::film_heating::FilmHeating;
+
+fn pump(kind: PumpKind) -> Pump {
+    Pump {
+        kind,
+        displacement_m3_rad: 1.6e-6,
+        friction: 0.07,
+        viscous: 15_000.0,
+        viscous_exponent: 0.9,
+        heating: FilmHeating::halving_at_w(Some(900.0)),
+        inlet_pa_s_m3: 1.2e7,
+        constant_nm: 0.11,
+        line_drop_pa: 0.8e5,
+        residual_pa: 1.5e5,
+        lubrication_m3_s: 5e-5,
+        leakage_m3_s_pa: 1.7e-11,
+    }
+}
+
+/// Drag with the heating of its film (FH-1).
+fn heated(unheated: f64, speed: f64, halving_w: f64) -> f64 {
+    2.0 * unheated / (1.0 + (1.0 + 4.0 * unheated * speed / halving_w).sqrt())
+}
+
+/// PU-1, PU-4, PU-5 for each kind of pump, below, within and above the need that it follows.
+#[test]
+fn val_pump_by_hand() {
+    let (eta, w, pa) = (0.25, 260.0, 17e5);
+    let drawn = |flow: f64| flow / (1.0 + (flow * 1.2e7 * eta / 0.01 / 0.7e5).powi(4)).powf(0.25);
+    let flow = 1.6e-6 * w;
+    let smooth = |u: f64| u * u * (3.0 - 2.0 * u);
+    for need in [0.0, 0.44, 0.47, 0.49, 0.6, 0.9, 1.0, 1.3].map(|share| share * drawn(flow)) {
+        let wanted = need / drawn(flow);
+        let cavity = ((wanted - 0.85 * 0.5) / (0.15 * 0.5)).clamp(0.0, 1.0);
+        let dual = 0.5 + 0.5 * smooth(cavity);
+        for (kind, share) in [
+            (PumpKind::Fixed, 1.0),
+            (PumpKind::DualCavity { share: 0.5 }, dual),
+            (PumpKind::Variable { least: 0.2 }, wanted.clamp(0.2, 1.0)),
+        ] {
+            let p = pump(kind);
+            let s = p.state(&p.at(eta), w, pa, need);
+            let against = share * (pa + 0.8e5) + (1.0 - share) * 1.5e5;
+            let viscous = heated(
+                15_000.0 * 0.01 * (eta / 0.01f64).powf(0.9) * w * 1.6e-6,
+                w,
+                900.0,
+            );
+            same(s.torque_nm, 1.6e-6 * 1.07 * against + viscous + 0.11);
+            same(s.flow_m3_s, flow);
+            same(s.working_m3_s, drawn(share * flow));
+            assert_eq!(s.flow_limited, need > drawn(flow));
+        }
+    }
+    // A pump that draws nothing works with all it has.
+    for kind in [
+        PumpKind::Fixed,
+        PumpKind::DualCavity { share: 0.5 },
+        PumpKind::Variable { least: 0.2 },
+    ] {
+        let p = pump(kind);
+        same(
+            p.state(&p.at(eta), 0.0, pa, 1e-5).torque_nm,
+            1.6e-6 * 1.07 * (pa + 0.8e5) + 0.11,
+        );
+    }
+}
+
+/// PU-2.
+#[test]
+fn val_need_by_hand() {
+    let p = pump(PumpKind::Fixed);
+    same(ETA_REFERENCE_PA_S, 0.010);
+    same(p.leakage_now_m3_s_pa(0.04), 1.7e-11 / 4.0);
+    same(p.steady_need_m3_s(20e5, 0.04), 5e-5 + 20e5 * 1.7e-11 / 4.0);
+    same(p.need_m3_s(20e5, 3e-12), 5e-5 + 6e-6);
+}
+
+fn spin() -> Spin {
+    Spin {
+        shaft_constant_nm: 0.97,
+        shaft_viscous_nm_s: 7e-4,
+        shaft_exponent: 0.75,
+        shaft_heating: FilmHeating::halving_at_w(Some(400.0)),
+        clutch_nm: 0.25,
+        clutch_exponent: 0.55,
+        clutch_cap_nm: 0.5,
+        drive_boundary_nm: 1.2,
+        drive_scale_rad_s: 210.0,
+        drive_viscous_nm: 0.29,
+        drive_exponent: 0.72,
+        drive_heating: FilmHeating::halving_at_w(Some(300.0)),
+        mesh_efficiency: 0.98,
+    }
+}
+
+/// IS-1, CD-1, FD-1 at the reference viscosity, warmer and colder; FD-2 in both directions.
+#[test]
+fn val_shafts_by_hand() {
+    let s = spin();
+    same(NU_REFERENCE_M2_S, 11e-6);
+    for ratio in [0.6, 1.0, 3.0, 40.0f64] {
+        let now = s.at(11e-6 * ratio);
+        for w in [0.0, 90.0, 300.0] {
+            same(
+                now.shaft_nm(w),
+                0.97 + heated(7e-4 * ratio.powf(0.75) * w, w, 400.0),
+            );
+            same(
+                s.drive_nm(&now, w),
+                1.2 * (-w / 210.0).exp() + heated(0.29 * ratio.powf(0.72), w, 300.0),
+            );
+        }
+        same(now.clutch_nm, (0.25 * ratio.powf(0.55)).min(0.5));
+    }
+    for (out, want) in [
+        (30.0, 31.0 / 0.98),
+        (-0.5, 0.5 / 0.98),
+        (-1.0, 0.0),
+        (-40.0, -39.0 * 0.98),
+    ] {
+        same(s.secondary_torque_nm(1.0, out), want);
+    }
+}

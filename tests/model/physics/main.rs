@@ -1,0 +1,26 @@
+//! The models: laws, bounds, printed numbers, and every equation once more.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::too_many_lines,
+    reason = "helpers and tables of tests"
+)]
+
+#[path = "../../common/mod.rs"]
+mod common;
+
+mod allocation;
+mod belt_properties;
+mod bench;
+mod cold;
+mod conserve;
+mod continuity;
+mod cvt_part_properties;
+mod cycles;
+mod equations;
+mod maps;
+mod metamorphic;
+mod random_cars;
+mod rig_transmission;
+mod rig_variator;
+mod targets;

@@ -1,0 +1,197 @@
+//! Columns and maps of the losses command against the bench: powers and efficiency, units, flags, the torque that each map takes.
+use crate::common::{RPM, ZERO, car};
+use cvtcycle::model::bench::{Bench, BenchPoint, Parts};
+use cvtcycle::model::transmission::Transmission;
+use cvtcycle::output::Component;
+use cvtcycle::output::losses::{Axis, LossRow};
+
+/// Equal to rounding: two ways of one sum.
+#[track_caller]
+fn same(got: f64, want: f64) {
+    assert!(
+        (got - want).abs() <= 1e-11 * want.abs() + 1e-13,
+        "{got} instead of {want}"
+    );
+}
+
+fn bench() -> Bench {
+    Bench::new(&car("rover_216_cvt", &[]))
+}
+
+fn point() -> BenchPoint {
+    BenchPoint {
+        output_nm: 200.0,
+        throttle: 0.3,
+        belt_k: Some(90.0 + ZERO),
+        ..BenchPoint::default()
+    }
+}
+
+/// Powers, efficiency, slip and safety of a row, in drive, overrun, without load, and where both shafts drive.
+#[test]
+fn val_rows_of_the_bench() {
+    let bench = bench();
+    let mut seen = [0; 4];
+    for output_nm in [-900.0, -300.0, -20.0, -1.0, 0.0, 5.0, 100.0, 900.0] {
+        let mut asked = [f64::NAN; Axis::COUNT];
+        for (axis, value) in [
+            (Axis::Ratio, 0.7),
+            (Axis::Speed, 3000.0),
+            (Axis::Torque, output_nm),
+            (Axis::Throttle, 0.2),
+            (Axis::Sump, 70.0),
+        ] {
+            asked[axis as usize] = value;
+        }
+        let row = LossRow::new(&bench, asked);
+        same(row.point.input_rad_s, 3000.0 * RPM);
+        same(row.point.sump_k, 70.0 + ZERO);
+        assert!(row.point.pressure_pa.is_none() && row.point.belt_k.is_none());
+        let (input, output) = (
+            row.answer.input_nm * 3000.0 * RPM,
+            output_nm * row.answer.output_rad_s,
+        );
+        same(row.input_w(), input);
+        same(row.output_w(), output);
+        let efficiency = row.efficiency();
+        if output_nm >= 0.0 {
+            same(efficiency, output / input);
+            seen[0] += 1;
+        } else if input <= 0.0 {
+            same(efficiency, input / output);
+            seen[1] += 1;
+        } else {
+            assert!(efficiency.is_nan());
+            seen[2] += 1;
+        }
+        let belt = row.answer.belt.unwrap();
+        same(row.slip(), belt.slip_total);
+        let secondary = (belt.input_torque_nm - belt.loss_nm()) * 0.7 / (1.0 - belt.slip_total);
+        near(row.clamp_safety(), belt.capacity_nm / secondary.abs(), 1e-9);
+        assert_eq!(
+            row.belt_status(),
+            if belt.gross_slip { "gross_slip" } else { "ok" }
+        );
+        seen[3] += 1;
+    }
+    assert!(seen.iter().all(|n| *n > 1), "{seen:?}");
+}
+
+/// The belt's map takes its own torques: the pulley's at the pulley, the shaft's at the shaft; the box's at its input.
+#[test]
+fn val_map_parts_take_their_own_torque() {
+    use cvtcycle::output::loss_table::MapPart;
+    let bench = bench();
+    let cvt = bench.cvt().unwrap();
+    let p = BenchPoint {
+        output_nm: 40.0,
+        ratio: 0.8,
+        pressure_pa: Some(15e5),
+        ..point()
+    };
+    let whole = bench.solve(&BenchPoint {
+        output_nm: 40.0 * cvt.final_drive,
+        ..p
+    });
+    same(
+        MapPart::FinalDrive.loss_nm(&bench, &p),
+        whole.part_nm(Component::FinalDrive),
+    );
+    same(
+        MapPart::Pump.loss_nm(&bench, &p),
+        whole.part_nm(Component::Pump),
+    );
+    same(
+        MapPart::InputShaft.loss_nm(&bench, &p),
+        whole.part_nm(Component::InputShaft),
+    );
+    same(
+        MapPart::ClutchDrag.loss_nm(&bench, &p),
+        whole.part_nm(Component::ClutchDrag),
+    );
+    let parts = Parts {
+        final_drive: false,
+        ..Parts::ALL
+    };
+    same(
+        MapPart::Belt.loss_nm(&bench, &p),
+        bench
+            .solve(&BenchPoint {
+                output_nm: 40.0 * cvt.final_drive,
+                parts,
+                ..p
+            })
+            .belt_nm(),
+    );
+    let manual = Bench::new(&car("rover_216_5mt", &[]));
+    for input_nm in [-40.0, 5.0, 90.0] {
+        let p = BenchPoint {
+            ratio: 3.0,
+            output_nm: input_nm,
+            ..BenchPoint::default()
+        };
+        let loss = MapPart::Box.loss_nm(&manual, &p);
+        let Transmission::Manual(m) = &manual.car().transmission else {
+            panic!("a manual box")
+        };
+        let back = manual.solve(&BenchPoint {
+            output_nm: (input_nm - loss) * m.overall[2],
+            ..p
+        });
+        assert!(
+            (back.input_nm - input_nm).abs() < 1e-9 && (back.total_nm() - loss).abs() < 1e-9,
+            "{input_nm}"
+        );
+    }
+}
+
+/// Columns whose unit is not the model's, and the counts of flags.
+#[test]
+fn val_columns_of_the_bench() {
+    use cvtcycle::output::losses::{FlagCount, columns};
+    use cvtcycle::output::table::Cell;
+    let bench = bench();
+    let mut asked = [f64::NAN; Axis::COUNT];
+    for (axis, value) in [
+        (Axis::Ratio, 0.7),
+        (Axis::Speed, 3000.0),
+        (Axis::Torque, 90.0),
+        (Axis::Throttle, 0.2),
+        (Axis::Sump, 170.0),
+    ] {
+        asked[axis as usize] = value;
+    }
+    let row = LossRow::new(&bench, asked);
+    let of = |name: &str| match columns(&bench.car().transmission)
+        .iter()
+        .find(|c| c.name == name)
+        .unwrap()
+        .cell(&row)
+    {
+        Cell::Number(x) => x,
+        _ => panic!("{name}"),
+    };
+    same(of("secondary_pressure_bar"), row.answer.secondary_pa / 1e5);
+    same(
+        of("slip_percent"),
+        100.0 * row.answer.belt.unwrap().slip_total,
+    );
+    same(of("output_speed_rpm"), row.answer.output_rad_s / RPM);
+    same(of("belt_spray_degc"), row.answer.belt_k - 273.15);
+    let mut count = FlagCount::default();
+    count.add(row.answer.flags);
+    count.add(row.answer.flags);
+    assert_eq!(
+        count.named().find(|n| n.0 == "outside_validity"),
+        Some(("outside_validity", 2))
+    );
+}
+
+/// Equal but for `share`.
+#[track_caller]
+fn near(got: f64, want: f64, share: f64) {
+    assert!(
+        (got - want).abs() <= share * want.abs(),
+        "{got} instead of {want}"
+    );
+}
