@@ -63,7 +63,7 @@ const EXCUSED: &[(&str, &str)] = &[
     (" The message is one sentence", "text of documentation"),
     (
         "problem is",
-        "tests/physics/cycles.rs counts problems that are not shown",
+        "tests/model/physics/cycles.rs counts problems that are not shown",
     ),
     (
         "a number with a decimal point, or nothing",
