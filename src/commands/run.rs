@@ -14,7 +14,7 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
-use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, name_of, summarise};
+use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, summarise};
 
 use super::Execute;
 use crate::args::problems::did_you_mean;
@@ -182,7 +182,7 @@ impl RunArgs {
     fn summary(&self, plan: &RunPlan, driven: &[Driven]) -> Summary {
         let settings = Settings {
             dt_s: plan.dt_s,
-            formulation: name_of(plan.formulation).to_owned(),
+            formulation: plan.formulation.name().to_owned(),
             set: self.car.set.clone(),
             set_all: self.comparison.set_all.clone(),
             strict: self.strict,

@@ -2,7 +2,8 @@
 
 use clap::{Args, ValueEnum};
 use cvtcycle::config::schema;
-use cvtcycle::config::setup::Kind;
+use cvtcycle::model::files;
+use cvtcycle::model::keys::Table;
 
 use crate::print::{CommandOutput, CommandResult};
 
@@ -30,12 +31,19 @@ enum SchemaKind {
     Rig,
 }
 
+impl SchemaKind {
+    /// Its word, and the keys of its files.
+    const fn keys(self) -> (&'static str, Table) {
+        match self {
+            SchemaKind::Vehicle => ("vehicle", files::VEHICLE),
+            SchemaKind::Lubricant => ("lubricant", files::LUBRICANT),
+            SchemaKind::Rig => ("rig", files::RIG),
+        }
+    }
+}
+
 /// Runs `schema`.
 pub fn schema(args: &SchemaArgs) -> CommandResult {
-    let kind = match args.kind {
-        SchemaKind::Vehicle => Kind::Vehicle,
-        SchemaKind::Lubricant => Kind::Lubricant,
-        SchemaKind::Rig => Kind::Rig,
-    };
-    CommandOutput::json(&schema::of(kind))
+    let (word, keys) = args.kind.keys();
+    CommandOutput::json(&schema::of(word, &keys))
 }

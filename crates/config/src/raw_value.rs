@@ -17,21 +17,26 @@ pub struct RawValue<'r> {
 impl<'r> Section<'r> {
     /// The value of `key` as written; none if it is absent or, reported already, no value at all.
     pub fn raw(&self, key: &str, allowed: &str, doc: &str) -> Option<RawValue<'r>> {
-        match self.open(&Key::new(
+        self.written(&Key::new(
             key,
             (Kind::Other(allowed), Presence::Optional),
             doc,
-        )) {
+        ))
+    }
+
+    /// The value of `key` as written; none if it is absent or, reported already, no value at all.
+    pub fn written(&self, key: &Key<'_>) -> Option<RawValue<'r>> {
+        match self.open(key) {
             Lookup::Found(found) => {
                 self.given(
-                    key,
+                    key.name,
                     &found,
                     self.reader.document.written(&found.node.span).to_string(),
                     None,
                 );
                 Some(RawValue {
                     section: self.clone(),
-                    key: key.to_string(),
+                    key: key.name.to_string(),
                     node: found.node,
                 })
             }
@@ -91,11 +96,11 @@ impl<'r> RawValue<'r> {
         }
     }
 
-    /// The finite number that it is, within its range; otherwise none, and reported. `quantity` is a key that ends in the number's unit.
+    /// The finite number that it is, within its range in the unit of the quantity; otherwise none, and reported.
     #[must_use]
-    pub fn number(&self, quantity: &str, allowed: Bound) -> Option<f64> {
+    pub fn number(&self, quantity: Quantity, allowed: Bound) -> Option<f64> {
         self.section
-            .check_number(&self.key, Quantity::of(quantity), self.node, allowed)
+            .check_number(&self.key, quantity, self.node, allowed)
     }
 
     /// Reports that it is of another kind than expected.

@@ -2,30 +2,25 @@
 //!
 //! Editors with a TOML server show ranges, options, units and meanings from it and mark unknown keys.
 
-use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Quantity, Table};
+use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Quantity, Repeat, Table};
 use serde_json::{Map, Value, json};
 
-use crate::setup::Kind as File;
 use crate::value::STATUSES;
 
-/// The schema of a kind of file.
+/// The schema of a kind of file: its name in the title, and its keys.
 ///
 /// ```
-/// use cvtcycle_config::{schema, setup::Kind};
-/// let vehicle = schema::of(Kind::Vehicle);
+/// use cvtcycle_config::schema;
+/// use cvtcycle_model::files::VEHICLE;
+/// let vehicle = schema::of("vehicle", &VEHICLE);
 /// let belt = &vehicle["properties"]["transmission"]["anyOf"][2]["properties"]["cvt"]["properties"]["belt"];
 /// assert_eq!(belt["properties"]["band_offset_mm"]["anyOf"][0]["maximum"], 20.0);
 /// ```
 #[must_use]
-pub fn of(file: File) -> Value {
-    let mut schema = table(&file.keys());
-    let head = json!({
-        "$schema": "http://json-schema.org/draft-07/schema#",
-        "title": format!("cvtcycle {} file", file.word()),
-    });
-    for (place, entry) in head.as_object().into_iter().flatten() {
-        schema[place] = entry.clone();
-    }
+pub fn of(file: &str, keys: &Table) -> Value {
+    let mut schema = table(keys);
+    schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
+    schema["title"] = json!(format!("cvtcycle {file} file"));
     schema
 }
 
@@ -39,7 +34,13 @@ fn table(table: &Table) -> Value {
         }
     }
     for inner in table.tables {
-        properties.insert(inner.name.to_owned(), self::table(inner));
+        let schema = self::table(inner);
+        let schema = match inner.repeat {
+            Repeat::Once | Repeat::Optional => schema,
+            Repeat::List => json!({ "type": "array", "items": schema }),
+            Repeat::Named => json!({ "type": "object", "additionalProperties": schema }),
+        };
+        properties.insert(inner.name.to_owned(), schema);
         if is_required(inner) {
             required.push(inner.name);
         }
@@ -58,12 +59,13 @@ fn table(table: &Table) -> Value {
 /// Whether a table has a key that is always required.
 fn is_required(table: &Table) -> bool {
     let required = |key: &&Key<'_>| matches!(key.presence, Presence::Required);
-    table.keys.iter().any(required) || table.tables.iter().any(is_required)
+    table.repeat == Repeat::Once
+        && (table.keys.iter().any(required) || table.tables.iter().any(is_required))
 }
 
 /// A key: its bare value, or the value with its origin; an option also as a table.
 fn entry(key: &Key<'_>) -> Value {
-    let bare = value(key);
+    let bare = value(&key.kind);
     let text = json!({ "type": "string" });
     let mut forms = vec![
         bare.clone(),
@@ -128,13 +130,13 @@ fn description(key: &Key<'_>) -> String {
 }
 
 /// The bare value of a key.
-fn value(key: &Key<'_>) -> Value {
-    match &key.kind {
+fn value(kind: &Kind<'_>) -> Value {
+    match kind {
         Kind::Number(range) => number(range),
         Kind::Integer(low, i64::MAX) => json!({ "type": "integer", "minimum": low }),
         Kind::Integer(low, high) => json!({ "type": "integer", "minimum": low, "maximum": high }),
         Kind::Flag => json!({ "type": "boolean" }),
-        Kind::Text => json!({ "type": "string" }),
+        Kind::Text | Kind::Name(_) => json!({ "type": "string" }),
         Kind::Words(choices) | Kind::Options(choices) => {
             json!({ "enum": choices.iter().map(|choice| choice.name).collect::<Vec<_>>() })
         }
@@ -158,6 +160,8 @@ fn value(key: &Key<'_>) -> Value {
                 json!({ "type": "array", "items": cells, "minItems": count, "maxItems": count });
             json!({ "type": "array", "items": row })
         }
+        Kind::List(_) => json!({ "type": "array" }),
+        Kind::Either(kinds) => json!({ "anyOf": kinds.iter().map(value).collect::<Vec<_>>() }),
         Kind::Other(_) => json!({}),
     }
 }

@@ -34,8 +34,4 @@ pub const VEHICLE: Table = VehicleKeys::TABLE;
 /// A lubricant file.
 pub const LUBRICANT: Table = FluidKeys::TABLE;
 /// A rig file.
-pub const RIG: Table = Table {
-    name: "",
-    keys: &[],
-    tables: &[RigKeys::TABLE],
-};
+pub const RIG: Table = Table::of(&[RigKeys::TABLE]);

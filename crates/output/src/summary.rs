@@ -6,7 +6,7 @@
 mod gather;
 mod named;
 
-pub use gather::{compare, name_of, run_summary, summarise};
+pub use gather::{compare, run_summary, summarise};
 pub use named::Named;
 
 use serde::{Deserialize, Serialize};

@@ -177,20 +177,13 @@ impl StudyCar {
                 "lubricant" => options.lubricant = Some(word),
                 "engine_oil" => options.engine_oil = Some(word),
                 "formulation" => {
-                    options.formulation = formulation(&word).unwrap_or(options.formulation)
+                    options.formulation = Formulation::named(&word).unwrap_or(options.formulation)
                 }
                 key => options.set.push(format!("{key}={word}")),
             }
         }
         options
     }
-}
-
-fn formulation(word: &str) -> Option<Formulation> {
-    Formulation::NAMES
-        .iter()
-        .find(|(name, _)| *name == word)
-        .map(|(_, formulation)| *formulation)
 }
 
 /// What the plan says for all runs, of one car.

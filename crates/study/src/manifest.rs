@@ -69,7 +69,7 @@ impl Study {
             "set": base.set,
             "set_all": base.set_all,
             "dt_s": base.dt_s,
-            "formulation": cvtcycle_output::summary::name_of(base.formulation),
+            "formulation": base.formulation.name(),
         })
     }
 

@@ -13,7 +13,7 @@ use cvtcycle_config::setup::Setup;
 use cvtcycle_config::setup::template::{ParameterRef, Variant};
 use cvtcycle_model::drive::{Conditions, Outcome, Start, drive_into};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
-use cvtcycle_output::summary::{Driven, RunSummary, Settings, compare, name_of, run_summary};
+use cvtcycle_output::summary::{Driven, RunSummary, Settings, compare, run_summary};
 
 /// What one thread keeps from point to point: a bench for each variant of each car, and room for the levels.
 #[derive(Default)]
@@ -232,7 +232,7 @@ impl Study {
             "cycle" => base.cycle.clone(),
             "lubricant" => setup.oils().0.name.clone(),
             "engine_oil" => setup.oils().1.name.clone(),
-            "formulation" => name_of(base.formulation).to_owned(),
+            "formulation" => base.formulation.name().to_owned(),
             key => setup
                 .keys
                 .iter()
@@ -297,7 +297,7 @@ impl Study {
         let word = self
             .option("formulation", car, values)
             .map(|value| text(value).to_string());
-        word.unwrap_or_else(|| name_of(self.plan.base.formulation).to_owned())
+        word.unwrap_or_else(|| self.plan.base.formulation.name().to_owned())
     }
 }
 

@@ -19,9 +19,9 @@ use crate::bounded::{self, ReadError};
 use crate::embedded;
 use crate::{Bound, Document, KeyInfo, Problem, Problems, Reader, decode, did_you_mean};
 use cvtcycle_model::drive::Vehicle;
-use cvtcycle_model::files;
+
 use cvtcycle_model::fluid::Lubricant;
-use cvtcycle_model::keys::Table;
+
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Reads files that an input names; the only way in which loading touches the disk.
@@ -137,17 +137,6 @@ impl Kind {
     #[must_use]
     pub fn names(self) -> Vec<&'static str> {
         self.embedded().iter().map(|(name, _)| *name).collect()
-    }
-
-    /// Its keys; none yet of plans and calibrations.
-    #[must_use]
-    pub const fn keys(self) -> Table {
-        match self {
-            Kind::Vehicle => files::VEHICLE,
-            Kind::Lubricant => files::LUBRICANT,
-            Kind::Rig => files::RIG,
-            Kind::Plan | Kind::Calibration => Table::EMPTY,
-        }
     }
 
     pub(crate) const fn word(self) -> &'static str {

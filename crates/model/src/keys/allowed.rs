@@ -6,8 +6,32 @@ impl Key<'_> {
     /// What the key accepts, such as "0.5 to 10 mm".
     #[must_use]
     pub fn allowed(&self) -> String {
-        let each = |range: &Bound| range.in_unit(self.quantity.unit());
+        self.kind.allowed(self.quantity)
+    }
+
+    /// Unit as written for people; of rows, the units of the columns.
+    #[must_use]
+    pub fn unit(&self) -> String {
         match &self.kind {
+            Kind::Rows(columns) => {
+                let units = columns.iter().map(|(name, _)| Quantity::of(name).unit());
+                units.collect::<Vec<_>>().join(", ")
+            }
+            _ => self.quantity.unit().to_owned(),
+        }
+    }
+
+    /// Whether the value is a single number.
+    #[must_use]
+    pub fn is_number(&self) -> bool {
+        matches!(self.kind, Kind::Number(_) | Kind::Integer(..))
+    }
+}
+
+impl Kind<'_> {
+    fn allowed(&self, quantity: Quantity) -> String {
+        let each = |range: &Bound| range.in_unit(quantity.unit());
+        match self {
             Kind::Number(range) => each(range),
             Kind::Integer(low, i64::MAX) => format!("integer of at least {low}"),
             Kind::Integer(low, high) => format!("integer from {low} to {high}"),
@@ -28,26 +52,13 @@ impl Key<'_> {
                 });
                 format!("rows of {}", words.collect::<Vec<_>>().join(", "))
             }
-            Kind::Other(words) => (*words).to_owned(),
-        }
-    }
-
-    /// Unit as written for people; of rows, the units of the columns.
-    #[must_use]
-    pub fn unit(&self) -> String {
-        match &self.kind {
-            Kind::Rows(columns) => {
-                let units = columns.iter().map(|(name, _)| Quantity::of(name).unit());
-                units.collect::<Vec<_>>().join(", ")
+            Kind::Other(words) | Kind::List(words) => (*words).to_owned(),
+            Kind::Name(known) => known(),
+            Kind::Either(kinds) => {
+                let each: Vec<String> = kinds.iter().map(|kind| kind.allowed(quantity)).collect();
+                each.join(", or ")
             }
-            _ => self.quantity.unit().to_owned(),
         }
-    }
-
-    /// Whether the value is a single number.
-    #[must_use]
-    pub fn is_number(&self) -> bool {
-        matches!(self.kind, Kind::Number(_) | Kind::Integer(..))
     }
 }
 

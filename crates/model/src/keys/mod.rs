@@ -51,6 +51,12 @@ pub enum Kind<'k> {
     Texts,
     /// A list of rows.
     Rows(&'k [Column<'k>]),
+    /// A list of anything; the text says of what.
+    List(&'k str),
+    /// A text; the function says which ones are known.
+    Name(fn() -> String),
+    /// A value of any of these kinds.
+    Either(&'k [Kind<'k>]),
     /// Anything; the text says what.
     Other(&'k str),
 }
@@ -113,6 +119,21 @@ pub struct Table {
     pub keys: &'static [&'static Key<'static>],
     /// Tables in it.
     pub tables: &'static [Table],
+    /// How often it occurs.
+    pub repeat: Repeat,
+}
+
+/// How often a table occurs in the one around it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Repeat {
+    /// Once; keys of an absent table are absent keys.
+    Once,
+    /// Once or not at all: its keys are required only where it is present.
+    Optional,
+    /// Any number of times, as `[[name]]`.
+    List,
+    /// Any number of times under names of the user's, as `[name.NAME]`.
+    Named,
 }
 
 impl Table {
@@ -121,7 +142,23 @@ impl Table {
         name: "",
         keys: &[],
         tables: &[],
+        repeat: Repeat::Once,
     };
+
+    /// A file, or a part without keys of its own, of these tables.
+    #[must_use]
+    pub const fn of(tables: &'static [Table]) -> Self {
+        Table {
+            tables,
+            ..Table::EMPTY
+        }
+    }
+
+    /// The table with another number of times.
+    #[must_use]
+    pub const fn repeated(self, repeat: Repeat) -> Self {
+        Table { repeat, ..self }
+    }
 
     /// Calls `visit` with the dotted path of every key below `path`, those of unchosen options too.
     pub fn walk(&self, path: &str, visit: &mut impl FnMut(String, &'static Key<'static>)) {
@@ -158,10 +195,20 @@ impl<'k> Key<'k> {
             doc,
         }
     }
+
+    /// The key with the unit of this suffix, which its name does not end in.
+    #[must_use]
+    pub const fn in_unit_of(self, suffix: &str) -> Self {
+        Key {
+            quantity: Quantity::of(suffix),
+            ..self
+        }
+    }
 }
 
 /// A field's name without the mark of a raw identifier.
-pub(crate) const fn bare(name: &'static str) -> &'static str {
+#[must_use]
+pub const fn bare(name: &'static str) -> &'static str {
     match name.as_bytes() {
         [b'r', b'#', ..] => name.split_at(2).1,
         _ => name,
@@ -215,6 +262,30 @@ pub mod spec {
     #[must_use]
     pub const fn options(choices: &'static [Choice]) -> Spec {
         (Kind::Options(choices), Presence::Required)
+    }
+
+    /// A list of texts, empty where it is absent.
+    #[must_use]
+    pub const fn texts() -> Spec {
+        (Kind::Texts, Presence::Optional)
+    }
+
+    /// A required text, of which the function says which ones are known.
+    #[must_use]
+    pub const fn name(known: fn() -> String) -> Spec {
+        (Kind::Name(known), Presence::Required)
+    }
+
+    /// A required list; the text says of what.
+    #[must_use]
+    pub const fn list_of(what: &'static str) -> Spec {
+        (Kind::List(what), Presence::Required)
+    }
+
+    /// A required value of any of these kinds.
+    #[must_use]
+    pub const fn either(kinds: &'static [Kind<'static>]) -> Spec {
+        (Kind::Either(kinds), Presence::Required)
     }
 
     /// A required list of numbers from `low` to `high`.
@@ -334,11 +405,25 @@ pub trait Values: Sized {
 }
 
 /// Declares a table of keys: a struct of rows, a static with them, and its [`Table`].
+///
+/// A row is `NAME: SPEC, MEANING;` with a maker of [`spec`](crate::keys::spec); the unit is the end of the name, or that of a third
+/// entry such as `"_degc"`.
+///
+/// ```
+/// cvtcycle_model::keys! {
+///     /// Keys of `[oven]`.
+///     OVEN: OvenKeys = "oven" [] {
+///         temp_degc: or(180.0, number(50.0, 250.0)), "temperature of the air";
+///     }
+/// }
+/// assert_eq!(OVEN.temp_degc.allowed(), "50 to 250 °C");
+/// ```
+#[macro_export]
 macro_rules! keys {
     (
         $(#[$meta:meta])*
         $table:ident: $keys:ident = $path:literal [$($inner:expr),* $(,)?] {
-            $($name:ident: $spec:expr, $doc:literal;)*
+            $($name:ident: $spec:expr, $doc:literal $(, $unit:literal)?;)*
         }
     ) => {
         $(#[$meta])*
@@ -349,7 +434,7 @@ macro_rules! keys {
         $(#[$meta])*
         pub static $table: $keys = {
             use $crate::keys::spec::*;
-            $keys { $($name: $crate::keys::Key::new($crate::keys::bare(stringify!($name)), $spec, $doc),)* }
+            $keys { $($name: $crate::keys::Key::new($crate::keys::bare(stringify!($name)), $spec, $doc)$(.in_unit_of($unit))?,)* }
         };
         impl $keys {
             /// The keys as a table of the file.
@@ -357,11 +442,12 @@ macro_rules! keys {
                 name: $path,
                 keys: &[$(&$table.$name),*],
                 tables: &[$($inner),*],
+                repeat: $crate::keys::Repeat::Once,
             };
         }
     };
 }
-pub(crate) use keys;
+pub use keys;
 
 /// A curve from two-column rows; a problem at the key if they do not make one.
 pub(crate) fn curve<V: Values>(s: &V, key: &Key<'_>, rows: &[Vec<f64>]) -> Curve {

@@ -198,7 +198,7 @@ fn weighted_fuel(cycle: &Cycle, driven: &Driven, engine: &Engine) -> Option<f64>
 fn losses(driven: &Driven, settings: &Settings, all: &PhaseTotals) -> Named {
     // The verification formulations know no film of its own: whatever shear there is belongs to the bands.
     let film =
-        settings.formulation.is_empty() || settings.formulation == name_of(Formulation::Smooth);
+        settings.formulation.is_empty() || settings.formulation == Formulation::Smooth.name();
     let joules = |c: Component| all.loss_j[c];
     let part = |c: Component| match c {
         Component::BeltFilm if !film => None,
@@ -218,15 +218,6 @@ fn losses(driven: &Driven, settings: &Settings, all: &PhaseTotals) -> Named {
         .map(|c| (c.name(), part(c)))
         .chain(rest)
         .collect()
-}
-
-/// Name of a formulation on the command line.
-#[must_use]
-pub fn name_of(formulation: Formulation) -> &'static str {
-    Formulation::NAMES
-        .iter()
-        .find(|(_, f)| *f == formulation)
-        .map_or("", |(name, _)| name)
 }
 
 fn end_temperatures(outcome: &Outcome, cvt: bool) -> Named {

@@ -6,6 +6,7 @@ use super::{FactorValue, RUN_OPTIONS};
 use cvtcycle_config::cycle;
 use cvtcycle_config::setup::{AMBIENT, embedded_lubricants, embedded_vehicles, is_path};
 use cvtcycle_config::{Bound, RawValue, did_you_mean, unit_of};
+use cvtcycle_model::keys::Quantity;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Range of start temperatures, degC.
@@ -68,7 +69,7 @@ pub(super) fn value(option: &str, written: &RawValue) -> Option<FactorValue> {
         && (option != "start" || written.is_number())
     {
         return written
-            .number(quantity(option), bound)
+            .number(Quantity::of(quantity(option)), bound)
             .map(FactorValue::Number);
     }
     let Some(word) = written.word() else {

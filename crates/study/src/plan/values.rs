@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::distribution::mass;
 use super::{Acts, Distribution, FactorValue, FactorValues, Places, options};
 use cvtcycle_config::{Bound, RawValue, Section};
+use cvtcycle_model::keys::Quantity;
 
 /// Ways to give values.
 pub(super) const WAYS: [&str; 3] = ["values", "range", "distribution"];
@@ -144,7 +145,7 @@ fn value(item: &RawValue, of: Of) -> Option<FactorValue> {
     }
     if item.is_number() {
         return item
-            .number(of.quantity(), Bound::any())
+            .number(Quantity::of(of.quantity()), Bound::any())
             .map(FactorValue::Number);
     }
     let Some(word) = item.word() else {
@@ -184,7 +185,7 @@ fn range(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
     }
     let end = |key: &str, doc: &str| match table.raw(key, &of.bound().to_string(), doc) {
         Some(written) => written
-            .number(of.quantity(), of.bound())
+            .number(Quantity::of(of.quantity()), of.bound())
             .unwrap_or(f64::NAN),
         None => table.number(key, of.bound(), doc),
     };

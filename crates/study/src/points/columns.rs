@@ -7,7 +7,7 @@ use cvtcycle_config::csv::{Cells, Column, Schema};
 use cvtcycle_output::columns;
 use cvtcycle_output::table::{self, Cell};
 
-use super::model::{Solved, name};
+use super::model::Solved;
 
 /// A number that a row gives: name, unit, and range in that unit.
 type Number = (&'static str, &'static str, Bound);
@@ -109,7 +109,7 @@ pub static OUTPUTS: LazyLock<Vec<table::Column<Point>>> = LazyLock::new(|| {
 pub fn output_columns(with_case: bool) -> Vec<table::Column<Point>> {
     let mut list = columns! { Point;
         text CASE, "", "", (case, _) => case.clone();
-        text FORMULATION, "", "", (_, s) => name(s.formulation);
+        text FORMULATION, "", "", (_, s) => s.formulation.name();
     };
     if !with_case {
         list.remove(0);

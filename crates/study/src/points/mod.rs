@@ -8,5 +8,5 @@ mod rows;
 mod table;
 
 pub use columns::{NUMBERS, OUTPUTS, Point, output_columns};
-pub use model::{Model, Solved, name};
+pub use model::{Model, Solved};
 pub use table::{Counts, Done, Job, Take, read};

@@ -88,7 +88,7 @@ impl Model {
             if !runs(&self.cvt.belt, ratio) {
                 found.push((RATIO, no_geometry(self.ratios)));
             } else if formulation != Formulation::Smooth && (ratio - 1.0).abs() <= 0.0 {
-                let message = format!("{} is not defined at ratio 1 (PR-1)", name(formulation));
+                let message = format!("{} is not defined at ratio 1 (PR-1)", formulation.name());
                 found.push((
                     RATIO,
                     Problem::invalid(message)
@@ -101,7 +101,7 @@ impl Model {
         {
             found.push((
                 SPEED,
-                Problem::invalid(format!("{} is not defined at rest", name(formulation)))
+                Problem::invalid(format!("{} is not defined at rest", formulation.name()))
                     .allowed("above 0 rpm")
                     .hint(DEFINED),
             ));
@@ -243,14 +243,6 @@ fn friction(
         segment_friction: numbers[SEGMENT_FRICTION],
         flank_friction: fluid.flank,
     }
-}
-
-/// Name of a formulation as on the command line.
-pub fn name(formulation: Formulation) -> &'static str {
-    Formulation::NAMES
-        .iter()
-        .find(|(_, known)| *known == formulation)
-        .map_or("", |(name, _)| *name)
 }
 
 fn no_geometry(ratios: [f64; 2]) -> Problem {

@@ -37,7 +37,7 @@ impl<'t> Given<'t> {
 
 fn formulation(row: &Row<'_, '_>, problems: &mut Collector<'_>) -> Option<Formulation> {
     let word = row.word(FORMULATION_INDEX);
-    let known = Formulation::NAMES.iter().find(|(name, _)| *name == word);
+    let known = Formulation::named(word);
     if known.is_none() && !word.is_empty() {
         let names = Formulation::NAMES.map(|(name, _)| name);
         let problem = Problem::unknown_name("this formulation is not known")
@@ -45,5 +45,5 @@ fn formulation(row: &Row<'_, '_>, problems: &mut Collector<'_>) -> Option<Formul
             .hint(did_you_mean(word, names).unwrap_or_default());
         row.report(FORMULATION_INDEX, problems, problem);
     }
-    known.map(|(_, formulation)| *formulation)
+    known
 }

@@ -10,6 +10,7 @@ use crate::fit::data::points::SD;
 use crate::fit::data::sheet::Sheet;
 use crate::fit::data::{bytes_of, points, scalars, trace};
 use cvtcycle_config::{Bound, Problem, Problems, Section, did_you_mean, unit_of};
+use cvtcycle_model::keys::Quantity;
 
 /// Seconds after which two values of a trace are independent, where the plan does not say.
 const INDEPENDENT_S: f64 = 30.0;
@@ -84,7 +85,7 @@ fn sds(s: &Section) -> Vec<(String, f64)> {
         );
         (
             name.to_owned(),
-            sd.and_then(|written| written.number("", Bound::positive()))
+            sd.and_then(|written| written.number(Quantity::NONE, Bound::positive()))
                 .unwrap_or(f64::NAN),
         )
     });

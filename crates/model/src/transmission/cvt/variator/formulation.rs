@@ -3,6 +3,8 @@
 //! In driving, every formulation keeps the smooth rules (TE-6, SL-8, real segment count, bounded slip); the choice moves only
 //! the rows below.
 
+use crate::keys::Choice;
+
 /// Which reading of the belt model is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Formulation {
@@ -22,6 +24,30 @@ impl Formulation {
         ("appendix_c", Formulation::AppendixC),
         ("chapter_8", Formulation::Chapter8),
     ];
+
+    /// The names as options of a key.
+    pub const CHOICES: &'static [Choice] = &[
+        Choice::word(
+            Self::NAMES[0].0,
+            "for driving: smooth between loading cases",
+        ),
+        Choice::word(Self::NAMES[1].0, "as the printed program of Appendix C"),
+        Choice::word(Self::NAMES[2].0, "as the equations of chapter 8"),
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        let own = Self::NAMES.iter().find(|(_, other)| *other == self);
+        own.map_or("", |(name, _)| name)
+    }
+
+    /// The formulation of a name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let own = Self::NAMES.iter().find(|(other, _)| *other == name);
+        own.map(|(_, formulation)| *formulation)
+    }
 
     /// Segment friction where the formulation prescribes it; the fluid's otherwise.
     #[must_use]
