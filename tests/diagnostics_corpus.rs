@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `corpus` | reads and writes the files of the corpus |
 //! | `kinds`, `calibration` | read each kind of bad file |
+//! | `reader` | files with a value of every kind, whose mistakes are announced in comments; texts of any content |
 //! | `keys` | every key of every shipped file and of every option: too low, too high, nan, of another type, missing, misspelt, twice |
 //! | `texts` | no code looks into the text of a problem |
 //! | `sentences` | every sentence of a message in the source is in an expected text |
@@ -24,6 +25,8 @@ mod corpus;
 mod keys;
 #[path = "diagnostics/kinds.rs"]
 mod kinds;
+#[path = "diagnostics/reader.rs"]
+mod reader;
 #[path = "diagnostics/schema.rs"]
 mod schema;
 #[path = "diagnostics/sentences.rs"]
@@ -32,8 +35,6 @@ mod sentences;
 mod sources;
 #[path = "diagnostics/texts.rs"]
 mod texts;
-
-use std::path::Path;
 
 use corpus::{Case, FOLDER};
 
@@ -45,17 +46,9 @@ fn messages() -> Vec<String> {
         .iter()
         .flat_map(|text| text.split("\n\n").map(str::to_owned));
     let mut blocks: Vec<String> = blocks.collect();
-    // tests/config_diagnostics.rs checks what these files announce.
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(FOLDER);
-    let files = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
-    for path in files.filter(|path| path.extension().is_some_and(|ending| ending == "toml")) {
-        let text = std::fs::read_to_string(&path).unwrap();
-        let announced = text
-            .lines()
-            .filter_map(|line| line.trim_start().strip_prefix("#~ "));
-        blocks.extend(announced.map(str::to_owned));
+    for case in corpus::cases("reader") {
+        let lines = case.input.lines().map(str::trim_start);
+        blocks.extend(lines.filter_map(|line| Some(line.strip_prefix("#~ ")?.to_owned())));
     }
     blocks
 }
@@ -124,23 +117,6 @@ fn every_bad_file_has_its_message() {
     }
     assert!(wrong.is_empty(), "\n{wrong}");
     assert!(count > 130, "only {count} bad files");
-}
-
-/// Every file outside the texts has its message in them.
-#[test]
-fn every_binary_file_is_a_case() {
-    for kind in kinds::KINDS {
-        let cases = corpus::cases(kind);
-        let folder = corpus::path(kind).with_extension("");
-        let entries = folder.is_dir().then(|| std::fs::read_dir(folder).unwrap());
-        for entry in entries.into_iter().flatten() {
-            let name = entry.unwrap().file_name().into_string().unwrap();
-            let known = cases
-                .iter()
-                .any(|case| case.name == name && case.input.is_empty());
-            assert!(known || name.starts_with("logo."), "{kind}/{name}");
-        }
-    }
 }
 
 #[test]

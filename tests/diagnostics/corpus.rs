@@ -7,14 +7,15 @@
 //! (what the program prints)
 //! ```
 //!
-//! Files that are no plain text (other encodings, other line ends) are in `tests/diagnostics/KIND/NAME`, and `KIND.txt` has their message
-//! only. A file named `made_...` is written by `kinds::made`; a file without a message is read by another one.
+//! A file that is no plain text (another encoding, other line ends) has `(escaped)` after its name and is one line with `\r`, `\n`, `\\`
+//! and `\x00` for its bytes. A file named `made_...` is written by `kinds::made`; a file without a message is read by another one.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 const FILE: &str = "======== ";
+const ESCAPED: &str = " (escaped)";
 const MESSAGE: &str = "-------- message\n";
 
 /// Folder of the corpus in the package, and in the folder in which the program reads it.
@@ -24,14 +25,40 @@ pub const FOLDER: &str = "tests/diagnostics";
 #[derive(Debug, Default, PartialEq)]
 pub struct Case {
     pub name: String,
-    /// Text of the file; empty also where the file is elsewhere.
+    /// Text of the file, escaped where [`Case::escaped`] is true.
     pub input: String,
+    pub escaped: bool,
     pub message: Option<String>,
 }
 
 impl Case {
     pub fn is_made(&self) -> bool {
         self.name.starts_with("made_") || self.name == "all_of_bad.txt"
+    }
+
+    /// Bytes of the bad file.
+    pub fn bytes(&self) -> Vec<u8> {
+        if !self.escaped {
+            return self.input.as_bytes().to_vec();
+        }
+        let mut rest = self.input.trim_end_matches('\n').bytes();
+        let mut bytes = Vec::new();
+        while let Some(byte) = rest.next() {
+            bytes.push(match (byte, byte == b'\\') {
+                (byte, false) => byte,
+                _ => match rest.next() {
+                    Some(b'r') => b'\r',
+                    Some(b'n') => b'\n',
+                    Some(b'\\') => b'\\',
+                    Some(b'x') => {
+                        let hex: String = rest.by_ref().take(2).map(char::from).collect();
+                        u8::from_str_radix(&hex, 16).expect("two hexadecimal digits")
+                    }
+                    other => panic!("{}: \\ before {other:?}", self.name),
+                },
+            });
+        }
+        bytes
     }
 }
 
@@ -40,9 +67,11 @@ pub fn parse(text: &str) -> Vec<Case> {
     let mut in_message = false;
     for line in text.split_inclusive('\n') {
         if let Some(name) = line.strip_prefix(FILE) {
-            let name = name.trim_end().to_owned();
+            let name = name.trim_end();
+            let plain = name.strip_suffix(ESCAPED);
             cases.push(Case {
-                name,
+                name: plain.unwrap_or(name).to_owned(),
+                escaped: plain.is_some(),
                 ..Case::default()
             });
             in_message = false;
@@ -67,8 +96,9 @@ pub fn format(cases: &[Case]) -> String {
     let text = |case: &Case| {
         let message = case.message.as_ref().map(|text| MESSAGE.to_owned() + text);
         format!(
-            "{FILE}{}\n{}{}",
+            "{FILE}{}{}\n{}{}",
             case.name,
+            if case.escaped { ESCAPED } else { "" },
             case.input,
             message.unwrap_or_default()
         )
@@ -108,20 +138,7 @@ pub fn unpack() {
                 fs::write(path, bytes).unwrap();
             };
             for case in cases(kind).iter().filter(|case| !case.is_made()) {
-                write(&case.name, case.input.as_bytes());
-            }
-            let other = path(kind).with_extension("");
-            for entry in other
-                .is_dir()
-                .then(|| fs::read_dir(&other).unwrap())
-                .into_iter()
-                .flatten()
-            {
-                let path = entry.unwrap().path();
-                write(
-                    path.file_name().unwrap().to_str().unwrap(),
-                    &fs::read(&path).unwrap(),
-                );
+                write(&case.name, &case.bytes());
             }
         }
         std::env::set_current_dir(root).unwrap();
@@ -144,4 +161,15 @@ fn a_corpus_is_written_as_it_was_read() {
     );
     assert_eq!(cases[2].message.as_deref(), Some(""));
     assert!(cases[2].is_made());
+}
+
+#[test]
+fn an_escaped_file_has_the_bytes() {
+    let text = "======== a.csv (escaped)\n\\xff\\xfet\\x00\\r\\n\\\\\n";
+    let cases = parse(text);
+    assert_eq!(format(&cases), text);
+    assert_eq!(
+        (cases[0].name.as_str(), cases[0].bytes()),
+        ("a.csv", b"\xff\xfet\x00\r\n\\".to_vec())
+    );
 }

@@ -1,9 +1,7 @@
-//! Files with mistakes, each with the expected message above the bad line, and files of any content.
+//! `tests/diagnostics/reader.txt`: files with mistakes, each with the expected message above the bad line, and files of any content.
 //!
 //! `#~ part of a message` announces a problem of the next line that is no announcement; `#~ hint: …`
 //! and `#~ allowed: …` add to it what its hint and its allowed range must contain.
-use std::path::Path;
-
 use cvtcycle::config::{Bound, Document, KeyInfo, Problem, Problems, Reader, decode, near, render};
 use proptest::prelude::*;
 
@@ -127,16 +125,10 @@ fn differences(expected: &[Expected], found: &[Problem]) -> String {
 
 #[test]
 fn every_mistake_is_found_at_its_line_and_nothing_else() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/diagnostics");
-    let mut files = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        // The folders belong to diagnostics_corpus.rs.
-        if path.extension().is_none_or(|ending| ending != "toml") {
-            continue;
-        }
-        let name = path.file_name().unwrap().to_str().unwrap();
-        let text = decode(name, &std::fs::read(&path).unwrap()).unwrap();
+    let cases = super::corpus::cases("reader");
+    assert!(cases.len() >= 10, "only {} files", cases.len());
+    for case in cases {
+        let (name, text) = (case.name.as_str(), case.input);
         let expected = expectations(&text);
         assert!(!expected.is_empty(), "{name} announces nothing");
         for text in [text.clone(), text.replace('\n', "\r\n")] {
@@ -145,9 +137,7 @@ fn every_mistake_is_found_at_its_line_and_nothing_else() {
             assert!(differences.is_empty(), "{name}:\n{differences}");
             check_places(&text, &found);
         }
-        files += 1;
     }
-    assert!(files >= 10, "only {files} files");
 }
 
 /// The place must be within its line, and the rendered text must show it.
