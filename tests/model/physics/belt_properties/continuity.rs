@@ -2,7 +2,7 @@
 //!
 //! A jump keeps its size however short the step; a slope does not. So every pair of neighbours of a sweep is halved towards its larger
 //! difference, up to 44 times for each value: what is left of it must be nothing. That finds also jumps that are small against the sweep's
-//! largest difference. The largest difference itself must nearly halve with the step, as in tests/model/physics/continuity.rs.
+//! largest difference. The largest difference itself must nearly halve with the step, as in tests/model/sweeps/continuity.rs.
 
 use super::*;
 
