@@ -63,3 +63,68 @@ impl Links {
         [coolant_k, oil_k, sump_k, metal_k, belt_k]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Outside truth: a general solver of another library, on the whole matrix with every link in it.
+    #[test]
+    fn val_elimination_agrees_with_a_dense_solver() {
+        let links = Links {
+            coolant_oil: 57.0,
+            coolant_metal: 6.0,
+            coolant_sump: 41.0,
+            sump_metal: 83.0,
+            sump_belt: 29.0,
+        };
+        let own = [31e3, 9e3, 8.5e3, 14e3, 4.2e3];
+        let right = [3100.0, -250.0, 480.0, 70.0, 690.0];
+        let pairs = [
+            (COOLANT, ENGINE_OIL, links.coolant_oil),
+            (COOLANT, METAL, links.coolant_metal),
+            (COOLANT, SUMP, links.coolant_sump),
+            (SUMP, METAL, links.sump_metal),
+            (SUMP, BELT, links.sump_belt),
+        ];
+        for scale in [1.0, 1e-2, 1e-5] {
+            let own = own.map(|c: f64| c * scale); // from links that hardly matter to links that are everything
+            let mut matrix = nalgebra::SMatrix::<f64, NODES, NODES>::from_diagonal(
+                &nalgebra::SVector::from(own),
+            );
+            for (i, j, g) in pairs {
+                matrix[(i, i)] += g;
+                matrix[(j, j)] += g;
+                matrix[(i, j)] -= g;
+                matrix[(j, i)] -= g;
+            }
+            let want = matrix
+                .lu()
+                .solve(&nalgebra::SVector::from(right))
+                .expect("regular");
+            for (got, want) in links.rise_k(&own, &right).iter().zip(want.iter()) {
+                assert!(
+                    (got / want - 1.0).abs() < 1e-9,
+                    "{scale}: {got} instead of {want}"
+                );
+            }
+        }
+    }
+
+    /// Heat that leaves one node through a link arrives at another.
+    #[test]
+    fn links_create_no_heat() {
+        let links = Links {
+            coolant_oil: 57.0,
+            coolant_metal: 6.0,
+            coolant_sump: 41.0,
+            sump_metal: 83.0,
+            sump_belt: 29.0,
+        };
+        let flows = links.flows_w(&[350.0, 340.0, 310.0, 300.0, 335.0]);
+        assert!(
+            flows.iter().sum::<f64>().abs() < 1e-9 && (flows[BELT] + 29.0 * 25.0).abs() < 1e-9,
+            "{flows:?}"
+        );
+    }
+}

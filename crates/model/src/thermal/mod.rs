@@ -374,6 +374,3 @@ impl Network {
         (sump_k, sump_k - effect * (sump_k - ambient_k))
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -479,6 +479,3 @@ pub fn belt_capacity_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
 pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
     state(at, load, &parts(belt, at, load))
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,6 +1,7 @@
 //! The belt against an independent transcription of the printed program, and its properties.
 
-use super::*;
+use cvtcycle_model::fluid::BandFriction;
+use cvtcycle_model::transmission::cvt::variator::*;
 
 pub fn thesis_belt(formulation: Formulation) -> Belt {
     let th = 11f64.to_radians();
@@ -62,7 +63,7 @@ impl Golden<'_> {
 }
 
 fn golden() -> Vec<Golden<'static>> {
-    let text = include_str!("../../../../../../tests/golden/belt_points.csv");
+    let text = include_str!("../../../golden/belt_points.csv");
     let names: Vec<&str> = text.lines().next().expect("header").split(',').collect();
     text.lines()
         .skip(1)
