@@ -37,7 +37,7 @@ fn main() {
 }
 
 fn setup(name: &str) -> Setup {
-    load(name, "--vehicle", &Options::default())
+    load(name, &Options::default())
         .unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
 }
 
@@ -250,7 +250,7 @@ fn parse_user_cycle(bencher: Bencher) {
 /// A car with two changed numbers, from its parsed files, as each run of a study begins.
 #[divan::bench(args = CARS)]
 fn blueprint_build(bencher: Bencher, name: &str) {
-    let (blueprint, _) = VehicleTemplate::load(name, "--vehicle", &Options::default())
+    let (blueprint, _) = VehicleTemplate::load(name, &Options::default())
         .unwrap_or_else(|p| panic!("{}", render(&p, false)));
     let slots =
         ["road_load.mass_kg", "lubricant.kv40_mm2_s"].map(|key| blueprint.slot(key).unwrap());

@@ -28,7 +28,6 @@ fn main() {
         )];
         let setup = match load(
             "rover_216_cvt",
-            "--vehicle",
             &Options {
                 set,
                 ..Options::default()

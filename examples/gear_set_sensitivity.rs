@@ -23,7 +23,6 @@ const SHIFTS: [(&str, &str, &str); 3] = [
 fn fuel(vehicle: &str, set: Vec<String>, cycle: &Cycle) -> f64 {
     let setup = load(
         vehicle,
-        "--vehicle",
         &Options {
             set,
             ..Options::default()

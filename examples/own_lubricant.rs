@@ -35,14 +35,13 @@ fn compare(file: Option<String>) -> Result<Summary, Vec<Problem>> {
     let set = if file.is_some() { Vec::new() } else { thinner };
     let own = load(
         "rover_216_cvt",
-        "--vehicle",
         &Options {
             lubricant: file,
             set,
             ..Options::default()
         },
     )?;
-    let usual = load("rover_216_cvt", "--vehicle", &Options::default())?;
+    let usual = load("rover_216_cvt", &Options::default())?;
     let cycle = cycle::embedded("ece15_eudc").ok_or_else(Vec::new)?;
     let ambient_k = AMBIENT_DEGC + ZERO_DEGC_K;
     let conditions = Conditions {

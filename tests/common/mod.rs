@@ -30,7 +30,7 @@ pub fn try_car(name: &str, sets: &[String]) -> Result<Setup, String> {
         set: sets.to_vec(),
         ..Options::default()
     };
-    load(name, "--vehicle", &options).map_err(|problems| render(&problems, false))
+    load(name, &options).map_err(|problems| render(&problems, false))
 }
 
 /// A shipped vehicle with overrides.

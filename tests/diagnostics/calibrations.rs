@@ -53,7 +53,7 @@ pub fn ran(case: &str) -> String {
     let best = outcome["parameters"][0]["value"].as_f64().unwrap();
     let key = outcome["parameters"][0]["name"].as_str().unwrap();
     let fitted = folder.path().join("rover_216_cvt_fitted.toml");
-    let setup = setup::load(fitted.to_str().unwrap(), "", &Options::default()).unwrap();
+    let setup = setup::load(fitted.to_str().unwrap(), &Options::default()).unwrap();
     let written: f64 = setup
         .keys
         .iter()

@@ -106,8 +106,8 @@ impl Plain {
     fn problems(&self, text: &str, path: &str) -> Problems {
         std::fs::write(path, text).unwrap();
         match self.kind {
-            Kind::Vehicle => load(path, "--vehicle", &Options::default()).err(),
-            Kind::Lubricant => load_lubricant(path, "--lubricant", &[], "").err(),
+            Kind::Vehicle => load(path, &Options::default()).err(),
+            Kind::Lubricant => load_lubricant(path).err(),
             Kind::Rig => match Document::parse(path, text) {
                 Ok(document) => {
                     let reader = Reader::new(&document);
@@ -131,7 +131,7 @@ impl Plain {
         );
         match self.kind {
             Kind::Vehicle => {
-                let keys = load(path, "", &Options::default()).unwrap().keys;
+                let keys = load(path, &Options::default()).unwrap().keys;
                 keys.into_iter()
                     .filter(|info| {
                         !info.key.starts_with(catalogue::OIL)
@@ -139,7 +139,7 @@ impl Plain {
                     })
                     .collect()
             }
-            Kind::Lubricant => load_lubricant(path, "", &[], "").unwrap().1,
+            Kind::Lubricant => load_lubricant(path).unwrap().1,
             Kind::Rig => {
                 let document = Document::parse(path, &text).unwrap();
                 let reader = Reader::new(&document);

@@ -50,8 +50,8 @@ pub fn message(kind: &str, case: &str) -> String {
         }
         "vehicle" => return vehicle(case, &String::from_utf8(bytes).unwrap()),
         "rig" => rig(case, &String::from_utf8(bytes).unwrap()),
-        "lubricant" => setup::load_lubricant(case, "--lubricant", &[], "").err(),
-        "plan" => Plan::open(case, "PLAN").and_then(Study::prepare).err(),
+        "lubricant" => setup::load_lubricant(case).err(),
+        "plan" => Plan::open(case).and_then(Study::prepare).err(),
         "rows" => rows(case, &bytes),
         "cover" => Cover::read(case).err(),
         "cycle" => cycle::read_csv(case, &bytes).err(),
@@ -99,7 +99,6 @@ fn map(case: &str, name: &str) -> Option<Problems> {
     };
     setup::load(
         vehicle,
-        "--vehicle",
         &Options {
             set: vec![format!("{key}={case}")],
             ..Options::default()
@@ -109,7 +108,7 @@ fn map(case: &str, name: &str) -> Option<Problems> {
 }
 
 fn vehicle(case: &str, text: &str) -> String {
-    let base = setup::load(base(text), "--vehicle", &Options::default())
+    let base = setup::load(base(text), &Options::default())
         .unwrap_or_else(|problems| panic!("{problems:?}"));
     let own = base
         .keys
@@ -120,7 +119,7 @@ fn vehicle(case: &str, text: &str) -> String {
     let path = folder.path().join("car.toml");
     std::fs::write(&path, completed(text, own)).unwrap();
     let path = path.to_str().unwrap();
-    let problems = setup::load(path, "--vehicle", &Options::default())
+    let problems = setup::load(path, &Options::default())
         .err()
         .unwrap_or_default();
     within(case, text, &problems);
@@ -244,7 +243,7 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
         }
         "lubricant" => {
             let read = |path: &str, _: &[u8]| {
-                rendered(setup::load_lubricant(path, "--lubricant", &[], "").err())
+                rendered(setup::load_lubricant(path).err())
             };
             vec![
                 made_file(

@@ -12,7 +12,7 @@ fn record_of(word: &str, set: &[&str], lubricant: Option<&str>) -> CarRecord {
         lubricant: lubricant.map(str::to_owned),
         ..Options::default()
     };
-    let setup = load(word, "--vehicle", &options).unwrap_or_else(|p| unreachable!("{p:?}"));
+    let setup = load(word, &options).unwrap_or_else(|p| unreachable!("{p:?}"));
     car_record("car", word, &options, &setup).unwrap_or_else(|p| unreachable!("{p:?}"))
 }
 

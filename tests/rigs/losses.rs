@@ -500,7 +500,7 @@ fn with_map(vehicle: &str, csv: &[u8], key: &str) -> Setup {
         set: vec![format!("{key}=map.csv")],
         ..Options::default()
     };
-    load(file.to_str().unwrap(), "--vehicle", &options)
+    load(file.to_str().unwrap(), &options)
         .unwrap_or_else(|p| panic!("{key}: {}", render(&p, false)))
 }
 
@@ -624,7 +624,7 @@ fn printed_forms() {
             formulation,
             ..Options::default()
         };
-        let bench = Bench::as_printed(&load("rover_216_cvt", "--vehicle", &options).unwrap());
+        let bench = Bench::as_printed(&load("rover_216_cvt", &options).unwrap());
         let point = BenchPoint {
             ratio: 2.3,
             input_rad_s: 2000.0 * RPM,

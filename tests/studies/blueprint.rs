@@ -24,7 +24,7 @@ fn options(set: &[&str]) -> Options {
 }
 
 fn blueprint(word: &str, options: &Options) -> (VehicleTemplate, Setup) {
-    VehicleTemplate::load(word, "--vehicle", options)
+    VehicleTemplate::load(word, options)
         .unwrap_or_else(|problems| panic!("{word}: {}", render(&problems, false)))
 }
 
@@ -51,7 +51,7 @@ fn ordinary(word: &str, options: &Options, numbers: &[(&str, f64)]) -> Result<St
             .iter()
             .map(|(key, number)| format!("{key}={number}").replace("NaN", "nan")),
     );
-    load(word, "--vehicle", &options).map(text)
+    load(word, &options).map(text)
 }
 
 /// What a bench makes of its numbers; that it counts problems if and only if there are any is checked here.
@@ -466,7 +466,7 @@ fn keys_without_a_slot() {
     for (car, key, hint) in unknown {
         let problem = blueprint(car, &Options::default()).0.slot(key).unwrap_err();
         let set = format!("{key}=0");
-        let ordinary = load(car, "--vehicle", &options(&[&set])).unwrap_err();
+        let ordinary = load(car, &options(&[&set])).unwrap_err();
         assert!(
             ordinary
                 .iter()
@@ -579,7 +579,6 @@ fn threads_agree() {
     };
     let setup = load(
         CARS[0],
-        "--vehicle",
         &options(&set.each_ref().map(String::as_str)),
     )
     .unwrap();

@@ -353,7 +353,7 @@ fn fitted_files_hold_what_was_fitted() {
         std::fs::write(folder.path().join(name), text).expect("written");
     }
     let path = folder.path().join("rover_216_cvt_fitted.toml");
-    let car = setup::load(&path.to_string_lossy(), "--vehicle", &Options::default())
+    let car = setup::load(&path.to_string_lossy(), &Options::default())
         .unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)));
     let info = |key: &str| car.keys.iter().find(|info| info.key == key).expect("a key");
     for p in &outcome.parameters {
@@ -396,7 +396,7 @@ fn fitted_files_hold_what_was_fitted() {
 fn shipped_plans_give_the_shipped_values() {
     let mut free = BTreeSet::new();
     for (name, _) in embedded_calibrations() {
-        let mut plan = load(name, "PLAN")
+        let mut plan = load(name)
             .unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)));
         plan.search.leave_out = false;
         let outcome = solved(&plan);
@@ -414,7 +414,7 @@ fn shipped_plans_give_the_shipped_values() {
         }
     }
     let car =
-        setup::load("rover_216_cvt", "--vehicle", &Options::default()).expect("the shipped car");
+        setup::load("rover_216_cvt", &Options::default()).expect("the shipped car");
     let fitted: BTreeSet<String> = car
         .keys
         .iter()
@@ -437,7 +437,7 @@ fn rows_and_plans_agree_on_what_was_fitted() {
     let files = cvtcycle::study::check::read(cvtcycle::study::check::COMMON, &texts)
         .expect("the shipped rows");
     for (name, _) in embedded_calibrations() {
-        let plan = load(name, "PLAN").expect("a shipped plan");
+        let plan = load(name).expect("a shipped plan");
         for id in &plan.rows {
             let row = files
                 .iter()

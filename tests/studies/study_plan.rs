@@ -490,7 +490,7 @@ fn in_the_cars(plan: &Plan) {
             continue;
         };
         for (car, end) in cars.iter().flat_map(|car| [(car, low), (car, high)]) {
-            let own = setup::load(car, "vehicle", &Options::default()).unwrap();
+            let own = setup::load(car, &Options::default()).unwrap();
             let own = own
                 .keys
                 .iter()
@@ -506,7 +506,7 @@ fn in_the_cars(plan: &Plan) {
                 set: vec![format!("{}={value}", factor.key)],
                 ..Options::default()
             };
-            setup::load(car, "vehicle", &options)
+            setup::load(car, &options)
                 .unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
         }
     }
@@ -515,7 +515,7 @@ fn in_the_cars(plan: &Plan) {
 #[test]
 fn plans_that_the_program_carries() {
     for (name, text) in embedded_plans() {
-        let plan = Plan::open(name, "PLAN")
+        let plan = Plan::open(name)
             .unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
         assert_eq!(
             (plan.file.as_str(), plan.text.as_str()),
@@ -526,7 +526,7 @@ fn plans_that_the_program_carries() {
         in_the_cars(&plan);
     }
     let points = |name: &str| {
-        Plan::open(name, "PLAN")
+        Plan::open(name)
             .map(|plan| plan.design.points(&plan.factors))
             .unwrap()
     };
@@ -534,19 +534,19 @@ fn plans_that_the_program_carries() {
         (points("pump_and_offset"), points("oil_at_minus_10")),
         (Some(35), Some(6))
     );
-    let oils = words(&Plan::open("oil_at_minus_10", "PLAN").unwrap().factors[0].values);
+    let oils = words(&Plan::open("oil_at_minus_10").unwrap().factors[0].values);
     assert_eq!(oils, ["dexron_ii", "dexron_iii", "cvtf_ezl799_class"]);
 }
 
 #[test]
 fn words_that_name_no_plan() {
-    let problems = Plan::open("pump_and_ofset", "PLAN").unwrap_err();
+    let problems = Plan::open("pump_and_ofset").unwrap_err();
     assert!(
         problems[0].place.file == "PLAN"
             && problems[0].hint.contains("did you mean `pump_and_offset`?"),
         "{problems:?}"
     );
-    let problems = Plan::open("no/such.toml", "PLAN").unwrap_err();
+    let problems = Plan::open("no/such.toml").unwrap_err();
     assert!(
         problems[0].message.contains("cannot read `no/such.toml`"),
         "{problems:?}"
@@ -555,10 +555,10 @@ fn words_that_name_no_plan() {
     let path = dir.path().join("own.toml");
     std::fs::write(&path, "[study]\ndesign = \"grid\"\nstart = \"x\"\n").unwrap();
     let path = path.to_string_lossy().into_owned();
-    assert_eq!(Plan::open(&path, "PLAN").unwrap_err()[0].place.file, path);
+    assert_eq!(Plan::open(&path).unwrap_err()[0].place.file, path);
     std::fs::write(&path, [0xff, 0x00]).unwrap();
     assert!(
-        Plan::open(&path, "PLAN").unwrap_err()[0]
+        Plan::open(&path).unwrap_err()[0]
             .message
             .contains("binary")
     );

@@ -1,6 +1,6 @@
 //! Choice of one of several options by the name of its table.
 use super::document::{Node, Table, Value};
-use super::near::suggest;
+use super::problem::Problem;
 use super::reader::join;
 use super::section::Section;
 use super::value::{Found, Lookup};
@@ -102,9 +102,7 @@ impl<'r> Section<'r> {
         if let Some(option) = options(key).find(|option| option == word) {
             return Choice::Given(option, found);
         }
-        let message = format!("`{word}` is not known for `{}`", join(&self.path, name));
-        let hint = suggest(word, &options(key).collect::<Vec<_>>());
-        self.report(&found.node.span, name, &key.allowed(), message, hint);
+        self.unknown_word(key, &found.node.span, word);
         Choice::Failed
     }
 
@@ -177,7 +175,7 @@ impl<'r> Section<'r> {
             if place.line > 0 {
                 format!("line {}", place.line)
             } else {
-                place.file
+                place.input.to_string()
             }
         };
         let name = join(&self.path, key.name);
@@ -188,8 +186,8 @@ impl<'r> Section<'r> {
             second.0,
             at(second.1)
         );
-        let hint = "keep one of them".to_string();
-        self.report(&second.1.span, key.name, &key.allowed(), message, hint);
+        let problem = Problem::conflict(message).allowed(key.allowed());
+        self.report(&second.1.span, key.name, problem.hint("keep one of them"));
         Choice::Failed
     }
 }
@@ -201,9 +199,5 @@ fn is_touched(node: &Node) -> bool {
 }
 
 fn names(word: &Node, option: &str) -> bool {
-    match &word.value {
-        Value::Text(text) => text == option,
-        Value::Table(table) => table.wrapped().is_some_and(|node| names(node, option)),
-        _ => false,
-    }
+    matches!(&word.inner().value, Value::Text(text) if text == option)
 }

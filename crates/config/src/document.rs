@@ -1,4 +1,4 @@
-//! A parsed text in which every value knows its place, and the assignments from the command line.
+//! A parsed text in which every value knows its place, and the overrides put into it.
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -6,9 +6,11 @@ use std::sync::Arc;
 
 use toml::de::{DeInteger, DeTable, DeValue};
 
-use super::problem::{Place, Problem, Problems};
+use super::place::{Input, Place};
+use super::problem::Problem;
+use super::problems::Problems;
 use super::shape::{self, Excess};
-use super::source::{Source, shortened};
+use super::source::{MAX_VALUE, Source, shortened};
 use super::syntax;
 
 /// A stretch of one source, in bytes.
@@ -19,7 +21,7 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// Whether it comes from an assignment rather than from the file.
+    /// Whether it comes from an override rather than from the file.
     pub fn is_set(&self) -> bool {
         self.source > 0
     }
@@ -30,6 +32,16 @@ impl Span {
 pub(super) struct Node {
     pub value: Value,
     pub span: Span,
+}
+
+impl Node {
+    /// The value itself where it is of the form `{ value = …, status = … }`.
+    pub fn inner(&self) -> &Node {
+        match &self.value {
+            Value::Table(table) => table.wrapped().unwrap_or(self),
+            _ => self,
+        }
+    }
 }
 
 /// A TOML value; integers too large for 64 bits are kept as floating-point numbers.
@@ -57,6 +69,33 @@ impl Value {
             Value::Table(_) => "a table",
         }
     }
+
+    /// A number as a file would have it: a whole one as an integer.
+    pub fn of(number: f64) -> Value {
+        const MAX: f64 = 9e18; // below the largest integer
+        let whole = number.trunc();
+        if whole.to_bits() == number.to_bits() && (-MAX..=MAX).contains(&whole) {
+            Value::Integer(whole as i64)
+        } else {
+            Value::Float(number)
+        }
+    }
+
+    /// Says that all of it comes from the source of that index.
+    pub fn move_to(&mut self, source: usize) {
+        let node = |node: &mut Node| {
+            node.span.source = source;
+            node.value.move_to(source);
+        };
+        match self {
+            Value::List(items) => items.iter_mut().for_each(node),
+            Value::Table(table) => table.entries.values_mut().for_each(|entry| {
+                entry.key.source = source;
+                node(&mut entry.node);
+            }),
+            _ => {}
+        }
+    }
 }
 
 /// A table: its entries, and the option that an assignment names for it.
@@ -72,7 +111,17 @@ impl Table {
         self.entries.get("value").map(|entry| &entry.node)
     }
 
-    /// Whether an assignment reaches into it.
+    /// The table at a path of tables in it.
+    pub fn inner_mut(&mut self, path: &[Box<str>]) -> Option<&mut Table> {
+        path.iter().try_fold(self, |table, key| {
+            match &mut table.entries.get_mut(&**key)?.node.value {
+                Value::Table(inner) => Some(inner),
+                _ => None,
+            }
+        })
+    }
+
+    /// Whether an override reaches into it.
     pub fn is_touched(&self) -> bool {
         self.entries.values().any(|entry| match &entry.node.value {
             Value::Table(table) => entry.node.span.is_set() || table.is_touched(),
@@ -106,7 +155,7 @@ impl Document {
     /// All places where the text is not valid TOML, at most one per line; beyond some number the rest is counted. One problem where the
     /// text has more tables or is nested deeper than any input could be.
     pub fn parse(file: &str, text: &str) -> Result<Document, Problems> {
-        let source = Source::new(file, text, true);
+        let source = Source::new(Input::File(file.to_owned()), text);
         if let Some(excess) = shape::excess(text) {
             return Err(too_much(&source, excess).into());
         }
@@ -114,10 +163,7 @@ impl Document {
         if !errors.is_empty() {
             return Err(syntax::problems(&source, &errors));
         }
-        let levels = Levels {
-            source: 0,
-            too_deep: Cell::new(None),
-        };
+        let levels = Levels::default();
         let root = levels.table(table.get_ref(), 0);
         match levels.too_deep.take() {
             Some(at) => Err(nested(&source, at).into()),
@@ -175,61 +221,58 @@ impl Document {
 
     /// The text of a span as it is repeated in a problem: cut where it is long.
     pub(super) fn shown(&self, span: &Span) -> String {
-        shortened(self.written(span))
+        shortened(self.written(span), MAX_VALUE)
     }
 }
 
 fn too_much(source: &Source, excess: Excess) -> Problem {
-    let hint =
+    let file =
         "is this the file that was meant? measured values belong into a CSV file that it names";
-    let (at, allowed, message, hint) = match excess {
+    let key = "a dotted key is `table.table.key`; text is written in quotes";
+    let (at, limit, what, message, hint) = match excess {
         Excess::Tables(at) => (
             at,
-            format!("up to {} tables", shape::MAX_TABLES),
+            shape::MAX_TABLES,
+            "tables",
             "the file has too many tables",
-            hint,
+            file,
         ),
         Excess::Keys(at) => (
             at,
-            format!("up to {} keys", shape::MAX_KEYS),
+            shape::MAX_KEYS,
+            "keys",
             "the file has too many keys",
-            hint,
+            file,
         ),
-        Excess::Names(at) => {
-            let hint = "a dotted key is `table.table.key`; text is written in quotes";
-            (
-                at,
-                format!("up to {} names", shape::MAX_NAMES),
-                "this key has too many names",
-                hint,
-            )
-        }
+        Excess::Names(at) => (
+            at,
+            shape::MAX_NAMES,
+            "names",
+            "this key has too many names",
+            key,
+        ),
     };
-    Problem::invalid(message.to_string())
+    Problem::too_large(message)
         .at(source.place(at..at + 1))
-        .allowed(allowed)
-        .hint(hint.to_string())
+        .allowed(format!("up to {limit} {what}"))
+        .hint(hint)
 }
 
 fn nested(source: &Source, at: usize) -> Problem {
-    Problem::invalid("tables and lists are nested too deep here")
+    Problem::too_large("tables and lists are nested too deep here")
         .at(source.place(at..at + 1))
         .allowed(format!("up to {} levels", shape::MAX_LEVELS))
         .hint("is a bracket too many open?")
 }
 
-/// The value of an assignment; what is nested too deep is left out, which a command line hardly can be.
-pub(super) fn convert(value: &DeValue<'_>, source: usize) -> Value {
-    Levels {
-        source,
-        too_deep: Cell::new(None),
-    }
-    .value(value, 0)
+/// The value of an override, as of the first source; what is nested too deep is left out, which a command line hardly can be.
+pub(super) fn convert(value: &DeValue<'_>) -> Value {
+    Levels::default().value(value, 0)
 }
 
 /// The parser's values to those that are kept, down to the deepest level.
+#[derive(Default)]
 struct Levels {
-    source: usize,
     /// The first byte below it.
     too_deep: Cell<Option<usize>>,
 }
@@ -250,33 +293,21 @@ impl Levels {
     }
 
     fn node(&self, value: &toml::Spanned<DeValue<'_>>, level: usize) -> Node {
-        let range = value.span();
-        if level >= shape::MAX_LEVELS {
-            self.too_deep.set(self.too_deep.get().or(Some(range.start)));
-            return Node {
-                value: Value::Date,
-                span: Span {
-                    source: self.source,
-                    range,
-                },
-            };
-        }
-        Node {
-            value: self.value(value.get_ref(), level + 1),
-            span: Span {
-                source: self.source,
-                range,
-            },
-        }
+        let span = of_file(value.span());
+        let value = if level < shape::MAX_LEVELS {
+            self.value(value.get_ref(), level + 1)
+        } else {
+            let first = self.too_deep.get().or(Some(span.range.start));
+            self.too_deep.set(first);
+            Value::Date
+        };
+        Node { value, span }
     }
 
     fn table(&self, table: &DeTable<'_>, level: usize) -> Table {
         let entries = table.iter().map(|(key, value)| {
             let entry = Entry {
-                key: Span {
-                    source: self.source,
-                    range: key.span(),
-                },
+                key: of_file(key.span()),
                 node: self.node(value, level),
             };
             (key.get_ref().to_string(), entry)
@@ -286,6 +317,10 @@ impl Levels {
             choice: None,
         }
     }
+}
+
+fn of_file(range: Range<usize>) -> Span {
+    Span { source: 0, range }
 }
 
 fn convert_integer(integer: &DeInteger<'_>) -> Value {

@@ -1,5 +1,9 @@
 //! Reading of lists and of tables of numbers.
+use std::fmt;
+
 use super::document::{Node, Value};
+use super::overrides::Override;
+use super::problem::Problem;
 use super::reader::join;
 use super::section::Section;
 use super::value::Lookup;
@@ -24,8 +28,8 @@ impl Section<'_> {
                         let path = join(&self.path, key.name);
                         let (count, found_count) = (count(least, most), values.len());
                         let message = format!("`{path}`: expected {count}, found {found_count}");
-                        let span = &found.node.span;
-                        self.report(span, key.name, &key.allowed(), message, String::new());
+                        let problem = Problem::wrong_type(message).allowed(key.allowed());
+                        self.report(&found.node.span, key.name, problem);
                     }
                 } else {
                     self.wrong_type(key.name, found.node, "a list of numbers");
@@ -80,7 +84,8 @@ impl Section<'_> {
                     }
                     _ => "the end lies above the beginning and the step above 0, as in \"1000..4000:250\"".to_string(),
                 };
-                self.report(&node.span, key.name, &key.allowed(), message, hint);
+                let problem = Problem::syntax(message).allowed(key.allowed());
+                self.report(&node.span, key.name, problem.hint(hint));
             }
         }
         vec![f64::NAN]
@@ -88,6 +93,28 @@ impl Section<'_> {
 
     /// Texts of a list; empty if the key is absent.
     pub fn texts(&self, key: &str, doc: &str) -> Vec<String> {
+        self.list(key, doc, |_, text| Some(text.to_owned()))
+    }
+
+    /// Overrides of a list of texts `KEY=VALUE`; empty if the key is absent.
+    pub fn overrides(&self, key: &str, doc: &str) -> Vec<Override> {
+        let example = "write, for example, \"road_load.mass_kg=1250\"";
+        self.list(key, doc, |item, text| {
+            let read = text.parse::<Override>().map_err(|problem| {
+                let problem = problem.allowed("KEY=VALUE").hint(example);
+                self.report(&item.span, key, problem);
+            });
+            read.ok()
+        })
+    }
+
+    /// What `read` makes of the texts of a list; empty if the key is absent.
+    fn list<T: fmt::Debug>(
+        &self,
+        key: &str,
+        doc: &str,
+        read: impl Fn(&Node, &str) -> Option<T>,
+    ) -> Vec<T> {
         let found = match self.open(&Key::new(key, (Kind::Texts, Presence::Optional), doc)) {
             Lookup::Found(found) => found,
             Lookup::Absent => {
@@ -101,13 +128,13 @@ impl Section<'_> {
             return Vec::new();
         };
         let text = |item: &Node| match &item.value {
-            Value::Text(text) => Some(text.clone()),
+            Value::Text(text) => read(item, text),
             _ => {
                 self.wrong_type(key, item, "text");
                 None
             }
         };
-        let texts: Vec<String> = items.iter().filter_map(text).collect();
+        let texts: Vec<T> = items.iter().filter_map(text).collect();
         self.given(key, &found, format_args!("{texts:?}"), None);
         texts
     }
@@ -162,7 +189,8 @@ impl Section<'_> {
             let (expected, found) = (columns.len(), cells.len());
             let message = format!("`{path}`: expected {expected} numbers in a row, found {found}");
             let hint = format!("write [{}]", names.join(", "));
-            self.report(&node.span, key.name, &key.allowed(), message, hint);
+            let problem = Problem::wrong_type(message).allowed(key.allowed());
+            self.report(&node.span, key.name, problem.hint(hint));
             return None;
         }
         // All cells are looked at before the row is dropped, so that every problem is reported.

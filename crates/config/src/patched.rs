@@ -3,12 +3,11 @@ use std::sync::Arc;
 
 use super::assign::{insert, is_word};
 use super::document::{Document, Entry, Node, Span, Table, Value};
+use super::overrides::KeyPath;
+use super::place::Input;
 use super::source::Source;
 
-/// Dotted key, taken apart.
-pub type KeyPath = Arc<[Box<str>]>;
-
-/// A document with numbers put over those of the file, as assignments from the command line would. It has only what the program computes
+/// A document with numbers put over those of the file, as overrides would. It has only what the program computes
 /// with, neither the text nor the origin of values: check-only readings need no more, and any other would have problems without a place.
 #[derive(Clone, Debug)]
 pub struct PatchedDocument {
@@ -29,10 +28,10 @@ struct Change {
 }
 
 impl PatchedDocument {
-    /// A draft of a document, without any change.
+    /// A copy of a document, without any change.
     pub fn new(document: &Document) -> Self {
         let source = document.sources.len();
-        let without_text = Arc::new(Source::new("", "", false));
+        let without_text = Arc::new(Source::new(Input::Override(String::new()), ""));
         let document = Document {
             sources: vec![without_text; source + 1],
             root: bare(&document.root),
@@ -51,11 +50,11 @@ impl PatchedDocument {
         &self.document
     }
 
-    /// Puts a number, in the key's own unit, at a path, as `--set` would: whole numbers as integers. Whether that was possible: a value
+    /// Puts a number, in the key's own unit, at a path, as an override would: whole numbers as integers. Whether that was possible: a value
     /// may be where the path needs a table.
     #[must_use]
     pub fn set(&mut self, path: &KeyPath, number: f64) -> bool {
-        let (root, value) = (&mut self.document.root, written(number));
+        let (root, value) = (&mut self.document.root, Value::of(number));
         if let Some(entry) = entry_mut(root, path)
             && entry.node.span.source == self.source
             && !matches!(entry.node.value, Value::Table(_))
@@ -101,26 +100,6 @@ impl PatchedDocument {
             replace(&mut self.document.root, &path[..=depth], before);
         }
     }
-
-    /// The numbers put in, in the order in which they came.
-    pub fn numbers(&self) -> impl Iterator<Item = (String, f64)> + '_ {
-        self.changes.iter().filter_map(|change| {
-            let (last, parents) = change.path.split_last()?;
-            let table =
-                parents.iter().try_fold(&self.document.root, |table, key| {
-                    match &table.entries.get(&**key)?.node.value {
-                        Value::Table(inner) => Some(inner),
-                        _ => None,
-                    }
-                })?;
-            let number = match table.entries.get(&**last)?.node.value {
-                Value::Integer(number) => number as f64,
-                Value::Float(number) => number,
-                _ => return None,
-            };
-            Some((change.path.join("."), number))
-        })
-    }
 }
 
 /// The table with `{ value = X, status = … }` as X.
@@ -153,17 +132,6 @@ fn bare(table: &Table) -> Table {
     }
 }
 
-/// A number as a file would have it.
-fn written(number: f64) -> Value {
-    const MOST: f64 = 9e18; // below the largest integer
-    let whole = number.trunc();
-    if whole.to_bits() == number.to_bits() && (-MOST..=MOST).contains(&whole) {
-        Value::Integer(whole as i64)
-    } else {
-        Value::Float(number)
-    }
-}
-
 /// Depth of the first entry of the path that a number there would change; none if a value is in the way.
 fn outermost_change(root: &Table, path: &[Box<str>]) -> Option<usize> {
     let mut table = root;
@@ -184,22 +152,13 @@ fn outermost_change(root: &Table, path: &[Box<str>]) -> Option<usize> {
 /// The entry at a path.
 fn entry_mut<'t>(root: &'t mut Table, path: &[Box<str>]) -> Option<&'t mut Entry> {
     let (last, parents) = path.split_last()?;
-    table_mut(root, parents)?.entries.get_mut(&**last)
-}
-
-fn table_mut<'t>(root: &'t mut Table, path: &[Box<str>]) -> Option<&'t mut Table> {
-    path.iter().try_fold(root, |table, key| {
-        match &mut table.entries.get_mut(&**key)?.node.value {
-            Value::Table(inner) => Some(inner),
-            _ => None,
-        }
-    })
+    root.inner_mut(parents)?.entries.get_mut(&**last)
 }
 
 /// Puts an entry, or none, at a path whose tables exist, and gives what stood there.
 fn replace(root: &mut Table, path: &[Box<str>], entry: Option<Entry>) -> Option<Entry> {
     let (last, parents) = path.split_last()?;
-    let table = table_mut(root, parents)?;
+    let table = root.inner_mut(parents)?;
     match (entry, table.entries.get_mut(&**last)) {
         (Some(entry), Some(place)) => Some(std::mem::replace(place, entry)),
         (Some(entry), None) => table.entries.insert(last.to_string(), entry),

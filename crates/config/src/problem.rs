@@ -1,35 +1,10 @@
 //! What is wrong with an input, as data: kind, place, value, allowed range and a hint.
 
 use std::fmt;
-use std::ops::{Deref, DerefMut};
 
 use serde::Serialize;
 
-/// Location in the user's input.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Place {
-    /// File name as the user gave it, `embedded:NAME`, or `--set` / `--ambient` for the command line.
-    pub file: String,
-    /// Line, counted from 1; 0 where the input has no lines.
-    pub line: usize,
-    /// Column of the first character of the value, counted from 1; 0 where unknown.
-    pub column: usize,
-    /// The text of that line, for the caret; empty where unknown.
-    pub line_text: String,
-    /// Number of characters that the caret underlines.
-    pub width: usize,
-}
-
-impl Place {
-    /// A whole file, or an option of the command line.
-    #[must_use]
-    pub fn file(file: impl Into<String>) -> Self {
-        Place {
-            file: file.into(),
-            ..Place::default()
-        }
-    }
-}
+use super::place::{Input, Place};
 
 macro_rules! kinds {
     ($($kind:ident $constructor:ident $doc:literal;)*) => {
@@ -74,14 +49,14 @@ kinds! {
     Stopped stopped "The user or a time limit stopped the work.";
 }
 
-/// One problem of the user's input. All problems of an input are collected before any is shown.
+/// One problem of an input.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Problem {
     /// What kind of problem it is.
     pub kind: ProblemKind,
     /// Where it is.
     pub place: Place,
-    /// Dotted key, CSV column name or option; empty where the whole file is meant.
+    /// Dotted key or CSV column name; empty where the whole input is meant.
     pub key: String,
     /// The offending value as written; empty where something is missing.
     pub value: String,
@@ -118,19 +93,20 @@ impl Problem {
         Problem { kind, ..self }
     }
 
-    /// At this place.
+    /// At this place, in this input or in this argument.
     #[must_use]
-    pub fn at(self, place: Place) -> Self {
+    pub fn at(self, place: impl Into<Place>) -> Self {
+        let place = place.into();
         Problem { place, ..self }
     }
 
-    /// In this file or option, without a line.
+    /// In this file, without a line.
     #[must_use]
     pub fn in_file(self, file: impl Into<String>) -> Self {
         self.at(Place::file(file))
     }
 
-    /// Of this key, column or option.
+    /// Of this key or column.
     #[must_use]
     pub fn key(self, key: impl Into<String>) -> Self {
         let key = key.into();
@@ -181,7 +157,7 @@ impl Problem {
 
     /// The last entry of a list that would be too long: how many more problems the file has.
     #[must_use]
-    pub fn more(file: &str, count: usize) -> Self {
+    pub fn more(input: Input, count: usize) -> Self {
         let more = if count == 1 {
             "problem is"
         } else {
@@ -191,7 +167,7 @@ impl Problem {
             ProblemKind::NotShown(count),
             format!("{count} more {more} not shown"),
         )
-        .in_file(file)
+        .at(input)
         .hint("mend the ones above first; they often have one cause")
     }
 
@@ -208,11 +184,11 @@ impl Problem {
 impl fmt::Display for Problem {
     /// One line: place, message, hint.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Place { file, line, .. } = &self.place;
-        match (file.as_str(), *line) {
-            ("", _) => {}
-            (file, 0) => write!(f, "{file}: ")?,
-            (file, line) => write!(f, "{file}:{line}: ")?,
+        let Place { input, line, .. } = &self.place;
+        match line {
+            _ if *input == Input::default() => {}
+            0 => write!(f, "{input}: ")?,
+            line => write!(f, "{input}:{line}: ")?,
         }
         f.write_str(&self.message)?;
         if self.hint.is_empty() {
@@ -225,218 +201,11 @@ impl fmt::Display for Problem {
 
 impl std::error::Error for Problem {}
 
-/// All problems of an input; the error of what reads or checks one.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(transparent)]
-pub struct Problems(Vec<Problem>);
-
-/// Most problems of one input that are described.
-const MAX_DESCRIBED: usize = 1000;
-
-impl Problems {
-    /// No problems.
-    #[must_use]
-    pub fn new() -> Self {
-        Problems::default()
-    }
-
-    /// Adds one, whatever their number.
-    pub fn push(&mut self, problem: Problem) {
-        self.0.push(problem);
-    }
-
-    /// Keeps those for which `keep` is true.
-    pub fn retain(&mut self, keep: impl FnMut(&Problem) -> bool) {
-        self.0.retain(keep);
-    }
-
-    /// Removes the one at `index`, which is below their number.
-    pub fn remove(&mut self, index: usize) -> Problem {
-        self.0.remove(index)
-    }
-
-    /// Removes the last one.
-    pub fn pop(&mut self) -> Option<Problem> {
-        self.0.pop()
-    }
-
-    /// Adds the problems of a part of an input after those of the parts before it. Beyond some number they are counted only, in one last
-    /// entry: a file of nothing but mistakes has more of them than its own size in memory.
-    pub fn append(&mut self, found: Problems) {
-        let all = &mut self.0;
-        let mut rest = all.pop_if(|last| last.not_shown().is_some());
-        for problem in found {
-            match (problem.not_shown(), all.len() < MAX_DESCRIBED) {
-                (None, true) => all.push(problem),
-                (count, _) => {
-                    let before = rest.and_then(|rest| rest.not_shown()).unwrap_or(0);
-                    rest = Some(Problem::more(
-                        &problem.place.file,
-                        before + count.unwrap_or(1),
-                    ));
-                }
-            }
-        }
-        all.extend(rest);
-    }
-
-    /// These problems after a change of each.
-    #[must_use]
-    pub fn map(self, change: impl FnMut(Problem) -> Problem) -> Self {
-        self.into_iter().map(change).collect()
-    }
-
-    /// The value; none after adding its problems.
-    pub fn take<T>(&mut self, result: Result<T, impl Into<Problems>>) -> Option<T> {
-        result
-            .map_err(|found| found.into().into_iter().for_each(|one| self.add(one)))
-            .ok()
-    }
-
-    /// Adds a problem unless it is known: two cars may name the same bad file.
-    pub fn add(&mut self, problem: Problem) {
-        if !self.contains(&problem) {
-            self.push(problem);
-        }
-    }
-
-    /// Nothing, or all problems.
-    ///
-    /// # Errors
-    /// There are problems.
-    pub fn finish(self) -> Result<(), Problems> {
-        if self.is_empty() { Ok(()) } else { Err(self) }
-    }
-}
-
-impl Deref for Problems {
-    type Target = [Problem];
-
-    fn deref(&self) -> &[Problem] {
-        &self.0
-    }
-}
-
-impl DerefMut for Problems {
-    fn deref_mut(&mut self) -> &mut [Problem] {
-        &mut self.0
-    }
-}
-
-impl From<Problem> for Problems {
-    fn from(problem: Problem) -> Self {
-        Problems(vec![problem])
-    }
-}
-
-impl From<Vec<Problem>> for Problems {
-    fn from(problems: Vec<Problem>) -> Self {
-        Problems(problems)
-    }
-}
-
-impl From<Problems> for Vec<Problem> {
-    fn from(problems: Problems) -> Self {
-        problems.0
-    }
-}
-
-impl FromIterator<Problem> for Problems {
-    fn from_iter<I: IntoIterator<Item = Problem>>(problems: I) -> Self {
-        Problems(problems.into_iter().collect())
-    }
-}
-
-impl Extend<Problem> for Problems {
-    fn extend<I: IntoIterator<Item = Problem>>(&mut self, problems: I) {
-        self.0.extend(problems);
-    }
-}
-
-impl IntoIterator for Problems {
-    type Item = Problem;
-    type IntoIter = std::vec::IntoIter<Problem>;
-
-    fn into_iter(self) -> Self::IntoIter {
-        self.0.into_iter()
-    }
-}
-
-impl<'p> IntoIterator for &'p Problems {
-    type Item = &'p Problem;
-    type IntoIter = std::slice::Iter<'p, Problem>;
-
-    fn into_iter(self) -> Self::IntoIter {
-        self.0.iter()
-    }
-}
-
-impl fmt::Display for Problems {
-    /// One line for each problem.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (k, problem) in self.iter().enumerate() {
-            if k > 0 {
-                f.write_str("\n")?;
-            }
-            problem.fmt(f)?;
-        }
-        Ok(())
-    }
-}
-
-impl std::error::Error for Problems {}
-
 /// A number for a sentence: so many decimals, and with a power of ten where the figures before the point would be no help.
 pub fn readable(x: f64, decimals: usize) -> String {
     if x.abs() < 1e6 {
         format!("{x:.decimals$}")
     } else {
         format!("{x:.1e}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn some(count: usize) -> Problems {
-        (0..count)
-            .map(|_| Problem::invalid("no").in_file("f"))
-            .collect()
-    }
-
-    #[test]
-    fn problems_beyond_some_number_are_counted_together() {
-        let mut all = Problems::new();
-        all.append(some(MAX_DESCRIBED - 1));
-        assert_eq!(all.len(), MAX_DESCRIBED - 1);
-        all.append(some(2));
-        assert_eq!(all[MAX_DESCRIBED].message, "1 more problem is not shown");
-        let mut found = some(3);
-        found.push(Problem::more("f", 70));
-        all.append(found);
-        all.append(Problems::new());
-        assert_eq!(
-            (all.len(), &all[MAX_DESCRIBED]),
-            (MAX_DESCRIBED + 1, &Problem::more("f", 74))
-        );
-        assert!(
-            all[..MAX_DESCRIBED]
-                .iter()
-                .all(|problem| problem.not_shown().is_none())
-        );
-        let mut short = some(1);
-        short.append(Problem::more("g", 5).into());
-        short.append(some(1));
-        assert_eq!((short.len(), short[2].not_shown()), (3, Some(5)));
-        assert_eq!(short.iter().filter_map(Problem::not_shown).count(), 1);
-    }
-
-    #[test]
-    fn problems_are_an_error_with_text() {
-        let mut problems = some(1);
-        problems.push(Problem::missing("no mass").hint("add it"));
-        let error: Box<dyn std::error::Error> = Box::new(problems);
-        assert_eq!(error.to_string(), "f: no\nno mass (add it)");
     }
 }

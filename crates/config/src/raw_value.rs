@@ -1,7 +1,8 @@
 //! Values as they are written: in the unit of their key and each with its place, for inputs in which another key decides what a value
 //! has to be.
 use super::document::{Node, Value};
-use super::problem::Place;
+use super::place::Place;
+use super::problem::Problem;
 use super::section::Section;
 use super::value::Lookup;
 use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Quantity};
@@ -109,13 +110,12 @@ impl<'r> RawValue<'r> {
     }
 
     /// Reports it.
+    pub fn report(&self, problem: Problem) {
+        self.section.report(&self.node.span, &self.key, problem);
+    }
+
+    /// Reports that it does not fit.
     pub fn complain(&self, allowed: &str, message: &str, hint: &str) {
-        self.section.report(
-            &self.node.span,
-            &self.key,
-            allowed,
-            message.to_string(),
-            hint.to_string(),
-        );
+        self.report(Problem::invalid(message).allowed(allowed).hint(hint));
     }
 }

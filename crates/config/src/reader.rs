@@ -2,12 +2,13 @@
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, HashMap};
 
-use super::document::{Document, Entry, Span, Table, Value};
-use super::near::{is_suggestion, similarity, suggestion};
-use super::problem::{Place, Problem, Problems};
+use super::document::Document;
+use super::place::Place;
+use super::problem::Problem;
+use super::problems::Problems;
 use super::section::Section;
+use super::unknown::{parent, unread};
 use crate::setup::Files;
-use cvtcycle_model::keys::{Quantity, stem};
 
 /// What is known about one key after reading it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,9 +37,6 @@ pub struct KeyInfo {
 
 /// Problems of one document that are put into words; the rest is counted.
 const MAX_SHOWN: usize = 500;
-
-/// Similarity above which a name in another table may be what was meant: short names of all tables are like each other.
-const ELSEWHERE: f64 = 0.75;
 
 #[derive(Default)]
 pub(super) struct Log {
@@ -76,10 +74,8 @@ impl<'d> Reader<'d> {
     /// Starts to read `document`.
     pub fn new(document: &'d Document) -> Self {
         Reader {
-            document,
             log: Some(RefCell::default()),
-            problem_count: Cell::new(0),
-            files: None,
+            ..Reader::check_only(document)
         }
     }
 
@@ -117,10 +113,23 @@ impl<'d> Reader<'d> {
 
     /// Counts a problem; `message` describes it, except in a check-only session or after many.
     pub(super) fn report(&self, message: impl FnOnce() -> Problem) {
+        self.count(|log| &mut log.problems, message);
+    }
+
+    /// Counts a missing key, apart from other problems.
+    pub(super) fn report_missing(&self, message: impl FnOnce() -> Problem) {
+        self.count(|log| &mut log.missing, message);
+    }
+
+    fn count(
+        &self,
+        list: impl FnOnce(&mut Log) -> &mut Vec<Problem>,
+        message: impl FnOnce() -> Problem,
+    ) {
         self.problem_count.set(self.problem_count.get() + 1);
         self.record(|log| {
             if log.has_room() {
-                log.problems.push(message());
+                list(log).push(message());
             } else {
                 log.more += 1;
             }
@@ -130,18 +139,6 @@ impl<'d> Reader<'d> {
     /// Problems so far.
     pub(super) fn problem_count(&self) -> usize {
         self.problem_count.get()
-    }
-
-    /// Counts a missing key, apart from other problems.
-    pub(super) fn report_missing(&self, message: impl FnOnce() -> Problem) {
-        self.problem_count.set(self.problem_count.get() + 1);
-        self.record(|log| {
-            if log.has_room() {
-                log.missing.push(message());
-            } else {
-                log.more += 1;
-            }
-        });
     }
 
     /// The table of the whole document.
@@ -203,7 +200,7 @@ impl<'d> Reader<'d> {
             document
                 .sources
                 .iter()
-                .position(|source| source.name == place.file)
+                .position(|source| source.input == place.input)
         };
         log.problems.sort_by_key(|problem| {
             let place = &problem.place;
@@ -216,7 +213,7 @@ impl<'d> Reader<'d> {
             }
         }
         if log.more > 0 {
-            problems.push(Problem::more(&document.sources[0].name, log.more));
+            problems.push(Problem::more(document.sources[0].input.clone(), log.more));
         }
         Err(problems)
     }
@@ -224,8 +221,13 @@ impl<'d> Reader<'d> {
 
 impl Log {
     /// Whether another problem is to be put into words.
-    fn has_room(&self) -> bool {
+    pub fn has_room(&self) -> bool {
         self.problems.len() + self.missing.len() < MAX_SHOWN
+    }
+
+    /// What is known about the key at a path.
+    pub fn info(&mut self, path: &str) -> Option<&mut KeyInfo> {
+        self.keys.get_mut(*self.index.get(path)?)
     }
 
     /// Adds a key; the first reading counts if it is read twice.
@@ -234,160 +236,6 @@ impl Log {
             self.index.insert(info.key.clone(), self.keys.len());
             self.keys.push(info);
         }
-    }
-
-    /// The problem of an entry that was not read, and the known key it most likely means.
-    fn unknown(&self, document: &Document, path: &str, entry: &Entry) -> (Problem, Option<String>) {
-        let is_table =
-            matches!(&entry.node.value, Value::Table(table) if table.wrapped().is_none());
-        let span = if is_table {
-            &entry.node.span
-        } else {
-            &entry.key
-        };
-        let mut problem = Problem::unknown_key(format!(
-            "unknown {} `{path}`",
-            if is_table { "table" } else { "key" }
-        ))
-        .at(document.place(span))
-        .key(path.to_string())
-        .value(if is_table {
-            String::new()
-        } else {
-            document.shown(&entry.node.span)
-        });
-        if self.tables.contains(path) {
-            if let Value::Table(Table {
-                choice: Some(word), ..
-            }) = &entry.node.value
-            {
-                (problem.place, problem.value) =
-                    (document.place(&word.span), document.shown(&word.span));
-            }
-            problem.message = format!("`{path}` is a table, not a value");
-            return (problem, None);
-        }
-        if let Some(known) = self.other_unit(path, span) {
-            let (unit, shown) = (Quantity::of(known).unit(), shown(path, known, span));
-            problem.message = match Quantity::of(last(path)).unit() {
-                "-" => format!("no unit: `{path}` is not known, `{shown}` is"),
-                _ => format!("wrong unit: `{path}` is not known, `{shown}` is"),
-            };
-            problem.hint = match unit {
-                "-" => format!("write `{shown}`, which has no unit"),
-                unit => format!("give the value in {unit} as `{shown}`"),
-            };
-            return (problem, Some(known.to_string()));
-        }
-        let names = self.nearest(path);
-        let meant = names
-            .first()
-            .filter(|name| span.is_set() || parent(name) == parent(path));
-        let shown: Vec<&str> = names.iter().map(|name| shown(path, name, span)).collect();
-        problem = problem.suggest(&shown);
-        problem.hint = if names.is_empty() {
-            self.neighbours(path)
-        } else {
-            suggestion(&shown).unwrap_or_default()
-        };
-        (problem, meant.map(|name| (*name).to_string()))
-    }
-
-    fn known(&self) -> impl Iterator<Item = &str> {
-        self.keys
-            .iter()
-            .map(|info| info.key.as_str())
-            .chain(self.tables.iter().map(String::as_str))
-    }
-
-    /// The known key for the same quantity in another unit; assignments may name the wrong table too.
-    fn other_unit(&self, path: &str, span: &Span) -> Option<&str> {
-        let same = |key: &&str| {
-            stem(last(key)) == stem(last(path)) && (span.is_set() || parent(key) == parent(path))
-        };
-        let keys = || self.keys.iter().map(|info| info.key.as_str());
-        let misplaced = keys().any(|key| last(key) == last(path));
-        keys()
-            .filter(|_| !misplaced)
-            .filter(same)
-            .max_by(|a, b| similarity(a, path).total_cmp(&similarity(b, path)))
-    }
-
-    /// Up to three known paths like this one. The last names decide, whole paths only between equals:
-    /// paths share long beginnings, which say nothing about the slip.
-    fn nearest(&self, path: &str) -> Vec<&str> {
-        let lower = path.to_lowercase();
-        let mut rated: Vec<(f64, f64, &str)> = self
-            .known()
-            .map(|known| {
-                (
-                    similarity(last(known), last(&lower)),
-                    similarity(known, &lower),
-                    known,
-                )
-            })
-            .filter(|(own, _, known)| {
-                is_suggestion(*own)
-                    && *known != path
-                    && (parent(known) == parent(path) || *own > ELSEWHERE)
-            })
-            .collect();
-        rated.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
-        rated
-            .into_iter()
-            .take(3)
-            .map(|(_, _, known)| known)
-            .collect()
-    }
-
-    /// Known names in the table of an entry that is similar to none.
-    fn neighbours(&self, path: &str) -> String {
-        let names: BTreeSet<&str> = self
-            .known()
-            .filter(|known| parent(known) == parent(path))
-            .map(last)
-            .collect();
-        if names.is_empty() || names.len() > 12 {
-            return "remove it".to_string();
-        }
-        let names: Vec<&str> = names.into_iter().collect();
-        format!("remove it; known here: {}", names.join(", "))
-    }
-}
-
-/// Collects the entries that were not read; an unknown table counts as one entry.
-fn unread<'t>(log: &Log, table: &'t Table, path: &str, unknown: &mut Vec<(String, &'t Entry)>) {
-    for (name, entry) in &table.entries {
-        let path = join(path, name);
-        if log.read.contains(&path) {
-            continue;
-        }
-        match &entry.node.value {
-            Value::Table(inner) if log.tables.contains(&path) => {
-                if inner.choice.is_some() && !log.choices.contains(&path) {
-                    unknown.push((path.clone(), entry));
-                }
-                unread(log, inner, &path, unknown);
-            }
-            // An assignment makes its tables itself: the user wrote the whole path.
-            Value::Table(inner)
-                if entry.node.span.is_set()
-                    && inner.wrapped().is_none()
-                    && !inner.entries.is_empty() =>
-            {
-                unread(log, inner, &path, unknown);
-            }
-            _ => unknown.push((path, entry)),
-        }
-    }
-}
-
-/// A known path as the user should write it: the bare name within the same table of a file.
-fn shown<'k>(path: &str, known: &'k str, span: &Span) -> &'k str {
-    if !span.is_set() && parent(path) == parent(known) {
-        last(known)
-    } else {
-        known
     }
 }
 
@@ -408,12 +256,4 @@ pub(super) fn join(path: &str, name: &str) -> String {
     } else {
         format!("{path}.{name}")
     }
-}
-
-fn last(path: &str) -> &str {
-    path.rsplit('.').next().unwrap_or(path)
-}
-
-fn parent(path: &str) -> &str {
-    path.rsplit_once('.').map_or("", |(parent, _)| parent)
 }

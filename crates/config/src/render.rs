@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
-use super::problem::{Place, Problem};
+use super::place::{Input, Place};
+use super::problem::Problem;
 
 /// Widest text that is shown without being cut.
 const WIDTH: usize = 120;
@@ -30,24 +31,21 @@ pub fn render(problems: &[Problem], colour: bool) -> String {
         text.push_str(&renderer.render(&[group(problem)]));
         text.push_str("\n\n");
     }
-    let files: BTreeSet<&str> = problems
+    let inputs: BTreeSet<String> = problems
         .iter()
-        .map(|problem| problem.place.file.as_str())
+        .map(|problem| visible(problem.place.input.to_string()))
+        .filter(|input| !input.is_empty())
         .collect();
-    let files: Vec<String> = files
-        .into_iter()
-        .filter(|file| !file.is_empty())
-        .map(visible)
-        .collect();
+    let inputs: Vec<String> = inputs.into_iter().collect();
     let number: usize = problems
         .iter()
         .map(|problem| problem.not_shown().unwrap_or(1))
         .sum();
     let noun = if number == 1 { "problem" } else { "problems" };
-    let place = if files.is_empty() {
+    let place = if inputs.is_empty() {
         String::new()
     } else {
-        format!(" in {}", files.join(", "))
+        format!(" in {}", inputs.join(", "))
     };
     text.push_str(&format!("{number} {noun}{place}\n"));
     text
@@ -60,10 +58,11 @@ fn group(problem: &Problem) -> Group<'static> {
     if let Some(key) = unsaid_key(problem) {
         title = format!("{}: {title}", visible(key));
     }
-    if !has_line && !place.file.is_empty() {
+    let input = visible(place.input.to_string());
+    if !has_line && place.input != Input::default() {
         title = match place.line {
-            0 => format!("{}: {title}", visible(&place.file)),
-            line => format!("{}:{line}: {title}", visible(&place.file)),
+            0 => format!("{input}: {title}"),
+            line => format!("{input}:{line}: {title}"),
         };
     }
     let mut group = Group::with_title(Level::ERROR.primary_title(title));
@@ -81,7 +80,7 @@ fn group(problem: &Problem) -> Group<'static> {
         };
         let snippet = Snippet::source(place.line_text.clone())
             .line_start(place.line)
-            .path(visible(&place.file));
+            .path(input);
         group = group.element(snippet.annotation(annotation));
     } else if !allowed.is_empty() {
         let value = if problem.value.is_empty() {

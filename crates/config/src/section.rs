@@ -2,6 +2,8 @@
 use std::ops::RangeInclusive;
 
 use super::document::{Node, Span, Table, Value};
+use super::place::Place;
+use super::problem::Problem;
 use super::reader::{Reader, join};
 use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Values, spec};
 
@@ -53,10 +55,10 @@ impl<'r> Section<'r> {
     }
 
     /// Place of the value of `key`; the header of the table, or the file, where it is absent.
-    pub fn place(&self, key: &str) -> super::problem::Place {
+    pub fn place(&self, key: &str) -> Place {
         match self.table.and_then(|table| table.entries.get(key)) {
             Some(entry) => self.reader.document.place(&entry.node.span),
-            None => self.absent(key, "", String::new(), String::new()).place,
+            None => self.absent(key, Problem::default()).place,
         }
     }
 
@@ -198,34 +200,22 @@ impl<'r> Section<'r> {
     }
 
     /// Adds a problem found in a file that this section names.
-    pub fn report_problem(&self, problem: super::problem::Problem) {
+    pub fn report_problem(&self, problem: Problem) {
         self.reader.problem(problem);
     }
 
-    /// Adds a problem at the place of `key`, with the value as written, or at the header of the table
-    /// if the key is absent.
-    pub fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str) {
+    /// Adds a problem at the place of `key`, with the value as written, or at the header of the table if the key is absent.
+    pub fn report_at(&self, key: &str, problem: Problem) {
         let entry = self.table.and_then(|table| table.entries.get(key));
-        let problem = match entry.map(|entry| &entry.node) {
-            Some(Node {
-                value: Value::Table(table),
-                span,
-            }) => {
-                let span = table.wrapped().map_or(span, |node| &node.span);
-                return self.report(span, key, allowed, message.to_string(), hint.to_string());
-            }
-            Some(node) => {
-                return self.report(
-                    &node.span,
-                    key,
-                    allowed,
-                    message.to_string(),
-                    hint.to_string(),
-                );
-            }
-            None => || self.absent(key, allowed, message.to_string(), hint.to_string()),
-        };
-        self.reader.report(problem);
+        match entry.map(|entry| &entry.node) {
+            Some(node) => self.report(&node.inner().span, key, problem),
+            None => self.reader.report(|| self.absent(key, problem)),
+        }
+    }
+
+    /// As [`Section::report_at`], for a value that does not fit.
+    pub fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str) {
+        self.report_at(key, Problem::invalid(message).allowed(allowed).hint(hint));
     }
 }
 

@@ -2,43 +2,38 @@
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use super::problem::Place;
+use super::place::{Input, Place};
 
 /// A longer line is not repeated with a problem.
 const MAX_LINE: usize = 1000;
 /// A longer value is cut where it is repeated.
-const MAX_VALUE: usize = 200;
+pub(super) const MAX_VALUE: usize = 200;
 
-/// One input: the file, or one assignment.
+/// One input: the file, or one override.
 #[derive(Debug)]
 pub(super) struct Source {
-    pub name: String,
+    pub input: Input,
     pub text: String,
-    /// Whether the text has lines that a user could look up.
-    has_lines: bool,
     /// Bytes of the line ends; found when the first place is needed.
     ends: OnceLock<Vec<usize>>,
 }
 
 impl Source {
-    /// An input of that name.
-    pub fn new(name: &str, text: &str, has_lines: bool) -> Self {
+    /// An input with its text.
+    pub fn new(input: Input, text: &str) -> Self {
         Source {
-            name: name.to_string(),
+            input,
             text: text.to_string(),
-            has_lines,
             ends: OnceLock::new(),
         }
     }
 
     /// The place of a stretch of the text.
     pub fn place(&self, range: Range<usize>) -> Place {
-        let file = self.name.clone();
-        if !self.has_lines {
-            return Place {
-                file,
-                ..Place::default()
-            };
+        let whole = Place::from(self.input.clone());
+        // Only a file has lines that a user could look up.
+        if whole.file_name().is_none() {
+            return whole;
         }
         let start = self.clamp(range.start);
         let line_start = self.line_start(start);
@@ -48,7 +43,6 @@ impl Source {
             line_start.max(start).max(line_start + line_text.len()),
         );
         Place {
-            file,
             line: self.line(start) + 1,
             column: self.text[line_start..start].chars().count() + 1,
             line_text: if line_text.len() <= MAX_LINE {
@@ -57,6 +51,7 @@ impl Source {
                 String::new()
             },
             width: self.text[start..end].chars().count().max(1),
+            ..whole
         }
     }
 
@@ -110,9 +105,9 @@ impl Source {
     }
 }
 
-/// A value as it is repeated in a problem.
-pub(super) fn shortened(text: &str) -> String {
-    match text.char_indices().nth(MAX_VALUE) {
+/// A text as it is repeated in a problem: at most so many characters of it.
+pub(super) fn shortened(text: &str, max: usize) -> String {
+    match text.char_indices().nth(max) {
         Some((end, _)) => format!("{}...", &text[..end]),
         None => text.to_string(),
     }

@@ -1,8 +1,9 @@
 //! Problems that are found before any key is read: bytes that are no text, text that is no TOML.
 use std::ops::Range;
 
-use super::problem::{Place, Problem, Problems};
-use super::source::{Source, shortened};
+use super::problem::Problem;
+use super::problems::Problems;
+use super::source::{MAX_VALUE, Source, shortened};
 
 /// Bytes of a line up to which slips are looked for: longer lines are not written by hand, and the search
 /// takes time with the square of the length.
@@ -13,14 +14,8 @@ const MAX_LINE: usize = 1000;
 /// # Errors
 /// One problem if the bytes are not UTF-8 text or hold nothing but white space.
 pub fn decode(file: &str, bytes: &[u8]) -> Result<String, Problems> {
-    let problem = |message: &str, hint: &str| {
-        let place = Place {
-            file: file.to_string(),
-            ..Place::default()
-        };
-        let (message, hint) = (message.to_string(), hint.to_string());
-        Problem::invalid(message).at(place).hint(hint).into()
-    };
+    let problem =
+        |message: &str, hint: &str| Problem::syntax(message).in_file(file).hint(hint).into();
     let binary = || {
         problem(
             "binary file, expected text",
@@ -76,7 +71,7 @@ pub(super) fn problems(source: &Source, errors: &[toml::de::Error]) -> Problems 
         }
     }
     if more > 0 {
-        found.push(Problem::more(&source.name, more));
+        found.push(Problem::more(source.input.clone(), more));
     }
     found
 }
@@ -96,7 +91,10 @@ fn syntax_problem(source: &Source, span: Range<usize>, parser: &str) -> Problem 
     };
     let span = slip.unwrap_or(span);
     Problem::syntax(message)
-        .value(shortened(source.text.get(span.clone()).unwrap_or_default()))
+        .value(shortened(
+            source.text.get(span.clone()).unwrap_or_default(),
+            MAX_VALUE,
+        ))
         .at(source.place(span))
         .hint(hint)
 }

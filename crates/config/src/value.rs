@@ -2,15 +2,19 @@
 use std::fmt::Display;
 
 use super::document::{Node, Span, Table, Value};
-use super::near::{near, one_of, suggest, suggestion};
-use super::problem::{Place, Problem};
+use super::near::{did_you_mean, one_of, suggest};
+use super::place::Place;
+use super::problem::Problem;
 use super::reader::{KeyInfo, join};
 use super::section::Section;
 use super::syntax::{decimal_comma, number_hint, number_with_unit};
+use super::values::options;
 use cvtcycle_model::keys::{Bound, Key, Quantity};
 
 /// What a value's status may be in a file.
 pub(crate) const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
+/// Fields of a value with its origin.
+const FIELDS: [&str; 4] = ["value", "status", "source", "note"];
 
 /// A value as found, with its origin.
 pub(super) struct Found<'r> {
@@ -99,7 +103,8 @@ impl<'r> Section<'r> {
             self.out_of_range(key, node, &range);
         } else {
             let message = format!("`{}` is not a finite number", join(&self.path, key));
-            self.report(&node.span, key, &range, message, String::new());
+            let problem = Problem::out_of_range(message).allowed(range);
+            self.report(&node.span, key, problem);
         }
         None
     }
@@ -148,7 +153,8 @@ impl<'r> Section<'r> {
         let Some(value) = table.wrapped() else {
             let message = format!("`{}` is a table without `value`", join(&self.path, key));
             let hint = "write `KEY = VALUE` or `KEY = { value = VALUE, status = \"…\" }`";
-            self.report(&node.span, key, "", message, hint.to_string());
+            let problem = Problem::wrong_type(message).hint(hint);
+            self.report(&node.span, key, problem);
             return Lookup::Bad;
         };
         found.node = value;
@@ -173,15 +179,11 @@ impl<'r> Section<'r> {
                 "source" => found.source = text,
                 "note" => found.note = text,
                 _ => {
-                    let hint = suggest(name, &["value", "status", "source", "note"]);
                     let message = format!("unknown field `{name}` in `{}`", join(&self.path, key));
-                    self.report(
-                        &entry.key,
-                        key,
-                        "value, status, source, note",
-                        message,
-                        hint,
-                    );
+                    let problem = Problem::unknown_key(message)
+                        .allowed(FIELDS.join(", "))
+                        .hint(suggest(name, &FIELDS));
+                    self.report(&entry.key, key, problem);
                 }
             }
         }
@@ -189,15 +191,11 @@ impl<'r> Section<'r> {
 
     fn check_status(&self, key: &str, node: &Node, text: &'r str, status: &mut &'r str) {
         if !STATUSES.contains(&text) {
-            let names = near(text, STATUSES.into_iter());
             let message = format!("`{}` has no known status", join(&self.path, key));
-            self.report(
-                &node.span,
-                key,
-                &one_of(&STATUSES),
-                message,
-                suggestion(&names).unwrap_or_default(),
-            );
+            let problem = Problem::unknown_name(message)
+                .allowed(one_of(&STATUSES))
+                .hint(did_you_mean(text, STATUSES).unwrap_or_default());
+            self.report(&node.span, key, problem);
         } else if *status != "set" {
             *status = text;
         }
@@ -222,42 +220,37 @@ impl<'r> Section<'r> {
     }
 
     fn fill(&self, key: &str, write: impl FnOnce(&mut KeyInfo)) {
-        self.reader.record(|log| {
-            if let Some(info) = log
-                .index
-                .get(&join(&self.path, key))
-                .and_then(|at| log.keys.get_mut(*at))
-            {
-                write(info);
-            }
-        });
+        self.reader
+            .record(|log| log.info(&join(&self.path, key)).map_or((), write));
     }
 
     pub(super) fn out_of_range(&self, key: &str, node: &Node, allowed: &str) {
         let message = format!("`{}` is out of range", join(&self.path, key));
-        self.report(&node.span, key, allowed, message, String::new());
+        let problem = Problem::out_of_range(message).allowed(allowed);
+        self.report(&node.span, key, problem);
     }
 
     pub(super) fn wrong_type(&self, key: &str, node: &Node, expected: &str) {
-        let hint = self.type_hint(key, node, expected);
-        let message = format!(
-            "`{}`: expected {expected}, found {}",
-            self.dotted(key),
-            node.value.kind()
-        );
+        let (path, found) = (self.dotted(key), node.value.kind());
+        let message = format!("`{path}`: expected {expected}, found {found}");
         // The range that the key was registered with, where the message does not say it already.
         let mut allowed = String::new();
         self.reader.record(|log| {
-            let info = log
-                .index
-                .get(&join(&self.path, key))
-                .and_then(|at| log.keys.get(*at));
-            allowed = info
-                .map(|info| info.allowed.clone())
-                .filter(|range| *range != expected)
-                .unwrap_or_default();
+            let info = log.info(&join(&self.path, key));
+            let range = info.map(|info| info.allowed.clone());
+            allowed = range.filter(|range| *range != expected).unwrap_or_default();
         });
-        self.report(&node.span, key, &allowed, message, hint);
+        let hint = self.type_hint(key, node, expected);
+        let problem = Problem::wrong_type(message).allowed(allowed).hint(hint);
+        self.report(&node.span, key, problem);
+    }
+
+    /// Reports a word that is none of those that the key knows.
+    pub(super) fn unknown_word(&self, key: &Key<'_>, span: &Span, word: &str) {
+        let message = format!("`{word}` is not known for `{}`", join(&self.path, key.name));
+        let hint = suggest(word, &options(key).collect::<Vec<_>>());
+        let problem = Problem::unknown_name(message);
+        self.report(span, key.name, problem.allowed(key.allowed()).hint(hint));
     }
 
     /// Path of a key of this table, or of one in a table within it.
@@ -300,62 +293,35 @@ impl<'r> Section<'r> {
             return;
         }
         self.reader.report_missing(|| {
-            let table = if self.path.is_empty() {
-                let title = self.reader.document.title.as_ref();
-                title.map_or("the top of the file".to_string(), |title| {
-                    format!("its {title}")
-                })
-            } else {
-                format!("[{}]", self.path)
+            let table = match (self.path.as_str(), &self.reader.document.title) {
+                ("", Some(title)) => format!("its {title}"),
+                ("", None) => "the top of the file".to_string(),
+                (path, _) => format!("[{path}]"),
             };
             let message = format!("missing key `{}`", join(&self.path, key));
-            self.absent(
-                key,
-                &of.allowed(),
-                message,
-                format!("add `{key} = …` to {table}"),
-            )
+            let problem = Problem::missing(message).allowed(of.allowed());
+            self.absent(key, problem.hint(format!("add `{key} = …` to {table}")))
         });
     }
 
-    pub(super) fn absent(
-        &self,
-        key: &str,
-        allowed: &str,
-        message: String,
-        hint: String,
-    ) -> Problem {
+    /// A problem of a key that is absent: at the header of the table.
+    pub(super) fn absent(&self, key: &str, problem: Problem) -> Problem {
         let document = self.reader.document;
-        let whole = || Place {
-            file: document.sources[0].name.clone(),
-            ..Place::default()
-        };
-        Problem::invalid(message)
-            .at(self
-                .header
-                .as_ref()
-                .map_or_else(whole, |span| document.place(span)))
+        let whole = || Place::from(document.sources[0].input.clone());
+        let header = self.header.as_ref();
+        problem
+            .at(header.map_or_else(whole, |span| document.place(span)))
             .key(join(&self.path, key))
-            .allowed(allowed.to_string())
-            .hint(hint)
     }
 
-    pub(super) fn report(
-        &self,
-        span: &Span,
-        key: &str,
-        allowed: &str,
-        message: String,
-        hint: String,
-    ) {
+    /// Reports a problem of a value of this table.
+    pub(super) fn report(&self, span: &Span, key: &str, problem: Problem) {
         let document = self.reader.document;
         self.reader.report(|| {
-            Problem::invalid(message)
+            problem
                 .at(document.place(span))
                 .key(self.dotted(key))
                 .value(document.shown(span))
-                .allowed(allowed.to_string())
-                .hint(hint)
         });
     }
 }

@@ -1,7 +1,6 @@
 //! Values of the model's keys, read from a table of a file.
 use super::document::Value;
-use super::near::suggest;
-use super::reader::join;
+use super::problem::Problem;
 use super::section::Section;
 use super::tables;
 use super::value::Lookup;
@@ -176,7 +175,8 @@ impl<'r> Values for Section<'r> {
     }
 
     fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str) {
-        Section::complain(self, key, allowed, message, hint);
+        let problem = Problem::conflict(message).allowed(allowed).hint(hint);
+        self.report_at(key, problem);
     }
 }
 
@@ -193,10 +193,7 @@ impl Section<'_> {
                     self.given(key.name, &found, text, None);
                     return word;
                 }
-                let path = join(&self.path, key.name);
-                let message = format!("`{text}` is not known for `{path}`");
-                let hint = suggest(text, &options(key).collect::<Vec<_>>());
-                self.report(&found.node.span, key.name, &key.allowed(), message, hint);
+                self.unknown_word(key, &found.node.span, text);
             }
             Lookup::Absent => self.defaulted(key.name, default, None),
             Lookup::Bad => {}

@@ -179,7 +179,7 @@ fn a_file_at_its_limit_is_read_and_one_byte_more_is_not() {
         )
         .unwrap();
         assert_eq!(fs::metadata(&name).unwrap().len(), TOML.bytes + more as u64);
-        let read = setup::load_lubricant(&name, "--lubricant", &[], "");
+        let read = setup::load_lubricant(&name);
         assert_eq!(
             read.as_ref()
                 .err()
@@ -192,7 +192,7 @@ fn a_file_at_its_limit_is_read_and_one_byte_more_is_not() {
             padded("time_s,speed_kmh\n0,0\n10,20\n", TABLE.bytes + more as u64),
         )
         .unwrap();
-        let read = cycle::find("--cycle", &name);
+        let read = cycle::find(&name);
         assert_eq!(
             read.as_ref()
                 .err()
@@ -235,7 +235,7 @@ fn a_setup_is_read_under_the_same_bound() {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    assert!(setup::load("rover_216_cvt", "--vehicle", &Options::default()).is_ok());
+    assert!(setup::load("rover_216_cvt", &Options::default()).is_ok());
 }
 
 /// Modules that open files by themselves, with the reason.

@@ -26,7 +26,7 @@ const MANUAL: &str = "rover_216_5mt";
 const KEYS: [&str; 2] = ["film_heating_w", "inlet_bar_per_l_min"];
 
 fn fluid(name: &str) -> Lubricant {
-    load_lubricant(name, "--lubricant", &[], "--set")
+    load_lubricant(name)
         .unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
         .0
 }
@@ -54,7 +54,7 @@ fn old_file(name: &str) -> Setup {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("old.toml");
     std::fs::write(&path, kept.join("\n")).unwrap();
-    load(path.to_str().unwrap(), "--vehicle", &Options::default())
+    load(path.to_str().unwrap(), &Options::default())
         .unwrap_or_else(|problems| panic!("{}", render(&problems, false)))
 }
 

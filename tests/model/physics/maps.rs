@@ -24,7 +24,7 @@ fn car(vehicle: &str, csv: &str, set: &str) -> Result<Setup, String> {
         set: vec![format!("{set}=map.csv")],
         ..Options::default()
     };
-    load(file.to_str().unwrap(), "--vehicle", &options).map_err(|p| render(&p, false))
+    load(file.to_str().unwrap(), &options).map_err(|p| render(&p, false))
 }
 
 fn driven(setup: &Setup) -> Outcome {

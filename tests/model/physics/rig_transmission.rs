@@ -413,7 +413,6 @@ fn the_bench_equals_a_step_of_driving() {
     ] {
         let setup = load(
             CAR,
-            "--vehicle",
             &Options {
                 formulation,
                 ..Options::default()

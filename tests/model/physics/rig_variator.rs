@@ -213,7 +213,7 @@ fn formulations() {
             formulation,
             ..Options::default()
         };
-        VariatorRig::new(&load("rover_216_cvt", "--vehicle", &options).unwrap())
+        VariatorRig::new(&load("rover_216_cvt", &options).unwrap())
             .unwrap()
             .summary(&held(LOW, 30.0))
     };

@@ -287,7 +287,6 @@ fn every_value_of_the_car_is_on_a_page() {
     }
     let setup = cvtcycle::config::setup::load(
         "rover_216_cvt",
-        "--vehicle",
         &cvtcycle::config::setup::Options::default(),
     )
     .unwrap();

@@ -2,7 +2,8 @@
 
 use super::schema::Schema;
 use super::text::{Field, decode, empty, split};
-use crate::{Place, Problem, Problems};
+use crate::source::shortened;
+use crate::{Input, Place, Problem, Problems};
 
 /// Most problems that are described; the rest is counted.
 const MAX_SHOWN: usize = 50;
@@ -116,7 +117,7 @@ impl<'f> Collector<'f> {
                 let message = format!("this file uses {name} - save it with commas");
                 let hint = "and with decimal points: 12.5 and not 12,5";
                 self.line(line, "", || {
-                    Problem::invalid(message)
+                    Problem::syntax(message)
                         .allowed("commas between the columns")
                         .hint(hint)
                 });
@@ -137,7 +138,7 @@ impl<'f> Collector<'f> {
                 let message = format!("this line has {} column names", fields.len());
                 let hint = "keep the columns that are needed, with a row for every point";
                 self.line(line, "", || {
-                    Problem::invalid(message)
+                    Problem::too_large(message)
                         .allowed(format!("up to {MAX_COLUMNS}"))
                         .hint(hint)
                 });
@@ -169,7 +170,7 @@ impl<'f> Collector<'f> {
                     "this row has {found} {}",
                     if found == 1 { "value" } else { "values" }
                 );
-                Problem::invalid(message)
+                Problem::syntax(message)
                     .allowed(format!("{wanted}, as the line of column names has"))
                     .hint(hint)
             });
@@ -184,7 +185,7 @@ impl<'f> Collector<'f> {
             end: line.text.len(),
         };
         self.value(line, field, "", || {
-            Problem::invalid("this quote is not closed")
+            Problem::syntax("this quote is not closed")
                 .hint("close it behind the value, or remove it")
         });
     }
@@ -228,7 +229,7 @@ impl<'f> Collector<'f> {
             problem()
                 .at(place(file, line, field))
                 .key(key)
-                .value(shortened(line.text_of(field)))
+                .value(shortened(line.text_of(field), MAX_VALUE_LEN))
         });
     }
 
@@ -255,44 +256,38 @@ impl<'f> Collector<'f> {
     #[must_use]
     pub fn finish(mut self) -> Problems {
         if self.more > 0 {
-            self.list.push(Problem::more(self.file, self.more));
+            self.list
+                .push(Problem::more(Input::File(self.file.to_owned()), self.more));
         }
         self.list
     }
 }
 
 fn no_long_line(text: &str) -> Result<&str, Problem> {
-    match text.split('\n').position(|line| line.len() >= MAX_LINE_LEN) {
-        Some(before) => {
-            let message = format!("line {} is too long for a row of a table", before + 1);
-            Err(Problem::invalid(message)
-                .allowed(format!("up to {MAX_LINE_LEN} bytes"))
-                .hint("is this a CSV file?"))
-        }
+    let too_long = |line: &str| line.len() >= MAX_LINE_LEN;
+    match text.split('\n').position(too_long) {
+        Some(before) => Err(long_line(before + 1)),
         None => Ok(text),
     }
+}
+
+/// A line is longer than [`MAX_LINE_LEN`].
+pub(super) fn long_line(number: usize) -> Problem {
+    Problem::too_large(format!("line {number} is too long for a row of a table"))
+        .allowed(format!("up to {MAX_LINE_LEN} bytes"))
+        .hint("is this a CSV file?")
 }
 
 fn place(file: &str, line: Line<'_>, field: Field) -> Place {
     let (column, width) = line.columns_of(field);
     let shown = line.text.len() <= MAX_SHOWN_LEN;
+    let line_text = if shown { line.text } else { "" };
     Place {
-        file: file.to_owned(),
         line: line.number,
         column,
-        line_text: if shown {
-            line.text.to_owned()
-        } else {
-            String::new()
-        },
+        line_text: line_text.to_owned(),
         width,
-    }
-}
-
-fn shortened(text: &str) -> String {
-    match text.char_indices().nth(MAX_VALUE_LEN) {
-        Some((end, _)) => format!("{}...", &text[..end]),
-        None => text.to_owned(),
+        ..Place::file(file)
     }
 }
 

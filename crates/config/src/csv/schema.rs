@@ -114,8 +114,10 @@ impl Column {
         let problem = match text.parse::<f64>() {
             // turns -0 into 0
             Ok(x) if range.contains(x) && is_whole(x) => return Ok(x + 0.0),
-            Ok(x) if x.is_nan() => Problem::invalid("this is not a number").hint(gap),
-            Ok(x) if x.is_infinite() => Problem::invalid("this is not a finite number").hint(gap),
+            Ok(x) if x.is_nan() => Problem::wrong_type("this is not a number").hint(gap),
+            Ok(x) if x.is_infinite() => {
+                Problem::out_of_range("this is not a finite number").hint(gap)
+            }
             Ok(x) if !is_whole(x) => {
                 Problem::wrong_type("this is not a whole number").hint("write it without decimals")
             }
@@ -203,7 +205,7 @@ impl Schema {
             && found.iter().all(Option::is_none)
         {
             problems.line(line, "", || {
-                Problem::invalid(format!("this is no {title}: it has none of its columns"))
+                Problem::missing(format!("this is no {title}: it has none of its columns"))
                     .allowed(self.all())
                     .hint(hint)
             });

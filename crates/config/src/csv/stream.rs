@@ -2,7 +2,8 @@
 
 use std::io::{BufRead, Read};
 
-use super::collector::{Collector, Line, MAX_LINE_LEN};
+use super::collector::{Collector, Line, MAX_LINE_LEN, long_line};
+use super::text::{BYTE_ORDER_MARK, bare_returns, check_encoding, zero_byte};
 use crate::Problem;
 
 /// Reads lines without their ends; blank ones are passed over.
@@ -73,41 +74,21 @@ impl<R: BufRead> Lines<R> {
         }
         self.number += 1;
         let first = self.number == 1;
-        if first && (self.buffer.starts_with(b"\xff\xfe") || self.buffer.starts_with(b"\xfe\xff")) {
-            return Err(Problem::invalid("the file is UTF-16 text")
-                .allowed("UTF-8 text")
-                .hint("save it as CSV UTF-8"));
+        if first {
+            check_encoding(&self.buffer)?;
         }
         if self.buffer.contains(&0) {
-            let message = format!(
-                "the file is not text: it has a zero byte in line {}",
-                self.number
-            );
-            return Err(Problem::invalid(message)
-                .allowed("UTF-8 text")
-                .hint("save the table as CSV; a spreadsheet's own format cannot be read"));
+            return Err(zero_byte(self.number));
         }
         match self.buffer.pop_if(|byte| *byte == b'\n') {
             Some(_) => drop(self.buffer.pop_if(|byte| *byte == b'\r')),
-            None if self.buffer.len() >= MAX_LINE_LEN => {
-                let message = format!("line {} is too long for a row of a table", self.number);
-                return Err(Problem::invalid(message)
-                    .allowed(format!("up to {MAX_LINE_LEN} bytes"))
-                    .hint("is this a CSV file?"));
-            }
+            None if self.buffer.len() >= MAX_LINE_LEN => return Err(long_line(self.number)),
             None => {}
         }
         if first && self.buffer.contains(&b'\r') {
-            return Err(
-                Problem::syntax("the lines end with a carriage return alone")
-                    .allowed("lines that end with LF or CR LF")
-                    .hint("save it with the line ends of today"),
-            );
+            return Err(bare_returns());
         }
-        Ok(Some(if first && self.buffer.starts_with(b"\xef\xbb\xbf") {
-            3
-        } else {
-            0
-        }))
+        let has_mark = first && self.buffer.starts_with(BYTE_ORDER_MARK);
+        Ok(Some(if has_mark { BYTE_ORDER_MARK.len() } else { 0 }))
     }
 }

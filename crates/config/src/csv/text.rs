@@ -18,40 +18,58 @@ pub struct Field {
 /// # Errors
 /// An empty or binary file, or one in another encoding than UTF-8.
 pub fn decode(bytes: &[u8]) -> Result<&str, Problem> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        return Err(Problem::invalid("the file is UTF-16 text")
-            .allowed("UTF-8 text")
-            .hint("save it as CSV UTF-8"));
-    }
+    check_encoding(bytes)?;
+    let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
     if let Some(at) = bytes.iter().position(|&byte| byte == 0) {
-        let message = format!(
-            "the file is not text: it has a zero byte in line {}",
-            line_of(bytes, at)
-        );
-        return Err(Problem::invalid(message)
-            .allowed("UTF-8 text")
-            .hint("save the table as CSV; a spreadsheet's own format cannot be read"));
+        return Err(zero_byte(line_of(bytes, at)));
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
-        let message = format!(
-            "the file is not UTF-8 text: line {} has a byte that is none",
-            line_of(bytes, error.valid_up_to())
-        );
-        Problem::invalid(message)
-            .allowed("UTF-8 text")
-            .hint("save it as CSV UTF-8; a spreadsheet's own format cannot be read")
+        let line = line_of(bytes, error.valid_up_to());
+        not_text(format!(
+            "the file is not UTF-8 text: line {line} has a byte that is none"
+        ))
+        .hint("save it as CSV UTF-8; a spreadsheet's own format cannot be read")
     })?;
     if text.trim().is_empty() {
         return Err(empty());
     }
     if text.contains('\r') && !text.contains('\n') {
-        let message = "the lines end with a carriage return alone";
-        return Err(Problem::invalid(message)
-            .allowed("lines that end with LF or CR LF")
-            .hint("save it with the line ends of today"));
+        return Err(bare_returns());
     }
     Ok(text)
+}
+
+/// First bytes of some files in UTF-8.
+pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+fn not_text(message: String) -> Problem {
+    Problem::syntax(message).allowed("UTF-8 text")
+}
+
+/// Checks the first bytes of a file.
+///
+/// # Errors
+/// They are those of UTF-16.
+pub(super) fn check_encoding(bytes: &[u8]) -> Result<(), Problem> {
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Err(not_text("the file is UTF-16 text".to_owned()).hint("save it as CSV UTF-8"));
+    }
+    Ok(())
+}
+
+/// A line has a zero byte.
+pub(super) fn zero_byte(line: usize) -> Problem {
+    not_text(format!(
+        "the file is not text: it has a zero byte in line {line}"
+    ))
+    .hint("save the table as CSV; a spreadsheet's own format cannot be read")
+}
+
+/// Carriage returns alone end the lines.
+pub(super) fn bare_returns() -> Problem {
+    Problem::syntax("the lines end with a carriage return alone")
+        .allowed("lines that end with LF or CR LF")
+        .hint("save it with the line ends of today")
 }
 
 /// The file has no text.

@@ -1,7 +1,7 @@
 //! Driving at constant speed, as the older fuel figures at 90 and 120 km/h (80/1268/EEC) have it.
 
 use super::{Cycle, Interval, Trace, Weighting};
-use crate::{Place, Problem};
+use crate::{Argument, Problem};
 
 const PREFIX: &str = "constant_";
 // ASSUMED: long enough for the fluids of a warm car to settle, short enough to wait for
@@ -57,18 +57,13 @@ fn cycle(name: &str, text: &str, kmh: f64) -> Cycle {
 }
 
 fn problem(name: &str, text: &str) -> Problem {
-    let place = Place {
-        file: "--cycle".to_owned(),
-        ..Place::default()
-    };
     let hint = if text.contains(',') {
         "write a decimal point, as in constant_88.5"
     } else {
         "write, for example, constant_90"
     };
-    Problem::invalid("this is not a constant speed the program can drive")
-        .at(place)
-        .key("--cycle")
+    Problem::out_of_range("this is not a constant speed the program can drive")
+        .at(Argument::Cycle)
         .value(name)
         .allowed(format!(
             "constant_V with V in km/h, above 0 and up to {HIGHEST_KMH}"

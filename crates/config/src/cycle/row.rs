@@ -129,7 +129,7 @@ impl<'p> Rows<'p> {
                 .allowed("up to 3600 s")
                 .hint("is the time in milliseconds? otherwise fill the gap with rows")
         } else {
-            Problem::invalid("the time does not rise")
+            Problem::conflict("the time does not rise")
                 .allowed("more than in the row above")
                 .hint("sort the rows by time and remove doubled ones")
         };

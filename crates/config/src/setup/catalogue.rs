@@ -2,21 +2,23 @@
 //!
 //! The keys are the rows of the model's tables; the values come from reading the files.
 
+use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use super::Kind;
 use super::inputs::{head, parts};
 use crate::embedded;
 use crate::rig;
-use crate::{Document, KeyInfo, Reader};
+use crate::{Document, KeyInfo, Reader, Target};
 use cvtcycle_model::files;
 use cvtcycle_model::fluid::Lubricant;
+use cvtcycle_model::keys::Key;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
-/// Prefix of the keys of the transmission oil, as in `--set lubricant.KEY=VALUE`.
-pub const OIL: &str = "lubricant.";
+/// Prefix of the keys of the transmission oil.
+pub const OIL: &str = Target::Lubricant.prefix();
 /// Prefix of the keys of the engine oil.
-pub const ENGINE_OIL: &str = "engine_oil.";
+pub const ENGINE_OIL: &str = Target::EngineOil.prefix();
 
 /// An embedded file and all its keys.
 #[derive(Clone, Debug)]
@@ -30,7 +32,7 @@ pub struct File {
 }
 
 impl File {
-    /// Key as `--set` and `explain` have it.
+    /// Key as overrides and `explain` have it.
     #[must_use]
     pub fn full_key(&self, key: &str) -> String {
         if self.kind == Kind::Lubricant {
@@ -69,25 +71,41 @@ pub fn known_names() -> &'static [String] {
     NAMES.get_or_init(|| known_keys().iter().map(|info| info.key.clone()).collect())
 }
 
-fn gathered() -> Vec<KeyInfo> {
-    let mut known = Vec::new();
-    for (prefix, table) in [
+/// The row of a key, with the prefix of its file; none of an unknown key.
+pub(crate) fn row(key: &str) -> Option<&'static Key<'static>> {
+    static ROWS: OnceLock<HashMap<String, &'static Key<'static>>> = OnceLock::new();
+    let known = ROWS.get_or_init(|| rows().collect());
+    let own = key.strip_prefix(ENGINE_OIL);
+    let key = own.map_or_else(|| key.to_owned(), |own| format!("{OIL}{own}"));
+    known.get(&key).copied()
+}
+
+/// The rows of all tables with their dotted keys.
+fn rows() -> impl Iterator<Item = (String, &'static Key<'static>)> {
+    let tables = [
         ("", files::VEHICLE),
         (OIL, files::LUBRICANT),
         ("", files::RIG),
-    ] {
+    ];
+    tables.into_iter().flat_map(|(prefix, table)| {
+        let mut rows = Vec::new();
         table.walk("", &mut |path, key| {
-            known.push(KeyInfo {
-                key: format!("{prefix}{path}"),
-                unit: key.unit(),
-                allowed: key.allowed(),
-                is_number: key.is_number(),
-                doc: key.doc.to_owned(),
-                ..KeyInfo::default()
-            });
+            rows.push((format!("{prefix}{path}"), key))
         });
-    }
-    known
+        rows
+    })
+}
+
+fn gathered() -> Vec<KeyInfo> {
+    let info = |(key, row): (String, &Key<'_>)| KeyInfo {
+        key,
+        unit: row.unit(),
+        allowed: row.allowed(),
+        is_number: row.is_number(),
+        doc: row.doc.to_owned(),
+        ..KeyInfo::default()
+    };
+    rows().map(info).collect()
 }
 
 /// Keys that are read from a text, with their values.
@@ -113,9 +131,7 @@ fn values(name: &str, text: &str, kind: Kind) -> Vec<KeyInfo> {
 /// Any checked fluid: which one has no influence on the keys of a vehicle.
 fn oil() -> Option<Lubricant> {
     let (name, _) = embedded::lubricants().first()?;
-    super::load_lubricant(name, "", &[], "")
-        .ok()
-        .map(|(oil, _)| oil)
+    super::load_lubricant(name).ok().map(|(oil, _)| oil)
 }
 
 #[cfg(test)]
@@ -142,8 +158,7 @@ mod tests {
     #[test]
     fn the_catalogue_holds_what_loading_reports() {
         for file in files().iter().filter(|file| file.kind == Kind::Vehicle) {
-            let setup =
-                super::super::load(file.name, "", &super::super::Options::default()).unwrap();
+            let setup = super::super::load(file.name, &super::super::Options::default()).unwrap();
             let own = setup
                 .keys
                 .iter()

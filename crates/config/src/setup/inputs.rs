@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use super::table_cache::TableCache;
 use super::{
-    Files, Kind, Options, Setup, is_path, load_lubricant, stem, text_of, wrong_transmission,
+    Files, Kind, NamedBy, Options, Setup, is_path, load_lubricant, stem, text_of,
+    wrong_transmission,
 };
-use crate::{Document, KeyInfo, Problems, Reader};
+use crate::{Argument, Document, KeyInfo, Override, Place, Problems, Reader, Target};
 use cvtcycle_model::drive::{Car, Vehicle};
 use cvtcycle_model::engine::Engine;
 use cvtcycle_model::files::{HEAD, VEHICLE_FILE};
@@ -20,12 +21,9 @@ use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_model::transmission::manual::Manual;
 
-/// What the keys of transmission oil and engine oil begin with.
-pub(super) const FLUIDS: [&str; 2] = ["lubricant.", "engine_oil."];
-
 /// A document and what is wrong with it so far.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Input {
+pub(super) struct CarFile {
     /// None if it could not be read.
     pub document: Option<Document>,
     pub problems: Problems,
@@ -35,8 +33,8 @@ pub(super) struct Input {
 #[derive(Debug)]
 pub(super) struct Inputs {
     pub frame: Arc<Frame>,
-    /// Vehicle, transmission oil, engine oil.
-    pub files: [Input; 3],
+    /// In the order of [`Target::CAR`].
+    pub files: [CarFile; 3],
 }
 
 /// What a reading of a car's documents needs besides them.
@@ -55,8 +53,8 @@ impl Inputs {
     ///
     /// # Errors
     /// Problems that leave nothing to read: no such vehicle, no TOML, overrides of a box that the vehicle does not have.
-    pub fn gather(word: &str, option: &str, options: &Options) -> Result<Self, Problems> {
-        let (file, text, disk) = text_of(word, Kind::Vehicle, option)?;
+    pub fn gather(word: &str, options: &Options) -> Result<Self, Problems> {
+        let (file, text, disk) = text_of(word, Kind::Vehicle, options.named_by)?;
         Inputs::of_text(&file, &text, Box::new(disk), options)
     }
 
@@ -72,53 +70,43 @@ impl Inputs {
     ) -> Result<Self, Problems> {
         let mut document = Document::parse(file, text)?;
         let name = stem(file.strip_prefix("embedded:").unwrap_or(file));
-        let folder = Path::new(file).parent().unwrap_or(Path::new(""));
-        let wrong_transmission_keys =
-            wrong_transmission::wrong_transmission_keys(&document, &options.set, &name);
-        if !wrong_transmission_keys.is_empty() {
-            return Err(wrong_transmission_keys); // set all the same, they would call for a whole box
-        }
-        let own = |key: &str| (!FLUIDS.iter().any(|f| key.starts_with(f))).then(|| key.to_owned());
-        let problems = apply(&mut document, &options.set, own)
-            .err()
-            .unwrap_or_default();
-        let Head {
-            fluid, engine_oil, ..
-        } = head(&Reader::check_only(&document).root(), "");
-        let mut words = [String::new(), String::new()];
-        let asked = [
-            (fluid, &options.lubricant, "--lubricant"),
-            (engine_oil, &options.engine_oil, "--engine-oil"),
-        ];
-        let mut fluids = [Input::default(), Input::default()];
-        for (k, (own, asked, option)) in asked.into_iter().enumerate() {
-            // A path in the vehicle file is relative to that file, one on the command line to the current folder.
-            let default = if is_path(&own) {
-                folder.join(&own).to_string_lossy().into_owned()
-            } else {
-                own
-            };
-            let option = if asked.is_some() { option } else { file };
-            words[k] = asked.clone().unwrap_or(default);
-            fluids[k] = match fluid_document(&words[k], option, &options.set, FLUIDS[k]) {
-                Ok(document) => Input {
-                    document: Some(document),
-                    problems: Problems::new(),
-                },
-                Err(problems) => Input {
-                    document: None,
-                    problems,
-                },
-            };
-        }
-        let [oil, engine_oil] = fluids;
-        let vehicle = Input {
+        // Set all the same, keys of another box would call for a whole box.
+        wrong_transmission::wrong_keys(&document, &options.set, &name).finish()?;
+        let of_vehicle = |target| [Target::Vehicle, Target::Rig].contains(&target);
+        let problems = apply(&mut document, &options.set, of_vehicle);
+        let own = head(&Reader::check_only(&document).root(), "");
+        let fluid = |own: String, asked: &Option<String>, target| match asked {
+            Some(word) => {
+                let argument = match target {
+                    Target::EngineOil => Argument::EngineOil,
+                    _ => Argument::Lubricant,
+                };
+                fluid_file(
+                    word.clone(),
+                    options.named_by,
+                    argument.into(),
+                    options,
+                    target,
+                )
+            }
+            // A path in the vehicle file is relative to that file, one of the caller to the current folder.
+            None => {
+                let folder = Path::new(file).parent().filter(|_| is_path(&own));
+                let word = folder.map(|folder| folder.join(&own).to_string_lossy().into_owned());
+                let place = Place::file(file);
+                fluid_file(word.unwrap_or(own), NamedBy::File, place, options, target)
+            }
+        };
+        let (oil, oil_name) = fluid(own.fluid, &options.lubricant, Target::Lubricant);
+        let (engine_oil, engine_oil_name) =
+            fluid(own.engine_oil, &options.engine_oil, Target::EngineOil);
+        let vehicle = CarFile {
             document: Some(document),
             problems,
         };
         let frame = Frame {
             name,
-            fluids: words.map(|word| stem(&word)),
+            fluids: [oil_name, engine_oil_name],
             files: TableCache::new(files),
             formulation: options.formulation,
         };
@@ -129,7 +117,7 @@ impl Inputs {
     }
 
     /// The same car with other documents.
-    pub fn with_files(&self, files: [Input; 3]) -> Self {
+    pub fn with_files(&self, files: [CarFile; 3]) -> Self {
         Inputs {
             frame: Arc::clone(&self.frame),
             files,
@@ -150,7 +138,7 @@ impl Inputs {
         for (k, (reader, input)) in readers.into_iter().zip(&self.files).enumerate() {
             let answer = match (k, reader) {
                 (0, Some(reader)) => reader.finish(),
-                (_, Some(reader)) => fluid_keys(reader, FLUIDS[k - 1]),
+                (_, Some(reader)) => fluid_keys(reader, Target::CAR[k]),
                 // A fluid that the vehicle does not name is missing there already.
                 (_, None) if !problems.is_empty() && self.frame.fluids[k - 1].is_empty() => {
                     continue;
@@ -189,7 +177,7 @@ impl Frame {
         let fluid = |reader: &Option<Reader>, k: usize| match reader {
             Some(reader) => Ok(Lubricant::from_values(&reader.root(), &self.fluids[k])),
             // Some fluid, so that the reading goes on.
-            None => load_lubricant("cvtf_ezl799_class", "", &[], "").map(|found| found.0),
+            None => load_lubricant("cvtf_ezl799_class").map(|found| found.0),
         };
         let fluids = [fluid(oil, 0)?, fluid(engine_oil, 1)?];
         let (road_load, car) = parts(&root, fluids, self.formulation, self.name.clone());
@@ -208,67 +196,54 @@ impl Frame {
     }
 }
 
-/// The document of a fluid with those overrides whose key begins with `prefix`.
-///
-/// # Errors
-/// All problems of the file's text and of the overrides' form.
-pub(super) fn fluid_document(
-    word: &str,
-    option: &str,
-    sets: &[String],
-    prefix: &str,
-) -> Result<Document, Problems> {
-    let (file, text, _) = text_of(word, Kind::Lubricant, option)?;
-    let mut document = Document::parse(&file, &text)?;
-    apply(&mut document, sets, |key| {
-        key.strip_prefix(prefix).map(str::to_owned)
-    })
-    .map_err(|problems| as_given(problems, prefix))?;
-    Ok(document)
+/// The file of a fluid with its overrides, and its name. Problems of the word are at `place`.
+fn fluid_file(
+    word: String,
+    by: NamedBy,
+    place: Place,
+    options: &Options,
+    target: Target,
+) -> (CarFile, String) {
+    let read = text_of(&word, Kind::Lubricant, by)
+        .and_then(|(file, text, _)| Document::parse(&file, &text));
+    let file = match read {
+        Ok(mut document) => CarFile {
+            problems: apply(&mut document, &options.set, |of| of == target),
+            document: Some(document),
+        },
+        Err(problems) => CarFile {
+            document: None,
+            problems: problems.map(|problem| {
+                let is_word = problem.place.is_argument(Argument::Lubricant);
+                if is_word {
+                    problem.at(place.clone())
+                } else {
+                    problem
+                }
+            }),
+        },
+    };
+    (file, stem(&word))
 }
 
 /// Ends the reading of a fluid; its keys with their prefix.
 ///
 /// # Errors
 /// All problems.
-pub(super) fn fluid_keys(reader: Reader, prefix: &str) -> Result<Vec<KeyInfo>, Problems> {
-    let keys = reader
-        .finish()
-        .map_err(|problems| as_given(problems, prefix))?;
-    Ok(keys
-        .into_iter()
-        .map(|k| KeyInfo {
-            key: format!("{prefix}{}", k.key),
-            ..k
-        })
-        .collect())
+fn fluid_keys(reader: Reader, target: Target) -> Result<Vec<KeyInfo>, Problems> {
+    let mut keys = reader.finish()?;
+    for info in &mut keys {
+        info.key.insert_str(0, target.prefix());
+    }
+    Ok(keys)
 }
 
-/// Problems of overrides of a fluid, with the option as the user wrote it: the fluid's own keys have no prefix.
-fn as_given(mut problems: Problems, prefix: &str) -> Problems {
-    for problem in problems.iter_mut() {
-        if let Some(assignment) = problem.place.file.strip_prefix("--set ") {
-            problem.place.file = format!("--set {prefix}{assignment}");
-        }
-    }
-    problems
-}
-
-/// Applies those overrides whose key `pick` accepts (and may rename).
-fn apply(
-    document: &mut Document,
-    sets: &[String],
-    pick: impl Fn(&str) -> Option<String>,
-) -> Result<(), Problems> {
-    let assignments = sets.iter().filter_map(|set| pick(set));
-    let problems: Problems = assignments
-        .filter_map(|assignment| document.set(&assignment).err())
-        .collect();
-    if problems.is_empty() {
-        Ok(())
-    } else {
-        Err(problems)
-    }
+/// Puts in the overrides of some files; their problems.
+fn apply(document: &mut Document, set: &[Override], is_of: impl Fn(Target) -> bool) -> Problems {
+    set.iter()
+        .filter(|by| is_of(by.target()))
+        .filter_map(|by| document.set(by).err())
+        .collect()
 }
 
 /// What the `[vehicle]` table says.

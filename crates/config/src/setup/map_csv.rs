@@ -80,7 +80,7 @@ fn full(schema: &Schema, columns: &[usize], rows: &[Row], problems: &mut Collect
         if let Some(first) = lines.insert(at, row.line.number) {
             let message = format!("this row has the same {} as line {first}", words(&axes));
             problems.line(row.line, "", || {
-                Problem::invalid(message)
+                Problem::duplicate(message)
                     .allowed("each combination once")
                     .hint("remove one of them")
             });
@@ -119,7 +119,7 @@ fn full(schema: &Schema, columns: &[usize], rows: &[Row], problems: &mut Collect
     let message = format!("there is no row for {}", here.join(", "));
     let hint = "add it, or remove the rows that belong to no full grid";
     problems.file(
-        Problem::invalid(message)
+        Problem::missing(message)
             .allowed(format!("a row for every combination of {}", words(&axes)))
             .hint(hint),
     );

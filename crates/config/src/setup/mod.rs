@@ -17,7 +17,9 @@ use std::sync::Arc;
 
 use crate::bounded::{self, ReadError};
 use crate::embedded;
-use crate::{Bound, Document, KeyInfo, Problem, Problems, Reader, decode, did_you_mean};
+use crate::{
+    Argument, Bound, Document, KeyInfo, Override, Problem, Problems, Reader, decode, did_you_mean,
+};
 use cvtcycle_model::drive::Vehicle;
 
 use cvtcycle_model::fluid::Lubricant;
@@ -76,10 +78,22 @@ pub struct Options {
     pub lubricant: Option<String>,
     /// Engine oil, name or path; the vehicle's own if none.
     pub engine_oil: Option<String>,
-    /// `KEY=VALUE` overrides; `lubricant.` and `engine_oil.` go to those files.
-    pub set: Vec<String>,
+    /// Overrides of the files' values, in order.
+    pub set: Vec<Override>,
     /// Reading of the belt model.
     pub formulation: Formulation,
+    /// What gives the names of vehicle and fluids.
+    pub named_by: NamedBy,
+}
+
+/// What names an input file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NamedBy {
+    /// The caller.
+    #[default]
+    Caller,
+    /// Another file, whose author may be unknown: pipes and devices are refused.
+    File,
 }
 
 /// A vehicle with its fluids, checked, and where each of its values comes from. It is used like the [`Vehicle`] in it.
@@ -139,6 +153,17 @@ impl Kind {
         self.embedded().iter().map(|(name, _)| *name).collect()
     }
 
+    /// The argument of a call that names such a file.
+    const fn argument(self) -> Argument {
+        match self {
+            Kind::Vehicle => Argument::Vehicle,
+            Kind::Lubricant => Argument::Lubricant,
+            Kind::Plan => Argument::Plan,
+            Kind::Calibration => Argument::Calibration,
+            Kind::Rig => Argument::File,
+        }
+    }
+
     pub(crate) const fn word(self) -> &'static str {
         match self {
             Kind::Vehicle => "vehicle",
@@ -156,49 +181,40 @@ pub fn is_path(word: &str) -> bool {
     word.contains(['/', '\\']) || std::path::Path::new(word).extension().is_some()
 }
 
-/// Text of an input and the name under which problems cite it.
+/// Text of an input, the name under which problems cite it, and its folder.
 ///
 /// # Errors
 /// Unknown name (with the near ones), unreadable path, binary or empty file.
-pub fn text_of(word: &str, kind: Kind, option: &str) -> Result<(String, String, Disk), Problems> {
+pub fn text_of(word: &str, kind: Kind, by: NamedBy) -> Result<(String, String, Disk), Problems> {
     if !is_path(word) {
-        let text = embedded::text(kind.embedded(), word)
-            .ok_or_else(|| unknown_name(word, kind, option))?;
+        let text = embedded::text(kind.embedded(), word).ok_or_else(|| unknown_name(word, kind))?;
         let file = format!("embedded:{word}.toml");
         return Ok((file, text.to_owned(), Disk::default()));
     }
     let path = std::path::Path::new(word);
-    // A name that no option gives comes from a file, whose author may be unknown.
-    let by_user = option.starts_with("--") || ["FILE", "PLAN"].contains(&option);
-    let read = if by_user {
-        bounded::read(path, bounded::TOML)
-    } else {
-        bounded::read_file(path, bounded::TOML)
+    let read = match by {
+        NamedBy::Caller => bounded::read(path, bounded::TOML),
+        NamedBy::File => bounded::read_file(path, bounded::TOML),
     };
-    let bytes = read.map_err(|error| unreadable(word, option, &error))?;
-    let folder = path
-        .parent()
-        .map(std::path::Path::to_path_buf)
-        .unwrap_or_default();
+    let bytes = read.map_err(|error| unreadable(word, kind, &error))?;
+    let folder = path.parent().map(ToOwned::to_owned).unwrap_or_default();
     Ok((word.to_owned(), decode(word, &bytes)?, Disk { folder }))
 }
 
-fn unknown_name(word: &str, kind: Kind, option: &str) -> Problem {
+fn unknown_name(word: &str, kind: Kind) -> Problem {
     let names = kind.names();
     let hint = did_you_mean(word, names.iter().copied())
         .map_or_else(String::new, |question| question + " ");
     Problem::unknown_name(format!("there is no {} named `{word}`", kind.word()))
-        .in_file(option)
-        .key(option)
+        .at(kind.argument())
         .value(word)
         .allowed(format!("{}, or the path of a TOML file", names.join(", ")))
         .hint(format!("{hint}a path needs a / or an ending"))
 }
 
-fn unreadable(word: &str, option: &str, why: &ReadError) -> Problem {
+fn unreadable(word: &str, kind: Kind, why: &ReadError) -> Problem {
     Problem::unreadable(format!("cannot read `{word}`: {why}"))
-        .in_file(option)
-        .key(option)
+        .at(kind.argument())
         .value(word)
         .allowed(why.allowed("a readable file"))
         .hint(why.hint("check the path and its permissions"))
@@ -210,39 +226,52 @@ fn stem(word: &str) -> String {
         .map_or_else(|| word.to_owned(), |s| s.to_string_lossy().into_owned())
 }
 
-/// Reads and checks a lubricant.
+/// Reads and checks a lubricant by its name or path.
 ///
 /// # Errors
-/// All problems of the file and of the overrides that go to it.
-pub fn load_lubricant(
-    word: &str,
-    option: &str,
-    sets: &[String],
-    prefix: &str,
-) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
-    read_document(
-        &inputs::fluid_document(word, option, sets, prefix)?,
-        word,
-        prefix,
-    )
+/// All problems of the file.
+///
+/// ```
+/// use cvtcycle_config::setup::load_lubricant;
+/// let (oil, keys) = load_lubricant("dexron_iii")?;
+/// assert_eq!(keys[0].key, "lubricant.title");
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
+pub fn load_lubricant(word: &str) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
+    let (file, text, _) = text_of(word, Kind::Lubricant, NamedBy::Caller)?;
+    read_lubricant(&file, &text)
 }
 
-fn read_document(
-    document: &Document,
-    word: &str,
-    prefix: &str,
-) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
-    let reader = Reader::new(document);
-    let lubricant = Lubricant::from_values(&reader.root(), &stem(word));
-    Ok((lubricant, inputs::fluid_keys(reader, prefix)?))
+/// As [`load_lubricant`], for a fluid's text that need not be on disk; `file` is its name or path, which problems cite.
+///
+/// # Errors
+/// As there.
+pub fn read_lubricant(file: &str, text: &str) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
+    let document = Document::parse(file, text)?;
+    let reader = Reader::new(&document);
+    let lubricant = Lubricant::from_values(&reader.root(), &stem(file));
+    Ok((lubricant, reader.finish()?))
 }
 
-/// Reads and checks a vehicle with its fluids.
+/// Reads and checks a vehicle by its name or path, with its fluids and with other values in place of the files'.
 ///
 /// # Errors
 /// All problems of the vehicle file, of its fluids and of the overrides.
-pub fn load(word: &str, option: &str, options: &Options) -> Result<Setup, Problems> {
-    inputs::Inputs::gather(word, option, options)?.read()
+///
+/// ```
+/// use cvtcycle_config::Override;
+/// use cvtcycle_config::setup::{Options, load};
+/// let options = Options {
+///     lubricant: Some("dexron_iii".into()),
+///     set: vec![Override::number("road_load.mass_kg", 1250.0)],
+///     ..Options::default()
+/// };
+/// let car = load("rover_216_cvt", &options)?;
+/// assert_eq!(car.road_load.mass_kg, 1250.0);
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
+pub fn load(word: &str, options: &Options) -> Result<Setup, Problems> {
+    inputs::Inputs::gather(word, options)?.read()
 }
 
 /// As [`load`], for a vehicle's text that need not be on disk. `file` is its name or path, which problems cite and from which paths of
@@ -250,6 +279,14 @@ pub fn load(word: &str, option: &str, options: &Options) -> Result<Setup, Proble
 ///
 /// # Errors
 /// As there.
+///
+/// ```
+/// use cvtcycle_config::setup::{Disk, Kind, Options, read};
+/// let (_, shipped) = Kind::Vehicle.embedded()[0];
+/// let text = shipped.replace("title =", "titel =");
+/// let problems = read("own.toml", &text, Box::new(Disk::default()), &Options::default()).unwrap_err();
+/// assert_eq!(problems[0].hint, "did you mean `title`?");
+/// ```
 pub fn read(
     file: &str,
     text: &str,
@@ -257,14 +294,6 @@ pub fn read(
     options: &Options,
 ) -> Result<Setup, Problems> {
     inputs::Inputs::of_text(file, text, files, options)?.read()
-}
-
-/// As [`load_lubricant`], for a fluid's text that need not be on disk.
-///
-/// # Errors
-/// As there.
-pub fn read_lubricant(file: &str, text: &str) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
-    read_document(&Document::parse(file, text)?, file, "")
 }
 
 /// Range of ambient temperatures, degC (test cell of the thesis widened).

@@ -1,21 +1,25 @@
 //! One car, built again and again with other numbers.
 //!
 //! A study drives up to a million cars that differ in a few numbers. A [`VehicleTemplate`] parses and checks the files once; a [`Variant`], one a
-//! thread, changes numbers in the parsed documents and reads them silently ([`Reader::check_only`]): with the same readers, checks and results
-//! as [`super::load`], but without a text for every key. The texts of problems come from an ordinary reading, done when a car is refused.
+//! thread, changes numbers in the parsed documents and reads them in check-only mode ([`Reader::check_only`]): with the same readers, checks and
+//! results as [`super::load`], but without a text for every key. The texts of problems come from an ordinary reading, done when a car is refused.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::inputs::{FLUIDS, Input, Inputs};
+use super::inputs::Inputs;
 use super::{Options, Setup, wrong_transmission};
-use crate::{Document, KeyInfo, KeyPath, PatchedDocument, Problem, Problems, Reader, unit_of};
+use crate::overrides::path_of;
+use crate::{
+    Document, KeyInfo, KeyPath, Override, PatchedDocument, Problem, Problems, Reader, Target,
+    unit_of,
+};
 
 /// The parsed and checked files of one car.
 #[derive(Clone, Debug)]
 pub struct VehicleTemplate {
     inputs: Arc<Inputs>,
-    /// Of every key what a slot needs: value and range.
+    /// Of every key what a reference needs: value and range.
     keys: HashMap<String, KeyInfo>,
 }
 
@@ -23,7 +27,7 @@ pub struct VehicleTemplate {
 #[derive(Clone, Debug)]
 pub struct ParameterRef {
     key: Arc<str>,
-    /// Index of vehicle, transmission oil or engine oil.
+    /// Index in [`Target::CAR`].
     file: usize,
     path: KeyPath,
     base: f64,
@@ -63,12 +67,18 @@ impl VehicleTemplate {
     ///
     /// # Errors
     /// All problems of the files and of the overrides.
-    pub fn load(
-        word: &str,
-        option: &str,
-        options: &Options,
-    ) -> Result<(VehicleTemplate, Setup), Problems> {
-        let inputs = Inputs::gather(word, option, options)?;
+    ///
+    /// ```
+    /// use cvtcycle_config::setup::{Options, template::VehicleTemplate};
+    /// let (template, _) = VehicleTemplate::load("rover_216_cvt", &Options::default())?;
+    /// let mass = template.slot("road_load.mass_kg")?;
+    /// let mut variant = template.bench();
+    /// variant.set(&mass, 2.0 * mass.base());
+    /// assert_eq!(variant.build().unwrap().road_load.mass_kg, 2.0 * mass.base());
+    /// # Ok::<(), cvtcycle_config::Problems>(())
+    /// ```
+    pub fn load(word: &str, options: &Options) -> Result<(VehicleTemplate, Setup), Problems> {
+        let inputs = Inputs::gather(word, options)?;
         let setup = inputs.read()?;
         let known = |info: &KeyInfo| KeyInfo {
             value: info.value.clone(),
@@ -82,31 +92,19 @@ impl VehicleTemplate {
             .iter()
             .map(|info| (info.key.clone(), known(info)))
             .collect();
-        Ok((
-            VehicleTemplate {
-                inputs: Arc::new(inputs),
-                keys,
-            },
-            setup,
-        ))
+        let inputs = Arc::new(inputs);
+        Ok((VehicleTemplate { inputs, keys }, setup))
     }
 
-    /// Finds a number by its dotted key, as `--set` has it (`lubricant.` and `engine_oil.` for the fluids). The files may leave it at its
-    /// default; it may also belong to an option that they do not choose, which is then chosen as by `--set`.
+    /// Finds a number by its dotted key (`lubricant.` and `engine_oil.` for the fluids). The files may leave it at its default; it may
+    /// also belong to an option that they do not choose, which an override of the key then chooses.
     ///
     /// # Errors
-    /// What `--set` would say of an unknown key; a problem for a key that holds no single number.
+    /// The problem of an override of an unknown key; a problem for a key that holds no single number.
     pub fn slot(&self, key: &str) -> Result<ParameterRef, Problem> {
         let key = key.trim();
-        let file = FLUIDS
-            .iter()
-            .position(|prefix| key.starts_with(prefix))
-            .map_or(0, |k| k + 1);
-        let own = if file == 0 {
-            key
-        } else {
-            key.strip_prefix(FLUIDS[file - 1]).unwrap_or(key)
-        };
+        let (target, own) = Target::of(key);
+        let file = Target::CAR.iter().position(|of| *of == target).unwrap_or(0);
         let (info, inactive) = match self.keys.get(key) {
             Some(info) => (info.clone(), false),
             None => (self.elsewhere(key, own, file)?, true),
@@ -117,11 +115,10 @@ impl VehicleTemplate {
             None if info.value.is_empty() && info.is_number => f64::NAN,
             None => return Err(no_number(key, info)),
         };
-        let path = own.split('.').map(|name| name.trim().into()).collect();
         Ok(ParameterRef {
             key: key.into(),
             file,
-            path,
+            path: path_of(own),
             base,
             allowed: info.allowed.into(),
             inactive,
@@ -130,45 +127,34 @@ impl VehicleTemplate {
 
     /// A key that the unchanged files do not ask for.
     fn elsewhere(&self, key: &str, own: &str, file: usize) -> Result<KeyInfo, Problem> {
-        let unset = |problem: Problem| problem.in_file(format!("--set {key}")).value(String::new());
-        if let Some(document) = &self.inputs.files[0].document
-            && let Some(wrong) = wrong_transmission::wrong_transmission_keys(
-                document,
-                &[format!("{key}=0")],
-                &self.inputs.frame.name,
-            )
-            .pop()
+        let by = Override::new(key, "0")?;
+        let unset = |problem: Problem| problem.value(String::new());
+        let inputs = &self.inputs;
+        let set = std::slice::from_ref(&by);
+        if let Some(document) = &inputs.files[0].document
+            && let Some(wrong) =
+                wrong_transmission::wrong_keys(document, set, &inputs.frame.name).pop()
         {
             return Err(unset(wrong));
         }
-        let mut documents = self
-            .inputs
-            .files
-            .each_ref()
-            .map(|input| input.document.clone());
+        let mut documents = inputs.files.each_ref().map(|file| file.document.clone());
         if let Some(document) = &mut documents[file] {
-            document.reach(own).map_err(unset)?;
+            document.reach(&by).map_err(unset)?;
         }
-        let readers = documents.each_ref().map(|document| {
-            let reader = |document| Reader::new(document).with_files(&self.inputs.frame.files);
-            document.as_ref().map(reader)
-        });
-        let _ = self.inputs.frame.assemble(&readers);
-        let known = readers[file]
-            .as_ref()
-            .map(Reader::known)
-            .unwrap_or_default();
-        if let Some(info) = known.into_iter().find(|info| info.key == own) {
+        let reader = |document| Reader::new(document).with_files(&inputs.frame.files);
+        let readers = documents
+            .each_ref()
+            .map(|document| document.as_ref().map(reader));
+        let _ = inputs.frame.assemble(&readers);
+        let known = readers[file].as_ref().map(Reader::known);
+        let mut known = known.into_iter().flatten();
+        if let Some(info) = known.find(|info| info.key == own) {
             return Ok(info);
         }
-        let problems = changed(&self.inputs, &[(file, own.to_owned(), 0.0)])
-            .read()
-            .err()
-            .unwrap_or_default();
+        let problems = changed(inputs, set).read().err().unwrap_or_default();
         let problem = problems.into_iter().find(|problem| problem.key == own);
-        Err(unset(problem.unwrap_or_else(|| {
-            Problem::unknown_key(format!("unknown key `{key}`")).key(key)
-        })))
+        let unknown = || Problem::unknown_key(format!("unknown key `{key}`")).key(key);
+        Err(unset(problem.unwrap_or_else(unknown).at(by.input())))
     }
 
     /// A thread's own copy of the files, unchanged.
@@ -176,15 +162,17 @@ impl VehicleTemplate {
     pub fn bench(&self) -> Variant {
         let empty =
             Document::parse("", "").unwrap_or_else(|_| unreachable!("no text has no mistakes"));
-        let drafts = self
-            .inputs
-            .files
-            .each_ref()
-            .map(|input| PatchedDocument::new(input.document.as_ref().unwrap_or(&empty)));
+        let document =
+            |document: &Option<Document>| PatchedDocument::new(document.as_ref().unwrap_or(&empty));
         Variant {
             inputs: Arc::clone(&self.inputs),
-            drafts,
-            conflicts: Vec::new(),
+            documents: self
+                .inputs
+                .files
+                .each_ref()
+                .map(|file| document(&file.document)),
+            numbers: Vec::new(),
+            conflicts: 0,
             inactive: Vec::new(),
             checked: Vec::new(),
         }
@@ -193,35 +181,21 @@ impl VehicleTemplate {
 
 fn no_number(key: &str, info: KeyInfo) -> Problem {
     Problem::not_single(format!("`{key}` holds no single number"))
-        .in_file(format!("--set {key}"))
+        .at(Override::number(key, 0.0).input())
         .key(key)
         .value(info.value)
         .allowed(info.allowed)
         .hint("give its values as texts")
 }
 
-/// The files with numbers set as by `--set`, in order: index of the file, key without prefix, value.
-fn changed(inputs: &Inputs, numbers: &[(usize, String, f64)]) -> Inputs {
+/// The files with more overrides.
+fn changed(inputs: &Inputs, set: &[Override]) -> Inputs {
     let mut files = inputs.files.clone();
-    for (file, key, number) in numbers {
-        let Input {
-            document: Some(document),
-            problems,
-        } = &mut files[*file]
-        else {
-            continue;
-        };
-        // TOML has its own word for what is no number.
-        let text = if number.is_nan() {
-            "nan".to_owned()
-        } else {
-            number.to_string()
-        };
-        if let Err(mut problem) = document.set(&format!("{key}={text}")) {
-            if *file > 0 {
-                problem.place.file = format!("--set {}{key}={text}", FLUIDS[*file - 1]);
-            }
-            problems.push(problem);
+    for (file, target) in files.iter_mut().zip(Target::CAR) {
+        let of_file = set.iter().filter(|by| by.target() == target);
+        if let Some(document) = &mut file.document {
+            let refused = of_file.filter_map(|by| document.set(by).err());
+            file.problems.extend(refused);
         }
     }
     inputs.with_files(files)
@@ -238,10 +212,12 @@ pub struct Rejected {
 #[derive(Clone, Debug)]
 pub struct Variant {
     inputs: Arc<Inputs>,
-    /// Vehicle, transmission oil, engine oil.
-    drafts: [PatchedDocument; 3],
-    /// Numbers that could not be put in, because another one is in the way.
-    conflicts: Vec<(ParameterRef, f64)>,
+    /// In the order of [`Target::CAR`].
+    documents: [PatchedDocument; 3],
+    /// The numbers in force, in the order in which they came.
+    numbers: Vec<(ParameterRef, f64)>,
+    /// So many of them could not be put in, because another one is in the way.
+    conflicts: usize,
     /// Numbers of options that the files do not choose.
     inactive: Vec<Arc<str>>,
     /// Such numbers, for which it is known that no key is left over.
@@ -249,20 +225,26 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// Puts in a number, in the unit of the slot's key. The car is what [`super::load`] makes of `--set KEY=NUMBER`.
+    /// Puts in a number, in the unit of the key. The car is what [`super::load`] makes of an [`Override::number`].
     pub fn set(&mut self, slot: &ParameterRef, number: f64) {
-        if !self.drafts[slot.file].set(&slot.path, number) {
-            self.conflicts.push((slot.clone(), number));
+        if !self.documents[slot.file].set(&slot.path, number) {
+            self.conflicts += 1;
         }
         if slot.inactive && !self.inactive.contains(&slot.key) {
             self.inactive.push(Arc::clone(&slot.key));
+        }
+        let same = |(set, _): &&mut (ParameterRef, f64)| set.key == slot.key;
+        match self.numbers.iter_mut().find(same) {
+            Some((_, old)) => *old = number,
+            None => self.numbers.push((slot.clone(), number)),
         }
     }
 
     /// Takes all numbers back.
     pub fn reset(&mut self) {
-        self.drafts.iter_mut().for_each(PatchedDocument::reset);
-        self.conflicts.clear();
+        self.documents.iter_mut().for_each(PatchedDocument::reset);
+        self.numbers.clear();
+        self.conflicts = 0;
         self.inactive.clear();
     }
 
@@ -272,11 +254,11 @@ impl Variant {
     /// How many problems it has.
     pub fn build(&mut self) -> Result<Setup, Rejected> {
         let rejected = |problems: usize| Err(Rejected { problems });
-        if !self.conflicts.is_empty() {
-            return rejected(self.conflicts.len());
+        if self.conflicts > 0 {
+            return rejected(self.conflicts);
         }
-        let readers = self.drafts.each_ref().map(|draft| {
-            Some(Reader::check_only(draft.document()).with_files(&self.inputs.frame.files))
+        let readers = self.documents.each_ref().map(|patched| {
+            Some(Reader::check_only(patched.document()).with_files(&self.inputs.frame.files))
         });
         let setup = match self.inputs.frame.assemble(&readers) {
             Ok(setup) => setup,
@@ -302,30 +284,12 @@ impl Variant {
         Ok(setup)
     }
 
-    /// What is wrong with the car, in the words that [`super::load`] has for `--set KEY=NUMBER`; nothing if all is well. Takes as long as
-    /// an ordinary reading.
+    /// What is wrong with the car, in the words that [`super::load`] has for overrides with these numbers; nothing if all is well. Takes
+    /// as long as an ordinary reading.
     #[must_use]
     pub fn problems(&self) -> Problems {
-        let of_file = |(file, draft): (usize, &PatchedDocument)| {
-            draft
-                .numbers()
-                .map(|(key, number)| (file, key, number))
-                .collect::<Vec<_>>()
-        };
-        let conflicts = self
-            .conflicts
-            .iter()
-            .map(|(slot, number)| (slot.file, slot.path.join("."), *number));
-        let numbers: Vec<_> = self
-            .drafts
-            .iter()
-            .enumerate()
-            .flat_map(of_file)
-            .chain(conflicts)
-            .collect();
-        changed(&self.inputs, &numbers)
-            .read()
-            .err()
-            .unwrap_or_default()
+        let number = |(slot, number): &(ParameterRef, f64)| Override::number(&slot.key, *number);
+        let set: Vec<Override> = self.numbers.iter().map(number).collect();
+        changed(&self.inputs, &set).read().err().unwrap_or_default()
     }
 }

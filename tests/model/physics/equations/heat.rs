@@ -297,7 +297,6 @@ fn a_cooler_is_open_where_nothing_is_said() {
     std::fs::write(&file, kept.join("\n")).unwrap();
     let car = cvtcycle_config::setup::load(
         file.to_str().unwrap(),
-        "--vehicle",
         &cvtcycle_config::setup::Options::default(),
     )
     .unwrap()

@@ -241,7 +241,6 @@ fn val_printed_slip_on_the_bench() {
     for formulation in [Formulation::AppendixC, Formulation::Chapter8] {
         let setup = load(
             "rover_216_cvt",
-            "--vehicle",
             &Options {
                 formulation,
                 ..Options::default()
@@ -653,7 +652,6 @@ fn val_a_mapped_belt_warms_over_the_sump() {
     let set = vec!["transmission.cvt.maps.belt=map.csv".to_owned()];
     let setup = load(
         file.to_str().unwrap(),
-        "--vehicle",
         &Options {
             set,
             ..Options::default()

@@ -188,7 +188,7 @@ fn val_road_load_of_a_file() {
             format!("{}\n{}\n{}", head.join("\n"), sets.join("\n"), &text[end..]),
         )
         .unwrap();
-        load(file.to_str().unwrap(), "--vehicle", &Options::default())
+        load(file.to_str().unwrap(), &Options::default())
             .unwrap_or_else(|p| panic!("{p:?}"))
             .car(293.15)
             .road_load

@@ -146,7 +146,7 @@ impl Recipe {
             ..Options::default()
         };
         let name = CARS[self.vehicle];
-        let loaded = VehicleTemplate::load(name, "--vehicle", &options);
+        let loaded = VehicleTemplate::load(name, &options);
         let (blueprint, base) =
             loaded.unwrap_or_else(|problems| panic!("{name} {options:?}: {}", problems[0].message));
         let numbers: Vec<KeyInfo> = base

@@ -147,7 +147,6 @@ fn car(name: &str, sets: &[&str]) -> Result<Setup, String> {
     let set = sets.iter().map(|s| (*s).to_owned()).collect();
     load(
         name,
-        "--vehicle",
         &Options {
             set,
             ..Options::default()

@@ -23,7 +23,7 @@ pub struct Reference {
 }
 
 fn car(name: &str) -> Result<Setup, String> {
-    load(name, "--vehicle", &Options::default()).map_err(|problems| render(&problems, false))
+    load(name, &Options::default()).map_err(|problems| render(&problems, false))
 }
 
 /// State of the belt in a figure.

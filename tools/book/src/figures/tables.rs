@@ -104,7 +104,7 @@ fn index(source: &Path) -> Result<String, String> {
 
 /// Keys of the page's vehicle that belong to it.
 pub fn keys(page: &Page, labels: &[Labelled]) -> Result<Vec<KeyInfo>, String> {
-    let setup = load(page.vehicle, "--vehicle", &Options::default())
+    let setup = load(page.vehicle, &Options::default())
         .map_err(|problems| render(&problems, false))?;
     let named = |key: &str| {
         page.keys.iter().any(|k| {

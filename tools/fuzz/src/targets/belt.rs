@@ -30,7 +30,7 @@ pub fn belt(data: &[u8]) {
 
 /// The belt and the load of the shipped car.
 fn shipped() -> (Belt, BeltLoad) {
-    let setup = setup::load("rover_216_cvt", "--vehicle", &Options::default())
+    let setup = setup::load("rover_216_cvt", &Options::default())
         .unwrap_or_else(|_| panic!("the shipped car"));
     let Transmission::Cvt(cvt) = setup.transmission() else {
         panic!("a car with a belt")

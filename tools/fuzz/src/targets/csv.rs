@@ -130,7 +130,7 @@ impl Take for Look {
 
 /// The belt of the shipped car.
 fn belt_model() -> Model {
-    let setup = setup::load("rover_216_cvt", "--vehicle", &Options::default())
+    let setup = setup::load("rover_216_cvt", &Options::default())
         .unwrap_or_else(|_| panic!("the shipped car"));
     Model::new(&setup, 0.0).unwrap_or_else(|| panic!("a car with a belt"))
 }

@@ -87,7 +87,7 @@ fn car((name, words): (&str, &[&str])) -> Car {
         set: words.iter().map(|word| (*word).to_owned()).collect(),
         ..Options::default()
     };
-    let loaded = VehicleTemplate::load(name, "--vehicle", &options);
+    let loaded = VehicleTemplate::load(name, &options);
     let (blueprint, base) =
         loaded.unwrap_or_else(|problems| panic!("{name} {words:?}: {}", problems[0].message));
     let slot = |info: &KeyInfo| {

@@ -92,6 +92,6 @@ pub fn overrides(data: &[u8]) {
         ..Options::default()
     };
     within_memory(rest.len(), || {
-        checked(setup::load(name, "--vehicle", &options).err())
+        checked(setup::load(name, &options).err())
     });
 }
