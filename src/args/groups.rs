@@ -9,7 +9,7 @@ use cvtcycle::config::{Problem, Problems, cycle};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 
-use super::problems::{bad_value, problem};
+use super::problems::{bad_value, overrides, problem};
 use super::{Names, cycles, lubricants, names_of, one_of, relative_to, vehicles};
 
 /// The vehicle and its transmission oil.
@@ -28,10 +28,10 @@ pub struct VehicleArgs {
 
 impl VehicleArgs {
     /// Options of reading this vehicle.
-    pub fn options(&self, formulation: Formulation) -> Options {
+    pub fn options(&self, formulation: Formulation, problems: &mut Problems) -> Options {
         Options {
             lubricant: self.lubricant.clone(),
-            set: self.set.clone(),
+            set: overrides("--set", &self.set, problems),
             formulation,
             ..Options::default()
         }
@@ -39,11 +39,8 @@ impl VehicleArgs {
 
     /// Reads the vehicle.
     pub fn load(&self, formulation: Formulation, problems: &mut Problems) -> Option<Setup> {
-        problems.take(setup::load(
-            &self.vehicle,
-            "--vehicle",
-            &self.options(formulation),
-        ))
+        let options = self.options(formulation, problems);
+        problems.take(setup::load(&self.vehicle, &options))
     }
 
     /// A problem for a command that needs a CVT.
@@ -103,7 +100,7 @@ fn baselines() -> Vec<&'static str> {
 impl ComparisonArgs {
     /// Reads the cycle.
     pub fn cycle(&self, problems: &mut Problems) -> Option<Cycle> {
-        problems.take(cycle::find("--cycle", &self.cycle))
+        problems.take(cycle::find(&self.cycle))
     }
 
     /// Names of the baselines: those given, else those of the file of the vehicle.

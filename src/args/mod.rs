@@ -10,11 +10,11 @@ pub use groups::{
 };
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
-pub use cvtcycle::config::cycle::bytes;
 use cvtcycle::config::setup::{Kind, is_path};
-use cvtcycle::config::{Bound, Problems, cycle, unit_of};
+use cvtcycle::config::bounded::Limit;
+use cvtcycle::config::{Argument, Bound, Problems, cycle, unit_of};
 
-use problems::{bad_value, did_you_mean};
+use problems::{bad_value, cite, did_you_mean};
 
 /// Takes any text, but offers known names to shell completions: an unknown name is reported with all other problems.
 #[derive(Clone, Copy, Debug)]
@@ -129,6 +129,11 @@ pub fn one_of<T: Copy>(
     let message = format!("{} is not known", quoted(value));
     let hint = did_you_mean(value, &names);
     Err(bad_value(option, value, &allowed, &message, &hint).into())
+}
+
+/// The bytes of a file that an option names.
+pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Problems> {
+    cycle::bytes(Argument::File, path, limit).map_err(|found| cite(option, found))
 }
 
 /// Path of a file named in another file, whose folder is where its paths begin.

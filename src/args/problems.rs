@@ -1,6 +1,6 @@
-//! Problems of options.
+//! Problems of options, and the library's problems under the options of the command line.
 
-use cvtcycle::config::Problem;
+use cvtcycle::config::{Argument, Input, Override, Place, Problem, Problems};
 
 /// A problem of an option or argument.
 pub fn problem(option: &str, message: &str, hint: &str) -> Problem {
@@ -18,4 +18,56 @@ pub fn bad_value(option: &str, value: &str, allowed: &str, message: &str, hint: 
 /// A question for the known names that are similar to the given one; empty if there are none.
 pub fn did_you_mean(value: &str, known: &[&str]) -> String {
     cvtcycle::config::did_you_mean(value, known.iter().copied()).unwrap_or_default()
+}
+
+/// The overrides that an option gives, except those that are none, which are reported under it.
+pub fn overrides(option: &str, texts: &[String], problems: &mut Problems) -> Vec<Override> {
+    let parse = |text: &String| text.parse::<Override>().map_err(|p| assigned(option, text, p));
+    texts
+        .iter()
+        .filter_map(|text| problems.take(parse(text)))
+        .collect()
+}
+
+/// A problem of an override under the option that gives it.
+pub fn assigned(option: &str, text: &str, problem: Problem) -> Problem {
+    problem.in_file(format!("{option} {text}"))
+}
+
+/// Problems of arguments of the library under the option that gives them.
+pub fn cite(option: &str, found: impl Into<Problems>) -> Problems {
+    found.into().map(|problem| match problem.place.input {
+        Input::Argument(_) => problem.in_file(option).key(option),
+        _ => problem,
+    })
+}
+
+/// A problem under the option or argument of the command line that it is about.
+pub fn in_options(mut problem: Problem) -> Problem {
+    match &problem.place.input {
+        Input::File(_) => {}
+        Input::Override(text) => problem.place = Place::file(format!("--set {text}")),
+        Input::Argument(argument) => {
+            let option = option_of(*argument);
+            problem = problem.in_file(option);
+            if problem.key.is_empty() {
+                option.clone_into(&mut problem.key);
+            }
+        }
+    }
+    problem
+}
+
+/// The option or argument of the command line for an argument of the library.
+fn option_of(argument: Argument) -> &'static str {
+    match argument {
+        Argument::Vehicle => "--vehicle",
+        Argument::Lubricant => "--lubricant",
+        Argument::EngineOil => "--engine-oil",
+        Argument::Cycle => "--cycle",
+        Argument::Plan | Argument::Calibration => "PLAN",
+        Argument::Cover => "--cover",
+        Argument::Output => "--out",
+        Argument::File => "FILE",
+    }
 }

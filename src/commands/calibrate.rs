@@ -61,7 +61,7 @@ impl Execute for CalibrateArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         handle_interrupts();
-        let plan = problems.take(open(&self.plan, "PLAN"));
+        let plan = problems.take(open(&self.plan));
         let out = self.out.dir(problems);
         let mut plan = plan?;
         let search = &mut plan.search;

@@ -1,7 +1,7 @@
 //! `check`: input files without a run.
 
 use clap::Args;
-use cvtcycle::config::setup::{self, Kind, Options};
+use cvtcycle::config::setup::{self, Kind, NamedBy, Options};
 use cvtcycle::config::{Problem, Problems, cycle, render};
 use cvtcycle::study::Study;
 use cvtcycle::study::fit::open;
@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::Execute;
 use crate::args::input_kind::InputKind;
+use crate::args::problems::{cite, in_options};
 use crate::args::{JsonArgs, relative_to};
 use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text};
 
@@ -80,33 +81,33 @@ impl Execute for CheckArgs {
 fn check(file: &str) -> Checked {
     let (kind, word) = InputKind::detect(file, true)?;
     match kind {
-        InputKind::Cycle => drop(cycle::find("FILE", &word)?),
+        InputKind::Cycle => cycle::find(&word).map(drop),
         // Only embedded.
-        InputKind::Rig => {}
-        InputKind::Calibration => drop(open(&word, "FILE")?),
-        InputKind::Study => drop(Study::prepare(Plan::open(&word, "FILE")?)?),
-        InputKind::Lubricant => drop(setup::load_lubricant(&word, "FILE", &[], "")?),
-        InputKind::Vehicle => {
-            let setup = setup::load(&word, "FILE", &Options::default())?;
-            // Only a run reads the baselines; an unknown name is reported here.
-            let mut problems = Problems::default();
-            for name in &setup.baselines {
-                problems.take(setup::text_of(
-                    &relative_to(&word, name),
-                    Kind::Vehicle,
-                    file,
-                ));
-            }
-            problems.finish()?;
-        }
+        InputKind::Rig => Ok(()),
+        InputKind::Calibration => open(&word).map(drop),
+        InputKind::Study => Plan::open(&word).and_then(Study::prepare).map(drop),
+        InputKind::Lubricant => setup::load_lubricant(&word).map(drop),
+        InputKind::Vehicle => check_vehicle(file, &word),
     }
+    .map_err(|found| cite("FILE", found).map(in_options))?;
     Ok(kind)
+}
+
+/// Only a run reads the baselines; an unknown name is reported here.
+fn check_vehicle(file: &str, word: &str) -> Result<(), Problems> {
+    let setup = setup::load(word, &Options::default())?;
+    let mut problems = Problems::default();
+    for name in &setup.baselines {
+        let read = setup::text_of(&relative_to(word, name), Kind::Vehicle, NamedBy::File);
+        problems.take(read.map_err(|found| cite(file, found)));
+    }
+    problems.finish()
 }
 
 fn json_entry(file: &str, result: &Checked) -> Value {
     let problem = |p: &Problem| {
         json!({
-            "file": p.place.file, "line": p.place.line, "column": p.place.column, "key": p.key, "value": p.value,
+            "file": p.place.input.to_string(), "line": p.place.line, "column": p.place.column, "key": p.key, "value": p.value,
             "allowed": p.allowed, "message": p.message, "hint": p.hint,
         })
     };

@@ -137,7 +137,7 @@ fn cycles() -> Listing {
 
 fn list_vehicles(problems: &mut Problems) -> Option<Listing> {
     let line = |name: &'static str| {
-        let setup = problems.take(setup::load(name, "list", &Options::default()))?;
+        let setup = problems.take(setup::load(name, &Options::default()))?;
         let car = setup.car(ZERO_DEGC_K + 20.0);
         let cvt = setup.transmission().is_cvt();
         Some(VehicleLine {
@@ -168,7 +168,7 @@ fn list_vehicles(problems: &mut Problems) -> Option<Listing> {
 
 fn list_lubricants(problems: &mut Problems) -> Option<Listing> {
     let line = |name: &'static str| {
-        let (oil, _) = problems.take(setup::load_lubricant(name, "list", &[], ""))?;
+        let (oil, _) = problems.take(setup::load_lubricant(name))?;
         let kv = |degc: f64| oil.kinematic_m2_s(degc + ZERO_DEGC_K) * 1e6;
         Some(LubricantLine {
             name,

@@ -11,7 +11,7 @@ use serde_json::json;
 
 use super::Execute;
 use crate::args::input_kind::InputKind;
-use crate::args::problems::bad_value;
+use crate::args::problems::{bad_value, cite};
 use crate::args::{JsonArgs, Names, cycles, lubricants, rigs, vehicles};
 use crate::print::colour::Paint;
 use crate::print::table::{TextColumns, TextTable};
@@ -101,13 +101,14 @@ impl Execute for ShowArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Shown> {
         let (kind, word) = problems.take(InputKind::detect(&self.name, false))?;
+        let by_name = |found: Problems| cite("NAME", found);
         let (title, mut keys) = match kind {
             InputKind::Cycle => {
-                let cycle = problems.take(cycle::find("NAME", &word))?;
+                let cycle = problems.take(cycle::find(&word).map_err(by_name))?;
                 return Some(Shown::Cycle(Box::new(cycle)));
             }
             InputKind::Vehicle => {
-                let setup = problems.take(setup::load(&word, "NAME", &Options::default()))?;
+                let setup = problems.take(setup::load(&word, &Options::default()).map_err(by_name))?;
                 // The fluids are shown by their own names.
                 let fluid =
                     |key: &str| key.starts_with("lubricant.") || key.starts_with("engine_oil.");
@@ -115,7 +116,7 @@ impl Execute for ShowArgs {
                 (setup.title, own.collect())
             }
             InputKind::Lubricant => {
-                let (oil, keys) = problems.take(setup::load_lubricant(&word, "NAME", &[], ""))?;
+                let (oil, keys) = problems.take(setup::load_lubricant(&word).map_err(by_name))?;
                 (oil.title, keys)
             }
             InputKind::Rig => rig(&word),

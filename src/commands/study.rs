@@ -92,7 +92,7 @@ impl Execute for StudyPlanArgs {
             problems.add(problem("PLAN", "no plan is named", &hint));
             return None;
         };
-        let mut plan = problems.take(Plan::open(word, "PLAN"))?;
+        let mut plan = problems.take(Plan::open(word))?;
         plan.design = problems.take(self.design(&plan.design))?;
         self.run.prepare(plan, problems)
     }

@@ -13,7 +13,7 @@ use cvtcycle::study::check::{
 };
 
 use super::Execute;
-use crate::args::problems::{bad_value, did_you_mean, problem};
+use crate::args::problems::{bad_value, did_you_mean, overrides, problem};
 use crate::args::{Names, OutArgs, OutputArgs, VehicleArgs, bytes, names_of, one_of};
 use crate::print::{CommandOutput, CommandResult, Results, Terminal, WrittenFiles, json_text};
 
@@ -96,6 +96,7 @@ fn mechanisms() -> Vec<&'static str> {
 pub struct ValidatePlan {
     form: ValidationForm,
     files: Vec<RowFile>,
+    candidate: CandidateVehicle,
     out: Option<OutputDir>,
 }
 
@@ -116,21 +117,22 @@ impl Execute for ValidateArgs {
         if !self.only_rows {
             self.check_vehicle(problems);
         }
+        let candidate = CandidateVehicle {
+            vehicle: self.car.vehicle.clone(),
+            lubricant: self.car.lubricant.clone(),
+            set: overrides("--set", &self.car.set, problems),
+            ..CandidateVehicle::default()
+        };
         Some(ValidatePlan {
             form: form?,
             files,
+            candidate,
             out,
         })
     }
 
     fn run(&self, plan: ValidatePlan, terminal: Terminal) -> CommandResult {
-        let candidate = CandidateVehicle {
-            vehicle: self.car.vehicle.clone(),
-            lubricant: self.car.lubricant.clone(),
-            set: self.car.set.clone(),
-            engine_oil: None,
-        };
-        let report = judge(&plan.files, &candidate, |row| self.is_wanted(row))?;
+        let report = judge(&plan.files, &plan.candidate, |row| self.is_wanted(row))?;
         let files = match plan.out {
             Some(dir) => write(dir, &report)?,
             None => WrittenFiles::default(),
@@ -160,7 +162,7 @@ impl ValidateArgs {
     /// The built-in rows are about a CVT; with a manual gearbox each of them would be a problem.
     fn check_vehicle(&self, problems: &mut Problems) {
         // Problems of the vehicle itself are reported together with those of its overrides.
-        let vehicle = setup::load(&self.car.vehicle, "--vehicle", &Options::default());
+        let vehicle = setup::load(&self.car.vehicle, &Options::default());
         if vehicle.is_ok_and(|setup| !setup.transmission().is_cvt()) {
             let hint = "`--only-rows` with `--rows FILE.toml` compares your own rows with it";
             problems.add(self.car.needs_cvt(hint));

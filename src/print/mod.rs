@@ -13,7 +13,7 @@ use cvtcycle::output::files::OutputDir;
 use serde::Serialize;
 
 use crate::args::OutputArgs;
-use crate::args::problems::problem;
+use crate::args::problems::{in_options, problem};
 use colour::Paint;
 
 /// Colours of the two output streams.
@@ -184,7 +184,7 @@ pub fn to_stdout(f: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(),
 /// Prints the output of a command, or its problems, and returns the exit code.
 pub fn finish(result: CommandResult, terminal: Terminal) -> ExitCode {
     let mut output = result.unwrap_or_else(|problems| CommandOutput {
-        stderr: render(&problems, terminal.stderr.is_on()),
+        stderr: render(&problems.map(in_options), terminal.stderr.is_on()),
         ending: Ending::BadInput,
         ..CommandOutput::default()
     });

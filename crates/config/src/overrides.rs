@@ -47,7 +47,8 @@ impl Target {
     }
 
     /// The file of a key, and the key in it.
-    pub(super) fn of(key: &str) -> (Target, &str) {
+    #[must_use]
+    pub fn of(key: &str) -> (Target, &str) {
         let fluid = |target: Target| Some((target, key.strip_prefix(target.prefix())?));
         let fluids = fluid(Target::Lubricant).or_else(|| fluid(Target::EngineOil));
         fluids.unwrap_or(match key.starts_with("rig.") {

@@ -115,6 +115,16 @@ impl Place {
         }
     }
 
+    /// Narrowed to a text in its line, such as an item of a list; unchanged if the text is not in the line.
+    #[must_use]
+    pub fn of_item(mut self, text: &str) -> Place {
+        if let Some(at) = self.line_text.find(text).filter(|_| !text.is_empty()) {
+            self.column = self.line_text[..at].chars().count() + 1;
+            self.width = text.chars().count();
+        }
+        self
+    }
+
     /// True in that argument.
     #[must_use]
     pub fn is_argument(&self, argument: Argument) -> bool {

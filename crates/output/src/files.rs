@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{NamedTempFile, TempPath};
 
-use cvtcycle_config::Problem;
+use cvtcycle_config::{Argument, Problem};
 
 /// The files that mark a directory as one of an earlier run or calibration.
 const MARKS: [&str; 2] = ["summary.json", "calibration.json"];
@@ -358,11 +358,10 @@ pub fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
     problem(path, &format!("{what}: {words}"), hint)
 }
 
-/// A problem of `--out`.
+/// A problem of the output.
 pub fn problem(path: &Path, message: &str, hint: &str) -> Problem {
     Problem::invalid(message.to_string())
-        .in_file("--out")
-        .key("--out")
+        .at(Argument::Output)
         .value(path.display().to_string())
         .hint(hint.to_string())
 }

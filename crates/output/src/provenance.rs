@@ -47,7 +47,7 @@ pub fn car_record(
     options: &Options,
     setup: &Setup,
 ) -> Result<CarRecord, Problems> {
-    let (file, text, disk) = text_of(word, Kind::Vehicle, "--vehicle")?;
+    let (file, text, disk) = text_of(word, Kind::Vehicle, options.named_by)?;
     let fluid = |asked: &Option<String>, key: &str| {
         let own = setup
             .keys
@@ -59,7 +59,7 @@ pub fn car_record(
         } else {
             own.to_owned()
         };
-        let (file, text, _) = text_of(asked.as_ref().unwrap_or(&default), Kind::Lubricant, key)?;
+        let (file, text, _) = text_of(asked.as_ref().unwrap_or(&default), Kind::Lubricant, options.named_by)?;
         Ok::<_, Problems>(FileRecord {
             file,
             sha256: hash(text.as_bytes()),
@@ -102,7 +102,7 @@ fn reference(setup: &Setup, word: &str, options: &Options) -> Result<Reference, 
         .filter(|name| is_path(word) || *name == word);
     let mut best: Option<Reference> = None;
     for name in names {
-        let shipped = load(name, "--vehicle", &plain)?;
+        let shipped = load(name, &plain)?;
         let same = setup
             .keys
             .iter()

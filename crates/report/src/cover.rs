@@ -20,7 +20,7 @@ use base64::prelude::BASE64_STANDARD;
 
 use super::document::{Block, Document};
 use cvtcycle_config::bounded::{self, ReadError};
-use cvtcycle_config::{Document as Toml, Problems, Reader, decode};
+use cvtcycle_config::{Argument, Document as Toml, Problems, Reader, decode};
 
 /// Sections that a report may have, in their order.
 pub const SECTIONS: [&str; 13] = [
@@ -60,7 +60,7 @@ impl Cover {
     /// # Errors
     /// All problems of the file, with line and hint, and of the logo.
     pub fn read(path: &str) -> Result<Self, Problems> {
-        let bytes = cvtcycle_config::cycle::bytes("--cover", path, bounded::TOML)?;
+        let bytes = cvtcycle_config::cycle::bytes(Argument::Cover, path, bounded::TOML)?;
         let text = decode(path, &bytes)?;
         let toml = Toml::parse(path, &text)?;
         let reader = Reader::new(&toml);

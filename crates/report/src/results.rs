@@ -310,12 +310,11 @@ fn json(path: &Path) -> Result<Value, Problem> {
         bounded::read_file(path, bounded::RECORD).map_err(|error| unreadable(path, &error))?;
     serde_json::from_slice(&bytes).map_err(|error| {
         let place = Place {
-            file: path.display().to_string(),
             line: error.line(),
             column: error.column(),
-            ..Place::default()
+            ..Place::file(path.display().to_string())
         };
-        Problem::invalid(format!("this is no whole JSON: {error}"))
+        Problem::syntax(format!("this is no whole JSON: {error}"))
             .at(place)
             .hint("the file is damaged; run it again")
     })

@@ -2,6 +2,7 @@
 
 use askama::Template;
 
+use cvtcycle_config::Override;
 use cvtcycle_study::check::expr::short;
 use cvtcycle_study::check::judge::{Judged, Report};
 use cvtcycle_study::check::report::{Counts, computed_text, notes, unit_text};
@@ -12,7 +13,7 @@ use cvtcycle_study::check::rule::Verdict;
 struct Page {
     program: &'static str,
     vehicle: String,
-    set: Vec<String>,
+    set: Vec<Override>,
     counts: Counts,
     total: usize,
     moved: Vec<String>,

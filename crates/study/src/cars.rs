@@ -4,8 +4,8 @@ use std::sync::{Arc, OnceLock};
 
 use super::plan::{Acts, Base, Cars, Factor, FactorValue, FactorValues, Plan};
 use cvtcycle_config::setup::template::{ParameterRef, VehicleTemplate};
-use cvtcycle_config::setup::{Options, Setup};
-use cvtcycle_config::{Problem, ProblemKind, Problems};
+use cvtcycle_config::setup::{NamedBy, Options, Setup};
+use cvtcycle_config::{Override, Problem, ProblemKind, Problems};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Largest number of combinations of words of a car: each keeps its documents in memory.
@@ -107,7 +107,7 @@ impl StudyCar {
         self.variants[index]
             .get_or_init(|| self.make(index, factors))
             .as_ref()
-            .map_err(|problems| &**problems)
+            .map_err(|problems| problems.as_slice())
     }
 
     /// The unchanged car, and the baselines that its file names.
@@ -129,9 +129,9 @@ impl StudyCar {
     }
 
     fn make(&self, index: usize, factors: &[Factor]) -> Result<CarVariant, Problems> {
-        let options = self.options_of(index, factors);
+        let options = self.options_of(index, factors)?;
         let (blueprint, setup) =
-            VehicleTemplate::load(&self.word, super::prepare::VEHICLE, &options)?;
+            VehicleTemplate::load(&self.word, &options)?;
         let mut variant = CarVariant {
             blueprint,
             slots: Vec::with_capacity(factors.len()),
@@ -160,7 +160,7 @@ impl StudyCar {
         Ok(variant)
     }
 
-    fn options_of(&self, index: usize, factors: &[Factor]) -> Options {
+    fn options_of(&self, index: usize, factors: &[Factor]) -> Result<Options, Problem> {
         let mut options = self.options.clone();
         for (factor, binding) in factors.iter().zip(&self.bindings) {
             let Binding::Words { stride } = binding else {
@@ -179,21 +179,22 @@ impl StudyCar {
                 "formulation" => {
                     options.formulation = Formulation::named(&word).unwrap_or(options.formulation)
                 }
-                key => options.set.push(format!("{key}={word}")),
+                key => options.set.push(Override::new(key, &word)?),
             }
         }
-        options
+        Ok(options)
     }
 }
 
 /// What the plan says for all runs, of one car.
 fn options(base: &Base, subject: bool) -> Options {
-    let own: &[String] = if subject { &base.set } else { &[] };
+    let own: &[Override] = if subject { &base.set } else { &[] };
     Options {
         lubricant: base.lubricant.clone().filter(|_| subject),
         engine_oil: base.engine_oil.clone(),
         set: base.set_all.iter().chain(own).cloned().collect(),
         formulation: base.formulation,
+        named_by: NamedBy::File,
     }
 }
 

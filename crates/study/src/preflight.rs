@@ -148,7 +148,7 @@ fn variants(plan: &Plan, index: usize, car: &StudyCar, stride: usize, problems: 
                 problem
                     .clone()
                     .at(
-                        if problem.place.line > 0 && !problem.place.file.starts_with("--set") {
+                        if problem.place.line > 0 {
                             problem.place.clone()
                         } else {
                             place(factor, Some(k))

@@ -9,13 +9,12 @@ use super::plan::{Keep, Plan};
 use super::table::{Head, Kind};
 use cvtcycle_config::cycle::{self, Cycle};
 use cvtcycle_config::setup::is_path;
-use cvtcycle_config::{Problem, Problems, did_you_mean};
+use cvtcycle_config::{Argument, Input, Problem, Problems, did_you_mean};
 use cvtcycle_output::Component;
 use cvtcycle_output::table::Column;
 use cvtcycle_output::trace::{COLUMNS, TraceColumn, columns_for};
 
 /// Name under which problems of a car's word are reported before they get their place in the plan.
-pub(super) const VEHICLE: &str = "vehicle";
 
 /// A study, ready to run.
 pub struct Study {
@@ -247,12 +246,19 @@ fn add(
 
 /// A problem of what the plan names, with the plan's file where it has no better place.
 fn in_plan(plan: &Plan, key: &str, problem: Problem) -> Problem {
-    let place = if problem.place.file == VEHICLE {
-        of_plan(plan, key, "", "").place
-    } else {
-        problem.place.clone()
+    let key = match &problem.place.input {
+        Input::File(_) => return problem,
+        Input::Argument(Argument::Lubricant) => "lubricant",
+        Input::Argument(Argument::EngineOil) => "engine_oil",
+        Input::Argument(_) => key,
+        Input::Override(text) => {
+            let is_own = plan.base.set.iter().any(|by| by.to_string() == *text);
+            let key = if is_own { "set" } else { "set_all" };
+            let place = of_plan(plan, key, "", "").place.of_item(text);
+            return problem.at(place);
+        }
     };
-    problem.at(place)
+    problem.at(of_plan(plan, key, "", "").place)
 }
 
 fn unique(name: &str, cars: &[StudyCar]) -> String {
@@ -275,7 +281,7 @@ fn cycles(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<Cycle> {
         .chain(words)
         .enumerate()
     {
-        match cycle::find("cycle", &in_folder(folder, &word)) {
+        match cycle::find(&in_folder(folder, &word)) {
             Ok(cycle) => list.push(cycle),
             Err(found) => {
                 let place = factor
@@ -284,12 +290,12 @@ fn cycles(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<Cycle> {
                 let place = place.unwrap_or_else(|| of_plan(plan, "cycle", "", "").place);
                 // A problem within a file keeps its place there, with a line or without.
                 problems.extend(found.into_iter().map(|problem| {
-                    match problem.place.file.as_str() {
-                        "cycle" if is_path(&word) => problem
+                    match problem.place.is_argument(Argument::Cycle) {
+                        true if is_path(&word) => problem
                             .at(place.clone())
                             .hint("a path in a plan begins at the plan's folder"),
-                        "cycle" => problem.at(place.clone()),
-                        _ => problem,
+                        true => problem.at(place.clone()),
+                        false => problem,
                     }
                 }));
             }

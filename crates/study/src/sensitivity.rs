@@ -50,7 +50,7 @@ pub fn sensitivity(
     };
     let mut effects = Vec::new();
     for car in cars {
-        let (blueprint, setup) = VehicleTemplate::load(&car.word, "--vehicle", &car.options)?;
+        let (blueprint, setup) = VehicleTemplate::load(&car.word, &car.options)?;
         let base = fuel(&setup, cycle, &conditions);
         let keys = setup
             .keys

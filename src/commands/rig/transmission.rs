@@ -5,9 +5,9 @@ mod json;
 mod tables;
 
 use clap::Args;
-use cvtcycle::config::rig::{OIL, PREFIX, TORQUE};
+use cvtcycle::config::rig::{OIL, TORQUE};
 use cvtcycle::config::setup::{self, Setup};
-use cvtcycle::config::{Bound, Problems, to_si};
+use cvtcycle::config::{Bound, Override, Problems, Target, to_si};
 use cvtcycle::model::bench::transmission::{
     self as rig, Conditions, Loop, Plan as TestPoints, SteadyPoint, StripDown, TwoBoxes,
 };
@@ -123,13 +123,11 @@ impl Execute for RigTransmissionArgs {
     fn plan(&self, problems: &mut Problems) -> Option<RigPlan> {
         let test = problems.take(one_of("--test", &self.test, &TESTS));
         let formulation = self.formulation.get(problems);
-        let mut options = self.car.options(formulation);
-        let of_rig: Vec<String> = options
-            .set
-            .extract_if(.., |set| set.starts_with(PREFIX))
-            .collect();
+        let mut options = self.car.options(formulation, problems);
+        let is_of_rig = |by: &mut Override| by.target() == Target::Rig;
+        let of_rig: Vec<Override> = options.set.extract_if(.., is_of_rig).collect();
         let vehicle = &self.car.vehicle;
-        let setup = problems.take(setup::load(vehicle, "--vehicle", &options));
+        let setup = problems.take(setup::load(vehicle, &options));
         if setup
             .as_ref()
             .is_some_and(|setup| !setup.transmission().is_cvt())

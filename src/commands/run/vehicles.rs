@@ -1,10 +1,11 @@
 //! The vehicles of a run: the subject with its overrides, then the baselines.
 
-use cvtcycle::config::setup::{self, Options, Setup};
-use cvtcycle::config::{Document, Place, Problem, Problems};
+use cvtcycle::config::setup::{self, NamedBy, Options, Setup};
+use cvtcycle::config::{Argument, Override, Problem, Problems};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 
 use super::RunArgs;
+use crate::args::problems::{assigned, cite, overrides};
 
 /// A vehicle of a run.
 pub struct RunVehicle {
@@ -20,20 +21,21 @@ pub struct RunVehicle {
 
 /// Loads all vehicles, subject first. A bad one leaves its problems, and the others are read as well.
 pub fn load(args: &RunArgs, formulation: Formulation, problems: &mut Problems) -> Vec<RunVehicle> {
-    check_syntax(args, problems);
     let (car, comparison) = (&args.car, &args.comparison);
+    let own = overrides("--set", &car.set, problems);
+    let of_all = overrides("--set-all", &comparison.set_all, problems);
+    let baseline = Options {
+        engine_oil: comparison.engine_oil.clone(),
+        set: of_all.clone(),
+        formulation,
+        ..Options::default()
+    };
     let subject = Options {
         lubricant: car.lubricant.clone(),
-        engine_oil: comparison.engine_oil.clone(),
-        set: comparison.set_all.iter().chain(&car.set).cloned().collect(),
-        formulation,
+        set: of_all.iter().cloned().chain(own).collect(),
+        ..baseline.clone()
     };
-    let baseline = Options {
-        lubricant: None,
-        set: comparison.set_all.clone(),
-        ..subject.clone()
-    };
-    let setup = problems.take(load_one(&car.vehicle, "--vehicle", &subject, args));
+    let setup = problems.take(load_one(&car.vehicle, &subject, &of_all));
     if setup.is_none() {
         // The fluids are checked by themselves where the vehicle cannot be read.
         let fluids = [
@@ -42,19 +44,25 @@ pub fn load(args: &RunArgs, formulation: Formulation, problems: &mut Problems) -
         ];
         for (word, option) in fluids {
             if let Some(word) = word {
-                problems.take(setup::load_lubricant(word, option, &[], ""));
+                let fluid = setup::load_lubricant(word);
+                problems.take(fluid.map_err(|found| cite(option, found)));
             }
         }
     }
     let names = comparison.baselines(&car.vehicle, setup.as_ref(), problems);
     // Problems of a baseline cite the file or the option that names it.
-    let named_by = match comparison.baseline.is_empty() {
-        true => car.vehicle.as_str(),
-        false => "--baseline",
+    let (option, named_by) = match comparison.baseline.is_empty() {
+        true => (car.vehicle.as_str(), NamedBy::File),
+        false => ("--baseline", NamedBy::Caller),
+    };
+    let baseline = Options {
+        named_by,
+        ..baseline
     };
     let mut loaded = vec![(&car.vehicle, setup, subject)];
     for name in &names {
-        let setup = problems.take(load_one(name, named_by, &baseline, args));
+        let setup = load_one(name, &baseline, &of_all).map_err(|found| cite_vehicle(option, found));
+        let setup = problems.take(setup);
         loaded.push((name, setup, baseline.clone()));
     }
     let mut vehicles: Vec<RunVehicle> = Vec::new();
@@ -70,55 +78,23 @@ pub fn load(args: &RunArgs, formulation: Formulation, problems: &mut Problems) -
     vehicles
 }
 
-/// Reports assignments with bad syntax once, without a vehicle.
-fn check_syntax(args: &RunArgs, problems: &mut Problems) {
-    for (option, list) in [
-        ("--set", &args.car.set),
-        ("--set-all", &args.comparison.set_all),
-    ] {
-        for assignment in list {
-            let empty = Document::parse("", "");
-            if let Some(mut document) = problems.take(empty)
-                && let Err(problem) = document.set(assignment)
-            {
-                problems.add(renamed(problem, option, assignment));
-            }
-        }
-    }
+/// Problems of the vehicle's name under what gives it.
+fn cite_vehicle(option: &str, found: Problems) -> Problems {
+    found.map(|problem| match problem.place.is_argument(Argument::Vehicle) {
+        true => problem.in_file(option).key(option),
+        false => problem,
+    })
 }
 
-/// The problem under the option that the user wrote: the library calls every assignment `--set`.
-fn renamed(problem: Problem, option: &str, assignment: &str) -> Problem {
-    if problem.place.file != format!("--set {assignment}") {
-        return problem;
-    }
-    Problem {
-        place: Place {
-            file: format!("{option} {assignment}"),
-            ..problem.place
-        },
-        ..problem
-    }
-}
-
-fn load_one(
-    word: &str,
-    option: &str,
-    options: &Options,
-    args: &RunArgs,
-) -> Result<Setup, Problems> {
-    let for_all = |mut problem: Problem| {
-        let own = |a: &&String| problem.place.file == format!("--set {a}");
-        if let Some(assignment) = args.comparison.set_all.iter().find(own) {
-            problem = renamed(problem, "--set-all", assignment);
-            if !problem.key.is_empty() && assignment.contains('=') {
-                problem.message = format!("{word}: {}", problem.message);
-            }
-        }
-        problem
+/// Loads a vehicle; problems of an override of all vehicles name the vehicle and their option.
+fn load_one(word: &str, options: &Options, of_all: &[Override]) -> Result<Setup, Problems> {
+    let named = |problem: Problem| {
+        let by = of_all.iter().find(|by| by.input() == problem.place.input);
+        let Some(by) = by else { return problem };
+        let problem = problem.with_context(&format!("{word}: "));
+        assigned("--set-all", &by.to_string(), problem)
     };
-    setup::load(word, option, options)
-        .map_err(|problems| problems.into_iter().map(for_all).collect())
+    setup::load(word, options).map_err(|problems| problems.map(named))
 }
 
 fn unique(name: &str, vehicles: &[RunVehicle]) -> String {

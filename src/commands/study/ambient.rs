@@ -85,7 +85,7 @@ impl PlanText {
 
     /// The problem of a line of the plan, under the option that made the line.
     fn as_option(&self, mut problem: Problem) -> Problem {
-        if problem.place.file != PLAN {
+        if problem.place.file_name() != Some(PLAN) {
             return problem;
         }
         let key = problem.key.trim_start_matches("study.");
@@ -104,10 +104,7 @@ impl PlanText {
         } else {
             option
         };
-        problem.place = Place {
-            file: option.to_owned(),
-            ..Place::default()
-        };
+        problem.place = Place::file(option);
         option.clone_into(&mut problem.key);
         problem
     }

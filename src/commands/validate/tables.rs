@@ -114,7 +114,7 @@ pub fn changed_verdicts(report: &Report) -> Vec<String> {
             judged.verdict.word(),
             computed_text(judged),
             row.printed_text,
-            row.place.file,
+            row.place.input,
             row.place.line
         )
     };

@@ -1,9 +1,9 @@
 //! The candidate vehicle: the one that is validated or fitted.
 
 use super::source::Source;
-use cvtcycle_config::rig::{self, PREFIX};
-use cvtcycle_config::setup::Options;
-use cvtcycle_config::{KeyInfo, Problems};
+use cvtcycle_config::rig;
+use cvtcycle_config::setup::{NamedBy, Options};
+use cvtcycle_config::{KeyInfo, Override, Problems, Target};
 use cvtcycle_model::bench::transmission::Conditions;
 
 /// Vehicle of all sources that name none, with its fluids and overrides.
@@ -15,8 +15,10 @@ pub struct CandidateVehicle {
     pub lubricant: Option<String>,
     /// Engine oil in place of its own.
     pub engine_oil: Option<String>,
-    /// Overrides `KEY=VALUE`.
-    pub set: Vec<String>,
+    /// Overrides.
+    pub set: Vec<Override>,
+    /// What gives the names of vehicle and fluids.
+    pub named_by: NamedBy,
 }
 
 impl CandidateVehicle {
@@ -34,19 +36,20 @@ impl CandidateVehicle {
         let own = source.is_none_or(|source| source.vehicle.is_none());
         let sets = self.overrides(source);
         let skipped = if own { 0 } else { self.set.len() };
-        let is_vehicle = |set: &String| !set.starts_with(PREFIX);
+        let is_vehicle = |by: &Override| by.target() != Target::Rig;
         let lubricant = source.and_then(|source| source.lubricant.clone());
         Options {
             lubricant: lubricant.or_else(|| self.lubricant.clone().filter(|_| own)),
             engine_oil: self.engine_oil.clone().filter(|_| own),
             set: sets.into_iter().skip(skipped).filter(is_vehicle).collect(),
             formulation: source.map(|source| source.formulation).unwrap_or_default(),
+            named_by: if own { self.named_by } else { NamedBy::File },
         }
     }
 
     /// Overrides of the candidate, then those of a source.
     #[must_use]
-    pub fn overrides(&self, source: Option<&Source>) -> Vec<String> {
+    pub fn overrides(&self, source: Option<&Source>) -> Vec<Override> {
         let own = source.map_or(&[][..], |source| &source.set);
         self.set.iter().chain(own).cloned().collect()
     }

@@ -131,7 +131,7 @@ pub fn judge(
         setups: RefCell::default(),
     };
     // Once for all: a problem of the candidate is no problem of a file.
-    load(&candidate.vehicle, "--vehicle", &candidate.options(None))?;
+    load(&candidate.vehicle, &candidate.options(None))?;
     cars.conditions(None)?;
     let mut problems = Problems::new();
     for source in files.iter().flat_map(|file| &file.sources) {
@@ -194,7 +194,7 @@ impl Cars for FromFiles<'_> {
         let options = self.candidate.options(source);
         let key = format!("{vehicle} {options:?}");
         once(&self.setups, key, || {
-            load(vehicle, "vehicle", &options).map(Rc::new)
+            load(vehicle, &options).map(Rc::new)
         })
     }
 

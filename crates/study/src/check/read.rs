@@ -36,7 +36,7 @@ pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<RowF
         if !std::ptr::eq(first, row) {
             let message = format!(
                 "the id `{}` was used before, in {} line {}",
-                row.id, first.id_place.file, first.id_place.line
+                row.id, first.id_place.input, first.id_place.line
             );
             let (place, value) = (row.id_place.clone(), row.id.clone());
             let twice = Problem::invalid(message)

@@ -1,5 +1,6 @@
 //! A report as JSON and CSV, and its words for people.
 
+use cvtcycle_config::Override;
 use cvtcycle_output::columns;
 use cvtcycle_output::table::{Column, write_csv};
 use serde::Serialize;
@@ -17,7 +18,7 @@ pub struct Json {
     schema: u32,
     program: &'static str,
     vehicle: String,
-    set: Vec<String>,
+    set: Vec<Override>,
     counts: Counts,
     held_out: HeldOut,
     moved: Vec<String>,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, names, read_csv};
 use cvtcycle_config::setup::{AMBIENT, is_path};
-use cvtcycle_config::{Bound, Place, Section, did_you_mean, unit_of};
+use cvtcycle_config::{Bound, Override, Place, Section, did_you_mean, unit_of};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
@@ -53,8 +53,8 @@ pub struct Source {
     pub vehicle: Option<String>,
     /// Transmission oil in place of the vehicle's.
     pub lubricant: Option<String>,
-    /// Overrides `KEY=VALUE`.
-    pub set: Vec<String>,
+    /// Overrides.
+    pub set: Vec<Override>,
     /// Reading of the belt model.
     pub formulation: Formulation,
     /// Axes of a grid in SI units, the last one running fastest; no list where the key is absent.
@@ -339,7 +339,7 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
         set: old
             .set
             .into_iter()
-            .chain(s.texts("set", "overrides KEY=VALUE of the vehicle and its fluids"))
+            .chain(s.overrides("set", "overrides KEY=VALUE of the vehicle and its fluids"))
             .collect(),
         formulation,
         ..old

@@ -8,7 +8,7 @@ use std::rc::Rc;
 use super::expr::{Table, Tables};
 use super::source::{Kind, Source};
 use super::tables::{self, Driven};
-use cvtcycle_config::rig::PREFIX;
+use cvtcycle_config::Target;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::{KeyInfo, Place, Problem, Problems};
 use cvtcycle_model::bench::transmission::Conditions;
@@ -150,7 +150,7 @@ impl Tables for View<'_> {
 
     fn key(&self, source: Option<usize>, path: &str, item: Option<usize>) -> Result<f64, String> {
         let spec = source.and_then(|k| self.sources.get(k));
-        if path.starts_with(PREFIX) {
+        if Target::of(path).0 == Target::Rig {
             let (_, keys) = self
                 .store
                 .cars

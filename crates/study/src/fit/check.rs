@@ -8,8 +8,8 @@ use cvtcycle_config::Problems;
 ///
 /// # Errors
 /// All problems of the plan, of its data files and of its cars.
-pub fn open(word: &str, option: &str) -> Result<CalibrationPlan, Problems> {
-    let (plan, mut problems) = plan::gather(word, option)?;
+pub fn open(word: &str) -> Result<CalibrationPlan, Problems> {
+    let (plan, mut problems) = plan::gather(word)?;
     // Without a vehicle, reported already, every key would be unknown.
     if !plan.car.vehicle.is_empty() {
         problems.extend(Model::new(&plan).err().unwrap_or_default());

@@ -10,16 +10,16 @@ use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
 use super::outcome::{Outcome, Parameter};
 use super::plan::{CalibrationPlan, problem};
-use cvtcycle_config::Problems;
-use cvtcycle_config::setup::{Kind, is_path, text_of};
+use cvtcycle_config::setup::{Kind, NamedBy, is_path, text_of};
+use cvtcycle_config::{Override, Problems, Target};
 
 /// Significant digits of a fitted value, far beyond its standard error.
 const DIGITS: usize = 7;
 
-/// Prefixes of fluids, and the keys under which the vehicle names them.
-const FLUIDS: [(&str, &str); 2] = [
-    ("lubricant.", "transmission_oil"),
-    ("engine_oil.", "engine_oil"),
+/// The fluids, and the keys under which the vehicle names them.
+const FLUIDS: [(Target, &str); 2] = [
+    (Target::Lubricant, "transmission_oil"),
+    (Target::EngineOil, "engine_oil"),
 ];
 
 /// Names and texts of the fitted files: the vehicle first. `date` is written with each value.
@@ -31,7 +31,7 @@ pub fn files(
     outcome: &Outcome,
     date: &str,
 ) -> Result<Vec<(String, String)>, Problems> {
-    let (_, text, disk) = text_of(&plan.car.vehicle, Kind::Vehicle, "calibration.vehicle")?;
+    let (_, text, disk) = text_of(&plan.car.vehicle, Kind::Vehicle, NamedBy::File)?;
     let job = Job {
         plan,
         outcome,
@@ -41,16 +41,10 @@ pub fn files(
     let mut vehicle = parsed(plan, &text)?;
     make_absolute(vehicle.as_item_mut(), job.folder);
     let mut written = Vec::new();
-    for (prefix, name) in FLUIDS {
-        written.extend(job.fluid(&mut vehicle, prefix, name)?);
+    for (target, name) in FLUIDS {
+        written.extend(job.fluid(&mut vehicle, target, name)?);
     }
-    let is_fluid = |key: &str| FLUIDS.iter().any(|(prefix, _)| key.starts_with(prefix));
-    let sets = plan.car.set.iter();
-    for set in sets.filter(|set| !is_fluid(set) && !set.starts_with("rig.")) {
-        job.assign(&mut vehicle, set);
-    }
-    let fitted = job.fitted().filter(|p| !is_fluid(&p.name));
-    fitted.for_each(|p| job.put_fitted(&mut vehicle, &p.name, p));
+    job.put_all(&mut vehicle, Target::Vehicle);
     let mut name = format!("{}_fitted.toml", stem(&plan.car.vehicle));
     if written.iter().any(|(other, _)| *other == name) {
         name = format!("vehicle_{name}");
@@ -69,34 +63,36 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn fitted(&self) -> impl Iterator<Item = &Parameter> {
-        self.outcome.parameters.iter().filter(|p| p.is_key)
+    /// Puts the overrides and the fitted values of a file.
+    fn put_all(&self, document: &mut DocumentMut, target: Target) {
+        for by in self.plan.car.set.iter().filter(|by| by.target() == target) {
+            self.put_override(document, by);
+        }
+        for p in self.fitted(target) {
+            self.put_fitted(document, Target::of(&p.name).1, p);
+        }
+    }
+
+    fn fitted(&self, target: Target) -> impl Iterator<Item = &Parameter> {
+        let parameters = self.outcome.parameters.iter().filter(|p| p.is_key);
+        parameters.filter(move |p| Target::of(&p.name).0 == target)
     }
 
     /// The file of a fluid with its values, named in the vehicle file; none if nothing of it changes.
     fn fluid(
         &self,
         vehicle: &mut DocumentMut,
-        prefix: &str,
+        target: Target,
         name: &str,
     ) -> Result<Option<(String, String)>, Problems> {
         let car = &self.plan.car;
-        let own: Vec<&Parameter> = self
-            .fitted()
-            .filter(|p| p.name.starts_with(prefix))
-            .collect();
-        let given = if prefix == FLUIDS[0].0 {
-            &car.lubricant
-        } else {
-            &car.engine_oil
+        let given = match target {
+            Target::EngineOil => &car.engine_oil,
+            _ => &car.lubricant,
         };
         let path = ["vehicle", name];
-        let sets: Vec<&str> = car
-            .set
-            .iter()
-            .filter_map(|set| set.strip_prefix(prefix))
-            .collect();
-        if own.is_empty() && sets.is_empty() {
+        let is_set = car.set.iter().any(|by| by.target() == target);
+        if !is_set && self.fitted(target).next().is_none() {
             if let Some(word) = given {
                 let word = if is_path(word) {
                     absolute(Path::new(""), word)
@@ -109,13 +105,9 @@ impl Job<'_> {
             return Ok(None);
         }
         let word = given.clone().unwrap_or_else(|| text_at(vehicle, &path));
-        let (_, text, _) = text_of(&word, Kind::Lubricant, "calibration.lubricant")?;
+        let (_, text, _) = text_of(&word, Kind::Lubricant, NamedBy::File)?;
         let mut fluid = parsed(self.plan, &text)?;
-        sets.into_iter()
-            .for_each(|set| self.assign(&mut fluid, set));
-        for p in own {
-            self.put_fitted(&mut fluid, &p.name[prefix.len()..], p);
-        }
+        self.put_all(&mut fluid, target);
         let file = format!("{}_fitted.toml", stem(&word));
         let source = format!("{word} with values fitted to {}", self.plan.file);
         put(vehicle, &path, Value::from(file.clone()), "fitted", &source);
@@ -134,16 +126,14 @@ impl Job<'_> {
         put(document, &path, number(p.value), "fitted", &source);
     }
 
-    /// Puts the value of an assignment `KEY=VALUE` of the plan.
-    fn assign(&self, document: &mut DocumentMut, set: &str) {
-        let Some((key, text)) = set.split_once('=') else {
-            return;
-        };
-        let value = text.trim().parse::<Value>();
-        let mut item = Item::Value(value.unwrap_or_else(|_| Value::from(text.trim())));
+    /// Puts the value of an override of the plan.
+    fn put_override(&self, document: &mut DocumentMut, by: &Override) {
+        let value = by.value().parse::<Value>();
+        let mut item = Item::Value(value.unwrap_or_else(|_| Value::from(by.value())));
         make_absolute(&mut item, self.folder);
         let Ok(value) = item.into_value() else { return };
-        let path: Vec<&str> = key.trim().split('.').map(str::trim).collect();
+        let (_, key) = Target::of(by.key());
+        let path: Vec<&str> = key.split('.').map(str::trim).collect();
         let source = format!("set by {}", self.plan.file);
         put(document, &path, value, "assumed", &source);
     }

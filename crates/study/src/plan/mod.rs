@@ -17,14 +17,14 @@ mod read;
 mod values;
 
 pub use cvtcycle_config::embedded::plans as embedded_plans;
-use cvtcycle_config::setup::{Kind, text_of};
+use cvtcycle_config::setup::{Kind, NamedBy, text_of};
 pub use places::Places;
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use cvtcycle_config::{Place, Problems};
+use cvtcycle_config::{Override, Place, Problems};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 use super::design::Level;
@@ -74,9 +74,9 @@ pub struct Base {
     /// Engine oil of all cars.
     pub engine_oil: Option<String>,
     /// Overrides of the subject, `KEY=VALUE`.
-    pub set: Vec<String>,
+    pub set: Vec<Override>,
     /// Overrides of all cars, `KEY=VALUE`.
-    pub set_all: Vec<String>,
+    pub set_all: Vec<Override>,
     /// Largest step, s.
     pub dt_s: f64,
     /// Reading of the belt model.
@@ -228,12 +228,12 @@ impl Plan {
         read::plan(file, text)
     }
 
-    /// The plan of a word given by the user, name or path as for a vehicle; `option` is what problems of the word itself cite.
+    /// The plan of that name or path.
     ///
     /// # Errors
     /// Unknown name, unreadable file, or all problems of the plan.
-    pub fn open(word: &str, option: &str) -> Result<Plan, Problems> {
-        let (file, text, _) = text_of(word, Kind::Plan, option)?;
+    pub fn open(word: &str) -> Result<Plan, Problems> {
+        let (file, text, _) = text_of(word, Kind::Plan, NamedBy::Caller)?;
         Plan::read(&file, &text)
     }
 

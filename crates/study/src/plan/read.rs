@@ -1,7 +1,7 @@
 //! The head of a plan, and all its parts together.
 
 use super::{Base, FactorValue, Keep, Places, Plan, design, factor, options};
-use cvtcycle_config::{Document, Problem, Problems, RawValue, Reader, Section, did_you_mean};
+use cvtcycle_config::{Document, Override, Problem, Problems, RawValue, Reader, Section, did_you_mean};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_output::trace::COLUMNS;
 
@@ -188,7 +188,7 @@ fn baselines(s: &Section, places: &mut Places) -> Option<Vec<String>> {
 }
 
 /// Assignments `KEY=VALUE`, checked as such.
-fn assignments(s: &Section, key: &str, doc: &str, places: &mut Places) -> Vec<String> {
+fn assignments(s: &Section, key: &str, doc: &str, places: &mut Places) -> Vec<Override> {
     let items = items(s, key, "a list of texts KEY=VALUE", doc, places).unwrap_or_default();
     let mut good = Vec::new();
     for item in items {
@@ -196,14 +196,10 @@ fn assignments(s: &Section, key: &str, doc: &str, places: &mut Places) -> Vec<St
             item.wrong_type("a text KEY=VALUE");
             continue;
         };
-        let set = Document::parse("", "").map_or(Ok(()), |mut empty| empty.set(assignment));
-        match set {
-            Ok(()) => good.push(assignment.to_owned()),
-            Err(problem) => item.complain(
-                "KEY=VALUE",
-                &problem.message,
-                "write, for example, \"road_load.mass_kg=1250\"",
-            ),
+        let example = "write, for example, \"road_load.mass_kg=1250\"";
+        match assignment.parse::<Override>() {
+            Ok(by) => good.push(by),
+            Err(problem) => item.report(problem.allowed("KEY=VALUE").hint(example)),
         }
     }
     good

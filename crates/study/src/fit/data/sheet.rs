@@ -81,11 +81,11 @@ impl Sheet {
                 (*start, *width)
             });
         Place {
-            file: self.file.clone(),
             line: row.line,
             column: start,
             line_text: row.text.clone(),
             width,
+            ..Place::file(&self.file)
         }
     }
 

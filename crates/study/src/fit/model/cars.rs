@@ -3,11 +3,13 @@
 use std::collections::HashMap;
 
 use crate::check::source::Source;
-use crate::fit::plan::{CalibrationPlan, FreeParameter, Observable, at_item, problem};
+use crate::fit::plan::{CalibrationPlan, FreeParameter, Observable, problem};
 use crate::fit::solve::Parameter;
 use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle_config::setup::{Setup, load};
-use cvtcycle_config::{KeyInfo, Place, Problem, ProblemKind, Problems};
+use cvtcycle_config::{
+    Argument, Input, KeyInfo, Override, Place, Problem, ProblemKind, Problems,
+};
 use cvtcycle_model::bench::transmission::Conditions;
 
 /// A car of the plan with parameters that the fit changes.
@@ -89,7 +91,7 @@ impl<'p> Cars<'p> {
 
     /// Settings of the transmission rig for a source.
     pub fn conditions(&self, source: Option<&Source>) -> Result<RigConditions, Problems> {
-        let name = self.plan.car.overrides(source).join("\n");
+        let name = format!("{:?}", self.plan.car.overrides(source));
         match self.conditions.get(&name) {
             Some(found) => Ok(found.clone()),
             None => self.plan.car.conditions(source),
@@ -112,11 +114,10 @@ impl<'p> Cars<'p> {
         let car = &self.plan.car;
         let options = car.options(source);
         if let Some(vehicle) = source.and_then(|source| source.vehicle.as_deref()) {
-            self.fixed.insert(name, load(vehicle, "vehicle", &options)?);
+            self.fixed.insert(name, load(vehicle, &options)?);
             return Ok(());
         }
-        let (template, setup) =
-            VehicleTemplate::load(&car.vehicle, "calibration.vehicle", &options)?;
+        let (template, setup) = VehicleTemplate::load(&car.vehicle, &options)?;
         let mut problems = Problems::new();
         let mut slots = Vec::new();
         for free in &self.plan.parameters {
@@ -148,9 +149,9 @@ impl<'p> Cars<'p> {
             } else {
                 source.place.clone()
             };
-            let key = match found.key.as_str() {
-                "--lubricant" => "lubricant".to_owned(),
-                _ => found.key.clone(),
+            let key = match found.place.is_argument(Argument::Lubricant) {
+                true => "lubricant".to_owned(),
+                false => found.key.clone(),
             };
             assigned(found.key(key), place).with_context(&context)
         };
@@ -170,7 +171,7 @@ impl<'p> Cars<'p> {
         }
         match self.plan.car.conditions(Some(source)) {
             Ok(found) => {
-                let name = self.plan.car.overrides(Some(source)).join("\n");
+                let name = format!("{:?}", self.plan.car.overrides(Some(source)));
                 self.conditions.insert(name, found);
             }
             Err(found) => problems.extend(found.into_iter().filter(is_new).map(at)),
@@ -191,16 +192,14 @@ impl<'p> Cars<'p> {
         Some(problem(&source.place, "lubricant", "", message, hint))
     }
 
-    /// Parameters that an assignment sets.
-    fn set_and_free(&self, sets: &[String], place: &Place) -> Problems {
-        let key = |set: &String| set.split_once('=').map(|(key, _)| key.trim().to_owned());
-        let set: Vec<String> = sets.iter().filter_map(key).collect();
+    /// Parameters that an override sets.
+    fn set_and_free(&self, set: &[Override], place: &Place) -> Problems {
         let both = self.plan.parameters.iter();
-        let both = both.filter(|free| set.contains(&free.key));
+        let both = both.filter(|free| set.iter().any(|by| by.key() == free.key));
         both.map(|free| {
             let message = format!("`{}` is set and free", free.key);
             let hint = "what is set is held: remove it from `set`, or remove its [[parameter]]";
-            problem(&at_item(place.clone(), &free.key), "set", "", message, hint)
+            problem(&place.clone().of_item(&free.key), "set", "", message, hint)
         })
         .collect()
     }
@@ -283,20 +282,19 @@ fn parameter(free: &FreeParameter, slot: &ParameterRef, problems: &mut Problems)
 /// A problem of the plan's own car at its place in the plan, unless its place is in a file.
 fn in_plan(plan: &CalibrationPlan, found: Problem) -> Problem {
     let [vehicle, lubricant, engine_oil, set] = &plan.places;
-    let (place, key) = match found.place.file.as_str() {
-        "calibration.vehicle" => (vehicle, "vehicle"),
-        "--lubricant" => (lubricant, "lubricant"),
-        "--engine-oil" => (engine_oil, "engine_oil"),
-        file if file.starts_with("--set") => (set, "set"),
-        _ => return found,
+    let (place, key) = match &found.place.input {
+        Input::Argument(Argument::Lubricant) => (lubricant, "lubricant"),
+        Input::Argument(Argument::EngineOil) => (engine_oil, "engine_oil"),
+        Input::Argument(_) => (vehicle, "vehicle"),
+        Input::Override(_) => (set, "set"),
+        Input::File(_) => return found,
     };
     assigned(found.key(key), place.clone())
 }
 
 /// A problem moved to a place in the plan: to the assignment of a list, where it is in that line.
 fn assigned(found: Problem, place: Place) -> Problem {
-    let assignment = found.place.file.strip_prefix("--set ").unwrap_or_default();
-    let place = at_item(place, assignment);
+    let place = place.of_item(found.place.assignment().unwrap_or_default());
     found.at(place)
 }
 

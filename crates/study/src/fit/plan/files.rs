@@ -155,7 +155,7 @@ fn bench_of(s: &Section) -> Source {
     let mut own = source::empty("points", Kind::Bench);
     own.place = s.place("points");
     own.lubricant = s.optional_text("lubricant", "transmission oil in place of the vehicle's");
-    own.set = s.texts("set", "overrides KEY=VALUE of the car on the bench");
+    own.set = s.overrides("set", "overrides KEY=VALUE of the car on the bench");
     own.without = source::without(s);
     own
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::files;
 use super::found::{About, Context, Found, observation};
-use super::types::{Group, Measured, Observable, at_item, problem};
+use super::types::{Group, Measured, Observable, problem};
 use crate::check::checks::number_or_range;
 use crate::check::expr::{Expr, Gives};
 use crate::check::names::{FileNames, expression};
@@ -109,7 +109,7 @@ pub(super) fn read(document: &Document, context: &Context) -> Result<Found, Prob
 /// A problem under the name of its group.
 fn in_group(problem: Problem, name: &str, plan: &str) -> Problem {
     // The problem of another file has that file's place.
-    if problem.place.file != plan {
+    if problem.place.file_name() != Some(plan) {
         return problem;
     }
     problem.with_context(&format!("data `{name}`: "))
@@ -172,7 +172,7 @@ fn rows(s: &Section, context: &Context, found: &mut Found) {
     let ids = s.texts("rows", "identifiers of validation rows");
     let sd = sd_of(s);
     for id in ids {
-        let place = at_item(s.place("rows"), &format!("{id:?}"));
+        let place = s.place("rows").of_item(&format!("{id:?}"));
         match row(&id, context, found) {
             Ok((file, row, expr, measured)) => {
                 let size = measured.size();

@@ -18,4 +18,4 @@ pub use read::{gather, load, read};
 pub use types::{
     BenchPoints, CalibrationPlan, FreeParameter, Group, Measured, Observable, Observation, Search,
 };
-pub(super) use types::{at_item, problem};
+pub(super) use types::problem;

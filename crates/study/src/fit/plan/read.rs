@@ -10,7 +10,7 @@ use crate::check::candidate::CandidateVehicle;
 use crate::check::rows::RowFile;
 use crate::check::source::{self, Source};
 use crate::check::{COMMON, embedded_rows};
-use cvtcycle_config::setup::{Kind, catalogue, is_path, text_of};
+use cvtcycle_config::setup::{Kind, NamedBy, catalogue, is_path, text_of};
 use cvtcycle_config::{Bound, Document, Problem, ProblemKind, Problems, Reader, Section, near};
 
 /// Most starts.
@@ -20,8 +20,8 @@ const MOST_STARTS: i64 = 1000;
 ///
 /// # Errors
 /// Unknown name, unreadable path, and all problems of the file and of the data that it names.
-pub fn load(word: &str, option: &str) -> Result<CalibrationPlan, Problems> {
-    sound(gather(word, option)?)
+pub fn load(word: &str) -> Result<CalibrationPlan, Problems> {
+    sound(gather(word)?)
 }
 
 fn sound((plan, problems): (CalibrationPlan, Problems)) -> Result<CalibrationPlan, Problems> {
@@ -36,8 +36,8 @@ fn sound((plan, problems): (CalibrationPlan, Problems)) -> Result<CalibrationPla
 ///
 /// # Errors
 /// An unknown name, an unreadable path, a text that is no TOML.
-pub fn gather(word: &str, option: &str) -> Result<(CalibrationPlan, Problems), Problems> {
-    let (file, text, _) = text_of(word, Kind::Calibration, option)?;
+pub fn gather(word: &str) -> Result<(CalibrationPlan, Problems), Problems> {
+    let (file, text, _) = text_of(word, Kind::Calibration, NamedBy::Caller)?;
     partly(&file, &text)
 }
 
@@ -202,7 +202,8 @@ fn head_of(s: &Section, file: &str, text: &str) -> CalibrationPlan {
             engine_oil: s
                 .optional_text("engine_oil", "engine oil in place of the vehicle's")
                 .map(within),
-            set: s.texts("set", "overrides KEY=VALUE, held during the fit"),
+            set: s.overrides("set", "overrides KEY=VALUE, held during the fit"),
+            named_by: NamedBy::File,
         },
         search,
         parameters: Vec::new(),

@@ -215,15 +215,6 @@ pub struct CalibrationPlan {
     pub places: [Place; 4],
 }
 
-/// A place narrowed to a text in its line, such as an item of a list; unchanged if the text is not in the line.
-pub fn at_item(mut place: Place, text: &str) -> Place {
-    if let Some(at) = place.line_text.find(text).filter(|_| !text.is_empty()) {
-        place.column = place.line_text[..at].chars().count() + 1;
-        place.width = text.chars().count();
-    }
-    place
-}
-
 /// A problem of a plan at a place.
 pub fn problem(place: &Place, key: &str, allowed: &str, message: String, hint: &str) -> Problem {
     Problem::invalid(message)
