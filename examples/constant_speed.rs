@@ -8,8 +8,8 @@
 )]
 
 use cvtcycle::config::cycle;
-use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, load};
+use cvtcycle::config::{Override, render};
 use cvtcycle::model::drive::{Conditions, Start, drive, litres_per_100km};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 
@@ -23,9 +23,8 @@ fn main() {
     };
     println!("pump, cc/rev   90 km/h  120 km/h   (L/100 km)");
     for displacement in [6.0, 8.0, 9.8] {
-        let set = vec![format!(
-            "transmission.cvt.pump.displacement_cc_rev={displacement}"
-        )];
+        let pump = "transmission.cvt.pump.displacement_cc_rev";
+        let set = vec![Override::number(pump, displacement)];
         let setup = match load(
             "rover_216_cvt",
             &Options {

@@ -3,6 +3,7 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
+use cvtcycle::config::Override;
 use cvtcycle::config::cycle::{Cycle, embedded};
 use cvtcycle::config::setup::{Options, load};
 use cvtcycle::model::drive::{Conditions, Start, drive, litres_per_100km};
@@ -20,7 +21,7 @@ const SHIFTS: [(&str, &str, &str); 3] = [
     ("late", "[20, 42, 65, 90]", "[13, 32, 52, 75]"),
 ];
 
-fn fuel(vehicle: &str, set: Vec<String>, cycle: &Cycle) -> f64 {
+fn fuel(vehicle: &str, set: Vec<Override>, cycle: &Cycle) -> f64 {
     let setup = load(
         vehicle,
         &Options {
@@ -58,11 +59,16 @@ fn main() {
             let row: Vec<String> = schedules
                 .iter()
                 .map(|(name, up, down)| {
-                    let set = vec![
-                        format!("transmission.manual.overall_ratios={ratios}"),
-                        format!("transmission.manual.upshift_kmh={up}"),
-                        format!("transmission.manual.downshift_kmh={down}"),
+                    let set = [
+                        ("overall_ratios", ratios),
+                        ("upshift_kmh", up),
+                        ("downshift_kmh", down),
                     ];
+                    let by = |(key, value): (&str, &str)| {
+                        Override::new(&format!("transmission.manual.{key}"), value)
+                    };
+                    let set = set.map(by).into_iter().collect::<Result<_, _>>();
+                    let set = set.expect("keys with values");
                     let manual = fuel("rover_216_5mt", set, &cycle);
                     format!("{name} {:+.1}", 100.0 * (cvt / manual - 1.0))
                 })

@@ -10,7 +10,7 @@
 
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::{Options, load};
-use cvtcycle::config::{Problem, render};
+use cvtcycle::config::{Override, Problems, render};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, summarise};
@@ -27,10 +27,10 @@ fn main() {
     }
 }
 
-fn compare(file: Option<String>) -> Result<Summary, Vec<Problem>> {
+fn compare(file: Option<String>) -> Result<Summary, Problems> {
     let thinner = vec![
-        "lubricant.kv40_mm2_s=26".to_owned(),
-        "lubricant.kv100_mm2_s=5.8".to_owned(),
+        Override::number("lubricant.kv40_mm2_s", 26.0),
+        Override::number("lubricant.kv100_mm2_s", 5.8),
     ];
     let set = if file.is_some() { Vec::new() } else { thinner };
     let own = load(
@@ -42,7 +42,7 @@ fn compare(file: Option<String>) -> Result<Summary, Vec<Problem>> {
         },
     )?;
     let usual = load("rover_216_cvt", &Options::default())?;
-    let cycle = cycle::embedded("ece15_eudc").ok_or_else(Vec::new)?;
+    let cycle = cycle::embedded("ece15_eudc").ok_or_else(Problems::new)?;
     let ambient_k = AMBIENT_DEGC + ZERO_DEGC_K;
     let conditions = Conditions {
         ambient_k,

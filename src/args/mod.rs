@@ -10,8 +10,8 @@ pub use groups::{
 };
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
-use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::bounded::Limit;
+use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::{Argument, Bound, Problems, cycle, unit_of};
 
 use problems::{bad_value, cite, did_you_mean};

@@ -108,7 +108,8 @@ impl Execute for ShowArgs {
                 return Some(Shown::Cycle(Box::new(cycle)));
             }
             InputKind::Vehicle => {
-                let setup = problems.take(setup::load(&word, &Options::default()).map_err(by_name))?;
+                let setup =
+                    problems.take(setup::load(&word, &Options::default()).map_err(by_name))?;
                 // The fluids are shown by their own names.
                 let fluid =
                     |key: &str| key.starts_with("lubricant.") || key.starts_with("engine_oil.");

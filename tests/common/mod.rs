@@ -9,8 +9,8 @@ pub mod bench_step;
 pub mod range;
 
 use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, read_csv};
-use cvtcycle_config::render;
 use cvtcycle_config::setup::{Options, Setup, load};
+use cvtcycle_config::{Override, render};
 use cvtcycle_model::drive::Recorder;
 use cvtcycle_model::drive::{Conditions, Outcome, Start, drive, litres_per_100km};
 use cvtcycle_model::drive::{EnergyTerms, Row};
@@ -26,11 +26,16 @@ pub const ZERO: f64 = 273.15;
 
 /// A shipped vehicle with overrides, or the problems as the user would see them.
 pub fn try_car(name: &str, sets: &[String]) -> Result<Setup, String> {
-    let options = Options {
-        set: sets.to_vec(),
-        ..Options::default()
+    let load = |set| {
+        let options = Options {
+            set,
+            ..Options::default()
+        };
+        load(name, &options)
     };
-    load(name, &options).map_err(|problems| render(&problems, false))
+    Override::parse_all(sets)
+        .and_then(load)
+        .map_err(|problems| render(&problems, false))
 }
 
 /// A shipped vehicle with overrides.

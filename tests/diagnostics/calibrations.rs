@@ -106,12 +106,7 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
 }
 
 fn plans() -> Vec<(String, String)> {
-    let named = |name: &str, word: &str| {
-        (
-            format!("made_{name}"),
-            rendered(fit::open(word, "PLAN").err()),
-        )
-    };
+    let named = |name: &str, word: &str| (format!("made_{name}"), rendered(fit::open(word).err()));
     let mut all = vec![
         named("no_such_name.toml", "rover_216_transmision"),
         named(
@@ -125,7 +120,7 @@ fn plans() -> Vec<(String, String)> {
         ("binary.toml", b"PK\x03\x04\0\x9f"),
         ("latin1.toml", b"# \xe9\n"),
     ];
-    let open = |path: &str, _: &[u8]| rendered(fit::open(path, "PLAN").err());
+    let open = |path: &str, _: &[u8]| rendered(fit::open(path).err());
     all.extend(
         binary
             .into_iter()

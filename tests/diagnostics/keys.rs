@@ -303,7 +303,7 @@ impl Tried<'_> {
             self.several.insert(info.key.clone());
             return;
         }
-        let [problem] = &*problems else {
+        let [problem] = &problems[..] else {
             let shown: Vec<String> = problems
                 .iter()
                 .map(|p| format!("    {}: {}", p.place.line, p.message))

@@ -5,7 +5,7 @@
 
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::{self, Options};
-use cvtcycle::config::{Document, KeyInfo, Problem, Problems, Reader, render};
+use cvtcycle::config::{Document, KeyInfo, Override, Problem, Problems, Reader, render};
 use cvtcycle::output::History;
 use cvtcycle::report::cover::Cover;
 use cvtcycle::study::Study;
@@ -44,7 +44,7 @@ pub fn message(kind: &str, case: &str) -> String {
         return calibration::ran(case);
     }
     let problems = match kind {
-        "calibration" => fit::open(case, "PLAN").err(),
+        "calibration" => fit::open(case).err(),
         "calibration_points" | "calibration_trace" | "calibration_scalars" => {
             calibration::data(kind, case)
         }
@@ -100,7 +100,7 @@ fn map(case: &str, name: &str) -> Option<Problems> {
     setup::load(
         vehicle,
         &Options {
-            set: vec![format!("{key}={case}")],
+            set: vec![Override::new(key, case).unwrap()],
             ..Options::default()
         },
     )
@@ -242,9 +242,7 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
             ]
         }
         "lubricant" => {
-            let read = |path: &str, _: &[u8]| {
-                rendered(setup::load_lubricant(path).err())
-            };
+            let read = |path: &str, _: &[u8]| rendered(setup::load_lubricant(path).err());
             vec![
                 made_file(
                     "too_many_tables.toml",

@@ -2,7 +2,9 @@
 //!
 //! `#~ part of a message` announces a problem of the next line that is no announcement; `#~ hint: …`
 //! and `#~ allowed: …` add to it what its hint and its allowed range must contain.
-use cvtcycle::config::{Bound, Document, KeyInfo, Problem, Problems, Reader, decode, near, render};
+use cvtcycle::config::{
+    Bound, Document, KeyInfo, Override, Problem, Problems, Reader, decode, near, render,
+};
 use proptest::prelude::*;
 
 /// Reads a small vehicle that has a value of every kind.
@@ -151,7 +153,7 @@ fn check_places(text: &str, found: &[Problem]) {
             place.column - 1 + place.width <= line.chars().count().max(place.column),
             "{problem:?}"
         );
-        let header = format!("{}:{}:{}", place.file, place.line, place.column);
+        let header = format!("{}:{}:{}", place.input, place.line, place.column);
         assert!(shown.contains(&header), "{header} is not in\n{shown}");
         assert!(
             shown.contains(&problem.hint),
@@ -166,7 +168,8 @@ fn a_vehicle_without_mistakes_is_read() {
     let text = "belt.band_offset_mm = 3\nvehicle = { mass_kg = 1200, name = \"x\" }\nclamp = \"map\"\n\
                 [lists]\nratios = [1, 2]\n";
     let mut document = Document::parse("good.toml", text).unwrap();
-    document.set("clamp.map.pressure_bar=20").unwrap();
+    let by = Override::number("clamp.map.pressure_bar", 20.0);
+    document.set(&by).unwrap();
     let keys = read(&document).unwrap();
     assert!(
         keys.iter()
@@ -276,8 +279,8 @@ proptest! {
     #[test]
     fn no_lines_make_the_reader_panic(lines in prop::collection::vec(line(), 0..6), sets in prop::collection::vec(line(), 0..4)) {
         if let Ok(mut document) = Document::parse("any.toml", &lines.concat()) {
-            for assignment in sets {
-                let _ = document.set(assignment.trim());
+            for text in sets {
+                let _ = text.trim().parse().and_then(|by: Override| document.set(&by));
             }
             render(&read(&document).err().unwrap_or_default(), false);
         }
@@ -290,7 +293,7 @@ proptest! {
             render(&problems("any.toml", &text), false);
         }
         let mut document = Document::parse("any.toml", "a = 1").unwrap();
-        let _ = document.set(&text);
+        let _ = text.parse().and_then(|by: Override| document.set(&by));
         near(&text, [text.as_str(), "belt"].into_iter());
     }
 }

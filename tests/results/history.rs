@@ -147,7 +147,7 @@ fn everything_that_is_wrong_is_reported_at_once_with_its_place() {
         .iter()
         .map(|p| {
             (
-                p.place.file.as_str(),
+                p.place.file_name().unwrap_or_default(),
                 p.place.line,
                 p.key.as_str(),
                 p.value.as_str(),

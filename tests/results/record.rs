@@ -1,12 +1,13 @@
 //! The record of a run: files with their hashes, changes against a shipped vehicle, lines of the variogram.
 
+use cvtcycle::config::Override;
 use cvtcycle::config::setup::{Options, embedded_vehicles, load};
 use cvtcycle::output::hash::hash;
 use cvtcycle::output::provenance::car_record;
 use cvtcycle::output::record::{CarRecord, Effect, SpeedLine};
 
 fn record_of(word: &str, set: &[&str], lubricant: Option<&str>) -> CarRecord {
-    let set = set.iter().map(|s| (*s).to_owned()).collect();
+    let set = Override::parse_all(set).unwrap_or_else(|p| unreachable!("{p}"));
     let options = Options {
         set,
         lubricant: lubricant.map(str::to_owned),

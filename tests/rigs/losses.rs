@@ -6,8 +6,8 @@ use std::process::Output;
 
 use crate::common::{RPM, ZERO, car};
 use assert_cmd::Command;
-use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, Setup, load};
+use cvtcycle::config::{Override, render};
 use cvtcycle::model::bench::{Bench, BenchPoint};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::loss_table::{MapPart, write_map};
@@ -497,7 +497,7 @@ fn with_map(vehicle: &str, csv: &[u8], key: &str) -> Setup {
     .unwrap();
     std::fs::write(folder.path().join("map.csv"), csv).unwrap();
     let options = Options {
-        set: vec![format!("{key}=map.csv")],
+        set: vec![Override::new(&key, "map.csv").unwrap()],
         ..Options::default()
     };
     load(file.to_str().unwrap(), &options)

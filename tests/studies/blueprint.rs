@@ -10,7 +10,7 @@ use crate::common::CARS;
 use cvtcycle::config::cycle::embedded;
 use cvtcycle::config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle::config::setup::{Options, Setup, load};
-use cvtcycle::config::{KeyInfo, Problems, render};
+use cvtcycle::config::{KeyInfo, Override, Problems, render};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use proptest::prelude::*;
 
@@ -18,7 +18,7 @@ const AMBIENT_K: f64 = 263.15;
 
 fn options(set: &[&str]) -> Options {
     Options {
-        set: set.iter().map(|s| (*s).to_owned()).collect(),
+        set: Override::parse_all(set).unwrap(),
         ..Options::default()
     }
 }
@@ -46,11 +46,11 @@ fn text(setup: Setup) -> String {
 /// What the ordinary load computes from numbers given in addition to the options.
 fn ordinary(word: &str, options: &Options, numbers: &[(&str, f64)]) -> Result<String, Problems> {
     let mut options = options.clone();
-    options.set.extend(
-        numbers
-            .iter()
-            .map(|(key, number)| format!("{key}={number}").replace("NaN", "nan")),
-    );
+    let number = |(key, number): &(&str, f64)| {
+        let text = format!("{key}={number}").replace("NaN", "nan");
+        text.parse::<Override>().unwrap()
+    };
+    options.set.extend(numbers.iter().map(number));
     load(word, &options).map(text)
 }
 
@@ -466,7 +466,12 @@ fn keys_without_a_slot() {
     for (car, key, hint) in unknown {
         let problem = blueprint(car, &Options::default()).0.slot(key).unwrap_err();
         let set = format!("{key}=0");
-        let ordinary = load(car, &options(&[&set])).unwrap_err();
+        let with = |set| Options {
+            set,
+            ..Options::default()
+        };
+        let ordinary = Override::parse_all(&[set]).and_then(|set| load(car, &with(set)));
+        let ordinary = ordinary.unwrap_err();
         assert!(
             ordinary
                 .iter()
@@ -474,7 +479,7 @@ fn keys_without_a_slot() {
             "{problem:?}\ninstead of\n{ordinary:?}"
         );
         assert!(
-            problem.hint.contains(hint) && problem.place.file == format!("--set {key}"),
+            problem.hint.contains(hint) && problem.place.assignment() == Some(key),
             "{problem:?}"
         );
     }
@@ -577,11 +582,7 @@ fn threads_agree() {
         max_dt_s: 1.0,
         keep_rows: false,
     };
-    let setup = load(
-        CARS[0],
-        &options(&set.each_ref().map(String::as_str)),
-    )
-    .unwrap();
+    let setup = load(CARS[0], &options(&set.each_ref().map(String::as_str))).unwrap();
     assert_eq!(
         one[5],
         format!("{:?}", drive(&setup, &cycle, &conditions).totals)

@@ -413,8 +413,7 @@ fn shipped_plans_give_the_shipped_values() {
             free.insert(p.name.clone());
         }
     }
-    let car =
-        setup::load("rover_216_cvt", &Options::default()).expect("the shipped car");
+    let car = setup::load("rover_216_cvt", &Options::default()).expect("the shipped car");
     let fitted: BTreeSet<String> = car
         .keys
         .iter()

@@ -324,7 +324,7 @@ fn the_plan_and_the_files_of_the_page_can_be_read() {
     )
     .unwrap();
     fs::write(at("plan.toml"), plans[0]).unwrap();
-    let plan = plan::load(at("plan.toml").to_str().unwrap(), "PLAN").unwrap();
+    let plan = plan::load(at("plan.toml").to_str().unwrap()).unwrap();
     assert_eq!(
         (
             plan.parameters.len(),

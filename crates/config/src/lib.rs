@@ -58,6 +58,3 @@ pub fn to_si(key: &str, value: f64) -> f64 {
 pub fn unit_of(key: &str) -> &'static str {
     Quantity::of(key).unit()
 }
-
-#[cfg(test)]
-mod tests;

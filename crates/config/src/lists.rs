@@ -233,7 +233,6 @@ fn range_values(text: &str) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Bound, Document, Reader};
     use super::range_values;
 
     #[test]
@@ -255,49 +254,5 @@ mod tests {
         ] {
             assert_eq!(range_values(bad), None, "{bad}");
         }
-    }
-
-    #[test]
-    fn tables_of_a_list_are_documents_with_their_places() {
-        let mut document = Document::parse(
-            "x.toml",
-            "a = 1\n[[row]]\nspeed_rpm = \"0..60:30\"\n[[row]]\nspeed_rpm = [30, 9e9]\n",
-        )
-        .expect("TOML");
-        let rows = document.take_tables("row");
-        assert_eq!(
-            (
-                rows.len(),
-                document.take_tables("row").len(),
-                document.take_tables("a").len()
-            ),
-            (2, 0, 0)
-        );
-        let read = |k: usize| {
-            let reader = Reader::new(&rows[k]);
-            let values = reader
-                .root()
-                .grid("speed_rpm", Bound::closed(0.0, 100.0), "speed");
-            reader.root().text("name", "name");
-            (values, reader.finish().expect_err("no name"))
-        };
-        let (values, problems) = read(0);
-        assert!(
-            values
-                .is_some_and(|v| v.len() == 3 && (v[2] - 2.0 * std::f64::consts::PI).abs() < 1e-12)
-        );
-        assert_eq!(
-            (
-                problems.len(),
-                problems[0].place.line,
-                problems[0].place.line_text.as_str()
-            ),
-            (1, 2, "[[row]]")
-        );
-        let (_, problems) = read(1);
-        assert_eq!(
-            problems.iter().map(|p| p.place.line).collect::<Vec<_>>(),
-            [4, 5]
-        );
     }
 }

@@ -112,3 +112,16 @@ pub(super) fn shortened(text: &str, max: usize) -> String {
         None => text.to_string(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_end_of_the_text_is_shown_on_its_last_line() {
+        let source = Source::new(Input::File("car.toml".into()), "a = 1\nb = [1\n\n\n");
+        let place = source.place(15..15);
+        assert_eq!((place.line, place.column, place.width), (2, 7, 1));
+        assert_eq!(place.line_text, "b = [1");
+    }
+}

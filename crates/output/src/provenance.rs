@@ -59,7 +59,11 @@ pub fn car_record(
         } else {
             own.to_owned()
         };
-        let (file, text, _) = text_of(asked.as_ref().unwrap_or(&default), Kind::Lubricant, options.named_by)?;
+        let (file, text, _) = text_of(
+            asked.as_ref().unwrap_or(&default),
+            Kind::Lubricant,
+            options.named_by,
+        )?;
         Ok::<_, Problems>(FileRecord {
             file,
             sha256: hash(text.as_bytes()),

@@ -130,8 +130,7 @@ impl StudyCar {
 
     fn make(&self, index: usize, factors: &[Factor]) -> Result<CarVariant, Problems> {
         let options = self.options_of(index, factors)?;
-        let (blueprint, setup) =
-            VehicleTemplate::load(&self.word, &options)?;
+        let (blueprint, setup) = VehicleTemplate::load(&self.word, &options)?;
         let mut variant = CarVariant {
             blueprint,
             slots: Vec::with_capacity(factors.len()),

@@ -147,13 +147,11 @@ fn variants(plan: &Plan, index: usize, car: &StudyCar, stride: usize, problems: 
             problems.push(
                 problem
                     .clone()
-                    .at(
-                        if problem.place.line > 0 {
-                            problem.place.clone()
-                        } else {
-                            place(factor, Some(k))
-                        },
-                    )
+                    .at(if problem.place.line > 0 {
+                        problem.place.clone()
+                    } else {
+                        place(factor, Some(k))
+                    })
                     .key(factor.key.clone())
                     .value(word.to_string())
                     .message(format!("{}: {}", car.name, problem.message)),

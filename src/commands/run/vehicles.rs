@@ -80,10 +80,12 @@ pub fn load(args: &RunArgs, formulation: Formulation, problems: &mut Problems) -
 
 /// Problems of the vehicle's name under what gives it.
 fn cite_vehicle(option: &str, found: Problems) -> Problems {
-    found.map(|problem| match problem.place.is_argument(Argument::Vehicle) {
-        true => problem.in_file(option).key(option),
-        false => problem,
-    })
+    found.map(
+        |problem| match problem.place.is_argument(Argument::Vehicle) {
+            true => problem.in_file(option).key(option),
+            false => problem,
+        },
+    )
 }
 
 /// Loads a vehicle; problems of an override of all vehicles name the vehicle and their option.

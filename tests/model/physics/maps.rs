@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use cvtcycle_config::cycle::embedded;
-use cvtcycle_config::render;
 use cvtcycle_config::setup::{Options, Setup, load};
+use cvtcycle_config::{Override, render};
 use cvtcycle_model::drive::{Conditions, Outcome, Start, drive};
 use cvtcycle_model::transmission::component::Component;
 
@@ -21,7 +21,7 @@ fn car(vehicle: &str, csv: &str, set: &str) -> Result<Setup, String> {
     .unwrap();
     std::fs::write(folder.path().join("map.csv"), csv).unwrap();
     let options = Options {
-        set: vec![format!("{set}=map.csv")],
+        set: vec![Override::new(set, "map.csv").unwrap()],
         ..Options::default()
     };
     load(file.to_str().unwrap(), &options).map_err(|p| render(&p, false))

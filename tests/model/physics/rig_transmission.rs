@@ -7,6 +7,7 @@
 
 use crate::common::bench_step::{self, Setting};
 use crate::common::{RPM, ZERO, car, larger};
+use cvtcycle_config::Override;
 use cvtcycle_config::setup::{Options, load};
 use cvtcycle_model::bench::transmission::{
     Branch, Conditions, Loop, Piece, Plan, Stage, StripDown, loaded, on_the_rig, second_box,
@@ -21,8 +22,8 @@ use cvtcycle_model::transmission::cvt::variator::Formulation;
 const CAR: &str = "rover_216_cvt";
 
 fn rig(sets: &[&str]) -> Conditions {
-    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    cvtcycle_config::rig::load(&sets)
+    Override::parse_all(sets)
+        .and_then(|set| cvtcycle_config::rig::load(&set))
         .unwrap_or_else(|p| panic!("{p:#?}"))
         .0
 }

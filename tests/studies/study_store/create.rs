@@ -159,7 +159,8 @@ fn a_manifest_that_leads_astray_is_refused() {
         fs::write(dir.path().join("study.json"), &bytes).unwrap();
         let problem = Study::open(dir.path()).unwrap_err();
         assert!(
-            problem.place.file.ends_with("study.json") && problem.message.contains("damaged"),
+            problem.place.input.to_string().ends_with("study.json")
+                && problem.message.contains("damaged"),
             "{layout}: {}",
             problem.message
         );

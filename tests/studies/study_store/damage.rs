@@ -32,7 +32,11 @@ fn a_part_with_any_byte_changed_or_cut_off_is_noticed() {
         fs::write(&path, bytes).unwrap();
         let problem = read(dir.path()).expect_err(&what);
         assert!(
-            problem.place.file.ends_with("runs_00000.parquet")
+            problem
+                .place
+                .input
+                .to_string()
+                .ends_with("runs_00000.parquet")
                 && problem.message.contains("damaged"),
             "{what}: {}",
             problem.message
@@ -51,7 +55,8 @@ fn a_part_with_any_byte_changed_or_cut_off_is_noticed() {
         read(dir.path())
             .unwrap_err()
             .place
-            .file
+            .input
+            .to_string()
             .ends_with("runs_00000.parquet")
     );
     fs::write(&path, &good).unwrap();

@@ -165,25 +165,3 @@ pub fn value(info: &KeyInfo) -> String {
 fn cell(text: &str) -> String {
     text.replace('|', "\\|")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_book_names_every_assumed_value_and_label() {
-        let book = book(cvtcycle_model::equations::EQUATIONS);
-        for file in catalogue::files() {
-            for info in file.keys.iter().filter(|info| info.status == "assumed") {
-                assert!(
-                    book.contains(&format!("| `{}` |", info.key)),
-                    "{}",
-                    info.key
-                );
-            }
-        }
-        for label in ["SI-2", "TH-4", "EN-1"] {
-            assert!(book.contains(&format!("| {label} |")), "{label}");
-        }
-    }
-}

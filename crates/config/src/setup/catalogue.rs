@@ -133,37 +133,3 @@ fn oil() -> Option<Lubricant> {
     let (name, _) = embedded::lubricants().first()?;
     super::load_lubricant(name).ok().map(|(oil, _)| oil)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn options_that_no_file_chooses_are_known() {
-        let keys = known_keys();
-        for key in [
-            "transmission.cvt.pump.kind.dual_cavity.share",
-            "transmission.cvt.clamp.torque_following.safety_factor",
-            "road_load.form.body.drag_coefficient",
-            "transmission.cvt.belt.band_offset_mm",
-            "lubricant.kv40_mm2_s",
-            "vehicle.transmission_oil",
-            "rig.pressure.second_box",
-        ] {
-            let info = keys.iter().find(|info| info.key == key);
-            assert!(info.is_some_and(|info| !info.doc.is_empty()), "{key}");
-        }
-    }
-
-    #[test]
-    fn the_catalogue_holds_what_loading_reports() {
-        for file in files().iter().filter(|file| file.kind == Kind::Vehicle) {
-            let setup = super::super::load(file.name, &super::super::Options::default()).unwrap();
-            let own = setup
-                .keys
-                .iter()
-                .filter(|k| !k.key.starts_with(OIL) && !k.key.starts_with(ENGINE_OIL));
-            assert_eq!(own.cloned().collect::<Vec<_>>(), file.keys, "{}", file.name);
-        }
-    }
-}

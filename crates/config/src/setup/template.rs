@@ -11,8 +11,8 @@ use super::inputs::Inputs;
 use super::{Options, Setup, wrong_transmission};
 use crate::overrides::path_of;
 use crate::{
-    Document, KeyInfo, KeyPath, Override, PatchedDocument, Problem, Problems, Reader, Target,
-    unit_of,
+    Document, Input, KeyInfo, KeyPath, Override, PatchedDocument, Problem, Problems, Reader,
+    Target, unit_of,
 };
 
 /// The parsed and checked files of one car.
@@ -127,8 +127,8 @@ impl VehicleTemplate {
 
     /// A key that the unchanged files do not ask for.
     fn elsewhere(&self, key: &str, own: &str, file: usize) -> Result<KeyInfo, Problem> {
-        let by = Override::new(key, "0")?;
-        let unset = |problem: Problem| problem.value(String::new());
+        let unset = |problem: Problem| problem.at(Input::Override(key.to_owned())).value("");
+        let by = Override::new(key, "0").map_err(unset)?;
         let inputs = &self.inputs;
         let set = std::slice::from_ref(&by);
         if let Some(document) = &inputs.files[0].document
@@ -154,7 +154,7 @@ impl VehicleTemplate {
         let problems = changed(inputs, set).read().err().unwrap_or_default();
         let problem = problems.into_iter().find(|problem| problem.key == own);
         let unknown = || Problem::unknown_key(format!("unknown key `{key}`")).key(key);
-        Err(unset(problem.unwrap_or_else(unknown).at(by.input())))
+        Err(unset(problem.unwrap_or_else(unknown)))
     }
 
     /// A thread's own copy of the files, unchanged.
@@ -181,7 +181,7 @@ impl VehicleTemplate {
 
 fn no_number(key: &str, info: KeyInfo) -> Problem {
     Problem::not_single(format!("`{key}` holds no single number"))
-        .at(Override::number(key, 0.0).input())
+        .at(Input::Override(key.to_owned()))
         .key(key)
         .value(info.value)
         .allowed(info.allowed)

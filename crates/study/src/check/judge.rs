@@ -193,9 +193,7 @@ impl Cars for FromFiles<'_> {
         let vehicle = self.candidate.vehicle_of(source);
         let options = self.candidate.options(source);
         let key = format!("{vehicle} {options:?}");
-        once(&self.setups, key, || {
-            load(vehicle, &options).map(Rc::new)
-        })
+        once(&self.setups, key, || load(vehicle, &options).map(Rc::new))
     }
 
     fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Problems> {

@@ -1,7 +1,9 @@
 //! The head of a plan, and all its parts together.
 
 use super::{Base, FactorValue, Keep, Places, Plan, design, factor, options};
-use cvtcycle_config::{Document, Override, Problem, Problems, RawValue, Reader, Section, did_you_mean};
+use cvtcycle_config::{
+    Document, Override, Problem, Problems, RawValue, Reader, Section, did_you_mean,
+};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_output::trace::COLUMNS;
 

@@ -2,6 +2,7 @@
 
 use super::{near, same};
 use crate::common::{RPM, ZERO, car};
+use cvtcycle_config::Override;
 use cvtcycle_config::setup::{Options, load};
 use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
 use cvtcycle_model::flags::Flags;
@@ -347,7 +348,7 @@ fn val_transient_from_its_seconds() {
     use cvtcycle_model::bench::transmission::{Branch, transient};
     let (bench, mut c) = (
         bench(),
-        cvtcycle_config::rig::load(&["rig.transient.end_degc=45".to_owned()])
+        cvtcycle_config::rig::load(&[Override::number("rig.transient.end_degc", 45.0)])
             .unwrap()
             .0,
     );
@@ -649,7 +650,7 @@ fn val_a_mapped_belt_warms_over_the_sump() {
         "ratio,oil_temp_degc,torque_loss_nm\n0.4,0,4\n0.4,90,4\n2.5,0,4\n2.5,90,4\n",
     )
     .unwrap();
-    let set = vec!["transmission.cvt.maps.belt=map.csv".to_owned()];
+    let set = vec!["transmission.cvt.maps.belt=map.csv".parse().unwrap()];
     let setup = load(
         file.to_str().unwrap(),
         &Options {

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use cvtcycle_config::KeyInfo;
 use cvtcycle_config::setup::template::{Variant, VehicleTemplate};
 use cvtcycle_config::setup::{Options, Setup};
+use cvtcycle_config::{KeyInfo, Override};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
@@ -138,7 +138,7 @@ impl Recipe {
     /// The car.
     pub fn car(&self) -> RandomCar {
         let owned = |word: Option<&str>| word.map(str::to_owned);
-        let set: Vec<String> = self.words.iter().map(|word| (*word).to_owned()).collect();
+        let set = Override::parse_all(&self.words).unwrap_or_else(|p| panic!("{p}"));
         let options = Options {
             lubricant: owned(self.lubricant),
             engine_oil: owned(self.engine_oil),

@@ -1,8 +1,8 @@
 //! Table of the losses in the cold: each component at four oil temperatures, what carries and what bounds it.
 
 use super::reference::RPM;
-use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, Setup, load};
+use cvtcycle::config::{Override, render};
 use cvtcycle::model::bench::{Bench, BenchPoint};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::prime_mover::PrimeMover;
@@ -144,7 +144,7 @@ const MANUAL: [Line; 3] = [
 ];
 
 fn car(name: &str, sets: &[&str]) -> Result<Setup, String> {
-    let set = sets.iter().map(|s| (*s).to_owned()).collect();
+    let set = Override::parse_all(sets).map_err(|problems| render(&problems, false))?;
     load(
         name,
         &Options {

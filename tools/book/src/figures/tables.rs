@@ -104,8 +104,8 @@ fn index(source: &Path) -> Result<String, String> {
 
 /// Keys of the page's vehicle that belong to it.
 pub fn keys(page: &Page, labels: &[Labelled]) -> Result<Vec<KeyInfo>, String> {
-    let setup = load(page.vehicle, &Options::default())
-        .map_err(|problems| render(&problems, false))?;
+    let setup =
+        load(page.vehicle, &Options::default()).map_err(|problems| render(&problems, false))?;
     let named = |key: &str| {
         page.keys.iter().any(|k| {
             key == *k

@@ -73,7 +73,7 @@ pub fn map(data: &[u8]) {
     });
     let (car, set) = USERS[usize::from(*which) % USERS.len()];
     let options = Options {
-        set: vec![set.to_owned()],
+        set: vec![set.parse().unwrap_or_else(|p| panic!("{p}"))],
         ..Options::default()
     };
     let bytes: Arc<[u8]> = rest.into();

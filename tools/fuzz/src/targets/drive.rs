@@ -4,10 +4,10 @@ use std::cell::RefCell;
 use std::fmt::Write as _;
 use std::sync::OnceLock;
 
-use cvtcycle::config::KeyInfo;
 use cvtcycle::config::cycle::{Cycle, read_csv};
 use cvtcycle::config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle::config::setup::{Options, Setup};
+use cvtcycle::config::{KeyInfo, Override};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::model::drive::{Recorder, State, simulate};
 use cvtcycle::output::{Component, EnergyTerms, Row};
@@ -84,7 +84,7 @@ struct Car {
 
 fn car((name, words): (&str, &[&str])) -> Car {
     let options = Options {
-        set: words.iter().map(|word| (*word).to_owned()).collect(),
+        set: Override::parse_all(words).unwrap_or_else(|p| panic!("{p}")),
         ..Options::default()
     };
     let loaded = VehicleTemplate::load(name, &options);

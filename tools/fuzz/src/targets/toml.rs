@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use cvtcycle::config::setup::{self, Disk, Options, embedded_lubricants, embedded_vehicles};
-use cvtcycle::config::{Problems, decode, render};
+use cvtcycle::config::{Override, Problems, decode, render};
 use cvtcycle::study::fit::{embedded_calibrations, plan as calibration};
 use cvtcycle::study::plan::{Plan, embedded_plans};
 
@@ -87,11 +87,15 @@ pub fn overrides(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(rest) else {
         return;
     };
-    let options = Options {
-        set: text.lines().map(str::to_owned).collect(),
-        ..Options::default()
+    let load = |set| {
+        let options = Options {
+            set,
+            ..Options::default()
+        };
+        setup::load(name, &options)
     };
+    let lines: Vec<&str> = text.lines().collect();
     within_memory(rest.len(), || {
-        checked(setup::load(name, &options).err())
+        checked(Override::parse_all(&lines).and_then(load).err());
     });
 }

@@ -7,9 +7,7 @@ use crate::fit::plan::{CalibrationPlan, FreeParameter, Observable, problem};
 use crate::fit::solve::Parameter;
 use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle_config::setup::{Setup, load};
-use cvtcycle_config::{
-    Argument, Input, KeyInfo, Override, Place, Problem, ProblemKind, Problems,
-};
+use cvtcycle_config::{Argument, Input, KeyInfo, Override, Place, Problem, ProblemKind, Problems};
 use cvtcycle_model::bench::transmission::Conditions;
 
 /// A car of the plan with parameters that the fit changes.

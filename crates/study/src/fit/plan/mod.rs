@@ -15,7 +15,7 @@ mod read;
 mod types;
 
 pub use read::{gather, load, read};
+pub(super) use types::problem;
 pub use types::{
     BenchPoints, CalibrationPlan, FreeParameter, Group, Measured, Observable, Observation, Search,
 };
-pub(super) use types::problem;

@@ -1,18 +1,14 @@
 //! Readings of small documents, through the interface that the vehicle files are read with.
-use super::*;
+use cvtcycle_config::{Bound, Document, KeyInfo, Problem, Problems, Reader};
 
-mod assignments;
-mod choices;
-mod check_only;
-
-fn document(text: &str) -> Document {
+pub fn document(text: &str) -> Document {
     Document::parse("car.toml", text).unwrap()
 }
 
-fn with(text: &str, assignments: &[&str]) -> Document {
+pub fn with(text: &str, assignments: &[&str]) -> Document {
     let mut document = document(text);
-    for assignment in assignments {
-        document.set(assignment).unwrap();
+    for text in assignments {
+        document.set(&text.parse().unwrap()).unwrap();
     }
     document
 }
@@ -20,7 +16,7 @@ fn with(text: &str, assignments: &[&str]) -> Document {
 const OFFSET: Bound = Bound::closed(0.5, 10.0);
 
 /// Reads the band offset of a belt and ends the session.
-fn belt(document: &Document) -> (f64, Result<Vec<KeyInfo>, Problems>) {
+pub fn belt(document: &Document) -> (f64, Result<Vec<KeyInfo>, Problems>) {
     let reader = Reader::new(document);
     let belt = reader
         .root()
@@ -32,9 +28,9 @@ fn belt(document: &Document) -> (f64, Result<Vec<KeyInfo>, Problems>) {
     (offset, reader.finish())
 }
 
-const HEAD: &str = "[transmission.cvt.belt]\n";
+pub const HEAD: &str = "[transmission.cvt.belt]\n";
 
-fn only(result: Result<Vec<KeyInfo>, Problems>) -> Problem {
+pub fn only(result: Result<Vec<KeyInfo>, Problems>) -> Problem {
     let mut problems = result.unwrap_err();
     assert_eq!(problems.len(), 1, "{problems:#?}");
     problems.remove(0)
@@ -120,7 +116,7 @@ fn a_missing_key_is_reported_at_the_header() {
     assert_eq!((problem.place.line, problem.place.column), (1, 1));
     let problem = only(belt(&document("")).1);
     assert_eq!(
-        (problem.place.line, problem.place.file.as_str()),
+        (problem.place.line, problem.place.file_name().unwrap()),
         (0, "car.toml")
     );
 }
@@ -278,14 +274,6 @@ fn columns_after_other_letters_count_characters() {
     assert_eq!((place.line, place.column, place.width), (1, 9, 2));
 }
 
-#[test]
-fn the_end_of_the_text_is_shown_on_its_last_line() {
-    let source = source::Source::new("car.toml", "a = 1\nb = [1\n\n\n", true);
-    let place = source.place(15..15);
-    assert_eq!((place.line, place.column, place.width), (2, 7, 1));
-    assert_eq!(place.line_text, "b = [1");
-}
-
 /// All problems of a reading, and their number.
 fn counted(document: &Document) -> (usize, usize) {
     let reader = Reader::new(document);
@@ -356,4 +344,47 @@ fn long_lines_and_values_are_not_repeated() {
             ]
         );
     }
+}
+
+#[test]
+fn tables_of_a_list_are_documents_with_their_places() {
+    let mut document = Document::parse(
+        "x.toml",
+        "a = 1\n[[row]]\nspeed_rpm = \"0..60:30\"\n[[row]]\nspeed_rpm = [30, 9e9]\n",
+    )
+    .expect("TOML");
+    let rows = document.take_tables("row");
+    assert_eq!(
+        (
+            rows.len(),
+            document.take_tables("row").len(),
+            document.take_tables("a").len()
+        ),
+        (2, 0, 0)
+    );
+    let read = |k: usize| {
+        let reader = Reader::new(&rows[k]);
+        let values = reader
+            .root()
+            .grid("speed_rpm", Bound::closed(0.0, 100.0), "speed");
+        reader.root().text("name", "name");
+        (values, reader.finish().expect_err("no name"))
+    };
+    let (values, problems) = read(0);
+    assert!(
+        values.is_some_and(|v| v.len() == 3 && (v[2] - 2.0 * std::f64::consts::PI).abs() < 1e-12)
+    );
+    assert_eq!(
+        (
+            problems.len(),
+            problems[0].place.line,
+            problems[0].place.line_text.as_str()
+        ),
+        (1, 2, "[[row]]")
+    );
+    let (_, problems) = read(1);
+    assert_eq!(
+        problems.iter().map(|p| p.place.line).collect::<Vec<_>>(),
+        [4, 5]
+    );
 }

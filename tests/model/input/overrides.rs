@@ -1,5 +1,6 @@
 //! Assignments from the command line.
-use super::*;
+use crate::reading::{HEAD, belt, document, only, with};
+use cvtcycle_config::Override;
 
 #[test]
 fn an_assignment_goes_before_the_file() {
@@ -14,7 +15,7 @@ fn an_assignment_goes_before_the_file() {
     ));
     assert_eq!(keys.unwrap()[0].status, "set");
     let problem = only(belt(&with(&text, &[&format!("{key}=2,5")])).1);
-    assert_eq!(problem.place.file, format!("--set {key}=2,5"));
+    assert_eq!(problem.place.assignment(), Some(&*format!("{key}=2,5")));
     assert_eq!((problem.place.line, problem.value.as_str()), (0, "2,5"));
     assert!(problem.hint.contains("2.5"), "{problem:?}");
 }
@@ -46,7 +47,7 @@ fn an_assignment_to_an_unknown_key_names_the_whole_path() {
                 .contains("`transmission.cvt.belt.band_offset_mm`"),
             "{problem:?}"
         );
-        assert_eq!(problem.place.file, format!("--set {assignment}"));
+        assert_eq!(problem.place.assignment(), Some(assignment));
     }
 }
 
@@ -61,13 +62,14 @@ fn what_is_no_assignment_is_refused() {
         ("a.b=1", "`a` is a value"),
         ("b.value=1", "`b` is a value"),
     ] {
-        let problem = document.set(assignment).unwrap_err();
+        let set = |by: Override| document.set(&by);
+        let problem = assignment.parse().and_then(set).unwrap_err();
         assert!(problem.message.contains(part), "{problem:?}");
-        assert_eq!(problem.place.file, format!("--set {assignment}"));
+        assert_eq!(problem.place.assignment(), Some(assignment));
         assert!(!problem.hint.is_empty());
     }
     let deep = format!("{}z=1", "z.".repeat(100_000));
-    assert!(document.set(&deep).is_err());
+    assert!(deep.parse::<Override>().is_err());
 }
 
 #[test]
@@ -85,5 +87,5 @@ fn a_word_for_a_table_that_is_no_choice() {
             .contains("`transmission.cvt` is a table, not a value"),
         "{problem:?}"
     );
-    assert_eq!(problem.place.file, "--set transmission.cvt=belt");
+    assert_eq!(problem.place.assignment(), Some("transmission.cvt=belt"));
 }

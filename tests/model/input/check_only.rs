@@ -1,6 +1,6 @@
 //! Silent readings find the same values and as many problems as ordinary ones; drafts are what assignments make of a document.
-use super::super::patched::PatchedDocument;
-use super::*;
+use crate::reading::document;
+use cvtcycle_config::{Bound, KeyPath, Override, PatchedDocument, Reader};
 
 /// A little of everything that a reader reads, as text.
 fn read(reader: &Reader) -> String {
@@ -91,23 +91,16 @@ fn drafts_are_what_assignments_make() {
             let mut assigned = base.clone();
             for (key, number) in &numbers[..count] {
                 assert!(draft.set(&path(key), number * round));
-                assigned.set(&format!("{key}={}", number * round)).unwrap();
+                assigned
+                    .set(&Override::number(key, number * round))
+                    .unwrap();
             }
             let same = read(&Reader::check_only(draft.document())) == read(&Reader::new(&assigned));
             assert!(same, "{count} numbers, {round}");
             assert!(count == 0 || read(&Reader::check_only(draft.document())) != unchanged);
         }
-        let kept: Vec<(String, f64)> = draft.numbers().collect();
-        assert_eq!(
-            kept,
-            numbers[..count]
-                .iter()
-                .map(|(key, number)| ((*key).to_string(), number * 1.25))
-                .collect::<Vec<_>>()
-        );
         draft.reset();
         assert_eq!(read(&Reader::check_only(draft.document())), unchanged);
-        assert_eq!(draft.numbers().count(), 0);
     }
     assert!(
         !draft.set(&path("belt.offset_mm.x"), 1.0),

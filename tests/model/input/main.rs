@@ -1,0 +1,13 @@
+//! Inputs through the public items of the crate that reads them.
+
+mod bounded;
+mod catalogue;
+mod check_only;
+mod choices;
+mod constant;
+mod near;
+mod overrides;
+mod problems;
+mod reading;
+mod render;
+mod rig;
