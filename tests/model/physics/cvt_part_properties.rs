@@ -12,7 +12,7 @@ use cvtcycle_model::drive::{Start, drive};
 use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
 use cvtcycle_model::transmission::cvt::pump::{Pump, PumpAtTemperature, PumpKind};
 use cvtcycle_model::transmission::cvt::spin::{NU_REFERENCE_M2_S, Spin};
-use cvtcycle_model::transmission::film_heating::FilmHeating;
+use cvtcycle_model::transmission::viscous_self_heating::ViscousSelfHeating;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -61,8 +61,8 @@ fn any_kind() -> impl Strategy<Value = PumpKind> {
 }
 
 /// Heating of films from none to strong.
-fn any_heating() -> impl Strategy<Value = FilmHeating> {
-    prop_oneof![1 => Just(FilmHeating::NONE), 3 => (10.0..1e4f64).prop_map(|w| FilmHeating::halving_at_w(Some(w)))]
+fn any_heating() -> impl Strategy<Value = ViscousSelfHeating> {
+    prop_oneof![1 => Just(ViscousSelfHeating::NONE), 3 => (10.0..1e4f64).prop_map(|w| ViscousSelfHeating::halving_at_w(Some(w)))]
 }
 
 fn any_pump() -> impl Strategy<Value = Pump> {
@@ -121,7 +121,7 @@ proptest! {
         let now = oil(&pump, factor);
         let s = pump.state(&now, w, p, need);
         let drawn = now.drawn_m3_s(s.flow_m3_s);
-        prop_assert!(drawn <= s.flow_m3_s && (now.per_inlet_m3_s == 0.0 || drawn * now.per_inlet_m3_s <= 1.0 + 1e-12));
+        prop_assert!(drawn <= s.flow_m3_s && (now.inv_inlet_flow == 0.0 || drawn * now.inv_inlet_flow <= 1.0 + 1e-12));
         prop_assert!(s.torque_nm.is_finite() && s.torque_nm >= 0.0 && s.flow_m3_s >= 0.0);
         let hydraulic = s.working_m3_s * (p + pump.line_drop_pa);
         prop_assert!(s.torque_nm * w >= hydraulic * (1.0 - 1e-12), "{} W for {hydraulic} W", s.torque_nm * w);
@@ -151,7 +151,7 @@ proptest! {
     /// viscous torque, which is proportional to speed and displacement, stays (PU-1).
     #[test]
     fn pump_rescales_with_displacement(pump in any_pump(), (w, p, need, factor) in any_duty()) {
-        let pump = Pump { constant_nm: 0.0, heating: FilmHeating::NONE, ..pump };
+        let pump = Pump { constant_nm: 0.0, heating: ViscousSelfHeating::NONE, ..pump };
         let twice = Pump { displacement_m3_rad: 2.0 * pump.displacement_m3_rad, ..pump };
         let now = oil(&pump, factor);
         let viscous = pump.state(&now, w, p, need).torque_nm - pump.state(&PumpAtTemperature { viscous_factor: 0.0, ..now }, w, p, need).torque_nm;
@@ -175,7 +175,7 @@ fn pump_is_continuous_in_speed_and_need() {
             friction: 0.1,
             viscous: 14_750.0,
             viscous_exponent: 0.9,
-            heating: FilmHeating::halving_at_w(Some(600.0)),
+            heating: ViscousSelfHeating::halving_at_w(Some(600.0)),
             inlet_pa_s_m3: 2e7,
             constant_nm: 0.0,
             line_drop_pa: 0.0,
@@ -250,7 +250,7 @@ proptest! {
         prop_assert!(thick.clutch_nm <= spin.clutch_cap_nm);
         // At the reference viscosity and without heating the constants hold as they stand, whatever the exponents; heating takes away
         // from the viscous part only.
-        let plain = Spin { shaft_heating: FilmHeating::NONE, drive_heating: FilmHeating::NONE, ..spin };
+        let plain = Spin { shaft_heating: ViscousSelfHeating::NONE, drive_heating: ViscousSelfHeating::NONE, ..spin };
         let now = plain.at(NU_REFERENCE_M2_S);
         prop_assert!((now.shaft_nm(w) - spin.shaft_constant_nm - spin.shaft_viscous_nm_s * w).abs() < 1e-12);
         for (heated, unheated) in drags(&thick).iter().zip([plain.at(b).shaft_nm(w), plain.at(b).clutch_nm, plain.drive_nm(&plain.at(b), w)]) {

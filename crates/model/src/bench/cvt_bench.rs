@@ -1,10 +1,10 @@
 //! One operating point of a CVT on the bench: a fixed point in slip, pressure and belt temperature (RB-1, RB-2).
 
-use super::held_point::{BenchAnswer, BenchPoint};
+use super::point::{BenchAnswer, BenchPoint, belt_nm};
 use crate::drive::Car;
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
-use crate::transmission::component::{ByComponent, Component};
+use crate::transmission::component::ByComponent;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::cvt::driveline::{Driveline, PartTorques, Shaft};
 use crate::transmission::cvt::variator::point::{LIMIT_SLACK, PointStatus};
@@ -276,10 +276,4 @@ impl OnBench<'_> {
             flags,
         }
     }
-}
-
-/// All belt losses, Nm at the input shaft.
-pub(super) fn belt_nm(loss_nm: &ByComponent<f64>) -> f64 {
-    let belt = Component::ALL.into_iter().filter(|c| c.is_belt());
-    belt.map(|c| loss_nm[c]).sum()
 }

@@ -2,12 +2,14 @@
 //!
 //! [`Bench`] answers one operating point of a whole box, part by part; the rigs of chapters 4 to 6 are series of such points.
 
-mod held_point;
+mod point;
 mod cvt_bench;
+mod held_point;
 mod limits;
 pub mod transmission;
 pub mod variator;
 
 pub use crate::transmission::cvt::Parts;
-pub use held_point::{Bench, BenchAnswer, BenchPoint};
+pub use held_point::Bench;
 pub use limits::solvable_ratios;
+pub use point::{BenchAnswer, BenchPoint};

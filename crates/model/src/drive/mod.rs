@@ -13,7 +13,7 @@ pub use balance::{EnergyTerms, TERM_NAMES};
 pub use car::Car;
 pub use row::Row;
 pub use run::{
-    Conditions, FuelMap, Give, Outcome, Start, drive, drive_into, fuel_map, litres_per_100km,
+    Conditions, FuelMap, Outcome, RowSink, Start, drive, drive_into, fuel_map, litres_per_100km,
 };
 pub use simulate::{Recorder, State, simulate};
 pub use step::{Drive, loss_heat_w};

@@ -45,23 +45,23 @@ pub struct Outcome {
 }
 
 /// Takes rows, some at a time and in order.
-pub type Give<'g> = dyn FnMut(&[Row]) + 'g;
+pub type RowSink<'g> = dyn FnMut(&[Row]) + 'g;
 
 /// Rows that are given away at a time: few enough to stay in the processor's cache.
-const LOT: usize = 32;
+const CHUNK: usize = 32;
 
 /// Keeps totals and gives rows away in lots; for totals alone, [`Totals`] themselves listen, so that no row need exist.
-struct Lots<'g> {
+struct ChunkedRecorder<'g> {
     totals: Totals,
     lot: Vec<Row>,
-    give: &'g mut Give<'g>,
+    give: &'g mut RowSink<'g>,
 }
 
-impl Recorder for Lots<'_> {
+impl Recorder for ChunkedRecorder<'_> {
     fn record(&mut self, row: &Row, terms: &EnergyTerms) {
         self.totals.record(row, terms);
         self.lot.push(*row);
-        if self.lot.len() == LOT {
+        if self.lot.len() == CHUNK {
             (self.give)(&self.lot);
             self.lot.clear();
         }
@@ -100,7 +100,7 @@ pub fn drive_into(
     vehicle: &Vehicle,
     cycle: &Cycle,
     conditions: &Conditions,
-    give: Option<&mut Give>,
+    give: Option<&mut RowSink>,
 ) -> Outcome {
     let car = &vehicle.car(conditions.ambient_k);
     let trace = cycle.trace_for(car.transmission.is_cvt());
@@ -124,9 +124,9 @@ pub fn drive_into(
     let mut totals = Totals::new(cycle.phases.len());
     let end = match give {
         Some(give) => {
-            let mut lots = Lots {
+            let mut lots = ChunkedRecorder {
                 totals,
-                lot: Vec::with_capacity(LOT),
+                lot: Vec::with_capacity(CHUNK),
                 give,
             };
             let end = simulate(car, trace, conditions.max_dt_s, start, &mut lots);

@@ -12,7 +12,7 @@ use crate::cycle::{GearCommand, Step, Trace};
 use crate::engine::{Burn, EngineAtTemperature};
 use crate::flags::Flags;
 use crate::fluid::Lubricant;
-use crate::math::held;
+use crate::math::clamp;
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::component::{ByComponent, Component, HeatTo};
@@ -164,13 +164,13 @@ fn inertia(
     let bound = car.engine.inertia_torque_nm;
     // Faster takes what is left below full load, slower what drag is left; never less than nothing, never more than the bound.
     let torque = if wanted > 0.0 {
-        held(
+        clamp(
             engine.full_load_nm(w) - steady,
             0.0,
             if wanted < bound { wanted } else { bound },
         ) // SI-2
     } else {
-        held(
+        clamp(
             -(steady + engine.drag_nm(w)),
             if wanted > -bound { wanted } else { -bound },
             0.0,

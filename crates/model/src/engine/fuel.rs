@@ -12,7 +12,7 @@
 //! line that would leave these bounds below the engine's highest speed.
 
 use crate::maps::BsfcMap;
-use crate::math::held;
+use crate::math::clamp;
 
 const BAR: f64 = 1e5;
 /// Efficiency B that a line may have.
@@ -112,7 +112,7 @@ impl Willans {
     #[inline]
     fn fuel(&self, piston_m_s: f64, need_pa: f64) -> FuelPoint {
         let line = self.efficiency(piston_m_s);
-        let b = held(line, *EFFICIENCY.start(), *EFFICIENCY.end());
+        let b = clamp(line, *EFFICIENCY.start(), *EFFICIENCY.end());
         let need = need_pa / BAR;
         let disc = b * b + 4.0 * self.a2 * need;
         let turned = disc < 0.0;

@@ -4,7 +4,7 @@ use super::{EFFICIENCY, Engine, FuelModel, Willans};
 use crate::fluid::{Viscosity, viscosity};
 use crate::keys::{Bound, Choice, Values, curve, keys};
 use crate::maps::BsfcMap;
-use crate::math::{Curve, held};
+use crate::math::{Curve, clamp};
 
 keys! {
     /// Keys of `[engine]` and its tables.
@@ -147,7 +147,7 @@ fn check_efficiency<V: Values>(willans: &V, engine: &Engine) {
     };
     let fastest = engine.piston_m_s(engine.highest_rad_s);
     let bend = if line.c.abs() > 0.0 {
-        held(-0.5 * line.b / line.c, 0.0, fastest)
+        clamp(-0.5 * line.b / line.c, 0.0, fastest)
     } else {
         0.0
     };

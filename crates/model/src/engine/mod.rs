@@ -20,7 +20,7 @@ pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
 pub use keys::EngineKeys;
 
 use crate::fluid::{Lubricant, Viscosity, ZERO_DEGC_K};
-use crate::math::{Curve, exp, held, ln};
+use crate::math::{Curve, clamp, exp, ln};
 use crate::prime_mover::PrimeMover;
 
 /// The checked engine.
@@ -143,11 +143,11 @@ impl Engine {
         &self,
         coolant_k: f64,
         oil_k: f64,
-        unlike: Option<&Lubricant>,
+        other_oil: Option<&Lubricant>,
         pressure_factor: f64,
     ) -> EngineAtTemperature<'_> {
         let theta = 0.5 * (coolant_k + oil_k) / self.hot_k;
-        let viscous = unlike.map_or(1.0, |oil| {
+        let viscous = other_oil.map_or(1.0, |oil| {
             let relative = oil.kinematic_m2_s(oil_k) / self.reference_oil.kinematic_m2_s(oil_k);
             1.0 + self.viscous_share * (exp(self.viscous_exponent * ln(relative)) - 1.0)
         });
@@ -156,7 +156,7 @@ impl Engine {
         } else {
             1.0
         };
-        let cold = held((60.0 + ZERO_DEGC_K - coolant_k) / 70.0, 0.0, 1.0);
+        let cold = clamp((60.0 + ZERO_DEGC_K - coolant_k) / 70.0, 0.0, 1.0);
         let enrich = (60.0 + ZERO_DEGC_K - coolant_k) / 60.0;
         EngineAtTemperature {
             engine: self,
@@ -312,7 +312,7 @@ impl EngineAtTemperature<'_> {
         };
         let fast = (speed_rad_s - e.idle_hot_rad_s) / (e.highest_rad_s - e.idle_hot_rad_s);
         let exhaust_share =
-            e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * held(fast, 0.0, 1.0);
+            e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * clamp(fast, 0.0, 1.0);
         let waste = burnt - indicated;
         let fuel_w = burnt * self.enrichment;
         Burn {

@@ -20,13 +20,13 @@ pub use keys::FluidKeys;
 pub(crate) use keys::viscosity;
 pub use viscosity::Viscosity;
 
-use crate::math::{exp, held, ln};
+use crate::math::{clamp, exp, ln};
 
 /// 0 degC in K.
 pub const ZERO_DEGC_K: f64 = 273.15;
 
 /// Least share of the density at 15 degC; reached at some 1000 degC.
-const LEAST_DENSITY: f64 = 0.3;
+const MIN_DENSITY: f64 = 0.3;
 
 /// Friction that a fluid lends to the belt's contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,7 +96,7 @@ impl Friction {
     #[inline]
     pub fn band_on_film(&self, belt_k: f64, z: f64) -> BandFriction {
         let warm = 1.0 + self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0);
-        let warm = held(warm, self.band_floor, self.band_ceiling);
+        let warm = clamp(warm, self.band_floor, self.band_ceiling);
         let film_share = if z.is_finite() { z / (1.0 + z) } else { 1.0 }; // LU-5
         BandFriction {
             mu: self.band * warm * (1.0 - self.lift_reduction * film_share),
@@ -138,8 +138,8 @@ impl Lubricant {
         let share = 1.0 - 0.000_68 * (temp_k - ZERO_DEGC_K - 15.0);
         // Far beyond its validity the line would reach zero, and there is no oil of negative mass.
         self.density15_kg_m3
-            * if share < LEAST_DENSITY {
-                LEAST_DENSITY
+            * if share < MIN_DENSITY {
+                MIN_DENSITY
             } else {
                 share
             } // LU-2

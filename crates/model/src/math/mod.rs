@@ -11,7 +11,7 @@ pub use grid::{GRID_AXES, Grid};
 /// `x` held between `low` and `high`; NaN stays NaN. Unlike `f64::clamp` without a check of the bounds.
 #[must_use]
 #[inline]
-pub fn held(x: f64, low: f64, high: f64) -> f64 {
+pub fn clamp(x: f64, low: f64, high: f64) -> f64 {
     // In this order both are single instructions, and NaN passes.
     let x = if low > x { low } else { x };
     if high < x { high } else { x }
@@ -25,7 +25,7 @@ pub fn held(x: f64, low: f64, high: f64) -> f64 {
 pub fn ramp(x: f64, from: f64, to: f64) -> f64 {
     let width = to - from;
     if width.abs() > 0.0 {
-        held((x - from) / width, 0.0, 1.0)
+        clamp((x - from) / width, 0.0, 1.0)
     } else {
         f64::from(u8::from(x >= from))
     }

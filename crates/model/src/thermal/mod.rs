@@ -23,7 +23,7 @@ mod links;
 pub use keys::ThermalKeys;
 use links::Links;
 
-use crate::math::{exp, held, ln, ramp};
+use crate::math::{clamp, exp, ln, ramp};
 
 /// Number of nodes.
 pub const NODES: usize = 5;
@@ -219,7 +219,7 @@ impl Network {
         let full = self.radiator_w_k + self.radiator_per_speed * input.speed_m_s;
         let full = if input.running { full } else { STILL * full };
         let width = self.thermostat_to_k - self.thermostat_from_k;
-        let open = held((coolant_k - self.thermostat_from_k) / width, 0.0, 1.0);
+        let open = clamp((coolant_k - self.thermostat_from_k) / width, 0.0, 1.0);
         let over = coolant_k - input.ambient_k;
         // A coolant that is colder than the air warms towards it: with the opening held, the step ends between the two (TH-9).
         let slope = if open > 0.0 && open < 1.0 && over > 0.0 {
@@ -242,7 +242,7 @@ impl Network {
             c.highest_m3_s
         };
         let carried = flow * input.oil_volume_heat_j_m3k;
-        let open = held((sump_k - c.bypass_below_k) / 2.0, 0.0, 1.0);
+        let open = clamp((sump_k - c.bypass_below_k) / 2.0, 0.0, 1.0);
         if carried <= 0.0 || open <= 0.0 {
             return (carried, 0.0);
         }

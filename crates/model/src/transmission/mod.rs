@@ -3,7 +3,7 @@
 pub mod component;
 pub mod coupling;
 pub mod cvt;
-pub mod film_heating;
+pub mod viscous_self_heating;
 pub mod manual;
 mod step;
 

@@ -4,7 +4,7 @@ use cvtcycle::config::setup::Setup;
 use cvtcycle::config::{Bound, Problems, to_si};
 use cvtcycle::model::bench::solvable_ratios;
 use cvtcycle::model::bench::variator::{
-    CurveSummary, Held, MOST_RAD_S, Resolution, VariatorRig, VariatorRow,
+    CurveSummary, Held, MAX_RAD_S, Resolution, VariatorRig, VariatorRow,
 };
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::losses::MAX_POINTS;
@@ -154,7 +154,7 @@ fn held(
     let mut list = Vec::new();
     for ratio in ratios {
         // The secondary stays below the speed limit of the rig.
-        let default_rad_s = to_si("_rpm", SPEED_RPM).min(MOST_RAD_S * ratio);
+        let default_rad_s = to_si("_rpm", SPEED_RPM).min(MAX_RAD_S * ratio);
         let speeds = speeds.map_or_else(
             || vec![default_rad_s],
             |list| list.iter().map(|n| to_si("_rpm", *n)).collect(),

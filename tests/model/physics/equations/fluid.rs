@@ -129,7 +129,7 @@ fn val_band_friction_by_hand() {
 /// Ramps in both orders of their ends, and the step that equal ends make.
 #[test]
 fn val_ramps_by_hand() {
-    use cvtcycle_model::math::{held, ramp, smooth_ramp};
+    use cvtcycle_model::math::{clamp, ramp, smooth_ramp};
     for (x, from, to, want) in [
         (0.25, 0.0, 1.0, 0.25),
         (0.25, 1.0, 0.0, 0.75),
@@ -142,9 +142,9 @@ fn val_ramps_by_hand() {
         same(smooth_ramp(x, from, to), want * want * (3.0 - 2.0 * want));
     }
     assert!(
-        held(f64::NAN, 0.0, 1.0).is_nan()
-            && held(2.0, 0.0, 1.0) == 1.0
-            && held(-2.0, 0.0, 1.0) == 0.0
+        clamp(f64::NAN, 0.0, 1.0).is_nan()
+            && clamp(2.0, 0.0, 1.0) == 1.0
+            && clamp(-2.0, 0.0, 1.0) == 0.0
     );
 }
 

@@ -11,8 +11,8 @@ use cvtcycle_model::road::WheelDemand;
 use cvtcycle_model::thermal::{Heat, NODES};
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::coupling::{CouplingLoad, FrictionClutch};
-use cvtcycle_model::transmission::film_heating::FilmHeating;
 use cvtcycle_model::transmission::manual::{Manual, ShiftSpeeds};
+use cvtcycle_model::transmission::viscous_self_heating::ViscousSelfHeating;
 use cvtcycle_model::transmission::{StepInput, StepOutput, Transmission, TransmissionState};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub fn manual() -> Manual {
         seal_nm: 0.78,
         seal_exponent: 0.15,
         bearing_nm: 0.12,
-        bearing_heating: FilmHeating::halving_at_w(Some(150.0)),
+        bearing_heating: ViscousSelfHeating::halving_at_w(Some(150.0)),
         churning_nm: 0.84,
         churning_exponent: 0.2,
         reference_m2_s: 12.9e-6,

@@ -3,7 +3,7 @@
 use super::same;
 use cvtcycle_model::transmission::cvt::pump::{ETA_REFERENCE_PA_S, Pump, PumpKind};
 use cvtcycle_model::transmission::cvt::spin::{NU_REFERENCE_M2_S, Spin};
-use cvtcycle_model::transmission::film_heating::FilmHeating;
+use cvtcycle_model::transmission::viscous_self_heating::ViscousSelfHeating;
 
 fn pump(kind: PumpKind) -> Pump {
     Pump {
@@ -12,7 +12,7 @@ fn pump(kind: PumpKind) -> Pump {
         friction: 0.07,
         viscous: 15_000.0,
         viscous_exponent: 0.9,
-        heating: FilmHeating::halving_at_w(Some(900.0)),
+        heating: ViscousSelfHeating::halving_at_w(Some(900.0)),
         inlet_pa_s_m3: 1.2e7,
         constant_nm: 0.11,
         line_drop_pa: 0.8e5,
@@ -86,7 +86,7 @@ fn spin() -> Spin {
         shaft_constant_nm: 0.97,
         shaft_viscous_nm_s: 7e-4,
         shaft_exponent: 0.75,
-        shaft_heating: FilmHeating::halving_at_w(Some(400.0)),
+        shaft_heating: ViscousSelfHeating::halving_at_w(Some(400.0)),
         clutch_nm: 0.25,
         clutch_exponent: 0.55,
         clutch_cap_nm: 0.5,
@@ -94,7 +94,7 @@ fn spin() -> Spin {
         drive_scale_rad_s: 210.0,
         drive_viscous_nm: 0.29,
         drive_exponent: 0.72,
-        drive_heating: FilmHeating::halving_at_w(Some(300.0)),
+        drive_heating: ViscousSelfHeating::halving_at_w(Some(300.0)),
         mesh_efficiency: 0.98,
     }
 }

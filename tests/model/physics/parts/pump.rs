@@ -1,6 +1,6 @@
 //! Unit tests of `model::transmission::cvt::pump`.
 use cvtcycle_model::transmission::cvt::pump::{ETA_REFERENCE_PA_S, Pump, PumpKind};
-use cvtcycle_model::transmission::film_heating::FilmHeating;
+use cvtcycle_model::transmission::viscous_self_heating::ViscousSelfHeating;
 
 pub fn pump(kind: PumpKind) -> Pump {
     Pump {
@@ -9,7 +9,7 @@ pub fn pump(kind: PumpKind) -> Pump {
         friction: 0.0,
         viscous: 14_750.0,
         viscous_exponent: 0.9,
-        heating: FilmHeating::NONE,
+        heating: ViscousSelfHeating::NONE,
         inlet_pa_s_m3: 0.0,
         constant_nm: 0.0,
         line_drop_pa: 0.0,
@@ -62,7 +62,7 @@ fn val_thick_oil_fills_no_more_than_the_air_pushes_in() {
         ..pump(PumpKind::Fixed)
     };
     let cold = p.at(3.0);
-    assert!((1.0 / cold.per_inlet_m3_s / litre_min - 7.78).abs() < 0.01);
+    assert!((1.0 / cold.inv_inlet_flow / litre_min - 7.78).abs() < 0.01);
     let need = 9.0 * litre_min;
     let (fast, warm) = (
         p.state(&cold, 400.0, 20e5, need),

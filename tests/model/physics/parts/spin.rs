@@ -1,6 +1,6 @@
 //! Unit tests of `model::transmission::cvt::spin`.
 use cvtcycle_model::transmission::cvt::spin::Spin;
-use cvtcycle_model::transmission::film_heating::FilmHeating;
+use cvtcycle_model::transmission::viscous_self_heating::ViscousSelfHeating;
 
 fn spin() -> Spin {
     let rpm = std::f64::consts::PI / 30.0;
@@ -8,7 +8,7 @@ fn spin() -> Spin {
         shaft_constant_nm: 0.97,
         shaft_viscous_nm_s: 0.07 / (1000.0 * rpm),
         shaft_exponent: 0.75,
-        shaft_heating: FilmHeating::NONE,
+        shaft_heating: ViscousSelfHeating::NONE,
         clutch_nm: 0.25,
         clutch_exponent: 0.55,
         clutch_cap_nm: 0.5,
@@ -16,7 +16,7 @@ fn spin() -> Spin {
         drive_scale_rad_s: 2000.0 * rpm,
         drive_viscous_nm: 0.29,
         drive_exponent: 0.72,
-        drive_heating: FilmHeating::NONE,
+        drive_heating: ViscousSelfHeating::NONE,
         mesh_efficiency: 0.98,
     }
 }

@@ -1,5 +1,5 @@
-//! Unit tests of `model::transmission::film_heating`.
-use cvtcycle_model::transmission::film_heating::FilmHeating;
+//! Unit tests of `model::transmission::viscous_self_heating`.
+use cvtcycle_model::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// Exact drag T exp(T w/P_h) = T_0, by bisection: truth from the equation itself, without its first order.
 fn exponential_nm(unheated_nm: f64, speed_rad_s: f64, halving_w: f64) -> f64 {
@@ -18,13 +18,15 @@ fn exponential_nm(unheated_nm: f64, speed_rad_s: f64, halving_w: f64) -> f64 {
 #[test]
 fn val_half_the_drag_at_the_dissipation_that_the_key_names() {
     // 8 Nm unheated, 4 Nm in force at 300 rad/s: 1200 W.
-    assert!((FilmHeating::halving_at_w(Some(1200.0)).torque_nm(8.0, 300.0) - 4.0).abs() < 1e-12);
+    assert!(
+        (ViscousSelfHeating::halving_at_w(Some(1200.0)).torque_nm(8.0, 300.0) - 4.0).abs() < 1e-12
+    );
 }
 
 #[test]
 fn val_lies_between_the_exponential_and_no_heating() {
     for halving_w in [100.0, 1200.0, 1e4] {
-        let heating = FilmHeating::halving_at_w(Some(halving_w));
+        let heating = ViscousSelfHeating::halving_at_w(Some(halving_w));
         for (unheated, w) in [(0.01, 100.0), (1.0, 300.0), (12.0, 500.0), (80.0, 900.0)] {
             let (drag, exact) = (
                 heating.torque_nm(unheated, w),
@@ -49,30 +51,30 @@ fn without_heating_or_speed_the_power_law_stays_to_the_last_bit() {
     for unheated in [0.0, 1e-9, 0.31, 5.0, 1e3] {
         for w in [0.0, 1.0, 700.0] {
             assert_eq!(
-                FilmHeating::NONE.torque_nm(unheated, w).to_bits(),
+                ViscousSelfHeating::NONE.torque_nm(unheated, w).to_bits(),
                 unheated.to_bits()
             );
             assert_eq!(
-                FilmHeating::halving_at_w(None)
+                ViscousSelfHeating::halving_at_w(None)
                     .torque_nm(unheated, w)
                     .to_bits(),
                 unheated.to_bits()
             );
         }
         assert_eq!(
-            FilmHeating::halving_at_w(Some(500.0))
+            ViscousSelfHeating::halving_at_w(Some(500.0))
                 .torque_nm(unheated, 0.0)
                 .to_bits(),
             unheated.to_bits()
         );
-        let huge = FilmHeating::halving_at_w(Some(1e18)).torque_nm(unheated, 700.0);
+        let huge = ViscousSelfHeating::halving_at_w(Some(1e18)).torque_nm(unheated, 700.0);
         assert!((huge - unheated).abs() <= 1e-12 * unheated);
     }
 }
 
 #[test]
 fn colder_oil_never_costs_less_and_far_out_the_root_remains() {
-    let heating = FilmHeating::halving_at_w(Some(1000.0));
+    let heating = ViscousSelfHeating::halving_at_w(Some(1000.0));
     let mut last = (0.0, 0.0);
     for i in 0..2000 {
         let unheated = 1e-4 * f64::from(i * i);

@@ -1,7 +1,7 @@
 //! What the transmission rig is set to.
 
 /// Most speeds of one test.
-const MOST_SPEEDS: f64 = 400.0;
+const MAX_SPEEDS: f64 = 400.0;
 
 /// Speeds of a test, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,7 @@ impl Speeds {
         // A thousandth of a step for what was lost in rounding.
         let count = ((self.to_rad_s - self.from_rad_s) / self.step_rad_s + 1e-3)
             .floor()
-            .clamp(0.0, MOST_SPEEDS) as u32;
+            .clamp(0.0, MAX_SPEEDS) as u32;
         (0..=count)
             .map(|k| self.from_rad_s + f64::from(k) * self.step_rad_s)
             .collect()

@@ -16,7 +16,7 @@ use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, Network,
 /// Step, s: the rig recorded once a second (thesis 5.3).
 const STEP_S: f64 = 1.0;
 /// A branch that takes longer has come to rest before its end.
-const LONGEST_S: f64 = 4.0 * 3600.0;
+const MAX_DURATION_S: f64 = 4.0 * 3600.0;
 
 /// Half of a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -254,7 +254,7 @@ pub fn transient(bench: &Bench, conditions: &Conditions, ratio: f64) -> Loop {
             } else {
                 moment.sump_k <= until_k
             };
-            if there || running.time_s - began >= LONGEST_S {
+            if there || running.time_s - began >= MAX_DURATION_S {
                 result.complete &= there;
                 break;
             }

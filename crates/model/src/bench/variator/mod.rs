@@ -23,13 +23,13 @@ use crate::transmission::cvt::Cvt;
 use crate::transmission::cvt::variator::{BeltAtRatio, BeltLoad, BeltState, Geometry, belt_state};
 
 /// Largest torque at the secondary pulley, Nm (Table 6-1).
-pub const MOST_OUTPUT_NM: f64 = 400.0;
+pub const MAX_OUTPUT_NM: f64 = 400.0;
 /// Largest torque at the primary pulley, Nm (Table 6-1).
-pub const MOST_INPUT_NM: f64 = 250.0;
+pub const MAX_INPUT_NM: f64 = 250.0;
 /// Largest pressure, Pa (Table 6-1).
-pub const MOST_PRESSURE_PA: f64 = 40e5;
+pub const MAX_PRESSURE_PA: f64 = 40e5;
 /// Largest speed of either shaft, rad/s: 3000 rpm (Table 6-1).
-pub const MOST_RAD_S: f64 = 100.0 * std::f64::consts::PI;
+pub const MAX_RAD_S: f64 = 100.0 * std::f64::consts::PI;
 /// Passes of the fixed point of slip and secondary speed; it is done after two where the centrifugal head is compensated.
 const PASSES: u32 = 40;
 
@@ -252,10 +252,10 @@ impl VariatorRig {
         let over = |x: f64, most: f64| x.abs() > most * (1.0 + 1e-9);
         let flags = RigFlags::new([
             belt.gross_slip,
-            over(output_nm, MOST_OUTPUT_NM),
-            over(belt.input_torque_nm, MOST_INPUT_NM),
-            over(held.pressure_pa, MOST_PRESSURE_PA),
-            over(w_p, MOST_RAD_S) || over(w_s, MOST_RAD_S),
+            over(output_nm, MAX_OUTPUT_NM),
+            over(belt.input_torque_nm, MAX_INPUT_NM),
+            over(held.pressure_pa, MAX_PRESSURE_PA),
+            over(w_p, MAX_RAD_S) || over(w_s, MAX_RAD_S),
             !VALID_K.contains(&held.belt_k),
         ]);
         VariatorRow {

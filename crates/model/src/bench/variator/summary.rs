@@ -1,6 +1,6 @@
 //! What a curve of slip against torque comes to, and how finely the rig can read it.
 
-use super::{Held, MOST_OUTPUT_NM, VariatorRig, VariatorRow};
+use super::{Held, MAX_OUTPUT_NM, VariatorRig, VariatorRow};
 
 /// Slip whose torque is looked for: the largest that the thesis reports (6.4).
 const THREE_PERCENT: f64 = 0.03;
@@ -56,7 +56,7 @@ impl VariatorRig {
                 .collect();
             self.rows(held, &torques)
         };
-        let within = scan(0.0, capacity_nm.min(MOST_OUTPUT_NM));
+        let within = scan(0.0, capacity_nm.min(MAX_OUTPUT_NM));
         let fine: Vec<&VariatorRow> = within.iter().filter(|row| row.flags.is_fine()).collect();
         let most = fine
             .iter()

@@ -9,7 +9,7 @@ pub use friction_clutch::FrictionClutch;
 
 use self::friction_clutch::FrictionClutchKeys;
 use crate::keys::{Choice, Key, Values, spec};
-use crate::math::{held, ramp};
+use crate::math::{clamp, ramp};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -130,7 +130,7 @@ impl Reach {
     #[must_use]
     #[inline]
     pub fn nearest(&self, wanted_rad_s: f64) -> f64 {
-        held(
+        clamp(
             wanted_rad_s,
             self.from_rad_s - self.change_rad_s,
             self.from_rad_s + self.change_rad_s,

@@ -6,10 +6,15 @@
 
 use super::driveline::{Driveline, PartTorques};
 use super::variator::{BeltLoad, belt_losses};
-use crate::math::held;
+use crate::math::clamp;
 use crate::prime_mover::PrimeMover;
 use crate::transmission::coupling::{CouplingLoad, EngineSide, Reach};
 use crate::transmission::step::StepInput;
+
+/// The solve stops when slip and, relatively, pressure and engine speed move less than this.
+pub(super) const TOLERANCE: f64 = 1e-7;
+/// Largest number of evaluations of a run.
+pub(super) const MAX_EVALUATIONS: u16 = 60;
 
 /// Everything of a step that does not change during the solve.
 pub(super) struct Step<'a, P> {
@@ -175,7 +180,7 @@ impl<P: PrimeMover> Step<'_, P> {
         let primary_rad_s = self.primary_rad_s(slip);
         let locked = self.locked(primary_rad_s);
         // VA-1 with the slip in force, so that the power balance holds for this iterate exactly.
-        let primary_nm = torques.secondary * ((1.0 - slip) * line.at.prepared.per_ratio)
+        let primary_nm = torques.secondary * ((1.0 - slip) * line.at.prepared.inv_ratio)
             + belt_nm
             + torques.clutch;
         let own = self.engine_side(g, limit, (primary_nm, primary_rad_s), locked);
@@ -209,7 +214,7 @@ impl<P: PrimeMover> Step<'_, P> {
         };
         let crank_nm = wanted_flywheel_nm + engine.accessories_nm(next_engine_rad_s);
         let full_load_nm = engine.full_load_nm(next_engine_rad_s);
-        let throttle = held(crank_nm / full_load_nm, 0.0, 1.0);
+        let throttle = clamp(crank_nm / full_load_nm, 0.0, 1.0);
         let signals = line.signals(throttle, next_engine_rad_s);
         let secondary_nm = torques.secondary;
         *point = Point {

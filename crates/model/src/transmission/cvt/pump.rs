@@ -16,9 +16,9 @@
 //! adds D 0.7 bar at most, 0.1 Nm for 9 cm3/rev, and is left out.
 
 use crate::keys::{Choice, Values, keys};
-use crate::math::{exp, held, ln, smooth_ramp};
-use crate::transmission::film_heating::FILM_HEATING;
-use crate::transmission::film_heating::FilmHeating;
+use crate::math::{clamp, exp, ln, smooth_ramp};
+use crate::transmission::viscous_self_heating::SELF_HEATING;
+use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// How the displacement follows the need for flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +51,7 @@ pub struct Pump {
     /// Exponent m of viscosity.
     pub viscous_exponent: f64,
     /// Heating of the films in its gaps (FH-1).
-    pub heating: FilmHeating,
+    pub heating: ViscousSelfHeating,
     /// Pressure drop of strainer and suction line over flow at reference viscosity, Pa s/m3; 0 without one (PU-5).
     pub inlet_pa_s_m3: f64,
     /// Constant torque T_c, Nm.
@@ -78,7 +78,7 @@ pub struct PumpAtTemperature {
     /// Factor (eta/eta_r)^m of PU-1.
     pub viscous_factor: f64,
     /// One over the largest flow that the inlet passes, s/m3; 0 without a bound (PU-5).
-    pub per_inlet_m3_s: f64,
+    pub inv_inlet_flow: f64,
 }
 
 impl PumpAtTemperature {
@@ -86,7 +86,7 @@ impl PumpAtTemperature {
     #[must_use]
     #[inline]
     pub fn drawn_m3_s(&self, flow_m3_s: f64) -> f64 {
-        let x = flow_m3_s * self.per_inlet_m3_s;
+        let x = flow_m3_s * self.inv_inlet_flow;
         let square = x * x;
         flow_m3_s / (1.0 + square * square).sqrt().sqrt() // PU-5
     }
@@ -144,7 +144,7 @@ impl Pump {
         let drop_pa_s_m3 = self.inlet_pa_s_m3 * eta_pa_s / ETA_REFERENCE_PA_S;
         PumpAtTemperature {
             viscous_factor,
-            per_inlet_m3_s: drop_pa_s_m3 / INLET_DEPRESSION_PA,
+            inv_inlet_flow: drop_pa_s_m3 / INLET_DEPRESSION_PA,
         } // PU-5
     }
 
@@ -160,7 +160,7 @@ impl Pump {
             PumpKind::DualCavity { share } => {
                 share + (1.0 - share) * smooth_ramp(wanted, 0.85 * share, share)
             } // PU-4
-            PumpKind::Variable { least } => held(wanted, least, 1.0), // PU-4
+            PumpKind::Variable { least } => clamp(wanted, least, 1.0), // PU-4
         }
     }
 
@@ -213,7 +213,7 @@ keys! {
         friction_coefficient: or(0.0, number(0.0, 1.0)), "Coulomb coefficient C_f (PU-1)";
         viscous_coefficient: number(0.0, 1e6), "viscous coefficient C_v (PU-1)";
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity (PU-1)";
-        film_heating_w: FILM_HEATING, "viscous dissipation at which the heat of the gaps halves the viscous torque; absent: no heating (PU-1, FH-1)";
+        film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the gaps halves the viscous torque; absent: no heating (PU-1, FH-1)";
         inlet_bar_per_l_min: optional(number(0.0, 1.0)), "drop in strainer and suction line at 10 mPa s; absent: none (PU-5)";
         constant_nm: or(0.0, number(0.0, 10.0)), "constant torque T_c (PU-1)";
         line_drop_bar: or(0.0, number(0.0, 50.0)), "pressure drop between pump and secondary (PU-1)";
@@ -256,7 +256,7 @@ impl Pump {
             friction: p.number(&PUMP.friction_coefficient),
             viscous: p.number(&PUMP.viscous_coefficient),
             viscous_exponent: p.number(&PUMP.viscous_exponent),
-            heating: FilmHeating::from_values(p, &PUMP.film_heating_w),
+            heating: ViscousSelfHeating::from_values(p, &PUMP.film_heating_w),
             inlet_pa_s_m3: p.optional(&PUMP.inlet_bar_per_l_min).unwrap_or(0.0),
             constant_nm: p.number(&PUMP.constant_nm),
             line_drop_pa: p.number(&PUMP.line_drop_bar),

@@ -1,17 +1,17 @@
 //! What the solve learns from its evaluations: slopes for the next guess, kept from step to step as a start.
 
 use super::evaluate::{Guess, Point};
-use crate::math::held;
+use crate::math::clamp;
 
 /// Closer than this two pressures say nothing of a slope, Pa.
 const SECANT_FROM_PA: f64 = 200.0;
 /// Closer than this two output torques say nothing of a slope, Nm: what pressure and slip still move is larger.
 const SECANT_FROM_NM: f64 = 0.02;
 /// Largest slope of the pressure's fixed point that is believed: above it the step would overshoot.
-const MOST_GAIN: f64 = 0.06;
+const MAX_GAIN: f64 = 0.06;
 
 /// Largest relative change of slip per relative change of pressure that is believed.
-const MOST_SLIP_GAIN: f64 = 2.0;
+const MAX_SLIP_GAIN: f64 = 2.0;
 
 /// Accelerations closer than this are the same, m/s2: traces round their speeds.
 const ALIKE_M_S2: f64 = 1e-3;
@@ -131,14 +131,14 @@ impl Slopes {
     pub(super) fn update(&mut self, before: &Guess, before_next_pa: f64, now: &Point) {
         let step_pa = now.guess.pressure_pa - before.pressure_pa;
         if step_pa.abs() > SECANT_FROM_PA {
-            self.pressure = held(
+            self.pressure = clamp(
                 (now.next_pressure_pa - before_next_pa) / step_pa,
-                -MOST_GAIN,
-                MOST_GAIN,
+                -MAX_GAIN,
+                MAX_GAIN,
             );
             if now.guess.output_nm.to_bits() == before.output_nm.to_bits() {
-                let most = MOST_SLIP_GAIN * now.guess.slip.abs() / now.guess.pressure_pa;
-                self.slip_per_pa = held((now.guess.slip - before.slip) / step_pa, -most, most);
+                let most = MAX_SLIP_GAIN * now.guess.slip.abs() / now.guess.pressure_pa;
+                self.slip_per_pa = clamp((now.guess.slip - before.slip) / step_pa, -most, most);
             }
         }
     }
@@ -176,7 +176,7 @@ impl TorqueSecant {
         if let Some((x0, miss0)) = self.last
             && (x - x0).abs() > SECANT_FROM_NM
         {
-            slopes.torque = held((miss_nm - miss0) / (x - x0) * self.ratio, 0.5, 2.0);
+            slopes.torque = clamp((miss_nm - miss0) / (x - x0) * self.ratio, 0.5, 2.0);
         }
         self.last = Some((x, miss_nm));
         let slope = if plain { 1.0 } else { slopes.torque };
@@ -186,7 +186,7 @@ impl TorqueSecant {
         } else {
             self.allowed_nm
         };
-        let next = held(x - miss_nm * self.ratio / slope, -carried, carried); // CV-5
+        let next = clamp(x - miss_nm * self.ratio / slope, -carried, carried); // CV-5
         (next, (next - x).abs() <= 1e-9 * carried)
     }
 }

@@ -4,25 +4,21 @@
 //! before ended with. Where the engine limits it, a second secant finds the output torque.
 
 use super::controller::ClampLaw;
-use super::evaluate::{Guess, Limit, Point, Step};
+use super::evaluate::{Guess, Limit, MAX_EVALUATIONS, Point, Step, TOLERANCE};
 use super::prepare::prepare;
 use super::secant::{Slopes, TorqueSecant};
 use super::step_output::{Outcome, finish, standstill};
 use super::variator::BeltLoad;
 use super::{Cvt, CvtState, WarmStart};
 use crate::flags::Flags;
-use crate::math::held;
+use crate::math::clamp;
 use crate::prime_mover::PrimeMover;
 use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
 
-/// The solve stops when slip and, relatively, pressure and engine speed move less than this.
-pub(super) const TOLERANCE: f64 = 1e-7;
 /// Evaluations after which a run goes on without secants and in half steps: slower, and stable for steeper couplings.
 const DAMPED_FROM: u16 = 10;
 /// Kick-down ends where the route would reckon with a lower efficiency than this (RC-7).
 const MIN_ROUTE_EFFICIENCY: f64 = 0.4;
-/// Largest number of evaluations of a run.
-pub(super) const MAX_EVALUATIONS: u16 = 60;
 /// Share of full load by which a demand must miss what the engine can do before a run leaves it unconverged, ...
 const CLEARLY: f64 = 0.02;
 /// ... and how far it may still be from its fixed point: so near, no torque moves by as much.
@@ -54,7 +50,7 @@ impl<P: PrimeMover> Step<'_, P> {
     /// The nearest slip that the belt can have: a line through slips leads anywhere, and at a slip of 1 no speed belongs to it (CV-1).
     fn possible(&self, slip: f64) -> f64 {
         let most = 2.0 * self.line.cvt.belt.slip_bound;
-        held(slip, -most, most)
+        clamp(slip, -most, most)
     }
 
     /// Where the solve begins: slip and losses of the step before, at the new ratio and demand.
@@ -64,7 +60,7 @@ impl<P: PrimeMover> Step<'_, P> {
         let output_nm = self.input.wheel.power_w / self.secondary_rad_s;
         let engine = self.input.engine;
         let flywheel = output_nm / self.line.at.geometry.ratio + loss_nm;
-        let throttle = held(
+        let throttle = clamp(
             (flywheel + engine.accessories_nm(engine_rad_s)) / engine.full_load_nm(engine_rad_s),
             0.0,
             1.0,
@@ -151,7 +147,7 @@ impl<P: PrimeMover> Step<'_, P> {
                 return;
             }
             last = Some((point.guess, point.next_pressure_pa));
-            let pressure_pa = held(
+            let pressure_pa = clamp(
                 work.slopes.pressure_pa(point),
                 self.line.cvt.floor_pa,
                 self.line.cvt.cap_pa,

@@ -12,8 +12,8 @@
 
 use crate::keys::{Values, keys};
 use crate::math::{exp, exp_each, ln};
-use crate::transmission::film_heating::FILM_HEATING;
-use crate::transmission::film_heating::FilmHeating;
+use crate::transmission::viscous_self_heating::SELF_HEATING;
+use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// Kinematic viscosity to which the constants refer, m2/s.
 pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
@@ -28,7 +28,7 @@ pub struct Spin {
     /// IS-1 exponent.
     pub shaft_exponent: f64,
     /// Heating of the input shaft's films (FH-1).
-    pub shaft_heating: FilmHeating,
+    pub shaft_heating: ViscousSelfHeating,
     /// CD-1 torque at reference viscosity, Nm.
     pub clutch_nm: f64,
     /// CD-1 exponent.
@@ -44,7 +44,7 @@ pub struct Spin {
     /// FD-1 exponent.
     pub drive_exponent: f64,
     /// Heating of the final drive's films (FH-1).
-    pub drive_heating: FilmHeating,
+    pub drive_heating: ViscousSelfHeating,
     /// FD-2 mesh efficiency.
     pub mesh_efficiency: f64,
 }
@@ -54,7 +54,7 @@ pub struct Spin {
 pub struct SpinAtTemperature {
     shaft_constant_nm: f64,
     shaft_slope_nm_s: f64,
-    shaft_heating: FilmHeating,
+    shaft_heating: ViscousSelfHeating,
     /// Reverse clutch drag, Nm.
     pub clutch_nm: f64,
     drive_viscous_nm: f64,
@@ -162,7 +162,7 @@ keys! {
         constant_nm: number(0.0, 20.0), "torque at rest (IS-1)";
         viscous_nm_per_rpm: number(0.0, 0.01), "slope at 11 mm2/s (IS-1)";
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity (IS-1)";
-        film_heating_w: FILM_HEATING, "viscous dissipation at which the heat of the films halves it; absent: no heating (IS-1, FH-1)";
+        film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the films halves it; absent: no heating (IS-1, FH-1)";
     }
 }
 
@@ -182,7 +182,7 @@ keys! {
         boundary_rpm: number(10.0, 20_000.0), "its speed scale (FD-1)";
         viscous_nm: number(0.0, 20.0), "viscous part at 11 mm2/s (FD-1)";
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity (FD-1)";
-        film_heating_w: FILM_HEATING, "viscous dissipation at which the heat of the films halves it; absent: no heating (FD-1, FH-1)";
+        film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the films halves it; absent: no heating (FD-1, FH-1)";
         mesh_efficiency: number(0.8, 1.0), "efficiency of the meshes (FD-2)";
     }
 }
@@ -199,7 +199,7 @@ impl Spin {
             shaft_constant_nm: shaft.number(&SHAFT.constant_nm),
             shaft_viscous_nm_s: shaft.number(&SHAFT.viscous_nm_per_rpm),
             shaft_exponent: shaft.number(&SHAFT.viscous_exponent),
-            shaft_heating: FilmHeating::from_values(&shaft, &SHAFT.film_heating_w),
+            shaft_heating: ViscousSelfHeating::from_values(&shaft, &SHAFT.film_heating_w),
             clutch_nm: clutch.number(&CLUTCH.drag_nm),
             clutch_exponent: clutch.number(&CLUTCH.viscous_exponent),
             clutch_cap_nm: clutch.number(&CLUTCH.cap_nm),
@@ -207,7 +207,7 @@ impl Spin {
             drive_scale_rad_s: drive.number(&DRIVE.boundary_rpm),
             drive_viscous_nm: drive.number(&DRIVE.viscous_nm),
             drive_exponent: drive.number(&DRIVE.viscous_exponent),
-            drive_heating: FilmHeating::from_values(&drive, &DRIVE.film_heating_w),
+            drive_heating: ViscousSelfHeating::from_values(&drive, &DRIVE.film_heating_w),
             mesh_efficiency: drive.number(&DRIVE.mesh_efficiency),
         }
     }

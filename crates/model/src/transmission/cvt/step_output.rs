@@ -2,12 +2,11 @@
 
 use super::WarmStart;
 use super::driveline::{PartTorques, Shaft};
-use super::evaluate::{Limit, Point, Step};
-use super::solve::{MAX_EVALUATIONS, TOLERANCE};
+use super::evaluate::{Limit, MAX_EVALUATIONS, Point, Step, TOLERANCE};
 use super::variator::{BeltLoad, belt_capacity_nm};
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
-use crate::math::held;
+use crate::math::clamp;
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::{BELT, SUMP};
 use crate::transmission::component::Component;
@@ -59,7 +58,7 @@ fn idling<P: PrimeMover>(
         (at.flow_limited, at.oil_flow_m3_s) = (pump.flow_limited, pump.working_m3_s);
         at.load_share = (coupling_nm + pump.torque_nm + shaft + engine.accessories_nm(w))
             / engine.full_load_nm(w);
-        let next = held(at.load_share, 0.0, 1.0);
+        let next = clamp(at.load_share, 0.0, 1.0);
         at.residual = (next - at.throttle).abs();
         at.throttle = next;
         at.evaluations += 1;

@@ -3,7 +3,7 @@
 use super::{Manual, ShiftSpeeds};
 use crate::keys::{Key, Kind, Values, keys};
 use crate::transmission::coupling::{self, LAUNCH};
-use crate::transmission::film_heating::{FILM_HEATING, FilmHeating};
+use crate::transmission::viscous_self_heating::{SELF_HEATING, ViscousSelfHeating};
 
 keys! {
     /// Keys of `[transmission.manual]` and its tables.
@@ -38,7 +38,7 @@ keys! {
     /// Keys of `[transmission.manual.bearing]`.
     BEARING: BearingKeys = "bearing" [] {
         torque_nm: number(0.0, 20.0), "at 2000 rpm and reference viscosity (MB-3)";
-        film_heating_w: FILM_HEATING, "dissipation at which the heat of the films halves the torque; absent: no heating (MB-3, FH-1)";
+        film_heating_w: SELF_HEATING, "dissipation at which the heat of the films halves the torque; absent: no heating (MB-3, FH-1)";
     }
 }
 
@@ -83,7 +83,7 @@ impl Manual {
             seal_nm: seal.number(&SEAL.torque_nm),
             seal_exponent: seal.number(&SEAL.viscous_exponent),
             bearing_nm: bearing.number(&BEARING.torque_nm),
-            bearing_heating: FilmHeating::from_values(&bearing, &BEARING.film_heating_w),
+            bearing_heating: ViscousSelfHeating::from_values(&bearing, &BEARING.film_heating_w),
             churning_nm: churning.number(&CHURNING.torque_nm),
             churning_exponent: churning.number(&CHURNING.viscous_exponent),
             reference_m2_s: s.number(&MANUAL.reference_mm2_s),

@@ -20,13 +20,13 @@ pub use keys::ManualKeys;
 
 use super::component::Component;
 use super::coupling::{Coupling, CouplingLoad, EngineSide};
-use super::film_heating::FilmHeating;
 use super::step::{DrivelineState, StepInput, StepOutput};
+use super::viscous_self_heating::ViscousSelfHeating;
 use crate::cycle::GearCommand;
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::maps::{LossMap, MapPoint};
-use crate::math::{exp, held, ln};
+use crate::math::{clamp, exp, ln};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use std::sync::Arc;
@@ -45,7 +45,7 @@ pub struct Manual {
     /// Bearing torque at 2000 rpm and reference viscosity, Nm.
     pub bearing_nm: f64,
     /// Heating of the bearings' films (FH-1).
-    pub bearing_heating: FilmHeating,
+    pub bearing_heating: ViscousSelfHeating,
     /// Churning torque at 2000 rpm and reference viscosity, Nm.
     pub churning_nm: f64,
     /// Churning exponent.
@@ -200,7 +200,7 @@ impl Manual {
         );
         let crank_nm = output.shaft_nm + step.engine.accessories_nm(output.engine_rad_s);
         let share = crank_nm / step.engine.full_load_nm(output.engine_rad_s);
-        output.throttle = held(share, 0.0, 1.0);
+        output.throttle = clamp(share, 0.0, 1.0);
         output.flags.set(
             Flags::OUTSIDE_VALIDITY,
             !VALID_K.contains(&step.heat.node_k[SUMP]) || share > FULL_LOAD_LIMIT,
@@ -567,7 +567,7 @@ mod tests {
             seal_nm: 0.78,
             seal_exponent: 0.15,
             bearing_nm: 0.12,
-            bearing_heating: FilmHeating::NONE,
+            bearing_heating: ViscousSelfHeating::NONE,
             churning_nm: 0.84,
             churning_exponent: 0.2,
             reference_m2_s: 12.9e-6,

@@ -14,7 +14,7 @@
 //! The power asked for is wheel power, so the ratio never chases its own losses.
 
 use crate::keys::{Values, keys};
-use crate::math::{exp, held, ln};
+use crate::math::{clamp, exp, ln};
 
 /// The checked controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +71,7 @@ impl RatioControl {
     #[must_use]
     pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
         let share = d.power_w / d.rated_w;
-        let drive = held(share / 0.01, 0.0, 1.0);
+        let drive = clamp(share / 0.01, 0.0, 1.0);
         let mut speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
         if share > self.gentle_share {
             speed += self.rise_rad_s * (share - self.gentle_share); // RC-1
@@ -93,7 +93,7 @@ impl RatioControl {
         if d.secondary_rad_s <= 0.0 {
             return (before, 0.0, false); // RC-4
         }
-        let wanted = held(
+        let wanted = clamp(
             self.target_rad_s(d) / d.secondary_rad_s,
             self.high,
             self.low,
@@ -107,7 +107,7 @@ impl RatioControl {
             return (before, 0.0, false);
         }
         let change = ln(wanted / before);
-        let pace = held(before * d.secondary_rad_s / self.rate_speed_rad_s, 0.0, 1.0);
+        let pace = clamp(before * d.secondary_rad_s / self.rate_speed_rad_s, 0.0, 1.0);
         let (mut up, mut down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
         let short_of_flow =
             (change > 0.0 && d.flow_down_per_s < down && change > d.flow_down_per_s * d.dt_s)
@@ -126,9 +126,9 @@ impl RatioControl {
         if least <= change && change <= most {
             return (wanted, change, short_of_flow);
         }
-        let change = held(change, least, most);
+        let change = clamp(change, least, most);
         (
-            held(before * exp(change), self.high, self.low),
+            clamp(before * exp(change), self.high, self.low),
             change,
             short_of_flow,
         )

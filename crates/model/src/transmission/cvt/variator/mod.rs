@@ -140,11 +140,11 @@ pub struct Prepared {
     /// Penetration torque per friction force and deflection (PE-1).
     pub penetration: f64,
     /// One over the segments in the wraps.
-    pub per_count: [f64; 2],
+    pub inv_segments: [f64; 2],
     /// One over the belt ratio.
-    pub per_ratio: f64,
+    pub inv_ratio: f64,
     /// One over the secondary radius, 1/m.
-    pub per_secondary_m: f64,
+    pub inv_secondary_radius: f64,
     /// Torque capacity per clamping force and segment friction, m (VA-2).
     pub capacity_m: f64,
     /// One over the width of the blend between the loading branches, 1/N.
@@ -180,9 +180,9 @@ impl Prepared {
             wedge_half_cot: 0.5 / belt.formulation.wedge_tan(belt.tan_wedge),
             wedge_per_m: deflection::wedge_per_m(belt, g),
             penetration: deflection::penetration(belt, g),
-            per_count: arc_m.map(|a| pitch / a),
-            per_ratio: 1.0 / g.ratio,
-            per_secondary_m: 1.0 / g.secondary_radius_m,
+            inv_segments: arc_m.map(|a| pitch / a),
+            inv_ratio: 1.0 / g.ratio,
+            inv_secondary_radius: 1.0 / g.secondary_radius_m,
             capacity_m: 2.0 * g.secondary_radius_m / belt.cos_wedge,
             per_blend_n: 1.0 / belt.blend_n,
         }
@@ -366,7 +366,7 @@ fn tension(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, direction: f64) -> Te
             centrifugal_n: belt.mass_kg_m * v * v,
             direction,
             tan_wedge: belt.tan_wedge,
-            per_secondary_m: at.prepared.per_secondary_m,
+            inv_secondary_radius: at.prepared.inv_secondary_radius,
         },
     )
 }

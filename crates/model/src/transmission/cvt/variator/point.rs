@@ -2,7 +2,7 @@
 
 use super::bands::{band_loss, travel_m};
 use super::deflection::{Deflection, deflection};
-use super::slip::{Contact, LARGEST_AREA_N};
+use super::slip::{Contact, MAX_AREA_N};
 use super::{
     BandLoss, Belt, BeltAtRatio, BeltLoad, Formulation, Geometry, Tension, capacity_nm, parts,
     printed, state, tension,
@@ -172,7 +172,7 @@ impl PointFlags {
             pressure_pa > limits.pressure_pa[1],
             pressure_pa < limits.pressure_pa[0],
             load.primary_speed_rad_s > limits.highest_rad_s * (1.0 + 1e-9),
-            !VALID_K.contains(&belt_k) || point.tension.compression_n.abs() > LARGEST_AREA_N,
+            !VALID_K.contains(&belt_k) || point.tension.compression_n.abs() > MAX_AREA_N,
         ];
         PointFlags(
             set.iter()

@@ -17,7 +17,7 @@
 //! defined at standstill.
 
 use super::{Belt, BeltAtRatio, Tension};
-use crate::math::{exp, held, pair};
+use crate::math::{clamp, exp, pair};
 
 /// Slip and its loss.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,7 +41,7 @@ pub struct Slip {
 }
 
 /// Grip never below this share of the friction limit (ASSUMED): keeps the active arc finite where the bands' pull alone takes it up.
-const LEAST_GRIP: f64 = 0.05;
+const MIN_GRIP: f64 = 0.05;
 
 /// Grip never below this force, N (ASSUMED; negligible against any real one): without clamping slip is at its bound and not 0/0.
 const NO_GRIP_N: f64 = 1e-6;
@@ -50,9 +50,9 @@ const NO_GRIP_N: f64 = 1e-6;
 const ALONE: f64 = 9.0;
 
 /// Compression at which the fitted contact area is largest, N (SL-3).
-pub(super) const LARGEST_AREA_N: f64 = 4492.0;
+pub(super) const MAX_AREA_N: f64 = 4492.0;
 
-/// Contact area between segments in an arc for a compression \|C_x\| as printed, m2: falls again above [`LARGEST_AREA_N`] (SL-3 without holding).
+/// Contact area between segments in an arc for a compression \|C_x\| as printed, m2: falls again above [`MAX_AREA_N`] (SL-3 without holding).
 #[inline]
 pub(super) fn printed_area_m2(compression_n: f64) -> f64 {
     let c = compression_n;
@@ -63,11 +63,7 @@ pub(super) fn printed_area_m2(compression_n: f64) -> f64 {
 #[inline]
 fn arc_area_m2(compression_n: f64) -> f64 {
     let c = compression_n;
-    printed_area_m2(if c < LARGEST_AREA_N {
-        c
-    } else {
-        LARGEST_AREA_N
-    })
+    printed_area_m2(if c < MAX_AREA_N { c } else { MAX_AREA_N })
 }
 
 /// What the slip equations of both branches look at; pairs are primary, secondary.
@@ -133,7 +129,7 @@ fn branches(c: &Contact) -> Branches {
     let cx = [c.compression_n, -c.compression_n].map(|x| if x > 0.0 { x } else { 0.0 });
     let shoulder = [c.shoulder_n[0], -c.shoulder_n[1]];
     let grip = pair(|i| {
-        let (grip, floor) = (c.grip_n[i] - shoulder[i], LEAST_GRIP * c.grip_n[i]);
+        let (grip, floor) = (c.grip_n[i] - shoulder[i], MIN_GRIP * c.grip_n[i]);
         if grip > floor { grip } else { floor }
     });
     let k = pair(|i| cx[i] / grip[i]); // SL-4
@@ -152,10 +148,10 @@ fn branches(c: &Contact) -> Branches {
     let per_grip = c.grip_n.map(|n| 1.0 / n);
     let lambda = pair(|i| {
         let lambda = shoulder[i] * per_grip[i];
-        if lambda > LEAST_GRIP - 1.0 {
+        if lambda > MIN_GRIP - 1.0 {
             lambda
         } else {
-            LEAST_GRIP - 1.0
+            MIN_GRIP - 1.0
         } // SL-10
     });
     // Conventional loading takes the magnitude: the larger of the number and its opposite.
@@ -180,9 +176,9 @@ fn branches(c: &Contact) -> Branches {
         cx[1] - c.shoulder_n[0] * prepared.count[0],
         cx[0] + c.shoulder_n[1] * prepared.count[1],
     ]);
-    let per_other = swapped(pair(|i| prepared.per_count[i] * per_grip[i]));
+    let per_other = swapped(pair(|i| prepared.inv_segments[i] * per_grip[i]));
     let other = pair(|i| {
-        held(
+        clamp(
             loaded[i] * (total_other[i] * per_other[i]),
             -belt.slip_bound,
             belt.slip_bound,

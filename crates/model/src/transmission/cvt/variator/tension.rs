@@ -49,7 +49,7 @@ pub struct TensionInput {
     /// tan of the half wedge angle.
     pub tan_wedge: f64,
     /// One over the secondary radius, 1/m.
-    pub per_secondary_m: f64,
+    pub inv_secondary_radius: f64,
 }
 
 impl Tension {
@@ -59,7 +59,7 @@ impl Tension {
     pub fn new(g: &Geometry, input: &TensionInput) -> Self {
         let (mu, s, bp) = (input.mu_band, input.direction, g.primary_wrap_rad);
         let a = 2.0 * input.primary_clamp_n * input.tan_wedge + bp * input.centrifugal_n;
-        let z = input.output_torque_nm * input.per_secondary_m + s * mu * a;
+        let z = input.output_torque_nm * input.inv_secondary_radius + s * mu * a;
         let c = mu * bp / 2.0;
         // The divisors are known before the torque is: nothing waits for a division.
         let cx = z * if z >= 0.0 {

@@ -21,21 +21,21 @@ use crate::keys::{Key, Values, spec};
 
 /// Heating of a film by its own drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FilmHeating {
+pub struct ViscousSelfHeating {
     /// Four over the dissipation that halves the drag, 1/W; 0 without heating.
     four_per_halving_w: f64,
 }
 
-impl FilmHeating {
+impl ViscousSelfHeating {
     /// No heating: the drag follows the viscosity of the sump.
-    pub const NONE: FilmHeating = FilmHeating {
+    pub const NONE: ViscousSelfHeating = ViscousSelfHeating {
         four_per_halving_w: 0.0,
     };
 
     /// Heating by the dissipation in W that halves the drag (FH-1); none without one.
     #[must_use]
     pub fn halving_at_w(halving_w: Option<f64>) -> Self {
-        halving_w.map_or(Self::NONE, |halving_w| FilmHeating {
+        halving_w.map_or(Self::NONE, |halving_w| ViscousSelfHeating {
             four_per_halving_w: 4.0 / halving_w,
         })
     }
@@ -50,11 +50,11 @@ impl FilmHeating {
 }
 
 /// Row of the key `film_heating_w`, which several parts have.
-pub const FILM_HEATING: spec::Spec = spec::optional(spec::number(1.0, 1e9));
+pub const SELF_HEATING: spec::Spec = spec::optional(spec::number(1.0, 1e9));
 
-impl FilmHeating {
+impl ViscousSelfHeating {
     /// The heating that a part's `film_heating_w` gives; none where it is absent.
     pub fn from_values<V: Values>(s: &V, key: &Key<'_>) -> Self {
-        FilmHeating::halving_at_w(s.optional(key))
+        ViscousSelfHeating::halving_at_w(s.optional(key))
     }
 }
