@@ -53,7 +53,6 @@ impl Flags {
     ];
 
     /// Whether every bit of `other` is set.
-    #[must_use]
     pub fn contains(self, other: Flags) -> bool {
         self.0 & other.0 == other.0
     }

@@ -58,13 +58,11 @@ pub struct Ambient {
 
 impl Ambient {
     /// Pressure over sea level's (RL-4).
-    #[must_use]
     pub fn pressure_ratio(&self) -> f64 {
         (1.0 - 2.25577e-5 * self.altitude_m).powf(5.25588) // RL-4
     }
 
     /// Air density over that at 20 degC and sea level.
-    #[must_use]
     pub fn density_ratio(&self) -> f64 {
         self.pressure_ratio() * REFERENCE_K / self.temp_k
     }
@@ -89,7 +87,6 @@ pub struct WheelDemand {
 
 impl RoadLoad {
     /// Coefficients for an ambient (RL-2).
-    #[must_use]
     pub fn for_ambient(mut self, surface: Surface, ambient: &Ambient, rolling_per_k: f64) -> Self {
         if surface == Surface::Road {
             self.f0_n *= 1.0 + rolling_per_k * (REFERENCE_K - ambient.temp_k);
@@ -118,7 +115,6 @@ impl RoadLoad {
     }
 
     /// What a step demands of the wheels (RL-1, RL-5).
-    #[must_use]
     #[inline(always)]
     pub fn wheel(&self, step: &Step) -> WheelDemand {
         let motion = &step.motion;
@@ -183,7 +179,6 @@ pub struct RoadLoadInput {
 
 impl RoadLoadInput {
     /// Coefficients in force at an ambient temperature, K.
-    #[must_use]
     pub fn at(&self, ambient_k: f64) -> RoadLoad {
         let ambient = Ambient {
             temp_k: ambient_k,
@@ -194,7 +189,6 @@ impl RoadLoadInput {
     }
 
     /// Full-load factor of altitude, (p/p_0)^1.2.
-    #[must_use]
     pub fn full_load_factor(&self) -> f64 {
         Ambient {
             temp_k: REFERENCE_K,

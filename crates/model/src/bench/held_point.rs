@@ -29,7 +29,6 @@ pub struct Bench {
 
 impl Bench {
     /// Puts a vehicle's transmission on the bench.
-    #[must_use]
     pub fn new(vehicle: &Vehicle) -> Self {
         Bench {
             car: vehicle.car(crate::road::REFERENCE_K),
@@ -39,7 +38,6 @@ impl Bench {
 
     /// The same with the belt as printed (PR-1 to PR-5) where the formulation is one of the thesis's two: whole active segments, no
     /// blending, no bound of slip. Not defined at a ratio of exactly 1.
-    #[must_use]
     pub fn as_printed(vehicle: &Vehicle) -> Self {
         let bench = Bench::new(vehicle);
         let printed = bench
@@ -49,13 +47,11 @@ impl Bench {
     }
 
     /// The vehicle whose transmission is on the bench.
-    #[must_use]
     pub fn car(&self) -> &Car {
         &self.car
     }
 
     /// The CVT, if it is one.
-    #[must_use]
     pub fn cvt(&self) -> Option<&Cvt> {
         match &self.car.transmission {
             Transmission::Cvt(cvt) => Some(cvt),
@@ -64,7 +60,6 @@ impl Bench {
     }
 
     /// Solves one operating point.
-    #[must_use]
     pub fn solve(&self, p: &BenchPoint) -> BenchAnswer {
         match &self.car.transmission {
             Transmission::Cvt(cvt) => cvt_bench::solve(&self.car, cvt, p, self.printed),

@@ -6,7 +6,6 @@ use crate::transmission::cvt::variator::{Belt, Geometry};
 const FAR: (f64, f64) = (0.05, 20.0);
 
 /// Lowest and highest ratio at which the belt fits around both pulleys and carries at least a segment on each, to three digits.
-#[must_use]
 pub fn solvable_ratios(belt: &Belt) -> (f64, f64) {
     let fits = |ratio| {
         Geometry::new(ratio, belt.centre_distance_m, belt.length_m)

@@ -67,19 +67,16 @@ pub struct BenchAnswer {
 
 impl BenchAnswer {
     /// Loss of one component, Nm at the input shaft.
-    #[must_use]
     pub fn part_nm(&self, component: Component) -> f64 {
         self.loss_nm[component]
     }
 
     /// All losses, Nm at the input shaft.
-    #[must_use]
     pub fn total_nm(&self) -> f64 {
         self.loss_nm.iter().sum()
     }
 
     /// All belt losses, Nm at the input shaft.
-    #[must_use]
     pub fn belt_nm(&self) -> f64 {
         belt_nm(&self.loss_nm)
     }

@@ -46,7 +46,6 @@ pub struct Cycle {
 impl Cycle {
     /// The trace that a car drives: with `automatic` the one of an automatic or CVT, without it that of a manual gearbox.
     /// Most cycles have one trace for both; the ECE cycles hold the speed during gear changes, for manual cars only.
-    #[must_use]
     pub fn trace_for(&self, automatic: bool) -> &Trace {
         match &self.automatic {
             Some(trace) if automatic => trace,
@@ -55,14 +54,12 @@ impl Cycle {
     }
 
     /// Whether the manual trace prescribes gears, for any number of gears.
-    #[must_use]
     pub fn has_gears(&self) -> bool {
         self.manual.has_gears()
     }
 
     /// Groups of phases for the report: name in lower case and the phase indices in it, in the order of the cycle.
     /// `ECE15_1` to `ECE15_4` are one group `ece15`; a cycle without phases is one group with the cycle's name.
-    #[must_use]
     pub fn phase_groups(&self) -> Vec<(String, Vec<u16>)> {
         if self.phases.is_empty() {
             return vec![(self.name.clone(), vec![0])];
@@ -80,7 +77,6 @@ impl Cycle {
 }
 
 /// The group to which a phase of that name belongs.
-#[must_use]
 pub fn phase_group(phase: &str) -> String {
     let lower = phase.to_lowercase();
     match lower.strip_prefix("ece15_") {

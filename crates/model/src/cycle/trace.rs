@@ -1,7 +1,7 @@
 //! A speed trace: intervals over which speed is linear, and their division into steps.
 
 use super::gears::{GearColumns, GearCommand};
-use crate::math::{exp, ln};
+use crate::math::{exp, larger, ln};
 
 /// One interval of a trace, from one row of its table to the next. Speed is linear within it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,6 @@ pub struct Interval {
 
 impl Interval {
     /// Distance driven, m: exact, since speed is linear.
-    #[must_use]
     pub fn distance_m(&self) -> f64 {
         0.5 * (self.start_speed_m_s + self.end_speed_m_s) * (self.end_s - self.start_s)
     }
@@ -132,7 +131,6 @@ pub struct Motion {
 
 impl Motion {
     /// Speed linear from one value to another, m/s, within a time, s.
-    #[must_use]
     #[inline]
     pub fn between(from_m_s: f64, to_m_s: f64, dt_s: f64) -> Self {
         let (v0, v1) = (from_m_s, to_m_s);
@@ -205,7 +203,6 @@ impl Trace {
     }
 
     /// Whether the trace prescribes gears for some gearbox.
-    #[must_use]
     pub fn has_gears(&self) -> bool {
         !self.gears.is_empty()
     }
@@ -213,38 +210,30 @@ impl Trace {
     /// The prescribed commands for a gearbox with this many gears, one an interval. `None`: nothing is prescribed for
     /// it, and the driver's shift speeds decide. The columns `gear_5mt` and `gear_6mt` are for five and six gears only; a
     /// user's column `gear` serves every gearbox that has all the gears it names.
-    #[must_use]
     pub fn gears(&self, gear_count: usize) -> Option<&[GearCommand]> {
         self.gears.for_count(gear_count)
     }
 
     /// Duration, s.
-    #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.intervals.last().map_or(0.0, |interval| interval.end_s)
     }
 
     /// Distance, m.
-    #[must_use]
     pub fn distance_m(&self) -> f64 {
         self.intervals.iter().map(Interval::distance_m).sum()
     }
 
     /// Highest speed, m/s.
-    #[must_use]
     pub fn max_speed_m_s(&self) -> f64 {
         let ends = self
             .intervals
             .iter()
             .flat_map(|interval| [interval.start_speed_m_s, interval.end_speed_m_s]);
-        ends.fold(
-            0.0,
-            |highest, speed| if speed > highest { speed } else { highest },
-        )
+        ends.fold(0.0, |highest, speed| larger(speed, highest))
     }
 
     /// Distance driven in one phase, m, over all the intervals that bear its index; 0 for a phase that does not occur.
-    #[must_use]
     pub fn phase_distance_m(&self, phase: u16) -> f64 {
         self.intervals
             .iter()
@@ -286,7 +275,6 @@ impl Trace {
     }
 
     /// How many steps [`Trace::steps`] gives.
-    #[must_use]
     pub fn step_count(&self, max_dt_s: f64) -> usize {
         self.intervals.iter().fold(0, |sum: usize, interval| {
             sum.saturating_add(interval.parts(max_dt_s))

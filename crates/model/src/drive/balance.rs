@@ -6,6 +6,8 @@
 //! | LE-2 | transmission losses + heat to the engine = heat into the nodes = stored + given to the air | derived: first law |
 //! | LE-3 | error = \|in - out\| / sum of absolute terms, 0 for an empty row | contract |
 
+use crate::math::larger;
+
 /// Terms of both ledgers in one row, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyTerms {
@@ -55,7 +57,6 @@ fn error(difference: f64, scale: f64) -> f64 {
 
 impl EnergyTerms {
     /// Relative error of the power ledger (LE-1).
-    #[must_use]
     #[inline]
     pub fn power_error(&self) -> f64 {
         let (from, to) = if self.wheels < 0.0 {
@@ -82,17 +83,15 @@ impl EnergyTerms {
     }
 
     /// Relative error of the heat ledger (LE-2).
-    #[must_use]
     #[inline]
     pub fn heat_error(&self) -> f64 {
         let scale = self.node_heat.abs() + self.stored.abs() + self.to_air.abs();
         let balance = (self.node_heat - (self.stored + self.to_air)).abs();
         let handed = (self.losses + self.engine_heat - self.node_heat).abs();
-        error(if handed > balance { handed } else { balance }, scale)
+        error(larger(handed, balance), scale)
     }
 
     /// The terms in the order of [`TERM_NAMES`].
-    #[must_use]
     #[inline]
     pub fn as_array(&self) -> [f64; 11] {
         [
@@ -111,7 +110,6 @@ impl EnergyTerms {
     }
 
     /// Terms from an array in the order of [`TERM_NAMES`].
-    #[must_use]
     #[inline]
     pub fn from_array(a: [f64; 11]) -> Self {
         EnergyTerms {

@@ -3,6 +3,7 @@
 use crate::cycle::{Cycle, Trace};
 use crate::drive::{Car, Recorder, State, Vehicle, simulate};
 use crate::drive::{EnergyTerms, Row, Totals};
+use crate::math::larger;
 use crate::prime_mover::PrimeMover;
 use crate::thermal::Heat;
 use crate::transmission::Transmission;
@@ -76,7 +77,6 @@ impl Recorder for NullRecorder {
 }
 
 /// Drives a car through a cycle.
-#[must_use]
 pub fn drive(vehicle: &Vehicle, cycle: &Cycle, conditions: &Conditions) -> Outcome {
     if !conditions.keep_rows {
         return drive_into(vehicle, cycle, conditions, None);
@@ -95,7 +95,6 @@ pub fn drive(vehicle: &Vehicle, cycle: &Cycle, conditions: &Conditions) -> Outco
 }
 
 /// The same, but rows go to `give`, some at a time and in order, whatever `keep_rows` says, and none into the outcome.
-#[must_use]
 pub fn drive_into(
     vehicle: &Vehicle,
     cycle: &Cycle,
@@ -171,7 +170,6 @@ pub struct FuelMap {
 }
 
 /// Hot fuel map of the engine for the operating-point plot, over the flywheel torque.
-#[must_use]
 pub fn fuel_map(vehicle: &Vehicle) -> FuelMap {
     let car = vehicle.car(293.15);
     let hot = car
@@ -182,10 +180,7 @@ pub fn fuel_map(vehicle: &Vehicle) -> FuelMap {
         .map(|i| lo + (hi - lo) * f64::from(i) / 40.0)
         .collect();
     let full_load_nm: Vec<f64> = speed_rad_s.iter().map(|&w| hot.full_load_nm(w)).collect();
-    let most = full_load_nm
-        .iter()
-        .copied()
-        .fold(0.0, |a, b| if b > a { b } else { a });
+    let most = full_load_nm.iter().copied().fold(0.0, |a, b| larger(b, a));
     let torque_nm: Vec<f64> = (1..=40).map(|i| most * f64::from(i) / 40.0).collect();
     let bsfc = |w: f64, t: f64| {
         if t <= hot.full_load_nm(w) + most / 40.0 {
@@ -207,7 +202,6 @@ pub fn fuel_map(vehicle: &Vehicle) -> FuelMap {
 }
 
 /// Fuel in L/100 km from mass and distance; NaN for no distance.
-#[must_use]
 pub fn litres_per_100km(fuel_kg: f64, density_kg_m3: f64, distance_m: f64) -> f64 {
     if distance_m > 0.0 {
         fuel_kg / density_kg_m3 * 1000.0 / (distance_m / 100_000.0)

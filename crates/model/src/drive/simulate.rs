@@ -19,7 +19,6 @@ pub struct State {
 
 impl State {
     /// Everything at one temperature, engine at idle.
-    #[must_use]
     pub fn at(temp_k: f64) -> Self {
         State {
             heat: Heat::uniform(temp_k),

@@ -12,7 +12,7 @@ use crate::cycle::{GearCommand, Step, Trace};
 use crate::engine::{Burn, EngineAtTemperature};
 use crate::flags::Flags;
 use crate::fluid::Lubricant;
-use crate::math::clamp;
+use crate::math::{clamp, larger, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::component::{ByComponent, Component, HeatTo};
@@ -31,7 +31,6 @@ pub struct Drive<'a> {
 
 impl<'a> Drive<'a> {
     /// A car in a state; a manual box shifts by its shift speeds.
-    #[must_use]
     pub fn new(car: &'a Car, state: State) -> Self {
         Drive {
             car,
@@ -42,7 +41,6 @@ impl<'a> Drive<'a> {
     }
 
     /// A car in a state at the beginning of a trace, whose gears a manual box follows.
-    #[must_use]
     pub fn along(car: &'a Car, trace: &'a Trace, state: State) -> Self {
         let gears = match &car.transmission {
             Transmission::Manual(manual) => trace.gears(manual.overall.len()),
@@ -55,7 +53,6 @@ impl<'a> Drive<'a> {
     }
 
     /// The state after the last step.
-    #[must_use]
     pub fn state(&self) -> State {
         self.state
     }
@@ -164,17 +161,9 @@ fn inertia(
     let bound = car.engine.inertia_torque_nm;
     // Faster takes what is left below full load, slower what drag is left; never less than nothing, never more than the bound.
     let torque = if wanted > 0.0 {
-        clamp(
-            engine.full_load_nm(w) - steady,
-            0.0,
-            if wanted < bound { wanted } else { bound },
-        ) // SI-2
+        clamp(engine.full_load_nm(w) - steady, 0.0, smaller(wanted, bound)) // SI-2
     } else {
-        clamp(
-            -(steady + engine.drag_nm(w)),
-            if wanted > -bound { wanted } else { -bound },
-            0.0,
-        ) // SI-2
+        clamp(-(steady + engine.drag_nm(w)), larger(wanted, -bound), 0.0) // SI-2
     };
     let over = if coupled && output.brake_w > 0.0 && wanted < torque {
         torque - wanted

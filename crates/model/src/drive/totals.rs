@@ -2,6 +2,7 @@
 
 use super::{EnergyTerms, Recorder, Row};
 use crate::flags::Flags;
+use crate::math::larger;
 use crate::transmission::component::ByComponent;
 
 /// Sums over one phase.
@@ -54,7 +55,6 @@ pub struct Totals {
 
 impl Totals {
     /// Empty sums for a number of phases.
-    #[must_use]
     pub fn new(phases: usize) -> Self {
         Totals {
             phases: vec![PhaseTotals::default(); phases.max(1)],
@@ -66,7 +66,6 @@ impl Totals {
     }
 
     /// Seconds with a flag.
-    #[must_use]
     pub fn seconds(&self, flag: Flags) -> f64 {
         Flags::NAMES
             .iter()
@@ -77,7 +76,6 @@ impl Totals {
     }
 
     /// Sums over some phases.
-    #[must_use]
     pub fn over(&self, phases: &[u16]) -> PhaseTotals {
         let mut sum = PhaseTotals::default();
         for p in phases
@@ -90,7 +88,6 @@ impl Totals {
     }
 
     /// Sums over the whole run.
-    #[must_use]
     pub fn total(&self) -> PhaseTotals {
         let mut sum = PhaseTotals::default();
         for p in &self.phases {
@@ -101,11 +98,7 @@ impl Totals {
 
     #[inline(always)]
     fn extremes(&mut self, row: &Row) {
-        let error = if row.power_ledger_error > row.heat_ledger_error {
-            row.power_ledger_error
-        } else {
-            row.heat_ledger_error
-        };
+        let error = larger(row.power_ledger_error, row.heat_ledger_error);
         // A ledger error that is not a number must not hide.
         if error.is_nan() || error > self.ledger_error {
             self.ledger_error = error;

@@ -16,19 +16,16 @@ pub struct Vehicle {
 
 impl Vehicle {
     /// From a car for 20 degC, and road load data for any temperature.
-    #[must_use]
     pub fn new(car: Car, road_load: RoadLoadInput) -> Self {
         Vehicle { car, road_load }
     }
 
     /// The car at an ambient temperature, K.
-    #[must_use]
     pub fn car(&self, ambient_k: f64) -> Car {
         self.clone().into_car(ambient_k)
     }
 
     /// The car at an ambient temperature, K, without a copy.
-    #[must_use]
     pub fn into_car(self, ambient_k: f64) -> Car {
         Car {
             road_load: self.road_load.at(ambient_k),
@@ -39,19 +36,16 @@ impl Vehicle {
     }
 
     /// The transmission.
-    #[must_use]
     pub fn transmission(&self) -> &Transmission {
         &self.car.transmission
     }
 
     /// The engine.
-    #[must_use]
     pub fn engine(&self) -> &Engine {
         &self.car.engine
     }
 
     /// Transmission oil and engine oil.
-    #[must_use]
     pub fn oils(&self) -> (&Lubricant, &Lubricant) {
         (&self.car.oil, &self.car.engine_oil)
     }

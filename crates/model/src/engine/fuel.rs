@@ -57,7 +57,6 @@ pub struct FuelPoint {
 
 impl FuelModel {
     /// Friction mean effective pressure of the hot engine, Pa.
-    #[must_use]
     #[inline]
     pub fn hot_friction_pa(&self, piston_m_s: f64) -> f64 {
         match self {
@@ -67,7 +66,6 @@ impl FuelModel {
     }
 
     /// Fuel for a brake mean effective pressure with friction in force, both Pa.
-    #[must_use]
     #[inline]
     pub fn fuel_mep(
         &self,

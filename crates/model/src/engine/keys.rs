@@ -98,7 +98,6 @@ const DEFAULT: Willans = Willans {
 
 impl Engine {
     /// A checked engine from the values of `[engine]`.
-    #[must_use]
     pub fn from_values<V: Values>(s: &V) -> Self {
         let (friction, idle) = (s.table("friction"), s.table("idle"));
         let (fuel, heat) = (s.table("fuel"), s.table("heat"));

@@ -20,7 +20,7 @@ pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
 pub use keys::EngineKeys;
 
 use crate::fluid::{Lubricant, Viscosity, ZERO_DEGC_K};
-use crate::math::{Curve, clamp, exp, ln};
+use crate::math::{Curve, clamp, exp, larger, ln};
 use crate::prime_mover::PrimeMover;
 
 /// The checked engine.
@@ -114,13 +114,11 @@ pub struct Burn {
 
 impl Engine {
     /// The oil in use, where its viscosity is not that of the reference oil: then EN-2 has its second factor.
-    #[must_use]
     pub fn non_reference_oil<'a>(&self, oil: &'a Lubricant) -> Option<&'a Lubricant> {
         (oil.viscosity != self.reference_oil).then_some(oil)
     }
 
     /// Prepares the engine for coolant and oil temperature, oil and ambient pressure ratio.
-    #[must_use]
     pub fn at(
         &self,
         coolant_k: f64,
@@ -137,7 +135,6 @@ impl Engine {
     }
 
     /// The same, with what [`Engine::non_reference_oil`] says of the oil: it holds for a whole drive.
-    #[must_use]
     #[inline(always)]
     pub fn at_temperatures(
         &self,
@@ -173,28 +170,24 @@ impl Engine {
     }
 
     /// Torque of a mean effective pressure (four-stroke), Nm.
-    #[must_use]
     #[inline]
     pub fn torque_nm(&self, mep_pa: f64) -> f64 {
         mep_pa * self.displacement_m3 / (4.0 * std::f64::consts::PI)
     }
 
     /// Mean effective pressure of a torque (four-stroke), Pa.
-    #[must_use]
     #[inline]
     pub fn mep_pa(&self, torque_nm: f64) -> f64 {
         torque_nm * 4.0 * std::f64::consts::PI / self.displacement_m3
     }
 
     /// Mean piston speed, m/s.
-    #[must_use]
     #[inline]
     pub fn piston_m_s(&self, speed_rad_s: f64) -> f64 {
         speed_rad_s * self.stroke_m / std::f64::consts::PI
     }
 
     /// Speed of the greatest full-load power, rad/s.
-    #[must_use]
     pub fn peak_power_rad_s(&self) -> f64 {
         self.speed_for_power()
             .points()
@@ -203,7 +196,6 @@ impl Engine {
     }
 
     /// Lowest speed, on a fine grid, at which full load gives a power; as a curve power W to speed rad/s.
-    #[must_use]
     pub fn speed_for_power(&self) -> Curve {
         let lo = self.idle_hot_rad_s;
         let mut points: Vec<(f64, f64)> = vec![(0.0, lo)];
@@ -255,11 +247,7 @@ impl PrimeMover for EngineAtTemperature<'_> {
     #[inline]
     fn accessories_nm(&self, speed_rad_s: f64) -> f64 {
         let least = 0.5 * self.engine.idle_hot_rad_s;
-        let w = if speed_rad_s > least {
-            speed_rad_s
-        } else {
-            least
-        };
+        let w = larger(speed_rad_s, least);
         if speed_rad_s > 0.0 {
             self.engine.electrical_w / w + self.engine.accessory_nm
         } else {
@@ -276,7 +264,6 @@ impl PrimeMover for EngineAtTemperature<'_> {
 
 impl EngineAtTemperature<'_> {
     /// Friction mean effective pressure at the present temperature, Pa.
-    #[must_use]
     #[inline]
     pub fn friction_pa(&self, speed_rad_s: f64) -> f64 {
         self.engine
@@ -286,7 +273,6 @@ impl EngineAtTemperature<'_> {
     }
 
     /// Fuel and heat at a speed and crankshaft torque (with accessories and inertia), Nm.
-    #[must_use]
     #[inline(always)]
     pub fn burn(&self, speed_rad_s: f64, torque_nm: f64) -> Burn {
         let e = self.engine;

@@ -39,7 +39,6 @@ keys! {
 
 impl Lubricant {
     /// A checked lubricant from the values of its file.
-    #[must_use]
     pub fn from_values<V: Values>(s: &V, name: &str) -> Self {
         Lubricant {
             name: name.to_owned(),

@@ -20,7 +20,7 @@ pub use keys::FluidKeys;
 pub(crate) use keys::viscosity;
 pub use viscosity::Viscosity;
 
-use crate::math::{clamp, exp, ln};
+use crate::math::{clamp, exp, larger, ln};
 
 /// 0 degC in K.
 pub const ZERO_DEGC_K: f64 = 273.15;
@@ -66,7 +66,6 @@ pub struct BandFriction {
 
 impl Friction {
     /// Band friction at belt temperature, dynamic viscosity and sliding speed (LU-4).
-    #[must_use]
     #[inline]
     pub fn band(&self, belt_k: f64, eta_pa_s: f64, sliding_m_s: f64) -> BandFriction {
         let load = self.film_load(eta_pa_s, sliding_m_s);
@@ -81,7 +80,6 @@ impl Friction {
     }
 
     /// eta dv / `N_lift` of LU-5; 0 where nothing slides or the film is switched off.
-    #[must_use]
     #[inline]
     pub fn film_load(&self, eta_pa_s: f64, sliding_m_s: f64) -> f64 {
         if self.lift_off {
@@ -92,7 +90,6 @@ impl Friction {
     }
 
     /// Band friction at belt temperature with the power z of the film's load known (LU-4, LU-5).
-    #[must_use]
     #[inline]
     pub fn band_on_film(&self, belt_k: f64, z: f64) -> BandFriction {
         let warm = 1.0 + self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0);
@@ -125,35 +122,26 @@ pub const VALID_K: std::ops::RangeInclusive<f64> = 233.15..=433.15;
 
 impl Lubricant {
     /// Kinematic viscosity, m2/s (LU-1).
-    #[must_use]
     #[inline]
     pub fn kinematic_m2_s(&self, temp_k: f64) -> f64 {
         self.viscosity.kinematic_m2_s(temp_k)
     }
 
     /// Density, kg/m3 (LU-2).
-    #[must_use]
     #[inline]
     pub fn density_kg_m3(&self, temp_k: f64) -> f64 {
         let share = 1.0 - 0.000_68 * (temp_k - ZERO_DEGC_K - 15.0);
         // Far beyond its validity the line would reach zero, and there is no oil of negative mass.
-        self.density15_kg_m3
-            * if share < MIN_DENSITY {
-                MIN_DENSITY
-            } else {
-                share
-            } // LU-2
+        self.density15_kg_m3 * larger(MIN_DENSITY, share) // LU-2
     }
 
     /// Dynamic viscosity, Pa s.
-    #[must_use]
     #[inline]
     pub fn dynamic_pa_s(&self, temp_k: f64) -> f64 {
         self.kinematic_m2_s(temp_k) * self.density_kg_m3(temp_k)
     }
 
     /// Specific heat capacity, J/kgK (LU-3).
-    #[must_use]
     pub fn heat_capacity_j_kgk(&self, temp_k: f64) -> f64 {
         1000.0 * (1.685 + 0.0034 * (temp_k - ZERO_DEGC_K)) / (self.density15_kg_m3 / 1000.0).sqrt() // LU-3
     }

@@ -55,14 +55,12 @@ impl Viscosity {
     }
 
     /// Kinematic viscosity at a temperature, m2/s.
-    #[must_use]
     #[inline]
     pub fn kinematic_m2_s(&self, temp_k: f64) -> f64 {
         self.kinematic_each_m2_s([temp_k])[0]
     }
 
     /// Kinematic viscosity at several temperatures together, m2/s.
-    #[must_use]
     #[inline]
     pub fn kinematic_each_m2_s<const N: usize>(&self, temp_k: [f64; N]) -> [f64; N] {
         let w = ln_each(temp_k).map(|x| self.line(x));

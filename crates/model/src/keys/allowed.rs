@@ -4,13 +4,11 @@ use super::{Bound, Choice, Key, Kind, Quantity};
 
 impl Key<'_> {
     /// What the key accepts, such as "0.5 to 10 mm".
-    #[must_use]
     pub fn allowed(&self) -> String {
         self.kind.allowed(self.quantity)
     }
 
     /// Unit as written for people; of rows, the units of the columns.
-    #[must_use]
     pub fn unit(&self) -> String {
         match &self.kind {
             Kind::Rows(columns) => {
@@ -22,7 +20,6 @@ impl Key<'_> {
     }
 
     /// Whether the value is a single number.
-    #[must_use]
     pub fn is_number(&self) -> bool {
         matches!(self.kind, Kind::Number(_) | Kind::Integer(..))
     }
@@ -69,7 +66,6 @@ fn one_of(choices: &[Choice]) -> String {
 }
 
 /// A number of numbers, in words.
-#[must_use]
 pub fn count(least: usize, most: usize) -> String {
     match (least, most) {
         (1, 1) => "1 number".to_owned(),

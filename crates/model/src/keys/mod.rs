@@ -74,13 +74,11 @@ pub struct Choice {
 
 impl Choice {
     /// An option without keys.
-    #[must_use]
     pub const fn word(name: &'static str, doc: &'static str) -> Self {
         Choice::new(name, doc, Table::EMPTY)
     }
 
     /// An option with its keys.
-    #[must_use]
     pub const fn new(name: &'static str, doc: &'static str, table: Table) -> Self {
         Choice { name, doc, table }
     }
@@ -146,7 +144,6 @@ impl Table {
     };
 
     /// A file, or a part without keys of its own, of these tables.
-    #[must_use]
     pub const fn of(tables: &'static [Table]) -> Self {
         Table {
             tables,
@@ -155,7 +152,6 @@ impl Table {
     }
 
     /// The table with another number of times.
-    #[must_use]
     pub const fn repeated(self, repeat: Repeat) -> Self {
         Table { repeat, ..self }
     }
@@ -185,7 +181,6 @@ impl Table {
 
 impl<'k> Key<'k> {
     /// A key with its unit from its name.
-    #[must_use]
     pub const fn new(name: &'k str, spec: (Kind<'k>, Presence<'k>), doc: &'k str) -> Self {
         Key {
             name,
@@ -197,7 +192,6 @@ impl<'k> Key<'k> {
     }
 
     /// The key with the unit of this suffix, which its name does not end in.
-    #[must_use]
     pub const fn in_unit_of(self, suffix: &str) -> Self {
         Key {
             quantity: Quantity::of(suffix),
@@ -207,7 +201,6 @@ impl<'k> Key<'k> {
 }
 
 /// A field's name without the mark of a raw identifier.
-#[must_use]
 pub const fn bare(name: &'static str) -> &'static str {
     match name.as_bytes() {
         [b'r', b'#', ..] => name.split_at(2).1,
@@ -223,73 +216,61 @@ pub mod spec {
     pub type Spec = (Kind<'static>, Presence<'static>);
 
     /// A required number from `low` to `high`.
-    #[must_use]
     pub const fn number(low: f64, high: f64) -> Spec {
         (Kind::Number(Bound::closed(low, high)), Presence::Required)
     }
 
     /// A required number above `low`, up to `high`.
-    #[must_use]
     pub const fn above(low: f64, high: f64) -> Spec {
         (Kind::Number(Bound::open_low(low, high)), Presence::Required)
     }
 
     /// A required text.
-    #[must_use]
     pub const fn text() -> Spec {
         (Kind::Text, Presence::Required)
     }
 
     /// True or false, with a default.
-    #[must_use]
     pub const fn flag(default: bool) -> Spec {
         (Kind::Flag, Presence::Flag(default))
     }
 
     /// An integer with a default.
-    #[must_use]
     pub const fn integer(low: i64, high: i64, default: i64) -> Spec {
         (Kind::Integer(low, high), Presence::Integer(default))
     }
 
     /// One of some words, with a default.
-    #[must_use]
     pub const fn words(choices: &'static [Choice], default: &'static str) -> Spec {
         (Kind::Words(choices), Presence::Word(default))
     }
 
     /// One of some tables, required.
-    #[must_use]
     pub const fn options(choices: &'static [Choice]) -> Spec {
         (Kind::Options(choices), Presence::Required)
     }
 
     /// A list of texts, empty where it is absent.
-    #[must_use]
     pub const fn texts() -> Spec {
         (Kind::Texts, Presence::Optional)
     }
 
     /// A required text, of which the function says which ones are known.
-    #[must_use]
     pub const fn name(known: fn() -> String) -> Spec {
         (Kind::Name(known), Presence::Required)
     }
 
     /// A required list; the text says of what.
-    #[must_use]
     pub const fn list_of(what: &'static str) -> Spec {
         (Kind::List(what), Presence::Required)
     }
 
     /// A required value of any of these kinds.
-    #[must_use]
     pub const fn either(kinds: &'static [Kind<'static>]) -> Spec {
         (Kind::Either(kinds), Presence::Required)
     }
 
     /// A required list of numbers from `low` to `high`.
-    #[must_use]
     pub const fn list(low: f64, high: f64, least: usize, most: usize) -> Spec {
         (
             Kind::Numbers(Bound::closed(low, high), least, most),
@@ -298,49 +279,41 @@ pub mod spec {
     }
 
     /// A required number in a stated range.
-    #[must_use]
     pub const fn within(range: Bound) -> Spec {
         (Kind::Number(range), Presence::Required)
     }
 
     /// A required list of numbers in a stated range.
-    #[must_use]
     pub const fn numbers(each: Bound, least: usize, most: usize) -> Spec {
         (Kind::Numbers(each, least, most), Presence::Required)
     }
 
     /// Required rows.
-    #[must_use]
     pub const fn rows(columns: &'static [Column<'static>]) -> Spec {
         (Kind::Rows(columns), Presence::Required)
     }
 
     /// With a default number, in the key's unit.
-    #[must_use]
     pub const fn or(default: f64, spec: Spec) -> Spec {
         (spec.0, Presence::Number(default))
     }
 
     /// With a default option.
-    #[must_use]
     pub const fn or_word(default: &'static str, spec: Spec) -> Spec {
         (spec.0, Presence::Word(default))
     }
 
     /// May be absent.
-    #[must_use]
     pub const fn optional(spec: Spec) -> Spec {
         (spec.0, Presence::Optional)
     }
 
     /// With a default that follows from other values.
-    #[must_use]
     pub const fn computed(words: &'static str, spec: Spec) -> Spec {
         (spec.0, Presence::Computed(words))
     }
 
     /// Required on a condition.
-    #[must_use]
     pub const fn required_if(words: &'static str, spec: Spec) -> Spec {
         (spec.0, Presence::RequiredIf(words))
     }
@@ -349,7 +322,6 @@ pub mod spec {
 /// Values of one table of keys. Problems are collected by the implementation; after one a number is NaN.
 pub trait Values: Sized {
     /// The table `name` in this one.
-    #[must_use]
     fn table(&self, name: &str) -> Self;
 
     /// Whether the key is given.

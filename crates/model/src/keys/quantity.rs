@@ -21,13 +21,11 @@ impl Quantity {
     pub const ALL: &[Quantity] = &UNITS;
 
     /// The end of a key that has this unit, such as `_mm`.
-    #[must_use]
     pub const fn suffix(&self) -> &'static str {
         self.suffix
     }
 
     /// The quantity of a key: the unit whose suffix ends it, the longest one if several do.
-    #[must_use]
     pub const fn of(key: &str) -> Quantity {
         let mut found = Quantity::NONE;
         let mut i = 0;
@@ -41,13 +39,11 @@ impl Quantity {
     }
 
     /// Unit as written for people, `-` for a dimensionless number.
-    #[must_use]
     pub const fn unit(&self) -> &'static str {
         self.name
     }
 
     /// A value in this unit, converted to SI (temperatures to kelvin).
-    #[must_use]
     pub fn to_si(&self, value: f64) -> f64 {
         if self.suffix.is_empty() {
             value
@@ -63,7 +59,6 @@ impl Quantity {
     /// let speed = Quantity::of("speed_kmh");
     /// assert_eq!((speed.to_si(36.0), speed.from_si(10.0), speed.unit()), (10.0, 36.0, "km/h"));
     /// ```
-    #[must_use]
     pub fn from_si(&self, si: f64) -> f64 {
         (si - self.offset) / self.factor
     }
@@ -160,7 +155,6 @@ const UNITS: [Quantity; 58] = [
 ];
 
 /// The key without its unit, to recognise the same quantity in another unit.
-#[must_use]
 pub fn stem(key: &str) -> &str {
     key.strip_suffix(Quantity::of(key).suffix).unwrap_or(key)
 }

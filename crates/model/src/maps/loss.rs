@@ -3,7 +3,7 @@
 //! Coordinates: ratio (belt ratio, or gear number of a manual box), input speed rad/s, torque Nm, secondary pressure Pa,
 //! oil temperature K. Value: torque loss at the box's input shaft, Nm. Outside the map the edge's value holds and the row is flagged.
 
-use crate::math::Grid;
+use crate::math::{Grid, larger};
 
 /// A measured torque-loss map.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,13 +28,11 @@ pub struct MapPoint {
 
 impl LossMap {
     /// A map from its grid.
-    #[must_use]
     pub fn new(grid: Grid) -> Self {
         LossMap { grid }
     }
 
     /// Torque loss at the input shaft, Nm, never negative, and whether the point lies within the map.
-    #[must_use]
     pub fn loss_nm(&self, p: &MapPoint) -> (f64, bool) {
         let (loss, inside) = self.grid.at([
             p.ratio,
@@ -43,6 +41,6 @@ impl LossMap {
             p.pressure_pa,
             p.oil_k,
         ]);
-        (if loss > 0.0 { loss } else { 0.0 }, inside)
+        (larger(loss, 0.0), inside)
     }
 }

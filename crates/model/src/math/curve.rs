@@ -87,13 +87,11 @@ impl Curve {
     }
 
     /// A curve with the same value everywhere.
-    #[must_use]
     pub fn constant(y: f64) -> Self {
         Curve::build(&[(0.0, y)])
     }
 
     /// Value at `x`; beyond the ends the end's value; NaN for NaN.
-    #[must_use]
     #[inline]
     pub fn at(&self, x: f64) -> f64 {
         if x >= self.last.0 {

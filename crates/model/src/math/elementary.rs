@@ -77,14 +77,12 @@ const fn artanh_ln(x: f64) -> f64 {
 }
 
 /// e to the power of x.
-#[must_use]
 #[inline]
 pub fn exp(x: f64) -> f64 {
     exp_each([x])[0]
 }
 
 /// e to the power of each x, the same bits as one by one: several together cost little more than one, since processors work in pairs.
-#[must_use]
 #[inline(always)]
 pub fn exp_each<const N: usize>(x: [f64; N]) -> [f64; N] {
     // One comparison for all: a sum within reach has every term within it. Beyond, each is asked.
@@ -125,14 +123,12 @@ fn exp_within(x: f64) -> f64 {
 }
 
 /// Natural logarithm.
-#[must_use]
 #[inline]
 pub fn ln(x: f64) -> f64 {
     ln_each([x])[0]
 }
 
 /// Natural logarithm of each x, the same bits as one by one; see [`exp_each`].
-#[must_use]
 #[inline(always)]
 pub fn ln_each<const N: usize>(x: [f64; N]) -> [f64; N] {
     // One comparison for all: between 2^-511 and 2^512 the two leading bits of this difference are zero. Beyond, each is asked.

@@ -55,7 +55,6 @@ impl Grid {
     }
 
     /// Value at `x` and whether `x` lies within the grid on every axis that has more than one value.
-    #[must_use]
     pub fn at(&self, x: [f64; GRID_AXES]) -> (f64, bool) {
         let mut low = [0usize; GRID_AXES];
         let mut part = [0.0f64; GRID_AXES];

@@ -80,7 +80,6 @@ type Forces = (f64, f64, f64, f64);
 
 impl RoadLoadInput {
     /// A checked road load from the values of `[road_load]`.
-    #[must_use]
     pub fn from_values<V: Values>(s: &V) -> Self {
         let is_road = s.word(&ROAD_LOAD.surface) == "road";
         let payload = s.number(&ROAD_LOAD.payload_kg);

@@ -68,7 +68,6 @@ const OIL_REFERENCE_K: f64 = 40.0 + ZERO_DEGC_K;
 
 impl Network {
     /// A checked network from the values of `[thermal]`; `cvt` says whether there is a belt node.
-    #[must_use]
     pub fn from_values<V: Values>(s: &V, cvt: bool, oil: &Lubricant) -> Self {
         let (engine, radiator) = (s.table("engine"), s.table("radiator"));
         let gearbox = s.table("transmission");

@@ -23,7 +23,7 @@ mod links;
 pub use keys::ThermalKeys;
 use links::Links;
 
-use crate::math::{clamp, exp, ln, ramp};
+use crate::math::{clamp, exp, larger, ln, ramp, smaller};
 
 /// Number of nodes.
 pub const NODES: usize = 5;
@@ -111,7 +111,6 @@ pub struct Heat {
 
 impl Heat {
     /// All nodes at one temperature.
-    #[must_use]
     pub fn uniform(temp_k: f64) -> Self {
         Heat {
             node_k: [temp_k; NODES],
@@ -207,11 +206,10 @@ fn speed_power(v: f64) -> f64 {
 
 impl Network {
     /// Belt to transmission oil by spray at a pump speed, W/K (TH-8).
-    #[must_use]
     #[inline]
     pub fn spray_now_w_k(&self, pump_rad_s: f64) -> f64 {
         let share = pump_rad_s / SPRAY_REFERENCE_RAD_S;
-        self.spray_w_k * if share > STILL { share } else { STILL } // TH-8
+        self.spray_w_k * larger(share, STILL) // TH-8
     }
 
     #[inline(always)]
@@ -236,11 +234,7 @@ impl Network {
             return (0.0, 0.0);
         };
         let flow = c.flow_share * input.oil_flow_m3_s;
-        let flow = if flow < c.highest_m3_s {
-            flow
-        } else {
-            c.highest_m3_s
-        };
+        let flow = smaller(flow, c.highest_m3_s);
         let carried = flow * input.oil_volume_heat_j_m3k;
         let open = clamp((sump_k - c.bypass_below_k) / 2.0, 0.0, 1.0);
         if carried <= 0.0 || open <= 0.0 {
@@ -285,13 +279,11 @@ impl Network {
     }
 
     /// Advances the nodes by one step (TH-5).
-    #[must_use]
     pub fn advance(&self, heat: &Heat, input: &HeatInput) -> HeatStep {
         self.advance_in_wind(heat, input, speed_power(input.speed_m_s))
     }
 
     /// The same, with the road speed to the power of 0.7, which a trace knows.
-    #[must_use]
     #[inline(always)]
     pub fn advance_in_wind(&self, heat: &Heat, input: &HeatInput, speed_power_07: f64) -> HeatStep {
         let mut now = self.now(heat, input, speed_power_07);

@@ -23,7 +23,6 @@ pub enum Part {
 
 impl Part {
     /// True for the components of a CVT without its coupling.
-    #[must_use]
     pub const fn is_cvt(self) -> bool {
         matches!(self, Part::Cvt | Part::Belt | Part::BeltMap)
     }
@@ -140,55 +139,46 @@ impl Component {
     }
 
     /// Name as in JSON keys and CSV columns.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         self.entry().name
     }
 
     /// Name in words, with a capital.
-    #[must_use]
     pub const fn title(self) -> &'static str {
         self.entry().title
     }
 
     /// What the loss is, one phrase.
-    #[must_use]
     pub const fn doc(self) -> &'static str {
         self.entry().doc
     }
 
     /// Names of the columns that hold the loss.
-    #[must_use]
     pub const fn columns(self) -> LossColumns {
         self.entry().columns
     }
 
     /// The transmissions that have the component.
-    #[must_use]
     pub const fn part(self) -> Part {
         self.entry().part
     }
 
     /// The thermal node that receives the heat.
-    #[must_use]
     pub const fn heat(self) -> HeatTo {
         self.entry().heat
     }
 
     /// Fill in charts.
-    #[must_use]
     pub const fn fill(self) -> Fill {
         self.entry().fill
     }
 
     /// Key of the measured map that replaces the component's model, below `maps` of its transmission.
-    #[must_use]
     pub const fn map_key(self) -> Option<&'static str> {
         self.entry().map_key
     }
 
     /// True for the parts of the belt's loss and for its map.
-    #[must_use]
     pub const fn is_belt(self) -> bool {
         matches!(self.part(), Part::Belt | Part::BeltMap)
     }
@@ -200,7 +190,6 @@ pub struct ByComponent<T>(pub [T; Component::COUNT]);
 
 impl<T> ByComponent<T> {
     /// A value of each component.
-    #[must_use]
     pub fn from_fn(mut value: impl FnMut(Component) -> T) -> Self {
         ByComponent(Component::ALL.map(&mut value))
     }
@@ -216,7 +205,6 @@ impl<T> ByComponent<T> {
     }
 
     /// Another value made of each.
-    #[must_use]
     pub fn map<U>(self, f: impl FnMut(T) -> U) -> ByComponent<U> {
         ByComponent(self.0.map(f))
     }

@@ -33,7 +33,6 @@ pub struct TransmissionState {
 
 impl Transmission {
     /// State at the beginning of a cycle.
-    #[must_use]
     pub fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> TransmissionState {
         match self {
             Transmission::Cvt(cvt) => {
@@ -51,7 +50,6 @@ impl Transmission {
     }
 
     /// Solves one step.
-    #[must_use]
     pub fn solve<P: PrimeMover>(
         &self,
         input: &StepInput<P>,
@@ -65,13 +63,11 @@ impl Transmission {
     }
 
     /// True for a CVT, which drives the automatic trace.
-    #[must_use]
     pub fn is_cvt(&self) -> bool {
         matches!(self, Transmission::Cvt(_))
     }
 
     /// Loss components of the transmission, in the order of the power flow.
-    #[must_use]
     pub fn components(&self) -> Vec<Component> {
         let (cvt, mapped) = match self {
             Transmission::Cvt(cvt) => (true, cvt.has_map(Component::BeltMap)),

@@ -97,7 +97,6 @@ pub struct StepOutput {
 
 impl StepOutput {
     /// Nothing turns.
-    #[must_use]
     pub fn at_rest() -> Self {
         StepOutput {
             engine_rad_s: 0.0,

@@ -33,7 +33,6 @@ impl ViscousSelfHeating {
     };
 
     /// Heating by the dissipation in W that halves the drag (FH-1); none without one.
-    #[must_use]
     pub fn halving_at_w(halving_w: Option<f64>) -> Self {
         halving_w.map_or(Self::NONE, |halving_w| ViscousSelfHeating {
             four_per_halving_w: 4.0 / halving_w,
@@ -41,7 +40,6 @@ impl ViscousSelfHeating {
     }
 
     /// Viscous drag, Nm, from the drag without heating, Nm, and the speed, rad/s (FH-1); both not below zero.
-    #[must_use]
     #[inline]
     pub fn torque_nm(self, unheated_nm: f64, speed_rad_s: f64) -> f64 {
         2.0 * unheated_nm

@@ -16,7 +16,6 @@ pub struct Speeds {
 
 impl Speeds {
     /// All speeds, ascending, rad/s.
-    #[must_use]
     pub fn list(&self) -> Vec<f64> {
         // A thousandth of a step for what was lost in rounding.
         let count = ((self.to_rad_s - self.from_rad_s) / self.step_rad_s + 1e-3)
@@ -94,7 +93,6 @@ pub struct Conditions {
 
 impl Conditions {
     /// Name of a ratio: low, high, or its number.
-    #[must_use]
     pub fn ratio_name(&self, ratio: f64) -> String {
         let is = |other: f64| (ratio - other).abs() < 1e-9;
         if is(self.low_ratio) {
@@ -107,7 +105,6 @@ impl Conditions {
     }
 
     /// Speeds at which a ratio is tested: the short range in the rig's high ratio and beyond, the long one else.
-    #[must_use]
     pub fn speeds(&self, ratio: f64) -> Speeds {
         if ratio <= self.high_ratio {
             self.high_speeds

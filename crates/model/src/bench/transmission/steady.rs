@@ -18,7 +18,6 @@ pub struct Plan {
 
 impl Plan {
     /// The rig's own points.
-    #[must_use]
     pub fn of(c: &Conditions) -> Self {
         Plan {
             ratios: vec![c.low_ratio, c.high_ratio],
@@ -29,7 +28,6 @@ impl Plan {
     }
 
     /// Input speeds at a ratio, rad/s.
-    #[must_use]
     pub fn speeds(&self, c: &Conditions, ratio: f64) -> Vec<f64> {
         self.speeds_rad_s
             .clone()
@@ -73,13 +71,11 @@ fn solved(bench: &Bench, set: BenchPoint) -> SteadyPoint {
 }
 
 /// The maps without load, by ratio, then temperature, then speed.
-#[must_use]
 pub fn steady(bench: &Bench, c: &Conditions, plan: &Plan) -> Vec<SteadyPoint> {
     plan.points(c).map(|p| solved(bench, p)).collect()
 }
 
 /// The maps under load, by ratio, then temperature, then output torque, then speed.
-#[must_use]
 pub fn loaded(bench: &Bench, c: &Conditions, plan: &Plan) -> Vec<SteadyPoint> {
     let mut points = Vec::new();
     for &ratio in &plan.ratios {
@@ -112,14 +108,12 @@ pub struct TwoBoxes {
 
 impl TwoBoxes {
     /// Loss of the second box over that of the first, Nm.
-    #[must_use]
     pub fn difference_nm(&self) -> f64 {
         self.second.answer.total_nm() - self.first.answer.total_nm()
     }
 }
 
 /// The maps without load of both boxes.
-#[must_use]
 pub fn second_box(bench: &Bench, c: &Conditions, plan: &Plan) -> Vec<TwoBoxes> {
     let factor = c.pressure.second_box;
     let both = |p: BenchPoint| TwoBoxes {

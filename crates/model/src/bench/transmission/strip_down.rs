@@ -43,7 +43,6 @@ impl Stage {
     ];
 
     /// Name as in files.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Stage::Complete => "complete",
@@ -101,7 +100,6 @@ impl Piece {
     ];
 
     /// Name as in files.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Piece::Pump => "pump",
@@ -113,7 +111,6 @@ impl Piece {
     }
 
     /// Loss of the piece in a bench's answer, Nm at the input shaft.
-    #[must_use]
     pub fn loss_nm(self, answer: &BenchAnswer) -> f64 {
         match self {
             Piece::Pump => answer.part_nm(Component::Pump),
@@ -142,13 +139,11 @@ pub struct Found {
 
 impl Found {
     /// Interaction in all, Nm.
-    #[must_use]
     pub fn interaction_nm(&self) -> f64 {
         self.by_pressure_nm + self.by_torque_nm
     }
 
     /// What neither the true loss nor the interaction explains, Nm.
-    #[must_use]
     pub fn remainder_nm(&self) -> f64 {
         self.corrected_nm - self.true_nm - self.interaction_nm()
     }
@@ -167,20 +162,17 @@ pub struct StripDown {
 
 impl StripDown {
     /// Answer of a stage.
-    #[must_use]
     pub fn stage(&self, stage: Stage) -> &BenchAnswer {
         &self.stages[stage as usize]
     }
 
     /// What was found of a piece.
-    #[must_use]
     pub fn piece(&self, piece: Piece) -> &Found {
         &self.found[piece as usize]
     }
 }
 
 /// The sequence at all points without load. None without a CVT on the bench.
-#[must_use]
 pub fn strip_down(bench: &Bench, c: &Conditions, plan: &Plan) -> Vec<StripDown> {
     let Some(cvt) = bench.cvt() else {
         return Vec::new();

@@ -29,7 +29,6 @@ pub enum Branch {
 
 impl Branch {
     /// Word for tables.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Branch::Warming => "warming",
@@ -68,7 +67,6 @@ pub struct LoopEnergy {
 
 impl LoopEnergy {
     /// What does not balance, over the energy put in.
-    #[must_use]
     pub fn error(&self) -> f64 {
         (self.shaft_j - self.stored_j - self.to_air_j - self.to_cooler_j) / self.shaft_j
     }
@@ -91,13 +89,11 @@ pub struct Loop {
 
 impl Loop {
     /// Torque loss on a branch at a sump temperature, Nm, between neighbouring seconds; none where the branch does not come by.
-    #[must_use]
     pub fn loss_nm(&self, branch: Branch, sump_k: f64) -> Option<f64> {
         self.at(branch, sump_k, |m| m.answer.total_nm())
     }
 
     /// Anything on a branch at a sump temperature.
-    #[must_use]
     pub fn at(&self, branch: Branch, sump_k: f64, of: impl Fn(&Moment) -> f64) -> Option<f64> {
         let cooling = self
             .moments
@@ -131,7 +127,6 @@ impl Loop {
     }
 
     /// Cooling over warming at a sump temperature, Nm.
-    #[must_use]
     pub fn gap_nm(&self, sump_k: f64) -> Option<f64> {
         Some(self.loss_nm(Branch::Cooling, sump_k)? - self.loss_nm(Branch::Warming, sump_k)?)
     }
@@ -139,7 +134,6 @@ impl Loop {
     /// Sump temperature at which the cooling branch comes down to within `near_nm` of the warming one, K; none if it never does.
     ///
     /// Looked for downwards from where the branches are furthest apart.
-    #[must_use]
     pub fn meeting_k(&self, near_nm: f64) -> Option<f64> {
         let gaps = self.gaps();
         let widest = gaps
@@ -155,7 +149,6 @@ impl Loop {
     }
 
     /// Largest gap between the branches, Nm, and where, K.
-    #[must_use]
     pub fn widest(&self) -> Option<(f64, f64)> {
         self.gaps()
             .into_iter()
@@ -188,7 +181,6 @@ impl Loop {
 }
 
 /// The car's network as it is on the rig (RT-1).
-#[must_use]
 pub fn on_the_rig(car: &Network) -> Network {
     Network {
         coolant_oil_w_k: 0.0,
@@ -217,7 +209,6 @@ struct Running<'a> {
 }
 
 /// Warms the box up and cools it down again, without load.
-#[must_use]
 pub fn transient(bench: &Bench, conditions: &Conditions, ratio: f64) -> Loop {
     let test = &conditions.transient;
     let heat = Heat::uniform(test.start_k);

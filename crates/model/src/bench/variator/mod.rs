@@ -90,19 +90,16 @@ impl RigFlags {
     ];
 
     /// Whether the flag is set.
-    #[must_use]
     pub fn contains(self, other: RigFlags) -> bool {
         self.0 & other.0 == other.0
     }
 
     /// Whether nothing speaks against the row: within the rig's limits and within what the belt carries.
-    #[must_use]
     pub fn is_fine(self) -> bool {
         self.0 == 0
     }
 
     /// Names of what is set, joined by `|`.
-    #[must_use]
     pub fn text(self) -> String {
         self.names().collect::<Vec<_>>().join("|")
     }
@@ -148,31 +145,26 @@ pub struct VariatorRow {
 
 impl VariatorRow {
     /// Pulse ratio w_p/w_s.
-    #[must_use]
     pub fn pulse_ratio(&self) -> f64 {
         self.held.ratio / (1.0 - self.belt.slip_total) // RV-1: the quotient of the speeds, without their rounding
     }
 
     /// Radii from belt speed and shaft speed, m.
-    #[must_use]
     pub fn pulse_radius_m(&self) -> [f64; 2] {
         self.shaft_rad_s.map(|w| self.belt_m_s / w) // RV-2
     }
 
     /// Slip as the rig reads it against the geometric ratio, a fraction.
-    #[must_use]
     pub fn slip_reading(&self) -> f64 {
         self.pulse_ratio() / self.geometry.ratio - 1.0 // RV-3
     }
 
     /// The reading against the ratio of zero torque.
-    #[must_use]
     pub fn slip_zeroed(&self) -> f64 {
         self.pulse_ratio() / self.zero.ratio - 1.0 // RV-4
     }
 
     /// Slip speeds at the pulleys, m/s.
-    #[must_use]
     pub fn slip_m_s(&self) -> [f64; 2] {
         self.slip_speeds([
             self.geometry.primary_radius_m,
@@ -181,7 +173,6 @@ impl VariatorRow {
     }
 
     /// Slip speeds with the radii of zero torque, m/s.
-    #[must_use]
     pub fn slip_zeroed_m_s(&self) -> [f64; 2] {
         self.slip_speeds(self.zero.radius_m) // RV-4
     }
@@ -197,7 +188,6 @@ impl VariatorRow {
 
 impl VariatorRig {
     /// Takes the variator out of a vehicle's box; none for a manual box.
-    #[must_use]
     pub fn new(vehicle: &Vehicle) -> Option<Self> {
         match vehicle.transmission() {
             Transmission::Cvt(cvt) => Some(VariatorRig {
@@ -209,7 +199,6 @@ impl VariatorRig {
     }
 
     /// Belt, pulleys and limits.
-    #[must_use]
     pub fn cvt(&self) -> &Cvt {
         &self.cvt
     }
@@ -285,7 +274,6 @@ impl VariatorRig {
     }
 
     /// Rows of a curve at given torques.
-    #[must_use]
     pub fn rows(&self, held: &Held, output_nm: &[f64]) -> Vec<VariatorRow> {
         let at = BeltAtRatio::new(&self.cvt.belt, held.ratio);
         let zero = self.zero(held, &at);
@@ -296,7 +284,6 @@ impl VariatorRig {
     }
 
     /// Torque at which the compression between segments changes sign, Nm at the secondary (RV-5); negative in high ratio.
-    #[must_use]
     pub fn breakpoint_nm(&self, held: &Held) -> f64 {
         let belt = &self.cvt.belt;
         let at = BeltAtRatio::new(belt, held.ratio);

@@ -1,6 +1,7 @@
 //! What a curve of slip against torque comes to, and how finely the rig can read it.
 
 use super::{Held, MAX_OUTPUT_NM, VariatorRig, VariatorRow};
+use crate::math::larger;
 
 /// Slip whose torque is looked for: the largest that the thesis reports (6.4).
 const THREE_PERCENT: f64 = 0.03;
@@ -40,16 +41,11 @@ pub struct CurveSummary {
 
 impl VariatorRig {
     /// A curve in numbers.
-    #[must_use]
     pub fn summary(&self, held: &Held) -> CurveSummary {
         let slip = |torque: f64| self.rows(held, &[torque])[0].belt.slip_total;
         let breakpoint_nm = self.breakpoint_nm(held);
         let capacity_nm = self.rows(held, &[0.0])[0].belt.capacity_nm;
-        let from = if breakpoint_nm > 0.0 {
-            breakpoint_nm
-        } else {
-            0.0
-        };
+        let from = larger(breakpoint_nm, 0.0);
         let scan = |low: f64, high: f64| -> Vec<VariatorRow> {
             let torques: Vec<f64> = (0..=POINTS)
                 .map(|i| low + (high - low) * f64::from(i) / f64::from(POINTS))
@@ -150,7 +146,6 @@ pub struct Resolution {
 
 impl Resolution {
     /// Resolution at the state of a row, with a number of pulses a turn of the shafts.
-    #[must_use]
     pub fn new(row: &VariatorRow, belt_length_m: f64, segment_m: f64, pulses: f64) -> Self {
         let belt_turns = row.held.ratio > 1.0;
         let gate_s = if belt_turns {

@@ -10,7 +10,7 @@
 
 use super::{Coupling, CouplingLoad, EngineSide};
 use crate::keys::{Values, keys};
-use crate::math::{exp, ramp};
+use crate::math::{exp, larger, ramp};
 
 /// A friction clutch that slips at launch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,11 +102,7 @@ impl Coupling for FrictionClutch {
     #[inline]
     fn overrun_share(&self, output_rad_s: f64, idle_rad_s: f64) -> f64 {
         let from = 1.1 * idle_rad_s;
-        let to = if self.release_rad_s > from {
-            self.release_rad_s
-        } else {
-            from
-        };
+        let to = larger(self.release_rad_s, from);
         ramp(output_rad_s, from, to + 0.2 * idle_rad_s) // LC-3
     }
 }

@@ -9,7 +9,7 @@ pub use friction_clutch::FrictionClutch;
 
 use self::friction_clutch::FrictionClutchKeys;
 use crate::keys::{Choice, Key, Values, spec};
-use crate::math::{clamp, ramp};
+use crate::math::{clamp, larger, ramp};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -44,7 +44,6 @@ pub struct CouplingLoad {
 
 impl CouplingLoad {
     /// A torque into the box, Nm, at its speed over an engine with an idle speed, rad/s.
-    #[must_use]
     pub fn new(output_nm: f64, output_rad_s: f64, idle_rad_s: f64, coupled: bool) -> Self {
         CouplingLoad {
             output_nm,
@@ -111,7 +110,7 @@ pub trait Coupling: Debug + Send + Sync {
     fn solve(&self, load: &CouplingLoad, reach: &Reach) -> EngineSide {
         let reached = reach.nearest(self.engine_rad_s(load));
         let least = self.min_engine_rad_s(load.output_rad_s);
-        let engine_rad_s = if reached > least { reached } else { least };
+        let engine_rad_s = larger(reached, least);
         self.engine_side(load.output_nm, load.output_rad_s, engine_rad_s)
     }
 }
@@ -127,7 +126,6 @@ pub struct Reach {
 
 impl Reach {
     /// The nearest speed within reach, rad/s.
-    #[must_use]
     #[inline]
     pub fn nearest(&self, wanted_rad_s: f64) -> f64 {
         clamp(

@@ -6,7 +6,7 @@
 
 use super::driveline::{Driveline, PartTorques};
 use super::variator::{BeltLoad, belt_losses};
-use crate::math::clamp;
+use crate::math::{clamp, larger};
 use crate::prime_mover::PrimeMover;
 use crate::transmission::coupling::{CouplingLoad, EngineSide, Reach};
 use crate::transmission::step::StepInput;
@@ -96,7 +96,7 @@ impl Point {
             (g.engine_rad_s / self.next_engine_rad_s - 1.0).abs()
         };
         for d in [(g.slip - self.slip_guessed).abs(), engine] {
-            most = if d > most { d } else { most };
+            most = larger(d, most);
         }
         most
     }

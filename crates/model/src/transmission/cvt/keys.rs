@@ -45,7 +45,6 @@ keys! {
 
 impl Cvt {
     /// A checked CVT from the values of `[transmission.cvt]`.
-    #[must_use]
     pub fn from_values<V: Values>(
         s: &V,
         engine: &Engine,

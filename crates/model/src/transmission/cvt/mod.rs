@@ -35,7 +35,7 @@ use super::component::{ByComponent, Component};
 use super::coupling::Coupling;
 use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::maps::LossMap;
-use crate::math::{Curve, exp, ln};
+use crate::math::{Curve, exp, larger, ln, smaller};
 use crate::prime_mover::PrimeMover;
 use std::sync::Arc;
 
@@ -94,7 +94,6 @@ pub struct CvtState {
 
 impl CvtState {
     /// A belt at a ratio before its first step.
-    #[must_use]
     pub fn new(belt: BeltAtRatio) -> Self {
         CvtState {
             belt,
@@ -108,7 +107,6 @@ const SLIP_STEPS: u32 = 32;
 
 impl Cvt {
     /// Clamping force of the secondary at a pressure, N (VA-3).
-    #[must_use]
     #[inline]
     pub fn secondary_clamp_n(&self, pressure_pa: f64, secondary_rad_s: f64) -> f64 {
         pressure_pa * self.secondary_piston_m2
@@ -117,13 +115,11 @@ impl Cvt {
     }
 
     /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
-    #[must_use]
     pub fn radius_factor(&self, at: &BeltAtRatio) -> f64 {
         exp(self.radius_exponent * ln(self.low_radius_m / at.geometry.primary_radius_m))
     }
 
     /// True where a measured map replaces the model of a component.
-    #[must_use]
     pub fn has_map(&self, component: Component) -> bool {
         self.maps
             .as_ref()
@@ -131,7 +127,6 @@ impl Cvt {
     }
 
     /// State at the beginning of a cycle: in low at rest, in the ratio of the variogram when rolling.
-    #[must_use]
     pub fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> (CvtState, DrivelineState) {
         let secondary = self.final_drive * input.wheel.wheel_rad_s;
         let demand = controller::RatioDemand {
@@ -157,7 +152,7 @@ impl Cvt {
         let own = CvtState::new(BeltAtRatio::new(&self.belt, ratio));
         let driveline = DrivelineState {
             gear: 0,
-            engine_rad_s: if primary > idle { primary } else { idle },
+            engine_rad_s: larger(primary, idle),
             throttle: 0.1,
             secondary_pa: self.floor_pa,
             coupled: primary > idle,
@@ -167,7 +162,6 @@ impl Cvt {
     }
 
     /// Pressure demand of the clamp law, Pa (PC-1 to PC-4), within floor and cap; `load` is called by the laws that use the belt.
-    #[must_use]
     #[inline(always)]
     pub fn pressure_pa(
         &self,
@@ -225,16 +219,12 @@ impl Cvt {
         secondary_rad_s: f64,
     ) -> f64 {
         let torque = load.output_torque_nm.abs();
-        let torque = if torque > least_nm { torque } else { least_nm };
+        let torque = larger(torque, least_nm);
         let mu = self
             .belt
             .formulation
             .segment_friction(load.segment_friction);
-        let weaker = if at.thrust_ratio < 1.0 {
-            at.thrust_ratio
-        } else {
-            1.0
-        };
+        let weaker = smaller(at.thrust_ratio, 1.0);
         let force = safety * torque * self.belt.cos_wedge
             / (2.0 * mu * at.geometry.secondary_radius_m * weaker); // PC-3
         (force - self.secondary_clamp_n(0.0, secondary_rad_s)) / self.secondary_piston_m2
@@ -261,11 +251,7 @@ impl Cvt {
             .slip_total
             .abs()
         };
-        let floor = if least_pa > self.floor_pa {
-            least_pa
-        } else {
-            self.floor_pa
-        };
+        let floor = larger(least_pa, self.floor_pa);
         if floor >= self.cap_pa || slip(floor) <= limit {
             return floor;
         }
@@ -298,7 +284,6 @@ impl Cvt {
     }
 
     /// Solves one step (CV-1 to CV-5).
-    #[must_use]
     pub fn solve<P: PrimeMover>(
         &self,
         input: &StepInput<P>,

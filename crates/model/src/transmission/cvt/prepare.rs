@@ -7,7 +7,7 @@ use super::evaluate::Step;
 use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
 use super::spin::{NU_REFERENCE_M2_S, SpinAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
-use crate::math::{exp_each, ln_each};
+use crate::math::{exp_each, larger, ln_each};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, SUMP};
 use crate::transmission::step::{DrivelineState, StepInput};
@@ -57,7 +57,7 @@ fn shift<P: PrimeMover>(
         .pump
         .drawn_m3_s(cvt.pump.displacement_m3_rad * past.engine_rad_s);
     let free = drawn - cvt.pump.need_m3_s(past.secondary_pa, route.leakage_m3_s_pa);
-    let free = if free > 0.0 { free } else { 0.0 };
+    let free = larger(free, 0.0);
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive * input.wheel.wheel_rad_s,
         power_w: input.wheel.power_w,

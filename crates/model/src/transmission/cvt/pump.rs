@@ -83,7 +83,6 @@ pub struct PumpAtTemperature {
 
 impl PumpAtTemperature {
     /// Flow that is drawn of the flow of a displacement, m3/s (PU-5).
-    #[must_use]
     #[inline]
     pub fn drawn_m3_s(&self, flow_m3_s: f64) -> f64 {
         let x = flow_m3_s * self.inv_inlet_flow;
@@ -107,28 +106,24 @@ pub struct PumpState {
 
 impl Pump {
     /// Flow that is needed without shifting, m3/s (PU-2).
-    #[must_use]
     #[inline]
     pub fn steady_need_m3_s(&self, secondary_pa: f64, eta_pa_s: f64) -> f64 {
         self.need_m3_s(secondary_pa, self.leakage_now_m3_s_pa(eta_pa_s))
     }
 
     /// Leakage per pressure at a viscosity, m3/(s Pa) (PU-2).
-    #[must_use]
     #[inline]
     pub fn leakage_now_m3_s_pa(&self, eta_pa_s: f64) -> f64 {
         self.leakage_m3_s_pa * ETA_REFERENCE_PA_S / eta_pa_s
     }
 
     /// Flow that is needed without shifting with the leakage known, m3/s (PU-2).
-    #[must_use]
     #[inline]
     pub fn need_m3_s(&self, secondary_pa: f64, leakage_m3_s_pa: f64) -> f64 {
         self.lubrication_m3_s + secondary_pa * leakage_m3_s_pa // PU-2
     }
 
     /// What the oil does at a viscosity (PU-1, PU-5).
-    #[must_use]
     #[inline]
     pub fn at(&self, eta_pa_s: f64) -> PumpAtTemperature {
         self.with_factor(
@@ -138,7 +133,6 @@ impl Pump {
     }
 
     /// The same with the factor (eta/eta_r)^m of PU-1 known.
-    #[must_use]
     #[inline]
     pub fn with_factor(&self, eta_pa_s: f64, viscous_factor: f64) -> PumpAtTemperature {
         let drop_pa_s_m3 = self.inlet_pa_s_m3 * eta_pa_s / ETA_REFERENCE_PA_S;
@@ -165,7 +159,6 @@ impl Pump {
     }
 
     /// Torque and flow (PU-1, PU-4).
-    #[must_use]
     #[inline(always)]
     pub fn state(
         &self,

@@ -1,7 +1,7 @@
 //! What the solve learns from its evaluations: slopes for the next guess, kept from step to step as a start.
 
 use super::evaluate::{Guess, Point};
-use crate::math::clamp;
+use crate::math::{clamp, larger};
 
 /// Closer than this two pressures say nothing of a slope, Pa.
 const SECANT_FROM_PA: f64 = 200.0;
@@ -181,11 +181,7 @@ impl TorqueSecant {
         self.last = Some((x, miss_nm));
         let slope = if plain { 1.0 } else { slopes.torque };
         let carried = 1.05 * now.torques.belt.capacity_nm;
-        let carried = if carried > self.allowed_nm {
-            carried
-        } else {
-            self.allowed_nm
-        };
+        let carried = larger(carried, self.allowed_nm);
         let next = clamp(x - miss_nm * self.ratio / slope, -carried, carried); // CV-5
         (next, (next - x).abs() <= 1e-9 * carried)
     }

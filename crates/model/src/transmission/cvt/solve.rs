@@ -11,7 +11,7 @@ use super::step_output::{Outcome, finish, standstill};
 use super::variator::BeltLoad;
 use super::{Cvt, CvtState, WarmStart};
 use crate::flags::Flags;
-use crate::math::clamp;
+use crate::math::{clamp, larger};
 use crate::prime_mover::PrimeMover;
 use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
 
@@ -119,11 +119,7 @@ impl<P: PrimeMover> Step<'_, P> {
             if let Some((before, before_next_pa)) = &last {
                 work.slopes.update(before, *before_next_pa, point);
             }
-            let scale = if point.full_load_nm > 1.0 {
-                point.full_load_nm
-            } else {
-                1.0
-            };
+            let scale = larger(point.full_load_nm, 1.0);
             let damped = count > DAMPED_FROM;
             let mut next_nm = guess.output_nm;
             if limit != Limit::None {

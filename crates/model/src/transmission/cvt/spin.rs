@@ -11,7 +11,7 @@
 //! extrapolated; the cap bounds CD-1, the heating of their films (FH-1) the viscous terms of IS-1 and FD-1. Unmeasured there.
 
 use crate::keys::{Values, keys};
-use crate::math::{exp, exp_each, ln};
+use crate::math::{exp, exp_each, ln, smaller};
 use crate::transmission::viscous_self_heating::SELF_HEATING;
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
@@ -62,14 +62,12 @@ pub struct SpinAtTemperature {
 
 impl Spin {
     /// The constants at a viscosity.
-    #[must_use]
     #[inline]
     pub fn at(&self, nu_m2_s: f64) -> SpinAtTemperature {
         self.with_powers(exp_each(self.exponents(ln(nu_m2_s / NU_REFERENCE_M2_S))))
     }
 
     /// Logarithms of the powers of viscosity in IS-1, CD-1 and FD-1, from ln(nu/nu_80).
-    #[must_use]
     #[inline]
     pub fn exponents(&self, log_nu: f64) -> [f64; 3] {
         [
@@ -80,7 +78,6 @@ impl Spin {
     }
 
     /// The constants with the powers of viscosity known.
-    #[must_use]
     #[inline]
     pub fn with_powers(&self, [shaft, clutch, drive]: [f64; 3]) -> SpinAtTemperature {
         let clutch_nm = self.clutch_nm * clutch;
@@ -88,17 +85,12 @@ impl Spin {
             shaft_constant_nm: self.shaft_constant_nm,
             shaft_slope_nm_s: self.shaft_viscous_nm_s * shaft,
             shaft_heating: self.shaft_heating,
-            clutch_nm: if clutch_nm < self.clutch_cap_nm {
-                clutch_nm
-            } else {
-                self.clutch_cap_nm
-            }, // CD-1
+            clutch_nm: smaller(clutch_nm, self.clutch_cap_nm), // CD-1
             drive_viscous_nm: self.drive_viscous_nm * drive,
         }
     }
 
     /// Load-independent torque of the final drive at the secondary shaft, Nm (FD-1).
-    #[must_use]
     #[inline]
     pub fn drive_nm(&self, now: &SpinAtTemperature, secondary_rad_s: f64) -> f64 {
         self.drive_with_fall_nm(
@@ -109,14 +101,12 @@ impl Spin {
     }
 
     /// -n/n0 of FD-1.
-    #[must_use]
     #[inline]
     pub fn drive_fall_exponent(&self, secondary_rad_s: f64) -> f64 {
         -secondary_rad_s / self.drive_scale_rad_s
     }
 
     /// The same torque, Nm, with exp(-n/n0) known (FD-1).
-    #[must_use]
     #[inline]
     pub fn drive_with_fall_nm(
         &self,
@@ -131,7 +121,6 @@ impl Spin {
     }
 
     /// Torque at the secondary shaft for a torque after the final drive, both at the secondary's speed, Nm (FD-2).
-    #[must_use]
     #[inline]
     pub fn secondary_torque_nm(&self, drive_nm: f64, output_nm: f64) -> f64 {
         let through = output_nm + drive_nm;
@@ -146,7 +135,6 @@ impl Spin {
 
 impl SpinAtTemperature {
     /// Input shaft torque, Nm (IS-1).
-    #[must_use]
     #[inline]
     pub fn shaft_nm(&self, speed_rad_s: f64) -> f64 {
         self.shaft_constant_nm

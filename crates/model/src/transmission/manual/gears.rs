@@ -11,7 +11,6 @@ pub struct ShiftSpeeds {
 
 impl ShiftSpeeds {
     /// Gear at a speed, coming from `gear` (0: standing).
-    #[must_use]
     pub fn for_speed(&self, speed_m_s: f64, gear: u8, count: usize) -> u8 {
         let last = count.min(self.up_m_s.len() + 1);
         let mut gear = usize::from(gear).clamp(1, last);

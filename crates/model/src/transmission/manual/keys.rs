@@ -59,7 +59,6 @@ keys! {
 
 impl Manual {
     /// A checked manual gearbox from the values of `[transmission.manual]`.
-    #[must_use]
     pub fn from_values<V: Values>(s: &V) -> Self {
         let overall = s.numbers(&MANUAL.overall_ratios);
         if overall.windows(2).any(|r| r[0] <= r[1]) {

@@ -26,7 +26,7 @@ use crate::cycle::GearCommand;
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::maps::{LossMap, MapPoint};
-use crate::math::{clamp, exp, ln};
+use crate::math::{clamp, exp, larger, ln};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use std::sync::Arc;
@@ -114,7 +114,6 @@ impl Manual {
     }
 
     /// State at the beginning of a cycle.
-    #[must_use]
     pub fn start<P: PrimeMover>(&self, step: &StepInput<P>) -> DrivelineState {
         let gear = if step.wheel.wheel_rad_s > 0.0 {
             self.shifts
@@ -130,7 +129,7 @@ impl Manual {
         let idle = step.engine.idle_rad_s();
         DrivelineState {
             gear,
-            engine_rad_s: if input > idle { input } else { idle },
+            engine_rad_s: larger(input, idle),
             throttle: 0.0,
             secondary_pa: 0.0,
             coupled: input > idle,
@@ -166,7 +165,6 @@ impl Manual {
     }
 
     /// Solves one step.
-    #[must_use]
     pub fn solve<P: PrimeMover>(
         &self,
         step: &StepInput<P>,
@@ -320,7 +318,6 @@ impl Manual {
 
     /// Losses of the engaged box by component, Nm at the input shaft, for an output torque referred to the input (MB-1 to MB-4), and
     /// whether a map, if there is one, holds the point.
-    #[must_use]
     pub fn part_losses_nm(
         &self,
         gear: u8,

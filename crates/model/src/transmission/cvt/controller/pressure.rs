@@ -69,7 +69,6 @@ pub struct ClampSignals {
 
 impl MapLaw {
     /// Pressure before the cap, Pa (PC-1, PC-2).
-    #[must_use]
     #[inline(always)]
     pub fn pressure_pa(&self, s: &ClampSignals) -> f64 {
         let rise = self.slow_factor

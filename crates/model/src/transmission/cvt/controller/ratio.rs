@@ -14,7 +14,7 @@
 //! The power asked for is wheel power, so the ratio never chases its own losses.
 
 use crate::keys::{Values, keys};
-use crate::math::{clamp, exp, ln};
+use crate::math::{clamp, exp, ln, smaller};
 
 /// The checked controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +68,6 @@ pub struct RatioDemand {
 
 impl RatioControl {
     /// Target primary speed, rad/s (RC-1 to RC-3).
-    #[must_use]
     pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
         let share = d.power_w / d.rated_w;
         let drive = clamp(share / 0.01, 0.0, 1.0);
@@ -79,15 +78,10 @@ impl RatioControl {
         if share > 0.0 && d.full_load_rad_s > speed {
             speed = d.full_load_rad_s; // RC-3
         }
-        if speed < self.highest_rad_s {
-            speed
-        } else {
-            self.highest_rad_s
-        }
+        smaller(speed, self.highest_rad_s)
     }
 
     /// Ratio after the step and its change in ln I (RC-4, RC-5), and whether pump flow held it back.
-    #[must_use]
     pub fn step(&self, d: &RatioDemand) -> (f64, f64, bool) {
         let before = d.ratio_before;
         if d.secondary_rad_s <= 0.0 {
@@ -112,16 +106,8 @@ impl RatioControl {
         let short_of_flow =
             (change > 0.0 && d.flow_down_per_s < down && change > d.flow_down_per_s * d.dt_s)
                 || (change < 0.0 && d.flow_up_per_s < up && -change > d.flow_up_per_s * d.dt_s);
-        up = if d.flow_up_per_s < up {
-            d.flow_up_per_s
-        } else {
-            up
-        };
-        down = if d.flow_down_per_s < down {
-            d.flow_down_per_s
-        } else {
-            down
-        }; // RC-5
+        up = smaller(d.flow_up_per_s, up);
+        down = smaller(d.flow_down_per_s, down); // RC-5
         let (least, most) = (-up * d.dt_s, down * d.dt_s);
         if least <= change && change <= most {
             return (wanted, change, short_of_flow);

@@ -13,6 +13,7 @@
 //! No loss at I = 1, exactly (thesis 8.3). Losses carry no sign of torque: they are positive in drive and overrun.
 
 use super::{Belt, BeltAtRatio, Geometry, Tension};
+use crate::math::smaller;
 
 /// Boundary friction loss of each pulley, referred to the primary shaft, Nm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,17 +25,12 @@ pub struct BandLoss {
 }
 
 /// Friction-weighted sliding of the band pack per turn of the primary, times the wrap factor of each pulley, m (BT-2 to BT-4).
-#[must_use]
 pub fn slide_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
     let n = belt.band_count;
     let slide = (1.0 / g.ratio - 1.0).abs() / 2.0
         * (belt.band_offset_m + belt.band_thickness_m * (n - 1.0) / 2.0);
     let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
-    let least = if wraps[0] < wraps[1] {
-        wraps[0]
-    } else {
-        wraps[1]
-    };
+    let least = smaller(wraps[0], wraps[1]);
     wraps.map(|w| {
         if belt.formulation.scales_band_force() {
             slide * least / w
@@ -45,7 +41,6 @@ pub fn slide_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
 }
 
 /// Film shear torque per share, viscosity and speed over film thickness, m4 (FI-1).
-#[must_use]
 pub fn film_m4(belt: &Belt, g: &Geometry) -> f64 {
     let arcs =
         g.primary_radius_m * g.primary_wrap_rad + g.secondary_radius_m * g.secondary_wrap_rad;
@@ -59,7 +54,6 @@ pub fn film_m4(belt: &Belt, g: &Geometry) -> f64 {
 ///
 /// `speed_share` is the adopted band speed: its distance from the mean of the two required speeds over their difference, 0 for the
 /// mean, 0.5 for what the smaller pulley requires, -0.5 for the larger one's (thesis 8.3: within a few per cent of the mean).
-#[must_use]
 pub fn travel_m(belt: &Belt, g: &Geometry, speed_share: f64) -> [f64; 2] {
     let (p, s) = (1.0 / g.primary_radius_m, 1.0 / g.secondary_radius_m);
     let turns = belt.length_m / 2.0 * (p + s) - 2.0 * std::f64::consts::PI
@@ -68,14 +62,12 @@ pub fn travel_m(belt: &Belt, g: &Geometry, speed_share: f64) -> [f64; 2] {
 }
 
 /// Sliding speed of the innermost band in each arc, m/s (BT-1).
-#[must_use]
 #[inline]
 pub fn sliding_speed_m_s(belt: &Belt, ratio: f64, primary_speed_rad_s: f64) -> f64 {
     (1.0 / ratio - 1.0).abs() / 2.0 * belt.band_offset_m * primary_speed_rad_s.abs() // BT-1
 }
 
 /// Boundary friction loss of the bands (BT-3).
-#[must_use]
 #[inline]
 pub fn band_loss(at: &BeltAtRatio, t: &Tension, mu_band: f64) -> BandLoss {
     BandLoss {
@@ -85,7 +77,6 @@ pub fn band_loss(at: &BeltAtRatio, t: &Tension, mu_band: f64) -> BandLoss {
 }
 
 /// Viscous shear of the carrying film, torque at the primary shaft, Nm (FI-1).
-#[must_use]
 #[inline]
 pub fn film_loss_nm(at: &BeltAtRatio, film: &Film, primary_speed_rad_s: f64) -> f64 {
     film.share * film.eta_pa_s * at.prepared.film_m4 / film.thickness_m * primary_speed_rad_s.abs() // FI-1

@@ -27,14 +27,12 @@ pub struct Deflection {
 }
 
 /// Arcs over twice the segment thickness, referred to the primary shaft, 1/m; primary, secondary (WE-3).
-#[must_use]
 pub fn wedge_per_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
     let arcs = 0.5 * belt.formulation.wedge_arcs() / belt.segment_thickness_m;
     [arcs, arcs / g.ratio]
 }
 
 /// 2 `R_p` / t, times depth over deflection (PE-1).
-#[must_use]
 pub fn penetration(belt: &Belt, g: &Geometry) -> f64 {
     let depth = if belt.formulation.radial_penetration() {
         0.5 / belt.tan_wedge
@@ -45,7 +43,6 @@ pub fn penetration(belt: &Belt, g: &Geometry) -> f64 {
 }
 
 /// Wedge and penetration losses (WE-1 to PE-1).
-#[must_use]
 #[inline]
 pub fn deflection(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_flank: f64) -> Deflection {
     clamped(belt, at, t.primary_clamp_n, t.secondary_clamp_n, mu_flank)

@@ -36,21 +36,18 @@ impl Formulation {
     ];
 
     /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         let own = Self::NAMES.iter().find(|(_, other)| *other == self);
         own.map_or("", |(name, _)| name)
     }
 
     /// The formulation of a name.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let own = Self::NAMES.iter().find(|(other, _)| *other == name);
         own.map(|(_, formulation)| *formulation)
     }
 
     /// Segment friction where the formulation prescribes it; the fluid's otherwise.
-    #[must_use]
     #[inline]
     pub fn segment_friction(self, fluid: f64) -> f64 {
         match self {
@@ -61,42 +58,36 @@ impl Formulation {
     }
 
     /// Whether the bands may ride on oil: the film is no part of the thesis's two readings (LU-4, FI-1).
-    #[must_use]
     #[inline]
     pub fn has_film(self) -> bool {
         self == Formulation::Smooth
     }
 
     /// Band friction force scaled by the smaller wrap.
-    #[must_use]
     #[inline]
     pub fn scales_band_force(self) -> bool {
         self != Formulation::Chapter8
     }
 
     /// Idle slip of conventional loading with its sign (eq. 67) instead of its magnitude.
-    #[must_use]
     #[inline]
     pub fn signed_idle_slip(self) -> bool {
         self == Formulation::Chapter8
     }
 
     /// Slip loss of the idle arc counted (eq. 75, 76).
-    #[must_use]
     #[inline]
     pub fn counts_idle_arc(self) -> bool {
         self == Formulation::Chapter8
     }
 
     /// The program's extra minus on the primary slip of inverted loading.
-    #[must_use]
     #[inline]
     pub fn flips_inverted_primary(self) -> bool {
         self == Formulation::AppendixC
     }
 
     /// Wedge arcs counted for each pulley.
-    #[must_use]
     #[inline]
     pub fn wedge_arcs(self) -> f64 {
         if self == Formulation::Chapter8 {
@@ -107,21 +98,18 @@ impl Formulation {
     }
 
     /// Wedge force at the secondary from the secondary's own clamping.
-    #[must_use]
     #[inline]
     pub fn own_wedge_force(self) -> bool {
         self == Formulation::Chapter8
     }
 
     /// Penetration depth delta/(2 tan th) (eq. 95) instead of delta.
-    #[must_use]
     #[inline]
     pub fn radial_penetration(self) -> bool {
         self == Formulation::Chapter8
     }
 
     /// tan of the angle in the wedge terms: the program has a literal 11 degrees.
-    #[must_use]
     #[inline]
     pub fn wedge_tan(self, own: f64) -> f64 {
         if self == Formulation::AppendixC {
@@ -132,7 +120,6 @@ impl Formulation {
     }
 
     /// Part of the primary's deflection left near its end stop, from the ramp's value (1 away from the stop).
-    #[must_use]
     #[inline]
     pub fn primary_stop(self, ramp: f64) -> f64 {
         match self {
@@ -142,7 +129,6 @@ impl Formulation {
     }
 
     /// Segment compression as the slip equations take it: the program lifts \|C_x\| < 30 N to +30 N, the chapter to 30 N with its sign.
-    #[must_use]
     #[inline]
     pub fn compression_n(self, cx: f64) -> f64 {
         match self {

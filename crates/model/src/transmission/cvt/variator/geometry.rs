@@ -31,7 +31,6 @@ pub struct Geometry {
 
 impl Geometry {
     /// Solves the belt's geometry for a ratio, centre distance and belt length (GE-1 to GE-4).
-    #[must_use]
     pub fn new(ratio: f64, centre_distance_m: f64, belt_length_m: f64) -> Self {
         let (x, l) = (centre_distance_m, belt_length_m);
         let g = 1.0 - 1.0 / ratio;
@@ -61,7 +60,6 @@ impl Geometry {
     }
 
     /// Whether a belt of this length runs so: GE-3 holds, and each pulley carries at least one segment.
-    #[must_use]
     pub fn is_real(&self, belt_length_m: f64, segment_thickness_m: f64) -> bool {
         let arcs = [
             self.primary_radius_m * self.primary_wrap_rad,
@@ -72,7 +70,6 @@ impl Geometry {
     }
 
     /// Change of the secondary radius with the logarithm of the ratio, m (derived from GE-3 at constant length).
-    #[must_use]
     pub fn secondary_radius_slope_m(&self) -> f64 {
         // dL = beta_p dR_p + beta_s dR_s = 0 along the constraint, with dR_p = (dR_s - R_s dlnI)/I.
         let bp = self.primary_wrap_rad / self.ratio;

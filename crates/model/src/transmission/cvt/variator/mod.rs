@@ -28,7 +28,7 @@ pub use slip::Slip;
 pub use tension::{Tension, TensionInput};
 
 use crate::fluid::{BandFriction, Lubricant};
-use crate::math::{Curve, ln, ramp};
+use crate::math::{Curve, ln, ramp, smaller};
 
 /// The checked belt and pulleys.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,14 +81,12 @@ pub struct Belt {
 
 impl Belt {
     /// Cross-section of both band packs, m2.
-    #[must_use]
     #[inline]
     pub fn band_area_m2(&self) -> f64 {
         self.band_count * self.band_width_m * self.band_thickness_m
     }
 
     /// Sliding speed of the innermost band that can carry a film, m/s; 0 for formulations without a film.
-    #[must_use]
     #[inline]
     pub fn sliding_m_s(&self, ratio: f64, primary_rad_s: f64) -> f64 {
         if self.formulation.has_film() {
@@ -158,11 +156,7 @@ impl Prepared {
             g.primary_radius_m * g.primary_wrap_rad,
             g.secondary_radius_m * g.secondary_wrap_rad,
         ];
-        let least = if g.primary_wrap_rad < g.secondary_wrap_rad {
-            g.primary_wrap_rad
-        } else {
-            g.secondary_wrap_rad
-        };
+        let least = smaller(g.primary_wrap_rad, g.secondary_wrap_rad);
         Prepared {
             arc_m,
             count: arc_m.map(|a| a / pitch),
@@ -194,7 +188,6 @@ const FULL_STEP: f64 = 20.0;
 
 impl BeltAtRatio {
     /// Prepares a ratio.
-    #[must_use]
     pub fn new(belt: &Belt, ratio: f64) -> Self {
         let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
         let log = ln(ratio);
@@ -238,7 +231,6 @@ pub struct BeltLoad {
 
 impl BeltLoad {
     /// The lubricated belt without speed, torque and clamping force, for a viscosity at belt temperature and a band friction.
-    #[must_use]
     #[inline]
     pub fn unloaded(oil: &Lubricant, eta_pa_s: f64, band: BandFriction) -> Self {
         BeltLoad {
@@ -254,7 +246,6 @@ impl BeltLoad {
     }
 
     /// The lubricated belt at a temperature, K, that turns at a ratio and primary speed, without torque and clamping force.
-    #[must_use]
     pub fn turning(
         belt: &Belt,
         oil: &Lubricant,
@@ -321,7 +312,6 @@ pub struct BeltLosses {
 
 impl BeltLosses {
     /// All belt losses, Nm at the primary shaft.
-    #[must_use]
     #[inline]
     pub fn sum_nm(&self) -> f64 {
         self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
@@ -330,7 +320,6 @@ impl BeltLosses {
 
 impl BeltState {
     /// Losses, slip and capacity without the detail.
-    #[must_use]
     pub fn losses(&self) -> BeltLosses {
         BeltLosses {
             band_nm: self.band_nm,
@@ -345,7 +334,6 @@ impl BeltState {
     }
 
     /// All belt losses, Nm at the primary shaft.
-    #[must_use]
     #[inline]
     pub fn loss_nm(&self) -> f64 {
         self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
@@ -374,11 +362,7 @@ fn tension(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, direction: f64) -> Te
 /// Torque capacity at the secondary, Nm (VA-2).
 #[inline]
 fn capacity_nm(at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> f64 {
-    let weaker = if t.primary_clamp_n < t.secondary_clamp_n {
-        t.primary_clamp_n
-    } else {
-        t.secondary_clamp_n
-    };
+    let weaker = smaller(t.primary_clamp_n, t.secondary_clamp_n);
     weaker * mu_segment * at.prepared.capacity_m // VA-2
 }
 
@@ -462,20 +446,17 @@ fn state(at: &BeltAtRatio, load: &BeltLoad, parts: &Parts) -> BeltState {
 }
 
 /// Slip, losses and capacity at one operating point: the sums of [`belt_state`] without its detail.
-#[must_use]
 #[inline(always)]
 pub fn belt_losses(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltLosses {
     losses(load, &parts(belt, at, load))
 }
 
 /// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2).
-#[must_use]
 pub fn belt_capacity_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
     belt_losses(belt, at, load).capacity_nm
 }
 
 /// Solves the belt at one operating point.
-#[must_use]
 pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
     state(at, load, &parts(belt, at, load))
 }

@@ -29,7 +29,6 @@ impl PointStatus {
     ];
 
     /// Name as in the `status` column.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             PointStatus::Ok => "ok",
@@ -87,7 +86,6 @@ impl BeltPoint {
     ///
     /// `speed_share`: distance of the adopted speed from the mean over the difference of the speeds that the pulleys require, 0.5 for the
     /// smaller pulley's, -0.5 for the larger one's (BT-5).
-    #[must_use]
     pub fn with_band_speed(self, belt: &Belt, speed_share: f64) -> Self {
         BeltPoint {
             band_travel_m: travel_m(belt, &self.geometry, speed_share),
@@ -153,7 +151,6 @@ impl PointFlags {
     ];
 
     /// The flags of a point at a secondary pressure in Pa and a belt temperature in K.
-    #[must_use]
     pub fn new(
         point: &BeltPoint,
         load: &BeltLoad,
@@ -183,7 +180,6 @@ impl PointFlags {
     }
 
     /// Whether the flag of that place in [`PointFlags::NAMES`] is set.
-    #[must_use]
     pub fn has(self, place: usize) -> bool {
         self.0 >> place & 1 == 1
     }
@@ -202,7 +198,6 @@ impl PointFlags {
 ///
 /// The printed forms need a ratio other than 1 and a speed above zero; they take the load's segment friction as it is, no film,
 /// and 0.13 in wedging and penetration.
-#[must_use]
 pub fn belt_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoint {
     if belt.formulation == Formulation::Smooth {
         driving_point(belt, at, load)
@@ -212,7 +207,6 @@ pub fn belt_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoint {
 }
 
 /// The point with the smooth rules, whatever the belt's formulation: the same numbers as [`super::belt_state`].
-#[must_use]
 pub fn driving_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoint {
     let parts = parts(belt, at, load);
     let state = state(at, load, &parts);

@@ -14,6 +14,7 @@
 //! defined, so speed must be above zero. Beyond PR-4 the numbers are those of the printed program and mean nothing.
 
 use super::slip::{Contact, printed_area_m2};
+use crate::math::larger;
 
 /// Friction in wedging and penetration, whatever the segment friction is (PR-5).
 pub(super) const FLANK_FRICTION: f64 = 0.13;
@@ -50,7 +51,7 @@ pub(super) fn slip(c: &Contact) -> Option<PrintedSlip> {
         return None;
     }
     let whole = (cx / grip).ceil();
-    let k = if whole > 1.0 { whole } else { 1.0 }; // PR-2
+    let k = larger(whole, 1.0); // PR-2
     let (active, arc) = (k * pitch, prepared.arc_m[load]);
     let e_segs = cx
         * (prepared.strut_gap_m_n

@@ -17,7 +17,7 @@
 //! defined at standstill.
 
 use super::{Belt, BeltAtRatio, Tension};
-use crate::math::{clamp, exp, pair};
+use crate::math::{clamp, exp, larger, pair, smaller};
 
 /// Slip and its loss.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -63,7 +63,7 @@ pub(super) fn printed_area_m2(compression_n: f64) -> f64 {
 #[inline]
 fn arc_area_m2(compression_n: f64) -> f64 {
     let c = compression_n;
-    printed_area_m2(if c < MAX_AREA_N { c } else { MAX_AREA_N })
+    printed_area_m2(smaller(c, MAX_AREA_N))
 }
 
 /// What the slip equations of both branches look at; pairs are primary, secondary.
@@ -87,7 +87,7 @@ impl<'a> Contact<'a> {
         let prepared = &at.prepared;
         let grip = |clamp_n: f64, pulley: usize| {
             let n = mu_segment * clamp_n * prepared.normal_per_clamp[pulley];
-            if n > NO_GRIP_N { n } else { NO_GRIP_N }
+            larger(n, NO_GRIP_N)
         };
         Contact {
             belt,
@@ -126,20 +126,14 @@ fn branches(c: &Contact) -> Branches {
         prepared.arc_m,
         swapped(prepared.arc_m),
     );
-    let cx = [c.compression_n, -c.compression_n].map(|x| if x > 0.0 { x } else { 0.0 });
+    let cx = [c.compression_n, -c.compression_n].map(|x| larger(x, 0.0));
     let shoulder = [c.shoulder_n[0], -c.shoulder_n[1]];
     let grip = pair(|i| {
         let (grip, floor) = (c.grip_n[i] - shoulder[i], MIN_GRIP * c.grip_n[i]);
-        if grip > floor { grip } else { floor }
+        larger(grip, floor)
     });
     let k = pair(|i| cx[i] / grip[i]); // SL-4
-    let segments = pair(|i| {
-        if k[i] < prepared.count[i] {
-            k[i]
-        } else {
-            prepared.count[i]
-        }
-    });
+    let segments = pair(|i| smaller(k[i], prepared.count[i]));
     let active = segments.map(|n| n * pitch);
     let arcs = pair(|i| 0.5 * (active[i] + arc_other[i]) / (belt.youngs_pa * arc_area_m2(cx[i])));
     let e_segs = pair(|i| cx[i] * (prepared.strut_gap_m_n + arcs[i])); // SL-2
@@ -148,30 +142,13 @@ fn branches(c: &Contact) -> Branches {
     let per_grip = c.grip_n.map(|n| 1.0 / n);
     let lambda = pair(|i| {
         let lambda = shoulder[i] * per_grip[i];
-        if lambda > MIN_GRIP - 1.0 {
-            lambda
-        } else {
-            MIN_GRIP - 1.0
-        } // SL-10
+        larger(lambda, MIN_GRIP - 1.0) // SL-10
     });
     // Conventional loading takes the magnitude: the larger of the number and its opposite.
     let turned = [if f.signed_idle_slip() { 1.0 } else { -1.0 }, 1.0];
-    let idle = pair(|i| {
-        gap[i]
-            * if turned[i] * lambda[i] > lambda[i] {
-                turned[i] * lambda[i]
-            } else {
-                lambda[i]
-            }
-    }); // SL-6
+    let idle = pair(|i| gap[i] * larger(turned[i] * lambda[i], lambda[i])); // SL-6
     let free = pair(|i| gap[i] + idle[i]); // not below zero (SL-10)
-    let loaded = pair(|i| {
-        if belt.slip_bound < free[i] {
-            belt.slip_bound
-        } else {
-            free[i]
-        }
-    }); // SL-9
+    let loaded = pair(|i| smaller(belt.slip_bound, free[i])); // SL-9
     let total_other = swapped([
         cx[1] - c.shoulder_n[0] * prepared.count[0],
         cx[0] + c.shoulder_n[1] * prepared.count[1],
@@ -210,7 +187,6 @@ fn branches(c: &Contact) -> Branches {
 }
 
 /// Slip of both pulleys and its loss (SL-1 to SL-9).
-#[must_use]
 #[inline(always)]
 pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip {
     let contact = Contact::new(belt, at, t, mu_segment);

@@ -54,7 +54,6 @@ pub struct TensionInput {
 
 impl Tension {
     /// Solves tension and compression (TE-2 to TE-5).
-    #[must_use]
     #[inline(always)]
     pub fn new(g: &Geometry, input: &TensionInput) -> Self {
         let (mu, s, bp) = (input.mu_band, input.direction, g.primary_wrap_rad);
@@ -79,7 +78,6 @@ impl Tension {
     }
 
     /// Mean band tension (T1 + T2)/2, N (thesis eq. 39).
-    #[must_use]
     #[inline]
     pub fn mean_tension_n(&self, g: &Geometry) -> f64 {
         self.primary_shoulder_n / g.primary_wrap_rad
