@@ -12,6 +12,7 @@ mod common;
 mod fixtures;
 
 mod history;
+mod numbers;
 mod outputs;
 mod pictures;
 mod record;

@@ -171,22 +171,16 @@ impl ReportTable {
     pub fn of_numbers(
         caption: &str,
         first: &str,
-        columns: impl IntoIterator<Item = (String, String)>,
+        columns: impl IntoIterator<Item = (impl Into<String>, impl Into<String>)>,
     ) -> Self {
-        let first = ReportColumn {
-            name: first.to_owned(),
-            ..ReportColumn::default()
-        };
         let rest = columns.into_iter().map(|(name, unit)| ReportColumn {
-            name,
-            unit,
+            name: name.into(),
+            unit: unit.into(),
             number: true,
         });
-        ReportTable {
-            caption: caption.to_owned(),
-            columns: [first].into_iter().chain(rest).collect(),
-            ..ReportTable::default()
-        }
+        let mut table = Self::of_words(caption, &[first]);
+        table.columns.extend(rest);
+        table
     }
 
     /// A table of words.

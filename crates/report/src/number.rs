@@ -1,5 +1,7 @@
 //! Numbers to text: each kind of quantity has its decimals and its unit here and nowhere else.
 
+use cvtcycle_output::number;
+
 /// Between a number and its unit: they stay on one line.
 const SPACE: char = '\u{a0}';
 /// A minus sign as wide as the digits.
@@ -66,20 +68,16 @@ impl Quantity {
     /// The number alone, for a cell whose column has the unit.
     #[must_use]
     pub fn bare(self, x: impl Into<Option<f64>>) -> String {
-        match x.into().filter(|x| x.is_finite()) {
-            Some(x) if self == Quantity::Energy && x.abs() >= GROUPED => minus(&grouped(x)),
-            Some(x) => minus(&format!("{x:.*}", self.decimals())),
-            None => NONE.to_owned(),
-        }
+        let x = x.into().unwrap_or(f64::NAN);
+        let whole = self == Quantity::Energy && x.abs() >= GROUPED;
+        grouped(x, if whole { 0 } else { self.decimals() })
     }
 
     /// The number alone, with its sign.
     #[must_use]
     pub fn bare_signed(self, x: impl Into<Option<f64>>) -> String {
         let x = x.into();
-        let text = self.bare(x);
-        let plus = x.is_some_and(|x| x > 0.0) && text.bytes().any(|b| (b'1'..=b'9').contains(&b));
-        if plus { format!("+{text}") } else { text }
+        signed(self.bare(x), x.unwrap_or(f64::NAN))
     }
 
     /// The number with its unit.
@@ -103,27 +101,40 @@ impl Quantity {
     }
 }
 
-/// A whole number; of five digits and more with its thousands set apart by thin spaces.
-fn grouped(x: f64) -> String {
-    let digits = format!("{:.0}", x.abs());
-    let mut text = if x < 0.0 {
-        "-".to_owned()
-    } else {
-        String::new()
-    };
-    for (k, digit) in digits.chars().enumerate() {
-        if digits.len() > 4 && k > 0 && (digits.len() - k).is_multiple_of(3) {
-            text.push('\u{202f}');
-        }
-        text.push(digit);
+/// A number with decimals and a true minus; with five digits and more before the point, groups of three are set apart. [`NONE`] where it is
+/// not finite.
+#[must_use]
+pub fn grouped(x: f64, decimals: usize) -> String {
+    if !x.is_finite() {
+        return NONE.to_owned();
     }
-    text
+    let text = format!("{:.decimals$}", x.abs());
+    let whole = text.find('.').unwrap_or(text.len());
+    let mut out = if x < 0.0 { "-" } else { "" }.to_owned();
+    for (k, digit) in text.chars().enumerate() {
+        if whole > 4 && k > 0 && k < whole && (whole - k).is_multiple_of(3) {
+            out.push('\u{202f}');
+        }
+        out.push(digit);
+    }
+    minus(&out)
 }
 
-/// A true minus, and none before a zero.
-fn minus(text: &str) -> String {
+/// The text of a number, with a plus sign where it is positive and not rounded to zero.
+pub(crate) fn signed(text: String, x: f64) -> String {
+    let plus = x > 0.0 && has_digits(&text);
+    if plus { format!("+{text}") } else { text }
+}
+
+/// True for a text with a digit other than zero.
+fn has_digits(text: &str) -> bool {
+    text.bytes().any(|b| (b'1'..=b'9').contains(&b))
+}
+
+/// The text of a number with a true minus, and with none before a zero.
+pub(crate) fn minus(text: &str) -> String {
     match text.strip_prefix('-') {
-        Some(rest) if rest.bytes().any(|b| (b'1'..=b'9').contains(&b)) => format!("{MINUS}{rest}"),
+        Some(rest) if has_digits(rest) => format!("{MINUS}{rest}"),
         Some(rest) => rest.to_owned(),
         None => text.to_owned(),
     }
@@ -144,11 +155,8 @@ pub fn percent(part: impl Into<Option<f64>>, whole: f64) -> String {
 /// A small error such as 3e-15.
 #[must_use]
 pub fn tiny(x: Option<f64>) -> String {
-    match x {
-        Some(x) if x.abs() > 0.0 => format!("{x:.0e}").replace('-', &MINUS.to_string()),
-        Some(_) => "0".to_owned(),
-        None => NONE.to_owned(),
-    }
+    let text = |_| number::tiny(x).replace('-', &MINUS.to_string());
+    x.map_or_else(|| NONE.to_owned(), text)
 }
 
 /// A word of the program as people read it.
@@ -183,45 +191,4 @@ pub fn capital_first(text: &str) -> String {
         .map(|c| c.to_uppercase().collect::<String>())
         .unwrap_or_default()
         + letters.as_str()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_number_keeps_its_unit_and_loses_a_rounded_sign() {
-        assert_eq!(Quantity::Fuel.text(7.726), "7.73\u{a0}L/100\u{a0}km");
-        assert_eq!(Quantity::Percent.signed(5.94), "+5.9\u{a0}%");
-        assert_eq!(Quantity::Percent.signed(-0.01), "0.0\u{a0}%");
-        assert_eq!(Quantity::Percent.signed(0.01), "0.0\u{a0}%");
-        assert_eq!(Quantity::Percent.bare(-11.93), "\u{2212}11.9");
-        assert_eq!(Quantity::Energy.text(27199.1), "27\u{202f}199\u{a0}kJ");
-        assert_eq!(
-            Quantity::Energy.bare_signed(-1234567.0),
-            "\u{2212}1\u{202f}234\u{202f}567"
-        );
-        assert_eq!(
-            (Quantity::Energy.bare(999.96), Quantity::Energy.bare(999.94)),
-            ("1000".into(), "999.9".into())
-        );
-        assert_eq!(
-            (phase("ece15"), phase("eudc"), phase("cold_transient")),
-            ("ECE15".into(), "EUDC".into(), "cold transient".into())
-        );
-        assert_eq!(Quantity::Fuel.text(None), NONE);
-        assert_eq!(Quantity::Fuel.text(f64::NAN), NONE);
-        assert_eq!(
-            (degc(-10.0), degc(-0.0), degc(22.5)),
-            (
-                "\u{2212}10\u{a0}\u{b0}C".into(),
-                "0\u{a0}\u{b0}C".into(),
-                "22.5\u{a0}\u{b0}C".into()
-            )
-        );
-        assert_eq!(
-            (percent(1.0, 8.0), tiny(Some(3.2e-15)), capital("belt_band")),
-            ("12.5".into(), "3e\u{2212}15".into(), "Belt band".into())
-        );
-    }
 }

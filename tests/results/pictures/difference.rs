@@ -6,23 +6,19 @@ use cvtcycle::report::charts::figures::{Difference, DifferenceTerm, Term, differ
 
 fn two() -> Difference {
     let mut two = Difference {
-        a: "3 mm & <band>".to_owned(),
-        b: "2 mm".to_owned(),
-        fuel_kj_per_l: (32_000.0, 31_500.0),
-        distance_km: (11.0, 10.9),
+        names: ["3 mm & <band>".to_owned(), "2 mm".to_owned()],
+        fuel_kj_per_l: [32_000.0, 31_500.0],
+        distance_km: [11.0, 10.9],
         terms: vec![
-            DifferenceTerm::term("Heat to the engine", Term::EngineHeat, 15_000.0, 14_900.0),
-            DifferenceTerm::term("Rotating parts", Term::Kinetic, -0.8, 0.0),
-            DifferenceTerm::of(Component::BeltBand, 390.0, 520.5),
-            DifferenceTerm::of(Component::BeltWedge, 110.0, 110.0),
-            DifferenceTerm::term("Rolling and air", Term::Wheels, 2300.0, 2310.0),
+            DifferenceTerm::term("Heat to the engine", Term::EngineHeat, [15_000.0, 14_900.0]),
+            DifferenceTerm::term("Rotating parts", Term::Kinetic, [-0.8, 0.0]),
+            DifferenceTerm::of(Component::BeltBand, [390.0, 520.5]),
+            DifferenceTerm::of(Component::BeltWedge, [110.0, 110.0]),
+            DifferenceTerm::term("Rolling and air", Term::Wheels, [2300.0, 2310.0]),
         ],
         ..Difference::default()
     };
-    two.fuel_kj = (
-        two.terms.iter().map(|t| t.a_kj).sum(),
-        two.terms.iter().map(|t| t.b_kj).sum(),
-    );
+    two.fuel_kj = [0, 1].map(|k| two.terms.iter().map(|t| t.kj[k]).sum());
     two
 }
 
@@ -41,8 +37,8 @@ fn terms_add_up_to_the_difference_of_fuel() {
         );
     }
     let (a, b) = (
-        of.fuel_kj.0 / 32_000.0 / 11.0 * 100.0,
-        of.fuel_kj.1 / 31_500.0 / 10.9 * 100.0,
+        of.fuel_kj[0] / 32_000.0 / 11.0 * 100.0,
+        of.fuel_kj[1] / 31_500.0 / 10.9 * 100.0,
     );
     assert!((numbers(&fuel[6]) - (b - a)).abs() < 1e-4);
 }
@@ -75,13 +71,13 @@ fn less_goes_left_of_zero_and_more_goes_right() {
 #[test]
 fn what_is_missing_is_named_and_nothing_is_still_a_picture() {
     let mut of = two();
-    of.fuel_kj.1 += 50.0;
+    of.fuel_kj[1] += 50.0;
     assert!(difference_bars(&of).svg.contains("Not accounted for"));
     assert!(!difference_bars(&two()).svg.contains("Not accounted for"));
     check(&difference_bars(&Difference::default()));
     let same = Difference {
-        terms: vec![DifferenceTerm::of(Component::Seal, 5.0, 5.0)],
-        fuel_kj: (5.0, 5.0),
+        terms: vec![DifferenceTerm::of(Component::Seal, [5.0, 5.0])],
+        fuel_kj: [5.0, 5.0],
         ..two()
     };
     check(&difference_bars(&same));
@@ -89,16 +85,15 @@ fn what_is_missing_is_named_and_nothing_is_still_a_picture() {
         terms: vec![DifferenceTerm::term(
             &"n".repeat(99),
             Term::Other,
-            f64::NAN,
-            1e9,
+            [f64::NAN, 1e9],
         )],
-        fuel_kj: (0.0, 1e9),
+        fuel_kj: [0.0, 1e9],
         ..two()
     };
     check(&difference_bars(&broken));
     let falls = Difference {
-        terms: vec![DifferenceTerm::of(Component::Seal, 9.0, 5.0)],
-        fuel_kj: (9.0, 5.0),
+        terms: vec![DifferenceTerm::of(Component::Seal, [9.0, 5.0])],
+        fuel_kj: [9.0, 5.0],
         ..two()
     };
     check(&difference_bars(&falls));

@@ -10,14 +10,12 @@ fn two() -> Overlay {
     let panel = |title: &str, unit, a, b| OverlayPanel {
         title: title.to_owned(),
         unit,
-        a,
-        b,
+        runs: [a, b],
     };
     Overlay {
         title: "Two runs".to_owned(),
         subject: "ece15_eudc".to_owned(),
-        a: "one & <other>".to_owned(),
-        b: "name ".repeat(80),
+        names: ["one & <other>".to_owned(), "name ".repeat(80)],
         panels: vec![
             panel("Sump", "degC", wave(0.05, 1180), wave(0.04, 1000)),
             panel("Belt ratio", "-", gap, Vec::new()),
@@ -64,8 +62,7 @@ fn a_value_between_two_steps_is_interpolated() {
         .map(|time| (time, 0.0))
         .to_vec();
     let panel = |a, b| OverlayPanel {
-        a,
-        b,
+        runs: [a, b],
         ..OverlayPanel::default()
     };
     let picture = overlay(&Overlay {
@@ -100,7 +97,7 @@ fn nothing_is_still_a_picture() {
         ..Overlay::default()
     }));
     let broken = OverlayPanel {
-        a: vec![(f64::NAN, 1.0), (2.0, f64::INFINITY)],
+        runs: [vec![(f64::NAN, 1.0), (2.0, f64::INFINITY)], Vec::new()],
         ..OverlayPanel::default()
     };
     check(&overlay(&Overlay {

@@ -21,32 +21,72 @@ pub struct PictureTable {
     pub note: String,
 }
 
+/// Rows at most that are listed in the picture in words.
+const MAX_LISTED: usize = 12;
+
 impl PictureTable {
     /// A table of columns.
     #[must_use]
     pub fn new(columns: &[(&str, &'static str)]) -> Self {
+        let column = |(name, unit): &(&str, &'static str)| ((*name).to_owned(), *unit);
         PictureTable {
-            columns: columns
-                .iter()
-                .map(|(name, unit)| ((*name).to_owned(), *unit))
-                .collect(),
+            columns: columns.iter().map(column).collect(),
             ..PictureTable::default()
         }
     }
 
-    /// A table with names and units of its columns that are made at run time, and a note.
+    /// A table with names and units of its columns that are made at run time.
     #[must_use]
-    pub fn with_columns(columns: Vec<(String, &'static str)>, note: String) -> Self {
+    pub fn with_columns(columns: impl IntoIterator<Item = (String, &'static str)>) -> Self {
         PictureTable {
-            columns,
-            note,
+            columns: columns.into_iter().collect(),
             ..PictureTable::default()
         }
+    }
+
+    /// The table with a remark.
+    #[must_use]
+    pub fn note(mut self, note: impl Into<String>) -> Self {
+        self.note = note.into();
+        self
     }
 
     /// Adds a row and returns its index, for `data-row`.
-    pub fn push(&mut self, cells: Vec<String>) -> usize {
-        self.rows.push(cells);
+    pub fn push(&mut self, cells: impl IntoIterator<Item = String>) -> usize {
+        self.rows.push(cells.into_iter().collect());
         self.rows.len() - 1
+    }
+
+    /// The numbers of a column with their cells; none if it holds words, or nothing.
+    pub(crate) fn numbers(&self, column: usize) -> Option<Vec<(f64, &str)>> {
+        let cells = self.rows.iter().filter_map(|row| row.get(column));
+        let cells = cells.filter(|cell| !cell.is_empty());
+        let number = |cell: &String| cell.replace('\u{2212}', "-").parse().ok();
+        let numbers: Option<Vec<_>> = cells.map(|cell| Some((number(cell)?, &**cell))).collect();
+        numbers.filter(|list| !list.is_empty())
+    }
+
+    /// The numbers in words: the rows of a short table, the span of each column of a long one.
+    pub(crate) fn in_words(&self) -> String {
+        let head = |(name, unit): &(String, &'static str)| match *unit {
+            "" => name.clone(),
+            unit => format!("{name} [{unit}]"),
+        };
+        let heads: Vec<String> = self.columns.iter().map(head).collect();
+        if self.rows.is_empty() {
+            return String::new();
+        }
+        if self.rows.len() <= MAX_LISTED {
+            let rows: Vec<String> = self.rows.iter().map(|row| row.join(", ")).collect();
+            return format!("{}: {}", heads.join(", "), rows.join("; "));
+        }
+        let span = |(k, head): (usize, &String)| {
+            let numbers = self.numbers(k)?;
+            let low = numbers.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+            let high = numbers.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+            Some(format!("{head} from {} to {}", low.1, high.1))
+        };
+        let spans: Vec<String> = heads.iter().enumerate().filter_map(span).collect();
+        spans.join("; ")
     }
 }

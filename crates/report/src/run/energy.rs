@@ -3,22 +3,21 @@
 use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, percent};
 use super::Car;
-use crate::charts::figures::{CarEnergy, energy_flow, transmission_flow};
+use crate::charts::figures::{CarEnergy, Term, energy_flow, transmission_flow};
 
-/// Terms of the power ledger with their names.
-pub const TERMS: [(&str, &str); 7] = [
-    ("wheels", "rolling and air, net"),
-    ("brake", "brakes"),
-    ("losses", "transmission"),
-    ("accessories", "accessories"),
-    ("kinetic", "rotating parts"),
-    ("engine_heat", "heat to the engine"),
-    ("exhaust", "exhaust"),
+/// Terms of the power ledger with their names and what they are.
+pub(crate) const TERMS: [(&str, &str, Term); 7] = [
+    ("wheels", "rolling and air, net", Term::Wheels),
+    ("brake", "brakes", Term::Brake),
+    ("losses", "transmission", Term::Transmission),
+    ("accessories", "accessories", Term::Accessories),
+    ("kinetic", "rotating parts", Term::Kinetic),
+    ("engine_heat", "heat to the engine", Term::EngineHeat),
+    ("exhaust", "exhaust", Term::Exhaust),
 ];
 
 /// A car's ledger as the figures want it, kJ.
-#[must_use]
-pub fn car_energy(car: &Car) -> CarEnergy {
+fn car_energy(car: &Car) -> CarEnergy {
     let term = |name: &str| car.run.ledger_kj.get(name).unwrap_or(f64::NAN);
     CarEnergy {
         subject: car.run.vehicle.clone(),
@@ -37,26 +36,20 @@ pub fn car_energy(car: &Car) -> CarEnergy {
 pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
     let term = |car: &Car, name: &str| car.run.ledger_kj.get(name).unwrap_or(0.0);
     let fuel = subject.run.fuel_energy_kj - baseline.run.fuel_energy_kj;
-    let mut parts: Vec<(&str, f64)> = TERMS
-        .iter()
-        .map(|(name, words)| (*words, term(subject, name) - term(baseline, name)))
-        .collect();
+    let part = |(name, words, _)| (words, term(subject, name) - term(baseline, name));
+    let mut parts: Vec<(&str, f64)> = TERMS.into_iter().map(part).collect();
     parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let terms: Vec<String> = parts
-        .iter()
-        .filter(|(_, kj)| kj.abs() >= 0.5)
-        .map(|(words, kj)| format!("{words} {}", Quantity::Energy.signed(*kj)))
-        .collect();
-    let distances = (subject.run.distance_km - baseline.run.distance_km).abs();
-    let drive = if distances > 0.0005 {
-        format!(
-            " The two drive different distances ({} and {}), so distance is a part of it.",
-            Quantity::Distance.text(subject.run.distance_km),
-            Quantity::Distance.text(baseline.run.distance_km)
-        )
-    } else {
-        String::new()
-    };
+    let large = parts.iter().filter(|(_, kj)| kj.abs() >= 0.5);
+    let text = |(words, kj): &(&str, f64)| format!("{words} {}", Quantity::Energy.signed(*kj));
+    let terms: Vec<String> = large.map(text).collect();
+    let [own, other] = [subject, baseline].map(|car| car.run.distance_km);
+    let mut drive = String::new();
+    if (own - other).abs() > 0.0005 {
+        let [own, other] = [own, other].map(|km| Quantity::Distance.text(km));
+        drive = format!(
+            " The two drive different distances ({own} and {other}), so distance is a part of it."
+        );
+    }
     format!(
         "Against {} the fuel's energy differs by {}: {}.{drive}",
         baseline.run.vehicle,
@@ -110,8 +103,8 @@ fn balance(cars: &[Car]) -> ReportTable {
             })
             .collect()
     };
-    for (term, words) in TERMS {
-        table.named(words.to_owned(), cells(&|car| car.run.ledger_kj.get(term)));
+    for (term, words, _) in TERMS {
+        table.named(words, cells(&|car| car.run.ledger_kj.get(term)));
     }
     table.strong(
         "fuel".to_owned(),

@@ -18,7 +18,7 @@ use cvtcycle_output::record::{CarRecord, Record};
 use cvtcycle_output::summary::{RunSummary, StartWord, Summary};
 
 pub(super) use conditions::change_table;
-pub use energy::{TERMS, car_energy};
+pub(super) use energy::TERMS;
 pub use figures::fuel_map;
 pub use reproduce::hashes;
 

@@ -2,8 +2,8 @@
 
 use super::{MARGIN, RIGHT, TOP, WIDE_FOOT, subject};
 use crate::charts::engine::{
-    Axis, Block, Chart, Cut, DIVERGING, Key, Label, Panel, Rect, Shape, Style, at, between, cell,
-    stroke, text_width,
+    Axis, Block, Chart, Cut, DIVERGING, Key, Label, Panel, Rect, Style, at, between, cell,
+    optional_cell, stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::fit::outcome::Outcome;
@@ -31,11 +31,6 @@ const ON_DARK: &str = "#ffffff";
 pub fn correlation_plot(outcome: &Outcome) -> Picture {
     let count = outcome.parameters.len();
     let n = count.min(MAX_DRAWN);
-    let mut table = PictureTable::new(&[
-        ("Parameter", ""),
-        ("Other parameter", ""),
-        ("Correlation", ""),
-    ]);
     let mut notes =
         vec!["Columns bear the numbers of the rows. Crossed out: not known, for the data do not determine the parameter.".to_owned()];
     if n < count {
@@ -43,15 +38,15 @@ pub fn correlation_plot(outcome: &Outcome) -> Picture {
             "The first {n} of {count} parameters; correlation.csv has all."
         ));
     }
-    table.note = notes.join(" ");
+    let columns = ["Parameter", "Other parameter", "Correlation"].map(|name| (name, ""));
+    let mut table = PictureTable::new(&columns).note(notes.join(" "));
     let names = NAMES[usize::from(n > FEW)];
     let size = ((RIGHT - MARGIN - names) / n.max(1) as f64).min(CELL);
     let rect = Rect::new(MARGIN + names, TOP + HEAD, n as f64 * size, n as f64 * size);
-    let mut panel = Panel {
-        x_labels: false,
-        below: 14.0,
-        ..Panel::new(rect, Axis::bare(0.0, n as f64), Axis::bare(n as f64, 0.0))
-    };
+    let n_rows = n as f64;
+    let mut panel = Panel::new(rect, Axis::bare(0.0, n_rows), Axis::bare(n_rows, 0.0))
+        .x_labels(false)
+        .below(14.0);
     for i in 0..n {
         name(&mut panel, outcome, i, size);
         for j in 0..n {
@@ -66,20 +61,11 @@ pub fn correlation_plot(outcome: &Outcome) -> Picture {
         colours: (0..SLICES).map(colour).collect(),
         labels: [-1.0, -0.5, 0.0, 0.5, 1.0].map(label).into(),
     };
-    let chart = Chart {
-        title: "Correlation of the parameters".to_owned(),
-        subject: subject(outcome),
-        description: describe(outcome),
-        left: MARGIN,
-        panels: vec![panel],
-        foot: vec![
-            Block::key((MARGIN + 8.0, 260.0), key),
-            Block::notes(WIDE_FOOT, notes),
-        ],
-        table,
-        ..Chart::default()
-    };
-    chart.picture()
+    Chart::new("Correlation of the parameters", subject(outcome), MARGIN)
+        .panels([panel])
+        .foot(Block::key((MARGIN + 8.0, 260.0), key))
+        .notes(WIDE_FOOT, notes)
+        .picture(table)
 }
 
 /// Writes name and number of a row, and the number of its column.
@@ -102,19 +88,14 @@ fn name(panel: &mut Panel, outcome: &Outcome, i: usize, size: f64) {
 }
 
 fn correlation(outcome: &Outcome, i: usize, j: usize) -> Option<f64> {
-    outcome
-        .correlation
-        .get(i)?
-        .get(j)
-        .copied()
-        .flatten()
-        .filter(|r| r.is_finite())
+    let row = outcome.correlation.get(i)?;
+    (*row.get(j)?).filter(|r| r.is_finite())
 }
 
-fn cells(outcome: &Outcome, i: usize, j: usize) -> Vec<String> {
-    let names = [i, j].map(|k| outcome.parameters[k].name.clone());
-    let number = correlation(outcome, i, j).map_or_else(String::new, |r| cell(r, 0.001));
-    names.into_iter().chain([number]).collect()
+fn cells(outcome: &Outcome, i: usize, j: usize) -> [String; 3] {
+    let name = |k: usize| outcome.parameters[k].name.clone();
+    let number = optional_cell(correlation(outcome, i, j), 0.001);
+    [name(i), name(j), number]
 }
 
 fn colour(r: f64) -> String {
@@ -136,12 +117,9 @@ fn draw(
         Some(r) => Style::colour(&colour(r)),
         None => Style::default(),
     };
-    let style = Style {
-        stroke: Some(stroke("#dedede", 0.25, &[])),
-        row,
-        ..fill.class("cell")
-    };
-    panel.add(Shape::Rect(at(x, y), at(x + 1.0, y + 1.0)), style);
+    let mut style = fill.class("cell").edge(stroke("#dedede", 0.25, &[]));
+    style.row = row;
+    panel.rectangle(at(x, y), at(x + 1.0, y + 1.0), style);
     match r {
         _ if own => {}
         Some(r) if r.abs() >= STRONG && size >= HOLDS => {
@@ -152,36 +130,10 @@ fn draw(
         }
         Some(_) => {}
         None => {
-            let (low, high) = (
-                at(x, y + 1.0).shift(3.0, -3.0),
-                at(x + 1.0, y).shift(-3.0, 3.0),
-            );
+            let low = at(x, y + 1.0).shift(3.0, -3.0);
+            let high = at(x + 1.0, y).shift(-3.0, 3.0);
             let line = Style::line(stroke("#8c8c8c", 0.75, &[]));
-            panel.add(Shape::Segment(low, high), line);
+            panel.segment(low, high, line);
         }
     }
-}
-
-fn describe(outcome: &Outcome) -> String {
-    let n = outcome.parameters.len();
-    let mut pairs: Vec<(f64, usize, usize)> = (0..n)
-        .flat_map(|i| (0..i).map(move |j| (i, j)))
-        .filter_map(|(i, j)| Some((correlation(outcome, i, j)?, i, j)))
-        .collect();
-    pairs.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
-    let pair = |(r, i, j): &(f64, usize, usize)| {
-        format!(
-            "{} with {}: {}",
-            outcome.parameters[*i].name,
-            outcome.parameters[*j].name,
-            cell(*r, 0.01)
-        )
-    };
-    let list: Vec<String> = pairs.iter().take(12).map(pair).collect();
-    let words = if list.is_empty() {
-        "None is known".to_owned()
-    } else {
-        list.join("; ")
-    };
-    format!("Correlation of the fitted parameters, the strongest first. {words}.")
 }

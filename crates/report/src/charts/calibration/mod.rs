@@ -6,7 +6,7 @@ mod residuals;
 mod scatter;
 mod trace;
 
-use super::engine::{PLOT_LEFT, Symbol, WIDTH, cell, round_step};
+use super::engine::{PLOT_LEFT, Symbol, WIDTH, optional_cell, round_step};
 use super::picture::Picture;
 use cvtcycle_study::fit::outcome::{Outcome, Residual};
 
@@ -83,9 +83,8 @@ fn shown(outcome: &Outcome) -> (Vec<usize>, Option<String>) {
     let traced = all.iter().filter(|r| r.time_s.is_some()).count();
     let single = all.len() - traced;
     // Traces first: their neighbours look alike.
-    let of_traces = traced
-        .div_ceil(MAX_SHOWN.saturating_sub(single).max(MAX_SHOWN / 2))
-        .max(1);
+    let room = MAX_SHOWN.saturating_sub(single).max(MAX_SHOWN / 2);
+    let of_traces = traced.div_ceil(room).max(1);
     let of_single = single.div_ceil(MAX_SHOWN).max(1);
     let names = groups(outcome);
     let (mut counts, mut kept) = ([0_usize; 2], Vec::new());
@@ -98,14 +97,9 @@ fn shown(outcome: &Outcome) -> (Vec<usize>, Option<String>) {
             counts[kind] += 1;
         }
     }
-    let left = all.len() - kept.len();
-    let note = (left > 0).then(|| {
-        format!(
-            "{} of {} observations are shown; residuals.csv has all.",
-            kept.len(),
-            all.len()
-        )
-    });
+    let (count, all) = (kept.len(), all.len());
+    let note = format!("{count} of {all} observations are shown; residuals.csv has all.");
+    let note = (count < all).then_some(note);
     (kept, note)
 }
 
@@ -130,17 +124,9 @@ fn label(r: &Residual) -> String {
 
 /// A number of an observation for a cell, with three digits of its standard deviation.
 fn in_sd(x: Option<f64>, r: &Residual) -> String {
-    let scale = if r.sd > 0.0 && r.sd.is_finite() {
-        r.sd
-    } else {
-        1.0
-    };
-    x.map_or_else(String::new, |x| cell(x, round_step(scale / 200.0)))
-}
-
-/// The measured number, or the range, as two cells.
-fn measured_cells(r: &Residual) -> [String; 2] {
-    [in_sd(r.low, r), in_sd(r.high, r)]
+    let known = r.sd > 0.0 && r.sd.is_finite();
+    let scale = if known { r.sd } else { 1.0 };
+    optional_cell(x, round_step(scale / 200.0))
 }
 
 /// Whether a group has an error in common, and the sentence that has to go with computed numbers then.
@@ -150,4 +136,13 @@ fn common_note(outcome: &Outcome) -> Option<String> {
         "Computed numbers are without the common error of a group; residuals are with it."
             .to_owned()
     })
+}
+
+/// The root mean square of the residuals, for the picture in words.
+fn rms_in_words(outcome: &Outcome) -> String {
+    let number = |x: Option<f64>| x.map_or_else(|| "not known".to_owned(), |x| format!("{x:.2}"));
+    let [before, after, left_out] = outcome.rms_sd().map(number);
+    format!(
+        "Root mean square of the residuals in standard deviations: {before} with the files' values, {after} fitted, {left_out} predicted"
+    )
 }

@@ -2,8 +2,8 @@
 
 use super::{AFTER, BEFORE, MARGIN, RIGHT, TOP, WIDE_FOOT, subject, unit};
 use crate::charts::engine::{
-    Axis, Block, Chart, Cut, Entry, INK, Label, Panel, RULE, Shape, Stroke, Style, Symbol, at,
-    cell, round_step, row_middle, rows_panel, stroke,
+    Axis, Chart, Cut, Entry, INK, Label, Panel, RULE, Stroke, Style, Symbol, at, cell,
+    optional_cell, round_step, row_middle, rows_panel, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::charts::study::value;
@@ -28,18 +28,19 @@ const BOUND: Stroke = stroke(INK, 1.2, &[5.0, 3.0]);
 pub fn parameters_plot(outcome: &Outcome) -> Picture {
     let all = &outcome.parameters;
     let rows = &all[..all.len().min(MAX_ROWS)];
-    let mut table = PictureTable::new(&[
-        ("Parameter", ""),
-        ("Unit", ""),
-        ("Value of the files", ""),
-        ("Fitted", ""),
-        ("Standard error", ""),
-        ("Low", ""),
-        ("High", ""),
-        ("Prior mean", ""),
-        ("Prior sd", ""),
-        ("Share of the prior", "%"),
-    ]);
+    let names = [
+        "Parameter",
+        "Unit",
+        "Value of the files",
+        "Fitted",
+        "Standard error",
+        "Low",
+        "High",
+        "Prior mean",
+        "Prior sd",
+    ];
+    let mut table = PictureTable::new(&names.map(|name| (name, "")));
+    table.columns.push(("Share of the prior".to_owned(), "%"));
     table.rows = all.iter().map(cells).collect();
     let mut notes = vec!["Share of the prior: variance after the fit over variance before; near 100 % the data say nothing.".to_owned()];
     if rows.len() < all.len() {
@@ -65,20 +66,11 @@ pub fn parameters_plot(outcome: &Outcome) -> Picture {
         Entry::symbol(Symbol::CIRCLE, Symbol::open(INK), "Value of the files"),
         Entry::line(BOUND, "Bounds"),
     ];
-    let chart = Chart {
-        title: "Parameters".to_owned(),
-        subject: subject(outcome),
-        description: describe(outcome),
-        left: MARGIN,
-        panels: vec![panel],
-        foot: vec![
-            Block::legend(WIDE_FOOT, "", entries),
-            Block::notes(WIDE_FOOT, notes),
-        ],
-        table,
-        ..Chart::default()
-    };
-    chart.picture()
+    Chart::new("Parameters", subject(outcome), MARGIN)
+        .panels([panel])
+        .legend(WIDE_FOOT, entries)
+        .notes(WIDE_FOOT, notes)
+        .picture(table)
 }
 
 /// A step that leaves three digits of what a parameter is known to.
@@ -89,20 +81,20 @@ fn step(p: &Parameter) -> f64 {
 
 fn cells(p: &Parameter) -> Vec<String> {
     let step = step(p);
-    let number = |x: Option<f64>| x.map_or_else(String::new, |x| cell(x, step));
-    let bound = |x: f64| cell(x, round_step(((p.high - p.low) / 1000.0).abs().max(1e-300)));
+    let number = |x: Option<f64>| optional_cell(x, step);
+    let wide = round_step(((p.high - p.low) / 1000.0).abs().max(1e-300));
+    let [low, high] = [p.low, p.high].map(|x| cell(x, wide));
     vec![
         p.name.clone(),
         unit(&p.unit).to_owned(),
         number(Some(p.file_value)),
         number(Some(p.value)),
         number(p.standard_error),
-        bound(p.low),
-        bound(p.high),
+        low,
+        high,
         number(p.prior.map(|prior| prior[0])),
         number(p.prior.map(|prior| prior[1])),
-        p.prior_share
-            .map_or_else(String::new, |share| cell(100.0 * share, 0.1)),
+        optional_cell(p.prior_share.map(|share| 100.0 * share), 0.1),
     ]
 }
 
@@ -119,12 +111,9 @@ fn draw(panel: &mut Panel, row: usize, p: &Parameter) {
     }
     let style = |stroke: Stroke| Style::line(stroke).row(row);
     if let Some([mean, sd]) = p.prior.filter(|[mean, sd]| known(*mean) && sd.is_finite()) {
-        let ends = (place(mean - WIDE * sd, -6.0), place(mean + WIDE * sd, -6.0));
-        panel.add(Shape::Segment(ends.0, ends.1), style(PRIOR));
-        panel.add(
-            Shape::Segment(place(mean, -11.0), place(mean, -1.0)),
-            style(PRIOR),
-        );
+        let [low, high] = [mean - WIDE * sd, mean + WIDE * sd].map(|x| place(x, -6.0));
+        panel.segment(low, high, style(PRIOR));
+        panel.segment(place(mean, -11.0), place(mean, -1.0), style(PRIOR));
     }
     if known(p.file_value) {
         let style = Symbol::open(INK).row(row);
@@ -132,11 +121,9 @@ fn draw(panel: &mut Panel, row: usize, p: &Parameter) {
     }
     if known(p.value) {
         if let Some(error) = p.standard_error.filter(|x| x.is_finite()) {
-            let (low, high) = (p.value - WIDE * error, p.value + WIDE * error);
-            panel.add(
-                Shape::Segment(place(low, 6.0), place(high, 6.0)),
-                style(FITTED),
-            );
+            let ends = [p.value - WIDE * error, p.value + WIDE * error];
+            let [low, high] = ends.map(|x| place(x, 6.0));
+            panel.segment(low, high, style(FITTED));
         }
         let style = Symbol::filled(AFTER).row(row);
         panel.symbol(Symbol::CIRCLE, place(p.value, 6.0), 3.2, style);
@@ -146,12 +133,8 @@ fn draw(panel: &mut Panel, row: usize, p: &Parameter) {
 /// Writes name and bounds of a parameter on the left, value and remark on the right.
 fn describe_row(panel: &mut Panel, row: usize, p: &Parameter) {
     let span = p.high - p.low;
-    let bounds = format!(
-        "{} to {}{}",
-        value(p.low, span),
-        value(p.high, span),
-        after(p)
-    );
+    let [low, high] = [p.low, p.high].map(|x| value(x, span));
+    let bounds = format!("{low} to {high}{}", after(p));
     let left = |down: f64| at(f64::NEG_INFINITY, row_middle(row)).shift(-10.0, down);
     let right = |down: f64| at(f64::INFINITY, row_middle(row)).shift(10.0, down);
     let name = Label::new(left(-3.0), &p.name).end().class("row").row(row);
@@ -160,11 +143,8 @@ fn describe_row(panel: &mut Panel, row: usize, p: &Parameter) {
     panel.label(bounds.cut(Cut::Middle, NAMES - 14.0));
     let room = NUMBERS - 10.0;
     panel.label(Label::new(right(-3.0), found(p)).cut(Cut::Middle, room));
-    panel.label(
-        Label::new(right(11.0), remark(p))
-            .quiet()
-            .cut(Cut::Middle, room),
-    );
+    let remark = Label::new(right(11.0), remark(p)).quiet();
+    panel.label(remark.cut(Cut::Middle, room));
 }
 
 /// The unit after a number.
@@ -194,26 +174,4 @@ fn remark(p: &Parameter) -> String {
         (.., Some(share)) => format!("share of the prior {} %", cell(100.0 * share, 1.0)),
         _ => "no prior".to_owned(),
     }
-}
-
-fn describe(outcome: &Outcome) -> String {
-    let parameter = |p: &Parameter| {
-        format!(
-            "{}: {}, {} to {}, {}",
-            p.name,
-            found(p),
-            p.low,
-            p.high,
-            remark(p)
-        )
-    };
-    format!(
-        "Fitted parameters between their bounds. {}.",
-        outcome
-            .parameters
-            .iter()
-            .map(parameter)
-            .collect::<Vec<_>>()
-            .join("; ")
-    )
 }

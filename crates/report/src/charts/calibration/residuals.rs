@@ -1,11 +1,12 @@
 //! Residuals in standard deviations, observation by observation.
 
 use super::{
-    AFTER, BEFORE, LEFT_OUT, MARGIN, RIGHT, TOP, WIDE_FOOT, groups, label, shown, subject,
+    AFTER, BEFORE, LEFT_OUT, MARGIN, RIGHT, TOP, WIDE_FOOT, groups, label, rms_in_words, shown,
+    subject,
 };
 use crate::charts::engine::{
-    Axis, Block, CONTEXT, Chart, Cut, Entry, Label, Panel, Place, RULE, Rect, Shape, Style, Symbol,
-    at, cell, range, stroke,
+    Axis, CONTEXT, Chart, Cut, Entry, Label, Panel, Place, RULE, Rect, Style, Symbol, at,
+    optional_cell, range, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::fit::outcome::{Outcome, Residual};
@@ -35,6 +36,15 @@ enum Line<'a> {
     Group(&'a str),
     Alone,
     Observation(&'a Residual, usize),
+}
+
+impl<'a> Line<'a> {
+    fn observation(&self) -> Option<&'a Residual> {
+        match self {
+            Line::Observation(r, _) => Some(r),
+            _ => None,
+        }
+    }
 }
 
 /// Heights of lines, pixels: single numbers can be read as long as there are not too many, values of a trace follow each other closely.
@@ -81,7 +91,10 @@ pub fn residuals_plot(outcome: &Outcome) -> Picture {
     let mut notes = vec![
         "Grey band: two standard deviations. Within a measured range the residual is 0.".to_owned(),
     ];
-    let beyond = lines.iter().filter(|line| matches!(line, Line::Observation(r, _) if r.before_sd.is_some_and(|x| off(&axis, x)))).count();
+    let before = lines
+        .iter()
+        .filter_map(|line| line.observation()?.before_sd);
+    let beyond = before.filter(|x| off(&axis, *x)).count();
     if beyond > 0 {
         notes.push(format!("Triangles at the edge: {beyond} residuals with the files' values lie beyond it; the table has them."));
     }
@@ -93,39 +106,25 @@ pub fn residuals_plot(outcome: &Outcome) -> Picture {
         circle(Symbol::filled(AFTER), "Fitted"),
     ];
     if outcome.residuals.iter().any(|r| r.left_out_sd.is_some()) {
-        let name = "Predicted: fitted without its fold";
-        entries.push(Entry::symbol(
-            Symbol::DIAMOND,
+        let (style, name) = (
             Symbol::filled(LEFT_OUT),
-            name,
-        ));
+            "Predicted: fitted without its fold",
+        );
+        entries.push(Entry::symbol(Symbol::DIAMOND, style, name));
     }
-    let chart = Chart {
-        title: "Residuals".to_owned(),
-        subject: subject(outcome),
-        description: describe(outcome),
-        left: MARGIN,
-        panels: vec![panel(&lines, axis)],
-        foot: vec![
-            Block::legend(WIDE_FOOT, "", entries),
-            Block::notes(WIDE_FOOT, notes),
-        ],
-        table,
-        ..Chart::default()
-    };
-    chart.picture()
+    Chart::new("Residuals", subject(outcome), MARGIN)
+        .lead(rms_in_words(outcome))
+        .panels([panel(&lines, axis)])
+        .legend(WIDE_FOOT, entries)
+        .notes(WIDE_FOOT, notes)
+        .picture(table)
 }
 
 fn table() -> PictureTable {
-    let sd = |whose: &str| format!("{whose}, standard deviations");
-    PictureTable::new(&[
-        ("Group", ""),
-        ("Observation", ""),
-        ("Fold", ""),
-        (&sd("Files' values"), ""),
-        (&sd("Fitted"), ""),
-        (&sd("Predicted"), ""),
-    ])
+    let names = ["Group", "Observation", "Fold"].map(str::to_owned);
+    let whose = ["Files' values", "Fitted", "Predicted"];
+    let whose = whose.map(|whose| format!("{whose}, standard deviations"));
+    PictureTable::with_columns(names.into_iter().chain(whose).map(|name| (name, "")))
 }
 
 /// Observations by group; where there are not too many groups, each has its name above it, unless it has one observation only.
@@ -133,13 +132,8 @@ fn lines<'a>(
     outcome: &Outcome,
     rows: impl Iterator<Item = (&'a Residual, usize)>,
 ) -> Vec<Line<'a>> {
-    let size = |name: &str| {
-        outcome
-            .residuals
-            .iter()
-            .filter(|other| other.group == name)
-            .count()
-    };
+    let all = &outcome.residuals;
+    let size = |name: &str| all.iter().filter(|other| other.group == name).count();
     let names = groups(outcome);
     let named = names.len() <= 3 * MAX_NAMED
         && names.into_iter().filter(|name| size(name) > 1).count() <= MAX_NAMED;
@@ -147,7 +141,8 @@ fn lines<'a>(
     let mut last = "";
     for (r, row) in rows {
         if named && r.group != last {
-            lines.push(if size(&r.group) > 1 {
+            let several = size(&r.group) > 1;
+            lines.push(if several {
                 Line::Group(&r.group)
             } else {
                 Line::Alone
@@ -159,16 +154,11 @@ fn lines<'a>(
     lines
 }
 
-fn cells(r: &Residual) -> Vec<String> {
-    let number = |x: Option<f64>| x.map_or_else(String::new, |x| cell(x, 0.01));
-    vec![
-        r.group.clone(),
-        label(r),
-        r.fold.clone(),
-        number(r.before_sd),
-        number(Some(r.after_sd)),
-        number(r.left_out_sd),
-    ]
+fn cells(r: &Residual) -> impl Iterator<Item = String> {
+    let numbers = [r.before_sd, Some(r.after_sd), r.left_out_sd];
+    let words = [r.group.clone(), label(r), r.fold.clone()];
+    let numbers = numbers.map(|x| optional_cell(x, 0.01));
+    words.into_iter().chain(numbers)
 }
 
 fn off(axis: &Axis, x: f64) -> bool {
@@ -176,25 +166,12 @@ fn off(axis: &Axis, x: f64) -> bool {
 }
 
 fn axis(lines: &[Line]) -> Axis {
-    let observations = || {
-        lines.iter().filter_map(|line| {
-            if let Line::Observation(r, _) = line {
-                Some(*r)
-            } else {
-                None
-            }
-        })
-    };
-    let fitted = observations()
-        .flat_map(|r| [Some(r.after_sd), r.left_out_sd])
-        .flatten();
-    let (low, high) = range(fitted.chain([-BAND * 1.25, BAND * 1.25])).unwrap_or((-BAND, BAND));
-    let (least, most) = range(
-        observations()
-            .filter_map(|r| r.before_sd)
-            .chain([low, high]),
-    )
-    .unwrap_or((low, high));
+    let observations = || lines.iter().filter_map(Line::observation);
+    let fitted = observations().flat_map(|r| [Some(r.after_sd), r.left_out_sd]);
+    let ends = [-BAND * 1.25, BAND * 1.25];
+    let (low, high) = range(fitted.flatten().chain(ends)).unwrap_or((-BAND, BAND));
+    let before = observations().filter_map(|r| r.before_sd);
+    let (least, most) = range(before.chain([low, high])).unwrap_or((low, high));
     let limit = CLIP * low.abs().max(high.abs());
     let (low, high) = (least.max(-limit), most.min(limit));
     let room = 0.03 * (high - low);
@@ -204,19 +181,13 @@ fn axis(lines: &[Line]) -> Axis {
 /// The panel of all lines; its vertical axis counts pixels from the top.
 fn panel(lines: &[Line], x: Axis) -> Panel {
     let pitches = Pitch::of(lines);
-    let tall = lines
-        .iter()
-        .map(|line| pitches.height(line))
-        .sum::<f64>()
-        .max(60.0)
-        + 6.0;
+    let heights: f64 = lines.iter().map(|line| pitches.height(line)).sum();
+    let tall = heights.max(60.0) + 6.0;
     let rect = Rect::new(MARGIN + NAMES, TOP, RIGHT - MARGIN - NAMES, tall);
     let mut panel = Panel::new(rect, x, Axis::bare(tall, 0.0));
-    let corners = (at(-BAND, f64::NEG_INFINITY), at(BAND, f64::INFINITY));
-    let band = Style::colour(CONTEXT.colour)
-        .fill_opacity(0.16)
-        .class("band");
-    panel.add(Shape::Rect(corners.0, corners.1), band);
+    let band = Style::colour(CONTEXT.colour).fill_opacity(0.16);
+    let (low, high) = (at(-BAND, f64::NEG_INFINITY), at(BAND, f64::INFINITY));
+    panel.rectangle(low, high, band.class("band"));
     panel.upright(0.0, stroke(CONTEXT.colour, 1.4, &[]));
     let left = |y: f64| at(f64::NEG_INFINITY, y).shift(-NAMES, 0.0);
     let name = |y: f64, text: &str| Label::new(left(y), text).cut(Cut::End, NAMES - 12.0);
@@ -225,7 +196,7 @@ fn panel(lines: &[Line], x: Axis) -> Panel {
         let pitch = pitches.height(line);
         if !matches!(line, Line::Observation(..)) {
             let end = at(f64::INFINITY, top + 1.0);
-            panel.add(Shape::Segment(left(top + 1.0), end), Style::line(RULE));
+            panel.segment(left(top + 1.0), end, Style::line(RULE));
         }
         match line {
             Line::Alone => {}
@@ -255,7 +226,7 @@ fn marks(panel: &mut Panel, r: &Residual, (row, y): (usize, f64), pitch: f64) {
     if let Some(x) = r.before_sd.filter(|x| x.is_finite()) {
         if pitch > 8.0 && r.after_sd.is_finite() {
             let style = Style::line(stroke(BEFORE, 0.5, &[])).stroke_opacity(0.5);
-            panel.add(Shape::Segment(place(x), place(r.after_sd)), style.row(row));
+            panel.segment(place(x), place(r.after_sd), style.row(row));
         }
         // A triangle at the edge, for what lies beyond it.
         let (symbol, style) = if off(&panel.x, x) {
@@ -267,23 +238,10 @@ fn marks(panel: &mut Panel, r: &Residual, (row, y): (usize, f64), pitch: f64) {
     }
     let mut filled = |symbol: Symbol, x: f64, colour: &'static str| {
         if x.is_finite() {
-            panel.symbol(
-                symbol,
-                place(x),
-                0.9 * radius,
-                Symbol::filled(colour).row(row),
-            );
+            let style = Symbol::filled(colour).row(row);
+            panel.symbol(symbol, place(x), 0.9 * radius, style);
         }
     };
     filled(Symbol::DIAMOND, r.left_out_sd.unwrap_or(f64::NAN), LEFT_OUT);
     filled(Symbol::CIRCLE, r.after_sd, AFTER);
-}
-
-fn describe(outcome: &Outcome) -> String {
-    let number = |x: Option<f64>| x.map_or_else(|| "not known".to_owned(), |x| format!("{x:.2}"));
-    let [before, after, left_out] = outcome.rms_sd().map(number);
-    format!(
-        "Distance of computed from measured numbers over their standard deviation, by group. Root mean square: {before} with the files' values, \
-         {after} fitted, {left_out} predicted."
-    )
 }

@@ -1,12 +1,12 @@
 //! Measured against computed: a panel for each unit, a mark for each observation.
 
 use super::{
-    BEFORE, FOOT, RIGHT, TOP, common_note, groups, in_sd, label, measured_cells, shown, subject,
+    BEFORE, FOOT, RIGHT, TOP, common_note, groups, in_sd, label, rms_in_words, shown, subject,
     symbol, unit,
 };
 use crate::charts::engine::{
-    Axis, BELOW, Block, CONTEXT, Chart, Entry, LEFT, PLOT_LEFT, Panel, Rect, Shape, Style, Symbol,
-    at, grid, range, stroke,
+    Axis, BELOW, CONTEXT, Chart, Entry, LEFT, PLOT_LEFT, Panel, Rect, Style, Symbol, at, grid,
+    range, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::fit::outcome::{Outcome, Residual};
@@ -33,10 +33,8 @@ pub fn scatter_plot(outcome: &Outcome) -> Picture {
     notes.extend(thinned);
     notes.extend(common_note(outcome));
     if units.len() > MAX_PANELS {
-        notes.push(format!(
-            "In the table only: {}.",
-            units[MAX_PANELS..].join(", ")
-        ));
+        let others = units[MAX_PANELS..].join(", ");
+        notes.push(format!("In the table only: {others}."));
         units.truncate(MAX_PANELS);
     }
     table.note = notes.join(" ");
@@ -45,14 +43,12 @@ pub fn scatter_plot(outcome: &Outcome) -> Picture {
         let (symbol, colour) = symbol(&groups, name);
         Entry::symbol(symbol, Symbol::filled(colour), *name)
     };
-    let open = Entry::symbol(
-        Symbol::CIRCLE,
-        Symbol::open(BEFORE),
-        "open: with the files' values",
-    );
+    let (style, name) = (Symbol::open(BEFORE), "open: with the files' values");
+    let open = Entry::symbol(Symbol::CIRCLE, style, name);
     // A lone panel is larger.
     let room = (RIGHT - 8.0 - 2.0 * LEFT - GAP.0) / 2.0;
-    let size = if units.len() > 1 {
+    let several = units.len() > 1;
+    let size = if several {
         (room, 290.0)
     } else {
         (560.0, 440.0)
@@ -63,52 +59,33 @@ pub fn scatter_plot(outcome: &Outcome) -> Picture {
         let own = rows.iter().filter(|(r, _)| unit(&r.unit) == *name);
         draw(place(k), name, &own.copied().collect::<Vec<_>>(), &groups)
     };
-    let chart = Chart {
-        title: "Measured and computed".to_owned(),
-        subject: subject(outcome),
-        description: describe(outcome, &units),
-        left: PLOT_LEFT,
-        panels: units.iter().enumerate().map(panel).collect(),
-        foot: vec![
-            Block::legend(FOOT, "", groups.iter().map(entry).chain([open]).collect()),
-            Block::notes(FOOT, notes),
-        ],
-        table,
-        ..Chart::default()
-    };
-    chart.picture()
+    let entries = groups.iter().map(entry).chain([open]);
+    Chart::new("Measured and computed", subject(outcome), PLOT_LEFT)
+        .lead(rms_in_words(outcome))
+        .panels(units.iter().enumerate().map(panel))
+        .legend(FOOT, entries)
+        .notes(FOOT, notes)
+        .picture(table)
 }
 
 fn table() -> PictureTable {
-    PictureTable::new(&[
-        ("Group", ""),
-        ("Observation", ""),
-        ("Unit", ""),
-        ("Measured, or from", ""),
-        ("Measured, or to", ""),
-        ("Standard deviation", ""),
-        ("Files' values", ""),
-        ("Fitted", ""),
-    ])
+    let names = [
+        "Group",
+        "Observation",
+        "Unit",
+        "Measured, or from",
+        "Measured, or to",
+        "Standard deviation",
+        "Files' values",
+        "Fitted",
+    ];
+    PictureTable::new(&names.map(|name| (name, "")))
 }
 
-fn cells(r: &Residual) -> Vec<String> {
-    let [low, high] = measured_cells(r);
-    let computed = [
-        in_sd(Some(r.sd), r),
-        in_sd(r.before, r),
-        in_sd(Some(r.after), r),
-    ];
-    [
-        r.group.clone(),
-        label(r),
-        unit(&r.unit).to_owned(),
-        low,
-        high,
-    ]
-    .into_iter()
-    .chain(computed)
-    .collect()
+fn cells(r: &Residual) -> impl Iterator<Item = String> {
+    let words = [r.group.clone(), label(r), unit(&r.unit).to_owned()];
+    let numbers = [r.low, r.high, Some(r.sd), r.before, Some(r.after)];
+    words.into_iter().chain(numbers.map(|x| in_sd(x, r)))
 }
 
 /// Place of the mark of an observation on the measured axis: in the middle of a range, or at the end that there is.
@@ -126,37 +103,25 @@ fn bar(r: &Residual) -> [Option<f64>; 2] {
         (Some(low), Some(high)) if low.total_cmp(&high).is_eq() => {
             [Some(low - r.sd), Some(high + r.sd)]
         }
-        (low, high) => [
-            low.filter(|x| x.is_finite()),
-            high.filter(|x| x.is_finite()),
-        ],
+        (low, high) => [low, high].map(|x| x.filter(|x| x.is_finite())),
     }
 }
 
 fn draw(rect: Rect, name: &str, rows: &[(&Residual, usize)], groups: &[&str]) -> Panel {
     let seen = |r: &Residual| {
+        let ends = bar(r).into_iter().flatten();
         let computed = [r.after].into_iter().chain(r.before);
-        bar(r)
-            .into_iter()
-            .flatten()
-            .chain(computed)
-            .collect::<Vec<f64>>()
+        ends.chain(computed).collect::<Vec<f64>>()
     };
     let (low, high) = range(rows.iter().flat_map(|(r, _)| seen(r))).unwrap_or((0.0, 1.0));
     let span = high - low;
     let wide = span > 1e-9 * high.abs();
-    let room = if wide {
-        0.05 * span
-    } else {
-        0.1 * high.abs() + 1e-3
-    };
+    let lone = 0.1 * high.abs() + 1e-3;
+    let room = if wide { 0.05 * span } else { lone };
     let axis = |what: &str| Axis::exact(&format!("{what} [{name}]"), low - room, high + room, 7);
     let mut panel = Panel::new(rect, axis("Measured"), axis("Computed"));
-    let corners = (
-        at(f64::NEG_INFINITY, f64::NEG_INFINITY),
-        at(f64::INFINITY, f64::INFINITY),
-    );
-    panel.add(Shape::Segment(corners.0, corners.1), Style::line(CONTEXT));
+    let [low, high] = [f64::NEG_INFINITY, f64::INFINITY].map(|x| at(x, x));
+    panel.segment(low, high, Style::line(CONTEXT));
     for (r, row) in rows {
         let (Some(x), (symbol, colour)) = (place(r), symbol(groups, &r.group)) else {
             continue;
@@ -168,23 +133,9 @@ fn draw(rect: Rect, name: &str, rows: &[(&Residual, usize)], groups: &[&str]) ->
         let from = at(from.unwrap_or(f64::NEG_INFINITY), r.after);
         let to = at(to.unwrap_or(f64::INFINITY), r.after);
         let style = Style::line(stroke(colour, 0.75, &[])).stroke_opacity(0.6);
-        panel.add(Shape::Segment(from, to), style.row(*row));
-        panel.symbol(
-            symbol,
-            at(x, r.after),
-            RADIUS,
-            Symbol::filled(colour).row(*row),
-        );
+        panel.segment(from, to, style.row(*row));
+        let style = Symbol::filled(colour).row(*row);
+        panel.symbol(symbol, at(x, r.after), RADIUS, style);
     }
     panel
-}
-
-fn describe(outcome: &Outcome, units: &[&str]) -> String {
-    let [before, after, _] = outcome
-        .rms_sd()
-        .map(|x| x.map_or_else(|| "unknown".to_owned(), |x| format!("{x:.2}")));
-    format!(
-        "Computed over measured numbers, a panel for each of the units {}. Root mean square of the residuals {before} standard deviations with the files' values, {after} fitted.",
-        units.join(", ")
-    )
 }

@@ -2,7 +2,7 @@
 
 use super::{AFTER, BEFORE, FOOT, LEFT_OUT, TOP, common_note, in_sd, subject, unit};
 use crate::charts::engine::{
-    Axis, Block, Chart, Entry, INK, PLOT_LEFT, Panel, Rect, Shape, Stroke, Style, cell, stroke,
+    Axis, Chart, Entry, INK, PLOT_LEFT, Panel, Rect, Shape, Stroke, Style, optional_cell, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::fit::outcome::{Outcome, Residual};
@@ -27,49 +27,39 @@ const LINES: [(Stroke, &str); 4] = [
 /// Draws each measured column of each trace over time, with its name.
 #[must_use]
 pub fn trace_plots(outcome: &Outcome) -> Vec<(String, Picture)> {
+    let timed = |r: &&Residual| r.time_s.is_some_and(f64::is_finite);
     let mut found: Vec<(&str, &str, Vec<&Residual>)> = Vec::new();
-    for r in outcome
-        .residuals
-        .iter()
-        .filter(|r| r.time_s.is_some_and(f64::is_finite))
-    {
-        match found
-            .iter_mut()
-            .find(|(group, column, _)| *group == r.group && *column == r.column)
-        {
+    for r in outcome.residuals.iter().filter(timed) {
+        let same = |of: &&mut (&str, &str, Vec<_>)| of.0 == r.group && of.1 == r.column;
+        match found.iter_mut().find(same) {
             Some((.., list)) => list.push(r),
             None => found.push((&r.group, &r.column, vec![r])),
         }
     }
     let mut names: Vec<String> = Vec::new();
-    let mut pictures = Vec::new();
-    for (group, column, mut list) in found {
-        list.sort_by(|a, b| a.time_s.unwrap_or(0.0).total_cmp(&b.time_s.unwrap_or(0.0)));
+    let picture = |(group, column, mut list): (&str, &str, Vec<&Residual>)| {
+        list.sort_by(|a, b| time(a).total_cmp(&time(b)));
         let plain = format!("trace_{}_{}", word(group), word(column));
-        let same = names.iter().filter(|name| **name == plain).count();
-        let name = if same > 0 {
-            format!("{plain}_{}", same + 1)
-        } else {
-            plain.clone()
+        names.push(plain.clone());
+        let name = match names.iter().filter(|name| **name == plain).count() {
+            0 | 1 => plain,
+            same => format!("{plain}_{same}"),
         };
-        names.push(plain);
-        pictures.push((name, trace(outcome, group, column, &list)));
-    }
-    pictures
+        (name, trace(outcome, group, column, &list))
+    };
+    found.into_iter().map(picture).collect()
 }
 
 /// A name that can be part of a file's.
 fn word(name: &str) -> String {
-    name.chars()
-        .map(|c| {
-            if c.is_ascii_alphanumeric() {
-                c.to_ascii_lowercase()
-            } else {
-                '_'
-            }
-        })
-        .take(60)
-        .collect()
+    let plain = |c: char| {
+        if c.is_ascii_alphanumeric() {
+            c.to_ascii_lowercase()
+        } else {
+            '_'
+        }
+    };
+    name.chars().map(plain).take(60).collect()
 }
 
 /// Measured number, with the files' values, fitted, predicted.
@@ -89,10 +79,7 @@ fn trace(outcome: &Outcome, group: &str, column: &str, list: &[&Residual]) -> Pi
     let values = values.chain(list.iter().flat_map(ends_of_band));
     let y = Axis::round(&format!("{column} [{unit}]"), values, 8);
     let rect = Rect::new(PLOT_LEFT, TOP, FOOT.1, TALL);
-    let mut panel = Panel {
-        over_table: true,
-        ..Panel::new(rect, x_axis(list), y)
-    };
+    let mut panel = Panel::new(rect, x_axis(list), y).over_table();
     let seen = band_points(list);
     if seen.len() > 1 {
         let style = Style::colour(BAND_COLOUR).fill_opacity(0.3).class("band");
@@ -107,20 +94,11 @@ fn trace(outcome: &Outcome, group: &str, column: &str, list: &[&Residual]) -> Pi
             entries.push(Entry::line(stroke, name));
         }
     }
-    let chart = Chart {
-        title: format!("{column}, {group}"),
-        subject: subject(outcome),
-        description: format!(
-            "{column} of the data {group} over time: measured with two standard deviations, and computed. {}",
-            ends(list, unit)
-        ),
-        left: PLOT_LEFT,
-        panels: vec![panel],
-        foot: vec![Block::legend(FOOT, "", entries), Block::notes(FOOT, notes)],
-        table,
-        ..Chart::default()
-    };
-    chart.picture()
+    Chart::new(format!("{column}, {group}"), subject(outcome), PLOT_LEFT)
+        .panels([panel])
+        .legend(FOOT, entries)
+        .notes(FOOT, notes)
+        .picture(table)
 }
 
 fn time(r: &Residual) -> f64 {
@@ -153,46 +131,26 @@ fn band_points(list: &[&Residual]) -> Vec<(f64, f64, f64)> {
 }
 
 fn table(list: &[&Residual]) -> PictureTable {
-    let mut table = PictureTable::new(&[
-        ("Time", "s"),
-        ("Measured", ""),
-        ("Standard deviation", ""),
-        ("Files' values", ""),
-        ("Fitted", ""),
-        ("Predicted", ""),
-    ]);
+    let names = [
+        "Measured",
+        "Standard deviation",
+        "Files' values",
+        "Fitted",
+        "Predicted",
+    ];
+    let mut table = PictureTable::new(&[("Time", "s")]);
+    table
+        .columns
+        .extend(names.map(|name| (name.to_owned(), "")));
     let every = list.len().div_ceil(MAX_ROWS).max(1);
     for r in list.iter().step_by(every) {
-        let [measured, before, after, left_out] = numbers(r).map(|x| in_sd(x, r));
-        table.push(vec![
-            cell(r.time_s.unwrap_or(f64::NAN), 0.1),
-            measured,
-            in_sd(Some(r.sd), r),
-            before,
-            after,
-            left_out,
-        ]);
+        let [measured, before, after, left_out] = numbers(r);
+        let numbers = [measured, Some(r.sd), before, after, left_out];
+        let numbers = numbers.map(|x| in_sd(x, r));
+        table.push([optional_cell(r.time_s, 0.1)].into_iter().chain(numbers));
     }
     if every > 1 {
         table.note = format!("One value in {every} is listed; residuals.csv has all.");
     }
     table
-}
-
-fn ends(list: &[&Residual], unit: &str) -> String {
-    let end = |r: &Residual| {
-        let number = |x: Option<f64>| x.map_or_else(|| "nothing".to_owned(), |x| in_sd(Some(x), r));
-        let [measured, _, after, _] = numbers(r).map(number);
-        format!(
-            "{measured} measured and {after} fitted at {} s",
-            cell(r.time_s.unwrap_or(0.0), 0.1)
-        )
-    };
-    let list: Vec<String> = list
-        .first()
-        .into_iter()
-        .chain(list.last())
-        .map(|r| end(r))
-        .collect();
-    format!("{} [{unit}].", list.join("; "))
 }

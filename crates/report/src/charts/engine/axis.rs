@@ -1,5 +1,7 @@
 //! Axes: a range, ticks and their labels.
 
+use crate::number::minus;
+
 /// An axis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Axis {
@@ -23,16 +25,8 @@ impl Axis {
         let first = (low / step + 1e-9).floor();
         let last = (high / step - 1e-9).ceil();
         let near = |end: f64, value: f64| value.abs() > 0.0 && (end - value).abs() < 0.1 * step;
-        let low = if near(first * step, low) {
-            first - 0.5
-        } else {
-            first
-        };
-        let high = if near(last * step, high) {
-            last + 0.5
-        } else {
-            last
-        };
+        let half = |end: f64, value: f64| if near(end * step, value) { 0.5 } else { 0.0 };
+        let (low, high) = (first - half(first, low), last + half(last, high));
         Self::with_step(title, low * step, high * step, step)
     }
 
@@ -41,30 +35,20 @@ impl Axis {
         let ordered = low.is_finite() && high.is_finite() && low < high;
         let (low, high) = if ordered { (low, high) } else { (0.0, 1.0) };
         let (low, high) = widened(low, high);
-        Self::with_step(
-            title,
-            low,
-            high,
-            round_step((high - low) / most_ticks.max(2) as f64),
-        )
+        let step = round_step((high - low) / most_ticks.max(2) as f64);
+        Self::with_step(title, low, high, step)
     }
 
     fn with_step(title: &str, low: f64, high: f64, step: f64) -> Self {
         let first = (low / step - 1e-9).ceil();
-        let count = ((high - first * step) / step + 1e-9)
-            .floor()
-            .clamp(0.0, 50.0) as i32;
+        let count = ((high - first * step) / step + 1e-9).floor();
+        let count = count.clamp(0.0, 50.0) as i32;
         // Adding zero turns a negative zero into a plain one.
         let ticks = (0..=count)
             .map(|i| (first + f64::from(i)) * step + 0.0)
             .map(|value| (value, number(value, step)))
             .collect();
-        Axis {
-            title: title.to_string(),
-            low,
-            high,
-            ticks,
-        }
+        Self::labelled(title, (low, high), ticks)
     }
 
     /// An axis without ticks: what lies along it is named in other ways.
@@ -114,13 +98,7 @@ pub(crate) fn number(value: f64, step: f64) -> String {
         return format!("{value:.digits$e}");
     }
     let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 5.0) as usize;
-    let text = format!("{value:.decimals$}");
-    if !text.contains(|c: char| ('1'..='9').contains(&c)) {
-        return text.trim_start_matches('-').to_string();
-    }
-    // A true minus sign is as wide as the digits and does not break off.
-    text.strip_prefix('-')
-        .map_or_else(|| text.clone(), |rest| format!("\u{2212}{rest}"))
+    minus(&format!("{value:.decimals$}"))
 }
 
 /// A number for a cell, with as many decimals as `step` between neighbours needs; empty if it is not finite.
@@ -131,6 +109,11 @@ pub fn cell(value: f64, step: f64) -> String {
     } else {
         String::new()
     }
+}
+
+/// The same of a number that may be missing.
+pub(crate) fn optional_cell(value: Option<f64>, step: f64) -> String {
+    cell(value.unwrap_or(f64::NAN), step)
 }
 
 /// 1, 2 or 5 times a power of ten, not below `x`.

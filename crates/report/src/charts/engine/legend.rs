@@ -1,8 +1,8 @@
 //! Legends, keys of colours, and notes.
 
-use super::chart::{Block, Content, Entry, Key, Mark, Side, free};
-use super::label::draw_label;
+use super::chart::{Block, Content, Entry, Key, Mark, Side};
 use super::place::{Label, at};
+use super::render::draw_text as text;
 use super::style::{INK, Style, stroke};
 use super::svg::{Point, Rect, Svg};
 use super::text::{Cut, lines, text_width, wrap};
@@ -58,12 +58,6 @@ impl Block {
             }
         }
     }
-}
-
-/// Writes a label whose place is in pixels.
-fn text(svg: &mut Svg, label: Label) {
-    let panel = free(Rect::new(0.0, 0.0, svg.width, svg.height));
-    draw_label(svg, &panel, &label);
 }
 
 /// Number of columns of a legend, their width in pixels, and entries in each.

@@ -14,12 +14,8 @@ pub(crate) struct Place {
 
 /// A place in the units of the axes; infinite ones are the edges of the panel.
 pub(crate) fn at(x: f64, y: f64) -> Place {
-    Place {
-        x,
-        y,
-        dx: 0.0,
-        dy: 0.0,
-    }
+    let (dx, dy) = (0.0, 0.0);
+    Place { x, y, dx, dy }
 }
 
 impl Place {
@@ -29,22 +25,14 @@ impl Place {
     }
 }
 
-/// Which part of a text lies at its place.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Anchor {
-    #[default]
-    Start,
-    Middle,
-    End,
-}
-
 /// A line of text at its base line.
 #[derive(Clone, Debug)]
 pub(crate) struct Label {
     pub at: Place,
     pub text: String,
     pub size: f64,
-    pub anchor: Anchor,
+    /// Which part of the text lies at its place, as SVG has it.
+    pub anchor: &'static str,
     pub bold: bool,
     /// Whether it is turned to be read from the right.
     pub turned: bool,
@@ -65,7 +53,7 @@ impl Label {
             at,
             text: text.into(),
             size: 11.0,
-            anchor: Anchor::Start,
+            anchor: "start",
             bold: false,
             turned: false,
             ground: false,
@@ -78,56 +66,53 @@ impl Label {
     }
 
     /// The text ends at its place.
-    pub fn end(self) -> Self {
-        Label {
-            anchor: Anchor::End,
-            ..self
-        }
+    pub fn end(mut self) -> Self {
+        self.anchor = "end";
+        self
     }
 
     /// The middle of the text lies at its place.
-    pub fn middle(self) -> Self {
-        Label {
-            anchor: Anchor::Middle,
-            ..self
-        }
+    pub fn middle(mut self) -> Self {
+        self.anchor = "middle";
+        self
     }
 
-    pub fn size(self, size: f64) -> Self {
-        Label { size, ..self }
+    pub fn size(mut self, size: f64) -> Self {
+        self.size = size;
+        self
     }
 
-    pub fn bold(self, bold: bool) -> Self {
-        Label { bold, ..self }
+    pub fn bold(mut self, bold: bool) -> Self {
+        self.bold = bold;
+        self
     }
 
-    pub fn turned(self) -> Self {
-        Label {
-            turned: true,
-            ..self
-        }
+    pub fn turned(mut self) -> Self {
+        self.turned = true;
+        self
     }
 
     pub fn quiet(self) -> Self {
         self.colour(QUIET)
     }
 
-    pub fn colour(self, colour: &'static str) -> Self {
-        Label { colour, ..self }
+    pub fn colour(mut self, colour: &'static str) -> Self {
+        self.colour = colour;
+        self
     }
 
-    pub fn cut(self, cut: Cut, room: f64) -> Self {
-        Label { cut, room, ..self }
+    pub fn cut(mut self, cut: Cut, room: f64) -> Self {
+        (self.cut, self.room) = (cut, room);
+        self
     }
 
-    pub fn class(self, class: &'static str) -> Self {
-        Label { class, ..self }
+    pub fn class(mut self, class: &'static str) -> Self {
+        self.class = class;
+        self
     }
 
-    pub fn row(self, row: usize) -> Self {
-        Label {
-            row: Some(row),
-            ..self
-        }
+    pub fn row(mut self, row: usize) -> Self {
+        self.row = Some(row);
+        self
     }
 }

@@ -1,29 +1,25 @@
 //! The renderer: a chart becomes a picture.
 
-use super::backend::frame;
-use super::chart::{Chart, Item, Panel, Shape, WIDTH, free};
-use super::label::{draw_label, pixel};
+use super::chart::{Chart, WIDTH};
+use super::frame::frame;
+use super::panel::{Item, Panel, Shape, free};
 use super::place::{Label, Place, at};
-use super::style::{INK, QUIET, Style, stroke};
-use super::svg::{Path, Point, Rect, Svg};
-use super::text::Cut;
-use crate::charts::picture::Picture;
+use super::style::{INK, Style, marks, stroke};
+use super::svg::{Path, Point, Rect, Svg, units};
+use super::text::{Cut, text_width};
+use crate::charts::picture::{Picture, PictureTable};
 
 /// Size of the title and of the line below it, pixels.
 const TITLE: f64 = 15.0;
 const SUBJECT: f64 = 12.0;
 
 impl Chart {
-    /// Draws the chart.
-    pub fn picture(self) -> Picture {
+    /// Draws the chart, whose numbers are in a table.
+    pub fn picture(self, table: PictureTable) -> Picture {
         let width = if self.width > 0.0 { self.width } else { WIDTH };
-        let below = self
-            .panels
-            .iter()
-            .map(|panel| panel.rect.bottom + panel.below);
-        let below = below.fold(0.0, f64::max);
+        let ends = self.panels.iter().map(|p| p.rect.bottom + p.below);
+        let (mut top, mut row) = (ends.fold(0.0, f64::max), 0.0_f64);
         let mut tops = Vec::new();
-        let (mut top, mut row) = (below, 0.0_f64);
         for block in &self.foot {
             tops.push(top);
             row = row.max(block.height());
@@ -32,12 +28,8 @@ impl Chart {
                 row = 0.0;
             }
         }
-        let height = if self.foot.is_empty() {
-            top - 2.0
-        } else {
-            top + 6.0
-        };
-        let mut svg = Svg::new(width, height);
+        let margin = if self.foot.is_empty() { -2.0 } else { 6.0 };
+        let mut svg = Svg::new(width, top + margin);
         self.head(&mut svg);
         for panel in &self.panels {
             draw_panel(&mut svg, panel);
@@ -48,35 +40,41 @@ impl Chart {
         for (block, top) in self.foot.iter().zip(tops) {
             block.draw(&mut svg, top);
         }
-        let title = if self.subject.is_empty() {
-            self.title
-        } else {
-            format!("{}: {}", self.title, self.subject)
+        let title = match self.subject.as_str() {
+            "" => self.title.clone(),
+            subject => format!("{}: {subject}", self.title),
         };
-        Picture {
-            svg: svg.finish(&title, &self.description),
-            table: self.table,
-        }
+        let svg = svg.finish(&title, &self.alt_text(&table));
+        Picture { svg, table }
     }
 
     fn head(&self, svg: &mut Svg) {
         let room = svg.width - self.left - 10.0;
-        let panel = free(Rect::new(0.0, 0.0, svg.width, svg.height));
-        let title = Cut::End.apply(&self.title, TITLE, room);
-        let title = Label::new(at(self.left, 24.0), title)
-            .size(TITLE)
-            .bold(true);
-        draw_label(svg, &panel, &title);
-        let subject = Cut::End.apply(&self.subject, SUBJECT, room);
-        let subject = Label::new(at(self.left, 42.0), subject)
-            .size(SUBJECT)
-            .quiet();
-        draw_label(svg, &panel, &subject);
+        let text = |y: f64, text: &str, size: f64| {
+            Label::new(at(self.left, y), Cut::End.apply(text, size, room)).size(size)
+        };
+        draw_text(svg, text(24.0, &self.title, TITLE).bold(true));
+        draw_text(svg, text(42.0, &self.subject, SUBJECT).quiet());
+    }
+
+    /// The picture in words: its first sentence, the titles of its axes, its numbers.
+    fn alt_text(&self, table: &PictureTable) -> String {
+        let mut axes: Vec<String> = Vec::new();
+        for panel in self.panels.iter().filter(|panel| panel.framed) {
+            let titles = [panel.y.title.as_str(), &panel.x.title];
+            let titles = titles.into_iter().filter(|title| !title.is_empty());
+            let both = titles.collect::<Vec<_>>().join(" over ");
+            if !both.is_empty() && !axes.contains(&both) {
+                axes.push(both);
+            }
+        }
+        let parts = [self.lead.clone(), axes.join("; "), table.in_words()];
+        let parts = parts.into_iter().filter(|part| !part.is_empty());
+        parts.collect::<Vec<_>>().join(". ") + "."
     }
 }
 
 fn draw_panel(svg: &mut Svg, panel: &Panel) {
-    let rect = panel.rect;
     let columns: Vec<String> = panel.columns.iter().map(usize::to_string).collect();
     if !columns.is_empty() {
         svg.open(&format!("data-columns=\"{}\"", columns.join(" ")));
@@ -84,34 +82,27 @@ fn draw_panel(svg: &mut Svg, panel: &Panel) {
     if panel.framed {
         frame(svg, panel);
     }
-    let heading = Label::new(
-        at(f64::NEG_INFINITY, f64::INFINITY).shift(0.0, -7.0),
-        &panel.heading,
-    );
-    let heading = heading.size(12.0).bold(true).cut(Cut::End, rect.width());
+    let corner = at(f64::NEG_INFINITY, f64::INFINITY);
+    let heading = Label::new(corner.shift(0.0, -7.0), &panel.heading).size(12.0);
+    let heading = heading.bold(true).cut(Cut::End, panel.rect.width());
     draw_label(svg, panel, &heading);
     for item in &panel.items {
         draw(svg, panel, item);
     }
     if panel.no_data {
-        let middle = at(f64::NEG_INFINITY, f64::INFINITY);
-        let middle = middle.shift(0.5 * rect.width(), 0.5 * rect.height() + 4.0);
-        let label = Label::new(middle, "no data")
-            .size(12.0)
-            .middle()
-            .colour(QUIET);
-        draw_label(svg, panel, &label);
+        let (half_x, half_y) = (0.5 * panel.rect.width(), 0.5 * panel.rect.height());
+        let label = Label::new(corner.shift(half_x, half_y + 4.0), "no data");
+        draw_label(svg, panel, &label.size(12.0).middle().quiet());
     }
     if panel.framed {
         // Over the data, which cover half of the axis lines.
-        let mut paint = Style::line(stroke(INK, 0.75, &[]))
-            .class("plot")
-            .attributes(svg);
+        let border = Style::line(stroke(INK, 0.75, &[])).class("plot");
+        let mut paint = border.attributes(svg);
         if panel.over_table {
             let (low, high) = (panel.x.low, panel.x.high);
             paint += &format!(" data-x0=\"{low:?}\" data-x1=\"{high:?}\"");
         }
-        svg.rect(rect, &paint);
+        svg.rect(panel.rect, &paint);
     }
     if !columns.is_empty() {
         svg.close();
@@ -119,18 +110,12 @@ fn draw_panel(svg: &mut Svg, panel: &Panel) {
 }
 
 fn draw(svg: &mut Svg, panel: &Panel, item: &Item) {
-    let pixels = |points: &[Point]| -> Vec<Point> {
-        points
-            .iter()
-            .map(|(x, y)| (panel.px(*x), panel.py(*y)))
-            .collect()
-    };
     match &item.shape {
         Shape::Line(points) => draw_line(svg, panel, points, &item.style),
         Shape::Area(polygons) => {
             let mut path = Path::default();
             for polygon in polygons {
-                path.add_polygon(pixels(polygon));
+                path.add_polygon(polygon.iter().map(|point| panel.pixel(*point)));
             }
             let paint = item.style.attributes(svg);
             svg.path(path, &paint);
@@ -156,17 +141,11 @@ fn draw(svg: &mut Svg, panel: &Panel, item: &Item) {
         Shape::Label(label) => draw_label(svg, panel, label),
         Shape::Within(outline, items) => {
             let r = panel.rect;
-            let corners = || {
-                vec![
-                    (r.left, r.top),
-                    (r.right, r.top),
-                    (r.right, r.bottom),
-                    (r.left, r.bottom),
-                ]
+            let [a, b] = [r.top, r.bottom].map(|y| [(r.left, y), (r.right, y)]);
+            let outline = match outline {
+                Some(points) => points.iter().map(|point| panel.pixel(*point)).collect(),
+                None => vec![a[0], a[1], b[1], b[0]],
             };
-            let outline = outline
-                .as_ref()
-                .map_or_else(corners, |points| pixels(points));
             let clip = svg.clip(&Path::polygon(outline).finish());
             svg.open(&clip);
             for item in items {
@@ -197,10 +176,7 @@ fn draw_rect(svg: &mut Svg, panel: &Panel, (a, b): (Place, Place), style: &Style
 fn draw_line(svg: &mut Svg, panel: &Panel, points: &[Point], style: &Style) {
     let mut path = Path::default();
     for part in points.split(|(x, y)| !x.is_finite() || !y.is_finite()) {
-        let pixels: Vec<Point> = part
-            .iter()
-            .map(|(x, y)| (panel.px(*x), panel.py(*y)))
-            .collect();
+        let pixels: Vec<Point> = part.iter().map(|point| panel.pixel(*point)).collect();
         // What turns back on its way is drawn in full.
         let rising = pixels.is_sorted_by(|a, b| a.0 <= b.0);
         path.add_line(if rising { thinned(&pixels) } else { pixels });
@@ -226,4 +202,50 @@ fn thinned(points: &[Point]) -> Vec<Point> {
         kept.extend(chosen.into_iter().map(|i| column[i]));
     }
     kept
+}
+
+/// Writes a label whose place is in pixels.
+pub(super) fn draw_text(svg: &mut Svg, label: Label) {
+    let panel = free(Rect::new(0.0, 0.0, svg.width, svg.height));
+    draw_label(svg, &panel, &label);
+}
+
+/// Writes a label; of one that is cut the full text shows under the pointer.
+fn draw_label(svg: &mut Svg, panel: &Panel, label: &Label) {
+    let Some((x, y)) = pixel(panel, label.at).filter(|_| !label.text.is_empty()) else {
+        return;
+    };
+    let text = label.cut.apply(&label.text, label.size, label.room);
+    if label.ground {
+        let half = 0.5 * text_width(&text, label.size) + 1.0;
+        let ground = Rect::new(x - half, y - 11.0, 2.0 * half, 14.0);
+        let paint = Style::colour("#ffffff").fill_opacity(0.85).attributes(svg);
+        svg.rect(ground, &paint);
+    }
+    let ([x, y, size], anchor) = ([x, y, label.size].map(units), label.anchor);
+    let mut paint = marks(label.class, label.row);
+    paint += &format!(
+        "text-anchor=\"{anchor}\" font-family=\"sans-serif\" font-size=\"{size}\" fill=\"{}\"",
+        label.colour
+    );
+    if label.bold {
+        paint += " font-weight=\"bold\"";
+    }
+    if label.turned {
+        paint += &format!(" transform=\"rotate(-90 {x} {y})\"");
+    }
+    let cut = text != label.text;
+    if cut {
+        svg.open_titled(&label.text);
+    }
+    svg.text_element(&[("x", &x), ("y", &y)], &paint, &text);
+    if cut {
+        svg.close();
+    }
+}
+
+/// A place in pixels, if it is finite.
+fn pixel(panel: &Panel, place: Place) -> Option<Point> {
+    let (x, y) = (panel.px(place.x) + place.dx, panel.py(place.y) + place.dy);
+    (x.is_finite() && y.is_finite()).then_some((x, y))
 }

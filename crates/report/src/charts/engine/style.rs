@@ -58,10 +58,8 @@ impl Stroke {
         );
         if !self.dash.is_empty() {
             let dashes = self.dash.iter().map(|d| format!("{:.0}", d * UNITS));
-            text += &format!(
-                " stroke-dasharray=\"{}\"",
-                dashes.collect::<Vec<_>>().join(" ")
-            );
+            let dashes: Vec<String> = dashes.collect();
+            text += &format!(" stroke-dasharray=\"{}\"", dashes.join(" "));
         }
         text
     }
@@ -110,12 +108,8 @@ pub(crate) fn between(anchors: &[(f64, f64, f64)], share: f64) -> String {
     let cell = (place.floor() as usize).min(anchors.len() - 2);
     let (a, b, t) = (anchors[cell], anchors[cell + 1], place - cell as f64);
     let mix = |a: f64, b: f64| (a + (b - a) * t).round() as u8;
-    format!(
-        "#{:02x}{:02x}{:02x}",
-        mix(a.0, b.0),
-        mix(a.1, b.1),
-        mix(a.2, b.2)
-    )
+    let [red, green, blue] = [mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2)];
+    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 /// What an area is filled with: a colour, and a hatch that distinguishes it from its neighbours in print.
@@ -140,11 +134,8 @@ impl Fill {
 
     /// The fill `index` of `count`: lightness rises with the index; neighbours differ in their hatch too.
     pub fn nth(index: usize, count: usize) -> Self {
-        let share = if count > 1 {
-            index as f64 / (count - 1) as f64
-        } else {
-            0.4
-        };
+        let last = count.saturating_sub(1) as f64;
+        let share = if last > 0.0 { index as f64 / last } else { 0.4 };
         Fill::hatched(RAMP, share, index)
     }
 
@@ -226,42 +217,38 @@ impl Style {
 
     /// A filled area with a black edge of a width in pixels.
     pub fn edged(fill: Fill, width: f64) -> Self {
-        Style {
-            stroke: Some(stroke(INK, width, &[])),
-            ..Style::fill(fill)
-        }
+        Style::fill(fill).edge(stroke(INK, width, &[]))
     }
 
-    pub fn class(self, class: &'static str) -> Self {
-        Style { class, ..self }
+    pub fn class(mut self, class: &'static str) -> Self {
+        self.class = class;
+        self
     }
 
-    pub fn row(self, row: usize) -> Self {
-        Style {
-            row: Some(row),
-            ..self
-        }
+    pub fn row(mut self, row: usize) -> Self {
+        self.row = Some(row);
+        self
     }
 
-    pub fn fill_opacity(self, fill_opacity: f64) -> Self {
-        Style {
-            fill_opacity,
-            ..self
-        }
+    pub fn fill_opacity(mut self, opacity: f64) -> Self {
+        self.fill_opacity = opacity;
+        self
     }
 
-    pub fn stroke_opacity(self, stroke_opacity: f64) -> Self {
-        Style {
-            stroke_opacity,
-            ..self
-        }
+    pub fn stroke_opacity(mut self, opacity: f64) -> Self {
+        self.stroke_opacity = opacity;
+        self
     }
 
-    pub fn crisp(self) -> Self {
-        Style {
-            crisp: true,
-            ..self
-        }
+    /// Adds an edge.
+    pub fn edge(mut self, stroke: Stroke) -> Self {
+        self.stroke = Some(stroke);
+        self
+    }
+
+    pub fn crisp(mut self) -> Self {
+        self.crisp = true;
+        self
     }
 
     /// Its SVG attributes.

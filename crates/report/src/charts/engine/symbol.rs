@@ -68,10 +68,7 @@ impl Symbol {
 
     /// The style of a filled symbol.
     pub fn filled(colour: &'static str) -> Style {
-        Style {
-            stroke: Some(stroke(colour, 0.5, &[])),
-            ..Style::colour(colour)
-        }
+        Style::colour(colour).edge(stroke(colour, 0.5, &[]))
     }
 
     /// The style of an outline.
@@ -81,10 +78,7 @@ impl Symbol {
 
     /// The style of a white symbol with an outline of 1.5 px.
     pub fn white(colour: &'static str) -> Style {
-        Style {
-            stroke: Some(stroke(colour, 1.5, &[])),
-            ..Style::colour("#ffffff")
-        }
+        Style::colour("#ffffff").edge(stroke(colour, 1.5, &[]))
     }
 
     /// Draws it at a place in pixels.
@@ -93,10 +87,8 @@ impl Symbol {
         if self.0.is_empty() {
             return svg.circle((x, y), radius, &paint);
         }
-        let corners = self
-            .0
-            .iter()
-            .map(|(dx, dy)| (x + dx * radius, y + dy * radius));
+        let corners = self.0.iter();
+        let corners = corners.map(|(dx, dy)| (x + dx * radius, y + dy * radius));
         svg.path(Path::polygon(corners), &paint);
     }
 }

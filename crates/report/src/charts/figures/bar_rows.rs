@@ -1,28 +1,24 @@
 //! Rows of horizontal bars with a label at the outer end of each.
 
-use super::{TEXT, WIDTH};
+use super::{MARGIN, TEXT, WIDTH};
 use crate::charts::engine::{
-    Axis, Label, Panel, Point, Style, at, row_middle, rows_panel, text_width,
+    Axis, Chart, Label, Panel, Point, Style, at, row_middle, rows_panel, text_width,
 };
 
 /// Right edge of the bars, pixels.
-pub(super) const RIGHT: f64 = WIDTH - 18.0;
+const RIGHT: f64 = WIDTH - 18.0;
 /// Height of a row, pixels.
 const PITCH: f64 = 21.0;
 
-/// Room that the longest of the labels at the ends of bars needs, within reason, pixels.
-pub(super) fn label_room(labels: impl Iterator<Item = String>) -> f64 {
-    let widths = labels.map(|label| text_width(&label, TEXT));
-    (widths.fold(0.0, f64::max) + 12.0).clamp(60.0, 270.0)
-}
-
-/// An axis over values for bars from `left` on, with room for a label of `label` pixels at the outer end of every bar.
+/// An axis over values for bars from `left` on, with room for the longest of the labels at the outer ends of all bars, within reason.
 pub(super) fn axis_with_room(
     title: &str,
     left: f64,
     values: impl Iterator<Item = f64>,
-    label: f64,
+    labels: impl Iterator<Item = String>,
 ) -> Axis {
+    let widths = labels.map(|label| text_width(&label, TEXT));
+    let label = (widths.fold(0.0, f64::max) + 12.0).clamp(60.0, 270.0);
     let (mut low, mut high) = (0.0_f64, 0.0_f64);
     for value in values.filter(|x| x.is_finite()) {
         (low, high) = (low.min(value), high.max(value));
@@ -38,6 +34,32 @@ pub(super) fn axis_with_room(
 /// A panel of `count` rows with its upper left corner at a point.
 pub(super) fn bars_panel(corner: Point, count: usize, x: Axis) -> Panel {
     rows_panel(corner, RIGHT, count, PITCH, x)
+}
+
+/// Heights above a panel and between two panels, pixels.
+pub(super) type Gaps = (f64, f64);
+
+/// Adds panels of bars below each other, with one horizontal axis; `draw` gets the number and the upper left corner of each.
+pub(super) fn stacked(
+    chart: Chart,
+    (left, top): Point,
+    (heading, gap): Gaps,
+    count: usize,
+    mut draw: impl FnMut(usize, Point) -> Panel,
+) -> Chart {
+    let mut top = top + heading;
+    let panels = (0..count).map(|k| {
+        let panel = draw(k, (left, top)).x_labels(k + 1 == count);
+        top = panel.rect.bottom + gap + heading;
+        panel
+    });
+    let panels: Vec<Panel> = panels.collect();
+    chart.panels(panels)
+}
+
+/// A chart of bars with its title.
+pub(super) fn bar_chart(title: &str, subject: String) -> Chart {
+    Chart::new(title, subject, MARGIN)
 }
 
 /// Writes the name of a row.

@@ -1,8 +1,9 @@
 //! The energy flow of one car: all of it from fuel to wheel, and its transmission enlarged.
 
-use super::sankey::{Sankey, SankeyBranch, SankeyStage, sankey};
+use super::sankey::{Sankey, Stage, Whole, branch, sankey};
 use super::{Term, finite};
 use crate::charts::picture::Picture;
+use crate::number::capital;
 use cvtcycle_output::Component;
 
 /// Energies of one run, kJ: fuel = exhaust + heat to the engine + accessories + rotating energy + losses + brakes + wheels.
@@ -41,49 +42,44 @@ impl CarEnergy {
         self.transmission_kj() + finite(self.brake_kj) + finite(self.wheels_kj)
     }
 
-    fn at_wheels(&self) -> SankeyStage {
-        let branches = vec![
-            SankeyBranch::term("Brakes", Term::Brake, self.brake_kj),
-            SankeyBranch::term("Rolling and air", Term::Wheels, self.wheels_kj),
-        ];
-        SankeyStage {
-            name: "Wheels".to_owned(),
-            branches,
-        }
+    fn at_wheels(&self) -> Stage {
+        let brakes = branch("Brakes", Term::Brake, self.brake_kj);
+        let rolling = branch("Rolling and air", Term::Wheels, self.wheels_kj);
+        Stage::new("Wheels", vec![brakes, rolling])
+    }
+
+    fn whole(&self) -> Whole {
+        Whole::new("the fuel", self.fuel_kj)
     }
 }
 
 /// From fuel to wheel; the transmission is one branch.
 #[must_use]
 pub fn energy_flow(car: &CarEnergy) -> Picture {
-    let stage = |name: &str, branches: Vec<SankeyBranch>| SankeyStage {
-        name: name.to_owned(),
-        branches,
-    };
     let engine = vec![
-        SankeyBranch::term("Exhaust", Term::Exhaust, car.exhaust_kj),
-        SankeyBranch::term("Heat to the engine", Term::EngineHeat, car.engine_heat_kj),
+        branch("Exhaust", Term::Exhaust, car.exhaust_kj),
+        branch("Heat to the engine", Term::EngineHeat, car.engine_heat_kj),
     ];
-    let flywheel = vec![
-        SankeyBranch::term("Accessories", Term::Accessories, car.accessories_kj),
-        SankeyBranch::term("Rotating parts", Term::Kinetic, car.kinetic_kj),
+    let crankshaft = vec![
+        branch("Accessories", Term::Accessories, car.accessories_kj),
+        branch("Rotating parts", Term::Kinetic, car.kinetic_kj),
     ];
-    let transmission = vec![SankeyBranch::term(
+    let losses = branch(
         "Transmission losses",
         Term::Transmission,
         car.transmission_kj(),
-    )];
-    sankey(&Sankey {
-        title: "Energy from fuel to wheel".to_owned(),
-        subject: car.subject.clone(),
-        source: ("Fuel".to_owned(), car.fuel_kj),
+    );
+    sankey(Sankey {
+        title: "Energy from fuel to wheel",
+        subject: &car.subject,
+        source: Whole::new("Fuel", car.fuel_kj),
         stages: vec![
-            stage("Engine", engine),
-            stage("Crankshaft", flywheel),
-            stage("Transmission", transmission),
+            Stage::new("Engine", engine),
+            Stage::new("Crankshaft", crankshaft),
+            Stage::new("Transmission", vec![losses]),
             car.at_wheels(),
         ],
-        shares_of: vec![("the fuel".to_owned(), car.fuel_kj)],
+        shares_of: vec![car.whole()],
     })
 }
 
@@ -91,23 +87,16 @@ pub fn energy_flow(car: &CarEnergy) -> Picture {
 #[must_use]
 pub fn transmission_flow(car: &CarEnergy) -> Picture {
     let source = car.flywheel_kj();
-    let mut stages: Vec<SankeyStage> = car
-        .losses_kj
-        .iter()
-        .map(|(c, kj)| SankeyStage {
-            name: String::new(),
-            branches: vec![SankeyBranch::of(*c, *kj)],
-        })
-        .collect();
-    stages.push(car.at_wheels());
-    sankey(&Sankey {
-        title: "Energy through the transmission, flywheel to wheel".to_owned(),
-        subject: car.subject.clone(),
-        source: ("Flywheel".to_owned(), source),
-        stages,
-        shares_of: vec![
-            ("flywheel work".to_owned(), source),
-            ("the fuel".to_owned(), car.fuel_kj),
-        ],
+    let component = |(c, kj): &(Component, f64)| {
+        let branch = branch(&capital(c.name()), Term::Component(*c), *kj);
+        Stage::new("", vec![branch])
+    };
+    let stages = car.losses_kj.iter().map(component);
+    sankey(Sankey {
+        title: "Energy through the transmission, flywheel to wheel",
+        subject: &car.subject,
+        source: Whole::new("Flywheel", source),
+        stages: stages.chain([car.at_wheels()]).collect(),
+        shares_of: vec![Whole::new("flywheel work", source), car.whole()],
     })
 }

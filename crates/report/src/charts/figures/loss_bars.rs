@@ -1,8 +1,8 @@
 //! Losses of the transmission by component: a panel of bars for each car.
 
-use super::bar_rows::{at_end, axis_with_room, bar, bars_panel, label_room, name};
-use super::{MARGIN, TEXT, TOP, energy, finite, percent};
-use crate::charts::engine::{Axis, Chart, Fill, Panel, Style, cell, rows_left};
+use super::bar_rows::{at_end, axis_with_room, bar, bar_chart, bars_panel, name, stacked};
+use super::{TEXT, TOP, energy, finite, percent};
+use crate::charts::engine::{Axis, Fill, Panel, Point, Style, cell, rows_left};
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::capital;
 use cvtcycle_output::Component;
@@ -24,10 +24,6 @@ impl CarLosses {
     }
 }
 
-/// Heights above a panel and between panels, pixels.
-const HEADING: f64 = 24.0;
-const GAP: f64 = 16.0;
-
 /// Losses over the cycle by component, in the order of the power flow, with their share of the car's transmission loss.
 #[must_use]
 pub fn loss_by_component(cars: &[CarLosses]) -> Picture {
@@ -38,58 +34,42 @@ pub fn loss_by_component(cars: &[CarLosses]) -> Picture {
         ("share of the transmission's loss", "%"),
     ]);
     let all = || {
+        let of = |car: &CarLosses| car.losses_kj.clone();
+        let total = |car: &CarLosses| std::iter::repeat(car.total_kj());
         cars.iter()
-            .flat_map(|car| car.losses_kj.iter().map(move |(c, kj)| (car, c, *kj)))
+            .flat_map(move |car| of(car).into_iter().zip(total(car)))
     };
-    let names: Vec<String> = all().map(|(_, c, _)| capital(c.name())).collect();
+    let names: Vec<String> = all().map(|((c, _), _)| capital(c.name())).collect();
     let left = rows_left(names.iter().map(String::as_str), TEXT);
-    let room = label_room(all().map(|(car, _, kj)| label(kj, car.total_kj())));
-    let values = all().map(|(.., kj)| finite(kj));
-    let axis = axis_with_room("Energy lost over the cycle [kJ]", left, values, room);
-    let mut panels: Vec<Panel> = Vec::new();
-    let mut top = TOP + HEADING;
-    for car in cars {
-        panels.push(draw(car, (left, top), &axis, &mut table));
-        top = panels[panels.len() - 1].rect.bottom + GAP + HEADING;
-    }
-    if cars.is_empty() {
-        panels.push(Panel {
-            no_data: true,
-            ..bars_panel((left, top), 1, axis)
-        });
-    }
-    let last = panels.len() - 1;
-    for panel in &mut panels[..last] {
-        panel.x_labels = false;
-    }
-    let chart = Chart {
-        title: "Transmission losses by component".to_owned(),
-        subject: match cars {
-            [car] => car.name.clone(),
-            _ => format!(
-                "{} cars, one scale; components in the order of the power flow",
-                cars.len()
-            ),
-        },
-        description: describe(cars),
-        left: MARGIN,
-        panels,
-        table,
-        ..Chart::default()
+    let values = all().map(|((_, kj), _)| finite(kj));
+    let labels = all().map(|((_, kj), total)| label(kj, total));
+    let x = axis_with_room("Energy lost over the cycle [kJ]", left, values, labels);
+    let subject = match cars {
+        [car] => car.name.clone(),
+        _ => format!(
+            "{} cars, one scale; components in the order of the power flow",
+            cars.len()
+        ),
     };
-    chart.picture()
+    let draw = |k: usize, corner: Point| match cars.get(k) {
+        Some(car) => draw(car, corner, &x, &mut table),
+        None => bars_panel(corner, 1, x.clone()).no_data(true),
+    };
+    let chart = bar_chart("Transmission losses by component", subject);
+    stacked(chart, (left, TOP), (24.0, 16.0), cars.len().max(1), draw).picture(table)
 }
 
-fn draw(car: &CarLosses, corner: (f64, f64), x: &Axis, table: &mut PictureTable) -> Panel {
+fn draw(car: &CarLosses, corner: Point, x: &Axis, table: &mut PictureTable) -> Panel {
     let total = car.total_kj();
-    let mut panel = bars_panel(corner, car.losses_kj.len(), x.clone());
-    panel.heading = format!("{}: {} in all", car.name, energy(total));
-    panel.no_data = car.losses_kj.is_empty();
+    let mut panel = bars_panel(corner, car.losses_kj.len(), x.clone())
+        .heading(format!("{}: {} in all", car.name, energy(total)))
+        .no_data(car.losses_kj.is_empty());
     for (row, (component, kj)) in car.losses_kj.iter().enumerate() {
         let words = capital(component.name());
         let numbers = [*kj, 100.0 * kj / total].map(|x| cell(x, 0.01));
-        let cells = [vec![car.name.clone(), words.clone()], numbers.to_vec()].concat();
-        let style = Style::edged(Fill::component(*component), 0.5).row(table.push(cells));
+        let names = [car.name.clone(), words.clone()];
+        let at_row = table.push(names.into_iter().chain(numbers));
+        let style = Style::edged(Fill::component(*component), 0.5).row(at_row);
         name(&mut panel, row, &words, false);
         bar(&mut panel, row, (0.0, finite(*kj)), style);
         at_end(&mut panel, row, finite(*kj), false, label(*kj, total));
@@ -98,35 +78,8 @@ fn draw(car: &CarLosses, corner: (f64, f64), x: &Axis, table: &mut PictureTable)
 }
 
 fn label(kj: f64, total: f64) -> String {
-    let share = percent(kj, total);
-    if share.is_empty() {
-        energy(kj)
-    } else {
-        format!("{}, {share}", energy(kj))
+    match percent(kj, total).as_str() {
+        "" => energy(kj),
+        share => format!("{}, {share}", energy(kj)),
     }
-}
-
-fn describe(cars: &[CarLosses]) -> String {
-    let car = |car: &CarLosses| {
-        let total = car.total_kj();
-        let part = |(c, kj): &(Component, f64)| {
-            format!(
-                "{} {} {}",
-                capital(c.name()).to_lowercase(),
-                energy(*kj),
-                percent(*kj, total)
-            )
-        };
-        let parts: Vec<String> = car.losses_kj.iter().map(part).collect();
-        format!(
-            "{}: {} in all; {}",
-            car.name,
-            energy(total),
-            parts.join(", ")
-        )
-    };
-    format!(
-        "Energy lost by component over the cycle. {}.",
-        cars.iter().map(car).collect::<Vec<_>>().join(". ")
-    )
 }

@@ -2,8 +2,8 @@
 
 use super::{TOP, Term, finite};
 use crate::charts::engine::{
-    Axis, Block, Chart, Entry, Fill, PLOT_LEFT, Panel, Rect, Shape, Style, WIDTH, at, cell, number,
-    range, round_step,
+    Axis, Chart, Entry, Fill, PLOT_LEFT, Panel, Rect, Style, WIDTH, at, cell, number, range,
+    round_step,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::capital;
@@ -60,17 +60,14 @@ pub fn loss_by_temperature(of: &LossTrace) -> Picture {
     let [mut upper, mut lower] = panels(&bins);
     let mut table = table(of, left_out_s);
     for bin in &bins {
-        let mut cells = vec![cell(bin.low_degc, 1.0), cell(bin.high_degc, 1.0)];
-        let watts = bin
-            .joule
-            .iter()
-            .map(|joule| joule / bin.seconds)
-            .chain([bin.watts()]);
-        cells.extend([bin.seconds].into_iter().chain(watts).map(|x| cell(x, 0.1)));
-        let row = table.push(cells);
+        let mean = |joule: &f64| joule / bin.seconds;
+        let watts = bin.joule.iter().map(mean).chain([bin.watts()]);
+        let numbers = [bin.seconds].into_iter().chain(watts).map(|x| cell(x, 0.1));
+        let ends = [bin.low_degc, bin.high_degc].map(|x| cell(x, 1.0));
+        let row = table.push(ends.into_iter().chain(numbers));
         let mut base = 0.0;
         for (joule, (component, _)) in bin.joule.iter().zip(&of.losses_w) {
-            let next = base + joule / bin.seconds;
+            let next = base + mean(joule);
             column(
                 &mut upper,
                 bin,
@@ -80,30 +77,19 @@ pub fn loss_by_temperature(of: &LossTrace) -> Picture {
             );
             base = next;
         }
-        column(
-            &mut lower,
-            bin,
-            (0.0, bin.seconds),
-            Term::Other.fill(None),
-            row,
-        );
+        column(&mut lower, bin, (0.0, bin.seconds), Term::Other.fill(), row);
     }
     let entry = |(c, _): &(Component, _)| Entry::fill(Fill::component(*c), capital(c.name()));
     let place = (PLOT_LEFT, WIDE);
-    let chart = Chart {
-        title: "Transmission losses against oil temperature".to_owned(),
-        subject: of.subject.clone(),
-        description: describe(&bins),
-        left: PLOT_LEFT,
-        panels: vec![upper, lower],
-        foot: vec![
-            Block::legend(place, "", of.losses_w.iter().map(entry).collect()),
-            Block::notes(place, vec![REMARK.to_owned()]),
-        ],
-        table,
-        ..Chart::default()
-    };
-    chart.picture()
+    Chart::new(
+        "Transmission losses against oil temperature",
+        &of.subject,
+        PLOT_LEFT,
+    )
+    .panels([upper, lower])
+    .legend(place, of.losses_w.iter().map(entry))
+    .notes(place, vec![REMARK.to_owned()])
+    .picture(table)
 }
 
 /// Empty panels for loss power and for time over the bins.
@@ -115,24 +101,17 @@ fn panels(bins: &[Bin]) -> [Panel; 2] {
     let seconds = bins.iter().map(|bin| bin.seconds).chain([0.0]);
     let upper = Rect::new(PLOT_LEFT, TOP, WIDE, TALL);
     let lower = Rect::new(PLOT_LEFT, TOP + TALL + GAP, WIDE, STRIP);
-    let panels = [
-        Panel::new(upper, x(), Axis::round("Mean loss power [W]", watts, 7)),
+    [
+        Panel::new(upper, x(), Axis::round("Mean loss power [W]", watts, 7)).x_labels(false),
         Panel::new(lower, x(), Axis::round("Time [s]", seconds, 3)),
-    ];
-    panels.map(|panel| Panel {
-        x_labels: panel.rect == lower,
-        no_data: bins.is_empty(),
-        ..panel
-    })
+    ]
+    .map(|panel| panel.no_data(bins.is_empty()))
 }
 
 fn column(panel: &mut Panel, bin: &Bin, (from, to): (f64, f64), fill: Fill, row: usize) {
     if to > from {
         let style = Style::edged(fill, 0.25).class("bar").row(row);
-        panel.add(
-            Shape::Rect(at(bin.low_degc, to), at(bin.high_degc, from)),
-            style,
-        );
+        panel.rectangle(at(bin.low_degc, to), at(bin.high_degc, from), style);
     }
 }
 
@@ -140,10 +119,11 @@ fn column(panel: &mut Panel, bin: &Bin, (from, to): (f64, f64), fill: Fill, row:
 fn bins(of: &LossTrace) -> (Vec<Bin>, f64) {
     let moved = |i: &usize| {
         let at = |list: &[f64]| list.get(*i).copied().unwrap_or(f64::NAN);
+        let seconds = at(of.seconds);
         at(of.speed_kmh) > REST_KMH
             && at(of.sump_degc).is_finite()
-            && at(of.seconds) > 0.0
-            && at(of.seconds).is_finite()
+            && seconds > 0.0
+            && seconds.is_finite()
     };
     let steps: Vec<usize> = (0..of.seconds.len()).filter(moved).collect();
     let Some((low, high)) = range(steps.iter().map(|i| of.sump_degc[*i])) else {
@@ -157,14 +137,13 @@ fn bins(of: &LossTrace) -> (Vec<Bin>, f64) {
     let first = (low / size).floor();
     let count = ((high / size).floor() - first) as usize + 1;
     let edge = |k: usize| (first + k as f64) * size;
-    let mut bins: Vec<Bin> = (0..count)
-        .map(|k| Bin {
-            low_degc: edge(k),
-            high_degc: edge(k + 1),
-            seconds: 0.0,
-            joule: vec![0.0; of.losses_w.len()],
-        })
-        .collect();
+    let empty = |k: usize| Bin {
+        low_degc: edge(k),
+        high_degc: edge(k + 1),
+        seconds: 0.0,
+        joule: vec![0.0; of.losses_w.len()],
+    };
+    let mut bins: Vec<Bin> = (0..count).map(empty).collect();
     for i in steps {
         let Some(bin) = bins.get_mut(((of.sump_degc[i] / size).floor() - first) as usize) else {
             continue;
@@ -174,37 +153,20 @@ fn bins(of: &LossTrace) -> (Vec<Bin>, f64) {
             *sum += watts.get(i).map_or(0.0, |w| finite(*w).max(0.0)) * of.seconds[i];
         }
     }
-    let left_out = bins
-        .iter()
-        .map(|bin| bin.seconds)
-        .filter(|s| *s < MIN_S)
-        .sum();
-    bins.retain(|bin| bin.seconds >= MIN_S);
-    (bins, left_out)
+    let (kept, short): (Vec<Bin>, Vec<Bin>) =
+        bins.into_iter().partition(|bin| bin.seconds >= MIN_S);
+    (kept, short.iter().map(|bin| bin.seconds).sum())
 }
 
 fn table(of: &LossTrace, left_out_s: f64) -> PictureTable {
     let mut table = PictureTable::new(&[("from", "\u{b0}C"), ("to", "\u{b0}C"), ("time", "s")]);
     let names = of.losses_w.iter().map(|(c, _)| capital(c.name()));
-    table
-        .columns
-        .extend(names.chain(["all".to_owned()]).map(|name| (name, "W")));
+    let names = names.chain(["all".to_owned()]);
+    table.columns.extend(names.map(|name| (name, "W")));
     table.note = format!("Means over the time in which the car moved. {REMARK}");
     if left_out_s > 0.0 {
         let seconds = number(left_out_s, 0.1);
         table.note += &format!(" Bins of less than {MIN_S} s are left out, {seconds} s in all.");
     }
     table
-}
-
-fn describe(bins: &[Bin]) -> String {
-    let bin = |bin: &Bin| {
-        let [low, high, watts, seconds] =
-            [bin.low_degc, bin.high_degc, bin.watts(), bin.seconds].map(|x| number(x, 1.0));
-        format!("{low} to {high} \u{b0}C {watts} W in {seconds} s")
-    };
-    format!(
-        "Mean loss power while the car moved, by sump temperature: {}. {REMARK}",
-        bins.iter().map(bin).collect::<Vec<_>>().join("; ")
-    )
 }

@@ -3,7 +3,7 @@
 use super::TOP;
 use crate::charts::engine::{
     Axis, Block, Chart, Entry, PLOT_LEFT, Panel, Point, Rect, STROKES, Shape, Stroke, Style, WIDTH,
-    cell, number, stroke,
+    cell, stroke,
 };
 use crate::charts::grids::Density;
 use crate::charts::picture::{Picture, PictureTable};
@@ -54,71 +54,42 @@ impl Variogram<'_> {
 #[must_use]
 pub fn variogram(of: &Variogram) -> Picture {
     let (x, y) = axes(of);
-    let cells = (
-        Density::size_for(&x, CELLS.0),
-        Density::size_for(&y, CELLS.1),
-    );
+    let cells = Density::size_for(&x, &y, CELLS);
     let density = Density::new(cells, of.steps());
     let (seen, outside) = seen(of, &x, &y);
-    let mut table = table(cells, &outside);
-    let mut panel = Panel {
-        no_data: density.total_s() <= 0.0,
-        ..Panel::new(Rect::new(PLOT_LEFT, TOP, WIDE, TALL), x, y)
-    };
+    let columns = ["speed from", "to", "engine speed from", "to", "time"];
+    let units = ["km/h", "km/h", "rpm", "rpm", "s"];
+    let columns: Vec<_> = columns.into_iter().zip(units).collect();
+    let mut table = PictureTable::new(&columns).note(format!(
+        "Cells are {} km/h wide and {} rpm tall; those in which no time was spent are left out.{outside}",
+        cell(cells.0, cells.0),
+        cell(cells.1, cells.1)
+    ));
+    let rect = Rect::new(PLOT_LEFT, TOP, WIDE, TALL);
+    let mut panel = Panel::new(rect, x, y).no_data(density.total_s() <= 0.0);
     panel.items = density.items(|of| {
         let step = |(low, high): (f64, f64)| if high - low < 1.0 { 0.01 } else { 1.0 };
-        let mut cells = [of.x.0, of.x.1].map(|x| cell(x, step(of.x))).to_vec();
-        cells.extend([of.y.0, of.y.1].map(|y| cell(y, step(of.y))));
-        cells.push(cell(of.seconds, 0.01));
-        table.push(cells)
+        let ends = |x: (f64, f64)| [x.0, x.1].map(|end| cell(end, step(x)));
+        let ends = ends(of.x).into_iter().chain(ends(of.y));
+        table.push(ends.chain([cell(of.seconds, 0.01)]))
     });
     // All seams below all lines; the first of the list ends up on top.
     for (_, points, line) in &seen {
         let seam = Style::line(stroke("#ffffff", line.width + 2.0 * SEAM, &[]));
-        panel.add(
-            Shape::Line(points.clone()),
-            seam.stroke_opacity(0.75).class("seam"),
-        );
+        let seam = seam.stroke_opacity(0.75).class("seam");
+        panel.add(Shape::Line(points.clone()), seam);
     }
     for (_, points, line) in seen.iter().rev() {
-        panel.add(
-            Shape::Line(points.clone()),
-            Style::line(*line).class("series"),
-        );
+        panel.series(points.clone(), *line);
     }
-    let entries = seen
-        .iter()
-        .map(|(name, _, line)| Entry::line(*line, *name))
-        .collect();
-    let chart = Chart {
-        title: "Engine speed against vehicle speed".to_owned(),
-        subject: of.subject.clone(),
-        description: describe(of, &density),
-        left: PLOT_LEFT,
-        panels: vec![panel],
-        foot: vec![
-            Block::legend((PLOT_LEFT, WIDE), "", entries),
-            Block::key((PLOT_LEFT, 360.0), density.key()),
-        ],
-        table,
-        ..Chart::default()
-    };
-    chart.picture()
-}
-
-fn table(cells: (f64, f64), outside: &str) -> PictureTable {
-    let mut table = PictureTable::new(&[
-        ("speed from", "km/h"),
-        ("to", "km/h"),
-        ("engine speed from", "rpm"),
-        ("to", "rpm"),
-        ("time", "s"),
-    ]);
-    let (wide, tall) = (cell(cells.0, cells.0), cell(cells.1, cells.1));
-    table.note = format!(
-        "Cells are {wide} km/h wide and {tall} rpm tall; those in which no time was spent are left out.{outside}"
-    );
-    table
+    let entries = seen.iter();
+    let entries = entries.map(|(name, _, line)| Entry::line(*line, *name));
+    Chart::new("Engine speed against vehicle speed", &of.subject, PLOT_LEFT)
+        .lead("Cells are coloured by the time spent in them")
+        .panels([panel])
+        .legend((PLOT_LEFT, WIDE), entries)
+        .foot(Block::key((PLOT_LEFT, 360.0), density.key()))
+        .picture(table)
 }
 
 /// Axes over the steps in which the engine ran, and over those lines that are to be seen as a whole as far as the car drove.
@@ -154,12 +125,15 @@ fn seen<'a>(of: &'a Variogram, x: &Axis, y: &Axis) -> (Vec<SeenLine<'a>>, String
             seen.push((line.name.as_str(), points, stroke));
         }
     }
-    let remark = if others.is_empty() {
-        String::new()
-    } else {
-        format!(" Outside the picture: {}.", others.join(", "))
-    };
-    (seen, remark)
+    let remark = format!(" Outside the picture: {}.", others.join(", "));
+    (
+        seen,
+        if others.is_empty() {
+            String::new()
+        } else {
+            remark
+        },
+    )
 }
 
 /// The parts of a line within the axes, with gaps between them.
@@ -200,30 +174,6 @@ fn clipped((x, y): (&Axis, &Axis), a: Point, b: Point) -> Option<(Point, Point)>
     }
     let at = |t: f64| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1));
     (from <= to).then(|| (at(from), at(to)))
-}
-
-fn describe(of: &Variogram, density: &Density) -> String {
-    let lines: Vec<&str> = of.lines.iter().map(|line| line.name.as_str()).collect();
-    let over = if lines.is_empty() {
-        String::new()
-    } else {
-        format!(", over lines for {}", lines.join(", "))
-    };
-    let longest = density
-        .cells()
-        .max_by(|a, b| a.seconds.total_cmp(&b.seconds));
-    let longest = longest.map_or_else(
-        || "no time at all".to_owned(),
-        |c| {
-            let [s, v0, v1, n0, n1] =
-                [c.seconds, c.x.0, c.x.1, c.y.0, c.y.1].map(|x| number(x, 1.0));
-            format!("most, {s} s, at {v0} to {v1} km/h and {n0} to {n1} rpm")
-        },
-    );
-    format!(
-        "Engine speed against vehicle speed{over}. Cells are coloured by the time spent in them, {} s in all; {longest}.",
-        number(density.total_s(), 1.0)
-    )
 }
 
 #[cfg(test)]

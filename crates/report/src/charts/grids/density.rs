@@ -40,9 +40,10 @@ impl Density {
         Density { size, seconds }
     }
 
-    /// A round size with at most `max` cells along an axis.
-    pub(crate) fn size_for(axis: &Axis, max: usize) -> f64 {
-        round_step((axis.high - axis.low) / max.max(1) as f64)
+    /// Round sizes with at most `max` cells along each axis.
+    pub(crate) fn size_for(x: &Axis, y: &Axis, max: (usize, usize)) -> (f64, f64) {
+        let size = |axis: &Axis, max: usize| round_step((axis.high - axis.low) / max.max(1) as f64);
+        (size(x, max.0), size(y, max.1))
     }
 
     /// Time in all cells, s.
@@ -53,13 +54,12 @@ impl Density {
     /// The cells in which time was spent, by x and then y.
     pub(crate) fn cells(&self) -> impl Iterator<Item = DensityCell> {
         let edges = |k: i64, size: f64| (k as f64 * size, (k + 1) as f64 * size);
-        self.seconds
-            .iter()
-            .map(move |(&(i, j), &seconds)| DensityCell {
-                x: edges(i, self.size.0),
-                y: edges(j, self.size.1),
-                seconds,
-            })
+        let cells = self.seconds.iter();
+        cells.map(move |(&(i, j), &seconds)| DensityCell {
+            x: edges(i, self.size.0),
+            y: edges(j, self.size.1),
+            seconds,
+        })
     }
 
     /// The cells as shapes; `row` gives the row of the table that has a cell's numbers.
@@ -113,17 +113,11 @@ struct TimeScale {
 impl TimeScale {
     /// A scale for times from `least` to `max`, s; several panels share one made of the extremes of all.
     pub(crate) fn new(least: f64, most: f64) -> Self {
-        let high = if most.is_finite() && most > 0.0 {
-            most
-        } else {
-            1.0
-        };
+        let some = most.is_finite() && most > 0.0;
+        let high = if some { most } else { 1.0 };
         let log = least > 0.0 && high / least > LINEAR_UP_TO;
-        TimeScale {
-            low: if log { least } else { 0.0 },
-            high,
-            log,
-        }
+        let low = if log { least } else { 0.0 };
+        TimeScale { low, high, log }
     }
 
     /// Where a time lies on the scale, 0 to 1.
@@ -153,22 +147,16 @@ impl TimeScale {
 
     /// Times that are marked on the key: its ends and round numbers between.
     fn marks(&self) -> Vec<f64> {
-        if !self.log {
-            let step = round_step(self.high / 5.0);
-            return (0..=5)
-                .map(|k| f64::from(k) * step)
-                .filter(|s| *s <= self.high * (1.0 + 1e-9))
-                .collect();
-        }
-        let (from, to) = (
-            self.low.log10().floor() as i32,
-            self.high.log10().ceil() as i32,
-        );
-        let round =
-            (from..=to).flat_map(|power| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(power)));
-        round
-            .filter(|s| *s >= self.low * (1.0 - 1e-9) && *s <= self.high * (1.0 + 1e-9))
-            .collect()
+        let step = round_step(self.high / 5.0);
+        let round: Vec<f64> = if self.log {
+            let [from, to] = [self.low.log10().floor(), self.high.log10().ceil()];
+            let digits = |power: i32| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(power));
+            (from as i32..=to as i32).flat_map(digits).collect()
+        } else {
+            (0..=5).map(|k| f64::from(k) * step).collect()
+        };
+        let inside = |s: &f64| *s >= self.low * (1.0 - 1e-9) && *s <= self.high * (1.0 + 1e-9);
+        round.into_iter().filter(inside).collect()
     }
 }
 

@@ -35,7 +35,7 @@ pub(crate) fn iso_lines(
         let mut longest: Vec<Point> = Vec::new();
         for line in grid.lines(level) {
             let seen = line.iter().filter(|p| below(full_load, **p));
-            let pixels: Vec<Point> = seen.map(|p| (panel.px(p.0), panel.py(p.1))).collect();
+            let pixels: Vec<Point> = seen.map(|p| panel.pixel(*p)).collect();
             if pixels.len() > longest.len() {
                 longest = pixels;
             }
@@ -46,19 +46,15 @@ pub(crate) fn iso_lines(
         }
         labels.place(number(level, 1.0), &longest);
     }
-    panel.add(
-        Shape::Within(Some(outline(full_load)), items),
-        Style::default(),
-    );
+    let below = Shape::Within(Some(outline(full_load)), items);
+    panel.add(below, Style::default());
     labels.labels(panel)
 }
 
 /// The area below the full-load line.
 fn outline(full_load: &[Point]) -> Vec<Point> {
-    let finite = full_load
-        .iter()
-        .filter(|p| p.0.is_finite() && p.1.is_finite());
-    let mut outline: Vec<Point> = finite.copied().collect();
+    let finite = |p: &Point| p.0.is_finite() && p.1.is_finite();
+    let mut outline: Vec<Point> = full_load.iter().copied().filter(finite).collect();
     if let Some((first, last)) = full_load.first().zip(full_load.last()) {
         outline.insert(0, (first.0, f64::NEG_INFINITY));
         outline.push((last.0, f64::NEG_INFINITY));

@@ -6,6 +6,7 @@ use crate::charts::engine::{
     Axis, BELOW, Chart, INK, Item, LEFT, Label, PLOT_LEFT, Panel, Point, Rect, Shape, Stroke,
     Style, at, free, grid, number, ramp, range, round_step, stroke,
 };
+use crate::charts::picture::PictureTable;
 
 /// A picture of one quantity over two axes.
 #[derive(Clone, Debug)]
@@ -87,11 +88,7 @@ pub fn map_figure(of: &MapFigure) -> String {
     let top = TOP + if titled { ABOVE } else { 0.0 };
     let pitch = (size.0 + LEFT + 20.0, size.1 + ABOVE + BELOW + 8.0);
     let place = grid((PLOT_LEFT, top), size, pitch, columns);
-    let all = of
-        .panels
-        .iter()
-        .flat_map(|(_, values)| values.iter().flatten().copied());
-    let found = range(all);
+    let found = range(of.panels.iter().flat_map(|p| &p.1).flatten().copied());
     let (low, high) = found.unwrap_or((0.0, 1.0));
     let scale = Scale::new(low, high);
     let axis = |(title, values): (&str, &[f64]), ticks| {
@@ -99,49 +96,24 @@ pub fn map_figure(of: &MapFigure) -> String {
     };
     let ticks = if several { (4, 5) } else { (8, 8) };
     let panel = |(k, (title, values)): (usize, &(String, Vec<Vec<f64>>))| {
-        let mut panel = Panel {
-            heading: title.clone(),
-            no_data: found.is_none(),
-            ..Panel::new(place(k), axis(of.x, ticks.0), axis(of.y, ticks.1))
-        };
+        let (x, y) = (axis(of.x, ticks.0), axis(of.y, ticks.1));
+        let mut panel = Panel::new(place(k), x, y)
+            .heading(title)
+            .no_data(found.is_none());
         panel.items = bands(&panel, of, values, &scale);
         add_lines(&mut panel, of, values, &scale);
         panel
     };
-    let mut panels: Vec<Panel> = of.panels.iter().enumerate().map(panel).collect();
     let edge = place(columns - 1).right;
     let bar = Rect::new(edge + 20.0, top + 18.0, 20.0, size.1 - 18.0);
-    panels.push(colour_bar(&scale, of.value, bar));
-    let chart = Chart {
-        title: of.title.to_owned(),
-        subject: of.subject.to_owned(),
-        description: describe(of, found),
-        left: PLOT_LEFT,
-        width: edge + STRIP,
-        panels,
-        ..Chart::default()
-    };
-    chart.picture().svg
-}
-
-fn describe(of: &MapFigure, found: Option<(f64, f64)>) -> String {
-    let over = format!("{} over {} and {}", of.value, of.x.0, of.y.0);
-    let Some((low, high)) = found else {
-        return format!("{over}, without data.");
-    };
-    let step = (high - low) / 100.0;
-    let names = of.panels.iter().map(|(title, _)| title.as_str());
-    let names: Vec<&str> = names.filter(|title| !title.is_empty()).collect();
-    let panels = if names.is_empty() {
-        String::new()
-    } else {
-        format!(" Panels: {}.", names.join("; "))
-    };
-    format!(
-        "{over}, from {} to {}.{panels}",
-        number(low, step),
-        number(high, step)
-    )
+    let span = number(low, (high - low) / 100.0) + " to " + &number(high, (high - low) / 100.0);
+    Chart::new(of.title, of.subject, PLOT_LEFT)
+        .lead(format!("{} from {span}", of.value))
+        .width(edge + STRIP)
+        .panels(of.panels.iter().enumerate().map(panel))
+        .panels([colour_bar(&scale, of.value, bar)])
+        .picture(PictureTable::default())
+        .svg
 }
 
 /// Value between the grid's points, bilinear; NaN next to a point without value.
@@ -195,20 +167,14 @@ fn add_lines(panel: &mut Panel, of: &MapFigure, values: &[Vec<f64>], scale: &Sca
         return;
     };
     let step = step(low, high, 6.0).min(scale.step);
-    let grid = Grid {
-        x: of.x.1,
-        y: of.y.1,
-        values,
-    };
+    let (x, y) = (of.x.1, of.y.1);
+    let grid = Grid { x, y, values };
     let mut labels = LineLabels::new(panel.rect, 10.0, Vec::new());
     for k in (low / step).ceil() as i64..=(high / step).floor() as i64 {
         let level = k as f64 * step;
         let mut longest: Vec<Point> = Vec::new();
         for line in grid.lines(level) {
-            let pixels: Vec<Point> = line
-                .iter()
-                .map(|p| (panel.px(p.0), panel.py(p.1)))
-                .collect();
+            let pixels: Vec<Point> = line.iter().map(|p| panel.pixel(*p)).collect();
             let pixels = dense(&pixels);
             if pixels.len() > longest.len() {
                 longest = pixels;
@@ -242,15 +208,9 @@ fn colour_bar(scale: &Scale, title: &str, rect: Rect) -> Panel {
     let height = |k: usize| rect.bottom - k as f64 * tall;
     panel.label(Label::new(at(rect.left, rect.top - 10.0), title));
     for band in 0..scale.count {
-        let corners = (
-            at(rect.left, height(band + 1)),
-            at(rect.right, height(band)),
-        );
-        let style = Style {
-            stroke: Some(stroke(INK, 0.25, &[])),
-            ..scale.style(band)
-        };
-        panel.add(Shape::Rect(corners.0, corners.1), style);
+        let (top, bottom) = (height(band + 1), height(band));
+        let style = scale.style(band).edge(stroke(INK, 0.25, &[]));
+        panel.rectangle(at(rect.left, top), at(rect.right, bottom), style);
     }
     for k in 0..=scale.count {
         let place = at(rect.right + 5.0, height(k) + 3.8);

@@ -1,9 +1,10 @@
 //! Lines over a common quantity in panels below each other, with marks on them and a legend for each panel.
 
 use crate::charts::engine::{
-    Axis, BELOW, Chart, Entry, INK, LEFT, Mark, PLOT_LEFT, Panel, Rect, STROKES, Side, Stroke,
-    Style, Symbol, ZERO, at, number, range,
+    Axis, BELOW, Chart, Entry, INK, LEFT, PLOT_LEFT, Panel, Rect, STROKES, Side, Stroke, Style,
+    Symbol, ZERO, at, range,
 };
+use crate::charts::picture::PictureTable;
 
 /// A picture of lines.
 #[derive(Clone, Debug)]
@@ -59,26 +60,20 @@ pub fn curve_figure(of: &CurveFigure) -> String {
     let tall = if of.panels.len() > 1 { 260.0 } else { 400.0 };
     let titled = of.panels.iter().any(|panel| !panel.title.is_empty());
     let above = TOP + if titled { ABOVE } else { 0.0 };
-    let mut chart = Chart {
-        title: of.title.to_owned(),
-        subject: of.subject.to_owned(),
-        description: describe(of),
-        left: PLOT_LEFT,
-        width: PLOT_LEFT + WIDE + 16.0 + STRIP,
-        ..Chart::default()
-    };
+    let mut chart =
+        Chart::new(of.title, of.subject, PLOT_LEFT).width(PLOT_LEFT + WIDE + 16.0 + STRIP);
     for (k, panel) in of.panels.iter().enumerate() {
         let top = above + k as f64 * (tall + BELOW + ABOVE + 10.0);
         let rect = Rect::new(LEFT + 8.0, top, WIDE, tall);
-        chart.panels.push(draw(rect, of.x, panel));
-        chart.sides.push(Side {
+        let side = Side {
             corner: (rect.right + 16.0, rect.top),
             width: STRIP - 8.0,
             entries: entries(panel),
             ..Side::default()
-        });
+        };
+        chart = chart.panels([draw(rect, of.x, panel)]).side(side);
     }
-    chart.picture().svg
+    chart.picture(PictureTable::default()).svg
 }
 
 fn stroke_of(k: usize, series: &CurveSeries) -> Stroke {
@@ -91,29 +86,22 @@ fn entries(of: &CurvePanel) -> Vec<Entry> {
         .map(|(k, s)| Entry::line(stroke_of(k, s), &s.name))
         .collect();
     if !of.marks.is_empty() {
-        let mark = Mark::Symbol(Symbol::CIRCLE, RADIUS, Symbol::white(INK));
-        let name = of.marks.clone();
-        entries.push(Entry { mark, name });
+        entries.push(Entry::symbol(Symbol::CIRCLE, Symbol::white(INK), &of.marks));
     }
     entries
 }
 
 fn draw(rect: Rect, x_title: &str, of: &CurvePanel) -> Panel {
-    let all = || {
-        of.series
-            .iter()
-            .flat_map(|s| s.points.iter().chain(&s.marked))
-    };
+    let points = |s: &'_ CurveSeries| [s.points.clone(), s.marked.clone()].concat();
+    let all = || of.series.iter().flat_map(points);
     // Every panel has its own range: high ratio ends where low ratio has hardly begun.
     let (low, high) = range(all().map(|p| p.0)).unwrap_or((0.0, 1.0));
     let zero = of.with_zero.then_some(0.0);
     let x = Axis::exact(x_title, low, high, 8);
     let y = Axis::round(&of.y, all().map(|p| p.1).chain(zero), 7);
-    let mut panel = Panel {
-        heading: of.title.clone(),
-        no_data: all().next().is_none(),
-        ..Panel::new(rect, x, y)
-    };
+    let mut panel = Panel::new(rect, x, y)
+        .heading(&of.title)
+        .no_data(all().next().is_none());
     if panel.y.low < 0.0 && panel.y.high > 0.0 {
         panel.level(0.0, ZERO);
     }
@@ -125,26 +113,4 @@ fn draw(rect: Rect, x_title: &str, of: &CurvePanel) -> Panel {
         panel.symbol(Symbol::CIRCLE, at(*x, *y), RADIUS, style);
     }
     panel
-}
-
-fn describe(of: &CurveFigure) -> String {
-    let line = |s: &CurveSeries| match range(s.points.iter().map(|p| p.1)) {
-        Some((low, high)) => {
-            let step = (high - low) / 100.0;
-            format!(
-                "{} from {} to {}",
-                s.name,
-                number(low, step),
-                number(high, step)
-            )
-        }
-        None => format!("{} without data", s.name),
-    };
-    let panel = |panel: &CurvePanel| {
-        let lines: Vec<String> = panel.series.iter().map(line).collect();
-        let comma = if panel.title.is_empty() { "" } else { ", " };
-        format!("{}{comma}{}: {}", panel.title, panel.y, lines.join("; "))
-    };
-    let panels: Vec<String> = of.panels.iter().map(panel).collect();
-    format!("Over {}. {}.", of.x, panels.join(". "))
 }

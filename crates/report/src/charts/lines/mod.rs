@@ -61,7 +61,7 @@ pub struct LineChart {
     pub title: String,
     /// Of what, and under which conditions.
     pub subject: String,
-    /// The picture in words, for those who cannot see it.
+    /// First sentence of the picture in words; axes and numbers follow by themselves. May be empty.
     pub description: String,
     /// Title of the horizontal axes as `Quantity [unit]`.
     pub x_title: &'static str,
@@ -87,42 +87,29 @@ pub fn line_chart(of: &LineChart) -> Picture {
     let (table, columns) = table::table(of);
     let rects = layout(of);
     let panels = of.panels.iter().zip(&rects).zip(columns);
-    let panels = panels.map(|((panel, rect), columns)| Panel {
-        columns,
-        ..draw(of, panel, *rect)
-    });
+    let panels = panels.map(|((panel, rect), columns)| draw(of, panel, *rect, columns));
     let stacked = of.panels.iter().any(|panel| panel.stacked);
-    let mut entries: Vec<Entry> = Vec::new();
-    for (look, name) in &of.names {
-        entries.push(match stacked {
-            true => Entry::fill(Fill::nth(look.index, of.names.len()), name),
-            false => Entry::line(look.stroke(), name),
-        });
-    }
+    let entry = |(look, name): &(Look, String)| match stacked {
+        true => Entry::fill(Fill::nth(look.index, of.names.len()), name),
+        false => Entry::line(look.stroke(), name),
+    };
+    let mut entries: Vec<Entry> = of.names.iter().map(entry).collect();
     if stacked {
         entries.reverse(); // listed as they lie
     }
-    let mut chart = Chart {
-        title: of.title.clone(),
-        subject: of.subject.clone(),
-        description: of.description.clone(),
-        left: PLOT_LEFT,
-        panels: panels.collect(),
-        table,
-        ..Chart::default()
-    };
+    let chart = Chart::new(&of.title, &of.subject, PLOT_LEFT)
+        .lead(&of.description)
+        .panels(panels);
     let side = Side {
         heading: of.legend.clone(),
         entries,
         ..Side::default()
     };
-    match free_place(&rects, side) {
-        Ok(side) => chart.sides.push(side),
-        Err(entries) => chart
-            .foot
-            .push(Block::legend((PLOT_LEFT, WIDE), &of.legend, entries)),
-    }
-    chart.picture()
+    let chart = match free_place(&rects, side) {
+        Ok(side) => chart.side(side),
+        Err(entries) => chart.foot(Block::legend((PLOT_LEFT, WIDE), &of.legend, entries)),
+    };
+    chart.picture(table)
 }
 
 /// Rectangles of the panels.
@@ -143,23 +130,17 @@ fn layout(of: &LineChart) -> Vec<Rect> {
 }
 
 /// The legend in the place that an odd number of panels leaves free, or its entries if it does not fit in there.
-fn free_place(rects: &[Rect], side: Side) -> Result<Side, Vec<Entry>> {
-    match rects {
-        [first, .., last] if rects.len() % 2 == 1 => {
-            let (corner, width) = ((first.right + GAP.0 + LEFT, last.top), last.width());
-            let side = Side {
-                corner,
-                width,
-                ..side
-            };
-            if side.height() <= last.height() {
-                Ok(side)
-            } else {
-                Err(side.entries)
-            }
+fn free_place(rects: &[Rect], mut side: Side) -> Result<Side, Vec<Entry>> {
+    if let [first, .., last] = rects
+        && rects.len() % 2 == 1
+    {
+        side.corner = (first.right + GAP.0 + LEFT, last.top);
+        side.width = last.width();
+        if side.height() <= last.height() {
+            return Ok(side);
         }
-        _ => Err(side.entries),
     }
+    Err(side.entries)
 }
 
 impl LineChart {
@@ -181,33 +162,35 @@ impl LineChart {
 }
 
 impl Look {
+    /// The solid line of that number.
+    #[must_use]
+    pub fn solid(index: usize) -> Self {
+        let dotted = false;
+        Look { index, dotted }
+    }
+
     fn stroke(self) -> Stroke {
         let full = STROKES[self.index % STROKES.len()];
-        if self.dotted {
-            stroke(full.colour, 1.2, &[1.5, 2.5])
-        } else {
-            full
-        }
+        let dotted = stroke(full.colour, 1.2, &[1.5, 2.5]);
+        if self.dotted { dotted } else { full }
     }
 }
 
-fn draw(of: &LineChart, panel: &LinePanel, rect: Rect) -> Panel {
+fn draw(of: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) -> Panel {
     let ticks = TICKS[usize::from(of.panels.len() > 1)];
     let own = std::slice::from_ref(panel);
     let x_of = if of.own_x { own } else { &of.panels };
     let y_of = if of.same_y { &of.panels } else { own };
     let x = x_axis(of.x_title(panel), x_of, of.marked, ticks.0);
-    let mut drawn = Panel {
-        heading: panel.heading.clone(),
-        over_table: of.one_x(),
-        ..Panel::new(rect, x, y_axis(panel.y_title, y_of, of.tight, ticks.1))
-    };
+    let y = y_axis(panel.y_title, y_of, of.tight, ticks.1);
+    let mut drawn = Panel::new(rect, x, y).heading(&panel.heading);
+    (drawn.over_table, drawn.columns) = (of.one_x(), columns);
     let y = &drawn.y;
     if y.low < 0.0 && y.high > 0.0 && panel.with_y.iter().any(|y| y.abs() <= 0.0) {
         drawn.level(0.0, CONTEXT);
     }
     if panel.stacked {
-        stack_layers(&mut drawn, panel, of.names.len());
+        stack_layers(&mut drawn, panel.series.clone(), of.names.len());
     } else {
         // The first of the list ends up on top.
         for (look, points) in panel.series.iter().rev() {
@@ -219,19 +202,13 @@ fn draw(of: &LineChart, panel: &LinePanel, rect: Rect) -> Panel {
         }
     }
     let finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
-    drawn.no_data = !panel
-        .series
-        .iter()
-        .flat_map(|(_, points)| points)
-        .any(finite);
-    drawn
+    let mut points = panel.series.iter().flat_map(|(_, points)| points);
+    drawn.no_data(!points.any(finite))
 }
 
 fn x_axis(title: &str, panels: &[LinePanel], marked: bool, ticks: usize) -> Axis {
-    let points = panels
-        .iter()
-        .flat_map(|p| &p.series)
-        .flat_map(|(_, points)| points);
+    let series = panels.iter().flat_map(|panel| &panel.series);
+    let points = series.flat_map(|(_, points)| points);
     let (low, high) = range(points.map(|p| p.0)).unwrap_or((0.0, 1.0));
     let room = match high - low {
         span if span > 0.0 && marked => 0.03 * span,
@@ -261,12 +238,8 @@ fn heights(panel: &LinePanel) -> Vec<f64> {
     if panel.stacked {
         all.push(0.0);
         let count = series().map(Vec::len).max().unwrap_or(0);
-        let sum = |i: usize| {
-            series()
-                .filter_map(|points| points.get(i))
-                .map(|p| p.1)
-                .sum::<f64>()
-        };
+        let at = |i: usize| series().filter_map(move |points| points.get(i));
+        let sum = |i: usize| at(i).map(|p| p.1).sum::<f64>();
         all.extend((0..count).map(sum));
     } else {
         all.extend(series().flatten().map(|p| p.1));
@@ -275,20 +248,17 @@ fn heights(panel: &LinePanel) -> Vec<f64> {
 }
 
 /// Adds the series of a panel as areas upon each other; a value that is not finite counts as nothing.
-fn stack_layers(drawn: &mut Panel, panel: &LinePanel, count: usize) {
-    let longest = panel.series.iter().map(|(_, points)| points.len()).max();
+fn stack_layers(drawn: &mut Panel, series: Vec<(Look, Points)>, count: usize) {
+    let longest = series.iter().map(|(_, points)| points.len()).max();
     let mut base = vec![0.0; longest.unwrap_or(0)];
-    for (look, points) in &panel.series {
+    for (look, points) in series {
         let height = |y: f64| if y.is_finite() { y } else { 0.0 };
-        let layer: Vec<_> = points
-            .iter()
-            .zip(&mut base)
-            .map(|(p, base)| {
-                let low = *base;
-                *base += height(p.1);
-                (p.0, low, *base)
-            })
-            .collect();
+        let layer = points.iter().zip(&mut base).map(|(p, base)| {
+            let low = *base;
+            *base += height(p.1);
+            (p.0, low, *base)
+        });
+        let layer: Vec<_> = layer.collect();
         let style = Style::edged(Fill::nth(look.index, count), 0.4).class("layer");
         drawn.add(Shape::between(&layer), style);
     }

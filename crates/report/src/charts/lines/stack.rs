@@ -1,10 +1,9 @@
 //! Parts of a sum stacked over one axis, one panel or several.
 
-use crate::charts::engine::{
-    Axis, BELOW, Chart, Entry, Fill, LEFT, PLOT_LEFT, Panel, Side, grid, number, range,
-};
+use crate::charts::engine::{Axis, BELOW, Chart, Entry, Fill, LEFT, PLOT_LEFT, Panel, Side, grid};
+use crate::charts::picture::PictureTable;
 
-use super::{LinePanel, Look, stack_layers};
+use super::{Look, stack_layers};
 
 /// A picture of stacked parts.
 #[derive(Clone, Debug)]
@@ -51,47 +50,33 @@ pub fn stack_figure(of: &StackFigure) -> String {
     let y = Axis::round(of.value, sums.iter().copied().chain([0.0]), ticks.1);
     let count = of.parts.len();
     let panel = |(k, (title, parts)): (usize, &(String, Vec<Vec<f64>>))| {
-        let mut panel = Panel {
-            heading: title.clone(),
-            ..Panel::new(place(k), x.clone(), y.clone())
+        let mut panel = Panel::new(place(k), x.clone(), y.clone()).heading(title);
+        let layer = |(k, values): (usize, &Vec<f64>)| {
+            let points = xs.iter().copied().zip(values.iter().copied());
+            (Look::solid(k), points.collect())
         };
-        stack_layers(&mut panel, &layers(xs, parts), count);
+        let series = parts.iter().enumerate().map(layer).collect();
+        stack_layers(&mut panel, series, count);
         panel
     };
     // Listed from the top, as they lie in the stack.
     let entries = of.parts.iter().enumerate().rev();
-    let entries = entries
-        .map(|(k, name)| Entry::fill(Fill::nth(k, count), name))
-        .collect();
+    let entries = entries.map(|(k, name)| Entry::fill(Fill::nth(k, count), name));
     let edge = place(columns - 1).right;
-    let chart = Chart {
-        title: of.title.to_owned(),
-        subject: of.subject.to_owned(),
-        description: describe(of, &sums),
-        left: PLOT_LEFT,
-        width: edge + STRIP + 16.0,
-        panels: of.panels.iter().enumerate().map(panel).collect(),
-        sides: vec![Side {
-            corner: (edge + 16.0, top),
-            width: STRIP - 8.0,
-            entries,
-            ..Side::default()
-        }],
-        ..Chart::default()
+    let side = Side {
+        corner: (edge + 16.0, top),
+        width: STRIP - 8.0,
+        entries: entries.collect(),
+        ..Side::default()
     };
-    chart.picture().svg
-}
-
-fn layers(xs: &[f64], parts: &[Vec<f64>]) -> LinePanel {
-    let layer = |(index, values): (usize, &Vec<f64>)| {
-        let points = xs.iter().copied().zip(values.iter().copied());
-        let dotted = false;
-        (Look { index, dotted }, points.collect())
-    };
-    LinePanel {
-        series: parts.iter().enumerate().map(layer).collect(),
-        ..LinePanel::default()
-    }
+    let parts = of.parts.join(", ");
+    Chart::new(of.title, of.subject, PLOT_LEFT)
+        .lead(format!("Stacked from the bottom: {parts}"))
+        .width(edge + STRIP + 16.0)
+        .panels(of.panels.iter().enumerate().map(panel))
+        .side(side)
+        .picture(PictureTable::default())
+        .svg
 }
 
 /// Heights of the stacks of all panels.
@@ -104,18 +89,4 @@ fn sums(of: &StackFigure) -> Vec<f64> {
     panels
         .flat_map(|(_, parts)| (0..of.x.1.len()).map(move |i| at(parts, i)))
         .collect()
-}
-
-fn describe(of: &StackFigure, sums: &[f64]) -> String {
-    match range(sums.iter().copied()) {
-        Some((low, high)) => format!(
-            "{} over {}, stacked from the bottom: {}. Sum from {} to {}.",
-            of.value,
-            of.x.0,
-            of.parts.join(", "),
-            number(low, 0.01),
-            number(high, 0.01)
-        ),
-        None => format!("{} over {}, without data.", of.value, of.x.0),
-    }
 }

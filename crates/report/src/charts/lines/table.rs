@@ -19,30 +19,20 @@ pub(super) fn table(chart: &LineChart) -> (PictureTable, Vec<Vec<usize>>) {
             quantities.push(title);
         }
     }
-    let mut table = PictureTable {
-        columns: quantities.iter().map(|title| split(title)).collect(),
-        ..PictureTable::default()
-    };
+    let mut table = PictureTable::with_columns(quantities.iter().map(|title| split(title)));
     let mut places = Vec::new();
     for panel in &chart.panels {
-        let first = table.columns.len();
-        places.push(first);
-        table.columns.extend(
-            panel
-                .series
-                .iter()
-                .map(|(look, _)| column(chart, panel, *look)),
-        );
+        places.push(table.columns.len());
+        let looks = panel.series.iter().map(|(look, _)| *look);
+        table
+            .columns
+            .extend(looks.map(|look| column(chart, panel, look)));
     }
     let mut every = 1;
     for (k, title) in quantities.iter().enumerate() {
-        let own: Vec<(&LinePanel, usize)> = chart
-            .panels
-            .iter()
-            .zip(places.iter().copied())
-            .filter(|(panel, _)| chart.x_title(panel) == *title)
-            .collect();
-        every = every.max(rows(&mut table, k, &own));
+        let panels = chart.panels.iter().zip(places.iter().copied());
+        let own = panels.filter(|(panel, _)| chart.x_title(panel) == *title);
+        every = every.max(rows(&mut table, k, &own.collect::<Vec<_>>()));
     }
     if every > 1 {
         table.note = format!("One row in {every} is listed; lines are drawn from all.");
@@ -89,11 +79,10 @@ fn rows(table: &mut PictureTable, place: usize, panels: &[(&LinePanel, usize)]) 
 
 /// "Torque loss [Nm]" as name and unit; `-` is none.
 fn split(title: &'static str) -> (String, &'static str) {
-    match title
-        .strip_suffix(']')
-        .and_then(|rest| rest.rsplit_once(" ["))
-    {
-        Some((name, unit)) => (name.to_owned(), if unit == "-" { "" } else { unit }),
+    let inside = title.strip_suffix(']');
+    match inside.and_then(|rest| rest.rsplit_once(" [")) {
+        Some((name, "-")) => (name.to_owned(), ""),
+        Some((name, unit)) => (name.to_owned(), unit),
         None => (title.to_owned(), ""),
     }
 }
@@ -101,23 +90,16 @@ fn split(title: &'static str) -> (String, &'static str) {
 /// Name and unit of the column of a line.
 fn column(chart: &LineChart, panel: &LinePanel, look: Look) -> (String, &'static str) {
     let (quantity, unit) = split(panel.y_title);
-    let name = chart
-        .names
-        .iter()
-        .find(|(other, _)| *other == look)
-        .map_or("", |(_, name)| name.as_str());
+    let name = chart.names.iter().find(|(other, _)| *other == look);
+    let name = name.map_or("", |(_, name)| name.as_str());
     let alike = chart
         .panels
         .iter()
-        .filter(|other| other.heading == panel.heading)
-        .count()
-        > 1;
+        .filter(|other| other.heading == panel.heading);
+    let alike = alike.count() > 1;
     let named = alike || name.is_empty() && panel.heading.is_empty();
-    let parts = [
-        panel.heading.as_str(),
-        if named { &quantity } else { "" },
-        name,
-    ];
+    let quantity = if named { quantity.as_str() } else { "" };
+    let parts = [panel.heading.as_str(), quantity, name];
     let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
     (parts.join(": "), unit)
 }

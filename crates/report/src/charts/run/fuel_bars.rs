@@ -2,7 +2,7 @@
 
 use super::PlotRun;
 use crate::charts::engine::{
-    Axis, Block, Chart, Cut, Entry, Fill, Label, PLOT_LEFT, Panel, Rect, Shape, Style, at, cell,
+    Axis, Block, Chart, Cut, Entry, Fill, Label, PLOT_LEFT, Panel, Rect, Style, at, optional_cell,
     text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
@@ -25,63 +25,45 @@ pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
     // Wide enough for the values over the bars, as long as the page is.
     let plot = (bars * 40.0 / (1.0 - GAP)).clamp(WIDTHS.0, WIDTHS.1);
     let x = Axis::bare(0.0, groups.len().max(1) as f64);
-    let mut panel = Panel {
-        no_data: groups.is_empty(),
-        x_labels: false,
-        below: 34.0,
-        ..Panel::new(Rect::new(PLOT_LEFT, TOP, plot, TALL), x, axis(runs))
-    };
+    let rect = Rect::new(PLOT_LEFT, TOP, plot, TALL);
+    let mut panel = Panel::new(rect, x, axis(runs))
+        .no_data(groups.is_empty())
+        .x_labels(false)
+        .below(34.0);
     let table = draw_groups(&mut panel, runs, &groups);
-    let entries = runs.iter().enumerate();
-    let entries = entries
-        .map(|(i, run)| Entry::fill(Fill::nth(i, runs.len()), run.name))
-        .collect();
-    let chart = Chart {
-        title: "Fuel consumption".to_owned(),
-        subject: match runs {
-            [run] => run.name.to_owned(),
-            _ => format!("{} vehicles", runs.len()),
-        },
-        description: describe(runs),
-        left: PLOT_LEFT,
-        width: PLOT_LEFT + plot + 20.0,
-        panels: vec![panel],
-        foot: vec![Block::legend((PLOT_LEFT, plot), "Vehicle", entries)],
-        table,
-        ..Chart::default()
+    let entry = |(i, run): (usize, &PlotRun)| Entry::fill(Fill::nth(i, runs.len()), run.name);
+    let entries = runs.iter().enumerate().map(entry).collect();
+    let subject = match runs {
+        [run] => run.name.to_owned(),
+        _ => format!("{} vehicles", runs.len()),
     };
-    chart.picture()
+    Chart::new("Fuel consumption", subject, PLOT_LEFT)
+        .width(PLOT_LEFT + plot + 20.0)
+        .panels([panel])
+        .foot(Block::legend((PLOT_LEFT, plot), "Vehicle", entries))
+        .picture(table)
 }
 
 /// Adds the bars of all groups; returns their values.
 fn draw_groups(panel: &mut Panel, runs: &[PlotRun], groups: &[String]) -> PictureTable {
-    let columns = [
-        ("Part of the cycle", ""),
-        ("Vehicle", ""),
-        ("Fuel", "L/100 km"),
-    ];
-    let mut table = PictureTable::new(&columns);
+    let names = [("Part of the cycle", ""), ("Vehicle", "")];
+    let mut table = PictureTable::new(&[&names[..], &[("Fuel", "L/100 km")]].concat());
     let width = (1.0 - GAP) / runs.len().max(1) as f64;
     for (g, group) in groups.iter().enumerate() {
         for (i, run) in runs.iter().enumerate() {
             let from = g as f64 + 0.5 * GAP + i as f64 * width;
             let value = value_of(run, group);
-            let number = cell(value.unwrap_or(f64::NAN), 0.01);
-            let row = table.push(vec![group.clone(), run.name.to_owned(), number]);
+            let number = optional_cell(value, 0.01);
+            let row = table.push([group.clone(), run.name.to_owned(), number]);
             if let Some(value) = value {
-                let style = Style::edged(Fill::nth(i, runs.len()), 0.75)
-                    .class("bar")
-                    .row(row);
-                bar(panel, (from, from + width), value, style);
+                let style = Style::edged(Fill::nth(i, runs.len()), 0.75).class("bar");
+                bar(panel, (from, from + width), value, style.row(row));
             }
         }
         let place = at(g as f64 + 0.5, f64::NEG_INFINITY).shift(0.0, 20.0);
         let room = panel.px(1.0) - panel.px(0.0) - 6.0;
-        let name = Label::new(place, group)
-            .size(12.0)
-            .middle()
-            .bold(group == "total");
-        panel.label(name.cut(Cut::End, room));
+        let name = Label::new(place, group).size(12.0).middle();
+        panel.label(name.bold(group == "total").cut(Cut::End, room));
     }
     table
 }
@@ -90,16 +72,14 @@ fn draw_groups(panel: &mut Panel, runs: &[PlotRun], groups: &[String]) -> Pictur
 fn axis(runs: &[PlotRun]) -> Axis {
     let values = runs
         .iter()
-        .flat_map(|run| run.group_fuel.iter().map(|(_, fuel)| *fuel));
+        .flat_map(|run| &run.group_fuel)
+        .map(|(_, fuel)| *fuel);
     let highest = values.filter(|x| x.is_finite()).fold(0.0, f64::max);
     Axis::round("Fuel [L/100 km]", [0.0, 1.12 * highest].into_iter(), 8)
 }
 
 fn bar(panel: &mut Panel, (from, to): (f64, f64), value: f64, style: Style) {
-    panel.add(
-        Shape::Rect(at(from, value), at(to, f64::NEG_INFINITY)),
-        style,
-    );
+    panel.rectangle(at(from, value), at(to, f64::NEG_INFINITY), style);
     let wide = panel.px(to) - panel.px(from);
     let (text, top) = (format!("{value:.2}"), at(0.5 * (from + to), value));
     if text_width(&text, LABEL) < wide {
@@ -126,19 +106,4 @@ fn groups(runs: &[PlotRun]) -> Vec<String> {
     }
     groups.sort_by_key(|name| name == "total");
     groups
-}
-
-fn describe(runs: &[PlotRun]) -> String {
-    let run = |run: &PlotRun| {
-        let fuel = run
-            .group_fuel
-            .iter()
-            .map(|(name, fuel)| format!("{name} {fuel:.2}"));
-        format!("{}: {}", run.name, fuel.collect::<Vec<_>>().join(", "))
-    };
-    let runs: Vec<String> = runs.iter().map(run).collect();
-    format!(
-        "Fuel in L/100 km by part of the cycle, one bar per vehicle. {}.",
-        runs.join("; ")
-    )
 }

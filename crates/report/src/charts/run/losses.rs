@@ -13,6 +13,9 @@ use cvtcycle_output::{Component, History};
 const BINS: usize = 300;
 const TALL: f64 = 400.0;
 
+/// Mean loss power by component, W.
+pub type Means = [f64; Component::COUNT];
+
 /// Loss power averaged over stretches of a trace.
 #[derive(Clone, Debug, Default)]
 pub struct LossBins {
@@ -21,18 +24,15 @@ pub struct LossBins {
     /// Time covered by the rows of each bin, s.
     pub seconds: Vec<f64>,
     /// Mean loss power of each bin, by component, W.
-    pub mean_w: Vec<[f64; Component::COUNT]>,
+    pub mean_w: Vec<Means>,
 }
 
 impl LossBins {
     /// Energy that a component has lost in all bins, J.
     #[must_use]
     pub fn energy_j(&self, component: Component) -> f64 {
-        self.mean_w
-            .iter()
-            .zip(&self.seconds)
-            .map(|(w, s)| w[component as usize] * s)
-            .sum()
+        let bins = self.mean_w.iter().zip(&self.seconds);
+        bins.map(|(w, s)| w[component as usize] * s).sum()
     }
 }
 
@@ -49,11 +49,8 @@ pub fn bin_losses(history: &History, bins: usize) -> LossBins {
     let length = total / bins.max(1) as f64;
     let losses = Component::ALL.map(|component| history.loss_w(component));
     let (mut elapsed, mut bin, mut energy) = (0.0, 0.0, [0.0; Component::COUNT]);
-    out.edges_s.extend(
-        time.first()
-            .zip(steps.first())
-            .map(|(end, dt)| end - seconds(dt)),
-    );
+    let first = time.first().zip(steps.first());
+    out.edges_s.extend(first.map(|(end, dt)| end - seconds(dt)));
     for (i, (end, dt)) in time.iter().zip(steps).enumerate() {
         let dt = seconds(dt);
         elapsed += dt;
@@ -80,70 +77,53 @@ pub fn losses(run: &PlotRun) -> Picture {
     let bins = bin_losses(run.history, BINS);
     let components = run.history.components();
     let total: f64 = components.iter().map(|&c| bins.energy_j(c)).sum();
-    let names = components
-        .iter()
-        .map(|&c| described(c, bins.energy_j(c), total));
-    let names: Vec<String> = names.collect();
-    let all = |watts: &[f64; Component::COUNT]| {
-        components.iter().map(|&c| watts[c as usize]).sum::<f64>()
-    };
-    let y = Axis::round(
-        "Loss power [W]",
-        bins.mean_w.iter().map(all).chain([0.0]),
-        8,
-    );
+    let all = |watts: &Means| components.iter().map(|&c| watts[c as usize]).sum::<f64>();
+    let heights = bins.mean_w.iter().map(all).chain([0.0]);
     let rect = Rect::new(PLOT_LEFT, PLOT_TOP, PLOT_WIDE, TALL);
-    let mut panel = Panel {
-        over_table: true,
-        no_data: bins.mean_w.is_empty(),
-        ..Panel::new(rect, time_axis(run.history), y)
-    };
+    let y = Axis::round("Loss power [W]", heights, 8);
+    let mut panel = Panel::new(rect, time_axis(run.history), y)
+        .over_table()
+        .no_data(bins.mean_w.is_empty());
     let mut base = vec![0.0; bins.mean_w.len()];
     for component in &components {
         layer(&mut panel, &bins, *component, &mut base);
     }
     phases(&mut panel, run.history, true);
     // Listed from the top, as they lie in the stack.
-    let entries = components.iter().zip(&names).rev();
-    let entries = entries
-        .map(|(c, name)| Entry::fill(Fill::component(*c), name))
+    let entry = |c: &Component| {
+        let name = described(*c, bins.energy_j(*c), total);
+        Entry::fill(Fill::component(*c), name)
+    };
+    let entries: Vec<Entry> = components.iter().rev().map(entry).collect();
+    let names: Vec<&str> = entries
+        .iter()
+        .rev()
+        .map(|entry| entry.name.as_str())
         .collect();
     let heading = format!("All losses: {}", kilojoule(total));
-    let chart = Chart {
-        title: "Transmission losses".to_owned(),
-        subject: run.name.to_owned(),
-        description: format!(
-            "Loss power over time, stacked from the bottom in the order of the power flow. Energy lost in all: {}. By component: {}.",
-            kilojoule(total),
-            names.join("; ")
-        ),
-        left: PLOT_LEFT,
-        panels: vec![panel],
-        foot: vec![Block::legend((PLOT_LEFT, PLOT_WIDE), &heading, entries)],
-        table: table(&bins, &components),
-        ..Chart::default()
-    };
-    chart.picture()
+    Chart::new("Transmission losses", run.name, PLOT_LEFT)
+        .lead(format!("{heading}. By component: {}", names.join("; ")))
+        .panels([panel])
+        .foot(Block::legend((PLOT_LEFT, PLOT_WIDE), &heading, entries))
+        .picture(table(&bins, &components))
 }
 
 /// The bins with the mean of each component.
 fn table(bins: &LossBins, components: &[Component]) -> PictureTable {
-    let names: Vec<String> = components.iter().map(|c| capital(c.name())).collect();
-    let mut columns = vec![("Middle of the stretch", "s"), ("Length", "s")];
-    columns.extend(names.iter().map(|name| (name.as_str(), "W")));
-    columns.push(("All", "W"));
-    let mut table = PictureTable::new(&columns);
+    let names = components.iter().map(|c| capital(c.name()));
+    let mut table = PictureTable::new(&[("Middle of the stretch", "s"), ("Length", "s")]);
+    let names = names.chain(["All".to_owned()]);
+    table.columns.extend(names.map(|name| (name, "W")));
     for ((edges, seconds), watts) in bins.edges_s.windows(2).zip(&bins.seconds).zip(&bins.mean_w) {
         let of = |&c: &Component| watts[c as usize];
         let all = components.iter().map(of).sum();
         let numbers = [0.5 * (edges[0] + edges[1]), *seconds].into_iter();
         let numbers = numbers.chain(components.iter().map(of)).chain([all]);
-        table.push(numbers.map(|x| cell(x, 0.1)).collect());
+        table.push(numbers.map(|x| cell(x, 0.1)));
     }
-    table.note = format!(
+    table.note(format!(
         "Means over stretches of the cycle, {BINS} at most; the picture is drawn from them. They keep the energy of every component."
-    );
-    table
+    ))
 }
 
 /// Adds one component on top of `base`, and raises that.

@@ -3,9 +3,9 @@
 use super::PlotRun;
 use crate::charts::engine::{
     Axis, Block, Chart, Entry, INK, PLOT_LEFT, Panel, Point, Rect, Stroke, ZERO, cell, number,
-    range, stroke,
+    stroke,
 };
-use crate::charts::grids::{Density, ISO, iso_lines};
+use crate::charts::grids::{Density, DensityCell, ISO, iso_lines};
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_model::drive::FuelMap;
 use cvtcycle_output::{Flags, History};
@@ -25,51 +25,34 @@ pub fn operating_points(run: &PlotRun) -> Picture {
     let map = run.fuel_map.as_ref();
     let full_load = map.map_or_else(Vec::new, full_load);
     let (x, y) = axes(&points, &full_load);
-    let size = (
-        Density::size_for(&x, CELLS.0),
-        Density::size_for(&y, CELLS.1),
-    );
-    let density = Density::new(size, points.iter().copied());
+    let density = Density::new(Density::size_for(&x, &y, CELLS), points.iter().copied());
     let mut table = table(&density);
-    let mut panel = Panel {
-        no_data: points.is_empty(),
-        ..Panel::new(Rect::new(PLOT_LEFT, 58.0, WIDE, 460.0), x, y)
-    };
+    let rect = Rect::new(PLOT_LEFT, 58.0, WIDE, 460.0);
+    let mut panel = Panel::new(rect, x, y).no_data(points.is_empty());
     panel.items = density.items(|cell| table.push(cells(cell, density.total_s())));
     if panel.y.low < 0.0 {
         panel.level(0.0, ZERO);
     }
-    let labels = map.map_or_else(Vec::new, |map| {
+    let mut labels = Vec::new();
+    let mut lines = Vec::new();
+    if let Some(map) = map {
         let taken = occupied(&panel, &density);
-        iso_lines(&mut panel, map, &full_load, taken)
-    });
+        labels = iso_lines(&mut panel, map, &full_load, taken);
+        lines.push(Entry::line(FULL_LOAD, "Full load"));
+        lines.push(Entry::line(ISO, "Consumption [g/kWh]"));
+    }
     panel.series(full_load, FULL_LOAD);
     labels.into_iter().for_each(|label| panel.label(label));
-    let lines = map.map_or_else(Vec::new, |_| {
-        vec![
-            Entry::line(FULL_LOAD, "Full load"),
-            Entry::line(ISO, "Consumption [g/kWh]"),
-        ]
-    });
-    let mut foot = vec![Block::legend((PLOT_LEFT, 0.5 * WIDE - 20.0), "", lines)];
+    let mut legend = Block::legend((PLOT_LEFT, 0.5 * WIDE - 20.0), "", lines);
+    legend.before_next = !points.is_empty();
+    let mut chart = Chart::new("Engine operating points", run.name, PLOT_LEFT)
+        .panels([panel])
+        .foot(legend);
     if !points.is_empty() {
-        foot[0].before_next = true;
-        foot.push(Block::key(
-            (PLOT_LEFT + 0.5 * WIDE, 0.5 * WIDE - 4.0),
-            density.key(),
-        ));
+        let place = (PLOT_LEFT + 0.5 * WIDE, 0.5 * WIDE - 4.0);
+        chart = chart.foot(Block::key(place, density.key()));
     }
-    let chart = Chart {
-        title: "Engine operating points".to_owned(),
-        subject: run.name.to_owned(),
-        description: describe(&points, size, map.is_some()),
-        left: PLOT_LEFT,
-        panels: vec![panel],
-        foot,
-        table,
-        ..Chart::default()
-    };
-    chart.picture()
+    chart.picture(table)
 }
 
 fn full_load(map: &FuelMap) -> Vec<Point> {
@@ -79,44 +62,35 @@ fn full_load(map: &FuelMap) -> Vec<Point> {
 
 /// Both axes: all points, the full-load line, and zero torque.
 fn axes(points: &[(f64, f64, f64)], full_load: &[Point]) -> (Axis, Axis) {
-    let points = || {
+    let all = || {
         points
             .iter()
             .map(|p| (p.0, p.1))
             .chain(full_load.iter().copied())
     };
+    let y = all().map(|p| p.1).chain([0.0]);
     (
-        Axis::round("Engine speed [rpm]", points().map(|p| p.0), 9),
-        Axis::round("Engine torque [Nm]", points().map(|p| p.1).chain([0.0]), 9),
+        Axis::round("Engine speed [rpm]", all().map(|p| p.0), 9),
+        Axis::round("Engine torque [Nm]", y, 9),
     )
 }
 
 fn table(density: &Density) -> PictureTable {
-    let mut table = PictureTable::new(&[
-        ("Engine speed", "rpm"),
-        ("Engine torque", "Nm"),
-        ("Time", "s"),
-        ("Share of time", "%"),
-    ]);
-    table.note = format!(
+    let engine = [("Engine speed", "rpm"), ("Engine torque", "Nm")];
+    let time = [("Time", "s"), ("Share of time", "%")];
+    PictureTable::new(&[engine, time].concat()).note(format!(
         "Cells in which the engine ran, {} s in all; a cell without time is not listed.",
         number(density.total_s(), 0.1)
-    );
-    table
+    ))
 }
 
-fn cells(of: &crate::charts::grids::DensityCell, total_s: f64) -> Vec<String> {
+fn cells(of: &DensityCell, total_s: f64) -> [String; 4] {
     let span = |(from, to): (f64, f64)| {
         let step = to - from;
         format!("{} to {}", number(from, step), number(to, step))
     };
-    let share = 100.0 * of.seconds / total_s;
-    vec![
-        span(of.x),
-        span(of.y),
-        cell(of.seconds, 0.01),
-        cell(share, 0.01),
-    ]
+    let [time, share] = [of.seconds, 100.0 * of.seconds / total_s].map(|x| cell(x, 0.01));
+    [span(of.x), span(of.y), time, share]
 }
 
 /// Where the cells are, pixels: labels keep clear of them if they can.
@@ -140,24 +114,4 @@ fn points(history: &History) -> Vec<(f64, f64, f64)> {
         .map(|(_, ((n, t), dt))| (*n, *t, *dt))
         .filter(|(n, t, dt)| n.is_finite() && t.is_finite() && dt.is_finite() && *dt > 0.0)
         .collect()
-}
-
-fn describe(points: &[(f64, f64, f64)], size: Point, with_map: bool) -> String {
-    let speed = range(points.iter().map(|p| p.0));
-    let torque = range(points.iter().map(|p| p.1));
-    let Some(((slow, fast), (low, high))) = speed.zip(torque) else {
-        return "Engine torque against speed, without data.".to_string();
-    };
-    let seconds: f64 = points.iter().map(|p| p.2).sum();
-    let map = if with_map {
-        ", under lines of equal specific fuel consumption"
-    } else {
-        ""
-    };
-    let [seconds, slow, fast, low, high] = [seconds, slow, fast, low, high].map(|x| number(x, 1.0));
-    format!(
-        "Engine torque against speed{map}; time spent in cells of {} rpm by {} Nm, {seconds} s in all, from {slow} to {fast} rpm and from {low} to {high} Nm.",
-        number(size.0, size.0),
-        number(size.1, size.1)
-    )
 }

@@ -2,8 +2,8 @@
 
 use super::PlotRun;
 use crate::charts::engine::{
-    Axis, Block, Chart, Cut, Entry, Label, PLOT_LEFT, Panel, QUIET, Rect, Shape, Stroke, Style,
-    WIDTH, at, cell, number, range, stroke, text_width,
+    Axis, Chart, Cut, Entry, Label, PLOT_LEFT, Panel, QUIET, Rect, Shape, Stroke, Style, WIDTH, at,
+    cell, range, stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_output::History;
@@ -29,6 +29,16 @@ pub(super) struct Series {
     pub stroke: Stroke,
 }
 
+impl Series {
+    pub fn new(column: &'static str, title: &'static str, stroke: Stroke) -> Self {
+        Series {
+            column,
+            title,
+            stroke,
+        }
+    }
+}
+
 /// One panel.
 pub(super) struct Strip {
     /// Title of the vertical axis, without unit.
@@ -50,15 +60,10 @@ pub(super) struct Strip {
 impl Strip {
     /// A panel of one line that begins at zero.
     pub fn of(column: &'static str, title: &'static str, tall: f64, stroke: Stroke) -> Self {
-        let line = Series {
-            column,
-            title,
-            stroke,
-        };
         Strip {
             title,
             tall,
-            lines: vec![line],
+            lines: vec![Series::new(column, title, stroke)],
             with: &[0.0],
             max: f64::INFINITY,
             mark: None,
@@ -66,16 +71,18 @@ impl Strip {
         }
     }
 
+    fn values<'h>(&self, history: &'h History) -> impl Iterator<Item = f64> + use<'_, 'h> {
+        let lines = self.lines.iter();
+        lines.flat_map(|line| history.column(line.column).iter().copied())
+    }
+
     fn axis(&self, history: &History) -> Axis {
         let title = match self.lines.first().map_or("", |line| unit(line.column)) {
             "" => self.title.to_owned(),
             unit => format!("{} [{unit}]", self.title),
         };
-        let values = self
-            .lines
-            .iter()
-            .flat_map(|line| history.column(line.column));
-        let values = values.map(|y| y.min(self.max)).filter(|y| y.is_finite());
+        let values = self.values(history).map(|y| y.min(self.max));
+        let values = values.filter(|y| y.is_finite());
         let ticks = (self.tall / 28.0) as usize;
         Axis::round(&title, values.chain(self.with.iter().copied()), ticks)
     }
@@ -87,10 +94,10 @@ impl Strip {
     }
 
     fn panel(&self, rect: Rect, history: &History) -> Panel {
-        let mut panel = Panel {
-            over_table: true,
-            ..Panel::new(rect, time_axis(history), self.axis(history))
-        };
+        let mut values = self.values(history);
+        let mut panel = Panel::new(rect, time_axis(history), self.axis(history))
+            .over_table()
+            .no_data(!values.any(|y| y.is_finite()));
         if let Some((level, _)) = self.mark {
             panel.level(level, LEVEL);
         }
@@ -102,50 +109,30 @@ impl Strip {
             let lines = panel.items.split_off(first);
             panel.add(Shape::Within(None, lines), Style::default());
         }
-        let mut values = self
-            .lines
-            .iter()
-            .flat_map(|line| history.column(line.column));
-        panel.no_data = !values.any(|y| y.is_finite());
         panel
     }
 }
 
 /// Draws the panels of a run, with one legend below.
-pub(super) fn timeline(run: &PlotRun, title: &str, about: &str, strips: &[Strip]) -> Picture {
+pub(super) fn timeline(run: &PlotRun, title: &str, strips: &[Strip]) -> Picture {
     let lines: Vec<&Series> = strips.iter().flat_map(|strip| &strip.lines).collect();
-    let described: Vec<String> = lines
-        .iter()
-        .map(|line| describe(run.history, line))
-        .collect();
     let levels = strips.iter().filter_map(|strip| strip.mark);
     let levels = levels.map(|(_, name)| Entry::line(LEVEL, name));
-    let entries = strips
-        .iter()
-        .flat_map(Strip::entries)
-        .chain(levels)
-        .collect();
-    let mut panels = Vec::new();
+    let entries = strips.iter().flat_map(Strip::entries).chain(levels);
     let mut top = PLOT_TOP;
-    for strip in strips {
+    let panel = |(k, strip): (usize, &Strip)| {
         let rect = Rect::new(PLOT_LEFT, top, PLOT_WIDE, strip.tall);
-        let mut panel = strip.panel(rect, run.history);
-        phases(&mut panel, run.history, panels.is_empty());
-        panel.x_labels = panels.len() + 1 == strips.len();
-        panels.push(panel);
+        let mut panel = strip
+            .panel(rect, run.history)
+            .x_labels(k + 1 == strips.len());
+        phases(&mut panel, run.history, k == 0);
         top += strip.tall + GAP;
-    }
-    let chart = Chart {
-        title: title.to_owned(),
-        subject: run.name.to_owned(),
-        description: format!("{about} {}.", described.join("; ")),
-        left: PLOT_LEFT,
-        panels,
-        foot: vec![Block::legend((PLOT_LEFT, PLOT_WIDE), "", entries)],
-        table: table(run, &lines),
-        ..Chart::default()
+        panel
     };
-    chart.picture()
+    Chart::new(title, run.name, PLOT_LEFT)
+        .panels(strips.iter().enumerate().map(panel))
+        .legend((PLOT_LEFT, PLOT_WIDE), entries)
+        .picture(table(run, &lines))
 }
 
 /// Unit of a column.
@@ -181,26 +168,6 @@ pub(super) fn time_axis(history: &History) -> Axis {
     Axis::exact("Time [s]", start_s(history).unwrap_or(0.0), end, 10)
 }
 
-/// A series in words, for those who cannot see the picture.
-fn describe(history: &History, line: &Series) -> String {
-    let values = history.column(line.column);
-    let Some((low, high)) = range(values.iter().copied()) else {
-        return format!("{} without data", line.title);
-    };
-    let unit = match unit(line.column) {
-        "-" | "" => String::new(),
-        unit => format!(" {unit}"),
-    };
-    let step = if high - low < 20.0 { 0.01 } else { 1.0 };
-    let last = values.iter().rev().find(|y| y.is_finite());
-    let last = last.filter(|_| line.column.ends_with("_degc"));
-    let end = last.map_or(String::new(), |y| {
-        format!(" and {} at the end", number(*y, 1.0))
-    });
-    let (low, high) = (number(low, step), number(high, step));
-    format!("{} from {low} to {high}{unit}{end}", line.title)
-}
-
 /// Marks where phases begin, with their names above the plot where these fit.
 pub(super) fn phases(panel: &mut Panel, history: &History, named: bool) {
     let Some(mut from) = start_s(history) else {
@@ -216,10 +183,8 @@ pub(super) fn phases(panel: &mut Panel, history: &History, named: bool) {
         if i > 0 && wide > 3.0 {
             panel.upright(from, PHASE);
         }
-        let name = history
-            .phases()
-            .get(history.phase(first))
-            .map_or("", String::as_str);
+        let name = history.phases().get(history.phase(first));
+        let name = name.map_or("", String::as_str);
         let short = Cut::End.apply(name, PHASE_TEXT, wide - 4.0);
         // A name cut to a few letters says nothing.
         let readable = short == name || text_width(&short, PHASE_TEXT) > 40.0;
@@ -234,12 +199,10 @@ pub(super) fn phases(panel: &mut Panel, history: &History, named: bool) {
 /// Every so many steps with all columns that are drawn.
 fn table(run: &PlotRun, lines: &[&Series]) -> PictureTable {
     let plain = |unit: &'static str| if unit == "-" { "" } else { unit };
-    let mut columns = vec![("Time", "s")];
-    columns.extend(
-        lines
-            .iter()
-            .map(|line| (line.title, plain(unit(line.column)))),
-    );
+    let columns = lines
+        .iter()
+        .map(|line| (line.title, plain(unit(line.column))));
+    let columns: Vec<_> = [("Time", "s")].into_iter().chain(columns).collect();
     let mut table = PictureTable::new(&columns);
     let history = run.history;
     let every = history.len().div_ceil(MAX_ROWS).max(1);
@@ -252,7 +215,7 @@ fn table(run: &PlotRun, lines: &[&Series]) -> PictureTable {
         let cells = lines
             .iter()
             .map(|line| cell(value(line.column), resolution(line.column)));
-        table.push([cell(*time, step_s)].into_iter().chain(cells).collect());
+        table.push([cell(*time, step_s)].into_iter().chain(cells));
     }
     table.note =
         "A row is the step that ends at its time: temperatures at its end, all else its mean."

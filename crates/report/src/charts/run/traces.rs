@@ -2,7 +2,7 @@
 
 use super::PlotRun;
 use super::timeline::{Series, Strip, timeline};
-use crate::charts::engine::{CONTEXT, INK, PLAIN, STROKES, Stroke, stroke};
+use crate::charts::engine::{CONTEXT, INK, PLAIN, STROKES, Stroke, range, stroke};
 use crate::charts::picture::Picture;
 
 /// Secondary and primary pressure.
@@ -30,7 +30,6 @@ pub fn driveline(run: &PlotRun) -> Picture {
     timeline(
         run,
         "Vehicle speed, ratio, engine speed and throttle",
-        "Four panels over time.",
         &strips,
     )
 }
@@ -42,22 +41,11 @@ pub fn pressure(run: &PlotRun) -> Picture {
         ("secondary_pressure_bar", "Secondary pressure"),
         ("primary_pressure_bar", "Primary pressure"),
     ];
-    let lines = pressures
-        .into_iter()
-        .zip(PRESSURES)
-        .map(|((column, title), stroke)| Series {
-            column,
-            title,
-            stroke,
-        });
+    let lines = pressures.into_iter().zip(PRESSURES);
+    let lines = lines.map(|((column, title), stroke)| Series::new(column, title, stroke));
     let (times, low, high) = MAX_SAFETY;
-    let least = run
-        .history
-        .column("clamp_safety")
-        .iter()
-        .copied()
-        .filter(|x| x.is_finite())
-        .fold(f64::INFINITY, f64::min);
+    let safety = run.history.column("clamp_safety").iter().copied();
+    let least = range(safety).map_or(f64::INFINITY, |(least, _)| least);
     let max = (times * least).clamp(low, high).round();
     let strips = [
         Strip {
@@ -76,15 +64,7 @@ pub fn pressure(run: &PlotRun) -> Picture {
             ..Strip::of("speed_kmh", "Vehicle speed", 100.0, CONTEXT)
         },
     ];
-    let about = format!(
-        "Pulley pressures, belt slip, clamp safety and vehicle speed over time; clamp safety is cut at {max}, and a broken line marks 1."
-    );
-    timeline(
-        run,
-        "Pulley pressures, slip and clamp safety",
-        &about,
-        &strips,
-    )
+    timeline(run, "Pulley pressures, slip and clamp safety", &strips)
 }
 
 /// Temperatures over time.
@@ -103,11 +83,7 @@ pub fn temperatures(run: &PlotRun) -> Picture {
         .into_iter()
         .zip(STROKES)
         .filter(|((column, _), _)| there(column))
-        .map(|((column, title), stroke)| Series {
-            column,
-            title,
-            stroke,
-        })
+        .map(|((column, title), stroke)| Series::new(column, title, stroke))
         .collect();
     let strip = Strip {
         lines,
@@ -115,5 +91,5 @@ pub fn temperatures(run: &PlotRun) -> Picture {
         legend: true,
         ..Strip::of("coolant_degc", "Temperature", 400.0, PLAIN)
     };
-    timeline(run, "Temperatures", "Temperatures over time.", &[strip])
+    timeline(run, "Temperatures", &[strip])
 }

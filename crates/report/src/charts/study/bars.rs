@@ -1,9 +1,11 @@
 //! Bars of two measures of each factor, with intervals: Sobol indices, rank correlations.
 
-use super::{MARGIN, MAX_ROWS, RIGHT, ROW, Shown, interval_cells, value};
+use super::{
+    MARGIN, MAX_ROWS, RIGHT, ROW, Shown, WIDE_FOOT, by_size, estimate_cells, estimate_columns,
+    value,
+};
 use crate::charts::engine::{
-    Axis, Block, Chart, Entry, Fill, INK, Label, Style, WIDTH, at, cell, rows_left, rows_panel,
-    stroke,
+    Axis, Chart, Entry, Fill, INK, Label, Style, at, rows_left, rows_panel, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::statistics::{Estimate, RankSensitivity, SobolIndices};
@@ -50,9 +52,7 @@ struct Texts<'a> {
 pub fn sobol_plot(plot: &SobolPlot) -> Picture {
     let of = plot.indices;
     let factors = plot.names.iter().zip(&of.factors);
-    let rows = factors
-        .map(|(name, f)| (name.as_str(), [f.first, f.total]))
-        .collect();
+    let rows = factors.map(|(name, f)| (name.as_str(), [f.first, f.total]));
     let mut notes = vec![format!("{} samples{}", of.samples, left_out(of.missing))];
     if of.samples > 1 && of.variance <= 0.0 {
         notes.push("The output does not vary: it has no indices.".to_owned());
@@ -74,7 +74,7 @@ pub fn sobol_plot(plot: &SobolPlot) -> Picture {
         key: 1,
         notes,
     };
-    draw(rows, &plot.shown, texts)
+    draw(rows.collect(), &plot.shown, texts)
 }
 
 /// Draws rank correlations and rank regression coefficients with their intervals, the strongest correlation first.
@@ -82,9 +82,7 @@ pub fn sobol_plot(plot: &SobolPlot) -> Picture {
 pub fn rank_plot(plot: &RankPlot) -> Picture {
     let of = plot.ranks;
     let factors = plot.names.iter().zip(&of.factors);
-    let rows = factors
-        .map(|(name, f)| (name.as_str(), [f.spearman, f.regression]))
-        .collect();
+    let rows = factors.map(|(name, f)| (name.as_str(), [f.spearman, f.regression]));
     let fit = match of.r_squared {
         r if r.is_finite() => format!("R\u{b2} of the regression on ranks: {r:.3}"),
         _ => "No regression: too few rows, or factors that follow from each other.".to_owned(),
@@ -101,32 +99,28 @@ pub fn rank_plot(plot: &RankPlot) -> Picture {
             "Whiskers: intervals of 95 %".to_owned(),
         ],
     };
-    draw(rows, &plot.shown, texts)
+    draw(rows.collect(), &plot.shown, texts)
 }
 
 fn draw(mut rows: Vec<FactorBars>, shown: &Shown, texts: Texts) -> Picture {
     let size = |row: &FactorBars| row.1[texts.key].value.abs();
-    rows.sort_by(|a, b| {
-        let last = size(a).is_nan().cmp(&size(b).is_nan());
-        last.then(size(b).total_cmp(&size(a)))
-    });
-    let (description, table) = (describe(&rows, &texts), table(&rows, &texts));
+    by_size(&mut rows, size);
+    let table = table(&rows, &texts);
     let mut notes = texts.notes.clone();
     if rows.len() > MAX_ROWS + 1 {
         let rest = rows.split_off(MAX_ROWS);
         let largest = rest.first().map_or(0.0, size);
+        let (more, most) = (rest.len(), value(largest, 0.9));
         notes.push(format!(
-            "{} more factors in the table, each at most {}.",
-            rest.len(),
-            value(largest, 0.9)
+            "{more} more factors in the table, each at most {most}."
         ));
     }
     let estimates = rows.iter().flat_map(|row| &row.1);
     let ends = estimates.flat_map(|e| e.interval95.into_iter().flatten().chain([e.value, 0.0]));
     let left = rows_left(rows.iter().map(|row| row.0), 11.0);
     let x = Axis::round(texts.axis, ends, 8);
-    let mut panel = rows_panel((left, 58.0), RIGHT, rows.len().max(2), ROW, x);
-    panel.no_data = rows.is_empty();
+    let panel = rows_panel((left, 58.0), RIGHT, rows.len().max(2), ROW, x);
+    let mut panel = panel.no_data(rows.is_empty());
     for (k, (name, estimates)) in rows.iter().enumerate() {
         panel.row_name(k, Label::new(at(0.0, 0.0), *name).class("row").row(k));
         for (i, (estimate, top)) in estimates.iter().zip([-10.0, 0.0]).enumerate() {
@@ -138,45 +132,21 @@ fn draw(mut rows: Vec<FactorBars>, shown: &Shown, texts: Texts) -> Picture {
         }
     }
     panel.upright(0.0, stroke(INK, 1.0, &[]));
-    let entries = texts.kinds.iter().enumerate();
-    let entries = entries
-        .map(|(k, kind)| Entry::fill(Fill::nth(k, 2), *kind))
-        .collect();
-    let place = (MARGIN, WIDTH - 28.0 - MARGIN);
-    let chart = Chart {
-        title: texts.title,
-        subject: shown.subject.to_owned(),
-        description,
-        left: MARGIN,
-        panels: vec![panel],
-        foot: vec![
-            Block::legend(place, "", entries),
-            Block::notes(place, notes),
-        ],
-        table,
-        ..Chart::default()
-    };
-    chart.picture()
+    let entry = |(k, kind): (usize, &str)| Entry::fill(Fill::nth(k, 2), kind);
+    Chart::new(texts.title, shown.subject, MARGIN)
+        .panels([panel])
+        .legend(WIDE_FOOT, texts.kinds.into_iter().enumerate().map(entry))
+        .notes(WIDE_FOOT, notes)
+        .picture(table)
 }
 
 fn table(rows: &[FactorBars], texts: &Texts) -> PictureTable {
-    let mut columns = vec![("Factor".to_owned(), "")];
-    for kind in texts.short {
-        let names = [
-            kind.to_owned(),
-            format!("{kind}: 95 % from"),
-            format!("{kind}: to"),
-        ];
-        columns.extend(names.map(|name| (name, "")));
-    }
-    let mut table = PictureTable::with_columns(columns, texts.notes.join(" "));
+    let columns = texts.short.map(estimate_columns).concat();
+    let columns = [("Factor".to_owned(), "")].into_iter().chain(columns);
+    let mut table = PictureTable::with_columns(columns).note(texts.notes.join(" "));
     for (name, estimates) in rows {
-        let mut cells = vec![(*name).to_owned()];
-        for estimate in estimates {
-            cells.push(cell(estimate.value, 1e-3));
-            cells.extend(interval_cells(estimate.interval95, 1e-3));
-        }
-        table.push(cells);
+        let cells = estimates.iter().flat_map(estimate_cells);
+        table.push([(*name).to_owned()].into_iter().chain(cells));
     }
     table
 }
@@ -197,20 +167,4 @@ fn with_interval(estimate: &Estimate) -> String {
         Some([low, high]) => format!("{own} ({} to {})", digits(low), digits(high)),
         None => own,
     }
-}
-
-fn describe(rows: &[FactorBars], texts: &Texts) -> String {
-    let row = |(name, [first, second]): &FactorBars| {
-        format!(
-            "{name}: {} and {}",
-            with_interval(first),
-            with_interval(second)
-        )
-    };
-    let rows: Vec<String> = rows.iter().map(row).collect();
-    let [first, second] = texts.kinds;
-    format!(
-        "For each factor two bars with intervals of 95 %, {first} and {second}. {}.",
-        rows.join("; ")
-    )
 }

@@ -1,9 +1,8 @@
 //! Sobol indices against the number of samples: whether they have settled.
 
-use super::{RIGHT, Shown, WIDE, interval_cells, value};
+use super::{FOOT, Shown, WIDE, by_size, estimate_cells, estimate_columns};
 use crate::charts::engine::{
-    Axis, Block, Chart, Entry, PLOT_LEFT, Panel, Rect, STROKES, Shape, Style, Symbol, ZERO, at,
-    cell,
+    Axis, Chart, Entry, PLOT_LEFT, Panel, Rect, STROKES, Shape, Style, Symbol, ZERO, at,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::statistics::{Estimate, SobolIndices};
@@ -38,10 +37,9 @@ pub fn convergence_plot(plot: &ConvergencePlot) -> Picture {
             .to_owned(),
     ];
     if chosen.len() < plot.names.len() {
+        let (some, all) = (chosen.len(), plot.names.len());
         notes.push(format!(
-            "{} of {} factors, those with the largest total indices.",
-            chosen.len(),
-            plot.names.len()
+            "{some} of {all} factors, those with the largest total indices."
         ));
     }
     let indices: [(&str, Pick); 2] = [
@@ -56,46 +54,33 @@ pub fn convergence_plot(plot: &ConvergencePlot) -> Picture {
         panel.rect = Rect::new(PLOT_LEFT, top, WIDE, TALL);
         panel.x_labels = k == 1;
     }
-    let lines = chosen.iter().enumerate();
-    let lines = lines
-        .map(|(k, &i)| Entry::line(STROKES[k], &plot.names[i]))
-        .collect();
-    let place = (PLOT_LEFT, RIGHT - PLOT_LEFT);
-    let chart = Chart {
-        title: format!("Convergence of Sobol indices: {}", plot.shown.output),
-        subject: plot.shown.subject.to_owned(),
-        description: describe(plot, &chosen),
-        left: PLOT_LEFT,
-        panels: panels.into(),
-        foot: vec![Block::legend(place, "", lines), Block::notes(place, notes)],
-        table: table(plot),
-        ..Chart::default()
-    };
-    chart.picture()
+    let lines = chosen.iter().zip(STROKES);
+    let lines = lines.map(|(&i, stroke)| Entry::line(stroke, &plot.names[i]));
+    let title = format!("Convergence of Sobol indices: {}", plot.shown.output);
+    Chart::new(title, plot.shown.subject, PLOT_LEFT)
+        .panels(panels)
+        .legend(FOOT, lines)
+        .notes(FOOT, notes)
+        .picture(table(plot))
 }
 
 /// A row for each number of samples and factor, in this order.
 fn table(plot: &ConvergencePlot) -> PictureTable {
-    let names = [
-        "Samples",
-        "Factor",
-        "First order",
-        "First order: 95 % from",
-        "First order: to",
-        "Total",
-        "Total: 95 % from",
-        "Total: to",
-    ];
-    let mut table = PictureTable::new(&names.map(|name| (name, "")));
+    let mut table = PictureTable::new(&[("Samples", ""), ("Factor", "")]);
+    let estimates = ["First order", "Total"].map(estimate_columns);
+    table.columns.extend(estimates.concat());
     for step in plot.steps {
         for (i, name) in plot.names.iter().enumerate() {
             let mut cells = vec![step.samples.to_string(), name.clone()];
-            let estimates = step.factors.get(i).map(|f| [f.first, f.total]);
-            for estimate in estimates.into_iter().flatten() {
-                cells.push(cell(estimate.value, 1e-3));
-                cells.extend(interval_cells(estimate.interval95, 1e-3));
-            }
-            cells.resize(names.len(), String::new());
+            let factor = step.factors.get(i);
+            let estimates = factor.map(|f| {
+                [f.first, f.total]
+                    .iter()
+                    .flat_map(estimate_cells)
+                    .collect::<Vec<_>>()
+            });
+            cells.extend(estimates.unwrap_or_default());
+            cells.resize(table.columns.len(), String::new());
             table.push(cells);
         }
     }
@@ -114,10 +99,7 @@ fn chosen(plot: &ConvergencePlot) -> Vec<usize> {
         last.map_or(f64::NAN, |f| f.total.value)
     };
     let mut order: Vec<usize> = (0..plot.names.len()).collect();
-    order.sort_by(|&i, &j| {
-        let last = total(i).is_nan().cmp(&total(j).is_nan());
-        last.then(total(j).total_cmp(&total(i)))
-    });
+    by_size(&mut order, |i| total(*i));
     order.truncate(STROKES.len());
     order
 }
@@ -134,15 +116,10 @@ fn draw(plot: &ConvergencePlot, chosen: &[usize], title: &str, pick: Pick) -> Pa
         let ends = e.interval95.filter(|_| x > last - SEEN);
         ends.into_iter().flatten().chain([e.value, 0.0])
     };
-    let y = Axis::round(
-        title,
-        chosen.iter().flat_map(|&i| estimates(i)).flat_map(seen),
-        6,
-    );
-    let ticks = plot
-        .steps
-        .iter()
-        .map(|step| (place_of(step), step.samples.to_string()));
+    let all = chosen.iter().flat_map(|&i| estimates(i));
+    let y = Axis::round(title, all.flat_map(seen), 6);
+    let tick = |step: &SobolIndices| (place_of(step), step.samples.to_string());
+    let ticks = plot.steps.iter().map(tick);
     let x = Axis::labelled("Samples [-]", (first - 0.25, last + 0.25), ticks.collect());
     let mut panel = Panel::new(Rect::default(), x, y);
     panel.no_data = plot.steps.is_empty() || chosen.is_empty();
@@ -152,20 +129,16 @@ fn draw(plot: &ConvergencePlot, chosen: &[usize], title: &str, pick: Pick) -> Pa
             |(_, x, e): (usize, f64, Estimate)| e.interval95.map(|[low, high]| (x, low, high));
         let bounds: Vec<(f64, f64, f64)> = estimates(i).filter_map(ends).collect();
         if bounds.len() > 1 {
-            let style = Style::colour(STROKES[k].colour)
-                .fill_opacity(0.14)
-                .class("band");
-            panel.add(Shape::between(&bounds), style);
+            let style = Style::colour(STROKES[k].colour).fill_opacity(0.14);
+            panel.add(Shape::between(&bounds), style.class("band"));
         }
     }
     let bands = std::mem::take(&mut panel.items);
     panel.add(Shape::Within(None, bands), Style::default());
     panel.level(0.0, ZERO);
     for (k, &i) in order() {
-        panel.series(
-            estimates(i).map(|(_, x, e)| (x, e.value)).collect(),
-            STROKES[k],
-        );
+        let points = estimates(i).map(|(_, x, e)| (x, e.value)).collect();
+        panel.series(points, STROKES[k]);
         for (step, x, e) in estimates(i) {
             let style = Style::colour(STROKES[k].colour).class("mark");
             let row = step * plot.names.len() + i;
@@ -173,20 +146,4 @@ fn draw(plot: &ConvergencePlot, chosen: &[usize], title: &str, pick: Pick) -> Pa
         }
     }
     panel
-}
-
-fn describe(plot: &ConvergencePlot, chosen: &[usize]) -> String {
-    let at = |step: &SobolIndices| {
-        let indices = |&i: &usize| {
-            let f = step.factors.get(i)?;
-            let (first, total) = (value(f.first.value, 0.9), value(f.total.value, 0.9));
-            Some(format!("{} {first} and {total}", plot.names[i]))
-        };
-        let factors: Vec<String> = chosen.iter().filter_map(indices).collect();
-        format!("{} samples: {}", step.samples, factors.join(", "))
-    };
-    format!(
-        "First-order and total indices of factors. {}.",
-        plot.steps.iter().map(at).collect::<Vec<_>>().join("; ")
-    )
 }

@@ -1,9 +1,9 @@
 //! How an output, or a difference of pairs, is distributed: histogram over cumulative curve.
 
-use super::{RIGHT, Shown, WIDE, percent, value};
+use super::{FOOT, Shown, WIDE, percent, value};
 use crate::charts::engine::{
-    Axis, Block, Chart, Cut, Entry, INK, Label, PLOT_LEFT, Panel, Point, QUIET, Rect, STROKES,
-    Shape, Stroke, Style, Symbol, at, cell, lines, range, round_step, stroke,
+    Axis, Chart, Cut, Entry, INK, Label, PLOT_LEFT, Panel, Point, QUIET, Rect, STROKES, Shape,
+    Stroke, Style, Symbol, at, cell, lines, range, round_step, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::capital_first;
@@ -55,30 +55,23 @@ const GUIDE: Stroke = stroke(QUIET, 0.9, &[3.0, 3.0]);
 /// Draws histogram and cumulative curve of each series over one axis, with the 5, 50 and 95 % quantiles marked.
 #[must_use]
 pub fn distribution_plot(plot: &DistributionPlot) -> Picture {
-    let series: Vec<Drawn> = plot
-        .series
-        .iter()
-        .take(STROKES.len())
-        .map(prepare)
-        .collect();
+    let series = plot.series.iter().take(STROKES.len());
+    let series: Vec<Drawn> = series.map(prepare).collect();
     let edges = edges(&series, plot.differences);
     let shares: Vec<Vec<f64>> = series.iter().map(|s| shares(s, &edges)).collect();
     let (headline, notes) = (headline(plot, &series), notes(plot, &series));
     let lines = lines(&headline, 12.0, WIDE);
-    let head = if lines.is_empty() {
-        0.0
-    } else {
-        16.0 * lines.len() as f64 + 6.0
+    let gap = if lines.is_empty() { 0.0 } else { 6.0 };
+    let head = 16.0 * lines.len() as f64 + gap;
+    let (what, output) = match plot.differences {
+        true => (
+            "Distribution of the difference",
+            format!("Difference: {}", plot.shown.output),
+        ),
+        false => ("Distribution", capital_first(plot.shown.output)),
     };
-    let (what, output) = if plot.differences {
-        let output = format!("Difference: {}", plot.shown.output);
-        ("Distribution of the difference", output)
-    } else {
-        ("Distribution", capital_first(plot.shown.output))
-    };
-    let title = plot
-        .shown
-        .axis(&Cut::Middle.apply(&output, 12.0, WIDE - 90.0));
+    let title = Cut::Middle.apply(&output, 12.0, WIDE - 90.0);
+    let title = plot.shown.axis(&title);
     let x = Axis::exact(&title, edges[0], edges[edges.len() - 1], 9);
     let rect = Rect::new(PLOT_LEFT, TOP + head, WIDE, TALL);
     let mut upper = histogram((rect, x.clone()), &series, &shares, &edges);
@@ -89,30 +82,24 @@ pub fn distribution_plot(plot: &DistributionPlot) -> Picture {
     }
     let rect = Rect::new(PLOT_LEFT, rect.bottom + GAP, WIDE, TALL);
     let lower = cumulative(rect, x, &series);
-    let names = series
-        .iter()
-        .zip(STROKES)
-        .map(|(s, stroke)| Entry::line(stroke, s.name));
+    let names = series.iter().zip(STROKES);
+    let names = names.map(|(s, stroke)| Entry::line(stroke, s.name));
     let zero = plot.differences.then(|| Entry::line(ZERO, "No difference"));
-    let place = (PLOT_LEFT, RIGHT - PLOT_LEFT);
-    let chart = Chart {
-        title: format!("{what}: {}", plot.shown.output),
-        subject: plot.shown.subject.to_owned(),
-        description: format!(
-            "Histogram over cumulative curve, quantiles of 5, 50 and 95 % marked. {headline} {}",
-            notes.join(" ")
-        )
-        .replace('\u{a0}', " "),
-        left: PLOT_LEFT,
-        panels: vec![upper, lower],
-        table: table(plot, &output, &series, (&edges, &shares), &notes),
-        foot: vec![
-            Block::legend(place, "", names.chain(zero).collect()),
-            Block::notes(place, notes),
-        ],
-        ..Chart::default()
-    };
-    chart.picture()
+    let table = table(plot, &output, &series, (&edges, &shares), &notes);
+    Chart::new(
+        format!("{what}: {}", plot.shown.output),
+        plot.shown.subject,
+        PLOT_LEFT,
+    )
+    .lead(
+        format!("{headline} {}", notes.join(" "))
+            .trim()
+            .replace('\u{a0}', " "),
+    )
+    .panels([upper, lower])
+    .legend(FOOT, names.chain(zero))
+    .notes(FOOT, notes)
+    .picture(table)
 }
 
 /// A row for each bin, its middle first.
@@ -123,27 +110,22 @@ fn table(
     (edges, shares): (&[f64], &[Vec<f64>]),
     notes: &[String],
 ) -> PictureTable {
+    let column = |name: &str| plot.shown.column(name);
     let mut columns = vec![
-        plot.shown.column(format!("{output}, middle")),
-        plot.shown.column("From"),
-        plot.shown.column("To"),
+        column(&format!("{output}, middle")),
+        column("From"),
+        column("To"),
     ];
     for s in series {
-        columns.extend([
-            (format!("{}: runs in the bin", s.name), "%"),
-            (format!("{}: runs up to its end", s.name), "%"),
-        ]);
+        let names = ["runs in the bin", "runs up to its end"];
+        columns.extend(names.map(|name| (format!("{}: {name}", s.name), "%")));
     }
     let note = notes.join(" ").replace('\u{a0}', " ");
-    let mut table = PictureTable::with_columns(columns, note);
+    let mut table = PictureTable::with_columns(columns).note(note);
     for (k, pair) in edges.windows(2).enumerate() {
         let step = pair[1] - pair[0];
-        let middle = 0.5 * (pair[0] + pair[1]);
-        let mut cells = vec![
-            cell(middle, 0.1 * step),
-            cell(pair[0], step),
-            cell(pair[1], step),
-        ];
+        let middle = cell(0.5 * (pair[0] + pair[1]), 0.1 * step);
+        let mut cells = vec![middle, cell(pair[0], step), cell(pair[1], step)];
         for shares in shares {
             cells.extend([cell(shares[k], 0.1), cell(shares[..=k].iter().sum(), 0.1)]);
         }
@@ -153,12 +135,8 @@ fn table(
 }
 
 fn prepare<'a>(series: &DistributionSeries<'a>) -> Drawn<'a> {
-    let mut sorted: Vec<f64> = series
-        .values
-        .iter()
-        .copied()
-        .filter(|x| x.is_finite())
-        .collect();
+    let values = series.values.iter().copied();
+    let mut sorted: Vec<f64> = values.filter(|x| x.is_finite()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     Drawn {
         name: series.name,
@@ -170,21 +148,15 @@ fn prepare<'a>(series: &DistributionSeries<'a>) -> Drawn<'a> {
 
 /// Edges of the bins of all series: at round numbers, so that zero is one of them; about as wide as Freedman and Diaconis (1981) advise.
 fn edges(series: &[Drawn], with_zero: bool) -> Vec<f64> {
-    let ends = series
-        .iter()
-        .flat_map(|s| [s.summary.min, s.summary.max])
-        .chain(with_zero.then_some(0.0));
-    let Some((low, high)) = range(ends) else {
+    let ends = series.iter().flat_map(|s| [s.summary.min, s.summary.max]);
+    let Some((low, high)) = range(ends.chain(with_zero.then_some(0.0))) else {
         return vec![0.0, 1.0];
     };
     let advised = |s: &Drawn| {
         2.0 * (s.summary.quantile(0.75) - s.summary.quantile(0.25)) / (s.summary.n as f64).cbrt()
     };
-    let advised = series
-        .iter()
-        .map(advised)
-        .filter(|width| *width > 0.0)
-        .fold(f64::INFINITY, f64::min);
+    let advised = series.iter().map(advised).filter(|width| *width > 0.0);
+    let advised = advised.fold(f64::INFINITY, f64::min);
     let (span, size) = (high - low, low.abs().max(high.abs()));
     let step = if span > 1e-9 * size {
         round_step((advised.min(span / 4.0) / NEAREST).max(span / BINS))
@@ -192,17 +164,10 @@ fn edges(series: &[Drawn], with_zero: bool) -> Vec<f64> {
         round_step((0.02 * size).max(1e-12))
     };
     // A bin beyond zero where nothing else lies there, lest the line of no difference hides in the frame.
-    let apart = |end: f64| {
-        if with_zero && end.abs() < 1e-9 * step {
-            1.0
-        } else {
-            0.0
-        }
-    };
-    let (first, last) = (
-        (low / step + 1e-9).floor() - apart(low),
-        (high / step - 1e-9).ceil() + apart(high),
-    );
+    let alone = |end: f64| with_zero && end.abs() < 1e-9 * step;
+    let apart = |end: f64| if alone(end) { 1.0 } else { 0.0 };
+    let first = (low / step + 1e-9).floor() - apart(low);
+    let last = (high / step - 1e-9).ceil() + apart(high);
     // A value on the last edge belongs into the last bin; a lone value gets a bin around it.
     let count = (last - first).clamp(1.0, 2.0 * BINS) as usize;
     (0..=count).map(|i| (first + i as f64) * step).collect()
@@ -213,17 +178,14 @@ fn shares(series: &Drawn, edges: &[f64]) -> Vec<f64> {
     let sorted = &series.sorted;
     let last = edges.len() - 2;
     // The outer bins take in what lies on the outer edges, or next to them by rounding.
-    let upto = |k: usize| {
-        if k > last {
-            sorted.len()
-        } else {
-            sorted.partition_point(|x| *x < edges[k])
-        }
+    let upto = |k: usize| match k {
+        0 => 0,
+        k if k > last => sorted.len(),
+        k => sorted.partition_point(|x| *x < edges[k]),
     };
-    let count = |k: usize| upto(k + 1) - if k == 0 { 0 } else { upto(k) };
-    (0..=last)
-        .map(|k| 100.0 * count(k) as f64 / sorted.len().max(1) as f64)
-        .collect()
+    let count = |k: usize| (upto(k + 1) - upto(k)) as f64;
+    let all = sorted.len().max(1) as f64;
+    (0..=last).map(|k| 100.0 * count(k) / all).collect()
 }
 
 fn histogram(
@@ -234,12 +196,10 @@ fn histogram(
 ) -> Panel {
     let heights = shares.iter().flatten().copied();
     let y = Axis::round("Runs in a bin [%]", heights.chain([0.0]), 6);
-    let mut panel = Panel {
-        over_table: true,
-        x_labels: false,
-        no_data: series.iter().all(|s| s.sorted.is_empty()),
-        ..Panel::new(rect, x, y)
-    };
+    let mut panel = Panel::new(rect, x, y)
+        .over_table()
+        .x_labels(false)
+        .no_data(series.iter().all(|s| s.sorted.is_empty()));
     for (k, shares) in shares.iter().enumerate().rev() {
         if series[k].sorted.is_empty() {
             continue;
@@ -247,15 +207,10 @@ fn histogram(
         let bins = edges.windows(2).zip(shares);
         let steps = bins.flat_map(|(pair, share)| [(pair[0], *share), (pair[1], *share)]);
         let ends = [edges[0], edges[edges.len() - 1]].map(|x| (x, 0.0));
-        let outline: Vec<Point> = [ends[0]]
-            .into_iter()
-            .chain(steps)
-            .chain([ends[1]])
-            .collect();
-        let area = Style::colour(STROKES[k].colour)
-            .fill_opacity(0.12)
-            .class("area");
-        panel.add(Shape::Area(vec![outline.clone()]), area);
+        let outline = [ends[0]].into_iter().chain(steps).chain([ends[1]]);
+        let outline: Vec<Point> = outline.collect();
+        let area = Style::colour(STROKES[k].colour).fill_opacity(0.12);
+        panel.add(Shape::Area(vec![outline.clone()]), area.class("area"));
         panel.series(outline, STROKES[k]);
     }
     if !panel.no_data {
@@ -267,10 +222,7 @@ fn histogram(
 
 fn cumulative(rect: Rect, x: Axis, series: &[Drawn]) -> Panel {
     let y = Axis::exact("Runs at or below [%]", 0.0, 104.0, 6);
-    let mut panel = Panel {
-        over_table: true,
-        ..Panel::new(rect, x, y)
-    };
+    let mut panel = Panel::new(rect, x, y).over_table();
     for p in MARKED {
         panel.level(100.0 * p, GUIDE);
     }
@@ -279,11 +231,8 @@ fn cumulative(rect: Rect, x: Axis, series: &[Drawn]) -> Panel {
     for (k, s) in series.iter().enumerate().rev() {
         panel.add(Shape::Line(steps(&s.sorted)), Style::line(STROKES[k]));
     }
-    for (s, stroke) in series
-        .iter()
-        .zip(STROKES)
-        .filter(|(s, _)| !s.sorted.is_empty())
-    {
+    let known = |(s, _): &(&Drawn, _)| !s.sorted.is_empty();
+    for (s, stroke) in series.iter().zip(STROKES).filter(known) {
         for p in MARKED {
             let place = at(s.summary.quantile(p), 100.0 * p);
             let style = Symbol::white(stroke.colour).class("mark");
@@ -296,27 +245,21 @@ fn cumulative(rect: Rect, x: Axis, series: &[Drawn]) -> Panel {
 /// The cumulative curve as far as it can be seen: a stair of few values, a line through quantiles of many.
 fn steps(sorted: &[f64]) -> Vec<(f64, f64)> {
     if sorted.len() > STEPS {
-        return (0..=STEPS)
-            .map(|k| k as f64 / STEPS as f64)
+        let shares = (0..=STEPS).map(|k| k as f64 / STEPS as f64);
+        return shares
             .map(|p| (quantile_of_sorted(sorted, p), 100.0 * p))
             .collect();
     }
     let share = |k: usize| 100.0 * k as f64 / sorted.len() as f64;
-    sorted
-        .iter()
-        .enumerate()
-        .flat_map(|(k, x)| [(*x, share(k)), (*x, share(k + 1))])
-        .collect()
+    let step = |(k, x): (usize, &f64)| [(*x, share(k)), (*x, share(k + 1))];
+    sorted.iter().enumerate().flat_map(step).collect()
 }
 
 /// The line of no difference, where zero lies within.
 fn zero(panel: &mut Panel) {
     if panel.x.low <= 0.0 && 0.0 <= panel.x.high && panel.x.low < panel.x.high {
-        let ends = (at(0.0, f64::NEG_INFINITY), at(0.0, f64::INFINITY));
-        panel.add(
-            Shape::Segment(ends.0, ends.1),
-            Style::line(ZERO).class("zero"),
-        );
+        let [low, high] = [f64::NEG_INFINITY, f64::INFINITY].map(|y| at(0.0, y));
+        panel.segment(low, high, Style::line(ZERO).class("zero"));
     }
 }
 
@@ -340,58 +283,42 @@ fn headline(plot: &DistributionPlot, series: &[Drawn]) -> String {
 /// "934 of 1000 pairs: 93.4 % (91.7 to 94.9 %)".
 fn above(share: &Share) -> String {
     let [low, high] = share.interval95.map(percent);
-    format!(
-        "{} of {} pairs: {}\u{a0}% ({low} to {high}\u{a0}%)",
-        share.k,
-        share.n,
-        percent(share.share)
-    )
+    let (k, n, share) = (share.k, share.n, percent(share.share));
+    format!("{k} of {n} pairs: {share}\u{a0}% ({low} to {high}\u{a0}%)")
 }
 
 fn notes(plot: &DistributionPlot, series: &[Drawn]) -> Vec<String> {
-    let spread = series
-        .iter()
-        .map(|s| s.summary.quantile(0.975) - s.summary.quantile(0.025))
-        .filter(|w| *w > 0.0)
-        .fold(f64::NAN, f64::min);
+    let spread = |s: &Drawn| s.summary.quantile(0.975) - s.summary.quantile(0.025);
+    let spreads = series.iter().map(spread).filter(|w| *w > 0.0);
+    let spread = spreads.fold(f64::NAN, f64::min);
     let unit = plot.shown.after();
     let digits = |x: f64| value(x, spread);
     let one = |s: &Drawn| {
         if s.summary.n == 0 {
             return format!("{}: no values, {} missing.", s.name, s.summary.missing);
         }
-        let q = |p: f64| digits(s.summary.quantile(p));
+        let [low, median, high] = MARKED.map(|p| digits(s.summary.quantile(p)));
         let mut text = format!(
-            "{}: median {}{unit}, 90\u{a0}% within {} to {}",
-            s.name,
-            q(0.5),
-            q(0.05),
-            q(0.95)
+            "{}: median {median}{unit}, 90\u{a0}% within {low} to {high}",
+            s.name
         );
         if let Some([low, high]) = s.summary.mean_interval95 {
-            text += &format!(
-                "; mean {} ({} to {})",
-                digits(s.summary.mean),
-                digits(low),
-                digits(high)
-            );
+            let [mean, low, high] = [s.summary.mean, low, high].map(digits);
+            text += &format!("; mean {mean} ({low} to {high})");
         }
         if plot.differences && series.len() > 1 && s.above.n > 0 {
             text += &format!("; above zero in {}", above(&s.above));
         }
-        let missing = if s.summary.missing > 0 {
-            format!(", {} missing", s.summary.missing)
-        } else {
-            String::new()
-        };
-        text + &format!("; n\u{a0}=\u{a0}{}{missing}.", s.summary.n)
+        text += &format!("; n\u{a0}=\u{a0}{}", s.summary.n);
+        if s.summary.missing > 0 {
+            text += &format!(", {} missing", s.summary.missing);
+        }
+        text + "."
     };
     let mut notes: Vec<String> = series.iter().map(one).collect();
     if plot.series.len() > series.len() {
-        notes.push(format!(
-            "{} more are not drawn.",
-            plot.series.len() - series.len()
-        ));
+        let more = plot.series.len() - series.len();
+        notes.push(format!("{more} more are not drawn."));
     }
     notes
 }

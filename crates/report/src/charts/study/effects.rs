@@ -1,9 +1,9 @@
 //! Main effects of a grid: the mean over everything else, level by level, a panel for each factor.
 
-use super::{RIGHT, Shown, sign, value};
+use super::{FOOT, RIGHT, Shown, by_size, sign};
 use crate::charts::engine::{
-    Axis, BELOW, Block, Chart, Cut, Entry, Fill, LEFT, Label, PLAIN, PLOT_LEFT, Panel, Rect, Shape,
-    Style, Symbol, at, cell, round_step, stroke, text_width,
+    Axis, BELOW, Chart, Cut, Entry, Fill, LEFT, Label, PLAIN, PLOT_LEFT, Panel, Rect, Shape, Style,
+    Symbol, at, cell, round_step, stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::statistics::{Group, Groups};
@@ -46,39 +46,21 @@ const MAX_FACTORS: usize = 12;
 #[must_use]
 pub fn effects_plot(plot: &EffectsPlot) -> Picture {
     let mut factors: Vec<&EffectFactor> = plot.factors.iter().collect();
-    let range = |f: &EffectFactor| f.groups.range;
-    factors.sort_by(|a, b| {
-        let last = range(a).is_nan().cmp(&range(b).is_nan());
-        last.then(range(b).total_cmp(&range(a)))
-    });
-    let (table, description) = (table(plot, &factors), describe(plot, &factors));
+    by_size(&mut factors, |f| f.groups.range);
+    let table = table(plot, &factors);
     let mut note = "Over all levels of the other factors. Equal vertical axes; the largest range of means first.".to_owned();
     if factors.len() > MAX_FACTORS {
-        note += &format!(
-            " {} more factors in the table.",
-            factors.len() - MAX_FACTORS
-        );
+        let more = factors.len() - MAX_FACTORS;
+        note += &format!(" {more} more factors in the table.");
         factors.truncate(MAX_FACTORS);
     }
-    let entries = vec![
-        Entry::line(PLAIN, "Mean"),
-        Entry::fill(Fill::plain("#dfe3eb"), "Standard deviation"),
-    ];
-    let place = (PLOT_LEFT, RIGHT - PLOT_LEFT);
-    let chart = Chart {
-        title: format!("Main effects: {}", plot.shown.output),
-        subject: plot.shown.subject.to_owned(),
-        description,
-        left: PLOT_LEFT,
-        panels: panels(plot, &factors),
-        foot: vec![
-            Block::legend(place, "", entries),
-            Block::notes(place, vec![note]),
-        ],
-        table,
-        ..Chart::default()
-    };
-    chart.picture()
+    let spread = Entry::fill(Fill::plain("#dfe3eb"), "Standard deviation");
+    let title = format!("Main effects: {}", plot.shown.output);
+    Chart::new(title, plot.shown.subject, PLOT_LEFT)
+        .panels(panels(plot, &factors))
+        .legend(FOOT, [Entry::line(PLAIN, "Mean"), spread])
+        .notes(FOOT, vec![note])
+        .picture(table)
 }
 
 /// A panel for each factor, in rows.
@@ -99,32 +81,23 @@ fn panels(plot: &EffectsPlot, factors: &[&EffectFactor]) -> Vec<Panel> {
         for (column, factor) in row.iter().enumerate() {
             let left = PLOT_LEFT + (LEFT + wide + GAP) * column as f64;
             let rect = Rect::new(left, top, wide, tall);
-            panels.push(Panel {
-                below: below + GAP,
-                ..draw(rect, factor, y.clone(), table_row)
-            });
+            panels.push(draw(rect, factor, y.clone(), table_row).below(below + GAP));
             table_row += factor.groups.groups.len();
         }
         top += tall + below + GAP;
     }
     if factors.is_empty() {
         let axis = || Axis::exact("", 0.0, 1.0, 3);
-        panels.push(Panel {
-            no_data: true,
-            x_labels: false,
-            ..Panel::new(Rect::new(PLOT_LEFT, top, wide, tall), axis(), axis())
-        });
+        let panel = Panel::new(Rect::new(PLOT_LEFT, top, wide, tall), axis(), axis());
+        panels.push(panel.no_data(true).x_labels(false));
     }
     panels
 }
 
 /// Room below a panel, pixels.
 fn below(factor: &EffectFactor, wide: f64) -> f64 {
-    if words(factor) && turned(factor, wide) {
-        TURNED
-    } else {
-        BELOW
-    }
+    let turned = words(factor) && turned(factor, wide);
+    if turned { TURNED } else { BELOW }
 }
 
 /// A row for each level of each factor.
@@ -136,23 +109,16 @@ fn table(plot: &EffectsPlot, factors: &[&EffectFactor]) -> PictureTable {
         plot.shown.column("Standard deviation"),
         ("Runs".to_owned(), ""),
     ];
-    let mut table = PictureTable::with_columns(columns, String::new());
+    let mut table = PictureTable::with_columns(columns);
     let widest = widest(factors);
     let step = round_step(if widest > 0.0 { widest / 500.0 } else { 1e-3 });
     for factor in factors {
         for group in &factor.groups.groups {
-            let unit = if words(factor) {
-                String::new()
-            } else {
-                unit_after(factor)
-            };
-            table.push(vec![
-                factor.name.to_owned(),
-                format!("{}{unit}", group.label),
-                cell(group.mean, step),
-                cell(group.sd, step),
-                group.n.to_string(),
-            ]);
+            let unit = unit_after(factor);
+            let unit = if words(factor) { "" } else { &unit };
+            let level = format!("{}{unit}", group.label);
+            let [mean, sd] = [group.mean, group.sd].map(|x| cell(x, step));
+            table.push([factor.name.to_owned(), level, mean, sd, group.n.to_string()]);
         }
     }
     table
@@ -210,46 +176,40 @@ fn x_axis(factor: &EffectFactor, wide: f64) -> Axis {
     match high - low {
         _ if words(factor) => Axis::bare(low - 0.5, high + 0.5),
         span => {
-            let wider = span > 1e-9 * high.abs();
-            let room = if wider {
-                0.06 * span
-            } else {
-                (0.5 * high.abs()).max(1e-3)
-            };
-            Axis::exact(
-                "",
-                low - room,
-                high + room,
-                if wide > 300.0 { 6 } else { 3 },
-            )
+            let (lone, ticks) = (span <= 1e-9 * high.abs(), if wide > 300.0 { 6 } else { 3 });
+            let around = (0.5 * high.abs()).max(1e-3);
+            let room = if lone { around } else { 0.06 * span };
+            Axis::exact("", low - room, high + room, ticks)
         }
     }
 }
 
+/// Place of a level, its row in the table, and its numbers.
+type Level<'a> = (f64, usize, &'a Group);
+
 /// Draws a factor, whose levels are in the table from a row on.
 fn draw(rect: Rect, factor: &EffectFactor, y: Axis, row: usize) -> Panel {
     let (words, places) = (words(factor), places(factor));
-    let mut panel = Panel::new(rect, x_axis(factor, rect.width()), y);
-    panel.x_labels = !words;
+    let x = x_axis(factor, rect.width());
+    let mut panel = Panel::new(rect, x, y).x_labels(!words);
     axis_title(&mut panel, factor);
     let groups = factor.groups.groups.iter().enumerate();
     let levels = groups.map(|(k, group)| (places[k], row + k, group));
-    let mut levels: Vec<(f64, usize, &Group)> = levels.filter(|l| l.2.mean.is_finite()).collect();
+    let mut levels: Vec<Level> = levels.filter(|l| l.2.mean.is_finite()).collect();
     levels.sort_by(|a, b| a.0.total_cmp(&b.0));
     panel.no_data = levels.is_empty();
     let style = Style::colour(PLAIN.colour).fill_opacity(0.14).class("band");
     if words || levels.len() < 2 {
         // A box of the spread at each word, for there is nothing between words.
         for (x, row, g) in &levels {
-            let (low, high) = (at(*x, g.mean - spread(g)), at(*x, g.mean + spread(g)));
-            let corners = (low.shift(-5.0, 0.0), high.shift(5.0, 0.0));
-            panel.add(Shape::Rect(corners.0, corners.1), style.clone().row(*row));
+            let low = at(*x, g.mean - spread(g)).shift(-5.0, 0.0);
+            let high = at(*x, g.mean + spread(g)).shift(5.0, 0.0);
+            panel.rectangle(low, high, style.clone().row(*row));
         }
     } else {
-        let ends = levels
-            .iter()
-            .map(|(x, _, g)| (*x, g.mean - spread(g), g.mean + spread(g)));
-        panel.add(Shape::between(&ends.collect::<Vec<_>>()), style);
+        let ends = |(x, _, g): &Level| (*x, g.mean - spread(g), g.mean + spread(g));
+        let ends: Vec<_> = levels.iter().map(ends).collect();
+        panel.add(Shape::between(&ends), style);
     }
     // Words have no order: the line between them only leads the eye.
     let line = if words {
@@ -280,47 +240,22 @@ fn axis_title(panel: &mut Panel, factor: &EffectFactor) {
     let down = below(factor, wide) - 4.0;
     let place = at(f64::NEG_INFINITY, f64::NEG_INFINITY).shift(0.5 * wide, down);
     let label = Label::new(place, format!("{}{unit}", factor.name));
-    panel.label(
-        label
-            .size(TITLE)
-            .middle()
-            .class("factor")
-            .cut(Cut::Middle, wide),
-    );
+    let label = label.size(TITLE).middle().class("factor");
+    panel.label(label.cut(Cut::Middle, wide));
 }
 
 fn level_names(panel: &mut Panel, factor: &EffectFactor) {
     let wide = panel.rect.width();
     for (k, group) in factor.groups.groups.iter().enumerate() {
-        let place = at(k as f64, f64::NEG_INFINITY);
-        let label = Label::new(place, &group.label).class("level");
-        panel.label(if turned(factor, wide) {
-            let at = place.shift(4.0, 8.0);
-            Label { at, ..label }
-                .turned()
-                .end()
-                .cut(Cut::Middle, TURNED - 30.0)
+        let label = |dx: f64, dy: f64| {
+            let place = at(k as f64, f64::NEG_INFINITY).shift(dx, dy);
+            Label::new(place, &group.label).class("level")
+        };
+        let (label, room) = if turned(factor, wide) {
+            (label(4.0, 8.0).turned().end(), TURNED - 30.0)
         } else {
-            let at = place.shift(0.0, 16.0);
-            Label { at, ..label }
-                .middle()
-                .cut(Cut::Middle, slot(factor, wide) - 6.0)
-        });
+            (label(0.0, 16.0).middle(), slot(factor, wide) - 6.0)
+        };
+        panel.label(label.cut(Cut::Middle, room));
     }
-}
-
-fn describe(plot: &EffectsPlot, factors: &[&EffectFactor]) -> String {
-    let all = widest(factors);
-    let level = |g: &Group| format!("{} at {}", value(g.mean, all), g.label);
-    let factor = |f: &&EffectFactor| {
-        let levels: Vec<String> = f.groups.groups.iter().map(level).collect();
-        format!("{}: {}", f.name, levels.join(", "))
-    };
-    let factors: Vec<String> = factors.iter().map(factor).collect();
-    format!(
-        "Mean of {}{} at each level of each factor. {}.",
-        plot.shown.output,
-        plot.shown.after().replace('\u{a0}', " "),
-        factors.join("; ")
-    )
 }

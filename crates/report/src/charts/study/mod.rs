@@ -14,11 +14,15 @@ pub use distribution::{DistributionPlot, DistributionSeries, distribution_plot};
 pub use effects::{EffectFactor, EffectsPlot, effects_plot};
 pub use tornado::{TornadoPlot, tornado_plot};
 
-use super::engine::{PLOT_LEFT, WIDTH, cell, number, round_step};
+use super::engine::{PLOT_LEFT, Point, WIDTH, number, optional_cell, round_step};
+use cvtcycle_study::statistics::Estimate;
 
 /// Right edge of the plots, and their width, pixels.
 const RIGHT: f64 = WIDTH - 28.0;
 const WIDE: f64 = RIGHT - PLOT_LEFT;
+/// Left edge and width of what lies below plots, and below rows, pixels.
+const FOOT: Point = (PLOT_LEFT, WIDE);
+const WIDE_FOOT: Point = (MARGIN, RIGHT - MARGIN);
 /// Left edge of titles, legends and notes of pictures with rows, pixels.
 const MARGIN: f64 = 12.0;
 /// Height of a row, pixels.
@@ -84,9 +88,26 @@ fn column(name: String, unit: &str) -> (String, &'static str) {
     }
 }
 
-/// The two ends of an interval as cells; empty without one.
-fn interval_cells(interval: Option<[f64; 2]>, step: f64) -> [String; 2] {
-    interval.map_or_else(Default::default, |ends| ends.map(|x| cell(x, step)))
+/// Columns of an estimate of that name: the estimate and the two ends of its interval.
+fn estimate_columns(name: &str) -> [(String, &'static str); 3] {
+    let ends = [format!("{name}: 95 % from"), format!("{name}: to")];
+    let [from, to] = ends.map(|name| (name, ""));
+    [(name.to_owned(), ""), from, to]
+}
+
+/// An estimate and the two ends of its interval as cells; empty without one.
+fn estimate_cells(of: &Estimate) -> [String; 3] {
+    let ends = of.interval95;
+    let [from, to] = [0, 1].map(|k| ends.map(|ends| ends[k]));
+    [Some(of.value), from, to].map(|x| optional_cell(x, 1e-3))
+}
+
+/// Places of values by their size, the largest first and those that are not known last.
+fn by_size<T>(list: &mut [T], size: impl Fn(&T) -> f64) {
+    list.sort_by(|a, b| {
+        let last = size(a).is_nan().cmp(&size(b).is_nan());
+        last.then(size(b).total_cmp(&size(a)))
+    });
 }
 
 /// A value with the digits that a spread of that size leaves meaningful.
@@ -94,22 +115,16 @@ pub(crate) fn value(x: f64, spread: f64) -> String {
     if !x.is_finite() {
         return "not known".to_owned();
     }
-    let scale = if spread.is_finite() && spread > 1e-12 * x.abs() {
-        spread
-    } else {
-        x.abs().max(1e-300)
-    };
+    let wide = spread.is_finite() && spread > 1e-12 * x.abs();
+    let scale = if wide { spread } else { x.abs().max(1e-300) };
     number(x, round_step(scale / 200.0))
 }
 
 /// A share of 0 to 1 in percent, with a decimal; more where it is close to an end.
 fn percent(share: f64) -> String {
     let off = share.min(1.0 - share);
-    if share.is_finite() && off > 0.0 && off < 0.001 {
-        format!("{:.3}", 100.0 * share)
-    } else {
-        format!("{:.1}", 100.0 * share)
-    }
+    let decimals = if off > 0.0 && off < 0.001 { 3 } else { 1 };
+    format!("{:.decimals$}", 100.0 * share)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! Tornado: the effect of each factor on an output when it alone leaves its base.
 
-use super::{MARGIN, MAX_ROWS, RIGHT, ROW, Shown, value};
+use super::{MARGIN, MAX_ROWS, RIGHT, ROW, Shown, WIDE_FOOT, value};
 use crate::charts::engine::{
-    Axis, Block, Chart, Cut, Entry, Fill, INK, Label, Panel, Style, WIDTH, at, cell, range,
-    round_step, row_middle, rows_left, rows_panel, stroke, text_width,
+    Axis, Chart, Cut, Entry, Fill, INK, Label, Panel, Style, at, cell, range, round_step,
+    row_middle, rows_left, rows_panel, stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::statistics::{Tornado, TornadoBar, TornadoEnd};
@@ -24,44 +24,28 @@ const END: (f64, f64) = (11.0, 120.0);
 #[must_use]
 pub fn tornado_plot(plot: &TornadoPlot) -> Picture {
     let all = &plot.tornado.bars;
-    let count = if all.len() > MAX_ROWS + 1 {
-        MAX_ROWS
-    } else {
-        all.len()
-    };
+    let many = all.len() > MAX_ROWS + 1;
+    let count = if many { MAX_ROWS } else { all.len() };
     let bars = &all[..count];
     let effects = bars.iter().flat_map(ends).map(|end| end.effect);
     let (low, high) = range(effects.chain([0.0])).unwrap_or((0.0, 1.0));
     let left = rows_left(bars.iter().map(|bar| bar.name.as_str()), 11.0);
     let x = axis(&plot.shown, bars, (low, high), RIGHT - left);
-    let mut panel = rows_panel((left, 58.0), RIGHT, bars.len().max(2), ROW, x);
-    panel.no_data = bars.is_empty();
+    let panel = rows_panel((left, 58.0), RIGHT, bars.len().max(2), ROW, x);
+    let mut panel = panel.no_data(bars.is_empty());
     for (k, bar) in bars.iter().enumerate() {
         panel.row_name(k, Label::new(at(0.0, 0.0), &bar.name).class("row").row(k));
         draw(&mut panel, k, bar);
     }
     panel.upright(0.0, stroke(INK, 1.0, &[]));
     let names = ["Low or first value", "High or second value"];
-    let entries = names.into_iter().enumerate();
-    let entries = entries
-        .map(|(k, name)| Entry::fill(Fill::nth(k, 2), name))
-        .collect();
-    let place = (MARGIN, WIDTH - 28.0 - MARGIN);
-    let notes = notes(plot, bars, high - low);
-    let chart = Chart {
-        title: format!("One factor at a time: {}", plot.shown.output),
-        subject: plot.shown.subject.to_owned(),
-        description: describe(plot, high - low),
-        left: MARGIN,
-        panels: vec![panel],
-        foot: vec![
-            Block::legend(place, "", entries),
-            Block::notes(place, notes),
-        ],
-        table: table(plot, high - low),
-        ..Chart::default()
-    };
-    chart.picture()
+    let entry = |(k, name): (usize, &str)| Entry::fill(Fill::nth(k, 2), name);
+    let title = format!("One factor at a time: {}", plot.shown.output);
+    Chart::new(title, plot.shown.subject, MARGIN)
+        .panels([panel])
+        .legend(WIDE_FOOT, names.into_iter().enumerate().map(entry))
+        .notes(WIDE_FOOT, notes(plot, bars, high - low))
+        .picture(table(plot, high - low))
 }
 
 fn notes(plot: &TornadoPlot, bars: &[TornadoBar], spread: f64) -> Vec<String> {
@@ -94,11 +78,8 @@ fn draw(panel: &mut Panel, row: usize, bar: &TornadoBar) {
         _ => false,
     };
     // Ends on one side of the base would hide each other: then each has half of the row.
-    let places = if apart {
-        [(-12.0, 0.0), (0.0, 12.0)]
-    } else {
-        [(-8.0, 8.0); 2]
-    };
+    let halves = [(-12.0, 0.0), (0.0, 12.0)];
+    let places = if apart { halves } else { [(-8.0, 8.0); 2] };
     let both = || [&bar.low, &bar.high].into_iter().zip(places).enumerate();
     for (k, (end, place)) in both() {
         if let Some(end) = end {
@@ -110,14 +91,10 @@ fn draw(panel: &mut Panel, row: usize, bar: &TornadoBar) {
         let Some(end) = end else { continue };
         let down = 0.5 * (place.0 + place.1) + 4.0;
         let place = at(end.effect, row_middle(row));
-        let label = Label::new(place.shift(4.0, down), &end.label);
-        let label = label.class("end").cut(Cut::Middle, END.1);
-        panel.label(if leftward(bar, k == 0) {
-            let at = place.shift(-4.0, down);
-            Label { at, ..label }.end()
-        } else {
-            label
-        });
+        let label = |dx: f64| Label::new(place.shift(dx, down), &end.label);
+        let left = leftward(bar, k == 0);
+        let label = if left { label(-4.0).end() } else { label(4.0) };
+        panel.label(label.class("end").cut(Cut::Middle, END.1));
     }
 }
 
@@ -136,7 +113,7 @@ fn table(plot: &TornadoPlot, spread: f64) -> PictureTable {
         value(plot.tornado.base, spread),
         plot.shown.after().replace('\u{a0}', " ")
     );
-    let mut table = PictureTable::with_columns(columns.into(), note);
+    let mut table = PictureTable::with_columns(columns).note(note);
     let step = round_step(if spread > 0.0 { spread / 500.0 } else { 1e-3 });
     for bar in &plot.tornado.bars {
         let end = |end: &Option<TornadoEnd>| {
@@ -145,11 +122,9 @@ fn table(plot: &TornadoPlot, spread: f64) -> PictureTable {
                 .map(|e| [e.label.clone(), cell(e.effect, step)]);
             cells.unwrap_or_default()
         };
-        let mut cells = vec![bar.name.clone()];
-        cells.extend(end(&bar.low));
-        cells.extend(end(&bar.high));
-        cells.push(cell(bar.swing, step));
-        table.push(cells);
+        let ends = [end(&bar.low), end(&bar.high)].concat();
+        let cells = [bar.name.clone()].into_iter().chain(ends);
+        table.push(cells.chain([cell(bar.swing, step)]));
     }
     table
 }
@@ -176,33 +151,15 @@ fn leftward(bar: &TornadoBar, first: bool) -> bool {
 fn axis(shown: &Shown, bars: &[TornadoBar], (low, high): (f64, f64), wide: f64) -> Axis {
     let title = shown.axis("Change against the base");
     let room = |left: bool| {
-        let labels = bars.iter().flat_map(|bar| {
+        let sides = bars.iter().flat_map(|bar| {
             [(true, &bar.low), (false, &bar.high)].map(|(first, end)| (leftward(bar, first), end))
         });
-        let ends = labels
-            .filter(|(side, _)| *side == left)
-            .filter_map(|(_, end)| end.as_ref());
-        let widths = ends.map(|end| text_width(&end.label, END.0));
+        let own = sides.filter_map(|(side, end)| end.as_ref().filter(|_| side == left));
+        let widths = own.map(|end| text_width(&end.label, END.0));
         widths.fold(0.0, f64::max).min(END.1) + 10.0
     };
     let (before, after) = (room(true), room(false));
     let span = if high > low { high - low } else { 1.0 };
     let pixel = span / (wide - before - after);
     Axis::exact(&title, low - before * pixel, high + after * pixel, 7)
-}
-
-fn describe(plot: &TornadoPlot, spread: f64) -> String {
-    let unit = plot.shown.after().replace('\u{a0}', " ");
-    let end = |end: &TornadoEnd| format!("{} at {}", value(end.effect, spread), end.label);
-    let bar = |bar: &TornadoBar| {
-        let ends: Vec<String> = ends(bar).map(end).collect();
-        format!("{}: {}", bar.name, ends.join(", "))
-    };
-    let bars: Vec<String> = plot.tornado.bars.iter().map(bar).collect();
-    format!(
-        "Change of {} against the base of {}{unit} by factor, the widest first. {}.",
-        plot.shown.output,
-        value(plot.tornado.base, spread),
-        bars.join("; ")
-    )
 }

@@ -1,7 +1,7 @@
 //! Places of the flows.
 
 use super::super::TOP;
-use super::{BAND, SHARE, Sankey, SankeyBranch, SankeyStage, scale};
+use super::{BAND, Branch, SHARE, Sankey, Stage};
 use crate::charts::engine::WIDTH;
 
 /// Least distance between the middles of two ends, pixels.
@@ -14,7 +14,7 @@ const GAP: f64 = 3.0;
 
 /// A flow with its place: upper edge at either end.
 pub(super) struct Ribbon<'a> {
-    pub of: &'a SankeyBranch,
+    pub of: &'a Branch,
     pub stage: usize,
     pub wide: f64,
     pub at_trunk: f64,
@@ -38,7 +38,7 @@ pub(super) struct Trunk {
 
 /// All flows in their places.
 pub(super) struct Flows<'a> {
-    pub of: &'a Sankey,
+    pub of: &'a Sankey<'a>,
     pub trunk: Vec<Trunk>,
     pub leaving: Vec<Ribbon<'a>>,
     pub entering: Vec<Ribbon<'a>>,
@@ -51,21 +51,20 @@ pub(super) struct Flows<'a> {
 
 /// Room between the names of the stages and the trunk, for the labels of what flows in above that of the source, pixels.
 fn room_above(of: &Sankey, per_kj: f64) -> f64 {
-    let branches = of.stages.iter().flat_map(|stage| &stage.branches);
-    let room = |b: &SankeyBranch| (-b.kj * per_kj + GAP).max(LEFT_PITCH);
-    let room: f64 = branches.filter(|b| b.kj < 0.0).map(room).sum();
+    let room = |b: &Branch| (-b.kj * per_kj + GAP).max(LEFT_PITCH);
+    let room: f64 = of.branches().filter(|b| b.kj < 0.0).map(room).sum();
     let tall = if room > 0.0 { LEFT_PITCH } else { 40.0 };
-    room + (0.5 * (tall - of.source.1 * per_kj)).max(0.0)
+    room + (0.5 * (tall - of.source.kj * per_kj)).max(0.0)
 }
 
-pub(super) fn lay_out(of: &Sankey) -> Flows<'_> {
-    let per_kj = scale(of);
-    let wide = of.source.1 * per_kj;
+pub(super) fn lay_out<'a>(of: &'a Sankey<'a>) -> Flows<'a> {
+    let per_kj = of.scale();
+    let wide = of.source.kj * per_kj;
     let first = TOP + BAND + room_above(of, per_kj);
     let (mut trunk, mut leaving, mut entering) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut top, mut bottom, mut kj) = (first, first + wide, of.source.1);
+    let (mut top, mut bottom, mut kj) = (first, first + wide, of.source.kj);
     let mut left = (first, first + 0.5 * wide);
-    for (stage, SankeyStage { branches, .. }) in of.stages.iter().enumerate() {
+    for (stage, Stage { branches, .. }) in of.stages.iter().enumerate() {
         let came: f64 = branches.iter().map(|b| (-b.kj).max(0.0)).sum();
         trunk.push(Trunk {
             top,
@@ -75,28 +74,23 @@ pub(super) fn lay_out(of: &Sankey) -> Flows<'_> {
         for of in branches {
             let wide = of.kj.abs() * per_kj;
             kj -= of.kj;
-            let (at_trunk, at_end);
+            let mut ribbon = Ribbon {
+                of,
+                stage,
+                wide,
+                at_trunk: bottom - wide,
+                at_end: bottom - wide,
+            };
             if of.kj < 0.0 {
                 top -= wide;
                 let end = (left.0 - GAP - wide).min(left.1 - LEFT_PITCH - 0.5 * wide);
                 left = (end, end + 0.5 * wide);
-                (at_trunk, at_end) = (top, end);
+                (ribbon.at_trunk, ribbon.at_end) = (top, end);
+                entering.push(ribbon);
             } else {
                 bottom -= wide;
-                (at_trunk, at_end) = (bottom, bottom);
+                leaving.push(ribbon);
             }
-            let list = if of.kj < 0.0 {
-                &mut entering
-            } else {
-                &mut leaving
-            };
-            list.push(Ribbon {
-                of,
-                stage,
-                wide,
-                at_trunk,
-                at_end,
-            });
         }
     }
     leaving.reverse();
