@@ -68,7 +68,13 @@ impl Chart {
                 axes.push(both);
             }
         }
-        let parts = [self.lead.clone(), axes.join("; "), table.in_words()];
+        let empty = self.panels.iter().all(|panel| panel.no_data);
+        let numbers = if empty {
+            "No data".to_owned()
+        } else {
+            table.in_words()
+        };
+        let parts = [self.lead.clone(), axes.join("; "), numbers];
         let parts = parts.into_iter().filter(|part| !part.is_empty());
         parts.collect::<Vec<_>>().join(". ") + "."
     }
