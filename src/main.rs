@@ -13,24 +13,24 @@ use cvtcycle::config::Problem;
 
 use args::problems::bad_value;
 use commands::Cli;
-use print::colour::Colour;
+use print::colour::choice;
 use print::{CommandOutput, Ending, Terminal};
 
 fn main() -> ExitCode {
     let words: Vec<OsString> = std::env::args_os().collect();
     // Read before clap parses the words, because it applies to its messages as well.
-    let colour = Colour::from_words(&words);
+    let colour = choice(&words);
     let parsed = Cli::command()
-        .color(colour.for_clap())
+        .color(colour)
         .try_get_matches_from(&words)
         .and_then(|matches| Cli::from_arg_matches(&matches));
     match parsed {
         Ok(cli) => {
-            let terminal = cli.color.terminal();
+            let terminal = Terminal::new(cli.color);
             print::finish(cli.execute(terminal), terminal)
         }
         Err(error) => {
-            let terminal = colour.terminal();
+            let terminal = Terminal::new(colour);
             let result = match error.kind() {
                 ErrorKind::InvalidUtf8 => Err(not_utf8(&words).into()),
                 _ => Ok(usage(&error, terminal)),
@@ -44,14 +44,9 @@ fn main() -> ExitCode {
 fn not_utf8(words: &[OsString]) -> Problem {
     let word = words.iter().find(|word| word.to_str().is_none());
     let value = word.map_or_else(String::new, |word| word.to_string_lossy().into_owned());
+    let message = format!("`{value}` is not UTF-8");
     let hint = "rename the file, or name it by a link; --out takes any name";
-    bad_value(
-        "command line",
-        &value,
-        "",
-        &format!("`{value}` is not UTF-8"),
-        hint,
-    )
+    bad_value("command line", &value, "", &message, hint)
 }
 
 /// Help, version and usage errors, written by our own writer, which handles a closed pipe and a full disk.

@@ -1,25 +1,27 @@
 //! Groups of options, each option declared once. A command flattens the groups that it takes.
 
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use cvtcycle::config::cycle::Cycle;
-use cvtcycle::config::setup::{self, Options, Setup};
-use cvtcycle::config::{Problem, Problems, cycle};
+use cvtcycle::config::setup::{self, Kind, Options, Setup};
+use cvtcycle::config::{Problems, cycle};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 
 use super::problems::{bad_value, overrides, problem};
-use super::{Names, cycles, lubricants, names_of, one_of, relative_to, vehicles};
+use super::{Names, cycles, names_of, one_of, relative_to};
+use crate::print::to_stdout;
 
 /// The vehicle and its transmission oil.
 #[derive(Args, Clone, Debug)]
 pub struct VehicleArgs {
     /// Vehicle
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Names(vehicles), hide_possible_values = true)]
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
     pub vehicle: String,
     /// Transmission oil of this vehicle [default: from the vehicle file]
-    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(lubricants), hide_possible_values = true)]
+    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Lubricant.names()), hide_possible_values = true)]
     pub lubricant: Option<String>,
     /// Override one value of this vehicle; repeatable. `lubricant.KEY` is a value of its transmission oil
     #[arg(long, value_name = "KEY=VALUE")]
@@ -43,16 +45,13 @@ impl VehicleArgs {
         problems.take(setup::load(&self.vehicle, &options))
     }
 
-    /// A problem for a command that needs a CVT.
-    pub fn needs_cvt(&self, hint: &str) -> Problem {
-        let message = format!("`{}` has a manual gearbox", self.vehicle);
-        bad_value(
-            "--vehicle",
-            &self.vehicle,
-            "a vehicle with a CVT",
-            &message,
-            hint,
-        )
+    /// Reports a manual gearbox for a command that needs a CVT.
+    pub fn need_cvt(&self, setup: Option<&Setup>, hint: &str, problems: &mut Problems) {
+        if setup.is_some_and(|setup| !setup.transmission().is_cvt()) {
+            let (vehicle, allowed) = (&self.vehicle, "a vehicle with a CVT");
+            let message = format!("`{vehicle}` has a manual gearbox");
+            problems.add(bad_value("--vehicle", vehicle, allowed, &message, hint));
+        }
     }
 }
 
@@ -60,12 +59,8 @@ impl VehicleArgs {
 #[derive(Args, Clone, Debug)]
 pub struct FormulationArgs {
     /// Belt model: smooth (for driving), appendix_c or chapter_8 (as printed in the thesis)
-    #[arg(long, value_name = "NAME", default_value = "smooth", value_parser = Names(formulations), hide_possible_values = true)]
+    #[arg(long, value_name = "NAME", default_value = "smooth", value_parser = Names(|| names_of(&Formulation::NAMES)), hide_possible_values = true)]
     pub formulation: String,
-}
-
-fn formulations() -> Vec<&'static str> {
-    names_of(&Formulation::NAMES)
 }
 
 impl FormulationArgs {
@@ -83,18 +78,14 @@ pub struct ComparisonArgs {
     #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Names(cycles), hide_possible_values = true)]
     pub cycle: String,
     /// Vehicle to compare with; repeatable; `none` for no comparison [default: baselines of the vehicle file]
-    #[arg(long, value_name = "NAME|FILE.toml|none", value_parser = Names(baselines), hide_possible_values = true)]
+    #[arg(long, value_name = "NAME|FILE.toml|none", value_parser = Names(|| [Kind::Vehicle.names(), vec!["none"]].concat()), hide_possible_values = true)]
     pub baseline: Vec<String>,
     /// Engine oil of all vehicles
-    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(lubricants), hide_possible_values = true)]
+    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Lubricant.names()), hide_possible_values = true)]
     pub engine_oil: Option<String>,
     /// Override one value of the vehicle and of all baselines; repeatable. `--set` takes precedence
     #[arg(long, value_name = "KEY=VALUE")]
     pub set_all: Vec<String>,
-}
-
-fn baselines() -> Vec<&'static str> {
-    vehicles().into_iter().chain(["none"]).collect()
 }
 
 impl ComparisonArgs {
@@ -117,11 +108,8 @@ impl ComparisonArgs {
         let named: Vec<String> = self.named_baselines().cloned().collect();
         if !named.is_empty() && named.len() < self.baseline.len() {
             let message = "`none` together with a baseline";
-            problems.add(problem(
-                "--baseline",
-                message,
-                "give either `--baseline none` or names",
-            ));
+            let hint = "give either `--baseline none` or names";
+            problems.add(problem("--baseline", message, hint));
         }
         named
     }
@@ -146,19 +134,15 @@ pub struct OutArgs {
 impl OutArgs {
     /// Creates the output directory, if one is given.
     pub fn dir(&self, problems: &mut Problems) -> Option<OutputDir> {
-        let create = |path: &Path| OutputDir::create(path, self.force);
-        self.path(problems)
-            .and_then(|path| problems.take(create(path)))
+        let path = self.path(problems)?;
+        problems.take(OutputDir::create(path, self.force))
     }
 
     /// The path, if one is given.
     pub fn path(&self, problems: &mut Problems) -> Option<&Path> {
         if self.force && self.out.is_none() {
-            problems.add(problem(
-                "--force",
-                "there is no --out whose files could be replaced",
-                "add --out",
-            ));
+            let message = "there is no --out whose files could be replaced";
+            problems.add(problem("--force", message, "add --out"));
         }
         self.out.as_deref()
     }
@@ -186,6 +170,51 @@ impl OutputArgs {
     /// Whether a JSON object is printed.
     pub fn json(&self) -> bool {
         self.json.json
+    }
+}
+
+/// Form of a table of points on standard output.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct TableOutputArgs {
+    /// What to print: a table for people, or CSV with all columns
+    #[arg(
+        long,
+        value_enum,
+        value_name = "FORMAT",
+        default_value = "table",
+        conflicts_with = "json"
+    )]
+    format: TableFormat,
+    #[command(flatten)]
+    pub output: OutputArgs,
+}
+
+/// Forms of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TableFormat {
+    /// A table for people
+    Table,
+    /// All columns as CSV
+    Csv,
+}
+
+impl TableOutputArgs {
+    /// True if JSON or CSV is printed, which is written as it is made.
+    pub fn is_streamed(&self) -> bool {
+        self.output.json() || self.format == TableFormat::Csv
+    }
+
+    /// Prints JSON or CSV if one of them is chosen.
+    pub fn stream(
+        &self,
+        json: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+        csv: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), Problems> {
+        match self.format {
+            _ if self.output.json() => to_stdout(json),
+            TableFormat::Csv => to_stdout(csv),
+            TableFormat::Table => Ok(()),
+        }
     }
 }
 

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use cvtcycle::config::setup::is_path;
+use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::{Document, Problem, Problems, bounded, cycle, decode};
 
 use super::problems::{bad_value, did_you_mean, problem};
-use super::{bytes, calibrations, cycles, lubricants, plans, rigs, vehicles};
+use super::{bytes, cycles};
 
 /// Kind of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +25,20 @@ pub enum InputKind {
     Study,
 }
 
+/// Kinds with their names and those of the embedded inputs.
+const KINDS: [(InputKind, &str, fn() -> Vec<&'static str>); 6] = [
+    (InputKind::Vehicle, "vehicle", || Kind::Vehicle.names()),
+    (InputKind::Lubricant, "lubricant", || {
+        Kind::Lubricant.names()
+    }),
+    (InputKind::Rig, "rig", || Kind::Rig.names()),
+    (InputKind::Calibration, "calibration", || {
+        Kind::Calibration.names()
+    }),
+    (InputKind::Study, "study", || Kind::Plan.names()),
+    (InputKind::Cycle, "cycle", cycles),
+];
+
 /// Tables and keys that only a vehicle file has at its top.
 const VEHICLE: [&str; 5] = ["vehicle", "road_load", "engine", "transmission", "thermal"];
 /// Tables and keys that only a lubricant file has at its top.
@@ -35,34 +49,20 @@ const LUBRICANT: [&str; 5] = [
     "density15_kg_m3",
     "friction",
 ];
-/// Beginnings of table headers that only the plan of a calibration has; their ends may be misspelt.
-const CALIBRATION: [&str; 3] = ["[calibra", "[[parameter", "[[data"];
-/// Beginnings of table headers that only the plan of a study has.
-const STUDY: [&str; 2] = ["[study", "[[factor"];
-
-/// Embedded names of each kind.
-fn embedded() -> [(InputKind, Vec<&'static str>); 6] {
-    [
-        (InputKind::Vehicle, vehicles()),
-        (InputKind::Lubricant, lubricants()),
-        (InputKind::Rig, rigs()),
-        (InputKind::Calibration, calibrations()),
-        (InputKind::Study, plans()),
-        (InputKind::Cycle, cycles()),
-    ]
-}
+/// Beginnings of table headers that only a plan has: of a calibration, whose ends may be misspelt, or of a study.
+const PLANS: [(InputKind, &[&str]); 2] = [
+    (
+        InputKind::Calibration,
+        &["[calibra", "[[parameter", "[[data"],
+    ),
+    (InputKind::Study, &["[study", "[[factor"]),
+];
 
 impl InputKind {
     /// Name of the kind.
     pub fn word(self) -> &'static str {
-        match self {
-            InputKind::Vehicle => "vehicle",
-            InputKind::Lubricant => "lubricant",
-            InputKind::Cycle => "cycle",
-            InputKind::Rig => "rig",
-            InputKind::Calibration => "calibration",
-            InputKind::Study => "study",
-        }
+        let own = KINDS.iter().find(|(kind, ..)| *kind == self);
+        own.map_or("", |(_, word, _)| word)
     }
 
     /// Kind of an embedded name or of a file, and the word by which the library finds it.
@@ -94,27 +94,21 @@ impl InputKind {
     }
 
     fn of_embedded(word: &str) -> Option<Self> {
-        let named = embedded()
-            .into_iter()
-            .find(|(_, names)| names.contains(&word));
+        let named = KINDS.iter().find(|(_, _, names)| names().contains(&word));
         let constant = word.starts_with("constant_") && !cycle::is_csv(word);
-        named
-            .map(|(kind, _)| kind)
-            .or(constant.then_some(InputKind::Cycle))
+        let constant = constant.then_some(InputKind::Cycle);
+        named.map(|(kind, ..)| *kind).or(constant)
     }
 
     /// Kind by the first words of the lines; the text may have any other error.
     fn of_text(word: &str, text: &str) -> Result<Self, Problems> {
         // A plan names a vehicle as well: its own headers are looked for first, in the whole text.
-        let any = |headers: &[&str]| {
+        let is_one = |headers: &[&str]| {
             let mut lines = text.lines().map(str::trim_start);
             lines.any(|line| headers.iter().any(|header| line.starts_with(header)))
         };
-        if any(&CALIBRATION) {
-            return Ok(InputKind::Calibration);
-        }
-        if any(&STUDY) {
-            return Ok(InputKind::Study);
+        if let Some((kind, _)) = PLANS.iter().find(|(_, headers)| is_one(headers)) {
+            return Ok(*kind);
         }
         let mut words = text.lines().filter_map(|line| {
             let line = line.trim_start().trim_start_matches('[').trim_start();
@@ -149,10 +143,7 @@ fn extension(word: &str) -> Option<String> {
 }
 
 fn unknown(word: &str) -> Problem {
-    let known: Vec<&str> = embedded()
-        .into_iter()
-        .flat_map(|(_, names)| names)
-        .collect();
+    let known: Vec<&str> = KINDS.iter().flat_map(|(_, _, names)| names()).collect();
     let question = match did_you_mean(word, &known) {
         question if question.is_empty() => question,
         question => question + " ",
@@ -161,11 +152,6 @@ fn unknown(word: &str) -> Problem {
         "{question}`cvtcycle list vehicles`, `list lubricants` and `list cycles` show all; a path contains '/' or has a file extension"
     );
     let allowed = "a vehicle, lubricant or cycle of `cvtcycle list`, or the path of a file";
-    bad_value(
-        "NAME",
-        word,
-        allowed,
-        &format!("there is nothing named `{word}`"),
-        &hint,
-    )
+    let message = format!("there is nothing named `{word}`");
+    bad_value("NAME", word, allowed, &message, &hint)
 }

@@ -6,12 +6,13 @@ pub mod problems;
 pub mod ranges;
 
 pub use groups::{
-    ComparisonArgs, FormulationArgs, JsonArgs, OutArgs, OutputArgs, ThreadArgs, VehicleArgs,
+    ComparisonArgs, FormulationArgs, JsonArgs, OutArgs, OutputArgs, TableOutputArgs, ThreadArgs,
+    VehicleArgs,
 };
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use cvtcycle::config::bounded::Limit;
-use cvtcycle::config::setup::{Kind, is_path};
+use cvtcycle::config::setup::is_path;
 use cvtcycle::config::{Argument, Bound, Problems, cycle, unit_of};
 
 use problems::{bad_value, cite, did_you_mean};
@@ -45,31 +46,6 @@ pub fn names_of<T>(list: &[(&'static str, T)]) -> Vec<&'static str> {
 /// Names of the embedded cycles.
 pub fn cycles() -> Vec<&'static str> {
     cycle::names().to_vec()
-}
-
-/// Names of the embedded vehicles.
-pub fn vehicles() -> Vec<&'static str> {
-    Kind::Vehicle.names()
-}
-
-/// Names of the embedded lubricants.
-pub fn lubricants() -> Vec<&'static str> {
-    Kind::Lubricant.names()
-}
-
-/// Names of the embedded rigs.
-pub fn rigs() -> Vec<&'static str> {
-    Kind::Rig.names()
-}
-
-/// Names of the embedded calibrations.
-pub fn calibrations() -> Vec<&'static str> {
-    Kind::Calibration.names()
-}
-
-/// Names of the embedded plans of studies.
-pub fn plans() -> Vec<&'static str> {
-    Kind::Plan.names()
 }
 
 /// The value in backquotes.

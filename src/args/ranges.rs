@@ -3,6 +3,7 @@
 use cvtcycle::config::{Bound, Problem, Problems, unit_of};
 
 use super::problems::bad_value;
+use super::quoted;
 
 /// Largest number of values of one option.
 const MAX_VALUES: f64 = 1e6;
@@ -44,16 +45,9 @@ pub fn values_or_words(
     };
     let (mut found, mut problems) = (Vec::new(), Problems::new());
     for part in text.split(',') {
-        match list.part(part.trim()) {
-            Ok(values) => found.extend(values),
-            Err(problem) => problems.push(problem),
-        }
+        found.extend(problems.take(list.part(part.trim())).unwrap_or_default());
     }
-    if problems.is_empty() {
-        Ok(once(found))
-    } else {
-        Err(problems)
-    }
+    problems.finish().map(|()| once(found))
 }
 
 /// Removes repeated values.
@@ -92,29 +86,18 @@ impl List<'_> {
             None => round_step((high - low) / PIECES),
         };
         if step <= 0.0 || !step.is_finite() {
-            return Err(self.bad(
-                part,
-                "has a step that is not above zero",
-                format!("write, for example, {from}..{to}:{}", step_for(low, high)),
-            ));
+            let hint = format!("write, for example, {from}..{to}:{}", step_for(low, high));
+            return Err(self.bad(part, "has a step that is not above zero", hint));
         }
         let count = ((high - low) / step * (1.0 + 1e-12)).floor();
         if count >= MAX_VALUES {
-            return Err(self.bad(
-                part,
-                &format!("has {:.0} values", count + 1.0),
-                format!("at most {MAX_VALUES} values; take a larger step"),
-            ));
+            let hint = format!("at most {MAX_VALUES} values; take a larger step");
+            return Err(self.bad(part, &format!("has {:.0} values", count + 1.0), hint));
         }
-        let mut values: Vec<f64> = (0..=count as u32)
-            .map(|i| clean(low + f64::from(i) * step))
-            .collect();
-        let near = |x: &f64| (high - x).abs() <= 1e-9 * step;
-        if values.last().is_some_and(near) {
-            values.pop();
-        }
-        values.push(high);
-        Ok(values)
+        let steps = (0..=count as u32).map(|i| clean(low + f64::from(i) * step));
+        // The end of the range, also where the last step nearly meets it.
+        let before_end = steps.filter(|x| (high - x).abs() > 1e-9 * step);
+        Ok(before_end.chain([high]).collect())
     }
 
     fn number(&self, part: &str, text: &str) -> Result<f64, Problem> {
@@ -127,26 +110,18 @@ impl List<'_> {
         } else {
             "has an end or step that is not a number"
         };
-        text.parse::<f64>()
-            .ok()
-            .filter(|x| x.is_finite())
-            .ok_or_else(|| self.bad(part, what, self.example()))
+        let number = text.parse::<f64>().ok().filter(|x| x.is_finite());
+        number.ok_or_else(|| self.bad(part, what, self.example()))
     }
 
     fn within(&self, part: &str, x: f64) -> Result<f64, Problem> {
-        if self.allowed.contains(x) {
-            Ok(x)
-        } else {
-            Err(self.bad(part, "is out of range", String::new()))
+        match self.allowed.contains(x) {
+            true => Ok(x),
+            false => Err(self.bad(part, "is out of range", String::new())),
         }
     }
 
     fn bad(&self, part: &str, what: &str, hint: String) -> Problem {
-        let named = if part.is_empty() {
-            "an empty value".to_owned()
-        } else {
-            format!("`{part}`")
-        };
         let words: String = self
             .words
             .iter()
@@ -154,26 +129,20 @@ impl List<'_> {
             .collect();
         let also = if words.is_empty() { "" } else { "or " };
         let allowed = format!("{words}{also}{}", self.allowed.in_unit(self.unit));
-        bad_value(
-            self.option,
-            part,
-            &allowed,
-            &format!("{named} {what}"),
-            &hint,
-        )
+        let message = format!("{} {what}", quoted(part));
+        bad_value(self.option, part, &allowed, &message, &hint)
     }
 
     fn example(&self) -> String {
-        let (low, high) = (10.0, 40.0);
-        let (low, high) = if self.allowed.contains(low) && self.allowed.contains(high) {
-            (low, high)
+        let both = |low, high| self.allowed.contains(low) && self.allowed.contains(high);
+        let (low, high) = if both(10.0, 40.0) {
+            (10.0, 40.0)
         } else {
             (0.5, 2.0)
         };
-        let step = step_for(low, high);
+        let (option, step) = (self.option, step_for(low, high));
         format!(
-            "write a number, a list ({0} {low},{high}), a range with a step ({0} {low}..{high}:{step}), or these mixed",
-            self.option
+            "write a number, a list ({option} {low},{high}), a range with a step ({option} {low}..{high}:{step}), or these mixed"
         )
     }
 }
@@ -201,95 +170,5 @@ fn round_step(x: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn good(text: &str) -> Vec<f64> {
-        values("--speed", text, Bound::closed(-100.0, 7000.0), "_rpm")
-            .unwrap_or_else(|p| panic!("{text}: {p:?}"))
-    }
-
-    fn bad(text: &str) -> Problems {
-        values("--speed", text, Bound::closed(-100.0, 7000.0), "_rpm").expect_err(text)
-    }
-
-    #[test]
-    fn numbers_lists_and_ranges_mixed() {
-        assert_eq!(good("2500"), [2500.0]);
-        assert_eq!(good(" 25, 50 ,75"), [25.0, 50.0, 75.0]);
-        assert_eq!(good("1000..1500:250"), [1000.0, 1250.0, 1500.0]);
-        assert_eq!(good("-10..40:25"), [-10.0, 15.0, 40.0]);
-        assert_eq!(good("5,1..3:1,3,7"), [5.0, 1.0, 2.0, 3.0, 7.0]);
-        assert_eq!(good("3..3"), [3.0]);
-        assert_eq!(good("-0"), [0.0]);
-        assert!(good("0,-0").len() == 1);
-    }
-
-    /// Hand calculation: both ends belong to a range, and decimal steps stay decimal.
-    #[test]
-    fn val_ends_and_decimals() {
-        assert_eq!(good("0..0.3:0.1"), [0.0, 0.1, 0.2, 0.3]);
-        assert_eq!(good("1000..2100:500"), [1000.0, 1500.0, 2000.0, 2100.0]);
-        assert_eq!(
-            good("1000..4000"),
-            [1000.0, 1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0]
-        );
-        assert_eq!(good("0..100").len(), 11);
-        assert_eq!(good("10..12:0.5"), [10.0, 10.5, 11.0, 11.5, 12.0]);
-        assert_eq!(good("1e3..3e3:1e3"), [1000.0, 2000.0, 3000.0]);
-    }
-
-    #[test]
-    fn words_replace_numbers() {
-        let words = [("low", 2.4), ("high", 0.4)];
-        let found = values_or_words(
-            "--ratio",
-            "high,1..low:1",
-            Bound::closed(0.3, 3.0),
-            "",
-            &words,
-        )
-        .expect("words");
-        assert_eq!(found, [0.4, 1.0, 2.0, 2.4]);
-        let problems = values_or_words("--ratio", "lo", Bound::closed(0.3, 3.0), "", &words)
-            .expect_err("no word");
-        assert!(
-            problems[0].allowed.contains("low, high, or 0.3 to 3"),
-            "{problems:?}"
-        );
-    }
-
-    #[test]
-    fn every_bad_part_is_reported() {
-        assert_eq!(bad("25,x,50,9999").len(), 2);
-        for (text, word) in [
-            ("", "empty"),
-            ("25,", "empty"),
-            ("nan", "not a number"),
-            ("inf", "not a number"),
-            ("5..1:1", "begins above"),
-            ("1..5:0", "above zero"),
-            ("1..5:-1", "above zero"),
-            ("1..5:x", "not a number"),
-            ("1..", "not a number"),
-            ("..5", "not a number"),
-            ("1..2..3", "not a number"),
-            ("0..7000:0.001", "7000001 values"),
-            ("0..8000:1", "out of range"),
-            ("1000-4000", "not a number"),
-        ] {
-            let problems = bad(text);
-            assert!(
-                problems[0].message.contains(word),
-                "{text}: {:?}",
-                problems[0]
-            );
-            assert_eq!(problems[0].allowed, "-100 to 7000 rpm");
-        }
-        assert!(
-            bad("x")[0].hint.contains("--speed 10..40:5"),
-            "{}",
-            bad("x")[0].hint
-        );
-    }
-}
+#[path = "../../tests/cli/ranges.rs"]
+mod tests;

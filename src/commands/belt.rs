@@ -18,7 +18,7 @@ use super::Execute;
 use crate::args::problems::bad_value;
 use crate::args::{FormulationArgs, OutArgs, OutputArgs, VehicleArgs, number};
 use crate::print::{CommandOutput, CommandResult, Terminal};
-use sink::{RowOutput, RowReceiver};
+use sink::RowSink;
 
 /// Names of a note that are listed.
 const MAX_LISTED: usize = 6;
@@ -70,8 +70,8 @@ pub struct BeltArgs {
 
 /// Computed rows, ready to be written.
 pub struct BeltPlan {
-    rows: RowOutput,
-    head: Map<String, Value>,
+    rows: RowSink,
+    head: Value,
     /// Text on standard output.
     stdout: String,
     /// Notes on standard error.
@@ -85,26 +85,12 @@ impl Execute for BeltArgs {
     fn plan(&self, problems: &mut Problems) -> Option<BeltPlan> {
         let formulation = self.formulation.get(problems);
         let setup = self.car.load(Formulation::default(), problems);
-        let share = number(
-            "--band-speed",
-            &self.band_speed,
-            Bound::closed(-1.0, 1.0),
-            "",
-        );
-        let share = problems.take(share);
-        let model = setup
-            .as_ref()
-            .zip(share)
-            .and_then(|(setup, share)| Model::new(setup, share));
-        if setup
-            .as_ref()
-            .is_some_and(|setup| !setup.transmission().is_cvt())
-        {
-            problems.add(
-                self.car
-                    .needs_cvt("`cvtcycle list vehicles` shows which have a CVT"),
-            );
-        }
+        let range = Bound::closed(-1.0, 1.0);
+        let share = problems.take(number("--band-speed", &self.band_speed, range, ""));
+        let car = setup.as_ref().zip(share);
+        let model = car.and_then(|(setup, share)| Model::new(setup, share));
+        let hint = "`cvtcycle list vehicles` shows which have a CVT";
+        self.car.need_cvt(setup.as_ref(), hint, problems);
         let file = self
             .out
             .path(problems)
@@ -118,26 +104,28 @@ impl Execute for BeltArgs {
             "-" => "standard input",
             file => file,
         };
-        let mut receiver = RowReceiver::new(file, self.output.json());
+        let mut rows = RowSink::new(file, self.output.json());
         let job = Job {
             model,
             formulation,
-            rows: &mut receiver,
+            rows: &mut rows,
         };
         let Done { counts, ignored } = problems.take(points::read(name, reader, job))?;
         let setup = setup?;
-        let (car, oil) = (setup.name.as_str(), setup.oils().0.name.as_str());
-        let note = format!(
-            "cvtcycle: {name}: columns computed anew, not read: {}\n",
-            listed(&ignored)
-        );
-        let noted = !ignored.is_empty() && !self.output.quiet;
-        let stdout = out.filter(|_| !self.output.quiet && !self.output.json());
+        let quiet = self.output.quiet;
+        let stderr = match ignored.is_empty() || quiet {
+            true => String::new(),
+            false => format!(
+                "cvtcycle: {name}: columns computed anew, not read: {}\n",
+                listed(&ignored)
+            ),
+        };
+        let stdout = out.filter(|_| !quiet && !self.output.json());
         Some(BeltPlan {
-            rows: receiver.output?,
-            head: head(car, oil, &counts),
+            rows,
+            head: head(&setup.name, &setup.oils().0.name, &counts),
             stdout: stdout.map_or_else(String::new, |out| counts.text(&out)),
-            stderr: if noted { note } else { String::new() },
+            stderr,
         })
     }
 
@@ -163,13 +151,10 @@ fn open(points: &str) -> Result<Box<dyn BufRead>, Problems> {
     if Path::new(points).is_dir() {
         return unreadable("it is a directory", "name a file in that directory");
     }
+    let hint = "check the path and its permissions; it is relative to the current directory";
     match File::open(points) {
         Ok(file) => Ok(Box::new(BufReader::with_capacity(1 << 16, file))),
-        Err(error) => {
-            let hint =
-                "check the path and its permissions; it is relative to the current directory";
-            unreadable(&error.to_string(), hint)
-        }
+        Err(error) => unreadable(&error.to_string(), hint),
     }
 }
 
@@ -185,25 +170,19 @@ fn listed(names: &[String]) -> String {
 }
 
 /// The JSON object without its rows.
-fn head(vehicle: &str, lubricant: &str, counts: &Counts) -> Map<String, Value> {
+fn head(vehicle: &str, lubricant: &str, counts: &Counts) -> Value {
     let object = |counts: &mut dyn Iterator<Item = (&'static str, u64)>| {
-        Value::Object(
-            counts
-                .map(|(name, count)| (name.to_owned(), json!(count)))
-                .collect(),
-        )
+        counts
+            .map(|(name, count)| (name.to_owned(), json!(count)))
+            .collect::<Map<_, _>>()
     };
-    let entries = [
-        ("schema", json!(1)),
-        ("program", json!(PROGRAM)),
-        ("vehicle", json!(vehicle)),
-        ("lubricant", json!(lubricant)),
-        ("points", json!(counts.points)),
-        ("status", object(&mut counts.by_status())),
-        ("flags", object(&mut counts.by_flag())),
-    ];
-    entries
-        .into_iter()
-        .map(|(name, value)| (name.to_owned(), value))
-        .collect()
+    json!({
+        "schema": 1,
+        "program": PROGRAM,
+        "vehicle": vehicle,
+        "lubricant": lubricant,
+        "points": counts.points,
+        "status": object(&mut counts.by_status()),
+        "flags": object(&mut counts.by_flag()),
+    })
 }

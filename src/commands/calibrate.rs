@@ -1,24 +1,27 @@
 //! `calibrate`: parameters fitted to measurements, with their errors.
 
 mod date;
-mod files;
 mod tables;
 #[cfg(test)]
+#[path = "../../tests/cli/calibration_tables.rs"]
 mod tests;
 
 use clap::Args;
+use cvtcycle::config::setup::Kind;
+use cvtcycle::config::{ProblemKind, Problems};
 use cvtcycle::output::files::OutputDir;
+use cvtcycle::report::charts::calibration::calibration_pictures;
 use cvtcycle::study::fit::outcome::Outcome;
 use cvtcycle::study::fit::plan::CalibrationPlan;
-use cvtcycle::study::fit::{calibrate, open};
+use cvtcycle::study::fit::tables::tables as csv_tables;
+use cvtcycle::study::fit::{calibrate, fitted, open};
 
 use super::Execute;
-use crate::args::{Names, OutArgs, OutputArgs, ThreadArgs, calibrations};
+use crate::args::{Names, OutArgs, OutputArgs, ThreadArgs};
 use crate::print::progress::{Progress, handle_interrupts};
 use crate::print::{
     CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
 };
-use cvtcycle::config::{ProblemKind, Problems};
 
 /// Arguments of `calibrate`.
 #[derive(Args, Clone, Debug)]
@@ -37,7 +40,7 @@ stopped by Ctrl-C, a parameter affects no observation, or data are outside the v
 )]
 pub struct CalibrateArgs {
     /// Plan: name of a built-in calibration, or a TOML file
-    #[arg(value_name = "NAME|PLAN.toml", value_parser = Names(calibrations), hide_possible_values = true)]
+    #[arg(value_name = "NAME|PLAN.toml", value_parser = Names(|| Kind::Calibration.names()), hide_possible_values = true)]
     plan: String,
     #[command(flatten)]
     out: OutArgs,
@@ -81,12 +84,23 @@ impl Execute for CalibrateArgs {
             }
             outcome => outcome?,
         };
-        let files = match out {
-            Some(dir) => files::write(dir, &plan, &outcome, &date::today())?,
-            None => WrittenFiles::default(),
-        };
+        let json = json_text(&outcome)?;
+        let files = WrittenFiles::write(out, |dir| {
+            for (name, text) in fitted::files(&plan, &outcome, &date::today())? {
+                dir.put(&name, text)?;
+            }
+            for (name, csv) in csv_tables(&outcome) {
+                dir.put(&name, csv)?;
+            }
+            for (name, picture) in calibration_pictures(&outcome) {
+                dir.put(&format!("{name}.svg"), picture.svg)?;
+            }
+            dir.put("plan.toml", &plan.text)?;
+            dir.put("calibration.json", &json)?;
+            Ok("")
+        })?;
         let results = Results {
-            json: json_text(&outcome)?,
+            json,
             failures: failures(&outcome),
             files,
         };
@@ -119,9 +133,9 @@ fn failures(outcome: &Outcome) -> Vec<String> {
             "no observation depends on {names}: fix it, or add data that depend on it"
         ));
     }
-    let mut doubtful = outcome.residuals.iter().filter(|r| r.doubtful > 0);
-    if let Some(first) = doubtful.next() {
-        let more = match doubtful.count() {
+    let doubtful = outcome.residuals.iter().filter(|r| r.doubtful > 0);
+    if let [first, rest @ ..] = doubtful.collect::<Vec<_>>().as_slice() {
+        let more = match rest.len() {
             0 => String::new(),
             n => format!(" and {n} more"),
         };

@@ -1,26 +1,28 @@
 //! `explain`: the meaning of a key, a column, a flag, an equation or a term of the field.
 
-mod flags;
 mod terms;
 
 use clap::Args;
-use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
 use cvtcycle::config::{KeyInfo, Problem, Problems, near, suggestion};
-use cvtcycle::output::table::Head;
-use cvtcycle::output::trace::{COLUMNS, column};
+use cvtcycle::output::table::{Head, TextTable};
+use cvtcycle::output::trace::COLUMNS;
 use cvtcycle::output::{Component, Flags};
 use cvtcycle::study::equations::{Equation, by_label, cited, equations};
 use cvtcycle::study::outputs::outputs;
 use serde_json::{Value, json};
 
 use super::Execute;
-use super::show::KeyLine;
+use super::show::{key_json, value_row};
 use crate::args::JsonArgs;
 use crate::args::problems::bad_value;
 use crate::print::colour::Paint;
-use crate::print::table::TextTable;
 use crate::print::{CommandOutput, CommandResult, Terminal};
+
+/// Longest value in the column of values.
+const MAX_VALUE_LEN: usize = 24;
+/// Largest number of entries that are found by the words of their meanings.
+const MAX_FOUND: usize = 12;
 
 /// Arguments of `explain`.
 #[derive(Args, Clone, Debug)]
@@ -30,114 +32,137 @@ Examples:
   cvtcycle explain displacement_cc_rev
   cvtcycle explain transmission.cvt.pump
   cvtcycle explain clamp_safety
-  cvtcycle explain road-load
+  cvtcycle explain \"torque capacity\"
   cvtcycle explain SL-8
 
-The end of a key is enough (band_offset_mm); for a table all of its keys are explained.")]
+The end of a key is enough (band_offset_mm); for a table all of its keys are explained. A term of the field finds the keys, columns
+and flags that belong to it; other words find those whose meanings contain all of them.")]
 pub struct ExplainArgs {
-    /// Key, table, column of a trace or summary, flag, label of an equation, or term such as road-load
-    #[arg(value_name = "KEY")]
-    key: String,
+    /// Key, table, column of a trace or summary, flag, label of an equation, or words such as road load
+    #[arg(value_name = "KEY", required = true)]
+    key: Vec<String>,
     #[command(flatten)]
     output: JsonArgs,
-}
-
-/// A key with its value in each embedded file that has it.
-struct ExplainedKey {
-    known: KeyInfo,
-    values: Vec<(&'static str, KeyInfo)>,
-}
-
-/// A column of the trace or of the summary.
-struct ExplainedColumn {
-    table: &'static str,
-    name: String,
-    unit: String,
-    doc: String,
 }
 
 /// Everything that a word means.
 #[derive(Default)]
 pub struct Meanings {
-    keys: Vec<ExplainedKey>,
-    columns: Vec<ExplainedColumn>,
+    /// Keys with their values in each embedded file that has them.
+    keys: Vec<(&'static KeyInfo, Vec<(&'static str, KeyInfo)>)>,
+    /// Columns with the name of their table.
+    columns: Vec<(&'static str, Head)>,
+    /// Names and meanings of flags.
     flags: Vec<(&'static str, &'static str)>,
     equation: Option<Equation>,
 }
 
 impl Execute for ExplainArgs {
-    type Plan = Meanings;
+    type Plan = (String, Meanings);
 
-    fn plan(&self, problems: &mut Problems) -> Option<Meanings> {
-        let word = self.key.trim();
+    fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
+        let word = self.key.join(" ").trim().to_owned();
         let mut meanings = Meanings::default();
-        let files = catalogue::files();
-        meanings.add(word, &files);
+        meanings.add(&word);
         if meanings.is_empty() {
-            for name in terms::names_of(word) {
-                meanings.add(name, &files);
-            }
+            terms::names_of(&word)
+                .iter()
+                .for_each(|name| meanings.add(name));
         }
         if meanings.is_empty() {
-            problems.add(unknown(word));
+            meanings.search(&word);
+        }
+        if meanings.is_empty() {
+            problems.add(unknown(&word));
             return None;
         }
-        Some(meanings)
+        meanings.add_values(&catalogue::files());
+        Some((word, meanings))
     }
 
-    fn run(&self, meanings: Meanings, terminal: Terminal) -> CommandResult {
+    fn run(&self, (word, meanings): Self::Plan, terminal: Terminal) -> CommandResult {
         if self.output.json {
-            return CommandOutput::json(&meanings.json(self.key.trim()));
+            return CommandOutput::json(&meanings.json(&word));
         }
         Ok(CommandOutput::text(meanings.text(terminal.stdout)))
     }
 }
 
+/// Columns of the traces and of the summary, with the name of their table; those of single phases are left out.
+fn all_columns() -> impl Iterator<Item = (&'static str, Head)> {
+    let trace = COLUMNS.iter().map(|column| ("trace", column.head()));
+    let summary = outputs(&[], &Component::ALL).into_iter();
+    trace.chain(summary.map(|column| ("summary", column.head())))
+}
+
+/// Names and meanings of the flags.
+fn all_flags() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let names = Flags::NAMES.into_iter().map(|(_, name)| name);
+    names.zip(Flags::MEANINGS)
+}
+
 impl Meanings {
     /// Adds what has this very name.
-    fn add(&mut self, name: &str, files: &[File]) {
+    fn add(&mut self, name: &str) {
         let keys = matching_keys(name).into_iter();
-        self.keys
-            .extend(keys.map(|key| ExplainedKey::new(key, files)));
-        self.columns.extend(column(name).map(|c| ExplainedColumn {
-            table: "trace",
-            name: c.name.to_string(),
-            unit: c.unit.to_owned(),
-            doc: c.doc.to_string(),
-        }));
-        let in_summary = summary_columns().into_iter();
-        self.columns.extend(
-            in_summary
-                .filter(|c| c.name == name)
-                .map(|c| ExplainedColumn {
-                    table: "summary",
-                    name: c.name,
-                    unit: c.unit,
-                    doc: c.doc,
-                }),
-        );
-        self.flags.extend(flags::meaning(name));
+        self.keys.extend(keys.map(|key| (key, Vec::new())));
+        self.columns
+            .extend(all_columns().filter(|(_, column)| column.name == name));
+        self.flags
+            .extend(all_flags().filter(|(own, _)| *own == name));
         self.equation = self.equation.take().or(by_label(name));
     }
 
+    /// Adds what has all words in its name or meaning, up to [`MAX_FOUND`] entries of each kind.
+    fn search(&mut self, text: &str) {
+        let text = text.to_lowercase().replace(['-', '_'], " ");
+        let words: Vec<&str> = text
+            .split_whitespace()
+            .filter(|word| word.len() > 2)
+            .collect();
+        let has = |name: &str, doc: &str| {
+            let text = format!("{name} {doc}").to_lowercase();
+            !words.is_empty() && words.iter().all(|word| text.contains(word))
+        };
+        let keys = catalogue::known_keys()
+            .iter()
+            .filter(|info| has(&info.key, &info.doc));
+        self.keys
+            .extend(keys.map(|key| (key, Vec::new())).take(MAX_FOUND));
+        let columns = all_columns().filter(|(_, column)| has(&column.name, &column.doc));
+        self.columns.extend(columns.take(MAX_FOUND));
+        self.flags
+            .extend(all_flags().filter(|(name, meaning)| has(name, meaning)));
+    }
+
+    fn add_values(&mut self, files: &[File]) {
+        for (known, values) in &mut self.keys {
+            let of_file = |file: &File| {
+                let mut keys = file.keys.iter();
+                let info = keys.find(|info| file.full_key(&info.key) == known.key)?;
+                (!info.status.is_empty()).then(|| (file.name, info.clone()))
+            };
+            values.extend(files.iter().filter_map(of_file));
+        }
+    }
+
     fn is_empty(&self) -> bool {
-        self.keys.is_empty()
-            && self.columns.is_empty()
-            && self.flags.is_empty()
-            && self.equation.is_none()
+        let named = self.keys.len() + self.columns.len() + self.flags.len();
+        named == 0 && self.equation.is_none()
     }
 
     fn json(&self, word: &str) -> Value {
         let equation = |e: &Equation| json!({ "label": e.label, "statement": e.statement, "status": e.status, "module": e.module });
-        let key = |found: &ExplainedKey| {
-            let entry = |(file, info): &(&str, KeyInfo)| json!({ "file": file, "entry": KeyLine::from(info) });
+        let key = |(known, values): &(&KeyInfo, Vec<(&str, KeyInfo)>)| {
+            let entry =
+                |(file, info): &(&str, KeyInfo)| json!({ "file": file, "entry": key_json(info) });
             json!({
-                "key": found.known.key, "unit": found.known.unit, "allowed": found.known.allowed, "meaning": found.known.doc,
-                "equations": cited(&found.known.doc).iter().map(equation).collect::<Vec<_>>(),
-                "values": found.values.iter().map(entry).collect::<Vec<_>>(),
+                "key": known.key, "unit": known.unit, "allowed": known.allowed, "meaning": known.doc,
+                "equations": cited(&known.doc).iter().map(equation).collect::<Vec<_>>(),
+                "values": values.iter().map(entry).collect::<Vec<_>>(),
             })
         };
-        let column = |c: &ExplainedColumn| json!({ "name": c.name, "unit": c.unit, "meaning": c.doc, "table": c.table });
+        let column = |(table, c): &(&str, Head)| json!({ "name": c.name, "unit": c.unit, "meaning": c.doc, "table": table });
         let flag = |(name, meaning): &(&str, &str)| json!({ "name": name, "meaning": meaning });
         json!({
             "name": word,
@@ -150,87 +175,63 @@ impl Meanings {
     }
 
     fn text(&self, paint: Paint) -> String {
-        let mut parts: Vec<String> = self.keys.iter().map(|found| found.text(paint)).collect();
-        for c in &self.columns {
-            let what = format!("column of the {}", c.table);
+        let keys = self
+            .keys
+            .iter()
+            .map(|(known, values)| key_text(known, values, paint));
+        let columns = self.columns.iter().map(|(table, c)| {
+            let what = format!("column of the {table}");
             let facts = [
                 ("what", &*what),
-                ("meaning", &*c.doc),
+                ("meaning", &c.doc),
                 ("unit", or_none(&c.unit)),
             ];
-            parts.push(paragraph(&c.name, &facts, paint));
-        }
-        for (name, meaning) in &self.flags {
+            paragraph(&c.name, &facts, paint)
+        });
+        let flags = self.flags.iter().map(|(name, meaning)| {
             let what =
                 "flag of a time step, in the column `flags`; seconds in `flags_s` of the summary";
-            parts.push(paragraph(
-                name,
-                &[("what", what), ("meaning", meaning)],
-                paint,
-            ));
-        }
-        if let Some(e) = &self.equation {
+            paragraph(name, &[("what", what), ("meaning", meaning)], paint)
+        });
+        let equation = self.equation.iter().map(|e| {
             let facts = [
                 ("what", "equation of the model"),
                 ("statement", &*e.statement.replace("\\|", "|")),
                 ("status", e.status),
                 ("module", e.module),
             ];
-            parts.push(paragraph(e.label, &facts, paint));
-        }
-        parts.join("\n")
+            paragraph(e.label, &facts, paint)
+        });
+        keys.chain(columns)
+            .chain(flags)
+            .chain(equation)
+            .collect::<Vec<_>>()
+            .join("\n")
     }
 }
 
-impl ExplainedKey {
-    fn new(known: KeyInfo, files: &[File]) -> Self {
-        let of_file = |file: &File| {
-            let info = file
-                .keys
-                .iter()
-                .find(|info| file.full_key(&info.key) == known.key)?;
-            (!info.status.is_empty()).then(|| (file.name, info.clone()))
-        };
-        let values = files.iter().filter_map(of_file).collect();
-        ExplainedKey { known, values }
+fn key_text(known: &KeyInfo, values: &[(&str, KeyInfo)], paint: Paint) -> String {
+    let mut facts = vec![
+        ("meaning", &*known.doc),
+        ("unit", or_none(&known.unit)),
+        ("allowed", &*known.allowed),
+    ];
+    let equation = |e: &Equation| {
+        let statement = e.statement.replace("\\|", "|");
+        format!("{}: {statement} ({})", e.label, e.status)
+    };
+    let equations: Vec<String> = cited(&known.doc).iter().map(equation).collect();
+    let names = ["equation"].into_iter().chain(std::iter::repeat(""));
+    facts.extend(names.zip(equations.iter().map(String::as_str)));
+    let text = paragraph(&known.key, &facts, paint);
+    if values.is_empty() {
+        return text + "  not set in any built-in file\n";
     }
-
-    fn text(&self, paint: Paint) -> String {
-        let known = &self.known;
-        let mut facts = vec![
-            ("meaning", &*known.doc),
-            ("unit", or_none(&known.unit)),
-            ("allowed", &*known.allowed),
-        ];
-        let equation = |e: &Equation| {
-            format!(
-                "{}: {} ({})",
-                e.label,
-                e.statement.replace("\\|", "|"),
-                e.status
-            )
-        };
-        let equations: Vec<String> = cited(&known.doc).iter().map(equation).collect();
-        for (k, text) in equations.iter().enumerate() {
-            facts.push((if k == 0 { "equation" } else { "" }, text));
-        }
-        let text = paragraph(&known.key, &facts, paint);
-        if self.values.is_empty() {
-            return text + "  not set in any built-in file\n";
-        }
-        let mut table = TextTable::new("llll").indented();
-        for (file, info) in &self.values {
-            let own = value(info);
-            let long = own.chars().count() > 24;
-            let (shown, moved) = if long { ("", &*own) } else { (&*own, "") };
-            let remarks = [moved, &info.source, &info.note]
-                .into_iter()
-                .filter(|text| !text.is_empty());
-            let remarks = remarks.collect::<Vec<_>>().join("; ");
-            table.row([file, shown, &info.status, &remarks]);
-        }
-        text + &table.text()
+    let mut table = TextTable::new("llll").indented();
+    for (file, info) in values {
+        table.row(value_row(file, info, MAX_VALUE_LEN, ""));
     }
+    text + &table.text()
 }
 
 fn or_none(unit: &str) -> &str {
@@ -243,59 +244,41 @@ fn or_none(unit: &str) -> &str {
 
 fn paragraph(name: &str, facts: &[(&str, &str)], paint: Paint) -> String {
     let mut table = TextTable::new("ll").indented().min_widths(&[9]);
-    facts
-        .iter()
-        .for_each(|(name, text)| table.row([name, text]));
+    for &(name, text) in facts {
+        table.row([name, text]);
+    }
     format!("{}\n{}", paint.heading(name), table.text())
 }
 
-/// Columns of the summary for all components; those of single phases are left out.
-fn summary_columns() -> Vec<Head> {
-    let columns = outputs(&[], &Component::ALL);
-    columns.iter().map(|column| column.head()).collect()
-}
-
 /// The key itself, else keys that end in the word, else the keys of the table of that name.
-fn matching_keys(word: &str) -> Vec<KeyInfo> {
+fn matching_keys(word: &str) -> Vec<&'static KeyInfo> {
     let word = match word.strip_prefix(ENGINE_OIL) {
         Some(rest) => format!("{OIL}{rest}"),
         None => word.to_owned(),
     };
     let (end, start) = (format!(".{word}"), format!("{word}."));
-    let tests: [&dyn Fn(&str) -> bool; 3] =
-        [&|key| key == word, &|key| key.ends_with(&end), &|key| {
-            key.starts_with(&start)
-        }];
-    let pick = |test: &&dyn Fn(&str) -> bool| {
+    let pick = |test: &dyn Fn(&str) -> bool| {
         let known = catalogue::known_keys().iter();
-        known
-            .filter(|info| test(&info.key))
-            .cloned()
-            .collect::<Vec<_>>()
+        let keys: Vec<_> = known.filter(|info| test(&info.key)).collect();
+        (!keys.is_empty()).then_some(keys)
     };
-    tests
-        .iter()
-        .map(pick)
-        .find(|keys| !keys.is_empty())
+    pick(&|key| key == word)
+        .or_else(|| pick(&|key| key.ends_with(&end)))
+        .or_else(|| pick(&|key| key.starts_with(&start)))
         .unwrap_or_default()
 }
 
 fn unknown(word: &str) -> Problem {
     // A word without a dot is compared with the last parts of the keys, because their beginnings are long.
-    let last = |key: &str| key.rsplit('.').next().unwrap_or(key).to_owned();
-    let key_name = |key: &str| {
-        if word.contains('.') {
-            key.to_owned()
-        } else {
-            last(key)
-        }
+    let name = |key: &str| match word.contains('.') {
+        true => key.to_owned(),
+        false => key.rsplit('.').next().unwrap_or(key).to_owned(),
     };
     let keys = catalogue::known_keys()
         .iter()
-        .map(|info| (key_name(&info.key), info.key.clone()));
-    let others = COLUMNS.iter().map(|column| column.name.to_string());
-    let others = others.chain(summary_columns().into_iter().map(|head| head.name));
-    let others = others.chain(Flags::NAMES.iter().map(|(_, name)| (*name).to_owned()));
+        .map(|info| (name(&info.key), info.key.clone()));
+    let others = all_columns().map(|(_, column)| column.name);
+    let others = others.chain(all_flags().map(|(name, _)| name.to_owned()));
     let others = others.chain(equations().map(|equation| equation.label.to_owned()));
     let others = others.chain(terms::terms().map(|term| term.replace(' ', "-")));
     let names: Vec<(String, String)> = keys
@@ -303,11 +286,8 @@ fn unknown(word: &str) -> Problem {
         .collect();
     let close = near(word, names.iter().map(|(name, _)| name.as_str()));
     let full = |name: &&str| {
-        names
-            .iter()
-            .filter(move |(own, _)| own == name)
-            .map(|(_, key)| key.as_str())
-            .collect::<Vec<_>>()
+        let same = names.iter().filter(|(own, _)| own == name);
+        same.map(|(_, key)| key.as_str()).collect::<Vec<_>>()
     };
     let mut full: Vec<&str> = close.iter().flat_map(full).collect();
     full.dedup();

@@ -1,17 +1,17 @@
 //! `list`: what is built in.
 
 use clap::{Args, ValueEnum};
-use cvtcycle::config::setup::{self, Options};
-use cvtcycle::config::{Problems, cycle};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
-use serde::Serialize;
+use cvtcycle::config::Problems;
+use cvtcycle::config::cycle::{self, Cycle};
+use cvtcycle::config::setup::{self, Kind, Options, Setup};
+use cvtcycle::model::fluid::{Lubricant, ZERO_DEGC_K};
+use cvtcycle::output::number::fixed;
+use cvtcycle::output::table::TextColumns;
 use serde_json::{Value, json};
 
 use super::Execute;
-use crate::args::{JsonArgs, lubricants, vehicles};
-use crate::print::table::TextColumns;
+use crate::args::JsonArgs;
 use crate::print::{CommandOutput, CommandResult, Terminal};
-use cvtcycle::output::number::fixed;
 
 /// Arguments of `list`.
 #[derive(Args, Clone, Debug)]
@@ -35,38 +35,6 @@ enum ListedKind {
     Lubricants,
 }
 
-#[derive(Serialize)]
-struct CycleLine {
-    name: &'static str,
-    title: String,
-    duration_s: f64,
-    distance_km: f64,
-    distance_automatic_km: f64,
-    max_speed_kmh: f64,
-    gears_prescribed: bool,
-}
-
-#[derive(Serialize)]
-struct VehicleLine {
-    name: &'static str,
-    title: String,
-    transmission: &'static str,
-    mass_kg: f64,
-    displacement_l: f64,
-    rated_kw: f64,
-    baselines: Vec<String>,
-}
-
-#[derive(Serialize)]
-struct LubricantLine {
-    name: &'static str,
-    title: String,
-    kv_minus10_mm2_s: f64,
-    kv40_mm2_s: f64,
-    kv100_mm2_s: f64,
-    density15_kg_m3: f64,
-}
-
 /// A list in both forms.
 pub struct Listing {
     json: Value,
@@ -80,7 +48,7 @@ impl Execute for ListArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Listing> {
         match self.what {
-            ListedKind::Cycles => Some(cycles()),
+            ListedKind::Cycles => Some(list_cycles()),
             ListedKind::Vehicles => list_vehicles(problems),
             ListedKind::Lubricants => list_lubricants(problems),
         }
@@ -91,106 +59,103 @@ impl Execute for ListArgs {
             return CommandOutput::json(&list.json);
         }
         let heading = terminal.stdout.heading(list.heading);
-        Ok(CommandOutput::text(format!(
-            "{heading}\n{}\n{}",
-            list.table, list.note
-        )))
+        let (table, note) = (list.table, list.note);
+        Ok(CommandOutput::text(format!("{heading}\n{table}\n{note}")))
     }
 }
 
-fn cycles() -> Listing {
-    let embedded = cycle::names()
-        .iter()
-        .filter_map(|name| Some((*name, cycle::embedded(name)?)));
-    let line = |(name, cycle): (&'static str, cycle::Cycle)| {
-        let (manual, automatic) = (cycle.trace_for(false), cycle.trace_for(true));
-        CycleLine {
-            name,
-            duration_s: manual.duration_s(),
-            distance_km: manual.distance_m() / 1e3,
-            distance_automatic_km: automatic.distance_m() / 1e3,
-            max_speed_kmh: manual.max_speed_m_s() * 3.6,
-            gears_prescribed: cycle.has_gears(),
-            title: cycle.title,
-        }
-    };
-    let list: Vec<CycleLine> = embedded.map(line).collect();
-    let automatic = |c: &CycleLine| match fixed(c.distance_automatic_km, 3) {
-        same if same == fixed(c.distance_km, 3) => String::new(),
+fn list_cycles() -> Listing {
+    let embedded = cycle::names().iter();
+    let list: Vec<Cycle> = embedded.filter_map(|name| cycle::embedded(name)).collect();
+    let km = |c: &Cycle, automatic: bool| c.trace_for(automatic).distance_m() / 1e3;
+    let kmh = |c: &Cycle| c.trace_for(false).max_speed_m_s() * 3.6;
+    let automatic = |c: &Cycle| match fixed(km(c, true), 3) {
+        same if same == fixed(km(c, false), 3) => String::new(),
         other => other,
     };
     let columns = TextColumns::new()
-        .left("name", |c: &CycleLine| c.name)
-        .right("s", |c| fixed(c.duration_s, 0))
-        .right("km", |c| fixed(c.distance_km, 3))
+        .left("name", |c: &Cycle| c.name.clone())
+        .number("s", 0, |c| c.trace_for(false).duration_s())
+        .number("km", 3, |c| km(c, false))
         .right("km (auto)", automatic)
-        .right("max km/h", |c| fixed(c.max_speed_kmh, 1))
+        .number("max km/h", 1, kmh)
         .left("title", |c| c.title.clone());
+    let json = |c: &Cycle| {
+        json!({
+            "name": c.name, "title": c.title, "duration_s": c.trace_for(false).duration_s(),
+            "distance_km": km(c, false), "distance_automatic_km": km(c, true),
+            "max_speed_kmh": kmh(c), "gears_prescribed": c.has_gears(),
+        })
+    };
     Listing {
-        json: json!({ "cycles": list }),
+        json: json!({ "cycles": list.iter().map(json).collect::<Vec<_>>() }),
         heading: "Cycles",
-        table: columns.table(&list).text(),
+        table: columns.lines(&list),
         note: "Also constant_V with V in km/h, such as constant_90, and any CSV file with time_s and speed_kmh.\n\
             Two distances: a manual car drives the trace with gear-change plateaux, an automatic car the one without.\n",
     }
 }
 
 fn list_vehicles(problems: &mut Problems) -> Option<Listing> {
-    let line = |name: &'static str| {
-        let setup = problems.take(setup::load(name, &Options::default()))?;
-        let car = setup.car(ZERO_DEGC_K + 20.0);
-        let cvt = setup.transmission().is_cvt();
-        Some(VehicleLine {
-            name,
-            transmission: if cvt { "cvt" } else { "manual" },
-            mass_kg: car.road_load.mass_kg,
-            displacement_l: car.engine.displacement_m3 * 1e3,
-            rated_kw: car.engine.rated_w / 1e3,
-            title: setup.title,
-            baselines: setup.baselines,
+    let read = |name: &str| problems.take(setup::load(name, &Options::default()));
+    let list: Vec<Setup> = Kind::Vehicle
+        .names()
+        .into_iter()
+        .map(read)
+        .collect::<Option<_>>()?;
+    let gearbox = |v: &Setup| match v.transmission().is_cvt() {
+        true => "cvt",
+        false => "manual",
+    };
+    let mass_kg = |v: &Setup| v.road_load.base.mass_kg;
+    let litres = |v: &Setup| v.engine().displacement_m3 * 1e3;
+    let rated_kw = |v: &Setup| v.engine().rated_w / 1e3;
+    let columns = TextColumns::new()
+        .left("name", |v: &Setup| v.name.clone())
+        .left("gearbox", gearbox)
+        .number("kg", 0, mass_kg)
+        .number("litres", 2, litres)
+        .number("kW", 0, rated_kw)
+        .left("title", |v| v.title.clone());
+    let json = |v: &Setup| {
+        json!({
+            "name": v.name, "title": v.title, "transmission": gearbox(v), "mass_kg": mass_kg(v),
+            "displacement_l": litres(v), "rated_kw": rated_kw(v), "baselines": v.baselines,
         })
     };
-    let list: Vec<VehicleLine> = vehicles().into_iter().map(line).collect::<Option<_>>()?;
-    let columns = TextColumns::new()
-        .left("name", |v: &VehicleLine| v.name)
-        .left("gearbox", |v| v.transmission)
-        .right("kg", |v| fixed(v.mass_kg, 0))
-        .right("litres", |v| fixed(v.displacement_l, 2))
-        .right("kW", |v| fixed(v.rated_kw, 0))
-        .left("title", |v| v.title.clone());
     Some(Listing {
-        json: json!({ "vehicles": list }),
+        json: json!({ "vehicles": list.iter().map(json).collect::<Vec<_>>() }),
         heading: "Vehicles",
-        table: columns.table(&list).text(),
+        table: columns.lines(&list),
         note: "`cvtcycle show NAME` prints every value with its source; --vehicle also takes the path of a TOML file.\n",
     })
 }
 
 fn list_lubricants(problems: &mut Problems) -> Option<Listing> {
-    let line = |name: &'static str| {
+    let read = |name: &'static str| {
         let (oil, _) = problems.take(setup::load_lubricant(name))?;
-        let kv = |degc: f64| oil.kinematic_m2_s(degc + ZERO_DEGC_K) * 1e6;
-        Some(LubricantLine {
-            name,
-            kv_minus10_mm2_s: kv(-10.0),
-            kv40_mm2_s: kv(40.0),
-            kv100_mm2_s: kv(100.0),
-            density15_kg_m3: oil.density15_kg_m3,
-            title: oil.title,
+        Some((name, oil))
+    };
+    let list = Kind::Lubricant.names().into_iter().map(read);
+    let list: Vec<(&str, Lubricant)> = list.collect::<Option<_>>()?;
+    let kv = |oil: &Lubricant, degc: f64| oil.kinematic_m2_s(degc + ZERO_DEGC_K) * 1e6;
+    let columns = TextColumns::new()
+        .left("name", |(name, _): &(&str, Lubricant)| *name)
+        .number("KV-10", 0, |(_, oil)| kv(oil, -10.0))
+        .number("KV40", 1, |(_, oil)| kv(oil, 40.0))
+        .number("KV100", 2, |(_, oil)| kv(oil, 100.0))
+        .number("density", 0, |(_, oil)| oil.density15_kg_m3)
+        .left("title", |(_, oil)| oil.title.clone());
+    let json = |(name, oil): &(&str, Lubricant)| {
+        json!({
+            "name": name, "title": oil.title, "kv_minus10_mm2_s": kv(oil, -10.0), "kv40_mm2_s": kv(oil, 40.0),
+            "kv100_mm2_s": kv(oil, 100.0), "density15_kg_m3": oil.density15_kg_m3,
         })
     };
-    let list: Vec<LubricantLine> = lubricants().into_iter().map(line).collect::<Option<_>>()?;
-    let columns = TextColumns::new()
-        .left("name", |l: &LubricantLine| l.name)
-        .right("KV-10", |l| fixed(l.kv_minus10_mm2_s, 0))
-        .right("KV40", |l| fixed(l.kv40_mm2_s, 1))
-        .right("KV100", |l| fixed(l.kv100_mm2_s, 2))
-        .right("density", |l| fixed(l.density15_kg_m3, 0))
-        .left("title", |l| l.title.clone());
     Some(Listing {
-        json: json!({ "lubricants": list }),
+        json: json!({ "lubricants": list.iter().map(json).collect::<Vec<_>>() }),
         heading: "Lubricants",
-        table: columns.table(&list).text(),
+        table: columns.lines(&list),
         note: "Kinematic viscosities in mm2/s at -10, 40 and 100 degC, density in kg/m3 at 15 degC.\n",
     })
 }

@@ -1,6 +1,5 @@
 //! `losses`: loss of each transmission component at one operating point or over a grid.
 
-mod files;
 mod plan;
 mod plots;
 mod tables;
@@ -9,15 +8,21 @@ use std::cell::RefCell;
 use std::io;
 
 use clap::Args;
+use cvtcycle::config::Problems;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::loss_table::{MapPart, write_map};
 use cvtcycle::output::losses::{FlagCount, LossRow};
 
 use super::Execute;
-use crate::args::{FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, names_of};
-use crate::print::{CommandOutput, CommandResult, Results, Terminal, WrittenFiles, to_stdout};
-use cvtcycle::config::Problems;
+use crate::args::{FormulationArgs, Names, OutArgs, TableOutputArgs, VehicleArgs, names_of};
+use crate::print::{
+    CommandOutput, CommandResult, Results, Terminal, WrittenFiles, json_text, to_stdout,
+};
 use plan::LossesPlan;
+
+/// Largest number of points that are drawn.
+const MAX_DRAWN: usize = 100_000;
+const NOT_DRAWN: &str = "  no plots: more than 100000 points\n";
 
 /// Arguments of `losses`.
 #[derive(Args, Clone, Debug)]
@@ -66,34 +71,12 @@ pub struct LossesArgs {
     /// Write the loss of one component as a map (CSV) that a vehicle file can use in place of the model: belt, pump,
     /// input_shaft, clutch_drag, final_drive, or box of a manual gearbox. --torque is then that of the map: at the
     /// secondary pulley (belt, final_drive) or at the input shaft (box)
-    #[arg(long, value_name = "COMPONENT", value_parser = Names(map_parts), hide_possible_values = true, conflicts_with_all = ["json", "format"])]
+    #[arg(long, value_name = "COMPONENT", value_parser = Names(|| names_of(&MapPart::NAMES)), hide_possible_values = true, conflicts_with_all = ["json", "format"])]
     as_map: Option<String>,
-    /// What to print: a table for people, or CSV with all columns
-    #[arg(
-        long,
-        value_enum,
-        value_name = "FORMAT",
-        default_value = "table",
-        conflicts_with = "json"
-    )]
-    format: LossesFormat,
     #[command(flatten)]
     out: OutArgs,
     #[command(flatten)]
-    output: OutputArgs,
-}
-
-/// Form of standard output.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum LossesFormat {
-    /// A table for people
-    Table,
-    /// All columns as CSV
-    Csv,
-}
-
-fn map_parts() -> Vec<&'static str> {
-    names_of(&MapPart::NAMES)
+    output: TableOutputArgs,
 }
 
 impl Execute for LossesArgs {
@@ -103,59 +86,72 @@ impl Execute for LossesArgs {
         plan::plan(self, problems)
     }
 
-    fn run(&self, mut plan: LossesPlan, terminal: Terminal) -> CommandResult {
-        let out = plan.out.take();
-        if let Some(part) = plan.map {
-            return self.write_map(&plan, part, out);
+    fn run(&self, plan: LossesPlan, terminal: Terminal) -> CommandResult {
+        let LossesPlan { losses, map, out } = plan;
+        if let Some(part) = map {
+            let write = |out: &mut dyn io::Write| write_map(out, &losses.bench, part, &losses.grid);
+            return self.write_map(&losses.json_head(), out, write);
         }
-        let files = match out {
-            Some(dir) => files::write(dir, &plan)?,
-            None => WrittenFiles::default(),
-        };
+        let files = WrittenFiles::write(out, |dir| {
+            dir.write("losses.csv", |out| losses.write_csv(out, losses.rows()))?;
+            dir.write("summary.json", |out| losses.write_json(out, losses.rows()))?;
+            if losses.grid.len() > MAX_DRAWN {
+                return Ok(NOT_DRAWN);
+            }
+            for (name, svg) in plots::plots(&losses) {
+                dir.put(&name, svg)?;
+            }
+            Ok("")
+        })?;
         let flags = RefCell::new(FlagCount::default());
-        let counted = |row: LossRow| {
-            flags.borrow_mut().add(row.answer.flags);
-            row
+        let rows = || {
+            losses
+                .rows()
+                .inspect(|row: &LossRow| flags.borrow_mut().add(row.answer.flags))
         };
-        let rows = || plan.grid.rows(&plan.bench).map(counted);
-        let mut table = String::new();
-        if self.output.json() {
-            to_stdout(|out| files::write_json(out, &plan, rows()))?;
-        } else if self.format == LossesFormat::Csv {
-            to_stdout(|out| files::write_csv(out, &plan, rows()))?;
-        } else {
-            table = tables::table(&plan, rows(), terminal.stdout);
-        }
-        let flags = flags.into_inner();
+        self.output.stream(
+            |out| losses.write_json(out, rows()),
+            |out| losses.write_csv(out, rows()),
+        )?;
+        let table = match self.output.is_streamed() {
+            true => String::new(),
+            false => tables::table(&losses, rows(), terminal.stdout),
+        };
+        let count = losses.grid.len();
+        let flags = flags.borrow();
         let unsolved = flags.named().find(|(name, _)| *name == "not_converged");
-        let failure = unsolved
-            .map(|(_, count)| format!("{count} of {} points not converged", plan.grid.len()));
+        let failures = unsolved.map(|(_, n)| format!("{n} of {count} points not converged"));
         let results = Results {
-            failures: failure.into_iter().collect(),
+            failures: failures.into_iter().collect(),
             files,
             ..Results::default()
         };
-        let printed = self.output.json() || self.format == LossesFormat::Csv;
-        Ok(if printed {
-            results.warnings()
-        } else {
-            results.output(&self.output, || table)
-        })
+        Ok(results.table_output(&self.output, || table))
     }
 }
 
 impl LossesArgs {
-    fn write_map(&self, plan: &LossesPlan, part: MapPart, out: Option<OutputDir>) -> CommandResult {
-        let write = |out: &mut dyn io::Write| write_map(out, &plan.bench, part, &plan.grid);
-        let Some(dir) = out else {
+    /// Prints the map of a component, or writes it with the head of the JSON object, which marks the directory as a result.
+    fn write_map(
+        &self,
+        head: &serde_json::Value,
+        out: Option<OutputDir>,
+        write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
+    ) -> CommandResult {
+        if out.is_none() {
             to_stdout(write)?;
             return Ok(CommandOutput::default());
-        };
+        }
         let name = self.as_map.as_deref().unwrap_or_default();
+        let files = WrittenFiles::write(out, |dir| {
+            dir.write(&format!("map_{name}.csv"), |out| write(out))?;
+            dir.put("summary.json", json_text(head)?)?;
+            Ok("")
+        })?;
         let results = Results {
-            files: files::write_map(dir, plan, name, write)?,
+            files,
             ..Results::default()
         };
-        Ok(results.output(&self.output, String::new))
+        Ok(results.output(&self.output.output, String::new))
     }
 }

@@ -15,9 +15,8 @@ mod show;
 mod study;
 mod validate;
 
-use clap::{Parser, Subcommand};
+use clap::{ColorChoice, Parser, Subcommand};
 
-use crate::print::colour::Colour;
 use crate::print::{CommandResult, Terminal};
 use cvtcycle::config::Problems;
 
@@ -33,8 +32,15 @@ use cvtcycle::config::Problems;
 )]
 pub struct Cli {
     /// When to colour the output; `auto` colours on a terminal and obeys NO_COLOR
-    #[arg(long, value_enum, global = true, value_name = "WHEN", default_value = Colour::AUTO, display_order = 1000)]
-    pub color: Colour,
+    #[arg(
+        long,
+        value_enum,
+        global = true,
+        value_name = "WHEN",
+        default_value = "auto",
+        display_order = 1000
+    )]
+    pub color: ColorChoice,
     #[command(subcommand)]
     command: Command,
 }

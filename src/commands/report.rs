@@ -40,16 +40,12 @@ pub struct ReportArgs {
     #[arg(long, value_name = "FILE.toml")]
     cover: Option<String>,
     /// Format of the report: html or md [default: from the file extension of --out, else html]
-    #[arg(long, value_name = "FORM", value_parser = Names(forms), hide_possible_values = true)]
+    #[arg(long, value_name = "FORM", value_parser = Names(|| names_of(&Form::NAMES)), hide_possible_values = true)]
     format: Option<String>,
     #[command(flatten)]
     out: OutArgs,
     #[command(flatten)]
     output: OutputArgs,
-}
-
-fn forms() -> Vec<&'static str> {
-    names_of(&Form::NAMES)
 }
 
 impl Execute for ReportArgs {

@@ -14,12 +14,13 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
-use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, summarise};
+use cvtcycle::output::summary::{Driven, Settings, StartWord, summarise};
 
 use super::Execute;
 use crate::args::problems::did_you_mean;
 use crate::args::{
-    ComparisonArgs, FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, number, one_of,
+    ComparisonArgs, FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, names_of, number,
+    one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use files::TraceFormat;
@@ -84,11 +85,11 @@ pub struct RunArgs {
     #[command(flatten)]
     out: OutArgs,
     /// Format of the traces: csv, parquet or both
-    #[arg(long, value_name = "NAME", default_value = "csv", requires = "out", value_parser = Names(TraceFormat::names), hide_possible_values = true)]
+    #[arg(long, value_name = "NAME", default_value = "csv", requires = "out", value_parser = Names(|| names_of(&TraceFormat::NAMES)), hide_possible_values = true)]
     format: String,
     /// Compute the effect of each value of each vehicle for the report: always, never, or auto (unless the cycle has more
     /// than 20 000 steps)
-    #[arg(long, value_name = "WHEN", default_value = "auto", requires = "out", value_parser = Names(SensitivityMode::names), hide_possible_values = true)]
+    #[arg(long, value_name = "WHEN", default_value = "auto", requires = "out", value_parser = Names(|| names_of(&SensitivityMode::NAMES)), hide_possible_values = true)]
     sensitivity: String,
     #[command(flatten)]
     output: OutputArgs,
@@ -136,50 +137,23 @@ impl Execute for RunArgs {
 
     fn run(&self, mut plan: RunPlan, terminal: Terminal) -> CommandResult {
         let out = plan.out.take();
+        let (cycle, vehicles) = (&plan.cycle, &plan.vehicles);
         let conditions = Conditions {
             ambient_k: plan.ambient_degc + ZERO_DEGC_K,
             start: plan.start.0,
             max_dt_s: plan.dt_s,
             keep_rows: out.is_some(),
         };
-        let drive = |car: &RunVehicle| drive(&car.setup, &plan.cycle, &conditions);
-        let outcomes: Vec<Outcome> = plan.vehicles.iter().map(drive).collect();
-        let driven = plan
-            .vehicles
+        let outcomes = vehicles
             .iter()
-            .zip(&outcomes)
-            .map(|(car, outcome)| Driven {
-                name: &car.name,
-                setup: &car.setup,
-                outcome,
-            });
+            .map(|car| drive(&car.setup, cycle, &conditions));
+        let outcomes: Vec<Outcome> = outcomes.collect();
+        let driven = vehicles.iter().zip(&outcomes).map(|(car, outcome)| Driven {
+            name: &car.name,
+            setup: &car.setup,
+            outcome,
+        });
         let driven: Vec<Driven> = driven.collect();
-        let summary = self.summary(&plan, &driven);
-        let json = json_text(&summary)?;
-        let files = match out {
-            Some(mut dir) => {
-                let record =
-                    record::record(&plan.vehicles, &plan.cycle, &conditions, plan.sensitivity)?;
-                let record = json_text(&record)?;
-                dir.write(FILE, |out| out.write_all(record.as_bytes()))
-                    .and_then(|()| {
-                        files::write(dir, plan.format, &json, &summary, &plan.cycle, &driven)
-                    })?
-            }
-            None => WrittenFiles::default(),
-        };
-        let results = Results {
-            json,
-            failures: tables::failures(&summary),
-            files,
-        };
-        let tables = || tables::tables(&summary, &plan.cycle, terminal.stdout);
-        Ok(results.output(&self.output, tables))
-    }
-}
-
-impl RunArgs {
-    fn summary(&self, plan: &RunPlan, driven: &[Driven]) -> Summary {
         let settings = Settings {
             dt_s: plan.dt_s,
             formulation: plan.formulation.name().to_owned(),
@@ -187,13 +161,22 @@ impl RunArgs {
             set_all: self.comparison.set_all.clone(),
             strict: self.strict,
         };
-        summarise(
-            &plan.cycle,
-            plan.ambient_degc,
-            plan.start.1.clone(),
-            settings,
-            driven,
-        )
+        let summary = summarise(cycle, plan.ambient_degc, plan.start.1, settings, &driven);
+        let json = json_text(&summary)?;
+        let files = WrittenFiles::write(out, |dir| {
+            let record = record::record(vehicles, cycle, &conditions, plan.sensitivity)?;
+            dir.put(FILE, json_text(&record)?)?;
+            dir.put("summary.json", &json)?;
+            files::write(dir, plan.format, &summary, cycle, &driven)?;
+            Ok("")
+        })?;
+        let results = Results {
+            json,
+            failures: tables::failures(&summary),
+            files,
+        };
+        let tables = || tables::tables(&summary, cycle, terminal.stdout);
+        Ok(results.output(&self.output, tables))
     }
 }
 
@@ -213,6 +196,6 @@ fn start(value: &str) -> Result<(Start, StartWord), Problems> {
         problem
     };
     let degc = number("--start", value, START, "start_degc");
-    let degc = degc.map_err(|problems| problems.into_iter().map(named).collect::<Vec<_>>())?;
+    let degc = degc.map_err(|problems| problems.map(named))?;
     Ok((Start::At(degc + ZERO_DEGC_K), StartWord::Degc(degc)))
 }

@@ -1,22 +1,21 @@
 //! `show`: all values of a vehicle, lubricant or rig with status and source, or the phases of a cycle.
 
 use clap::{Args, ValueEnum};
-use cvtcycle::config::cycle::{self, Cycle, Trace};
+use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue;
-use cvtcycle::config::setup::{self, Options};
+use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::config::{KeyInfo, Problems};
-use serde::Serialize;
-use serde_json::json;
+use cvtcycle::output::number::{fixed, signed};
+use cvtcycle::output::table::{TextColumns, TextTable};
+use serde_json::{Value, json};
 
 use super::Execute;
 use crate::args::input_kind::InputKind;
 use crate::args::problems::{bad_value, cite};
-use crate::args::{JsonArgs, Names, cycles, lubricants, rigs, vehicles};
+use crate::args::{JsonArgs, Names, cycles};
 use crate::print::colour::Paint;
-use crate::print::table::{TextColumns, TextTable};
-use crate::print::{CommandOutput, CommandResult, Terminal};
-use cvtcycle::output::number::{fixed, signed};
+use crate::print::{CommandOutput, CommandResult, Terminal, sections};
 
 /// Longest value in the column of values; longer ones, lists mostly, are in the last column.
 const MAX_VALUE_LEN: usize = 18;
@@ -30,7 +29,7 @@ Examples:
   cvtcycle show ece15_eudc")]
 pub struct ShowArgs {
     /// Vehicle, lubricant, rig or cycle: a name or a file
-    #[arg(value_name = "NAME|FILE", value_parser = Names(names), hide_possible_values = true)]
+    #[arg(value_name = "NAME|FILE", value_parser = Names(|| [Kind::Vehicle.names(), Kind::Lubricant.names(), Kind::Rig.names(), cycles()].concat()), hide_possible_values = true)]
     name: String,
     /// Only values of this status; repeatable
     #[arg(long, value_enum, value_name = "STATUS")]
@@ -56,36 +55,29 @@ enum Status {
     Default,
 }
 
-fn names() -> Vec<&'static str> {
-    [vehicles(), lubricants(), rigs(), cycles()].concat()
+/// A key as JSON.
+pub fn key_json(info: &KeyInfo) -> Value {
+    json!({
+        "key": info.key, "value": info.value, "unit": info.unit, "status": info.status, "source": info.source,
+        "note": info.note, "allowed": info.allowed, "meaning": info.doc,
+    })
 }
 
-/// One key as JSON.
-#[derive(Serialize)]
-pub struct KeyLine<'a> {
-    key: &'a str,
-    value: &'a str,
-    unit: &'a str,
-    status: &'a str,
-    source: &'a str,
-    note: &'a str,
-    allowed: &'a str,
-    meaning: &'a str,
-}
-
-impl<'a> From<&'a KeyInfo> for KeyLine<'a> {
-    fn from(info: &'a KeyInfo) -> Self {
-        KeyLine {
-            key: &info.key,
-            value: &info.value,
-            unit: &info.unit,
-            status: &info.status,
-            source: &info.source,
-            note: &info.note,
-            allowed: &info.allowed,
-            meaning: &info.doc,
-        }
-    }
+/// A row of the values of a key: its name, value, status, source and note. A longer value than `max_len` is in the last column.
+pub fn value_row(name: &str, info: &KeyInfo, max_len: usize, instead: &str) -> [String; 4] {
+    let own = value(info);
+    let (shown, moved) = match own.chars().count() > max_len {
+        true => (instead.to_owned(), own.as_str()),
+        false => (own.clone(), ""),
+    };
+    let remarks = [moved, &info.source, &info.note].into_iter();
+    let remarks: Vec<&str> = remarks.filter(|text| !text.is_empty()).collect();
+    [
+        name.to_owned(),
+        shown,
+        info.status.clone(),
+        remarks.join("; "),
+    ]
 }
 
 /// What is shown.
@@ -149,7 +141,7 @@ impl Execute for ShowArgs {
             (Shown::Cycle(cycle), true) => CommandOutput::json(&cycle_json(&self.name, &cycle)),
             (Shown::Cycle(cycle), false) => Ok(CommandOutput::text(cycle_text(&cycle, paint))),
             (Shown::Keys(kind, title, keys), true) => {
-                let lines: Vec<KeyLine> = keys.iter().map(KeyLine::from).collect();
+                let lines: Vec<Value> = keys.iter().map(key_json).collect();
                 let kind = kind.word();
                 CommandOutput::json(
                     &json!({ "name": self.name, "kind": kind, "title": title, "keys": lines }),
@@ -169,10 +161,10 @@ impl Execute for ShowArgs {
 
 /// Title and keys of an embedded rig.
 fn rig(word: &str) -> (String, Vec<KeyInfo>) {
-    let file = catalogue::files()
-        .into_iter()
-        .find(|file| file.name == word);
-    let keys = file.map(|file| file.keys).unwrap_or_default();
+    let mut files = catalogue::files().into_iter();
+    let keys = files
+        .find(|file| file.name == word)
+        .map_or_else(Vec::new, |file| file.keys);
     let title = keys.iter().find(|info| info.key == "rig.title");
     (
         title.map_or_else(String::new, |info| info.value.clone()),
@@ -207,27 +199,15 @@ fn tables(keys: &[KeyInfo], paint: Paint) -> String {
             order.push(split(&info.key).0);
         }
     }
-    let mut text = String::new();
-    for name in order {
-        let heading = if name.is_empty() { "top" } else { name };
+    let section = |name: &str| {
         let mut table = TextTable::new("llll").indented().min_widths(&widths);
         for info in keys.iter().filter(|info| split(&info.key).0 == name) {
-            let own = value(info);
-            let long = own.chars().count() > MAX_VALUE_LEN;
-            let (shown, moved) = if long { ("...", &*own) } else { (&*own, "") };
-            let remarks = [moved, &info.source, &info.note]
-                .into_iter()
-                .filter(|text| !text.is_empty());
-            let remarks = remarks.collect::<Vec<_>>().join("; ");
-            table.row([split(&info.key).1, shown, &info.status, &remarks]);
+            table.row(value_row(split(&info.key).1, info, MAX_VALUE_LEN, "..."));
         }
-        text += &format!(
-            "\n{}\n{}",
-            paint.heading(&format!("[{heading}]")),
-            table.text()
-        );
-    }
-    text
+        let name = if name.is_empty() { "top" } else { name };
+        (format!("[{name}]"), table.text())
+    };
+    sections(order.into_iter().map(section), paint)
 }
 
 fn counts(keys: &[KeyInfo]) -> String {
@@ -240,71 +220,58 @@ fn counts(keys: &[KeyInfo]) -> String {
     format!("\n{} keys: {}\n", keys.len(), parts.join(", "))
 }
 
-#[derive(Serialize)]
-struct PhaseLine {
-    name: String,
-    distance_km: f64,
-    distance_automatic_km: f64,
-}
-
-fn phases(cycle: &Cycle) -> Vec<PhaseLine> {
-    let km = |trace: &Trace, phases: &[u16]| {
+/// Name of each phase, and its distances in km for a manual and for an automatic car.
+fn phases(cycle: &Cycle) -> Vec<(String, [f64; 2])> {
+    let km = |automatic: bool, phases: &[u16]| {
+        let trace = cycle.trace_for(automatic);
         phases
             .iter()
             .map(|phase| trace.phase_distance_m(*phase))
             .sum::<f64>()
             / 1e3
     };
-    let line = |(name, list): (String, Vec<u16>)| PhaseLine {
-        name,
-        distance_km: km(cycle.trace_for(false), &list),
-        distance_automatic_km: km(cycle.trace_for(true), &list),
-    };
-    cycle.phase_groups().into_iter().map(line).collect()
+    let groups = cycle.phase_groups().into_iter();
+    groups
+        .map(|(name, list)| (name, [km(false, &list), km(true, &list)]))
+        .collect()
 }
 
-fn cycle_json(name: &str, cycle: &Cycle) -> serde_json::Value {
+fn cycle_json(name: &str, cycle: &Cycle) -> Value {
     let (manual, automatic) = (cycle.trace_for(false), cycle.trace_for(true));
+    let phase = |(name, km): (String, [f64; 2])| json!({ "name": name, "distance_km": km[0], "distance_automatic_km": km[1] });
+    let phases: Vec<Value> = phases(cycle).into_iter().map(phase).collect();
     json!({
         "name": name, "kind": "cycle", "title": cycle.title, "duration_s": manual.duration_s(),
         "distance_km": manual.distance_m() / 1e3, "distance_automatic_km": automatic.distance_m() / 1e3,
-        "max_speed_kmh": manual.max_speed_m_s() * 3.6, "gears_prescribed": cycle.has_gears(), "phases": phases(cycle),
+        "max_speed_kmh": manual.max_speed_m_s() * 3.6, "gears_prescribed": cycle.has_gears(), "phases": phases,
     })
 }
 
 fn cycle_text(cycle: &Cycle, paint: Paint) -> String {
     let (manual, automatic) = (cycle.trace_for(false), cycle.trace_for(true));
+    let whole = [manual, automatic].map(|trace| trace.distance_m() / 1e3);
     let mut lines = phases(cycle);
-    lines.push(PhaseLine {
-        name: "total".to_owned(),
-        distance_km: manual.distance_m() / 1e3,
-        distance_automatic_km: automatic.distance_m() / 1e3,
-    });
+    lines.push(("total".to_owned(), whole));
     let table = TextColumns::new()
-        .left("phase", |p: &PhaseLine| p.name.clone())
-        .right("km", |p| fixed(p.distance_km, 3))
-        .right("km (automatic)", |p| fixed(p.distance_automatic_km, 3))
-        .table(&lines);
+        .left("phase", |(name, _): &(String, [f64; 2])| name.clone())
+        .number("km", 3, |(_, km)| km[0])
+        .number("km (automatic)", 3, |(_, km)| km[1])
+        .text(&lines);
     let gears = match cycle.has_gears() {
         true => "prescribed for manual cars",
         false => "chosen by the shift rule of the car",
     };
-    let mean = manual.distance_m() / manual.duration_s() * 3.6;
+    let (name, title) = (paint.heading(&cycle.name), &cycle.title);
+    let duration = fixed(manual.duration_s(), 0);
+    let highest = fixed(manual.max_speed_m_s() * 3.6, 1);
+    let mean = fixed(manual.distance_m() / manual.duration_s() * 3.6, 1);
     let mut text = format!(
-        "{}  {}\n\n{}\nduration {} s, highest speed {} km/h, mean {} km/h; gears {gears}\n",
-        paint.heading(&cycle.name),
-        cycle.title,
-        table.indented().text(),
-        fixed(manual.duration_s(), 0),
-        fixed(manual.max_speed_m_s() * 3.6, 1),
-        fixed(mean, 1)
+        "{name}  {title}\n\n{table}\nduration {duration} s, highest speed {highest} km/h, mean {mean} km/h; gears {gears}\n"
     );
     let more = manual.distance_m() - automatic.distance_m();
     if more.abs() > 0.5 {
-        text += &format!(
-            "a manual car drives {} m in gear-change plateaux\n",
-            signed(more, 0)
-        );
+        let more = signed(more, 0);
+        text += &format!("a manual car drives {more} m in gear-change plateaux\n");
     }
     text
 }

@@ -9,6 +9,7 @@ mod tables;
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::Study;
@@ -16,7 +17,7 @@ use cvtcycle::study::plan::{Design, Plan};
 
 use super::Execute;
 use crate::args::problems::{bad_value, problem};
-use crate::args::{Names, OutputArgs, plans};
+use crate::args::{Names, OutputArgs};
 use crate::print::{CommandResult, Terminal};
 use execution::{StudyRunArgs, results};
 
@@ -70,7 +71,7 @@ impl StudyArgs {
 #[derive(Args, Clone, Debug)]
 struct StudyPlanArgs {
     /// Plan: name of a built-in plan, or a TOML file
-    #[arg(value_name = "NAME|PLAN.toml", value_parser = Names(plans), hide_possible_values = true)]
+    #[arg(value_name = "NAME|PLAN.toml", value_parser = Names(|| Kind::Plan.names()), hide_possible_values = true)]
     plan: Option<String>,
     /// Number of samples, for designs that draw samples [default: from the plan]
     #[arg(long, value_name = "N")]
@@ -87,7 +88,7 @@ impl Execute for StudyPlanArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Study> {
         let Some(word) = &self.plan else {
-            let names = plans().join(", ");
+            let names = Kind::Plan.names().join(", ");
             let hint = format!("name a plan: {names}, or a TOML file; or `study ambient`");
             problems.add(problem("PLAN", "no plan is named", &hint));
             return None;
@@ -112,24 +113,16 @@ impl StudyPlanArgs {
         };
         let changed = design.with(self.samples, self.seed);
         let (Some(range), Some(changed)) = (design.sample_range(), changed) else {
+            let message = "the design of the plan draws no samples";
             let hint = "--samples and --seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs";
-            return Err(problem(
-                option,
-                "the design of the plan draws no samples",
-                hint,
-            ));
+            return Err(problem(option, message, hint));
         };
         match self.samples {
             Some(samples) if !range.contains(&samples) => {
                 let allowed = format!("{} to {}", range.start(), range.end());
                 let message = format!("{samples} samples are out of range for this design");
-                Err(bad_value(
-                    option,
-                    &samples.to_string(),
-                    &allowed,
-                    &message,
-                    "",
-                ))
+                let value = samples.to_string();
+                Err(bad_value(option, &value, &allowed, &message, ""))
             }
             _ => Ok(changed),
         }

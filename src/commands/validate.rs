@@ -53,7 +53,7 @@ pub struct ValidateArgs {
     #[command(flatten)]
     car: VehicleArgs,
     /// Format of the output: table, csv, html, or md (a fragment for the book)
-    #[arg(long, value_name = "FORM", default_value = "table", value_parser = Names(formats), hide_possible_values = true, conflicts_with = "json")]
+    #[arg(long, value_name = "FORM", default_value = "table", value_parser = Names(|| names_of(&FORMS)), hide_possible_values = true, conflicts_with = "json")]
     format: String,
     #[command(flatten)]
     out: OutArgs,
@@ -83,10 +83,6 @@ const FORMS: [(&str, ValidationForm); 4] = [
 
 /// Every mechanism.
 const ALL: &str = "all";
-
-fn formats() -> Vec<&'static str> {
-    names_of(&FORMS)
-}
 
 fn mechanisms() -> Vec<&'static str> {
     MECHANISMS.into_iter().chain([ALL]).collect()
@@ -133,12 +129,16 @@ impl Execute for ValidateArgs {
 
     fn run(&self, plan: ValidatePlan, terminal: Terminal) -> CommandResult {
         let report = judge(&plan.files, &plan.candidate, |row| self.is_wanted(row))?;
-        let files = match plan.out {
-            Some(dir) => write(dir, &report)?,
-            None => WrittenFiles::default(),
-        };
+        let json = json_text(&json(&report))?;
+        let files = WrittenFiles::write(plan.out, |dir| {
+            dir.put("summary.json", &json)?;
+            dir.put("validation.csv", csv(&report))?;
+            dir.put("validation.html", html(&report)?)?;
+            dir.put("validation.md", markdown(&report))?;
+            Ok("")
+        })?;
         let results = Results {
-            json: json_text(&json(&report))?,
+            json,
             failures: tables::changed_verdicts(&report),
             files,
         };
@@ -163,10 +163,8 @@ impl ValidateArgs {
     fn check_vehicle(&self, problems: &mut Problems) {
         // Problems of the vehicle itself are reported together with those of its overrides.
         let vehicle = setup::load(&self.car.vehicle, &Options::default());
-        if vehicle.is_ok_and(|setup| !setup.transmission().is_cvt()) {
-            let hint = "`--only-rows` with `--rows FILE.toml` compares your own rows with it";
-            problems.add(self.car.needs_cvt(hint));
-        }
+        let hint = "`--only-rows` with `--rows FILE.toml` compares your own rows with it";
+        self.car.need_cvt(vehicle.as_ref().ok(), hint, problems);
     }
 
     /// Names and texts of all files of rows.
@@ -197,35 +195,37 @@ impl ValidateArgs {
 
     /// Reports an unknown chapter or mechanism; a known mechanism without rows is none.
     fn check_filters(&self, files: &[RowFile], problems: &mut Problems) {
-        let rows = || files.iter().flat_map(|file| &file.rows);
-        if let Some(chapter) = &self.chapter
-            && !rows().any(|row| row.chapter.eq_ignore_ascii_case(chapter))
+        let chapters = files
+            .iter()
+            .flat_map(|file| &file.rows)
+            .map(|row| row.chapter.as_str());
+        let mut chapters: Vec<&str> = chapters.collect();
+        chapters.dedup();
+        let is_unknown =
+            |name: &str, known: &[&str]| !known.iter().any(|own| own.eq_ignore_ascii_case(name));
+        if let Some(name) = self
+            .chapter
+            .as_ref()
+            .filter(|name| is_unknown(name, &chapters))
         {
-            let mut known: Vec<&str> = rows().map(|row| row.chapter.as_str()).collect();
-            known.dedup();
-            let message = format!("no row belongs to chapter `{chapter}`");
+            let message = format!("no row belongs to chapter `{name}`");
             problems.add(bad_value(
                 "--chapter",
-                chapter,
-                &known.join(", "),
+                name,
+                &chapters.join(", "),
                 &message,
                 "",
             ));
         }
-        if let Some(name) = &self.mechanism
-            && !mechanisms()
-                .iter()
-                .any(|known| known.eq_ignore_ascii_case(name))
+        if let Some(name) = self
+            .mechanism
+            .as_ref()
+            .filter(|name| is_unknown(name, &mechanisms()))
         {
             let hint = did_you_mean(name, &MECHANISMS);
             let message = format!("there is no mechanism `{name}`");
-            problems.add(bad_value(
-                "--mechanism",
-                name,
-                &MECHANISMS.join(", "),
-                &message,
-                &hint,
-            ));
+            let allowed = MECHANISMS.join(", ");
+            problems.add(bad_value("--mechanism", name, &allowed, &message, &hint));
         }
     }
 }
@@ -236,18 +236,4 @@ fn embedded_name(name: &str) -> String {
 
 fn html(report: &Report) -> Result<String, Problem> {
     page(report).map_err(|why| problem("--format", &why, ""))
-}
-
-fn write(mut dir: OutputDir, report: &Report) -> Result<WrittenFiles, Problem> {
-    let json = json_text(&json(report)).map_err(|mut problems| problems.remove(0))?;
-    let files = [
-        ("summary.json", json),
-        ("validation.csv", csv(report)),
-        ("validation.html", html(report)?),
-        ("validation.md", markdown(report)),
-    ];
-    for (name, text) in files {
-        dir.write(name, |out| out.write_all(text.as_bytes()))?;
-    }
-    WrittenFiles::commit(dir)
 }

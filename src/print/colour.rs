@@ -1,80 +1,57 @@
 //! Colours of the output.
 
+use std::env::var_os;
 use std::ffi::OsString;
 use std::io::IsTerminal;
 
 use clap::{ColorChoice, ValueEnum};
 
-use super::Terminal;
-
-/// When to colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Colour {
-    Auto,
-    Always,
-    Never,
+/// Colours of the two output streams.
+#[derive(Clone, Copy, Debug)]
+pub struct Terminal {
+    /// Colours of standard output.
+    pub stdout: Paint,
+    /// Colours of standard error.
+    pub stderr: Paint,
 }
 
 /// Colours on or off.
 #[derive(Clone, Copy, Debug)]
 pub struct Paint(bool);
 
-impl Colour {
-    /// Word of the default.
-    pub const AUTO: &'static str = "auto";
+/// The choice of `--color`, found before the words are parsed.
+pub fn choice(words: &[OsString]) -> ColorChoice {
+    let words = words.iter().filter_map(|word| word.to_str());
+    let words: Vec<&str> = words.take_while(|word| *word != "--").collect();
+    let pairs = words.windows(2).filter(|pair| pair[0] == "--color");
+    let joined = words
+        .iter()
+        .filter_map(|word| word.strip_prefix("--color="));
+    let mut given = pairs.map(|pair| pair[1]).chain(joined);
+    let choice = given.find_map(|word| ColorChoice::from_str(word, false).ok());
+    choice.unwrap_or(ColorChoice::Auto)
+}
 
-    /// The choice, found before the words are parsed.
-    pub fn from_words(words: &[OsString]) -> Self {
-        let words: Vec<&str> = words
-            .iter()
-            .filter_map(|word| word.to_str())
-            .take_while(|word| *word != "--")
-            .collect();
-        let follows = words
-            .windows(2)
-            .filter(|pair| pair[0] == "--color")
-            .map(|pair| pair[1]);
-        let joined = words
-            .iter()
-            .filter_map(|word| word.strip_prefix("--color="));
-        follows
-            .chain(joined)
-            .filter_map(|word| Colour::from_str(word, false).ok())
-            .next()
-            .unwrap_or(Colour::Auto)
-    }
-
-    /// The choice in clap's type.
-    pub fn for_clap(self) -> ColorChoice {
-        match self {
-            Colour::Auto => ColorChoice::Auto,
-            Colour::Always => ColorChoice::Always,
-            Colour::Never => ColorChoice::Never,
-        }
-    }
-
+impl Terminal {
     /// Colours of both streams.
-    pub fn terminal(self) -> Terminal {
-        Terminal {
-            stdout: self.on(std::io::stdout().is_terminal()),
-            stderr: self.on(std::io::stderr().is_terminal()),
-        }
-    }
-
-    fn on(self, terminal: bool) -> Paint {
+    pub fn new(choice: ColorChoice) -> Self {
         // As no-color.org has it: set and not empty; the command line takes precedence.
-        let declined = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-        let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-        Paint(match self {
-            Colour::Auto => terminal && !declined && !dumb,
-            Colour::Always => true,
-            Colour::Never => false,
-        })
+        let declined = var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let dumb = var_os("TERM").is_some_and(|term| term == "dumb");
+        let on = |is_terminal: bool| match choice {
+            ColorChoice::Auto => Paint(is_terminal && !declined && !dumb),
+            ColorChoice::Always => Paint(true),
+            ColorChoice::Never => Paint(false),
+        };
+        Terminal {
+            stdout: on(std::io::stdout().is_terminal()),
+            stderr: on(std::io::stderr().is_terminal()),
+        }
     }
 }
 
 impl Paint {
-    /// Whether colours are on.
+    /// True if colours are on.
     pub fn is_on(self) -> bool {
         self.0
     }
@@ -90,10 +67,9 @@ impl Paint {
     }
 
     fn wrap(self, code: &str, text: &str) -> String {
-        if self.0 {
-            format!("\u{1b}[{code}m{text}\u{1b}[0m")
-        } else {
-            text.to_owned()
+        match self.0 {
+            true => format!("\u{1b}[{code}m{text}\u{1b}[0m"),
+            false => text.to_owned(),
         }
     }
 }

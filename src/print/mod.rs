@@ -2,7 +2,6 @@
 
 pub mod colour;
 pub mod progress;
-pub mod table;
 
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
@@ -12,18 +11,10 @@ use cvtcycle::config::{Problem, Problems, render};
 use cvtcycle::output::files::OutputDir;
 use serde::Serialize;
 
-use crate::args::OutputArgs;
 use crate::args::problems::{in_options, problem};
+use crate::args::{OutputArgs, TableOutputArgs};
 use colour::Paint;
-
-/// Colours of the two output streams.
-#[derive(Clone, Copy, Debug)]
-pub struct Terminal {
-    /// Colours of standard output.
-    pub stdout: Paint,
-    /// Colours of standard error.
-    pub stderr: Paint,
-}
+pub use colour::Terminal;
 
 /// How a command ended; each has its exit code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -111,6 +102,18 @@ impl Results {
         }
     }
 
+    /// Like [`Results::output`], where JSON or CSV have been printed already.
+    pub fn table_output(
+        self,
+        args: &TableOutputArgs,
+        table: impl FnOnce() -> String,
+    ) -> CommandOutput {
+        match args.is_streamed() {
+            true => self.warnings(),
+            false => self.output(&args.output, table),
+        }
+    }
+
     /// Warnings and ending alone, for results that are printed already.
     pub fn warnings(&self) -> CommandOutput {
         let warnings = self.failures.iter().cloned().chain(self.files.left_over());
@@ -127,24 +130,26 @@ impl Results {
 pub struct WrittenFiles {
     paths: Vec<PathBuf>,
     left_over: Vec<String>,
-    note: String,
+    note: &'static str,
 }
 
 impl WrittenFiles {
-    /// Gives all files of a directory their names.
-    pub fn commit(dir: OutputDir) -> Result<Self, Problem> {
+    /// Fills the output directory, if there is one, and gives all files their names, or none of them. `fill` returns a line for below
+    /// the list of the files.
+    pub fn write(
+        out: Option<OutputDir>,
+        fill: impl FnOnce(&mut OutputDir) -> Result<&'static str, Problems>,
+    ) -> Result<Self, Problems> {
+        let Some(mut dir) = out else {
+            return Ok(Self::default());
+        };
+        let note = fill(&mut dir)?;
         let left_over = dir.left_over();
         Ok(WrittenFiles {
             paths: dir.commit()?,
             left_over,
-            note: String::new(),
+            note,
         })
-    }
-
-    /// Adds a line below the list of the files.
-    pub fn with_note(mut self, note: String) -> Self {
-        self.note = note;
-        self
     }
 
     fn list(&self) -> String {
@@ -160,6 +165,17 @@ impl WrittenFiles {
         let names = self.left_over.join(", ");
         (!names.is_empty()).then(|| format!("files of an earlier run were not replaced: {names}"))
     }
+}
+
+/// Sections of a text, each below its heading; empty ones are left out.
+pub fn sections<S: AsRef<str>>(
+    sections: impl IntoIterator<Item = (S, String)>,
+    paint: Paint,
+) -> String {
+    let shown = sections.into_iter().filter(|(_, body)| !body.is_empty());
+    let section =
+        |(title, body): (S, String)| format!("\n{}\n{body}", paint.heading(title.as_ref()));
+    shown.map(section).collect()
 }
 
 /// A value as indented JSON with a line end.

@@ -52,6 +52,24 @@ impl Flags {
         (Flags::OVERSPEED, "overspeed"),
     ];
 
+    /// Meanings in the order of [`Flags::NAMES`].
+    pub const MEANINGS: [&'static str; Flags::NAMES.len()] = [
+        "the car cannot follow the trace: engine at full load, torque missing; exit code 1",
+        "belt torque above what the clamping force carries; slip is held at its bound",
+        "clamp safety factor (torque capacity over torque) below 1",
+        "the pump's flow does not cover leakage, lubrication and shift flow",
+        "an input left the validity range of a model or of a measured map",
+        "the belt ratio is at one of its limits",
+        "the launch clutch slips",
+        "the launch clutch is open",
+        "the wheels drive the transmission",
+        "fuel is cut off in overrun",
+        "the engine is switched off (soak)",
+        "the implicit solve stopped at its iteration bound above its tolerance; exit code 1",
+        "the car pulls away in another ratio than low",
+        "engine speed above its limit",
+    ];
+
     /// Whether every bit of `other` is set.
     pub fn contains(self, other: Flags) -> bool {
         self.0 & other.0 == other.0

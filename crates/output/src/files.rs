@@ -90,6 +90,14 @@ impl OutputDir {
         Ok(())
     }
 
+    /// Writes one file from memory.
+    ///
+    /// # Errors
+    /// As [`OutputDir::write`].
+    pub fn put(&mut self, name: &str, bytes: impl AsRef<[u8]>) -> Result<(), Problem> {
+        self.write(name, |out| out.write_all(bytes.as_ref()))
+    }
+
     /// Names that an earlier run left in the directory and that this run has not written.
     #[must_use]
     pub fn left_over(&self) -> Vec<String> {

@@ -2,12 +2,21 @@
 //!
 //! The values of a grid stay in the units of their columns: what the user wrote is written back unchanged.
 
-use crate::table::{Cell, Column, Scope};
-use crate::trace::{bar, degc, rpm};
-use crate::{Component, Flags, columns};
+use std::io::{self, Write};
+
+use cvtcycle_config::setup::Setup;
 use cvtcycle_config::to_si;
 use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
 use cvtcycle_model::transmission::Transmission;
+use serde_json::{Value, json};
+
+use crate::number::plain;
+use crate::table::{Cell, Column, Scope, json_columns, write_csv, write_json};
+use crate::trace::{bar, degc, rpm};
+use crate::{Component, Flags, PROGRAM, columns};
+
+/// Version of the JSON object.
+const SCHEMA: u32 = 1;
 
 /// Most points of a grid.
 pub const MAX_POINTS: usize = 1_000_000;
@@ -58,6 +67,43 @@ impl Axis {
             Axis::Pressure => "Secondary pressure [bar]",
             Axis::Torque => "Torque at the output shaft [Nm]",
             Axis::Speed => "Input speed [rpm]",
+        }
+    }
+
+    /// Heading of a table's column.
+    #[must_use]
+    pub fn short(self, cvt: bool) -> &'static str {
+        match self {
+            Axis::Ratio if cvt => "ratio",
+            Axis::Ratio => "gear",
+            Axis::Sump => "sump \u{b0}C",
+            Axis::Belt => "belt \u{b0}C",
+            Axis::Throttle => "throttle",
+            Axis::Pressure => "bar",
+            Axis::Torque => "Nm out",
+            Axis::Speed => "rpm",
+        }
+    }
+
+    /// A value of the axis, without its unit.
+    #[must_use]
+    pub fn text(self, x: f64) -> String {
+        match self {
+            Axis::Ratio => plain((x * 1e3).round() / 1e3),
+            _ => plain(x),
+        }
+    }
+
+    /// A value of the axis in words.
+    #[must_use]
+    pub fn words(self, cvt: bool, x: f64) -> String {
+        let text = self.text(x);
+        match self {
+            Axis::Ratio | Axis::Throttle => format!("{} {text}", self.short(cvt)),
+            Axis::Sump => format!("sump {text} \u{b0}C"),
+            Axis::Belt => format!("belt {text} \u{b0}C"),
+            Axis::Pressure | Axis::Speed => format!("{text} {}", self.short(cvt)),
+            Axis::Torque => format!("{text} Nm at the output"),
         }
     }
 }
@@ -275,7 +321,119 @@ pub fn columns(transmission: &Transmission) -> Vec<Column<LossRow>> {
     list
 }
 
-/// Flags that stand in at least one of the rows, with the number of rows, in the order of the bits.
+/// The losses of a transmission over a grid of points, and what they were computed from.
+#[derive(Debug)]
+pub struct LossTable {
+    /// Checked vehicle.
+    pub setup: Setup,
+    /// Its bench.
+    pub bench: Bench,
+    /// The points.
+    pub grid: LossGrid,
+    /// Name of the belt model.
+    pub formulation: String,
+    /// Overrides of the vehicle, as the user wrote them.
+    pub set: Vec<String>,
+}
+
+impl LossTable {
+    /// True for a CVT.
+    #[must_use]
+    pub fn is_cvt(&self) -> bool {
+        self.setup.transmission().is_cvt()
+    }
+
+    /// Solves all points one after the other.
+    pub fn rows(&self) -> impl Iterator<Item = LossRow> + '_ {
+        self.grid.rows(&self.bench)
+    }
+
+    /// Components that have a loss on the bench.
+    #[must_use]
+    pub fn components(&self) -> Vec<Component> {
+        bench_components(self.setup.transmission())
+    }
+
+    /// Components in groups, the parts of the belt as one, with the title of each group.
+    #[must_use]
+    pub fn groups(&self) -> Vec<(String, Vec<Component>)> {
+        let mut list: Vec<(String, Vec<Component>)> = Vec::new();
+        for component in self.components() {
+            let title = if component.is_belt() {
+                "Belt"
+            } else {
+                component.title()
+            };
+            match list.iter_mut().find(|(name, _)| name == title) {
+                Some((_, parts)) => parts.push(component),
+                None => list.push((title.to_owned(), vec![component])),
+            }
+        }
+        list
+    }
+
+    /// The values of some axes at a point, in words.
+    #[must_use]
+    pub fn held(&self, asked: &[f64; Axis::COUNT], axes: &[Axis]) -> String {
+        let cvt = self.is_cvt();
+        let given =
+            |axis: &&Axis| !asked[**axis as usize].is_nan() && (cvt || **axis != Axis::Throttle);
+        let words = axes
+            .iter()
+            .filter(given)
+            .map(|axis| axis.words(cvt, asked[*axis as usize]));
+        words.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Everything of the JSON object but its points.
+    #[must_use]
+    pub fn json_head(&self) -> Value {
+        json!({
+            "schema": SCHEMA,
+            "program": PROGRAM,
+            "settings": {
+                "vehicle": self.setup.name,
+                "transmission": if self.is_cvt() { "cvt" } else { "manual" },
+                "lubricant": self.setup.oils().0.name,
+                "formulation": self.formulation,
+                "set": self.set,
+            },
+            "columns": json_columns(&columns(self.setup.transmission())),
+            "count": self.grid.len(),
+        })
+    }
+
+    /// Writes rows as CSV.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_csv(
+        &self,
+        out: &mut dyn Write,
+        rows: impl Iterator<Item = LossRow>,
+    ) -> io::Result<()> {
+        write_csv(out, &columns(self.setup.transmission()), rows, &[])
+    }
+
+    /// Writes the JSON object with rows as its points, one a line.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_json(
+        &self,
+        out: &mut dyn Write,
+        rows: impl Iterator<Item = LossRow>,
+    ) -> io::Result<()> {
+        write_json(
+            out,
+            &self.json_head(),
+            &columns(self.setup.transmission()),
+            rows,
+        )
+    }
+}
+
+/// Counts flags over rows.
 #[derive(Clone, Debug, Default)]
 pub struct FlagCount([usize; Flags::NAMES.len()]);
 
@@ -287,12 +445,12 @@ impl FlagCount {
         }
     }
 
-    /// Names and numbers of those that occurred.
+    /// Names and numbers of those that occurred, in the order of the bits.
     pub fn named(&self) -> impl Iterator<Item = (&'static str, usize)> {
-        Flags::NAMES
+        let counted = Flags::NAMES
             .iter()
             .zip(self.0)
-            .filter(|(_, n)| *n > 0)
-            .map(|((_, name), n)| (*name, n))
+            .map(|((_, name), n)| (*name, n));
+        counted.filter(|(_, n)| *n > 0)
     }
 }

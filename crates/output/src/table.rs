@@ -1,9 +1,26 @@
-//! Tables: rows of any type under named columns, written as CSV and JSON.
+//! Tables: rows of any type under named columns, written as CSV, JSON, aligned text and Markdown.
 //!
-//! A table is a list of [`Column`]s, mostly made with [`columns!`](crate::columns). Files and JSON carry numbers unrounded.
+//! A table of a file is a list of [`Column`]s, mostly made with [`columns!`](crate::columns); it carries numbers unrounded. A table for
+//! people has [`TextColumns`], which round.
+//!
+//! ```
+//! use cvtcycle_output::columns;
+//! use cvtcycle_output::table::{json_row, write_csv};
+//! let columns = columns! { (&'static str, f64);
+//!     text "part", "", "component", (part, _) => *part;
+//!     number "loss_nm", "Nm", "loss, torque at the input shaft", (_, nm) => *nm;
+//! };
+//! let mut csv = Vec::new();
+//! write_csv(&mut csv, &columns, [("belt", 3.25)], &[])?;
+//! assert_eq!(csv, b"part,loss_nm\nbelt,3.25\n");
+//! assert_eq!(json_row(&columns, &("belt", 3.25)).to_string(), r#"{"part":"belt","loss_nm":3.25}"#);
+//! # Ok::<(), std::io::Error>(())
+//! ```
 
+mod text;
 mod write;
 
+pub use text::{TextColumns, TextTable, WIDTH, cut, wrapped};
 pub use write::{CsvWriter, csv_bytes, json_columns, json_row, json_rows, write_csv, write_json};
 
 use std::borrow::Cow;

@@ -1,14 +1,153 @@
 //! The tables of the variator rig: a row a point, and a row a curve.
 
-use cvtcycle_model::bench::variator::{CurveSummary, Resolution, VariatorRow};
+use std::io::{self, Write};
 
-use crate::columns;
-use crate::table::{Cell, Column};
+use cvtcycle_model::bench::variator::{CurveSummary, Held, Resolution, VariatorRig, VariatorRow};
+use serde_json::json;
+
+use crate::number::fixed;
+use crate::rig::given;
+use crate::table::{Cell, Column, json_columns, json_rows, write_csv, write_json};
 use crate::trace::{bar, degc, rpm};
+use crate::{PROGRAM, columns};
 
-/// What the user gave, without the rounding of its way to SI and back.
-fn given(x: f64) -> f64 {
-    (x * 1e9).round() / 1e9
+/// Version of the JSON object.
+const SCHEMA: u32 = 1;
+/// Largest default torque over the torque capacity.
+const MAX_TORQUE: f64 = 1.1;
+
+/// One curve with its points.
+#[derive(Debug)]
+pub struct Curve {
+    /// Breakpoint, capacity and slip of the curve.
+    pub summary: CurveSummary,
+    /// Resolution of the speed sensors.
+    pub resolution: Resolution,
+    /// Points by torque.
+    pub rows: Vec<VariatorRow>,
+}
+
+impl Curve {
+    /// Solves a curve, by default from no torque to beyond the torque capacity. `pulses` are those of the speed sensors a turn.
+    #[must_use]
+    pub fn solve(rig: &VariatorRig, held: &Held, torque_nm: Option<&[f64]>, pulses: f64) -> Self {
+        let summary = rig.summary(held);
+        let rows = match torque_nm {
+            Some(torques) => rig.rows(held, torques),
+            None => rig.rows(held, &default_torques(held, summary.capacity_nm)),
+        };
+        let (belt, idle) = (&rig.cvt().belt, &rig.rows(held, &[0.0])[0]);
+        Curve {
+            summary,
+            resolution: Resolution::new(idle, belt.length_m, belt.segment_thickness_m, pulses),
+            rows,
+        }
+    }
+
+    /// Secondary pressure, bar, without the rounding errors of its conversion.
+    #[must_use]
+    pub fn bar(&self) -> f64 {
+        (self.summary.held.pressure_pa / 1e5 * 1e6).round() / 1e6
+    }
+
+    /// True if two curves differ in pressure only.
+    #[must_use]
+    pub fn is_same_test(&self, other: &Curve) -> bool {
+        let key = |curve: &Curve| {
+            let held = &curve.summary.held;
+            [held.ratio, held.input_rad_s, held.belt_k].map(f64::to_bits)
+        };
+        key(self) == key(other)
+    }
+
+    /// Ratio, speed and temperature in words.
+    #[must_use]
+    pub fn test_name(&self) -> String {
+        let held = &self.summary.held;
+        let ratio = fixed(held.ratio, 3);
+        let ratio = ratio.trim_end_matches('0').trim_end_matches('.');
+        let (rpm, degc) = (fixed(rpm(held.input_rad_s), 0), fixed(degc(held.belt_k), 1));
+        format!(
+            "ratio {ratio}, {rpm} rpm, belt {} \u{b0}C",
+            degc.trim_end_matches(".0")
+        )
+    }
+}
+
+/// From zero to beyond the torque capacity.
+fn default_torques(held: &Held, capacity_nm: f64) -> Vec<f64> {
+    let step = if held.ratio > 1.0 { 5.0 } else { 2.0 };
+    let count = (MAX_TORQUE * capacity_nm / step).ceil().clamp(1.0, 1000.0) as u32;
+    (0..=count).map(|i| step * f64::from(i)).collect()
+}
+
+/// Curves of the rig, and what they were computed from.
+#[derive(Debug)]
+pub struct VariatorCurves {
+    /// Name of the vehicle.
+    pub vehicle: String,
+    /// Name of its transmission oil.
+    pub lubricant: String,
+    /// Name of the belt model.
+    pub formulation: String,
+    /// Overrides of the vehicle, as the user wrote them.
+    pub set: Vec<String>,
+    /// Pulses of the speed sensors a turn.
+    pub pulses: f64,
+    /// The curves.
+    pub curves: Vec<Curve>,
+}
+
+impl VariatorCurves {
+    fn points(&self) -> impl Iterator<Item = &VariatorRow> {
+        self.curves.iter().flat_map(|curve| &curve.rows)
+    }
+
+    fn numbers(&self) -> Vec<(CurveSummary, Resolution)> {
+        self.curves
+            .iter()
+            .map(|curve| (curve.summary, curve.resolution))
+            .collect()
+    }
+
+    /// Writes every point of every curve as CSV.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_points(&self, out: &mut dyn Write) -> io::Result<()> {
+        write_csv(out, &point_columns(), self.points(), &[])
+    }
+
+    /// Writes a line for each curve as CSV.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_curves(&self, out: &mut dyn Write) -> io::Result<()> {
+        write_csv(out, &curve_columns(), self.numbers(), &[])
+    }
+
+    /// Writes one JSON object, its points one a line.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {
+        let columns = point_columns();
+        let head = json!({
+            "schema": SCHEMA,
+            "program": PROGRAM,
+            "settings": {
+                "vehicle": self.vehicle,
+                "lubricant": self.lubricant,
+                "formulation": self.formulation,
+                "set": self.set,
+                "pulses": self.pulses,
+            },
+            "curves": json_rows(&curve_columns(), &self.numbers()),
+            "columns": json_columns(&columns),
+            "count": self.points().count(),
+        });
+        write_json(out, &head, &columns, self.points())
+    }
 }
 
 /// Columns of the points, in the order in which they are written.

@@ -28,84 +28,39 @@ impl Buffer {
     }
 
     fn put(&mut self, text: &str) -> Result<(), Problems> {
+        let bytes = text.as_bytes();
         match self {
             Buffer::File(file) => file
-                .write_all(text.as_bytes())
-                .map_err(|error| file.cannot_write(&error).into()),
+                .write_all(bytes)
+                .map_err(|error| file.cannot_write(&error)),
             Buffer::Spool(spool) => spool
-                .write_all(text.as_bytes())
-                .map_err(|error| cannot_buffer(&error).into()),
+                .write_all(bytes)
+                .map_err(|error| cannot_buffer(&error)),
         }
+        .map_err(Problems::from)
     }
 }
 
-/// Receives rows, once the header of the input is read.
+/// Rows of a table of points: CSV to the file if there is one, else to standard output unless JSON goes there.
 #[derive(Debug)]
-pub struct RowReceiver {
-    file: Option<OutputFile>,
-    json: bool,
-    /// None until the header is good.
-    pub output: Option<RowOutput>,
-}
-
-impl RowReceiver {
-    /// CSV to the file if there is one, else to standard output unless `json` goes there.
-    pub fn new(file: Option<OutputFile>, json: bool) -> Self {
-        RowReceiver {
-            file,
-            json,
-            output: None,
-        }
-    }
-}
-
-impl Take for RowReceiver {
-    fn begin(&mut self, with_case: bool) -> Result<(), Problems> {
-        self.output = Some(RowOutput::new(self.file.take(), self.json, with_case)?);
-        Ok(())
-    }
-
-    fn put(&mut self, case: &str, row: &Solved) -> Result<(), Problems> {
-        self.output
-            .as_mut()
-            .map_or(Ok(()), |output| output.put(case, row))
-    }
-}
-
-/// The outputs of a run over points.
-#[derive(Debug)]
-pub struct RowOutput {
+pub struct RowSink {
     csv: Option<Buffer>,
     json: Option<Buffer>,
+    /// Known when the header of the input is read.
     columns: Vec<Column<Point>>,
     rows: u64,
     line: String,
 }
 
-impl RowOutput {
-    fn new(file: Option<OutputFile>, json: bool, with_case: bool) -> Result<Self, Problems> {
-        let csv = file.map(|file| Buffer::File(Box::new(file)));
-        let csv = if csv.is_none() && !json {
-            Some(Buffer::spool())
-        } else {
-            csv
-        };
-        let mut output = RowOutput {
-            csv,
-            json: json.then(Buffer::spool),
-            columns: output_columns(with_case),
-            rows: 0,
-            line: String::new(),
-        };
-        if let Some(csv) = &mut output.csv {
-            let names: Vec<&str> = output.columns.iter().map(|column| &*column.name).collect();
-            csv.put(&(names.join(",") + "\n"))?;
-        }
-        Ok(output)
+impl Take for RowSink {
+    fn begin(&mut self, with_case: bool) -> Result<(), Problems> {
+        self.columns = output_columns(with_case);
+        let names: Vec<&str> = self.columns.iter().map(|column| &*column.name).collect();
+        let csv = self.csv.as_mut();
+        csv.map_or(Ok(()), |csv| csv.put(&(names.join(",") + "\n")))
     }
 
-    /// Adds a row.
-    pub fn put(&mut self, case: &str, row: &Solved) -> Result<(), Problems> {
+    fn put(&mut self, case: &str, row: &Solved) -> Result<(), Problems> {
         let row = (case.replace("\"\"", "\""), *row);
         if let Some(csv) = &mut self.csv {
             self.line.clear();
@@ -119,16 +74,30 @@ impl RowOutput {
         self.rows += 1;
         Ok(())
     }
+}
+
+impl RowSink {
+    /// Without rows yet.
+    pub fn new(file: Option<OutputFile>, json: bool) -> Self {
+        let file = file.map(|file| Buffer::File(Box::new(file)));
+        RowSink {
+            csv: file.or_else(|| (!json).then(Buffer::spool)),
+            json: json.then(Buffer::spool),
+            columns: Vec::new(),
+            rows: 0,
+            line: String::new(),
+        }
+    }
 
     /// Gives the file its name and sends the rest to standard output, JSON after its `head` (an object without rows).
-    pub fn finish(self, head: &serde_json::Map<String, serde_json::Value>) -> Result<(), Problems> {
+    pub fn finish(self, head: &serde_json::Value) -> Result<(), Problems> {
         match self.csv {
             Some(Buffer::File(file)) => drop(file.commit()?),
             Some(Buffer::Spool(spool)) => send(spool, "", "")?,
             None => {}
         }
         if let Some(Buffer::Spool(spool)) = self.json {
-            let head = serde_json::Value::Object(head.clone()).to_string();
+            let head = head.to_string();
             let open = head.strip_suffix('}').unwrap_or(&head);
             send(spool, &format!("{open},\"rows\":["), "\n]}\n")?;
         }

@@ -1,10 +1,11 @@
 //! A calibration as tables: errors first, then the numbers behind them.
 
-use cvtcycle::study::fit::outcome::{Fold, Outcome, Parameter, Residual, rms};
+use cvtcycle::output::number::{NONE, fixed, signed};
+use cvtcycle::output::table::{TextColumns, TextTable, cut, wrapped};
+use cvtcycle::study::fit::outcome::{Fold, Outcome, Parameter, Residual, Start, rms};
 
 use crate::print::colour::Paint;
-use crate::print::table::{TextColumns, TextTable, WIDTH, cut};
-use cvtcycle::output::number::{NONE, fixed, signed};
+use crate::print::sections;
 
 /// Number of residuals that are listed.
 const MAX_RESIDUALS: usize = 5;
@@ -17,58 +18,37 @@ const MAX_NAME_LEN: usize = 40;
 /// A start within this share of the smallest sum of squares found the same minimum.
 const SAME_COST: f64 = 1e-3;
 
-/// Everything that a person wants to see of a calibration.
+/// All results of a calibration for people.
 pub fn tables(outcome: &Outcome, paint: Paint) -> String {
     let warnings = outcome
         .warnings
         .iter()
         .map(|warning| wrapped(warning, "  ! "));
-    let sections = [
+    let data = "Data, root mean square of the residuals in standard deviations";
+    let body = [
         ("Quality of the fit", quality(outcome)),
         ("Warnings", warnings.collect()),
         ("Parameters", parameters(outcome)),
-        (
-            "Data, root mean square of the residuals in standard deviations",
-            groups(outcome),
-        ),
+        (data, groups(outcome)),
         ("Folds left out", folds(outcome)),
         ("Largest residuals", largest(outcome)),
         ("Not identifiable from the data", not_identified(outcome)),
         ("Starts", starts(outcome)),
     ];
-    let shown = sections.iter().filter(|(_, body)| !body.is_empty());
-    let section = |(title, body): &(&str, String)| format!("\n{}\n{body}", paint.heading(title));
-    head(outcome, paint) + &shown.map(section).collect::<String>()
+    head(outcome, paint) + &sections(body, paint)
 }
 
 fn count(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
-/// A sentence wrapped to the width of the tables, with a mark before its first line.
-fn wrapped(sentence: &str, mark: &str) -> String {
-    let mut table = TextTable::new("l");
-    let blank = " ".repeat(mark.chars().count());
-    table.row([sentence]);
-    let text = table.width(usize::from(WIDTH) - blank.len()).text();
-    let marks = [mark].into_iter().chain(std::iter::repeat(blank.as_str()));
-    text.lines()
-        .zip(marks)
-        .map(|(line, mark)| format!("{mark}{line}\n"))
-        .collect()
-}
-
 fn head(o: &Outcome, paint: Paint) -> String {
     let data = count(o.residuals.len(), "observation");
     let free = count(o.parameters.len(), "parameter");
     let evaluations = count(o.evaluations, "evaluation");
-    let mut text = format!(
-        "{}  {}\n{}: {free} fitted to {data}; {} after {evaluations}\n",
-        paint.heading(&o.title),
-        o.plan,
-        o.vehicle,
-        o.end
-    );
+    let (title, plan, vehicle, end) = (paint.heading(&o.title), &o.plan, &o.vehicle, &o.end);
+    let mut text =
+        format!("{title}  {plan}\n{vehicle}: {free} fitted to {data}; {end} after {evaluations}\n");
     if !o.converged {
         let failure = "not converged: the values are those of the best point so far, no minimum";
         text += &format!("{}\n", paint.bad(failure));
@@ -92,29 +72,29 @@ fn quality(o: &Outcome) -> String {
         n if n < all => format!("of {n} observations; the others could not be predicted"),
         _ => "each fold by a fit without it".to_owned(),
     };
+    let agrees = "to the same data: no evidence that the model is right";
     let mut table = TextTable::new("lrl").indented();
     table.row(["root mean square of the residuals", "in sd", ""]);
     table.row(["with the values of the files", &fixed(before, 2), ""]);
-    table.row([
-        "fitted",
-        &fixed(after, 2),
-        "to the same data: no evidence that the model is right",
-    ]);
+    table.row(["fitted", &fixed(after, 2), agrees]);
     table.row(["predicted", &fixed(left_out, 2), &how]);
     let chance = o.chi2_probability.map_or_else(String::new, |p| {
-        let p = if p < 0.001 && p > 0.0 {
+        let small = p < 0.001 && p > 0.0;
+        let p = if small {
             format!("{p:.0e}")
         } else {
             fixed(p, 3)
         };
         format!(", probability of more by chance {p}")
     });
-    let sums = format!(
-        "sum of squares {} with the values of the files, {} fitted ({} of it from the data), {} of freedom{chance}",
+    let (before, after, chi2) = (
         sum(o.cost_before),
         sum(Some(o.cost_after)),
         sum(Some(o.chi2)),
-        count(o.degrees_of_freedom, "degree"),
+    );
+    let freedom = count(o.degrees_of_freedom, "degree");
+    let sums = format!(
+        "sum of squares {before} with the values of the files, {after} fitted ({chi2} of it from the data), {freedom} of freedom{chance}"
     );
     let note = "A fit is no validation: fitted numbers agree by construction. The prediction error of the data that were left out \
         estimates the error of a new measurement of the same kind.";
@@ -123,14 +103,8 @@ fn quality(o: &Outcome) -> String {
 
 /// A sum of squares: small ones with more decimals.
 fn sum(x: Option<f64>) -> String {
-    fixed(
-        x,
-        if x.is_some_and(|x| x.abs() < 10.0) {
-            3
-        } else {
-            1
-        },
-    )
+    let small = x.is_some_and(|x| x.abs() < 10.0);
+    fixed(x, if small { 3 } else { 1 })
 }
 
 /// A number with the decimals that its error leaves meaningful: two digits of the error.
@@ -157,27 +131,19 @@ fn short(key: &str) -> String {
         return key.to_owned();
     }
     let mut ends = key.match_indices('.').map(|(at, _)| &key[at + 1..]);
-    let last = key.rsplit('.').next().unwrap_or(key);
-    format!(
-        "…{}",
-        ends.find(|end| end.chars().count() < MAX_KEY_LEN)
-            .unwrap_or(last)
-    )
+    let end = ends.find(|end| end.chars().count() < MAX_KEY_LEN || !end.contains('.'));
+    format!("…{}", end.unwrap_or(key))
 }
 
 fn parameters(o: &Outcome) -> String {
-    if o.parameters.is_empty() {
-        return String::new();
-    }
     let name = |p: &Parameter| {
-        let unique = o
+        let own = short(&p.name);
+        let same = o
             .parameters
             .iter()
-            .filter(|other| short(&other.name) == short(&p.name))
-            .count()
-            == 1;
-        if unique {
-            short(&p.name)
+            .filter(|other| short(&other.name) == own);
+        if same.count() == 1 {
+            own
         } else {
             p.name.clone()
         }
@@ -187,14 +153,14 @@ fn parameters(o: &Outcome) -> String {
         None => NONE.to_owned(),
     };
     let share = |p: &Parameter| {
-        p.prior_share.map_or_else(
-            || NONE.to_owned(),
-            |share| format!("{} %", fixed(100.0 * share, 0)),
-        )
+        let share = p
+            .prior_share
+            .map(|share| format!("{} %", fixed(100.0 * share, 0)));
+        share.unwrap_or_else(|| NONE.to_owned())
     };
     let error = |p: &Parameter| {
-        p.standard_error
-            .map_or_else(|| NONE.to_owned(), |e| to_error(e, Some(e)))
+        let error = p.standard_error.map(|e| to_error(e, Some(e)));
+        error.unwrap_or_else(|| NONE.to_owned())
     };
     let table = TextColumns::new()
         .left("parameter", name)
@@ -207,9 +173,10 @@ fn parameters(o: &Outcome) -> String {
         .left("prior", prior)
         .right("share", share)
         .left("bound", |p| p.at_bound.unwrap_or_default())
-        // The last column would be wrapped: an empty one.
-        .left("", |_| "")
-        .table(&o.parameters);
+        .text(&o.parameters);
+    if table.is_empty() {
+        return table;
+    }
     let cut = match o.parameters.iter().any(|p| short(&p.name).starts_with('…')) {
         true => " … replaces the beginning of a key.",
         false => "",
@@ -218,7 +185,7 @@ fn parameters(o: &Outcome) -> String {
         "+-: standard error from the given deviations. share: variance after the fit over that of the prior; near 100 % the data do not \
          determine the parameter.{cut}"
     );
-    table.indented().text() + &wrapped(&note, "  ")
+    table + &wrapped(&note, "  ")
 }
 
 fn groups(o: &Outcome) -> String {
@@ -228,58 +195,42 @@ fn groups(o: &Outcome) -> String {
             names.push(&r.group);
         }
     }
-    if names.is_empty() {
-        return String::new();
-    }
     let of = |get: fn(&Residual) -> Option<f64>| {
-        move |name: &&str| {
-            fixed(
-                rms_of(o.residuals.iter().filter(|r| r.group == *name).map(get)).0,
-                2,
-            )
-        }
+        move |name: &&str| rms_of(o.residuals.iter().filter(|r| r.group == *name).map(get))
     };
+    let [before, after, left_out] = [
+        of(|r| r.before_sd),
+        of(|r| Some(r.after_sd)),
+        of(|r| r.left_out_sd),
+    ];
     TextColumns::new()
         .left("group", |name: &&str| cut(name, MAX_NAME_LEN))
-        .right("n", |name| {
-            o.residuals
-                .iter()
-                .filter(|r| r.group == *name)
-                .count()
-                .to_string()
-        })
-        .right("files", of(|r| r.before_sd))
-        .right("fitted", of(|r| Some(r.after_sd)))
-        .right("predicted", of(|r| r.left_out_sd))
-        .table(&names)
-        .indented()
-        .text()
+        .right("n", |name| after(name).1.to_string())
+        .number("files", 2, |name| before(name).0)
+        .number("fitted", 2, |name| after(name).0)
+        .number("predicted", 2, |name| left_out(name).0)
+        .text(&names)
 }
 
 /// The folds, if they are not the groups or one of them failed.
 fn folds(o: &Outcome) -> String {
-    let is_group = |name: &str| {
-        let mut own = o
-            .residuals
-            .iter()
-            .filter(|r| r.fold == name || r.group == name);
-        own.all(|r| r.fold == r.group)
+    let is_group = |fold: &Fold| {
+        let own = |r: &&Residual| r.fold == fold.name || r.group == fold.name;
+        o.residuals.iter().filter(own).all(|r| r.fold == r.group)
     };
     if o.folds
         .iter()
-        .all(|fold| is_group(&fold.name) && fold.end == "converged")
+        .all(|fold| is_group(fold) && fold.end == "converged")
     {
         return String::new();
     }
     TextColumns::new()
         .left("fold", |f: &Fold| cut(&f.name, MAX_NAME_LEN))
         .right("n", |f| f.observations.to_string())
-        .right("fitted", |f| fixed(f.fitted_rms_sd, 2))
-        .right("predicted", |f| fixed(f.predicted_rms_sd, 2))
+        .number("fitted", 2, |f| f.fitted_rms_sd)
+        .number("predicted", 2, |f| f.predicted_rms_sd)
         .left("the fit without it", |f| cut(&f.end, MAX_NAME_LEN))
-        .table(&o.folds)
-        .indented()
-        .text()
+        .text(&o.folds)
 }
 
 fn largest(o: &Outcome) -> String {
@@ -288,9 +239,6 @@ fn largest(o: &Outcome) -> String {
         .iter()
         .filter(|r| r.after_sd.is_finite())
         .collect();
-    if worst.is_empty() {
-        return String::new();
-    }
     worst.sort_by(|a, b| b.after_sd.abs().total_cmp(&a.after_sd.abs()));
     let what = |r: &Residual| match r.what.as_str() {
         "" => r.label.clone(),
@@ -303,9 +251,7 @@ fn largest(o: &Outcome) -> String {
         .right("computed", |r| to_error(r.after, Some(r.sd)))
         .left("unit", |r| r.unit.clone())
         .left("observation", what)
-        .table(worst.into_iter().take(MAX_RESIDUALS))
-        .indented()
-        .text()
+        .text(worst.into_iter().take(MAX_RESIDUALS))
 }
 
 fn measured(r: &Residual) -> String {
@@ -320,12 +266,8 @@ fn measured(r: &Residual) -> String {
 }
 
 fn not_identified(o: &Outcome) -> String {
-    let shown = o
-        .not_identified
-        .iter()
-        .take(MAX_COMBINATIONS)
-        .map(|line| wrapped(line, "  - "));
-    let mut text: String = shown.collect();
+    let shown = o.not_identified.iter().take(MAX_COMBINATIONS);
+    let mut text: String = shown.map(|line| wrapped(line, "  - ")).collect();
     let more = o.not_identified.len().saturating_sub(MAX_COMBINATIONS);
     if more > 0 {
         text += &format!("  and {more} more: `not_identified` of --json\n");
@@ -339,19 +281,21 @@ fn starts(o: &Outcome) -> String {
     }
     let max = o.cost_after * (1.0 + SAME_COST) + 1e-9;
     let is_same = |cost: Option<f64>| cost.is_some_and(|cost| cost <= max);
-    let numbered = o.starts.iter().enumerate();
-    let others: Vec<_> = numbered.filter(|(_, start)| !is_same(start.cost)).collect();
-    let (all, reached) = (o.starts.len(), o.starts.len() - others.len());
-    let mut text = format!(
-        "  {reached} of {all} reached the same smallest sum of squares, {}\n",
-        fixed(o.cost_after, 3)
-    );
-    for (k, start) in others {
+    let others = || {
+        o.starts
+            .iter()
+            .enumerate()
+            .filter(|(_, start)| !is_same(start.cost))
+    };
+    let (all, smallest) = (o.starts.len(), fixed(o.cost_after, 3));
+    let reached = all - others().count();
+    let other = |(k, start): (usize, &Start)| {
         let (number, cost, end) = (k + 1, fixed(start.cost, 3), &start.end);
-        text += &wrapped(
+        wrapped(
             &format!("start {number}: sum of squares {cost}; {end}"),
             "  ",
-        );
-    }
-    text
+        )
+    };
+    format!("  {reached} of {all} reached the same smallest sum of squares, {smallest}\n")
+        + &others().map(other).collect::<String>()
 }

@@ -1,14 +1,12 @@
 //! Arguments of `losses` to a checked grid of operating points.
 
-use cvtcycle::config::setup::Setup;
 use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::model::bench::{Bench, solvable_ratios};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::loss_table::MapPart;
-use cvtcycle::output::losses::{Axis, LossGrid, LossRow, MAX_POINTS, columns};
-use cvtcycle::output::table::Column;
+use cvtcycle::output::losses::{Axis, LossGrid, LossTable, MAX_POINTS};
 
 use super::LossesArgs;
 use crate::args::one_of;
@@ -24,21 +22,9 @@ const THROTTLE: Bound = Bound::closed(0.0, 1.0);
 
 /// Checked input of `losses`.
 pub struct LossesPlan {
-    pub setup: Setup,
-    pub bench: Bench,
-    pub grid: LossGrid,
-    pub columns: Vec<Column<LossRow>>,
-    pub formulation: String,
-    pub set: Vec<String>,
+    pub losses: LossTable,
     pub map: Option<MapPart>,
     pub out: Option<OutputDir>,
-}
-
-impl LossesPlan {
-    /// Whether the transmission is a CVT.
-    pub fn is_cvt(&self) -> bool {
-        self.setup.transmission().is_cvt()
-    }
 }
 
 /// Checks all arguments.
@@ -76,70 +62,67 @@ pub fn plan(args: &LossesArgs, problems: &mut Problems) -> Option<LossesPlan> {
     }
     let out = args.out.dir(problems);
     let setup = setup?;
-    Some(LossesPlan {
+    let losses = LossTable {
         bench: Bench::as_printed(&setup),
-        columns: columns(setup.transmission()),
         setup,
         grid,
         formulation: args.formulation.formulation.clone(),
         set: args.car.set.clone(),
-        map,
-        out,
-    })
+    };
+    Some(LossesPlan { losses, map, out })
 }
 
 /// Axes that every transmission has.
 fn fill_axes(args: &LossesArgs, grid: &mut LossGrid, problems: &mut Problems) {
-    // With --pressure the clamping law is not used, and with no --belt-temp the belt is in steady state: no values on that axis.
-    let axes = [
-        (
-            Axis::Speed,
-            "--speed",
-            &args.speed,
-            Some("2500"),
-            SPEED,
-            "_rpm",
-        ),
-        (
-            Axis::Torque,
-            "--torque",
-            &args.torque,
-            Some("0"),
-            TORQUE,
-            "_nm",
-        ),
-        (Axis::Sump, "--temp", &args.temp, Some("80"), TEMP, "_degc"),
-        (
-            Axis::Throttle,
-            "--throttle",
-            &args.throttle,
-            Some("0"),
-            THROTTLE,
-            "",
-        ),
-        (
-            Axis::Belt,
-            "--belt-temp",
-            &args.belt_temp,
-            None,
-            TEMP,
-            "_degc",
-        ),
-        (
-            Axis::Pressure,
-            "--pressure",
-            &args.pressure,
-            None,
-            PRESSURE,
-            "_bar",
-        ),
-    ];
-    for (axis, option, text, default, range, suffix) in axes {
+    let mut fill = |axis: Axis, (option, text): (&str, &Option<String>), default, range, suffix| {
         if let Some(text) = text.as_deref().or(default) {
             let found = problems.take(values(option, text, range, suffix));
             grid.values[axis as usize] = found.unwrap_or_default();
         }
-    }
+    };
+    fill(
+        Axis::Speed,
+        ("--speed", &args.speed),
+        Some("2500"),
+        SPEED,
+        "_rpm",
+    );
+    fill(
+        Axis::Torque,
+        ("--torque", &args.torque),
+        Some("0"),
+        TORQUE,
+        "_nm",
+    );
+    fill(
+        Axis::Sump,
+        ("--temp", &args.temp),
+        Some("80"),
+        TEMP,
+        "_degc",
+    );
+    fill(
+        Axis::Throttle,
+        ("--throttle", &args.throttle),
+        Some("0"),
+        THROTTLE,
+        "",
+    );
+    // With no --belt-temp the belt is in steady state, and with no --pressure the clamping law is used: no values on that axis.
+    fill(
+        Axis::Belt,
+        ("--belt-temp", &args.belt_temp),
+        None,
+        TEMP,
+        "_degc",
+    );
+    fill(
+        Axis::Pressure,
+        ("--pressure", &args.pressure),
+        None,
+        PRESSURE,
+        "_bar",
+    );
     if args.pressure.is_some() && args.throttle.is_some() {
         let message = "with --pressure the clamping law is not used, so the throttle has no effect";
         problems.add(problem("--throttle", message, "leave out one of the two"));
@@ -150,11 +133,8 @@ fn fill_axes(args: &LossesArgs, grid: &mut LossGrid, problems: &mut Problems) {
 fn check_cvt(args: &LossesArgs, formulation: Formulation, ratios: &[f64], problems: &mut Problems) {
     if args.gear.is_some() {
         let message = format!("{} has a CVT, which has no gears", args.car.vehicle);
-        problems.add(problem(
-            "--gear",
-            &message,
-            "use --ratio low, --ratio high or --ratio 1.0",
-        ));
+        let hint = "use --ratio low, --ratio high or --ratio 1.0";
+        problems.add(problem("--gear", &message, hint));
     }
     if formulation != Formulation::Smooth && ratios.iter().any(|ratio| (ratio - 1.0).abs() <= 0.0) {
         let message = "the printed formulations are not defined at ratio 1, where the tension step has no direction";
@@ -165,41 +145,33 @@ fn check_cvt(args: &LossesArgs, formulation: Formulation, ratios: &[f64], proble
 
 /// Options that a manual gearbox does not have.
 fn check_manual(args: &LossesArgs, formulation: Formulation, problems: &mut Problems) {
-    let printed = formulation != Formulation::Smooth;
-    let given = [
-        (
-            "--ratio",
-            args.ratio.is_some(),
-            "belt ratio",
-            "use --gear 3 or --gear 1..5",
-        ),
-        (
-            "--belt-temp",
-            args.belt_temp.is_some(),
-            "belt",
-            "leave it out; --temp is the oil temperature",
-        ),
-        (
-            "--pressure",
-            args.pressure.is_some(),
-            "clamping pressure",
-            "leave it out",
-        ),
-        (
-            "--throttle",
-            args.throttle.is_some(),
-            "clamping law that depends on the throttle",
-            "leave it out",
-        ),
-        ("--formulation", printed, "belt", "leave it out"),
-    ];
-    for (option, _, part, hint) in given.into_iter().filter(|given| given.1) {
-        let message = format!(
-            "{} has a manual gearbox, which has no {part}",
-            args.car.vehicle
-        );
-        problems.add(problem(option, &message, hint));
-    }
+    let mut absent = |given: bool, option: &str, part: &str, hint: &str| {
+        if given {
+            let vehicle = &args.car.vehicle;
+            let message = format!("{vehicle} has a manual gearbox, which has no {part}");
+            problems.add(problem(option, &message, hint));
+        }
+    };
+    let (gear, oil) = (
+        "use --gear 3 or --gear 1..5",
+        "leave it out; --temp is the oil temperature",
+    );
+    let (law, out) = ("clamping law that depends on the throttle", "leave it out");
+    absent(args.ratio.is_some(), "--ratio", "belt ratio", gear);
+    absent(args.belt_temp.is_some(), "--belt-temp", "belt", oil);
+    absent(
+        args.pressure.is_some(),
+        "--pressure",
+        "clamping pressure",
+        out,
+    );
+    absent(args.throttle.is_some(), "--throttle", law, out);
+    absent(
+        formulation != Formulation::Smooth,
+        "--formulation",
+        "belt",
+        out,
+    );
 }
 
 /// Gears; all if none is given.
@@ -211,14 +183,10 @@ fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Problems> {
         false => part.to_owned(),
     };
     let text: Vec<String> = text.unwrap_or(&all).split(',').map(by_ones).collect();
-    let found = values(
-        "--gear",
-        &text.join(","),
-        Bound::closed(1.0, count as f64),
-        "",
-    )?;
+    let range = Bound::closed(1.0, count as f64);
+    let found = values("--gear", &text.join(","), range, "")?;
     let allowed = format!("whole numbers from 1 to {count}");
-    let fractions = found.iter().filter(|x| x.fract().abs() > 0.0);
+    let no_gear = |x: &&f64| x.fract().abs() > 0.0;
     let bad = |x: &f64| {
         bad_value(
             "--gear",
@@ -228,12 +196,8 @@ fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Problems> {
             "",
         )
     };
-    let problems: Problems = fractions.map(bad).collect();
-    if problems.is_empty() {
-        Ok(found)
-    } else {
-        Err(problems)
-    }
+    let problems: Problems = found.iter().filter(no_gear).map(bad).collect();
+    problems.finish().map(|()| found)
 }
 
 /// Options that a map of the component cannot have.
@@ -259,51 +223,48 @@ fn check_map(
             "a map is for driving, for which the printed formulations are not defined everywhere";
         problems.add(problem("--as-map", message, "leave out --formulation"));
     }
-    let pressures = "give the pressures instead: --pressure 10..40:5";
-    let mut single = vec![
-        (Axis::Throttle, "--throttle", pressures),
-        (Axis::Belt, "--belt-temp", "give one value"),
-    ];
-    if part.torque_column().is_none() {
-        let hint = "the loss of this component does not depend on it";
-        single.push((Axis::Torque, "--torque", hint));
-    }
-    for (axis, option, hint) in single {
+    let mut single = |axis: Axis, option: &str, hint: &str| {
         let count = grid.of(axis).len();
         if count > 1 {
             let message = format!("{count} values, but a map of `{word}` has no such axis");
             problems.add(problem(option, &message, hint));
         }
+    };
+    single(
+        Axis::Throttle,
+        "--throttle",
+        "give the pressures instead: --pressure 10..40:5",
+    );
+    single(Axis::Belt, "--belt-temp", "give one value");
+    if part.torque_column().is_none() {
+        single(
+            Axis::Torque,
+            "--torque",
+            "the loss of this component does not depend on it",
+        );
     }
 }
 
 fn too_many(grid: &LossGrid) -> Problem {
-    let options = [
-        "--ratio or --gear",
-        "--temp",
-        "--belt-temp",
-        "--throttle",
-        "--pressure",
-        "--torque",
-        "--speed",
+    let count = |axis: Axis, option: &str| match grid.of(axis).len() {
+        0 | 1 => None,
+        n => Some(format!("{option} {n}")),
+    };
+    let counts = [
+        count(Axis::Ratio, "--ratio or --gear"),
+        count(Axis::Sump, "--temp"),
+        count(Axis::Belt, "--belt-temp"),
+        count(Axis::Throttle, "--throttle"),
+        count(Axis::Pressure, "--pressure"),
+        count(Axis::Torque, "--torque"),
+        count(Axis::Speed, "--speed"),
     ];
-    let varied = options
-        .iter()
-        .zip(&grid.values)
-        .filter(|(_, values)| values.len() > 1);
-    let counts: Vec<String> = varied
-        .map(|(option, values)| format!("{option} {}", values.len()))
-        .collect();
+    let counts: Vec<String> = counts.into_iter().flatten().collect();
     let hint = format!(
         "use larger steps or several runs; values given: {}",
         counts.join(", ")
     );
     let message = format!("the grid has {:.0} points", grid.size());
-    bad_value(
-        "losses",
-        "",
-        &format!("at most {MAX_POINTS} points"),
-        &message,
-        &hint,
-    )
+    let allowed = format!("at most {MAX_POINTS} points");
+    bad_value("losses", "", &allowed, &message, &hint)
 }

@@ -1,11 +1,8 @@
 //! Figures of a grid: maps over two axes, stacks over one, a panel for each combination of the other axes.
 
 use cvtcycle::output::Component;
-use cvtcycle::output::losses::{Axis, LossRow, bench_components};
+use cvtcycle::output::losses::{Axis, LossRow, LossTable};
 use cvtcycle::report::charts::{MapFigure, StackFigure, map_figure, stack_figure};
-
-use super::plan::LossesPlan;
-use super::tables::{groups, held};
 
 /// Smallest number of values on an axis of a map: values between two points are unknown.
 const MIN_ON_MAP: usize = 3;
@@ -23,7 +20,7 @@ const ORDER: [Axis; 7] = [
 ];
 
 /// Figures with their file names; none for a single point.
-pub fn plots(plan: &LossesPlan) -> Vec<(String, String)> {
+pub fn plots(plan: &LossTable) -> Vec<(String, String)> {
     let varied = plan.grid.varied();
     let gears = |axis: &Axis| *axis == Axis::Ratio && !plan.is_cvt();
     let on_map: Vec<Axis> = ORDER
@@ -32,7 +29,7 @@ pub fn plots(plan: &LossesPlan) -> Vec<(String, String)> {
             varied.contains(axis) && plan.grid.of(*axis).len() >= MIN_ON_MAP && !gears(axis)
         })
         .collect();
-    let rows: Vec<LossRow> = plan.grid.rows(&plan.bench).collect();
+    let rows: Vec<LossRow> = plan.rows().collect();
     match (on_map.as_slice(), varied.is_empty()) {
         ([x, rest @ ..], _) if !rest.is_empty() => {
             // The axis with most values, so that few panels are needed; of equals the first.
@@ -78,7 +75,7 @@ struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    fn new(plan: &LossesPlan, rows: &'a [LossRow], x: Axis, y: Option<Axis>) -> Self {
+    fn new(plan: &LossTable, rows: &'a [LossRow], x: Axis, y: Option<Axis>) -> Self {
         let along = |axis: Axis| x == axis || y == Some(axis);
         let others: Vec<Axis> = plan
             .grid
@@ -109,7 +106,7 @@ impl<'a> Layout<'a> {
         }
         let count = gathered.len();
         let panels = gathered.into_iter().take(MAX_PANELS).map(|list| {
-            let title = held(plan, &list[0].asked, &others);
+            let title = plan.held(&list[0].asked, &others);
             let (x, y) = (x as usize, y.map(|y| y as usize));
             let mut list = list;
             list.sort_by(|a, b| {
@@ -133,7 +130,7 @@ impl<'a> Layout<'a> {
         let mut subject = format!(
             "{}: {}",
             plan.setup.name,
-            held(plan, &plan.grid.at(0), &fixed)
+            plan.held(&plan.grid.at(0), &fixed)
         );
         if count > MAX_PANELS {
             subject += &format!(" (first {MAX_PANELS} of {count} combinations)");
@@ -152,16 +149,13 @@ fn sum(row: &LossRow, parts: &[Component]) -> f64 {
 }
 
 /// One map of the total and one of each group of components.
-fn maps(plan: &LossesPlan, layout: &Layout) -> Vec<(String, String)> {
+fn maps(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
     let Some((y_axis, y)) = &layout.y else {
         return Vec::new();
     };
     let cvt = plan.is_cvt();
-    let total = (
-        "All losses".to_owned(),
-        bench_components(plan.setup.transmission()),
-    );
-    let all = [total].into_iter().chain(groups(plan));
+    let total = ("All losses".to_owned(), plan.components());
+    let all = [total].into_iter().chain(plan.groups());
     all.map(|(name, parts)| {
         let values = |panel: &Panel| {
             panel
@@ -198,8 +192,8 @@ fn maps(plan: &LossesPlan, layout: &Layout) -> Vec<(String, String)> {
 }
 
 /// All components stacked over one axis.
-fn stack(plan: &LossesPlan, layout: &Layout) -> String {
-    let components = bench_components(plan.setup.transmission());
+fn stack(plan: &LossTable, layout: &Layout) -> String {
+    let components = plan.components();
     let values = |panel: &Panel, component: Component| {
         panel
             .rows

@@ -1,21 +1,19 @@
 //! `rig transmission`: the tests of thesis chapters 4 and 5 on a CVT.
 
-mod files;
-mod json;
 mod tables;
 
 use clap::Args;
 use cvtcycle::config::rig::{OIL, TORQUE};
 use cvtcycle::config::setup::{self, Setup};
 use cvtcycle::config::{Bound, Override, Problems, Target, to_si};
-use cvtcycle::model::bench::transmission::{
-    self as rig, Conditions, Loop, Plan as TestPoints, SteadyPoint, StripDown, TwoBoxes,
-};
-use cvtcycle::model::bench::{Bench, BenchAnswer, solvable_ratios};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::bench::transmission::{Conditions, Plan as TestPoints};
+use cvtcycle::model::bench::{Bench, solvable_ratios};
 use cvtcycle::model::transmission::Transmission;
-use cvtcycle::output::Flags;
 use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::rig::{RigResults, RigTest};
+use cvtcycle::report::charts::rig_transmission::plots::{self, Subject};
+use cvtcycle::report::charts::rig_transmission::strip_down;
+use serde_json::{Value, json};
 
 use crate::args::problems::bad_value;
 use crate::args::ranges::{values, values_or_words};
@@ -27,8 +25,6 @@ use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 const RATIO: Bound = Bound::closed(0.3, 3.0);
 /// Input speeds that can be tested, rpm.
 const SPEED: Bound = Bound::closed(100.0, 8000.0);
-/// Largest relative error of the energy balance of a transient.
-const MAX_ENERGY_ERROR: f64 = 1e-9;
 
 /// Arguments of `rig transmission`.
 #[derive(Args, Clone, Debug)]
@@ -48,7 +44,7 @@ the keys of the rig."
 )]
 pub struct RigTransmissionArgs {
     /// Test: all, steady, loaded, strip_down, transient or second_box
-    #[arg(long, value_name = "TEST", default_value = "all", value_parser = Names(tests), hide_possible_values = true)]
+    #[arg(long, value_name = "TEST", default_value = "all", value_parser = Names(|| [vec!["all"], names_of(&RigTest::NAMES)].concat()), hide_possible_values = true)]
     test: String,
     #[command(flatten)]
     car: VehicleArgs,
@@ -72,33 +68,10 @@ pub struct RigTransmissionArgs {
     output: OutputArgs,
 }
 
-/// Tests of the rig.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum RigTest {
-    All,
-    Steady,
-    Loaded,
-    StripDown,
-    Transient,
-    SecondBox,
-}
-
-const TESTS: [(&str, RigTest); 6] = [
-    ("all", RigTest::All),
-    ("steady", RigTest::Steady),
-    ("loaded", RigTest::Loaded),
-    ("strip_down", RigTest::StripDown),
-    ("transient", RigTest::Transient),
-    ("second_box", RigTest::SecondBox),
-];
-
-fn tests() -> Vec<&'static str> {
-    names_of(&TESTS)
-}
-
 /// Checked input of the tests.
 pub struct RigPlan {
-    test: RigTest,
+    /// None for all.
+    test: Option<RigTest>,
     setup: Setup,
     conditions: Conditions,
     points: TestPoints,
@@ -107,36 +80,23 @@ pub struct RigPlan {
     out: Option<OutputDir>,
 }
 
-/// Results of the tests; empty for tests that did not run.
-#[derive(Debug, Default)]
-struct RigResults {
-    steady: Vec<SteadyPoint>,
-    loaded: Vec<SteadyPoint>,
-    strip_down: Vec<StripDown>,
-    loops: Vec<Loop>,
-    second_box: Vec<TwoBoxes>,
-}
-
 impl Execute for RigTransmissionArgs {
     type Plan = RigPlan;
 
     fn plan(&self, problems: &mut Problems) -> Option<RigPlan> {
-        let test = problems.take(one_of("--test", &self.test, &TESTS));
+        let tests = RigTest::NAMES.map(|(name, test)| (name, Some(test)));
+        let tests = [&[("all", None)], tests.as_slice()].concat();
+        let test = problems.take(one_of("--test", &self.test, &tests));
         let formulation = self.formulation.get(problems);
         let mut options = self.car.options(formulation, problems);
         let is_of_rig = |by: &mut Override| by.target() == Target::Rig;
         let of_rig: Vec<Override> = options.set.extract_if(.., is_of_rig).collect();
         let vehicle = &self.car.vehicle;
         let setup = problems.take(setup::load(vehicle, &options));
-        if setup
-            .as_ref()
-            .is_some_and(|setup| !setup.transmission().is_cvt())
-        {
-            let hint = format!(
-                "`cvtcycle losses --vehicle {vehicle}` computes the losses of a manual gearbox"
-            );
-            problems.add(self.car.needs_cvt(&hint));
-        }
+        let hint = format!(
+            "`cvtcycle losses --vehicle {vehicle}` computes the losses of a manual gearbox"
+        );
+        self.car.need_cvt(setup.as_ref(), &hint, problems);
         let conditions = problems.take(cvtcycle::config::rig::load(&of_rig));
         let conditions = conditions.map(|(conditions, _)| conditions);
         let points = self.points(conditions.as_ref(), problems);
@@ -157,13 +117,20 @@ impl Execute for RigTransmissionArgs {
 
     fn run(&self, mut plan: RigPlan, terminal: Terminal) -> CommandResult {
         let out = plan.out.take();
-        let found = plan.run();
+        let bench = Bench::new(&plan.setup);
+        let found = RigResults::run(&bench, &plan.conditions, &plan.points, plan.test);
         let failures = found.failures(&plan.conditions);
-        let json = json_text(&json::summary(&plan, &found, &failures))?;
-        let files = match out {
-            Some(dir) => files::write(dir, &json, &plan, &found)?,
-            None => WrittenFiles::default(),
-        };
+        let json = json_text(&plan.json(&found, &failures))?;
+        let files = WrittenFiles::write(out, |dir| {
+            dir.put("summary.json", &json)?;
+            for (name, csv) in found.tables() {
+                dir.put(name, csv)?;
+            }
+            for (name, svg) in plan.pictures(&found) {
+                dir.put(&name, svg)?;
+            }
+            Ok("")
+        })?;
         let results = Results {
             json,
             failures,
@@ -219,14 +186,13 @@ fn check_ratios(setup: &Setup, points: &TestPoints, problems: &mut Problems) {
     };
     let (low, high) = solvable_ratios(&cvt.belt);
     let allowed = format!("{low} to {high} with this belt");
+    let hint = "check the belt length and the centre distance, or choose other ratios with --ratio";
     for ratio in points
         .ratios
         .iter()
         .filter(|ratio| !(low..=high).contains(*ratio))
     {
         let message = format!("the belt does not fit around the pulleys at ratio {ratio}");
-        let hint =
-            "check the belt length and the centre distance, or choose other ratios with --ratio";
         problems.add(bad_value(
             "--ratio",
             &ratio.to_string(),
@@ -238,80 +204,34 @@ fn check_ratios(setup: &Setup, points: &TestPoints, problems: &mut Problems) {
 }
 
 impl RigPlan {
-    fn run(&self) -> RigResults {
-        let bench = Bench::new(&self.setup);
-        let (c, points) = (&self.conditions, &self.points);
-        let wanted = |test: RigTest| self.test == RigTest::All || self.test == test;
-        let mut found = RigResults::default();
-        if wanted(RigTest::Steady) {
-            found.steady = rig::steady(&bench, c, points);
+    fn json(&self, found: &RigResults, failures: &[String]) -> Value {
+        let mut all = json!({
+            "command": "rig transmission",
+            "vehicle": self.setup.name,
+            "lubricant": self.setup.oils().0.name,
+            "formulation": self.formulation,
+            "set": self.set,
+        });
+        if let Value::Object(entries) = &mut all {
+            entries.extend(found.json(&self.points));
+            entries.insert("failed_checks".to_owned(), json!(failures));
         }
-        if wanted(RigTest::Loaded) {
-            found.loaded = rig::loaded(&bench, c, points);
-        }
-        if wanted(RigTest::StripDown) {
-            found.strip_down = rig::strip_down(&bench, c, points);
-        }
-        if wanted(RigTest::Transient) {
-            let transient = |ratio: &f64| rig::transient(&bench, c, *ratio);
-            found.loops = points.ratios.iter().map(transient).collect();
-        }
-        if wanted(RigTest::SecondBox) {
-            found.second_box = rig::second_box(&bench, c, points);
-        }
-        found
-    }
-}
-
-impl RigResults {
-    /// Every operating point that was solved.
-    fn answers(&self) -> impl Iterator<Item = &BenchAnswer> {
-        let steady = self.steady.iter().chain(&self.loaded).map(|p| &p.answer);
-        let boxes = self
-            .second_box
-            .iter()
-            .flat_map(|t| [&t.first.answer, &t.second.answer]);
-        let stages = self.strip_down.iter().flat_map(|s| &s.stages);
-        let moments = self
-            .loops
-            .iter()
-            .flat_map(|l| &l.moments)
-            .map(|m| &m.answer);
-        steady.chain(boxes).chain(stages).chain(moments)
+        all
     }
 
-    /// Number of points with a flag.
-    fn flagged(&self, flag: Flags) -> usize {
-        self.answers().filter(|a| a.flags.contains(flag)).count()
-    }
-
-    /// One line for each failed check.
-    fn failures(&self, conditions: &Conditions) -> Vec<String> {
-        let mut failed = Vec::new();
-        let unsolved = self.flagged(Flags::NOT_CONVERGED);
-        if unsolved > 0 {
-            failed.push(format!(
-                "check failed: {unsolved} operating points without a solution"
-            ));
-        }
-        let (start, end) = (
-            conditions.transient.start_k - ZERO_DEGC_K,
-            conditions.transient.end_k - ZERO_DEGC_K,
-        );
-        for l in &self.loops {
-            let (name, error) = (conditions.ratio_name(l.ratio), l.energy.error());
-            if !l.complete {
-                failed.push(format!(
-                    "check failed: the transient at {name} stops on its way from {start:.0} to {end:.0} degC and back"
-                ));
-            }
-            let balanced = error.abs() <= MAX_ENERGY_ERROR;
-            if !balanced {
-                failed.push(format!(
-                    "check failed: heat of the transient at {name} does not balance: relative error {error:.0e}"
-                ));
-            }
-        }
-        failed
+    fn pictures(&self, found: &RigResults) -> impl Iterator<Item = (String, String)> {
+        let (vehicle, conditions) = (&self.setup.name, &self.conditions);
+        let subject = Subject {
+            vehicle,
+            conditions,
+        };
+        let pictures = [
+            plots::steady(&found.steady, &subject),
+            plots::loaded(&found.loaded, &subject),
+            strip_down::strip_down(&found.strip_down, &subject),
+            plots::transients(&found.loops, &subject),
+            plots::second_box(&found.second_box, &subject),
+        ];
+        pictures.into_iter().flatten()
     }
 }

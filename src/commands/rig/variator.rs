@@ -1,22 +1,22 @@
 //! `rig variator`: the belt alone on its rig, slip against output torque.
 
-mod files;
 mod plan;
 mod plots;
 mod tables;
 
 use clap::Args;
-
-use crate::args::{FormulationArgs, OutArgs, OutputArgs, VehicleArgs};
-use crate::commands::Execute;
-use crate::print::{CommandResult, Results, Terminal, WrittenFiles, to_stdout};
 use cvtcycle::config::Problems;
+
+use crate::args::{FormulationArgs, OutArgs, TableOutputArgs, VehicleArgs};
+use crate::commands::Execute;
+use crate::print::{CommandResult, Results, Terminal, WrittenFiles};
 use plan::VariatorPlan;
 
 /// Arguments of `rig variator`.
 #[derive(Args, Clone, Debug)]
 #[command(
     mut_arg("out", |out| out.help("Write curves.csv, points.csv, summary.json and plots (SVG) into this directory")),
+    mut_arg("format", |format| format.help("What to print: a line for each curve, or CSV with all points")),
     after_help = "\
 Examples:
   cvtcycle rig variator
@@ -60,28 +60,10 @@ pub struct RigVariatorArgs {
     pulses: String,
     #[command(flatten)]
     formulation: FormulationArgs,
-    /// What to print: a line for each curve, or CSV with all points
-    #[arg(
-        long,
-        value_enum,
-        value_name = "FORMAT",
-        default_value = "table",
-        conflicts_with = "json"
-    )]
-    format: VariatorFormat,
     #[command(flatten)]
     out: OutArgs,
     #[command(flatten)]
-    output: OutputArgs,
-}
-
-/// Form of standard output.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum VariatorFormat {
-    /// A line for each curve
-    Table,
-    /// All points as CSV
-    Csv,
+    output: TableOutputArgs,
 }
 
 impl Execute for RigVariatorArgs {
@@ -93,23 +75,22 @@ impl Execute for RigVariatorArgs {
 
     fn run(&self, mut plan: VariatorPlan, terminal: Terminal) -> CommandResult {
         let out = plan.out.take();
-        let curves = plan.curves();
-        let files = match out {
-            Some(dir) => files::write(dir, &plan, &curves)?,
-            None => WrittenFiles::default(),
-        };
+        let found = plan.solve();
+        let files = WrittenFiles::write(out, |dir| {
+            dir.write("curves.csv", |out| found.write_curves(out))?;
+            dir.write("points.csv", |out| found.write_points(out))?;
+            dir.write("summary.json", |out| found.write_json(out))?;
+            for (name, svg) in plots::plots(&found) {
+                dir.put(name, svg)?;
+            }
+            Ok("")
+        })?;
+        self.output
+            .stream(|out| found.write_json(out), |out| found.write_points(out))?;
         let results = Results {
             files,
             ..Results::default()
         };
-        if self.output.json() {
-            to_stdout(|out| files::write_json(out, &plan, &curves))?;
-        } else if self.format == VariatorFormat::Csv {
-            to_stdout(|out| files::write_points(out, &curves))?;
-        } else {
-            let tables = || tables::tables(&plan, &curves, terminal.stdout);
-            return Ok(results.output(&self.output, tables));
-        }
-        Ok(results.warnings())
+        Ok(results.table_output(&self.output, || tables::tables(&found, terminal.stdout)))
     }
 }

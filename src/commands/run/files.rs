@@ -10,9 +10,6 @@ use cvtcycle::output::trace::{columns_for, write_trace};
 use cvtcycle::report::charts::{self, PlotRun};
 use cvtcycle::study::store::write_trace_parquet;
 
-use crate::args::names_of;
-use crate::print::WrittenFiles;
-
 /// Formats of the traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceFormat {
@@ -28,99 +25,74 @@ impl TraceFormat {
         ("parquet", TraceFormat::Parquet),
         ("both", TraceFormat::Both),
     ];
-
-    /// Names for completions.
-    pub fn names() -> Vec<&'static str> {
-        names_of(&TraceFormat::NAMES)
-    }
 }
 
-/// Writes all files of the run under their names, or none.
+/// Writes the traces and the plots.
 pub fn write(
-    mut dir: OutputDir,
+    dir: &mut OutputDir,
     format: TraceFormat,
-    json: &str,
     summary: &Summary,
     cycle: &Cycle,
     driven: &[Driven],
-) -> Result<WrittenFiles, Problem> {
-    dir.write("summary.json", |out| out.write_all(json.as_bytes()))?;
-    let phases = if cycle.phases.is_empty() {
-        std::slice::from_ref(&cycle.name)
-    } else {
-        &cycle.phases
+) -> Result<(), Problem> {
+    let phases = match cycle.phases.is_empty() {
+        true => std::slice::from_ref(&cycle.name),
+        false => &cycle.phases,
     };
-    let columns = |car: &Driven| {
-        columns_for(
-            car.setup.transmission().is_cvt(),
-            &car.setup.transmission().components(),
-        )
-    };
-    let histories: Vec<History> = driven
-        .iter()
-        .map(|car| History::of(&car.outcome.rows, &columns(car), phases))
-        .collect();
+    let histories = driven.iter().map(|car| {
+        let transmission = car.setup.transmission();
+        let columns = columns_for(transmission.is_cvt(), &transmission.components());
+        let history = History::of(&car.outcome.rows, &columns, phases);
+        (columns, history)
+    });
+    let histories: Vec<_> = histories.collect();
     let mut runs = Vec::new();
-    for ((car, run), history) in driven.iter().zip(&summary.runs).zip(&histories) {
-        let (rows, columns) = (&car.outcome.rows, columns(car));
+    for ((car, run), (columns, history)) in driven.iter().zip(&summary.runs).zip(&histories) {
+        let (name, rows) = (car.name, &car.outcome.rows);
         if format != TraceFormat::Parquet {
-            dir.write(&format!("trace_{}.csv", car.name), |out| {
-                write_trace(out, &columns, rows, phases)
+            dir.write(&format!("trace_{name}.csv"), |out| {
+                write_trace(out, columns, rows, phases)
             })?;
         }
         if format != TraceFormat::Csv {
-            dir.write(&format!("trace_{}.parquet", car.name), |out| {
-                write_trace_parquet(out, &columns, rows, phases)
+            dir.write(&format!("trace_{name}.parquet"), |out| {
+                write_trace_parquet(out, columns, rows, phases)
             })?;
         }
         let plot = PlotRun {
-            name: car.name,
+            name,
             history,
             fuel_map: Some(fuel_map(car.setup)),
             group_fuel: group_fuel(run),
         };
-        write_plots(&mut dir, &plot)?;
+        let pressure = history
+            .is_cvt()
+            .then(|| ("pressure", charts::pressure(&plot)));
+        let plots = [
+            Some(("driveline", charts::driveline(&plot))),
+            pressure,
+            Some(("temperatures", charts::temperatures(&plot))),
+            Some(("losses", charts::losses(&plot))),
+            Some(("operating_points", charts::operating_points(&plot))),
+        ];
+        for (kind, picture) in plots.into_iter().flatten() {
+            dir.put(&format!("{kind}_{name}.svg"), picture.svg)?;
+        }
         runs.push(plot);
     }
-    put(
-        &mut dir,
-        "fuel_comparison.svg",
-        &charts::fuel_bars(&runs).svg,
-    )?;
-    WrittenFiles::commit(dir)
+    dir.put("fuel_comparison.svg", charts::fuel_bars(&runs).svg)
 }
 
-fn write_plots(dir: &mut OutputDir, run: &PlotRun) -> Result<(), Problem> {
-    let mut plots = vec![("driveline", charts::driveline(run))];
-    if run.history.is_cvt() {
-        plots.push(("pressure", charts::pressure(run)));
-    }
-    plots.push(("temperatures", charts::temperatures(run)));
-    plots.push(("losses", charts::losses(run)));
-    plots.push(("operating_points", charts::operating_points(run)));
-    plots
-        .into_iter()
-        .try_for_each(|(kind, picture)| put(dir, &format!("{kind}_{}.svg", run.name), &picture.svg))
-}
-
-fn put(dir: &mut OutputDir, name: &str, text: &str) -> Result<(), Problem> {
-    dir.write(name, |out| out.write_all(text.as_bytes()))
-}
-
+/// Fuel of each phase, of the cycle, and weighted where the cycle is, L/100 km.
 fn group_fuel(run: &RunSummary) -> Vec<(String, f64)> {
-    let number = |x: Option<f64>| x.unwrap_or(f64::NAN);
-    let mut groups: Vec<(String, f64)> = Vec::new();
+    let total = [("total", run.fuel_l_per_100km)].into_iter();
+    let weighted = run
+        .weighted_fuel_l_per_100km
+        .map(|fuel| ("weighted", Some(fuel)));
     // The only group of a cycle is its total.
-    if run.phases.len() > 1 {
-        groups.extend(
-            run.phases
-                .iter()
-                .map(|p| (p.name.clone(), number(p.fuel_l_per_100km))),
-        );
-    }
-    groups.push(("total".to_owned(), number(run.fuel_l_per_100km)));
-    if let Some(weighted) = run.weighted_fuel_l_per_100km {
-        groups.push(("weighted".to_owned(), weighted));
-    }
-    groups
+    let phases = run.phases.iter().filter(|_| run.phases.len() > 1);
+    let phases = phases.map(|phase| (phase.name.as_str(), phase.fuel_l_per_100km));
+    let all = phases.chain(total).chain(weighted);
+    all.map(|(name, fuel)| (name.to_owned(), fuel.unwrap_or(f64::NAN)))
+        .collect()
 }

@@ -8,7 +8,6 @@ use cvtcycle::output::record::{Record, SCHEMA};
 use cvtcycle::study::sensitivity::{Named, sensitivity};
 
 use super::vehicles::RunVehicle;
-use crate::args::names_of;
 use cvtcycle::output::PROGRAM;
 
 /// Steps of a cycle up to which `auto` computes sensitivities, which take some seven hundred runs.
@@ -32,11 +31,6 @@ impl SensitivityMode {
         ("always", SensitivityMode::Always),
         ("never", SensitivityMode::Never),
     ];
-
-    /// Names for completions.
-    pub fn names() -> Vec<&'static str> {
-        names_of(&SensitivityMode::NAMES)
-    }
 }
 
 /// Inputs of a run.

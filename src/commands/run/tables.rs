@@ -2,29 +2,27 @@
 
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::output::Component;
+use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
 use cvtcycle::output::summary::{Comparison, RunSummary, StartWord, Summary};
+use cvtcycle::output::table::{TextTable, WIDTH};
 
 use crate::print::colour::Paint;
-use crate::print::table::{TextTable, WIDTH};
-use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
+use crate::print::sections;
 
 /// Widths of the two leading columns, which align the tables.
 const LEAD: [usize; 2] = [22, 8];
 
-/// Everything that a person wants to see of a run.
+/// All results for people.
 pub fn tables(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
     let comparisons = summary.comparison.iter().map(|c| compared(summary, c));
-    let sections = [
+    let body = [
         ("Fuel", fuel(summary) + &comparisons.collect::<String>()),
         ("Transmission losses", losses(summary)),
         ("Where the fuel energy went", balance(summary)),
         ("End temperatures", ends(summary)),
         ("Time with", flags(summary)),
     ];
-    let section = |(title, body): &(&str, String)| format!("\n{}\n{body}", paint.heading(title));
-    head(summary, cycle, paint)
-        + &sections.iter().map(section).collect::<String>()
-        + &notes(summary)
+    head(summary, cycle, paint) + &sections(body, paint) + &notes(summary)
 }
 
 fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
@@ -36,25 +34,23 @@ fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
         StartWord::Degc(degc) => format!("start with everything at {} degC", plain(*degc)),
     };
     let settings = &summary.settings;
-    let mut text = format!(
-        "{}  {}\nambient {} degC, {start}\nsteps of {} s, belt model {}\n",
+    let (name, title, belt) = (
         paint.heading(&summary.cycle),
-        cycle.title,
-        plain(summary.ambient_degc),
-        plain(settings.dt_s),
-        settings.formulation
+        &cycle.title,
+        &settings.formulation,
+    );
+    let (ambient, dt) = (plain(summary.ambient_degc), plain(settings.dt_s));
+    let mut text = format!(
+        "{name}  {title}\nambient {ambient} degC, {start}\nsteps of {dt} s, belt model {belt}\n"
     );
     for (option, list) in [("--set", &settings.set), ("--set-all", &settings.set_all)] {
         text.extend(list.iter().map(|set| format!("{option} {set}\n")));
     }
     let mut table = TextTable::new("lll");
     for run in &summary.runs {
-        table.row([run.role.as_str(), &run.vehicle, &run.title]);
-        table.row([
-            "",
-            "",
-            &format!("oils {}, {}", run.lubricant, run.engine_oil),
-        ]);
+        let oils = format!("oils {}, {}", run.lubricant, run.engine_oil);
+        table.row([&run.role, &run.vehicle, &run.title]);
+        table.row(["", "", &oils]);
     }
     text + "\n" + &table.text()
 }
@@ -75,19 +71,21 @@ impl<'a> ByVehicle<'a> {
     }
 
     fn add(&mut self, name: &str, unit: &str, cell: impl Fn(&RunSummary) -> String) {
-        let head = [name.to_owned(), unit.to_owned()];
-        self.table
-            .row(head.into_iter().chain(self.runs.iter().map(cell)));
+        let head = [name.to_owned(), unit.to_owned()].into_iter();
+        self.table.row(head.chain(self.runs.iter().map(cell)));
     }
 
-    fn add_number(
+    /// A row of numbers; none where no vehicle has the number.
+    fn number(
         &mut self,
         name: &str,
         unit: &str,
         decimals: usize,
         get: impl Fn(&RunSummary) -> Option<f64>,
     ) {
-        self.add(name, unit, |run| fixed(get(run), decimals));
+        if self.runs.iter().any(|run| get(run).is_some()) {
+            self.add(name, unit, |run| fixed(get(run), decimals));
+        }
     }
 
     fn text(self, widths: &[usize]) -> String {
@@ -98,27 +96,23 @@ impl<'a> ByVehicle<'a> {
 fn fuel(summary: &Summary) -> String {
     let mut table = ByVehicle::new(summary);
     let groups = summary.runs.first().map_or(&[][..], |run| &run.phases);
-    if groups.len() > 1 {
-        for (k, group) in groups.iter().enumerate() {
-            let fuel = |run: &RunSummary| run.phases.get(k)?.fuel_l_per_100km;
-            table.add_number(&group.name, "L/100 km", 2, fuel);
-        }
-    }
-    table.add_number("total", "L/100 km", 2, |run| run.fuel_l_per_100km);
-    if summary
-        .runs
-        .iter()
-        .any(|run| run.weighted_fuel_l_per_100km.is_some())
-    {
-        table.add_number("weighted 0.43 / 0.57", "L/100 km", 2, |run| {
-            run.weighted_fuel_l_per_100km
+    for (k, group) in groups.iter().enumerate().filter(|_| groups.len() > 1) {
+        table.add(&group.name, "L/100 km", |run| {
+            fixed(
+                run.phases.get(k).and_then(|phase| phase.fuel_l_per_100km),
+                2,
+            )
         });
-        table.add_number("", "CO2 g/km", 1, |run| run.weighted_co2_g_per_km);
     }
-    table.add_number("", "mpg (UK)", 1, |run| run.mpg_uk);
-    table.add_number("", "mpg (US)", 1, |run| run.mpg_us);
-    table.add_number("CO2, total", "g/km", 1, |run| run.co2_g_per_km);
-    table.add_number("driven distance", "km", 3, |run| Some(run.distance_km));
+    table.add("total", "L/100 km", |run| fixed(run.fuel_l_per_100km, 2));
+    table.number("weighted 0.43 / 0.57", "L/100 km", 2, |run| {
+        run.weighted_fuel_l_per_100km
+    });
+    table.number("", "CO2 g/km", 1, |run| run.weighted_co2_g_per_km);
+    table.add("", "mpg (UK)", |run| fixed(run.mpg_uk, 1));
+    table.add("", "mpg (US)", |run| fixed(run.mpg_us, 1));
+    table.add("CO2, total", "g/km", |run| fixed(run.co2_g_per_km, 1));
+    table.add("driven distance", "km", |run| fixed(run.distance_km, 3));
     table.add("fuel at standstill", "% fuel", |run| {
         percent(run.standstill_fuel_g, run.fuel_kg * 1e3, 1)
     });
@@ -143,7 +137,7 @@ fn compared(summary: &Summary, comparison: &Comparison) -> String {
         .collect();
     if parts.len() > 1 {
         let detail = format!("({})", parts.join(", "));
-        let fits = line.len() + detail.len() < usize::from(WIDTH);
+        let fits = line.len() + detail.len() < WIDTH;
         line += &format!("{}{detail}", if fits { " " } else { "\n  " });
     }
     line + "\n"
@@ -151,14 +145,10 @@ fn compared(summary: &Summary, comparison: &Comparison) -> String {
 
 /// Energy in kJ and as per cent of the fuel energy.
 fn kj_and_share(kj: Option<f64>, run: &RunSummary) -> String {
-    match kj {
-        Some(_) => format!(
-            "{:>7} {:>7}",
-            fixed(kj, 1),
-            percent(kj, run.fuel_energy_kj, 1)
-        ),
-        None => NONE.to_owned(),
-    }
+    let share = percent(kj, run.fuel_energy_kj, 1);
+    kj.map_or(NONE.to_owned(), |kj| {
+        format!("{:>7} {share:>7}", fixed(kj, 1))
+    })
 }
 
 fn losses(summary: &Summary) -> String {
@@ -166,17 +156,12 @@ fn losses(summary: &Summary) -> String {
     table.add("", "", |_| "kJ  % fuel".into());
     for component in Component::ALL {
         let name = component.name();
-        let entry = |run: &RunSummary| {
-            run.loss_kj
-                .0
-                .iter()
-                .find(|(own, _)| own == name)
-                .map(|(_, kj)| *kj)
-        };
-        if summary.runs.iter().any(|run| entry(run).is_some()) {
-            let cell =
-                |run: &RunSummary| entry(run).map_or_else(String::new, |kj| kj_and_share(kj, run));
-            table.add(&name.replace('_', " "), "", cell);
+        let has = |run: &RunSummary| run.loss_kj.iter().any(|(own, _)| own == name);
+        if summary.runs.iter().any(has) {
+            table.add(&name.replace('_', " "), "", |run| match has(run) {
+                true => kj_and_share(run.loss_kj.get(name), run),
+                false => String::new(),
+            });
         }
     }
     table.add("transmission total", "", |run| {
@@ -208,43 +193,36 @@ fn balance(summary: &Summary) -> String {
             table.add(name, "% fuel", share);
         }
     }
-    table.add_number("fuel energy", "kJ", 0, |run| Some(run.fuel_energy_kj));
+    table.add("fuel energy", "kJ", |run| fixed(run.fuel_energy_kj, 0));
     table.text(&LEAD)
 }
 
 fn ends(summary: &Summary) -> String {
     let mut table = ByVehicle::new(summary);
-    let names = summary
+    for (name, _) in summary
         .runs
         .iter()
         .take(1)
-        .flat_map(|run| run.end_degc.iter());
-    for (name, _) in names {
-        if summary
-            .runs
-            .iter()
-            .any(|run| run.end_degc.get(name).is_some())
-        {
-            table.add_number(&name.replace('_', " "), "degC", 1, |run| {
-                run.end_degc.get(name)
-            });
-        }
+        .flat_map(|run| run.end_degc.iter())
+    {
+        table.number(&name.replace('_', " "), "degC", 1, |run| {
+            run.end_degc.get(name)
+        });
     }
     table.text(&LEAD)
 }
 
 fn flags(summary: &Summary) -> String {
     let mut table = ByVehicle::new(summary);
-    let seconds = |run: &RunSummary, name: &str| run.flags_s.get(name).filter(|s| *s > 0.0);
-    let names = summary
+    for (name, _) in summary
         .runs
         .iter()
         .take(1)
-        .flat_map(|run| run.flags_s.iter());
-    for (name, _) in names {
-        if summary.runs.iter().any(|run| seconds(run, name).is_some()) {
-            table.add_number(name, "s", 1, |run| seconds(run, name));
-        }
+        .flat_map(|run| run.flags_s.iter())
+    {
+        table.number(name, "s", 1, |run| {
+            run.flags_s.get(name).filter(|s| *s > 0.0)
+        });
     }
     table.text(&LEAD)
 }
@@ -252,13 +230,13 @@ fn flags(summary: &Summary) -> String {
 fn notes(summary: &Summary) -> String {
     let mut text = "\n".to_owned();
     for run in &summary.runs {
+        let name = &run.vehicle;
         if let Some(schedule) = &run.gear_schedule {
-            text += &format!("{}: {schedule}\n", run.vehicle);
+            text += &format!("{name}: {schedule}\n");
         }
         if let Some(safety) = run.min_clamp_safety {
             text += &format!(
-                "{}: smallest clamp safety factor {}\n",
-                run.vehicle,
+                "{name}: smallest clamp safety factor {}\n",
                 fixed(safety, 2)
             );
         }
@@ -278,13 +256,10 @@ fn notes(summary: &Summary) -> String {
 
 /// One line for each failed check.
 pub fn failures(summary: &Summary) -> Vec<String> {
-    let of_run = |run: &RunSummary| {
-        run.failed_checks
-            .iter()
-            .map(|check| failure(run, check))
-            .collect::<Vec<_>>()
-    };
-    summary.runs.iter().flat_map(of_run).collect()
+    let of = |run| move |check: &String| failure(run, check);
+    let runs = summary.runs.iter();
+    runs.flat_map(|run| run.failed_checks.iter().map(of(run)))
+        .collect()
 }
 
 fn failure(run: &RunSummary, check: &str) -> String {
@@ -292,14 +267,11 @@ fn failure(run: &RunSummary, check: &str) -> String {
     let what = match check {
         "missed_trace" => {
             let worst = run.worst_deficit.as_ref().map_or_else(String::new, |d| {
-                let torque = d
-                    .wheel_torque_nm
-                    .map(|nm| format!(" or {} Nm at the wheels", fixed(nm, 0)));
-                let (at, phase, kw) = (fixed(d.at_s, 1), &d.phase, fixed(d.power_w / 1e3, 1));
-                format!(
-                    ", worst at {at} s in {phase}: {kw} kW{} missing",
-                    torque.unwrap_or_default()
-                )
+                let torque = d.wheel_torque_nm;
+                let torque = torque.map(|nm| format!(" or {} Nm at the wheels", fixed(nm, 0)));
+                let (torque, phase) = (torque.unwrap_or_default(), &d.phase);
+                let (at, kw) = (fixed(d.at_s, 1), fixed(d.power_w / 1e3, 1));
+                format!(", worst at {at} s in {phase}: {kw} kW{torque} missing")
             });
             format!("misses the trace for {seconds} s{worst}")
         }

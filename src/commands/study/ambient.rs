@@ -79,86 +79,83 @@ impl PlanText {
         self.0.push((option, line.into()));
     }
 
+    /// Adds `key = value`, if there is a value.
+    fn entry(&mut self, option: &'static str, key: &str, value: Option<String>) {
+        if let Some(value) = value {
+            self.line(option, format!("{key} = {value}"));
+        }
+    }
+
     fn text(&self) -> String {
         self.0.iter().map(|(_, line)| format!("{line}\n")).collect()
     }
 
     /// The problem of a line of the plan, under the option that made the line.
-    fn as_option(&self, mut problem: Problem) -> Problem {
+    fn as_option(&self, problem: Problem) -> Problem {
         if problem.place.file_name() != Some(PLAN) {
             return problem;
         }
         let key = problem.key.trim_start_matches("study.");
-        let by_key = self
-            .0
-            .iter()
-            .find(|(_, line)| line.split(" = ").next() == Some(key));
-        let by_line = problem
+        let line = problem
             .place
             .line
             .checked_sub(1)
             .and_then(|k| self.0.get(k));
-        let option = by_line.or(by_key).map_or("", |(option, _)| *option);
-        let option = if option.is_empty() {
-            "--ambient"
-        } else {
-            option
+        let by_key = || {
+            self.0
+                .iter()
+                .find(|(_, line)| line.split(" = ").next() == Some(key))
         };
-        problem.place = Place::file(option);
-        option.clone_into(&mut problem.key);
-        problem
+        let option = match line.or_else(by_key) {
+            Some((option, _)) if !option.is_empty() => *option,
+            _ => "--ambient",
+        };
+        problem.at(Place::file(option)).key(option)
     }
 }
 
 impl StudyAmbientArgs {
     fn plan_text(&self) -> PlanText {
         let (car, comparison) = (&self.car, &self.comparison);
+        let title = format!("{} on {}, cold to warm", car.vehicle, comparison.cycle);
+        let baselines = (!comparison.baseline.is_empty()).then(|| {
+            let named: Vec<&String> = comparison.named_baselines().collect();
+            list(&named)
+        });
+        let sets = |sets: &[String]| (!sets.is_empty()).then(|| list(sets));
+        let keep = self.run.out.out.as_ref().map(|_| list(&TRACES));
+        let values = |text: &str| Some(format!("[{}]", numbers_or_words(text)));
         let mut text = PlanText::default();
         text.line("", "# Made by `cvtcycle study ambient`.");
         text.line("", "[study]");
-        let title = format!("{} on {}, cold to warm", car.vehicle, comparison.cycle);
-        text.line("", format!("title = {}", quoted(&title)));
-        text.line("--vehicle", format!("vehicle = {}", quoted(&car.vehicle)));
-        if !comparison.baseline.is_empty() {
-            let named: Vec<&String> = comparison.named_baselines().collect();
-            text.line("--baseline", format!("baselines = {}", list(&named)));
-        }
-        text.line("--cycle", format!("cycle = {}", quoted(&comparison.cycle)));
-        if let Some(oil) = &car.lubricant {
-            text.line("--lubricant", format!("lubricant = {}", quoted(oil)));
-        }
-        if let Some(oil) = &comparison.engine_oil {
-            text.line("--engine-oil", format!("engine_oil = {}", quoted(oil)));
-        }
-        if !car.set.is_empty() {
-            text.line("--set", format!("set = {}", list(&car.set)));
-        }
-        if !comparison.set_all.is_empty() {
-            text.line(
-                "--set-all",
-                format!("set_all = {}", list(&comparison.set_all)),
-            );
-        }
-        if self.run.out.out.is_some() {
-            text.line("", format!("keep = {}", list(&TRACES)));
-        }
+        text.entry("", "title", Some(quoted(&title)));
+        text.entry("--vehicle", "vehicle", Some(quoted(&car.vehicle)));
+        text.entry("--baseline", "baselines", baselines);
+        text.entry("--cycle", "cycle", Some(quoted(&comparison.cycle)));
+        text.entry(
+            "--lubricant",
+            "lubricant",
+            car.lubricant.as_deref().map(quoted),
+        );
+        text.entry(
+            "--engine-oil",
+            "engine_oil",
+            comparison.engine_oil.as_deref().map(quoted),
+        );
+        text.entry("--set", "set", sets(&car.set));
+        text.entry("--set-all", "set_all", sets(&comparison.set_all));
+        text.entry("", "keep", keep);
         for line in ["", "[study.design.grid]", ""] {
             text.line("", line);
         }
         text.line("--ambient", "[[factor]]");
-        text.line("--ambient", "key = \"ambient_degc\"");
-        text.line("--ambient", "name = \"ambient\"");
-        text.line(
-            "--ambient",
-            format!("values = [{}]", numbers_or_words(&self.ambient)),
-        );
+        text.entry("--ambient", "key", Some(quoted("ambient_degc")));
+        text.entry("--ambient", "name", Some(quoted("ambient")));
+        text.entry("--ambient", "values", values(&self.ambient));
         text.line("", "");
         text.line("--start", "[[factor]]");
-        text.line("--start", "key = \"start\"");
-        text.line(
-            "--start",
-            format!("values = [{}]", numbers_or_words(&self.start)),
-        );
+        text.entry("--start", "key", Some(quoted("start")));
+        text.entry("--start", "values", values(&self.start));
         text
     }
 }

@@ -88,19 +88,12 @@ impl StudyRunArgs {
         if self.compute(study, &dir)? == End::Stopped {
             return Ok(self.stopped(study, &dir));
         }
-        let found = dir.study()?;
-        let found = StudyResults::of(StudyManifest::of(study), found)?;
-        let files = match &self.out.out {
-            Some(_) => dir.finish(&files(&found)?)?,
-            None => Vec::new(),
+        let found = StudyResults::of(StudyManifest::of(study), dir.study()?)?;
+        let list = match &self.out.out {
+            Some(_) => tables::written(dir.path(), &dir.finish(&files(&found)?)?),
+            None => String::new(),
         };
-        let tables = || {
-            let list = match files.as_slice() {
-                [] => String::new(),
-                files => tables::written(dir.path(), files),
-            };
-            tables::tables(&found, terminal.stdout) + &list
-        };
+        let tables = || tables::tables(&found, terminal.stdout) + &list;
         Ok(results(&found)?.output(&self.output, tables))
     }
 
@@ -115,7 +108,8 @@ impl StudyRunArgs {
 
     /// Runs the parts that are missing in the directory.
     fn compute(&self, study: &Study, dir: &StudyDir) -> Result<End, Problems> {
-        let missing: BTreeSet<u64> = dir.missing().into_iter().map(|part| part as u64).collect();
+        let missing = dir.missing().into_iter().map(|part| part as u64);
+        let missing: BTreeSet<u64> = missing.collect();
         let done = (0..study.parts())
             .filter(|part| !missing.contains(part))
             .collect();
@@ -172,10 +166,7 @@ fn files(study: &StudyResults) -> Result<Vec<(String, Vec<u8>)>, Problems> {
         &study.answer,
         &study.outline,
     ));
-    let frame = study.frame()?;
-    let pictures = study_pictures(&study.answer, &frame, &study.warm_ups);
-    for (name, picture) in pictures? {
-        files.push((format!("{name}.svg"), picture.svg.into_bytes()));
-    }
+    let pictures = study_pictures(&study.answer, &study.frame()?, &study.warm_ups)?.into_iter();
+    files.extend(pictures.map(|(name, picture)| (format!("{name}.svg"), picture.svg.into_bytes())));
     Ok(files)
 }

@@ -13,30 +13,31 @@ use cvtcycle::study::{Answer, StudyManifest};
 
 use super::matrix;
 use crate::print::colour::Paint;
-use crate::print::table::TextColumns;
+use crate::print::sections;
 use cvtcycle::output::number::{NONE, fixed, signed};
+use cvtcycle::output::table::TextColumns;
 
 /// Number of factors that are listed for an output.
 const MAX_FACTORS: usize = 10;
 /// Number of reasons of failed runs that are listed.
 const MAX_REASONS: usize = 5;
 
-/// Everything that a person wants to see of a study.
+/// All results of a study for people.
 pub fn tables(study: &StudyResults, paint: Paint) -> String {
     let (answer, outline) = (&study.answer, &study.outline);
-    let mut text = head(study, paint);
+    let text = head(study, paint);
     if let Some(matrix) = &answer.matrix {
         return text + &matrix::tables(matrix, paint);
     }
-    if !answer.comparisons.is_empty() {
-        text += &format!("\n{}\n", paint.heading("Comparison"));
-        let sampled = outline.plan.design.is_sampled();
-        let comparisons = || answer.comparisons.iter();
-        text.extend(comparisons().map(|of| compared(of, answer, sampled)));
-        text.extend(comparisons().filter_map(|of| strongest(of, answer, outline)));
-    }
-    text + &format!("\n{}\n{}", paint.heading("Outputs"), outputs(answer))
-        + &factors(answer, outline, paint)
+    let sampled = outline.plan.design.is_sampled();
+    let of = answer.comparisons.iter();
+    let comparison: String = of.clone().map(|of| compared(of, answer, sampled)).collect();
+    let strongest: String = of.filter_map(|of| strongest(of, answer, outline)).collect();
+    let body = [
+        ("Comparison", comparison + &strongest),
+        ("Outputs", outputs(answer)),
+    ];
+    text + &sections(body, paint) + &factors(answer, outline, paint)
 }
 
 fn head(study: &StudyResults, paint: Paint) -> String {
@@ -46,11 +47,8 @@ fn head(study: &StudyResults, paint: Paint) -> String {
         text += &format!("{}\n", answer.question);
     }
     let (points, cars) = (answer.points, outline.cars.join(", "));
-    let runs = outline.points * outline.cars.len() as u64;
-    text += &format!(
-        "{}; {points} points, {runs} runs of {cars}\n",
-        design(outline)
-    );
+    let (design, runs) = (design(outline), outline.points * outline.cars.len() as u64);
+    text += &format!("{design}; {points} points, {runs} runs of {cars}\n");
     let (present, all) = study.parts();
     if present < all {
         let done = answer.points_done;
@@ -93,17 +91,17 @@ fn compared(of: &Comparison, answer: &Answer, sampled: bool) -> String {
     if worse.n == 0 {
         return format!("{subject} compared with {baseline}: no pair of good runs\n");
     }
-    let (k, n, mean) = (worse.k, worse.n, signed(Some(s.mean), 2));
+    let (k, n, mean) = (worse.k, worse.n, signed(s.mean, 2));
     if !sampled {
-        let [low, high] = [s.min, s.max].map(|x| signed(Some(x), 1));
+        let [low, high] = [s.min, s.max].map(|x| signed(x, 1));
         return format!(
             "{subject} uses more fuel than {baseline} at {k} of {n} points; the difference is {low} to {high} %, {mean} % on average.\n"
         );
     }
-    let percent = |x: f64| fixed(Some(100.0 * x), if n >= 1000 { 1 } else { 0 });
+    let percent = |x: f64| fixed(100.0 * x, if n >= 1000 { 1 } else { 0 });
     let (share, [low, high]) = (percent(worse.share), worse.interval95.map(percent));
-    let [q5, q95, median] = [0.05, 0.95, 0.5].map(|p| signed(Some(s.quantile(p)), 1));
-    let sd = fixed(Some(s.sd), 2);
+    let [q5, q95, median] = [0.05, 0.95, 0.5].map(|p| signed(s.quantile(p), 1));
+    let sd = fixed(s.sd, 2);
     format!(
         "{subject} uses more fuel than {baseline} in {k} of {n} pairs: {share} % (95 % interval {low} to {high} %).\n\
          The difference is {mean} % on average, sd {sd}; 90 % of the pairs are between {q5} and {q95} %, the median is {median} %.\n"
@@ -115,10 +113,8 @@ fn strongest(of: &Comparison, answer: &Answer, outline: &StudyManifest) -> Optio
     let mut outputs = answer.outputs.iter();
     let output = outputs.find(|o| o.output == EXCESS && o.car == of.baseline)?;
     let ranked = ranked(output, outline)?;
-    let first = ranked.iter().take(3);
-    let first: Vec<String> = first
-        .map(|(name, x)| format!("{name} ({})", fixed(Some(*x), 2)))
-        .collect();
+    let name = |(name, x): &(String, f64)| format!("{name} ({})", fixed(*x, 2));
+    let first: Vec<String> = ranked.iter().take(3).map(name).collect();
     let measure = match (&output.tornado, output.sobol.is_empty()) {
         (Some(_), _) => "swing, points",
         (None, false) => "share of the variance, with interactions",
@@ -156,20 +152,13 @@ fn ranked(output: &OutputAnswer, outline: &StudyManifest) -> Option<Vec<(String,
 }
 
 fn outputs(answer: &Answer) -> String {
-    let number = |x: f64| fixed(Some(x), 3);
     // Name and unit are shown once for all vehicles.
-    let is_first = |o: &OutputAnswer| {
-        let mut same = answer
-            .outputs
-            .iter()
-            .filter(|other| other.output == o.output);
-        same.next().is_some_and(|first| first.car == o.car)
-    };
     let first = |o: &OutputAnswer, text: &str| {
-        if is_first(o) {
-            text.to_owned()
-        } else {
-            String::new()
+        let mut all = answer.outputs.iter();
+        let first = all.find(|other| other.output == o.output);
+        match first.is_some_and(|first| first.car == o.car) {
+            true => text.to_owned(),
+            false => String::new(),
         }
     };
     TextColumns::new()
@@ -177,10 +166,10 @@ fn outputs(answer: &Answer) -> String {
         .left("unit", |o| first(o, &o.unit))
         .left("car", |o| o.car.clone())
         .right("n", |o| o.summary.n.to_string())
-        .right("mean", |o| number(o.summary.mean))
-        .right("sd", |o| number(o.summary.sd))
-        .right("5 %", |o| number(o.summary.quantile(0.05)))
-        .right("95 %", |o| number(o.summary.quantile(0.95)))
+        .number("mean", 3, |o| o.summary.mean)
+        .number("sd", 3, |o| o.summary.sd)
+        .number("5 %", 3, |o| o.summary.quantile(0.05))
+        .number("95 %", 3, |o| o.summary.quantile(0.95))
         .table(&answer.outputs)
         .indented()
         .text()
@@ -191,21 +180,16 @@ fn factors(answer: &Answer, outline: &StudyManifest, paint: Paint) -> String {
     let Some(first) = answer.outputs.first() else {
         return String::new();
     };
-    let is_shown =
-        |o: &&OutputAnswer| o.output == EXCESS || (o.output == first.output && o.car == first.car);
-    let section = |o: &OutputAnswer| {
-        let heading = format!("Effects on {} ({}), {}", o.output, o.unit, o.car);
-        match effects(o, outline) {
-            table if table.is_empty() => table,
-            table => format!("\n{}\n{table}", paint.heading(&heading)),
-        }
-    };
-    answer
+    let is_first = |o: &OutputAnswer| o.output == first.output && o.car == first.car;
+    let shown = answer
         .outputs
         .iter()
-        .filter(is_shown)
-        .map(section)
-        .collect()
+        .filter(|o| o.output == EXCESS || is_first(o));
+    let section = |o: &OutputAnswer| {
+        let heading = format!("Effects on {} ({}), {}", o.output, o.unit, o.car);
+        (heading, effects(o, outline))
+    };
+    sections(shown.map(section), paint)
 }
 
 fn effects(output: &OutputAnswer, outline: &StudyManifest) -> String {
@@ -222,32 +206,33 @@ fn tornado(tornado: &Tornado) -> String {
             .map_or(NONE.to_owned(), |end| end.label.clone())
     };
     let effect = |end: &Option<TornadoEnd>| signed(end.as_ref().map(|end| end.effect), 3);
-    let columns = TextColumns::new()
+    let table = TextColumns::new()
         .left("factor", |bar: &TornadoBar| bar.name.clone())
         .right("low", |bar| label(&bar.low))
         .right("effect", |bar| effect(&bar.low))
         .right("high", |bar| label(&bar.high))
         .right("effect", |bar| effect(&bar.high))
-        .right("swing", |bar| fixed(Some(bar.swing), 3));
-    let table = columns.table(&tornado.bars).indented().text();
-    format!("  base {}\n{table}", fixed(Some(tornado.base), 3))
+        .number("swing", 3, |bar| bar.swing)
+        .table(&tornado.bars);
+    format!(
+        "  base {}\n{}",
+        fixed(tornado.base, 3),
+        table.indented().text()
+    )
 }
 
 fn rank(output: &OutputAnswer) -> String {
     let Some(rank) = &output.rank else {
         return String::new();
     };
-    let mut list: Vec<_> = rank
-        .factors
-        .iter()
-        .zip(&rank.of.factors)
-        .map(|(name, f)| (name, &f.spearman))
-        .collect();
+    let factors = rank.factors.iter().zip(&rank.of.factors);
+    let mut list: Vec<(&String, &Estimate)> =
+        factors.map(|(name, f)| (name, &f.spearman)).collect();
     list.sort_by(|a, b| b.1.value.abs().total_cmp(&a.1.value.abs()));
     let end = |e: &Estimate, k: usize| signed(e.interval95.map(|ends| ends[k]), 2);
     TextColumns::new()
         .left("factor", |(name, _): &(&String, &Estimate)| (*name).clone())
-        .right("rank correlation", |(_, e)| signed(Some(e.value), 2))
+        .right("rank correlation", |(_, e)| signed(e.value, 2))
         .right("from", |(_, e)| end(e, 0))
         .right("to", |(_, e)| end(e, 1))
         .table(list.iter().take(MAX_FACTORS))
@@ -256,14 +241,13 @@ fn rank(output: &OutputAnswer) -> String {
 }
 
 fn levels(output: &OutputAnswer) -> String {
-    let number = |x: f64| fixed(Some(x), 3);
     let table = |(name, levels): &(String, Groups)| {
         TextColumns::new()
             .left(name, |g: &Group| g.label.clone())
             .right("n", |g| g.n.to_string())
-            .right("mean", |g| number(g.mean))
-            .right("min", |g| number(g.min))
-            .right("max", |g| number(g.max))
+            .number("mean", 3, |g| g.mean)
+            .number("min", 3, |g| g.min)
+            .number("max", 3, |g| g.max)
             .table(&levels.groups)
             .indented()
             .text()
@@ -276,38 +260,34 @@ fn sobol(output: &OutputAnswer, outline: &StudyManifest, indices: &SobolIndices)
         return "  the output does not vary\n".to_owned();
     };
     let span = |e: &Estimate| match e.interval95 {
-        Some([a, b]) => format!("{} .. {}", fixed(Some(a), 3), fixed(Some(b), 3)),
+        Some([a, b]) => format!("{} .. {}", fixed(a, 3), fixed(b, 3)),
         None => NONE.to_owned(),
     };
     let of_factor = |(name, _): &(String, f64)| {
-        let place = outline
-            .plan
-            .factors
-            .iter()
-            .position(|factor| factor.name == *name)?;
+        let mut factors = outline.plan.factors.iter();
+        let place = factors.position(|factor| factor.name == *name)?;
         Some((name.clone(), &indices.factors[place]))
     };
-    let rows: Vec<(String, &FactorIndices)> = ranked
-        .iter()
-        .take(MAX_FACTORS)
-        .filter_map(of_factor)
-        .collect();
-    let columns = TextColumns::new()
+    let first = ranked.iter().take(MAX_FACTORS);
+    let rows: Vec<(String, &FactorIndices)> = first.filter_map(of_factor).collect();
+    let mut text = TextColumns::new()
         .left("factor", |(name, _): &(String, &FactorIndices)| {
             name.clone()
         })
-        .right("first order", |(_, f)| fixed(Some(f.first.value), 3))
+        .number("first order", 3, |(_, f)| f.first.value)
         .right("95 % interval", |(_, f)| span(&f.first))
-        .right("total", |(_, f)| fixed(Some(f.total.value), 3))
-        .right("95 % interval", |(_, f)| span(&f.total));
-    let mut text = columns.table(&rows).indented().text();
+        .number("total", 3, |(_, f)| f.total.value)
+        .right("95 % interval", |(_, f)| span(&f.total))
+        .table(&rows)
+        .indented()
+        .text();
     let rest = ranked.len().saturating_sub(MAX_FACTORS);
     if rest > 0 {
         text += &format!("  {rest} more factors have a smaller total index\n");
     }
     text + &format!(
         "  sum of first-order indices {}\n",
-        fixed(Some(indices.sum_first.value), 3)
+        fixed(indices.sum_first.value, 3)
     )
 }
 

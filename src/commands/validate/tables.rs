@@ -1,10 +1,11 @@
 //! A validation as tables.
 
+use cvtcycle::output::table::{TextColumns, TextTable, cut};
 use cvtcycle::report::validation_page::chapter_title;
 use cvtcycle::study::check::{Judged, Report, Verdict, computed_text, notes_line, unit_text};
 
 use crate::print::colour::Paint;
-use crate::print::table::{TextColumns, TextTable, cut};
+use crate::print::sections;
 
 /// Longest text of a value; longer ones are cut, and complete in the other forms.
 const MAX_VALUE_LEN: usize = 20;
@@ -21,22 +22,19 @@ pub fn tables(report: &Report, paint: Paint) -> String {
             chapters.push(&judged.row.chapter);
         }
     }
-    for name in chapters {
+    let of_chapter = |name| {
         let rows = report
             .rows
             .iter()
             .filter(|judged| judged.row.chapter == name);
-        let heading = paint.heading(&chapter_title(name));
-        text += &format!("\n{heading}\n{}", chapter(&rows.collect::<Vec<_>>()));
-    }
-    let held_out_title =
-        paint.heading("Held out: rows that no calibration uses, without constants");
-    text + &format!(
-        "\n{}\n{}\n{held_out_title}\n{}",
-        paint.heading("Rows by verdict"),
-        counts(report),
-        held_out(report)
-    )
+        (chapter_title(name), chapter(&rows.collect::<Vec<_>>()))
+    };
+    let held_out_title = "Held out: rows that no calibration uses, without constants";
+    let counts = [
+        ("Rows by verdict".to_owned(), counts(report)),
+        (held_out_title.to_owned(), held_out(report)),
+    ];
+    text + &sections(chapters.into_iter().map(of_chapter).chain(counts), paint)
 }
 
 fn chapter(rows: &[&Judged]) -> String {
@@ -48,21 +46,19 @@ fn chapter(rows: &[&Judged]) -> String {
         .left("computed", |j| cut(&computed_text(j), MAX_VALUE_LEN))
         .left("unit", |j| unit_text(&j.row.unit))
         .left("what", |j| j.row.what.clone());
-    let mut text = columns.table(rows).indented().text();
     let noted = |judged: &&&Judged| {
         judged.verdict == Verdict::Differs || judged.moved || judged.left_out + judged.outside > 0
     };
-    let notes = rows
-        .iter()
-        .filter(noted)
-        .map(|judged| (&judged.row.id, notes_line(judged)));
-    let notes: Vec<(&String, String)> = notes.filter(|(_, notes)| !notes.is_empty()).collect();
-    if !notes.is_empty() {
-        let mut list = TextTable::new("ll").indented();
-        notes.iter().for_each(|(id, notes)| list.row([id, notes]));
-        text += &format!("\n{}", list.text());
+    let mut notes = TextTable::new("ll").indented();
+    for judged in rows.iter().filter(noted) {
+        let line = notes_line(judged);
+        if !line.is_empty() {
+            notes.row([&judged.row.id, &line]);
+        }
     }
-    text
+    let (table, notes) = (columns.text(rows), notes.text());
+    let between = if notes.is_empty() { "" } else { "\n" };
+    table + between + &notes
 }
 
 fn list(lines: impl IntoIterator<Item = (&'static str, String)>) -> String {
@@ -75,47 +71,42 @@ fn list(lines: impl IntoIterator<Item = (&'static str, String)>) -> String {
 
 fn counts(report: &Report) -> String {
     let of = |verdict: Verdict| (verdict.word(), report.count(verdict).to_string());
-    list(
-        Verdict::ALL
-            .into_iter()
-            .map(of)
-            .chain([("total", report.rows.len().to_string())]),
-    )
+    let total = ("total", report.rows.len().to_string());
+    list(Verdict::ALL.into_iter().map(of).chain([total]))
 }
 
 fn held_out(report: &Report) -> String {
     let found = report.held_out();
-    let median = found.median_off.map(|median| {
-        let name = "median distance from the printed value, in tolerances";
-        (name, format!("{median:.2}"))
-    });
     let lines = [
         ("rows", found.rows),
         ("agree", found.agree),
         ("numbers among them", found.numbers),
         ("numbers that agree", found.numbers_agree),
     ];
+    let lines = lines.map(|(name, n)| (name, n.to_string())).into_iter();
+    let name = "median distance from the printed value, in tolerances";
     list(
-        lines
-            .map(|(name, n)| (name, n.to_string()))
-            .into_iter()
-            .chain(median),
+        lines.chain(
+            found
+                .median_off
+                .map(|median| (name, format!("{median:.2}"))),
+        ),
     )
 }
 
 /// One line for each row whose verdict is not the recorded one.
 pub fn changed_verdicts(report: &Report) -> Vec<String> {
     let line = |judged: &Judged| {
-        let (row, unit) = (&judged.row, unit_text(&judged.row.unit));
-        format!(
-            "row {}: `{}` recorded, now `{}`: computed {} {unit}, printed {} ({} line {})",
-            row.id,
+        let row = &judged.row;
+        let (id, unit, printed, place) =
+            (&row.id, unit_text(&row.unit), &row.printed_text, &row.place);
+        let (recorded, now) = (
             row.recorded.map_or("", Verdict::word),
             judged.verdict.word(),
-            computed_text(judged),
-            row.printed_text,
-            row.place.input,
-            row.place.line
+        );
+        let (computed, file, line) = (computed_text(judged), &place.input, place.line);
+        format!(
+            "row {id}: `{recorded}` recorded, now `{now}`: computed {computed} {unit}, printed {printed} ({file} line {line})"
         )
     };
     report.moved().map(line).collect()

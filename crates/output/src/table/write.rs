@@ -3,7 +3,7 @@
 use std::borrow::Borrow;
 use std::io::{self, Write};
 
-use serde_json::{Map, Value as Json, json};
+use serde_json::{Value as Json, json};
 
 use super::Column;
 
@@ -111,13 +111,13 @@ pub fn json_rows<R>(columns: &[Column<R>], rows: &[R]) -> Json {
     rows.iter().map(|row| json_row(columns, row)).collect()
 }
 
-/// Writes an object: the entries of `head`, then `points`, a row a line.
+/// Writes an object: the entries of the object `head`, then `points`, a row a line.
 ///
 /// # Errors
 /// Those of `out`.
 pub fn write_json<R, I: Borrow<R>>(
     out: &mut dyn Write,
-    head: &Map<String, Json>,
+    head: &Json,
     columns: &[Column<R>],
     rows: impl IntoIterator<Item = I>,
 ) -> io::Result<()> {

@@ -1,10 +1,8 @@
 //! Figures like 6-5 to 6-9 of the thesis.
 
 use cvtcycle::model::bench::variator::{RigFlags, VariatorRow};
+use cvtcycle::output::variator::{Curve, VariatorCurves};
 use cvtcycle::report::charts::{CurveFigure, CurvePanel, CurveSeries, curve_figure};
-
-use super::plan::{Curve, VariatorPlan};
-use super::tables::{bar, same_test, test_name};
 
 const X: &str = "Torque at the secondary pulley [Nm]";
 /// Largest number of tests that are drawn.
@@ -16,8 +14,12 @@ const MAX_SLIP: f64 = 0.05;
 type Get = fn(&VariatorRow) -> f64;
 
 /// Figures with their file names.
-pub fn plots(plan: &VariatorPlan, curves: &[Curve]) -> Vec<(&'static str, String)> {
-    let tests: Vec<&[Curve]> = curves.chunk_by(same_test).take(MAX_TESTS).collect();
+pub fn plots(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
+    let tests: Vec<&[Curve]> = plan
+        .curves
+        .chunk_by(Curve::is_same_test)
+        .take(MAX_TESTS)
+        .collect();
     let lines = |title: &str, y: &str, get: Get, marked: bool| {
         let panels = tests
             .iter()
@@ -86,10 +88,10 @@ fn points(curve: &Curve, get: Get) -> Vec<(f64, f64)> {
     )
 }
 
-fn subject(plan: &VariatorPlan) -> String {
+fn subject(plan: &VariatorCurves) -> String {
     format!(
         "{}, {}; drawn up to {} % slip",
-        plan.setup.name,
+        plan.vehicle,
         plan.formulation,
         100.0 * MAX_SLIP
     )
@@ -111,7 +113,7 @@ fn by_pressure(test: &[Curve], y: &str, get: Get, marked: bool) -> CurvePanel {
                 });
 
             CurveSeries {
-                name: format!("{} bar", bar(curve)),
+                name: format!("{} bar", curve.bar()),
                 points,
                 marked: mark.into_iter().filter(|_| marked).collect(),
                 style: None,
@@ -124,7 +126,7 @@ fn by_pressure(test: &[Curve], y: &str, get: Get, marked: bool) -> CurvePanel {
         String::new()
     };
     CurvePanel {
-        title: test.first().map_or_else(String::new, test_name),
+        title: test.first().map_or_else(String::new, Curve::test_name),
         y: y.to_owned(),
         with_zero: true,
         series,
@@ -133,10 +135,10 @@ fn by_pressure(test: &[Curve], y: &str, get: Get, marked: bool) -> CurvePanel {
 }
 
 /// Radii of both pulleys at the middle pressure of each test, from the geometry and from the speeds.
-fn radii(plan: &VariatorPlan, tests: &[&[Curve]]) -> String {
+fn radii(plan: &VariatorCurves, tests: &[&[Curve]]) -> String {
     let mut panels = Vec::new();
     for curve in tests.iter().filter_map(|test| test.get(test.len() / 2)) {
-        let bar = bar(curve);
+        let bar = curve.bar();
         let one = |name: &str, style: usize, get: Get| CurveSeries {
             name: name.to_owned(),
             points: points(curve, get),
@@ -144,7 +146,7 @@ fn radii(plan: &VariatorPlan, tests: &[&[Curve]]) -> String {
             style: Some(style),
         };
         let panel = |pulley: &str, series: Vec<CurveSeries>| CurvePanel {
-            title: format!("{pulley}, {}, {bar} bar", test_name(curve)),
+            title: format!("{pulley}, {}, {bar} bar", curve.test_name()),
             y: "Radius [mm]".to_owned(),
             with_zero: false,
             series,

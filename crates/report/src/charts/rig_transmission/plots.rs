@@ -6,7 +6,7 @@ use cvtcycle_model::bench::transmission::{
     Branch, Conditions, Loop, Moment, SteadyPoint, TwoBoxes,
 };
 use cvtcycle_model::fluid::ZERO_DEGC_K;
-use cvtcycle_output::rig::{clean, oil_degc, rpm};
+use cvtcycle_output::rig::{given, oil_degc, rpm};
 
 /// File name and SVG text.
 pub type Picture = (String, String);
@@ -237,7 +237,7 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
         (line(1), "Warming by its own losses".to_owned()),
         (line(2), "Cooling by the rig's cooler".to_owned()),
     ];
-    let speed = clean(subject.conditions.transient.speed_rad_s * 30.0 / std::f64::consts::PI);
+    let speed = given(subject.conditions.transient.speed_rad_s * 30.0 / std::f64::consts::PI);
     let of_loop = |l: &Loop| {
         let both = |y: fn(&Moment) -> f64| {
             let on = |branch: Branch| {

@@ -3,9 +3,9 @@
 use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 
 use super::{failures, tables};
-use crate::print::colour::Colour;
+use crate::print::Terminal;
 
-#[path = "../../../tests/fixtures/outcome.rs"]
+#[path = "../fixtures/outcome.rs"]
 mod fixtures;
 use fixtures::every;
 
@@ -18,7 +18,7 @@ fn named(name: &str) -> Outcome {
 }
 
 fn printed(outcome: &Outcome) -> String {
-    tables::tables(outcome, Colour::Never.terminal().stdout)
+    tables::tables(outcome, Terminal::new(clap::ColorChoice::Never).stdout)
 }
 
 #[test]

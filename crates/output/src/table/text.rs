@@ -1,0 +1,292 @@
+//! Tables for people: aligned columns without rules, for a terminal of 80 to 100 columns and for `grep`, or Markdown.
+
+use unicode_width::UnicodeWidthStr;
+
+use crate::number::fixed;
+
+/// Width of a table; the last column is wrapped beyond it.
+pub const WIDTH: usize = 98;
+/// Narrowest last column that is wrapped; a narrower one runs over the width.
+const MIN_WRAPPED: usize = 12;
+/// Blanks between two columns.
+const GAP: usize = 2;
+
+/// A table of texts, row by row.
+#[derive(Clone, Debug)]
+pub struct TextTable {
+    right: Vec<bool>,
+    rows: Vec<Vec<String>>,
+    indent: &'static str,
+    min_widths: Vec<usize>,
+}
+
+impl TextTable {
+    /// A table with columns aligned right (`r`) or left (`l`).
+    ///
+    /// ```
+    /// use cvtcycle_output::table::TextTable;
+    /// let mut table = TextTable::new("lr");
+    /// table.row(["belt", "3.25"]);
+    /// table.row(["oil pump", "12.50"]);
+    /// assert_eq!(table.text(), "belt       3.25\noil pump  12.50\n");
+    /// ```
+    #[must_use]
+    pub fn new(columns: &str) -> Self {
+        TextTable {
+            right: columns.bytes().map(|c| c == b'r').collect(),
+            rows: Vec::new(),
+            indent: "",
+            min_widths: Vec::new(),
+        }
+    }
+
+    /// Indents all lines by two blanks.
+    #[must_use]
+    pub fn indented(self) -> Self {
+        TextTable {
+            indent: "  ",
+            ..self
+        }
+    }
+
+    /// Keeps the leading columns at least this wide, which aligns tables that follow each other.
+    #[must_use]
+    pub fn min_widths(self, widths: &[usize]) -> Self {
+        TextTable {
+            min_widths: widths.to_vec(),
+            ..self
+        }
+    }
+
+    /// Adds a row.
+    pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
+        self.rows.push(cells.into_iter().map(Into::into).collect());
+    }
+
+    /// The lines, for a terminal.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let widths = self.widths();
+        let mut text = String::new();
+        for row in &self.rows {
+            let cells = row.iter().zip(&widths);
+            let cells: Vec<Vec<String>> = cells.map(|(cell, width)| wrap(cell, *width)).collect();
+            for k in 0..cells.iter().map(Vec::len).max().unwrap_or(0) {
+                let mut line = self.indent.to_owned();
+                for ((cell, width), right) in cells.iter().zip(&widths).zip(&self.right) {
+                    let part = cell.get(k).map_or("", String::as_str);
+                    let blanks = " ".repeat(width.saturating_sub(part.width()));
+                    line += &match right {
+                        true => blanks + part,
+                        false => part.to_owned() + &blanks,
+                    };
+                    line += &" ".repeat(GAP);
+                }
+                text += line.trim_end();
+                text.push('\n');
+            }
+        }
+        text
+    }
+
+    /// Width of each column: that of its longest line, of the last one within what the others leave.
+    fn widths(&self) -> Vec<usize> {
+        let mut widths = Vec::new();
+        for k in 0..self.right.len() {
+            let left = WIDTH.saturating_sub(widths.iter().map(|width| width + GAP).sum());
+            let is_wrapped = k + 1 == self.right.len() && left >= MIN_WRAPPED;
+            let max = if is_wrapped { left } else { usize::MAX };
+            let cells = self.rows.iter().filter_map(|row| row.get(k));
+            let lines = cells.flat_map(|cell| wrap(cell, max));
+            let longest = lines.map(|line| line.width()).max().unwrap_or(0);
+            let min = self.min_widths.get(k).copied().unwrap_or(0);
+            widths.push(longest.max(min).max(1));
+        }
+        widths
+    }
+
+    /// The rows as a table of Markdown; the first one is its heading.
+    ///
+    /// ```
+    /// use cvtcycle_output::table::TextTable;
+    /// let mut table = TextTable::new("lr");
+    /// table.row(["part", "Nm"]);
+    /// table.row(["a|b", "1.5"]);
+    /// assert_eq!(table.markdown(), "| part | Nm |\n| --- | ---: |\n| a\\|b | 1.5 |\n");
+    /// ```
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        let line = |row: &Vec<String>| {
+            let cells = row
+                .iter()
+                .map(|cell| cell.replace('|', "\\|").replace('\n', " "));
+            format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
+        };
+        let rules = self
+            .right
+            .iter()
+            .map(|right| if *right { "---:" } else { "---" });
+        let rules = format!("| {} |\n", rules.collect::<Vec<_>>().join(" | "));
+        let (head, rows) = self.rows.split_at(1.min(self.rows.len()));
+        head.iter()
+            .map(line)
+            .chain([rules])
+            .chain(rows.iter().map(line))
+            .collect()
+    }
+}
+
+/// A sentence wrapped to the width of the tables, with a mark before its first line.
+#[must_use]
+pub fn wrapped(sentence: &str, mark: &str) -> String {
+    let blank = " ".repeat(mark.width());
+    let marks = [mark].into_iter().chain(std::iter::repeat(blank.as_str()));
+    let lines = wrap(sentence, WIDTH - blank.len());
+    let lines = lines.iter().zip(marks);
+    lines
+        .map(|(line, mark)| format!("{mark}{line}\n"))
+        .collect()
+}
+
+/// The lines of a text, broken at blanks where they are longer than a width.
+fn wrap(text: &str, width: usize) -> Vec<String> {
+    let mut lines = Vec::new();
+    for line in text.split('\n') {
+        if line.width() <= width {
+            lines.push(line.to_owned());
+            continue;
+        }
+        let mut broken = String::new();
+        for word in line.split(' ') {
+            if !broken.is_empty() && broken.width() + 1 + word.width() > width {
+                lines.push(std::mem::take(&mut broken));
+            }
+            if !broken.is_empty() {
+                broken.push(' ');
+            }
+            broken += word;
+            while let Some((at, _)) = broken.char_indices().nth(width) {
+                let rest = broken.split_off(at);
+                lines.push(std::mem::replace(&mut broken, rest));
+            }
+        }
+        lines.push(broken);
+    }
+    lines
+}
+
+/// A text cut to a number of characters.
+#[must_use]
+pub fn cut(text: &str, max_len: usize) -> String {
+    match text.char_indices().nth(max_len) {
+        None => text.to_owned(),
+        Some(_) => text.chars().take(max_len - 1).collect::<String>() + "…",
+    }
+}
+
+/// Heading, alignment and text of an item.
+type TextColumn<'a, T> = (String, bool, Box<dyn Fn(&T) -> String + 'a>);
+
+/// Columns of a table for people, whose rows are items of one type.
+///
+/// ```
+/// use cvtcycle_output::table::TextColumns;
+/// let columns = TextColumns::new()
+///     .left("part", |row: &(&str, f64)| row.0)
+///     .number("Nm", 2, |row| row.1);
+/// assert_eq!(columns.text(&[("belt", 3.25), ("pump", 12.5)]), "  part     Nm\n  belt   3.25\n  pump  12.50\n");
+/// ```
+pub struct TextColumns<'a, T>(Vec<TextColumn<'a, T>>);
+
+impl<T> Default for TextColumns<'_, T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<'a, T> TextColumns<'a, T> {
+    /// No columns.
+    #[must_use]
+    pub fn new() -> Self {
+        TextColumns(Vec::new())
+    }
+
+    /// Adds a column aligned left.
+    #[must_use]
+    pub fn left<S: Into<String>>(
+        self,
+        head: impl Into<String>,
+        get: impl Fn(&T) -> S + 'a,
+    ) -> Self {
+        self.with(head.into(), false, move |item| get(item).into())
+    }
+
+    /// Adds a column aligned right.
+    #[must_use]
+    pub fn right<S: Into<String>>(
+        self,
+        head: impl Into<String>,
+        get: impl Fn(&T) -> S + 'a,
+    ) -> Self {
+        self.with(head.into(), true, move |item| get(item).into())
+    }
+
+    /// Adds a column of numbers with fixed decimals.
+    #[must_use]
+    pub fn number<X: Into<Option<f64>>>(
+        self,
+        head: impl Into<String>,
+        decimals: usize,
+        get: impl Fn(&T) -> X + 'a,
+    ) -> Self {
+        self.with(head.into(), true, move |item| fixed(get(item), decimals))
+    }
+
+    fn with(mut self, head: String, right: bool, get: impl Fn(&T) -> String + 'a) -> Self {
+        self.0.push((head, right, Box::new(get)));
+        self
+    }
+
+    /// The table of some items, with its headings.
+    pub fn table<'t>(&self, items: impl IntoIterator<Item = &'t T>) -> TextTable
+    where
+        T: 't,
+    {
+        let sides = self
+            .0
+            .iter()
+            .map(|(_, right, _)| if *right { 'r' } else { 'l' });
+        let mut table = TextTable::new(&sides.collect::<String>());
+        table.row(self.0.iter().map(|(head, ..)| head));
+        for item in items {
+            table.row(self.0.iter().map(|(_, _, get)| get(item)));
+        }
+        table
+    }
+
+    /// The lines of the table of some items; none if there are no items.
+    pub fn lines<'t>(&self, items: impl IntoIterator<Item = &'t T>) -> String
+    where
+        T: 't,
+    {
+        let table = self.table(items);
+        if table.rows.len() > 1 {
+            table.text()
+        } else {
+            String::new()
+        }
+    }
+
+    /// The same, indented.
+    pub fn text<'t>(&self, items: impl IntoIterator<Item = &'t T>) -> String
+    where
+        T: 't,
+    {
+        let table = self.table(items);
+        if table.rows.len() > 1 {
+            table.indented().text()
+        } else {
+            String::new()
+        }
+    }
+}
