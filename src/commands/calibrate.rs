@@ -99,11 +99,7 @@ impl Execute for CalibrateArgs {
             dir.put("calibration.json", &json)?;
             Ok("")
         })?;
-        let results = Results {
-            json,
-            failures: failures(&outcome),
-            files,
-        };
+        let results = Results::new(json, failures(&outcome), files);
         Ok(results.output(&self.output, || tables::tables(&outcome, terminal.stdout)))
     }
 }

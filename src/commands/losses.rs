@@ -121,11 +121,8 @@ impl Execute for LossesArgs {
         let flags = flags.borrow();
         let unsolved = flags.named().find(|(name, _)| *name == "not_converged");
         let failures = unsolved.map(|(_, n)| format!("{n} of {count} points not converged"));
-        let results = Results {
-            failures: failures.into_iter().collect(),
-            files,
-            ..Results::default()
-        };
+        let failures = failures.into_iter().collect();
+        let results = Results::new(String::new(), failures, files);
         Ok(results.table_output(&self.output, || table))
     }
 }
@@ -148,10 +145,7 @@ impl LossesArgs {
             dir.put("summary.json", json_text(head)?)?;
             Ok("")
         })?;
-        let results = Results {
-            files,
-            ..Results::default()
-        };
+        let results = Results::new(String::new(), Vec::new(), files);
         Ok(results.output(&self.output.output, String::new))
     }
 }

@@ -170,11 +170,7 @@ impl Execute for RunArgs {
             files::write(dir, plan.format, &summary, cycle, &driven)?;
             Ok("")
         })?;
-        let results = Results {
-            json,
-            failures: tables::failures(&summary),
-            files,
-        };
+        let results = Results::new(json, tables::failures(&summary), files);
         let tables = || tables::tables(&summary, cycle, terminal.stdout);
         Ok(results.output(&self.output, tables))
     }

@@ -137,11 +137,7 @@ impl Execute for ValidateArgs {
             dir.put("validation.md", markdown(&report))?;
             Ok("")
         })?;
-        let results = Results {
-            json,
-            failures: tables::changed_verdicts(&report),
-            files,
-        };
+        let results = Results::new(json, tables::changed_verdicts(&report), files);
         let stdout = match plan.form {
             ValidationForm::Table => {
                 let tables = || tables::tables(&report, terminal.stdout);

@@ -89,6 +89,15 @@ pub struct Results {
 }
 
 impl Results {
+    /// All of them.
+    pub fn new(json: String, failures: Vec<String>, files: WrittenFiles) -> Self {
+        Results {
+            json,
+            failures,
+            files,
+        }
+    }
+
     /// Chooses by the options: JSON, tables, or nothing on standard output; warnings on standard error.
     pub fn output(self, args: &OutputArgs, tables: impl FnOnce() -> String) -> CommandOutput {
         let stdout = match (args.json(), args.quiet) {

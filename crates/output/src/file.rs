@@ -25,21 +25,17 @@ impl OutputFile {
     pub fn create(path: impl AsRef<Path>, force: bool) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         if path.file_name().is_none() {
+            let message = "the name of the output file is empty";
             return Err(problem(
                 &path,
-                "the name of the output file is empty",
+                message,
                 "name a file, for example --out points.csv",
             ));
         }
         check_target(&path, force)?;
         let folder = folder(&path);
-        let out = temporary_in(&folder).map_err(|error| {
-            failed(
-                &path,
-                &format!("cannot write in {}", folder.display()),
-                &error,
-            )
-        })?;
+        let what = format!("cannot write in {}", folder.display());
+        let out = temporary_in(&folder).map_err(|error| failed(&path, &what, &error))?;
         Ok(OutputFile {
             path,
             out: BufWriter::new(out),
@@ -61,15 +57,12 @@ impl OutputFile {
         let OutputFile { path, out, force } = self;
         // Somebody else may have written it meanwhile.
         check_target(&path, force)?;
-        let written = out
-            .into_inner()
-            .map_err(io::IntoInnerError::into_error)
-            .and_then(|file| {
-                file.as_file().sync_all()?;
-                file.persist(&path).map_err(|error| error.error)
-            });
-        written
-            .map_err(|error| failed(&path, &format!("cannot write {}", path.display()), &error))?;
+        let file = out.into_inner().map_err(io::IntoInnerError::into_error);
+        let written = file.and_then(|file| {
+            file.as_file().sync_all()?;
+            file.persist(&path).map_err(|error| error.error)
+        });
+        written.map_err(|error| cannot_write(&path, &error))?;
         sync_directory(&folder(&path));
         Ok(path)
     }
@@ -77,11 +70,7 @@ impl OutputFile {
     /// The problem of an error in writing.
     #[must_use]
     pub fn cannot_write(&self, error: &io::Error) -> Problem {
-        failed(
-            &self.path,
-            &format!("cannot write {}", self.path.display()),
-            error,
-        )
+        cannot_write(&self.path, error)
     }
 }
 
@@ -99,7 +88,11 @@ fn folder(path: &Path) -> PathBuf {
     let parent = path
         .parent()
         .filter(|parent| !parent.as_os_str().is_empty());
-    parent.map_or_else(|| PathBuf::from("."), Path::to_path_buf)
+    parent.unwrap_or(Path::new(".")).to_path_buf()
+}
+
+fn cannot_write(path: &Path, error: &io::Error) -> Problem {
+    failed(path, &format!("cannot write {}", path.display()), error)
 }
 
 fn check_target(path: &Path, force: bool) -> Result<(), Problem> {
@@ -108,18 +101,12 @@ fn check_target(path: &Path, force: bool) -> Result<(), Problem> {
     };
     let name = path.display();
     if !found.is_file() && !found.is_symlink() {
-        return Err(problem(
-            path,
-            &format!("{name} exists and is not a plain file"),
-            "choose another name",
-        ));
+        let message = format!("{name} exists and is not a plain file");
+        return Err(problem(path, &message, "choose another name"));
     }
     if force {
         return Ok(());
     }
-    Err(problem(
-        path,
-        &format!("{name} exists"),
-        "choose another name, or replace it with --force",
-    ))
+    let hint = "choose another name, or replace it with --force";
+    Err(problem(path, &format!("{name} exists"), hint))
 }

@@ -38,20 +38,15 @@ impl OutputDir {
     pub fn create(path: impl AsRef<Path>, force: bool) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         check_directory(&path)?;
-        let created = Created::new(&path).map_err(|error| {
+        let cannot = |what: &str, error| {
             failed(
                 &path,
-                &format!("cannot create directory {}", path.display()),
+                &format!("cannot {what} directory {}", path.display()),
                 &error,
             )
-        })?;
-        let earlier = names_in(&path).map_err(|error| {
-            failed(
-                &path,
-                &format!("cannot read directory {}", path.display()),
-                &error,
-            )
-        })?;
+        };
+        let created = Created::new(&path).map_err(|error| cannot("create", error))?;
+        let earlier = names_in(&path).map_err(|error| cannot("read", error))?;
         check_contents(&path, &earlier, force)?;
         let dir = OutputDir {
             path,
@@ -101,12 +96,8 @@ impl OutputDir {
     /// Names that an earlier run left in the directory and that this run has not written.
     #[must_use]
     pub fn left_over(&self) -> Vec<String> {
-        let rewritten = |name: &String| self.written.iter().any(|(other, _)| other == name);
-        self.earlier
-            .iter()
-            .filter(|name| !rewritten(name))
-            .cloned()
-            .collect()
+        let is_left = |name: &&String| !self.written.iter().any(|(other, _)| other == *name);
+        self.earlier.iter().filter(is_left).cloned().collect()
     }
 
     /// Gives every file its name and returns their paths in the order of writing.
@@ -114,19 +105,15 @@ impl OutputDir {
     /// # Errors
     /// A problem of `--out`; the directory is then as it was before the run.
     pub fn commit(mut self) -> Result<Vec<PathBuf>, Problem> {
-        let paths: Vec<PathBuf> = self
-            .written
-            .iter()
-            .map(|(name, _)| self.path.join(name))
-            .collect();
+        let paths = self.written.iter().map(|(name, _)| self.path.join(name));
+        let paths: Vec<PathBuf> = paths.collect();
         let mut written = std::mem::take(&mut self.written);
         // The mark comes last, so that a directory with missing files never has it.
         written.sort_by_key(|(name, _)| is_mark(name));
         let mut swap = Swap::default();
         for (name, temporary) in written {
-            let done = self
-                .temporary_name()
-                .and_then(|spare| swap.put(temporary, self.path.join(&name), spare));
+            let spare = self.temporary().map(NamedTempFile::into_temp_path);
+            let done = spare.and_then(|spare| swap.put(temporary, self.path.join(&name), spare));
             done.map_err(|error| self.cannot_write(&name, &error))?;
         }
         swap.keep();
@@ -137,10 +124,6 @@ impl OutputDir {
 
     fn temporary(&self) -> io::Result<NamedTempFile> {
         temporary_in(&self.path)
-    }
-
-    fn temporary_name(&self) -> io::Result<TempPath> {
-        self.temporary().map(NamedTempFile::into_temp_path)
     }
 
     fn check_name(&self, name: &str) -> Result<(), Problem> {
@@ -182,11 +165,8 @@ impl Created {
     /// Creates what is missing of a directory.
     pub fn new(path: &Path) -> io::Result<Self> {
         let missing = |dir: &&Path| !dir.as_os_str().is_empty() && !dir.exists();
-        let mut new: Vec<PathBuf> = path
-            .ancestors()
-            .take_while(missing)
-            .map(Path::to_path_buf)
-            .collect();
+        let new = path.ancestors().take_while(missing).map(Path::to_path_buf);
+        let mut new: Vec<PathBuf> = new.collect();
         new.reverse();
         // Kept first: what was created before an error must go again.
         let created = Created(new);
@@ -220,10 +200,8 @@ impl Swap {
     fn put(&mut self, new: TempPath, target: PathBuf, spare: TempPath) -> io::Result<()> {
         let spare = match fs::symlink_metadata(&target) {
             Ok(meta) if meta.is_dir() => {
-                return Err(io::Error::new(
-                    io::ErrorKind::IsADirectory,
-                    "is a directory",
-                ));
+                let kind = io::ErrorKind::IsADirectory;
+                return Err(io::Error::new(kind, "is a directory"));
             }
             Ok(_) => {
                 fs::rename(&target, &spare)?;
@@ -257,11 +235,11 @@ impl Drop for Swap {
 /// Checks that a path can be that of a directory.
 pub fn check_directory(path: &Path) -> Result<(), Problem> {
     if path.as_os_str().is_empty() {
-        let hint = "name a directory, for example --out run1";
+        let message = "the name of the output directory is empty";
         return Err(problem(
             path,
-            "the name of the output directory is empty",
-            hint,
+            message,
+            "name a directory, for example --out run1",
         ));
     }
     if path.exists() && !path.is_dir() {
@@ -312,33 +290,24 @@ fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Prob
     if names.is_empty() || (marked && force) {
         return Ok(());
     }
-    let list = list(names);
-    let path_text = path.display();
-    Err(if marked {
-        let message = format!("{path_text} holds the files of an earlier run: {list}");
-        problem(
-            path,
-            &message,
-            "choose another name, or replace them with --force",
-        )
-    } else {
-        let message = format!("{path_text} holds files of something else: {list}");
-        problem(path, &message, "choose another name, or an empty directory")
-    })
+    let (of, instead) = match marked {
+        true => ("the files of an earlier run", "replace them with --force"),
+        false => ("files of something else", "an empty directory"),
+    };
+    let message = format!("{} holds {of}: {}", path.display(), list(names));
+    Err(problem(
+        path,
+        &message,
+        &format!("choose another name, or {instead}"),
+    ))
 }
 
 /// The first names, and how many more there are.
 pub fn list(names: &[String]) -> String {
-    let list = names
-        .iter()
-        .take(LISTED)
-        .cloned()
-        .collect::<Vec<_>>()
-        .join(", ");
-    if names.len() > LISTED {
-        format!("{list} and {} more", names.len() - LISTED)
-    } else {
-        list
+    let list = names[..names.len().min(LISTED)].join(", ");
+    match names.len().saturating_sub(LISTED) {
+        0 => list,
+        more => format!("{list} and {more} more"),
     }
 }
 

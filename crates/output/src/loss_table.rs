@@ -59,30 +59,23 @@ impl MapPart {
     #[must_use]
     pub fn loss_nm(self, bench: &Bench, point: &BenchPoint) -> f64 {
         let part = |component: Component, point: &BenchPoint| bench.solve(point).part_nm(component);
+        let at_output = BenchPoint {
+            output_nm: point.output_nm * own_ratio(bench, point),
+            ..*point
+        };
         match self {
             MapPart::Pump => part(Component::Pump, point),
             MapPart::InputShaft => part(Component::InputShaft, point),
             MapPart::ClutchDrag => part(Component::ClutchDrag, point),
-            MapPart::FinalDrive => part(
-                Component::FinalDrive,
-                &BenchPoint {
-                    output_nm: point.output_nm * own_ratio(bench, point),
-                    ..*point
-                },
-            ),
+            MapPart::FinalDrive => part(Component::FinalDrive, &at_output),
             MapPart::Belt => {
                 // Without the final drive the pulley's torque is what was asked for.
                 let parts = Parts {
                     final_drive: false,
                     ..point.parts
                 };
-                bench
-                    .solve(&BenchPoint {
-                        output_nm: point.output_nm * own_ratio(bench, point),
-                        parts,
-                        ..*point
-                    })
-                    .belt_nm()
+                let at_pulley = BenchPoint { parts, ..at_output };
+                bench.solve(&at_pulley).belt_nm()
             }
             MapPart::Box => bench.solve(&at_input_torque(bench, point)).total_nm(),
         }
@@ -115,27 +108,26 @@ fn at_input_torque(bench: &Bench, point: &BenchPoint) -> BenchPoint {
     found
 }
 
+/// A point of a map: its axes and the loss.
+type MapPoint = ([f64; Axis::COUNT], f64);
+
 /// Columns of the map over a grid: its axes, then the loss.
-fn map_columns(part: MapPart, grid: &LossGrid) -> Vec<Column<([f64; Axis::COUNT], f64)>> {
-    let axis = |name: &'static str, axis: Axis| {
-        Column::number(
-            name,
-            "",
-            "",
-            move |(asked, _): &([f64; Axis::COUNT], f64)| asked[axis as usize],
-        )
-    };
-    let mut list = vec![
-        axis(if part.of_cvt() { "ratio" } else { "gear" }, Axis::Ratio),
-        axis("input_speed_rpm", Axis::Speed),
+fn map_columns(part: MapPart, grid: &LossGrid) -> Vec<Column<MapPoint>> {
+    let ratio = if part.of_cvt() { "ratio" } else { "gear" };
+    let pressure = !grid.of(Axis::Pressure).is_empty();
+    let axes = [
+        (Some(ratio), Axis::Ratio),
+        (Some("input_speed_rpm"), Axis::Speed),
+        (part.torque_column(), Axis::Torque),
+        (pressure.then_some("secondary_pressure_bar"), Axis::Pressure),
+        (Some("oil_temp_degc"), Axis::Sump),
     ];
-    list.extend(part.torque_column().map(|name| axis(name, Axis::Torque)));
-    if !grid.of(Axis::Pressure).is_empty() {
-        list.push(axis("secondary_pressure_bar", Axis::Pressure));
-    }
-    list.push(axis("oil_temp_degc", Axis::Sump));
-    list.push(Column::number("torque_loss_nm", "", "", |(_, loss)| *loss));
-    list
+    let axes = axes.into_iter().filter_map(|(name, axis)| {
+        let get = move |(asked, _): &MapPoint| asked[axis as usize];
+        Some(Column::number(name?, "", "", get))
+    });
+    let loss = Column::number("torque_loss_nm", "", "", |(_, loss)| *loss);
+    axes.chain([loss]).collect()
 }
 
 /// Writes the map of a component over a grid as CSV, one line a point.

@@ -385,6 +385,10 @@ impl LossTable {
         words.collect::<Vec<_>>().join(", ")
     }
 
+    fn columns(&self) -> Vec<Column<LossRow>> {
+        columns(self.setup.transmission())
+    }
+
     /// Everything of the JSON object but its points.
     #[must_use]
     pub fn json_head(&self) -> Value {
@@ -398,7 +402,7 @@ impl LossTable {
                 "formulation": self.formulation,
                 "set": self.set,
             },
-            "columns": json_columns(&columns(self.setup.transmission())),
+            "columns": json_columns(&self.columns()),
             "count": self.grid.len(),
         })
     }
@@ -412,7 +416,7 @@ impl LossTable {
         out: &mut dyn Write,
         rows: impl Iterator<Item = LossRow>,
     ) -> io::Result<()> {
-        write_csv(out, &columns(self.setup.transmission()), rows, &[])
+        write_csv(out, &self.columns(), rows, &[])
     }
 
     /// Writes the JSON object with rows as its points, one a line.
@@ -424,12 +428,7 @@ impl LossTable {
         out: &mut dyn Write,
         rows: impl Iterator<Item = LossRow>,
     ) -> io::Result<()> {
-        write_json(
-            out,
-            &self.json_head(),
-            &columns(self.setup.transmission()),
-            rows,
-        )
+        write_json(out, &self.json_head(), &self.columns(), rows)
     }
 }
 

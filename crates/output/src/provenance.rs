@@ -1,7 +1,5 @@
 //! What a car was made from: its files with their hashes, what differs from the shipped vehicle most like it, every value.
 
-use std::f64::consts::PI;
-
 use crate::hash::hash;
 use crate::number::finite;
 use crate::record::{
@@ -11,12 +9,14 @@ use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::{Kind, Options, Setup, embedded_vehicles, is_path, load, text_of};
 use cvtcycle_config::{KeyInfo, Problems, unit_of};
 use cvtcycle_model::drive::fuel_map;
+use cvtcycle_model::keys::RPM;
 use cvtcycle_model::road::REFERENCE_K;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::controller::RatioDemand;
 
-const RPM: f64 = 30.0 / PI;
+/// rpm in one rad/s.
+const PER_RAD_S: f64 = 1.0 / RPM;
 /// Speed up to which lines of the variogram are drawn, km/h.
 const FASTEST_KMH: f64 = 200.0;
 /// Shares of rated power of the listed targets of a ratio control, with their names.
@@ -107,16 +107,13 @@ fn reference(setup: &Setup, word: &str, options: &Options) -> Result<Reference, 
     let mut best: Option<Reference> = None;
     for name in names {
         let shipped = load(name, &plain)?;
-        let same = setup
-            .keys
-            .iter()
-            .filter(|info| {
-                shipped
-                    .keys
-                    .iter()
-                    .any(|other| other.key == info.key && equal(other, info))
-            })
-            .count();
+        let is_same = |info: &&KeyInfo| {
+            shipped
+                .keys
+                .iter()
+                .any(|other| other.key == info.key && equal(other, info))
+        };
+        let same = setup.keys.iter().filter(is_same).count();
         if best.as_ref().is_none_or(|best| same > best.same) {
             best = Some(Reference {
                 setup: shipped,
@@ -136,31 +133,27 @@ fn equal(a: &KeyInfo, b: &KeyInfo) -> bool {
 
 /// Values that differ, or that only one of both has; values set by the user first.
 fn changes(shipped: &[KeyInfo], here: &[KeyInfo]) -> Vec<Change> {
-    let find = |list: &[KeyInfo], key: &str| list.iter().find(|info| info.key == key).cloned();
+    let find = |list: &'_ [KeyInfo], key: &str| list.iter().find(|info| info.key == key).cloned();
     let mut list: Vec<(bool, Change)> = Vec::new();
     for info in here {
         let other = find(shipped, &info.key);
-        let same = match &other {
-            Some(other) => equal(other, info),
-            None => info.value.is_empty(),
-        };
+        let same = other
+            .as_ref()
+            .map_or(info.value.is_empty(), |other| equal(other, info));
         if !same {
-            list.push((
-                info.status == "set",
-                change(&info.key, other.as_ref(), Some(info)),
-            ));
+            list.push((info.status == "set", change(other.as_ref(), Some(info))));
         }
     }
-    let gone = shipped
-        .iter()
-        .filter(|info| !info.value.is_empty() && find(here, &info.key).is_none());
-    list.extend(gone.map(|info| (false, change(&info.key, Some(info), None))));
+    let is_gone = |info: &&KeyInfo| !info.value.is_empty() && find(here, &info.key).is_none();
+    let gone = shipped.iter().filter(is_gone);
+    list.extend(gone.map(|info| (false, change(Some(info), None))));
     list.sort_by_key(|(set, _)| !set);
     list.into_iter().map(|(_, change)| change).collect()
 }
 
-fn change(key: &str, shipped: Option<&KeyInfo>, here: Option<&KeyInfo>) -> Change {
+fn change(shipped: Option<&KeyInfo>, here: Option<&KeyInfo>) -> Change {
     let text = |info: Option<&KeyInfo>| info.map_or(String::new(), |info| info.value.clone());
+    let key = here.or(shipped).map_or("", |info| &info.key);
     Change {
         key: key.to_owned(),
         unit: unit_of(key).to_owned(),
@@ -186,7 +179,7 @@ fn fuel_map_record(setup: &Setup) -> FuelMapRecord {
     const G_KWH: f64 = 3.6e9;
     let map = fuel_map(setup);
     FuelMapRecord {
-        speed_rpm: map.speed_rad_s.iter().map(|w| w * RPM).collect(),
+        speed_rpm: map.speed_rad_s.iter().map(|w| w * PER_RAD_S).collect(),
         torque_nm: map.torque_nm,
         bsfc_g_kwh: map
             .bsfc_kg_j
@@ -200,9 +193,9 @@ fn fuel_map_record(setup: &Setup) -> FuelMapRecord {
 /// Engine speed over road speed, wheels and belt without slip: gears, or limits and targets of a ratio control.
 fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
     let radius_m = setup.road_load.base.wheel_radius_m;
-    let highest_rpm = setup.engine().highest_rad_s * RPM;
+    let highest_rpm = setup.engine().highest_rad_s * PER_RAD_S;
     // rpm per km/h in a whole ratio from engine to wheel.
-    let slope = |overall: f64| overall / 3.6 / radius_m * RPM;
+    let slope = |overall: f64| overall / 3.6 / radius_m * PER_RAD_S;
     let straight = |name: String, overall: f64| {
         let fastest = (highest_rpm / slope(overall)).min(FASTEST_KMH);
         SpeedLine {
@@ -211,23 +204,18 @@ fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
         }
     };
     match setup.transmission() {
-        Transmission::Manual(manual) => manual
-            .overall
-            .iter()
-            .enumerate()
-            .map(|(k, r)| straight(format!("gear {}", k + 1), *r))
-            .collect(),
+        Transmission::Manual(manual) => {
+            let gears = manual.overall.iter().enumerate();
+            gears
+                .map(|(k, r)| straight(format!("gear {}", k + 1), *r))
+                .collect()
+        }
         Transmission::Cvt(cvt) => {
-            let (low, high) = (
-                cvt.final_drive * cvt.ratio.low,
-                cvt.final_drive * cvt.ratio.high,
-            );
-            let limits = [
-                straight("lowest ratio".to_owned(), low),
-                straight("highest ratio".to_owned(), high),
-            ];
+            let [low, high] = [cvt.ratio.low, cvt.ratio.high].map(|r| cvt.final_drive * r);
+            let limits = [("lowest ratio", low), ("highest ratio", high)];
+            let limits = limits.map(|(name, ratio)| straight(name.to_owned(), ratio));
             let target = |(share, name): &(f64, &str)| {
-                let rpm = target_rad_s(cvt, setup.engine().rated_w, *share) * RPM;
+                let rpm = target_rad_s(cvt, setup.engine().rated_w, *share) * PER_RAD_S;
                 let (from, to) = (rpm / slope(low), (rpm / slope(high)).min(FASTEST_KMH));
                 SpeedLine {
                     name: (*name).to_owned(),

@@ -13,12 +13,20 @@ use crate::args::one_of;
 use crate::args::problems::{bad_value, problem};
 use crate::args::ranges::{values, values_or_words};
 
-const SPEED: Bound = Bound::open_low(0.0, 10_000.0);
-const TORQUE: Bound = Bound::closed(-5000.0, 5000.0);
-/// Where the fluid models hold.
-const TEMP: Bound = Bound::closed(-40.0, 160.0);
-const PRESSURE: Bound = Bound::closed(0.0, 100.0);
-const THROTTLE: Bound = Bound::closed(0.0, 1.0);
+/// Option of an axis, its range, and the suffix of a key with its unit; ratios and gears depend on the vehicle.
+fn option_of(axis: Axis) -> (&'static str, Bound, &'static str) {
+    // Where the fluid models hold.
+    let temp = Bound::closed(-40.0, 160.0);
+    match axis {
+        Axis::Ratio => ("--ratio or --gear", Bound::any(), ""),
+        Axis::Sump => ("--temp", temp, "_degc"),
+        Axis::Belt => ("--belt-temp", temp, "_degc"),
+        Axis::Throttle => ("--throttle", Bound::closed(0.0, 1.0), ""),
+        Axis::Pressure => ("--pressure", Bound::closed(0.0, 100.0), "_bar"),
+        Axis::Torque => ("--torque", Bound::closed(-5000.0, 5000.0), "_nm"),
+        Axis::Speed => ("--speed", Bound::open_low(0.0, 10_000.0), "_rpm"),
+    }
+}
 
 /// Checked input of `losses`.
 pub struct LossesPlan {
@@ -74,55 +82,18 @@ pub fn plan(args: &LossesArgs, problems: &mut Problems) -> Option<LossesPlan> {
 
 /// Axes that every transmission has.
 fn fill_axes(args: &LossesArgs, grid: &mut LossGrid, problems: &mut Problems) {
-    let mut fill = |axis: Axis, (option, text): (&str, &Option<String>), default, range, suffix| {
-        if let Some(text) = text.as_deref().or(default) {
-            let found = problems.take(values(option, text, range, suffix));
-            grid.values[axis as usize] = found.unwrap_or_default();
-        }
+    let mut fill = |axis: Axis, text: Option<&str>| {
+        let (option, range, suffix) = option_of(axis);
+        let found = text.and_then(|text| problems.take(values(option, text, range, suffix)));
+        grid.values[axis as usize] = found.unwrap_or_default();
     };
-    fill(
-        Axis::Speed,
-        ("--speed", &args.speed),
-        Some("2500"),
-        SPEED,
-        "_rpm",
-    );
-    fill(
-        Axis::Torque,
-        ("--torque", &args.torque),
-        Some("0"),
-        TORQUE,
-        "_nm",
-    );
-    fill(
-        Axis::Sump,
-        ("--temp", &args.temp),
-        Some("80"),
-        TEMP,
-        "_degc",
-    );
-    fill(
-        Axis::Throttle,
-        ("--throttle", &args.throttle),
-        Some("0"),
-        THROTTLE,
-        "",
-    );
+    fill(Axis::Speed, args.speed.as_deref().or(Some("2500")));
+    fill(Axis::Torque, args.torque.as_deref().or(Some("0")));
+    fill(Axis::Sump, args.temp.as_deref().or(Some("80")));
+    fill(Axis::Throttle, args.throttle.as_deref().or(Some("0")));
     // With no --belt-temp the belt is in steady state, and with no --pressure the clamping law is used: no values on that axis.
-    fill(
-        Axis::Belt,
-        ("--belt-temp", &args.belt_temp),
-        None,
-        TEMP,
-        "_degc",
-    );
-    fill(
-        Axis::Pressure,
-        ("--pressure", &args.pressure),
-        None,
-        PRESSURE,
-        "_bar",
-    );
+    fill(Axis::Belt, args.belt_temp.as_deref());
+    fill(Axis::Pressure, args.pressure.as_deref());
     if args.pressure.is_some() && args.throttle.is_some() {
         let message = "with --pressure the clamping law is not used, so the throttle has no effect";
         problems.add(problem("--throttle", message, "leave out one of the two"));
@@ -145,33 +116,25 @@ fn check_cvt(args: &LossesArgs, formulation: Formulation, ratios: &[f64], proble
 
 /// Options that a manual gearbox does not have.
 fn check_manual(args: &LossesArgs, formulation: Formulation, problems: &mut Problems) {
-    let mut absent = |given: bool, option: &str, part: &str, hint: &str| {
-        if given {
-            let vehicle = &args.car.vehicle;
-            let message = format!("{vehicle} has a manual gearbox, which has no {part}");
-            problems.add(problem(option, &message, hint));
-        }
-    };
-    let (gear, oil) = (
-        "use --gear 3 or --gear 1..5",
-        "leave it out; --temp is the oil temperature",
-    );
-    let (law, out) = ("clamping law that depends on the throttle", "leave it out");
-    absent(args.ratio.is_some(), "--ratio", "belt ratio", gear);
-    absent(args.belt_temp.is_some(), "--belt-temp", "belt", oil);
-    absent(
-        args.pressure.is_some(),
-        "--pressure",
-        "clamping pressure",
-        out,
-    );
-    absent(args.throttle.is_some(), "--throttle", law, out);
-    absent(
-        formulation != Formulation::Smooth,
-        "--formulation",
-        "belt",
-        out,
-    );
+    let law = "clamping law that depends on the throttle";
+    let is_printed = formulation != Formulation::Smooth;
+    let given = [
+        ("--ratio", args.ratio.is_some(), "belt ratio"),
+        ("--belt-temp", args.belt_temp.is_some(), "belt"),
+        ("--pressure", args.pressure.is_some(), "clamping pressure"),
+        ("--throttle", args.throttle.is_some(), law),
+        ("--formulation", is_printed, "belt"),
+    ];
+    for (option, _, part) in given.into_iter().filter(|(_, is_given, _)| *is_given) {
+        let vehicle = &args.car.vehicle;
+        let message = format!("{vehicle} has a manual gearbox, which has no {part}");
+        let hint = match option {
+            "--ratio" => "use --gear 3 or --gear 1..5",
+            "--belt-temp" => "leave it out; --temp is the oil temperature",
+            _ => "leave it out",
+        };
+        problems.add(problem(option, &message, hint));
+    }
 }
 
 /// Gears; all if none is given.
@@ -188,13 +151,8 @@ fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Problems> {
     let allowed = format!("whole numbers from 1 to {count}");
     let no_gear = |x: &&f64| x.fract().abs() > 0.0;
     let bad = |x: &f64| {
-        bad_value(
-            "--gear",
-            &x.to_string(),
-            &allowed,
-            &format!("`{x}` is no gear"),
-            "",
-        )
+        let (value, message) = (x.to_string(), format!("`{x}` is no gear"));
+        bad_value("--gear", &value, &allowed, &message, "")
     };
     let problems: Problems = found.iter().filter(no_gear).map(bad).collect();
     problems.finish().map(|()| found)
@@ -223,47 +181,27 @@ fn check_map(
             "a map is for driving, for which the printed formulations are not defined everywhere";
         problems.add(problem("--as-map", message, "leave out --formulation"));
     }
-    let mut single = |axis: Axis, option: &str, hint: &str| {
+    let mut single = |axis: Axis, hint: &str| {
         let count = grid.of(axis).len();
         if count > 1 {
             let message = format!("{count} values, but a map of `{word}` has no such axis");
-            problems.add(problem(option, &message, hint));
+            problems.add(problem(option_of(axis).0, &message, hint));
         }
     };
-    single(
-        Axis::Throttle,
-        "--throttle",
-        "give the pressures instead: --pressure 10..40:5",
-    );
-    single(Axis::Belt, "--belt-temp", "give one value");
+    let pressures = "give the pressures instead: --pressure 10..40:5";
+    single(Axis::Throttle, pressures);
+    single(Axis::Belt, "give one value");
     if part.torque_column().is_none() {
-        single(
-            Axis::Torque,
-            "--torque",
-            "the loss of this component does not depend on it",
-        );
+        let hint = "the loss of this component does not depend on it";
+        single(Axis::Torque, hint);
     }
 }
 
 fn too_many(grid: &LossGrid) -> Problem {
-    let count = |axis: Axis, option: &str| match grid.of(axis).len() {
-        0 | 1 => None,
-        n => Some(format!("{option} {n}")),
-    };
-    let counts = [
-        count(Axis::Ratio, "--ratio or --gear"),
-        count(Axis::Sump, "--temp"),
-        count(Axis::Belt, "--belt-temp"),
-        count(Axis::Throttle, "--throttle"),
-        count(Axis::Pressure, "--pressure"),
-        count(Axis::Torque, "--torque"),
-        count(Axis::Speed, "--speed"),
-    ];
-    let counts: Vec<String> = counts.into_iter().flatten().collect();
-    let hint = format!(
-        "use larger steps or several runs; values given: {}",
-        counts.join(", ")
-    );
+    let count = |axis: Axis| format!("{} {}", option_of(axis).0, grid.of(axis).len());
+    let counts: Vec<String> = grid.varied().into_iter().map(count).collect();
+    let counts = counts.join(", ");
+    let hint = format!("use larger steps or several runs; values given: {counts}");
     let message = format!("the grid has {:.0} points", grid.size());
     let allowed = format!("at most {MAX_POINTS} points");
     bad_value("losses", "", &allowed, &message, &hint)

@@ -131,11 +131,7 @@ impl Execute for RigTransmissionArgs {
             }
             Ok("")
         })?;
-        let results = Results {
-            json,
-            failures,
-            files,
-        };
+        let results = Results::new(json, failures, files);
         Ok(results.output(&self.output, || {
             tables::tables(&plan, &found, terminal.stdout)
         }))

@@ -87,10 +87,7 @@ impl Execute for RigVariatorArgs {
         })?;
         self.output
             .stream(|out| found.write_json(out), |out| found.write_points(out))?;
-        let results = Results {
-            files,
-            ..Results::default()
-        };
+        let results = Results::new(String::new(), Vec::new(), files);
         Ok(results.table_output(&self.output, || tables::tables(&found, terminal.stdout)))
     }
 }

@@ -134,24 +134,19 @@ pub fn too_many_phases(history: &History) -> Option<Problem> {
 
 /// A word, with the quotes in it as they were before it was written.
 fn unquoted(row: &csv::Row<'_, '_>, column: usize) -> String {
-    let quoted = row.cell(column).is_some_and(|cell| {
-        let before = &cell.line.text[..cell.field.start];
-        before.ends_with('"')
-    });
-    let word = row.word(column);
-    if quoted {
-        word.replace("\"\"", "\"")
-    } else {
-        word.to_owned()
+    let cell = row.cell(column);
+    let quoted = cell.is_some_and(|cell| cell.line.text[..cell.field.start].ends_with('"'));
+    match quoted {
+        true => row.word(column).replace("\"\"", "\""),
+        false => row.word(column).to_owned(),
     }
 }
 
 fn unknown_flag(word: &str) -> Problem {
     let names: Vec<&str> = Flags::NAMES.iter().map(|(_, name)| *name).collect();
-    let message = if word.is_empty() {
-        "a flag without a name".to_owned()
-    } else {
-        format!("the flag `{word}` is unknown")
+    let message = match word {
+        "" => "a flag without a name".to_owned(),
+        word => format!("the flag `{word}` is unknown"),
     };
     Problem::unknown_name(message)
         .allowed(FLAGS)

@@ -27,22 +27,15 @@ pub fn summarise(
     settings: Settings,
     driven: &[Driven],
 ) -> Summary {
-    let runs: Vec<RunSummary> = driven
-        .iter()
-        .enumerate()
-        .map(|(i, car)| {
-            run_summary(
-                cycle,
-                if i == 0 { "subject" } else { "baseline" },
-                &settings,
-                car,
-            )
-        })
+    let roles = ["subject"].into_iter().chain(std::iter::repeat("baseline"));
+    let runs = driven.iter().zip(roles);
+    let runs: Vec<RunSummary> = runs
+        .map(|(car, role)| run_summary(cycle, role, &settings, car))
         .collect();
-    let comparison = match runs.split_first() {
-        Some((subject, baselines)) => baselines.iter().map(|b| compare(subject, b)).collect(),
-        None => Vec::new(),
-    };
+    let baselines = runs.iter().skip(1);
+    let comparison = baselines
+        .map(|baseline| compare(&runs[0], baseline))
+        .collect();
     Summary {
         schema: SCHEMA,
         program: crate::PROGRAM.to_owned(),
@@ -69,12 +62,8 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
     let all = totals.total();
     let fuel = PhaseFuel::of(&all, engine);
     let weighted = weighted_fuel(cycle, driven, engine);
-    let mpg = |factor: f64| {
-        weighted
-            .or(fuel.l_per_100km)
-            .filter(|l| *l > 0.0)
-            .map(|l| factor / l)
-    };
+    let headline = weighted.or(fuel.l_per_100km).filter(|l| *l > 0.0);
+    let mpg = |factor: f64| headline.map(|l| factor / l);
     let seconds = |flag: Flags| totals.seconds(flag);
     let mut summary = RunSummary {
         vehicle: name.to_owned(),
@@ -181,17 +170,14 @@ fn weighted_fuel(cycle: &Cycle, driven: &Driven, engine: &Engine) -> Option<f64>
     }
     let groups = cycle.phase_groups();
     let bags = |names: [&str; 2]| {
-        let phases: Vec<u16> = groups
+        let named = groups
             .iter()
-            .filter(|(name, _)| names.contains(&name.as_str()))
-            .flat_map(|(_, list)| list.clone())
-            .collect();
+            .filter(|(name, _)| names.contains(&name.as_str()));
+        let phases: Vec<u16> = named.flat_map(|(_, list)| list.clone()).collect();
         PhaseFuel::of(&driven.outcome.totals.over(&phases), engine).l_per_100km
     };
-    let (cold, hot) = (
-        bags(["cold_transient", "stabilised"])?,
-        bags(["hot_transient", "stabilised"])?,
-    );
+    let cold = bags(["cold_transient", "stabilised"])?;
+    let hot = bags(["hot_transient", "stabilised"])?;
     Some(Weighting::FTP75_COLD * cold + Weighting::FTP75_HOT * hot)
 }
 
@@ -206,18 +192,13 @@ fn losses(driven: &Driven, settings: &Settings, all: &PhaseTotals) -> Named {
         _ => finite(joules(c) / 1e3),
     };
     let components = driven.setup.transmission().components();
+    let components = components.into_iter().map(|c| (c.name(), part(c)));
     let rest = [
         ("accessories", all.terms.accessories),
         ("brake", all.terms.brake),
     ];
-    let rest = rest
-        .into_iter()
-        .map(|(name, joules)| (name, finite(joules / 1e3)));
-    components
-        .into_iter()
-        .map(|c| (c.name(), part(c)))
-        .chain(rest)
-        .collect()
+    let rest = rest.map(|(name, joules)| (name, finite(joules / 1e3)));
+    components.chain(rest).collect()
 }
 
 fn end_temperatures(outcome: &Outcome, cvt: bool) -> Named {
@@ -256,16 +237,10 @@ pub fn compare(subject: &RunSummary, baseline: &RunSummary) -> Comparison {
     let percent =
         |s: Option<f64>, b: Option<f64>| s.zip(b).and_then(|(s, b)| finite((s / b - 1.0) * 100.0));
     let phases = subject.phases.iter().zip(&baseline.phases);
+    let phases = phases.map(|(s, b)| (&*s.name, percent(s.fuel_l_per_100km, b.fuel_l_per_100km)));
     Comparison {
         baseline: baseline.vehicle.clone(),
         fuel_percent: percent(subject.headline_fuel(), baseline.headline_fuel()),
-        phases_percent: phases
-            .map(|(s, b)| {
-                (
-                    s.name.as_str(),
-                    percent(s.fuel_l_per_100km, b.fuel_l_per_100km),
-                )
-            })
-            .collect(),
+        phases_percent: phases.collect(),
     }
 }

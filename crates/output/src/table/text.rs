@@ -270,11 +270,8 @@ impl<'a, T> TextColumns<'a, T> {
         T: 't,
     {
         let table = self.table(items);
-        if table.rows.len() > 1 {
-            table.text()
-        } else {
-            String::new()
-        }
+        let has_items = table.rows.len() > 1;
+        has_items.then(|| table.text()).unwrap_or_default()
     }
 
     /// The same, indented.
@@ -282,11 +279,7 @@ impl<'a, T> TextColumns<'a, T> {
     where
         T: 't,
     {
-        let table = self.table(items);
-        if table.rows.len() > 1 {
-            table.indented().text()
-        } else {
-            String::new()
-        }
+        let lines = self.lines(items);
+        lines.lines().map(|line| format!("  {line}\n")).collect()
     }
 }
