@@ -117,8 +117,8 @@ pub fn relative_to(file: &str, named: &str) -> String {
     let folder = std::path::Path::new(file)
         .parent()
         .filter(|_| is_path(file) && is_path(named));
-    folder.map_or_else(
-        || named.to_owned(),
-        |folder| folder.join(named).to_string_lossy().into_owned(),
-    )
+    match folder {
+        Some(folder) => folder.join(named).to_string_lossy().into_owned(),
+        None => named.to_owned(),
+    }
 }

@@ -23,13 +23,10 @@ pub fn did_you_mean(value: &str, known: &[&str]) -> String {
 /// The overrides that an option gives, except those that are none, which are reported under it.
 pub fn overrides(option: &str, texts: &[String], problems: &mut Problems) -> Vec<Override> {
     let parse = |text: &String| {
-        text.parse::<Override>()
-            .map_err(|p| assigned(option, text, p))
+        let found = text.parse::<Override>();
+        problems.take(found.map_err(|problem| assigned(option, text, problem)))
     };
-    texts
-        .iter()
-        .filter_map(|text| problems.take(parse(text)))
-        .collect()
+    texts.iter().filter_map(parse).collect()
 }
 
 /// A problem of an override under the option that gives it.

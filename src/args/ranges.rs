@@ -54,11 +54,8 @@ pub fn values_or_words(
 fn once(values: Vec<f64>) -> Vec<f64> {
     let mut seen = std::collections::BTreeSet::new();
     // Adding zero turns a negative zero into a plain one.
-    values
-        .into_iter()
-        .map(|x| x + 0.0)
-        .filter(|x| seen.insert(x.to_bits()))
-        .collect()
+    let values = values.into_iter().map(|x| x + 0.0);
+    values.filter(|x| seen.insert(x.to_bits())).collect()
 }
 
 struct List<'a> {
@@ -122,11 +119,8 @@ impl List<'_> {
     }
 
     fn bad(&self, part: &str, what: &str, hint: String) -> Problem {
-        let words: String = self
-            .words
-            .iter()
-            .map(|(word, _)| format!("{word}, "))
-            .collect();
+        let words = self.words.iter().map(|(word, _)| format!("{word}, "));
+        let words: String = words.collect();
         let also = if words.is_empty() { "" } else { "or " };
         let allowed = format!("{words}{also}{}", self.allowed.in_unit(self.unit));
         let message = format!("{} {what}", quoted(part));

@@ -35,12 +35,8 @@ impl Execute for CheckArgs {
     type Plan = Vec<(String, Checked)>;
 
     fn plan(&self, _: &mut Problems) -> Option<Self::Plan> {
-        Some(
-            self.files
-                .iter()
-                .map(|file| (file.clone(), check(file)))
-                .collect(),
-        )
+        let files = self.files.iter();
+        Some(files.map(|file| (file.clone(), check(file))).collect())
     }
 
     fn run(&self, checked: Self::Plan, terminal: Terminal) -> CommandResult {
@@ -49,10 +45,10 @@ impl Execute for CheckArgs {
             false => Ending::BadInput,
         };
         if self.output.json {
-            let files: Vec<Value> = checked
+            let files = checked
                 .iter()
-                .map(|(file, result)| json_entry(file, result))
-                .collect();
+                .map(|(file, result)| json_entry(file, result));
+            let files: Vec<Value> = files.collect();
             return Ok(CommandOutput {
                 stdout: json_text(&json!({ "files": files }))?,
                 ending,
@@ -111,13 +107,8 @@ fn json_entry(file: &str, result: &Checked) -> Value {
             "allowed": p.allowed, "message": p.message, "hint": p.hint,
         })
     };
-    let problems: Vec<Value> = result
-        .as_ref()
-        .err()
-        .into_iter()
-        .flatten()
-        .map(problem)
-        .collect();
+    let found = result.as_ref().err().into_iter().flatten();
+    let problems: Vec<Value> = found.map(problem).collect();
     let kind = result.as_ref().ok().map(|kind| kind.word());
     json!({ "file": file, "ok": result.is_ok(), "kind": kind, "problems": problems })
 }

@@ -116,10 +116,8 @@ impl Meanings {
     /// Adds what has all words in its name or meaning, up to [`MAX_FOUND`] entries of each kind.
     fn search(&mut self, text: &str) {
         let text = text.to_lowercase().replace(['-', '_'], " ");
-        let words: Vec<&str> = text
-            .split_whitespace()
-            .filter(|word| word.len() > 2)
-            .collect();
+        let words = text.split_whitespace().filter(|word| word.len() > 2);
+        let words: Vec<&str> = words.collect();
         let has = |name: &str, doc: &str| {
             let text = format!("{name} {doc}").to_lowercase();
             !words.is_empty() && words.iter().all(|word| text.contains(word))
@@ -181,11 +179,8 @@ impl Meanings {
             .map(|(known, values)| key_text(known, values, paint));
         let columns = self.columns.iter().map(|(table, c)| {
             let what = format!("column of the {table}");
-            let facts = [
-                ("what", &*what),
-                ("meaning", &c.doc),
-                ("unit", or_none(&c.unit)),
-            ];
+            let unit = or_none(&c.unit);
+            let facts = [("what", &*what), ("meaning", &c.doc), ("unit", unit)];
             paragraph(&c.name, &facts, paint)
         });
         let flags = self.flags.iter().map(|(name, meaning)| {
@@ -202,18 +197,16 @@ impl Meanings {
             ];
             paragraph(e.label, &facts, paint)
         });
-        keys.chain(columns)
-            .chain(flags)
-            .chain(equation)
-            .collect::<Vec<_>>()
-            .join("\n")
+        let all = keys.chain(columns).chain(flags).chain(equation);
+        all.collect::<Vec<_>>().join("\n")
     }
 }
 
 fn key_text(known: &KeyInfo, values: &[(&str, KeyInfo)], paint: Paint) -> String {
+    let (doc, unit) = (&*known.doc, or_none(&known.unit));
     let mut facts = vec![
-        ("meaning", &*known.doc),
-        ("unit", or_none(&known.unit)),
+        ("meaning", doc),
+        ("unit", unit),
         ("allowed", &*known.allowed),
     ];
     let equation = |e: &Equation| {
@@ -295,11 +288,6 @@ fn unknown(word: &str) -> Problem {
     let hint = suggestion(&full)
         .unwrap_or_else(|| "`cvtcycle show rover_216_cvt` prints all keys of a vehicle".to_owned());
     let allowed = "a key, table, column, flag, label of an equation, or term";
-    bad_value(
-        "explain",
-        word,
-        allowed,
-        &format!("`{word}` is not known"),
-        &hint,
-    )
+    let message = format!("`{word}` is not known");
+    bad_value("explain", word, allowed, &message, &hint)
 }

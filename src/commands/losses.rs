@@ -104,15 +104,11 @@ impl Execute for LossesArgs {
             Ok("")
         })?;
         let flags = RefCell::new(FlagCount::default());
-        let rows = || {
-            losses
-                .rows()
-                .inspect(|row: &LossRow| flags.borrow_mut().add(row.answer.flags))
-        };
-        self.output.stream(
-            |out| losses.write_json(out, rows()),
-            |out| losses.write_csv(out, rows()),
-        )?;
+        let count = |row: &LossRow| flags.borrow_mut().add(row.answer.flags);
+        let rows = || losses.rows().inspect(count);
+        let json = |out: &mut dyn io::Write| losses.write_json(out, rows());
+        self.output
+            .stream(json, |out| losses.write_csv(out, rows()))?;
         let table = match self.output.is_streamed() {
             true => String::new(),
             false => tables::table(&losses, rows(), terminal.stdout),

@@ -9,7 +9,7 @@ use cvtcycle::report::write::{Form, Target};
 
 use super::Execute;
 use crate::args::{Names, OutArgs, OutputArgs, names_of, one_of};
-use crate::print::{CommandResult, Results, Terminal, json_text};
+use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::config::Problems;
 
 /// Arguments of `report`.
@@ -75,20 +75,15 @@ impl Execute for ReportArgs {
 
     fn run(&self, (document, target): Self::Plan, _: Terminal) -> CommandResult {
         let paths = target.write(&document)?;
-        let paths: Vec<String> = paths
-            .iter()
-            .map(|path| path.display().to_string())
-            .collect();
+        let paths = paths.iter().map(|path| path.display().to_string());
+        let paths: Vec<String> = paths.collect();
         let (report, figures) = paths
             .split_first()
             .map_or(("", &[][..]), |(first, rest)| (first, rest));
         let missing = &document.warnings;
         let json = serde_json::json!({ "report": report, "figures": figures, "missing": missing });
-        let results = Results {
-            json: json_text(&json)?,
-            failures: document.warnings.clone(),
-            ..Results::default()
-        };
+        let (json, warnings) = (json_text(&json)?, document.warnings.clone());
+        let results = Results::new(json, warnings, WrittenFiles::default());
         let table = || format!("{report}\n{} figures next to it\n", figures.len());
         Ok(results.output(&self.output, table))
     }

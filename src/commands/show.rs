@@ -126,12 +126,8 @@ impl Execute for ShowArgs {
                 return None;
             }
         };
-        let wanted = |info: &KeyInfo| {
-            self.status
-                .iter()
-                .any(|status| status.word() == info.status)
-        };
-        keys.retain(|info| self.status.is_empty() || wanted(info));
+        let status: Vec<String> = self.status.iter().map(|status| status.word()).collect();
+        keys.retain(|info| status.is_empty() || status.contains(&info.status));
         Some(Shown::Keys(kind, title, keys))
     }
 
@@ -224,11 +220,8 @@ fn counts(keys: &[KeyInfo]) -> String {
 fn phases(cycle: &Cycle) -> Vec<(String, [f64; 2])> {
     let km = |automatic: bool, phases: &[u16]| {
         let trace = cycle.trace_for(automatic);
-        phases
-            .iter()
-            .map(|phase| trace.phase_distance_m(*phase))
-            .sum::<f64>()
-            / 1e3
+        let m = phases.iter().map(|phase| trace.phase_distance_m(*phase));
+        m.sum::<f64>() / 1e3
     };
     let groups = cycle.phase_groups().into_iter();
     groups

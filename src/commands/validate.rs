@@ -191,10 +191,8 @@ impl ValidateArgs {
 
     /// Reports an unknown chapter or mechanism; a known mechanism without rows is none.
     fn check_filters(&self, files: &[RowFile], problems: &mut Problems) {
-        let chapters = files
-            .iter()
-            .flat_map(|file| &file.rows)
-            .map(|row| row.chapter.as_str());
+        let rows = files.iter().flat_map(|file| &file.rows);
+        let chapters = rows.map(|row| row.chapter.as_str());
         let mut chapters: Vec<&str> = chapters.collect();
         chapters.dedup();
         let is_unknown =
@@ -205,13 +203,8 @@ impl ValidateArgs {
             .filter(|name| is_unknown(name, &chapters))
         {
             let message = format!("no row belongs to chapter `{name}`");
-            problems.add(bad_value(
-                "--chapter",
-                name,
-                &chapters.join(", "),
-                &message,
-                "",
-            ));
+            let allowed = chapters.join(", ");
+            problems.add(bad_value("--chapter", name, &allowed, &message, ""));
         }
         if let Some(name) = self
             .mechanism

@@ -26,11 +26,8 @@ impl OutputFile {
         let path = path.as_ref().to_path_buf();
         if path.file_name().is_none() {
             let message = "the name of the output file is empty";
-            return Err(problem(
-                &path,
-                message,
-                "name a file, for example --out points.csv",
-            ));
+            let hint = "name a file, for example --out points.csv";
+            return Err(problem(&path, message, hint));
         }
         check_target(&path, force)?;
         let folder = folder(&path);

@@ -39,11 +39,8 @@ impl OutputDir {
         let path = path.as_ref().to_path_buf();
         check_directory(&path)?;
         let cannot = |what: &str, error| {
-            failed(
-                &path,
-                &format!("cannot {what} directory {}", path.display()),
-                &error,
-            )
+            let what = format!("cannot {what} directory {}", path.display());
+            failed(&path, &what, &error)
         };
         let created = Created::new(&path).map_err(|error| cannot("create", error))?;
         let earlier = names_in(&path).map_err(|error| cannot("read", error))?;
@@ -236,11 +233,8 @@ impl Drop for Swap {
 pub fn check_directory(path: &Path) -> Result<(), Problem> {
     if path.as_os_str().is_empty() {
         let message = "the name of the output directory is empty";
-        return Err(problem(
-            path,
-            message,
-            "name a directory, for example --out run1",
-        ));
+        let hint = "name a directory, for example --out run1";
+        return Err(problem(path, message, hint));
     }
     if path.exists() && !path.is_dir() {
         let message = format!("{} exists and is not a directory", path.display());
@@ -295,11 +289,8 @@ fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Prob
         false => ("files of something else", "an empty directory"),
     };
     let message = format!("{} holds {of}: {}", path.display(), list(names));
-    Err(problem(
-        path,
-        &message,
-        &format!("choose another name, or {instead}"),
-    ))
+    let hint = format!("choose another name, or {instead}");
+    Err(problem(path, &message, &hint))
 }
 
 /// The first names, and how many more there are.

@@ -7,7 +7,7 @@ mod read;
 pub use read::{AGAIN, FLAGS, too_many_phases};
 
 use super::table::{Kind, Scope};
-use super::trace::{COLUMNS, TraceColumn, column, loss_column};
+use super::trace::{COLUMNS, TraceColumn, loss_column};
 use super::{Component, Flags, Row};
 
 /// Most steps of a trace that is read: as many as a cycle may have rows, 23 days at 1 s. Some 500 bytes of memory each.
@@ -91,10 +91,9 @@ impl History {
     /// or that holds words.
     #[must_use]
     pub fn column(&self, name: &str) -> &[f64] {
-        self.columns
-            .iter()
-            .find(|(column, _)| column.name == name)
-            .map_or(&[], |(_, numbers)| numbers)
+        let mut columns = self.columns.iter();
+        let own = columns.find(|(column, _)| column.name == name);
+        own.map_or(&[], |(_, numbers)| numbers)
     }
 
     /// All columns of numbers, in the order of the table.
@@ -194,10 +193,8 @@ pub fn is_number(column: &TraceColumn) -> bool {
 pub fn flags_of(cell: &str) -> Result<Flags, &str> {
     let mut flags = Flags::default();
     for word in cell.split('|').filter(|_| !cell.is_empty()) {
-        let (flag, _) = Flags::NAMES
-            .iter()
-            .find(|(_, name)| *name == word)
-            .ok_or(word)?;
+        let own = Flags::NAMES.iter().find(|(_, name)| *name == word);
+        let (flag, _) = own.ok_or(word)?;
         flags.set(*flag, true);
     }
     Ok(flags)
@@ -208,18 +205,19 @@ pub fn missing(there: &[&'static TraceColumn]) -> Vec<&'static TraceColumn> {
     let cvt = there.iter().any(|column| column.scope == Scope::Cvt);
     let kind = if cvt { Scope::Cvt } else { Scope::Manual };
     let wanted = |own: &&TraceColumn| own.scope == Scope::Always || own.scope == kind;
+    let has = |own: &TraceColumn| there.iter().any(|column| column.name == own.name);
     COLUMNS
         .iter()
         .filter(wanted)
-        .filter(|own| !there.iter().any(|column| column.name == own.name))
+        .filter(|own| !has(own))
         .collect()
 }
 
 /// The columns of these names that this program knows, in the order of the table.
 pub fn known<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'static TraceColumn> {
-    let list: Vec<&TraceColumn> = names.filter_map(column).collect();
+    let names: Vec<&str> = names.collect();
     COLUMNS
         .iter()
-        .filter(|own| list.iter().any(|column| column.name == own.name))
+        .filter(|own| names.contains(&&*own.name))
         .collect()
 }

@@ -125,10 +125,9 @@ impl LossGrid {
     /// Axes with more than one value, outermost first.
     #[must_use]
     pub fn varied(&self) -> Vec<Axis> {
-        Axis::ALL
-            .into_iter()
-            .filter(|axis| self.of(*axis).len() > 1)
-            .collect()
+        let mut axes = Axis::ALL.to_vec();
+        axes.retain(|axis| self.of(*axis).len() > 1);
+        axes
     }
 
     /// Number of points, as a float: it may exceed what can be counted.
@@ -276,11 +275,9 @@ impl LossRow {
 /// Components that a bench knows: all but the launch clutch, which is locked.
 #[must_use]
 pub fn bench_components(transmission: &Transmission) -> Vec<Component> {
-    transmission
-        .components()
-        .into_iter()
-        .filter(|c| *c != Component::LaunchClutch)
-        .collect()
+    let mut components = transmission.components();
+    components.retain(|c| *c != Component::LaunchClutch);
+    components
 }
 
 /// Columns for a transmission, in the order in which they are written.
@@ -378,10 +375,8 @@ impl LossTable {
         let cvt = self.is_cvt();
         let given =
             |axis: &&Axis| !asked[**axis as usize].is_nan() && (cvt || **axis != Axis::Throttle);
-        let words = axes
-            .iter()
-            .filter(given)
-            .map(|axis| axis.words(cvt, asked[*axis as usize]));
+        let axes = axes.iter().filter(given);
+        let words = axes.map(|axis| axis.words(cvt, asked[*axis as usize]));
         words.collect::<Vec<_>>().join(", ")
     }
 
@@ -446,10 +441,8 @@ impl FlagCount {
 
     /// Names and numbers of those that occurred, in the order of the bits.
     pub fn named(&self) -> impl Iterator<Item = (&'static str, usize)> {
-        let counted = Flags::NAMES
-            .iter()
-            .zip(self.0)
-            .map(|((_, name), n)| (*name, n));
+        let counted = Flags::NAMES.iter().zip(self.0);
+        let counted = counted.map(|((_, name), n)| (*name, n));
         counted.filter(|(_, n)| *n > 0)
     }
 }

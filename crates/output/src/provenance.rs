@@ -49,21 +49,15 @@ pub fn car_record(
 ) -> Result<CarRecord, Problems> {
     let (file, text, disk) = text_of(word, Kind::Vehicle, options.named_by)?;
     let fluid = |asked: &Option<String>, key: &str| {
-        let own = setup
-            .keys
-            .iter()
-            .find(|info| info.key == key)
-            .map_or("", |info| info.value.as_str());
+        let own = setup.keys.iter().find(|info| info.key == key);
+        let own = own.map_or("", |info| info.value.as_str());
         let default = if is_path(own) {
             disk.folder.join(own).to_string_lossy().into_owned()
         } else {
             own.to_owned()
         };
-        let (file, text, _) = text_of(
-            asked.as_ref().unwrap_or(&default),
-            Kind::Lubricant,
-            options.named_by,
-        )?;
+        let word = asked.as_ref().unwrap_or(&default);
+        let (file, text, _) = text_of(word, Kind::Lubricant, options.named_by)?;
         Ok::<_, Problems>(FileRecord {
             file,
             sha256: hash(text.as_bytes()),
@@ -100,10 +94,8 @@ fn reference(setup: &Setup, word: &str, options: &Options) -> Result<Reference, 
         formulation: options.formulation,
         ..Options::default()
     };
-    let names = embedded_vehicles()
-        .iter()
-        .map(|(name, _)| *name)
-        .filter(|name| is_path(word) || *name == word);
+    let names = embedded_vehicles().iter().map(|(name, _)| *name);
+    let names = names.filter(|name| is_path(word) || *name == word);
     let mut best: Option<Reference> = None;
     for name in names {
         let shipped = load(name, &plain)?;
@@ -177,15 +169,12 @@ fn value(info: &KeyInfo) -> ValueRecord {
 fn fuel_map_record(setup: &Setup) -> FuelMapRecord {
     /// kg/J to g/kWh.
     const G_KWH: f64 = 3.6e9;
+    let bsfc_g_kwh = |row: &Vec<f64>| row.iter().map(|b| finite(b * G_KWH)).collect();
     let map = fuel_map(setup);
     FuelMapRecord {
         speed_rpm: map.speed_rad_s.iter().map(|w| w * PER_RAD_S).collect(),
         torque_nm: map.torque_nm,
-        bsfc_g_kwh: map
-            .bsfc_kg_j
-            .iter()
-            .map(|row| row.iter().map(|b| finite(b * G_KWH)).collect())
-            .collect(),
+        bsfc_g_kwh: map.bsfc_kg_j.iter().map(bsfc_g_kwh).collect(),
         full_load_nm: map.full_load_nm,
     }
 }
@@ -222,10 +211,8 @@ fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
                     points: vec![(from, rpm), (to, rpm)],
                 }
             };
-            limits
-                .into_iter()
-                .chain(TARGETS.iter().map(target))
-                .collect()
+            let targets = TARGETS.iter().map(target);
+            limits.into_iter().chain(targets).collect()
         }
     }
 }

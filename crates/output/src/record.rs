@@ -152,9 +152,7 @@ impl Effect {
     #[must_use]
     pub fn size_percent(&self) -> f64 {
         let both = [self.lowered_percent, self.raised_percent];
-        both.into_iter()
-            .flatten()
-            .map(f64::abs)
-            .fold(f64::NAN, |a, b| if a > b { a } else { b })
+        let sizes = both.into_iter().flatten().map(f64::abs);
+        sizes.fold(f64::NAN, |a, b| if a > b { a } else { b })
     }
 }

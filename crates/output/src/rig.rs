@@ -66,11 +66,8 @@ impl Range {
         if self.low > self.high {
             return crate::number::NONE.to_owned();
         }
-        format!(
-            "{} to {}",
-            fixed(self.low, decimals),
-            fixed(self.high, decimals)
-        )
+        let [low, high] = [self.low, self.high].map(|x| fixed(x, decimals));
+        format!("{low} to {high}")
     }
 
     fn json(self) -> Value {
@@ -88,10 +85,9 @@ pub fn is_near(a: f64, b: f64) -> bool {
 #[must_use]
 pub fn ranges(points: &[SteadyPoint], ratio: f64) -> (Range, Range) {
     let on = || points.iter().filter(|p| is_near(p.set.ratio, ratio));
-    (
-        Range::of(on().map(|p| p.answer.total_nm())),
-        Range::of(on().map(|p| bar(p.answer.secondary_pa))),
-    )
+    let losses = on().map(|p| p.answer.total_nm());
+    let pressures = on().map(|p| bar(p.answer.secondary_pa));
+    (Range::of(losses), Range::of(pressures))
 }
 
 /// A test of the rig.
@@ -161,17 +157,14 @@ impl RigResults {
     /// Every operating point that was solved.
     pub fn answers(&self) -> impl Iterator<Item = &BenchAnswer> {
         let steady = self.steady.iter().chain(&self.loaded).map(|p| &p.answer);
-        let boxes = self
-            .second_box
-            .iter()
-            .flat_map(|t| [&t.first.answer, &t.second.answer]);
+        let boxes = self.second_box.iter();
+        let boxes = boxes.flat_map(|t| [&t.first.answer, &t.second.answer]);
         let stages = self.strip_down.iter().flat_map(|s| &s.stages);
-        let moments = self
-            .loops
-            .iter()
-            .flat_map(|l| &l.moments)
-            .map(|m| &m.answer);
-        steady.chain(boxes).chain(stages).chain(moments)
+        let moments = self.loops.iter().flat_map(|l| &l.moments);
+        steady
+            .chain(boxes)
+            .chain(stages)
+            .chain(moments.map(|m| &m.answer))
     }
 
     /// Number of points with a flag.
@@ -183,10 +176,8 @@ impl RigResults {
     /// Largest remainder of the strip-down after true loss and interaction, Nm.
     #[must_use]
     pub fn largest_remainder_nm(&self) -> f64 {
-        let pieces = self
-            .strip_down
-            .iter()
-            .flat_map(|s| Piece::ALL.map(|p| s.piece(p).remainder_nm().abs()));
+        let of = |s: &StripDown| Piece::ALL.map(|p| s.piece(p).remainder_nm().abs());
+        let pieces = self.strip_down.iter().flat_map(of);
         pieces.fold(0.0, |a, b| if b > a { b } else { a })
     }
 
@@ -262,11 +253,8 @@ impl RigResults {
         };
         let ranged = json!({ "ranges": ranges, "points": steady });
         add("steady", self.steady.is_empty(), ranged);
-        add(
-            "loaded",
-            self.loaded.is_empty(),
-            json!({ "points": loaded }),
-        );
+        let loaded = json!({ "points": loaded });
+        add("loaded", self.loaded.is_empty(), loaded);
         let stripped = json!({ "largest_remainder_nm": remainder, "points": strip_down });
         add("strip_down", self.strip_down.is_empty(), stripped);
         let loops = self.loops.iter().map(loop_json).collect();

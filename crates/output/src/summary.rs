@@ -230,28 +230,21 @@ impl RunSummary {
 
     fn checks(&self, strict: bool) -> Vec<String> {
         let flag = |flag: Flags| {
-            let name = Flags::NAMES
-                .iter()
-                .find(|(f, _)| *f == flag)
-                .map_or("", |(_, name)| name);
+            let name = flag.names().next().unwrap_or_default();
             (name, self.flags_s.get(name).is_some_and(|s| s > 0.0))
         };
         // Stated as what is good, so that an error that is no number fails.
         let closed = |error: Option<f64>| error.is_some_and(|e| e <= LEDGER_TOLERANCE);
+        let balanced = closed(self.ledger_error) && closed(self.run_ledger_error);
         let mut list = vec![
             flag(Flags::MISSED_TRACE),
-            (
-                "ledger_error",
-                !(closed(self.ledger_error) && closed(self.run_ledger_error)),
-            ),
+            ("ledger_error", !balanced),
             flag(Flags::NOT_CONVERGED),
         ];
         if strict {
             list.extend(STRICT.map(flag));
         }
-        list.into_iter()
-            .filter(|(_, failed)| *failed)
-            .map(|(name, _)| name.to_owned())
-            .collect()
+        list.retain(|(_, failed)| *failed);
+        list.into_iter().map(|(name, _)| name.to_owned()).collect()
     }
 }

@@ -207,9 +207,8 @@ impl<R> Column<R> {
         doc: impl Into<Cow<'static, str>>,
         get: impl Fn(&R) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        Self::new(name, unit, doc, Kind::Number, move |row| {
-            Cell::Number(get(row))
-        })
+        let cell = move |row: &R| Cell::Number(get(row));
+        Self::new(name, unit, doc, Kind::Number, cell)
     }
 
     /// A column of numbers that a row may not have.
@@ -229,9 +228,8 @@ impl<R> Column<R> {
         doc: impl Into<Cow<'static, str>>,
         get: impl Fn(&R) -> u64 + Send + Sync + 'static,
     ) -> Self {
-        Self::new(name, unit, doc, Kind::Count, move |row| {
-            Cell::Count(get(row))
-        })
+        let cell = move |row: &R| Cell::Count(get(row));
+        Self::new(name, unit, doc, Kind::Count, cell)
     }
 
     /// A column of words.
@@ -241,9 +239,8 @@ impl<R> Column<R> {
         doc: impl Into<Cow<'static, str>>,
         get: impl Fn(&R) -> T + Send + Sync + 'static,
     ) -> Self {
-        Self::new(name, unit, doc, Kind::Text, move |row| {
-            Cell::Text(get(row).into())
-        })
+        let cell = move |row: &R| Cell::Text(get(row).into());
+        Self::new(name, unit, doc, Kind::Text, cell)
     }
 
     /// A column of other cells that are written as words: phases, flags, names.

@@ -88,10 +88,8 @@ fn loss(component: Component) -> TraceColumn {
 /// The columns of a run, in the order of the table.
 #[must_use]
 pub fn columns_for(cvt: bool, components: &[Component]) -> Vec<&'static TraceColumn> {
-    COLUMNS
-        .iter()
-        .filter(|column| column.scope.includes(cvt, components))
-        .collect()
+    let has = |column: &&TraceColumn| column.scope.includes(cvt, components);
+    COLUMNS.iter().filter(has).collect()
 }
 
 /// The column of that name.

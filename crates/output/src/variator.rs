@@ -104,8 +104,8 @@ impl VariatorCurves {
     }
 
     fn numbers(&self) -> Vec<(CurveSummary, Resolution)> {
-        self.curves
-            .iter()
+        let curves = self.curves.iter();
+        curves
             .map(|curve| (curve.summary, curve.resolution))
             .collect()
     }

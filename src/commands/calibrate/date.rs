@@ -8,12 +8,9 @@ const DAY_S: u64 = 86_400;
 pub fn today() -> String {
     let given = std::env::var("SOURCE_DATE_EPOCH").ok();
     let given = given.and_then(|text| text.trim().parse::<u64>().ok());
-    let now = || {
-        SystemTime::now()
-            .duration_since(UNIX_EPOCH)
-            .map_or(0, |since| since.as_secs())
-    };
-    date(given.unwrap_or_else(now) / DAY_S)
+    let now = SystemTime::now().duration_since(UNIX_EPOCH);
+    let now = now.map_or(0, |since| since.as_secs());
+    date(given.unwrap_or(now) / DAY_S)
 }
 
 /// The date so many days after 1 January 1970 in the Gregorian calendar, up to the year 9999.

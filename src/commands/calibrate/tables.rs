@@ -20,10 +20,7 @@ const SAME_COST: f64 = 1e-3;
 
 /// All results of a calibration for people.
 pub fn tables(outcome: &Outcome, paint: Paint) -> String {
-    let warnings = outcome
-        .warnings
-        .iter()
-        .map(|warning| wrapped(warning, "  ! "));
+    let warnings = outcome.warnings.iter().map(|text| wrapped(text, "  ! "));
     let data = "Data, root mean square of the residuals in standard deviations";
     let body = [
         ("Quality of the fit", quality(outcome)),
@@ -87,11 +84,7 @@ fn quality(o: &Outcome) -> String {
         };
         format!(", probability of more by chance {p}")
     });
-    let (before, after, chi2) = (
-        sum(o.cost_before),
-        sum(Some(o.cost_after)),
-        sum(Some(o.chi2)),
-    );
+    let [before, after, chi2] = [o.cost_before, Some(o.cost_after), Some(o.chi2)].map(sum);
     let freedom = count(o.degrees_of_freedom, "degree");
     let sums = format!(
         "sum of squares {before} with the values of the files, {after} fitted ({chi2} of it from the data), {freedom} of freedom{chance}"
@@ -138,10 +131,7 @@ fn short(key: &str) -> String {
 fn parameters(o: &Outcome) -> String {
     let name = |p: &Parameter| {
         let own = short(&p.name);
-        let same = o
-            .parameters
-            .iter()
-            .filter(|other| short(&other.name) == own);
+        let same = o.parameters.iter().filter(|p| short(&p.name) == own);
         if same.count() == 1 {
             own
         } else {
@@ -198,11 +188,8 @@ fn groups(o: &Outcome) -> String {
     let of = |get: fn(&Residual) -> Option<f64>| {
         move |name: &&str| rms_of(o.residuals.iter().filter(|r| r.group == *name).map(get))
     };
-    let [before, after, left_out] = [
-        of(|r| r.before_sd),
-        of(|r| Some(r.after_sd)),
-        of(|r| r.left_out_sd),
-    ];
+    let (before, after) = (of(|r| r.before_sd), of(|r| Some(r.after_sd)));
+    let left_out = of(|r| r.left_out_sd);
     TextColumns::new()
         .left("group", |name: &&str| cut(name, MAX_NAME_LEN))
         .right("n", |name| after(name).1.to_string())
@@ -234,11 +221,8 @@ fn folds(o: &Outcome) -> String {
 }
 
 fn largest(o: &Outcome) -> String {
-    let mut worst: Vec<&Residual> = o
-        .residuals
-        .iter()
-        .filter(|r| r.after_sd.is_finite())
-        .collect();
+    let finite = o.residuals.iter().filter(|r| r.after_sd.is_finite());
+    let mut worst: Vec<&Residual> = finite.collect();
     worst.sort_by(|a, b| b.after_sd.abs().total_cmp(&a.after_sd.abs()));
     let what = |r: &Residual| match r.what.as_str() {
         "" => r.label.clone(),
@@ -281,20 +265,14 @@ fn starts(o: &Outcome) -> String {
     }
     let max = o.cost_after * (1.0 + SAME_COST) + 1e-9;
     let is_same = |cost: Option<f64>| cost.is_some_and(|cost| cost <= max);
-    let others = || {
-        o.starts
-            .iter()
-            .enumerate()
-            .filter(|(_, start)| !is_same(start.cost))
-    };
+    let starts = o.starts.iter().enumerate();
+    let others = || starts.clone().filter(|(_, start)| !is_same(start.cost));
     let (all, smallest) = (o.starts.len(), fixed(o.cost_after, 3));
     let reached = all - others().count();
     let other = |(k, start): (usize, &Start)| {
         let (number, cost, end) = (k + 1, fixed(start.cost, 3), &start.end);
-        wrapped(
-            &format!("start {number}: sum of squares {cost}; {end}"),
-            "  ",
-        )
+        let text = format!("start {number}: sum of squares {cost}; {end}");
+        wrapped(&text, "  ")
     };
     format!("  {reached} of {all} reached the same smallest sum of squares, {smallest}\n")
         + &others().map(other).collect::<String>()

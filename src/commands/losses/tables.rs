@@ -48,10 +48,8 @@ fn state(losses: &LossTable, row: &LossRow) -> String {
             true => otherwise,
             false => "as given",
         };
-        let (pressure, belt) = (
-            fixed(a.secondary_pa / 1e5, 2),
-            fixed(a.belt_k - ZERO_DEGC_K, 1),
-        );
+        let pressure = fixed(a.secondary_pa / 1e5, 2);
+        let belt = fixed(a.belt_k - ZERO_DEGC_K, 1);
         let law = format!("bar, {}", given(Axis::Pressure, "from the clamping law"));
         let steady = format!("\u{b0}C, {}", given(Axis::Belt, "in steady state"));
         table.row(["Secondary pressure", &pressure, &law]);
@@ -97,15 +95,11 @@ fn several(losses: &LossTable, mut rows: impl Iterator<Item = LossRow>) -> Strin
     let shown: Vec<LossRow> = rows.by_ref().take(MAX_ROWS).collect();
     // The rest is solved as well, because its flags are counted.
     let more = rows.count();
-    let fixed: Vec<Axis> = Axis::ALL
-        .into_iter()
-        .filter(|axis| !varied.contains(axis))
-        .collect();
+    let fixed = Axis::ALL.into_iter().filter(|axis| !varied.contains(axis));
+    let fixed: Vec<Axis> = fixed.collect();
     let held = losses.held(&losses.grid.at(0), &fixed);
-    let mut text = format!(
-        "{held}; losses in Nm at the input shaft\n\n{}",
-        columns.text(&shown)
-    );
+    let table = columns.text(&shown);
+    let mut text = format!("{held}; losses in Nm at the input shaft\n\n{table}");
     if more > 0 {
         text += &format!("\n{more} more points; --format csv or --json prints all\n");
     }

@@ -147,21 +147,16 @@ impl RigTransmissionArgs {
     ) -> Option<TestPoints> {
         let mut list = |option: &str, text: &Option<String>, range: Bound, suffix: &str| {
             let read = problems.take(values(option, text.as_ref()?, range, suffix))?;
-            Some(
-                read.into_iter()
-                    .map(|x| to_si(suffix, x))
-                    .collect::<Vec<f64>>(),
-            )
+            let si = read.into_iter().map(|x| to_si(suffix, x));
+            Some(si.collect::<Vec<f64>>())
         };
         let speeds_rad_s = list("--speed", &self.speed, SPEED, "_rpm");
         let oil_k = list("--temp", &self.temp, OIL, "_degc");
         let torques_nm = list("--torque", &self.torque, TORQUE, "_nm");
         // The words for ratios are those of the conditions.
         let conditions = conditions?;
-        let words = [
-            ("low", conditions.low_ratio),
-            ("high", conditions.high_ratio),
-        ];
+        let (low, high) = (conditions.low_ratio, conditions.high_ratio);
+        let words = [("low", low), ("high", high)];
         let read =
             |text: &String| problems.take(values_or_words("--ratio", text, RATIO, "", &words));
         let ratios = self.ratio.as_ref().and_then(read);
@@ -189,13 +184,8 @@ fn check_ratios(setup: &Setup, points: &TestPoints, problems: &mut Problems) {
         .filter(|ratio| !(low..=high).contains(*ratio))
     {
         let message = format!("the belt does not fit around the pulleys at ratio {ratio}");
-        problems.add(bad_value(
-            "--ratio",
-            &ratio.to_string(),
-            &allowed,
-            &message,
-            hint,
-        ));
+        let value = ratio.to_string();
+        problems.add(bad_value("--ratio", &value, &allowed, &message, hint));
     }
 }
 

@@ -34,11 +34,8 @@ fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
         StartWord::Degc(degc) => format!("start with everything at {} degC", plain(*degc)),
     };
     let settings = &summary.settings;
-    let (name, title, belt) = (
-        paint.heading(&summary.cycle),
-        &cycle.title,
-        &settings.formulation,
-    );
+    let (name, title) = (paint.heading(&summary.cycle), &cycle.title);
+    let belt = &settings.formulation;
     let (ambient, dt) = (plain(summary.ambient_degc), plain(settings.dt_s));
     let mut text = format!(
         "{name}  {title}\nambient {ambient} degC, {start}\nsteps of {dt} s, belt model {belt}\n"
@@ -98,10 +95,8 @@ fn fuel(summary: &Summary) -> String {
     let groups = summary.runs.first().map_or(&[][..], |run| &run.phases);
     for (k, group) in groups.iter().enumerate().filter(|_| groups.len() > 1) {
         table.add(&group.name, "L/100 km", |run| {
-            fixed(
-                run.phases.get(k).and_then(|phase| phase.fuel_l_per_100km),
-                2,
-            )
+            let phase = run.phases.get(k);
+            fixed(phase.and_then(|phase| phase.fuel_l_per_100km), 2)
         });
     }
     table.add("total", "L/100 km", |run| fixed(run.fuel_l_per_100km, 2));
@@ -235,20 +230,16 @@ fn notes(summary: &Summary) -> String {
             text += &format!("{name}: {schedule}\n");
         }
         if let Some(safety) = run.min_clamp_safety {
-            text += &format!(
-                "{name}: smallest clamp safety factor {}\n",
-                fixed(safety, 2)
-            );
+            let safety = fixed(safety, 2);
+            text += &format!("{name}: smallest clamp safety factor {safety}\n");
         }
     }
     let worst = |of: fn(&RunSummary) -> Option<f64>| {
         let all: Option<Vec<f64>> = summary.runs.iter().map(of).collect();
         tiny(all.and_then(|all| all.into_iter().reduce(|a, b| if b > a { b } else { a })))
     };
-    let (step, run) = (
-        worst(|run| run.ledger_error),
-        worst(|run| run.run_ledger_error),
-    );
+    let step = worst(|run| run.ledger_error);
+    let run = worst(|run| run.run_ledger_error);
     text + &format!(
         "relative error of the energy balances: {step} in the worst time step, {run} over the run\n"
     )

@@ -100,11 +100,8 @@ fn load_one(word: &str, options: &Options, of_all: &[Override]) -> Result<Setup,
 }
 
 fn unique(name: &str, vehicles: &[RunVehicle]) -> String {
-    let taken = |name: &String| {
-        vehicles
-            .iter()
-            .any(|car| car.name.eq_ignore_ascii_case(name))
-    };
+    let is = |car: &RunVehicle, name: &str| car.name.eq_ignore_ascii_case(name);
+    let taken = |name: &String| vehicles.iter().any(|car| is(car, name));
     let numbered = (2..).map(|n| format!("{name}_{n}"));
     let mut names = std::iter::once(name.to_owned()).chain(numbered);
     names.find(|name| !taken(name)).unwrap_or_default()

@@ -96,16 +96,10 @@ impl PlanText {
             return problem;
         }
         let key = problem.key.trim_start_matches("study.");
-        let line = problem
-            .place
-            .line
-            .checked_sub(1)
-            .and_then(|k| self.0.get(k));
-        let by_key = || {
-            self.0
-                .iter()
-                .find(|(_, line)| line.split(" = ").next() == Some(key))
-        };
+        let index = problem.place.line.checked_sub(1);
+        let line = index.and_then(|k| self.0.get(k));
+        let is_of_key = |line: &str| line.split(" = ").next() == Some(key);
+        let by_key = || self.0.iter().find(|(_, line)| is_of_key(line));
         let option = match line.or_else(by_key) {
             Some((option, _)) if !option.is_empty() => *option,
             _ => "--ambient",
@@ -124,6 +118,7 @@ impl StudyAmbientArgs {
         });
         let sets = |sets: &[String]| (!sets.is_empty()).then(|| list(sets));
         let keep = self.run.out.out.as_ref().map(|_| list(&TRACES));
+        let oil = |oil: &Option<String>| oil.as_deref().map(quoted);
         let values = |text: &str| Some(format!("[{}]", numbers_or_words(text)));
         let mut text = PlanText::default();
         text.line("", "# Made by `cvtcycle study ambient`.");
@@ -132,16 +127,8 @@ impl StudyAmbientArgs {
         text.entry("--vehicle", "vehicle", Some(quoted(&car.vehicle)));
         text.entry("--baseline", "baselines", baselines);
         text.entry("--cycle", "cycle", Some(quoted(&comparison.cycle)));
-        text.entry(
-            "--lubricant",
-            "lubricant",
-            car.lubricant.as_deref().map(quoted),
-        );
-        text.entry(
-            "--engine-oil",
-            "engine_oil",
-            comparison.engine_oil.as_deref().map(quoted),
-        );
+        text.entry("--lubricant", "lubricant", oil(&car.lubricant));
+        text.entry("--engine-oil", "engine_oil", oil(&comparison.engine_oil));
         text.entry("--set", "set", sets(&car.set));
         text.entry("--set-all", "set_all", sets(&comparison.set_all));
         text.entry("", "keep", keep);

@@ -17,7 +17,9 @@ use super::tables;
 use crate::args::problems::{bad_value, problem};
 use crate::args::{OutArgs, OutputArgs, ThreadArgs};
 use crate::print::progress::{Progress, handle_interrupts};
-use crate::print::{CommandOutput, CommandResult, Ending, Results, Terminal, json_text};
+use crate::print::{
+    CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
+};
 
 /// Options of every study that runs.
 #[derive(Args, Clone, Debug)]
@@ -151,11 +153,9 @@ fn temporary_dir() -> Result<TempDir, Problems> {
 
 /// Results of a study, finished or partial.
 pub fn results(study: &StudyResults) -> Result<Results, Problems> {
-    Ok(Results {
-        json: json_text(&study.answer)?,
-        failures: tables::failures(&study.answer),
-        ..Results::default()
-    })
+    let failures = tables::failures(&study.answer);
+    let json = json_text(&study.answer)?;
+    Ok(Results::new(json, failures, WrittenFiles::default()))
 }
 
 /// Files of a finished study: numbers and figures.

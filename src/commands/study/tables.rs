@@ -134,11 +134,8 @@ fn ranked(output: &OutputAnswer, outline: &StudyManifest) -> Option<Vec<(String,
             .map(|(factor, i)| (factor.name.clone(), i.total.value))
             .collect()
     } else if let Some(tornado) = &output.tornado {
-        tornado
-            .bars
-            .iter()
-            .map(|bar| (bar.name.clone(), bar.swing))
-            .collect()
+        let bars = tornado.bars.iter();
+        bars.map(|bar| (bar.name.clone(), bar.swing)).collect()
     } else {
         let rank = output.rank.as_ref()?;
         let factors = rank.factors.iter().zip(&rank.of.factors);
@@ -181,15 +178,12 @@ fn factors(answer: &Answer, outline: &StudyManifest, paint: Paint) -> String {
         return String::new();
     };
     let is_first = |o: &OutputAnswer| o.output == first.output && o.car == first.car;
-    let shown = answer
-        .outputs
-        .iter()
-        .filter(|o| o.output == EXCESS || is_first(o));
+    let is_shown = |o: &&OutputAnswer| o.output == EXCESS || is_first(o);
     let section = |o: &OutputAnswer| {
         let heading = format!("Effects on {} ({}), {}", o.output, o.unit, o.car);
         (heading, effects(o, outline))
     };
-    sections(shown.map(section), paint)
+    sections(answer.outputs.iter().filter(is_shown).map(section), paint)
 }
 
 fn effects(output: &OutputAnswer, outline: &StudyManifest) -> String {
@@ -201,9 +195,9 @@ fn effects(output: &OutputAnswer, outline: &StudyManifest) -> String {
 }
 
 fn tornado(tornado: &Tornado) -> String {
-    let label = |end: &Option<TornadoEnd>| {
-        end.as_ref()
-            .map_or(NONE.to_owned(), |end| end.label.clone())
+    let label = |end: &Option<TornadoEnd>| match end {
+        Some(end) => end.label.clone(),
+        None => NONE.to_owned(),
     };
     let effect = |end: &Option<TornadoEnd>| signed(end.as_ref().map(|end| end.effect), 3);
     let table = TextColumns::new()
@@ -214,11 +208,8 @@ fn tornado(tornado: &Tornado) -> String {
         .right("effect", |bar| effect(&bar.high))
         .number("swing", 3, |bar| bar.swing)
         .table(&tornado.bars);
-    format!(
-        "  base {}\n{}",
-        fixed(tornado.base, 3),
-        table.indented().text()
-    )
+    let base = fixed(tornado.base, 3);
+    format!("  base {base}\n{}", table.indented().text())
 }
 
 fn rank(output: &OutputAnswer) -> String {
@@ -285,10 +276,8 @@ fn sobol(output: &OutputAnswer, outline: &StudyManifest, indices: &SobolIndices)
     if rest > 0 {
         text += &format!("  {rest} more factors have a smaller total index\n");
     }
-    text + &format!(
-        "  sum of first-order indices {}\n",
-        fixed(indices.sum_first.value, 3)
-    )
+    let sum = fixed(indices.sum_first.value, 3);
+    text + &format!("  sum of first-order indices {sum}\n")
 }
 
 /// Failed runs with their reasons, as one message; none if all are good.

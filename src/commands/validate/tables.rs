@@ -23,10 +23,7 @@ pub fn tables(report: &Report, paint: Paint) -> String {
         }
     }
     let of_chapter = |name| {
-        let rows = report
-            .rows
-            .iter()
-            .filter(|judged| judged.row.chapter == name);
+        let rows = report.rows.iter().filter(|j| j.row.chapter == name);
         (chapter_title(name), chapter(&rows.collect::<Vec<_>>()))
     };
     let held_out_title = "Held out: rows that no calibration uses, without constants";
@@ -85,13 +82,9 @@ fn held_out(report: &Report) -> String {
     ];
     let lines = lines.map(|(name, n)| (name, n.to_string())).into_iter();
     let name = "median distance from the printed value, in tolerances";
-    list(
-        lines.chain(
-            found
-                .median_off
-                .map(|median| (name, format!("{median:.2}"))),
-        ),
-    )
+    let median = found.median_off;
+    let median = median.map(|median| (name, format!("{median:.2}")));
+    list(lines.chain(median))
 }
 
 /// One line for each row whose verdict is not the recorded one.

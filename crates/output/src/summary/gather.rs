@@ -65,6 +65,8 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
     let headline = weighted.or(fuel.l_per_100km).filter(|l| *l > 0.0);
     let mpg = |factor: f64| headline.map(|l| factor / l);
     let seconds = |flag: Flags| totals.seconds(flag);
+    let flags = Flags::NAMES.iter().zip(totals.flag_s);
+    let terms = TERM_NAMES.iter().zip(all.terms.as_array());
     let mut summary = RunSummary {
         vehicle: name.to_owned(),
         title: setup.title.clone(),
@@ -91,9 +93,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
         fuel_energy_kj: all.terms.fuel / 1e3,
         loss_kj: losses(driven, settings, &all),
         kinetic_kj: all.terms.kinetic / 1e3,
-        ledger_kj: TERM_NAMES
-            .iter()
-            .zip(all.terms.as_array())
+        ledger_kj: terms
             .map(|(name, joules)| (*name, finite(joules / 1e3)))
             .collect(),
         standstill_fuel_g: all.standstill_fuel_kg * 1e3,
@@ -104,11 +104,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
         run_ledger_error: finite(larger(all.terms.power_error(), all.terms.heat_error())),
         trace_missed_s: seconds(Flags::MISSED_TRACE),
         outside_validity_s: seconds(Flags::OUTSIDE_VALIDITY),
-        flags_s: Flags::NAMES
-            .iter()
-            .zip(totals.flag_s)
-            .map(|((_, name), s)| (*name, finite(s)))
-            .collect(),
+        flags_s: flags.map(|((_, name), s)| (*name, finite(s))).collect(),
         worst_deficit: worst_deficit(cycle, driven, cvt),
         solve: Solve {
             worst_residual: totals.worst_residual,
@@ -133,12 +129,9 @@ struct PhaseFuel {
 
 impl PhaseFuel {
     fn of(part: &PhaseTotals, engine: &Engine) -> Self {
+        let litres = litres_per_100km(part.fuel_kg, engine.fuel_density_kg_m3, part.distance_m);
         PhaseFuel {
-            l_per_100km: finite(litres_per_100km(
-                part.fuel_kg,
-                engine.fuel_density_kg_m3,
-                part.distance_m,
-            )),
+            l_per_100km: finite(litres),
             co2_g_per_km: finite(part.fuel_kg * engine.co2_kg_kg * 1e6 / part.distance_m),
         }
     }

@@ -128,11 +128,8 @@ impl TextTable {
             .map(|right| if *right { "---:" } else { "---" });
         let rules = format!("| {} |\n", rules.collect::<Vec<_>>().join(" | "));
         let (head, rows) = self.rows.split_at(1.min(self.rows.len()));
-        head.iter()
-            .map(line)
-            .chain([rules])
-            .chain(rows.iter().map(line))
-            .collect()
+        let head = head.iter().map(line).chain([rules]);
+        head.chain(rows.iter().map(line)).collect()
     }
 }
 

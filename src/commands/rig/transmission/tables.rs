@@ -37,11 +37,8 @@ const SHOWN_DEGC: [f64; 6] = [25.0, 40.0, 60.0, 80.0, 95.0, 100.0];
 /// All results for people.
 pub fn tables(plan: &RigPlan, found: &RigResults, paint: Paint) -> String {
     let (setup, c, belt) = (&plan.setup, &plan.conditions, &plan.formulation);
-    let (name, title, oil) = (
-        paint.heading(&setup.name),
-        &setup.title,
-        &setup.oils().0.name,
-    );
+    let (name, title) = (paint.heading(&setup.name), &setup.title);
+    let oil = &setup.oils().0.name;
     let mut text =
         format!("{name}  {title} on the transmission rig\noil {oil}, belt model {belt}\n");
     text.extend(plan.set.iter().map(|set| format!("--set {set}\n")));
@@ -68,10 +65,8 @@ pub fn tables(plan: &RigPlan, found: &RigResults, paint: Paint) -> String {
         paint,
     );
     let counts = Flags::NAMES.map(|(flag, name)| (name, found.flagged(flag)));
-    let flags = counts
-        .iter()
-        .filter(|(_, n)| *n > 0)
-        .map(|(name, n)| format!("{name} {n}"));
+    let flags = counts.iter().filter(|(_, n)| *n > 0);
+    let flags = flags.map(|(name, n)| format!("{name} {n}"));
     let flags: Vec<String> = flags.collect();
     if !flags.is_empty() {
         let (solved, flags) = (found.answers().count(), flags.join(", "));
@@ -163,11 +158,7 @@ fn loaded(plan: &RigPlan, points: &[SteadyPoint], at_rpm: f64) -> String {
         columns = columns.number(format!("{} Nm", plain(nm)), 2, loss);
     }
     let oils = &plan.points.oil_k;
-    let at_ratio = |ratio: &f64| {
-        oils.iter()
-            .map(|oil_k| (*ratio, *oil_k))
-            .collect::<Vec<_>>()
-    };
+    let at_ratio = |&ratio: &f64| oils.iter().map(move |oil_k| (ratio, *oil_k));
     let rows: Vec<(f64, f64)> = plan.points.ratios.iter().flat_map(at_ratio).collect();
     columns.lines(&rows)
 }
@@ -255,11 +246,8 @@ fn loop_notes(c: &Conditions, l: &Loop) -> String {
         Some(t) => format!("{} at {} degC", plain(*nm), plain(*t)),
         None => format!("{} Nm at the start", plain(*nm)),
     };
-    let printed: Vec<String> = PRINTED_TRANSIENT
-        .iter()
-        .filter(|p| p.0 == name)
-        .map(value)
-        .collect();
+    let printed = PRINTED_TRANSIENT.iter().filter(|p| p.0 == name);
+    let printed: Vec<String> = printed.map(value).collect();
     if !printed.is_empty() {
         let printed = printed.join(", ");
         text += &format!("  thesis 5.3.2: warming {printed}; meeting near 40 degC\n");
