@@ -33,9 +33,9 @@ Examples:
   cvtcycle calibrate docs/calibration_example/plan.toml --out fitted
   cvtcycle run --vehicle fitted/rover_216_cvt_fitted.toml
 
-docs/calibration.md describes plans, data and results. A fit is no validation: the prediction error
-is that of the folds that were left out. Exit codes: 0 success; 1 the search did not converge or was
-stopped by Ctrl-C, a parameter affects no observation, or data are outside the validity of a model
+docs/calibration.md describes plans, data and results. A fit is no validation: the prediction error \
+is that of the folds that were left out. Exit codes: 0 success; 1 the search did not converge or was \
+stopped by Ctrl-C, a parameter affects no observation, or data are outside the validity of a model \
 (results are printed and written nevertheless, with the best point so far); 2 bad input."
 )]
 pub struct CalibrateArgs {

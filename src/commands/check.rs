@@ -19,7 +19,7 @@ use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text};
 #[command(after_help = "\
 Example: cvtcycle check rover_216_cvt
 
-Prints `ok` for every file without problems, and all problems of the others with place, value, allowed range and a hint; the exit
+Prints `ok` for every file without problems, and all problems of the others with place, value, allowed range and a hint; the exit \
 code is then 2.")]
 pub struct CheckArgs {
     /// Vehicle, lubricant, calibration or study (TOML), or cycle (CSV); detected from the contents of the file

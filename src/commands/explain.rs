@@ -32,10 +32,10 @@ Examples:
   cvtcycle explain displacement_cc_rev
   cvtcycle explain transmission.cvt.pump
   cvtcycle explain clamp_safety
-  cvtcycle explain \"torque capacity\"
+  cvtcycle explain torque capacity
   cvtcycle explain SL-8
 
-The end of a key is enough (band_offset_mm); for a table all of its keys are explained. A term of the field finds the keys, columns
+The end of a key is enough (band_offset_mm); for a table all of its keys are explained. A term of the field finds the keys, columns \
 and flags that belong to it; other words find those whose meanings contain all of them.")]
 pub struct ExplainArgs {
     /// Key, table, column of a trace or summary, flag, label of an equation, or words such as road load
@@ -115,22 +115,25 @@ impl Meanings {
 
     /// Adds what has all words in its name or meaning, up to [`MAX_FOUND`] entries of each kind.
     fn search(&mut self, text: &str) {
-        let text = text.to_lowercase().replace(['-', '_'], " ");
-        let words = text.split_whitespace().filter(|word| word.len() > 2);
-        let words: Vec<&str> = words.collect();
+        let split = |c: char| !c.is_alphanumeric();
+        let text = text.to_lowercase();
+        let words: Vec<&str> = text.split(split).filter(|word| word.len() > 2).collect();
         let has = |name: &str, doc: &str| {
             let text = format!("{name} {doc}").to_lowercase();
-            !words.is_empty() && words.iter().all(|word| text.contains(word))
+            let own: Vec<&str> = text.split(split).collect();
+            // A plural finds the singular.
+            let is_in =
+                |word: &&str| own.contains(word) || own.contains(&word.trim_end_matches('s'));
+            !words.is_empty() && words.iter().all(is_in)
         };
-        let keys = catalogue::known_keys()
-            .iter()
-            .filter(|info| has(&info.key, &info.doc));
+        let known = catalogue::known_keys().iter();
+        let keys = known.filter(|info| has(&info.key, &info.doc));
         self.keys
             .extend(keys.map(|key| (key, Vec::new())).take(MAX_FOUND));
         let columns = all_columns().filter(|(_, column)| has(&column.name, &column.doc));
         self.columns.extend(columns.take(MAX_FOUND));
-        self.flags
-            .extend(all_flags().filter(|(name, meaning)| has(name, meaning)));
+        let flags = all_flags().filter(|(name, meaning)| has(name, meaning));
+        self.flags.extend(flags);
     }
 
     fn add_values(&mut self, files: &[File]) {

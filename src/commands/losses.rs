@@ -36,7 +36,7 @@ Examples:
   cvtcycle losses --vehicle rover_216_5mt --gear 3 --torque 50
   cvtcycle losses --ratio high..low:0.2 --speed 500..6000:500 --temp -10..90:25 --as-map pump > pump.csv
 
-A numeric option takes a number, a list (25,50,75), a range with a step (1000..4000:250, both ends included) or without
+A numeric option takes a number, a list (25,50,75), a range with a step (1000..4000:250, both ends included) or without \
 one (1000..4000), or these mixed. Losses are torques at the input shaft; the launch clutch is locked."
 )]
 pub struct LossesArgs {

@@ -28,7 +28,7 @@ use cvtcycle::config::Problems;
     max_term_width = 100,
     propagate_version = true,
     after_help = "Example: cvtcycle run --cycle ece15_eudc --ambient -10\n\n\
-        Exit codes: 0 success; 1 a check failed (trace missed, energy not balanced); 2 bad input."
+        Exit codes: 0 success; 1 a check failed (trace missed, energy not balanced); 2 bad input; 130 stopped by Ctrl-C."
 )]
 pub struct Cli {
     /// When to colour the output; `auto` colours on a terminal and obeys NO_COLOR

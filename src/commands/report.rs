@@ -25,8 +25,8 @@ Examples:
   cvtcycle study ambient --out matrix
   cvtcycle report cold --with matrix --force
 
-The page loads nothing and works without scripts; with scripts, pointing at a figure shows its numbers. Results of studies and
-of `validate --out` in folders of DIR are included. Exit code 1: the report was written, but data for it were missing (a trace,
+The page loads nothing and works without scripts; with scripts, pointing at a figure shows its numbers. Results of studies and \
+of `validate --out` in folders of DIR are included. Exit code 1: the report was written, but data for it were missing (a trace, \
 a part of a study); 2: bad input."
 )]
 pub struct ReportArgs {

@@ -12,7 +12,7 @@ use crate::print::{CommandOutput, CommandResult};
 #[command(after_help = "\
 Example: cvtcycle schema vehicle > vehicle.schema.json
 
-With the path of the schema in the first line of a vehicle file, #:schema ./vehicle.schema.json, an editor with a TOML server shows
+With the path of the schema in the first line of a vehicle file, #:schema ./vehicle.schema.json, an editor with a TOML server shows \
 ranges, units and meanings, and marks errors.")]
 pub struct SchemaArgs {
     /// Kind of file

@@ -35,7 +35,7 @@ Examples:
   cvtcycle study show my_study
   cvtcycle study export my_study --out my_study.xlsx
 
-docs/plan_format.md describes plans. Exit codes: 0 success; 1 some runs failed, with the reason in their rows; 2 bad input or a
+docs/plan_format.md describes plans. Exit codes: 0 success; 1 some runs failed, with the reason in their rows; 2 bad input or a \
 full disk; 130 stopped by Ctrl-C: finished parts are kept, --resume continues."
 )]
 pub struct StudyArgs {

@@ -41,7 +41,6 @@ impl OutputFile {
     }
 
     /// Where the file will stand.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -65,7 +64,6 @@ impl OutputFile {
     }
 
     /// The problem of an error in writing.
-    #[must_use]
     pub fn cannot_write(&self, error: &io::Error) -> Problem {
         cannot_write(&self.path, error)
     }

@@ -91,7 +91,6 @@ impl OutputDir {
     }
 
     /// Names that an earlier run left in the directory and that this run has not written.
-    #[must_use]
     pub fn left_over(&self) -> Vec<String> {
         let is_left = |name: &&String| !self.written.iter().any(|(other, _)| other == *name);
         self.earlier.iter().filter(is_left).cloned().collect()

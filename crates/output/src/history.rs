@@ -28,7 +28,6 @@ pub struct History {
 
 impl History {
     /// Rows of a run as columns. `phases` are the names that belong to [`Row::phase`]; only those that occur are kept, in their order.
-    #[must_use]
     pub fn of(rows: &[Row], columns: &[&'static TraceColumn], phases: &[String]) -> Self {
         let numbers = |column: &&'static TraceColumn| {
             let mut numbers = Vec::with_capacity(rows.len());
@@ -89,7 +88,6 @@ impl History {
 
     /// The numbers of a column, one a step, in the unit of the column; NaN where there is none. Empty for a column that is not there
     /// or that holds words.
-    #[must_use]
     pub fn column(&self, name: &str) -> &[f64] {
         let mut columns = self.columns.iter();
         let own = columns.find(|(column, _)| column.name == name);
@@ -104,61 +102,51 @@ impl History {
     }
 
     /// Whether there is a column of numbers of that name.
-    #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.columns.iter().any(|(column, _)| column.name == name)
     }
 
     /// Whether the car has a belt; otherwise it has gears.
-    #[must_use]
     pub fn is_cvt(&self) -> bool {
         self.has("belt_ratio")
     }
 
     /// Ends of the steps, s.
-    #[must_use]
     pub fn time_s(&self) -> &[f64] {
         self.column("time_s")
     }
 
     /// Lengths of the steps, s.
-    #[must_use]
     pub fn dt_s(&self) -> &[f64] {
         self.column("dt_s")
     }
 
     /// Number of steps.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.flags.len()
     }
 
     /// Whether there is no step.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.flags.is_empty()
     }
 
     /// Names of the phases, in the order in which they begin.
-    #[must_use]
     pub fn phases(&self) -> &[String] {
         &self.phases
     }
 
     /// The phase of a step, as index into [`History::phases`]; 0 beyond the last step.
-    #[must_use]
     pub fn phase(&self, step: usize) -> usize {
         self.phase.get(step).copied().unwrap_or(0)
     }
 
     /// Flags of a step; none beyond the last one.
-    #[must_use]
     pub fn flags(&self, step: usize) -> Flags {
         self.flags.get(step).copied().unwrap_or_default()
     }
 
     /// The loss components that have a column, in the order of the power flow.
-    #[must_use]
     pub fn components(&self) -> Vec<Component> {
         Component::ALL
             .into_iter()
@@ -169,7 +157,6 @@ impl History {
     }
 
     /// Loss power of a component at each step, W; empty if the car has none.
-    #[must_use]
     pub fn loss_w(&self, component: Component) -> &[f64] {
         loss_column(component).map_or(&[], |column| self.column(&column.name))
     }

@@ -40,13 +40,11 @@ impl MapPart {
     ];
 
     /// Whether it is a part of a CVT; otherwise of a manual box.
-    #[must_use]
     pub fn of_cvt(self) -> bool {
         self != MapPart::Box
     }
 
     /// The torque column of its map, if its loss depends on torque.
-    #[must_use]
     pub fn torque_column(self) -> Option<&'static str> {
         match self {
             MapPart::Belt | MapPart::FinalDrive => Some("output_torque_nm"),
@@ -56,7 +54,6 @@ impl MapPart {
     }
 
     /// Loss at a point whose torque is the map's own, Nm at the input shaft.
-    #[must_use]
     pub fn loss_nm(self, bench: &Bench, point: &BenchPoint) -> f64 {
         let part = |component: Component, point: &BenchPoint| bench.solve(point).part_nm(component);
         let at_output = BenchPoint {

@@ -56,7 +56,6 @@ impl Axis {
     ];
 
     /// Title of a plot's axis.
-    #[must_use]
     pub fn title(self, cvt: bool) -> &'static str {
         match self {
             Axis::Ratio if cvt => "Belt ratio",
@@ -71,7 +70,6 @@ impl Axis {
     }
 
     /// Heading of a table's column.
-    #[must_use]
     pub fn short(self, cvt: bool) -> &'static str {
         match self {
             Axis::Ratio if cvt => "ratio",
@@ -86,7 +84,6 @@ impl Axis {
     }
 
     /// A value of the axis, without its unit.
-    #[must_use]
     pub fn text(self, x: f64) -> String {
         match self {
             Axis::Ratio => plain((x * 1e3).round() / 1e3),
@@ -95,7 +92,6 @@ impl Axis {
     }
 
     /// A value of the axis in words.
-    #[must_use]
     pub fn words(self, cvt: bool, x: f64) -> String {
         let text = self.text(x);
         match self {
@@ -117,13 +113,11 @@ pub struct LossGrid {
 
 impl LossGrid {
     /// Values of one axis.
-    #[must_use]
     pub fn of(&self, axis: Axis) -> &[f64] {
         &self.values[axis as usize]
     }
 
     /// Axes with more than one value, outermost first.
-    #[must_use]
     pub fn varied(&self) -> Vec<Axis> {
         let mut axes = Axis::ALL.to_vec();
         axes.retain(|axis| self.of(*axis).len() > 1);
@@ -131,25 +125,21 @@ impl LossGrid {
     }
 
     /// Number of points, as a float: it may exceed what can be counted.
-    #[must_use]
     pub fn size(&self) -> f64 {
         self.values.iter().map(|v| v.len().max(1) as f64).product()
     }
 
     /// Number of points of a grid that is not too large.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.values.iter().map(|v| v.len().max(1)).product()
     }
 
     /// Whether there is no point; never, since an axis without values counts as one.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         false
     }
 
     /// Index of the value of each axis at a point.
-    #[must_use]
     pub fn indices(&self, mut index: usize) -> [usize; Axis::COUNT] {
         let mut out = [0; Axis::COUNT];
         for (place, values) in out.iter_mut().zip(&self.values).rev() {
@@ -161,7 +151,6 @@ impl LossGrid {
     }
 
     /// The values of a point, NaN where an axis is not given.
-    #[must_use]
     pub fn at(&self, index: usize) -> [f64; Axis::COUNT] {
         let indices = self.indices(index);
         std::array::from_fn(|k| self.values[k].get(indices[k]).copied().unwrap_or(f64::NAN))
@@ -185,7 +174,6 @@ pub struct LossRow {
 }
 
 /// The point that values in the units of the columns mean.
-#[must_use]
 pub fn bench_point(asked: &[f64; Axis::COUNT]) -> BenchPoint {
     let value = |axis: Axis| asked[axis as usize];
     let given =
@@ -204,7 +192,6 @@ pub fn bench_point(asked: &[f64; Axis::COUNT]) -> BenchPoint {
 
 impl LossRow {
     /// Solves a point.
-    #[must_use]
     pub fn new(bench: &Bench, asked: [f64; Axis::COUNT]) -> Self {
         let point = bench_point(&asked);
         LossRow {
@@ -215,19 +202,16 @@ impl LossRow {
     }
 
     /// Power at the input shaft, W.
-    #[must_use]
     pub fn input_w(&self) -> f64 {
         self.answer.input_nm * self.point.input_rad_s
     }
 
     /// Power at the output shaft, W.
-    #[must_use]
     pub fn output_w(&self) -> f64 {
         self.point.output_nm * self.answer.output_rad_s
     }
 
     /// Power out over power in, whichever way it flows; NaN where both shafts drive.
-    #[must_use]
     pub fn efficiency(&self) -> f64 {
         let (input, output) = (self.input_w(), self.output_w());
         if input > 0.0 && output >= 0.0 {
@@ -240,13 +224,11 @@ impl LossRow {
     }
 
     /// Belt slip as a fraction; NaN without a belt model.
-    #[must_use]
     pub fn slip(&self) -> f64 {
         self.answer.belt.map_or(f64::NAN, |belt| belt.slip_total)
     }
 
     /// Torque capacity of the belt over its torque; infinite without load, NaN without a belt model.
-    #[must_use]
     pub fn clamp_safety(&self) -> f64 {
         self.answer.belt.map_or(f64::NAN, |belt| {
             let secondary_nm = (belt.input_torque_nm - belt.loss_nm()) * self.point.ratio
@@ -256,7 +238,6 @@ impl LossRow {
     }
 
     /// How the belt's solution ended, as in the `belt` command; empty without a belt model.
-    #[must_use]
     pub fn belt_status(&self) -> &'static str {
         match self.answer.belt {
             None => "",
@@ -273,15 +254,13 @@ impl LossRow {
 }
 
 /// Components that a bench knows: all but the launch clutch, which is locked.
-#[must_use]
-pub fn bench_components(transmission: &Transmission) -> Vec<Component> {
+fn bench_components(transmission: &Transmission) -> Vec<Component> {
     let mut components = transmission.components();
     components.retain(|c| *c != Component::LaunchClutch);
     components
 }
 
 /// Columns for a transmission, in the order in which they are written.
-#[must_use]
 pub fn columns(transmission: &Transmission) -> Vec<Column<LossRow>> {
     let components = bench_components(transmission);
     let mut list = columns! { LossRow;
@@ -335,7 +314,6 @@ pub struct LossTable {
 
 impl LossTable {
     /// True for a CVT.
-    #[must_use]
     pub fn is_cvt(&self) -> bool {
         self.setup.transmission().is_cvt()
     }
@@ -346,13 +324,11 @@ impl LossTable {
     }
 
     /// Components that have a loss on the bench.
-    #[must_use]
     pub fn components(&self) -> Vec<Component> {
         bench_components(self.setup.transmission())
     }
 
     /// Components in groups, the parts of the belt as one, with the title of each group.
-    #[must_use]
     pub fn groups(&self) -> Vec<(String, Vec<Component>)> {
         let mut list: Vec<(String, Vec<Component>)> = Vec::new();
         for component in self.components() {
@@ -370,7 +346,6 @@ impl LossTable {
     }
 
     /// The values of some axes at a point, in words.
-    #[must_use]
     pub fn held(&self, asked: &[f64; Axis::COUNT], axes: &[Axis]) -> String {
         let cvt = self.is_cvt();
         let given =
@@ -385,7 +360,6 @@ impl LossTable {
     }
 
     /// Everything of the JSON object but its points.
-    #[must_use]
     pub fn json_head(&self) -> Value {
         json!({
             "schema": SCHEMA,

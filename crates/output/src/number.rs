@@ -20,7 +20,6 @@ pub fn push_exact(text: &mut String, x: f64) {
 }
 
 /// The text of [`push_exact`]; empty for a number that is not finite.
-#[must_use]
 pub fn exact(x: f64) -> String {
     let mut text = String::new();
     if x.is_finite() {
@@ -30,7 +29,6 @@ pub fn exact(x: f64) -> String {
 }
 
 /// A number, or none where it is not finite; zero without a sign.
-#[must_use]
 pub fn finite(x: f64) -> Option<f64> {
     x.is_finite().then_some(x + 0.0)
 }
@@ -69,13 +67,11 @@ pub fn percent(part: impl Into<Option<f64>>, whole: f64, decimals: usize) -> Str
 }
 
 /// The shortest text of a number that the user gave.
-#[must_use]
 pub fn plain(x: f64) -> String {
     format!("{}", if x.abs() > 0.0 { x } else { 0.0 })
 }
 
 /// A small error such as `3e-15`.
-#[must_use]
 pub fn tiny(x: Option<f64>) -> String {
     match x {
         Some(x) if x.abs() > 0.0 => format!("{x:.0e}"),

@@ -28,7 +28,6 @@ const TARGETS: [(f64, &str); 4] = [
 ];
 
 /// A cycle's name and hash.
-#[must_use]
 pub fn cycle_record(cycle: &Cycle) -> CycleRecord {
     CycleRecord {
         name: cycle.name.clone(),

@@ -149,7 +149,6 @@ pub struct Effect {
 
 impl Effect {
     /// The larger of both changes in magnitude, per cent; NaN if there is none.
-    #[must_use]
     pub fn size_percent(&self) -> f64 {
         let both = [self.lowered_percent, self.raised_percent];
         let sizes = both.into_iter().flatten().map(f64::abs);

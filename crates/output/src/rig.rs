@@ -20,19 +20,16 @@ pub const MEETING_NM: f64 = 0.1;
 const MAX_ENERGY_ERROR: f64 = 1e-9;
 
 /// A number that the user gave, without what converting it there and back has added.
-#[must_use]
 pub fn given(x: f64) -> f64 {
     (x * 1e9).round() / 1e9 + 0.0
 }
 
 /// Input speed, rpm.
-#[must_use]
 pub fn rpm(set: &BenchPoint) -> f64 {
     given(set.input_rad_s * (1.0 / RPM))
 }
 
 /// Bulk oil, degC.
-#[must_use]
 pub fn oil_degc(set: &BenchPoint) -> f64 {
     given(set.sump_k - ZERO_DEGC_K)
 }
@@ -61,7 +58,6 @@ impl Range {
     }
 
     /// Both ends with fixed decimals.
-    #[must_use]
     pub fn text(self, decimals: usize) -> String {
         if self.low > self.high {
             return crate::number::NONE.to_owned();
@@ -76,13 +72,11 @@ impl Range {
 }
 
 /// True if two ratios or test points are the same.
-#[must_use]
 pub fn is_near(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-9
 }
 
 /// Ranges of torque loss, Nm, and pressure, bar, at a ratio.
-#[must_use]
 pub fn ranges(points: &[SteadyPoint], ratio: f64) -> (Range, Range) {
     let on = || points.iter().filter(|p| is_near(p.set.ratio, ratio));
     let losses = on().map(|p| p.answer.total_nm());
@@ -133,7 +127,6 @@ pub struct RigResults {
 
 impl RigResults {
     /// Runs one test, or all of them.
-    #[must_use]
     pub fn run(bench: &Bench, c: &Conditions, points: &Plan, test: Option<RigTest>) -> Self {
         let mut found = RigResults::default();
         for (_, own) in RigTest::NAMES {
@@ -168,13 +161,11 @@ impl RigResults {
     }
 
     /// Number of points with a flag.
-    #[must_use]
     pub fn flagged(&self, flag: Flags) -> usize {
         self.answers().filter(|a| a.flags.contains(flag)).count()
     }
 
     /// Largest remainder of the strip-down after true loss and interaction, Nm.
-    #[must_use]
     pub fn largest_remainder_nm(&self) -> f64 {
         let of = |s: &StripDown| Piece::ALL.map(|p| s.piece(p).remainder_nm().abs());
         let pieces = self.strip_down.iter().flat_map(of);
@@ -182,7 +173,6 @@ impl RigResults {
     }
 
     /// One line for each failed check.
-    #[must_use]
     pub fn failures(&self, conditions: &Conditions) -> Vec<String> {
         let mut failed = Vec::new();
         let unsolved = self.flagged(Flags::NOT_CONVERGED);
@@ -211,7 +201,6 @@ impl RigResults {
     }
 
     /// Name and CSV of the table of each test that ran.
-    #[must_use]
     pub fn tables(&self) -> Vec<(&'static str, Vec<u8>)> {
         let moments = |l: &Loop| l.moments.iter().map(|m| (l.ratio, *m)).collect::<Vec<_>>();
         let moments: Vec<(f64, Moment)> = self.loops.iter().flat_map(moments).collect();
@@ -231,7 +220,6 @@ impl RigResults {
     }
 
     /// All results as entries of a JSON object; transients every 5 K, while the CSV file has every second.
-    #[must_use]
     pub fn json(&self, points: &Plan) -> Map<String, Value> {
         let of = |ratio: &f64| {
             let (loss, pressure) = ranges(&self.steady, *ratio);
@@ -325,8 +313,7 @@ fn part_columns<T: 'static>(answer: fn(&T) -> &BenchAnswer) -> Vec<Column<T>> {
 }
 
 /// Columns of the steady tests, with and without load.
-#[must_use]
-pub fn steady_columns() -> Vec<Column<SteadyPoint>> {
+fn steady_columns() -> Vec<Column<SteadyPoint>> {
     let mut columns = set_columns(|p: &SteadyPoint| &p.set);
     columns.extend(columns! { SteadyPoint;
         number "output_torque_nm", "Nm", "torque at the output shaft, held", p => p.set.output_nm;
@@ -352,8 +339,7 @@ fn efficiency_percent(p: &SteadyPoint) -> f64 {
 }
 
 /// Columns of the strip-down.
-#[must_use]
-pub fn strip_columns() -> Vec<Column<StripDown>> {
+fn strip_columns() -> Vec<Column<StripDown>> {
     let mut columns = set_columns(|s: &StripDown| &s.set);
     for stage in Stage::ALL {
         columns.extend(columns! { StripDown;
@@ -385,8 +371,7 @@ pub fn strip_columns() -> Vec<Column<StripDown>> {
 }
 
 /// Columns of a second of a transient, with the ratio of its loop.
-#[must_use]
-pub fn transient_columns() -> Vec<Column<(f64, Moment)>> {
+fn transient_columns() -> Vec<Column<(f64, Moment)>> {
     let mut columns = columns! { (f64, Moment);
         number "ratio", "-", "belt ratio, held", (ratio, _) => *ratio;
         text "branch", "", "warming or cooling", (_, m) => m.branch.word();
@@ -401,8 +386,7 @@ pub fn transient_columns() -> Vec<Column<(f64, Moment)>> {
 }
 
 /// Columns of the two boxes.
-#[must_use]
-pub fn two_box_columns() -> Vec<Column<TwoBoxes>> {
+fn two_box_columns() -> Vec<Column<TwoBoxes>> {
     let mut columns = set_columns(|t: &TwoBoxes| &t.first.set);
     columns.extend(columns! { TwoBoxes;
         number "first_pressure_bar", "bar", "secondary pressure of the first box", t => bar(t.first.answer.secondary_pa);

@@ -18,7 +18,7 @@ use cvtcycle_model::drive::Outcome;
 /// Version of the object; a new number when a name goes or changes its meaning.
 pub const SCHEMA: u32 = 1;
 /// Ledger error above which a run counts as failed.
-pub const LEDGER_TOLERANCE: f64 = 1e-9;
+const LEDGER_TOLERANCE: f64 = 1e-9;
 /// Flags that fail a strict run.
 const STRICT: [Flags; 4] = [
     Flags::OUTSIDE_VALIDITY,
@@ -217,13 +217,11 @@ pub struct Driven<'a> {
 
 impl RunSummary {
     /// Headline fuel of the car: weighted where the cycle is.
-    #[must_use]
     pub fn headline_fuel(&self) -> Option<f64> {
         self.weighted_fuel_l_per_100km.or(self.fuel_l_per_100km)
     }
 
     /// Sum of the transmission's losses, kJ.
-    #[must_use]
     pub fn transmission_loss_kj(&self) -> f64 {
         self.ledger_kj.get("losses").unwrap_or(0.0)
     }

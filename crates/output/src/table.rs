@@ -52,7 +52,6 @@ pub enum Cell {
 impl Cell {
     /// The cell as a number; NaN for words.
     #[inline]
-    #[must_use]
     pub fn number(&self) -> f64 {
         match self {
             Cell::Number(x) => *x,
@@ -78,7 +77,6 @@ impl Cell {
     }
 
     /// The cell in a JSON object: `null` for a missing number, a list for flags.
-    #[must_use]
     pub fn json(&self) -> Json {
         match self {
             Cell::Number(x) => finite(*x).into(),
@@ -140,7 +138,6 @@ pub enum Scope {
 
 impl Scope {
     /// True if a transmission with these components has the column.
-    #[must_use]
     pub fn includes(self, cvt: bool, components: &[Component]) -> bool {
         match self {
             Scope::Always => true,
@@ -260,13 +257,11 @@ impl<R> Column<R> {
     }
 
     /// The cell of a row.
-    #[must_use]
     pub fn cell(&self, row: &R) -> Cell {
         self.get.cell(row)
     }
 
     /// The number of a row; NaN where the cell is none.
-    #[must_use]
     pub fn number_of(&self, row: &R) -> f64 {
         self.cell(row).number()
     }
@@ -277,7 +272,6 @@ impl<R> Column<R> {
     }
 
     /// Name, unit, meaning and kind.
-    #[must_use]
     pub fn head(&self) -> Head {
         Head {
             name: self.name.clone().into_owned(),

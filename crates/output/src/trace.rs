@@ -86,20 +86,17 @@ fn loss(component: Component) -> TraceColumn {
 }
 
 /// The columns of a run, in the order of the table.
-#[must_use]
 pub fn columns_for(cvt: bool, components: &[Component]) -> Vec<&'static TraceColumn> {
     let has = |column: &&TraceColumn| column.scope.includes(cvt, components);
     COLUMNS.iter().filter(has).collect()
 }
 
 /// The column of that name.
-#[must_use]
 pub fn column(name: &str) -> Option<&'static TraceColumn> {
     COLUMNS.iter().find(|column| column.name == name)
 }
 
 /// The column of a component's loss power.
-#[must_use]
 pub fn loss_column(component: Component) -> Option<&'static TraceColumn> {
     COLUMNS
         .iter()

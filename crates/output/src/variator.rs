@@ -29,7 +29,6 @@ pub struct Curve {
 
 impl Curve {
     /// Solves a curve, by default from no torque to beyond the torque capacity. `pulses` are those of the speed sensors a turn.
-    #[must_use]
     pub fn solve(rig: &VariatorRig, held: &Held, torque_nm: Option<&[f64]>, pulses: f64) -> Self {
         let summary = rig.summary(held);
         let rows = match torque_nm {
@@ -45,13 +44,11 @@ impl Curve {
     }
 
     /// Secondary pressure, bar, without the rounding errors of its conversion.
-    #[must_use]
     pub fn bar(&self) -> f64 {
         (self.summary.held.pressure_pa / 1e5 * 1e6).round() / 1e6
     }
 
     /// True if two curves differ in pressure only.
-    #[must_use]
     pub fn is_same_test(&self, other: &Curve) -> bool {
         let key = |curve: &Curve| {
             let held = &curve.summary.held;
@@ -61,7 +58,6 @@ impl Curve {
     }
 
     /// Ratio, speed and temperature in words.
-    #[must_use]
     pub fn test_name(&self) -> String {
         let held = &self.summary.held;
         let ratio = fixed(held.ratio, 3);
@@ -151,8 +147,7 @@ impl VariatorCurves {
 }
 
 /// Columns of the points, in the order in which they are written.
-#[must_use]
-pub fn point_columns() -> Vec<Column<VariatorRow>> {
+fn point_columns() -> Vec<Column<VariatorRow>> {
     columns! { VariatorRow;
         number "belt_ratio", "-", "geometric belt ratio, held", r => r.held.ratio;
         number "secondary_pressure_bar", "bar", "secondary pressure, held", r => given(bar(r.held.pressure_pa));
@@ -184,8 +179,7 @@ pub fn point_columns() -> Vec<Column<VariatorRow>> {
 }
 
 /// Columns of the curves, in the order in which they are written.
-#[must_use]
-pub fn curve_columns() -> Vec<Column<(CurveSummary, Resolution)>> {
+fn curve_columns() -> Vec<Column<(CurveSummary, Resolution)>> {
     columns! { (CurveSummary, Resolution);
         number "belt_ratio", "", "", (s, _) => s.held.ratio;
         number "secondary_pressure_bar", "", "", (s, _) => given(bar(s.held.pressure_pa));

@@ -38,8 +38,8 @@ Examples:
   cvtcycle rig transmission --test steady --ratio low,1 --speed 1000..4000:500 --temp -10,25,95
   cvtcycle rig transmission --test transient --set rig.transient.start_degc=10 --json
 
---ratio, --speed, --temp and --torque take numbers, lists and ranges FROM..TO:STEP; the defaults are the test points of the rig.
-Transients run at rig.transient.speed_rpm, independent of --speed, --temp and --torque. `cvtcycle explain rig.pressure` explains
+--ratio, --speed, --temp and --torque take numbers, lists and ranges FROM..TO:STEP; the defaults are the test points of the rig. \
+Transients run at rig.transient.speed_rpm, independent of --speed, --temp and --torque. `cvtcycle explain rig.pressure` explains \
 the keys of the rig."
 )]
 pub struct RigTransmissionArgs {

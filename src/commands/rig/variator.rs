@@ -23,8 +23,8 @@ Examples:
   cvtcycle rig variator --ratio low --pressure 15..35:5 --torque 0..300:5 --format csv
   cvtcycle rig variator --ratio high --pressure 11 --speed 1500 --out variator
 
-A numeric option takes a number, a list (15,25,35), a range with a step (15..35:5, both ends included) or without one
-(15..35), or these mixed. Torques are those at the secondary pulley. Rows beyond the limits of the rig are flagged, not
+A numeric option takes a number, a list (15,25,35), a range with a step (15..35:5, both ends included) or without one \
+(15..35), or these mixed. Torques are those at the secondary pulley. Rows beyond the limits of the rig are flagged, not \
 removed: 400 Nm and 250 Nm at secondary and primary, 40 bar, 3000 rpm at either shaft."
 )]
 pub struct RigVariatorArgs {

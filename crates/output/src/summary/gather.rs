@@ -19,7 +19,6 @@ const MPG_US: f64 = 235.215;
 const ZERO_DEGC_K: f64 = cvtcycle_model::fluid::ZERO_DEGC_K;
 
 /// Puts the numbers of a run together; the first car is the subject.
-#[must_use]
 pub fn summarise(
     cycle: &Cycle,
     ambient_degc: f64,
@@ -49,7 +48,6 @@ pub fn summarise(
 }
 
 /// The numbers of one car. `role` is `subject` or `baseline`.
-#[must_use]
 pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driven) -> RunSummary {
     let Driven {
         name,
@@ -225,7 +223,6 @@ fn worst_deficit(cycle: &Cycle, driven: &Driven, cvt: bool) -> Option<Deficit> {
 }
 
 /// The subject against one baseline.
-#[must_use]
 pub fn compare(subject: &RunSummary, baseline: &RunSummary) -> Comparison {
     let percent =
         |s: Option<f64>, b: Option<f64>| s.zip(b).and_then(|(s, b)| finite((s / b - 1.0) * 100.0));

@@ -10,7 +10,6 @@ pub struct Named(IndexMap<String, Option<f64>>);
 
 impl Named {
     /// The number of that name, if it is there and was computed.
-    #[must_use]
     pub fn get(&self, name: &str) -> Option<f64> {
         *self.0.get(name)?
     }

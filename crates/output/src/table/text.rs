@@ -30,7 +30,6 @@ impl TextTable {
     /// table.row(["oil pump", "12.50"]);
     /// assert_eq!(table.text(), "belt       3.25\noil pump  12.50\n");
     /// ```
-    #[must_use]
     pub fn new(columns: &str) -> Self {
         TextTable {
             right: columns.bytes().map(|c| c == b'r').collect(),
@@ -64,7 +63,6 @@ impl TextTable {
     }
 
     /// The lines, for a terminal.
-    #[must_use]
     pub fn text(&self) -> String {
         let widths = self.widths();
         let mut text = String::new();
@@ -114,7 +112,6 @@ impl TextTable {
     /// table.row(["a|b", "1.5"]);
     /// assert_eq!(table.markdown(), "| part | Nm |\n| --- | ---: |\n| a\\|b | 1.5 |\n");
     /// ```
-    #[must_use]
     pub fn markdown(&self) -> String {
         let line = |row: &Vec<String>| {
             let cells = row
@@ -134,7 +131,6 @@ impl TextTable {
 }
 
 /// A sentence wrapped to the width of the tables, with a mark before its first line.
-#[must_use]
 pub fn wrapped(sentence: &str, mark: &str) -> String {
     let blank = " ".repeat(mark.width());
     let marks = [mark].into_iter().chain(std::iter::repeat(blank.as_str()));
@@ -173,7 +169,6 @@ fn wrap(text: &str, width: usize) -> Vec<String> {
 }
 
 /// A text cut to a number of characters.
-#[must_use]
 pub fn cut(text: &str, max_len: usize) -> String {
     match text.char_indices().nth(max_len) {
         None => text.to_owned(),
@@ -203,13 +198,11 @@ impl<T> Default for TextColumns<'_, T> {
 
 impl<'a, T> TextColumns<'a, T> {
     /// No columns.
-    #[must_use]
     pub fn new() -> Self {
         TextColumns(Vec::new())
     }
 
     /// Adds a column aligned left.
-    #[must_use]
     pub fn left<S: Into<String>>(
         self,
         head: impl Into<String>,
@@ -219,7 +212,6 @@ impl<'a, T> TextColumns<'a, T> {
     }
 
     /// Adds a column aligned right.
-    #[must_use]
     pub fn right<S: Into<String>>(
         self,
         head: impl Into<String>,
@@ -229,7 +221,6 @@ impl<'a, T> TextColumns<'a, T> {
     }
 
     /// Adds a column of numbers with fixed decimals.
-    #[must_use]
     pub fn number<X: Into<Option<f64>>>(
         self,
         head: impl Into<String>,

@@ -82,7 +82,6 @@ pub fn write_csv<R, C: Borrow<Column<R>>, I: Borrow<R>>(
 }
 
 /// The rows as CSV in memory; none if there are no rows.
-#[must_use]
 pub fn csv_bytes<R>(columns: &[Column<R>], rows: &[R]) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     let written = write_csv(&mut bytes, columns, rows, &[]);
@@ -92,21 +91,18 @@ pub fn csv_bytes<R>(columns: &[Column<R>], rows: &[R]) -> Option<Vec<u8>> {
 }
 
 /// Name, unit and meaning of the columns.
-#[must_use]
 pub fn json_columns<R>(columns: &[Column<R>]) -> Json {
     let head = |c: &Column<R>| json!({ "name": c.name, "unit": c.unit, "meaning": c.doc });
     columns.iter().map(head).collect()
 }
 
 /// A row as an object by the names of the columns.
-#[must_use]
 pub fn json_row<R>(columns: &[Column<R>], row: &R) -> Json {
     let cell = |column: &Column<R>| (column.name.clone().into_owned(), column.cell(row).json());
     Json::Object(columns.iter().map(cell).collect())
 }
 
 /// Rows as objects.
-#[must_use]
 pub fn json_rows<R>(columns: &[Column<R>], rows: &[R]) -> Json {
     rows.iter().map(|row| json_row(columns, row)).collect()
 }
