@@ -17,4 +17,5 @@ mod outputs;
 mod pictures;
 mod record;
 mod report;
+mod report_forms;
 mod validate;

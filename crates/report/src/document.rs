@@ -1,6 +1,6 @@
 //! What a report consists of, without its form.
 
-use crate::charts::{Picture, PictureTable};
+use crate::charts::Picture;
 
 /// A report.
 #[derive(Clone, Debug, Default)]
@@ -110,11 +110,6 @@ impl Section {
         }
     }
 
-    /// Adds a sentence that says what matters.
-    pub fn lead(&mut self, text: impl Into<String>) {
-        self.blocks.push(Block::Lead(text.into()));
-    }
-
     /// Adds a paragraph.
     pub fn text(&mut self, text: impl Into<String>) {
         self.blocks.push(Block::Text(text.into()));
@@ -126,13 +121,8 @@ impl Section {
     }
 
     /// Adds a heading.
-    pub fn heading(&mut self, text: impl Into<String>) {
-        self.blocks.push(Block::Heading(text.into()));
-    }
-
-    /// Adds points.
-    pub fn list(&mut self, points: Vec<String>) {
-        self.blocks.push(Block::List(points));
+    pub fn heading(&mut self, text: &str) {
+        self.blocks.push(Block::Heading(text.to_owned()));
     }
 
     /// Adds names and values.
@@ -140,28 +130,23 @@ impl Section {
         self.blocks.push(Block::Facts(facts));
     }
 
-    /// Adds a table that is folded away.
-    pub fn folded(&mut self, table: ReportTable) {
-        self.blocks.push(Block::Folded(table));
-    }
-
-    /// Adds a figure.
-    pub fn figure(
-        &mut self,
-        name: impl Into<String>,
-        caption: impl Into<String>,
-        picture: Picture,
-    ) {
+    /// Adds a figure under the name of its file, with what is to be seen.
+    pub fn figure(&mut self, name: impl Into<String>, caption: impl Into<String>, of: Picture) {
         self.blocks.push(Block::Figure(Figure {
             name: name.into(),
             caption: caption.into(),
-            picture,
+            picture: of,
         }));
     }
 
     /// Adds a table.
     pub fn table(&mut self, table: ReportTable) {
         self.blocks.push(Block::Table(table));
+    }
+
+    /// Adds a table that is folded away.
+    pub fn folded(&mut self, table: ReportTable) {
+        self.blocks.push(Block::Folded(table));
     }
 }
 
@@ -206,83 +191,58 @@ impl ReportTable {
     /// Whether the cells of a column have to be marked as numbers, since not all columns hold some.
     #[must_use]
     pub fn marked(&self, column: &usize) -> bool {
-        !self.all_numbers()
-            && self
-                .columns
-                .get(*column)
-                .is_some_and(|column| column.number)
+        let own = self.columns.get(*column);
+        !self.all_numbers() && own.is_some_and(|column| column.number)
     }
 
     /// Adds a row.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.add(cells, false);
-    }
-
-    /// Adds an emphasised row.
-    pub fn strong_row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.add(cells, true);
+        let (cells, strong) = (cells.into_iter().collect(), false);
+        self.rows.push(ReportRow { cells, strong });
     }
 
     /// Adds a row that begins with its name.
     pub fn named(&mut self, name: impl Into<String>, cells: impl IntoIterator<Item = String>) {
-        self.add([name.into()].into_iter().chain(cells), false);
+        self.row([name.into()].into_iter().chain(cells));
     }
 
     /// Adds an emphasised row that begins with its name.
     pub fn strong(&mut self, name: impl Into<String>, cells: impl IntoIterator<Item = String>) {
-        self.add([name.into()].into_iter().chain(cells), true);
-    }
-
-    fn add(&mut self, cells: impl IntoIterator<Item = String>, strong: bool) {
-        let cells = cells.into_iter().collect();
-        self.rows.push(ReportRow { cells, strong });
+        self.named(name, cells);
+        self.rows
+            .last_mut()
+            .into_iter()
+            .for_each(|row| row.strong = true);
     }
 }
 
-/// The numbers of a picture as a table of a report.
-#[must_use]
-pub fn table_of(caption: &str, table: &PictureTable) -> ReportTable {
-    // A column holds numbers if all its cells are some.
-    let numeric = |k: usize| {
-        let cells = || {
-            table
-                .rows
-                .iter()
-                .filter_map(|row| row.get(k))
-                .filter(|cell| !cell.is_empty())
-        };
-        cells().next().is_some()
-            && cells().all(|cell| cell.replace('\u{2212}', "-").parse::<f64>().is_ok())
-    };
-    let column = |(k, (name, unit)): (usize, &(String, &'static str))| ReportColumn {
-        name: name.clone(),
-        unit: (*unit).to_owned(),
-        number: numeric(k),
-    };
-    ReportTable {
-        caption: caption.to_owned(),
-        columns: table.columns.iter().enumerate().map(column).collect(),
-        rows: table
-            .rows
-            .iter()
-            .map(|cells| ReportRow {
-                cells: cells.clone(),
-                strong: false,
-            })
-            .collect(),
-        note: table.note.clone(),
+impl Figure {
+    /// The numbers of the picture as a table, for the figure of that number.
+    #[must_use]
+    pub fn numbers(&self, number: &usize) -> ReportTable {
+        let table = &self.picture.table;
+        let caption = format!("Numbers of figure {number}");
+        let mut of = ReportTable::of_words(&caption, &[]);
+        for (k, (name, unit)) in table.columns.iter().enumerate() {
+            of.columns.push(ReportColumn {
+                name: name.clone(),
+                unit: (*unit).to_owned(),
+                number: table.numbers(k).is_some(),
+            });
+        }
+        table.rows.iter().for_each(|cells| of.row(cells.clone()));
+        of.note.clone_from(&table.note);
+        of
     }
 }
 
 impl Document {
     /// All figures in their order.
     pub fn figures(&self) -> impl Iterator<Item = &Figure> {
-        self.sections
-            .iter()
-            .flat_map(|section| &section.blocks)
-            .filter_map(|block| match block {
-                Block::Figure(figure) => Some(figure),
-                _ => None,
-            })
+        let blocks = self.sections.iter().flat_map(|section| &section.blocks);
+        blocks.filter_map(|block| match block {
+            Block::Figure(figure) => Some(figure),
+            _ => None,
+        })
     }
 }

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::document::{Block, Document, ReportTable, Section};
-use super::number::{NONE, Quantity, degc, phase, words};
+use super::number::{NONE, Quantity, degc, grouped, minus, phase, words};
 use super::results::StudyResults;
 use super::study_answers::answers;
 use super::study_pictures::study_pictures;
@@ -21,15 +21,17 @@ pub fn section(study: &StudyResults) -> Result<Section, Problem> {
     if !study.answer.question.is_empty() {
         blocks.push(Block::Text(study.answer.question.clone()));
     }
-    blocks.extend(
-        study
-            .unfinished()
-            .map(|text| Block::Alert(format!("{text}; what follows is theirs."))),
-    );
+    blocks.extend(unfinished(study, "what follows is theirs"));
     blocks.push(Block::Text(extent(study)));
     blocks.extend(answers(study).into_iter().map(Block::Text));
     section.blocks.splice(0..0, blocks);
     Ok(section)
+}
+
+/// A warning that parts of the study are missing.
+fn unfinished(study: &StudyResults, what: &str) -> Option<Block> {
+    let alert = |text| Block::Alert(format!("{text}; {what}."));
+    study.unfinished().map(alert)
 }
 
 /// Tables and pictures of a study.
@@ -86,11 +88,8 @@ fn extent(study: &StudyResults) -> String {
     );
     let bad = answer.runs.failed + answer.runs.not_run;
     if bad > 0 {
-        let reasons: Vec<String> = answer
-            .runs
-            .reasons
-            .iter()
-            .take(3)
+        let reasons = answer.runs.reasons.iter().take(3);
+        let reasons: Vec<String> = reasons
             .map(|(reason, n)| format!("{n} \u{d7} {reason}"))
             .collect();
         text += &format!(
@@ -103,59 +102,51 @@ fn extent(study: &StudyResults) -> String {
 
 fn tables(section: &mut Section, matrix: &Matrix) {
     for part in &matrix.fuel {
-        let name = if part.name == "total" {
-            "whole cycle".to_owned()
-        } else {
-            phase(&part.name)
+        let name = match part.name.as_str() {
+            "total" => "whole cycle".to_owned(),
+            name => phase(name),
         };
-        let fuel_columns = matrix
-            .cars
-            .iter()
-            .map(|car| (car.clone(), Quantity::Fuel.unit().to_owned()));
-        let excess = matrix
-            .cars
-            .iter()
-            .skip(1)
-            .map(|car| (format!("over {car}"), "%".to_owned()));
-        let mut table = ReportTable::of_numbers(
-            &format!("Fuel, {name}"),
-            "Start, ambient",
-            fuel_columns.chain(excess),
-        );
-        for (s, start) in matrix.starts.iter().enumerate() {
-            for (a, ambient) in matrix.ambient_degc.iter().enumerate() {
-                let fuel = part
-                    .l_per_100km
-                    .iter()
-                    .map(|by| Quantity::Fuel.bare(by[s][a]));
-                let excess = part
-                    .excess_percent
-                    .iter()
-                    .map(|by| Quantity::Percent.bare_signed(by[s][a]));
-                table.named(format!("{start}, {}", degc(*ambient)), fuel.chain(excess));
-            }
-        }
-        section.table(table);
+        let cars = matrix.cars.iter();
+        let fuel = cars.clone().map(|car| (car.clone(), Quantity::Fuel.unit()));
+        let excess = cars.skip(1).map(|car| (format!("over {car}"), "%"));
+        let caption = format!("Fuel, {name}");
+        section.table(by_case(matrix, &caption, fuel.chain(excess), |s, a| {
+            let fuel = part.l_per_100km.iter();
+            let fuel = fuel.map(|by| Quantity::Fuel.bare(by[s][a]));
+            let excess = part.excess_percent.iter();
+            let excess = excess.map(|by| Quantity::Percent.bare_signed(by[s][a]));
+            fuel.chain(excess).collect()
+        }));
     }
     let columns = matrix.ends.iter().flat_map(|end| {
-        matrix.cars.iter().map(move |car| {
-            (
-                format!("{car}, {}", end.name),
-                Quantity::Degc.unit().to_owned(),
-            )
-        })
+        let name = |car: &String| (format!("{car}, {}", end.name), Quantity::Degc.unit());
+        matrix.cars.iter().map(name).collect::<Vec<_>>()
     });
-    let mut table = ReportTable::of_numbers("Temperatures at the end", "Start, ambient", columns);
+    section.folded(by_case(
+        matrix,
+        "Temperatures at the end",
+        columns,
+        |s, a| {
+            let ends = matrix.ends.iter().flat_map(|end| &end.degc);
+            ends.map(|by| Quantity::Degc.bare(by[s][a])).collect()
+        },
+    ));
+}
+
+/// A table with a row for each start and ambient temperature, of which `cells` gets the indices.
+fn by_case(
+    matrix: &Matrix,
+    caption: &str,
+    columns: impl Iterator<Item = (String, &'static str)>,
+    cells: impl Fn(usize, usize) -> Vec<String>,
+) -> ReportTable {
+    let mut table = ReportTable::of_numbers(caption, "Start, ambient", columns);
     for (s, start) in matrix.starts.iter().enumerate() {
         for (a, ambient) in matrix.ambient_degc.iter().enumerate() {
-            let cells = matrix
-                .ends
-                .iter()
-                .flat_map(|end| end.degc.iter().map(|by| Quantity::Degc.bare(by[s][a])));
-            table.named(format!("{start}, {}", degc(*ambient)), cells);
+            table.named(format!("{start}, {}", degc(*ambient)), cells(s, a));
         }
     }
-    section.folded(table);
+    table
 }
 
 fn outputs(study: &StudyResults) -> ReportTable {
@@ -166,30 +157,18 @@ fn outputs(study: &StudyResults) -> ReportTable {
     } else {
         &["runs", "mean", "standard deviation", "5 %", "95 %"]
     };
-    let columns = names.iter().map(|name| ((*name).to_owned(), String::new()));
+    let columns = names.iter().map(|name| (*name, ""));
     let mut table = ReportTable::of_numbers("Outputs", "Output", columns);
     for output in &study.answer.outputs {
-        let s = &output.summary;
-        let digits = |x: f64| {
-            if x.is_finite() {
-                format!("{x:.3}").replace('-', "\u{2212}")
-            } else {
-                NONE.to_owned()
-            }
-        };
-        let name = format!(
-            "{}, {} [{}]",
-            output_name(&output.output),
-            output.car,
-            output.unit
-        );
+        let (s, name) = (&output.summary, output_name(&output.output));
         let numbers = if one_by_one {
             vec![s.min, s.max]
         } else {
             vec![s.mean, s.sd, s.quantile(0.05), s.quantile(0.95)]
         };
-        let numbers = numbers.into_iter().map(digits);
-        table.named(name, [s.n.to_string()].into_iter().chain(numbers));
+        let numbers = numbers.into_iter().map(|x| grouped(x, 3));
+        let cells = [s.n.to_string()].into_iter().chain(numbers);
+        table.named(format!("{name}, {} [{}]", output.car, output.unit), cells);
     }
     table
 }
@@ -206,49 +185,38 @@ fn output_name(column: &str) -> String {
         "_degc",
         "_s",
     ];
-    words(
-        units
-            .iter()
-            .find_map(|unit| column.strip_suffix(unit))
-            .unwrap_or(column),
-    )
+    let stem = units.iter().find_map(|unit| column.strip_suffix(unit));
+    words(stem.unwrap_or(column))
 }
 
+/// Keys of a factor in the manifest, and heads of their columns.
+const FACTOR: [(&str, &str); 8] = [
+    ("name", "Factor"),
+    ("key", "Key"),
+    ("unit", "Unit"),
+    ("cars", "Cars"),
+    ("acts", "How"),
+    ("values", "Values"),
+    ("status", "Status"),
+    ("source", "Where from"),
+];
+
 fn factors(study: &StudyResults) -> ReportTable {
-    let list = study.manifest["factors"]
-        .as_array()
-        .cloned()
-        .unwrap_or_default();
-    let mut table = ReportTable::of_words(
-        &format!("Factors of the study ({})", list.len()),
-        &[
-            "Factor",
-            "Key",
-            "Unit",
-            "Cars",
-            "How",
-            "Values",
-            "Status",
-            "Where from",
-        ],
-    );
+    let list = study.manifest["factors"].as_array();
+    let list = list.map_or(&[][..], Vec::as_slice);
+    let caption = format!("Factors of the study ({})", list.len());
+    let mut table = ReportTable::of_words(&caption, &FACTOR.map(|(_, head)| head));
     let text = |value: &Value| match value {
         Value::String(text) => text.clone(),
-        Value::Array(list) => list
-            .iter()
-            .map(|v| v.as_str().map_or_else(|| v.to_string(), str::to_owned))
-            .collect::<Vec<_>>()
-            .join(", "),
+        Value::Array(list) => {
+            let word = |v: &Value| v.as_str().map_or_else(|| v.to_string(), str::to_owned);
+            list.iter().map(word).collect::<Vec<_>>().join(", ")
+        }
         Value::Null => String::new(),
         other => other.to_string(),
     };
-    for factor in &list {
-        table.row(
-            [
-                "name", "key", "unit", "cars", "acts", "values", "status", "source",
-            ]
-            .map(|key| text(&factor[key])),
-        );
+    for factor in list {
+        table.row(FACTOR.map(|(key, _)| text(&factor[key])));
     }
     table
 }
@@ -261,16 +229,11 @@ pub fn document(study: &StudyResults) -> Result<Document, Problem> {
     let answer = &study.answer;
     let mut first = Section::new("answer", "Answer");
     if !answer.question.is_empty() {
-        first.lead(answer.question.clone());
+        first.blocks.push(Block::Lead(answer.question.clone()));
     }
-    first.blocks.extend(
-        study
-            .unfinished()
-            .map(|text| Block::Alert(format!("{text}; what follows is what they say."))),
-    );
-    first
-        .blocks
-        .extend(answers(study).into_iter().map(Block::Text));
+    let alert = unfinished(study, "what follows is what they say");
+    let answers = answers(study).into_iter().map(Block::Text);
+    first.blocks.extend(alert.into_iter().chain(answers));
     first.text(extent(study));
     let mut details = details(study)?;
     if answer.matrix.is_none() {
@@ -292,10 +255,7 @@ fn text_of(value: &Value) -> String {
         Value::Null => NONE.to_owned(),
         Value::Array(list) if list.is_empty() => NONE.to_owned(),
         Value::Array(list) => list.iter().map(text_of).collect::<Vec<_>>().join(", "),
-        Value::Number(x) => x.as_f64().map_or_else(
-            || x.to_string(),
-            |x| format!("{x}").replace('-', "\u{2212}"),
-        ),
+        Value::Number(x) => minus(&x.as_f64().map_or_else(|| x.to_string(), |x| x.to_string())),
         other => other.to_string(),
     }
 }
@@ -317,25 +277,19 @@ fn conditions(study: &StudyResults) -> Section {
         ("formulation", "Belt model"),
     ];
     let known = names.iter().filter(|(key, _)| !base[*key].is_null());
-    section.facts(
-        known
-            .map(|(key, name)| ((*name).to_owned(), text_of(&base[*key])))
-            .collect(),
-    );
-    let mut table = ReportTable::of_words(
-        "Cars",
-        &[
-            "Car",
-            "Role",
-            "What it is",
-            "Transmission oil",
-            "Engine oil",
-        ],
-    );
+    let fact = |(key, name): &(&str, &str)| ((*name).to_owned(), text_of(&base[*key]));
+    section.facts(known.map(fact).collect());
+    let columns = [
+        "Car",
+        "Role",
+        "What it is",
+        "Transmission oil",
+        "Engine oil",
+    ];
+    let mut table = ReportTable::of_words("Cars", &columns);
     for car in study.manifest["cars"].as_array().into_iter().flatten() {
-        table.row(
-            ["name", "role", "title", "lubricant", "engine_oil"].map(|key| text_of(&car[key])),
-        );
+        let keys = ["name", "role", "title", "lubricant", "engine_oil"];
+        table.row(keys.map(|key| text_of(&car[key])));
     }
     section.table(table);
     section
@@ -345,16 +299,13 @@ fn reproduce(study: &StudyResults) -> Section {
     let mut section = Section::new("reproducibility", "Reproducibility");
     let manifest = &study.manifest;
     let design = &manifest["design"];
+    let plan = "plan.toml in the directory of the study, run again by: cvtcycle study plan.toml";
     let mut facts = vec![
         (
             "Program of the study".to_owned(),
             text_of(&manifest["program"]),
         ),
-        (
-            "Plan".to_owned(),
-            "plan.toml in the directory of the study, run again by: cvtcycle study plan.toml"
-                .to_owned(),
-        ),
+        ("Plan".to_owned(), plan.to_owned()),
         (
             "Plan, SHA-256".to_owned(),
             text_of(&manifest["plan_sha256"]),
@@ -368,10 +319,8 @@ fn reproduce(study: &StudyResults) -> Section {
     }
     for (list, key) in [("cycles", "Cycle"), ("cars", "Car")] {
         for one in manifest[list].as_array().into_iter().flatten() {
-            facts.push((
-                format!("{key} {}, SHA-256", text_of(&one["name"])),
-                text_of(&one["sha256"]),
-            ));
+            let name = format!("{key} {}, SHA-256", text_of(&one["name"]));
+            facts.push((name, text_of(&one["sha256"])));
         }
     }
     section.facts(facts);

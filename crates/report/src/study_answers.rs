@@ -30,10 +30,9 @@ pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
     let subject = run.runs.first().map_or("", |run| run.vehicle.as_str());
     let own = study.outline.cars.first().map_or("", String::as_str);
     differ("subject", own, subject);
-    let ambient = base["ambient_degc"]
-        .as_f64()
-        .filter(|_| free("ambient_degc"));
-    if let Some(ambient) = ambient.filter(|own| (own - run.ambient_degc).abs() > 1e-9) {
+    let ambient = base["ambient_degc"].as_f64();
+    let ambient = ambient.filter(|own| (own - run.ambient_degc).abs() > 1e-9);
+    if let Some(ambient) = ambient.filter(|_| free("ambient_degc")) {
         differ("ambient", &degc(ambient), &degc(run.ambient_degc));
     }
     let start = match &run.start {
@@ -43,15 +42,13 @@ pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
     if let Some(own) = base["start"].as_str().filter(|_| free("start")) {
         differ("start", own, &start);
     }
-    let set = |value: &Value| -> Vec<String> {
-        let texts = value
-            .as_array()
-            .into_iter()
-            .flatten()
-            .filter_map(Value::as_str);
-        texts.map(str::to_owned).collect()
+    let same = |key: &str, own: &[String]| {
+        let texts = base[key].as_array().into_iter().flatten();
+        texts
+            .filter_map(Value::as_str)
+            .eq(own.iter().map(String::as_str))
     };
-    if set(&base["set"]) != run.settings.set || set(&base["set_all"]) != run.settings.set_all {
+    if !same("set", &run.settings.set) || !same("set_all", &run.settings.set_all) {
         list.push("other values set".to_owned());
     }
     (!list.is_empty()).then(|| list.join(", "))
@@ -67,15 +64,11 @@ pub fn answers(study: &StudyResults) -> Vec<String> {
     if let Some(matrix) = &answer.matrix {
         return matrix_answers(matrix);
     }
+    let sentences = |of: &Comparison| [Some(compared(study, of)), decided(study, of)];
     answer
         .comparisons
         .iter()
-        .flat_map(|comparison| {
-            [
-                Some(compared(study, comparison)),
-                decided(study, comparison),
-            ]
-        })
+        .flat_map(sentences)
         .flatten()
         .collect()
 }
@@ -84,11 +77,8 @@ pub fn answers(study: &StudyResults) -> Vec<String> {
 ///
 /// A grid is no sample: its share says nothing beyond its own points.
 fn compared(study: &StudyResults, of: &Comparison) -> String {
-    let subject = study
-        .outline
-        .cars
-        .first()
-        .map_or("the subject", String::as_str);
+    let subject = study.outline.cars.first();
+    let subject = subject.map_or("the subject", String::as_str);
     let (excess, worse) = (&of.excess_percent, &of.worse);
     let signed = |x: f64| Quantity::Percent.signed(x);
     if worse.n == 0 {
@@ -129,54 +119,33 @@ fn compared(study: &StudyResults, of: &Comparison) -> String {
 
 /// Which factors decide the excess.
 fn decided(study: &StudyResults, of: &Comparison) -> Option<String> {
-    let output = study
-        .answer
-        .outputs
-        .iter()
-        .find(|o| o.output == EXCESS && o.car == of.baseline)?;
+    let own = |o: &&OutputAnswer| o.output == EXCESS && o.car == of.baseline;
+    let output = study.answer.outputs.iter().find(own)?;
     let (measure, mut ranked) = ranked(study, output)?;
     ranked.retain(|(_, x)| x.is_finite());
     ranked.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let factors: Vec<String> = ranked
-        .iter()
-        .take(MAX_NAMED)
-        .map(|(name, x)| format!("{name} ({})", Quantity::Index.bare(*x)))
-        .collect();
+    let factor = |(name, x): &(String, f64)| format!("{name} ({})", Quantity::Index.bare(*x));
+    let factors: Vec<String> = ranked.iter().take(MAX_NAMED).map(factor).collect();
     (!factors.is_empty()).then(|| format!("Most decided by {} [{measure}].", factors.join(", ")))
 }
 
-fn ranked(
-    study: &StudyResults,
-    output: &OutputAnswer,
-) -> Option<(&'static str, Vec<(String, f64)>)> {
+/// A measure of the effect of each factor.
+type Ranked = (&'static str, Vec<(String, f64)>);
+
+fn ranked(study: &StudyResults, output: &OutputAnswer) -> Option<Ranked> {
     if let Some(indices) = output.sobol.last() {
         let factors = study.outline.plan.factors.iter().zip(&indices.factors);
-        return Some((
-            "total share of the variance",
-            factors
-                .map(|(factor, i)| (factor.name.clone(), i.total.value))
-                .collect(),
-        ));
+        let factors = factors.map(|(factor, i)| (factor.name.clone(), i.total.value));
+        return Some(("total share of the variance", factors.collect()));
     }
     if let Some(tornado) = &output.tornado {
-        return Some((
-            "swing in percentage points",
-            tornado
-                .bars
-                .iter()
-                .map(|bar| (bar.name.clone(), bar.swing))
-                .collect(),
-        ));
+        let bars = tornado.bars.iter().map(|bar| (bar.name.clone(), bar.swing));
+        return Some(("swing in percentage points", bars.collect()));
     }
     let rank = output.rank.as_ref()?;
-    Some((
-        "rank correlation",
-        rank.factors
-            .iter()
-            .zip(&rank.of.factors)
-            .map(|(name, f)| (name.clone(), f.spearman.value))
-            .collect(),
-    ))
+    let factors = rank.factors.iter().zip(&rank.of.factors);
+    let factors = factors.map(|(name, f)| (name.clone(), f.spearman.value));
+    Some(("rank correlation", factors.collect()))
 }
 
 /// The excess at the coldest and the warmest ambient, for each start.
@@ -184,36 +153,23 @@ fn matrix_answers(matrix: &Matrix) -> Vec<String> {
     let (Some(subject), Some(total)) = (matrix.cars.first(), matrix.fuel.first()) else {
         return Vec::new();
     };
-    let mut order: Vec<usize> = (0..matrix.ambient_degc.len()).collect();
-    order.sort_by(|a, b| matrix.ambient_degc[*a].total_cmp(&matrix.ambient_degc[*b]));
-    let (Some(&cold), Some(&warm)) = (order.first(), order.last()) else {
+    let ambient = matrix.ambient_degc.iter().enumerate();
+    let cold = ambient.clone().min_by(|a, b| a.1.total_cmp(b.1));
+    let (Some(cold), Some(warm)) = (cold, ambient.max_by(|a, b| a.1.total_cmp(b.1))) else {
         return Vec::new();
-    };
-    let at = |numbers: &[f64], k: usize| {
-        Quantity::Percent.signed(numbers.get(k).copied().unwrap_or(f64::NAN))
     };
     let mut list = Vec::new();
     for (baseline, by_start) in matrix.cars.iter().skip(1).zip(&total.excess_percent) {
-        let starts: Vec<String> = matrix
-            .starts
-            .iter()
-            .zip(by_start)
-            .map(|(start, numbers)| {
-                let (cold_degc, warm_degc) = (
-                    degc(matrix.ambient_degc[cold]),
-                    degc(matrix.ambient_degc[warm]),
-                );
-                format!(
-                    "{} at {cold_degc} and {} at {warm_degc} (start {start})",
-                    at(numbers, cold),
-                    at(numbers, warm)
-                )
-            })
-            .collect();
-        list.push(format!(
-            "Fuel of {subject} over {baseline}: {}.",
-            starts.join("; ")
-        ));
+        let start = |(start, numbers): (&String, &Vec<f64>)| {
+            let [cold, warm] = [cold, warm].map(|(k, ambient)| {
+                let excess = numbers.get(k).copied();
+                format!("{} at {}", Quantity::Percent.signed(excess), degc(*ambient))
+            });
+            format!("{cold} and {warm} (start {start})")
+        };
+        let starts: Vec<String> = matrix.starts.iter().zip(by_start).map(start).collect();
+        let starts = starts.join("; ");
+        list.push(format!("Fuel of {subject} over {baseline}: {starts}."));
     }
     list
 }

@@ -3,9 +3,8 @@
 use crate::charts::Picture;
 use crate::charts::ambient::{ambient_fuel, ambient_penalty, warm_up};
 use crate::charts::study::{
-    ConvergencePlot, DistributionPlot, DistributionSeries, EffectFactor, EffectsPlot, RankPlot,
-    Shown, SobolPlot, TornadoPlot, convergence_plot, distribution_plot, effects_plot, rank_plot,
-    sobol_plot, tornado_plot,
+    DistributionSeries, EffectFactor, Shown, convergence_plot, distribution_plot, effects_plot,
+    rank_plot, sobol_plot, tornado_plot,
 };
 use cvtcycle_config::Problem;
 use cvtcycle_study::ambient::{Matrix, WarmUp};
@@ -32,29 +31,22 @@ pub fn study_pictures(
 
 fn of_matrix(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, Picture)> {
     let mut list = vec![("ambient_fuel".to_owned(), ambient_fuel(matrix, title))];
-    list.extend(
-        ambient_penalty(matrix, title).map(|picture| ("ambient_penalty".to_owned(), picture)),
-    );
-    for (k, start) in matrix
-        .starts
-        .iter()
-        .enumerate()
-        .filter(|_| !warm_ups.is_empty())
-    {
-        let word: String = start
-            .chars()
-            .map(|c| {
-                if c.is_alphanumeric() || c == '-' {
-                    c
-                } else {
-                    '_'
-                }
-            })
-            .collect();
-        list.push((
-            format!("warm_up_{word}"),
-            warm_up(matrix, warm_ups, k, title),
-        ));
+    let penalty = ambient_penalty(matrix, title);
+    list.extend(penalty.map(|picture| ("ambient_penalty".to_owned(), picture)));
+    if warm_ups.is_empty() {
+        return list;
+    }
+    for (k, start) in matrix.starts.iter().enumerate() {
+        let plain = |c: char| {
+            if c.is_alphanumeric() || c == '-' {
+                c
+            } else {
+                '_'
+            }
+        };
+        let word: String = start.chars().map(plain).collect();
+        let picture = warm_up(matrix, warm_ups, k, title);
+        list.push((format!("warm_up_{word}"), picture));
     }
     list
 }
@@ -62,32 +54,20 @@ fn of_matrix(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, 
 fn of_outputs(answer: &Answer, frame: &StudyTable) -> Result<Vec<(String, Picture)>, Problem> {
     let outline = frame.outline;
     let mut list = Vec::new();
-    let pictured: Vec<&OutputAnswer> = answer
-        .outputs
-        .iter()
+    let outputs = answer.outputs.iter();
+    let pictured: Vec<&OutputAnswer> = outputs
         .filter(|output| is_pictured(&output.output, outline))
         .collect();
     for (k, output) in pictured.iter().enumerate() {
-        let same: Vec<&&OutputAnswer> = pictured
-            .iter()
-            .filter(|other| other.output == output.output)
-            .collect();
-        let first = pictured[..k]
-            .iter()
-            .all(|before| before.output != output.output);
-        if first && outline.plan.design.is_sampled() {
-            list.push((
-                format!("distribution_{}", output.output),
-                distribution(frame, &same)?,
-            ));
+        let same = |other: &&&OutputAnswer| other.output == output.output;
+        if outline.plan.design.is_sampled() && !pictured[..k].iter().any(|other| same(&other)) {
+            let same: Vec<&&OutputAnswer> = pictured.iter().filter(same).collect();
+            let picture = distribution(frame, &same)?;
+            list.push((format!("distribution_{}", output.output), picture));
         }
-        list.extend(
-            of_output(output, outline)
-                .into_iter()
-                .map(|(kind, picture)| {
-                    (format!("{kind}_{}_{}", output.output, output.car), picture)
-                }),
-        );
+        let name = |kind: &str| format!("{kind}_{}_{}", output.output, output.car);
+        let own = of_output(output, outline).into_iter();
+        list.extend(own.map(|(kind, picture)| (name(kind), picture)));
     }
     Ok(list)
 }
@@ -99,11 +79,8 @@ fn is_pictured(output: &str, outline: &StudyManifest) -> bool {
 /// Name of an output as people say it.
 fn named(output: &OutputAnswer, outline: &StudyManifest) -> String {
     let subject = outline.cars.first().map_or("", String::as_str);
-    let words = output
-        .output
-        .trim_end_matches("_percent")
-        .trim_end_matches("_l_per_100km")
-        .replace('_', " ");
+    let stem = output.output.trim_end_matches("_percent");
+    let words = stem.trim_end_matches("_l_per_100km").replace('_', " ");
     match output.output.as_str() {
         FUEL => format!("fuel of {}", output.car),
         EXCESS => format!("excess fuel of {subject} over {}", output.car),
@@ -115,41 +92,24 @@ fn distribution(frame: &StudyTable, outputs: &[&&OutputAnswer]) -> Result<Pictur
     let outline = frame.outline;
     let mut values = Vec::new();
     for output in outputs {
-        let car = outline
-            .cars
-            .iter()
-            .position(|car| *car == output.car)
-            .unwrap_or(0);
-        values.push(described_numbers(frame, &output.output, car)?);
+        let car = outline.cars.iter().position(|car| *car == output.car);
+        values.push(described_numbers(frame, &output.output, car.unwrap_or(0))?);
     }
-    let excess = outputs
-        .first()
-        .is_some_and(|output| output.output.starts_with("subject_excess_"));
-    let names: Vec<String> = outputs
-        .iter()
-        .map(|output| {
-            if excess {
-                format!("over {}", output.car)
-            } else {
-                output.car.clone()
-            }
-        })
-        .collect();
-    let series: Vec<DistributionSeries> = names
-        .iter()
-        .zip(&values)
-        .map(|(name, values)| DistributionSeries { name, values })
-        .collect();
-    let title = match outputs.first() {
-        Some(output) if output.output == FUEL => "fuel".to_owned(),
-        Some(output) if excess => {
-            format!(
-                "excess fuel of {}",
-                outline.cars.first().map_or("", String::as_str)
-            ) + &tail(&output.output)
+    let first = outputs.first().map_or("", |output| output.output.as_str());
+    let excess = first.starts_with("subject_excess_");
+    let over = if excess { "over " } else { "" };
+    let names = outputs.iter().map(|output| format!("{over}{}", output.car));
+    let names: Vec<String> = names.collect();
+    let series = names.iter().zip(&values);
+    let series = series.map(|(name, values)| DistributionSeries { name, values });
+    let series: Vec<DistributionSeries> = series.collect();
+    let title = match first {
+        FUEL => "fuel".to_owned(),
+        output if excess => {
+            let subject = outline.cars.first().map_or("", String::as_str);
+            format!("excess fuel of {subject}{}", tail(output))
         }
-        Some(output) => output.output.replace('_', " "),
-        None => String::new(),
+        output => output.replace('_', " "),
     };
     let unit = outputs.first().map_or("", |output| output.unit.as_str());
     let shown = Shown {
@@ -157,11 +117,7 @@ fn distribution(frame: &StudyTable, outputs: &[&&OutputAnswer]) -> Result<Pictur
         unit,
         subject: &outline.title,
     };
-    Ok(distribution_plot(&DistributionPlot {
-        shown,
-        series: &series,
-        differences: excess,
-    }))
+    Ok(distribution_plot(&shown, &series, excess))
 }
 
 /// The phase of an excess, if it is of one.
@@ -181,65 +137,43 @@ fn of_output(output: &OutputAnswer, outline: &StudyManifest) -> Vec<(&'static st
         unit: &output.unit,
         subject: &outline.title,
     };
-    let factors = &outline.plan.factors;
-    let names: &[String] = &factors
-        .iter()
-        .map(|factor| factor.name.clone())
-        .collect::<Vec<_>>();
+    let factors = outline.plan.factors.iter();
+    let names: Vec<String> = factors.map(|factor| factor.name.clone()).collect();
     let mut list = Vec::new();
     if let Some(indices) = output.sobol.last() {
-        let steps = &output.sobol;
+        list.push(("sobol", sobol_plot(&shown, &names, indices)));
         list.push((
-            "sobol",
-            sobol_plot(&SobolPlot {
-                shown,
-                names,
-                indices,
-            }),
+            "convergence",
+            convergence_plot(&shown, &names, &output.sobol),
         ));
-        let plot = ConvergencePlot {
-            shown,
-            names,
-            steps,
-        };
-        list.push(("convergence", convergence_plot(&plot)));
     }
     if let Some(tornado) = &output.tornado {
-        list.push(("tornado", tornado_plot(&TornadoPlot { shown, tornado })));
+        list.push(("tornado", tornado_plot(&shown, tornado)));
     }
     if let Some(rank) = &output.rank {
-        let (names, ranks) = (&rank.factors, &rank.of);
-        list.push((
-            "ranks",
-            rank_plot(&RankPlot {
-                shown,
-                names,
-                ranks,
-            }),
-        ));
+        list.push(("ranks", rank_plot(&shown, &rank.factors, &rank.of)));
     }
     if !output.levels.is_empty() {
         let levels = output.levels.iter();
         let factors = levels.map(|(name, groups)| effect(name, groups, outline));
-        let factors: &[EffectFactor] = &factors.collect::<Vec<_>>();
-        list.push(("effects", effects_plot(&EffectsPlot { shown, factors })));
+        list.push((
+            "effects",
+            effects_plot(&shown, &factors.collect::<Vec<_>>()),
+        ));
     }
     list
 }
 
 /// A factor's levels: at their numbers, or side by side where they are words.
 fn effect<'a>(name: &'a str, groups: &'a Groups, outline: &'a StudyManifest) -> EffectFactor<'a> {
-    let unit = outline
+    let factor = outline
         .plan
         .factors
         .iter()
-        .find(|factor| factor.name == name)
-        .map_or("", |factor| factor.unit.as_str());
-    let at: Option<Vec<f64>> = groups
-        .groups
-        .iter()
-        .map(|group| group.label.parse().ok())
-        .collect();
+        .find(|factor| factor.name == name);
+    let unit = factor.map_or("", |factor| factor.unit.as_str());
+    let levels = groups.groups.iter();
+    let at: Option<Vec<f64>> = levels.map(|group| group.label.parse().ok()).collect();
     EffectFactor {
         name,
         unit,

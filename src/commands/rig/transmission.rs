@@ -11,8 +11,7 @@ use cvtcycle::model::bench::{Bench, solvable_ratios};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::rig::{RigResults, RigTest};
-use cvtcycle::report::charts::rig_transmission::plots::{self, Subject};
-use cvtcycle::report::charts::rig_transmission::strip_down;
+use cvtcycle::report::charts::rig_transmission::{self as plots, Subject};
 use serde_json::{Value, json};
 
 use crate::args::problems::bad_value;
@@ -214,7 +213,7 @@ impl RigPlan {
         let pictures = [
             plots::steady(&found.steady, &subject),
             plots::loaded(&found.loaded, &subject),
-            strip_down::strip_down(&found.strip_down, &subject),
+            plots::strip_down(&found.strip_down, &subject),
             plots::transients(&found.loops, &subject),
             plots::second_box(&found.second_box, &subject),
         ];

@@ -2,9 +2,8 @@
 
 use cvtcycle::report::charts::Picture;
 use cvtcycle::report::charts::study::{
-    ConvergencePlot, DistributionPlot, DistributionSeries, EffectFactor, EffectsPlot, RankPlot,
-    Shown, SobolPlot, TornadoPlot, convergence_plot, distribution_plot, effects_plot, rank_plot,
-    sobol_plot, tornado_plot,
+    DistributionSeries, EffectFactor, Shown, convergence_plot, distribution_plot, effects_plot,
+    rank_plot, sobol_plot, tornado_plot,
 };
 use cvtcycle::study::statistics::{
     Blocks, Bootstrap, Groups, TornadoInput, group_means, rank_sensitivity, sobol_convergence,
@@ -103,19 +102,11 @@ fn sobol(factors: usize, samples: usize, scale: f64) -> Vec<(String, Picture)> {
     vec![
         (
             format!("sobol {factors}"),
-            sobol_plot(&SobolPlot {
-                shown: shown(scale),
-                names: &names,
-                indices: &indices,
-            }),
+            sobol_plot(&shown(scale), &names, &indices),
         ),
         (
             format!("convergence {factors}"),
-            convergence_plot(&ConvergencePlot {
-                shown: shown(scale),
-                names: &names,
-                steps: &steps,
-            }),
+            convergence_plot(&shown(scale), &names, &steps),
         ),
     ]
 }
@@ -131,12 +122,14 @@ fn ranks(factors: usize, scale: f64) -> (String, Picture) {
         })
         .collect();
     let inputs: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-    let plot = RankPlot {
-        shown: shown(scale),
-        names: &names(factors),
-        ranks: &rank_sensitivity(&inputs, &output),
-    };
-    (format!("ranks {factors}"), rank_plot(&plot))
+    (
+        format!("ranks {factors}"),
+        rank_plot(
+            &shown(scale),
+            &names(factors),
+            &rank_sensitivity(&inputs, &output),
+        ),
+    )
 }
 
 fn bars(factors: usize, scale: f64) -> (String, Picture) {
@@ -174,11 +167,10 @@ fn bars(factors: usize, scale: f64) -> (String, Picture) {
             entries: scaled(i),
         })
         .collect();
-    let plot = TornadoPlot {
-        shown: shown(scale),
-        tornado: &tornado(7.0 * scale, &inputs),
-    };
-    (format!("tornado {factors}"), tornado_plot(&plot))
+    (
+        format!("tornado {factors}"),
+        tornado_plot(&shown(scale), &tornado(7.0 * scale, &inputs)),
+    )
 }
 
 fn effects(factors: usize, scale: f64) -> (String, Picture) {
@@ -224,10 +216,7 @@ fn effects(factors: usize, scale: f64) -> (String, Picture) {
         .collect();
     (
         format!("effects {factors}"),
-        effects_plot(&EffectsPlot {
-            shown: shown(scale),
-            factors: &list,
-        }),
+        effects_plot(&shown(scale), &list),
     )
 }
 
@@ -255,11 +244,7 @@ fn distributions(scale: f64) -> Vec<(String, Picture)> {
             .collect();
         (
             name.to_owned(),
-            distribution_plot(&DistributionPlot {
-                shown: shown(scale),
-                series: &series,
-                differences,
-            }),
+            distribution_plot(&shown(scale), &series, differences),
         )
     };
     vec![
@@ -308,11 +293,7 @@ fn odd() -> Vec<(String, Picture)> {
             })
             .collect();
         for differences in [false, true] {
-            let svg = distribution_plot(&DistributionPlot {
-                shown,
-                series: &series,
-                differences,
-            });
+            let svg = distribution_plot(&shown, &series, differences);
             plots.push((format!("{name} {differences}"), svg));
         }
     }
@@ -336,29 +317,14 @@ fn odd() -> Vec<(String, Picture)> {
         );
         plots.push((
             format!("sobol {name}"),
-            sobol_plot(&SobolPlot {
-                shown,
-                names: &names,
-                indices: &indices,
-            }),
+            sobol_plot(&shown, &names, &indices),
         ));
         plots.push((
             format!("convergence {name}"),
-            convergence_plot(&ConvergencePlot {
-                shown,
-                names: &names,
-                steps: &steps,
-            }),
+            convergence_plot(&shown, &names, &steps),
         ));
         let ranks = rank_sensitivity(&[column, column, column], column);
-        plots.push((
-            format!("ranks {name}"),
-            rank_plot(&RankPlot {
-                shown,
-                names: &names,
-                ranks: &ranks,
-            }),
-        ));
+        plots.push((format!("ranks {name}"), rank_plot(&shown, &names, &ranks)));
         let words = vec!["a"; column.len()];
         let groups = group_means(&words, column);
         let factor = EffectFactor {
@@ -367,13 +333,7 @@ fn odd() -> Vec<(String, Picture)> {
             at: Vec::new(),
             groups: &groups,
         };
-        plots.push((
-            format!("effects {name}"),
-            effects_plot(&EffectsPlot {
-                shown,
-                factors: &[factor],
-            }),
-        ));
+        plots.push((format!("effects {name}"), effects_plot(&shown, &[factor])));
     }
     let lost = TornadoInput {
         name: "lost".to_owned(),
@@ -390,19 +350,10 @@ fn odd() -> Vec<(String, Picture)> {
     ] {
         plots.push((
             format!("tornado {name}"),
-            tornado_plot(&TornadoPlot {
-                shown,
-                tornado: &tornado(base, &list),
-            }),
+            tornado_plot(&shown, &tornado(base, &list)),
         ));
     }
-    plots.push((
-        "no effects".to_owned(),
-        effects_plot(&EffectsPlot {
-            shown,
-            factors: &[],
-        }),
-    ));
+    plots.push(("no effects".to_owned(), effects_plot(&shown, &[])));
     plots
 }
 

@@ -3,8 +3,7 @@
 use super::drawn::{every_plot, names, sample};
 use cvtcycle::report::charts::Picture;
 use cvtcycle::report::charts::study::{
-    DistributionPlot, DistributionSeries, Shown, SobolPlot, TornadoPlot, distribution_plot,
-    sobol_plot, tornado_plot,
+    DistributionSeries, Shown, distribution_plot, sobol_plot, tornado_plot,
 };
 use cvtcycle::study::statistics::{Estimate, FactorIndices, SobolIndices, TornadoInput, tornado};
 use roxmltree::{Document, Node};
@@ -283,14 +282,14 @@ fn bars_are_as_long_as_their_indices_and_sorted() {
         resamples: 1000,
     };
     let names = ["a".to_owned(), "b".to_owned(), "c".to_owned()];
-    let picture = sobol_plot(&SobolPlot {
-        shown: Shown {
+    let picture = sobol_plot(
+        &Shown {
             output: "Fuel",
             ..Shown::default()
         },
-        names: &names,
-        indices: &indices,
-    });
+        &names,
+        &indices,
+    );
     let document = Document::parse(&picture.svg).unwrap();
     let rows: Vec<&str> = class(&document, "row").filter_map(|n| n.text()).collect();
     assert_eq!(rows, ["b", "a", "c"]);
@@ -357,10 +356,7 @@ fn a_tornado_says_where_low_and_high_lead() {
         unit: "L/100 km",
         subject: "a study",
     };
-    let Picture { svg, table } = tornado_plot(&TornadoPlot {
-        shown,
-        tornado: &found,
-    });
+    let Picture { svg, table } = tornado_plot(&shown, &found);
     let document = Document::parse(&svg).unwrap();
     let rows: Vec<&str> = class(&document, "row").filter_map(|n| n.text()).collect();
     assert_eq!(rows, ["rising", "falling", "one side"]);
@@ -448,11 +444,7 @@ fn lone(values: &[f64]) -> Picture {
         unit: "L/100 km",
         subject: "a study",
     };
-    distribution_plot(&DistributionPlot {
-        shown,
-        series: &series,
-        differences: true,
-    })
+    distribution_plot(&shown, &series, true)
 }
 
 #[test]

@@ -4,11 +4,12 @@ mod figures;
 
 use figures::{difference, traces};
 
-use super::document::{Document, ReportTable, Section};
+use super::document::{Block, Document, ReportTable, Section};
 use super::number::{Quantity, phase, words};
+use super::problems::problem;
 use super::results::RunResults;
 use super::run::{Car, cars, change_table, conditions_line, cycle_title, hashes};
-use cvtcycle_config::{Place, Problem, Problems};
+use cvtcycle_config::Problems;
 use cvtcycle_output::Component;
 use cvtcycle_output::record::{CarRecord, Change, ValueRecord};
 use cvtcycle_output::summary::RunSummary;
@@ -35,14 +36,9 @@ pub fn document(a: &RunResults, b: &RunResults) -> Result<Document, Problems> {
             b.path.display(),
             b.summary.cycle
         );
-        let place = Place::file(b.path.display().to_string());
-        let hint = "compare runs of one cycle".to_owned();
-        return Err(Problem::invalid(message)
-            .at(place)
-            .value(b.summary.cycle.clone())
-            .allowed(a.summary.cycle.clone())
-            .hint(hint)
-            .into());
+        let problem = problem(&b.path, &message, "compare runs of one cycle");
+        let problem = problem.value(b.summary.cycle.clone());
+        return Err(problem.allowed(a.summary.cycle.clone()).into());
     }
     let (cars_a, cars_b) = (cars(a), cars(b));
     let pairs = pairs(&cars_a, &cars_b);
@@ -56,21 +52,17 @@ pub fn document(a: &RunResults, b: &RunResults) -> Result<Document, Problems> {
         sections.push(traces(subject, &names));
     }
     sections.push(reproduce(a, b, &names));
-    let missing = |found: &RunResults, name: &String| {
-        found
-            .missing
-            .iter()
+    let missing = |(found, name): (&RunResults, &String)| {
+        let missing = found.missing.iter();
+        missing
             .map(|text| format!("{name}: {text}"))
             .collect::<Vec<_>>()
     };
-    let warnings = [missing(a, &names[0]), missing(b, &names[1])].concat();
+    let warnings = [a, b].into_iter().zip(&names).flat_map(missing).collect();
+    let cycle = cycle_title(&a.summary, a.record.as_ref());
     Ok(Document {
         title: format!("{} against {}", names[1], names[0]),
-        subtitle: format!(
-            "{}; {}",
-            cycle_title(&a.summary, a.record.as_ref()),
-            subtitle(a, b)
-        ),
+        subtitle: format!("{cycle}; {}", subtitle(a, b)),
         sections,
         warnings,
         ..Document::default()
@@ -79,11 +71,9 @@ pub fn document(a: &RunResults, b: &RunResults) -> Result<Document, Problems> {
 
 /// What the two are called: the names of their directories, with letters where these are the same.
 fn names(a: &RunResults, b: &RunResults) -> [String; 2] {
-    let name = |found: &RunResults| {
-        found.path.file_name().map_or_else(
-            || found.path.display().to_string(),
-            |n| n.to_string_lossy().into_owned(),
-        )
+    let name = |found: &RunResults| match found.path.file_name() {
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => found.path.display().to_string(),
     };
     let (a, b) = (name(a), name(b));
     if a == b {
@@ -108,19 +98,18 @@ fn pairs<'a>(a: &[Car<'a>], b: &[Car<'a>]) -> Vec<Pair<'a>> {
     else {
         return Vec::new();
     };
-    let mut pairs = vec![Pair {
+    let first = Pair {
         a: *subject_a,
         b: *subject_b,
-    }];
-    for a in rest_a {
-        pairs.extend(
-            rest_b
-                .iter()
-                .find(|b| b.run.vehicle == a.run.vehicle)
-                .map(|b| Pair { a: *a, b: *b }),
-        );
-    }
-    pairs
+    };
+    let other = |a: &Car<'a>| {
+        let b = rest_b.iter().find(|b| b.run.vehicle == a.run.vehicle)?;
+        Some(Pair { a: *a, b: *b })
+    };
+    [first]
+        .into_iter()
+        .chain(rest_a.iter().filter_map(other))
+        .collect()
 }
 
 fn answer(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -> Section {
@@ -132,43 +121,23 @@ fn answer(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -
         && pairs
             .first()
             .is_some_and(|pair| pair.a.run.vehicle == pair.b.run.vehicle);
-    let fuel = |run: &RunSummary| run.headline_fuel().unwrap_or(f64::NAN);
-    if let Some(Pair { a, b }) = pairs.first() {
-        let change = fuel(b.run) - fuel(a.run);
-        let percent = 100.0 * change / fuel(a.run);
-        section.lead(format!(
-            "The subject of {} uses {}: {} or {} {} than that of {} ({}).",
-            names[1],
-            Quantity::Fuel.text(fuel(b.run)),
-            Quantity::FuelShare.text(change.abs()),
-            Quantity::Effect.text(percent.abs()),
-            if change < 0.0 { "less" } else { "more" },
-            names[0],
-            Quantity::Fuel.text(fuel(a.run))
-        ));
-        let (km_a, km_b) = (a.run.distance_km, b.run.distance_km);
+    if let Some(pair) = pairs.first() {
+        section.blocks.push(Block::Lead(lead(pair, names)));
+        let [km_a, km_b] = [pair.a, pair.b].map(|car| car.run.distance_km);
         if ((km_b - km_a) / km_a).abs() > DISTANCE {
+            let [km_a, km_b] = [km_a, km_b].map(|km| Quantity::Distance.text(km));
             section.alert(format!(
-                "The two drive different distances ({} and {}): a part of the difference is one of road.",
-                Quantity::Distance.text(km_a),
-                Quantity::Distance.text(km_b)
+                "The two drive different distances ({km_a} and {km_b}): a part of the difference is one of road."
             ));
         }
-        section.text(largest(a, b, alike));
+        section.text(largest(&pair.a, &pair.b, alike));
     }
     for (found, name) in [(a, &names[0]), (b, &names[1])] {
-        for run in found
-            .summary
-            .runs
-            .iter()
-            .filter(|run| !run.failed_checks.is_empty())
-        {
+        let runs = found.summary.runs.iter();
+        for run in runs.filter(|run| !run.failed_checks.is_empty()) {
             let list: Vec<String> = run.failed_checks.iter().map(|check| words(check)).collect();
-            section.alert(format!(
-                "A check failed in {name} for {}: {}.",
-                run.vehicle,
-                list.join(", ")
-            ));
+            let (car, list) = (&run.vehicle, list.join(", "));
+            section.alert(format!("A check failed in {name} for {car}: {list}."));
         }
         for line in &found.missing {
             section.alert(format!("{name}: {line}."));
@@ -178,45 +147,50 @@ fn answer(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -
     section
 }
 
+/// The fuel of both subjects, and the difference.
+fn lead(subjects: &Pair, [name_a, name_b]: &[String; 2]) -> String {
+    let fuel = |car: &Car| car.run.headline_fuel().unwrap_or(f64::NAN);
+    let (fuel_a, fuel_b) = (fuel(&subjects.a), fuel(&subjects.b));
+    let change = fuel_b - fuel_a;
+    let percent = 100.0 * change / fuel_a;
+    format!(
+        "The subject of {name_b} uses {}: {} or {} {} than that of {name_a} ({}).",
+        Quantity::Fuel.text(fuel_b),
+        Quantity::FuelShare.text(change.abs()),
+        Quantity::Effect.text(percent.abs()),
+        less_or_more(change),
+        Quantity::Fuel.text(fuel_a)
+    )
+}
+
+fn less_or_more(change: f64) -> &'static str {
+    if change < 0.0 { "less" } else { "more" }
+}
+
 /// The components that moved most.
 fn largest(a: &Car, b: &Car, alike: bool) -> String {
     let kj = |car: &Car, c: Component| car.run.loss_kj.get(c.name()).unwrap_or(0.0);
-    let mut moved: Vec<(Component, f64)> = Component::ALL
-        .iter()
-        .map(|c| (*c, kj(b, *c) - kj(a, *c)))
-        .collect();
+    let moved = |c: Component| (c, kj(b, c) - kj(a, c));
+    let mut moved: Vec<(Component, f64)> = Component::ALL.into_iter().map(moved).collect();
     moved.sort_by(|x, y| y.1.abs().total_cmp(&x.1.abs()));
-    let largest: Vec<String> = moved
-        .iter()
-        .take(3)
-        .filter(|(_, kj)| kj.abs() >= 0.05)
-        .map(|(component, kj)| {
-            format!(
-                "{} {}",
-                words(component.name()),
-                Quantity::Energy.signed(*kj)
-            )
-        })
-        .collect();
+    let largest = moved.iter().take(3).filter(|(_, kj)| kj.abs() >= 0.05);
+    let text = |(c, kj): &(Component, f64)| words(c.name()) + " " + &Quantity::Energy.signed(*kj);
+    let largest: Vec<String> = largest.map(text).collect();
     let transmission = b.run.transmission_loss_kj() - a.run.transmission_loss_kj();
     let fuel = b.run.fuel_energy_kj - a.run.fuel_energy_kj;
     let mut text = format!(
         "Its transmission loses {} {}",
         Quantity::Energy.text(transmission.abs()),
-        if transmission < 0.0 { "less" } else { "more" }
+        less_or_more(transmission)
     );
     if !largest.is_empty() {
         text += &format!(" ({})", largest.join(", "));
     }
-    text += &format!(
-        "; its fuel's energy differs by {}",
-        Quantity::Energy.signed(fuel)
-    );
+    let change = Quantity::Energy.signed(fuel);
+    text += &format!("; its fuel's energy differs by {change}");
     if alike && transmission.abs() > 0.05 {
-        text += &format!(
-            ", {} for each kJ of transmission loss",
-            Quantity::Energy.text(fuel / transmission)
-        );
+        let each = Quantity::Energy.text(fuel / transmission);
+        text += &format!(", {each} for each kJ of transmission loss");
     }
     text + "."
 }
@@ -229,7 +203,6 @@ fn fuel_table(pairs: &[Pair], names: &[String; 2]) -> ReportTable {
         ("difference", unit),
         ("difference", "%"),
     ];
-    let columns = columns.map(|(name, unit)| (name.to_owned(), unit.to_owned()));
     let mut table = ReportTable::of_numbers("Fuel", "Car, phase", columns);
     for Pair { a, b } in pairs {
         let car = if a.run.vehicle == b.run.vehicle {
@@ -244,12 +217,10 @@ fn fuel_table(pairs: &[Pair], names: &[String; 2]) -> ReportTable {
         }
         let whole = fuel_cells(a.run.fuel_l_per_100km, b.run.fuel_l_per_100km);
         table.strong(format!("{car}, whole cycle"), whole);
-        let (x, y) = (
-            a.run.weighted_fuel_l_per_100km,
-            b.run.weighted_fuel_l_per_100km,
-        );
-        if x.is_some() {
-            table.strong(format!("{car}, weighted"), fuel_cells(x, y));
+        let weighted = [a, b].map(|car| car.run.weighted_fuel_l_per_100km);
+        if weighted[0].is_some() {
+            let cells = fuel_cells(weighted[0], weighted[1]);
+            table.strong(format!("{car}, weighted"), cells);
         }
     }
     table
@@ -293,10 +264,8 @@ const CONDITIONS: [Condition; 10] = [
 ];
 
 fn of_subject(run: &RunResults, of: fn(&RunSummary) -> &String) -> String {
-    run.summary
-        .runs
-        .first()
-        .map_or(String::new(), |car| of(car).clone())
+    let subject = run.summary.runs.first();
+    subject.map_or(String::new(), |car| of(car).clone())
 }
 
 fn conditions(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -> Section {
@@ -357,10 +326,8 @@ fn reproduce(a: &RunResults, b: &RunResults, names: &[String; 2]) -> Section {
         let mut facts = vec![(format!("Program of {name}"), found.summary.program.clone())];
         if let Some(record) = &found.record {
             facts.push((format!("Command of {name}"), record.command.clone()));
-            facts.push((
-                format!("Cycle of {name}, SHA-256"),
-                record.cycle.sha256.clone(),
-            ));
+            let cycle = format!("Cycle of {name}, SHA-256");
+            facts.push((cycle, record.cycle.sha256.clone()));
         }
         section.facts(facts);
         if let Some(record) = &found.record {

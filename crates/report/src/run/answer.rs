@@ -1,50 +1,49 @@
 //! Half a page of results.
 
 use super::super::document::{Block, ReportTable, Section};
-use super::super::number::{Quantity, percent, phase, words};
+use super::super::number::{Quantity, capital_first, percent, phase, words};
 use super::super::results::{RunResults, StudyResults};
 use super::super::{study_answers, validation};
 use super::{Car, conditions_line, cycle_title, energy};
-use cvtcycle_output::summary::{Comparison, Summary};
+use cvtcycle_output::Component;
+use cvtcycle_output::summary::{Comparison, RunSummary, Summary};
 
 pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("answer", "Answer");
     let (summary, record) = (&found.summary, found.record.as_ref());
-    section.lead(lead(summary, brief(&cycle_title(summary, record))));
+    let cycle = cycle_title(summary, record);
+    section
+        .blocks
+        .push(Block::Lead(lead(summary, brief(&cycle))));
     for line in checks(summary) {
         section.alert(line);
     }
     for line in &found.missing {
-        section.alert(capital_first(line));
+        section.alert(capital_first(line) + ".");
     }
     section.table(fuel(summary));
     for own in &found.studies {
         // A study of another case says nothing about this run; its section says what it is.
         if let Some(why) = study_answers::other_case(own, summary) {
+            let title = &own.answer.title;
             section.alert(format!(
-                "The study \u{201c}{}\u{201d} is of another case: {why}.",
-                own.answer.title
+                "The study \u{201c}{title}\u{201d} is of another case: {why}."
             ));
             continue;
         }
-        section.blocks.extend(
-            own.unfinished()
-                .map(|text| Block::Alert(format!("{text}; what it says here is of these."))),
-        );
-        section
-            .blocks
-            .extend(study_answers::answers(own).into_iter().map(Block::Text));
+        if let Some(text) = own.unfinished() {
+            section.alert(format!("{text}; what it says here is of these."));
+        }
+        let answers = study_answers::answers(own).into_iter();
+        section.blocks.extend(answers.map(Block::Text));
     }
     section.text(where_it_went(cars));
-    if let Some((subject, baseline)) = cars
-        .split_first()
-        .and_then(|(s, rest)| Some((s, rest.first()?)))
-    {
+    if let [subject, baseline, ..] = cars {
         section.text(energy::difference(subject, baseline));
     }
     section.text(ends(cars));
-    section.heading("What to doubt".to_owned());
-    section.list(doubts(found, cars));
+    section.heading("What to doubt");
+    section.blocks.push(Block::List(doubts(found, cars)));
     section
 }
 
@@ -53,131 +52,121 @@ fn brief(title: &str) -> &str {
     title.split([':', '(', ',']).next().map_or(title, str::trim)
 }
 
-fn capital_first(text: &str) -> String {
-    let mut letters = text.chars();
-    letters
-        .next()
-        .map(|c| c.to_uppercase().collect::<String>())
-        .unwrap_or_default()
-        + letters.as_str()
-        + "."
-}
-
 fn lead(summary: &Summary, cycle: &str) -> String {
     let Some((subject, baselines)) = summary.runs.split_first() else {
         return String::new();
     };
-    let fuel = Quantity::Fuel.text(subject.headline_fuel());
-    let weighted = if subject.weighted_fuel_l_per_100km.is_some() {
-        " (weighted)"
-    } else {
-        ""
+    let fuel = |run: &RunSummary| Quantity::Fuel.text(run.headline_fuel());
+    let weighted = match subject.weighted_fuel_l_per_100km {
+        Some(_) => " (weighted)",
+        None => "",
     };
     let mut text = format!(
-        "{} uses {fuel}{weighted} on {cycle}, {}",
+        "{} uses {}{weighted} on {cycle}, {}",
         subject.title,
+        fuel(subject),
         conditions_line(summary)
     );
-    let differences: Vec<String> = baselines
-        .iter()
-        .zip(&summary.comparison)
-        .filter_map(|(baseline, comparison)| {
-            let size = more_or_less(comparison)?;
-            Some(format!(
-                "{size} than {} ({})",
-                baseline.title,
-                Quantity::Fuel.text(baseline.headline_fuel())
-            ))
-        })
-        .collect();
-    if differences.is_empty() {
-        return text + ".";
+    let compared = baselines.iter().zip(&summary.comparison);
+    let differences = compared.filter_map(|(baseline, comparison)| {
+        let size = more_or_less(comparison)?;
+        Some(format!(
+            "{size} than {} ({})",
+            baseline.title,
+            fuel(baseline)
+        ))
+    });
+    let differences: Vec<String> = differences.collect();
+    if !differences.is_empty() {
+        text += &format!(": {}", differences.join(", and "));
     }
-    text += ": ";
-    text + &differences.join(", and ") + "."
+    text + "."
 }
 
 /// "5.9 % more", by the sign of the difference.
 fn more_or_less(comparison: &Comparison) -> Option<String> {
     let percent = comparison.fuel_percent?;
-    Some(format!(
-        "{} {}",
-        Quantity::Percent.text(percent.abs()),
-        if percent < 0.0 { "less" } else { "more" }
-    ))
+    let side = if percent < 0.0 { "less" } else { "more" };
+    Some(format!("{} {side}", Quantity::Percent.text(percent.abs())))
 }
 
 fn checks(summary: &Summary) -> Vec<String> {
-    let failed = summary
+    let runs = summary
         .runs
         .iter()
         .filter(|run| !run.failed_checks.is_empty());
-    failed
-        .map(|run| {
-            let seconds = |check: &String| run.flags_s.get(check).map_or(String::new(), |s| format!(" for {}", Quantity::Seconds.text(s)));
-            let list: Vec<String> = run.failed_checks.iter().map(|check| words(check) + &seconds(check)).collect();
-            format!("A check failed for {}: {}. Its numbers are not those of a car that has driven this cycle.", run.title, list.join(", "))
-        })
-        .collect()
+    let sentence = |run: &RunSummary| {
+        let check = |check: &String| match run.flags_s.get(check) {
+            Some(s) => format!("{} for {}", words(check), Quantity::Seconds.text(s)),
+            None => words(check),
+        };
+        let list: Vec<String> = run.failed_checks.iter().map(check).collect();
+        format!(
+            "A check failed for {}: {}. Its numbers are not those of a car that has driven this cycle.",
+            run.title,
+            list.join(", ")
+        )
+    };
+    runs.map(sentence).collect()
 }
 
 /// Fuel, distance and difference of each car, by phase.
 fn fuel(summary: &Summary) -> ReportTable {
     let runs = &summary.runs;
-    let q = Quantity::Fuel;
-    let columns = runs.iter().map(|run| (run.vehicle.clone(), String::new()));
+    let columns = runs.iter().map(|run| (run.vehicle.clone(), ""));
     let mut table = ReportTable::of_numbers("Fuel and distance", "", columns);
-    let name = |what: &str, unit: &str| format!("{what} [{unit}]");
-    let mut add =
-        |what: &str, quantity: Quantity, strong: bool, of: &dyn Fn(usize) -> Option<f64>| {
-            let cells = [name(what, quantity.unit())]
-                .into_iter()
-                .chain((0..runs.len()).map(|k| quantity.bare(of(k))));
-            if strong {
-                table.strong_row(cells)
-            } else {
-                table.row(cells)
-            }
-        };
+    let mut add = |what: &str, quantity: Quantity, strong: bool, of: &ByRun| {
+        let name = format!("{what} [{}]", quantity.unit());
+        let values = runs.iter().enumerate();
+        table.named(name, values.map(|(k, run)| quantity.bare(of(k, run))));
+        table
+            .rows
+            .last_mut()
+            .into_iter()
+            .for_each(|row| row.strong = strong);
+    };
     let groups = runs.first().map_or(&[][..], |run| &run.phases);
-    if groups.len() > 1 {
-        for (p, group) in groups.iter().enumerate() {
-            add(&format!("Fuel, {}", phase(&group.name)), q, false, &|k| {
-                runs[k].phases.get(p).and_then(|p| p.fuel_l_per_100km)
-            });
-        }
+    for (p, group) in groups.iter().enumerate().filter(|_| groups.len() > 1) {
+        let name = format!("Fuel, {}", phase(&group.name));
+        add(&name, Quantity::Fuel, false, &|_, run| {
+            run.phases.get(p).and_then(|p| p.fuel_l_per_100km)
+        });
     }
     let weighted = runs
         .iter()
         .any(|run| run.weighted_fuel_l_per_100km.is_some());
-    add("Fuel, whole cycle", q, !weighted, &|k| {
-        runs[k].fuel_l_per_100km
+    add("Fuel, whole cycle", Quantity::Fuel, !weighted, &|_, run| {
+        run.fuel_l_per_100km
     });
     if weighted {
-        add("Fuel, weighted 0.43/0.57", q, true, &|k| {
-            runs[k].weighted_fuel_l_per_100km
-        });
+        let of: &ByRun = &|_, run| run.weighted_fuel_l_per_100km;
+        add("Fuel, weighted 0.43/0.57", Quantity::Fuel, true, of);
     }
-    let of = |k: usize| k.checked_sub(1).and_then(|k| summary.comparison.get(k));
     if runs.len() > 1 {
-        add("Subject against this car", Quantity::Percent, true, &|k| {
-            of(k).and_then(|c| c.fuel_percent)
-        });
+        let against = |k: usize| summary.comparison.get(k.checked_sub(1)?)?.fuel_percent;
+        add(
+            "Subject against this car",
+            Quantity::Percent,
+            true,
+            &|k, _| against(k),
+        );
     }
     let co2 = if weighted {
         "Carbon dioxide, weighted"
     } else {
         "Carbon dioxide"
     };
-    add(co2, Quantity::Co2, false, &|k| {
-        runs[k].weighted_co2_g_per_km.or(runs[k].co2_g_per_km)
-    });
-    add("Driven distance", Quantity::Distance, false, &|k| {
-        Some(runs[k].distance_km)
+    let of: &ByRun = &|_, run| run.weighted_co2_g_per_km.or(run.co2_g_per_km);
+    add(co2, Quantity::Co2, false, of);
+    add("Driven distance", Quantity::Distance, false, &|_, run| {
+        Some(run.distance_km)
     });
     table.note = "Positive differences: the subject uses more.".to_owned();
     table
 }
+
+/// A number of a run by its index.
+type ByRun<'a> = dyn Fn(usize, &RunSummary) -> Option<f64> + 'a;
 
 fn where_it_went(cars: &[Car]) -> String {
     let Some(subject) = cars.first() else {
@@ -186,13 +175,8 @@ fn where_it_went(cars: &[Car]) -> String {
     let run = subject.run;
     let mut losses = subject.losses_kj();
     losses.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let largest: Vec<String> = losses
-        .iter()
-        .take(3)
-        .map(|(component, kj)| {
-            format!("{} {}", words(component.name()), Quantity::Energy.text(*kj))
-        })
-        .collect();
+    let text = |(c, kj): &(Component, f64)| words(c.name()) + " " + &Quantity::Energy.text(*kj);
+    let largest: Vec<String> = losses.iter().take(3).map(text).collect();
     let share = |term: &str| percent(run.ledger_kj.get(term), run.fuel_energy_kj);
     let mut text = format!(
         "Of the fuel's energy of {}, {} % left as exhaust and {} % as heat of the engine; {} % was lost in the transmission ({}), most of it to {}.",
@@ -204,33 +188,24 @@ fn where_it_went(cars: &[Car]) -> String {
         largest.join(", ")
     );
     for car in &cars[1..] {
-        text += &format!(
-            " The transmission of {} lost {}.",
-            car.run.vehicle,
-            Quantity::Energy.text(car.run.transmission_loss_kj())
-        );
+        let lost = Quantity::Energy.text(car.run.transmission_loss_kj());
+        text += &format!(" The transmission of {} lost {lost}.", car.run.vehicle);
     }
     text
 }
 
 fn ends(cars: &[Car]) -> String {
     let temperatures = |car: &Car| {
-        let end = |node: &str| Quantity::Degc.text(car.run.end_degc.get(node));
-        format!(
-            "{}: transmission sump {}, engine oil {}, coolant {}",
-            car.run.vehicle,
-            end("transmission_sump"),
-            end("engine_oil"),
-            end("coolant")
-        )
+        let nodes = ["transmission_sump", "engine_oil", "coolant"];
+        let end = |node: &str| words(node) + " " + &Quantity::Degc.text(car.run.end_degc.get(node));
+        format!("{}: {}", car.run.vehicle, nodes.map(end).join(", "))
     };
-    let seconds = cars.first().map_or(String::new(), |car| {
-        Quantity::Seconds.text(car.run.duration_s)
-    });
-    format!(
-        "At the end, after {seconds}: {}.",
-        cars.iter().map(temperatures).collect::<Vec<_>>().join("; ")
-    )
+    let seconds = cars
+        .first()
+        .map(|car| Quantity::Seconds.text(car.run.duration_s));
+    let seconds = seconds.unwrap_or_default();
+    let ends: Vec<String> = cars.iter().map(temperatures).collect();
+    format!("At the end, after {seconds}: {}.", ends.join("; "))
 }
 
 /// Temperature below which the thesis measured trends only, degC.
@@ -241,10 +216,8 @@ fn cold_time(car: &Car) -> Option<String> {
     let history = car.history?;
     let degc = history.column("transmission_sump_degc").iter();
     let steps = degc.zip(history.column("dt_s"));
-    let cold: f64 = steps
-        .filter(|(degc, _)| **degc < MEASURED_FROM_DEGC)
-        .map(|(_, dt)| dt)
-        .sum();
+    let cold = steps.filter(|(degc, _)| **degc < MEASURED_FROM_DEGC);
+    let cold: f64 = cold.map(|(_, dt)| dt).sum();
     let [cold_text, whole] = [cold, car.run.duration_s].map(|s| Quantity::Seconds.text(s));
     (cold > 0.0).then(|| format!("{cold_text} of {whole} in {}", car.run.vehicle))
 }
@@ -267,33 +240,27 @@ fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
     }
     list.extend(super::values::doubt(found, cars));
     let has_interval = |study: &&StudyResults| {
-        let sampled =
-            study.outline.plan.design.is_sampled() && !study.answer.comparisons.is_empty();
-        sampled
+        study.outline.plan.design.is_sampled()
+            && !study.answer.comparisons.is_empty()
             && study.answer.points_done > 0
             && study_answers::other_case(study, &found.summary).is_none()
     };
-    match found.studies.iter().find(has_interval) {
-        None => list.push(
-            "There is no study of uncertainty of this case: the difference has no interval."
-                .to_owned(),
-        ),
-        Some(study) => list.extend(
-            study
-                .unfinished()
-                .map(|text| format!("Its interval is preliminary: {text}.")),
-        ),
-    }
+    let none = "There is no study of uncertainty of this case: the difference has no interval.";
+    list.extend(match found.studies.iter().find(has_interval) {
+        None => Some(none.to_owned()),
+        Some(study) => {
+            let unfinished = study.unfinished();
+            unfinished.map(|text| format!("Its interval is preliminary: {text}."))
+        }
+    });
     list.extend(found.validation.as_ref().map(validation::doubt));
-    let worst = cars
-        .iter()
-        .filter_map(|car| car.run.min_clamp_safety.map(|safety| (car, safety)));
-    list.extend(worst.map(|(car, safety)| {
-        format!(
-            "The smallest clamping safety of {} is {}.",
-            car.run.vehicle,
-            Quantity::Ratio.text(safety)
-        )
-    }));
+    for car in cars {
+        if let Some(safety) = car.run.min_clamp_safety {
+            let (name, safety) = (&car.run.vehicle, Quantity::Ratio.text(safety));
+            list.push(format!(
+                "The smallest clamping safety of {name} is {safety}."
+            ));
+        }
+    }
     list
 }

@@ -4,7 +4,7 @@ use super::super::document::{ReportTable, Section};
 use super::super::number::{NONE, Quantity, degc, words};
 use super::super::results::RunResults;
 use super::{Car, cycle_title, start_line};
-use cvtcycle_output::record::{CarRecord, Change};
+use cvtcycle_output::record::{CarRecord, Change, ValueRecord};
 
 /// Changes shown before the rest is folded away.
 const SHOWN: usize = 25;
@@ -13,35 +13,27 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("conditions", "Conditions");
     let summary = &found.summary;
     let settings = &summary.settings;
+    let cycle = cycle_title(summary, found.record.as_ref());
+    let fact = |name: &str, value: String| (name.to_owned(), value);
     let mut facts = vec![
-        (
-            "Cycle".to_owned(),
-            format!(
-                "{} ({})",
-                cycle_title(summary, found.record.as_ref()),
-                summary.cycle
-            ),
-        ),
-        ("Ambient".to_owned(), degc(summary.ambient_degc)),
-        ("Start".to_owned(), start_line(summary)),
-        ("Longest step".to_owned(), format!("{} s", settings.dt_s)),
-        ("Belt model".to_owned(), settings.formulation.clone()),
+        fact("Cycle", format!("{cycle} ({})", summary.cycle)),
+        fact("Ambient", degc(summary.ambient_degc)),
+        fact("Start", start_line(summary)),
+        fact("Longest step", format!("{} s", settings.dt_s)),
+        fact("Belt model", settings.formulation.clone()),
     ];
     for (option, list) in [
         ("Set for the subject", &settings.set),
         ("Set for all cars", &settings.set_all),
     ] {
         if !list.is_empty() {
-            facts.push((option.to_owned(), list.join(", ")));
+            facts.push(fact(option, list.join(", ")));
         }
     }
     section.facts(facts);
     section.table(table(cars));
-    section.facts(
-        cars.iter()
-            .filter_map(|car| controller(car.record?))
-            .collect(),
-    );
+    let controllers = cars.iter().filter_map(|car| controller(car.record?));
+    section.facts(controllers.collect());
     for car in cars {
         if let Some(record) = car.record {
             changes(&mut section, car, record);
@@ -51,29 +43,25 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
 }
 
 fn table(cars: &[Car]) -> ReportTable {
-    let mut table = ReportTable::of_words(
-        "Cars and fluids",
-        &[
-            "Car",
-            "Role",
-            "What it is",
-            "Ratio or gears",
-            "Transmission oil",
-            "Engine oil",
-            "Distance",
-        ],
-    );
+    let columns = [
+        "Car",
+        "Role",
+        "What it is",
+        "Ratio or gears",
+        "Transmission oil",
+        "Engine oil",
+        "Distance",
+    ];
+    let mut table = ReportTable::of_words("Cars and fluids", &columns);
     for car in cars {
         let run = car.run;
-        let control = run
-            .gear_schedule
-            .clone()
-            .unwrap_or_else(|| "ratio control of the vehicle file".to_owned());
+        let schedule = run.gear_schedule.as_deref();
+        let control = schedule.unwrap_or("ratio control of the vehicle file");
         table.row([
             run.vehicle.clone(),
             run.role.clone(),
             run.title.clone(),
-            control,
+            control.to_owned(),
             run.lubricant.clone(),
             run.engine_oil.clone(),
             Quantity::Distance.text(run.distance_km),
@@ -85,30 +73,20 @@ fn table(cars: &[Car]) -> ReportTable {
 /// The controller of a CVT: its clamp law and what sets its ratio.
 fn controller(record: &CarRecord) -> Option<(String, String)> {
     const RATIO: &str = "transmission.cvt.ratio.";
-    let law = record
-        .values
-        .iter()
-        .find(|value| value.key == "transmission.cvt.clamp")?;
-    let parts = record.values.iter().filter_map(|value| {
-        let name = words(
-            value
-                .key
-                .strip_prefix(RATIO)?
-                .trim_end_matches("_rpm")
-                .trim_end_matches("_per_s"),
-        );
-        let unit = if value.unit == "-" {
-            String::new()
-        } else {
-            format!("\u{a0}{}", value.unit)
-        };
-        Some(format!("{name} {}{unit}", value.value))
-    });
-    let list = parts.collect::<Vec<_>>().join(", ");
-    Some((
-        format!("Controller of {}", record.name),
-        format!("clamp law {}; ratio: {list}", words(&law.value)),
-    ))
+    let mut values = record.values.iter();
+    let law = values.find(|value| value.key == "transmission.cvt.clamp")?;
+    let part = |value: &ValueRecord| {
+        let name = value.key.strip_prefix(RATIO)?.trim_end_matches("_rpm");
+        let name = words(name.trim_end_matches("_per_s"));
+        Some(match value.unit.as_str() {
+            "-" => format!("{name} {}", value.value),
+            unit => format!("{name} {}\u{a0}{unit}", value.value),
+        })
+    };
+    let parts: Vec<String> = record.values.iter().filter_map(part).collect();
+    let (law, ratio) = (words(&law.value), parts.join(", "));
+    let name = format!("Controller of {}", record.name);
+    Some((name, format!("clamp law {law}; ratio: {ratio}")))
 }
 
 fn changes(section: &mut Section, car: &Car, record: &CarRecord) {
@@ -126,39 +104,26 @@ fn changes(section: &mut Section, car: &Car, record: &CarRecord) {
         record.reference,
         record.changes.len()
     );
-    section.table(change_table(
-        &caption,
-        &record.changes[..record.changes.len().min(SHOWN)],
-        ["shipped", "here"],
-    ));
-    if record.changes.len() > SHOWN {
-        let rest = &record.changes[SHOWN..];
+    let (first, rest) = record.changes.split_at(record.changes.len().min(SHOWN));
+    let heads = ["shipped", "here"];
+    section.table(change_table(&caption, first, heads));
+    if !rest.is_empty() {
         let caption = format!(
             "{} more values of {} that differ",
             rest.len(),
             car.run.vehicle
         );
-        section.folded(change_table(&caption, rest, ["shipped", "here"]));
+        section.folded(change_table(&caption, rest, heads));
     }
 }
 
 /// Values that differ, side by side.
 pub(crate) fn change_table(caption: &str, changes: &[Change], names: [&str; 2]) -> ReportTable {
     let mut table = ReportTable::of_words(caption, &["Key", "Unit", names[0], names[1]]);
-    let cell = |text: &String| {
-        if text.is_empty() {
-            NONE.to_owned()
-        } else {
-            text.clone()
-        }
-    };
+    let cell = |text: &str| if text.is_empty() { NONE } else { text }.to_owned();
     for change in changes {
-        table.row([
-            change.key.clone(),
-            change.unit.clone(),
-            cell(&change.shipped),
-            cell(&change.here),
-        ]);
+        let (key, unit) = (change.key.clone(), change.unit.clone());
+        table.row([key, unit, cell(&change.shipped), cell(&change.here)]);
     }
     table
 }

@@ -67,48 +67,51 @@ pub(super) fn section(cars: &[Car]) -> Section {
     section.table(balance(cars));
     for car in cars {
         let (name, energy) = (&car.run.vehicle, car_energy(car));
-        section.heading(car.run.title.clone());
-        section.figure(
-            format!("energy_flow_{name}"),
-            format!("Energy of {name} from the fuel to the road."),
-            energy_flow(&energy),
-        );
+        section.heading(&car.run.title);
+        let caption = format!("Energy of {name} from the fuel to the road.");
+        section.figure(format!("energy_flow_{name}"), caption, energy_flow(&energy));
         let caption = format!(
             "The same, enlarged: from the flywheel of {name} through each part of the transmission to the wheels."
         );
-        section.figure(
-            format!("transmission_flow_{name}"),
-            caption,
-            transmission_flow(&energy),
-        );
+        let name = format!("transmission_flow_{name}");
+        section.figure(name, caption, transmission_flow(&energy));
     }
     section
 }
 
 fn balance(cars: &[Car]) -> ReportTable {
-    let columns = cars.iter().flat_map(|car| {
-        [
-            (car.run.vehicle.clone(), "kJ".to_owned()),
-            ("of fuel".to_owned(), "%".to_owned()),
-        ]
-    });
-    let mut table = ReportTable::of_numbers("Energy balance", "Term", columns);
-    let cells = |of: &dyn Fn(&Car) -> Option<f64>| -> Vec<String> {
-        cars.iter()
-            .flat_map(|car| {
-                [
-                    Quantity::Energy.bare(of(car)),
-                    percent(of(car), car.run.fuel_energy_kj),
-                ]
-            })
-            .collect()
+    let mut table = with_shares("Energy balance", "Term", "of fuel", cars);
+    let mut add = |words: &str, of: &dyn Fn(&Car) -> Option<f64>| {
+        table.named(
+            words,
+            cells_with_shares(cars, |car| Some((of(car), car.run.fuel_energy_kj))),
+        );
     };
     for (term, words, _) in TERMS {
-        table.named(words, cells(&|car| car.run.ledger_kj.get(term)));
+        add(words, &|car| car.run.ledger_kj.get(term));
     }
-    table.strong(
-        "fuel".to_owned(),
-        cells(&|car| Some(car.run.fuel_energy_kj)),
-    );
+    add("fuel", &|car| Some(car.run.fuel_energy_kj));
     table
+        .rows
+        .last_mut()
+        .into_iter()
+        .for_each(|row| row.strong = true);
+    table
+}
+
+/// An empty table of energies of each car with their shares.
+pub(super) fn with_shares(caption: &str, first: &str, of: &str, cars: &[Car]) -> ReportTable {
+    let columns = |car: &Car| [(car.run.vehicle.clone(), "kJ"), (of.to_owned(), "%")];
+    ReportTable::of_numbers(caption, first, cars.iter().flat_map(columns))
+}
+
+/// Cells of an energy and a whole of each car, kJ; empty without them.
+pub(super) fn cells_with_shares(
+    cars: &[Car],
+    of: impl Fn(&Car) -> Option<(Option<f64>, f64)>,
+) -> impl Iterator<Item = String> {
+    cars.iter().flat_map(move |car| match of(car) {
+        Some((kj, whole)) => [Quantity::Energy.bare(kj), percent(kj, whole)],
+        None => Default::default(),
+    })
 }

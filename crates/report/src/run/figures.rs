@@ -1,7 +1,7 @@
 //! The sections that are mostly figures: energy, losses, warm-up, driveline, engine.
 
 use super::super::document::{ReportTable, Section};
-use super::super::number::{Quantity, capital, percent, phase as phase_name};
+use super::super::number::{Quantity, capital, phase as phase_name};
 use super::super::results::RunResults;
 use super::{Car, cars, energy};
 use crate::charts::figures::{
@@ -27,34 +27,28 @@ const G_KWH: f64 = 1.0 / 3.6e9;
 /// A recorded map in SI units.
 #[must_use]
 pub fn fuel_map(record: &FuelMapRecord) -> FuelMap {
+    let si = |b: &Option<f64>| b.map_or(f64::NAN, |b| b * G_KWH);
+    let rows = record.bsfc_g_kwh.iter();
     FuelMap {
         speed_rad_s: record.speed_rpm.iter().map(|n| n * RPM).collect(),
         torque_nm: record.torque_nm.clone(),
-        bsfc_kg_j: record
-            .bsfc_g_kwh
-            .iter()
-            .map(|row| {
-                row.iter()
-                    .map(|b| b.map_or(f64::NAN, |b| b * G_KWH))
-                    .collect()
-            })
-            .collect(),
+        bsfc_kg_j: rows.map(|row| row.iter().map(si).collect()).collect(),
         full_load_nm: record.full_load_nm.clone(),
     }
 }
 
 pub(super) fn sections(found: &RunResults, all: &[Car]) -> Vec<Section> {
     let plots: Vec<PlotRun> = cars(found).iter().filter_map(plot).collect();
-    let mut answer_energy = energy::section(all);
+    let mut energy = energy::section(all);
     if plots.len() == all.len() {
-        answer_energy.figure(
+        energy.figure(
             "fuel_comparison",
             "Fuel by phase and car.",
             fuel_bars(&plots),
         );
     }
     vec![
-        answer_energy,
+        energy,
         losses_section(all),
         warm_up(all),
         drive(all),
@@ -75,120 +69,87 @@ fn plot<'a>(car: &Car<'a>) -> Option<PlotRun<'a>> {
 
 /// Fuel of each phase group and of the whole, for the bars.
 fn group_fuel(run: &RunSummary) -> Vec<(String, f64)> {
-    let number = |x: Option<f64>| x.unwrap_or(f64::NAN);
     let phases = run.phases.iter().filter(|_| run.phases.len() > 1);
-    let mut groups: Vec<(String, f64)> = phases
-        .map(|p| (p.name.clone(), number(p.fuel_l_per_100km)))
-        .collect();
-    groups.push(("total".to_owned(), number(run.fuel_l_per_100km)));
-    groups.extend(
-        run.weighted_fuel_l_per_100km
-            .map(|fuel| ("weighted".to_owned(), fuel)),
-    );
-    groups
+    let phases = phases.map(|p| (p.name.clone(), p.fuel_l_per_100km));
+    let total = ("total".to_owned(), run.fuel_l_per_100km);
+    let weighted = run.weighted_fuel_l_per_100km;
+    let weighted = weighted.map(|fuel| ("weighted".to_owned(), Some(fuel)));
+    let all = phases.chain([total]).chain(weighted);
+    all.map(|(name, fuel)| (name, fuel.unwrap_or(f64::NAN)))
+        .collect()
 }
 
 fn losses_section(all: &[Car]) -> Section {
     let mut section = Section::new("losses", "Losses by component");
     section.table(loss_table(all));
-    let cars: Vec<CarLosses> = all
-        .iter()
-        .map(|car| CarLosses {
-            name: car.run.vehicle.clone(),
-            losses_kj: car.losses_kj(),
-        })
-        .collect();
-    section.figure(
-        "loss_by_component",
-        "Losses of each transmission over the whole cycle.",
-        loss_by_component(&cars),
-    );
+    let cars = all.iter().map(|car| CarLosses {
+        name: car.run.vehicle.clone(),
+        losses_kj: car.losses_kj(),
+    });
+    let picture = loss_by_component(&cars.collect::<Vec<_>>());
+    let caption = "Losses of each transmission over the whole cycle.";
+    section.figure("loss_by_component", caption, picture);
     let traced: Vec<&Car> = all.iter().filter(|car| car.history.is_some()).collect();
     if !traced.is_empty() && all[0].run.phases.len() > 1 {
         let picture = loss_by_phase(&phase_losses(all, &traced));
-        section.figure(
-            "loss_by_phase",
-            "Losses by phase of the cycle, for each kilometre driven in it.",
-            picture,
-        );
+        let caption = "Losses by phase of the cycle, for each kilometre driven in it.";
+        section.figure("loss_by_phase", caption, picture);
     }
     for car in traced {
         let (Some(run), Some(history), name) = (plot(car), car.history, &car.run.vehicle) else {
             continue;
         };
-        section.heading(car.run.title.clone());
-        section.figure(
-            format!("losses_{name}"),
-            format!("Loss power of {name} over time, averaged over stretches of the cycle."),
-            losses(&run),
-        );
+        section.heading(&car.run.title);
+        let about =
+            format!("Loss power of {name} over time, averaged over stretches of the cycle.");
+        section.figure(format!("losses_{name}"), about, losses(&run));
         let caption = format!(
             "Mean loss power of {name} while it moved, against the temperature of its oil. Oil and phase of the cycle change together, so \
              this is no clean sweep of temperature; the command cvtcycle losses draws one."
         );
-        section.figure(
-            format!("loss_by_temperature_{name}"),
-            caption,
-            loss_by_temperature(&loss_trace(car, history)),
-        );
+        let picture = loss_by_temperature(&loss_trace(car, history));
+        section.figure(format!("loss_by_temperature_{name}"), caption, picture);
     }
     section
 }
 
 fn loss_table(all: &[Car]) -> ReportTable {
-    let columns = all.iter().flat_map(|car| {
-        [
-            (car.run.vehicle.clone(), "kJ".to_owned()),
-            ("of its transmission".to_owned(), "%".to_owned()),
-        ]
-    });
-    let mut table = ReportTable::of_numbers("Losses over the whole cycle", "Component", columns);
+    let caption = "Losses over the whole cycle";
+    let mut table = energy::with_shares(caption, "Component", "of its transmission", all);
+    let total = |car: &Car| car.run.transmission_loss_kj();
     for component in Component::ALL {
         let of = |car: &Car| car.run.loss_kj.get(component.name());
         if all.iter().any(|car| of(car).is_some()) {
-            let cells = all.iter().flat_map(|car| match of(car) {
-                Some(kj) => [
-                    Quantity::Energy.bare(kj),
-                    percent(kj, car.run.transmission_loss_kj()),
-                ],
-                None => [String::new(), String::new()],
-            });
+            let cells = energy::cells_with_shares(all, |car| Some((Some(of(car)?), total(car))));
             table.named(capital(component.name()), cells);
         }
     }
-    let sums = all.iter().flat_map(|car| {
-        [
-            Quantity::Energy.bare(car.run.transmission_loss_kj()),
-            percent(1.0, 1.0),
-        ]
-    });
-    table.strong("Transmission".to_owned(), sums);
+    let sums = energy::cells_with_shares(all, |car| Some((Some(total(car)), total(car))));
+    table.strong("Transmission", sums);
     table
 }
 
 /// Loss of each component in a phase group, kJ, and its distance, km.
 fn group_losses(history: &History, group: &str) -> Vec<(Component, f64)> {
-    let dt = history.dt_s();
-    let in_group = |i: usize| {
-        history
-            .phases()
-            .get(history.phase(i))
-            .is_some_and(|phase| phase_group(phase) == group)
+    let in_group = |i: &usize| {
+        let phase = history.phases().get(history.phase(*i));
+        phase.is_some_and(|phase| phase_group(phase) == group)
     };
-    let own: Vec<usize> = (0..history.len()).filter(|i| in_group(*i)).collect();
+    let own: Vec<usize> = (0..history.len()).filter(in_group).collect();
     let sum = |component: &Component| {
-        let column = loss_column(*component).map_or(&[][..], |column| history.column(&column.name));
-        own.iter()
-            .filter_map(|i| Some(column.get(*i)? * dt.get(*i)?))
-            .filter(|joule| joule.is_finite())
-            .sum::<f64>()
-            / 1e3
+        let (watts, dt) = (loss_w(history, component), history.dt_s());
+        let joule = own
+            .iter()
+            .filter_map(|i| Some(watts.get(*i)? * dt.get(*i)?));
+        let joule: f64 = joule.filter(|joule| joule.is_finite()).sum();
+        (*component, joule / 1e3)
     };
-    history
-        .components()
-        .iter()
-        .map(|component| (*component, sum(component)))
-        .collect()
+    history.components().iter().map(sum).collect()
+}
+
+/// The loss power of a component over time, W.
+fn loss_w<'a>(history: &'a History, component: &Component) -> &'a [f64] {
+    loss_column(*component).map_or(&[], |column| history.column(&column.name))
 }
 
 fn phase_losses(all: &[Car], traced: &[&Car]) -> PhaseLosses {
@@ -201,13 +162,10 @@ fn phase_losses(all: &[Car], traced: &[&Car]) -> PhaseLosses {
                 .map_or(f64::NAN, |phase| phase.distance_km);
             let losses = car
                 .history
-                .map(|history| group_losses(history, &phase.name))
-                .unwrap_or_default();
-            losses
-                .into_iter()
-                .map(|(component, kj)| (component, kj / km))
-                .filter(|(_, x)| x.is_finite())
-                .collect()
+                .map(|history| group_losses(history, &phase.name));
+            let losses = losses.unwrap_or_default().into_iter();
+            let losses = losses.map(|(component, kj)| (component, kj / km));
+            losses.filter(|(_, x)| x.is_finite()).collect()
         };
         (phase_name(&phase.name), traced.iter().map(of).collect())
     });
@@ -219,19 +177,14 @@ fn phase_losses(all: &[Car], traced: &[&Car]) -> PhaseLosses {
 }
 
 fn loss_trace<'a>(car: &Car, history: &'a History) -> LossTrace<'a> {
-    let column = |component: &Component| {
-        loss_column(*component).map_or(&[][..], |column| history.column(&column.name))
-    };
+    let losses = history.components().into_iter();
+    let losses = losses.map(|c| (c, loss_w(history, &c)));
     LossTrace {
         subject: car.run.vehicle.clone(),
         seconds: history.dt_s(),
         sump_degc: history.column("transmission_sump_degc"),
         speed_kmh: history.column("speed_kmh"),
-        losses_w: history
-            .components()
-            .iter()
-            .map(|component| (*component, column(component)))
-            .collect(),
+        losses_w: losses.collect(),
     }
 }
 
@@ -239,7 +192,7 @@ fn warm_up(all: &[Car]) -> Section {
     let mut section = Section::new("warm_up", "Warm-up");
     let columns = all
         .iter()
-        .map(|car| (car.run.vehicle.clone(), Quantity::Degc.unit().to_owned()));
+        .map(|car| (car.run.vehicle.clone(), Quantity::Degc.unit()));
     let mut table = ReportTable::of_numbers("Temperatures at the end", "Node", columns);
     let mut nodes: Vec<&str> = Vec::new();
     for (name, _) in all.iter().flat_map(|car| car.run.end_degc.iter()) {
@@ -248,20 +201,14 @@ fn warm_up(all: &[Car]) -> Section {
         }
     }
     for node in nodes {
-        table.named(
-            capital(node),
-            all.iter()
-                .map(|car| Quantity::Degc.bare(car.run.end_degc.get(node))),
-        );
+        let ends = all.iter().map(|car| car.run.end_degc.get(node));
+        table.named(capital(node), ends.map(|degc| Quantity::Degc.bare(degc)));
     }
     section.table(table);
     for run in all.iter().filter_map(plot) {
         let name = run.name;
-        section.figure(
-            format!("temperatures_{name}"),
-            format!("Temperatures of {name} over the cycle."),
-            temperatures(&run),
-        );
+        let caption = format!("Temperatures of {name} over the cycle.");
+        section.figure(format!("temperatures_{name}"), caption, temperatures(&run));
     }
     section
 }
@@ -271,35 +218,27 @@ fn drive(all: &[Car]) -> Section {
     for car in all {
         let Some(run) = plot(car) else { continue };
         let name = run.name;
-        section.heading(car.run.title.clone());
-        section.figure(
-            format!("driveline_{name}"),
-            format!("Speed, ratio, engine speed and throttle of {name}."),
-            driveline(&run),
-        );
+        section.heading(&car.run.title);
+        let caption = format!("Speed, ratio, engine speed and throttle of {name}.");
+        section.figure(format!("driveline_{name}"), caption, driveline(&run));
         if run.history.is_cvt() {
             let caption = format!(
                 "Pulley pressures, belt slip and clamping safety of {name}; safety is drawn up to four times its least value, for at low torque it has no end."
             );
             section.figure(format!("pressure_{name}"), caption, pressure(&run));
         }
-        let lines = car
-            .record
-            .map(|record| record.speed_lines.clone())
-            .unwrap_or_default();
+        let lines = car.record.map(|record| record.speed_lines.clone());
+        let lines = lines.into_iter().flatten().map(|line| GuideLine {
+            whole: line.name.starts_with("target"),
+            name: line.name,
+            points: line.points,
+        });
         let picture = variogram(&Variogram {
             subject: name.to_owned(),
             speed_kmh: run.history.column("speed_kmh"),
             engine_rpm: run.history.column("engine_speed_rpm"),
             seconds: run.history.dt_s(),
-            lines: lines
-                .into_iter()
-                .map(|line| GuideLine {
-                    whole: line.name.starts_with("target"),
-                    name: line.name,
-                    points: line.points,
-                })
-                .collect(),
+            lines: lines.collect(),
         });
         let caption = match run.history.is_cvt() {
             true => format!(
@@ -319,11 +258,8 @@ fn engine(all: &[Car]) -> Section {
         let caption = format!(
             "Time that the engine of {name} spent at each speed and torque, on its fuel map when hot."
         );
-        section.figure(
-            format!("operating_points_{name}"),
-            caption,
-            operating_points(&run),
-        );
+        let picture = operating_points(&run);
+        section.figure(format!("operating_points_{name}"), caption, picture);
     }
     section
 }

@@ -37,40 +37,22 @@ impl Car<'_> {
     /// Losses of the transmission, kJ, in the order of the power flow.
     #[must_use]
     pub fn losses_kj(&self) -> Vec<(Component, f64)> {
-        Component::ALL
-            .iter()
-            .filter_map(|c| Some((*c, self.run.loss_kj.get(c.name())?)))
-            .collect()
+        let loss = |c: Component| Some((c, self.run.loss_kj.get(c.name())?));
+        Component::ALL.into_iter().filter_map(loss).collect()
     }
 }
 
 /// The cars of a run, the subject first.
 #[must_use]
-pub fn cars(found: &RunResults) -> Vec<Car<'_>> {
-    let record = |name: &str| {
-        found
-            .record
-            .as_ref()?
-            .cars
-            .iter()
-            .find(|car| car.name == name)
+pub fn cars<'a>(found: &'a RunResults) -> Vec<Car<'a>> {
+    let runs = found.summary.runs.iter().zip(&found.histories);
+    let records = found.record.as_ref().map_or(&[][..], |record| &record.cars);
+    let car = |(run, history): (&'a RunSummary, &'a Option<History>)| Car {
+        run,
+        record: records.iter().find(|car| car.name == run.vehicle),
+        history: history.as_ref(),
     };
-    let car = |(run, history)| -> Car<'_> {
-        let run: &RunSummary = run;
-        let history: &Option<History> = history;
-        Car {
-            run,
-            record: record(&run.vehicle),
-            history: history.as_ref(),
-        }
-    };
-    found
-        .summary
-        .runs
-        .iter()
-        .zip(&found.histories)
-        .map(car)
-        .collect()
+    runs.map(car).collect()
 }
 
 /// The report of a run.
@@ -97,10 +79,8 @@ pub fn document(found: &RunResults) -> Result<Document, Problem> {
     for (k, own) in found.studies.iter().enumerate() {
         let mut section = study::section(own)?;
         // Of several studies of a kind the first keeps the plain name.
-        if sections
-            .iter()
-            .any(|other: &Section| other.id == section.id)
-        {
+        let same = |other: &Section| other.id == section.id;
+        if sections.iter().any(same) {
             section.id = format!("{}-{k}", section.id);
         }
         document.warnings.extend(own.unfinished());
@@ -125,10 +105,9 @@ fn title(summary: &Summary) -> String {
 /// The cycle as people call it.
 #[must_use]
 pub fn cycle_title(summary: &Summary, record: Option<&Record>) -> String {
-    record
-        .map(|r| r.cycle.title.clone())
-        .filter(|title| !title.is_empty())
-        .unwrap_or_else(|| words(&summary.cycle))
+    let title = record.map(|r| r.cycle.title.clone());
+    let title = title.filter(|title| !title.is_empty());
+    title.unwrap_or_else(|| words(&summary.cycle))
 }
 
 /// The start in words.
@@ -144,9 +123,6 @@ pub fn start_line(summary: &Summary) -> String {
 /// Ambient and start in words.
 #[must_use]
 pub fn conditions_line(summary: &Summary) -> String {
-    format!(
-        "ambient {}, {}",
-        degc(summary.ambient_degc),
-        start_line(summary)
-    )
+    let ambient = degc(summary.ambient_degc);
+    format!("ambient {ambient}, {}", start_line(summary))
 }

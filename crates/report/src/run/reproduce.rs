@@ -6,6 +6,7 @@ use super::super::results::RunResults;
 use super::Car;
 use cvtcycle_output::number::finite;
 use cvtcycle_output::record::Record;
+use cvtcycle_output::summary::RunSummary;
 
 pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("reproducibility", "Reproducibility");
@@ -15,82 +16,72 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     )];
     if let Some(record) = &found.record {
         facts.push(("Command".to_owned(), record.command.clone()));
-        facts.push((
-            format!("Cycle {}, SHA-256", record.cycle.name),
-            record.cycle.sha256.clone(),
-        ));
+        let name = format!("Cycle {}, SHA-256", record.cycle.name);
+        facts.push((name, record.cycle.sha256.clone()));
     }
     section.facts(facts);
     if let Some(record) = &found.record {
         section.table(hashes(record, "Inputs"));
     }
-    let columns = cars
-        .iter()
-        .map(|car| (car.run.vehicle.clone(), String::new()));
+    let columns = cars.iter().map(|car| (car.run.vehicle.clone(), ""));
     let mut table = ReportTable::of_numbers("Ledgers and solution", "", columns);
-    let mut add =
-        |name: &str, of: &dyn Fn(&Car) -> String| table.named(name.to_owned(), cars.iter().map(of));
-    add("Energy ledger, worst row", &|car| {
-        tiny(car.run.ledger_error)
-    });
-    add("Energy ledger, whole run", &|car| {
-        tiny(car.run.run_ledger_error)
-    });
-    add(
-        "Worst residual of the solve (of full-load torque)",
-        &|car| tiny(finite(car.run.solve.worst_residual)),
-    );
-    add("Evaluations per step", &|car| {
-        Quantity::Ratio.bare(car.run.solve.evaluations_per_step)
-    });
+    for (name, of) in SOLUTION {
+        table.named(name, cars.iter().map(|car| of(car.run)));
+    }
     section.table(table);
     section.table(flags(cars));
     section
 }
+
+/// A number of a run with its name.
+type Line = (&'static str, fn(&RunSummary) -> String);
+
+const SOLUTION: [Line; 4] = [
+    ("Energy ledger, worst row", |run| tiny(run.ledger_error)),
+    ("Energy ledger, whole run", |run| tiny(run.run_ledger_error)),
+    ("Worst residual of the solve (of full-load torque)", |run| {
+        tiny(finite(run.solve.worst_residual))
+    }),
+    ("Evaluations per step", |run| {
+        Quantity::Ratio.bare(run.solve.evaluations_per_step)
+    }),
+];
 
 /// Files of every car with their hashes.
 #[must_use]
 pub fn hashes(record: &Record, caption: &str) -> ReportTable {
     let mut table = ReportTable::of_words(caption, &["Car", "What", "File", "SHA-256"]);
     for car in &record.cars {
-        for (what, file) in [
+        let files = [
             ("vehicle", &car.vehicle),
             ("transmission oil", &car.lubricant),
             ("engine oil", &car.engine_oil),
-        ] {
-            table.row([
-                car.name.clone(),
-                what.to_owned(),
-                file.file.clone(),
-                file.sha256.clone(),
-            ]);
-        }
-        table.row([
-            car.name.clone(),
-            "everything, checked".to_owned(),
+        ];
+        let files = files.map(|(what, of)| (what, of.file.clone(), of.sha256.clone()));
+        let all = (
+            "everything, checked",
             String::new(),
             car.resolved_sha256.clone(),
-        ]);
+        );
+        for (what, file, hash) in files.into_iter().chain([all]) {
+            table.row([car.name.clone(), what.to_owned(), file, hash]);
+        }
     }
     table
 }
 
 fn flags(cars: &[Car]) -> ReportTable {
-    let columns = cars
-        .iter()
-        .map(|car| (car.run.vehicle.clone(), "s".to_owned()));
+    let columns = cars.iter().map(|car| (car.run.vehicle.clone(), "s"));
     let mut table = ReportTable::of_numbers("Time with each flag", "Flag", columns);
-    let names: Vec<&str> = cars
+    for (name, _) in cars
         .first()
-        .map(|car| car.run.flags_s.iter().map(|(name, _)| name).collect())
-        .unwrap_or_default();
-    for name in names {
+        .into_iter()
+        .flat_map(|car| car.run.flags_s.iter())
+    {
         let of = |car: &Car| car.run.flags_s.get(name);
         if cars.iter().any(|car| of(car).is_some_and(|s| s > 0.0)) {
-            table.named(
-                words(name),
-                cars.iter().map(|car| Quantity::Seconds.bare(of(car))),
-            );
+            let cells = cars.iter().map(|car| Quantity::Seconds.bare(of(car)));
+            table.named(words(name), cells);
         }
     }
     table.note = "Flags without any time are left out. The command cvtcycle explain FLAG says what each means.".to_owned();

@@ -40,14 +40,8 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Option<Section> {
         }
         None => section.text("How much each value matters was not computed for this run: use cvtcycle run --sensitivity always."),
     }
-    for car in cars {
-        if let Some(record) = car.record {
-            of_car(
-                &mut section,
-                record,
-                found.record.as_ref().and_then(|r| r.sensitivity.as_ref()),
-            );
-        }
+    for car in cars.iter().filter_map(|car| car.record) {
+        of_car(&mut section, car, record.sensitivity.as_ref());
     }
     Some(section)
 }
@@ -62,80 +56,58 @@ fn count(record: &Record) -> String {
         for value in car.values.iter().filter(|value| is_given(value)) {
             *by_status.entry(&value.status).or_default() += 1;
         }
-        let list: Vec<String> = by_status
-            .iter()
-            .map(|(status, n)| format!("{n} {status}"))
-            .collect();
+        let list = by_status.iter().map(|(status, n)| format!("{n} {status}"));
+        let list: Vec<String> = list.collect();
         format!("{}: {}.", car.name, list.join(", "))
     };
     record.cars.iter().map(one).collect::<Vec<_>>().join(" ")
 }
 
-/// Doubtful values of a car with their effects, the strongest first.
+/// A value with its effect on fuel.
+type Ranked<'a> = (&'a ValueRecord, Option<&'a Effect>);
+
+/// Some values of a car with their effects, the strongest first.
 fn ranked<'a>(
     car: &'a CarRecord,
     sensitivity: Option<&'a Sensitivity>,
-) -> Vec<(&'a ValueRecord, Option<&'a Effect>)> {
+    wanted: fn(&ValueRecord) -> bool,
+) -> Vec<Ranked<'a>> {
+    let effects = sensitivity.map_or(&[][..], |of| &of.effects);
     let effect = |value: &ValueRecord| {
-        sensitivity?
-            .effects
-            .iter()
-            .find(|effect| effect.car == car.name && effect.key == value.key)
+        let own = |effect: &&Effect| effect.car == car.name && effect.key == value.key;
+        effects.iter().find(own)
     };
-    let mut list: Vec<_> = car
-        .values
-        .iter()
-        .filter(|value| is_doubtful(value))
-        .map(|value| (value, effect(value)))
-        .collect();
-    let size = |effect: &Option<&Effect>| effect.map_or(-1.0, Effect::size_percent);
+    let values = car.values.iter().filter(|value| wanted(value));
+    let mut list: Vec<Ranked> = values.map(|value| (value, effect(value))).collect();
+    let size = |of: &Ranked| of.1.map_or(-1.0, Effect::size_percent);
     // Stable: values without an effect keep the order of the file.
-    list.sort_by(|a, b| size(&b.1).total_cmp(&size(&a.1)));
+    list.sort_by(|a, b| size(b).total_cmp(&size(a)));
     list
 }
 
 fn of_car(section: &mut Section, car: &CarRecord, sensitivity: Option<&Sensitivity>) {
-    let ranked = ranked(car, sensitivity);
-    let (first, rest) = ranked.split_at(ranked.len().min(SHOWN));
+    let name = &car.name;
+    let doubtful = ranked(car, sensitivity, is_doubtful);
+    let (first, rest) = doubtful.split_at(doubtful.len().min(SHOWN));
     let caption = format!(
-        "Values of {} that are assumed, fitted or left at the program's default, the strongest first",
-        car.name
+        "Values of {name} that are assumed, fitted or left at the program's default, the strongest first"
     );
     section.table(table(&caption, first, sensitivity));
     if !rest.is_empty() {
-        let caption = format!("{} more of {}", rest.len(), car.name);
+        let caption = format!("{} more of {name}", rest.len());
         section.folded(table(&caption, rest, sensitivity));
     }
-    let sourced: Vec<_> = car
-        .values
-        .iter()
-        .filter(|value| !is_doubtful(value) && is_given(value))
-        .collect();
-    let effect = |value: &ValueRecord| {
-        sensitivity?
-            .effects
-            .iter()
-            .find(|effect| effect.car == car.name && effect.key == value.key)
-    };
-    let mut sourced: Vec<_> = sourced
-        .into_iter()
-        .map(|value| (value, effect(value)))
-        .collect();
-    let size = |effect: &Option<&Effect>| effect.map_or(-1.0, Effect::size_percent);
-    sourced.sort_by(|a, b| size(&b.1).total_cmp(&size(&a.1)));
+    let sourced = ranked(car, sensitivity, |value| {
+        !is_doubtful(value) && is_given(value)
+    });
     let caption = format!(
-        "{} values of {} with a source or set by the user",
-        sourced.len(),
-        car.name
+        "{} values of {name} with a source or set by the user",
+        sourced.len()
     );
     section.folded(table(&caption, &sourced, sensitivity));
 }
 
-fn table(
-    caption: &str,
-    list: &[(&ValueRecord, Option<&Effect>)],
-    sensitivity: Option<&Sensitivity>,
-) -> ReportTable {
+fn table(caption: &str, list: &[Ranked], sensitivity: Option<&Sensitivity>) -> ReportTable {
     let step = sensitivity.map_or(String::new(), |s| percent_text(s.step_percent));
     let heads = [
         format!("fuel with it {step} lower, %"),
@@ -146,23 +118,17 @@ fn table(
         columns.extend(heads.iter().map(String::as_str));
     }
     let mut table = ReportTable::of_words(caption, &columns);
-    table
-        .columns
-        .iter_mut()
-        .skip(4)
-        .for_each(|column| column.number = true);
+    for column in table.columns.iter_mut().skip(4) {
+        column.number = true;
+    }
     for (value, effect) in list {
         let shown = match (value.value.as_str(), value.unit.as_str()) {
             ("", _) => NONE.to_owned(),
             (text, "-" | "") => short(text),
             (text, unit) => format!("{}\u{a0}{unit}", short(text)),
         };
-        let mut cells = vec![
-            value.key.clone(),
-            shown,
-            value.status.clone(),
-            short(&value.source),
-        ];
+        let (key, status) = (value.key.clone(), value.status.clone());
+        let mut cells = vec![key, shown, status, short(&value.source)];
         if sensitivity.is_some() {
             let side = |x: Option<f64>| match x {
                 Some(x) if x.abs() < SMALL_PERCENT => "0".to_owned(),
@@ -190,27 +156,22 @@ fn short(text: &str) -> String {
 /// The number of doubtful values, and the one with the largest effect.
 pub(super) fn doubt(found: &RunResults, cars: &[Car]) -> Option<String> {
     let (record, subject) = (found.record.as_ref()?, cars.first()?.record?);
-    let numbers = subject
-        .values
-        .iter()
-        .filter(|value| is_given(value))
-        .count();
+    let count = |wanted: fn(&ValueRecord) -> bool| {
+        subject.values.iter().filter(|value| wanted(value)).count()
+    };
+    let (numbers, doubtful) = (count(is_given), count(is_doubtful));
     if numbers == 0 {
         return None;
     }
-    let doubtful = subject
-        .values
-        .iter()
-        .filter(|value| is_doubtful(value))
-        .count();
     let mut text = format!(
         "{doubtful} of the {numbers} values of {} are assumed, fitted or defaults",
         subject.name
     );
     let sensitivity = record.sensitivity.as_ref();
-    if let (Some((value, Some(effect))), Some(sensitivity)) =
-        (ranked(subject, sensitivity).first(), sensitivity)
-        && effect.size_percent().is_finite()
+    if let (Some((value, Some(effect))), Some(sensitivity)) = (
+        ranked(subject, sensitivity, is_doubtful).first(),
+        sensitivity,
+    ) && effect.size_percent().is_finite()
     {
         text += &format!(
             "; the one that moves its fuel most is {} ({} of it move the fuel by {})",

@@ -10,28 +10,6 @@ use crate::charts::engine::{
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::statistics::{Estimate, RankSensitivity, SobolIndices};
 
-/// Sobol indices of an output.
-#[derive(Clone, Copy, Debug)]
-pub struct SobolPlot<'a> {
-    /// Output and study.
-    pub shown: Shown<'a>,
-    /// Names of the factors, in the order of the indices.
-    pub names: &'a [String],
-    /// The indices.
-    pub indices: &'a SobolIndices,
-}
-
-/// Rank correlations of an output.
-#[derive(Clone, Copy, Debug)]
-pub struct RankPlot<'a> {
-    /// Output and study.
-    pub shown: Shown<'a>,
-    /// Names of the factors, in the order of the coefficients.
-    pub names: &'a [String],
-    /// The coefficients.
-    pub ranks: &'a RankSensitivity,
-}
-
 /// A factor with its two measures.
 type FactorBars<'a> = (&'a str, [Estimate; 2]);
 
@@ -47,11 +25,10 @@ struct Texts<'a> {
     notes: Vec<String>,
 }
 
-/// Draws first-order and total Sobol indices with their intervals, the largest total index first.
+/// Draws first-order and total Sobol indices of factors by name with their intervals, the largest total index first.
 #[must_use]
-pub fn sobol_plot(plot: &SobolPlot) -> Picture {
-    let of = plot.indices;
-    let factors = plot.names.iter().zip(&of.factors);
+pub fn sobol_plot(shown: &Shown, names: &[String], of: &SobolIndices) -> Picture {
+    let factors = names.iter().zip(&of.factors);
     let rows = factors.map(|(name, f)| (name.as_str(), [f.first, f.total]));
     let mut notes = vec![format!("{} samples{}", of.samples, left_out(of.missing))];
     if of.samples > 1 && of.variance <= 0.0 {
@@ -67,28 +44,27 @@ pub fn sobol_plot(plot: &SobolPlot) -> Picture {
         ));
     }
     let texts = Texts {
-        title: format!("Sobol indices: {}", plot.shown.output),
+        title: format!("Sobol indices: {}", shown.output),
         axis: "Share of the variance [-]",
         kinds: ["First order: alone", "Total: also with others"],
         short: ["First order", "Total"],
         key: 1,
         notes,
     };
-    draw(rows.collect(), &plot.shown, texts)
+    draw(rows.collect(), shown, texts)
 }
 
 /// Draws rank correlations and rank regression coefficients with their intervals, the strongest correlation first.
 #[must_use]
-pub fn rank_plot(plot: &RankPlot) -> Picture {
-    let of = plot.ranks;
-    let factors = plot.names.iter().zip(&of.factors);
+pub fn rank_plot(shown: &Shown, names: &[String], of: &RankSensitivity) -> Picture {
+    let factors = names.iter().zip(&of.factors);
     let rows = factors.map(|(name, f)| (name.as_str(), [f.spearman, f.regression]));
     let fit = match of.r_squared {
         r if r.is_finite() => format!("R\u{b2} of the regression on ranks: {r:.3}"),
         _ => "No regression: too few rows, or factors that follow from each other.".to_owned(),
     };
     let texts = Texts {
-        title: format!("Rank sensitivity: {}", plot.shown.output),
+        title: format!("Rank sensitivity: {}", shown.output),
         axis: "Coefficient [-]",
         kinds: ["Rank correlation", "Rank regression coefficient"],
         short: ["Correlation", "Regression"],
@@ -99,7 +75,7 @@ pub fn rank_plot(plot: &RankPlot) -> Picture {
             "Whiskers: intervals of 95 %".to_owned(),
         ],
     };
-    draw(rows.collect(), &plot.shown, texts)
+    draw(rows.collect(), shown, texts)
 }
 
 fn draw(mut rows: Vec<FactorBars>, shown: &Shown, texts: Texts) -> Picture {

@@ -9,13 +9,11 @@ use cvtcycle_study::statistics::{Estimate, SobolIndices};
 
 /// Indices at growing numbers of samples.
 #[derive(Clone, Copy, Debug)]
-pub struct ConvergencePlot<'a> {
-    /// Output and study.
-    pub shown: Shown<'a>,
+struct ConvergencePlot<'a> {
     /// Names of the factors, in the order of the indices.
-    pub names: &'a [String],
+    names: &'a [String],
     /// Indices, the fewest samples first.
-    pub steps: &'a [SobolIndices],
+    steps: &'a [SobolIndices],
 }
 
 const TOP: f64 = 58.0;
@@ -30,7 +28,8 @@ type Pick = fn(&SobolIndices, usize) -> Option<Estimate>;
 /// Draws first-order indices over total ones against the number of samples, with their intervals as bands. Of more than seven factors
 /// those with the seven largest total indices.
 #[must_use]
-pub fn convergence_plot(plot: &ConvergencePlot) -> Picture {
+pub fn convergence_plot(shown: &Shown, names: &[String], steps: &[SobolIndices]) -> Picture {
+    let plot = &ConvergencePlot { names, steps };
     let chosen = chosen(plot);
     let mut notes = vec![
         "Bands: intervals of 95 %. Those of few samples may leave the plot; the table has them."
@@ -56,8 +55,8 @@ pub fn convergence_plot(plot: &ConvergencePlot) -> Picture {
     }
     let lines = chosen.iter().zip(STROKES);
     let lines = lines.map(|(&i, stroke)| Entry::line(stroke, &plot.names[i]));
-    let title = format!("Convergence of Sobol indices: {}", plot.shown.output);
-    Chart::new(title, plot.shown.subject, PLOT_LEFT)
+    let title = format!("Convergence of Sobol indices: {}", shown.output);
+    Chart::new(title, shown.subject, PLOT_LEFT)
         .panels(panels)
         .legend(FOOT, lines)
         .notes(FOOT, notes)

@@ -9,17 +9,6 @@ use crate::charts::picture::{Picture, PictureTable};
 use crate::number::capital_first;
 use cvtcycle_study::statistics::{Share, Summary, quantile_of_sorted};
 
-/// Values of an output and what they are of.
-#[derive(Clone, Copy, Debug)]
-pub struct DistributionPlot<'a> {
-    /// Output and study.
-    pub shown: Shown<'a>,
-    /// Subject and baselines, or differences; the first seven are drawn.
-    pub series: &'a [DistributionSeries<'a>],
-    /// Whether the values are differences of pairs: zero is marked and the share above it written.
-    pub differences: bool,
-}
-
 /// One car, or one pair of cars.
 #[derive(Clone, Copy, Debug)]
 pub struct DistributionSeries<'a> {
@@ -52,26 +41,30 @@ const MARKED: [f64; 3] = [0.05, 0.5, 0.95];
 const ZERO: Stroke = stroke(INK, 1.4, &[6.0, 2.0]);
 const GUIDE: Stroke = stroke(QUIET, 0.9, &[3.0, 3.0]);
 
-/// Draws histogram and cumulative curve of each series over one axis, with the 5, 50 and 95 % quantiles marked.
+/// Draws histogram and cumulative curve of each series over one axis, with the 5, 50 and 95 % quantiles marked; of more than seven the
+/// first seven. Of differences of pairs zero is marked and the share above it written.
 #[must_use]
-pub fn distribution_plot(plot: &DistributionPlot) -> Picture {
-    let series = plot.series.iter().take(STROKES.len());
+pub fn distribution_plot(shown: &Shown, all: &[DistributionSeries], differences: bool) -> Picture {
+    let series = all.iter().take(STROKES.len());
     let series: Vec<Drawn> = series.map(prepare).collect();
-    let edges = edges(&series, plot.differences);
+    let edges = edges(&series, differences);
     let shares: Vec<Vec<f64>> = series.iter().map(|s| shares(s, &edges)).collect();
-    let (headline, notes) = (headline(plot, &series), notes(plot, &series));
+    let (headline, notes) = (
+        headline(&series, differences),
+        notes(shown, all.len(), &series, differences),
+    );
     let lines = lines(&headline, 12.0, WIDE);
     let gap = if lines.is_empty() { 0.0 } else { 6.0 };
     let head = 16.0 * lines.len() as f64 + gap;
-    let (what, output) = match plot.differences {
+    let (what, output) = match differences {
         true => (
             "Distribution of the difference",
-            format!("Difference: {}", plot.shown.output),
+            format!("Difference: {}", shown.output),
         ),
-        false => ("Distribution", capital_first(plot.shown.output)),
+        false => ("Distribution", capital_first(shown.output)),
     };
     let title = Cut::Middle.apply(&output, 12.0, WIDE - 90.0);
-    let title = plot.shown.axis(&title);
+    let title = shown.axis(&title);
     let x = Axis::exact(&title, edges[0], edges[edges.len() - 1], 9);
     let rect = Rect::new(PLOT_LEFT, TOP + head, WIDE, TALL);
     let mut upper = histogram((rect, x.clone()), &series, &shares, &edges);
@@ -84,11 +77,11 @@ pub fn distribution_plot(plot: &DistributionPlot) -> Picture {
     let lower = cumulative(rect, x, &series);
     let names = series.iter().zip(STROKES);
     let names = names.map(|(s, stroke)| Entry::line(stroke, s.name));
-    let zero = plot.differences.then(|| Entry::line(ZERO, "No difference"));
-    let table = table(plot, &output, &series, (&edges, &shares), &notes);
+    let zero = differences.then(|| Entry::line(ZERO, "No difference"));
+    let table = table(shown, &output, &series, (&edges, &shares), &notes);
     Chart::new(
-        format!("{what}: {}", plot.shown.output),
-        plot.shown.subject,
+        format!("{what}: {}", shown.output),
+        shown.subject,
         PLOT_LEFT,
     )
     .lead(
@@ -104,13 +97,13 @@ pub fn distribution_plot(plot: &DistributionPlot) -> Picture {
 
 /// A row for each bin, its middle first.
 fn table(
-    plot: &DistributionPlot,
+    shown: &Shown,
     output: &str,
     series: &[Drawn],
     (edges, shares): (&[f64], &[Vec<f64>]),
     notes: &[String],
 ) -> PictureTable {
-    let column = |name: &str| plot.shown.column(name);
+    let column = |name: &str| shown.column(name);
     let mut columns = vec![
         column(&format!("{output}, middle")),
         column("From"),
@@ -273,9 +266,9 @@ fn quantile_lines(panel: &mut Panel, series: &[Drawn]) {
 }
 
 /// The answer in one sentence, for one series of differences.
-fn headline(plot: &DistributionPlot, series: &[Drawn]) -> String {
+fn headline(series: &[Drawn], differences: bool) -> String {
     match series {
-        [s] if plot.differences && s.above.n > 0 => format!("Above zero in {}.", above(&s.above)),
+        [s] if differences && s.above.n > 0 => format!("Above zero in {}.", above(&s.above)),
         _ => String::new(),
     }
 }
@@ -287,11 +280,11 @@ fn above(share: &Share) -> String {
     format!("{k} of {n} pairs: {share}\u{a0}% ({low} to {high}\u{a0}%)")
 }
 
-fn notes(plot: &DistributionPlot, series: &[Drawn]) -> Vec<String> {
+fn notes(shown: &Shown, all: usize, series: &[Drawn], differences: bool) -> Vec<String> {
     let spread = |s: &Drawn| s.summary.quantile(0.975) - s.summary.quantile(0.025);
     let spreads = series.iter().map(spread).filter(|w| *w > 0.0);
     let spread = spreads.fold(f64::NAN, f64::min);
-    let unit = plot.shown.after();
+    let unit = shown.after();
     let digits = |x: f64| value(x, spread);
     let one = |s: &Drawn| {
         if s.summary.n == 0 {
@@ -306,7 +299,7 @@ fn notes(plot: &DistributionPlot, series: &[Drawn]) -> Vec<String> {
             let [mean, low, high] = [s.summary.mean, low, high].map(digits);
             text += &format!("; mean {mean} ({low} to {high})");
         }
-        if plot.differences && series.len() > 1 && s.above.n > 0 {
+        if differences && series.len() > 1 && s.above.n > 0 {
             text += &format!("; above zero in {}", above(&s.above));
         }
         text += &format!("; n\u{a0}=\u{a0}{}", s.summary.n);
@@ -316,8 +309,8 @@ fn notes(plot: &DistributionPlot, series: &[Drawn]) -> Vec<String> {
         text + "."
     };
     let mut notes: Vec<String> = series.iter().map(one).collect();
-    if plot.series.len() > series.len() {
-        let more = plot.series.len() - series.len();
+    if all > series.len() {
+        let more = all - series.len();
         notes.push(format!("{more} more are not drawn."));
     }
     notes

@@ -8,15 +8,6 @@ use crate::charts::engine::{
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::statistics::{Group, Groups};
 
-/// Main effects on an output.
-#[derive(Clone, Copy, Debug)]
-pub struct EffectsPlot<'a> {
-    /// Output and study.
-    pub shown: Shown<'a>,
-    /// Factors.
-    pub factors: &'a [EffectFactor<'a>],
-}
-
 /// One factor.
 #[derive(Clone, Debug)]
 pub struct EffectFactor<'a> {
@@ -44,10 +35,10 @@ const MAX_FACTORS: usize = 12;
 /// Draws the mean of the output at each level of each factor with its spread over all others, the factor with the largest effect first. All
 /// panels have one vertical axis, so that effects can be compared.
 #[must_use]
-pub fn effects_plot(plot: &EffectsPlot) -> Picture {
-    let mut factors: Vec<&EffectFactor> = plot.factors.iter().collect();
+pub fn effects_plot(shown: &Shown, factors: &[EffectFactor]) -> Picture {
+    let mut factors: Vec<&EffectFactor> = factors.iter().collect();
     by_size(&mut factors, |f| f.groups.range);
-    let table = table(plot, &factors);
+    let table = table(shown, &factors);
     let mut note = "Over all levels of the other factors. Equal vertical axes; the largest range of means first.".to_owned();
     if factors.len() > MAX_FACTORS {
         let more = factors.len() - MAX_FACTORS;
@@ -55,16 +46,16 @@ pub fn effects_plot(plot: &EffectsPlot) -> Picture {
         factors.truncate(MAX_FACTORS);
     }
     let spread = Entry::fill(Fill::plain("#dfe3eb"), "Standard deviation");
-    let title = format!("Main effects: {}", plot.shown.output);
-    Chart::new(title, plot.shown.subject, PLOT_LEFT)
-        .panels(panels(plot, &factors))
+    let title = format!("Main effects: {}", shown.output);
+    Chart::new(title, shown.subject, PLOT_LEFT)
+        .panels(panels(shown, &factors))
         .legend(FOOT, [Entry::line(PLAIN, "Mean"), spread])
         .notes(FOOT, vec![note])
         .picture(table)
 }
 
 /// A panel for each factor, in rows.
-fn panels(plot: &EffectsPlot, factors: &[&EffectFactor]) -> Vec<Panel> {
+fn panels(shown: &Shown, factors: &[&EffectFactor]) -> Vec<Panel> {
     let (columns, tall) = match factors.len() {
         0 | 1 => (1, 230.0),
         2..=4 => (2, 200.0),
@@ -74,7 +65,7 @@ fn panels(plot: &EffectsPlot, factors: &[&EffectFactor]) -> Vec<Panel> {
     let wide = (room / columns as f64).min(WIDEST);
     let ends = |g: &Group| [g.mean, g.mean - spread(g), g.mean + spread(g)];
     let groups = factors.iter().flat_map(|f| &f.groups.groups);
-    let y = Axis::round(&plot.shown.axis("Mean"), groups.flat_map(ends), 5);
+    let y = Axis::round(&shown.axis("Mean"), groups.flat_map(ends), 5);
     let (mut panels, mut top, mut table_row) = (Vec::new(), TOP, 0);
     for row in factors.chunks(columns) {
         let below = row.iter().map(|f| below(f, wide)).fold(BELOW, f64::max);
@@ -101,12 +92,12 @@ fn below(factor: &EffectFactor, wide: f64) -> f64 {
 }
 
 /// A row for each level of each factor.
-fn table(plot: &EffectsPlot, factors: &[&EffectFactor]) -> PictureTable {
+fn table(shown: &Shown, factors: &[&EffectFactor]) -> PictureTable {
     let columns = vec![
         ("Factor".to_owned(), ""),
         ("Level".to_owned(), ""),
-        plot.shown.column("Mean"),
-        plot.shown.column("Standard deviation"),
+        shown.column("Mean"),
+        shown.column("Standard deviation"),
         ("Runs".to_owned(), ""),
     ];
     let mut table = PictureTable::with_columns(columns);

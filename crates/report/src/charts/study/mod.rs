@@ -8,11 +8,11 @@ mod distribution;
 mod effects;
 mod tornado;
 
-pub use bars::{RankPlot, SobolPlot, rank_plot, sobol_plot};
-pub use convergence::{ConvergencePlot, convergence_plot};
-pub use distribution::{DistributionPlot, DistributionSeries, distribution_plot};
-pub use effects::{EffectFactor, EffectsPlot, effects_plot};
-pub use tornado::{TornadoPlot, tornado_plot};
+pub use bars::{rank_plot, sobol_plot};
+pub use convergence::convergence_plot;
+pub use distribution::{DistributionSeries, distribution_plot};
+pub use effects::{EffectFactor, effects_plot};
+pub use tornado::tornado_plot;
 
 use super::engine::{PLOT_LEFT, Point, WIDTH, number, optional_cell, round_step};
 use cvtcycle_study::statistics::Estimate;

@@ -8,29 +8,20 @@ use crate::charts::engine::{
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::statistics::{Tornado, TornadoBar, TornadoEnd};
 
-/// A tornado and its output.
-#[derive(Clone, Copy, Debug)]
-pub struct TornadoPlot<'a> {
-    /// Output and study.
-    pub shown: Shown<'a>,
-    /// The bars.
-    pub tornado: &'a Tornado,
-}
-
 /// Size of the values at the ends of bars, and widest such value, pixels.
 const END: (f64, f64) = (11.0, 120.0);
 
 /// Draws the tornado: change of the output against the base, with the factor's values at the ends of its bar.
 #[must_use]
-pub fn tornado_plot(plot: &TornadoPlot) -> Picture {
-    let all = &plot.tornado.bars;
+pub fn tornado_plot(shown: &Shown, tornado: &Tornado) -> Picture {
+    let all = &tornado.bars;
     let many = all.len() > MAX_ROWS + 1;
     let count = if many { MAX_ROWS } else { all.len() };
     let bars = &all[..count];
     let effects = bars.iter().flat_map(ends).map(|end| end.effect);
     let (low, high) = range(effects.chain([0.0])).unwrap_or((0.0, 1.0));
     let left = rows_left(bars.iter().map(|bar| bar.name.as_str()), 11.0);
-    let x = axis(&plot.shown, bars, (low, high), RIGHT - left);
+    let x = axis(shown, bars, (low, high), RIGHT - left);
     let panel = rows_panel((left, 58.0), RIGHT, bars.len().max(2), ROW, x);
     let mut panel = panel.no_data(bars.is_empty());
     for (k, bar) in bars.iter().enumerate() {
@@ -40,19 +31,19 @@ pub fn tornado_plot(plot: &TornadoPlot) -> Picture {
     panel.upright(0.0, stroke(INK, 1.0, &[]));
     let names = ["Low or first value", "High or second value"];
     let entry = |(k, name): (usize, &str)| Entry::fill(Fill::nth(k, 2), name);
-    let title = format!("One factor at a time: {}", plot.shown.output);
-    Chart::new(title, plot.shown.subject, MARGIN)
+    let title = format!("One factor at a time: {}", shown.output);
+    Chart::new(title, shown.subject, MARGIN)
         .panels([panel])
         .legend(WIDE_FOOT, names.into_iter().enumerate().map(entry))
-        .notes(WIDE_FOOT, notes(plot, bars, high - low))
-        .picture(table(plot, high - low))
+        .notes(WIDE_FOOT, notes(shown, tornado, bars, high - low))
+        .picture(table(shown, tornado, high - low))
 }
 
-fn notes(plot: &TornadoPlot, bars: &[TornadoBar], spread: f64) -> Vec<String> {
-    let all = &plot.tornado.bars;
-    let base = value(plot.tornado.base, spread);
+fn notes(shown: &Shown, tornado: &Tornado, bars: &[TornadoBar], spread: f64) -> Vec<String> {
+    let all = &tornado.bars;
+    let base = value(tornado.base, spread);
     let mut notes = vec![
-        format!("Base: {base}{}", plot.shown.after()),
+        format!("Base: {base}{}", shown.after()),
         "At the ends of the bars: values of the factor. Of more than two, those with the least and the largest output.".to_owned(),
     ];
     let missing: usize = all.iter().map(|bar| bar.missing).sum();
@@ -99,23 +90,23 @@ fn draw(panel: &mut Panel, row: usize, bar: &TornadoBar) {
 }
 
 /// The effects of all factors.
-fn table(plot: &TornadoPlot, spread: f64) -> PictureTable {
+fn table(shown: &Shown, tornado: &Tornado, spread: f64) -> PictureTable {
     let columns = [
         ("Factor".to_owned(), ""),
         ("Low or first value".to_owned(), ""),
-        plot.shown.column("Change at it"),
+        shown.column("Change at it"),
         ("High or second value".to_owned(), ""),
-        plot.shown.column("Change at that"),
-        plot.shown.column("Swing"),
+        shown.column("Change at that"),
+        shown.column("Swing"),
     ];
     let note = format!(
         "Changes are against the base of {}{}.",
-        value(plot.tornado.base, spread),
-        plot.shown.after().replace('\u{a0}', " ")
+        value(tornado.base, spread),
+        shown.after().replace('\u{a0}', " ")
     );
     let mut table = PictureTable::with_columns(columns).note(note);
     let step = round_step(if spread > 0.0 { spread / 500.0 } else { 1e-3 });
-    for bar in &plot.tornado.bars {
+    for bar in &tornado.bars {
         let end = |end: &Option<TornadoEnd>| {
             let cells = end
                 .as_ref()
