@@ -9,8 +9,6 @@ use super::symbol::Symbol;
 pub(crate) const WIDTH: f64 = 880.0;
 /// Room left of a plot for its axis, pixels.
 pub(crate) const LEFT: f64 = 66.0;
-/// Room below a plot for its axis, pixels.
-pub(crate) const BELOW: f64 = 40.0;
 /// Left edge of the first plot of a picture, pixels.
 pub(crate) const PLOT_LEFT: f64 = LEFT + 8.0;
 

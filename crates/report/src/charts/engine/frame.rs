@@ -1,7 +1,7 @@
 //! The frame of a panel: grid, ticks with their labels, and titles of the axes.
 
-use super::chart::{BELOW, LEFT};
-use super::panel::Panel;
+use super::chart::LEFT;
+use super::panel::{BELOW, Panel};
 use super::style::INK;
 use super::svg::{Svg, units};
 

@@ -14,8 +14,8 @@ mod text;
 
 pub use axis::cell;
 pub(crate) use axis::{Axis, number, optional_cell, range, round_step};
-pub(crate) use chart::{BELOW, Block, Chart, Entry, Key, LEFT, PLOT_LEFT, Side, WIDTH};
-pub(crate) use panel::{Item, Panel, Shape, free, grid, row_middle, rows_left, rows_panel};
+pub(crate) use chart::{Block, Chart, Entry, Key, LEFT, PLOT_LEFT, Side, WIDTH};
+pub(crate) use panel::{BELOW, Item, Panel, Shape, free, grid, row_middle, rows_left, rows_panel};
 pub(crate) use place::{Label, Place, at};
 pub(crate) use style::{
     CONTEXT, DIVERGING, Fill, INK, PLAIN, QUIET, RULE, STROKES, Stroke, Style, ZERO, between, ramp,

@@ -1,12 +1,14 @@
 //! Panels: a pair of axes and the shapes between them; panels of rows with names at the left.
 
 use super::axis::Axis;
-use super::chart::BELOW;
 use super::place::{Label, Place, at};
 use super::style::{INK, Stroke, Style, stroke};
 use super::svg::{Point, Rect};
 use super::symbol::Symbol;
 use super::text::{Cut, text_width};
+
+/// Room below a plot for its axis, pixels.
+pub(crate) const BELOW: f64 = 40.0;
 
 /// A pair of axes and what is drawn between them.
 #[derive(Clone, Debug, Default)]
