@@ -165,9 +165,8 @@ impl OnBench<'_> {
                 belt = Some(state);
             }
         }
-        torques.clutch = line.clutch_nm(w, pa, &mut inside_maps);
-        let (pump, shaft_nm) = line.pump_and_shaft(w, pa, 0.0, &mut inside_maps);
-        (torques.pump, torques.shaft) = (pump.torque_nm, shaft_nm);
+        line.turn_primary(&mut torques, w, pa, &mut inside_maps);
+        let pump = line.turn_engine(&mut torques, w, pa, 0.0, &mut inside_maps);
         let mut loss_nm = ByComponent::default();
         torques.for_each_loss(|component, shaft, torque_nm| {
             loss_nm[component] = match shaft {

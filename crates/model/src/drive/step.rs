@@ -7,10 +7,10 @@
 //! | SI-4 | braking with the clutch locked, rotating energy that the engine cannot take up goes to the brakes | derived |
 //! | SI-3 | heat: engine to coolant and oil, 70 % of belt loss to the belt, input shaft to the metal, other losses to the sump | fitted share; rest ASSUMED |
 
+use super::row::{Inertia, Input, Solved, row};
 use super::{Car, EnergyTerms, Row, State};
 use crate::cycle::{GearCommand, Step, Trace};
-use crate::engine::{Burn, EngineAtTemperature};
-use crate::flags::Flags;
+use crate::engine::Burn;
 use crate::fluid::Lubricant;
 use crate::math::{clamp, larger, smaller};
 use crate::prime_mover::PrimeMover;
@@ -126,17 +126,6 @@ impl<'a> Drive<'a> {
     }
 }
 
-type Input<'a> = StepInput<'a, EngineAtTemperature<'a>>;
-
-/// Rotating energy and crank torque of a step.
-struct Inertia {
-    crank_nm: f64,
-    accessories_nm: f64,
-    kinetic_w: f64,
-    /// Rotating energy that the brakes take up with the car's (SI-4).
-    to_brake_w: f64,
-}
-
 #[inline(always)]
 fn inertia(
     car: &Car,
@@ -236,105 +225,4 @@ pub fn loss_heat_w(car: &Car, loss_w: &ByComponent<f64>) -> [f64; NODES] {
         COOLANT
     }] += coupling;
     power
-}
-
-/// Everything that a step computed.
-struct Solved<'a> {
-    output: &'a StepOutput,
-    inertia: &'a Inertia,
-    burn: &'a Burn,
-    /// Heat into each node, as the network received it.
-    power_w: [f64; NODES],
-    heat: &'a HeatStep,
-}
-
-/// Energy terms of a step, each from the model that owns it.
-#[inline]
-fn terms(input: &Input, a: &Solved) -> EnergyTerms {
-    let (d, b, wheel) = (a.output, a.burn, input.wheel);
-    let node_heat: f64 = a.power_w.iter().sum();
-    let losses: f64 = d.loss_w.iter().sum();
-    let engine_heat = b.to_coolant_w + b.to_oil_w;
-    let accessories = a.inertia.accessories_nm * d.engine_rad_s;
-    EnergyTerms {
-        fuel: b.fuel_w,
-        wheels: wheel.power_w - d.deficit_w,
-        brake: d.brake_w,
-        accessories,
-        losses,
-        kinetic: a.inertia.kinetic_w,
-        engine_heat,
-        exhaust: b.exhaust_w,
-        node_heat,
-        stored: a.heat.stored_w,
-        to_air: a.heat.to_air_w,
-    }
-}
-
-#[inline(always)]
-fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, EnergyTerms) {
-    let terms = terms(input, a);
-    let (d, b, wheel) = (a.output, a.burn, input.wheel);
-    let mut flags = d.flags;
-    flags.set(Flags::FUEL_CUT, b.cut && d.engine_rad_s > 0.0);
-    flags.set(Flags::OUTSIDE_VALIDITY, b.outside);
-    let t = &a.heat.heat.node_k;
-    let row = Row {
-        time_s: step.time_s,
-        dt_s: step.dt_s,
-        phase: step.phase,
-        speed_m_s: wheel.speed_m_s,
-        accel_m_s2: wheel.accel_m_s2,
-        distance_m: wheel.speed_m_s * step.dt_s,
-        wheel_torque_nm: if wheel.wheel_rad_s > 0.0 {
-            wheel.power_w / wheel.wheel_rad_s
-        } else {
-            0.0
-        },
-        wheel_power_w: wheel.power_w,
-        wheel_work_positive_j: wheel.positive_j,
-        wheel_work_negative_j: wheel.negative_j,
-        deficit_w: d.deficit_w,
-        engine_speed_rad_s: d.engine_rad_s,
-        engine_torque_nm: d.shaft_nm,
-        throttle: d.throttle,
-        gear: d.gear,
-        belt_ratio: d.belt_ratio,
-        overall_ratio: if wheel.wheel_rad_s > 0.0 {
-            d.engine_rad_s / wheel.wheel_rad_s
-        } else {
-            f64::NAN
-        },
-        primary_pressure_pa: d.primary_pa,
-        secondary_pressure_pa: d.secondary_pa,
-        slip: d.slip,
-        clamp_safety: d.clamp_safety,
-        loss_w: d.loss_w,
-        accessories_w: terms.accessories,
-        brake_w: d.brake_w,
-        kinetic_w: a.inertia.kinetic_w,
-        fuel_kg_s: b.fuel_kg_s,
-        fuel_power_w: b.fuel_w,
-        engine_heat_w: terms.engine_heat,
-        exhaust_w: b.exhaust_w,
-        coolant_k: t[COOLANT],
-        engine_oil_k: t[ENGINE_OIL],
-        sump_k: t[SUMP],
-        metal_k: t[METAL],
-        belt_spray_k: if car.transmission.is_cvt() {
-            t[BELT]
-        } else {
-            f64::NAN
-        },
-        cooler_in_k: a.heat.cooler_in_k,
-        cooler_out_k: a.heat.cooler_out_k,
-        stored_w: a.heat.stored_w,
-        to_air_w: a.heat.to_air_w,
-        power_ledger_error: terms.power_error(),
-        heat_ledger_error: terms.heat_error(),
-        solve_residual: d.residual,
-        iterations: d.iterations,
-        flags,
-    };
-    (row, terms)
 }

@@ -75,6 +75,23 @@ pub(crate) struct PartTorques {
 }
 
 impl PartTorques {
+    /// Parts that turn with the primary, the belt apart, Nm at the primary.
+    #[inline]
+    pub fn primary_nm(&self) -> f64 {
+        self.clutch
+    }
+
+    /// Parts that turn with the engine, Nm at the flywheel.
+    #[inline]
+    pub fn engine_nm(&self) -> f64 {
+        self.pump + self.shaft
+    }
+
+    /// Torque at the flywheel with that of the coupling, Nm.
+    pub fn flywheel_nm(&self, coupling_nm: f64) -> f64 {
+        coupling_nm + self.pump + self.shaft
+    }
+
     /// Gives every loss torque with its component and shaft.
     #[inline(always)]
     pub fn for_each_loss(&self, mut give: impl FnMut(Component, Shaft, f64)) {
@@ -179,29 +196,32 @@ impl<'a> Driveline<'a> {
         self.mapped(Component::BeltMap, at, inside)
     }
 
-    /// Drag of the reverse clutch, Nm at the primary.
+    /// Sets the torques of the parts that turn with the primary, the belt apart, at its speed and a pressure.
     #[inline]
-    pub fn clutch_nm(&self, primary_rad_s: f64, pressure_pa: f64, inside: &mut bool) -> f64 {
-        if !self.parts.reverse_clutch {
-            return 0.0;
+    pub fn turn_primary(
+        &self,
+        torques: &mut PartTorques,
+        primary_rad_s: f64,
+        pressure_pa: f64,
+        inside: &mut bool,
+    ) {
+        if self.parts.reverse_clutch {
+            let at = (primary_rad_s, 0.0, pressure_pa);
+            let mapped = self.mapped(Component::ClutchDrag, at, inside);
+            torques.clutch = mapped.unwrap_or(self.spin.clutch_nm);
         }
-        self.mapped(
-            Component::ClutchDrag,
-            (primary_rad_s, 0.0, pressure_pa),
-            inside,
-        )
-        .unwrap_or(self.spin.clutch_nm)
     }
 
-    /// Pump and input shaft at an engine speed, a pressure and a flow into the pulleys: the pump's state and the shaft's torque, Nm.
+    /// Sets the torques of the parts that turn with the engine, at its speed, a pressure and a flow into the pulleys; the pump's state.
     #[inline(always)]
-    pub fn pump_and_shaft(
+    pub fn turn_engine(
         &self,
+        torques: &mut PartTorques,
         engine_rad_s: f64,
         pressure_pa: f64,
         shift_flow_m3_s: f64,
         inside: &mut bool,
-    ) -> (PumpState, f64) {
+    ) -> PumpState {
         let at = (engine_rad_s, 0.0, pressure_pa);
         let mut state = PumpState::default();
         if self.parts.pump {
@@ -212,10 +232,11 @@ impl<'a> Driveline<'a> {
                 state.torque_nm = loss;
             }
         }
-        let shaft_nm = self
+        torques.pump = state.torque_nm;
+        torques.shaft = self
             .mapped(Component::InputShaft, at, inside)
             .unwrap_or_else(|| self.spin.shaft_nm(engine_rad_s));
-        (state, shaft_nm)
+        state
     }
 
     /// Signals of the clamp law.

@@ -146,15 +146,15 @@ impl<P: PrimeMover> Step<'_, P> {
             pa,
             inside,
         );
-        PartTorques {
+        let mut torques = PartTorques {
             output: g.output_nm,
             secondary,
             belt: belt_losses(&line.cvt.belt, line.at, &load(secondary)),
             belt_map: line.belt_map_nm(secondary, primary_rad_s, pa, inside),
-            clutch: line.clutch_nm(primary_rad_s, pa, inside),
-            pump: 0.0,
-            shaft: 0.0,
-        }
+            ..PartTorques::default()
+        };
+        line.turn_primary(&mut torques, primary_rad_s, pa, inside);
+        torques
     }
 
     /// Evaluates a guess, in place: a point is large.
@@ -182,17 +182,17 @@ impl<P: PrimeMover> Step<'_, P> {
         // VA-1 with the slip in force, so that the power balance holds for this iterate exactly.
         let primary_nm = torques.secondary * ((1.0 - slip) * line.at.prepared.inv_ratio)
             + belt_nm
-            + torques.clutch;
+            + torques.primary_nm();
         let own = self.engine_side(g, limit, (primary_nm, primary_rad_s), locked);
         let engine_rad_s = own.engine_rad_s;
-        let (pump, shaft_nm) = line.pump_and_shaft(
+        let pump = line.turn_engine(
+            &mut torques,
             engine_rad_s,
             g.pressure_pa,
             self.shift_flow_m3_s,
             &mut inside_maps,
         );
-        (torques.pump, torques.shaft) = (pump.torque_nm, shaft_nm);
-        let spin_nm = pump.torque_nm + shaft_nm;
+        let spin_nm = torques.engine_nm();
         let wanted_nm = match limit {
             Limit::None => primary_nm,
             Limit::EngineDrag => self.min_primary_nm(primary_rad_s, engine_rad_s, spin_nm),

@@ -31,7 +31,7 @@ impl<P: PrimeMover> Step<'_, P> {
         if above_idle && p.primary_nm >= 0.0 && p.throttle < 1.0 {
             return Limit::None; // CV-3 is below zero here, CV-4 above
         }
-        let (w, spin_nm) = (p.guess.engine_rad_s, p.torques.pump + p.torques.shaft);
+        let (w, spin_nm) = (p.guess.engine_rad_s, p.torques.engine_nm());
         if p.primary_nm < self.min_primary_nm(p.primary_rad_s, w, spin_nm) - margin_nm {
             Limit::EngineDrag
         } else if p.primary_nm > self.max_primary_nm(p.primary_rad_s, w, spin_nm) + margin_nm {

@@ -52,11 +52,15 @@ fn idling<P: PrimeMover>(
     while at.residual > TOLERANCE && at.evaluations < MAX_EVALUATIONS {
         let signals = line.signals(at.throttle, w);
         at.pressure_pa = line.cvt.pressure_pa(&signals, line.at, load, 0.0);
-        let (pump, shaft) =
-            line.pump_and_shaft(w, at.pressure_pa, step.shift_flow_m3_s, &mut at.inside_maps);
-        (at.torques.pump, at.torques.shaft) = (pump.torque_nm, shaft);
+        let pump = line.turn_engine(
+            &mut at.torques,
+            w,
+            at.pressure_pa,
+            step.shift_flow_m3_s,
+            &mut at.inside_maps,
+        );
         (at.flow_limited, at.oil_flow_m3_s) = (pump.flow_limited, pump.working_m3_s);
-        at.load_share = (coupling_nm + pump.torque_nm + shaft + engine.accessories_nm(w))
+        at.load_share = (at.torques.flywheel_nm(coupling_nm) + engine.accessories_nm(w))
             / engine.full_load_nm(w);
         let next = clamp(at.load_share, 0.0, 1.0);
         at.residual = (next - at.throttle).abs();
@@ -86,7 +90,7 @@ pub(super) fn standstill<P: PrimeMover>(
     let ratio = line.at.geometry.ratio;
     let mut output = StepOutput {
         engine_rad_s: w,
-        shaft_nm: side.engine_nm + at.torques.pump + at.torques.shaft,
+        shaft_nm: at.torques.flywheel_nm(side.engine_nm),
         throttle: at.throttle,
         belt_ratio: ratio,
         primary_pa: primary_pa(step, at.pressure_pa),
