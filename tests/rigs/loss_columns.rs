@@ -65,12 +65,21 @@ fn val_rows_of_the_bench() {
             seen[2] += 1;
         }
         let belt = row.answer.belt.unwrap();
-        same(row.slip(), belt.slip_total);
-        let secondary = (belt.input_torque_nm - belt.loss_nm()) * 0.7 / (1.0 - belt.slip_total);
-        near(row.clamp_safety(), belt.capacity_nm / secondary.abs(), 1e-9);
+        same(row.slip(), belt.losses.slip_total);
+        let secondary =
+            (belt.input_torque_nm - belt.losses.sum_nm()) * 0.7 / (1.0 - belt.losses.slip_total);
+        near(
+            row.clamp_safety(),
+            belt.losses.capacity_nm / secondary.abs(),
+            1e-9,
+        );
         assert_eq!(
             row.belt_status(),
-            if belt.gross_slip { "gross_slip" } else { "ok" }
+            if belt.losses.gross_slip {
+                "gross_slip"
+            } else {
+                "ok"
+            }
         );
         seen[3] += 1;
     }
@@ -174,7 +183,7 @@ fn val_columns_of_the_bench() {
     same(of("secondary_pressure_bar"), row.answer.secondary_pa / 1e5);
     same(
         of("slip_percent"),
-        100.0 * row.answer.belt.unwrap().slip_total,
+        100.0 * row.answer.belt.unwrap().losses.slip_total,
     );
     same(of("output_speed_rpm"), row.answer.output_rad_s / RPM);
     same(of("belt_spray_degc"), row.answer.belt_k - 273.15);

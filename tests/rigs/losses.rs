@@ -651,7 +651,7 @@ fn printed_forms() {
     // Eq. 49 unscaled, both wedge arcs: the chapter loses more in bands.
     assert!(chapter.part_nm(Component::BeltBand) > appendix.part_nm(Component::BeltBand) + 0.3);
     // 0.02 % slip rms against integer k (physics.md 1).
-    let slip = |a: &cvtcycle::model::bench::BenchAnswer| a.belt.unwrap().slip_total;
+    let slip = |a: &cvtcycle::model::bench::BenchAnswer| a.belt.unwrap().losses.slip_total;
     assert!(
         (slip(&smooth) - slip(&appendix)).abs() < 2e-3,
         "{} {}",

@@ -225,15 +225,17 @@ impl LossRow {
 
     /// Belt slip as a fraction; NaN without a belt model.
     pub fn slip(&self) -> f64 {
-        self.answer.belt.map_or(f64::NAN, |belt| belt.slip_total)
+        self.answer
+            .belt
+            .map_or(f64::NAN, |belt| belt.losses.slip_total)
     }
 
     /// Torque capacity of the belt over its torque; infinite without load, NaN without a belt model.
     pub fn clamp_safety(&self) -> f64 {
         self.answer.belt.map_or(f64::NAN, |belt| {
-            let secondary_nm = (belt.input_torque_nm - belt.loss_nm()) * self.point.ratio
-                / (1.0 - belt.slip_total);
-            belt.capacity_nm / secondary_nm.abs()
+            let secondary_nm = (belt.input_torque_nm - belt.losses.sum_nm()) * self.point.ratio
+                / (1.0 - belt.losses.slip_total);
+            belt.losses.capacity_nm / secondary_nm.abs()
         })
     }
 
@@ -241,8 +243,8 @@ impl LossRow {
     pub fn belt_status(&self) -> &'static str {
         match self.answer.belt {
             None => "",
-            Some(belt) if belt.slip_total.is_nan() => "no_active_arc",
-            Some(belt) if belt.gross_slip => "gross_slip",
+            Some(belt) if belt.losses.slip_total.is_nan() => "no_active_arc",
+            Some(belt) if belt.losses.gross_slip => "gross_slip",
             Some(_) => "ok",
         }
     }

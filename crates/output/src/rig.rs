@@ -322,7 +322,7 @@ fn steady_columns() -> Vec<Column<SteadyPoint>> {
         number "input_torque_nm", "Nm", "torque at the input shaft", p => p.answer.input_nm;
         number "output_speed_rpm", "rpm", "speed of the output shaft", p => p.answer.output_rad_s * (1.0 / RPM);
         number "efficiency_percent", "%", "output over input power", p => efficiency_percent(p);
-        number "slip_percent", "%", "belt slip", p => 100.0 * p.answer.belt.map_or(f64::NAN, |b| b.slip_total);
+        number "slip_percent", "%", "belt slip", p => 100.0 * p.answer.belt.map_or(f64::NAN, |b| b.losses.slip_total);
     });
     columns.extend(part_columns(|p: &SteadyPoint| &p.answer));
     columns

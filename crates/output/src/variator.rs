@@ -154,7 +154,7 @@ fn point_columns() -> Vec<Column<VariatorRow>> {
         number "input_speed_rpm", "rpm", "primary speed, held", r => given(rpm(r.held.input_rad_s));
         number "belt_temp_degc", "degC", "belt temperature, held", r => given(degc(r.held.belt_k));
         number "output_torque_nm", "Nm", "torque at the secondary pulley", r => r.output_nm;
-        number "slip_percent", "%", "belt slip: speed lost against the geometric ratio", r => 100.0 * r.belt.slip_total;
+        number "slip_percent", "%", "belt slip: speed lost against the geometric ratio", r => 100.0 * r.belt.losses.slip_total;
         number "slip_reading_percent", "%", "pulse ratio over geometric ratio, less one", r => 100.0 * r.slip_reading();
         number "slip_zeroed_percent", "%", "pulse ratio over that at zero torque, less one: as the thesis zeroes it", r => 100.0 * r.slip_zeroed();
         number "primary_slip_m_s", "m/s", "primary surface speed less belt speed", r => r.slip_m_s()[0];
@@ -170,10 +170,10 @@ fn point_columns() -> Vec<Column<VariatorRow>> {
         number "belt_speed_m_s", "m/s", "speed of the belt", r => r.belt_m_s;
         number "output_speed_rpm", "rpm", "secondary speed", r => rpm(r.shaft_rad_s[1]);
         number "input_torque_nm", "Nm", "torque at the primary pulley", r => r.belt.input_torque_nm;
-        number "belt_loss_nm", "Nm", "all belt losses, torque at the primary", r => r.belt.loss_nm();
+        number "belt_loss_nm", "Nm", "all belt losses, torque at the primary", r => r.belt.losses.sum_nm();
         number "segment_compression_n", "N", "compression between segments; zero at the breakpoint", r => r.belt.tension.compression_n;
         number "active_segments", "-", "segments that carry, of the branch in force, real-valued", r => r.belt.slip.active_segments;
-        number "capacity_nm", "Nm", "torque at the secondary that the clamping forces carry", r => r.belt.capacity_nm;
+        number "capacity_nm", "Nm", "torque at the secondary that the clamping forces carry", r => r.belt.losses.capacity_nm;
         words "flags", "", "gross slip, and departures from the rig's limits (Table 6-1)", r => Cell::Names(r.flags.names().collect());
     }
 }

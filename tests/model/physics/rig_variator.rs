@@ -125,7 +125,7 @@ fn readings_belong_together() {
         let rows = rig.rows(&held(ratio, bar), &[0.0, 10.0, 60.0, 120.0]);
         assert!(rows[0].slip_zeroed().abs() < 1e-15);
         for row in &rows {
-            let slip = row.belt.slip_total;
+            let slip = row.belt.losses.slip_total;
             assert!((row.slip_reading() - (1.0 / (1.0 - slip) - 1.0)).abs() < 1e-12);
             let (v, g) = (
                 row.held.input_rad_s * row.geometry.primary_radius_m,

@@ -9,7 +9,7 @@ use crate::transmission::cvt::Cvt;
 use crate::transmission::cvt::driveline::{Driveline, PartTorques, Shaft};
 use crate::transmission::cvt::variator::point::{LIMIT_SLACK, PointStatus};
 use crate::transmission::cvt::variator::{
-    Belt, BeltAtRatio, BeltLoad, BeltState, Slip, belt_point, belt_state,
+    Belt, BeltAtRatio, BeltLoad, BeltLosses, BeltState, Slip, belt_point, belt_state,
 };
 
 /// Largest number of passes of the fixed point; its contraction is below 0.2 in the shipped box, so far fewer are used.
@@ -70,14 +70,16 @@ fn printed_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
             active_segments: p.active_segments,
             held: false,
         },
-        slip_total: p.slip_total,
-        band_nm: sum(p.band_loss_nm),
-        film_nm: sum(p.film_loss_nm),
-        slip_nm: sum(p.slip_loss_nm),
-        wedge_nm: sum(p.wedge_loss_nm),
-        penetration_nm: sum(p.penetration_loss_nm),
-        capacity_nm: p.capacity_nm,
-        gross_slip: p.status != PointStatus::Ok,
+        losses: BeltLosses {
+            slip_total: p.slip_total,
+            band_nm: sum(p.band_loss_nm),
+            film_nm: sum(p.film_loss_nm),
+            slip_nm: sum(p.slip_loss_nm),
+            wedge_nm: sum(p.wedge_loss_nm),
+            penetration_nm: sum(p.penetration_loss_nm),
+            capacity_nm: p.capacity_nm,
+            gross_slip: p.status != PointStatus::Ok,
+        },
     }
 }
 
@@ -161,7 +163,7 @@ impl OnBench<'_> {
             torques.belt_map = line.belt_map_nm(secondary, w, pa, &mut inside_maps);
             if torques.belt_map.is_none() {
                 let state = self.belt_state(&load);
-                torques.belt = state.losses();
+                torques.belt = state.losses;
                 belt = Some(state);
             }
         }
@@ -207,9 +209,9 @@ impl OnBench<'_> {
     ) {
         let p = self.point;
         // Where a printed form has no meaning, it must not carry speeds and belt temperature away with it.
-        let valid = !(self.printed && belt.is_some_and(|state| state.gross_slip));
+        let valid = !(self.printed && belt.is_some_and(|state| state.losses.gross_slip));
         if let Some(state) = belt {
-            next.slip = if valid { state.slip_total } else { 0.0 };
+            next.slip = if valid { state.losses.slip_total } else { 0.0 };
         }
         if p.belt_k.is_none() {
             let belt_w = belt_nm(loss_nm) * p.input_rad_s;
@@ -255,10 +257,10 @@ impl OnBench<'_> {
             && pass.inside_maps
             && limits.contains(&p.ratio);
         let belt = pass.belt;
-        let low_clamp = belt.is_some_and(|b| b.capacity_nm < pass.secondary_nm.abs());
+        let low_clamp = belt.is_some_and(|b| b.losses.capacity_nm < pass.secondary_nm.abs());
         let mut flags = Flags::default();
         flags.set(Flags::NOT_CONVERGED, !converged);
-        flags.set(Flags::GROSS_SLIP, belt.is_some_and(|b| b.gross_slip));
+        flags.set(Flags::GROSS_SLIP, belt.is_some_and(|b| b.losses.gross_slip));
         flags.set(Flags::LOW_CLAMP, low_clamp);
         flags.set(Flags::FLOW_LIMITED, pass.flow_limited);
         flags.set(Flags::OVERRUN, input_nm < 0.0);

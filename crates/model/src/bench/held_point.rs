@@ -21,6 +21,17 @@ use crate::transmission::cvt::variator::Formulation;
 use crate::transmission::manual::Manual;
 
 /// A transmission on the bench.
+///
+/// ```
+/// use cvtcycle_config::setup::{Options, load};
+/// use cvtcycle_model::bench::{Bench, BenchPoint};
+///
+/// let car = load("rover_216_cvt", &Options::default()).expect("a shipped car");
+/// let cold = BenchPoint { ratio: 0.5, sump_k: 298.15, ..BenchPoint::default() };
+/// let warm = BenchPoint { sump_k: 353.15, ..cold };
+/// let bench = Bench::new(&car);
+/// assert!(bench.solve(&cold).total_nm() > bench.solve(&warm).total_nm());
+/// ```
 #[derive(Clone, Debug)]
 pub struct Bench {
     car: Car,

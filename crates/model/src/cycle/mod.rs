@@ -44,6 +44,68 @@ pub struct Cycle {
 }
 
 impl Cycle {
+    /// A cycle from intervals, one trace for all cars, without prescribed gears. Phases are named `phase_1`, `phase_2` and so on, where
+    /// there is more than one.
+    ///
+    /// ```
+    /// use cvtcycle_model::cycle::{Cycle, Interval};
+    ///
+    /// let start = Interval {
+    ///     start_s: 0.0,
+    ///     end_s: 10.0,
+    ///     start_speed_m_s: 0.0,
+    ///     end_speed_m_s: 15.0,
+    ///     phase: 0,
+    ///     grade: 0.0,
+    ///     engine_off: false,
+    /// };
+    /// let cruise = Interval { start_s: 10.0, end_s: 70.0, start_speed_m_s: 15.0, ..start };
+    /// let cycle = Cycle::from_intervals("cruise", vec![start, cruise])?;
+    /// assert_eq!(cycle.manual.distance_m(), 75.0 + 900.0);
+    /// assert!(Cycle::from_intervals("gap", vec![cruise]).is_err());
+    /// # Ok::<(), String>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A sentence that names the first interval, counted from 1, that does not begin where the one before ends (the first: at 0 s), does
+    /// not end after its beginning, or has a speed below zero or a number that is not finite.
+    pub fn from_intervals(name: &str, intervals: Vec<Interval>) -> Result<Self, String> {
+        let mut end = (0.0, intervals.first().map_or(0.0, |i| i.start_speed_m_s));
+        for (number, i) in (1..).zip(&intervals) {
+            let speeds = [i.start_speed_m_s, i.end_speed_m_s];
+            if (i.start_s - end.0).abs() > 0.0 || (i.start_speed_m_s - end.1).abs() > 0.0 {
+                return Err(format!(
+                    "interval {number} does not begin at {} s and {} m/s",
+                    end.0, end.1
+                ));
+            }
+            if !(i.end_s > i.start_s && i.end_s.is_finite()) {
+                return Err(format!(
+                    "interval {number} does not end after its beginning"
+                ));
+            }
+            if !(i.grade.is_finite() && speeds.iter().all(|v| *v >= 0.0 && v.is_finite())) {
+                return Err(format!(
+                    "interval {number} has a speed or grade out of range"
+                ));
+            }
+            end = (i.end_s, i.end_speed_m_s);
+        }
+        let Some(last) = intervals.iter().map(|i| i.phase).max() else {
+            return Err("a cycle has at least one interval".to_owned());
+        };
+        Ok(Cycle {
+            name: name.to_owned(),
+            title: name.to_owned(),
+            phases: (1..=last + u16::from(last > 0))
+                .map(|k| format!("phase_{k}"))
+                .collect(),
+            weighting: Weighting::None,
+            manual: Trace::without_gears(intervals),
+            automatic: None,
+        })
+    }
+
     /// The trace that a car drives: with `automatic` the one of an automatic or CVT, without it that of a manual gearbox.
     /// Most cycles have one trace for both; the ECE cycles hold the speed during gear changes, for manual cars only.
     pub fn trace_for(&self, automatic: bool) -> &Trace {

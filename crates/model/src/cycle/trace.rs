@@ -66,24 +66,15 @@ impl Interval {
     /// The whole interval as one step.
     #[inline]
     fn whole(&self, interval: usize, motion: Motion) -> Step {
-        let Self {
-            start_s,
-            end_s,
-            start_speed_m_s,
-            end_speed_m_s,
-            phase,
-            grade,
-            engine_off,
-        } = *self;
         Step {
-            time_s: end_s,
-            dt_s: end_s - start_s,
-            start_speed_m_s,
-            end_speed_m_s,
+            time_s: self.end_s,
+            dt_s: self.end_s - self.start_s,
+            start_speed_m_s: self.start_speed_m_s,
+            end_speed_m_s: self.end_speed_m_s,
             motion,
-            phase,
-            grade,
-            engine_off,
+            phase: self.phase,
+            grade: self.grade,
+            engine_off: self.engine_off,
             interval,
         }
     }
@@ -93,23 +84,15 @@ impl Interval {
         let (_, start_speed_m_s) = self.point(index, parts);
         let (time_s, end_speed_m_s) = self.point(index + 1, parts);
         let dt_s = (self.end_s - self.start_s) / parts as f64;
-        let motion = Motion::between(start_speed_m_s, end_speed_m_s, dt_s);
-        let Self {
-            phase,
-            grade,
-            engine_off,
-            ..
-        } = *self;
         Step {
             time_s,
             dt_s,
             start_speed_m_s,
             end_speed_m_s,
-            motion,
-            phase,
-            grade,
-            engine_off,
-            interval,
+            ..self.whole(
+                interval,
+                Motion::between(start_speed_m_s, end_speed_m_s, dt_s),
+            )
         }
     }
 }

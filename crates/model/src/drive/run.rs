@@ -77,6 +77,17 @@ impl Recorder for NullRecorder {
 }
 
 /// Drives a car through a cycle.
+///
+/// ```
+/// use cvtcycle_config::{cycle::embedded, setup::{Options, load}};
+/// use cvtcycle_model::drive::{Conditions, Start, drive, litres_per_100km};
+///
+/// let car = load("rover_216_cvt", &Options::default()).expect("a shipped car");
+/// let cycle = embedded("ece15").expect("a shipped cycle");
+/// let conditions = Conditions { ambient_k: 298.15, start: Start::Soak, max_dt_s: 1.0, keep_rows: false };
+/// let total = drive(&car, &cycle, &conditions).totals.total();
+/// assert!((5.0..15.0).contains(&litres_per_100km(total.fuel_kg, 745.0, total.distance_m)));
+/// ```
 pub fn drive(vehicle: &Vehicle, cycle: &Cycle, conditions: &Conditions) -> Outcome {
     if !conditions.keep_rows {
         return drive_into(vehicle, cycle, conditions, None);
@@ -163,7 +174,7 @@ pub struct FuelMap {
     pub speed_rad_s: Vec<f64>,
     /// Torques, Nm, ascending.
     pub torque_nm: Vec<f64>,
-    /// Brake specific fuel consumption, kg/J, by speed and torque; NaN above full load.
+    /// Brake specific fuel consumption, kg/J: `bsfc_kg_j[i][k]` at `speed_rad_s[i]` and `torque_nm[k]`; NaN above full load.
     pub bsfc_kg_j: Vec<Vec<f64>>,
     /// Full-load torque at each speed, Nm.
     pub full_load_nm: Vec<f64>,

@@ -18,7 +18,21 @@ use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODE
 use crate::transmission::component::{ByComponent, Component, HeatTo};
 use crate::transmission::{StepInput, StepOutput, Transmission};
 
-/// A car on its way: steps in, rows out.
+/// A car on its way: steps in, rows out, no allocation. [`simulate`](super::simulate) is a loop over [`Drive::step`].
+///
+/// ```
+/// use cvtcycle_config::{cycle::embedded, setup::{Options, load}};
+/// use cvtcycle_model::drive::{Drive, State};
+///
+/// let car = load("rover_216_cvt", &Options::default()).expect("a shipped car").car(263.15);
+/// let cycle = embedded("ece15").expect("a shipped cycle");
+/// let mut drive = Drive::along(&car, cycle.trace_for(true), State::at(263.15));
+/// for step in cycle.trace_for(true).steps(1.0) {
+///     let (row, _) = drive.step(&step);
+///     assert!(row.power_ledger_error < 1e-9);
+/// }
+/// assert!(drive.state().heat.node_k.iter().all(|temp_k| *temp_k > 263.15));
+/// ```
 #[derive(Clone, Debug)]
 pub struct Drive<'a> {
     car: &'a Car,

@@ -12,7 +12,7 @@ pub struct BsfcMap {
     pub speed_rad_s: Vec<f64>,
     /// Brake mean effective pressures, Pa, rising, at least two.
     pub bmep_pa: Vec<f64>,
-    /// Fuel MEP `[speed][bmep]`, Pa.
+    /// Fuel MEP, Pa: `fuel_pa[i][k]` at `speed_rad_s[i]` and `bmep_pa[k]`.
     pub fuel_pa: Vec<Vec<f64>>,
     /// Hot friction l, l2 as in the Willans line, bar and bar s2/m2 (BM-2).
     pub friction: (f64, f64),

@@ -36,7 +36,12 @@ pub fn plots(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
         ("radii.svg", radii(plan, &tests)),
         (
             "slip.svg",
-            lines("Belt slip", "Slip [%]", |r| 100.0 * r.belt.slip_total, true),
+            lines(
+                "Belt slip",
+                "Slip [%]",
+                |r| 100.0 * r.belt.losses.slip_total,
+                true,
+            ),
         ),
         (
             "slip_zeroed.svg",
@@ -71,7 +76,7 @@ pub fn plots(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
 /// Rows up to the slip that is drawn: the figures of the thesis end at 3 %, and at gross slip the value is only a bound.
 fn carried(curve: &Curve) -> impl Iterator<Item = &VariatorRow> {
     curve.rows.iter().filter(|row| {
-        row.belt.slip_total.abs() <= MAX_SLIP && !row.flags.contains(RigFlags::GROSS_SLIP)
+        row.belt.losses.slip_total.abs() <= MAX_SLIP && !row.flags.contains(RigFlags::GROSS_SLIP)
     })
 }
 

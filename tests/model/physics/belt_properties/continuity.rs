@@ -281,7 +281,7 @@ fn across_standstill() {
 #[test]
 fn into_gross_slip() {
     let belt = thesis_belt(Formulation::Smooth);
-    let slips = |s: &BeltState, _: &Point| s.gross_slip;
+    let slips = |s: &BeltState, _: &Point| s.losses.gross_slip;
     let held = |s: &BeltState, _: &Point| s.slip.held;
     for ratio in RATIOS {
         for (clamp_n, rpm) in [(750.0, 0.0), (6e3, 2000.0), (20e3, 6000.0)] {
@@ -291,7 +291,7 @@ fn into_gross_slip() {
                 rpm,
                 ..Point::plain(ratio)
             };
-            let capacity = point(0.0).state(&belt).capacity_nm;
+            let capacity = point(0.0).state(&belt).losses.capacity_nm;
             for (name, reach, side) in [
                 (
                     "over capacity",

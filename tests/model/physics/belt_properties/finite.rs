@@ -21,11 +21,11 @@ fn any_belt() -> impl Strategy<Value = Belt> {
 
 fn losses(s: &BeltState) -> [f64; 5] {
     [
-        s.band_nm,
-        s.film_nm,
-        s.slip_nm,
-        s.wedge_nm,
-        s.penetration_nm,
+        s.losses.band_nm,
+        s.losses.film_nm,
+        s.losses.slip_nm,
+        s.losses.wedge_nm,
+        s.losses.penetration_nm,
     ]
 }
 
@@ -35,9 +35,9 @@ fn check_numbers(belt: &Belt, p: &Point, s: &BeltState) -> Result<(), TestCaseEr
     let more = [
         t.primary_shoulder_n,
         t.secondary_shoulder_n,
-        s.capacity_nm,
+        s.losses.capacity_nm,
         s.slip.active_segments,
-        s.loss_nm(),
+        s.losses.sum_nm(),
     ];
     for (x, name) in values(s).iter().zip(NAMES).chain(
         more.iter()
@@ -58,15 +58,21 @@ fn check_numbers(belt: &Belt, p: &Point, s: &BeltState) -> Result<(), TestCaseEr
             )
         },
     )?;
-    hold(s.capacity_nm >= 0.0, || {
-        format!("capacity {}", s.capacity_nm)
-    })?;
-    hold(s.gross_slip || p.torque_nm.abs() <= s.capacity_nm, || {
-        "gross slip goes unflagged".into()
+    hold(s.losses.capacity_nm >= 0.0, || {
+        format!("capacity {}", s.losses.capacity_nm)
     })?;
     hold(
-        p.ratio != 1.0 || s.band_nm == 0.0 && s.film_nm == 0.0,
-        || format!("bands slide at ratio 1: {} {}", s.band_nm, s.film_nm),
+        s.losses.gross_slip || p.torque_nm.abs() <= s.losses.capacity_nm,
+        || "gross slip goes unflagged".into(),
+    )?;
+    hold(
+        p.ratio != 1.0 || s.losses.band_nm == 0.0 && s.losses.film_nm == 0.0,
+        || {
+            format!(
+                "bands slide at ratio 1: {} {}",
+                s.losses.band_nm, s.losses.film_nm
+            )
+        },
     )
 }
 
@@ -74,7 +80,7 @@ fn check_numbers(belt: &Belt, p: &Point, s: &BeltState) -> Result<(), TestCaseEr
 /// never more than what the driving one gives, whichever drives.
 fn check_energy(p: &Point, s: &BeltState) -> Result<(), TestCaseError> {
     let w_in = if p.rpm > 0.0 { p.rpm * RPM } else { 1.0 };
-    let w_out = w_in / p.ratio * (1.0 - s.slip_total);
+    let w_out = w_in / p.ratio * (1.0 - s.losses.slip_total);
     let (given, taken) = (s.input_torque_nm * w_in, p.torque_nm * w_out);
     let lost: f64 = losses(s).iter().map(|x| x * w_in).sum();
     let rounding = 1e-14 * (given.abs() + taken.abs() + lost) + f64::MIN_POSITIVE;

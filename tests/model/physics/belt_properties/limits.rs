@@ -9,7 +9,7 @@ proptest! {
     #[test]
     fn no_band_friction_no_band_loss(f in any_formulation(), p in any_point()) {
         let s = Point { mu_band: 0.0, ..p }.state(&thesis_belt(f));
-        prop_assert_eq!((s.band_nm, s.tension.step_n), (0.0, 0.0));
+        prop_assert_eq!((s.losses.band_nm, s.tension.step_n), (0.0, 0.0));
         let radius = BeltAtRatio::new(&thesis_belt(f), p.ratio).geometry.secondary_radius_m;
         prop_assert!((s.tension.compression_n * radius - p.torque_nm).abs() <= 1e-12 * p.torque_nm.abs());
     }
@@ -48,7 +48,7 @@ proptest! {
         };
         let want = pack(s.tension.primary_shoulder_n, g.primary_wrap_rad, g.secondary_wrap_rad)
             + pack(s.tension.secondary_shoulder_n, g.secondary_wrap_rad, g.primary_wrap_rad);
-        prop_assert!((s.band_nm - want).abs() <= 1e-12 * want, "{} instead of {want}", s.band_nm);
+        prop_assert!((s.losses.band_nm - want).abs() <= 1e-12 * want, "{} instead of {want}", s.losses.band_nm);
     }
 
     /// Rigid pulleys, frictionless flanks or no clamping: neither wedging nor penetration (WE-1, WE-3, PE-1).
@@ -57,7 +57,7 @@ proptest! {
         let belt = thesis_belt(f);
         let rigid = Belt { primary_compliance_per_n: 0.0, secondary_compliance_per_n: 0.0, ..belt.clone() };
         for s in [p.state(&rigid), Point { mu_flank: 0.0, ..p }.state(&belt), Point { clamp_n: 0.0, ..p }.state(&belt)] {
-            prop_assert_eq!((s.wedge_nm, s.penetration_nm), (0.0, 0.0));
+            prop_assert_eq!((s.losses.wedge_nm, s.losses.penetration_nm), (0.0, 0.0));
         }
     }
 
@@ -68,7 +68,7 @@ proptest! {
         for f in ALL {
             let belt = thesis_belt(f);
             let (soft, stiff) = (p.state(&belt), p.state(&Belt { primary_compliance_per_n: 0.0, ..belt }));
-            prop_assert_eq!(soft.wedge_nm == stiff.wedge_nm && soft.penetration_nm == stiff.penetration_nm, f != Formulation::AppendixC);
+            prop_assert_eq!(soft.losses.wedge_nm == stiff.losses.wedge_nm && soft.losses.penetration_nm == stiff.losses.penetration_nm, f != Formulation::AppendixC);
         }
     }
 
@@ -79,10 +79,10 @@ proptest! {
         let p = Point { clamp_n: p.clamp_n + 1000.0, mu_segment: 0.125, ..p };
         let belt = |gpa: f64| Belt { youngs_pa: gpa * 1e9, slip_bound: 1e9, ..thesis_belt(f) };
         let (soft, stiff, rigid) = (p.state(&belt(206.0)), p.state(&belt(412.0)), p.state(&belt(1e30)));
-        prop_assume!(!soft.gross_slip);
-        prop_assert!((soft.slip_total - 2.0 * stiff.slip_total).abs() <= 1e-12 * (soft.slip.primary.abs() + soft.slip.secondary.abs()));
-        prop_assert!((soft.slip_nm - 2.0 * stiff.slip_nm).abs() <= 1e-12 * soft.slip_nm);
-        prop_assert!(rigid.slip_total.abs() <= 1e-15 * (1.0 + soft.slip_total.abs()), "{}", rigid.slip_total);
+        prop_assume!(!soft.losses.gross_slip);
+        prop_assert!((soft.losses.slip_total - 2.0 * stiff.losses.slip_total).abs() <= 1e-12 * (soft.slip.primary.abs() + soft.slip.secondary.abs()));
+        prop_assert!((soft.losses.slip_nm - 2.0 * stiff.losses.slip_nm).abs() <= 1e-12 * soft.losses.slip_nm);
+        prop_assert!(rigid.losses.slip_total.abs() <= 1e-15 * (1.0 + soft.losses.slip_total.abs()), "{}", rigid.losses.slip_total);
         // A gap that is there at no load slips in a rigid belt too, by no less than gap over arc (here 0.25 m at the most).
         let gapped = p.state(&Belt { initial_gap_m: 1e-3, ..belt(1e30) });
         let conventional = f == Formulation::Smooth && gapped.tension.compression_n > 9.0 * 120.0;
@@ -97,7 +97,7 @@ proptest! {
         let cx = p.state(&belt(1.0)).tension.compression_n;
         let at = |blend_n: f64| {
             let s = p.state(&belt(blend_n));
-            (0.5 * (1.0 + (cx / blend_n).tanh()), [s.slip.primary, s.slip.secondary, s.slip_nm])
+            (0.5 * (1.0 + (cx / blend_n).tanh()), [s.slip.primary, s.slip.secondary, s.losses.slip_nm])
         };
         let ((u, x), (v, y), (w, z)) = (at(a), at(b), at(c));
         // The branches differ as long as neither is held, so that the width has a say where the weight has.
@@ -114,15 +114,15 @@ proptest! {
     fn causes_do_not_mix(f in any_formulation(), p in any_point()) {
         let (belt, p) = (thesis_belt(f), Point { film_share: 0.5, ..p });
         let (plain, dry) = (p.state(&belt), Point { film_share: 0.0, mu_flank: 0.2, ..p }.state(&belt));
-        prop_assert_eq!((plain.tension, plain.slip, plain.band_nm), (dry.tension, dry.slip, dry.band_nm));
-        prop_assert_eq!(dry.film_nm, 0.0);
+        prop_assert_eq!((plain.tension, plain.slip, plain.losses.band_nm), (dry.tension, dry.slip, dry.losses.band_nm));
+        prop_assert_eq!(dry.losses.film_nm, 0.0);
         // Wedge, penetration and film know neither torque nor band and segment friction; the film does not know clamping either.
         let other = Point { torque_nm: -3.0 - p.torque_nm, mu_band: 0.05, mu_segment: 0.05, ..p }.state(&belt);
-        prop_assert_eq!((plain.wedge_nm, plain.penetration_nm, plain.film_nm), (other.wedge_nm, other.penetration_nm, other.film_nm));
-        prop_assert_eq!(plain.film_nm, Point { clamp_n: p.clamp_n + 5e3, ..p }.state(&belt).film_nm);
+        prop_assert_eq!((plain.losses.wedge_nm, plain.losses.penetration_nm, plain.losses.film_nm), (other.losses.wedge_nm, other.losses.penetration_nm, other.losses.film_nm));
+        prop_assert_eq!(plain.losses.film_nm, Point { clamp_n: p.clamp_n + 5e3, ..p }.state(&belt).losses.film_nm);
         // Prescribed segment friction leaves the fluid's without effect, Smooth's own does not.
         let sticky = Point { mu_segment: p.mu_segment + 0.05, ..p }.state(&belt);
-        prop_assert_eq!(sticky.capacity_nm == plain.capacity_nm, f != Formulation::Smooth || p.clamp_n * 0.05 < 1e-300);
+        prop_assert_eq!(sticky.losses.capacity_nm == plain.losses.capacity_nm, f != Formulation::Smooth || p.clamp_n * 0.05 < 1e-300);
     }
 
     /// The film's shear is proportional to its share and to speed (FI-1).
@@ -130,9 +130,9 @@ proptest! {
     fn film_is_linear_in_share_and_speed(p in any_point()) {
         let belt = thesis_belt(Formulation::Smooth);
         let p = Point { rpm: 1.0 + p.rpm, film_share: 0.2, ..p };
-        let plain = p.state(&belt).film_nm;
+        let plain = p.state(&belt).losses.film_nm;
         for twice in [Point { film_share: 0.4, ..p }, Point { rpm: 2.0 * p.rpm, ..p }] {
-            prop_assert!((twice.state(&belt).film_nm - 2.0 * plain).abs() <= 1e-13 * plain);
+            prop_assert!((twice.state(&belt).losses.film_nm - 2.0 * plain).abs() <= 1e-13 * plain);
         }
         prop_assert_eq!(plain > 0.0, p.ratio != 1.0);
     }

@@ -147,12 +147,12 @@ pub const NAMES: [&str; 11] = [
 pub fn values(s: &BeltState) -> [f64; NAMES.len()] {
     let (t, slip) = (&s.tension, &s.slip);
     [
-        s.band_nm,
-        s.film_nm,
-        s.slip_nm,
-        s.wedge_nm,
-        s.penetration_nm,
-        s.slip_total,
+        s.losses.band_nm,
+        s.losses.film_nm,
+        s.losses.slip_nm,
+        s.losses.wedge_nm,
+        s.losses.penetration_nm,
+        s.losses.slip_total,
         slip.primary,
         slip.secondary,
         s.input_torque_nm,

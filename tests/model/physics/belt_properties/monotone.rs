@@ -22,14 +22,14 @@ proptest! {
     /// 1/2, although |C_x| itself falls with clamping on one side of the breakpoint.
     #[test]
     fn band_loss_rises_with_clamp(f in any_formulation(), p in any_point(), (a, b) in pair(0.0, 50e3)) {
-        let band = |clamp_n: f64| Point { clamp_n, ..p }.state(&thesis_belt(f)).band_nm;
+        let band = |clamp_n: f64| Point { clamp_n, ..p }.state(&thesis_belt(f)).losses.band_nm;
         rises("band loss", band(a), band(b), b > a + 1.0 && p.mu_band > 1e-3 && p.ratio.ln().abs() > 1e-3)?;
     }
 
     /// Band loss is proportional to d + t (n - 1)/2 (BT-3): it rises with the offset, on a line that does not go through zero.
     #[test]
     fn band_loss_rises_with_offset(f in any_formulation(), p in any_point(), (a, b) in pair(0.0, 0.02)) {
-        let band = |d: f64| p.state(&Belt { band_offset_m: d, ..thesis_belt(f) }).band_nm;
+        let band = |d: f64| p.state(&Belt { band_offset_m: d, ..thesis_belt(f) }).losses.band_nm;
         rises("band loss", band(a), band(b), b > a + 1e-6 && band(b) > 0.0)?;
         let rest = 0.217e-3 * 11.0 / 2.0;
         prop_assert!((band(a) * (b + rest) - band(b) * (a + rest)).abs() <= 1e-12 * band(b));
@@ -39,7 +39,7 @@ proptest! {
     /// rises in mu as long as Q_p > 0.
     #[test]
     fn band_loss_rises_with_band_friction(f in any_formulation(), p in any_point(), (a, b) in pair(0.0, 0.2)) {
-        let band = |mu_band: f64| Point { mu_band, ..p }.state(&thesis_belt(f)).band_nm;
+        let band = |mu_band: f64| Point { mu_band, ..p }.state(&thesis_belt(f)).losses.band_nm;
         rises("band loss", band(a), band(b), b > a + 1e-4 && p.clamp_n > 1.0 && p.ratio.ln().abs() > 1e-3)?;
     }
 
@@ -62,10 +62,10 @@ proptest! {
         let p = Point { mu_flank: 0.01 + p.mu_flank, ..p };
         let at = |clamp_n: f64| Point { clamp_n, ..p }.state(&thesis_belt(f));
         let (less, more, twice) = (at(a), at(b), at(2.0 * a));
-        rises("wedge", less.wedge_nm, more.wedge_nm, b > a + 1.0)?;
-        rises("penetration", less.penetration_nm, more.penetration_nm, b > a + 1.0)?;
-        prop_assert!((twice.penetration_nm - 4.0 * less.penetration_nm).abs() <= 1e-12 * twice.penetration_nm);
-        prop_assert!(twice.wedge_nm >= 4.0 * less.wedge_nm * (1.0 - 1e-12));
+        rises("wedge", less.losses.wedge_nm, more.losses.wedge_nm, b > a + 1.0)?;
+        rises("penetration", less.losses.penetration_nm, more.losses.penetration_nm, b > a + 1.0)?;
+        prop_assert!((twice.losses.penetration_nm - 4.0 * less.losses.penetration_nm).abs() <= 1e-12 * twice.losses.penetration_nm);
+        prop_assert!(twice.losses.wedge_nm >= 4.0 * less.losses.wedge_nm * (1.0 - 1e-12));
     }
 
     /// A softer pulley loses more: penetration in proportion, wedging with its root more than that. The primary only off its stop.
@@ -78,10 +78,10 @@ proptest! {
         };
         let strictly = b > a * 1.001 && !(primary && p.ratio >= 2.417);
         let (less, more) = (at(a), at(b));
-        rises("wedge", less.wedge_nm, more.wedge_nm, strictly)?;
-        rises("penetration", less.penetration_nm, more.penetration_nm, strictly)?;
-        prop_assert!((less.penetration_nm * b - more.penetration_nm * a).abs() <= 1e-12 * more.penetration_nm * a);
-        prop_assert!(more.wedge_nm * a >= less.wedge_nm * b * (1.0 - 1e-12));
+        rises("wedge", less.losses.wedge_nm, more.losses.wedge_nm, strictly)?;
+        rises("penetration", less.losses.penetration_nm, more.losses.penetration_nm, strictly)?;
+        prop_assert!((less.losses.penetration_nm * b - more.losses.penetration_nm * a).abs() <= 1e-12 * more.losses.penetration_nm * a);
+        prop_assert!(more.losses.wedge_nm * a >= less.losses.wedge_nm * b * (1.0 - 1e-12));
     }
 
     /// Slip rises with torque from the breakpoint on (C_x >= 0, T >= 0), until it is held: active arc and gaps grow while the idle
@@ -93,9 +93,9 @@ proptest! {
         let from = p.breakpoint_nm(&belt).max(0.0);
         let at = |t: f64| Point { torque_nm: from + t, ..p }.state(&belt);
         let (less, more) = (at(a), at(b));
-        rises("slip", less.slip_total, more.slip_total, b > a + 0.1 && more.slip.primary < belt.slip_bound)?;
+        rises("slip", less.losses.slip_total, more.losses.slip_total, b > a + 0.1 && more.slip.primary < belt.slip_bound)?;
         // Beyond the blend one branch is alone and its slip is positive.
-        prop_assert!(more.tension.compression_n < 9.0 * belt.blend_n || more.slip_total > 0.0);
+        prop_assert!(more.tension.compression_n < 9.0 * belt.blend_n || more.losses.slip_total > 0.0);
     }
 
     /// The same in overrun in high ratio: below the breakpoint (C_x <= 0, T <= 0) the output turns the faster the more it drives.
@@ -107,8 +107,8 @@ proptest! {
         let from = p.breakpoint_nm(&belt);
         let at = |t: f64| Point { torque_nm: from - t, ..p }.state(&belt);
         let (less, more) = (at(a), at(b));
-        rises("overrun slip", -less.slip_total, -more.slip_total, b > a + 0.1 && more.slip.secondary > -belt.slip_bound)?;
-        prop_assert!(more.tension.compression_n > -9.0 * belt.blend_n || more.slip_total < 0.0);
+        rises("overrun slip", -less.losses.slip_total, -more.losses.slip_total, b > a + 0.1 && more.slip.secondary > -belt.slip_bound)?;
+        prop_assert!(more.tension.compression_n > -9.0 * belt.blend_n || more.losses.slip_total < 0.0);
     }
 
     /// Far beyond capacity slip stays at its bound in the sense of the torque, however strongly the bands pull the idle segments the
@@ -117,12 +117,12 @@ proptest! {
     fn overload_slips_at_the_bound_in_the_sense_of_torque(p in any_point(), over in 10.0..100.0f64, drive in any::<bool>()) {
         let belt = thesis_belt(Formulation::Smooth);
         let p = Point { clamp_n: p.clamp_n / 50.0, mu_band: 0.65 * p.mu_band, mu_segment: 0.02 + p.mu_segment, ..p };
-        let reach = 100.0 + over * p.state(&belt).capacity_nm;
+        let reach = 100.0 + over * p.state(&belt).losses.capacity_nm;
         let from = p.breakpoint_nm(&belt);
         let s = Point { torque_nm: if drive { from.max(0.0) + reach } else { from.min(0.0) - reach }, ..p }.state(&belt);
         let bound = if drive { s.slip.primary } else { -s.slip.secondary };
-        prop_assert!(s.gross_slip && s.slip.held && (bound - belt.slip_bound).abs() < 1e-6, "{:?}", s.slip);
-        prop_assert_eq!(s.slip_total > 0.0, drive);
+        prop_assert!(s.losses.gross_slip && s.slip.held && (bound - belt.slip_bound).abs() < 1e-6, "{:?}", s.slip);
+        prop_assert_eq!(s.losses.slip_total > 0.0, drive);
     }
 
     /// More grip, less slip, where one branch is alone (C_x > 9 blend) and torque is positive: every force that slip compares with
@@ -134,8 +134,8 @@ proptest! {
         let p = Point { torque_nm: p.breakpoint_nm(&belt).max(0.0) + over, ..p };
         let at = |mu_segment: f64| Point { mu_segment, ..p }.state(&belt);
         prop_assume!(at(a).tension.compression_n > 9.0 * belt.blend_n);
-        rises("slip", at(b).slip_total, at(a).slip_total, b > a + 1e-4 && at(b).slip.primary < belt.slip_bound)?;
-        rises("capacity", at(a).capacity_nm, at(b).capacity_nm, b > a + 1e-6)?;
+        rises("slip", at(b).losses.slip_total, at(a).losses.slip_total, b > a + 1e-4 && at(b).slip.primary < belt.slip_bound)?;
+        rises("capacity", at(a).losses.capacity_nm, at(b).losses.capacity_nm, b > a + 1e-6)?;
     }
 
     /// Capacity is proportional to clamping and knows neither torque nor speed nor bands (VA-2).
@@ -143,11 +143,11 @@ proptest! {
     fn capacity_is_proportional_to_clamp(f in any_formulation(), p in any_point(), (a, b) in pair(1.0, 50e3)) {
         let belt = thesis_belt(f);
         let p = Point { mu_segment: 0.01 + p.mu_segment, ..p };
-        let capacity = |clamp_n: f64| Point { clamp_n, ..p }.state(&belt).capacity_nm;
+        let capacity = |clamp_n: f64| Point { clamp_n, ..p }.state(&belt).losses.capacity_nm;
         rises("capacity", capacity(a), capacity(b), b > a + 1e-3)?;
         prop_assert!((capacity(a) * b - capacity(b) * a).abs() <= 1e-12 * capacity(b) * a);
         let other = Point { torque_nm: 1.0 - p.torque_nm, rpm: 7000.0 - p.rpm, mu_band: 0.01, clamp_n: a, ..p };
-        prop_assert_eq!(other.state(&belt).capacity_nm, capacity(a));
+        prop_assert_eq!(other.state(&belt).losses.capacity_nm, capacity(a));
     }
 
     /// The breakpoint, found here by bisecting the sign of C_x, lies at T = R_s mu (2 F_p tan th + m beta_p v2) in low and at the same
@@ -180,10 +180,10 @@ proptest! {
         let p = Point { mu_band: 0.01 + 0.9 * p.mu_band, clamp_n: 1000.0 + p.clamp_n, ..p };
         prop_assume!(p.ratio.ln().abs() > 0.07 && b > a + 0.1);
         let middle = p.breakpoint_nm(&belt);
-        let band = |t: f64| Point { torque_nm: middle + t, ..p }.state(&belt).band_nm;
+        let band = |t: f64| Point { torque_nm: middle + t, ..p }.state(&belt).losses.band_nm;
         rises("band loss above the breakpoint", band(a), band(b), true)?;
         rises("band loss below the breakpoint", band(-a), band(-b), true)?;
-        let even = |t: f64| Point { torque_nm: t, ..p }.state(&belt).band_nm;
+        let even = |t: f64| Point { torque_nm: t, ..p }.state(&belt).losses.band_nm;
         prop_assert!((even(b) - even(-b)).abs() > 1e-6 * even(b), "even in torque");
     }
 }

@@ -97,10 +97,10 @@ fn check_forces(now: &BeltState, was: &BeltState, u: &Units) -> Result<(), TestC
     }
     same(
         "capacity",
-        now.capacity_nm,
-        was.capacity_nm,
+        now.losses.capacity_nm,
+        was.losses.capacity_nm,
         torque,
-        was.capacity_nm,
+        was.losses.capacity_nm,
     )
 }
 
@@ -123,10 +123,10 @@ fn check_slip(now: &BeltState, was: &BeltState, u: &Units) -> Result<(), TestCas
     )?;
     same(
         "slip loss",
-        now.slip_nm,
-        was.slip_nm,
+        now.losses.slip_nm,
+        was.losses.slip_nm,
         u.length * u.force,
-        was.slip_nm + 1e-6,
+        was.losses.slip_nm + 1e-6,
     )?;
     same(
         "segments",
@@ -140,7 +140,7 @@ fn check_slip(now: &BeltState, was: &BeltState, u: &Units) -> Result<(), TestCas
         now.input_torque_nm,
         was.input_torque_nm,
         u.length * u.force,
-        was.input_torque_nm.abs() + was.loss_nm(),
+        was.input_torque_nm.abs() + was.losses.sum_nm(),
     )
 }
 

@@ -333,7 +333,10 @@ fn val_driving_belt_from_the_tables() {
                             &want,
                             &format!("{formulation:?} I {ratio} T {torque} F {clamp}"),
                         );
-                        assert_eq!(got.gross_slip, want.held || torque.abs() > want.capacity);
+                        assert_eq!(
+                            got.losses.gross_slip,
+                            want.held || torque.abs() > want.capacity
+                        );
                         held += i32::from(want.held);
                         blended += i32::from(want.compression.abs() < 200.0);
                         least += i32::from(got.slip.gap < 0.0);
@@ -388,11 +391,11 @@ fn close(got: f64, want: f64, what: &str) {
 fn compare(got: &BeltState, want: &Sheet, place: &str) {
     let pairs = [
         ("C_x", got.tension.compression_n, want.compression),
-        ("band", got.band_nm, want.band[0] + want.band[1]),
-        ("film", got.film_nm, want.film),
+        ("band", got.losses.band_nm, want.band[0] + want.band[1]),
+        ("film", got.losses.film_nm, want.film),
         ("slip of the primary", got.slip.primary, want.slip[0]),
         ("slip of the secondary", got.slip.secondary, want.slip[1]),
-        ("slip", got.slip_total, want.slip[0] + want.slip[1]),
+        ("slip", got.losses.slip_total, want.slip[0] + want.slip[1]),
         ("gap", got.slip.gap, want.gap),
         ("idle", got.slip.idle, want.idle),
         (
@@ -405,13 +408,13 @@ fn compare(got: &BeltState, want: &Sheet, place: &str) {
             got.slip.secondary_loss_nm,
             want.slip_loss[1],
         ),
-        ("wedge", got.wedge_nm, want.wedge[0] + want.wedge[1]),
+        ("wedge", got.losses.wedge_nm, want.wedge[0] + want.wedge[1]),
         (
             "penetration",
-            got.penetration_nm,
+            got.losses.penetration_nm,
             want.penetration[0] + want.penetration[1],
         ),
-        ("capacity", got.capacity_nm, want.capacity),
+        ("capacity", got.losses.capacity_nm, want.capacity),
         ("active segments", got.slip.active_segments, want.active),
     ];
     for (what, got, want) in pairs {
@@ -430,12 +433,16 @@ fn val_input_torque_by_hand() {
     let at = BeltAtRatio::new(&b, 0.7);
     let l = load(40.0, 6000.0);
     let (s, p) = (belt_state(&b, &at, &l), belt_losses(&b, &at, &l));
-    let losses = s.band_nm + s.film_nm + s.slip_nm + s.wedge_nm + s.penetration_nm;
+    let losses = s.losses.band_nm
+        + s.losses.film_nm
+        + s.losses.slip_nm
+        + s.losses.wedge_nm
+        + s.losses.penetration_nm;
     same(
         s.input_torque_nm,
-        40.0 / 0.7 * (1.0 - s.slip_total) + losses,
+        40.0 / 0.7 * (1.0 - s.losses.slip_total) + losses,
     );
-    same(s.loss_nm(), losses);
+    same(s.losses.sum_nm(), losses);
     same(p.sum_nm(), losses);
     for (cx, appendix, chapter) in [
         (0.0, 30.0, 30.0),

@@ -105,7 +105,7 @@ fn val_slip_limited_against_a_fine_walk() {
                 secondary_clamp_n: cvt.secondary_clamp_n(pa, 90.0),
                 ..load(torque)
             };
-            belt_state(&cvt.belt, &at, &l).slip_total.abs()
+            belt_state(&cvt.belt, &at, &l).losses.slip_total.abs()
         };
         for (limit, safety) in [
             (0.002, 1.05),

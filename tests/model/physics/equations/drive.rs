@@ -115,11 +115,11 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
         )
     };
     for (part, nm) in [
-        (Component::BeltBand, belt.band_nm),
-        (Component::BeltFilm, belt.film_nm),
-        (Component::BeltSlip, belt.slip_nm),
-        (Component::BeltWedge, belt.wedge_nm),
-        (Component::BeltPenetration, belt.penetration_nm),
+        (Component::BeltBand, belt.losses.band_nm),
+        (Component::BeltFilm, belt.losses.film_nm),
+        (Component::BeltSlip, belt.losses.slip_nm),
+        (Component::BeltWedge, belt.losses.wedge_nm),
+        (Component::BeltPenetration, belt.losses.penetration_nm),
         (Component::ClutchDrag, spin.clutch_nm),
     ] {
         watts(lost(part), nm * wp);
@@ -134,7 +134,7 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
     watts(lost(Component::Pump), pump.torque_nm * we);
     watts(lost(Component::InputShaft), spin.shaft_nm(we) * we);
     near(d.oil_flow_m3_s, pump.working_m3_s, 1e-6);
-    assert!((belt.slip_total - d.slip).abs() < 2e-7, "{place}");
+    assert!((belt.losses.slip_total - d.slip).abs() < 2e-7, "{place}");
     let primary_nm = belt.input_torque_nm + spin.clutch_nm; // CV-2
     let spin_nm = pump.torque_nm + spin.shaft_nm(we);
     let tight = |got: f64, want: f64| {
@@ -208,8 +208,8 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
             at,
         },
         bind,
-        belt.gross_slip,
-        belt.capacity_nm,
+        belt.losses.gross_slip,
+        belt.losses.capacity_nm,
         pump.flow_limited,
     );
     bind
@@ -263,7 +263,7 @@ fn engine_and_clamp(x: &Solved) {
     let belt = belt_state(&cvt.belt, &x.at, &x.load);
     near(
         d.clamp_safety,
-        belt.capacity_nm / x.secondary_nm.abs(),
+        belt.losses.capacity_nm / x.secondary_nm.abs(),
         1e-5,
     );
     same(d.belt_ratio, x.s.ratio);
@@ -625,7 +625,7 @@ fn standing(b: &Bench) {
             load.secondary_clamp_n * at.thrust_ratio / cvt.primary_piston_m2,
             1e-9,
         );
-        let capacity = belt_state(&cvt.belt, &at, &load).capacity_nm;
+        let capacity = belt_state(&cvt.belt, &at, &load).losses.capacity_nm;
         near(d.clamp_safety, capacity / (creep * cvt_ratio), 1e-9);
         for (flag, want) in [
             (Flags::CLUTCH_SLIPPING, true),

@@ -71,7 +71,7 @@ fn val_bench_torques_add_up() {
                 ..point()
             };
             let a = bench.solve(&p);
-            let slip = a.belt.unwrap().slip_total;
+            let slip = a.belt.unwrap().losses.slip_total;
             let ws = p.input_rad_s * (1.0 - slip) / 0.8;
             near(a.output_rad_s, ws / cvt.final_drive, 1e-9);
             let lost: f64 = a.loss_nm.iter().sum();
@@ -181,15 +181,16 @@ fn flags_of_the_bench() {
             ..point()
         });
         let belt = a.belt.unwrap();
-        let secondary = (belt.input_torque_nm - belt.loss_nm()) / (1.0 - belt.slip_total);
+        let secondary =
+            (belt.input_torque_nm - belt.losses.sum_nm()) / (1.0 - belt.losses.slip_total);
         assert_eq!(
             flag(&a, Flags::LOW_CLAMP),
-            belt.capacity_nm < secondary.abs(),
+            belt.losses.capacity_nm < secondary.abs(),
             "{output_nm}"
         );
         assert_eq!(flag(&a, Flags::OVERRUN), a.input_nm < 0.0);
-        assert_eq!(flag(&a, Flags::GROSS_SLIP), belt.gross_slip);
-        assert!(!flag(&a, Flags::NOT_CONVERGED) || belt.gross_slip);
+        assert_eq!(flag(&a, Flags::GROSS_SLIP), belt.losses.gross_slip);
+        assert!(!flag(&a, Flags::NOT_CONVERGED) || belt.losses.gross_slip);
     }
 }
 
@@ -258,8 +259,9 @@ fn val_printed_slip_on_the_bench() {
         };
         let (a, oil) = (bench.solve(&p), &bench.car().oil);
         let belt = a.belt.unwrap();
-        let ws = p.input_rad_s * (1.0 - belt.slip_total) / 2.0;
-        let secondary_nm = (belt.input_torque_nm - belt.loss_nm()) * 2.0 / (1.0 - belt.slip_total);
+        let ws = p.input_rad_s * (1.0 - belt.losses.slip_total) / 2.0;
+        let secondary_nm =
+            (belt.input_torque_nm - belt.losses.sum_nm()) * 2.0 / (1.0 - belt.losses.slip_total);
         let l = BeltLoad {
             primary_speed_rad_s: p.input_rad_s,
             output_torque_nm: secondary_nm,
@@ -295,7 +297,7 @@ fn val_printed_slip_on_the_bench() {
             secondary_nm / 2.0 * (1.0 - printed.slip_total) + lost,
             1e-12,
         ); // VA-1
-        near(belt.loss_nm(), lost, 1e-9);
+        near(belt.losses.sum_nm(), lost, 1e-9);
     }
 }
 
@@ -509,7 +511,7 @@ fn val_variator_rig_from_its_parts() {
     };
     let at = BeltAtRatio::new(&cvt.belt, 0.6);
     for row in rig.rows(&held, &[-30.0, 0.0, 40.0, 60.0]) {
-        let ws = 180.0 * (1.0 - row.belt.slip_total) / 0.6;
+        let ws = 180.0 * (1.0 - row.belt.losses.slip_total) / 0.6;
         let eta = oil.dynamic_pa_s(held.belt_k);
         let l = BeltLoad {
             primary_speed_rad_s: 180.0,
@@ -525,8 +527,8 @@ fn val_variator_rig_from_its_parts() {
         };
         let want = belt_state(&cvt.belt, &at, &l);
         assert!(
-            (want.slip_total - row.belt.slip_total).abs() < 1e-12
-                && (want.loss_nm() - row.belt.loss_nm()).abs() < 1e-9
+            (want.losses.slip_total - row.belt.losses.slip_total).abs() < 1e-12
+                && (want.losses.sum_nm() - row.belt.losses.sum_nm()).abs() < 1e-9
         );
         same(row.shaft_rad_s[1], ws);
         assert!(row.flags.is_fine() == row.flags.text().is_empty());

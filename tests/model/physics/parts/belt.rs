@@ -120,19 +120,26 @@ fn driving_points_are_belt_states() {
                 driving_point(&belt, &at, &load),
                 belt_state(&belt, &at, &load),
             );
-            assert_eq!(p.loss_nm.to_bits(), s.loss_nm().to_bits());
+            assert_eq!(p.loss_nm.to_bits(), s.losses.sum_nm().to_bits());
             assert_eq!(p.input_torque_nm.to_bits(), s.input_torque_nm.to_bits());
             assert_eq!(
                 (p.tension, p.slip_total.to_bits(), p.capacity_nm.to_bits()),
-                (s.tension, s.slip_total.to_bits(), s.capacity_nm.to_bits())
+                (
+                    s.tension,
+                    s.losses.slip_total.to_bits(),
+                    s.losses.capacity_nm.to_bits()
+                )
             );
-            assert_eq!(p.status == point::PointStatus::GrossSlip, s.gross_slip);
+            assert_eq!(
+                p.status == point::PointStatus::GrossSlip,
+                s.losses.gross_slip
+            );
             for (pair, want) in [
-                (p.band_loss_nm, s.band_nm),
-                (p.film_loss_nm, s.film_nm),
-                (p.slip_loss_nm, s.slip_nm),
-                (p.wedge_loss_nm, s.wedge_nm),
-                (p.penetration_loss_nm, s.penetration_nm),
+                (p.band_loss_nm, s.losses.band_nm),
+                (p.film_loss_nm, s.losses.film_nm),
+                (p.slip_loss_nm, s.losses.slip_nm),
+                (p.wedge_loss_nm, s.losses.wedge_nm),
+                (p.penetration_loss_nm, s.losses.penetration_nm),
             ] {
                 assert!(
                     (pair[0] + pair[1] - want).abs() <= 1e-12 * want,
@@ -245,20 +252,20 @@ fn val_golden_points_slip() {
         let parts = (row.num("gap_slip_m_s").abs() + row.num("idle_slip_m_s").abs())
             / row.num("belt_speed_m_s");
         assert!(
-            (s.slip_total - want).abs() <= tolerance * (want.abs() + parts) + 5e-5,
+            (s.losses.slip_total - want).abs() <= tolerance * (want.abs() + parts) + 5e-5,
             "case {} {}: slip {} instead of {want}",
             row.text("case"),
             row.text("formulation"),
-            s.slip_total
+            s.losses.slip_total
         );
         let want_loss = row.num("slip_loss_primary_nm") + row.num("slip_loss_secondary_nm");
         assert!(
-            (s.slip_nm - want_loss).abs() <= (tolerance + 0.02) * want_loss + 0.01,
+            (s.losses.slip_nm - want_loss).abs() <= (tolerance + 0.02) * want_loss + 0.01,
             "case {}: loss {} instead of {want_loss}",
             row.text("case"),
-            s.slip_nm
+            s.losses.slip_nm
         );
-        sum2 += (s.slip_total - want).powi(2);
+        sum2 += (s.losses.slip_total - want).powi(2);
         count += 1.0;
     }
     assert!(count > 500.0, "only {count} rows compared");
@@ -292,18 +299,18 @@ fn losses_are_positive_and_close() {
                 let l = load(rpm, t, 20.0, 0.11);
                 let s = belt_state(&belt, &at, &l);
                 for x in [
-                    s.band_nm,
-                    s.film_nm,
-                    s.slip_nm,
-                    s.wedge_nm,
-                    s.penetration_nm,
+                    s.losses.band_nm,
+                    s.losses.film_nm,
+                    s.losses.slip_nm,
+                    s.losses.wedge_nm,
+                    s.losses.penetration_nm,
                 ] {
                     assert!(x >= 0.0 && x.is_finite(), "I {ratio} T {t}: {s:?}");
                 }
                 let w_in = l.primary_speed_rad_s;
-                let w_out = w_in / ratio * (1.0 - s.slip_total);
+                let w_out = w_in / ratio * (1.0 - s.losses.slip_total);
                 let lost = s.input_torque_nm * w_in - t * w_out;
-                assert!((lost - s.loss_nm() * w_in).abs() < 1e-9 * (1.0 + lost.abs()));
+                assert!((lost - s.losses.sum_nm() * w_in).abs() < 1e-9 * (1.0 + lost.abs()));
             }
         }
     }
@@ -320,11 +327,11 @@ fn continuous_in_ratio_and_torque() {
             &load(2000.0, t, 20.0, 0.13),
         );
         [
-            s.band_nm,
-            s.slip_nm,
-            s.wedge_nm,
-            s.penetration_nm,
-            s.slip_total,
+            s.losses.band_nm,
+            s.losses.slip_nm,
+            s.losses.wedge_nm,
+            s.losses.penetration_nm,
+            s.losses.slip_total,
         ]
     };
     let largest = |step: f64, from: f64, to: f64, f: &dyn Fn(f64) -> [f64; 5]| {
@@ -391,10 +398,10 @@ fn band_loss_is_linear_in_friction_force_at_rest() {
         },
     );
     assert!(
-        (b.band_nm / a.band_nm - 2.0).abs() < 1e-9,
+        (b.losses.band_nm / a.losses.band_nm - 2.0).abs() < 1e-9,
         "{} {}",
-        a.band_nm,
-        b.band_nm
+        a.losses.band_nm,
+        b.losses.band_nm
     );
 }
 
@@ -407,7 +414,7 @@ fn val_no_band_loss_at_unity_and_monotone_in_clamp() {
         &BeltAtRatio::new(&belt, 1.0),
         &load(2000.0, 30.0, 20.0, 0.13),
     );
-    assert!(one.band_nm.abs() < 1e-15);
+    assert!(one.losses.band_nm.abs() < 1e-15);
     let mut last = 0.0;
     for bar in 5..40 {
         let s = belt_state(
@@ -415,7 +422,7 @@ fn val_no_band_loss_at_unity_and_monotone_in_clamp() {
             &BeltAtRatio::new(&belt, 0.45),
             &load(2000.0, 10.0, f64::from(bar), 0.13),
         );
-        assert!(s.loss_nm() > last);
-        last = s.loss_nm();
+        assert!(s.losses.sum_nm() > last);
+        last = s.losses.sum_nm();
     }
 }

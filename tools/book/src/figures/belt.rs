@@ -57,11 +57,11 @@ fn losses(r: &Reference) -> String {
         let line =
             |name: &str, part: fn(&BeltState) -> f64| over_torque(r, &belt, name, at, to, part);
         let lines = vec![
-            line("all of the belt", |s| s.loss_nm()),
-            line("bands", |s| s.band_nm),
-            line("slip", |s| s.slip_nm),
-            line("wedging", |s| s.wedge_nm),
-            line("penetration", |s| s.penetration_nm),
+            line("all of the belt", |s| s.losses.sum_nm()),
+            line("bands", |s| s.losses.band_nm),
+            line("slip", |s| s.losses.slip_nm),
+            line("wedging", |s| s.losses.wedge_nm),
+            line("penetration", |s| s.losses.penetration_nm),
         ];
         axes(heading, TORQUE, LOSS, lines)
     };
@@ -153,7 +153,7 @@ fn bands(r: &Reference) -> String {
             bar: 20.0,
         };
         sweep(&format!("offset {mm} mm"), high, low, 300, |i| {
-            r.boundary(&belt, at(i)).band_nm
+            r.boundary(&belt, at(i)).losses.band_nm
         })
     };
     plot(
@@ -222,7 +222,7 @@ fn film_loss(r: &Reference) -> String {
                 band,
                 t,
             );
-            s.band_nm + s.film_nm
+            s.losses.band_nm + s.losses.film_nm
         })
     };
     let panel = |heading: &str, ratio: f64, bar: f64| {
@@ -255,11 +255,15 @@ fn slip(r: &Reference) -> String {
             bar,
         };
         let mut line = over_torque(r, &belt, &format!("{bar:.0} bar"), at, to, |s| {
-            100.0 * s.slip_total
+            100.0 * s.losses.slip_total
         });
         // Beyond capacity the bound holds: nothing to show.
         line.points.retain(|&(t, slip)| {
-            slip < 6.0 && !r.boundary(&belt, At { output_nm: t, ..at }).gross_slip
+            slip < 6.0
+                && !r
+                    .boundary(&belt, At { output_nm: t, ..at })
+                    .losses
+                    .gross_slip
         });
         line
     };
@@ -301,14 +305,16 @@ fn deflection(r: &Reference) -> String {
     };
     let lines = |ratio: f64| {
         vec![
-            line("wedging", &belt, ratio, |s| s.wedge_nm),
-            line("penetration", &belt, ratio, |s| s.penetration_nm),
+            line("wedging", &belt, ratio, |s| s.losses.wedge_nm),
+            line("penetration", &belt, ratio, |s| s.losses.penetration_nm),
         ]
     };
     let mut low = lines(LOW);
-    low.push(line("wedging without end stop", &free, LOW, |s| s.wedge_nm));
+    low.push(line("wedging without end stop", &free, LOW, |s| {
+        s.losses.wedge_nm
+    }));
     low.push(line("penetration without end stop", &free, LOW, |s| {
-        s.penetration_nm
+        s.losses.penetration_nm
     }));
     let x = "Secondary pressure [bar]";
     plot(
@@ -328,7 +334,7 @@ fn formulations(r: &Reference) -> String {
     let panel = |heading: &str, at: At, to: f64| {
         let lines = all
             .iter()
-            .map(|(name, belt)| over_torque(r, belt, name, at, to, |s| s.loss_nm()))
+            .map(|(name, belt)| over_torque(r, belt, name, at, to, |s| s.losses.sum_nm()))
             .collect();
         axes(heading, TORQUE, LOSS, lines)
     };

@@ -17,6 +17,7 @@ mod summary;
 pub use summary::{CurveSummary, Resolution};
 
 use crate::drive::Vehicle;
+use crate::flags::flags;
 use crate::fluid::{Lubricant, VALID_K};
 use crate::transmission::Transmission;
 use crate::transmission::cvt::Cvt;
@@ -62,39 +63,20 @@ pub struct Zero {
     pub radius_m: [f64; 2],
 }
 
-/// States of a row and departures from what the rig can do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RigFlags(u8);
+flags! {
+    /// States of a row and departures from what the rig can do.
+    RigFlags {
+        GROSS_SLIP = 0, "gross_slip", "Torque above what the clamping forces carry, or slip at its bound.";
+        OUTPUT_TORQUE = 1, "rig_output_torque", "Secondary torque above the rig's.";
+        INPUT_TORQUE = 2, "rig_input_torque", "Primary torque above the rig's.";
+        PRESSURE = 3, "rig_pressure", "Pressure above the rig's.";
+        SPEED = 4, "rig_speed", "A shaft faster than the rig's.";
+        OUTSIDE_VALIDITY = 5, "outside_validity", "Temperature outside the fluid's range.";
+    }
+}
 
 impl RigFlags {
-    /// Torque above what the clamping forces carry, or slip at its bound.
-    pub const GROSS_SLIP: RigFlags = RigFlags(1);
-    /// Secondary torque above the rig's.
-    pub const OUTPUT_TORQUE: RigFlags = RigFlags(2);
-    /// Primary torque above the rig's.
-    pub const INPUT_TORQUE: RigFlags = RigFlags(4);
-    /// Pressure above the rig's.
-    pub const PRESSURE: RigFlags = RigFlags(8);
-    /// A shaft faster than the rig's.
-    pub const SPEED: RigFlags = RigFlags(16);
-    /// Temperature outside the fluid's range.
-    pub const OUTSIDE_VALIDITY: RigFlags = RigFlags(32);
-    /// Names in the order of the bits.
-    pub const NAMES: [(RigFlags, &'static str); 6] = [
-        (RigFlags::GROSS_SLIP, "gross_slip"),
-        (RigFlags::OUTPUT_TORQUE, "rig_output_torque"),
-        (RigFlags::INPUT_TORQUE, "rig_input_torque"),
-        (RigFlags::PRESSURE, "rig_pressure"),
-        (RigFlags::SPEED, "rig_speed"),
-        (RigFlags::OUTSIDE_VALIDITY, "outside_validity"),
-    ];
-
-    /// Whether the flag is set.
-    pub fn contains(self, other: RigFlags) -> bool {
-        self.0 & other.0 == other.0
-    }
-
-    /// Whether nothing speaks against the row: within the rig's limits and within what the belt carries.
+    /// True within the rig's limits and within what the belt carries.
     pub fn is_fine(self) -> bool {
         self.0 == 0
     }
@@ -102,23 +84,6 @@ impl RigFlags {
     /// Names of what is set, joined by `|`.
     pub fn text(self) -> String {
         self.names().collect::<Vec<_>>().join("|")
-    }
-
-    /// Names of the flags that are set.
-    pub fn names(self) -> impl Iterator<Item = &'static str> {
-        let set = Self::NAMES
-            .iter()
-            .filter(move |(flag, _)| self.contains(*flag));
-        set.map(|(_, name)| *name)
-    }
-
-    fn new(on: [bool; 6]) -> Self {
-        RigFlags(
-            on.iter()
-                .enumerate()
-                .map(|(bit, on)| u8::from(*on) << bit)
-                .sum(),
-        )
     }
 }
 
@@ -146,7 +111,7 @@ pub struct VariatorRow {
 impl VariatorRow {
     /// Pulse ratio w_p/w_s.
     pub fn pulse_ratio(&self) -> f64 {
-        self.held.ratio / (1.0 - self.belt.slip_total) // RV-1: the quotient of the speeds, without their rounding
+        self.held.ratio / (1.0 - self.belt.losses.slip_total) // RV-1: the quotient of the speeds, without their rounding
     }
 
     /// Radii from belt speed and shaft speed, m.
@@ -222,9 +187,9 @@ impl VariatorRig {
             let next = belt_state(
                 &self.cvt.belt,
                 at,
-                &self.load(held, output_nm, state.slip_total),
+                &self.load(held, output_nm, state.losses.slip_total),
             );
-            let still = (next.slip_total - state.slip_total).abs() <= 1e-14;
+            let still = (next.losses.slip_total - state.losses.slip_total).abs() <= 1e-14;
             state = next;
             if still {
                 break;
@@ -237,16 +202,21 @@ impl VariatorRig {
     fn row(&self, held: &Held, at: &BeltAtRatio, zero: &Zero, output_nm: f64) -> VariatorRow {
         let belt = self.state(held, at, output_nm);
         let w_p = held.input_rad_s;
-        let w_s = w_p * (1.0 - belt.slip_total) / held.ratio; // RV-1
+        let w_s = w_p * (1.0 - belt.losses.slip_total) / held.ratio; // RV-1
         let over = |x: f64, most: f64| x.abs() > most * (1.0 + 1e-9);
-        let flags = RigFlags::new([
-            belt.gross_slip,
-            over(output_nm, MAX_OUTPUT_NM),
+        let mut flags = RigFlags::default();
+        flags.set(RigFlags::GROSS_SLIP, belt.losses.gross_slip);
+        flags.set(RigFlags::OUTPUT_TORQUE, over(output_nm, MAX_OUTPUT_NM));
+        flags.set(
+            RigFlags::INPUT_TORQUE,
             over(belt.input_torque_nm, MAX_INPUT_NM),
-            over(held.pressure_pa, MAX_PRESSURE_PA),
+        );
+        flags.set(RigFlags::PRESSURE, over(held.pressure_pa, MAX_PRESSURE_PA));
+        flags.set(
+            RigFlags::SPEED,
             over(w_p, MAX_RAD_S) || over(w_s, MAX_RAD_S),
-            !VALID_K.contains(&held.belt_k),
-        ]);
+        );
+        flags.set(RigFlags::OUTSIDE_VALIDITY, !VALID_K.contains(&held.belt_k));
         VariatorRow {
             held: *held,
             output_nm,
@@ -261,7 +231,7 @@ impl VariatorRig {
 
     /// Where the rig's reading has its zero: slip is taken to be none at zero torque (RV-4).
     fn zero(&self, held: &Held, at: &BeltAtRatio) -> Zero {
-        let ratio = held.ratio / (1.0 - self.state(held, at, 0.0).slip_total);
+        let ratio = held.ratio / (1.0 - self.state(held, at, 0.0).losses.slip_total);
         let g = Geometry::new(
             ratio,
             self.cvt.belt.centre_distance_m,
@@ -273,7 +243,7 @@ impl VariatorRig {
         }
     }
 
-    /// Rows of a curve at given torques.
+    /// Rows of a curve at given torques, Nm at the secondary, in their order.
     pub fn rows(&self, held: &Held, output_nm: &[f64]) -> Vec<VariatorRow> {
         let at = BeltAtRatio::new(&self.cvt.belt, held.ratio);
         let zero = self.zero(held, &at);
@@ -290,7 +260,11 @@ impl VariatorRig {
         // The slip at the breakpoint acts on an uncompensated centrifugal head only: two passes are plenty.
         let mut torque = 0.0;
         for _ in 0..3 {
-            let load = self.load(held, torque, self.state(held, &at, torque).slip_total);
+            let load = self.load(
+                held,
+                torque,
+                self.state(held, &at, torque).losses.slip_total,
+            );
             let g = &at.geometry;
             let v = held.input_rad_s * g.primary_radius_m;
             let primary_n = load.secondary_clamp_n * at.thrust_ratio;

@@ -42,9 +42,9 @@ pub struct CurveSummary {
 impl VariatorRig {
     /// A curve in numbers.
     pub fn summary(&self, held: &Held) -> CurveSummary {
-        let slip = |torque: f64| self.rows(held, &[torque])[0].belt.slip_total;
+        let slip = |torque: f64| self.rows(held, &[torque])[0].belt.losses.slip_total;
         let breakpoint_nm = self.breakpoint_nm(held);
-        let capacity_nm = self.rows(held, &[0.0])[0].belt.capacity_nm;
+        let capacity_nm = self.rows(held, &[0.0])[0].belt.losses.capacity_nm;
         let from = larger(breakpoint_nm, 0.0);
         let scan = |low: f64, high: f64| -> Vec<VariatorRow> {
             let torques: Vec<f64> = (0..=POINTS)
@@ -54,15 +54,18 @@ impl VariatorRig {
         };
         let within = scan(0.0, capacity_nm.min(MAX_OUTPUT_NM));
         let fine: Vec<&VariatorRow> = within.iter().filter(|row| row.flags.is_fine()).collect();
-        let most = fine
-            .iter()
-            .max_by(|a, b| a.belt.slip_total.total_cmp(&b.belt.slip_total));
+        let most = fine.iter().max_by(|a, b| {
+            a.belt
+                .losses
+                .slip_total
+                .total_cmp(&b.belt.losses.slip_total)
+        });
         let most_of =
             |get: fn(&VariatorRow) -> f64| fine.iter().map(|row| get(row)).fold(f64::NAN, f64::max);
         let line = |to: f64| {
             let points: Vec<(f64, f64)> = scan(from, to)
                 .iter()
-                .map(|row| (row.output_nm, row.belt.slip_total))
+                .map(|row| (row.output_nm, row.belt.losses.slip_total))
                 .collect();
             determination(&points)
         };
@@ -78,7 +81,7 @@ impl VariatorRig {
                 f64::NAN
             },
             slip_at_capacity: slip(capacity_nm),
-            most_slip: most.map_or(f64::NAN, |row| row.belt.slip_total),
+            most_slip: most.map_or(f64::NAN, |row| row.belt.losses.slip_total),
             most_slip_nm: most.map_or(f64::NAN, |row| row.output_nm),
             most_slip_m_s: [
                 most_of(|row| row.slip_m_s()[0]),

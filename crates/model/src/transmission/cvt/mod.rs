@@ -248,6 +248,7 @@ impl Cvt {
                     ..*load
                 },
             )
+            .losses
             .slip_total
             .abs()
         };

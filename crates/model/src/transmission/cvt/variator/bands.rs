@@ -12,17 +12,8 @@
 //! Symbols: d offset of band 1 above the rocking edge m, t band thickness m, n bands, B width of both packs m, L contact arcs m, h film m.
 //! No loss at I = 1, exactly (thesis 8.3). Losses carry no sign of torque: they are positive in drive and overrun.
 
-use super::{Belt, BeltAtRatio, Geometry, Tension};
-use crate::math::smaller;
-
-/// Boundary friction loss of each pulley, referred to the primary shaft, Nm.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BandLoss {
-    /// On the primary arc, Nm.
-    pub primary_nm: f64,
-    /// On the secondary arc, Nm.
-    pub secondary_nm: f64,
-}
+use super::{Belt, BeltAtRatio, BeltLoad, Geometry, Tension};
+use crate::math::{pair, smaller};
 
 /// Friction-weighted sliding of the band pack per turn of the primary, times the wrap factor of each pulley, m (BT-2 to BT-4).
 pub fn slide_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
@@ -67,28 +58,16 @@ pub fn sliding_speed_m_s(belt: &Belt, ratio: f64, primary_speed_rad_s: f64) -> f
     (1.0 / ratio - 1.0).abs() / 2.0 * belt.band_offset_m * primary_speed_rad_s.abs() // BT-1
 }
 
-/// Boundary friction loss of the bands (BT-3).
+/// Boundary friction loss of the bands on the arcs of primary and secondary, Nm at the primary shaft (BT-3).
 #[inline]
-pub fn band_loss(at: &BeltAtRatio, t: &Tension, mu_band: f64) -> BandLoss {
-    BandLoss {
-        primary_nm: mu_band * t.primary_shoulder_n * at.prepared.slide_m[0], // BT-3
-        secondary_nm: mu_band * t.secondary_shoulder_n * at.prepared.slide_m[1], // BT-3
-    }
+pub fn band_loss_nm(at: &BeltAtRatio, t: &Tension, mu_band: f64) -> [f64; 2] {
+    let shoulder_n = [t.primary_shoulder_n, t.secondary_shoulder_n];
+    pair(|i| mu_band * shoulder_n[i] * at.prepared.slide_m[i]) // BT-3
 }
 
 /// Viscous shear of the carrying film, torque at the primary shaft, Nm (FI-1).
 #[inline]
-pub fn film_loss_nm(at: &BeltAtRatio, film: &Film, primary_speed_rad_s: f64) -> f64 {
-    film.share * film.eta_pa_s * at.prepared.film_m4 / film.thickness_m * primary_speed_rad_s.abs() // FI-1
-}
-
-/// State of the oil film between the bands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Film {
-    /// Share of the contact that the film carries, 0..1.
-    pub share: f64,
-    /// Dynamic viscosity at belt temperature, Pa s.
-    pub eta_pa_s: f64,
-    /// Film thickness, m.
-    pub thickness_m: f64,
+pub fn film_loss_nm(at: &BeltAtRatio, load: &BeltLoad) -> f64 {
+    let speed = load.primary_speed_rad_s.abs();
+    load.band.film_share * load.eta_pa_s * at.prepared.film_m4 / load.film_thickness_m * speed // FI-1
 }

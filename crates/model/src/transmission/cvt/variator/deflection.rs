@@ -13,17 +13,13 @@
 use super::{Belt, BeltAtRatio, Geometry, Tension};
 use crate::math::pair;
 
-/// Wedge and penetration losses of both pulleys, at the primary shaft, Nm.
+/// Wedge and penetration losses at the primary shaft, Nm; pairs are primary, secondary.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Deflection {
-    /// Wedge loss, primary pulley.
-    pub wedge_primary_nm: f64,
-    /// Wedge loss, secondary pulley.
-    pub wedge_secondary_nm: f64,
-    /// Penetration loss, primary pulley.
-    pub penetration_primary_nm: f64,
-    /// Penetration loss, secondary pulley.
-    pub penetration_secondary_nm: f64,
+    /// Wedging at entry and exit.
+    pub wedge_nm: [f64; 2],
+    /// Penetration.
+    pub penetration_nm: [f64; 2],
 }
 
 /// Arcs over twice the segment thickness, referred to the primary shaft, 1/m; primary, secondary (WE-3).
@@ -75,12 +71,8 @@ fn clamped(
     } else {
         [friction_n[0]; 2]
     };
-    let wedge_nm = pair(|i| prepared.wedge_per_m[i] * wedge_n[i] * chord_m2[i]); // WE-3
-    let penetration_nm = pair(|i| prepared.penetration * friction_n[i] * delta_m[i]); // PE-1
     Deflection {
-        wedge_primary_nm: wedge_nm[0],
-        wedge_secondary_nm: wedge_nm[1],
-        penetration_primary_nm: penetration_nm[0],
-        penetration_secondary_nm: penetration_nm[1],
+        wedge_nm: pair(|i| prepared.wedge_per_m[i] * wedge_n[i] * chord_m2[i]), // WE-3
+        penetration_nm: pair(|i| prepared.penetration * friction_n[i] * delta_m[i]), // PE-1
     }
 }

@@ -18,14 +18,14 @@ mod tension;
 mod printed;
 pub mod point;
 
-pub use bands::{BandLoss, Film, sliding_speed_m_s};
+pub use bands::sliding_speed_m_s;
 pub use deflection::Deflection;
 pub use formulation::Formulation;
 pub use geometry::Geometry;
 pub use keys::{BELT, BeltKeys, VARIATOR, VariatorKeys};
 pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
-pub use tension::{Tension, TensionInput};
+pub use tension::Tension;
 
 use crate::fluid::{BandFriction, Lubricant};
 use crate::math::{Curve, ln, ramp, smaller};
@@ -262,7 +262,7 @@ impl BeltLoad {
     }
 }
 
-/// The belt's answer: losses are torques at the primary shaft, Nm, never negative.
+/// The belt's answer: its losses and what they follow from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeltState {
     /// Torque at the primary pulley, Nm (VA-1).
@@ -271,25 +271,11 @@ pub struct BeltState {
     pub tension: Tension,
     /// Slip in detail.
     pub slip: Slip,
-    /// Total slip as a fraction.
-    pub slip_total: f64,
-    /// Boundary friction of the bands.
-    pub band_nm: f64,
-    /// Shear of the film.
-    pub film_nm: f64,
-    /// Sliding of segments on pulleys.
-    pub slip_nm: f64,
-    /// Wedging.
-    pub wedge_nm: f64,
-    /// Penetration.
-    pub penetration_nm: f64,
-    /// Torque capacity at the secondary, Nm (VA-2).
-    pub capacity_nm: f64,
-    /// Torque above capacity, or slip at its bound.
-    pub gross_slip: bool,
+    /// Losses, total slip and capacity.
+    pub losses: BeltLosses,
 }
 
-/// What the driveline needs of the belt: losses as torques at the primary shaft, Nm.
+/// What the driveline needs of the belt: losses as torques at the primary shaft, Nm, never negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BeltLosses {
     /// Boundary friction of the bands.
@@ -318,47 +304,6 @@ impl BeltLosses {
     }
 }
 
-impl BeltState {
-    /// Losses, slip and capacity without the detail.
-    pub fn losses(&self) -> BeltLosses {
-        BeltLosses {
-            band_nm: self.band_nm,
-            film_nm: self.film_nm,
-            slip_nm: self.slip_nm,
-            wedge_nm: self.wedge_nm,
-            penetration_nm: self.penetration_nm,
-            slip_total: self.slip_total,
-            capacity_nm: self.capacity_nm,
-            gross_slip: self.gross_slip,
-        }
-    }
-
-    /// All belt losses, Nm at the primary shaft.
-    #[inline]
-    pub fn loss_nm(&self) -> f64 {
-        self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
-    }
-}
-
-/// Tension at one operating point for a direction of its step (TE-2 to TE-5).
-#[inline(always)]
-fn tension(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, direction: f64) -> Tension {
-    let v = load.primary_speed_rad_s * at.geometry.primary_radius_m;
-    Tension::new(
-        &at.geometry,
-        &TensionInput {
-            primary_clamp_n: load.secondary_clamp_n * at.thrust_ratio,
-            secondary_clamp_n: load.secondary_clamp_n,
-            output_torque_nm: load.output_torque_nm,
-            mu_band: load.band.mu,
-            centrifugal_n: belt.mass_kg_m * v * v,
-            direction,
-            tan_wedge: belt.tan_wedge,
-            inv_secondary_radius: at.prepared.inv_secondary_radius,
-        },
-    )
-}
-
 /// Torque capacity at the secondary, Nm (VA-2).
 #[inline]
 fn capacity_nm(at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> f64 {
@@ -370,7 +315,7 @@ fn capacity_nm(at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> f64 {
 struct Parts {
     tension: Tension,
     slip: Slip,
-    bands: BandLoss,
+    band_nm: [f64; 2],
     film_nm: f64,
     deflection: Deflection,
     capacity_nm: f64,
@@ -378,17 +323,12 @@ struct Parts {
 
 #[inline(always)]
 fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
-    let tension = tension(belt, at, load, at.direction);
+    let tension = Tension::new(belt, at, load, at.direction);
     let mu_segment = belt.formulation.segment_friction(load.segment_friction);
-    let film = Film {
-        share: load.band.film_share,
-        eta_pa_s: load.eta_pa_s,
-        thickness_m: load.film_thickness_m,
-    };
     Parts {
         slip: slip::slip(belt, at, &tension, mu_segment),
-        bands: bands::band_loss(at, &tension, load.band.mu),
-        film_nm: bands::film_loss_nm(at, &film, load.primary_speed_rad_s),
+        band_nm: bands::band_loss_nm(at, &tension, load.band.mu),
+        film_nm: bands::film_loss_nm(at, load),
         deflection: deflection::deflection(belt, at, &tension, load.flank_friction),
         capacity_nm: capacity_nm(at, &tension, mu_segment),
         tension,
@@ -397,51 +337,28 @@ fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
 
 #[inline(always)]
 fn losses(load: &BeltLoad, parts: &Parts) -> BeltLosses {
-    let Parts {
-        slip,
-        bands,
-        film_nm,
-        deflection,
-        capacity_nm,
-        ..
-    } = parts;
+    let sum = |pair: [f64; 2]| pair[0] + pair[1];
+    let (slip, capacity_nm) = (&parts.slip, parts.capacity_nm);
     BeltLosses {
-        band_nm: bands.primary_nm + bands.secondary_nm,
-        film_nm: *film_nm,
+        band_nm: sum(parts.band_nm),
+        film_nm: parts.film_nm,
         slip_nm: slip.primary_loss_nm + slip.secondary_loss_nm,
-        wedge_nm: deflection.wedge_primary_nm + deflection.wedge_secondary_nm,
-        penetration_nm: deflection.penetration_primary_nm + deflection.penetration_secondary_nm,
+        wedge_nm: sum(parts.deflection.wedge_nm),
+        penetration_nm: sum(parts.deflection.penetration_nm),
         slip_total: slip.primary + slip.secondary,
-        capacity_nm: *capacity_nm,
-        gross_slip: slip.held || load.output_torque_nm.abs() > *capacity_nm,
+        capacity_nm,
+        gross_slip: slip.held || load.output_torque_nm.abs() > capacity_nm,
     }
 }
 
 fn state(at: &BeltAtRatio, load: &BeltLoad, parts: &Parts) -> BeltState {
-    let sums = losses(load, parts);
-    let BeltLosses {
-        band_nm,
-        film_nm,
-        slip_nm,
-        wedge_nm,
-        penetration_nm,
-        slip_total,
-        capacity_nm,
-        gross_slip,
-    } = sums;
+    let losses = losses(load, parts);
     BeltState {
-        input_torque_nm: load.output_torque_nm / at.geometry.ratio * (1.0 - slip_total)
-            + sums.sum_nm(), // VA-1
+        input_torque_nm: load.output_torque_nm / at.geometry.ratio * (1.0 - losses.slip_total)
+            + losses.sum_nm(), // VA-1
         tension: parts.tension,
         slip: parts.slip,
-        slip_total,
-        band_nm,
-        film_nm,
-        slip_nm,
-        wedge_nm,
-        penetration_nm,
-        capacity_nm,
-        gross_slip,
+        losses,
     }
 }
 
@@ -457,6 +374,22 @@ pub fn belt_capacity_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
 }
 
 /// Solves the belt at one operating point.
+///
+/// ```
+/// use cvtcycle_config::setup::{Options, load};
+/// use cvtcycle_model::bench::Bench;
+/// use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, belt_state};
+///
+/// let bench = Bench::new(&load("rover_216_cvt", &Options::default()).expect("a shipped car"));
+/// let belt = &bench.cvt().expect("a CVT").belt;
+/// let load = BeltLoad {
+///     output_torque_nm: 60.0,
+///     secondary_clamp_n: 20e3,
+///     ..BeltLoad::turning(belt, &bench.car().oil, 353.15, 2.0, 200.0)
+/// };
+/// let state = belt_state(belt, &BeltAtRatio::new(belt, 2.0), &load);
+/// assert!(state.slip_total > 0.0 && !state.gross_slip);
+/// ```
 pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
     state(at, load, &parts(belt, at, load))
 }

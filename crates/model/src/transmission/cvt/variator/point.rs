@@ -1,11 +1,10 @@
 //! One operating point of the belt with everything that is known of it, for all readings of the model.
 
-use super::bands::{band_loss, travel_m};
+use super::bands::{band_loss_nm, travel_m};
 use super::deflection::{Deflection, deflection};
 use super::slip::{Contact, MAX_AREA_N};
 use super::{
-    BandLoss, Belt, BeltAtRatio, BeltLoad, Formulation, Geometry, Tension, capacity_nm, parts,
-    printed, state, tension,
+    Belt, BeltAtRatio, BeltLoad, Formulation, Geometry, Tension, capacity_nm, parts, printed, state,
 };
 use crate::fluid::VALID_K;
 
@@ -216,15 +215,15 @@ pub fn driving_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoin
     BeltPoint {
         film_loss_nm: arcs.map(|arc| parts.film_nm * arc / (arcs[0] + arcs[1])), // FI-1
         slip_loss_nm: [slip.primary_loss_nm, slip.secondary_loss_nm],
-        loss_nm: state.loss_nm(),
+        loss_nm: state.losses.sum_nm(),
         input_torque_nm: state.input_torque_nm,
         active_segments: slip.active_segments,
         gap_slip_m_s: v * slip.gap,
         idle_slip_m_s: v * slip.idle,
         slip_m_s: [v * slip.primary, v * slip.secondary],
-        slip_total: state.slip_total,
-        capacity_nm: state.capacity_nm,
-        status: if state.gross_slip {
+        slip_total: state.losses.slip_total,
+        capacity_nm: state.losses.capacity_nm,
+        status: if state.losses.gross_slip {
             PointStatus::GrossSlip
         } else {
             PointStatus::Ok
@@ -233,17 +232,19 @@ pub fn driving_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoin
             belt,
             at,
             load,
-            (&parts.tension, &parts.bands, &parts.deflection),
+            &parts.tension,
+            parts.band_nm,
+            &parts.deflection,
         )
     }
 }
 
 /// The point as printed (PR-1 to PR-5).
 fn printed_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoint {
-    let tension = tension(belt, at, load, printed::direction(at.geometry.ratio)); // PR-1
-    let bands = band_loss(at, &tension, load.band.mu);
+    let tension = Tension::new(belt, at, load, printed::direction(at.geometry.ratio)); // PR-1
+    let band_nm = band_loss_nm(at, &tension, load.band.mu);
     let deflection = deflection(belt, at, &tension, printed::FLANK_FRICTION); // PR-5
-    let bare = without_slip(belt, at, load, (&tension, &bands, &deflection));
+    let bare = without_slip(belt, at, load, &tension, band_nm, &deflection);
     let bare = BeltPoint {
         capacity_nm: capacity_nm(at, &tension, load.segment_friction),
         ..bare
@@ -281,9 +282,10 @@ fn without_slip(
     belt: &Belt,
     at: &BeltAtRatio,
     load: &BeltLoad,
-    of: (&Tension, &BandLoss, &Deflection),
+    tension: &Tension,
+    band_loss_nm: [f64; 2],
+    deflection: &Deflection,
 ) -> BeltPoint {
-    let (tension, bands, deflection) = of;
     let g = &at.geometry;
     let (mean, step) = (tension.mean_tension_n(g), tension.step_n.abs());
     BeltPoint {
@@ -292,14 +294,11 @@ fn without_slip(
         belt_speed_m_s: load.primary_speed_rad_s * g.primary_radius_m,
         band_tension_n: [mean - step / 2.0, mean + step / 2.0],
         band_travel_m: travel_m(belt, g, 0.0),
-        band_loss_nm: [bands.primary_nm, bands.secondary_nm],
+        band_loss_nm,
         film_loss_nm: [0.0; 2],
         slip_loss_nm: [f64::NAN; 2],
-        wedge_loss_nm: [deflection.wedge_primary_nm, deflection.wedge_secondary_nm],
-        penetration_loss_nm: [
-            deflection.penetration_primary_nm,
-            deflection.penetration_secondary_nm,
-        ],
+        wedge_loss_nm: deflection.wedge_nm,
+        penetration_loss_nm: deflection.penetration_nm,
         loss_nm: f64::NAN,
         input_torque_nm: f64::NAN,
         active_segments: 0.0,

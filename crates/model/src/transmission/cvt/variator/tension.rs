@@ -12,7 +12,7 @@
 //! Symbols: F clamping force N, th half wedge angle, m belt mass per length kg/m, v belt speed m/s, mu_b band friction.
 //! C_x is continuous in T with a bend at C_x = 0. Needs mu_b beta_p / 2 < 1, true for mu_b < 0.53.
 
-use super::Geometry;
+use super::{Belt, BeltAtRatio, BeltLoad, Geometry};
 
 /// Band pack and segment forces at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,34 +31,19 @@ pub struct Tension {
     pub step_n: f64,
 }
 
-/// What loads the belt at one operating point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TensionInput {
-    /// Axial clamping force, primary, N.
-    pub primary_clamp_n: f64,
-    /// Axial clamping force, secondary, N.
-    pub secondary_clamp_n: f64,
-    /// Output torque at the secondary, Nm.
-    pub output_torque_nm: f64,
-    /// Band friction coefficient.
-    pub mu_band: f64,
-    /// Belt mass per length times belt speed squared, N.
-    pub centrifugal_n: f64,
-    /// Direction s of the tension step, -1 in low, +1 in high.
-    pub direction: f64,
-    /// tan of the half wedge angle.
-    pub tan_wedge: f64,
-    /// One over the secondary radius, 1/m.
-    pub inv_secondary_radius: f64,
-}
-
 impl Tension {
-    /// Solves tension and compression (TE-2 to TE-5).
+    /// Solves tension and compression for a direction s of the tension step, -1 in low, +1 in high (TE-2 to TE-5).
     #[inline(always)]
-    pub fn new(g: &Geometry, input: &TensionInput) -> Self {
-        let (mu, s, bp) = (input.mu_band, input.direction, g.primary_wrap_rad);
-        let a = 2.0 * input.primary_clamp_n * input.tan_wedge + bp * input.centrifugal_n;
-        let z = input.output_torque_nm * input.inv_secondary_radius + s * mu * a;
+    pub fn new(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, s: f64) -> Self {
+        let (g, mu, bp) = (&at.geometry, load.band.mu, at.geometry.primary_wrap_rad);
+        let v = load.primary_speed_rad_s * g.primary_radius_m;
+        let centrifugal_n = belt.mass_kg_m * v * v;
+        let clamp_n = [
+            load.secondary_clamp_n * at.thrust_ratio,
+            load.secondary_clamp_n,
+        ];
+        let a = 2.0 * clamp_n[0] * belt.tan_wedge + bp * centrifugal_n;
+        let z = load.output_torque_nm * at.prepared.inv_secondary_radius + s * mu * a;
         let c = mu * bp / 2.0;
         // The divisors are known before the torque is: nothing waits for a division.
         let cx = z * if z >= 0.0 {
@@ -67,11 +52,14 @@ impl Tension {
             1.0 / (1.0 + s * c)
         }; // TE-5
         let q_p = a + cx.abs() * bp / 2.0; // TE-2
+        let bs = g.secondary_wrap_rad;
         Tension {
-            primary_clamp_n: input.primary_clamp_n,
-            secondary_clamp_n: input.secondary_clamp_n,
+            primary_clamp_n: clamp_n[0],
+            secondary_clamp_n: clamp_n[1],
             primary_shoulder_n: q_p,
-            secondary_shoulder_n: secondary_shoulder(g, input, cx),
+            secondary_shoulder_n: 2.0 * clamp_n[1] * belt.tan_wedge
+                + bs * centrifugal_n
+                + cx.abs() * bs / 2.0, // TE-2
             compression_n: cx,
             step_n: -s * mu * q_p, // TE-3
         }
@@ -82,10 +70,4 @@ impl Tension {
     pub fn mean_tension_n(&self, g: &Geometry) -> f64 {
         self.primary_shoulder_n / g.primary_wrap_rad
     }
-}
-
-#[inline]
-fn secondary_shoulder(g: &Geometry, input: &TensionInput, cx: f64) -> f64 {
-    let bs = g.secondary_wrap_rad;
-    2.0 * input.secondary_clamp_n * input.tan_wedge + bs * input.centrifugal_n + cx.abs() * bs / 2.0 // TE-2
 }
