@@ -16,6 +16,9 @@ macro_rules! flags {
             /// Names in the order of the bits.
             pub const NAMES: [($set, &'static str); [$($bit),*].len()] = [$(($set::$flag, $name)),*];
 
+            /// Meanings in the order of the bits.
+            pub const MEANINGS: [&str; [$($bit),*].len()] = [$($doc),*];
+
             /// True where every bit of `other` is set.
             pub fn contains(self, other: $set) -> bool {
                 self.0 & other.0 == other.0
@@ -39,19 +42,19 @@ pub(crate) use flags;
 flags! {
     /// States and departures from validity of a row, as a bit set.
     Flags {
-        MISSED_TRACE = 0, "missed_trace", "The car cannot follow the trace: engine at full load, torque missing.";
-        GROSS_SLIP = 1, "gross_slip", "Belt torque above what the clamping force carries.";
-        LOW_CLAMP = 2, "low_clamp", "Actual clamp safety factor below 1.";
-        FLOW_LIMITED = 3, "flow_limited", "Pump flow does not cover the shift flow and leakage.";
-        OUTSIDE_VALIDITY = 4, "outside_validity", "An input left the validity range of a model or of a measured map.";
-        RATIO_LIMIT = 5, "ratio_limit", "Ratio at one of its limits.";
-        CLUTCH_SLIPPING = 6, "clutch_slipping", "Launch clutch slipping.";
-        CLUTCH_OPEN = 7, "clutch_open", "Launch clutch open.";
-        OVERRUN = 8, "overrun", "The wheels drive the transmission.";
-        FUEL_CUT = 9, "fuel_cut", "Fuel cut off in overrun.";
-        ENGINE_OFF = 10, "engine_off", "Engine switched off (soak).";
-        NOT_CONVERGED = 11, "not_converged", "The implicit solve stopped at its iteration bound above its tolerance.";
-        LAUNCH_NOT_IN_LOW = 12, "launch_not_in_low", "Pulling away in another ratio than low.";
-        OVERSPEED = 13, "overspeed", "Engine speed above its limit.";
+        MISSED_TRACE = 0, "missed_trace", "the car cannot follow the trace: engine at full load, torque missing; exit code 1";
+        GROSS_SLIP = 1, "gross_slip", "belt torque above what the clamping force carries; slip is held at its bound";
+        LOW_CLAMP = 2, "low_clamp", "clamp safety factor (torque capacity over torque) below 1";
+        FLOW_LIMITED = 3, "flow_limited", "the pump's flow does not cover leakage, lubrication and shift flow";
+        OUTSIDE_VALIDITY = 4, "outside_validity", "an input left the validity range of a model or of a measured map";
+        RATIO_LIMIT = 5, "ratio_limit", "the belt ratio is at one of its limits";
+        CLUTCH_SLIPPING = 6, "clutch_slipping", "the launch clutch slips";
+        CLUTCH_OPEN = 7, "clutch_open", "the launch clutch is open";
+        OVERRUN = 8, "overrun", "the wheels drive the transmission";
+        FUEL_CUT = 9, "fuel_cut", "fuel is cut off in overrun";
+        ENGINE_OFF = 10, "engine_off", "the engine is switched off (soak)";
+        NOT_CONVERGED = 11, "not_converged", "the implicit solve stopped at its iteration bound above its tolerance; exit code 1";
+        LAUNCH_NOT_IN_LOW = 12, "launch_not_in_low", "the car pulls away in another ratio than low";
+        OVERSPEED = 13, "overspeed", "engine speed above its limit";
     }
 }

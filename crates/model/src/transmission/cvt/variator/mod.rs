@@ -388,7 +388,7 @@ pub fn belt_capacity_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
 ///     ..BeltLoad::turning(belt, &bench.car().oil, 353.15, 2.0, 200.0)
 /// };
 /// let state = belt_state(belt, &BeltAtRatio::new(belt, 2.0), &load);
-/// assert!(state.slip_total > 0.0 && !state.gross_slip);
+/// assert!(state.losses.slip_total > 0.0 && !state.losses.gross_slip);
 /// ```
 pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
     state(at, load, &parts(belt, at, load))
