@@ -70,7 +70,7 @@ impl Execute for CalibrateArgs {
         let search = &mut plan.search;
         search.starts = self.starts.map_or(search.starts, usize::from);
         search.seed = self.seed.unwrap_or(search.seed);
-        search.leave_out &= !self.no_folds;
+        plan.leave_out &= !self.no_folds;
         Some((plan, out))
     }
 

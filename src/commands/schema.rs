@@ -4,6 +4,8 @@ use clap::{Args, ValueEnum};
 use cvtcycle::config::schema;
 use cvtcycle::model::files;
 use cvtcycle::model::keys::Table;
+use cvtcycle::study::check::keys::VALIDATION;
+use cvtcycle::study::fit::plan::keys::CALIBRATION;
 
 use crate::print::{CommandOutput, CommandResult};
 
@@ -29,6 +31,10 @@ enum SchemaKind {
     Lubricant,
     /// Conditions of the test rigs
     Rig,
+    /// Plan of a calibration
+    Calibration,
+    /// Rows of `validate`
+    Validation,
 }
 
 impl SchemaKind {
@@ -38,6 +44,8 @@ impl SchemaKind {
             SchemaKind::Vehicle => ("vehicle", files::VEHICLE),
             SchemaKind::Lubricant => ("lubricant", files::LUBRICANT),
             SchemaKind::Rig => ("rig", files::RIG),
+            SchemaKind::Calibration => ("calibration", CALIBRATION),
+            SchemaKind::Validation => ("validation", VALIDATION),
         }
     }
 }

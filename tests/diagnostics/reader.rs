@@ -5,6 +5,7 @@
 use cvtcycle::config::{
     Bound, Document, KeyInfo, Override, Problem, Problems, Reader, decode, near, render,
 };
+use cvtcycle::model::keys::{Key, spec};
 use proptest::prelude::*;
 
 /// Reads a small vehicle that has a value of every kind.
@@ -31,7 +32,7 @@ fn read(document: &Document) -> Result<Vec<KeyInfo>, Problems> {
         vehicle.number_or("start_degc", Bound::any(), 20.0, "Start");
         vehicle.integer_or("gears", 1..=9, 5, "Gears");
         vehicle.text("name", "Name");
-        vehicle.optional_text("maker", "Maker");
+        vehicle.optional_text(&Key::new("maker", spec::text(), "Maker"));
         vehicle.text_or("class", "C", "Class");
         vehicle.word_or("fuel", &["petrol", "diesel"], "petrol", "Fuel");
         vehicle.boolean_or("abs", true, "Brakes");

@@ -6,6 +6,9 @@ use cvtcycle::config::schema;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::model::files;
 use cvtcycle::model::keys::Table;
+use cvtcycle::study::check::keys::VALIDATION;
+use cvtcycle::study::check::{COMMON, embedded_rows};
+use cvtcycle::study::fit::plan::keys::CALIBRATION;
 use serde_json::{Value, json};
 
 /// Where and why a value is not valid.
@@ -21,6 +24,14 @@ fn mistakes(schema: &Value, value: &Value, at: &str) -> Vec<String> {
             "minimum" => number.is_none_or(|x| x >= limit),
             "exclusiveMinimum" => number.is_none_or(|x| x > limit),
             "maximum" => number.is_none_or(|x| x <= limit),
+            "pattern" => {
+                assert_eq!(rule, r"\.\..*:", "the only pattern");
+                let after = |text: &str| {
+                    text.split_once("..")
+                        .is_some_and(|(_, to)| to.contains(':'))
+                };
+                value.as_str().is_none_or(after)
+            }
             "minItems" => value.as_array().is_none_or(|a| a.len() as f64 >= limit),
             "maxItems" => value.as_array().is_none_or(|a| a.len() as f64 <= limit),
             "maxProperties" => value.as_object().is_none_or(|o| o.len() as f64 <= limit),
@@ -101,10 +112,67 @@ fn the_shipped_files_are_valid() {
         (Kind::Vehicle, files::VEHICLE),
         (Kind::Lubricant, files::LUBRICANT),
         (Kind::Rig, files::RIG),
+        (Kind::Calibration, CALIBRATION),
     ] {
         for (name, text) in kind.embedded() {
             assert_eq!(checked(&keys, text), [] as [&str; 0], "{name}");
         }
+    }
+    let rows = embedded_rows().iter().chain([&COMMON]);
+    for (name, text) in rows {
+        assert_eq!(checked(&VALIDATION, text), [] as [&str; 0], "{name}");
+    }
+}
+
+/// Mistakes of a calibration plan and of a validation file, each in a text of its own.
+#[test]
+fn mistakes_in_calibrations_and_rows_are_seen() {
+    let parameter = "[calibration]\n[[parameter]]\nkey = \"engine.idle\"\nlow = 1\n";
+    for (text, mistake) in [
+        (
+            "[calibration]\nstarts = 1001\n",
+            ".calibration.starts: maximum",
+        ),
+        (
+            "[calibration]\nvehical = \"a\"\n",
+            ".calibration.vehical: unknown",
+        ),
+        (parameter, ".parameter[0]: required"),
+        (
+            "[[data]]\nfrom = \"a\"\nsd = 0\n",
+            ".data[0].sd: exclusiveMinimum",
+        ),
+        (
+            "[sources.a]\nsource = \"boat\"\n",
+            ".sources.a.source: enum",
+        ),
+        ("[sources.a]\nratio = 50\n", ".sources.a.ratio: maximum"),
+    ] {
+        let found = checked(&CALIBRATION, text);
+        assert!(
+            found.iter().any(|m| m.starts_with(mistake)),
+            "{mistake}: {found:?}"
+        );
+    }
+    for (text, mistake) in [
+        ("[[row]]\nverdict = \"maybe\"\n", ".row[0].verdict: enum"),
+        ("[[row]]\nvalue = \"5\"\n", ".row[0].value: type"),
+        ("[[row]]\ncolour = \"red\"\n", ".row[0].colour: unknown"),
+        ("[[row]]\n", ".row[0]: required"),
+        (
+            "[tolerances.a]\nwidth = -1\n",
+            ".tolerances.a.width: minimum",
+        ),
+        (
+            "[sources.a]\nthrottle = 2\n",
+            ".sources.a.throttle: maximum",
+        ),
+    ] {
+        let found = checked(&VALIDATION, text);
+        assert!(
+            found.iter().any(|m| m.starts_with(mistake)),
+            "{mistake}: {found:?}"
+        );
     }
 }
 

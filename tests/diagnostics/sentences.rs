@@ -114,7 +114,6 @@ const EXCUSED: &[(&str, &str)] = &[
         "the reader of maps reports it before, with the line",
     ),
     ("give fewer values", "the reader of plans reports it before"),
-    ("a function", "a fallback that nothing reaches"),
 ];
 
 /// What makes a complaint of the texts within its brackets.

@@ -388,7 +388,7 @@ like = "no_such_form"
         "row c: the verdict needs a reason",
         "needs its computed cause",
         "row d: the verdict needs a reason",
-        "there is no verdict `agree`",
+        "`agree` is not known for `verdict`",
         "there is no parameter `pump.size`",
         "row f: unknown key `uint`",
         "but none is printed",

@@ -398,7 +398,7 @@ fn shipped_plans_give_the_shipped_values() {
     for (name, _) in embedded_calibrations() {
         let mut plan = load(name)
             .unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)));
-        plan.search.leave_out = false;
+        plan.leave_out = false;
         let outcome = solved(&plan);
         assert!(outcome.converged, "{name}: {:?}", outcome.warnings);
         for p in outcome.parameters.iter().filter(|p| p.is_key) {

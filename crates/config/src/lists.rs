@@ -54,8 +54,8 @@ impl Section<'_> {
 
     /// Numbers in SI units, written as one number, a list of numbers, or a range `"1000..4000:250"` with both ends; none if the key is
     /// absent, NaN after a problem.
-    pub fn grid(&self, key: &str, allowed: Bound, doc: &str) -> Option<Vec<f64>> {
-        let key = &Key::new(key, (Kind::Grid(allowed), Presence::Optional), doc);
+    pub fn grid(&self, key: &Key<'_>) -> Option<Vec<f64>> {
+        let allowed = key.range();
         let found = match self.open(key) {
             Lookup::Found(found) => found,
             Lookup::Absent => return None,
@@ -92,17 +92,17 @@ impl Section<'_> {
     }
 
     /// Texts of a list; empty if the key is absent.
-    pub fn texts(&self, key: &str, doc: &str) -> Vec<String> {
-        self.list(key, doc, |_, text| Some(text.to_owned()))
+    pub fn texts(&self, key: &Key<'_>) -> Vec<String> {
+        self.list(key, |_, text| Some(text.to_owned()))
     }
 
     /// Overrides of a list of texts `KEY=VALUE`; empty if the key is absent.
-    pub fn overrides(&self, key: &str, doc: &str) -> Vec<Override> {
+    pub fn overrides(&self, key: &Key<'_>) -> Vec<Override> {
         let example = "write, for example, \"road_load.mass_kg=1250\"";
-        self.list(key, doc, |item, text| {
+        self.list(key, |item, text| {
             let read = text.parse::<Override>().map_err(|problem| {
                 let problem = problem.allowed("KEY=VALUE").hint(example);
-                self.report(&item.span, key, problem);
+                self.report(&item.span, key.name, problem);
             });
             read.ok()
         })
@@ -111,31 +111,30 @@ impl Section<'_> {
     /// What `read` makes of the texts of a list; empty if the key is absent.
     fn list<T: fmt::Debug>(
         &self,
-        key: &str,
-        doc: &str,
+        key: &Key<'_>,
         read: impl Fn(&Node, &str) -> Option<T>,
     ) -> Vec<T> {
-        let found = match self.open(&Key::new(key, (Kind::Texts, Presence::Optional), doc)) {
+        let found = match self.open(key) {
             Lookup::Found(found) => found,
             Lookup::Absent => {
-                self.defaulted(key, "[]", None);
+                self.defaulted(key.name, "[]", None);
                 return Vec::new();
             }
             Lookup::Bad => return Vec::new(),
         };
         let Value::List(items) = &found.node.value else {
-            self.wrong_type(key, found.node, "a list of texts");
+            self.wrong_type(key.name, found.node, "a list of texts");
             return Vec::new();
         };
         let text = |item: &Node| match &item.value {
             Value::Text(text) => read(item, text),
             _ => {
-                self.wrong_type(key, item, "text");
+                self.wrong_type(key.name, item, "text");
                 None
             }
         };
         let texts: Vec<T> = items.iter().filter_map(text).collect();
-        self.given(key, &found, format_args!("{texts:?}"), None);
+        self.given(key.name, &found, format_args!("{texts:?}"), None);
         texts
     }
 

@@ -34,7 +34,16 @@ fn table(table: &Table) -> Value {
         }
     }
     for inner in table.tables {
-        let schema = self::table(inner);
+        let mut schema = self::table(inner);
+        if inner.name.is_empty() {
+            // Keys of one of several forms of this table: of equal names each form is allowed.
+            for (name, entry) in schema["properties"].as_object_mut().into_iter().flatten() {
+                let other = properties.remove(name);
+                let forms = other.map(|other| json!({ "anyOf": [other, entry] }));
+                properties.insert(name.clone(), forms.unwrap_or_else(|| entry.take()));
+            }
+            continue;
+        }
         let schema = match inner.repeat {
             Repeat::Once | Repeat::Optional => schema,
             Repeat::List => json!({ "type": "array", "items": schema }),

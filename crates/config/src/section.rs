@@ -151,8 +151,15 @@ impl<'r> Section<'r> {
     }
 
     /// A text that may be absent.
-    pub fn optional_text(&self, key: &str, doc: &str) -> Option<String> {
-        self.read_text(&Key::new(key, spec::text(), doc)).ok()
+    pub fn optional_text(&self, key: &Key<'_>) -> Option<String> {
+        self.read_text(key).ok()
+    }
+
+    /// Counts all keys as read, where their meaning is not known.
+    pub fn pass_over(&self) {
+        for name in self.names() {
+            let _ = self.raw(name, "", "");
+        }
     }
 
     /// One of `words`, with a default; the default also after a problem.

@@ -4,17 +4,9 @@ use super::problem::Problem;
 use super::section::Section;
 use super::tables;
 use super::value::Lookup;
-use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Values};
+use cvtcycle_model::keys::{Key, Kind, Presence, Values};
 use cvtcycle_model::maps::BsfcMap;
 use cvtcycle_model::maps::LossMap;
-
-/// The range of a key that holds numbers.
-pub(super) fn range(key: &Key<'_>) -> Bound {
-    match key.kind {
-        Kind::Number(range) | Kind::Numbers(range, ..) | Kind::Grid(range) => range,
-        _ => Bound::any(),
-    }
-}
 
 impl<'r> Values for Section<'r> {
     fn table(&self, name: &str) -> Self {
@@ -28,7 +20,7 @@ impl<'r> Values for Section<'r> {
     fn number(&self, key: &Key<'_>) -> f64 {
         match key.presence {
             Presence::Number(default) => Values::number_or(self, key, default),
-            _ => self.read_number(key, range(key)).unwrap_or_else(|absent| {
+            _ => self.read_number(key, key.range()).unwrap_or_else(|absent| {
                 if absent {
                     self.missing(key);
                 }
@@ -38,8 +30,8 @@ impl<'r> Values for Section<'r> {
     }
 
     fn number_or(&self, key: &Key<'_>, default: f64) -> f64 {
-        debug_assert!(range(key).contains(default), "default of {}", key.name);
-        self.read_number(key, range(key)).unwrap_or_else(|absent| {
+        debug_assert!(key.range().contains(default), "default of {}", key.name);
+        self.read_number(key, key.range()).unwrap_or_else(|absent| {
             if !absent {
                 return f64::NAN;
             }
@@ -50,7 +42,7 @@ impl<'r> Values for Section<'r> {
     }
 
     fn optional(&self, key: &Key<'_>) -> Option<f64> {
-        match self.read_number(key, range(key)) {
+        match self.read_number(key, key.range()) {
             Ok(si) => Some(si),
             Err(absent) => (!absent).then_some(f64::NAN),
         }
@@ -107,12 +99,22 @@ impl<'r> Values for Section<'r> {
     }
 
     fn text(&self, key: &Key<'_>) -> String {
-        self.read_text(key).unwrap_or_else(|absent| {
-            if absent {
-                self.missing(key);
+        let default = match key.presence {
+            Presence::Required | Presence::RequiredIf(_) => None,
+            Presence::Word(default) => Some(default),
+            _ => Some(""),
+        };
+        match self.read_text(key) {
+            Ok(text) => text,
+            Err(false) => String::new(),
+            Err(true) => {
+                match default {
+                    Some(default) => self.defaulted(key.name, default, None),
+                    None => self.missing(key),
+                }
+                default.unwrap_or_default().to_owned()
             }
-            String::new()
-        })
+        }
     }
 
     fn text_or(&self, key: &Key<'_>, default: &str) -> String {

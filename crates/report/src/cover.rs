@@ -21,6 +21,7 @@ use base64::prelude::BASE64_STANDARD;
 use super::document::{Block, Document};
 use cvtcycle_config::bounded::{self, ReadError};
 use cvtcycle_config::{Argument, Document as Toml, Problems, Reader, decode};
+use cvtcycle_model::keys::{Key, spec};
 
 /// Sections that a report may have, in their order.
 pub const SECTIONS: [&str; 13] = [
@@ -66,7 +67,7 @@ impl Cover {
         let reader = Reader::new(&toml);
         let root = reader.root();
         let text = |key: &str, doc: &str| {
-            root.optional_text(key, doc)
+            root.optional_text(&Key::new(key, spec::text(), doc))
                 .filter(|text| !text.trim().is_empty())
         };
         let mut cover = Cover {
@@ -96,7 +97,11 @@ impl Cover {
         }
         let remarks = root.table("remarks");
         for section in SECTIONS {
-            let remark = remarks.optional_text(section, "remark at the beginning of that section");
+            let remark = remarks.optional_text(&Key::new(
+                section,
+                spec::text(),
+                "remark at the beginning of that section",
+            ));
             cover.remarks.extend(
                 remark
                     .filter(|text| !text.trim().is_empty())

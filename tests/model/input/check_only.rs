@@ -1,6 +1,7 @@
 //! Silent readings find the same values and as many problems as ordinary ones; drafts are what assignments make of a document.
 use crate::reading::document;
 use cvtcycle_config::{Bound, KeyPath, Override, PatchedDocument, Reader};
+use cvtcycle_model::keys::{Key, Kind, Presence, spec};
 
 /// A little of everything that a reader reads, as text.
 fn read(reader: &Reader) -> String {
@@ -32,8 +33,12 @@ fn read(reader: &Reader) -> String {
         root.word_or("fluid", &["old", "new"], "new", "fluid"),
         root.boolean_or("warm", true, "warm"),
         root.text("title", "title"),
-        root.grid("speed_rpm", Bound::positive(), "speed"),
-        root.texts("names", "names"),
+        root.grid(&Key::new(
+            "speed_rpm",
+            (Kind::Grid(Bound::positive()), Presence::Optional),
+            "speed",
+        )),
+        root.texts(&Key::new("names", spec::texts(), "names")),
     );
     format!("{option} {numbers:?} {others:?}")
 }

@@ -1,5 +1,6 @@
 //! Readings of small documents, through the interface that the vehicle files are read with.
 use cvtcycle_config::{Bound, Document, KeyInfo, Problem, Problems, Reader};
+use cvtcycle_model::keys::{Key, spec};
 
 pub fn document(text: &str) -> Document {
     Document::parse("car.toml", text).unwrap()
@@ -133,7 +134,10 @@ fn kinds_of_values() {
     assert!(root.boolean_or("yes", false, ""));
     assert_eq!(root.text("name", ""), "x");
     assert_eq!(root.text_or("name2", "y", ""), "y");
-    assert_eq!(root.optional_text("name3", ""), None);
+    assert_eq!(
+        root.optional_text(&Key::new("name3", spec::text(), "")),
+        None
+    );
     assert_eq!(root.word_or("word", &["warm", "cold"], "warm", ""), "cold");
     assert_eq!(
         root.numbers("list_mm", Bound::positive(), 1..=2, ""),
@@ -366,7 +370,7 @@ fn tables_of_a_list_are_documents_with_their_places() {
         let reader = Reader::new(&rows[k]);
         let values = reader
             .root()
-            .grid("speed_rpm", Bound::closed(0.0, 100.0), "speed");
+            .grid(&Key::new("speed_rpm", spec::grid(0.0, 100.0), "speed"));
         reader.root().text("name", "name");
         (values, reader.finish().expect_err("no name"))
     };

@@ -202,6 +202,21 @@ impl Progress for Patience {
     }
 }
 
+/// A start that failed before the stop says nothing of the others.
+#[test]
+fn a_stop_after_a_failed_start_is_a_stop() {
+    let model = Model(1, |_: &[f64]| Err("no number".to_owned()));
+    let parameters = [parameter("a", 9.0, [0.0, 10.0])];
+    let options = Options { starts: 64, ..ONCE };
+    let watcher = Patience(AtomicUsize::new(0), 1);
+    let failure = fit(&model, &parameters, &options, &watcher).expect_err("no result");
+    let failed = failure.starts.iter().filter(|s| s.end == FitEnd::Stalled);
+    assert!(failed.count() > 0 && failure.is_stop(), "{failure}");
+    let patient = Patience(AtomicUsize::new(0), usize::MAX);
+    let failure = fit(&model, &parameters, &options, &patient).expect_err("no result");
+    assert!(!failure.is_stop(), "{failure}");
+}
+
 #[test]
 fn who_stops_keeps_the_best_so_far_and_limits_hold() {
     let parameters = [

@@ -19,6 +19,15 @@ impl Key<'_> {
         }
     }
 
+    /// The range of a key that holds numbers, in its unit.
+    #[must_use]
+    pub fn range(&self) -> Bound {
+        match self.kind {
+            Kind::Number(range) | Kind::Numbers(range, ..) | Kind::Grid(range) => range,
+            _ => Bound::any(),
+        }
+    }
+
     /// Whether the value is a single number.
     pub fn is_number(&self) -> bool {
         matches!(self.kind, Kind::Number(_) | Kind::Integer(..))

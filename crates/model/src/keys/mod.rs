@@ -270,6 +270,12 @@ pub mod spec {
         (Kind::Either(kinds), Presence::Required)
     }
 
+    /// Required numbers from `low` to `high`: one, a list or a range `"from..to:step"`.
+    #[must_use]
+    pub const fn grid(low: f64, high: f64) -> Spec {
+        (Kind::Grid(Bound::closed(low, high)), Presence::Required)
+    }
+
     /// A required list of numbers from `low` to `high`.
     pub const fn list(low: f64, high: f64, least: usize, most: usize) -> Spec {
         (
@@ -342,7 +348,7 @@ pub trait Values: Sized {
     /// A truth value; the default also after a problem.
     fn flag(&self, key: &Key<'_>) -> bool;
 
-    /// A required text; empty after a problem.
+    /// A text: the value given, or the key's default; empty without one, and after a problem.
     fn text(&self, key: &Key<'_>) -> String;
 
     /// A text with a default; empty after a problem.

@@ -25,23 +25,22 @@ impl CandidateVehicle {
     /// Name or path of the vehicle of a source.
     #[must_use]
     pub fn vehicle_of<'a>(&'a self, source: Option<&'a Source>) -> &'a str {
-        source
-            .and_then(|source| source.vehicle.as_deref())
-            .unwrap_or(&self.vehicle)
+        let own = source.and_then(|source| source.vehicle.as_deref());
+        own.unwrap_or(&self.vehicle)
     }
 
     /// Options of the vehicle of a source.
     #[must_use]
     pub fn options(&self, source: Option<&Source>) -> Options {
         let own = source.is_none_or(|source| source.vehicle.is_none());
-        let sets = self.overrides(source);
-        let skipped = if own { 0 } else { self.set.len() };
-        let is_vehicle = |by: &Override| by.target() != Target::Rig;
+        let mut set = self.overrides(source);
+        set.drain(..if own { 0 } else { self.set.len() });
+        set.retain(|by| by.target() != Target::Rig);
         let lubricant = source.and_then(|source| source.lubricant.clone());
         Options {
             lubricant: lubricant.or_else(|| self.lubricant.clone().filter(|_| own)),
             engine_oil: self.engine_oil.clone().filter(|_| own),
-            set: sets.into_iter().skip(skipped).filter(is_vehicle).collect(),
+            set,
             formulation: source.map(|source| source.formulation).unwrap_or_default(),
             named_by: if own { self.named_by } else { NamedBy::File },
         }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use super::candidate::CandidateVehicle;
-use super::expr::{Computed, compute};
+use super::expr::{Computed, Expr, compute};
 use super::rows::{RowFile, ValidationRow};
 use super::rule::{Verdict, off, verdict};
 use super::source::Source;
@@ -39,11 +39,8 @@ impl Judged {
     /// Distance from the printed range, in widths of its tolerance.
     #[must_use]
     pub fn off(&self) -> Option<f64> {
-        off(
-            self.computed.as_ref()?,
-            self.row.printed?,
-            self.row.tolerance_widths,
-        )
+        let (row, computed) = (&self.row, self.computed.as_ref()?);
+        off(computed, row.printed?, row.tolerance_widths)
     }
 }
 
@@ -90,24 +87,19 @@ impl Report {
             .filter(|row| row.row.is_held_out())
             .collect();
         let agrees = |row: &&&Judged| row.verdict == Verdict::Agrees;
-        let mut off: Vec<f64> = rows.iter().filter_map(|row| row.off()).collect();
+        let numbers = || rows.iter().filter(|row| row.off().is_some());
+        let mut off: Vec<f64> = numbers().filter_map(|row| row.off()).collect();
         off.sort_by(f64::total_cmp);
-        let middle = off.len() / 2;
-        let median_off = match off.len() {
-            0 => None,
-            n if n % 2 == 1 => Some(off[middle]),
-            _ => Some(f64::midpoint(off[middle - 1], off[middle])),
-        };
+        let (low, high) = (
+            off.get(off.len().saturating_sub(1) / 2),
+            off.get(off.len() / 2),
+        );
         HeldOut {
             rows: rows.len(),
             agree: rows.iter().filter(agrees).count(),
             numbers: off.len(),
-            median_off,
-            numbers_agree: rows
-                .iter()
-                .filter(|row| row.off().is_some())
-                .filter(agrees)
-                .count(),
+            median_off: low.zip(high).map(|(low, high)| f64::midpoint(*low, *high)),
+            numbers_agree: numbers().filter(agrees).count(),
         }
     }
 
@@ -177,13 +169,14 @@ impl FromFiles<'_> {
         let rig = || self.conditions(Some(source));
         let loaded = self.setup(Some(source)).and_then(|_| rig());
         loaded.err().unwrap_or_default().map(|problem| {
-            let place = if problem.place.line > 0 {
-                problem.place.clone()
-            } else {
-                source.place.clone()
-            };
             let context = format!("source `{}`: ", source.name);
-            problem.at(place).with_context(&context)
+            let placed = problem.place.line > 0;
+            let problem = problem.with_context(&context);
+            if placed {
+                problem
+            } else {
+                problem.at(source.place.clone())
+            }
         })
     }
 }
@@ -202,45 +195,32 @@ impl Cars for FromFiles<'_> {
 }
 
 fn judged(view: &View, file: &RowFile, row: &ValidationRow) -> Result<Judged, Problem> {
-    let problem = |what: &str, why: String| {
-        Problem::invalid(format!(
-            "row {}: `{what}` cannot be computed: {why}",
-            row.id
-        ))
-        .at(row.place.clone())
-        .key(what)
-        .value(row.compute_text.clone())
+    let computed = |what: &str, expr: Option<&Expr>| {
+        let result = expr.map(|expr| compute(expr, view)).transpose();
+        result.map_err(|why| {
+            let id = &row.id;
+            Problem::invalid(format!("row {id}: `{what}` cannot be computed: {why}"))
+                .at(row.place.clone())
+                .key(what)
+                .value(row.compute_text.clone())
+        })
     };
     view.begin();
-    let computed = row
-        .compute
-        .as_ref()
-        .map(|expr| compute(expr, view))
-        .transpose()
-        .map_err(|why| problem("compute", why))?;
+    let number = computed("compute", row.compute.as_ref())?;
     let (left_out, outside) = view.noted();
-    let cause = row
-        .cause
-        .as_ref()
-        .map(|cause| compute(&cause.compute, view))
-        .transpose()
-        .map_err(|why| problem("cause.compute", why))?;
-    let verdict = match (&computed, row.printed) {
-        (Some(computed), Some(printed)) => verdict(
-            computed,
-            printed,
-            row.tolerance_widths,
-            !row.fitted_to.is_empty(),
-        ),
+    let cause = row.cause.as_ref().map(|cause| &cause.compute);
+    let cause = computed("cause.compute", cause)?;
+    let fitted = !row.fitted_to.is_empty();
+    let verdict = match (&number, row.printed) {
+        (Some(number), Some(printed)) => verdict(number, printed, row.tolerance_widths, fitted),
         _ => Verdict::NotComparable,
     };
-    let moved = row.recorded.is_some_and(|recorded| recorded != verdict);
     Ok(Judged {
         row: row.clone(),
         file: file.name.clone(),
-        computed,
+        computed: number,
         verdict,
-        moved,
+        moved: row.recorded.is_some_and(|recorded| recorded != verdict),
         cause,
         left_out,
         outside,

@@ -8,18 +8,19 @@
 //! |---|---|
 //! | `expr` | the expressions: tokens, parsing, evaluation |
 //! | `source` | sources as read; `tables` turns them into tables of numbers |
+//! | `keys` | the keys of the files |
 //! | `rows` | files and rows; `read` and `checks` read them |
 //! | `candidate` | the vehicle that is validated |
 //! | `store` | sources computed once, for all expressions |
 //! | `judge` | verdicts of the rows |
 //! | `rule` | the rule from computed and printed to a verdict |
-//! | `report`, `markdown` | JSON, CSV, Markdown |
+//! | `report` | JSON, CSV, Markdown |
 
 pub mod candidate;
 pub(crate) mod checks;
 pub mod expr;
 pub mod judge;
-mod markdown;
+pub mod keys;
 pub mod names;
 pub mod report;
 mod read;
@@ -30,15 +31,14 @@ pub mod store;
 pub mod tables;
 
 pub use candidate::CandidateVehicle;
-pub use checks::MECHANISMS;
 pub use cvtcycle_config::embedded::rows as embedded_rows;
 
 /// The file whose tolerances and sources all files may use: name and text.
 pub const COMMON: (&str, &str) = cvtcycle_config::embedded::common_rows()[0];
 pub use expr::Computed;
 pub use judge::{HeldOut, Judged, Report, judge};
-pub use markdown::markdown;
+pub use keys::MECHANISMS;
 pub use read::read;
-pub use report::{Json, computed_text, csv, json, notes_line, unit_text};
+pub use report::{computed_text, csv, json, markdown, notes_line, unit_text};
 pub use rows::{Cause, RowFile, Tolerance, ValidationRow};
 pub use rule::{Printed, Verdict};

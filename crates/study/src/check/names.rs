@@ -15,21 +15,13 @@ pub struct FileNames<'a> {
 
 impl Names for FileNames<'_> {
     fn sources(&self) -> Vec<&str> {
-        self.sources
-            .iter()
-            .map(|source| source.name.as_str())
-            .collect()
+        self.sources.iter().map(|source| &*source.name).collect()
     }
 
     fn columns(&self, source: usize, totals: bool) -> Vec<&'static str> {
-        let kind = self
-            .sources
-            .get(source)
-            .map_or(Kind::Vehicle, |source| source.kind);
-        if totals && kind != Kind::Run {
-            Vec::new()
-        } else {
-            tables::columns(kind, totals)
+        match self.sources.get(source).map(|source| source.kind) {
+            Some(kind) if kind == Kind::Run || !totals => tables::columns(kind, totals),
+            _ => Vec::new(),
         }
     }
 
@@ -44,41 +36,29 @@ pub fn expression(s: &Section, key: &str, text: &str, names: &FileNames) -> Opti
         return None;
     }
     let report = |fault| s.report_problem(within(s.place(key), key, text, fault));
-    parse(text, names)
+    let parsed = parse(text, names);
+    parsed
         .map_err(|faults| faults.into_iter().for_each(report))
         .ok()
 }
 
-/// Hint where an expression cannot be read.
-const GRAMMAR: &str = "docs/validation_format.md shows what an expression may hold";
-
 /// A fault in an expression as a problem at its place.
-fn within(place: Place, key: &str, text: &str, fault: Fault) -> Problem {
+fn within(mut place: Place, key: &str, text: &str, fault: Fault) -> Problem {
     // The place is exact if the text is on one line without escapes.
-    let quoted: String = place
-        .line_text
-        .chars()
-        .skip(place.column.saturating_sub(1))
-        .collect();
-    let plain = quoted
-        .strip_prefix(['"', '\''])
-        .is_some_and(|rest| rest.starts_with(text));
-    let place = if plain {
-        Place {
-            column: place.column + 1 + fault.at,
-            width: fault.width,
-            ..place
-        }
-    } else {
-        place
+    let quoted = place.line_text.chars().skip(place.column.saturating_sub(1));
+    let quoted = quoted.collect::<String>();
+    let unquoted = quoted.strip_prefix(['"', '\'']);
+    if unquoted.is_some_and(|rest| rest.starts_with(text)) {
+        place.column += 1 + fault.at;
+        place.width = fault.width;
+    }
+    let hint = match fault.hint.as_str() {
+        "" => "docs/validation_format.md shows what an expression may hold",
+        hint => hint,
     };
     Problem::invalid(format!("`{key}`: {}", fault.message))
         .at(place)
         .key(key)
         .value(fault.word)
-        .hint(if fault.hint.is_empty() {
-            GRAMMAR.to_owned()
-        } else {
-            fault.hint
-        })
+        .hint(hint)
 }

@@ -2,49 +2,47 @@
 
 use std::collections::HashMap;
 
-use super::checks::{KINDS, complete, mechanism, printed, verdict};
+use super::checks::{complete, printed};
+use super::keys::{CAUSE, ROW, TOLERANCE};
 use super::names::{FileNames, expression};
 use super::rows::{Cause, RowFile, Tolerance, ValidationRow};
-use super::rule::Printed;
+use super::rule::{Printed, Verdict};
 use super::source::{self, Source};
 use cvtcycle_config::setup::catalogue;
-use cvtcycle_config::{Bound, Document, Problem, Problems, Reader, Section, did_you_mean};
+use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean};
+use cvtcycle_model::keys::Values;
 
 /// Reads files: name and text each. `common` comes first and lends its tolerances and sources.
 ///
 /// # Errors
 /// All problems of all files.
+///
+/// ```
+/// use cvtcycle_study::check::{COMMON, read};
+/// let row = "[[row]]\nid = \"own.1\"\nchapter = \"own\"\nwhat = \"pump displacement\"\n\
+///     printed = \"8.57\"\nunit = \"cc/rev\"\nvalue = 8.57\ntolerance = \"rounding\"\n\
+///     compute = \"key(transmission.cvt.pump.displacement_cc_rev)\"\n";
+/// let files = read(COMMON, &[("own.toml".to_owned(), row.to_owned())])?;
+/// assert_eq!(files[0].rows[0].id, "own.1");
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
 pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<RowFile>, Problems> {
-    let keys = catalogue::known_names();
     let mut problems = Problems::new();
-    let lent = file(common.0, common.1, &Lent::default(), keys, &mut problems);
-    let lent = Lent {
-        tolerances: lent.tolerances,
-        sources: lent.sources,
-    };
+    let lent = file(common.0, common.1, &[], &[], &mut problems);
     let read: Vec<RowFile> = files
         .iter()
-        .map(|(name, text)| file(name, text, &lent, keys, &mut problems))
+        .map(|(name, text)| file(name, text, &lent.tolerances, &lent.sources, &mut problems))
         .collect();
     let mut seen: HashMap<&str, &ValidationRow> = HashMap::new();
-    for row in read
-        .iter()
-        .flat_map(|file| &file.rows)
-        .filter(|row| !row.id.is_empty())
-    {
+    let rows = read.iter().flat_map(|file| &file.rows);
+    for row in rows.filter(|row| !row.id.is_empty()) {
         let first = *seen.entry(&row.id).or_insert(row);
         if !std::ptr::eq(first, row) {
-            let message = format!(
-                "the id `{}` was used before, in {} line {}",
-                row.id, first.id_place.input, first.id_place.line
-            );
-            let (place, value) = (row.id_place.clone(), row.id.clone());
-            let twice = Problem::invalid(message)
-                .at(place)
-                .key("id")
-                .value(value)
-                .hint("ids are unique");
-            problems.append(twice.into());
+            let (id, place) = (&row.id, &first.id_place);
+            let (file, line) = (&place.input, place.line);
+            let message = format!("the id `{id}` was used before, in {file} line {line}");
+            let twice = Problem::invalid(message).at(row.id_place.clone());
+            problems.push(twice.key("id").value(id.clone()).hint("ids are unique"));
         }
     }
     if problems.is_empty() {
@@ -54,14 +52,14 @@ pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<RowF
     }
 }
 
-/// What the common file lends.
-#[derive(Default)]
-struct Lent {
-    tolerances: Vec<Tolerance>,
-    sources: Vec<Source>,
-}
-
-fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Problems) -> RowFile {
+/// Reads a file with the tolerances and sources that the common file lends.
+fn file(
+    name: &str,
+    text: &str,
+    lent_tolerances: &[Tolerance],
+    lent_sources: &[Source],
+    problems: &mut Problems,
+) -> RowFile {
     let mut read = RowFile {
         name: name.to_owned(),
         tolerances: Vec::new(),
@@ -78,85 +76,62 @@ fn file(name: &str, text: &str, lent: &Lent, keys: &[String], problems: &mut Pro
     let rows = document.take_tables("row");
     let reader = Reader::new(&document);
     let root = reader.root();
-    read.tolerances = tolerances(&root.table("tolerances"));
-    read.sources = source::read(&root.table("sources"), &lent.sources);
-    if let Err(found) = reader.finish() {
-        let hint = |p: &Problem| {
-            if p.key == "row" {
-                "rows are written as [[row]]".to_owned()
-            } else {
-                p.hint.clone()
-            }
-        };
-        problems.append(found.map(|p| {
-            let hint = hint(&p);
-            p.hint(hint)
-        }));
-    }
+    let all = root.table("tolerances");
+    let tolerances = all.names().into_iter();
+    read.tolerances = tolerances
+        .map(|name| tolerance(&all.table(name), name))
+        .collect();
+    read.sources = source::read(&root.table("sources"), lent_sources);
+    problems.append(
+        reader
+            .finish()
+            .err()
+            .unwrap_or_default()
+            .map(|p| match p.key.as_str() {
+                "row" => p.hint("rows are written as [[row]]"),
+                _ => p,
+            }),
+    );
     source::resolve_paths(&mut read.sources, name);
-    read.tolerances.extend(lent.tolerances.iter().cloned());
-    read.sources.extend(lent.sources.iter().cloned());
+    read.tolerances.extend(lent_tolerances.iter().cloned());
+    read.sources.extend(lent_sources.iter().cloned());
     let head = Head {
         tolerances: &read.tolerances,
         names: FileNames {
             sources: &read.sources,
-            keys,
+            keys: catalogue::known_names(),
         },
     };
     for document in &rows {
         let reader = Reader::new(document);
         let row = head.row(&reader.root());
-        if let Err(found) = reader.finish() {
-            let of = if row.id.is_empty() {
-                String::new()
-            } else {
-                format!("row {}: ", row.id)
-            };
-            let named = |p: Problem| {
-                if p.not_shown().is_some() {
-                    p
-                } else {
-                    p.with_context(&of)
-                }
-            };
-            problems.append(found.map(named));
-        }
+        let context = match row.id.as_str() {
+            "" => String::new(),
+            id => format!("row {id}: "),
+        };
+        let found = reader.finish().err().unwrap_or_default();
+        problems.append(found.map(|p| match p.not_shown() {
+            Some(_) => p,
+            None => p.with_context(&context),
+        }));
         read.rows.push(row);
     }
     read
 }
 
-fn tolerances(all: &Section) -> Vec<Tolerance> {
-    let width = Bound::closed(0.0, 1e9);
-    let one = |name: &str| {
-        let s = all.table(name);
-        let absolute = s.optional_number(
-            "width",
-            width,
-            "width on both sides, in the unit of the row",
-        );
-        let relative = s.optional_number(
-            "share",
-            Bound::closed(0.0, 10.0),
-            "width as a share of the printed number",
-        );
-        if s.exists() && absolute.is_some() == relative.is_some() {
-            s.complain(
-                "width",
-                "width or share",
-                &format!("tolerance `{name}` needs either `width` or `share`"),
-                "give one of them",
-            );
-        }
-        Tolerance {
-            name: name.to_owned(),
-            absolute: absolute.unwrap_or(0.0),
-            relative: relative.unwrap_or(0.0),
-            unit: s.text_or("unit", "-", "unit of the width"),
-            source: s.text("from", "where the width comes from"),
-        }
-    };
-    all.names().into_iter().map(one).collect()
+fn tolerance(s: &Section, name: &str) -> Tolerance {
+    let (absolute, relative) = (s.optional(&TOLERANCE.width), s.optional(&TOLERANCE.share));
+    if s.exists() && absolute.is_some() == relative.is_some() {
+        let message = format!("tolerance `{name}` needs either `width` or `share`");
+        s.complain("width", "width or share", &message, "give one of them");
+    }
+    Tolerance {
+        name: name.to_owned(),
+        absolute: absolute.unwrap_or(0.0),
+        relative: relative.unwrap_or(0.0),
+        unit: Values::text(s, &TOLERANCE.unit),
+        source: Values::text(s, &TOLERANCE.from),
+    }
 }
 
 /// What the rows of a file may refer to.
@@ -167,53 +142,45 @@ struct Head<'a> {
 
 impl Head<'_> {
     fn row(&self, s: &Section) -> ValidationRow {
-        let id = s.text("id", "identifier, unique over all files");
-        let chapter = s.text(
-            "chapter",
-            "chapter of the thesis, or a word for the user's own rows",
-        );
-        let mechanism = mechanism(s);
-        let kind = s
-            .word_or(
-                "kind",
-                &KINDS,
-                "N",
-                "N number, O order or sign, C constant, L quoted from others, X record only",
-            )
-            .to_owned();
-        let compute_text = s
-            .optional_text("compute", "how it is computed")
-            .unwrap_or_default();
+        let text = |key| Values::text(s, key);
+        let id = text(&ROW.id);
+        let chapter = text(&ROW.chapter);
+        let mechanism = s.word(&ROW.mechanism);
+        let kind = s.word(&ROW.kind);
+        let compute_text = text(&ROW.compute);
         let compute = expression(s, "compute", &compute_text, &self.names);
-        let unit = s.text_or("unit", "-", "unit of printed and computed numbers");
-        let broken = compute.is_none() && !compute_text.trim().is_empty();
-        let printed = printed(s, compute.as_ref(), broken);
-        let recorded = verdict(s);
-        let reason = s.text_or("reason", "", "why it differs or cannot be compared");
-        let (tolerance, tolerance_widths) = self.tolerance(s, printed, &unit, broken);
+        let unit = text(&ROW.unit);
+        let is_broken = compute.is_none() && !compute_text.trim().is_empty();
+        let printed = printed(s, compute.as_ref(), is_broken);
+        let recorded = Verdict::from_word(s.word(&ROW.verdict));
+        let reason = text(&ROW.reason);
+        let tolerance = self.tolerance(s, printed, &unit, is_broken);
+        let expression_or_id = if compute_text.is_empty() {
+            "id"
+        } else {
+            "compute"
+        };
         let row = ValidationRow {
-            id,
             id_place: s.place("id"),
-            place: s.place(if compute_text.is_empty() {
-                "id"
-            } else {
-                "compute"
-            }),
+            place: s.place(expression_or_id),
+            what: text(&ROW.what),
+            condition: text(&ROW.condition),
+            printed_text: text(&ROW.printed),
+            tolerance_widths: tolerance.map_or([0.0; 2], |found| widths(found, printed)),
+            tolerance: tolerance
+                .map(|found| found.name.clone())
+                .unwrap_or_default(),
+            fitted_to: self.fitted(s),
+            remark: text(&ROW.remark),
+            cause: self.cause(s),
+            id,
             chapter,
             mechanism,
-            what: s.text("what", "what is compared"),
-            condition: s.text_or("condition", "", "at which condition"),
-            printed_text: s.text("printed", "the printed text"),
             unit,
             kind,
             printed,
-            tolerance,
-            tolerance_widths,
-            fitted_to: self.fitted(s),
             recorded,
             reason,
-            remark: s.text_or("remark", "", "what else a reader should know"),
-            cause: self.cause(s),
             compute_text,
             compute,
         };
@@ -221,16 +188,17 @@ impl Head<'_> {
         row
     }
 
+    /// The tolerance of printed numbers.
     fn tolerance(
         &self,
         s: &Section,
         printed: Option<Printed>,
         unit: &str,
-        broken: bool,
-    ) -> (String, [f64; 2]) {
-        let name = s.optional_text("tolerance", "name of a tolerance at the head of the file");
-        let Some(Printed::Range(low, high)) = printed else {
-            if name.is_some() && !broken {
+        is_broken: bool,
+    ) -> Option<&Tolerance> {
+        let name = s.optional_text(&ROW.tolerance);
+        if !matches!(printed, Some(Printed::Range(..))) {
+            if name.is_some() && !is_broken {
                 s.complain(
                     "tolerance",
                     "",
@@ -238,27 +206,20 @@ impl Head<'_> {
                     "remove it",
                 );
             }
-            return (String::new(), [0.0; 2]);
-        };
-        let known: Vec<&str> = self.tolerances.iter().map(|t| t.name.as_str()).collect();
+            return None;
+        }
+        let known = || self.tolerances.iter().map(|t| t.name.as_str());
+        let allowed = known().collect::<Vec<_>>().join(", ");
         let Some(name) = name else {
-            s.complain(
-                "tolerance",
-                &known.join(", "),
-                "missing key `tolerance`",
-                "name a tolerance of the head of the file",
-            );
-            return (String::new(), [0.0; 2]);
+            let hint = "name a tolerance of the head of the file";
+            s.complain("tolerance", &allowed, "missing key `tolerance`", hint);
+            return None;
         };
         let Some(found) = self.tolerances.iter().find(|t| t.name == name) else {
-            let hint = did_you_mean(&name, known.iter().copied()).unwrap_or_default();
-            s.complain(
-                "tolerance",
-                &known.join(", "),
-                &format!("there is no tolerance `{name}`"),
-                &hint,
-            );
-            return (name, [0.0; 2]);
+            let message = format!("there is no tolerance `{name}`");
+            let hint = did_you_mean(&name, known()).unwrap_or_default();
+            s.complain("tolerance", &allowed, &message, &hint);
+            return None;
         };
         if found.unit != "-" && found.unit != unit {
             let message = format!("tolerance `{name}` is in {}, the row in {unit}", found.unit);
@@ -269,42 +230,41 @@ impl Head<'_> {
                 "use another tolerance",
             );
         }
-        let width = |end: f64| {
-            if end.is_finite() {
-                found.absolute + found.relative * end.abs()
-            } else {
-                found.absolute
-            }
-        };
-        (name, [width(low), width(high)])
+        Some(found)
     }
 
     fn fitted(&self, s: &Section) -> Vec<String> {
-        let keys = s.texts("fitted_to", "parameters that were fitted to this number");
+        let keys = s.texts(&ROW.fitted_to);
         for key in keys.iter().filter(|key| !self.names.keys.contains(key)) {
-            let hint =
-                did_you_mean(key, self.names.keys.iter().map(String::as_str)).unwrap_or_default();
-            s.complain(
-                "fitted_to",
-                "keys of a vehicle or lubricant",
-                &format!("there is no parameter `{key}`"),
-                &hint,
-            );
+            let known = self.names.keys.iter().map(String::as_str);
+            let hint = did_you_mean(key, known).unwrap_or_default();
+            let message = format!("there is no parameter `{key}`");
+            let allowed = "keys of a vehicle or lubricant";
+            s.complain("fitted_to", allowed, &message, &hint);
         }
         keys
     }
 
     fn cause(&self, s: &Section) -> Option<Cause> {
-        let table = s.table("cause");
-        if !table.exists() {
+        let s = s.table("cause");
+        if !s.exists() {
             return None;
         }
-        let text = table.text("compute", "how it is computed");
-        let cause = Cause {
-            what: table.text("what", "what the number is"),
-            unit: table.text_or("unit", "-", "its unit"),
-            compute: expression(&table, "compute", &text, &self.names)?,
-        };
-        Some(cause)
+        let text = Values::text(&s, &CAUSE.compute);
+        Some(Cause {
+            what: Values::text(&s, &CAUSE.what),
+            unit: Values::text(&s, &CAUSE.unit),
+            compute: expression(&s, "compute", &text, &self.names)?,
+        })
     }
+}
+
+/// Widths of a tolerance below and above what is printed, in the unit of the row.
+fn widths(tolerance: &Tolerance, printed: Option<Printed>) -> [f64; 2] {
+    let Some(Printed::Range(low, high)) = printed else {
+        return [0.0; 2];
+    };
+    // An open end has no share.
+    let size = |end: f64| Some(end.abs()).filter(|size| size.is_finite());
+    [low, high].map(|end| tolerance.absolute + tolerance.relative * size(end).unwrap_or(0.0))
 }

@@ -1,29 +1,16 @@
-//! A report as JSON and CSV, and its words for people.
+//! A report as JSON, CSV and Markdown, and its words for people.
 
-use cvtcycle_config::Override;
-use cvtcycle_output::columns;
-use cvtcycle_output::table::{Column, write_csv};
+use cvtcycle_output::number::exact;
+use cvtcycle_output::table::CsvWriter;
 use serde::Serialize;
+use serde_json::{Value, json as object};
 
 use super::expr::{Computed, short};
-use super::judge::{HeldOut, Judged, Report};
+use super::judge::{Judged, Report};
 use super::rule::{Printed, Verdict};
 
 /// Version of the JSON object; a new number when a name goes or changes its meaning.
 const SCHEMA: u32 = 1;
-
-/// A report as one JSON object.
-#[derive(Clone, Debug, Serialize)]
-pub struct Json {
-    schema: u32,
-    program: &'static str,
-    vehicle: String,
-    set: Vec<Override>,
-    counts: Counts,
-    held_out: HeldOut,
-    moved: Vec<String>,
-    rows: Vec<JsonRow>,
-}
 
 /// Rows by verdict.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -51,122 +38,164 @@ impl Counts {
     }
 }
 
-#[derive(Clone, Debug, Serialize)]
-struct JsonRow {
-    id: String,
-    file: String,
-    chapter: String,
-    mechanism: String,
-    kind: String,
-    what: String,
-    condition: String,
-    printed: String,
-    unit: String,
-    printed_low: Option<f64>,
-    printed_high: Option<f64>,
-    tolerance: Option<String>,
-    tolerance_below: Option<f64>,
-    tolerance_above: Option<f64>,
-    computed_low: Option<f64>,
-    computed_high: Option<f64>,
-    holds: Option<bool>,
-    computed: String,
-    verdict: &'static str,
-    recorded: Option<&'static str>,
-    moved: bool,
-    fitted_to: Vec<String>,
-    held_out: bool,
-    off_by_tolerances: Option<f64>,
-    reason: String,
-    cause: Option<String>,
-    cause_low: Option<f64>,
-    cause_high: Option<f64>,
-    cause_unit: Option<String>,
-    remark: String,
-    compute: String,
-    gross_slip_left_out: usize,
-    outside_validity: usize,
-}
-
 /// A report as one JSON object.
 #[must_use]
-pub fn json(report: &Report) -> Json {
-    Json {
-        schema: SCHEMA,
-        program: cvtcycle_output::PROGRAM,
-        vehicle: report.candidate.vehicle.clone(),
-        set: report.candidate.set.clone(),
-        counts: Counts::of(report.rows.iter()),
-        held_out: report.held_out(),
-        moved: report.moved().map(|row| row.row.id.clone()).collect(),
-        rows: report.rows.iter().map(json_row).collect(),
-    }
+pub fn json(report: &Report) -> Value {
+    object!({
+        "schema": SCHEMA,
+        "program": cvtcycle_output::PROGRAM,
+        "vehicle": report.candidate.vehicle,
+        "set": report.candidate.set,
+        "counts": Counts::of(report.rows.iter()),
+        "held_out": report.held_out(),
+        "moved": report.moved().map(|row| row.row.id.as_str()).collect::<Vec<_>>(),
+        "rows": report.rows.iter().map(row_of).collect::<Vec<_>>(),
+    })
 }
 
-fn json_row(judged: &Judged) -> JsonRow {
+/// A row as a JSON object; no number and an infinite one are null.
+fn row_of(judged: &Judged) -> Value {
     let row = &judged.row;
-    let (low, high) = judged.computed.as_ref().map_or((None, None), ends);
-    let (printed_low, printed_high) = match row.printed {
-        Some(Printed::Range(low, high)) => (finite(low), finite(high)),
-        _ => (None, None),
+    let computed = judged.computed.as_ref();
+    let [low, high] = computed.map_or([f64::NAN; 2], ends);
+    let [cause_low, cause_high] = judged.cause.as_ref().map_or([f64::NAN; 2], ends);
+    let [printed_low, printed_high] = match row.printed {
+        Some(Printed::Range(low, high)) => [low, high],
+        _ => [f64::NAN; 2],
     };
-    let (cause_low, cause_high) = judged.cause.as_ref().map_or((None, None), ends);
-    let has_tolerance = !row.tolerance.is_empty();
-    JsonRow {
-        id: row.id.clone(),
-        file: judged.file.clone(),
-        chapter: row.chapter.clone(),
-        mechanism: row.mechanism.clone(),
-        kind: row.kind.clone(),
-        what: row.what.clone(),
-        condition: row.condition.clone(),
-        printed: row.printed_text.clone(),
-        unit: row.unit.clone(),
-        printed_low,
-        printed_high,
-        tolerance: has_tolerance.then(|| row.tolerance.clone()),
-        tolerance_below: has_tolerance.then_some(row.tolerance_widths[0]),
-        tolerance_above: has_tolerance.then_some(row.tolerance_widths[1]),
-        computed_low: low,
-        computed_high: high,
-        holds: match judged.computed {
-            Some(Computed::Truth(holds, _)) => Some(holds),
-            _ => None,
-        },
-        computed: computed_text(judged),
-        verdict: judged.verdict.word(),
-        recorded: row.recorded.map(Verdict::word),
-        moved: judged.moved,
-        fitted_to: row.fitted_to.clone(),
-        held_out: row.is_held_out(),
-        off_by_tolerances: judged.off(),
-        reason: row.reason.clone(),
-        cause: row.cause.as_ref().map(|cause| cause.what.clone()),
-        cause_low,
-        cause_high,
-        cause_unit: row.cause.as_ref().map(|cause| cause.unit.clone()),
-        remark: row.remark.clone(),
-        compute: row.compute_text.clone(),
-        gross_slip_left_out: judged.left_out,
-        outside_validity: judged.outside,
-    }
+    let toleranced = (!row.tolerance.is_empty()).then_some(row);
+    let holds = computed.and_then(|computed| match computed {
+        Computed::Truth(holds, _) => Some(holds),
+        _ => None,
+    });
+    object!({
+        "id": row.id,
+        "file": judged.file,
+        "chapter": row.chapter,
+        "mechanism": row.mechanism,
+        "kind": row.kind,
+        "what": row.what,
+        "condition": row.condition,
+        "printed": row.printed_text,
+        "unit": row.unit,
+        "printed_low": printed_low,
+        "printed_high": printed_high,
+        "tolerance": toleranced.map(|row| &row.tolerance),
+        "tolerance_below": toleranced.map(|row| row.tolerance_widths[0]),
+        "tolerance_above": toleranced.map(|row| row.tolerance_widths[1]),
+        "computed_low": low,
+        "computed_high": high,
+        "holds": holds,
+        "computed": computed_text(judged),
+        "verdict": judged.verdict.word(),
+        "recorded": row.recorded.map(Verdict::word),
+        "moved": judged.moved,
+        "fitted_to": row.fitted_to,
+        "held_out": row.is_held_out(),
+        "off_by_tolerances": judged.off(),
+        "reason": row.reason,
+        "cause": row.cause.as_ref().map(|cause| &cause.what),
+        "cause_low": cause_low,
+        "cause_high": cause_high,
+        "cause_unit": row.cause.as_ref().map(|cause| &cause.unit),
+        "remark": row.remark,
+        "compute": row.compute_text,
+        "gross_slip_left_out": judged.left_out,
+        "outside_validity": judged.outside,
+    })
 }
 
-fn finite(x: f64) -> Option<f64> {
-    x.is_finite().then_some(x)
-}
-
-fn ends(computed: &Computed) -> (Option<f64>, Option<f64>) {
+/// Smallest and largest number; NaN for a truth.
+fn ends(computed: &Computed) -> [f64; 2] {
     match computed {
-        Computed::Number(x) => (Some(*x), Some(*x)),
-        Computed::Range(low, high) => (Some(*low), Some(*high)),
-        Computed::Truth(..) => (None, None),
+        Computed::Number(x) => [*x, *x],
+        Computed::Range(low, high) => [*low, *high],
+        Computed::Truth(..) => [f64::NAN; 2],
     }
+}
+
+/// Entries of a row in the CSV file, by their names in the JSON object.
+const CSV_COLUMNS: &str = "id chapter mechanism kind what condition printed unit printed_low printed_high \
+    tolerance tolerance_below tolerance_above computed_low computed_high computed verdict recorded \
+    fitted_to reason cause remark";
+
+/// A report as CSV, a line a row; the cause in words with its number.
+#[must_use]
+pub fn csv(report: &Report) -> String {
+    let names: Vec<&str> = CSV_COLUMNS.split_whitespace().collect();
+    let mut bytes = Vec::new();
+    let written = CsvWriter::new(&mut bytes, &names).and_then(|mut csv| {
+        for judged in &report.rows {
+            let mut row = row_of(judged);
+            row["cause"] = cause_text(judged).into();
+            csv.row(&names, |name, text| text.push_str(&cell(&row[*name])))?;
+        }
+        csv.finish()
+    });
+    debug_assert!(written.is_ok(), "writing into memory cannot fail");
+    String::from_utf8(bytes).unwrap_or_default()
+}
+
+/// A JSON value in a CSV cell: lists separated by spaces, null empty.
+fn cell(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Array(list) => list.iter().map(cell).collect::<Vec<_>>().join(" "),
+        other => other.as_f64().map(exact).unwrap_or_default(),
+    }
+}
+
+/// A report as a Markdown table, without headings, for inclusion in a page.
+#[must_use]
+pub fn markdown(report: &Report) -> String {
+    if report.rows.is_empty() {
+        return "The thesis prints no number that is held against this page.\n".to_owned();
+    }
+    let mut text =
+        "| row | what | printed | computed | verdict |\n|---|---|---|---|---|\n".to_owned();
+    let mut notes = String::new();
+    for judged in &report.rows {
+        let row = &judged.row;
+        let mut what = row.what.clone();
+        if !row.condition.is_empty() {
+            what += &format!("; {}", row.condition);
+        }
+        let mut computed = computed_text(judged);
+        if !matches!(judged.computed, None | Some(Computed::Truth(..))) {
+            computed = format!("{computed} {}", unit_text(&row.unit));
+        }
+        let verdict = judged.verdict.word();
+        let cells = [&row.id, &what, &row.printed_text, computed.trim(), verdict].map(escaped);
+        text += &format!("| {} |\n", cells.join(" | "));
+        let line = notes_line(judged);
+        if !line.is_empty() {
+            notes += &format!("- **{}**: {}\n", escaped(&row.id), escaped(&line));
+        }
+    }
+    if !notes.is_empty() {
+        text.push('\n');
+    }
+    text + &notes
+}
+
+/// Text in a Markdown table: nothing that ends the cell or begins markup.
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '\n' | '\r' => out.push(' '),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '&' => out.push_str("&amp;"),
+            '|' | '*' | '_' | '`' | '[' | ']' | '\\' | '$' => out.extend(['\\', c]),
+            _ => out.push(c),
+        }
+    }
+    out
 }
 
 /// A computed result for people, without its unit.
-#[must_use]
-pub fn text_of(computed: &Computed) -> String {
+fn text_of(computed: &Computed) -> String {
     match computed {
         Computed::Number(x) => short(*x),
         Computed::Range(low, high) => format!("{} to {}", short(*low), short(*high)),
@@ -183,17 +212,12 @@ pub fn computed_text(judged: &Judged) -> String {
 }
 
 /// Number, unit and name of the cause; empty where there is none.
-#[must_use]
-pub fn cause_text(judged: &Judged) -> String {
+fn cause_text(judged: &Judged) -> String {
     let Some((cause, computed)) = judged.row.cause.as_ref().zip(judged.cause.as_ref()) else {
         return String::new();
     };
-    let unit = if cause.unit == "-" {
-        String::new()
-    } else {
-        format!(" {}", cause.unit)
-    };
-    format!("Cause: {} = {}{unit}", cause.what, text_of(computed))
+    let number = format!("{} {}", text_of(computed), unit_text(&cause.unit));
+    format!("Cause: {} = {}", cause.what, number.trim_end())
 }
 
 /// Reason, cause, fitted parameters and remark of a row as sentences.
@@ -208,20 +232,16 @@ pub fn notes(judged: &Judged) -> Vec<String> {
         notes.push(format!("fitted to it: {}", row.fitted_to.join(", ")));
     }
     notes.push(row.remark.clone());
-    if judged.left_out > 0 {
-        notes.push(format!("{} points at gross slip left out", judged.left_out));
+    for (count, what) in [
+        (judged.left_out, "at gross slip left out"),
+        (judged.outside, "outside the validity of a model"),
+    ] {
+        if count > 0 {
+            notes.push(format!("{count} points {what}"));
+        }
     }
-    if judged.outside > 0 {
-        notes.push(format!(
-            "{} points outside the validity of a model",
-            judged.outside
-        ));
-    }
-    if judged.moved {
-        notes.push(format!(
-            "recorded: {}",
-            row.recorded.map_or("", Verdict::word)
-        ));
+    if let Some(recorded) = row.recorded.filter(|_| judged.moved) {
+        notes.push(format!("recorded: {}", recorded.word()));
     }
     notes.retain(|note| !note.trim().is_empty());
     notes
@@ -230,59 +250,15 @@ pub fn notes(judged: &Judged) -> Vec<String> {
 /// Notes in one line.
 #[must_use]
 pub fn notes_line(judged: &Judged) -> String {
-    let mut line = String::new();
-    for note in notes(judged) {
-        if !line.is_empty() {
-            line.push_str(if line.ends_with('.') { " " } else { "; " });
-        }
-        line.push_str(&note);
-    }
-    line
+    let join = |line: String, note: String| {
+        let between = if line.ends_with('.') { " " } else { "; " };
+        line + between + &note
+    };
+    notes(judged).into_iter().reduce(join).unwrap_or_default()
 }
 
 /// Unit for people; nothing for plain numbers.
 #[must_use]
 pub fn unit_text(unit: &str) -> &str {
     if unit == "-" { "" } else { unit }
-}
-
-/// The columns of the CSV file: a row in JSON, and its cause as words.
-fn columns() -> Vec<Column<(JsonRow, String)>> {
-    columns! { (JsonRow, String);
-        text "id", "", "", (r, _) => r.id.clone();
-        text "chapter", "", "", (r, _) => r.chapter.clone();
-        text "mechanism", "", "", (r, _) => r.mechanism.clone();
-        text "kind", "", "", (r, _) => r.kind.clone();
-        text "what", "", "", (r, _) => r.what.clone();
-        text "condition", "", "", (r, _) => r.condition.clone();
-        text "printed", "", "", (r, _) => r.printed.clone();
-        text "unit", "", "", (r, _) => r.unit.clone();
-        optional "printed_low", "", "", (r, _) => r.printed_low;
-        optional "printed_high", "", "", (r, _) => r.printed_high;
-        text "tolerance", "", "", (r, _) => r.tolerance.clone().unwrap_or_default();
-        optional "tolerance_below", "", "", (r, _) => r.tolerance_below;
-        optional "tolerance_above", "", "", (r, _) => r.tolerance_above;
-        optional "computed_low", "", "", (r, _) => r.computed_low;
-        optional "computed_high", "", "", (r, _) => r.computed_high;
-        text "computed", "", "", (r, _) => r.computed.clone();
-        text "verdict", "", "", (r, _) => r.verdict;
-        text "recorded", "", "", (r, _) => r.recorded.unwrap_or_default();
-        text "fitted_to", "", "", (r, _) => r.fitted_to.join(" ");
-        text "reason", "", "", (r, _) => r.reason.clone();
-        text "cause", "", "", (_, cause) => cause.clone();
-        text "remark", "", "", (r, _) => r.remark.clone();
-    }
-}
-
-/// A report as CSV, a line a row.
-#[must_use]
-pub fn csv(report: &Report) -> String {
-    let rows = report
-        .rows
-        .iter()
-        .map(|judged| (json_row(judged), cause_text(judged)));
-    let mut bytes = Vec::new();
-    // Writing into memory cannot fail.
-    let _ = write_csv(&mut bytes, &columns(), rows, &[]);
-    String::from_utf8(bytes).unwrap_or_default()
 }

@@ -43,7 +43,7 @@ pub struct ValidationRow {
     /// Chapter.
     pub chapter: String,
     /// Page of the book.
-    pub mechanism: String,
+    pub mechanism: &'static str,
     /// What is compared.
     pub what: String,
     /// At which condition.
@@ -53,7 +53,7 @@ pub struct ValidationRow {
     /// Unit of printed and computed numbers.
     pub unit: String,
     /// Kind of the statement: N number, O order or sign, C constant, L quoted from others, X record only.
-    pub kind: String,
+    pub kind: &'static str,
     /// Printed in numbers; none for what cannot be compared.
     pub printed: Option<Printed>,
     /// Name of the tolerance; empty for orders and signs.

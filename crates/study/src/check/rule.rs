@@ -4,6 +4,7 @@
 //! sign if it comes out as printed. What would agree is a fit if a parameter was fitted to it.
 
 use super::expr::Computed;
+use super::keys::VERDICTS;
 
 /// What came out of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,13 +28,10 @@ impl Verdict {
         Verdict::NotComparable,
     ];
 
-    /// Words as in the files.
-    pub const WORDS: [&'static str; 4] = ["agrees", "fit", "differs", "not comparable"];
-
     /// The word.
     #[must_use]
     pub fn word(self) -> &'static str {
-        Self::WORDS[self as usize]
+        VERDICTS[self as usize].name
     }
 
     /// The verdict of a word.
@@ -57,12 +55,8 @@ pub enum Printed {
 pub fn verdict(computed: &Computed, printed: Printed, widths: [f64; 2], fitted: bool) -> Verdict {
     let agrees = match (computed, printed) {
         (Computed::Truth(holds, _), Printed::Truth(wanted)) => *holds == wanted,
-        (Computed::Number(x), Printed::Range(low, high)) => {
-            within(*x, *x, low - widths[0], high + widths[1])
-        }
-        (Computed::Range(from, to), Printed::Range(low, high)) => {
-            within(*from, *to, low - widths[0], high + widths[1])
-        }
+        (Computed::Number(x), Printed::Range(..)) => within([*x; 2], printed, widths),
+        (Computed::Range(from, to), Printed::Range(..)) => within([*from, *to], printed, widths),
         _ => false,
     };
     match (agrees, fitted) {
@@ -70,6 +64,16 @@ pub fn verdict(computed: &Computed, printed: Printed, widths: [f64; 2], fitted: 
         (true, true) => Verdict::Fit,
         (false, _) => Verdict::Differs,
     }
+}
+
+/// Whether both ends lie within what is printed and its tolerance; on the limits but for rounding.
+fn within([from, to]: [f64; 2], printed: Printed, widths: [f64; 2]) -> bool {
+    let Printed::Range(low, high) = printed else {
+        return false;
+    };
+    let (low, high) = (low - widths[0], high + widths[1]);
+    let slack = |x: f64| 1e-12 * x.abs();
+    low - slack(low) <= from && to <= high + slack(high)
 }
 
 /// How far a computed number lies outside the printed range, in widths of the tolerance on that side: 0 within what is printed, up to 1 where it
@@ -80,15 +84,12 @@ pub fn off(computed: &Computed, printed: Printed, widths: [f64; 2]) -> Option<f6
         return None;
     };
     let one = |x: f64| {
-        let (beyond, width) = if x < low {
-            (low - x, widths[0])
-        } else {
-            (x - high, widths[1])
-        };
-        if beyond <= 0.0 {
-            Some(0.0)
-        } else {
-            (width > 0.0).then(|| beyond / width)
+        let below = x < low;
+        let beyond = if below { low - x } else { x - high };
+        let width = widths[usize::from(!below)];
+        match beyond <= 0.0 {
+            true => Some(0.0),
+            false => (width > 0.0).then(|| beyond / width),
         }
     };
     match computed {
@@ -96,10 +97,4 @@ pub fn off(computed: &Computed, printed: Printed, widths: [f64; 2]) -> Option<f6
         Computed::Range(from, to) => Some(one(*from)?.max(one(*to)?)),
         Computed::Truth(..) => None,
     }
-}
-
-/// The ends may lie on the limits but for rounding.
-fn within(from: f64, to: f64, low: f64, high: f64) -> bool {
-    let slack = |x: f64| 1e-12 * x.abs();
-    low - slack(low) <= from && to <= high + slack(high)
 }

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+use super::keys::{BeltKeys, BenchKeys, FluidKeys, RunKeys, StripDownKeys, TransientKeys};
+use super::keys::{KINDS, RUN, SOURCE};
 use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, names, read_csv};
-use cvtcycle_config::setup::{AMBIENT, is_path};
-use cvtcycle_config::{Bound, Override, Place, Section, did_you_mean, unit_of};
-use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_config::setup::is_path;
+use cvtcycle_config::{Override, Place, Section, did_you_mean, unit_of};
+use cvtcycle_model::keys::{Key, Presence, Values};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// What a source computes.
@@ -28,16 +30,30 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Words for `source`.
-    const NAMES: [(&'static str, Kind); 7] = [
-        ("bench", Kind::Bench),
-        ("belt", Kind::Belt),
-        ("run", Kind::Run),
-        ("fluid", Kind::Fluid),
-        ("transient", Kind::Transient),
-        ("strip_down", Kind::StripDown),
-        ("vehicle", Kind::Vehicle),
+    /// All, in the order of their words.
+    const ALL: [Kind; 7] = [
+        Kind::Bench,
+        Kind::Belt,
+        Kind::Run,
+        Kind::Fluid,
+        Kind::Transient,
+        Kind::StripDown,
+        Kind::Vehicle,
     ];
+
+    /// Axes of a source of this kind; of the last the values run fastest.
+    #[must_use]
+    pub const fn axes(self) -> &'static [&'static Key<'static>] {
+        match self {
+            Kind::Bench => BenchKeys::TABLE.keys,
+            Kind::Belt => BeltKeys::TABLE.keys,
+            Kind::Run => RunKeys::TABLE.keys,
+            Kind::Fluid => FluidKeys::TABLE.keys,
+            Kind::Transient => TransientKeys::TABLE.keys,
+            Kind::StripDown => StripDownKeys::TABLE.keys,
+            Kind::Vehicle => &[],
+        }
+    }
 }
 
 /// One source, checked.
@@ -63,317 +79,120 @@ pub struct Source {
     pub without: Vec<String>,
     /// Cycle of a run.
     pub cycle: String,
-    /// Times and speeds of a run in place of a cycle, s and km/h.
+    /// Times and speeds of a run in place of a cycle, s and m/s.
     pub points: Vec<Vec<f64>>,
     /// Start of a run: `soak` or `warm`.
-    pub start: String,
+    pub start: &'static str,
     /// Group of phases of a run; empty for all.
     pub phase: String,
 }
 
-/// Axes of each kind: key, range, whether it must be given, meaning.
-pub type Axis = (&'static str, Bound, bool, &'static str);
-
-const SPEED: Bound = Bound::closed(0.0, 20_000.0);
-const TEMP: Bound = Bound::closed(-40.0, 160.0);
-const TORQUE: Bound = Bound::closed(-5_000.0, 5_000.0);
-const PRESSURE: Bound = Bound::closed(0.0, 100.0);
-const FRICTION: Bound = Bound::closed(0.0, 0.5);
-
-/// Settings of the bench.
-pub const BENCH: [Axis; 9] = [
-    (
-        "ratio",
-        Bound::closed(0.2, 20.0),
-        true,
-        "belt ratio I = R_sec / R_pri, or the number of a gear",
-    ),
-    (
-        "speed_rpm",
-        Bound::closed(1.0, 20_000.0),
-        true,
-        "speed of the input shaft",
-    ),
-    ("temp_degc", TEMP, true, "oil in the sump"),
-    (
-        "torque_nm",
-        TORQUE,
-        false,
-        "torque at the output shaft; 0 if absent",
-    ),
-    (
-        "throttle",
-        Bound::closed(0.0, 1.0),
-        false,
-        "throttle that the clamp law sees; 0 if absent",
-    ),
-    (
-        "pressure_bar",
-        PRESSURE,
-        false,
-        "secondary pressure; the clamp law's if absent",
-    ),
-    (
-        "pressure_factor",
-        Bound::closed(0.1, 3.0),
-        false,
-        "factor on the clamp law's pressure; 1 if absent",
-    ),
-    (
-        "belt_degc",
-        TEMP,
-        false,
-        "belt and spray; in steady state over the sump if absent",
-    ),
-    (
-        "belt_above_sump_k",
-        Bound::closed(-100.0, 100.0),
-        false,
-        "belt and spray above the sump, in place of belt_degc",
-    ),
-];
-
-const BELT: [Axis; 9] = [
-    (
-        "ratio",
-        Bound::closed(0.2, 5.0),
-        true,
-        "belt ratio I = R_sec / R_pri",
-    ),
-    ("speed_rpm", SPEED, true, "speed of the primary"),
-    ("pressure_bar", PRESSURE, true, "secondary pressure"),
-    (
-        "belt_degc",
-        TEMP,
-        false,
-        "belt; 85 degC without lift-off if absent",
-    ),
-    (
-        "band_friction",
-        FRICTION,
-        false,
-        "band friction at 85 degC; the fluid's, 0.13 in the printed forms, if absent",
-    ),
-    (
-        "segment_friction",
-        FRICTION,
-        false,
-        "segment friction; the fluid's, 0.125 or 0.13 in the printed forms, if absent",
-    ),
-    (
-        "on_stop",
-        Bound::closed(0.0, 1.0),
-        false,
-        "1: the primary leans on its end stop, 0: it deflects; the vehicle's ramp if absent",
-    ),
-    (
-        "band_speed_share",
-        Bound::closed(-0.5, 0.5),
-        false,
-        "adopted band speed from the mean, over the range of required speeds",
-    ),
-    ("torque_nm", TORQUE, true, "torque at the secondary pulley"),
-];
-
-const RUN: [Axis; 3] = [
-    ("ambient_degc", AMBIENT, false, "ambient; 25 degC if absent"),
-    (
-        "start_degc",
-        Bound::closed(-40.0, 150.0),
-        false,
-        "all temperatures at the start, in place of `start`",
-    ),
-    (
-        "dt_s",
-        Bound::closed(0.01, 10.0),
-        false,
-        "longest step; 1 s if absent",
-    ),
-];
-
-const TRANSIENT: [Axis; 1] = [(
-    "ratio",
-    Bound::closed(0.2, 5.0),
-    true,
-    "belt ratio I = R_sec / R_pri",
-)];
-
-const STRIP_DOWN: [Axis; 3] = [
-    (
-        "ratio",
-        Bound::closed(0.2, 5.0),
-        false,
-        "belt ratio; the rig's own two if absent",
-    ),
-    (
-        "speed_rpm",
-        Bound::closed(1.0, 20_000.0),
-        false,
-        "input speed; the rig's own if absent",
-    ),
-    (
-        "temp_degc",
-        TEMP,
-        false,
-        "oil in the sump; the rig's own if absent",
-    ),
-];
-
-const FLUID: [Axis; 1] = [("temp_degc", TEMP, true, "temperature of the fluid")];
-
 /// Most points of a source.
 const MAX_POINTS: usize = 200_000;
 
-fn axes(kind: Kind) -> &'static [Axis] {
-    match kind {
-        Kind::Bench => &BENCH,
-        Kind::Belt => &BELT,
-        Kind::Run => &RUN,
-        Kind::Fluid => &FLUID,
-        Kind::Transient => &TRANSIENT,
-        Kind::StripDown => &STRIP_DOWN,
-        Kind::Vehicle => &[],
-    }
-}
+/// Parts that can be taken out of the box.
+const PARTS: [&str; 4] = ["final_drive", "belt", "reverse_clutch", "pump"];
 
 /// Reads all sources of a file; `common` are those of the common file, which a source may continue with `like`.
 pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
-    let names = sources.names();
-    // A source may continue another one of the same file, in any order.
     let mut done: Vec<Source> = Vec::new();
-    let mut waiting: Vec<&str> = names.clone();
-    loop {
+    // A source may continue another one of the same file, in any order.
+    let mut waiting = sources.names();
+    while !waiting.is_empty() {
         let before = waiting.len();
         waiting.retain(|name| {
-            let section = sources.table(name);
-            let like = section
-                .optional_text("like", "source that this one continues")
-                .unwrap_or_default();
-            let base = done
-                .iter()
-                .chain(common)
-                .find(|source| source.name == like)
-                .cloned();
-            if base.is_none() && !like.is_empty() {
-                return true;
+            let s = sources.table(name);
+            let like = s.optional_text(&SOURCE.like).unwrap_or_default();
+            let base = done.iter().chain(common).find(|base| base.name == like);
+            let waits = base.is_none() && !like.is_empty();
+            if !waits {
+                done.push(one(&s, name, base.cloned()));
             }
-            done.push(one(&section, name, base));
-            false
+            waits
         });
-        if waiting.is_empty() {
-            break;
+        if waiting.len() < before {
+            continue;
         }
-        if waiting.len() == before {
-            for name in waiting {
-                let known: Vec<&str> = done
-                    .iter()
-                    .chain(common)
-                    .map(|source| source.name.as_str())
-                    .collect();
-                let hint = format!("known sources: {}", known.join(", "));
-                sources.table(name).complain(
-                    "like",
-                    "the name of another source, not in a circle",
-                    "there is no such source to continue",
-                    &hint,
-                );
-                pass_over(&sources.table(name));
-                done.push(empty(name, Kind::Vehicle));
-            }
-            break;
+        for name in std::mem::take(&mut waiting) {
+            let known = done.iter().chain(common).map(|source| &*source.name);
+            let hint = format!("known sources: {}", known.collect::<Vec<_>>().join(", "));
+            let allowed = "the name of another source, not in a circle";
+            let message = "there is no such source to continue";
+            let s = sources.table(name);
+            s.complain("like", allowed, message, &hint);
+            s.pass_over();
+            done.push(Source::new(name, Kind::Vehicle));
         }
     }
     done
 }
 
-/// Makes the paths of vehicles and fluids, which are relative to the file that names them, relative to the working directory.
-pub fn resolve_paths(sources: &mut [Source], file: &str) {
-    let folder = Path::new(file).parent().unwrap_or(Path::new(""));
-    let named = sources.iter_mut();
-    let named = named.flat_map(|source| [&mut source.vehicle, &mut source.lubricant]);
-    for path in named.flatten().filter(|path| is_path(path)) {
-        *path = folder.join(&*path).to_string_lossy().into_owned();
+/// A path relative to the file that names it as one relative to the working directory; another word as it is.
+pub fn beside(file: &str, word: &str) -> String {
+    match Path::new(file).parent().filter(|_| is_path(word)) {
+        Some(folder) => folder.join(word).to_string_lossy().into_owned(),
+        None => word.to_owned(),
     }
 }
 
-/// Counts all keys of a source as read, where it is not known what they mean.
-fn pass_over(s: &Section) {
-    for key in s.names() {
-        let _ = s.raw(key, "", "");
+/// Makes the paths of vehicles and fluids relative to the working directory.
+pub fn resolve_paths(sources: &mut [Source], file: &str) {
+    for source in sources {
+        for word in [&mut source.vehicle, &mut source.lubricant]
+            .into_iter()
+            .flatten()
+        {
+            *word = beside(file, word);
+        }
     }
 }
 
 fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
     let Some(kind) = kind(s, base.as_ref()) else {
-        pass_over(s);
-        return empty(name, Kind::Vehicle);
+        // What its keys mean is not known.
+        s.pass_over();
+        return Source::new(name, Kind::Vehicle);
     };
-    let old = base.unwrap_or_else(|| empty(name, kind));
-    let formulations: Vec<&'static str> =
-        Formulation::NAMES.iter().map(|(name, _)| *name).collect();
-    let formulation = if s.has("formulation") {
-        let word = s.word_or(
-            "formulation",
-            &formulations,
-            "smooth",
-            "reading of the belt model",
-        );
-        Formulation::NAMES
-            .iter()
-            .find(|(name, _)| *name == word)
-            .map(|(_, f)| *f)
-            .unwrap_or_default()
-    } else {
-        old.formulation
-    };
+    let old = base.unwrap_or_else(|| Source::new(name, kind));
     let mut source = Source {
         name: name.to_owned(),
         place: s.place(if s.has("set") { "set" } else { "source" }),
         kind,
-        vehicle: s
-            .optional_text("vehicle", "vehicle; the one being validated if absent")
-            .or(old.vehicle),
-        lubricant: s
-            .optional_text("lubricant", "transmission oil in place of the vehicle's")
-            .or(old.lubricant),
-        set: old
-            .set
-            .into_iter()
-            .chain(s.overrides("set", "overrides KEY=VALUE of the vehicle and its fluids"))
-            .collect(),
-        formulation,
+        vehicle: s.optional_text(&SOURCE.vehicle).or(old.vehicle),
+        lubricant: s.optional_text(&SOURCE.lubricant).or(old.lubricant),
         ..old
     };
-    for (key, bound, needed, doc) in axes(kind) {
-        let given = s.grid(key, *bound, doc);
-        let Some(slot) = source.axes.iter_mut().find(|(name, _)| name == key) else {
+    source.set.extend(s.overrides(&SOURCE.set));
+    if s.has("formulation") {
+        let name = Values::word(s, &SOURCE.formulation);
+        source.formulation = Formulation::named(name).unwrap_or_default();
+    }
+    for key in kind.axes() {
+        let given = s.grid(key);
+        let Some((_, slot)) = source.axes.iter_mut().find(|(name, _)| *name == key.name) else {
             continue;
         };
-        slot.1 = given.or_else(|| slot.1.take());
-        if *needed && slot.1.as_ref().is_none_or(Vec::is_empty) {
-            s.complain(
-                key,
-                &bound.in_unit(unit_of(key)),
-                &format!("source `{name}` has no `{key}`"),
-                "give a number, a list or a range",
-            );
+        *slot = given.or_else(|| slot.take());
+        let required = matches!(key.presence, Presence::RequiredIf(_));
+        if required && slot.as_ref().is_none_or(Vec::is_empty) {
+            let message = format!("source `{name}` has no `{}`", key.name);
+            let hint = "give a number, a list or a range";
+            let allowed = key.range().in_unit(unit_of(key.name));
+            s.complain(key.name, &allowed, &message, hint);
         }
     }
-    let count = source
+    let lengths = source
         .axes
         .iter()
-        .map(|(_, list)| list.as_ref().map_or(1, Vec::len))
-        .fold(1_usize, usize::saturating_mul);
+        .map(|(_, list)| list.as_ref().map_or(1, Vec::len));
+    let count = lengths.fold(1_usize, usize::saturating_mul);
     if count > MAX_POINTS {
-        s.complain(
-            "source",
-            &format!("up to {MAX_POINTS} points"),
-            &format!("source `{name}` has {count} points"),
-            "use wider steps",
-        );
+        let allowed = format!("up to {MAX_POINTS} points");
+        let message = format!("source `{name}` has {count} points");
+        s.complain("source", &allowed, &message, "use wider steps");
     }
     match kind {
-        Kind::Bench if s.has("without") => source.without = without(s),
+        Kind::Bench if s.has("without") => source.without = without(s, &SOURCE.without),
         Kind::Run => run(s, &mut source),
         _ => {}
     }
@@ -382,91 +201,42 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
 
 /// What a source computes; none, and reported, if it does not say so.
 fn kind(s: &Section, base: Option<&Source>) -> Option<Kind> {
-    if !s.has("source") {
-        if let Some(base) = base {
-            return Some(base.kind);
-        }
-        if s.exists() {
-            let words = Kind::NAMES.map(|(name, _)| name);
-            s.complain(
-                "source",
-                &words.join(", "),
-                "the source does not say what it computes",
-                "add, for example, `source = \"bench\"`",
-            );
-        }
-        return None;
+    if s.has("source") {
+        let word = Values::word(s, &SOURCE.source);
+        let index = KINDS.iter().position(|choice| choice.name == word);
+        return index.map(|k| Kind::ALL[k]);
     }
-    let word = s.word_or(
-        "source",
-        &Kind::NAMES.map(|(name, _)| name),
-        "",
-        "what the source computes",
-    );
-    Kind::NAMES
-        .iter()
-        .find(|(name, _)| *name == word)
-        .map(|(_, kind)| *kind)
-}
-
-/// A source of a kind with nothing set.
-pub fn empty(name: &str, kind: Kind) -> Source {
-    Source {
-        name: name.to_owned(),
-        place: Place::default(),
-        kind,
-        vehicle: None,
-        lubricant: None,
-        set: Vec::new(),
-        formulation: Formulation::Smooth,
-        axes: axes(kind).iter().map(|(key, ..)| (*key, None)).collect(),
-        without: Vec::new(),
-        cycle: "ece15_eudc".to_owned(),
-        points: Vec::new(),
-        start: "soak".to_owned(),
-        phase: String::new(),
+    if base.is_none() && s.exists() {
+        let message = "the source does not say what it computes";
+        let hint = "add, for example, `source = \"bench\"`";
+        let allowed = KINDS.map(|choice| choice.name).join(", ");
+        s.complain("source", &allowed, message, hint);
     }
+    base.map(|base| base.kind)
 }
-
-/// Parts that can be taken out of the box.
-const PARTS: [&str; 4] = ["final_drive", "belt", "reverse_clutch", "pump"];
 
 /// Parts that are taken out of the box.
-pub fn without(s: &Section) -> Vec<String> {
-    let without = s.texts("without", "parts that are not in the box");
-    for part in without
-        .iter()
-        .filter(|part| !PARTS.contains(&part.as_str()))
-    {
+pub fn without(s: &Section, key: &Key) -> Vec<String> {
+    let without = s.texts(key);
+    for part in without.iter().filter(|part| !PARTS.contains(&&***part)) {
         let message = format!("there is no part `{part}`");
-        s.complain("without", &PARTS.join(", "), &message, "");
+        s.complain(key.name, &PARTS.join(", "), &message, "");
     }
     without
 }
 
 fn run(s: &Section, source: &mut Source) {
     if s.has("cycle") {
-        source.cycle = s.text_or("cycle", "", "name of an embedded cycle or constant_V");
+        source.cycle = Values::text(s, &SOURCE.cycle);
     }
     if s.has("points") {
-        let columns = [
-            ("time_s", Bound::closed(0.0, 1e5)),
-            ("speed_kmh", Bound::closed(0.0, 300.0)),
-        ];
-        source.points = s.rows("points", &columns, "times and speeds in place of a cycle");
+        source.points = Values::rows(s, &SOURCE.points).unwrap_or_default();
     }
     if s.has("start") {
-        source.start = s
-            .word_or(
-                "start",
-                &["soak", "warm"],
-                "soak",
-                "temperatures at the start",
-            )
-            .to_owned();
+        source.start = Values::word(s, &SOURCE.start);
     }
     if s.has("phase") {
-        source.phase = s.text_or("phase", "", "group of phases that counts");
+        source.phase = Values::text(s, &SOURCE.phase);
     }
     match cycle(source) {
         Err(why) if !source.points.is_empty() => {
@@ -477,24 +247,26 @@ fn run(s: &Section, source: &mut Source) {
         Err(why) => {
             let hint = did_you_mean(&source.cycle, names().iter().copied())
                 .unwrap_or_else(|| "`cvtcycle list cycles` shows all".to_owned());
-            s.complain("cycle", "the name of an embedded cycle, or constant_V with V in km/h, above 0 and up to 300", &why, &hint);
+            let allowed = "the name of an embedded cycle, or constant_V with V in km/h, above 0 and up to 300";
+            s.complain("cycle", allowed, &why, &hint);
         }
         Ok(cycle) => {
-            let groups: Vec<String> = cycle
-                .phase_groups()
-                .into_iter()
-                .map(|(name, _)| name)
-                .collect();
+            let groups = phases(&cycle);
             if !source.phase.is_empty() && !groups.contains(&source.phase) {
-                s.complain(
-                    "phase",
-                    &groups.join(", "),
-                    &format!("the cycle has no phase `{}`", source.phase),
-                    "",
-                );
+                let message = format!("the cycle has no phase `{}`", source.phase);
+                s.complain("phase", &groups.join(", "), &message, "");
             }
         }
     }
+}
+
+/// Names of the groups of phases of a cycle.
+pub fn phases(cycle: &Cycle) -> Vec<String> {
+    cycle
+        .phase_groups()
+        .into_iter()
+        .map(|(name, _)| name)
+        .collect()
 }
 
 /// The cycle of a run.
@@ -503,17 +275,11 @@ fn run(s: &Section, source: &mut Source) {
 /// There is no such cycle.
 pub fn cycle(source: &Source) -> Result<Cycle, String> {
     if !source.points.is_empty() {
-        let rows: Vec<String> = source
-            .points
-            .iter()
-            .map(|row| format!("{},{}\n", row[0], row[1] * 3.6))
-            .collect();
-        let text = format!("time_s,speed_kmh\n{}", rows.concat());
-        return read_csv("points.csv", text.as_bytes()).map_err(|problems| {
-            problems
-                .first()
-                .map_or_else(String::new, |problem| problem.message.clone())
-        });
+        let row = |row: &Vec<f64>| format!("{},{}\n", row[0], row[1] * 3.6);
+        let rows: String = source.points.iter().map(row).collect();
+        let text = format!("time_s,speed_kmh\n{rows}");
+        let cycle = read_csv("points.csv", text.as_bytes());
+        return cycle.map_err(|mut problems| problems.remove(0).message);
     }
     if let Some(constant) = constant_speed(&source.cycle) {
         return constant.map_err(|problem| problem.message);
@@ -522,34 +288,61 @@ pub fn cycle(source: &Source) -> Result<Cycle, String> {
 }
 
 impl Source {
-    /// Values of an axis in SI units, or the one given here.
-    #[must_use]
-    pub fn axis(&self, key: &str, default: f64) -> Vec<f64> {
-        self.axis_or_none(key).unwrap_or_else(|| vec![default])
+    /// A source of a kind with nothing set.
+    pub fn new(name: &str, kind: Kind) -> Source {
+        Source {
+            name: name.to_owned(),
+            place: Place::default(),
+            kind,
+            vehicle: None,
+            lubricant: None,
+            set: Vec::new(),
+            formulation: Formulation::Smooth,
+            axes: kind.axes().iter().map(|key| (key.name, None)).collect(),
+            without: Vec::new(),
+            cycle: "ece15_eudc".to_owned(),
+            points: Vec::new(),
+            start: "soak",
+            phase: String::new(),
+        }
     }
 
-    /// Values of an axis in SI units.
+    /// Values of an axis in SI units: the key's default, or NaN, where none are given.
     #[must_use]
-    pub fn axis_or_none(&self, key: &str) -> Option<Vec<f64>> {
-        self.axes
-            .iter()
-            .find(|(name, _)| *name == key)
-            .and_then(|(_, list)| list.clone())
+    pub fn axis(&self, key: &Key) -> Vec<f64> {
+        self.given(key).unwrap_or_else(|| match key.presence {
+            Presence::Number(default) => vec![key.quantity.to_si(default)],
+            _ => vec![f64::NAN],
+        })
+    }
+
+    /// The values of an axis that are given, in SI units.
+    #[must_use]
+    pub fn given(&self, key: &Key) -> Option<Vec<f64>> {
+        let own = self.axes.iter().find(|(name, _)| *name == key.name);
+        own.and_then(|(_, list)| list.clone())
+    }
+
+    /// The first value of a setting of a run; NaN where there is none.
+    fn first(&self, key: &Key) -> f64 {
+        self.axis(key).first().copied().unwrap_or(f64::NAN)
     }
 
     /// Start temperature in K, where one is given.
     #[must_use]
     pub fn start_k(&self) -> Option<f64> {
-        self.axis_or_none("start_degc")
-            .and_then(|list| list.first().copied())
+        Some(self.first(&RUN.start_degc)).filter(|k| !k.is_nan())
     }
 
     /// Ambient temperature, K.
     #[must_use]
     pub fn ambient_k(&self) -> f64 {
-        self.axis("ambient_degc", 25.0 + ZERO_DEGC_K)
-            .first()
-            .copied()
-            .unwrap_or(25.0 + ZERO_DEGC_K)
+        self.first(&RUN.ambient_degc)
+    }
+
+    /// Longest step, s.
+    #[must_use]
+    pub fn dt_s(&self) -> f64 {
+        self.first(&RUN.dt_s)
     }
 }

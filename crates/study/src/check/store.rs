@@ -10,7 +10,7 @@ use super::source::{Kind, Source};
 use super::tables::{self, Driven};
 use cvtcycle_config::Target;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_config::{KeyInfo, Place, Problem, Problems};
+use cvtcycle_config::{KeyInfo, Place, Problems};
 use cvtcycle_model::bench::transmission::Conditions;
 
 /// Where the cars and the rig of the sources come from.
@@ -75,15 +75,14 @@ impl<'a> Store<'a> {
     }
 
     fn compute(&self, source: &Source, totals: bool) -> Result<Table, String> {
-        let setup = self
-            .cars
-            .setup(Some(source))
-            .map_err(|problems| refused(&problems))?;
+        let setup = self.cars.setup(Some(source)).map_err(|problems| {
+            let first = problems
+                .first()
+                .map(|problem| format!(": {}", problem.message));
+            format!("its vehicle cannot be loaded{}", first.unwrap_or_default())
+        })?;
         if source.kind != Kind::Run {
-            let (conditions, _) = self
-                .cars
-                .conditions(Some(source))
-                .map_err(|_| "the rig's conditions cannot be read".to_owned())?;
+            let (conditions, _) = self.rig(Some(source))?;
             return tables::table(source, &setup, &conditions);
         }
         // Phases of the same run share it.
@@ -91,22 +90,16 @@ impl<'a> Store<'a> {
             phase: String::new(),
             ..source.clone()
         };
-        let driven = once(&self.runs, format!("{whole:?}"), || {
-            Rc::new(tables::drive(&whole, &setup))
-        });
-        match driven.as_ref() {
-            Ok(driven) => Ok(tables::of_run(source, driven, totals)),
-            Err(why) => Err(why.clone()),
-        }
+        let drive = || Rc::new(tables::drive(&whole, &setup));
+        let driven = once(&self.runs, format!("{whole:?}"), drive);
+        let driven = driven.as_ref().as_ref().map_err(Clone::clone)?;
+        Ok(tables::of_run(source, driven, totals))
     }
-}
 
-fn refused(problems: &[Problem]) -> String {
-    let first = problems
-        .first()
-        .map(|problem| format!(": {}", problem.message))
-        .unwrap_or_default();
-    format!("its vehicle cannot be loaded{first}")
+    fn rig(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), String> {
+        let conditions = self.cars.conditions(source);
+        conditions.map_err(|_| "the rig's conditions cannot be read".to_owned())
+    }
 }
 
 /// The store as the expressions of one file see it.
@@ -150,30 +143,18 @@ impl Tables for View<'_> {
 
     fn key(&self, source: Option<usize>, path: &str, item: Option<usize>) -> Result<f64, String> {
         let spec = source.and_then(|k| self.sources.get(k));
+        let of_keys = |owner: &str, keys: &[KeyInfo]| {
+            let info = keys.iter().find(|info| info.key == path);
+            let info = info.ok_or_else(|| format!("the {owner} has no `{path}`"))?;
+            number_of(info, item)
+                .ok_or_else(|| format!("`{path}` is no number here: {}", info.value))
+        };
         if Target::of(path).0 == Target::Rig {
-            let (_, keys) = self
-                .store
-                .cars
-                .conditions(spec)
-                .map_err(|_| "the rig's conditions cannot be read".to_owned())?;
-            let info = keys
-                .iter()
-                .find(|info| info.key == path)
-                .ok_or_else(|| format!("the rig has no `{path}`"))?;
-            return number_of(info, item)
-                .ok_or_else(|| format!("`{path}` is no number here: {}", info.value));
+            return of_keys("rig", &self.store.rig(spec)?.1);
         }
-        let setup = self
-            .store
-            .cars
-            .setup(spec)
-            .map_err(|_| "the vehicle cannot be loaded".to_owned())?;
-        let info = setup
-            .keys
-            .iter()
-            .find(|info| info.key == path)
-            .ok_or_else(|| format!("the vehicle `{}` has no `{path}`", setup.name))?;
-        number_of(info, item).ok_or_else(|| format!("`{path}` is no number here: {}", info.value))
+        let setup = self.store.cars.setup(spec);
+        let setup = setup.map_err(|_| "the vehicle cannot be loaded".to_owned())?;
+        of_keys(&format!("vehicle `{}`", setup.name), &setup.keys)
     }
 
     fn left_out(&self, rows: usize) {

@@ -9,7 +9,7 @@ use std::path::Path;
 use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
 use super::outcome::{Outcome, Parameter};
-use super::plan::{CalibrationPlan, problem};
+use super::plan::{CalibrationPlan, problem, stem};
 use cvtcycle_config::setup::{Kind, NamedBy, is_path, text_of};
 use cvtcycle_config::{Override, Problems, Target};
 
@@ -85,22 +85,19 @@ impl Job<'_> {
         target: Target,
         name: &str,
     ) -> Result<Option<(String, String)>, Problems> {
-        let car = &self.plan.car;
+        let (car, path) = (&self.plan.car, ["vehicle", name]);
         let given = match target {
             Target::EngineOil => &car.engine_oil,
             _ => &car.lubricant,
         };
-        let path = ["vehicle", name];
         let is_set = car.set.iter().any(|by| by.target() == target);
         if !is_set && self.fitted(target).next().is_none() {
             if let Some(word) = given {
-                let word = if is_path(word) {
-                    absolute(Path::new(""), word)
-                } else {
-                    word.clone()
+                let word = match is_path(word) {
+                    true => absolute(Path::new(""), word),
+                    false => word.clone(),
                 };
-                let source = format!("set by {}", self.plan.file);
-                put(vehicle, &path, Value::from(word), "assumed", &source);
+                put(vehicle, &path, Value::from(word), "assumed", &self.set_by());
             }
             return Ok(None);
         }
@@ -116,14 +113,15 @@ impl Job<'_> {
 
     /// Puts a fitted value at its key.
     fn put_fitted(&self, document: &mut DocumentMut, key: &str, p: &Parameter) {
-        let error = p.standard_error.map_or_else(
-            || "no standard error".to_owned(),
-            |x| format!("standard error {} {}", digits(x, 3), p.unit),
-        );
+        let error = match p.standard_error {
+            Some(x) => format!("standard error {} {}", rounded(x, 3), p.unit),
+            None => "no standard error".to_owned(),
+        };
         let error = error.trim_end_matches(" -");
         let source = format!("fitted to {} on {}; {error}", self.plan.file, self.date);
         let path: Vec<&str> = key.split('.').collect();
-        put(document, &path, number(p.value), "fitted", &source);
+        let value = Value::from(rounded(p.value, DIGITS));
+        put(document, &path, value, "fitted", &source);
     }
 
     /// Puts the value of an override of the plan.
@@ -134,54 +132,34 @@ impl Job<'_> {
         let Ok(value) = item.into_value() else { return };
         let (_, key) = Target::of(by.key());
         let path: Vec<&str> = key.split('.').map(str::trim).collect();
-        let source = format!("set by {}", self.plan.file);
-        put(document, &path, value, "assumed", &source);
+        put(document, &path, value, "assumed", &self.set_by());
+    }
+
+    fn set_by(&self) -> String {
+        format!("set by {}", self.plan.file)
     }
 }
 
 fn parsed(plan: &CalibrationPlan, text: &str) -> Result<DocumentMut, Problems> {
     // The model was loaded from it before.
     text.parse().map_err(|error| {
-        problem(
-            &plan.place,
-            "vehicle",
-            "",
-            format!("the file cannot be changed: {error}"),
-            "",
-        )
-        .into()
+        let message = format!("the file cannot be changed: {error}");
+        problem(&plan.place, "vehicle", "", message, "").into()
     })
 }
 
-fn stem(word: &str) -> String {
-    Path::new(word).file_stem().map_or_else(
-        || word.to_owned(),
-        |stem| stem.to_string_lossy().into_owned(),
-    )
-}
-
-/// A number with some significant digits, as short as it goes.
-fn digits(x: f64, count: usize) -> String {
-    format!("{x:.*e}", count - 1)
-        .parse::<f64>()
-        .map_or_else(|_| x.to_string(), |x| x.to_string())
-}
-
-fn number(x: f64) -> Value {
-    Value::from(digits(x, DIGITS).parse::<f64>().unwrap_or(x))
+/// A number with some significant digits.
+fn rounded(x: f64, digits: usize) -> f64 {
+    format!("{x:.*e}", digits - 1).parse().unwrap_or(x)
 }
 
 /// The text of a value, bare or in a table; empty where there is none.
 fn text_at(document: &DocumentMut, path: &[&str]) -> String {
-    let mut item = document.as_item();
-    for part in path {
-        let Some(next) = item.get(part) else {
-            return String::new();
-        };
-        item = next;
-    }
-    let inner = item.get("value").unwrap_or(item);
-    inner.as_str().unwrap_or_default().to_owned()
+    let item = path
+        .iter()
+        .try_fold(document.as_item(), |item, part| item.get(part));
+    let inner = item.map(|item| item.get("value").unwrap_or(item));
+    inner.and_then(Item::as_str).unwrap_or_default().to_owned()
 }
 
 /// Puts a value with its status and source at a path, keeping the comments around it. A note of the old value does not hold any more.
@@ -220,7 +198,8 @@ fn as_table(item: &mut Item) -> Option<&mut dyn TableLike> {
 
 /// The absolute path of a file; the word itself if there is no such file.
 fn absolute(folder: &Path, word: &str) -> String {
-    std::fs::canonicalize(folder.join(word)).map_or_else(
+    let path = std::fs::canonicalize(folder.join(word));
+    path.map_or_else(
         |_| word.to_owned(),
         |path| path.to_string_lossy().into_owned(),
     )
@@ -228,19 +207,19 @@ fn absolute(folder: &Path, word: &str) -> String {
 
 /// Makes the paths of files in a folder absolute, in all values below an item.
 fn make_absolute(item: &mut Item, folder: &Path) {
-    let is_file = |text: &str| is_path(text) && !text.contains('\n') && folder.join(text).is_file();
-    if let Some(text) = item.as_str().filter(|text| is_file(text)) {
-        let path = absolute(folder, text);
-        if let Some(value) = item.as_value_mut() {
-            let decor = value.decor().clone();
-            *value = Value::from(path);
-            *value.decor_mut() = decor;
+    let is_file =
+        |text: &&str| is_path(text) && !text.contains('\n') && folder.join(text).is_file();
+    let path = item
+        .as_str()
+        .filter(is_file)
+        .map(|text| absolute(folder, text));
+    if let Some((path, value)) = path.zip(item.as_value_mut()) {
+        let decor = value.decor().clone();
+        *value = Value::from(path);
+        *value.decor_mut() = decor;
+    } else if let Some(table) = item.as_table_like_mut() {
+        for (_, inner) in table.iter_mut() {
+            make_absolute(inner, folder);
         }
-        return;
-    }
-    if let Some(table) = item.as_table_like_mut() {
-        table
-            .iter_mut()
-            .for_each(|(_, item)| make_absolute(item, folder));
     }
 }

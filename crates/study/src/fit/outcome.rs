@@ -5,9 +5,10 @@
 //! | CO-1 | root mean square of residuals over their standard deviations, of a group, of a fold, of all | convention |
 
 use serde::Serialize;
-use sha2::{Digest, Sha256};
 
 use super::plan::CalibrationPlan;
+pub use super::solve::Direction;
+use cvtcycle_output::hash::hash;
 
 /// Version of the form of `calibration.json`.
 pub const SCHEMA: u32 = 1;
@@ -116,15 +117,6 @@ pub struct Start {
     pub evaluations: usize,
 }
 
-/// A direction in the space of the parameters, and how well the data alone determine it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Direction {
-    /// Singular value of the scaled Jacobian; 0 without an effect on the data.
-    pub singular_value: f64,
-    /// Weight of each parameter.
-    pub weights: Vec<f64>,
-}
-
 /// A finished calibration.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Outcome {
@@ -181,14 +173,13 @@ pub struct Outcome {
 impl Outcome {
     /// Version, program, plan and files, without results.
     pub(super) fn of_plan(plan: &CalibrationPlan) -> Self {
-        let hash = Sha256::digest(plan.text.as_bytes());
         let files = plan.files.iter();
         Outcome {
             schema: SCHEMA,
             program: cvtcycle_output::PROGRAM.to_owned(),
             title: plan.title.clone(),
             plan: plan.file.clone(),
-            plan_sha256: hash.iter().map(|byte| format!("{byte:02x}")).collect(),
+            plan_sha256: hash(plan.text.as_bytes()),
             files: files
                 .map(|(path, hash)| [path.clone(), hash.clone()])
                 .collect(),
@@ -211,14 +202,12 @@ impl Outcome {
     /// Root mean square of all residuals in standard deviations: with the files' values, fitted, predicted fold by fold (CO-1).
     #[must_use]
     pub fn rms_sd(&self) -> [Option<f64>; 3] {
-        let rms = |list: Vec<Option<f64>>| {
-            rms(list.into_iter().collect::<Option<Vec<f64>>>()?.into_iter())
-        };
-        [
-            rms(self.residuals.iter().map(|r| r.before_sd).collect()),
-            rms(self.residuals.iter().map(|r| Some(r.after_sd)).collect()),
-            rms(self.residuals.iter().map(|r| r.left_out_sd).collect()),
-        ]
+        let of: [fn(&Residual) -> Option<f64>; 3] =
+            [|r| r.before_sd, |r| Some(r.after_sd), |r| r.left_out_sd];
+        of.map(|of| {
+            let all: Option<Vec<f64>> = self.residuals.iter().map(of).collect();
+            rms(all?.into_iter())
+        })
     }
 }
 

@@ -1,9 +1,9 @@
 //! A plan to its outcome.
 
 use super::model::{Model, Prediction};
-use super::outcome::{self, Direction, Fold, Outcome, Residual, Start, rms};
-use super::plan::{CalibrationPlan, Measured, Observable};
-use super::solve::{self, Bound, Failure, Fit, FitEnd, Options, Uncertainty};
+use super::outcome::{self, Fold, Outcome, Residual, Start, rms};
+use super::plan::{self, CalibrationPlan, Measured, Observable};
+use super::solve::{self, Bound, Failure, Fit, FitEnd, Uncertainty};
 use crate::progress::Progress;
 use cvtcycle_config::{Problem, Problems};
 
@@ -14,45 +14,54 @@ const SAME_COST: f64 = 1e-3;
 /// Distance from its prior, in its standard deviations, above which there is a warning.
 const FAR: f64 = 3.0;
 
+/// Reads the plan that a word of the user means, and loads its cars.
+///
+/// # Errors
+/// All problems of the plan, of its data files and of its cars.
+pub fn open(word: &str) -> Result<CalibrationPlan, Problems> {
+    let (plan, mut problems) = plan::gather(word)?;
+    // Without a vehicle, reported already, every key would be unknown.
+    if !plan.car.vehicle.is_empty() {
+        problems.extend(Model::new(&plan).err().unwrap_or_default());
+    }
+    if problems.is_empty() {
+        Ok(plan)
+    } else {
+        Err(problems)
+    }
+}
+
 /// Fits the parameters of a plan, and says what the fit is worth.
 ///
 /// # Errors
 /// What is wrong with the plan's vehicle, keys, bounds and sources; a problem if the model has no answer at any start.
+///
+/// ```no_run
+/// use cvtcycle_study::{NoProgress, fit};
+/// let plan = fit::open("rover_216_warm_up")?;
+/// let outcome = fit::calibrate(&plan, &NoProgress)?;
+/// for p in &outcome.parameters {
+///     println!("{} = {} {}", p.name, p.value, p.unit);
+/// }
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
 pub fn calibrate(plan: &CalibrationPlan, progress: &dyn Progress) -> Result<Outcome, Problems> {
     let model = Model::new(plan)?;
-    let search = &plan.search;
-    let options = Options {
-        starts: search.starts,
-        seed: search.seed,
-        max_evaluations: search.max_evaluations,
-        tolerance: search.tolerance,
-    };
-    let fit = solve::fit(&model, model.parameters(), &options, progress)
+    let (parameters, options) = (model.parameters(), &plan.search);
+    let fit = solve::fit(&model, parameters, options, progress)
         .map_err(|failure| problems_of(failure, plan))?;
-    let folds = if search.leave_out && plan.folds.len() > 1 && fit.end != FitEnd::Stopped {
-        let groups: Vec<usize> = plan
-            .observations
-            .iter()
-            .map(|observation| observation.fold)
-            .collect();
-        solve::leave_out(
-            &model,
-            model.parameters(),
-            &groups,
-            &fit,
-            &options,
-            progress,
-        )
-    } else {
-        Vec::new()
-    };
-    Ok(Found {
-        uncertainty: solve::uncertainty(&fit, model.parameters()),
+    let mut folds = Vec::new();
+    if plan.leave_out && plan.folds.len() > 1 && fit.end != FitEnd::Stopped {
+        let groups: Vec<usize> = plan.observations.iter().map(|o| o.fold).collect();
+        folds = solve::leave_out(&model, parameters, &groups, &fit, options, progress);
+    }
+    let found = Found {
+        uncertainty: solve::uncertainty(&fit, parameters),
         model: &model,
         fit,
         folds,
-    }
-    .outcome())
+    };
+    Ok(found.outcome())
 }
 
 /// Each cause of a fit without result once, whatever the number of starts with it.
@@ -69,9 +78,8 @@ fn problems_of(failure: Failure, plan: &CalibrationPlan) -> Problems {
     causes.dedup();
     let hint = "leave out data where the model has no number; the first start is at the values of the files";
     let problem = |why: String| {
-        Problem::failed(format!("the model has no answer: {why}"))
-            .at(plan.place.clone())
-            .hint(hint)
+        let problem = Problem::failed(format!("the model has no answer: {why}"));
+        problem.at(plan.place.clone()).hint(hint)
     };
     causes.into_iter().map(problem).collect()
 }
@@ -91,11 +99,6 @@ impl Found<'_> {
         let before = self.model.predict(&file_values).ok();
         let residuals = self.residuals(before.as_ref(), &file_values);
         let parameters = self.parameters(&file_values);
-        let best_first = u.directions.iter().rev();
-        let directions = best_first.map(|d| Direction {
-            singular_value: d.singular_value,
-            weights: d.weights.clone(),
-        });
         let mut outcome = Outcome {
             end: fit.end.name().to_owned(),
             converged: fit.end == FitEnd::Converged,
@@ -109,7 +112,7 @@ impl Found<'_> {
             residuals,
             correlation: matrix(&u.correlation),
             covariance: matrix(&u.covariance),
-            directions: directions.collect(),
+            directions: u.directions.iter().rev().cloned().collect(),
             not_identified: solve::not_identified(fit, self.model.parameters()),
             starts: fit.starts.iter().map(start).collect(),
             evaluations: fit.evaluations,
@@ -134,23 +137,18 @@ impl Found<'_> {
                 low: p.low,
                 high: p.high,
                 prior: p.prior.map(|prior| [prior.mean, prior.sd]),
-                prior_status: own.map_or_else(|| "assumed".to_owned(), |free| free.status.clone()),
-                source: own.map_or_else(
-                    || "one error for all data of the group".to_owned(),
-                    |free| free.source.clone(),
-                ),
+                prior_status: own.map_or("assumed", |free| free.status).to_owned(),
+                source: own
+                    .map_or("one error for all data of the group", |free| &free.source)
+                    .to_owned(),
                 prior_share: u.prior_share[k],
                 at_bound: u.at_bound[k]
                     .map(|bound| if bound == Bound::Low { "low" } else { "high" }),
                 is_dead: u.dead.contains(&k),
             }
         };
-        self.model
-            .parameters()
-            .iter()
-            .enumerate()
-            .map(one)
-            .collect()
+        let all = self.model.parameters().iter().enumerate();
+        all.map(one).collect()
     }
 
     fn residuals(&self, before: Option<&Prediction>, file_values: &[f64]) -> Vec<Residual> {
@@ -158,8 +156,7 @@ impl Found<'_> {
         // The model has a result at the end of the fit.
         let after = self.model.predict(&self.fit.values).unwrap_or_default();
         let left_out = self.left_out();
-        let before_distances =
-            before.map(|answer| self.model.distances(&answer.computed, file_values));
+        let distances = before.map(|answer| self.model.distances(&answer.computed, file_values));
         let one = |(k, o): (usize, &super::plan::Observation)| {
             let (low, high) = match o.measured {
                 Measured::Value(x) => (x, x),
@@ -171,10 +168,9 @@ impl Found<'_> {
                 label: o.label.clone(),
                 what: o.what.clone(),
                 column: o.column.clone(),
-                time_s: if let Observable::Trace { time_s, .. } = o.observable {
-                    Some(time_s)
-                } else {
-                    None
+                time_s: match o.observable {
+                    Observable::Trace { time_s, .. } => Some(time_s),
+                    _ => None,
                 },
                 unit: o.unit.clone(),
                 low: low.is_finite().then_some(low),
@@ -184,7 +180,7 @@ impl Found<'_> {
                 before: before.map(|answer| answer.computed[k]),
                 after: after.computed.get(k).copied().unwrap_or(f64::NAN),
                 left_out: left_out[k].0,
-                before_sd: before_distances.as_ref().map(|list| list[k] / o.weight_sd),
+                before_sd: distances.as_ref().map(|list| list[k] / o.weight_sd),
                 after_sd: self.fit.residuals[k],
                 left_out_sd: left_out[k].1,
                 doubtful: after.doubtful.get(k).copied().unwrap_or(0),
@@ -218,10 +214,7 @@ impl Found<'_> {
                 observations: own().count(),
                 fitted_rms_sd: rms(own().map(|r| r.after_sd)).unwrap_or(f64::NAN),
                 predicted_rms_sd: rms(fold.residuals.iter().copied()),
-                end: fold
-                    .failure
-                    .clone()
-                    .unwrap_or_else(|| fold.end.name().to_owned()),
+                end: fold.failure.clone().unwrap_or(fold.end.name().to_owned()),
                 name,
             }
         };
@@ -242,10 +235,10 @@ fn cost_before(residuals: &[Residual], parameters: &[outcome::Parameter]) -> Opt
 }
 
 fn start(start: &solve::Start) -> Start {
-    let end = start.failure.as_ref().map_or_else(
-        || start.end.name().to_owned(),
-        |why| format!("{}: {why}", start.end.name()),
-    );
+    let mut end = start.end.name().to_owned();
+    if let Some(why) = &start.failure {
+        end += &format!(": {why}");
+    }
     Start {
         from: start.from.clone(),
         to: start.to.clone(),
@@ -256,8 +249,9 @@ fn start(start: &solve::Start) -> Start {
 }
 
 fn matrix(m: &nalgebra::DMatrix<f64>) -> Vec<Vec<Option<f64>>> {
+    let finite = |x: &f64| x.is_finite().then_some(*x);
     m.row_iter()
-        .map(|row| row.iter().map(|x| x.is_finite().then_some(*x)).collect())
+        .map(|row| row.iter().map(finite).collect())
         .collect()
 }
 
@@ -265,59 +259,50 @@ fn matrix(m: &nalgebra::DMatrix<f64>) -> Vec<Vec<Option<f64>>> {
 fn warnings(o: &Outcome) -> Vec<String> {
     let mut warnings = Vec::new();
     if !o.converged {
+        let end = &o.end;
         warnings.push(format!(
-            "the search did not converge ({}): the values are the best point so far, no minimum",
-            o.end
+            "the search did not converge ({end}): the values are the best point so far, no minimum"
         ));
     }
-    for p in o.parameters.iter().filter(|p| p.is_dead) {
-        let name = &p.name;
-        warnings.push(format!(
-            "{name} moves no datum: it is not fitted by these data"
-        ));
+    let dead = o.parameters.iter().filter(|p| p.is_dead).map(|p| &p.name);
+    warnings
+        .extend(dead.map(|name| format!("{name} moves no datum: it is not fitted by these data")));
+    for p in &o.parameters {
+        let (name, value) = (&p.name, p.value);
+        if let Some(bound) = p.at_bound {
+            warnings.push(format!(
+                "{name} lies at its {bound} bound, {value}: the data would carry it further"
+            ));
+        }
+        let away = p.prior.map(|[mean, sd]| (value - mean).abs() / sd);
+        if let Some(away) = away.filter(|away| *away > FAR) {
+            warnings.push(format!(
+                "{name} is {away:.1} standard deviations away from its prior"
+            ));
+        }
     }
-    warnings.extend(o.parameters.iter().flat_map(of_parameter));
     if let Some(p) = o.chi2_probability.filter(|p| *p < UNLIKELY) {
-        let factor = (o.cost_after / o.degrees_of_freedom as f64).sqrt();
+        let (cost, freedom) = (o.cost_after, o.degrees_of_freedom);
+        let factor = (cost / freedom as f64).sqrt();
         warnings.push(format!(
-            "the data scatter more than their standard deviations say: a sum of squares of {:.1} with {} degrees of freedom has a probability of {p:.1e}; \
-             the standard errors are too small by a factor of about {factor:.1}",
-            o.cost_after, o.degrees_of_freedom
+            "the data scatter more than their standard deviations say: a sum of squares of {cost:.1} with {freedom} degrees of freedom has a probability of {p:.1e}; \
+             the standard errors are too small by a factor of about {factor:.1}"
         ));
     }
     if let Some(observations) = o.doubtful() {
         warnings.push(format!("{observations}: computed outside the validity of a model, or with points left out at gross slip"));
     }
     let same = |cost: f64| cost <= o.cost_after * (1.0 + SAME_COST) + 1e-9;
-    let starts = o.starts.iter();
-    let elsewhere = starts.filter(|s| !s.cost.is_some_and(same)).count();
+    let elsewhere = o
+        .starts
+        .iter()
+        .filter(|s| !s.cost.is_some_and(same))
+        .count();
     if elsewhere > 0 {
         let all = o.starts.len();
         warnings.push(format!(
             "{elsewhere} of {all} starts ended in another place, with a larger sum of squares"
         ));
-    }
-    warnings
-}
-
-/// A parameter at a bound, or far from its prior.
-fn of_parameter(p: &outcome::Parameter) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if let Some(bound) = p.at_bound {
-        warnings.push(format!(
-            "{} lies at its {bound} bound, {}: the data would carry it further",
-            p.name, p.value
-        ));
-    }
-    if let Some([mean, sd]) = p.prior {
-        let away = (p.value - mean).abs();
-        if away > FAR * sd {
-            warnings.push(format!(
-                "{} is {:.1} standard deviations away from its prior",
-                p.name,
-                away / sd
-            ));
-        }
     }
     warnings
 }

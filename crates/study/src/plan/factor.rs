@@ -3,6 +3,7 @@
 use super::values::{self, Of};
 use super::{Acts, Cars, Factor, FactorValue, FactorValues, Places, RUN_OPTIONS, options};
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean, unit_of};
+use cvtcycle_model::keys::{Key, spec::text};
 
 const CARS: [(&str, Cars); 3] = [
     ("subject", Cars::Subject),
@@ -81,10 +82,8 @@ pub(super) fn read(document: &Document) -> Result<Factor, Problems> {
 /// Problems under the name of their factor, and without words that fit the top of a file only.
 fn of_factor(problems: Problems, document: &Document) -> Problems {
     let reader = Reader::new(document);
-    let key = reader
-        .root()
-        .optional_text("key", "")
-        .filter(|key| !key.is_empty());
+    let key = reader.root().optional_text(&Key::new("key", text(), ""));
+    let key = key.filter(|key| !key.is_empty());
     let of = key.map_or_else(String::new, |key| format!("factor {key}: "));
     // A mistyped `values` explains that there are none.
     let meant = |p: &Problem| {

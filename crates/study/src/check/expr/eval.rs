@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use super::functions::{Form, truth};
+use super::functions::{Compute, Form, Gives, truth};
 use super::reduce::{Point, Points, Table, least, most, short};
-use super::syntax::{Expr, Gives, Order, Reduce};
+use super::syntax::{Expr, Order, Reduce};
 
 /// Source of the numbers.
 pub trait Tables {
@@ -80,11 +80,8 @@ pub fn compute(expr: &Expr, tables: &dyn Tables) -> Result<Computed, String> {
 }
 
 fn finite(x: f64) -> Result<f64, String> {
-    if x.is_finite() {
-        Ok(x)
-    } else {
-        Err("the result is not a finite number".to_owned())
-    }
+    let finite = x.is_finite().then_some(x);
+    finite.ok_or_else(|| "the result is not a finite number".to_owned())
 }
 
 fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
@@ -110,13 +107,20 @@ impl Context<'_> {
                 }
                 _ => f64::NAN,
             },
-            Expr::Negate(inner) => -self.eval(inner)?,
             Expr::Not(inner) => truth(self.eval(inner)? <= 0.5),
-            Expr::Binary(sign, a, b) => binary(*sign, self.eval(a)?, self.eval(b)?),
             Expr::Compare(list, orders) => self.compare(list, orders)?,
             Expr::And(list) => self.both(list, true)?,
             Expr::Or(list) => self.both(list, false)?,
-            Expr::Call(function, list) => (function.compute)(&self.all(list)?),
+            Expr::Call(function, list) => {
+                let first = self.eval(&list[0])?;
+                match function.compute {
+                    Compute::One(of) => of(first),
+                    Compute::Several(of) => (list[1..].iter())
+                        .try_fold(first, |so_far, next| {
+                            Ok::<f64, String>(of(so_far, self.eval(next)?))
+                        })?,
+                }
+            }
             Expr::Reduce(r) => {
                 let points = self.points(r)?;
                 (r.of.compute)(points)?
@@ -248,26 +252,23 @@ impl Context<'_> {
                 }
                 parts.join("; ")
             }
-            Expr::Reduce(r) if r.of.gives == Gives::Truth => self.behind_rows(r),
+            Expr::Reduce(r) if r.of.gives == Gives::Truth => {
+                self.behind_rows(r).unwrap_or_else(|_| "-".to_owned())
+            }
             other => self.text(other),
         }
     }
 
     /// The numbers behind a truth over rows.
-    fn behind_rows(&mut self, r: &Reduce) -> String {
-        let Ok(table) = self.tables.table(r.source, false) else {
-            return "-".to_owned();
-        };
-        let Ok(rows) = self.rows(r, &table) else {
-            return "-".to_owned();
-        };
-        let points = Points(rows, f64::NAN);
+    fn behind_rows(&mut self, r: &Reduce) -> Result<String, String> {
+        let table = self.tables.table(r.source, false)?;
+        let points = Points(self.rows(r, &table)?, f64::NAN);
         let count = points.0.len();
         if r.of.form == Form::Condition {
-            return format!("{} of {count} rows", points.met().count());
+            return Ok(format!("{} of {count} rows", points.met().count()));
         }
         let (low, high) = (short(points.min()), short(points.max()));
-        format!("{low} to {high} over {count} rows")
+        Ok(format!("{low} to {high} over {count} rows"))
     }
 }
 
@@ -283,23 +284,9 @@ impl Order {
         }
     }
 
+    /// The shortest sign.
     fn sign(self) -> &'static str {
-        match self {
-            Order::Less => "<",
-            Order::AtMost => "<=",
-            Order::More => ">",
-            Order::AtLeast => ">=",
-            Order::Equal => "=",
-        }
-    }
-}
-
-fn binary(sign: char, a: f64, b: f64) -> f64 {
-    match sign {
-        '+' => a + b,
-        '-' => a - b,
-        '*' => a * b,
-        '/' => a / b,
-        _ => a.powf(b),
+        let own = Order::SIGNS.iter().rfind(|(_, order)| *order == self);
+        own.map_or("", |(sign, _)| sign)
     }
 }

@@ -1,4 +1,4 @@
-//! The functions and reductions of the expressions: name, form, meaning and computation, each once.
+//! Operators, functions and reductions: name, form, meaning and computation, each one row.
 
 use super::reduce::{Points, least, most};
 
@@ -13,17 +13,21 @@ pub enum Gives {
     Truth,
 }
 
-/// A function of numbers.
+/// An operator or function of numbers.
 #[derive(Debug)]
 pub struct Function {
-    /// Name.
+    /// Name or sign.
     pub name: &'static str,
-    /// True for two or more arguments, false for one.
-    pub several: bool,
     /// Meaning, one phrase.
     pub doc: &'static str,
-    /// The value.
-    pub compute: fn(&[f64]) -> f64,
+    pub(super) compute: Compute,
+}
+
+/// The number of one argument, or the first argument combined with each further one.
+#[derive(Debug)]
+pub(super) enum Compute {
+    One(fn(f64) -> f64),
+    Several(fn(f64, f64) -> f64),
 }
 
 impl PartialEq for Function {
@@ -32,46 +36,44 @@ impl PartialEq for Function {
     }
 }
 
+const fn one(name: &'static str, doc: &'static str, compute: fn(f64) -> f64) -> Function {
+    let compute = Compute::One(compute);
+    Function { name, doc, compute }
+}
+
+const fn several(name: &'static str, doc: &'static str, compute: fn(f64, f64) -> f64) -> Function {
+    let compute = Compute::Several(compute);
+    Function { name, doc, compute }
+}
+
 /// Functions of numbers.
 pub static FUNCTIONS: [Function; 9] = [
-    of_one("abs", "magnitude", |x| x[0].abs()),
-    of_one("sqrt", "square root", |x| x[0].sqrt()),
-    of_one("ln", "natural logarithm", |x| x[0].ln()),
-    of_one("exp", "exponential", |x| x[0].exp()),
-    of_one("sin", "sine of an angle in degrees", |x| {
-        x[0].to_radians().sin()
-    }),
-    of_one("cos", "cosine of an angle in degrees", |x| {
-        x[0].to_radians().cos()
-    }),
-    of_one("tan", "tangent of an angle in degrees", |x| {
-        x[0].to_radians().tan()
-    }),
-    of_several("min", "smallest argument", |x| {
-        x.iter().copied().fold(f64::INFINITY, least)
-    }),
-    of_several("max", "largest argument", |x| {
-        x.iter().copied().fold(f64::NEG_INFINITY, most)
-    }),
+    one("abs", "magnitude", f64::abs),
+    one("sqrt", "square root", f64::sqrt),
+    one("ln", "natural logarithm", f64::ln),
+    one("exp", "exponential", f64::exp),
+    one("sin", "sine of degrees", |x| x.to_radians().sin()),
+    one("cos", "cosine of degrees", |x| x.to_radians().cos()),
+    one("tan", "tangent of degrees", |x| x.to_radians().tan()),
+    several("min", "smallest argument", least),
+    several("max", "largest argument", most),
 ];
 
-const fn of_one(name: &'static str, doc: &'static str, compute: fn(&[f64]) -> f64) -> Function {
-    Function {
-        name,
-        several: false,
-        doc,
-        compute,
-    }
-}
+/// Operators between two numbers, those that bind least first; equal ones from left to right.
+pub(super) static OPERATORS: [&[Function]; 3] = [
+    &[
+        several("+", "sum", |a, b| a + b),
+        several("-", "difference", |a, b| a - b),
+    ],
+    &[
+        several("*", "product", |a, b| a * b),
+        several("/", "quotient", |a, b| a / b),
+    ],
+    &[several("^", "power", f64::powf)],
+];
 
-const fn of_several(name: &'static str, doc: &'static str, compute: fn(&[f64]) -> f64) -> Function {
-    Function {
-        name,
-        several: true,
-        doc,
-        compute,
-    }
-}
+/// The sign before a power.
+pub(super) static NEGATIVE: Function = one("-", "negative", |x| -x);
 
 /// Form of a reduction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,16 +149,6 @@ reductions! {
 }
 
 /// 1 for true, 0 for false.
-pub(super) fn truth(holds: bool) -> f64 {
+pub(crate) fn truth(holds: bool) -> f64 {
     f64::from(u8::from(holds))
-}
-
-/// The function of that name.
-pub(super) fn function(name: &str) -> Option<&'static Function> {
-    FUNCTIONS.iter().find(|function| function.name == name)
-}
-
-/// The reduction of that name.
-pub(super) fn reduction(name: &str) -> Option<&'static Reduction> {
-    REDUCTIONS.iter().find(|reduction| reduction.name == name)
 }

@@ -2,31 +2,32 @@
 
 use super::syntax::Fault;
 
-/// A token with its place.
+/// A token with its place, counted in characters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Token {
     pub kind: TokenKind,
+    /// As written; empty at the end.
+    pub text: String,
     pub at: usize,
-    pub width: usize,
 }
 
-/// Kind of a token.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TokenKind {
     Number(f64),
-    Name(String),
-    Sign(&'static str),
+    Name,
+    Sign,
     End,
 }
 
-impl TokenKind {
-    /// The text of the token; empty at the end.
-    pub fn text(&self) -> String {
-        match self {
-            TokenKind::Number(x) => x.to_string(),
-            TokenKind::Name(name) => name.clone(),
-            TokenKind::Sign(sign) => (*sign).to_owned(),
-            TokenKind::End => String::new(),
+impl Token {
+    /// A fault at the token.
+    pub fn fault(&self, message: String, hint: String) -> Fault {
+        Fault {
+            at: self.at,
+            width: self.text.chars().count().max(1),
+            word: self.text.clone(),
+            message,
+            hint,
         }
     }
 }
@@ -42,48 +43,47 @@ const SIGNS: [&str; 15] = [
 /// The first character that belongs to no token.
 pub fn tokens(text: &str) -> Result<Vec<Token>, Fault> {
     let chars: Vec<char> = text.chars().collect();
+    let token = |kind, from: usize, to: usize| Token {
+        kind,
+        text: chars[from..to].iter().collect(),
+        at: from,
+    };
     let digit = |at: usize| chars.get(at).is_some_and(char::is_ascii_digit);
-    let mut found = Vec::new();
+    let mut found: Vec<Token> = Vec::new();
     let mut at = 0;
-    while at < chars.len() {
-        let start = at;
-        let c = chars[at];
-        if c.is_whitespace() {
+    while let Some(&c) = chars.get(at) {
+        let rest = &chars[at..];
+        let (kind, width) = if c.is_whitespace() {
             at += 1;
             continue;
-        }
-        let kind = if digit(at) || (c == '.' && digit(at + 1)) {
-            at = number_end(&chars, at);
-            let number = chars[start..at].iter().collect::<String>().parse();
-            TokenKind::Number(number.map_err(|_| fault(&chars, start, at, "is no number"))?)
+        } else if digit(at) || (c == '.' && digit(at + 1)) {
+            let end = number_end(&chars, at);
+            let number = token(TokenKind::End, at, end);
+            let bad = |_| number.fault(format!("`{}` is no number", number.text), String::new());
+            (
+                TokenKind::Number(number.text.parse().map_err(bad)?),
+                end - at,
+            )
         } else if c.is_ascii_alphabetic() || c == '_' {
             let in_name = |c: &&char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.');
-            at += chars[at..].iter().take_while(in_name).count();
-            TokenKind::Name(chars[start..at].iter().collect())
+            (TokenKind::Name, rest.iter().take_while(in_name).count())
         } else {
-            let here = |sign: &&&str| {
-                sign.chars()
-                    .eq(chars[at..].iter().copied().take(sign.len()))
+            let here = |sign: &&&str| sign.chars().eq(rest.iter().copied().take(sign.len()));
+            let unknown = || {
+                let message = format!("`{c}` has no meaning here");
+                token(TokenKind::End, at, at + 1).fault(message, String::new())
             };
-            let sign = SIGNS.iter().find(here);
-            let sign = sign.ok_or_else(|| fault(&chars, at, at + 1, "has no meaning here"))?;
-            at += sign.len();
-            TokenKind::Sign(sign)
+            let sign = SIGNS.iter().find(here).ok_or_else(unknown)?;
+            (TokenKind::Sign, sign.len())
         };
-        found.push(Token {
-            kind,
-            at: start,
-            width: at - start,
-        });
+        found.push(token(kind, at, at + width));
+        at += width;
     }
-    found.push(Token {
-        kind: TokenKind::End,
-        at: chars.len(),
-        width: 1,
-    });
+    found.push(token(TokenKind::End, at, at));
     Ok(found)
 }
 
+/// The index after a number: digits, points within them, an exponent.
 fn number_end(chars: &[char], mut at: usize) -> usize {
     let digit = |at: usize| chars.get(at).is_some_and(char::is_ascii_digit);
     while digit(at) || (chars.get(at) == Some(&'.') && digit(at + 1)) {
@@ -93,22 +93,12 @@ fn number_end(chars: &[char], mut at: usize) -> usize {
         let signed = matches!(chars.get(at + 1), Some('+' | '-'));
         let first = at + 1 + usize::from(signed);
         if digit(first) {
-            at = first;
-            while digit(at) {
-                at += 1;
-            }
+            at = first
+                + chars[first..]
+                    .iter()
+                    .take_while(|c| c.is_ascii_digit())
+                    .count();
         }
     }
     at
-}
-
-fn fault(chars: &[char], start: usize, end: usize, what: &str) -> Fault {
-    let word: String = chars[start..end].iter().collect();
-    Fault {
-        at: start,
-        width: end - start,
-        message: format!("`{word}` {what}"),
-        word,
-        hint: String::new(),
-    }
 }

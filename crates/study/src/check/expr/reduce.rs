@@ -74,15 +74,12 @@ impl Points {
 
     /// Sorted by group, then by the other column.
     fn sorted(mut self) -> Vec<Point> {
-        let by_group = |a: &Point, b: &Point| {
-            let pairs = a.group.iter().zip(&b.group);
-            pairs
-                .map(|(x, y)| x.total_cmp(y))
-                .find(|order| order.is_ne())
-                .unwrap_or(std::cmp::Ordering::Equal)
-        };
-        self.0
-            .sort_by(|a, b| by_group(a, b).then(a.over.total_cmp(&b.over)));
+        self.0.sort_by(|a, b| {
+            let pairs = a.group.iter().chain([&a.over]);
+            let mut orders = pairs.zip(b.group.iter().chain([&b.over]));
+            let order = orders.find_map(|(x, y)| Some(x.total_cmp(y)).filter(|o| o.is_ne()));
+            order.unwrap_or(std::cmp::Ordering::Equal)
+        });
         self.0
     }
 

@@ -1,9 +1,8 @@
 //! Parsed expressions.
 
-pub use super::functions::Gives;
-use super::functions::{Form, Function, Reduction};
+use super::functions::{Form, Function, Gives, Reduction};
 
-/// An error in a text: place, message, remedy.
+/// An error in a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
     /// First character, counted from 0.
@@ -14,7 +13,7 @@ pub struct Fault {
     pub word: String,
     /// What is wrong.
     pub message: String,
-    /// What to do.
+    /// What to do; may be empty.
     pub hint: String,
 }
 
@@ -23,14 +22,26 @@ pub struct Fault {
 pub enum Order {
     /// `<`
     Less,
-    /// `<=`
+    /// `<=`, to 1e-9 of the larger number.
     AtMost,
     /// `>`
     More,
-    /// `>=`
+    /// `>=`, to 1e-9 of the larger number.
     AtLeast,
     /// `==`, to 1e-9 of the larger number.
     Equal,
+}
+
+impl Order {
+    /// Signs, longer ones first; the last one of an order is how it is shown.
+    pub(super) const SIGNS: [(&'static str, Order); 6] = [
+        ("<=", Order::AtMost),
+        (">=", Order::AtLeast),
+        ("==", Order::Equal),
+        ("=", Order::Equal),
+        ("<", Order::Less),
+        (">", Order::More),
+    ];
 }
 
 /// Evaluation of a body for each of several numbers.
@@ -72,19 +83,15 @@ pub enum Expr {
     Variable(usize),
     /// The expression in the previous row.
     Previous(Box<Expr>),
-    /// Minus.
-    Negate(Box<Expr>),
     /// Not.
     Not(Box<Expr>),
-    /// `+`, `-`, `*`, `/` or `^`.
-    Binary(char, Box<Expr>, Box<Expr>),
     /// A chain of comparisons: one more operand than orders.
     Compare(Vec<Expr>, Vec<Order>),
     /// True if every part holds.
     And(Vec<Expr>),
     /// True if some part holds.
     Or(Vec<Expr>),
-    /// A function.
+    /// An operator or function of numbers.
     Call(&'static Function, Vec<Expr>),
     /// A reduction of a source.
     Reduce(Box<Reduce>),
@@ -92,6 +99,14 @@ pub enum Expr {
     Loop(Loop, Vec<Expr>, Box<Expr>),
     /// A key of the vehicle or fluid of a source, or of the candidate vehicle without one; with the index of an item for a list.
     Key(Option<usize>, String, Option<usize>),
+}
+
+impl Reduce {
+    /// Everything that is computed with, thus all but the columns of the groups.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = &Expr> {
+        let optional = [&self.over, &self.at, &self.filter].into_iter().flatten();
+        std::iter::once(&self.value).chain(optional)
+    }
 }
 
 impl Expr {
@@ -116,32 +131,35 @@ impl Expr {
     pub fn parts(&self) -> Vec<&Expr> {
         match self {
             Expr::Number(_) | Expr::Column(_) | Expr::Variable(_) | Expr::Key(..) => Vec::new(),
-            Expr::Previous(a) | Expr::Negate(a) | Expr::Not(a) => vec![a],
-            Expr::Binary(_, a, b) => vec![a, b],
+            Expr::Previous(inner) | Expr::Not(inner) => vec![inner],
             Expr::Compare(list, _) | Expr::And(list) | Expr::Or(list) | Expr::Call(_, list) => {
                 list.iter().collect()
             }
             Expr::Loop(_, list, body) => list.iter().chain([&**body]).collect(),
-            Expr::Reduce(r) => {
-                let optional = [&r.over, &r.at, &r.filter].into_iter().flatten();
-                [&r.value]
-                    .into_iter()
-                    .chain(optional)
-                    .chain(&r.by)
-                    .collect()
-            }
+            Expr::Reduce(r) => r.numbers().chain(&r.by).collect(),
         }
     }
 
-    /// Appends the sources of the expression; none for the candidate vehicle.
-    pub fn sources(&self, found: &mut Vec<Option<usize>>) {
+    /// True if a range is part of a larger expression: nothing can be computed with it.
+    pub(super) fn has_inner_range(&self) -> bool {
+        let is_range = |part: &Expr| part.gives() == Gives::Range || part.has_inner_range();
+        // The numbers of a loop and the columns of groups are not computed with.
         match self {
-            Expr::Reduce(r) => found.push(Some(r.source)),
-            Expr::Key(source, ..) => found.push(*source),
-            _ => {}
+            Expr::Loop(_, _, body) => is_range(body),
+            Expr::Reduce(r) => r.numbers().any(is_range),
+            _ => self.parts().into_iter().any(is_range),
         }
-        self.parts()
-            .into_iter()
-            .for_each(|part| part.sources(found));
+    }
+
+    /// The sources of the expression; none for the candidate vehicle.
+    #[must_use]
+    pub fn sources(&self) -> Vec<Option<usize>> {
+        let own = match self {
+            Expr::Reduce(r) => Some(Some(r.source)),
+            Expr::Key(source, ..) => Some(*source),
+            _ => None,
+        };
+        let parts = self.parts().into_iter().flat_map(Expr::sources);
+        own.into_iter().chain(parts).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::columns::{Column, TableRow, combinations, from_rows, numbers, rpm};
 use crate::check::expr::Table;
-use crate::check::source::Source;
+use crate::check::source::{Kind, Source};
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::fluid::{BandFriction, Friction, Lubricant, ZERO_DEGC_K};
 use cvtcycle_model::transmission::Transmission;
@@ -17,20 +17,17 @@ const PRINTED_BAND: f64 = 0.13;
 /// Belt temperature where none is given, K.
 const REFERENCE_K: f64 = 85.0 + ZERO_DEGC_K;
 
-/// Axes in the order of a row of settings.
-const AXES: [&str; 9] = [
-    "ratio",
-    "speed_rpm",
-    "pressure_bar",
-    "belt_degc",
-    "band_friction",
-    "segment_friction",
-    "on_stop",
-    "band_speed_share",
-    "torque_nm",
-];
+const RATIO: usize = 0;
+const SPEED: usize = 1;
+const PRESSURE: usize = 2;
+const BELT_TEMP: usize = 3;
+const BAND_FRICTION: usize = 4;
+const SEGMENT_FRICTION: usize = 5;
+const ON_STOP: usize = 6;
+const BAND_SPEED: usize = 7;
+const TORQUE: usize = 8;
 
-/// A solved point; settings in the order of [`AXES`], NaN where none is given.
+/// A solved point; settings in the order of the belt's keys, NaN where none is given.
 pub struct Solved {
     x: Vec<f64>,
     belt: Belt,
@@ -43,12 +40,12 @@ pub struct Solved {
 /// Columns.
 pub fn columns() -> Vec<Column<Solved>> {
     columns! { Solved;
-        "ratio" s => s.x[0];
-        "speed_rpm" s => rpm(s.x[1]);
-        "pressure_bar" s => s.x[2] / 1e5;
-        "torque_nm" s => s.x[8];
+        "ratio" s => s.x[RATIO];
+        "speed_rpm" s => rpm(s.x[SPEED]);
+        "pressure_bar" s => s.x[PRESSURE] / 1e5;
+        "torque_nm" s => s.x[TORQUE];
         "belt_degc" s => s.belt_k - ZERO_DEGC_K;
-        "band_speed_share" s => or(s.x[7], 0.0);
+        "band_speed_share" s => or(s.x[BAND_SPEED], 0.0);
         "band_friction" s => s.load.band.mu;
         "primary_radius_mm" s => 1e3 * s.point.geometry.primary_radius_m;
         "secondary_radius_mm" s => 1e3 * s.point.geometry.secondary_radius_m;
@@ -131,17 +128,11 @@ impl Solved {
 /// An error if a belt cannot run at a ratio.
 pub fn fits(belt: &Belt, ratio: f64) -> Result<(), String> {
     let g = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
-    let lengths = [
-        g.primary_radius_m,
-        g.secondary_radius_m,
-        g.strut_m,
-        g.primary_wrap_rad,
-    ];
-    if lengths.iter().all(|x| x.is_finite() && *x > 0.0) {
-        Ok(())
-    } else {
-        Err(format!("the belt cannot run at ratio {ratio}"))
-    }
+    let radii = [g.primary_radius_m, g.secondary_radius_m];
+    let lengths = radii.into_iter().chain([g.strut_m, g.primary_wrap_rad]);
+    let runs = lengths.into_iter().all(|x| x.is_finite() && x > 0.0);
+    let refusal = || format!("the belt cannot run at ratio {ratio}");
+    runs.then_some(()).ok_or_else(refusal)
 }
 
 struct OneBelt<'a> {
@@ -160,7 +151,11 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
         oil: setup.oils().0,
         formulation: source.formulation,
     };
-    let axes = AXES.map(|key| source.axis(key, f64::NAN));
+    let axes: Vec<Vec<f64>> = Kind::Belt
+        .axes()
+        .iter()
+        .map(|key| source.axis(key))
+        .collect();
     let printed = source.formulation != Formulation::Smooth;
     for ratio in &axes[0] {
         fits(&cvt.belt, *ratio)?;
@@ -190,15 +185,18 @@ impl OneBelt<'_> {
     fn band(&self, x: &[f64], belt_k: f64, eta_pa_s: f64) -> BandFriction {
         let smooth = self.formulation == Formulation::Smooth;
         let fluid = &self.oil.friction;
-        let mu = or(x[4], if smooth { fluid.band } else { PRINTED_BAND });
-        if x[3].is_nan() {
+        let mu = or(
+            x[BAND_FRICTION],
+            if smooth { fluid.band } else { PRINTED_BAND },
+        );
+        if x[BELT_TEMP].is_nan() {
             return BandFriction {
                 mu,
                 film_share: 0.0,
             };
         }
         let sliding = if smooth {
-            sliding_speed_m_s(&self.cvt.belt, x[0], x[1])
+            sliding_speed_m_s(&self.cvt.belt, x[RATIO], x[SPEED])
         } else {
             0.0
         };
@@ -210,30 +208,30 @@ impl OneBelt<'_> {
             formulation: self.formulation,
             ..self.cvt.belt.clone()
         };
-        let mut at = BeltAtRatio::new(&belt, x[0]);
-        if !x[6].is_nan() {
-            at.prepared.stop = 1.0 - x[6];
+        let mut at = BeltAtRatio::new(&belt, x[RATIO]);
+        if !x[ON_STOP].is_nan() {
+            at.prepared.stop = 1.0 - x[ON_STOP];
         }
         let fluid = &self.oil.friction;
         let segment = match self.formulation {
             Formulation::Smooth => fluid.segment,
             printed => printed.segment_friction(fluid.segment),
         };
-        let belt_k = or(x[3], REFERENCE_K);
+        let belt_k = or(x[BELT_TEMP], REFERENCE_K);
         let eta_pa_s = self.oil.dynamic_pa_s(belt_k);
         let load = BeltLoad {
-            primary_speed_rad_s: x[1],
-            output_torque_nm: x[8],
-            secondary_clamp_n: self.cvt.secondary_clamp_n(x[2], x[1] / x[0]),
+            primary_speed_rad_s: x[SPEED],
+            output_torque_nm: x[TORQUE],
+            secondary_clamp_n: self.cvt.secondary_clamp_n(x[PRESSURE], x[SPEED] / x[RATIO]),
             band: self.band(&x, belt_k, eta_pa_s),
             eta_pa_s,
             film_thickness_m: fluid.film_thickness_m,
-            segment_friction: or(x[5], segment),
+            segment_friction: or(x[SEGMENT_FRICTION], segment),
             flank_friction: fluid.flank,
         };
         let mut point = belt_point(&belt, &at, &load);
-        if !x[7].is_nan() {
-            point = point.with_band_speed(&belt, x[7]);
+        if !x[BAND_SPEED].is_nan() {
+            point = point.with_band_speed(&belt, x[BAND_SPEED]);
         }
         Solved {
             x,

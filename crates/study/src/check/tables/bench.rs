@@ -3,13 +3,15 @@
 use std::sync::LazyLock;
 
 use super::belt;
-use super::columns::{Column, TableRow, combinations, from_rows, numbers, rpm, truth};
-use crate::check::expr::Table;
+use super::columns::{Column, TableRow, combinations, from_rows, numbers, rpm};
+use crate::check::expr::{Table, truth};
+use crate::check::keys::BENCH;
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::keys::Key;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 
@@ -48,11 +50,8 @@ static LOSSES: LazyLock<Vec<&'static str>> =
 
 /// Names of the columns.
 pub fn columns() -> Vec<&'static str> {
-    COLUMNS
-        .iter()
-        .map(|column| column.name)
-        .chain(LOSSES.iter().copied())
-        .collect()
+    let names = COLUMNS.iter().map(|column| column.name);
+    names.chain(LOSSES.iter().copied()).collect()
 }
 
 fn efficiency(p: &BenchPoint, a: &BenchAnswer) -> f64 {
@@ -76,23 +75,23 @@ pub(super) fn row(head: impl IntoIterator<Item = f64>, solved: &Solved) -> Table
     }
 }
 
-/// Solves all points of a source.
-pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
-    let parts = parts(source);
-    let nan = || vec![f64::NAN];
-    let axes = [
-        source.axis("ratio", 1.0),
-        source.axis("torque_nm", 0.0),
-        source.axis("throttle", 0.0),
-        source.axis_or_none("pressure_bar").unwrap_or_else(nan),
-        source.axis("pressure_factor", 1.0),
-        source.axis_or_none("belt_degc").unwrap_or_else(nan),
-        source.axis_or_none("belt_above_sump_k").unwrap_or_else(nan),
-        source.axis("temp_degc", ZERO_DEGC_K + 75.0),
-        source.axis("speed_rpm", f64::NAN),
-    ];
+/// What sets a point, in the order in which [`point`] takes the values.
+pub const SETTINGS: [&Key; 9] = [
+    &BENCH.ratio,
+    &BENCH.torque_nm,
+    &BENCH.throttle,
+    &BENCH.pressure_bar,
+    &BENCH.pressure_factor,
+    &BENCH.belt_degc,
+    &BENCH.belt_above_sump_k,
+    &BENCH.temp_degc,
+    &BENCH.speed_rpm,
+];
+
+/// The point of some settings in SI units, NaN for what is not given.
+pub fn point(x: &[f64], parts: Parts) -> BenchPoint {
     let given = |x: f64| (!x.is_nan()).then_some(x);
-    let point = |x: Vec<f64>| BenchPoint {
+    BenchPoint {
         ratio: x[0],
         output_nm: x[1],
         throttle: x[2],
@@ -102,8 +101,14 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
         sump_k: x[7],
         input_rad_s: x[8],
         parts,
-    };
-    let points: Vec<BenchPoint> = combinations(&axes).into_iter().map(point).collect();
+    }
+}
+
+/// Solves all points of a source.
+pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
+    let parts = parts(source);
+    let settings = combinations(&SETTINGS.map(|key| source.axis(key))).into_iter();
+    let points: Vec<BenchPoint> = settings.map(|x| point(&x, parts)).collect();
     of_points(&points, setup)
 }
 
@@ -124,9 +129,9 @@ pub fn parts(source: &Source) -> Parts {
 /// A sentence: a ratio or gear that the box does not have.
 pub fn of_points(points: &[BenchPoint], setup: &Setup) -> Result<Table, String> {
     let bench = Bench::new(setup);
-    points
-        .iter()
-        .try_for_each(|point| fits(&bench, point.ratio))?;
+    for point in points {
+        fits(&bench, point.ratio)?;
+    }
     let rows = points
         .iter()
         .map(|point| row([], &(*point, bench.solve(point))));
@@ -135,17 +140,13 @@ pub fn of_points(points: &[BenchPoint], setup: &Setup) -> Result<Table, String> 
 
 /// An error if the box does not have this ratio or gear.
 fn fits(bench: &Bench, ratio: f64) -> Result<(), String> {
-    match &bench.car().transmission {
-        Transmission::Cvt(cvt) => belt::fits(&cvt.belt, ratio),
-        Transmission::Manual(manual) => {
-            let gears = manual.overall.len();
-            if ratio.fract().abs() <= 0.0 && ratio >= 1.0 && ratio <= gears as f64 {
-                Ok(())
-            } else {
-                Err(format!(
-                    "the box has the gears 1 to {gears}: give one as `ratio`"
-                ))
-            }
-        }
+    let gears = match &bench.car().transmission {
+        Transmission::Cvt(cvt) => return belt::fits(&cvt.belt, ratio),
+        Transmission::Manual(manual) => manual.overall.len(),
+    };
+    if ratio.fract().abs() <= 0.0 && ratio >= 1.0 && ratio <= gears as f64 {
+        return Ok(());
     }
+    let message = format!("the box has the gears 1 to {gears}: give one as `ratio`");
+    Err(message)
 }

@@ -71,10 +71,6 @@ pub fn from_rows(count: usize, rows: impl Iterator<Item = TableRow>) -> Table {
     table
 }
 
-pub fn truth(on: bool) -> f64 {
-    f64::from(u8::from(on))
-}
-
 pub fn rpm(rad_s: f64) -> f64 {
     rad_s * 30.0 / std::f64::consts::PI
 }

@@ -2,6 +2,7 @@
 
 use super::columns::{Column, TableRow, from_rows, numbers};
 use crate::check::expr::Table;
+use crate::check::keys::FLUID;
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::fluid::{Lubricant, ZERO_DEGC_K};
@@ -23,7 +24,7 @@ pub fn columns<'a>() -> Vec<Column<Point<'a>>> {
 /// All temperatures of the source for the transmission oil.
 pub fn table(source: &Source, setup: &Setup) -> Table {
     let oil = setup.oils().0;
-    let temperatures = source.axis("temp_degc", f64::NAN).into_iter();
+    let temperatures = source.axis(&FLUID.temp_degc).into_iter();
     let columns = columns();
     let rows = temperatures.map(|k| TableRow::new(numbers(&columns, &(oil, k))));
     from_rows(columns.len(), rows)

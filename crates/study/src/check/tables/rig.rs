@@ -3,8 +3,9 @@
 use std::sync::LazyLock;
 
 use super::bench;
-use super::columns::{TableRow, from_rows, rpm, truth};
-use crate::check::expr::Table;
+use super::columns::{TableRow, from_rows, rpm};
+use crate::check::expr::{Table, truth};
+use crate::check::keys::{STRIP_DOWN, TRANSIENT};
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::bench::transmission::{Branch, Conditions, Piece, Plan, strip_down, transient};
@@ -12,10 +13,10 @@ use cvtcycle_model::bench::{Bench, BenchPoint};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 
 /// Columns of a transient before those of the bench.
-const TRANSIENT: [&str; 4] = ["time_s", "cooling", "metal_degc", "gap_nm"];
+const OF_MOMENT: [&str; 4] = ["time_s", "cooling", "metal_degc", "gap_nm"];
 
 /// Columns of a strip-down before those of the pieces.
-const STRIP_DOWN: [&str; 3] = ["ratio", "speed_rpm", "temp_degc"];
+const OF_POINT: [&str; 3] = ["ratio", "speed_rpm", "temp_degc"];
 
 /// What is computed of a piece.
 const OF_PIECE: [&str; 3] = ["found", "true", "interaction"];
@@ -27,15 +28,12 @@ static PIECES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
 
 /// Names of the columns of a transient.
 pub fn transient_columns() -> Vec<&'static str> {
-    TRANSIENT.into_iter().chain(bench::columns()).collect()
+    OF_MOMENT.into_iter().chain(bench::columns()).collect()
 }
 
 /// Names of the columns of a strip-down.
 pub fn strip_down_columns() -> Vec<&'static str> {
-    STRIP_DOWN
-        .into_iter()
-        .chain(PIECES.iter().copied())
-        .collect()
+    OF_POINT.into_iter().chain(PIECES.iter().copied()).collect()
 }
 
 /// Warm-up and cooling at each ratio, a row a second.
@@ -45,7 +43,7 @@ pub fn transients(
     conditions: &Conditions,
 ) -> Result<Table, String> {
     let bench = Bench::new(setup);
-    let ratios = source.axis("ratio", conditions.low_ratio);
+    let ratios = source.axis(&TRANSIENT.ratio);
     cvt_only(&bench, &ratios)?;
     let mut rows = Vec::new();
     for ratio in ratios {
@@ -79,9 +77,9 @@ pub fn strip_downs(
     let bench = Bench::new(setup);
     let own = Plan::of(conditions);
     let plan = Plan {
-        ratios: source.axis_or_none("ratio").unwrap_or(own.ratios),
-        speeds_rad_s: source.axis_or_none("speed_rpm"),
-        oil_k: source.axis_or_none("temp_degc").unwrap_or(own.oil_k),
+        ratios: source.given(&STRIP_DOWN.ratio).unwrap_or(own.ratios),
+        speeds_rad_s: source.given(&STRIP_DOWN.speed_rpm),
+        oil_k: source.given(&STRIP_DOWN.temp_degc).unwrap_or(own.oil_k),
         torques_nm: own.torques_nm,
     };
     cvt_only(&bench, &plan.ratios)?;

@@ -2,8 +2,8 @@
 
 use std::sync::LazyLock;
 
-use super::columns::{Column, TableRow, from_rows, names, numbers, truth};
-use crate::check::expr::Table;
+use super::columns::{Column, TableRow, from_rows, names, numbers};
+use crate::check::expr::{Table, truth};
 use crate::check::source::{Source, cycle};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
@@ -92,7 +92,7 @@ pub fn total_columns() -> Vec<&'static str> {
 /// There is no such cycle.
 pub fn drive(source: &Source, setup: &Setup) -> Result<Driven, String> {
     let cycle = cycle(source)?;
-    let start = match (source.start_k(), source.start.as_str()) {
+    let start = match (source.start_k(), source.start) {
         (Some(k), _) => Start::At(k),
         (None, "warm") => Start::Warm,
         _ => Start::Soak,
@@ -100,7 +100,7 @@ pub fn drive(source: &Source, setup: &Setup) -> Result<Driven, String> {
     let conditions = Conditions {
         ambient_k: source.ambient_k(),
         start,
-        max_dt_s: source.axis("dt_s", 1.0).first().copied().unwrap_or(1.0),
+        max_dt_s: source.dt_s(),
         keep_rows: true,
     };
     let outcome = cvtcycle_model::drive::drive(setup, &cycle, &conditions);
@@ -144,16 +144,13 @@ pub fn trace(source: &Source, driven: &Driven) -> Table {
         since_launch_s += row.dt_s;
         at_rest = !moving;
         if wanted.contains(&row.phase) {
-            let rated_w = driven.rated_w;
-            rows.push(step(
-                &more,
-                &Step {
-                    row,
-                    rated_w,
-                    launch,
-                    since_launch_s,
-                },
-            ));
+            let state = Step {
+                row,
+                rated_w: driven.rated_w,
+                launch,
+                since_launch_s,
+            };
+            rows.push(step(&more, &state));
         }
     }
     from_rows(columns().len(), rows.into_iter())

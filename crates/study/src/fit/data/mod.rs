@@ -38,6 +38,13 @@ impl Form {
 ///
 /// # Errors
 /// All problems of the file.
+///
+/// ```
+/// use cvtcycle_study::fit::data::{Form, check};
+/// let text = "ratio,speed_rpm,temp_degc,total_nm\n2.417,1000,30,8.6\n";
+/// assert_eq!(check(Form::Points, "spin.csv", text.as_bytes())?, 1);
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
 pub fn check(form: Form, file: &str, bytes: &[u8]) -> Result<usize, Problems> {
     let (sheet, problems) = match form {
         Form::Points => points::read(file, bytes),
@@ -57,17 +64,12 @@ pub fn check(form: Form, file: &str, bytes: &[u8]) -> Result<usize, Problems> {
 /// The operating system's words, or more bytes than a table may have, at the place in the plan.
 pub(super) fn bytes_of(path: &str, place: &Place, key: &str) -> Result<Vec<u8>, Problems> {
     bounded::read_file(path, bounded::TABLE).map_err(|error| {
-        let message = format!("cannot read `{path}`: {error}");
-        let hint = error.hint("check the name; a path is relative to the folder of the plan");
-        let value = path.to_owned();
-        let place = place.clone();
-        let allowed = error.allowed("a readable CSV file");
-        Problem::invalid(message)
-            .at(place)
+        Problem::invalid(format!("cannot read `{path}`: {error}"))
+            .at(place.clone())
             .key(key)
-            .value(value)
-            .allowed(allowed)
-            .hint(hint)
+            .value(path)
+            .allowed(error.allowed("a readable CSV file"))
+            .hint(error.hint("check the name; a path is relative to the folder of the plan"))
             .into()
     })
 }

@@ -12,7 +12,7 @@ pub fn read(
     quantities: &[&'static str],
     phases: Option<&[String]>,
 ) -> (Option<Sheet>, Problems) {
-    let columns = vec![
+    let columns = [
         Column::new("quantity", Cells::Word).required(),
         Column::number("value", Bound::any()).required(),
         Column::number("sd", Bound::positive()).required(),
@@ -29,43 +29,33 @@ pub fn read(
             problems.add(sheet.problem(row, quantity.unwrap_or(0), no_quantity(word, quantities)));
         }
         let word = sheet.word(row, phase);
-        if let Some(phases) =
-            phases.filter(|phases| !word.is_empty() && !phases.iter().any(|phase| phase == word))
-        {
-            let message = format!("the cycle has no phase `{word}`");
-            let hint = "leave the cell empty for the whole cycle";
-            problems.add(
-                sheet.problem(
-                    row,
-                    phase.unwrap_or(0),
-                    Problem::invalid(message)
-                        .allowed(phases.join(", "))
-                        .hint(hint),
-                ),
-            );
+        let known =
+            |phases: &&[String]| word.is_empty() || phases.iter().any(|phase| phase == word);
+        if let Some(phases) = phases.filter(|phases| !known(phases)) {
+            let problem = Problem::invalid(format!("the cycle has no phase `{word}`"))
+                .allowed(phases.join(", "))
+                .hint("leave the cell empty for the whole cycle");
+            problems.add(sheet.problem(row, phase.unwrap_or(0), problem));
         }
     }
     (Some(sheet), problems.finish())
 }
 
 fn no_quantity(word: &str, quantities: &[&'static str]) -> Problem {
-    let unit: Vec<&str> = quantities
+    let rest = |full: &str| full.strip_prefix(word).map(|rest| rest.starts_with('_'));
+    let with_unit = quantities
         .iter()
         .copied()
-        .filter(|full| {
-            full.strip_prefix(word)
-                .is_some_and(|rest| rest.starts_with('_'))
-        })
-        .collect();
-    if !unit.is_empty() {
+        .filter(|full| rest(full) == Some(true));
+    let with_unit: Vec<&str> = with_unit.collect();
+    if !with_unit.is_empty() {
         return Problem::invalid("this quantity has no unit")
-            .allowed(unit.join(", "))
+            .allowed(with_unit.join(", "))
             .hint("name it by its unit, and see that the value is in it");
     }
     let hint = did_you_mean(word, quantities.iter().copied());
-    let hint = hint.unwrap_or_else(|| "remove the row or rename it".to_owned());
     let allowed = "totals of a run, such as fuel_l_per_100km or end_sump_degc: docs/calibration.md lists them";
     Problem::invalid("there is no such quantity")
         .allowed(allowed)
-        .hint(hint)
+        .hint(hint.unwrap_or_else(|| "remove the row or rename it".to_owned()))
 }

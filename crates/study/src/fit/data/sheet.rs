@@ -2,9 +2,11 @@
 
 use std::borrow::Cow;
 
-use super::points::SD;
 use cvtcycle_config::csv::{self, Collector, Column, Line, Schema, Table, Value};
 use cvtcycle_config::{Bound, Place, Problem};
+
+/// Prefix of the column of standard deviations.
+pub const SD: &str = "sd_";
 
 /// One cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +39,8 @@ pub struct Sheet {
     pub file: String,
     /// Names of the columns in order; empty for one that is not known.
     pub columns: Vec<String>,
+    /// Indices of the measured columns.
+    pub measured: Vec<usize>,
     /// Rows in order.
     pub rows: Vec<Row>,
 }
@@ -47,9 +51,13 @@ impl Sheet {
         self.columns.iter().position(|column| column == name)
     }
 
+    fn cell(&self, row: usize, column: Option<usize>) -> Option<&(Cell, usize, usize)> {
+        self.rows.get(row)?.cells.get(column?)
+    }
+
     /// The number of a cell; none where it is empty or the column is not there.
     pub fn number(&self, row: usize, column: Option<usize>) -> Option<f64> {
-        match self.rows.get(row)?.cells.get(column?)?.0 {
+        match self.cell(row, column)?.0 {
             Cell::Number(x) => Some(x),
             _ => None,
         }
@@ -57,13 +65,12 @@ impl Sheet {
 
     /// True if a problem of the cell was reported.
     pub fn is_bad(&self, row: usize, column: Option<usize>) -> bool {
-        let cell = column.and_then(|k| self.rows.get(row)?.cells.get(k));
-        matches!(cell, Some((Cell::Bad, ..)))
+        matches!(self.cell(row, column), Some((Cell::Bad, ..)))
     }
 
     /// The word of a cell; empty where there is none.
     pub fn word(&self, row: usize, column: Option<usize>) -> &str {
-        match column.and_then(|k| self.rows.get(row).and_then(|row| row.cells.get(k))) {
+        match self.cell(row, column) {
             Some((Cell::Word(word), ..)) => word,
             _ => "",
         }
@@ -71,19 +78,16 @@ impl Sheet {
 
     /// The place of a cell.
     pub fn place(&self, row: usize, column: usize) -> Place {
-        let Some(row) = self.rows.get(row) else {
+        let Some(own) = self.rows.get(row) else {
             return Place::file(&self.file);
         };
-        let (start, width) = row
-            .cells
-            .get(column)
-            .map_or((1, row.text.chars().count().max(1)), |(_, start, width)| {
-                (*start, *width)
-            });
+        let whole = (1, own.text.chars().count().max(1));
+        let cell = self.cell(row, Some(column));
+        let (start, width) = cell.map_or(whole, |(_, start, width)| (*start, *width));
         Place {
-            line: row.line,
+            line: own.line,
             column: start,
-            line_text: row.text.clone(),
+            line_text: own.text.clone(),
             width,
             ..Place::file(&self.file)
         }
@@ -92,7 +96,7 @@ impl Sheet {
     /// A problem with the place of a cell.
     pub fn problem(&self, row: usize, column: usize, problem: Problem) -> Problem {
         let key = self.columns.get(column).cloned().unwrap_or_default();
-        let value = match self.rows.get(row).and_then(|row| row.cells.get(column)) {
+        let value = match self.cell(row, Some(column)) {
             Some((Cell::Number(x), ..)) => x.to_string(),
             Some((Cell::Word(word), ..)) => word.clone(),
             _ => String::new(),
@@ -104,9 +108,9 @@ impl Sheet {
 /// What is measured in a sort of file.
 #[derive(Clone, Copy)]
 pub struct Measured<'r> {
-    /// True for the name of a measured column.
-    pub is_measured: &'r dyn Fn(&str) -> bool,
-    /// One of these columns.
+    /// Names of the columns that can be measured.
+    pub names: &'r [&'static str],
+    /// One of them.
     pub example: &'static str,
 }
 
@@ -121,12 +125,17 @@ const MAX_KEPT_LEN: usize = 300;
 pub fn read<'f>(
     file: &'f str,
     bytes: &[u8],
-    columns: Vec<Column>,
+    settings: impl IntoIterator<Item = Column>,
     names: impl Into<Cow<'static, str>>,
     measured: Option<Measured>,
 ) -> (Option<Sheet>, Collector<'f>) {
+    let measurable = measured.map_or(&[][..], |measured| measured.names);
+    let with_sd = measurable.iter().flat_map(|name| {
+        let deviation = Column::number(format!("{SD}{name}"), Bound::positive());
+        [Column::number(*name, Bound::any()), deviation].map(Column::or_empty)
+    });
     let schema = Schema {
-        columns,
+        columns: settings.into_iter().chain(with_sd).collect(),
         names: names.into(),
         max_rows: (
             usize::MAX,
@@ -147,22 +156,20 @@ pub fn read<'f>(
         rows.push(Row::new(row));
         true
     });
-    let sheet = table.map(|table| Sheet {
-        file: file.to_owned(),
-        columns: (table.columns())
-            .map(|column| column.map_or_else(String::new, |column| column.name.to_string()))
-            .collect(),
-        rows,
+    let sheet = table.map(|table| {
+        let columns = table.columns();
+        let name =
+            |column: Option<&Column>| column.map_or_else(String::new, |c| c.name.to_string());
+        let columns: Vec<String> = columns.map(name).collect();
+        let is_measured = |k: &usize| measurable.contains(&columns[*k].as_str());
+        Sheet {
+            file: file.to_owned(),
+            measured: (0..columns.len()).filter(is_measured).collect(),
+            columns,
+            rows,
+        }
     });
     (sheet, problems)
-}
-
-/// Columns of what can be measured, each with the one of its standard deviation.
-pub fn measured(names: &[&'static str]) -> impl Iterator<Item = Column> {
-    names.iter().flat_map(|name| {
-        let deviation = Column::number(format!("{SD}{name}"), Bound::positive());
-        [Column::number(*name, Bound::any()), deviation].map(Column::or_empty)
-    })
 }
 
 impl Row {
@@ -196,13 +203,13 @@ fn check_measured(
     measured: Measured,
     problems: &mut Collector<'_>,
 ) {
-    let Some(names) = (table.columns())
-        .map(|column| column.map(|column| &*column.name))
-        .collect::<Option<Vec<&str>>>()
-    else {
+    let names = table
+        .columns()
+        .map(|column| column.map(|column| &*column.name));
+    let Some(names) = names.collect::<Option<Vec<&str>>>() else {
         return;
     };
-    if !names.iter().any(|name| (measured.is_measured)(name)) {
+    if !names.iter().any(|name| measured.names.contains(name)) {
         let hint = format!("add what was measured, for example {}", measured.example);
         let problem = Problem::missing("no column was measured");
         problems.line(header, "", || problem.hint(hint));
@@ -214,5 +221,14 @@ fn check_measured(
                     .hint(format!("add the measured {of}, or remove it"))
             });
         }
+    }
+}
+
+/// Words for the rows beyond the first one of which the same is to be said.
+pub fn and_more(rows: usize) -> String {
+    match rows {
+        0 | 1 => String::new(),
+        2 => ", nor is it right in 1 more row".to_owned(),
+        _ => format!(", nor is it right in {} more rows", rows - 1),
     }
 }

@@ -1,6 +1,6 @@
 //! The cars of a plan: loaded, with their problems at their places in the plan.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::check::source::Source;
 use crate::fit::plan::{CalibrationPlan, FreeParameter, Observable, problem};
@@ -90,18 +90,15 @@ impl<'p> Cars<'p> {
     /// Settings of the transmission rig for a source.
     pub fn conditions(&self, source: Option<&Source>) -> Result<RigConditions, Problems> {
         let name = format!("{:?}", self.plan.car.overrides(source));
-        match self.conditions.get(&name) {
-            Some(found) => Ok(found.clone()),
-            None => self.plan.car.conditions(source),
-        }
+        let known = self.conditions.get(&name).cloned();
+        known.map_or_else(|| self.plan.car.conditions(source), Ok)
     }
 
     /// Vehicle and options of a source as one text.
     fn name(&self, source: Option<&Source>) -> String {
         let car = &self.plan.car;
         let own = source.is_none_or(|source| source.vehicle.is_none());
-        let vehicle = car.vehicle_of(source);
-        format!("{own} {vehicle} {:?}", car.options(source))
+        format!("{own} {} {:?}", car.vehicle_of(source), car.options(source))
     }
 
     fn add(&mut self, source: Option<&Source>) -> Result<(), Problems> {
@@ -115,7 +112,8 @@ impl<'p> Cars<'p> {
             self.fixed.insert(name, load(vehicle, &options)?);
             return Ok(());
         }
-        let (template, setup) = VehicleTemplate::load(&car.vehicle, &options)?;
+        let loaded = VehicleTemplate::load(&car.vehicle, &options);
+        let (template, setup) = loaded?;
         let mut problems = Problems::new();
         let mut slots = Vec::new();
         for free in &self.plan.parameters {
@@ -126,10 +124,11 @@ impl<'p> Cars<'p> {
         }
         // With the parameters that were found more can be checked; nothing is computed after a problem.
         self.by_name.insert(name, self.fitted.len());
+        let keys = setup.keys;
         self.fitted.push(FittedCar {
             template,
             slots,
-            keys: setup.keys,
+            keys,
         });
         if problems.is_empty() {
             Ok(())
@@ -142,16 +141,13 @@ impl<'p> Cars<'p> {
     fn add_source(&mut self, source: &Source, known: &[Problem]) -> Problems {
         let context = format!("source `{}`: ", source.name);
         let at = |found: Problem| {
-            let place = if found.place.line > 0 {
-                found.place.clone()
-            } else {
-                source.place.clone()
+            let own = Some(&found.place).filter(|place| place.line > 0);
+            let place = own.unwrap_or(&source.place).clone();
+            let found = match found.place.is_argument(Argument::Lubricant) {
+                true => found.key("lubricant"),
+                false => found,
             };
-            let key = match found.place.is_argument(Argument::Lubricant) {
-                true => "lubricant".to_owned(),
-                false => found.key.clone(),
-            };
-            assigned(found.key(key), place).with_context(&context)
+            assigned(found, place).with_context(&context)
         };
         let is_new = |found: &Problem| {
             let same = |old: &Problem| old.message == found.message && old.value == found.value;
@@ -302,17 +298,11 @@ fn used(plan: &CalibrationPlan) -> Vec<&Source> {
     let mut found: Vec<&Source> = benches.chain(&plan.runs).collect();
     for observation in &plan.observations {
         if let Observable::Expression { view, expr } = &observation.observable {
-            let mut indices = Vec::new();
-            expr.sources(&mut indices);
-            let sources = indices.into_iter().flatten();
+            let sources = expr.sources().into_iter().flatten();
             found.extend(sources.filter_map(|k| plan.views[*view].get(k)));
         }
     }
-    let mut seen: Vec<(&str, &Place)> = Vec::new();
-    found.retain(|source| {
-        let new = !seen.contains(&(&source.name, &source.place));
-        seen.push((&source.name, &source.place));
-        new
-    });
+    let mut seen = HashSet::new();
+    found.retain(|s| seen.insert((&s.name, s.place.file_name(), s.place.line, s.place.column)));
     found
 }

@@ -1,66 +1,52 @@
 //! Groups of data in CSV files.
 
-use sha2::{Digest, Sha256};
+use std::path::Path;
 
-use super::found::{About, Context, Found, observation};
-use super::types::{BenchPoints, Measured, Observable};
+use super::keys::DATA;
+use super::types::{BenchPoints, Context, Found, Measured, Observable, Observation};
 use crate::check::source::{self, Kind, Source};
-use crate::check::tables;
-use crate::fit::data::points::SD;
-use crate::fit::data::sheet::Sheet;
+use crate::check::tables::{self, bench};
+use crate::fit::data::sheet::{SD, Sheet, and_more};
 use crate::fit::data::{bytes_of, points, scalars, trace};
 use cvtcycle_config::{Bound, Problem, Problems, Section, did_you_mean, unit_of};
-use cvtcycle_model::keys::Quantity;
-
-/// Seconds after which two values of a trace are independent, where the plan does not say.
-const INDEPENDENT_S: f64 = 30.0;
+use cvtcycle_model::keys::{Quantity, Values};
+use cvtcycle_output::hash::hash;
 
 /// Reads the file of a group; what is wrong is reported to `s`.
 pub(super) fn read(s: &Section, way: &str, context: &Context, found: &mut Found) {
-    let word = s.text(way, "CSV file, relative to the plan");
+    let key = match way {
+        "points" => &DATA.points,
+        "trace" => &DATA.trace,
+        _ => &DATA.scalars,
+    };
+    let word = Values::text(s, key);
     if word.is_empty() {
         // The other keys are not checked.
-        s.names()
-            .into_iter()
-            .for_each(|key| drop(s.raw(key, "", "")));
+        s.pass_over();
         return;
     }
-    let folder = std::path::Path::new(context.file)
-        .parent()
-        .unwrap_or(std::path::Path::new(""));
+    let folder = Path::new(context.file).parent().unwrap_or(Path::new(""));
     let path = folder.join(&word).to_string_lossy().into_owned();
     let bytes = match bytes_of(&path, &s.place(way), way) {
-        Ok(bytes) => bytes,
+        Ok(bytes) => Some(bytes),
         Err(problems) => {
             report(s, problems);
-            // The keys are read all the same: they may be wrong, too, and are no strangers.
-            match way {
-                "points" => drop((sds(s), bench_of(s), fold_by(s))),
-                "trace" => drop((sds(s), apart_s(s), source_of(s, way, context))),
-                _ => drop(source_of(s, way, context)),
-            }
-            return;
+            None
         }
     };
-    found.made.files.push((
-        path.clone(),
-        format!("{:x}", HexOf(Sha256::digest(&bytes).as_slice())),
-    ));
+    if let Some(bytes) = &bytes {
+        found.files.push((path.clone(), hash(bytes)));
+    }
+    let file = (path.as_str(), bytes.as_deref());
     match way {
-        "points" => of_points(s, &path, &bytes, found),
-        "trace" => of_trace(s, (&path, &bytes), context, found),
-        _ => of_scalars(s, (&path, &bytes), context, found),
+        "points" => of_points(s, file, context, found),
+        "trace" => of_trace(s, file, context, found),
+        _ => of_scalars(s, file, context, found),
     }
 }
 
-/// Bytes in hexadecimal digits.
-struct HexOf<'a>(&'a [u8]);
-
-impl std::fmt::LowerHex for HexOf<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
-    }
-}
+/// Path and bytes of a file; without bytes only the other keys of the group are checked.
+type File<'a> = (&'a str, Option<&'a [u8]>);
 
 fn report(s: &Section, problems: Problems) {
     problems
@@ -68,385 +54,295 @@ fn report(s: &Section, problems: Problems) {
         .for_each(|problem| s.report_problem(problem));
 }
 
-/// Standard deviations by column: `sd = 0.5` for every column (under no name), a table `sd_by_column` for single ones.
-fn sds(s: &Section) -> Vec<(String, f64)> {
-    let every = s.optional_number(
-        "sd",
-        Bound::positive(),
-        "standard deviation of every column, in its unit",
-    );
-    let table = s.table("sd_by_column");
-    let own = table.names().into_iter().map(|name| {
-        // The unit is that of the column: no conversion.
-        let sd = table.raw(
-            name,
-            "above 0",
-            "standard deviation, in the unit of the column",
-        );
-        (
-            name.to_owned(),
-            sd.and_then(|written| written.number(Quantity::NONE, Bound::positive()))
-                .unwrap_or(f64::NAN),
-        )
-    });
-    own.chain(every.map(|sd| (String::new(), sd))).collect()
-}
-
-/// The standard deviation of each measured column, its own column of the file going before.
-struct Deviations {
-    given: Vec<(String, f64)>,
-}
+/// Standard deviations of the plan: of single columns by their names, of all others under no name.
+struct Deviations(Vec<(String, f64)>);
 
 impl Deviations {
+    fn read(s: &Section) -> Self {
+        let every = s.optional(&DATA.sd);
+        let table = s.table("sd_by_column");
+        let own = table.names().into_iter().map(|name| {
+            // The unit is that of the column: no conversion.
+            let sd = table.raw(
+                name,
+                "above 0",
+                "standard deviation, in the unit of the column",
+            );
+            let sd = sd.and_then(|sd| sd.number(Quantity::NONE, Bound::positive()));
+            (name.to_owned(), sd.unwrap_or(f64::NAN))
+        });
+        Deviations(own.chain(every.map(|sd| (String::new(), sd))).collect())
+    }
+
+    /// The standard deviation of a measured column in a row: that of the file goes before those of the plan.
     fn of(&self, sheet: &Sheet, row: usize, name: &str) -> Option<f64> {
         let own = sheet.number(row, sheet.find(&format!("{SD}{name}")));
-        let named = |wanted: &str| {
-            self.given
-                .iter()
-                .find(|(key, _)| key == wanted)
-                .map(|(_, sd)| *sd)
-        };
-        own.or_else(|| named(name)).or_else(|| named(""))
+        let named = |wanted: &str| self.0.iter().find(|(key, _)| key == wanted);
+        own.or_else(|| Some(named(name).or_else(|| named(""))?.1))
     }
 
     /// Reports columns without one, and names of the plan that no column has.
-    fn check(&self, s: &Section, sheet: &Sheet, measured: &[(usize, &str)]) {
+    fn check(&self, s: &Section, sheet: &Sheet) {
+        let measured = || sheet.measured.iter().map(|k| sheet.columns[*k].as_str());
         // An unknown column, reported already, may be the one that is meant.
         let strange = sheet.columns.iter().any(String::is_empty);
-        for (name, _) in &self.given {
-            if !strange && !name.is_empty() && !measured.iter().any(|(_, column)| column == name) {
-                let hint = did_you_mean(name, measured.iter().map(|(_, column)| *column))
-                    .unwrap_or_else(|| "remove it".to_owned());
-                s.table("sd_by_column").complain(
-                    name,
-                    "measured columns of the file",
-                    &format!("the file measures no `{name}`"),
-                    &hint,
-                );
+        for (name, _) in self.0.iter().filter(|_| !strange) {
+            if !name.is_empty() && !measured().any(|column| column == name) {
+                let message = format!("the file measures no `{name}`");
+                let hint = did_you_mean(name, measured());
+                let hint = hint.unwrap_or_else(|| "remove it".to_owned());
+                let table = s.table("sd_by_column");
+                table.complain(name, "measured columns of the file", &message, &hint);
             }
         }
-        for (k, name) in measured {
+        for (k, name) in sheet.measured.iter().zip(measured()) {
             let deviation = sheet.find(&format!("{SD}{name}"));
             let lacks = |row: &usize| {
                 sheet.number(*row, Some(*k)).is_some()
                     && !sheet.is_bad(*row, deviation)
                     && self.of(sheet, *row, name).is_none()
             };
-            let without = (0..sheet.rows.len()).find(lacks);
-            if let Some(row) = without {
+            if let Some(row) = (0..sheet.rows.len()).find(lacks) {
                 let message = format!("{name} has no standard deviation here");
                 let hint = format!("add a column {SD}{name}, or `sd` to the [[data]] of the plan");
-                s.report_problem(
-                    sheet.problem(
-                        row,
-                        *k,
-                        Problem::invalid(message)
-                            .allowed("a standard deviation")
-                            .hint(hint),
-                    ),
-                );
+                let problem = Problem::invalid(message).allowed("a standard deviation");
+                s.report_problem(sheet.problem(row, *k, problem.hint(hint)));
             }
         }
     }
+
+    /// The observation of a cell; none where nothing was measured.
+    fn observation(
+        &self,
+        sheet: &Sheet,
+        (row, k): (usize, usize),
+        label: impl Fn(&str) -> String,
+        observable: impl Fn(&str) -> Observable,
+    ) -> Option<Observation> {
+        let (value, name) = (sheet.number(row, Some(k))?, &sheet.columns[k]);
+        let sd = self.of(sheet, row, name).unwrap_or(f64::NAN);
+        let measured = Measured::Value(value);
+        Some(Observation {
+            column: name.clone(),
+            unit: unit_of(name).to_owned(),
+            place: sheet.place(row, k),
+            ..Observation::new(label(name), measured, sd, observable(name))
+        })
+    }
 }
 
-/// The box on the bench.
-fn bench_of(s: &Section) -> Source {
-    let mut own = source::empty("points", Kind::Bench);
-    own.place = s.place("points");
-    own.lubricant = s.optional_text("lubricant", "transmission oil in place of the vehicle's");
-    own.set = s.overrides("set", "overrides KEY=VALUE of the car on the bench");
-    own.without = source::without(s);
-    own
+/// Index of a name, which is there.
+fn index(names: &[&str], name: &str) -> usize {
+    names.iter().position(|known| *known == name).unwrap_or(0)
 }
 
-fn fold_by(s: &Section) -> Option<String> {
-    s.optional_text(
-        "fold_by",
-        "column whose values divide the points into folds",
-    )
-}
-
-fn of_points(s: &Section, path: &str, bytes: &[u8], found: &mut Found) {
-    let deviations = Deviations { given: sds(s) };
-    let (own, fold_by) = (bench_of(s), fold_by(s));
+fn of_points(s: &Section, (path, bytes): File, context: &Context, found: &mut Found) {
+    let deviations = Deviations::read(s);
+    let car = Source {
+        place: s.place("points"),
+        lubricant: s.optional_text(&DATA.lubricant),
+        set: s.overrides(&DATA.set),
+        without: source::without(s, &DATA.without),
+        ..Source::new("points", Kind::Bench)
+    };
+    let fold_by = s.optional_text(&DATA.fold_by);
+    let Some(bytes) = bytes else { return };
     let (sheet, problems) = points::read(path, bytes);
     report(s, problems);
     let Some(sheet) = sheet else { return };
-    let measured = points::measured(&sheet);
-    deviations.check(s, &sheet, &measured);
+    deviations.check(s, &sheet);
     let fold_column = fold_by.as_deref().map(|name| (name, sheet.find(name)));
     if let Some((name, None)) = fold_column {
-        let columns: Vec<&str> = sheet
-            .columns
-            .iter()
-            .map(String::as_str)
-            .filter(|name| !name.is_empty())
-            .collect();
-        s.complain(
-            "fold_by",
-            &columns.join(", "),
-            &format!("the file has no column `{name}`"),
-            "name one of the file's columns",
-        );
+        let columns = sheet.columns.iter().map(String::as_str);
+        let columns: Vec<&str> = columns.filter(|name| !name.is_empty()).collect();
+        let message = format!("the file has no column `{name}`");
+        let hint = "name one of the file's columns";
+        s.complain("fold_by", &columns.join(", "), &message, hint);
     }
-    let names = tables::bench::columns();
+    let (names, bench) = (bench::columns(), context.benches);
     for row in 0..sheet.rows.len() {
-        for (k, name) in &measured {
-            let Some(value) = sheet.number(row, Some(*k)) else {
+        for k in &sheet.measured {
+            let label = |name: &str| format!("{name}, line {}", sheet.rows[row].line);
+            let observable = |name: &str| Observable::Point {
+                bench,
+                row,
+                column: index(&names, name),
+            };
+            let observation = deviations.observation(&sheet, (row, *k), label, observable);
+            let Some(observation) = observation else {
                 continue;
             };
-            let sd = deviations.of(&sheet, row, name).unwrap_or(f64::NAN);
-            let what = Observable::Point {
-                bench: 0,
-                row,
-                column: names.iter().position(|column| column == name).unwrap_or(0),
-            };
-            let about = About {
-                label: format!("{name}, line {}", sheet.rows[row].line),
+            found.observations.push(Observation {
                 what: setting(&sheet, row),
-                unit: unit_of(name).to_owned(),
-                place: sheet.place(row, *k),
-            };
-            let mut observed = observation(about, Measured::Value(value), sd, what);
-            (*name).clone_into(&mut observed.column);
-            found.observations.push(observed);
+                ..observation
+            });
             if let Some((name, Some(column))) = fold_column {
-                let level = sheet
-                    .number(row, Some(column))
-                    .map_or_else(|| "-".to_owned(), |x| x.to_string());
-                found.folds.push(format!("{name} {level}"));
+                let level = sheet.number(row, Some(column)).map(|x| x.to_string());
+                found
+                    .folds
+                    .push(format!("{name} {}", level.as_deref().unwrap_or("-")));
             }
         }
     }
-    found.made.benches.push(BenchPoints {
-        points: points::points(&sheet, tables::bench::parts(&own)),
-        source: own,
+    found.benches.push(BenchPoints {
+        points: points::points(&sheet, bench::parts(&car)),
+        source: car,
     });
 }
 
 /// The setting of a row in words.
 fn setting(sheet: &Sheet, row: usize) -> String {
     let word = |key: &str| {
-        sheet
-            .number(row, sheet.find(key))
-            .map(|x| format!("{key} {x}"))
+        let number = sheet.number(row, sheet.find(key));
+        number.map(|x| format!("{key} {x}"))
     };
-    [
+    let keys = [
         "ratio",
         "speed_rpm",
         "temp_degc",
         "torque_nm",
         "pressure_bar",
-    ]
-    .into_iter()
-    .filter_map(word)
-    .collect::<Vec<_>>()
-    .join(", ")
+    ];
+    keys.into_iter()
+        .filter_map(word)
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// The source that a trace or totals belong to.
-fn source_of(s: &Section, way: &str, context: &Context) -> Option<Source> {
-    if way == "points" {
+fn source_of(s: &Section, way: &str, kinds: &[Kind], context: &Context) -> Option<Source> {
+    let name = Values::text(s, &DATA.source);
+    if name.is_empty() {
         return None;
     }
-    let name = s.text("source", "source of the plan that was measured");
-    let kinds: &[Kind] = if way == "trace" {
-        &[Kind::Run, Kind::Transient]
-    } else {
-        &[Kind::Run]
+    let sources = context.names.sources.iter();
+    let fitting: Vec<&Source> = sources
+        .filter(|source| kinds.contains(&source.kind))
+        .collect();
+    let Some(source) = fitting.iter().find(|source| source.name == name) else {
+        let known: Vec<&str> = fitting.iter().map(|source| &*source.name).collect();
+        let add = "add [sources.NAME] with source = \"run\", its cycle, ambient and start";
+        let hint = did_you_mean(&name, known.iter().copied()).unwrap_or_else(|| add.to_owned());
+        let message = format!("there is no such source `{name}` for a {way} file");
+        s.complain("source", &known.join(", "), &message, &hint);
+        return None;
     };
-    let fitting = || {
-        context
-            .sources
-            .iter()
-            .filter(|source| kinds.contains(&source.kind))
-            .map(|source| source.name.as_str())
-    };
-    let source = context
-        .sources
-        .iter()
-        .find(|source| source.name == name && kinds.contains(&source.kind));
-    if source.is_none() && !name.is_empty() {
-        let all: Vec<&str> = fitting().collect();
-        let hint = did_you_mean(&name, fitting()).unwrap_or_else(|| {
-            "add [sources.NAME] with source = \"run\", its cycle, ambient and start".to_owned()
-        });
-        s.complain(
-            "source",
-            &all.join(", "),
-            &format!("there is no such source `{name}` for a {way} file"),
-            &hint,
-        );
-    }
-    if let Some(source) = source.filter(|source| source.kind == Kind::Transient)
-        && let Some(count) = source
-            .axis_or_none("ratio")
-            .map(|list| list.len())
-            .filter(|count| *count > 1)
-    {
-        let message = format!("source `{name}` is {count} tests, one at each ratio");
-        s.complain(
-            "source",
-            "a source of one test",
-            &message,
-            "write a source with one `ratio`, continuing it with `like`",
-        );
+    let ratios = source.axes.iter().find(|(key, _)| *key == "ratio");
+    let tests = ratios
+        .and_then(|(_, list)| list.as_ref())
+        .map_or(1, Vec::len);
+    if source.kind == Kind::Transient && tests > 1 {
+        let message = format!("source `{name}` is {tests} tests, one at each ratio");
+        let hint = "write a source with one `ratio`, continuing it with `like`";
+        s.complain("source", "a source of one test", &message, hint);
         return None;
     }
-    source.cloned()
+    Some((*source).clone())
 }
 
-fn of_trace(s: &Section, (path, bytes): (&str, &[u8]), context: &Context, found: &mut Found) {
-    let deviations = Deviations { given: sds(s) };
-    let apart_s = apart_s(s);
-    let source = source_of(s, "trace", context);
+fn of_trace(s: &Section, (path, bytes): File, context: &Context, found: &mut Found) {
+    let deviations = Deviations::read(s);
+    let apart_s = Values::number(s, &DATA.independent_every_s);
+    let kinds = [Kind::Run, Kind::Transient];
+    let source = source_of(s, "trace", &kinds, context);
+    let Some(bytes) = bytes else { return };
     // Without a source a column of any is as good as known.
     let kinds = source
         .as_ref()
-        .map_or(vec![Kind::Run, Kind::Transient], |source| vec![source.kind]);
-    let names: Vec<&'static str> = kinds
+        .map_or(kinds.to_vec(), |source| vec![source.kind]);
+    let names = kinds
         .into_iter()
-        .flat_map(|kind| tables::columns(kind, false))
-        .collect();
+        .flat_map(|kind| tables::columns(kind, false));
+    let names: Vec<&'static str> = names.collect();
     let (sheet, problems) = trace::read(path, bytes, &names);
     report(s, problems);
     let Some(sheet) = sheet else { return };
-    let measured = trace::measured(&sheet);
-    deviations.check(s, &sheet, &measured);
+    deviations.check(s, &sheet);
+    let Some(source) = source else { return };
     let time = sheet.find(trace::TIME);
     let at = |row: usize| sheet.number(row, time).unwrap_or(f64::NAN);
-    let duration_s = at(sheet.rows.len().saturating_sub(1)) - at(0);
-    let Some(source) = source else { return };
     if let Some(end_s) = end_of(&source) {
-        let late: Vec<usize> = (0..sheet.rows.len())
-            .filter(|row| at(*row) > end_s)
-            .collect();
+        let late = (0..sheet.rows.len()).filter(|row| at(*row) > end_s);
+        let late: Vec<usize> = late.collect();
         if let Some(first) = late.first() {
-            let message = format!(
-                "this time is beyond the end of the cycle{}",
-                trace::and_more(late.len())
-            );
-            let hint = "cut the trace, or name the cycle that was driven";
-            s.report_problem(
-                sheet.problem(
-                    *first,
-                    time.unwrap_or(0),
-                    Problem::invalid(message)
-                        .allowed(format!("up to {end_s} s"))
-                        .hint(hint),
-                ),
-            );
+            let more = and_more(late.len());
+            let problem =
+                Problem::invalid(format!("this time is beyond the end of the cycle{more}"))
+                    .allowed(format!("up to {end_s} s"))
+                    .hint("cut the trace, or name the cycle that was driven");
+            s.report_problem(sheet.problem(*first, time.unwrap_or(0), problem));
         }
     }
-    for (k, name) in &measured {
-        let rows: Vec<usize> = (0..sheet.rows.len())
-            .filter(|row| sheet.number(*row, Some(*k)).is_some())
-            .collect();
-        let independent = if apart_s > 0.0 {
-            duration_s / apart_s + 1.0
-        } else {
-            f64::INFINITY
-        };
-        let wider = (rows.len() as f64 / independent).max(1.0).sqrt();
-        for row in rows {
-            let Some(value) = sheet.number(row, Some(*k)) else {
-                continue;
+    let duration_s = at(sheet.rows.len().saturating_sub(1)) - at(0);
+    let independent = match apart_s > 0.0 {
+        true => duration_s / apart_s + 1.0,
+        false => f64::INFINITY,
+    };
+    let run = context.runs;
+    for k in &sheet.measured {
+        let observations = (0..sheet.rows.len()).filter_map(|row| {
+            let time_s = at(row);
+            let label = |name: &str| format!("{name} at {time_s} s");
+            let observable = |name: &str| Observable::Trace {
+                run,
+                column: index(&names, name),
+                time_s,
             };
-            let sd = deviations.of(&sheet, row, name).unwrap_or(f64::NAN);
-            let column = names.iter().position(|column| column == name).unwrap_or(0);
-            let about = About {
-                label: format!("{name} at {} s", at(row)),
-                what: String::new(),
-                unit: unit_of(name).to_owned(),
-                place: sheet.place(row, *k),
-            };
-            let what = Observable::Trace {
-                run: 0,
-                column,
-                time_s: at(row),
-            };
-            let mut observed = observation(about, Measured::Value(value), sd, what);
-            observed.weight_sd = sd * wider;
-            (*name).clone_into(&mut observed.column);
-            found.observations.push(observed);
+            deviations.observation(&sheet, (row, *k), label, observable)
+        });
+        let mut observations: Vec<Observation> = observations.collect();
+        let wider = (observations.len() as f64 / independent).max(1.0).sqrt();
+        for observation in &mut observations {
+            observation.weight_sd = observation.sd * wider; // CM-2
         }
+        found.observations.append(&mut observations);
     }
-    found.made.runs.push(source);
-}
-
-fn apart_s(s: &Section) -> f64 {
-    let doc = "time after which two values of a trace are independent";
-    s.number_or(
-        "independent_every_s",
-        Bound::closed(0.0, 1e5),
-        INDEPENDENT_S,
-        doc,
-    )
+    found.runs.push(source);
 }
 
 /// End of a run's cycle, s.
 fn end_of(source: &Source) -> Option<f64> {
-    if source.kind != Kind::Run {
-        return None;
-    }
-    let cycle = source::cycle(source).ok()?;
-    cycle
-        .trace_for(true)
-        .steps(1.0)
-        .map(|step| step.time_s)
-        .reduce(f64::max)
+    let run = Some(source).filter(|source| source.kind == Kind::Run)?;
+    let cycle = source::cycle(run).ok()?;
+    let times = cycle.trace_for(true).steps(1.0).map(|step| step.time_s);
+    times.reduce(f64::max)
 }
 
-fn of_scalars(s: &Section, (path, bytes): (&str, &[u8]), context: &Context, found: &mut Found) {
-    let source = source_of(s, "scalars", context);
+fn of_scalars(s: &Section, (path, bytes): File, context: &Context, found: &mut Found) {
+    let source = source_of(s, "scalars", &[Kind::Run], context);
+    let Some(bytes) = bytes else { return };
     let names = tables::columns(Kind::Run, true);
     let cycle = source
         .as_ref()
         .and_then(|source| source::cycle(source).ok());
-    let phases = cycle.map(|cycle| {
-        cycle
-            .phase_groups()
-            .into_iter()
-            .map(|(name, _)| name)
-            .collect::<Vec<String>>()
-    });
+    let phases = cycle.as_ref().map(source::phases);
     let (sheet, problems) = scalars::read(path, bytes, &names, phases.as_deref());
     report(s, problems);
     let (Some(source), Some(sheet)) = (source, sheet) else {
         return;
     };
-    let find = |name: &str| sheet.find(name);
+    let [quantity, phase, value, sd] = ["quantity", "phase", "value", "sd"].map(|n| sheet.find(n));
     for row in 0..sheet.rows.len() {
-        let (quantity, phase) = (
-            sheet.word(row, find("quantity")).to_owned(),
-            sheet.word(row, find("phase")).to_owned(),
-        );
-        let (Some(value), Some(sd)) = (
-            sheet.number(row, find("value")),
-            sheet.number(row, find("sd")),
-        ) else {
+        let [quantity, phase] = [quantity, phase].map(|column| sheet.word(row, column).to_owned());
+        let numbers = sheet.number(row, value).zip(sheet.number(row, sd));
+        let Some((number, sd)) = numbers else {
             continue;
         };
-        let what = Observable::Total {
-            run: found.made.runs.len(),
-            column: names.iter().position(|name| *name == quantity).unwrap_or(0),
+        let observable = Observable::Total {
+            run: context.runs + found.runs.len(),
+            column: index(&names, &quantity),
         };
-        let label = if phase.is_empty() {
-            quantity.clone()
-        } else {
-            format!("{quantity}, {phase}")
+        let label = match phase.as_str() {
+            "" => quantity.clone(),
+            phase => format!("{quantity}, {phase}"),
         };
-        let about = About {
-            label,
-            what: String::new(),
-            unit: quantity_unit(&quantity),
-            place: sheet.place(row, find("value").unwrap_or(0)),
-        };
-        let mut observed = observation(about, Measured::Value(value), sd, what);
-        observed.column = quantity;
-        found.observations.push(observed);
-        found.made.runs.push(Source {
+        found.observations.push(Observation {
+            unit: quantity_unit(&quantity).to_owned(),
+            place: sheet.place(row, value.unwrap_or(0)),
+            column: quantity,
+            ..Observation::new(label, Measured::Value(number), sd, observable)
+        });
+        found.runs.push(Source {
             phase,
             ..source.clone()
         });
@@ -454,12 +350,12 @@ fn of_scalars(s: &Section, (path, bytes): (&str, &[u8]), context: &Context, foun
 }
 
 /// Unit of a total; those of fuel and CO2 are no units of a key.
-fn quantity_unit(quantity: &str) -> String {
+fn quantity_unit(quantity: &str) -> &str {
     match quantity {
-        "fuel_l_per_100km" => "L/100 km".to_owned(),
-        "co2_g_per_km" => "g/km".to_owned(),
-        _ if quantity.ends_with("_kj") => "kJ".to_owned(),
-        _ if quantity.ends_with("_km") => "km".to_owned(),
-        _ => unit_of(quantity).to_owned(),
+        "fuel_l_per_100km" => "L/100 km",
+        "co2_g_per_km" => "g/km",
+        _ if quantity.ends_with("_kj") => "kJ",
+        _ if quantity.ends_with("_km") => "km",
+        _ => unit_of(quantity),
     }
 }

@@ -1,11 +1,10 @@
 //! One `[[parameter]]` of a plan.
 
+use super::keys::{PARAMETER, PRIOR};
 use super::types::FreeParameter;
 use crate::fit::solve::Prior;
-use cvtcycle_config::{Bound, Document, Problems, Reader, Section};
-
-/// How a prior may be known.
-const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
+use cvtcycle_config::{Document, Problems, Reader, Section};
+use cvtcycle_model::keys::Values;
 
 /// Reads a parameter.
 ///
@@ -14,96 +13,65 @@ const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
 pub(super) fn read(document: &Document) -> Result<FreeParameter, Problems> {
     let reader = Reader::new(document);
     let s = reader.root();
-    let any = Bound::any();
-    let key = s.text("key", "dotted key of the vehicle or of its fluids");
+    let key = Values::text(&s, &PARAMETER.key);
     if !key.is_empty() && !key.contains('.') {
+        let allowed = "a dotted key of the vehicle's files";
+        let message = format!("`{key}` is no dotted key");
         s.complain(
             "key",
-            "a dotted key of the vehicle's files",
-            &format!("`{key}` is no dotted key"),
+            allowed,
+            &message,
             "`cvtcycle show VEHICLE` lists the keys",
         );
     }
-    let (low, high) = (
-        s.number("low", any, "least value, in the unit of the key"),
-        s.number("high", any, "largest value"),
-    );
+    let [low, high] = [&PARAMETER.low, &PARAMETER.high].map(|key| Values::number(&s, key));
     if low >= high {
-        s.complain(
-            "low",
-            "below `high`",
-            "`low` is not below `high`",
-            "swap them, or leave the parameter out to hold it",
-        );
+        let hint = "swap them, or leave the parameter out to hold it";
+        s.complain("low", "below `high`", "`low` is not below `high`", hint);
     }
-    let start = s.optional_number("start", any, "first value; that of the file if absent");
+    let start = s.optional(&PARAMETER.start);
     let inside = |x: f64| low <= x && x <= high;
     if start.is_some_and(|x| !inside(x) && low < high && x.is_finite()) {
-        s.complain(
-            "start",
-            &format!("{low} to {high}"),
-            "`start` is outside the bounds",
-            "move it, or widen the bounds",
-        );
+        let (allowed, hint) = (format!("{low} to {high}"), "move it, or widen the bounds");
+        s.complain("start", &allowed, "`start` is outside the bounds", hint);
     }
     let prior = prior(&s);
-    let status = s
-        .word_or(
-            "status",
-            &STATUSES.map(|word| word),
-            "assumed",
-            "how the prior is known",
-        )
-        .to_owned();
+    let status = s.word(&PARAMETER.status);
     if prior.is_some() && !s.has("status") {
-        s.complain(
-            "status",
-            &format!("one of {}", STATUSES.join(", ")),
-            "a prior needs a status",
-            "add `status = \"assumed\"`",
-        );
+        let allowed = PARAMETER.status.allowed();
+        let hint = "add `status = \"assumed\"`";
+        s.complain("status", &allowed, "a prior needs a status", hint);
     }
-    let source = s.text_or("source", "", "reason or reference for bounds and prior");
-    let status = if prior.is_some() {
-        status
-    } else {
-        String::new()
-    };
     let free = FreeParameter {
         low,
         high,
         start,
+        status: prior.map_or("", |_| status),
         prior,
-        status,
-        source,
+        source: Values::text(&s, &PARAMETER.source),
         place: s.place("key"),
         bounds: ["low", "high"].map(|key| s.place(key)),
         key,
     };
-    reader.finish().map(|_| free.clone()).map_err(|problems| {
-        let of = if free.key.is_empty() {
-            String::new()
-        } else {
-            format!("parameter {}: ", free.key)
-        };
-        problems.into_iter().map(|p| p.with_context(&of)).collect()
-    })
+    let context = match free.key.as_str() {
+        "" => String::new(),
+        key => format!("parameter {key}: "),
+    };
+    let read = reader.finish();
+    read.map(|_| free)
+        .map_err(|problems| problems.map(|p| p.with_context(&context)))
 }
 
 fn prior(s: &Section) -> Option<Prior> {
-    let table = s.table("prior");
-    if !table.exists() {
+    let s = s.table("prior");
+    if !s.exists() {
         return None;
     }
-    let mean = table.number("mean", Bound::any(), "most likely value without the data");
-    let sd = table.number("sd", Bound::any(), "standard deviation of it");
+    let [mean, sd] = [&PRIOR.mean, &PRIOR.sd].map(|key| Values::number(&s, key));
     if sd <= 0.0 {
-        table.complain(
-            "sd",
-            "above 0",
-            "the standard deviation is not above 0",
-            "leave the parameter out to hold it at its value",
-        );
+        let message = "the standard deviation is not above 0";
+        let hint = "leave the parameter out to hold it at its value";
+        s.complain("sd", "above 0", message, hint);
     }
     Some(Prior { mean, sd })
 }

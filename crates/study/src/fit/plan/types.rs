@@ -4,25 +4,12 @@ use std::sync::Arc;
 
 use crate::check::candidate::CandidateVehicle;
 use crate::check::expr::Expr;
+use crate::check::names::FileNames;
+use crate::check::rows::RowFile;
 use crate::check::source::Source;
-use crate::fit::solve::Prior;
+use crate::fit::solve::{Options, Prior};
 use cvtcycle_config::{Place, Problem};
 use cvtcycle_model::bench::BenchPoint;
-
-/// How the search is done.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Search {
-    /// Number of starts; the first one is at the values of the files.
-    pub starts: usize,
-    /// Seed of the other starts.
-    pub seed: u64,
-    /// Most evaluations of the model a start.
-    pub max_evaluations: usize,
-    /// Relative change at which a start ends.
-    pub tolerance: f64,
-    /// Whether each fold is predicted by a fit to the others.
-    pub leave_out: bool,
-}
 
 /// A parameter that is fitted.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +25,7 @@ pub struct FreeParameter {
     /// Knowledge of it without the data.
     pub prior: Option<Prior>,
     /// How the prior is known; empty without one.
-    pub status: String,
+    pub status: &'static str,
     /// Reason or reference for bounds and prior.
     pub source: String,
     /// Place of its key.
@@ -48,7 +35,7 @@ pub struct FreeParameter {
 }
 
 /// A group of data: one `[[data]]`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Group {
     /// Name, unique within the plan.
     pub name: String,
@@ -169,6 +156,25 @@ pub struct Observation {
     pub place: Place,
 }
 
+impl Observation {
+    /// Without group and fold, words, unit and place.
+    pub(super) fn new(label: String, measured: Measured, sd: f64, observable: Observable) -> Self {
+        Observation {
+            group: 0,
+            fold: 0,
+            label,
+            what: String::new(),
+            column: String::new(),
+            unit: String::new(),
+            measured,
+            sd,
+            weight_sd: sd,
+            observable,
+            place: Place::default(),
+        }
+    }
+}
+
 /// Points on the bench of one file.
 #[derive(Clone, Debug)]
 pub struct BenchPoints {
@@ -179,7 +185,7 @@ pub struct BenchPoints {
 }
 
 /// A whole plan.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct CalibrationPlan {
     /// Name of the file as problems cite it.
     pub file: String,
@@ -190,7 +196,9 @@ pub struct CalibrationPlan {
     /// Vehicle whose values are fitted, with fluids and overrides that are held during the fit.
     pub car: CandidateVehicle,
     /// How the search is done.
-    pub search: Search,
+    pub search: Options,
+    /// Whether each fold is predicted by a fit to the others.
+    pub leave_out: bool,
     /// Free parameters.
     pub parameters: Vec<FreeParameter>,
     /// Groups of data.
@@ -199,7 +207,7 @@ pub struct CalibrationPlan {
     pub folds: Vec<String>,
     /// Observations in the order of the plan and of its files.
     pub observations: Vec<Observation>,
-    /// Lists of sources that expressions count in.
+    /// Lists of sources that expressions count in: the plan's own, then those of each file of validation rows.
     pub views: Vec<Vec<Source>>,
     /// Points on the bench.
     pub benches: Vec<BenchPoints>,
@@ -213,6 +221,34 @@ pub struct CalibrationPlan {
     pub place: Place,
     /// Places of vehicle, transmission oil, engine oil and overrides; the head's where they are absent.
     pub places: [Place; 4],
+}
+
+/// What the groups of a plan may use.
+pub(super) struct Context<'a> {
+    /// The plan's own sources, then the common ones.
+    pub names: &'a FileNames<'a>,
+    /// Validation rows of the program.
+    pub rows: &'a [RowFile],
+    /// The plan, as problems cite it.
+    pub file: &'a str,
+    /// Benches and runs of the groups before, from which the indices of the observations go on.
+    pub benches: usize,
+    pub runs: usize,
+}
+
+/// Content of a group.
+#[derive(Default)]
+pub(super) struct Found {
+    pub group: Group,
+    /// Fold of each observation by name.
+    pub folds: Vec<String>,
+    pub observations: Vec<Observation>,
+    pub benches: Vec<BenchPoints>,
+    pub runs: Vec<Source>,
+    /// Identifiers of validation rows.
+    pub rows: Vec<String>,
+    /// Path and SHA-256 of each file.
+    pub files: Vec<(String, String)>,
 }
 
 /// A problem of a plan at a place.

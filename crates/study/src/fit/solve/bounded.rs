@@ -32,13 +32,8 @@ pub(super) fn outer(parameter: &Parameter, u: f64) -> f64 {
 
 /// The variable of a value inside the bounds (CA-2).
 pub(super) fn inner(parameter: &Parameter, x: f64) -> f64 {
-    let below = ((x - parameter.low) / parameter.range())
-        .clamp(0.0, 1.0)
-        .sqrt();
-    let above = ((parameter.high - x) / parameter.range())
-        .clamp(0.0, 1.0)
-        .sqrt();
-    2.0 * below.atan2(above) // CA-2
+    let root = |distance: f64| (distance / parameter.range()).clamp(0.0, 1.0).sqrt();
+    2.0 * root(x - parameter.low).atan2(root(parameter.high - x)) // CA-2
 }
 
 /// Change of the value with the variable (CA-3), from the value itself, so that it is exactly 0 on a bound.

@@ -7,7 +7,7 @@ use super::jacobian::jacobian_with_gaps;
 use super::objective::{Objective, prior_residuals};
 use super::search::search;
 use super::starts::starts;
-use super::types::{Failure, Fit, FitEnd, Options, Parameter, Residuals, Start};
+use super::types::{Failure, Fit, FitEnd, Options, Parameter, Prior, Residuals, Start};
 use crate::progress::Progress;
 
 /// Fits the parameters: least squares of the residuals and of the priors between the bounds. Starts run in parallel, and so do the
@@ -66,12 +66,9 @@ pub fn fit(
 
 fn without_result(parameters: &[Parameter], starts: Vec<Start>) -> Failure {
     let reason = |(i, start): (usize, &Start)| {
-        let values = parameters
-            .iter()
-            .zip(&start.from)
-            .map(|(p, x)| format!("{} = {x}", p.name))
-            .collect::<Vec<_>>()
-            .join(", ");
+        let pairs = parameters.iter().zip(&start.from);
+        let values = pairs.map(|(p, x)| format!("{} = {x}", p.name));
+        let values = values.collect::<Vec<_>>().join(", ");
         let why = start.failure.as_deref().unwrap_or("no answer");
         format!("start {} at {values}: {why}", i + 1)
     };
@@ -88,27 +85,33 @@ fn faults(model: &dyn Residuals, parameters: &[Parameter]) -> Vec<String> {
     if model.count() == 0 {
         faults.push("there is nothing to fit to: give at least one observation".to_string());
     }
+    let mut check = |holds: bool, name: &str, fault: String| {
+        if !holds {
+            faults.push(format!("{name}: {fault}"));
+        }
+    };
     for p in parameters {
-        if !(p.low.is_finite() && p.high.is_finite() && p.low < p.high && p.range().is_finite()) {
-            faults.push(format!(
-                "{}: bounds are {} and {}; both must be finite, the low one below the high one",
-                p.name, p.low, p.high
-            ));
-        }
-        if !p.start.is_finite() {
-            faults.push(format!(
-                "{}: the start is {}; it must be finite",
-                p.name, p.start
-            ));
-        }
-        if let Some(prior) = p
-            .prior
-            .filter(|prior| !(prior.mean.is_finite() && prior.sd.is_finite() && prior.sd > 0.0))
-        {
-            faults.push(format!(
-                "{}: the prior is {} with sd {}; both must be finite, the sd above 0",
-                p.name, prior.mean, prior.sd
-            ));
+        let (low, high, start) = (p.low, p.high, p.start);
+        let bounded = low.is_finite() && high.is_finite() && low < high && p.range().is_finite();
+        let fault = "both must be finite, the low one below the high one";
+        check(
+            bounded,
+            &p.name,
+            format!("bounds are {low} and {high}; {fault}"),
+        );
+        check(
+            start.is_finite(),
+            &p.name,
+            format!("the start is {start}; it must be finite"),
+        );
+        if let Some(Prior { mean, sd }) = p.prior {
+            let known = mean.is_finite() && sd.is_finite() && sd > 0.0;
+            let fault = "both must be finite, the sd above 0";
+            check(
+                known,
+                &p.name,
+                format!("the prior is {mean} with sd {sd}; {fault}"),
+            );
         }
     }
     faults

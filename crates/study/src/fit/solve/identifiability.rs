@@ -128,14 +128,13 @@ impl<'a> Analysis<'a> {
             let product = power_product(&names, &w.iter().copied().collect::<Vec<f64>>());
             return vec![format!("{list}: only {product} is known")];
         }
-        let combinations = if known == 1 {
-            "combination of them is"
+        let are = if known == 1 {
+            " of them is"
         } else {
-            "combinations of them are"
+            "s of them are"
         };
-        let mut sentences = vec![format!(
-            "{list} trade against each other: only {known} {combinations} known"
-        )];
+        let first = format!("{list} trade against each other: only {known} combination{are} known");
+        let mut sentences = vec![first];
         if all > 2 {
             sentences.extend(self.alike(group));
         }
@@ -149,10 +148,9 @@ impl<'a> Analysis<'a> {
             return format!("{name} is not identified by these data");
         }
         let of_range = deviation * self.scales[k].abs() / self.parameters[k].range();
-        let of_value = if self.relative[k] {
-            format!("{deviation:.2} of its value, ")
-        } else {
-            String::new()
+        let of_value = match self.relative[k] {
+            true => format!("{deviation:.2} of its value, "),
+            false => String::new(),
         };
         format!(
             "{name} is not identified by these data: its standard deviation is {of_value}{of_range:.2} of its range"
@@ -202,25 +200,23 @@ fn together(projector: &DMatrix<f64>) -> Vec<Vec<usize>> {
 
 /// A product of powers in words, the largest power being 1.
 fn power_product(names: &[&str], w: &[f64]) -> String {
-    let largest = w.iter().copied().fold(0.0, |a: f64, b| {
+    let larger = |a: f64, b: &f64| {
         if b.abs() > a.abs() * (1.0 + WHOLE) {
-            b
+            *b
         } else {
             a
         }
-    });
+    };
+    let largest = w.iter().fold(0.0, larger);
     let powers: Vec<f64> = w.iter().map(|w| w / largest).collect();
     let whole = |p: f64, one: f64| (p - one).abs() <= WHOLE;
     match powers[..] {
         [a, b] if whole(a, 1.0) && whole(b, 1.0) => "their product".to_string(),
         [a, b] if whole(a * b, -1.0) => "their ratio".to_string(),
         _ => {
-            let power = |(name, p): (&&str, &f64)| {
-                if whole(*p, 1.0) {
-                    (*name).to_string()
-                } else {
-                    format!("{name}^{p:.2}")
-                }
+            let power = |(name, p): (&&str, &f64)| match whole(*p, 1.0) {
+                true => (*name).to_string(),
+                false => format!("{name}^{p:.2}"),
             };
             let powers: Vec<String> = names.iter().zip(&powers).map(power).collect();
             powers.join(" x ")

@@ -24,10 +24,9 @@ const MIN_SHARE: f64 = 0.01;
 fn step(parameter: &Parameter, x: f64) -> f64 {
     let range = parameter.range();
     let one_sign = parameter.low >= 0.0 || parameter.high <= 0.0;
-    let size = if one_sign {
-        x.abs().max(MIN_SHARE * range)
-    } else {
-        range
+    let size = match one_sign {
+        true => x.abs().max(MIN_SHARE * range),
+        false => range,
     };
     let prior = parameter
         .prior
@@ -64,10 +63,8 @@ fn column(objective: &Objective, point: &Point, k: usize) -> Result<Vec<f64>, Ev
     for h in [h, 0.1 * h] {
         for offsets in [[-h, h], [h, 2.0 * h], [-h, -2.0 * h]] {
             let ends = offsets.map(|d| x + d);
-            if !ends
-                .iter()
-                .all(|to| parameter.low <= *to && *to <= parameter.high)
-            {
+            let inside = |to: &f64| parameter.low <= *to && *to <= parameter.high;
+            if !ends.iter().all(inside) {
                 continue;
             }
             match difference(objective, point, k, ends) {
@@ -81,10 +78,8 @@ fn column(objective: &Objective, point: &Point, k: usize) -> Result<Vec<f64>, Ev
 
 /// All columns, in the parameters' own units. Each is computed by itself, so that the number of threads does not matter.
 fn columns(objective: &Objective, point: &Point) -> Vec<Result<Vec<f64>, EvalError>> {
-    let all = 0..objective.parameters.len();
-    all.into_par_iter()
-        .map(|k| column(objective, point, k))
-        .collect()
+    let all = (0..objective.parameters.len()).into_par_iter();
+    all.map(|k| column(objective, point, k)).collect()
 }
 
 fn matrix(rows: usize, columns: Vec<Vec<f64>>) -> DMatrix<f64> {

@@ -39,12 +39,11 @@ impl<'a> Objective<'a> {
         parameters: &'a [Parameter],
         progress: &'a dyn Progress,
     ) -> Self {
-        let count = AtomicUsize::new(0);
         Objective {
             model,
             parameters,
             progress,
-            count,
+            count: AtomicUsize::new(0),
         }
     }
 
@@ -77,9 +76,8 @@ impl<'a> Objective<'a> {
         let squares = |x: &[f64]| x.iter().map(|r| r * r).sum::<f64>();
         let cost = squares(&residuals) + squares(&prior_residuals(self.parameters, &values)); // CA-7
         if !cost.is_finite() {
-            return Err(EvalError::Model(
-                "the sum of squares is not finite".to_owned(),
-            ));
+            let why = "the sum of squares is not finite".to_owned();
+            return Err(EvalError::Model(why));
         }
         Ok(Point {
             values,
@@ -96,9 +94,7 @@ pub(super) fn wrong_count(found: usize, expected: usize) -> String {
 
 /// (value - mean) / sd of the parameters that have a prior.
 pub(super) fn prior_residuals(parameters: &[Parameter], values: &[f64]) -> Vec<f64> {
-    parameters
-        .iter()
-        .zip(values)
-        .filter_map(|(p, x)| p.prior.map(|prior| (x - prior.mean) / prior.sd))
-        .collect()
+    let pairs = parameters.iter().zip(values);
+    let residual = |(p, x): (&Parameter, &f64)| p.prior.map(|prior| (x - prior.mean) / prior.sd);
+    pairs.filter_map(residual).collect()
 }

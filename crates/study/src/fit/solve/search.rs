@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use super::jacobian::jacobian;
 use super::least_squares::{self, Descent};
 use super::objective::{EvalError, Objective, Point};
-use super::types::{FitEnd, Options, Start};
+use super::types::{FitEnd, Options, Prior, Start};
 
 /// Descents of a start (CA-8).
 const DESCENTS: usize = 4;
@@ -36,14 +36,11 @@ fn at_bounds(
     let uphill = jacobian.tr_mul(&DVector::from_column_slice(&point.residuals));
     for (k, p) in objective.parameters.iter().enumerate() {
         let x = point.values[k];
-        let prior = p
-            .prior
-            .map_or(0.0, |prior| (x - prior.mean) / (prior.sd * prior.sd));
-        let uphill = uphill[k] + prior;
-        let (bound, inwards) = if x - p.low <= p.high - x {
-            (p.low, 1.0)
-        } else {
-            (p.high, -1.0)
+        let of_prior = |prior: Prior| (x - prior.mean) / (prior.sd * prior.sd);
+        let uphill = uphill[k] + p.prior.map_or(0.0, of_prior);
+        let (bound, inwards) = match x - p.low <= p.high - x {
+            true => (p.low, 1.0),
+            false => (p.high, -1.0),
         };
         let share = (x - bound).abs() / p.range();
         let onto = uphill * inwards > 0.0 && 0.0 < share && share <= NEAR;
@@ -53,11 +50,8 @@ fn at_bounds(
         }
         let base = found.as_ref().unwrap_or(point);
         let mut values = base.values.clone();
-        values[k] = if onto {
-            bound
-        } else {
-            bound + inwards * OFF * p.range()
-        }; // CA-8
+        let inside = bound + inwards * OFF * p.range();
+        values[k] = if onto { bound } else { inside }; // CA-8
         match objective.at(values) {
             Ok(moved) if off || moved.cost <= base.cost => found = Some(moved), // CA-8
             Ok(_) | Err(EvalError::Model(_)) => {}

@@ -28,12 +28,8 @@ pub(super) fn starts(parameters: &[Parameter], number: usize, seed: u64) -> Vec<
     let others = number.saturating_sub(1);
     let mut draw = Pcg64::seed_from_u64(seed);
     let mut uniform = || (draw.next_u64() >> 12) as f64 / (1_u64 << 52) as f64;
-    let mut all = vec![
-        parameters
-            .iter()
-            .map(|p| bounded::inside(p, p.start))
-            .collect::<Vec<_>>(),
-    ];
+    let given = parameters.iter().map(|p| bounded::inside(p, p.start));
+    let mut all = vec![given.collect::<Vec<_>>()];
     all.resize(others + 1, Vec::with_capacity(parameters.len()));
     for parameter in parameters {
         let mut order: Vec<usize> = (0..others).collect();

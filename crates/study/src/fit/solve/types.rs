@@ -61,7 +61,7 @@ pub trait Residuals: Sync {
 }
 
 /// Settings of the search.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
     /// Number of starts, the given one included; 0 counts as 1.
     pub starts: usize,
@@ -151,11 +151,10 @@ impl FitEnd {
 }
 
 impl Failure {
-    /// True if every start was stopped before its first result.
+    /// True if a start was stopped before its first result: whether it has one is not known.
     #[must_use]
     pub fn is_stop(&self) -> bool {
-        let stopped = |start: &Start| start.end == FitEnd::Stopped;
-        !self.starts.is_empty() && self.starts.iter().all(stopped)
+        self.starts.iter().any(|start| start.end == FitEnd::Stopped)
     }
 }
 

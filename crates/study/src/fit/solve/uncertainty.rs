@@ -33,7 +33,7 @@ pub enum Bound {
 }
 
 /// A direction in the space of relative changes, and how well the data determine it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Direction {
     /// Length of the change of the data's residuals by a unit step along it: 1 / its standard deviation from the data alone.
     pub singular_value: f64,
@@ -71,11 +71,8 @@ pub struct Uncertainty {
 #[must_use]
 pub fn uncertainty(fit: &Fit, parameters: &[Parameter]) -> Uncertainty {
     let n = parameters.len();
-    let at_bound: Vec<Option<Bound>> = parameters
-        .iter()
-        .zip(&fit.values)
-        .map(|(p, x)| bound_of(p, *x))
-        .collect();
+    let pairs = parameters.iter().zip(&fit.values);
+    let at_bound: Vec<Option<Bound>> = pairs.map(|(p, x)| bound_of(p, *x)).collect();
     let free: Vec<usize> = (0..n).filter(|&k| at_bound[k].is_none()).collect(); // CA-12
     let (small, known) = free_covariance(fit, parameters, &free);
     let mut covariance = DMatrix::from_element(n, n, f64::NAN);
@@ -84,17 +81,13 @@ pub fn uncertainty(fit: &Fit, parameters: &[Parameter]) -> Uncertainty {
             covariance[(k, l)] = small[(i, j)];
         }
     }
-    let standard_error: Vec<Option<f64>> = (0..n)
-        .map(|k| covariance[(k, k)].sqrt())
-        .map(|se| se.is_finite().then_some(se))
-        .collect();
+    let finite = |se: f64| se.is_finite().then_some(se);
+    let standard_error: Vec<Option<f64>> =
+        (0..n).map(|k| finite(covariance[(k, k)].sqrt())).collect();
     let of = |k: usize| standard_error[k].unwrap_or(f64::NAN);
-    let correlation = DMatrix::from_fn(n, n, |k, l| {
-        if k == l {
-            of(k) / of(k)
-        } else {
-            covariance[(k, l)] / (of(k) * of(l))
-        }
+    let correlation = DMatrix::from_fn(n, n, |k, l| match k == l {
+        true => of(k) / of(k),
+        false => covariance[(k, l)] / (of(k) * of(l)),
     });
     let share = |(k, p): (usize, &Parameter)| Some((standard_error[k]? / p.prior?.sd).powi(2)); // CA-15
     let prior_share = parameters.iter().enumerate().map(share).collect();
@@ -102,9 +95,8 @@ pub fn uncertainty(fit: &Fit, parameters: &[Parameter]) -> Uncertainty {
         (fit.residuals.len() + fit.prior_residuals.len()).saturating_sub(known);
     let freedom = (degrees_of_freedom > 0).then_some(degrees_of_freedom as f64);
     let reduced_chi2 = freedom.map(|nu| fit.cost / nu); // CA-13
-    let chi2_probability = freedom
-        .and_then(|nu| ChiSquared::new(nu).ok())
-        .map(|chi2| chi2.sf(fit.cost)); // CA-14
+    let chi2 = freedom.and_then(|nu| ChiSquared::new(nu).ok());
+    let chi2_probability = chi2.map(|chi2| chi2.sf(fit.cost)); // CA-14
     let dead = dead(fit, parameters);
     let directions = directions(&fit.jacobian, &relative_scales(fit, parameters).0);
     Uncertainty {
@@ -156,14 +148,12 @@ fn free_covariance(fit: &Fit, parameters: &[Parameter], free: &[usize]) -> (DMat
     let n = free.len();
     let ranges: Vec<f64> = parameters.iter().map(Parameter::range).collect();
     let data = scaled(&fit.jacobian, free, &ranges);
-    let priors = DVector::from_iterator(
-        n,
-        free.iter().map(|&k| {
-            parameters[k]
-                .prior
-                .map_or(0.0, |prior| ranges[k] / prior.sd)
-        }),
-    );
+    let of_prior = |&k: &usize| {
+        parameters[k]
+            .prior
+            .map_or(0.0, |prior| ranges[k] / prior.sd)
+    };
+    let priors = DVector::from_iterator(n, free.iter().map(of_prior));
     let mut both = data.clone().resize_vertically(data.nrows() + n, 0.0);
     both.rows_mut(data.nrows(), n)
         .copy_from(&DMatrix::from_diagonal(&priors));
@@ -175,36 +165,28 @@ fn free_covariance(fit: &Fit, parameters: &[Parameter], free: &[usize]) -> (DMat
         values[i] <= UNKNOWN || (by_data <= NOISE * largest && by_priors <= UNKNOWN) // CA-11
     };
     let (unknown, known): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| unknown(i));
-    let lost: Vec<bool> = (0..n)
-        .map(|k| {
-            unknown
-                .iter()
-                .map(|&i| v_t[(i, k)].powi(2))
-                .sum::<f64>()
-                .sqrt()
-                > INVOLVED
-        })
-        .collect(); // CA-11
-    let entry = |k: usize, l: usize| {
-        if lost[k] || lost[l] {
-            return f64::NAN;
-        }
-        let sum: f64 = known
+    let part = |k: usize| {
+        unknown
             .iter()
-            .map(|&i| v_t[(i, k)] * v_t[(i, l)] / values[i].powi(2))
-            .sum();
-        sum * ranges[free[k]] * ranges[free[l]] // CA-10
+            .map(|&i| v_t[(i, k)].powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let lost: Vec<bool> = (0..n).map(|k| part(k) > INVOLVED).collect(); // CA-11
+    let entry = |k: usize, l: usize| {
+        let of = |&i: &usize| v_t[(i, k)] * v_t[(i, l)] / values[i].powi(2);
+        match lost[k] || lost[l] {
+            true => f64::NAN,
+            false => known.iter().map(of).sum::<f64>() * ranges[free[k]] * ranges[free[l]], // CA-10
+        }
     };
     (DMatrix::from_fn(n, n, entry), known.len())
 }
 
 /// Parameters that move no residual; one without a derivative is not among them.
 pub(super) fn dead(fit: &Fit, parameters: &[Parameter]) -> Vec<usize> {
-    let moved: Vec<f64> = parameters
-        .iter()
-        .zip(fit.jacobian.column_iter())
-        .map(|(p, column)| column.norm() * p.range())
-        .collect();
+    let pairs = parameters.iter().zip(fit.jacobian.column_iter());
+    let moved: Vec<f64> = pairs.map(|(p, column)| column.norm() * p.range()).collect();
     let most = moved.iter().copied().fold(0.0, f64::max);
     (0..moved.len())
         .filter(|&k| moved[k] <= NOISE * most)
@@ -227,12 +209,12 @@ pub(super) fn relative_scales(fit: &Fit, parameters: &[Parameter]) -> (Vec<f64>,
 fn directions(jacobian: &DMatrix<f64>, scales: &[f64]) -> Vec<Direction> {
     let all: Vec<usize> = (0..scales.len()).collect();
     let (values, v_t) = singular(&scaled(jacobian, &all, scales));
-    values
-        .iter()
-        .zip(v_t.row_iter())
-        .map(|(s, v)| Direction {
-            singular_value: *s,
-            weights: v.iter().copied().collect(),
+    let weights = v_t.row_iter().map(|v| v.iter().copied().collect());
+    let pairs = values.iter().copied().zip(weights);
+    pairs
+        .map(|(singular_value, weights)| Direction {
+            singular_value,
+            weights,
         })
         .collect()
 }
