@@ -17,9 +17,7 @@ keys! {
         transmission_oil: text(), "name of the transmission oil";
         engine_oil: text(), "name of the engine oil";
     }
-}
 
-keys! {
     /// Keys of a vehicle file.
     VEHICLE_FILE: VehicleKeys = "" [HeadKeys::TABLE, RoadLoadKeys::TABLE, EngineKeys::TABLE, ThermalKeys::TABLE] {
         transmission: options(&[

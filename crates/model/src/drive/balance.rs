@@ -8,47 +8,46 @@
 
 use crate::math::larger;
 
-/// Terms of both ledgers in one row, W.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EnergyTerms {
-    /// Fuel power.
-    pub fuel: f64,
-    /// Power at the wheels as delivered; negative when the wheels drive.
-    pub wheels: f64,
-    /// Brakes.
-    pub brake: f64,
-    /// Accessories.
-    pub accessories: f64,
-    /// Sum of the transmission losses.
-    pub losses: f64,
-    /// Change of rotating energy.
-    pub kinetic: f64,
-    /// Heat into the engine's nodes.
-    pub engine_heat: f64,
-    /// Exhaust.
-    pub exhaust: f64,
-    /// Heat into all nodes, as the thermal network received it.
-    pub node_heat: f64,
-    /// Heat stored.
-    pub stored: f64,
-    /// Heat given to the air.
-    pub to_air: f64,
+macro_rules! energy_terms {
+    ($($term:ident: $doc:literal;)*) => {
+        /// Terms of both balances in one row, W.
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct EnergyTerms {
+            $(#[doc = $doc] pub $term: f64,)*
+        }
+
+        /// Names of the terms, in the order of [`EnergyTerms::as_array`].
+        pub const TERM_NAMES: [&str; [$($doc),*].len()] = [$(stringify!($term)),*];
+
+        impl EnergyTerms {
+            /// The terms in the order of [`TERM_NAMES`].
+            #[inline]
+            pub fn as_array(&self) -> [f64; TERM_NAMES.len()] {
+                [$(self.$term),*]
+            }
+
+            /// Terms from an array in the order of [`TERM_NAMES`].
+            #[inline]
+            pub fn from_array([$($term),*]: [f64; TERM_NAMES.len()]) -> Self {
+                EnergyTerms { $($term),* }
+            }
+        }
+    };
 }
 
-/// Names of the terms, in the order of [`EnergyTerms::as_array`].
-pub const TERM_NAMES: [&str; 11] = [
-    "fuel",
-    "wheels",
-    "brake",
-    "accessories",
-    "losses",
-    "kinetic",
-    "engine_heat",
-    "exhaust",
-    "node_heat",
-    "stored",
-    "to_air",
-];
+energy_terms! {
+    fuel: "Fuel power.";
+    wheels: "Power at the wheels as delivered; negative when the wheels drive.";
+    brake: "Brakes.";
+    accessories: "Accessories.";
+    losses: "Sum of the transmission losses.";
+    kinetic: "Change of rotating energy.";
+    engine_heat: "Heat into the engine's nodes.";
+    exhaust: "Exhaust.";
+    node_heat: "Heat into all nodes, as the thermal network received it.";
+    stored: "Heat stored.";
+    to_air: "Heat given to the air.";
+}
 
 #[inline]
 fn error(difference: f64, scale: f64) -> f64 {
@@ -89,42 +88,6 @@ impl EnergyTerms {
         let balance = (self.node_heat - (self.stored + self.to_air)).abs();
         let handed = (self.losses + self.engine_heat - self.node_heat).abs();
         error(larger(handed, balance), scale)
-    }
-
-    /// The terms in the order of [`TERM_NAMES`].
-    #[inline]
-    pub fn as_array(&self) -> [f64; 11] {
-        [
-            self.fuel,
-            self.wheels,
-            self.brake,
-            self.accessories,
-            self.losses,
-            self.kinetic,
-            self.engine_heat,
-            self.exhaust,
-            self.node_heat,
-            self.stored,
-            self.to_air,
-        ]
-    }
-
-    /// Terms from an array in the order of [`TERM_NAMES`].
-    #[inline]
-    pub fn from_array(a: [f64; 11]) -> Self {
-        EnergyTerms {
-            fuel: a[0],
-            wheels: a[1],
-            brake: a[2],
-            accessories: a[3],
-            losses: a[4],
-            kinetic: a[5],
-            engine_heat: a[6],
-            exhaust: a[7],
-            node_heat: a[8],
-            stored: a[9],
-            to_air: a[10],
-        }
     }
 
     /// Adds another row's terms, weighted by its length, J.

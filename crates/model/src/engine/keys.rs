@@ -23,17 +23,13 @@ keys! {
             Choice::new("bsfc_map", "BSFC map from CSV", BsfcKeys::TABLE),
         ])), "fuel model: extended Willans line, or a BSFC map from CSV";
     }
-}
 
-keys! {
     /// Keys of `[engine.idle]`.
     IDLE: IdleKeys = "idle" [] {
         hot_rpm: number(400.0, 2000.0), "idle speed, warm (EN-1)";
         cold_rpm: number(400.0, 3000.0), "idle speed at -10 degC coolant and below (EN-1)";
     }
-}
 
-keys! {
     /// Keys of `[engine.friction]`.
     FRICTION: FrictionKeys = "friction" [] {
         temperature_exponent: number(0.0, 8.0), "exponent t of friction with temperature (EN-2)";
@@ -44,9 +40,7 @@ keys! {
         reference_kv100_mm2_s: number(1.5, 1000.0), "reference oil at 100 degC (EN-2)";
         overrun_factor: or(1.0, number(1.0, 3.0)), "closed-throttle drag over friction (EN-7)";
     }
-}
 
-keys! {
     /// Keys of `[engine.fuel]`.
     FUEL: FuelKeys = "fuel" [] {
         cold_enrichment: number(0.0, 2.0), "extra fuel at 0 degC coolant, none from 60 degC (EN-3)";
@@ -54,18 +48,14 @@ keys! {
         density_kg_m3: number(500.0, 1000.0), "density of the fuel";
         co2_per_fuel: number(0.0, 4.0), "CO2 per mass of fuel";
     }
-}
 
-keys! {
     /// Keys of `[engine.heat]`.
     HEAT: HeatKeys = "heat" [] {
         exhaust_share_idle: number(0.0, 1.0), "share of waste heat in the exhaust at idle (EN-6)";
         exhaust_share_fast: number(0.0, 1.0), "share at the largest speed (EN-6)";
         friction_to_oil: number(0.0, 1.0), "share of friction heat that goes to the oil (EN-6)";
     }
-}
 
-keys! {
     /// Keys of `[engine.model.willans]`.
     WILLANS: WillansKeys = "willans" [] {
         l: or(DEFAULT.l, number(0.0, 5.0)), "hot friction mean effective pressure at zero speed, bar (WI-1, BM-2)";
@@ -75,9 +65,7 @@ keys! {
         c: or(DEFAULT.c, number(-0.01, 0.001)), "its bend with piston speed, s2/m2 (WI-1)";
         a2: or(DEFAULT.a2, number(-0.02, 0.0)), "fall of efficiency with load, 1/bar (WI-1)";
     }
-}
 
-keys! {
     /// Keys of `[engine.model.bsfc_map]`.
     BSFC: BsfcKeys = "bsfc_map" [] {
         l: or(DEFAULT.l, number(0.0, 5.0)), "hot friction mean effective pressure at zero speed, bar (WI-1, BM-2)";

@@ -12,9 +12,7 @@ keys! {
         kv100_mm2_s: required_if("without viscosity_table", number(1.5, 5000.0)), "kinematic viscosity at 100 degC (LU-1)";
         density15_kg_m3: number(650.0, 1200.0), "density at 15 degC (LU-2, LU-3)";
     }
-}
 
-keys! {
     /// Keys of `[friction]`.
     FRICTION: FrictionKeys = "friction" [LiftKeys::TABLE] {
         band: or(0.13, number(0.0, 0.4)), "band boundary friction at 85 degC (LU-4)";
@@ -24,9 +22,7 @@ keys! {
         segment: or(0.125, number(0.02, 0.4)), "friction segment on pulley (SL-4, VA-2)";
         flank: or(0.13, number(0.0, 0.4)), "friction in wedging and penetration (WE-3, PE-1)";
     }
-}
 
-keys! {
     /// Keys of `[friction.lift_off]`.
     LIFT: LiftKeys = "lift_off" [] {
         enabled: flag(true), "whether the bands can ride on oil (LU-5)";

@@ -382,7 +382,7 @@ pub trait Values: Sized {
     fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str);
 }
 
-/// Declares a table of keys: a struct of rows, a static with them, and its [`Table`].
+/// Declares tables of keys: of each a struct of rows, a static with them, and its [`Table`].
 ///
 /// A row is `NAME: SPEC, MEANING;` with a maker of [`spec`](crate::keys::spec); the unit is the end of the name, or that of a third
 /// entry such as `"_degc"`.
@@ -398,12 +398,12 @@ pub trait Values: Sized {
 /// ```
 #[macro_export]
 macro_rules! keys {
-    (
+    ($(
         $(#[$meta:meta])*
         $table:ident: $keys:ident = $path:literal [$($inner:expr),* $(,)?] {
             $($name:ident: $spec:expr, $doc:literal $(, $unit:literal)?;)*
         }
-    ) => {
+    )+) => {$(
         $(#[$meta])*
         #[derive(Debug)]
         pub struct $keys {
@@ -423,7 +423,7 @@ macro_rules! keys {
                 repeat: $crate::keys::Repeat::Once,
             };
         }
-    };
+    )+};
 }
 pub use keys;
 

@@ -48,27 +48,21 @@ keys! {
         wheel_radius_m: number(0.15, 0.6), "dynamic tyre radius";
         rolling_per_k: or(0.00864, number(0.0, 0.03)), "rise of rolling resistance per kelvin below 20 degC (RL-2)";
     }
-}
 
-keys! {
     /// Keys of `[road_load.form.coefficients]`.
     COEFFICIENTS: CoefficientKeys = "coefficients" [] {
         f0_n: number(0.0, 2000.0), "constant part (RL-1)";
         f1_n_per_kmh: or(0.0, number(0.0, 50.0)), "part linear in speed (RL-1)";
         f2_n_per_kmh2: number(0.0, 1.0), "part quadratic in speed, per (km/h)2 (RL-1)";
     }
-}
 
-keys! {
     /// Keys of `[road_load.form.body]`.
     BODY: BodyKeys = "body" [] {
         drag_coefficient: number(0.1, 1.5), "c_d (RL-3)";
         frontal_area_m2: number(0.5, 6.0), "frontal area (RL-3)";
         rolling_coefficient: number(0.002, 0.05), "c_r (RL-3)";
     }
-}
 
-keys! {
     /// Keys of `[road_load.form.r83]`.
     R83_CLASS: R83Keys = "r83" [] {
         reference_mass_kg: number(200.0, 5000.0), "unladen mass + 100 kg; picks the class of UN R83";

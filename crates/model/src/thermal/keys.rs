@@ -9,9 +9,7 @@ keys! {
     THERMAL: ThermalKeys = "thermal" [EngineKeys::TABLE, RadiatorKeys::TABLE, GearboxKeys::TABLE, CoolerKeys::TABLE] {
         under_bonnet_rise: or(0.0, number(0.0, 0.8)), "under-bonnet air: share of coolant over ambient (TH-4)";
     }
-}
 
-keys! {
     /// Keys of `[thermal.engine]`.
     ENGINE: EngineKeys = "engine" [] {
         block_kj_k: number(0.1, 1000.0), "heat capacity of coolant, block and head (TH-1)";
@@ -22,9 +20,7 @@ keys! {
         pan_air_w_k: number(0.0, 5000.0), "oil pan to air at standstill (TH-1)";
         pan_air_w_k_per_m_s: number(0.0, 5000.0), "oil pan to air over road speed (TH-1)";
     }
-}
 
-keys! {
     /// Keys of `[thermal.radiator]`.
     RADIATOR: RadiatorKeys = "radiator" [] {
         fan_w_k: number(0.0, 5000.0), "radiator fully open at standstill, fan (TH-2)";
@@ -32,9 +28,7 @@ keys! {
         thermostat_from_degc: number(40.0, 120.0), "thermostat begins to open (TH-2)";
         thermostat_to_degc: number(41.0, 130.0), "thermostat fully open (TH-2)";
     }
-}
 
-keys! {
     /// Keys of `[thermal.transmission]`.
     GEARBOX: GearboxKeys = "transmission" [] {
         oil_l: number(0.2, 30.0), "oil in the sump";
@@ -48,9 +42,7 @@ keys! {
         exchanger_w_k: or(0.0, number(0.0, 5000.0)), "coolant to transmission oil heat exchanger (TH-1)";
         exchanger_opens_degc: or(70.0, number(-60.0, 120.0)), "coolant temperature from which the exchanger's valve opens (TH-7)";
     }
-}
 
-keys! {
     /// Keys of `[thermal.cooler]`.
     COOLER: CoolerKeys = "cooler" [] {
         fitted: flag(false), "whether there is an oil-to-air cooler (TH-3)";

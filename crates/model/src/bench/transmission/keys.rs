@@ -16,17 +16,13 @@ keys! {
     ] {
         title: text(), "name for people";
     }
-}
 
-keys! {
     /// Keys of `[rig.ratio]`.
     RATIO: RatioKeys = "ratio" [] {
         low: number(0.3, 3.0), "belt ratio of the tests in low";
         high: number(0.3, 3.0), "belt ratio of the tests in high";
     }
-}
 
-keys! {
     /// Keys of `[rig.speed]`.
     SPEED: SpeedKeys = "speed" [] {
         low_from_rpm: number(100.0, 8000.0), "lowest input speed in low ratio";
@@ -35,24 +31,18 @@ keys! {
         high_from_rpm: number(100.0, 8000.0), "lowest input speed in high ratio";
         high_to_rpm: number(100.0, 8000.0), "highest input speed in high ratio";
     }
-}
 
-keys! {
     /// Keys of `[rig.oil]`.
     OIL_TABLE: OilKeys = "oil" [] {
         temps_degc: numbers(OIL, 1, 20), "temperatures of the bulk oil in the steady tests";
     }
-}
 
-keys! {
     /// Keys of `[rig.load]`.
     LOAD: LoadKeys = "load" [] {
         torques_nm: numbers(TORQUE, 1, 40), "torques at the output shaft in the loaded tests";
         throttle_percent: number(0.0, 100.0), "throttle that the clamp law sees";
     }
-}
 
-keys! {
     /// Keys of `[rig.pressure]`.
     PRESSURE: PressureKeys = "pressure" [] {
         final_drive_removed: number(0.5, 1.5), "secondary pressure with the final drive removed, over that of the complete box";
@@ -60,34 +50,26 @@ keys! {
         clutch_removed: number(0.5, 1.5), "secondary pressure with the clutch plates removed as well, over that of the complete box";
         second_box: number(0.5, 1.5), "secondary pressure of the second box (RT-6), over that of the complete box";
     }
-}
 
-keys! {
     /// Keys of `[rig.transient]`.
     TRANSIENT: TransientKeys = "transient" [] {
         speed_rpm: number(500.0, 8000.0), "input speed of the transients";
         start_degc: within(OIL), "everything at the start, and the sump when cooling ends";
         end_degc: within(OIL), "sump when the warm-up ends";
     }
-}
 
-keys! {
     /// Keys of `[rig.room]`.
     ROOM: RoomKeys = "room" [] {
         temp_degc: number(-40.0, 60.0), "air around the box";
     }
-}
 
-keys! {
     /// Keys of `[rig.cooler]`.
     COOLER: CoolerKeys = "cooler" [] {
         flow_l_min: above(0.0, 100.0), "oil flow through the rig's cooler (RT-2)";
         conductance_w_k: above(0.0, 20_000.0), "conductance of the rig's cooler (RT-2)";
         coolant_degc: number(-60.0, 60.0), "coolant of the rig's cooler (RT-2)";
     }
-}
 
-keys! {
     /// Keys of `[rig.transducer]`.
     TRANSDUCER: TransducerKeys = "transducer" [] {
         error_nm: number(0.0, 10.0), "error of the torque transducer";

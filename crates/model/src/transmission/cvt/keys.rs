@@ -21,18 +21,14 @@ keys! {
         launch: LAUNCH, "launch device: a wet or dry friction clutch";
         belt_heat_share: or(0.7, number(0.0, 1.0)), "share of belt loss that heats belt and pulleys (SI-3)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.cvt.pressure]`.
     PRESSURE: PressureKeys = "pressure" [] {
         radius_exponent: or(1.43, number(0.0, 4.0)), "exponent of primary radius in the clamp map (PC-1)";
         cap_bar: number(1.0, 200.0), "largest secondary pressure";
         floor_bar: number(0.0, 200.0), "smallest secondary pressure";
     }
-}
 
-keys! {
     /// Keys of `[transmission.cvt.maps]`: measured losses in place of a model.
     MAPS: MapKeys = "maps" [] {
         belt: optional(text()), "CSV of measured torque loss at the primary that replaces the belt model";

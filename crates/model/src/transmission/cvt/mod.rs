@@ -11,6 +11,7 @@
 //!
 //! The last iterate is accepted and every torque follows from it, so that the ledger closes whatever residual is left.
 
+mod clamping;
 pub mod controller;
 pub mod pump;
 pub mod spin;
@@ -27,15 +28,16 @@ pub use driveline::Parts;
 pub use keys::CvtKeys;
 pub use secant::{Slopes, Trend, WarmStart};
 
+use self::clamping::Clamping;
 use self::controller::{ClampLaw, ClampSignals, RatioControl};
 use self::pump::Pump;
 use self::spin::Spin;
-use self::variator::{Belt, BeltAtRatio, BeltLoad, belt_state};
+use self::variator::{Belt, BeltAtRatio, BeltLoad};
 use super::component::{ByComponent, Component};
 use super::coupling::Coupling;
 use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::maps::LossMap;
-use crate::math::{Curve, exp, larger, ln, smaller};
+use crate::math::{Curve, exp, larger, ln};
 use crate::prime_mover::PrimeMover;
 use std::sync::Arc;
 
@@ -101,9 +103,6 @@ impl CvtState {
         }
     }
 }
-
-/// Steps of the slip-limited law's walk from its lowest pressure to the cap.
-const SLIP_STEPS: u32 = 32;
 
 impl Cvt {
     /// Clamping force of the secondary at a pressure, N (VA-3).
@@ -172,7 +171,13 @@ impl Cvt {
     ) -> f64 {
         let wanted = match &self.clamp {
             ClampLaw::Map(map) => map.pressure_pa(signals),
-            law => self.belt_pressure_pa(law, at, &load(), secondary_rad_s),
+            law => Clamping {
+                cvt: self,
+                at,
+                load: &load(),
+                secondary_rad_s,
+            }
+            .pressure_pa(law),
         };
         if wanted > self.cap_pa {
             self.cap_pa
@@ -181,107 +186,6 @@ impl Cvt {
         } else {
             self.floor_pa
         }
-    }
-
-    /// Pressure of the laws that look at the belt (PC-3, PC-4).
-    #[inline(never)]
-    fn belt_pressure_pa(
-        &self,
-        law: &ClampLaw,
-        at: &BeltAtRatio,
-        load: &BeltLoad,
-        secondary_rad_s: f64,
-    ) -> f64 {
-        match law {
-            ClampLaw::Map(_) => f64::NAN, // looks at the engine only
-            ClampLaw::TorqueFollowing {
-                safety,
-                least_torque_nm,
-            } => self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s),
-            ClampLaw::SlipLimited {
-                slip,
-                safety,
-                least_torque_nm,
-            } => {
-                let least =
-                    self.torque_pressure_pa(*safety, *least_torque_nm, at, load, secondary_rad_s);
-                self.slip_pressure_pa(*slip, least, at, load, secondary_rad_s)
-            }
-        }
-    }
-
-    fn torque_pressure_pa(
-        &self,
-        safety: f64,
-        least_nm: f64,
-        at: &BeltAtRatio,
-        load: &BeltLoad,
-        secondary_rad_s: f64,
-    ) -> f64 {
-        let torque = load.output_torque_nm.abs();
-        let torque = larger(torque, least_nm);
-        let mu = self
-            .belt
-            .formulation
-            .segment_friction(load.segment_friction);
-        let weaker = smaller(at.thrust_ratio, 1.0);
-        let force = safety * torque * self.belt.cos_wedge
-            / (2.0 * mu * at.geometry.secondary_radius_m * weaker); // PC-3
-        (force - self.secondary_clamp_n(0.0, secondary_rad_s)) / self.secondary_piston_m2
-    }
-
-    fn slip_pressure_pa(
-        &self,
-        limit: f64,
-        least_pa: f64,
-        at: &BeltAtRatio,
-        load: &BeltLoad,
-        secondary_rad_s: f64,
-    ) -> f64 {
-        let slip = |pa: f64| {
-            let force = self.secondary_clamp_n(pa, secondary_rad_s);
-            belt_state(
-                &self.belt,
-                at,
-                &BeltLoad {
-                    secondary_clamp_n: force,
-                    ..*load
-                },
-            )
-            .losses
-            .slip_total
-            .abs()
-        };
-        let floor = larger(least_pa, self.floor_pa);
-        if floor >= self.cap_pa || slip(floor) <= limit {
-            return floor;
-        }
-        // Slip falls with clamping force until the stretch of the bands outweighs the grip, then rises: walk up to the first
-        // pressure that meets the limit, or to the least slip where none does.
-        let step = (self.cap_pa - floor) / f64::from(SLIP_STEPS);
-        let at_step = |k: u32| floor + step * f64::from(k);
-        let mut best = (slip(floor), 0);
-        for k in 1..=SLIP_STEPS {
-            let now = slip(at_step(k));
-            if now <= limit {
-                return bisect(at_step(k - 1), at_step(k), |pa| slip(pa) > limit);
-            }
-            best = if now < best.0 { (now, k) } else { best };
-        }
-        let (low, high) = (
-            at_step(best.1.saturating_sub(1)),
-            at_step(if best.1 < SLIP_STEPS {
-                best.1 + 1
-            } else {
-                SLIP_STEPS
-            }),
-        );
-        let least = least_of(low, high, slip);
-        if slip(least) <= limit {
-            bisect(low, least, |pa| slip(pa) > limit)
-        } else {
-            least
-        } // PC-4
     }
 
     /// Solves one step (CV-1 to CV-5).
@@ -293,31 +197,4 @@ impl Cvt {
     ) -> StepOutput {
         solve::solve(self, input, own, past)
     }
-}
-
-/// Where `above` changes from true at `low` to false at `high`.
-fn bisect(mut low: f64, mut high: f64, above: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..40 {
-        let middle = 0.5 * (low + high);
-        if above(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
-}
-
-/// Place of the least value of a function with one valley between `low` and `high`, by golden section.
-fn least_of(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    for _ in 0..60 {
-        let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-        if f(a) < f(b) {
-            high = b;
-        } else {
-            low = a;
-        }
-    }
-    0.5 * (low + high)
 }

@@ -214,16 +214,12 @@ keys! {
         lubrication_l_min: or(3.0, number(0.0, 50.0)), "lubrication flow (PU-2)";
         leakage_l_min_per_bar: or(0.1, number(0.0, 2.0)), "leakage at 10 mPa s (PU-2)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.cvt.pump.kind.dual_cavity]`.
     DUAL_CAVITY: DualCavityKeys = "dual_cavity" [] {
         share: or(0.5, number(0.05, 1.0)), "share of displacement in the cavity that always works (PU-4)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.cvt.pump.kind.variable]`.
     VARIABLE: VariableKeys = "variable" [] {
         least_share: or(0.25, number(0.05, 1.0)), "smallest share of the displacement (PU-4)";

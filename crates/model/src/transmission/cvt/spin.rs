@@ -152,18 +152,14 @@ keys! {
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity (IS-1)";
         film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the films halves it; absent: no heating (IS-1, FH-1)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.cvt.reverse_clutch]`.
     CLUTCH: ClutchKeys = "reverse_clutch" [] {
         drag_nm: number(0.0, 20.0), "drag at 11 mm2/s (CD-1)";
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity (CD-1)";
         cap_nm: number(0.0, 20.0), "largest drag (CD-1)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.cvt.final_drive]`.
     DRIVE: DriveKeys = "final_drive" [] {
         boundary_nm: number(0.0, 20.0), "part that falls with speed, at the secondary (FD-1)";

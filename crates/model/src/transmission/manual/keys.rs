@@ -17,40 +17,30 @@ keys! {
         neutral_share: number(0.0, 1.0), "share of the losses that turns in neutral";
         launch: LAUNCH, "launch device: a wet or dry friction clutch";
     }
-}
 
-keys! {
     /// Keys of `[transmission.manual.mesh]`.
     MESH: MeshKeys = "mesh" [] {
         efficiency: number(0.8, 1.0), "of gear and final drive together (MB-1)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.manual.seal]`.
     SEAL: SealKeys = "seal" [] {
         torque_nm: number(0.0, 20.0), "at reference viscosity (MB-2)";
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity (MB-2)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.manual.bearing]`.
     BEARING: BearingKeys = "bearing" [] {
         torque_nm: number(0.0, 20.0), "at 2000 rpm and reference viscosity (MB-3)";
         film_heating_w: SELF_HEATING, "dissipation at which the heat of the films halves the torque; absent: no heating (MB-3, FH-1)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.manual.churning]`.
     CHURNING: ChurningKeys = "churning" [] {
         torque_nm: number(0.0, 20.0), "at 2000 rpm and reference viscosity (MB-4)";
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity (MB-4)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.manual.maps]`.
     MAPS: MapKeys = "maps" [] {
         r#box: optional(text()), "CSV of measured torque loss at the input shaft that replaces mesh, bearings, churning and seals";

@@ -96,18 +96,14 @@ keys! {
         safety_factor: or(1.3, number(0.5, 10.0)), "capacity over torque (PC-3)";
         least_torque_nm: or(20.0, number(0.0, 500.0)), "smallest torque clamped for (PC-3)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.cvt.clamp.slip_limited]`.
     SLIP: SlipKeys = "slip_limited" [] {
         slip_percent: or(2.0, number(0.1, 10.0)), "largest slip (PC-4)";
         safety_factor: or(1.05, number(0.5, 10.0)), "smallest capacity over torque (PC-4)";
         least_torque_nm: or(20.0, number(0.0, 500.0)), "smallest torque clamped for (PC-4)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.cvt.clamp.map]`.
     MAP: ClampKeys = "map" [] {
         base_bar: number(0.0, 200.0), "pressure in low at closed throttle (PC-1)";

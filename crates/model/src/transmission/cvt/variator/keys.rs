@@ -22,9 +22,7 @@ keys! {
         // Both pulleys together must leave the belt some grip: at 100 % the engine's speed would have no bound.
         slip_bound_percent: or(10.0, number(1.0, 40.0)), "bound of each pulley's slip (SL-9)";
     }
-}
 
-keys! {
     /// Keys of `[transmission.cvt.variator]`.
     VARIATOR: VariatorKeys = "variator" [] {
         half_wedge_deg: number(4.0, 25.0), "half wedge angle of the pulleys";

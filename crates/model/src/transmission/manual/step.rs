@@ -1,0 +1,194 @@
+//! One step of the manual box: engaged, declutched or in neutral.
+
+use super::Manual;
+use super::losses::Spin;
+use crate::flags::Flags;
+use crate::prime_mover::PrimeMover;
+use crate::thermal::SUMP;
+use crate::transmission::component::Component;
+use crate::transmission::coupling::{CouplingLoad, EngineSide};
+use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
+
+/// The box in a step, at the viscosity of its oil.
+pub(super) struct ManualStep<'a, P> {
+    pub manual: &'a Manual,
+    pub step: &'a StepInput<'a, P>,
+    pub state: &'a DrivelineState,
+    pub nu_m2_s: f64,
+}
+
+impl<P: PrimeMover> ManualStep<'_, P> {
+    fn oil_k(&self) -> f64 {
+        self.step.heat.node_k[SUMP]
+    }
+
+    /// Speed of the free engine at the end of the step, rad/s.
+    fn free_engine_rad_s(&self) -> f64 {
+        self.step
+            .reach(self.state.engine_rad_s)
+            .nearest(self.step.engine.idle_rad_s())
+    }
+
+    /// Declutched, unless the car would then slow down more than it should: the driver lets the clutch slip in that gear or a lower one.
+    pub fn coasting(&self, gear: u8) -> StepOutput {
+        let output = self.declutched(gear);
+        if output.deficit_w > 0.0 {
+            self.engaged(gear.max(1))
+        } else {
+            output
+        }
+    }
+
+    pub fn neutral(&self) -> StepOutput {
+        let w = self.free_engine_rad_s();
+        let spin = self.manual.unloaded(1, w, self.nu_m2_s, self.oil_k());
+        let share = self.manual.neutral_share;
+        let mut output = StepOutput {
+            engine_rad_s: w,
+            shaft_nm: share * spin.sum(),
+            ..StepOutput::at_rest()
+        };
+        lose_spin(&mut output, &spin, share * w);
+        output
+    }
+
+    /// Clutch open, the wheels turn the box in `gear` (0: its highest), the engine idles.
+    fn declutched(&self, gear: u8) -> StepOutput {
+        let gear = if gear == 0 {
+            self.manual.overall.len() as u8
+        } else {
+            gear
+        };
+        let input = self.manual.overall[usize::from(gear) - 1] * self.step.wheel.wheel_rad_s;
+        let spin = self
+            .manual
+            .unloaded(gear, input, self.nu_m2_s, self.oil_k());
+        let mut output = StepOutput {
+            engine_rad_s: self.free_engine_rad_s(),
+            gear,
+            ..StepOutput::at_rest()
+        };
+        output.flags.set(Flags::CLUTCH_OPEN, true);
+        if input > 0.0 {
+            let output_nm = -spin.sum();
+            lose_spin(&mut output, &spin, input);
+            output.split_brake_and_shortfall(self.step.wheel, output_nm * input);
+        }
+        output
+    }
+
+    pub fn engaged(&self, gear: u8) -> StepOutput {
+        let mut gear = gear;
+        loop {
+            let output = self.in_gear(gear);
+            let next = self
+                .manual
+                .overall
+                .get(usize::from(gear).wrapping_sub(2))
+                .map(|r| r * self.step.wheel.wheel_rad_s);
+            match next {
+                Some(speed)
+                    if output.flags.contains(Flags::MISSED_TRACE)
+                        && speed < self.step.engine.max_rad_s() =>
+                {
+                    gear -= 1
+                }
+                _ => return output,
+            }
+        }
+    }
+
+    /// The box in a gear: the torque demanded, or the one at the engine's limit.
+    fn in_gear(&self, gear: u8) -> StepOutput {
+        let (engine, wheel) = (self.step.engine, self.step.wheel);
+        let input = self.manual.overall[usize::from(gear) - 1] * wheel.wheel_rad_s;
+        let turning = self.manual.turning(gear, input, self.nu_m2_s, self.oil_k());
+        let mut at = turning.at(wheel.power_w / input); // MB-1
+        let mut w = self.engine_rad_s(at.input_nm, input);
+        let accessories_nm = engine.accessories_nm(w);
+        let absorbed_nm = engine.drag_nm(w) + accessories_nm;
+        let least = self
+            .manual
+            .coupling
+            .min_output_nm(input, w, engine.idle_rad_s(), absorbed_nm);
+        let engine_nm = engine.full_load_nm(w) - accessories_nm;
+        let most = self.manual.coupling.output_nm(engine_nm, input, w);
+        let limit = if at.input_nm < least {
+            Some(least)
+        } else if at.input_nm > most {
+            Some(most)
+        } else {
+            None
+        };
+        let mut output = StepOutput {
+            gear,
+            iterations: 1,
+            ..StepOutput::at_rest()
+        };
+        if let Some(torque) = limit {
+            output.flags.set(Flags::MISSED_TRACE, at.input_nm > most);
+            let output_nm;
+            (output_nm, output.iterations) = turning.output_for(torque);
+            at = turning.at(output_nm);
+            output.residual = (at.input_nm - torque).abs() / engine.full_load_nm(w);
+            w = if torque > least {
+                w
+            } else {
+                self.engine_rad_s(torque, input)
+            };
+        }
+        output.engine_rad_s = w;
+        // A box that drives the engine has it at one torque with its input; below a limit's zero there is only rounding.
+        let side = if at.input_nm < 0.0 {
+            EngineSide {
+                engine_nm: at.input_nm,
+                engine_rad_s: w,
+                loss_w: at.input_nm * (w - input), // LC-4
+            }
+        } else {
+            self.manual.coupling.engine_side(at.input_nm, input, w)
+        };
+        output.shaft_nm = side.engine_nm;
+        output.add_loss(Component::LaunchClutch, side.loss_w);
+        lose_spin(&mut output, &at.spin, input);
+        output.add_loss(Component::GearMesh, at.mesh_nm * input);
+        if limit.is_some() {
+            output.split_brake_and_shortfall(wheel, at.output_nm * input);
+        } else {
+            output.output_w = wheel.power_w;
+        }
+        let flags = &mut output.flags;
+        flags.set(
+            Flags::CLUTCH_SLIPPING,
+            w > input * (1.0 + 1e-9) && at.input_nm > 0.0,
+        );
+        flags.set(Flags::OVERRUN, at.input_nm < 0.0);
+        flags.set(Flags::OUTSIDE_VALIDITY, !at.inside_map);
+        flags.set(Flags::NOT_CONVERGED, output.residual > 1e-8);
+        output
+    }
+
+    /// Engine speed over the coupling, rad/s; a coupling that locks takes the engine along at once.
+    fn engine_rad_s(&self, input_nm: f64, input_rad_s: f64) -> f64 {
+        let wanted = self.manual.coupling.engine_rad_s(&CouplingLoad {
+            output_nm: input_nm,
+            output_rad_s: input_rad_s,
+            idle_rad_s: self.step.engine.idle_rad_s(),
+            coupled: self.state.coupled,
+        });
+        let least = self.manual.coupling.min_engine_rad_s(input_rad_s);
+        let reached = self.step.reach(self.state.engine_rad_s).nearest(wanted);
+        if reached > least && wanted > least {
+            reached
+        } else {
+            least
+        }
+    }
+}
+
+fn lose_spin(output: &mut StepOutput, spin: &Spin, speed: f64) {
+    output.add_loss(Component::Seal, spin.seal * speed);
+    output.add_loss(Component::Bearing, spin.bearing * speed);
+    output.add_loss(Component::Churning, spin.churning * speed);
+    output.add_loss(Component::BoxMap, spin.map * speed);
+}
