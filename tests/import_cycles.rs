@@ -25,12 +25,6 @@ const EXCEPTIONS: &[(&str, &str, &str, &str)] = &[
         "setup",
         "names of cycles and of vehicles share the rule for a path",
     ),
-    (
-        "crates/study/src",
-        "plan",
-        "design",
-        "a plan holds its design, and a design is drawn from a plan's factors",
-    ),
 ];
 
 /// All source files below a folder.

@@ -2,6 +2,8 @@
 
 mod terms;
 
+use std::sync::OnceLock;
+
 use clap::Args;
 use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
 use cvtcycle::config::{KeyInfo, Problem, Problems, near, suggestion};
@@ -10,6 +12,7 @@ use cvtcycle::output::trace::COLUMNS;
 use cvtcycle::output::{Component, Flags};
 use cvtcycle::study::equations::{Equation, by_label, cited, equations};
 use cvtcycle::study::outputs::outputs;
+use cvtcycle::study::plan::PLAN;
 use serde_json::{Value, json};
 
 use super::Execute;
@@ -70,6 +73,9 @@ impl Execute for ExplainArgs {
                 .for_each(|name| meanings.add(name));
         }
         if meanings.is_empty() {
+            meanings.add_keys(&word, plan_keys());
+        }
+        if meanings.is_empty() {
             meanings.search(&word);
         }
         if meanings.is_empty() {
@@ -104,13 +110,17 @@ fn all_flags() -> impl Iterator<Item = (&'static str, &'static str)> {
 impl Meanings {
     /// Adds what has this very name.
     fn add(&mut self, name: &str) {
-        let keys = matching_keys(name).into_iter();
-        self.keys.extend(keys.map(|key| (key, Vec::new())));
+        self.add_keys(name, catalogue::known_keys());
         self.columns
             .extend(all_columns().filter(|(_, column)| column.name == name));
         self.flags
             .extend(all_flags().filter(|(own, _)| *own == name));
         self.equation = self.equation.take().or(by_label(name));
+    }
+
+    fn add_keys(&mut self, name: &str, known: &'static [KeyInfo]) {
+        let keys = matching_keys(name, known).into_iter();
+        self.keys.extend(keys.map(|key| (key, Vec::new())));
     }
 
     /// Adds what has all words in its name or meaning, up to [`MAX_FOUND`] entries of each kind.
@@ -219,6 +229,10 @@ fn key_text(known: &KeyInfo, values: &[(&str, KeyInfo)], paint: Paint) -> String
     let equations: Vec<String> = cited(&known.doc).iter().map(equation).collect();
     let names = ["equation"].into_iter().chain(std::iter::repeat(""));
     facts.extend(names.zip(equations.iter().map(String::as_str)));
+    if plan_keys().iter().any(|key| std::ptr::eq(key, known)) {
+        facts.insert(0, ("what", "key of the plan of a study"));
+        return paragraph(&known.key, &facts, paint);
+    }
     let text = paragraph(&known.key, &facts, paint);
     if values.is_empty() {
         return text + "  not set in any built-in file\n";
@@ -247,14 +261,14 @@ fn paragraph(name: &str, facts: &[(&str, &str)], paint: Paint) -> String {
 }
 
 /// The key itself, else keys that end in the word, else the keys of the table of that name.
-fn matching_keys(word: &str) -> Vec<&'static KeyInfo> {
+fn matching_keys(word: &str, known: &'static [KeyInfo]) -> Vec<&'static KeyInfo> {
     let word = match word.strip_prefix(ENGINE_OIL) {
         Some(rest) => format!("{OIL}{rest}"),
         None => word.to_owned(),
     };
     let (end, start) = (format!(".{word}"), format!("{word}."));
     let pick = |test: &dyn Fn(&str) -> bool| {
-        let known = catalogue::known_keys().iter();
+        let known = known.iter();
         let keys: Vec<_> = known.filter(|info| test(&info.key)).collect();
         (!keys.is_empty()).then_some(keys)
     };
@@ -264,15 +278,20 @@ fn matching_keys(word: &str) -> Vec<&'static KeyInfo> {
         .unwrap_or_default()
 }
 
+/// Keys of the plans of studies.
+fn plan_keys() -> &'static [KeyInfo] {
+    static KEYS: OnceLock<Vec<KeyInfo>> = OnceLock::new();
+    KEYS.get_or_init(|| catalogue::keys_of(&PLAN))
+}
+
 fn unknown(word: &str) -> Problem {
     // A word without a dot is compared with the last parts of the keys, because their beginnings are long.
     let name = |key: &str| match word.contains('.') {
         true => key.to_owned(),
         false => key.rsplit('.').next().unwrap_or(key).to_owned(),
     };
-    let keys = catalogue::known_keys()
-        .iter()
-        .map(|info| (name(&info.key), info.key.clone()));
+    let keys = catalogue::known_keys().iter().chain(plan_keys());
+    let keys = keys.map(|info| (name(&info.key), info.key.clone()));
     let others = all_columns().map(|(_, column)| column.name);
     let others = others.chain(all_flags().map(|(name, _)| name.to_owned()));
     let others = others.chain(equations().map(|equation| equation.label.to_owned()));

@@ -6,6 +6,7 @@ use cvtcycle::model::files;
 use cvtcycle::model::keys::Table;
 use cvtcycle::study::check::keys::VALIDATION;
 use cvtcycle::study::fit::plan::keys::CALIBRATION;
+use cvtcycle::study::plan::PLAN;
 
 use crate::print::{CommandOutput, CommandResult};
 
@@ -35,6 +36,8 @@ enum SchemaKind {
     Calibration,
     /// Rows of `validate`
     Validation,
+    /// Plan of a study
+    Plan,
 }
 
 impl SchemaKind {
@@ -46,6 +49,7 @@ impl SchemaKind {
             SchemaKind::Rig => ("rig", files::RIG),
             SchemaKind::Calibration => ("calibration", CALIBRATION),
             SchemaKind::Validation => ("validation", VALIDATION),
+            SchemaKind::Plan => ("plan", PLAN),
         }
     }
 }

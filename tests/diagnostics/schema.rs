@@ -9,6 +9,7 @@ use cvtcycle::model::keys::Table;
 use cvtcycle::study::check::keys::VALIDATION;
 use cvtcycle::study::check::{COMMON, embedded_rows};
 use cvtcycle::study::fit::plan::keys::CALIBRATION;
+use cvtcycle::study::plan::PLAN;
 use serde_json::{Value, json};
 
 /// Where and why a value is not valid.
@@ -113,6 +114,7 @@ fn the_shipped_files_are_valid() {
         (Kind::Lubricant, files::LUBRICANT),
         (Kind::Rig, files::RIG),
         (Kind::Calibration, CALIBRATION),
+        (Kind::Plan, PLAN),
     ] {
         for (name, text) in kind.embedded() {
             assert_eq!(checked(&keys, text), [] as [&str; 0], "{name}");
@@ -207,4 +209,26 @@ fn mistakes_are_seen() {
         found,
         [".density15_kg_m3: type", ".density15_kg_m3.status: enum"]
     );
+}
+
+#[test]
+fn mistakes_in_a_plan_are_seen() {
+    let text = "[study]\nstart = \"cold\"\nambient_degc = 61\ndesing = 3\nset = [4]\n\
+        [study.design.sobol]\nsamples = 1\n\
+        [[factor]]\nkey = \"dt_s\"\ncars = \"both\"\nrange = { from = 1, too = 2 }\n\
+        [factor.distribution.normal]\nmean = 1\nsd = 0\n";
+    let found = checked(&PLAN, text);
+    for mistake in [
+        ".study.start: enum",
+        ".study.ambient_degc: maximum",
+        ".study.desing: unknown",
+        ".study.set[0]: type",
+        ".study.design.sobol.samples: minimum",
+        ".factor[0].cars: enum",
+        ".factor[0].range: required",
+        ".factor[0].range.too: unknown",
+        ".factor[0].distribution.normal.sd: exclusiveMinimum",
+    ] {
+        assert!(found.iter().any(|m| m == mistake), "{mistake}: {found:#?}");
+    }
 }

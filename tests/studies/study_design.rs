@@ -31,9 +31,9 @@ fn factors(entries: &[usize]) -> Vec<Factor> {
 }
 
 fn levels(design: Design, factors: &[Factor], point: u64) -> Vec<Level> {
-    let mut out = vec![Level::Base; 99];
-    design.levels(factors, point, &mut out);
-    out
+    (0..factors.len())
+        .map(|factor| design.level(factors, point, factor))
+        .collect()
 }
 
 fn share(design: Design, factors: &[Factor], point: u64, factor: usize) -> f64 {

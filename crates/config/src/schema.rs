@@ -169,7 +169,7 @@ fn value(kind: &Kind<'_>) -> Value {
                 json!({ "type": "array", "items": cells, "minItems": count, "maxItems": count });
             json!({ "type": "array", "items": row })
         }
-        Kind::List(_) => json!({ "type": "array" }),
+        Kind::List(item, _) => json!({ "type": "array", "items": value(item) }),
         Kind::Either(kinds) => json!({ "anyOf": kinds.iter().map(value).collect::<Vec<_>>() }),
         Kind::Other(_) => json!({}),
     }

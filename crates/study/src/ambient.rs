@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::outputs::{EXCESS, FUEL, phase_excess, phase_fuel};
-use super::plan::{Design, FactorValue, FactorValues};
+use super::plan::{Design, FactorValue, Plan};
 use super::study_table::StudyTable;
+use super::table::Values;
 use cvtcycle_config::Problem;
 
 /// The matrix. Numbers stand by car, start and ambient; NaN where a run has none.
@@ -43,7 +44,7 @@ pub struct EndPart {
 }
 
 /// A node's temperature over time in one run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct WarmUp {
     /// Index of the car.
     pub car: usize,
@@ -60,30 +61,25 @@ pub struct WarmUp {
 }
 
 /// The axes of a study that is such a matrix: ambient temperatures and starts, in this order.
-fn axes(frame: &StudyTable) -> Option<(Vec<f64>, Vec<String>)> {
-    let plan = &frame.outline.plan;
+fn axes(plan: &Plan) -> Option<(Vec<f64>, Vec<String>)> {
     let [ambient, start] = &plan.factors[..] else {
         return None;
     };
-    if plan.design != Design::Grid || ambient.key != "ambient_degc" || start.key != "start" {
-        return None;
-    }
-    let (FactorValues::List(degc), FactorValues::List(starts)) = (&ambient.values, &start.values)
-    else {
-        return None;
-    };
-    let number = |value: &FactorValue| match value {
-        FactorValue::Number(x) => Some(*x),
-        FactorValue::Word(_) => None,
-    };
+    let is_matrix = plan.design == Design::Grid
+        && (ambient.key.as_str(), start.key.as_str()) == ("ambient_degc", "start");
     let word = |value: &FactorValue| match value {
         FactorValue::Number(x) => format!("{x} degC"),
         FactorValue::Word(word) => word.to_string(),
     };
-    Some((
-        degc.iter().map(number).collect::<Option<_>>()?,
-        starts.iter().map(word).collect(),
-    ))
+    let (degc, starts) = (ambient.values.list(), start.values.list());
+    if !is_matrix || degc.is_empty() || starts.is_empty() {
+        return None;
+    }
+    let degc = degc
+        .iter()
+        .map(FactorValue::number)
+        .collect::<Option<_>>()?;
+    Some((degc, starts.iter().map(word).collect()))
 }
 
 /// The matrix of a study; none if it is something else.
@@ -91,58 +87,54 @@ fn axes(frame: &StudyTable) -> Option<(Vec<f64>, Vec<String>)> {
 /// # Errors
 /// A part that cannot be read.
 pub fn matrix(frame: &StudyTable) -> Result<Option<Matrix>, Problem> {
-    let Some((ambient_degc, starts)) = axes(frame) else {
+    let outline = frame.outline;
+    let Some((ambient_degc, starts)) = axes(&outline.plan) else {
         return Ok(None);
     };
-    let outline = frame.outline;
-    let cars = outline.cars.len();
     // Points run over the starts first: the last factor of a grid is the fastest.
     let by = |column: &str, car: usize| -> Result<Vec<Vec<f64>>, Problem> {
         let numbers = frame.all_numbers(column, car)?;
-        let at = |start: usize, ambient: usize| {
-            numbers
-                .get(ambient * starts.len() + start)
-                .copied()
-                .unwrap_or(f64::NAN)
+        let at = |point: usize| numbers.get(point).copied().unwrap_or(f64::NAN);
+        let of_start = |start: usize| {
+            let points = (0..ambient_degc.len()).map(|ambient| ambient * starts.len() + start);
+            points.map(at).collect()
         };
-        Ok((0..starts.len())
-            .map(|s| (0..ambient_degc.len()).map(|a| at(s, a)).collect())
-            .collect())
+        Ok((0..starts.len()).map(of_start).collect())
     };
     let all = |column: &str, from: usize| {
-        (from..cars)
-            .map(|car| by(column, car))
+        let cars = from..outline.cars.len();
+        cars.map(|car| by(column, car))
             .collect::<Result<Vec<_>, _>>()
     };
-    let mut fuel = vec![FuelPart {
-        name: "total".into(),
-        l_per_100km: all(FUEL, 0)?,
-        excess_percent: all(EXCESS, 1)?,
-    }];
-    for phase in &outline.phases {
-        fuel.push(FuelPart {
-            name: phase.clone(),
-            l_per_100km: all(&phase_fuel(phase), 0)?,
-            excess_percent: all(&phase_excess(phase), 1)?,
-        });
-    }
-    let mut ends = Vec::new();
-    for (name, column) in [
+    let fuel = |name: &str, fuel: &str, excess: &str| {
+        Ok(FuelPart {
+            name: name.to_owned(),
+            l_per_100km: all(fuel, 0)?,
+            excess_percent: all(excess, 1)?,
+        })
+    };
+    let end = |(name, column): (&str, &str)| {
+        Ok(EndPart {
+            name: name.to_owned(),
+            degc: all(column, 0)?,
+        })
+    };
+    let phases = outline.phases.iter();
+    let phases = phases.map(|phase| fuel(phase, &phase_fuel(phase), &phase_excess(phase)));
+    let ends = [
         ("transmission sump", "end_transmission_sump_degc"),
         ("engine oil", "end_engine_oil_degc"),
         ("coolant", "end_coolant_degc"),
-    ] {
-        ends.push(EndPart {
-            name: name.into(),
-            degc: all(column, 0)?,
-        });
-    }
+    ];
     Ok(Some(Matrix {
         cars: outline.cars.clone(),
-        starts,
-        ambient_degc,
-        fuel,
-        ends,
+        fuel: [fuel("total", FUEL, EXCESS)]
+            .into_iter()
+            .chain(phases)
+            .collect::<Result<_, Problem>>()?,
+        ends: ends.into_iter().map(end).collect::<Result<_, Problem>>()?,
+        starts: starts.clone(),
+        ambient_degc: ambient_degc.clone(),
     }))
 }
 
@@ -155,32 +147,28 @@ pub fn warm_ups(frame: &StudyTable, matrix: &Matrix) -> Result<Vec<WarmUp>, Prob
     let columns = ["time_s", "transmission_sump_degc", "engine_oil_degc"];
     frame.each_trace(&columns, |points, cars, values| {
         let [
-            super::table::Values::Number(time),
-            super::table::Values::Number(sump),
-            super::table::Values::Number(oil),
+            Values::Number(time),
+            Values::Number(sump),
+            Values::Number(oil),
         ] = values
         else {
             return;
         };
         for k in 0..points.len() {
             let point = usize::try_from(points[k]).unwrap_or(0);
-            let car = matrix
-                .cars
-                .iter()
-                .position(|name| **name == *cars[k])
-                .unwrap_or(0);
+            let is_car = |name: &String| **name == *cars[k];
+            let car = matrix.cars.iter().position(is_car).unwrap_or(0);
             let (ambient, start) = (point / matrix.starts.len(), point % matrix.starts.len());
-            let same = list
+            let of_run = (car, start, ambient);
+            if list
                 .last()
-                .is_some_and(|run| (run.car, run.start, run.ambient) == (car, start, ambient));
-            if !same {
+                .is_none_or(|run| (run.car, run.start, run.ambient) != of_run)
+            {
                 list.push(WarmUp {
                     car,
                     start,
                     ambient,
-                    time_s: Vec::new(),
-                    sump_degc: Vec::new(),
-                    engine_oil_degc: Vec::new(),
+                    ..WarmUp::default()
                 });
             }
             if let Some(run) = list.last_mut() {

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::ambient::{Matrix, matrix};
 use super::design::{Role, saltelli_role};
 use super::outputs::EXCESS;
-use super::plan::{Design, FactorValue};
+use super::plan::{Design, Factor, FactorValue, Plan};
 use super::statistics::{
     Blocks, Bootstrap, Groups, RankSensitivity, Share, SobolIndices, Summary, Tornado,
     TornadoInput, group_means, rank_sensitivity, sobol_convergence, tornado,
@@ -110,42 +110,38 @@ pub struct Ranked {
 /// A part that cannot be read.
 pub fn answer(frame: &StudyTable) -> Result<Answer, Problem> {
     let outline = frame.outline;
+    let cars = 0..outline.cars.len();
     let rows = described(frame);
-    let mut comparisons = Vec::new();
-    for (car, baseline) in outline.cars.iter().enumerate().skip(1) {
+    let compare = |car: usize| -> Result<Comparison, Problem> {
         let excess = pick(&frame.numbers(EXCESS, car)?, &rows);
-        comparisons.push(Comparison {
-            baseline: baseline.clone(),
-            worse: Share::of(&excess, |x| x > 0.0),
+        Ok(Comparison {
+            baseline: outline.cars[car].clone(),
+            worse: Share::above_zero(&excess),
             excess_percent: Summary::of(&excess),
-        });
-    }
+        })
+    };
     let mut outputs = Vec::new();
-    for (name, unit) in &outline.analysed {
-        for car in 0..outline.cars.len() {
-            if name.starts_with("subject_excess_") && car == 0 {
-                continue;
-            }
-            outputs.push(output(frame, &rows, (name, unit), car)?);
+    for named in &outline.analysed {
+        // The subject has no excess over itself.
+        let first = usize::from(named.0.starts_with("subject_excess_"));
+        for car in cars.clone().skip(first) {
+            outputs.push(output(frame, &rows, named, car)?);
         }
     }
+    let is_done = |status: &Status| *status != Status::Missing;
     Ok(Answer {
         schema: super::manifest::SCHEMA,
         title: outline.title.clone(),
         question: outline.question.clone(),
         points: outline.points,
-        points_done: frame
-            .status(0)
-            .filter(|status| *status != Status::Missing)
-            .count() as u64,
+        points_done: frame.status(0).filter(is_done).count() as u64,
         cars: outline.cars.clone(),
         runs: ended(frame)?,
-        described: if is_saltelli(frame) {
-            "samples A and B"
-        } else {
-            "all points"
+        described: match is_saltelli(frame) {
+            true => "samples A and B",
+            false => "all points",
         },
-        comparisons,
+        comparisons: cars.skip(1).map(compare).collect::<Result<_, _>>()?,
         outputs,
         matrix: matrix(frame)?,
     })
@@ -159,8 +155,9 @@ fn is_saltelli(frame: &StudyTable) -> bool {
 fn described(frame: &StudyTable) -> Vec<bool> {
     let factors = frame.outline.plan.factors.len();
     let mixed = is_saltelli(frame);
+    let is_drawn = |point| matches!(saltelli_role(factors, point).1, Role::A | Role::B);
     (0..frame.outline.points)
-        .map(|point| !mixed || matches!(saltelli_role(factors, point).1, Role::A | Role::B))
+        .map(|point| !mixed || is_drawn(point))
         .collect()
 }
 
@@ -178,9 +175,8 @@ pub fn described_numbers(
 
 /// The numbers of the described points of which runs are there.
 fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
-    numbers
-        .iter()
-        .zip(rows)
+    let pairs = numbers.iter().zip(rows);
+    pairs
         .filter(|(_, described)| **described)
         .map(|(x, _)| *x)
         .collect()
@@ -188,24 +184,21 @@ fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
 
 fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
+    let is_bad = |status: Status| matches!(status, Status::Failed | Status::NotRun);
     for car in 0..frame.outline.cars.len() {
-        if !frame
-            .status(car)
-            .any(|status| matches!(status, Status::Failed | Status::NotRun))
-        {
+        if !frame.status(car).any(is_bad) {
             continue;
         }
-        for (reason, status) in frame.words("reason", car)?.iter().zip(frame.status(car)) {
-            for one in reason
-                .split("; ")
-                .filter(|_| matches!(status, Status::Failed | Status::NotRun))
-            {
+        let words = frame.words("reason", car)?;
+        let bad = words
+            .iter()
+            .zip(frame.status(car))
+            .filter(|(_, status)| is_bad(*status));
+        for (reason, status) in bad {
+            for one in reason.split("; ") {
                 // Of a failed check the name alone: what follows differs from run to run.
-                let word = if status == Status::Failed {
-                    one.split(' ').next().unwrap_or_default()
-                } else {
-                    one
-                };
+                let name = one.split(' ').next().unwrap_or_default();
+                let word = if status == Status::Failed { name } else { one };
                 *reasons.entry(word.to_owned()).or_default() += 1;
             }
         }
@@ -225,106 +218,89 @@ fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
 const MAX_RANKED: usize = 1 << 16;
 
 /// The values of a factor at the first points, as the design has them. They need no table: a design is a function of the point.
-fn values(
-    frame: &StudyTable,
-    factor: usize,
-    points: usize,
-) -> impl Iterator<Item = Option<FactorValue>> {
-    let plan = &frame.outline.plan;
-    (0..points as u64).map(move |point| {
-        plan.factors[factor].value(plan.design.level(&plan.factors, point, factor))
-    })
+fn values(plan: &Plan, factor: usize, points: usize) -> impl Iterator<Item = Option<FactorValue>> {
+    let level = move |point| plan.design.level(&plan.factors, point, factor);
+    (0..points as u64).map(move |point| plan.factors[factor].value(level(point)))
 }
 
 /// Numbers of a factor.
-fn numbers(frame: &StudyTable, factor: usize, points: usize) -> Vec<f64> {
-    let number = |value: Option<FactorValue>| match value {
-        Some(FactorValue::Number(x)) => x,
-        _ => f64::NAN,
-    };
-    values(frame, factor, points).map(number).collect()
+fn numbers(plan: &Plan, factor: usize, points: usize) -> Vec<f64> {
+    let number = |value: Option<FactorValue>| value.and_then(|x| x.number()).unwrap_or(f64::NAN);
+    values(plan, factor, points).map(number).collect()
 }
 
 /// Words of a factor, or its numbers as words; every word is held once.
-fn words(frame: &StudyTable, factor: usize, points: usize) -> Vec<Arc<str>> {
-    let mut known: Vec<(FactorValue, Arc<str>)> = Vec::new();
-    let empty: Arc<str> = "".into();
-    let mut word = |value: Option<FactorValue>| {
-        let Some(value) = value else {
-            return empty.clone();
-        };
+fn words(plan: &Plan, factor: usize, points: usize) -> Vec<Arc<str>> {
+    let mut known: Vec<(Option<FactorValue>, Arc<str>)> = vec![(None, "".into())];
+    let word = |value: Option<FactorValue>| {
         if let Some((_, text)) = known.iter().find(|(other, _)| *other == value) {
             return text.clone();
         }
-        let text: Arc<str> = label(&value, "").into();
+        let text: Arc<str> = value
+            .iter()
+            .map(|value| label(value, ""))
+            .collect::<String>()
+            .into();
         known.push((value, text.clone()));
         text
     };
-    values(frame, factor, points).map(&mut word).collect()
+    values(plan, factor, points).map(word).collect()
 }
 
 fn output(
     frame: &StudyTable,
     rows: &[bool],
-    (name, unit): (&str, &str),
+    (name, unit): &(String, String),
     car: usize,
 ) -> Result<OutputAnswer, Problem> {
-    let outline = frame.outline;
-    let plan = &outline.plan;
-    let numbers_of = frame.numbers(name, car)?;
+    let plan = &frame.outline.plan;
+    let found = frame.numbers(name, car)?;
     let mut answer = OutputAnswer {
-        output: name.to_owned(),
-        unit: unit.to_owned(),
-        car: outline.cars[car].clone(),
-        summary: Summary::of(&pick(&numbers_of, rows)),
+        output: name.clone(),
+        unit: unit.clone(),
+        car: frame.outline.cars[car].clone(),
+        summary: Summary::of(&pick(&found, rows)),
         sobol: Vec::new(),
         tornado: None,
         rank: None,
         levels: Vec::new(),
     };
     match plan.design {
-        Design::Saltelli { .. } => answer.sobol = sobol(&numbers_of, plan.factors.len()),
-        Design::OneAtATime { .. } => answer.tornado = Some(of_tornado(frame, &numbers_of)),
+        Design::Saltelli { .. } => answer.sobol = sobol(&found, plan.factors.len()),
+        Design::OneAtATime { .. } => answer.tornado = Some(of_tornado(plan, &found)),
         _ => {
             let as_words =
-                |f: &usize| super::cars::is_words(&plan.factors[*f]) || plan.design == Design::Grid;
+                |f: &usize| plan.design == Design::Grid || !plan.factors[*f].values.are_numbers();
             let (levels, drawn): (Vec<usize>, Vec<usize>) =
                 (0..plan.factors.len()).partition(as_words);
-            if !drawn.is_empty() {
-                let points = numbers_of.len().min(MAX_RANKED);
-                let columns: Vec<Vec<f64>> =
-                    drawn.iter().map(|&f| numbers(frame, f, points)).collect();
-                let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-                answer.rank = Some(Ranked {
-                    factors: drawn
-                        .iter()
-                        .map(|&f| plan.factors[f].name.clone())
-                        .collect(),
-                    of: rank_sensitivity(&columns, &numbers_of[..points]),
-                });
-            }
-            for f in levels {
-                answer.levels.push((
-                    plan.factors[f].name.clone(),
-                    group_means(&words(frame, f, numbers_of.len()), &numbers_of),
-                ));
-            }
+            answer.rank = (!drawn.is_empty()).then(|| ranked(plan, &drawn, &found));
+            let groups = |f| group_means(&words(plan, f, found.len()), &found);
+            let levels = levels.into_iter();
+            answer.levels = levels
+                .map(|f| (plan.factors[f].name.clone(), groups(f)))
+                .collect();
         }
     }
     Ok(answer)
 }
 
+fn ranked(plan: &Plan, drawn: &[usize], found: &[f64]) -> Ranked {
+    let points = found.len().min(MAX_RANKED);
+    let columns: Vec<Vec<f64>> = drawn.iter().map(|&f| numbers(plan, f, points)).collect();
+    let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+    Ranked {
+        factors: drawn
+            .iter()
+            .map(|&f| plan.factors[f].name.clone())
+            .collect(),
+        of: rank_sensitivity(&columns, &found[..points]),
+    }
+}
+
 /// Splits the points of a Saltelli design into its blocks.
 fn sobol(numbers: &[f64], factors: usize) -> Vec<SobolIndices> {
     let width = factors + 2;
-    let column = |k: usize| {
-        numbers
-            .iter()
-            .skip(k)
-            .step_by(width)
-            .copied()
-            .collect::<Vec<f64>>()
-    };
+    let column = |k: usize| numbers.iter().skip(k).step_by(width).copied().collect();
     let columns: Vec<Vec<f64>> = (0..width).map(column).collect();
     let blocks = Blocks {
         a: &columns[0],
@@ -335,50 +311,39 @@ fn sobol(numbers: &[f64], factors: usize) -> Vec<SobolIndices> {
 }
 
 /// Point 0 is the base; the others follow factor by factor.
-fn of_tornado(frame: &StudyTable, numbers: &[f64]) -> Tornado {
-    let plan = &frame.outline.plan;
-    let mut inputs: Vec<TornadoInput> = plan
-        .factors
-        .iter()
-        .map(|factor| TornadoInput {
+fn of_tornado(plan: &Plan, numbers: &[f64]) -> Tornado {
+    let input = |(f, factor): (usize, &Factor)| {
+        let points = values(plan, f, numbers.len()).zip(numbers).skip(1);
+        let entry = |(value, number): (Option<FactorValue>, &f64)| {
+            Some((label(&value?, &factor.unit), *number))
+        };
+        TornadoInput {
             name: factor.name.clone(),
-            entries: Vec::new(),
-        })
-        .collect();
-    for (point, number) in (0_u64..).zip(numbers).skip(1) {
-        for (f, factor) in plan.factors.iter().enumerate() {
-            let level = plan.design.level(&plan.factors, point, f);
-            if let Some(value) = factor.value(level) {
-                inputs[f]
-                    .entries
-                    .push((label(&value, &factor.unit), *number));
-            }
+            entries: points.filter_map(entry).collect(),
         }
-    }
+    };
+    let inputs: Vec<TornadoInput> = plan.factors.iter().enumerate().map(input).collect();
     tornado(numbers.first().copied().unwrap_or(f64::NAN), &inputs)
 }
 
 /// A value as a label: numbers with four figures and their unit.
 fn label(value: &FactorValue, unit: &str) -> String {
-    match value {
-        FactorValue::Word(word) => word.to_string(),
-        FactorValue::Number(x) => {
-            let digits = if x.abs() > 0.0 {
-                (3 - x.abs().log10().floor() as i32).clamp(0, 12)
-            } else {
-                0
-            };
-            let text = format!("{x:.*}", usize::try_from(digits).unwrap_or(0));
-            let text = if text.contains('.') {
-                text.trim_end_matches('0').trim_end_matches('.')
-            } else {
-                &text
-            };
-            if unit.is_empty() || unit == "-" {
-                text.to_owned()
-            } else {
-                format!("{text} {unit}")
-            }
-        }
+    let x = match value {
+        FactorValue::Word(word) => return word.to_string(),
+        FactorValue::Number(x) => *x,
+    };
+    let digits = match x.abs() > 0.0 {
+        true => (3 - x.abs().log10().floor() as i32)
+            .clamp(0, 12)
+            .unsigned_abs(),
+        false => 0,
+    };
+    let mut text = format!("{x:.*}", digits as usize);
+    if text.contains('.') {
+        text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+    }
+    match unit {
+        "" | "-" => text,
+        unit => format!("{text} {unit}"),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::plan::{Acts, Base, Cars, Factor, FactorValue, FactorValues, Plan};
+use super::plan::{Acts, Base, Cars, Factor, FactorValue, Plan};
 use cvtcycle_config::setup::template::{ParameterRef, VehicleTemplate};
 use cvtcycle_config::setup::{NamedBy, Options, Setup};
 use cvtcycle_config::{Override, Problem, ProblemKind, Problems};
@@ -87,13 +87,7 @@ impl StudyCar {
     /// The weight of a factor's value in the index of the variant; 0 for what is no word of this car.
     pub(super) fn weight(&self, factor: usize, of: &Factor, value: Option<&FactorValue>) -> usize {
         match (self.bindings[factor], value) {
-            (Binding::Words { stride }, Some(value)) => {
-                let text = text(value);
-                words(of)
-                    .iter()
-                    .position(|word| *word == text)
-                    .map_or(0, |k| (k + 1) * stride)
-            }
+            (Binding::Words { stride }, Some(value)) => of.entry_of(value) * stride,
             _ => 0,
         }
     }
@@ -110,15 +104,15 @@ impl StudyCar {
             .map_err(|problems| problems.as_slice())
     }
 
-    /// The unchanged car, and the baselines that its file names.
+    /// The baselines that the file of the unchanged car names.
     ///
     /// # Errors
     /// The problems of its files and of the factors' keys.
-    pub(super) fn check_base(&self, factors: &[Factor]) -> Result<Vec<String>, Problems> {
-        match self.variant(0, factors) {
-            Ok(variant) => Ok(variant.setup.baselines.clone()),
-            Err(problems) => Err(problems.to_vec().into()),
-        }
+    pub(super) fn baselines(&self, factors: &[Factor]) -> Result<Vec<String>, Problems> {
+        let variant = self
+            .variant(0, factors)
+            .map_err(|problems| problems.to_vec())?;
+        Ok(variant.setup.baselines.clone())
     }
 
     /// The unchanged car in every combination of words that goes together.
@@ -138,25 +132,29 @@ impl StudyCar {
             setup,
         };
         for (index, (factor, binding)) in factors.iter().zip(&self.bindings).enumerate() {
-            let found = matches!(binding, Binding::Number(_))
-                .then(|| variant.blueprint.slot(&factor.key))
-                .transpose();
-            variant.slots.push(found.unwrap_or_else(|problem| {
-                let place = factor.place.clone();
-                let hint = match problem.kind {
-                    ProblemKind::WrongTransmission => format!(
-                        "{}; `cars = \"baselines\"` varies the baselines alone",
-                        problem.hint
-                    ),
-                    _ => problem.hint.clone(),
-                };
-                let problem = problem.at(place).key(factor.key.clone());
-                let problem = problem.with_context(&format!("{}: ", self.name));
-                variant.unknown.push((index, problem.hint(hint)));
+            let slot = match binding {
+                Binding::Number(_) => variant.blueprint.slot(&factor.key).map(Some),
+                _ => Ok(None),
+            };
+            variant.slots.push(slot.unwrap_or_else(|problem| {
+                variant.unknown.push((index, self.unknown(factor, problem)));
                 None
             }));
         }
         Ok(variant)
+    }
+
+    /// The problem of a key that this car does not know.
+    fn unknown(&self, factor: &Factor, problem: Problem) -> Problem {
+        let hint = match problem.kind {
+            ProblemKind::WrongTransmission => format!(
+                "{}; `cars = \"baselines\"` varies the baselines alone",
+                problem.hint
+            ),
+            _ => problem.hint.clone(),
+        };
+        let problem = problem.with_context(&format!("{}: ", self.name)).hint(hint);
+        problem.at(factor.place.clone()).key(factor.key.as_str())
     }
 
     fn options_of(&self, index: usize, factors: &[Factor]) -> Result<Options, Problem> {
@@ -166,10 +164,8 @@ impl StudyCar {
                 continue;
             };
             let words = words(factor);
-            let Some(word) = (index / stride % (words.len() + 1))
-                .checked_sub(1)
-                .map(|k| words[k].to_string())
-            else {
+            let entry = index / stride % (words.len() + 1);
+            let Some(word) = entry.checked_sub(1).map(|k| words[k].to_string()) else {
                 continue;
             };
             match factor.key.as_str() {
@@ -209,47 +205,24 @@ fn binding(factor: &Factor, subject: bool, stride: usize) -> Binding {
         "start" => Binding::Start,
         "cycle" => Binding::Cycle,
         "dt_s" => Binding::Step,
-        _ if is_words(factor) => Binding::Words { stride },
+        _ if !factor.values.are_numbers() => Binding::Words { stride },
         _ => Binding::Number(factor.acts),
-    }
-}
-
-/// Whether a factor's values are words, or numbers mixed with words.
-pub(super) fn is_words(factor: &Factor) -> bool {
-    match &factor.values {
-        FactorValues::List(list) => list
-            .iter()
-            .any(|value| matches!(value, FactorValue::Word(_))),
-        FactorValues::Distribution(_) => false,
     }
 }
 
 /// The entries of a factor's list as text; nothing for a distribution.
 pub(super) fn words(factor: &Factor) -> Vec<Arc<str>> {
-    match &factor.values {
-        FactorValues::List(list) => list.iter().map(text).collect(),
-        FactorValues::Distribution(_) => Vec::new(),
-    }
-}
-
-/// A value as a person would write it.
-#[must_use]
-pub fn text(value: &FactorValue) -> Arc<str> {
-    match value {
-        FactorValue::Number(x) => x.to_string().into(),
-        FactorValue::Word(word) => word.clone(),
-    }
+    factor.values.list().iter().map(FactorValue::text).collect()
 }
 
 fn too_many(factor: &Factor) -> Problem {
-    Problem::too_large(format!(
-        "with `{}` the words of the factors have too many combinations",
-        factor.key
-    ))
-    .at(factor.place.clone())
-    .key(factor.key.clone())
-    .allowed(format!(
-        "at most {MAX_VARIANTS} combinations of words of one car"
-    ))
-    .hint("give fewer words, or split the plan")
+    let key = &factor.key;
+    let message = format!("with `{key}` the words of the factors have too many combinations");
+    Problem::too_large(message)
+        .at(factor.place.clone())
+        .key(key.as_str())
+        .allowed(format!(
+            "at most {MAX_VARIANTS} combinations of words of one car"
+        ))
+        .hint("give fewer words, or split the plan")
 }

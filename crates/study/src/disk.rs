@@ -16,7 +16,6 @@ pub struct DirWriter<'a> {
 
 impl<'a> DirWriter<'a> {
     /// For a study in its directory.
-    #[must_use]
     pub fn new(study: &'a Study, dir: &'a StudyDir) -> Self {
         DirWriter { study, dir }
     }

@@ -14,37 +14,15 @@ pub fn equations() -> impl Iterator<Item = Equation> {
 }
 
 /// The equation of a label.
-#[must_use]
 pub fn by_label(label: &str) -> Option<Equation> {
     equations().find(|equation| equation.label.eq_ignore_ascii_case(label))
 }
 
 /// The equations whose labels a text names in brackets, as in "displacement (PU-1, PU-4)".
-#[must_use]
 pub fn cited(text: &str) -> Vec<Equation> {
     let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'));
     words
         .filter(|word| word.bytes().all(|b| !b.is_ascii_lowercase()))
         .filter_map(by_label)
         .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{cited, equations};
-
-    #[test]
-    fn labels_are_unique() {
-        let mut labels: Vec<&str> = equations().map(|equation| equation.label).collect();
-        let count = labels.len();
-        labels.sort_unstable();
-        labels.dedup();
-        assert_eq!(labels.len(), count);
-    }
-
-    #[test]
-    fn labels_in_a_text_are_cited() {
-        assert_eq!(cited("displacement (PU-1, PU-4)").len(), 2);
-        assert!(cited("class UN-R83 (none)").is_empty());
-    }
 }

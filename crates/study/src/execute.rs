@@ -9,6 +9,7 @@ use std::ops::Range;
 use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use super::cars::StudyCar;
 use super::filler::Filler;
 use super::point::Worker;
 use super::prepare::Study;
@@ -47,7 +48,6 @@ pub enum End {
 
 impl Study {
     /// Number of points in a part; the last part may have fewer.
-    #[must_use]
     pub fn points_per_part(&self) -> u64 {
         let small = self.points.div_ceil(PARTS).clamp(1, MAX_POINTS);
         if self.traces.is_empty() {
@@ -58,37 +58,35 @@ impl Study {
     }
 
     /// Number of parts.
-    #[must_use]
     pub fn parts(&self) -> u64 {
         self.points.div_ceil(self.points_per_part())
     }
 
     /// Points of a part.
-    #[must_use]
     pub fn part_points(&self, part: u64) -> Range<u64> {
         let size = self.points_per_part();
         (part * size)..((part + 1) * size).min(self.points)
     }
 
     fn trace_rows_per_point(&self) -> u64 {
-        let rows = |car: &super::cars::StudyCar| {
-            let automatic = car
-                .setups(&self.plan.factors)
-                .any(|setup| setup.transmission().is_cvt());
-            let steps = self
-                .cycles
-                .iter()
-                .map(|cycle| cycle.trace_for(automatic).step_count(self.plan.base.dt_s));
-            steps.max().unwrap_or(0) as u64
+        let rows = |car: &StudyCar| {
+            let mut setups = car.setups(&self.plan.factors);
+            let automatic = setups.any(|setup| setup.transmission().is_cvt());
+            let dt_s = self.plan.base.dt_s;
+            let traces = self.cycles.iter().map(|cycle| cycle.trace_for(automatic));
+            traces
+                .map(|trace| trace.step_count(dt_s))
+                .max()
+                .unwrap_or(0) as u64
         };
         self.cars.iter().map(rows).sum()
     }
 
-    /// Computes the parts that are not in `done` and gives them to the sink. Uses the threads of the pool in which it is called, and one
+    /// Computes the parts that are not in `done` and gives them to the writer. Uses the threads of the pool in which it is called, and one
     /// more that writes; where writing takes longer than driving, the threads of the pool write as well.
     ///
     /// # Errors
-    /// The sink's problem.
+    /// The writer's problem.
     pub fn execute(
         &self,
         done: &BTreeSet<u64>,
@@ -96,61 +94,69 @@ impl Study {
         progress: &dyn Progress,
     ) -> Result<End, Problem> {
         let left = (0..self.parts()).filter(|part| !done.contains(part));
-        let papers = Papers {
+        let state = QueueState {
             left: Box::new(left),
             points: (0, 0..0),
             pieces: BTreeMap::new(),
             spare: Vec::new(),
         };
-        let chunk = (self.points_per_part() / CHUNKS).max(MIN_CHUNK);
-        let desk = Desk {
+        let queue = Queue {
             study: self,
             trace_rows: self.trace_rows_per_point(),
-            chunk,
-            papers: Mutex::new(papers),
+            chunk: (self.points_per_part() / CHUNKS).max(MIN_CHUNK),
+            state: Mutex::new(state),
         };
         // One part waits while another is written: enough that no thread is idle, little enough that memory stays flat.
         let (send, receive) = sync_channel::<Part>(1);
         std::thread::scope(|scope| {
-            let desk = &desk;
-            let writer = scope.spawn(move || {
+            let queue = &queue;
+            let write_all = || {
                 receive
                     .into_iter()
-                    .try_for_each(|part| part.write(sink, desk))
-            });
-            let ends = rayon::broadcast(|_| self.work(desk, &Out { sink, send: &send }, progress));
+                    .try_for_each(|part| queue.write(part, sink))
+            };
+            let writer = scope.spawn(write_all);
+            let ends = rayon::broadcast(|_| self.work(queue, (sink, &send), progress));
             drop(send);
-            let written = writer
-                .join()
-                .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            let written = writer.join();
+            let written = written.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             let ends: Vec<End> = ends.into_iter().collect::<Result<_, _>>()?;
-            written.map(|()| {
-                if ends.contains(&End::Stopped) {
-                    End::Stopped
-                } else {
-                    End::Complete
-                }
+            written?;
+            Ok(match ends.contains(&End::Stopped) {
+                true => End::Stopped,
+                false => End::Complete,
             })
         })
     }
 
     /// What one thread does until nothing is left.
-    fn work(&self, desk: &Desk, out: &Out, progress: &dyn Progress) -> Result<End, Problem> {
+    fn work(
+        &self,
+        queue: &Queue,
+        (sink, send): (&dyn PartWriter, &SyncSender<Part>),
+        progress: &dyn Progress,
+    ) -> Result<End, Problem> {
         let mut worker = Worker::default();
-        while let Some((part, points)) = desk.take() {
+        while let Some((part, points)) = queue.take() {
             let from = points.start;
-            let Some(piece) = self.piece(points, desk.trace_rows, &mut worker, progress) else {
-                desk.clear();
+            let Some(piece) = self.piece(points, queue.trace_rows, &mut worker, progress) else {
+                queue.clear();
                 return Ok(End::Stopped);
             };
-            let Some(pieces) = desk.give(part, from, piece) else {
+            let Some(pieces) = queue.give(part, from, piece) else {
                 continue;
             };
-            let taken = out.put(self.whole(part, pieces, desk), desk);
-            if !matches!(taken, Ok(true)) {
-                desk.clear();
-            }
-            taken?;
+            // To the writing thread, or written here where that one is behind.
+            let taken = match send.try_send(self.whole(part, pieces, queue)) {
+                Ok(()) => continue,
+                Err(TrySendError::Full(part)) => queue.write(part, sink),
+                // It has failed and takes nothing more; its problem comes with its end.
+                Err(TrySendError::Disconnected(_)) => {
+                    queue.clear();
+                    Ok(())
+                }
+            };
+            taken.inspect_err(|_| queue.clear())?;
         }
         Ok(End::Complete)
     }
@@ -163,22 +169,18 @@ impl Study {
         worker: &mut Worker,
         progress: &dyn Progress,
     ) -> Option<Piece> {
-        let count = points.end - points.start;
-        let rows_of =
-            |per_point: u64| usize::try_from(count.saturating_mul(per_point)).unwrap_or(0);
+        let (count, cars) = (points.end - points.start, self.cars.len() as u64);
+        let rows_of = |per_point| usize::try_from(count.saturating_mul(per_point)).unwrap_or(0);
         let filler = Filler::new(self);
-        let mut runs = Rows::with_capacity(&self.columns, rows_of(self.cars.len() as u64));
+        let mut runs = Rows::with_capacity(&self.columns, rows_of(cars));
         let mut traces = Traces::new(self, || rows_of(trace_rows));
         for point in points {
             if progress.stopped() {
                 return None;
             }
-            filler.push(
-                point,
-                &self.point(point, worker, traces.as_mut()),
-                &mut runs,
-            );
-            progress.advance(self.cars.len() as u64);
+            let of_point = self.point(point, worker, traces.as_mut());
+            filler.push(point, &of_point, &mut runs);
+            progress.advance(cars);
         }
         Some(Piece {
             points: count,
@@ -188,13 +190,13 @@ impl Study {
     }
 
     /// Puts the pieces of a part together, in order.
-    fn whole(&self, part: u64, pieces: Vec<Piece>, desk: &Desk) -> Part {
+    fn whole(&self, part: u64, pieces: Vec<Piece>, queue: &Queue) -> Part {
         let rows = |of: fn(&Piece) -> usize| pieces.iter().map(of).sum();
         let mut runs = Rows::with_capacity(&self.columns, rows(|piece| piece.runs.len()));
         let trace_rows = rows(|piece| piece.traces.as_ref().map_or(0, Rows::len));
         let new = || Rows::with_capacity(&self.trace_columns, trace_rows);
-        let mut traces =
-            (!self.traces.is_empty()).then(|| desk.papers().spare.pop().unwrap_or_else(new));
+        let spare = || queue.state().spare.pop().unwrap_or_else(new);
+        let mut traces = (!self.traces.is_empty()).then(spare);
         for piece in pieces {
             runs.append(piece.runs);
             if let (Some(traces), Some(rows)) = (&mut traces, piece.traces) {
@@ -219,46 +221,17 @@ struct Part {
     traces: Option<Rows>,
 }
 
-impl Part {
-    fn write(self, sink: &dyn PartWriter, desk: &Desk) -> Result<(), Problem> {
-        sink.write(self.part, &self.runs, self.traces.as_ref())?;
-        if let Some(mut rows) = self.traces {
-            rows.clear();
-            desk.papers().spare.push(rows);
-        }
-        Ok(())
-    }
-}
-
-/// The way of a part to the sink.
-struct Out<'a> {
-    sink: &'a dyn PartWriter,
-    send: &'a SyncSender<Part>,
-}
-
-impl Out<'_> {
-    /// Hands a part to the writer, or writes it where the writer is behind. False if the writer has failed and takes nothing more; its
-    /// problem comes with its end.
-    fn put(&self, part: Part, desk: &Desk) -> Result<bool, Problem> {
-        match self.send.try_send(part) {
-            Ok(()) => Ok(true),
-            Err(TrySendError::Full(part)) => part.write(self.sink, desk).map(|()| true),
-            Err(TrySendError::Disconnected(_)) => Ok(false),
-        }
-    }
-}
-
 /// Where threads take points and leave what came of them.
-struct Desk<'s> {
+struct Queue<'s> {
     study: &'s Study,
     /// Rows of traces that a point has at most.
     trace_rows: u64,
     /// Points that a thread takes at a time.
     chunk: u64,
-    papers: Mutex<Papers<'s>>,
+    state: Mutex<QueueState<'s>>,
 }
 
-struct Papers<'s> {
+struct QueueState<'s> {
     /// Parts of which no point has been taken.
     left: Box<dyn Iterator<Item = u64> + Send + 's>,
     /// The part that points are taken from, and those that are left of it.
@@ -269,15 +242,15 @@ struct Papers<'s> {
     spare: Vec<Rows>,
 }
 
-impl<'s> Desk<'s> {
+impl<'s> Queue<'s> {
     /// The next points of a part.
     fn take(&self) -> Option<(u64, Range<u64>)> {
-        let mut papers = self.papers();
-        if papers.points.1.is_empty() {
-            let part = papers.left.next()?;
-            papers.points = (part, self.study.part_points(part));
+        let mut state = self.state();
+        if state.points.1.is_empty() {
+            let part = state.left.next()?;
+            state.points = (part, self.study.part_points(part));
         }
-        let (part, rest) = &mut papers.points;
+        let (part, rest) = &mut state.points;
         let from = rest.start;
         rest.start = rest.end.min(from.saturating_add(self.chunk));
         Some((*part, from..rest.start))
@@ -286,27 +259,36 @@ impl<'s> Desk<'s> {
     /// Leaves a piece; all pieces of its part, in order, if it was the last one.
     fn give(&self, part: u64, from: u64, piece: Piece) -> Option<Vec<Piece>> {
         let points = self.study.part_points(part);
-        let mut papers = self.papers();
-        let pieces = papers.pieces.entry(part).or_default();
+        let mut state = self.state();
+        let pieces = state.pieces.entry(part).or_default();
         pieces.insert(from, piece);
-        if pieces.values().map(|piece| piece.points).sum::<u64>() < points.end - points.start {
+        let there: u64 = pieces.values().map(|piece| piece.points).sum();
+        if there < points.end - points.start {
             return None;
         }
-        papers
-            .pieces
-            .remove(&part)
-            .map(|pieces| pieces.into_values().collect())
+        let pieces = state.pieces.remove(&part)?;
+        Some(pieces.into_values().collect())
+    }
+
+    /// Writes a part, and keeps the room of its traces.
+    fn write(&self, part: Part, sink: &dyn PartWriter) -> Result<(), Problem> {
+        sink.write(part.part, &part.runs, part.traces.as_ref())?;
+        if let Some(mut rows) = part.traces {
+            rows.clear();
+            self.state().spare.push(rows);
+        }
+        Ok(())
     }
 
     /// Nothing is left to take.
     fn clear(&self) {
-        let mut papers = self.papers();
-        papers.left = Box::new(std::iter::empty());
-        papers.points = (0, 0..0);
+        let mut state = self.state();
+        state.left = Box::new(std::iter::empty());
+        state.points = (0, 0..0);
     }
 
-    fn papers(&self) -> MutexGuard<'_, Papers<'s>> {
+    fn state(&self) -> MutexGuard<'_, QueueState<'s>> {
         // A thread that has panicked ends the study in any case.
-        self.papers.lock().unwrap_or_else(PoisonError::into_inner)
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -11,7 +11,7 @@ mod xlsx;
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::store::{CsvTable, Header, ParquetTable, Status, Study};
+use super::store::{CsvTable, Header, ParquetTable, RowWriter, Status, Study};
 use super::table::{Head, Kind, Rows, Values};
 use cvtcycle_config::Problem;
 use cvtcycle_output::file::OutputFile;
@@ -45,19 +45,13 @@ impl Format {
     /// # Errors
     /// A problem of `--out` that names the endings.
     pub fn of(path: &Path) -> Result<Self, Problem> {
-        let ending = path
-            .extension()
-            .map(|ending| ending.to_string_lossy().to_lowercase())
-            .unwrap_or_default();
-        let known = Self::NAMES
-            .iter()
-            .find(|(name, _)| *name == ending)
-            .map(|(_, format)| *format);
-        known.ok_or_else(|| {
-            let message = format!(
-                "the ending of {} does not say in which format to write",
-                path.display()
-            );
+        let ending = path.extension().unwrap_or_default();
+        let ending = ending.to_string_lossy().to_lowercase();
+        let known = Self::NAMES.iter().find(|(name, _)| *name == ending);
+        known.map(|(_, format)| *format).ok_or_else(|| {
+            let path_name = path.display();
+            let message =
+                format!("the ending of {path_name} does not say in which format to write");
             problem(path, &message, "for example --out runs.csv")
                 .allowed("a name that ends in .csv, .parquet or .xlsx")
         })
@@ -95,106 +89,58 @@ pub fn export(
         return Err(problem(study.path(), &message, "continue it with --resume"));
     }
     let rows = study.rows(table)?;
-    let manifest = study.manifest().to_string();
     if format == Format::Xlsx {
         check_size(out.path(), rows, heads.len())?;
     }
     let bom = format == Format::Csv && beyond_ascii(study, table, &heads)?;
-    let mut parts = Parts {
-        study,
-        table,
-        heads: &heads,
+    let manifest = study.manifest().to_string();
+    let file = &mut *out;
+    let begin = |first: &Rows| -> io::Result<Box<dyn RowWriter + '_>> {
+        Ok(match format {
+            Format::Csv => {
+                file.write_all(if bom { BOM } else { b"" })?;
+                Box::new(CsvTable::new(file, &heads, Header::Units)?)
+            }
+            Format::Parquet => {
+                let metadata = [("cvtcycle.manifest", manifest.as_str())];
+                Box::new(ParquetTable::new(file, &heads, &metadata, first)?)
+            }
+            Format::Xlsx => Box::new(XlsxTable::new(file, table, &heads)?),
+        })
     };
-    let written = match format {
-        Format::Csv => parts.write(&mut *out, |out, _| {
-            out.write_all(if bom { BOM } else { b"" })?;
-            CsvTable::new(out, &heads, Header::Units)
-        }),
-        Format::Parquet => parts.write(&mut *out, |out, first| {
-            ParquetTable::new(out, &heads, &[("cvtcycle.manifest", &manifest)], first)
-        }),
-        Format::Xlsx => parts.write(&mut *out, |out, _| XlsxTable::new(out, table, &heads)),
-    };
-    written.map_err(|failure| match failure {
-        Failure::Reading(problem) => *problem,
+    let written = copy(study, table, &heads, begin)?;
+    written.map_err(|error| match error.kind() {
         // A cell that no workbook can hold.
-        Failure::Writing(error) if error.kind() == io::ErrorKind::InvalidInput => problem(
-            out.path(),
-            &error.to_string(),
-            "write .csv or .parquet, which have no such limit",
-        ),
-        Failure::Writing(error) => out.cannot_write(&error),
+        io::ErrorKind::InvalidInput => problem(out.path(), &error.to_string(), NO_LIMIT),
+        _ => out.cannot_write(&error),
     })?;
     Ok(Exported { rows, status })
 }
 
-/// A table in any format.
-trait Table {
-    fn write(&mut self, rows: &Rows) -> io::Result<()>;
-    fn finish(self) -> io::Result<()>;
-}
+/// What helps where a workbook is too small.
+const NO_LIMIT: &str = "write .csv or .parquet, which have no such limit";
 
-macro_rules! table {
-    ($name:ident, $($bound:tt)*) => {
-        impl<W: $($bound)*> Table for $name<W> {
-            fn write(&mut self, rows: &Rows) -> io::Result<()> {
-                $name::write(self, rows)
-            }
-
-            fn finish(self) -> io::Result<()> {
-                $name::finish(self)
-            }
-        }
+/// Writes all parts to a table that is begun with the rows of the first one: a problem of reading them, or an error of the table.
+fn copy<'a>(
+    study: &Study,
+    table: &str,
+    heads: &[Head],
+    begin: impl FnOnce(&Rows) -> io::Result<Box<dyn RowWriter + 'a>>,
+) -> Result<io::Result<()>, Problem> {
+    let names: Vec<&str> = heads.iter().map(|head| head.name.as_str()).collect();
+    let read = |&index: &usize| study.part(index, table)?.read(&names);
+    let mut parts = study.present().iter().map(read);
+    let first = parts.next().unwrap_or_else(|| Ok(Rows::default()))?;
+    let mut writer = match begin(&first) {
+        Ok(writer) => writer,
+        Err(error) => return Ok(Err(error)),
     };
-}
-
-table!(CsvTable, Write);
-table!(ParquetTable, Write + Send);
-table!(XlsxTable, Write);
-
-/// What went wrong, and on which side.
-enum Failure {
-    Reading(Box<Problem>),
-    Writing(io::Error),
-}
-
-/// Where the rows come from.
-struct Parts<'a> {
-    study: &'a Study,
-    table: &'a str,
-    heads: &'a [Head],
-}
-
-impl Parts<'_> {
-    /// Writes all parts to a table that is begun with the rows of the first one.
-    fn write<'a, T: Table>(
-        &mut self,
-        out: &'a mut OutputFile,
-        begin: impl FnOnce(&'a mut OutputFile, &Rows) -> io::Result<T>,
-    ) -> Result<(), Failure> {
-        let names: Vec<&str> = self
-            .heads
-            .iter()
-            .map(|column| column.name.as_str())
-            .collect();
-        let read = |index| {
-            self.study
-                .part(index, self.table)
-                .and_then(|part| part.read(&names))
-                .map_err(|problem| Failure::Reading(Box::new(problem)))
-        };
-        let mut parts = self.study.present().iter().copied();
-        let first = parts
-            .next()
-            .map_or_else(|| Ok(Rows::with_capacity(self.heads, 0)), read)?;
-        let mut table = begin(out, &first).map_err(Failure::Writing)?;
-        table.write(&first).map_err(Failure::Writing)?;
-        drop(first);
-        for index in parts {
-            table.write(&read(index)?).map_err(Failure::Writing)?;
+    for rows in std::iter::once(Ok(first)).chain(parts) {
+        if let Err(error) = writer.write(&rows?) {
+            return Ok(Err(error));
         }
-        table.finish().map_err(Failure::Writing)
     }
+    Ok(writer.finish())
 }
 
 /// Refuses what does not fit into a sheet, or into memory as a workbook.
@@ -216,29 +162,22 @@ fn check_size(path: &Path, rows: u64, columns: usize) -> Result<(), Problem> {
     } else {
         return Ok(());
     };
-    let hint = "write .csv or .parquet, which have no such limit";
-    Err(problem(path, &message, hint))
+    Err(problem(path, &message, NO_LIMIT))
 }
 
 /// True if a head or a cell has a letter beyond ASCII.
 fn beyond_ascii(study: &Study, table: &str, heads: &[Head]) -> Result<bool, Problem> {
-    if !heads
-        .iter()
-        .all(|column| column.name.is_ascii() && column.unit.is_ascii())
-    {
-        return Ok(true);
-    }
-    let words: Vec<&str> = heads
-        .iter()
-        .filter(|column| column.kind == Kind::Text)
-        .map(|column| column.name.as_str())
-        .collect();
+    let is_ascii = |head: &Head| head.name.is_ascii() && head.unit.is_ascii();
+    let words = heads.iter().filter(|head| head.kind == Kind::Text);
+    let words: Vec<&str> = words.map(|head| head.name.as_str()).collect();
+    let mut beyond = !heads.iter().all(is_ascii);
     for &index in study.present() {
-        let rows = study.part(index, table)?.read(&words)?;
-        let ascii = |values: &Values| matches!(values, Values::Text(words) if words.iter().all(|word| word.is_ascii()));
-        if !rows.values.iter().all(ascii) {
-            return Ok(true);
+        if beyond {
+            break;
         }
+        let rows = study.part(index, table)?.read(&words)?;
+        let is_ascii = |values: &Values| matches!(values, Values::Text(words) if words.iter().all(|word| word.is_ascii()));
+        beyond = !rows.values.iter().all(is_ascii);
     }
-    Ok(false)
+    Ok(beyond)
 }

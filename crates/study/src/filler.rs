@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::cars::text;
 use super::plan::FactorValue;
 use super::point::{PointRun, Status};
 use super::prepare::Study;
@@ -61,12 +60,12 @@ impl<'s> Filler<'s> {
                     cells.push(text);
                 }
             }
-            for (factor, cells) in self.study.factor_columns.iter().zip(columns.by_ref()) {
-                let value = factor.factors.iter().find_map(|&f| run.factors[f].as_ref());
+            for (factors, cells) in self.study.factor_columns.iter().zip(columns.by_ref()) {
+                let value = factors.iter().find_map(|&f| run.factors[f].as_ref());
                 match (cells, value) {
                     (Values::Number(cells), Some(FactorValue::Number(x))) => cells.push(*x),
                     (Values::Number(cells), _) => cells.push(f64::NAN),
-                    (Values::Text(cells), Some(value)) => cells.push(text(value)),
+                    (Values::Text(cells), Some(value)) => cells.push(value.text()),
                     (Values::Text(cells), None) => cells.push(self.words.empty.clone()),
                     (Values::Count(cells), _) => cells.push(0),
                 }

@@ -1,5 +1,6 @@
 //! The manifest of a study, `study.json`: the same study gives the same bytes, by which a resumed study is recognised.
 
+use cvtcycle_config::Problems;
 use cvtcycle_output::hash::hash;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -18,7 +19,6 @@ pub const SCHEMA: u32 = 1;
 
 impl Study {
     /// The manifest as indented JSON with a line end.
-    #[must_use]
     pub fn manifest(&self, csv: bool) -> String {
         let plan = &self.plan;
         let value = json!({
@@ -49,11 +49,8 @@ impl Study {
     /// Names of the tables of a part, in the order in which they are written.
     fn tables(&self) -> Vec<String> {
         let traces = (!self.traces.is_empty()).then_some(TRACES);
-        traces
-            .into_iter()
-            .chain([RUNS])
-            .map(str::to_owned)
-            .collect()
+        let names = traces.into_iter().chain([RUNS]);
+        names.map(str::to_owned).collect()
     }
 
     fn base(&self) -> Value {
@@ -79,16 +76,10 @@ impl Study {
             return Value::Null;
         };
         let setup = &variant.setup;
-        let values: serde_json::Map<String, Value> = setup
-            .keys
-            .iter()
-            .map(|info| {
-                (
-                    info.key.clone(),
-                    json!({"value": info.value, "unit": info.unit, "status": info.status}),
-                )
-            })
-            .collect();
+        let values = setup.keys.iter().map(|info| {
+            let value = json!({"value": info.value, "unit": info.unit, "status": info.status});
+            (info.key.clone(), value)
+        });
         json!({
             "name": &*car.name,
             "role": &*car.role,
@@ -98,16 +89,14 @@ impl Study {
             "engine_oil": setup.oils().1.name,
             // Other files, such as measured maps, are in the car though not in its keys.
             "sha256": hash(format!("{:?}", setup.car(cvtcycle_model::road::REFERENCE_K)).as_bytes()),
-            "values": values,
+            "values": values.collect::<serde_json::Map<_, _>>(),
         })
     }
 }
 
 fn columns(columns: &[Head]) -> Vec<Value> {
-    columns
-        .iter()
-        .map(|column| json!({"name": column.name, "unit": column.unit, "doc": column.doc}))
-        .collect()
+    let column = |head: &Head| json!({"name": head.name, "unit": head.unit, "doc": head.doc});
+    columns.iter().map(column).collect()
 }
 
 fn factor(factor: &Factor) -> Value {
@@ -179,13 +168,9 @@ struct StoredCar {
 
 impl StudyManifest {
     /// The manifest of a study that is ready to run.
-    #[must_use]
     pub fn of(study: &Study) -> Self {
-        let columns: Vec<_> = study
-            .columns
-            .iter()
-            .map(|c| (c.name.clone(), c.unit.clone()))
-            .collect();
+        let heads = study.columns.iter();
+        let columns: Vec<_> = heads.map(|c| (c.name.clone(), c.unit.clone())).collect();
         StudyManifest {
             title: study.plan.title.clone(),
             question: study.plan.question.clone(),
@@ -211,10 +196,11 @@ impl StudyManifest {
                 "it has schema {found}; this program reads schema {SCHEMA}"
             ));
         }
-        let mut plan = Plan::read(file, plan).map_err(|problems| {
-            let messages: Vec<String> = problems.into_iter().map(|p| p.message).collect();
-            messages.join("; ")
-        })?;
+        let messages = |problems: &Problems| -> Vec<String> {
+            problems.iter().map(|p| p.message.clone()).collect()
+        };
+        let plan = Plan::read(file, plan);
+        let mut plan = plan.map_err(|problems| messages(&problems).join("; "))?;
         plan.design = stored.design;
         // The tables are as large as the plan says: a damaged number here would ask for any amount of memory.
         let (points, points_per_part) = (stored.points, stored.points_per_part);
@@ -223,11 +209,8 @@ impl StudyManifest {
         {
             return Err("its number of points is not that of its plan".to_owned());
         }
-        let columns: Vec<_> = stored
-            .columns
-            .into_iter()
-            .map(|c| (c.name, c.unit))
-            .collect();
+        let heads = stored.columns.into_iter();
+        let columns: Vec<_> = heads.map(|c| (c.name, c.unit)).collect();
         Ok(StudyManifest {
             title: stored.title,
             question: stored.question,
@@ -242,7 +225,6 @@ impl StudyManifest {
     }
 
     /// Number of parts.
-    #[must_use]
     pub fn parts(&self) -> u64 {
         self.points.div_ceil(self.points_per_part)
     }

@@ -15,19 +15,16 @@ pub const EXCESS: &str = "subject_excess_percent";
 pub const FUEL: &str = "headline_fuel_l_per_100km";
 
 /// The column of a phase's fuel.
-#[must_use]
 pub fn phase_fuel(phase: &str) -> String {
     format!("fuel_{}_l_per_100km", column_word(phase))
 }
 
 /// The column of the subject's fuel over that of the row's car in a phase.
-#[must_use]
 pub fn phase_excess(phase: &str) -> String {
     format!("subject_excess_{}_percent", column_word(phase))
 }
 
 /// A phase's name as part of a column's: lower case, `_` for what is neither letter nor digit.
-#[must_use]
 pub fn column_word(name: &str) -> String {
     let letter = |c: char| {
         if c.is_alphanumeric() {
@@ -40,7 +37,6 @@ pub fn column_word(name: &str) -> String {
 }
 
 /// Every number of a row, for cycles with these phase groups and cars with these components.
-#[must_use]
 pub fn outputs(phases: &[String], components: &[Component]) -> Vec<Column<Run>> {
     let mut list = fuel(phases);
     list.extend(energy(components));

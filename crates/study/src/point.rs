@@ -2,24 +2,22 @@
 
 use std::collections::HashMap;
 
-use super::cars::{Binding, StudyCar, text, words};
-use super::design::Level;
-use super::plan::{Acts, FactorValue};
+use super::cars::{Binding, StudyCar};
+use super::plan::{Acts, Factor, FactorValue, Plan};
 use super::preflight::resolved;
 use super::prepare::Study;
 use super::traces::Traces;
 use cvtcycle_config::Problem;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::setup::template::{ParameterRef, Variant};
-use cvtcycle_model::drive::{Conditions, Outcome, Start, drive_into};
+use cvtcycle_model::drive::{Conditions, Row, Start, drive_into};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_output::summary::{Driven, RunSummary, Settings, compare, run_summary};
 
-/// What one thread keeps from point to point: a bench for each variant of each car, and room for the levels.
+/// What one thread keeps from point to point: a bench for each variant of each car.
 #[derive(Default)]
 pub(super) struct Worker {
     benches: HashMap<(usize, usize), Variant>,
-    levels: Vec<Level>,
 }
 
 /// Why a run has no numbers, or numbers that failed a check.
@@ -54,10 +52,12 @@ pub(super) struct PointRun {
     pub numbers: Vec<f64>,
 }
 
-/// A car driven, before its numbers are put together.
-struct DrivenCar {
-    setup: Setup,
-    outcome: Outcome,
+/// A car at a point, with the values of the factors there.
+struct CarAtPoint<'a> {
+    study: &'a Study,
+    index: usize,
+    car: &'a StudyCar,
+    values: &'a [Option<FactorValue>],
 }
 
 impl Study {
@@ -68,166 +68,150 @@ impl Study {
         worker: &mut Worker,
         mut traces: Option<&mut Traces>,
     ) -> Vec<PointRun> {
-        let mut levels = std::mem::take(&mut worker.levels);
-        self.plan
-            .design
-            .levels(&self.plan.factors, point, &mut levels);
-        let values: Vec<Option<FactorValue>> = self
-            .plan
-            .factors
-            .iter()
-            .zip(&levels)
-            .map(|(factor, level)| factor.value(*level))
-            .collect();
-        worker.levels = levels;
+        let Plan {
+            factors, design, ..
+        } = &self.plan;
+        let value = |(f, factor): (usize, &Factor)| factor.value(design.level(factors, point, f));
+        let values: Vec<Option<FactorValue>> = factors.iter().enumerate().map(value).collect();
         let mut subject: Option<RunSummary> = None;
         let mut runs = Vec::with_capacity(self.cars.len());
-        for (k, car) in self.cars.iter().enumerate() {
+        for (index, car) in self.cars.iter().enumerate() {
             if let Some(traces) = &mut traces {
                 traces.begin(point, car);
             }
-            let (run, summary) = self.car(
-                (k, car),
-                &values,
-                worker,
-                subject.as_ref(),
-                traces.as_deref_mut(),
-            );
-            if k == 0 {
+            let at = CarAtPoint {
+                study: self,
+                index,
+                car,
+                values: &values,
+            };
+            let (run, summary) = at.run(worker, subject.as_ref(), traces.as_deref_mut());
+            if index == 0 {
                 subject = summary;
             }
             runs.push(run);
         }
         runs
     }
+}
 
-    fn car(
+impl CarAtPoint<'_> {
+    fn run(
         &self,
-        (k, car): (usize, &StudyCar),
-        values: &[Option<FactorValue>],
         worker: &mut Worker,
         subject: Option<&RunSummary>,
         traces: Option<&mut Traces>,
     ) -> (PointRun, Option<RunSummary>) {
-        let cycle = self.cycle_of(car, values);
-        let mut run = PointRun {
-            status: Status::Ok,
-            factors: Vec::new(),
-            numbers: Vec::new(),
-        };
-        let driven = match self.build(k, car, values, worker, &mut run.factors) {
-            Ok(setup) => {
-                let conditions = self.conditions(car, values);
-                let cycle = &self.cycles[cycle];
-                let outcome = match traces {
-                    Some(traces) => drive_into(
-                        &setup,
-                        cycle,
-                        &conditions,
-                        Some(&mut |rows| traces.push(cycle, rows)),
-                    ),
-                    None => drive_into(&setup, cycle, &conditions, None),
-                };
-                DrivenCar { setup, outcome }
-            }
+        let outputs = &self.study.outputs;
+        let cycle = &self.study.cycles[self.cycle()];
+        let (factors, built) = self.build(worker);
+        let setup = match built {
+            Ok(setup) => setup,
             Err(reason) => {
-                run.status = Status::NotRun(reason);
-                run.numbers = vec![f64::NAN; self.outputs.len()];
+                let run = PointRun {
+                    status: Status::NotRun(reason),
+                    factors,
+                    numbers: vec![f64::NAN; outputs.len()],
+                };
                 return (run, None);
             }
         };
+        let conditions = self.conditions();
+        let outcome = match traces {
+            Some(traces) => {
+                let mut push = |rows: &[Row]| traces.push(cycle, rows);
+                drive_into(&setup, cycle, &conditions, Some(&mut push))
+            }
+            None => drive_into(&setup, cycle, &conditions, None),
+        };
+        let formulation = self.option("formulation").map(FactorValue::to_string);
         let settings = Settings {
-            formulation: self.formulation_word(car, values),
+            formulation: formulation
+                .unwrap_or_else(|| self.study.plan.base.formulation.name().to_owned()),
             ..Settings::default()
         };
         let named = Driven {
-            name: &car.name,
-            setup: &driven.setup,
-            outcome: &driven.outcome,
+            name: &self.car.name,
+            setup: &setup,
+            outcome: &outcome,
         };
-        let summary = run_summary(&self.cycles[cycle], &car.role, &settings, &named);
-        run.status = status(&summary);
+        let summary = run_summary(cycle, &self.car.role, &settings, &named);
         let excess = subject.map(|subject| compare(subject, &summary));
+        let status = status(&summary);
         let row = (summary, excess);
-        run.numbers = self
-            .outputs
+        let numbers = outputs
             .iter()
             .map(|column| column.number_of(&row))
             .collect();
+        let run = PointRun {
+            status,
+            factors,
+            numbers,
+        };
         (run, Some(row.0))
     }
 
-    /// The car with the point's values; in `factors` what each factor has become in it.
-    fn build(
-        &self,
-        k: usize,
-        car: &StudyCar,
-        values: &[Option<FactorValue>],
-        worker: &mut Worker,
-        factors: &mut Vec<Option<FactorValue>>,
-    ) -> Result<Setup, String> {
-        let all = &self.plan.factors;
-        let index = all
-            .iter()
-            .zip(values)
-            .enumerate()
-            .map(|(f, (factor, value))| car.weight(f, factor, value.as_ref()))
-            .sum();
-        let variant = car.variant(index, all);
-        for (f, value) in values.iter().enumerate() {
+    /// What each factor has become in the car, and the car with these values or the reason why there is none.
+    fn build(&self, worker: &mut Worker) -> (Vec<Option<FactorValue>>, Result<Setup, String>) {
+        let all = &self.study.plan.factors;
+        let weight =
+            |(f, value): (usize, &Option<FactorValue>)| self.car.weight(f, &all[f], value.as_ref());
+        let index = self.values.iter().enumerate().map(weight).sum();
+        let variant = self.car.variant(index, all);
+        let resolve = |f: usize| {
             let slot = variant
                 .as_ref()
                 .ok()
                 .and_then(|variant| variant.slots[f].as_ref());
-            factors.push(self.resolve(f, car, value.as_ref(), slot.map(ParameterRef::base)));
-        }
-        let variant = variant.map_err(reason)?;
+            self.resolve(f, slot.map(ParameterRef::base))
+        };
+        let factors: Vec<_> = (0..all.len()).map(resolve).collect();
+        let variant = match variant {
+            Ok(variant) => variant,
+            Err(problems) => return (factors, Err(reason(problems))),
+        };
         if let Some((_, problem)) = variant.unknown.first() {
-            return Err(reason(std::slice::from_ref(problem)));
+            let reason = reason(std::slice::from_ref(problem));
+            return (factors, Err(reason));
         }
-        let bench = worker
-            .benches
-            .entry((k, index))
-            .or_insert_with(|| variant.blueprint.bench());
+        let bench = worker.benches.entry((self.index, index));
+        let bench = bench.or_insert_with(|| variant.blueprint.bench());
         bench.reset();
-        for ((slot, value), given) in variant.slots.iter().zip(factors.iter()).zip(values) {
+        for ((slot, value), given) in variant.slots.iter().zip(&factors).zip(self.values) {
             // What the design leaves alone is not put in again: a file may well not give it.
             if let (Some(slot), Some(FactorValue::Number(x)), Some(_)) = (slot, value, given) {
                 bench.set(slot, *x);
             }
         }
-        bench.build().map_err(|_| reason(&bench.problems()))
+        let built = bench.build().map_err(|_| reason(&bench.problems()));
+        (factors, built)
     }
 
-    /// What a factor's value has become in a car, or the car's own where the design leaves it; none where the factor does not reach it.
-    fn resolve(
-        &self,
-        f: usize,
-        car: &StudyCar,
-        value: Option<&FactorValue>,
-        base: Option<f64>,
-    ) -> Option<FactorValue> {
+    /// What a factor's value has become in the car, or the car's own where the design leaves it; none where the factor does not reach it.
+    fn resolve(&self, f: usize, base: Option<f64>) -> Option<FactorValue> {
+        let value = self.values[f].as_ref();
+        let own = &self.study.plan.base;
         let number = |acts, base: f64| match value {
             Some(FactorValue::Number(x)) => FactorValue::Number(resolved(acts, base, *x)),
             Some(word) => word.clone(),
             None => FactorValue::Number(base),
         };
-        match car.bindings[f] {
+        match self.car.bindings[f] {
             Binding::Not => None,
             Binding::Number(acts) => base.map(|base| number(acts, base)),
-            Binding::Ambient => Some(number(Acts::Value, self.plan.base.ambient_degc)),
-            Binding::Step => Some(number(Acts::Value, self.plan.base.dt_s)),
+            Binding::Ambient => Some(number(Acts::Value, own.ambient_degc)),
+            Binding::Step => Some(number(Acts::Value, own.dt_s)),
             Binding::Start | Binding::Cycle | Binding::Words { .. } => {
-                value.cloned().or_else(|| self.own_word(f, car))
+                value.cloned().or_else(|| self.own_word(f))
             }
         }
     }
 
-    /// The word of a car that no factor has changed.
-    fn own_word(&self, f: usize, car: &StudyCar) -> Option<FactorValue> {
-        let base = &self.plan.base;
-        let setup = &car.variant(0, &self.plan.factors).ok()?.setup;
-        let word = match self.plan.factors[f].key.as_str() {
+    /// The word of the car that no factor has changed.
+    fn own_word(&self, f: usize) -> Option<FactorValue> {
+        let Plan { base, factors, .. } = &self.study.plan;
+        let setup = &self.car.variant(0, factors).ok()?.setup;
+        let word = match factors[f].key.as_str() {
             "start" => base.start.clone(),
             "cycle" => base.cycle.clone(),
             "lubricant" => setup.oils().0.name.clone(),
@@ -243,44 +227,40 @@ impl Study {
         Some(FactorValue::Word(word.into()))
     }
 
-    /// The value of a run option at this point, if a factor gives it to this car.
-    fn option<'v>(
-        &self,
-        key: &str,
-        car: &StudyCar,
-        values: &'v [Option<FactorValue>],
-    ) -> Option<&'v FactorValue> {
-        let index = (0..values.len())
-            .find(|&f| self.plan.factors[f].key == key && car.bindings[f] != Binding::Not)?;
-        values[index].as_ref()
-    }
-
-    /// Index of the cycle: the plan's comes first, then those of the factor's list.
-    fn cycle_of(&self, car: &StudyCar, values: &[Option<FactorValue>]) -> usize {
-        let Some(value) = self.option("cycle", car, values) else {
-            return 0;
-        };
-        let word = text(value);
-        let factor = self
+    /// Index of the factor of a run option.
+    fn factor(&self, key: &str) -> Option<usize> {
+        self.study
             .plan
             .factors
             .iter()
-            .find(|factor| factor.key == "cycle");
-        factor
-            .and_then(|factor| words(factor).iter().position(|other| *other == word))
-            .map_or(0, |k| k + 1)
+            .position(|factor| factor.key == key)
     }
 
-    fn conditions(&self, car: &StudyCar, values: &[Option<FactorValue>]) -> Conditions {
-        let base = &self.plan.base;
+    /// The value of a run option at this point, if a factor gives it to this car.
+    fn option(&self, key: &str) -> Option<&FactorValue> {
+        let mut all = self.study.plan.factors.iter().zip(&self.car.bindings);
+        let is_it =
+            |(factor, binding): (&Factor, &Binding)| factor.key == key && *binding != Binding::Not;
+        let index = all.position(is_it)?;
+        self.values[index].as_ref()
+    }
+
+    /// Index of the cycle: the plan's comes first, then those of the factor's list.
+    fn cycle(&self) -> usize {
+        let factor = self.factor("cycle").map(|f| &self.study.plan.factors[f]);
+        let value = self.option("cycle");
+        factor
+            .zip(value)
+            .map_or(0, |(factor, value)| factor.entry_of(value))
+    }
+
+    fn conditions(&self) -> Conditions {
+        let base = &self.study.plan.base;
         let number = |key: &str, base: f64| {
-            let f = (0..values.len()).find(|&f| self.plan.factors[f].key == key);
-            match f.and_then(|f| self.resolve(f, car, values[f].as_ref(), None)) {
-                Some(FactorValue::Number(x)) => x,
-                _ => base,
-            }
+            let value = self.factor(key).and_then(|f| self.resolve(f, None));
+            value.and_then(|value| value.number()).unwrap_or(base)
         };
-        let start = match self.option("start", car, values) {
+        let start = match self.option("start") {
             Some(FactorValue::Number(degc)) => Start::At(degc + ZERO_DEGC_K),
             Some(FactorValue::Word(word)) => start(word),
             None => start(&base.start),
@@ -291,13 +271,6 @@ impl Study {
             max_dt_s: number("dt_s", base.dt_s),
             keep_rows: false,
         }
-    }
-
-    fn formulation_word(&self, car: &StudyCar, values: &[Option<FactorValue>]) -> String {
-        let word = self
-            .option("formulation", car, values)
-            .map(|value| text(value).to_string());
-        word.unwrap_or_else(|| self.plan.base.formulation.name().to_owned())
     }
 }
 
@@ -322,34 +295,28 @@ fn status(summary: &RunSummary) -> Status {
     if reasons.is_empty() {
         return Status::Ok;
     }
-    let described = reasons
-        .iter()
-        .map(|name| match (name.as_str(), &summary.worst_deficit) {
-            ("missed_trace", Some(worst)) => format!(
-                "missed_trace for {:.0} s, worst {:.1} kW at {:.0} s in {}",
-                summary.trace_missed_s,
-                worst.power_w / 1e3,
-                worst.at_s,
-                worst.phase
-            ),
-            (name, _) => match summary.flags_s.get(name) {
-                Some(s) => format!("{name} for {s:.0} s"),
-                None => name.to_owned(),
-            },
-        });
-    Status::Failed(described.collect::<Vec<_>>().join("; "))
+    let describe = |name: &String| match (name.as_str(), &summary.worst_deficit) {
+        ("missed_trace", Some(worst)) => {
+            let (missed_s, at_s, phase) = (summary.trace_missed_s, worst.at_s, &worst.phase);
+            let kw = worst.power_w / 1e3;
+            format!("missed_trace for {missed_s:.0} s, worst {kw:.1} kW at {at_s:.0} s in {phase}")
+        }
+        (name, _) => match summary.flags_s.get(name) {
+            Some(s) => format!("{name} for {s:.0} s"),
+            None => name.to_owned(),
+        },
+    };
+    Status::Failed(reasons.iter().map(describe).collect::<Vec<_>>().join("; "))
 }
 
 /// Problems in one line.
 fn reason(problems: &[Problem]) -> String {
-    let messages = problems.iter().map(|problem| {
-        let allowed = if problem.allowed.is_empty() {
-            String::new()
-        } else {
-            format!(" (allowed: {})", problem.allowed)
-        };
-        format!("{}{allowed}", problem.message)
-    });
+    let messages = problems
+        .iter()
+        .map(|problem| match problem.allowed.as_str() {
+            "" => problem.message.clone(),
+            allowed => format!("{} (allowed: {allowed})", problem.message),
+        });
     let text = messages.collect::<Vec<_>>().join("; ");
     text.replace(['\n', '\r'], " ")
 }

@@ -1,27 +1,25 @@
 //! Every value of a factor tried by itself, before anything starts.
 
 use super::cars::{Binding, CarVariant, StudyCar, words};
-use super::plan::{Acts, Distribution, Factor, FactorValue, FactorValues, Plan};
+use super::plan::{Acts, Distribution, Factor, FactorValues, Plan};
 use cvtcycle_config::{Place, Problem, Problems};
 
 /// Notes the problems of a factor: a key that a car does not know, values that its files do not allow.
 pub(super) fn factor(plan: &Plan, index: usize, cars: &[StudyCar], problems: &mut Problems) {
     let factor = &plan.factors[index];
-    let mut reached = false;
     for car in cars {
-        reached |= car.bindings[index] != Binding::Not;
         match car.bindings[index] {
             Binding::Number(acts) => numbers(plan, index, car, acts, problems),
             Binding::Words { stride } => variants(plan, index, car, stride, problems),
             Binding::Not | Binding::Ambient | Binding::Start | Binding::Cycle | Binding::Step => {}
         }
     }
-    if !reached && !cars.is_empty() {
-        let problem = at(
-            factor,
-            None,
-            "the study has no baseline, so no car has this factor",
-        );
+    let is_not = |car: &StudyCar| car.bindings[index] == Binding::Not;
+    if cars.iter().all(is_not) && !cars.is_empty() {
+        let message = "the study has no baseline, so no car has this factor";
+        let problem = Problem::invalid(message)
+            .at(place(factor, None))
+            .key(factor.key.as_str());
         problems.push(problem.hint("name baselines, or give `cars = \"subject\"`"));
     }
 }
@@ -41,13 +39,11 @@ fn numbers(plan: &Plan, index: usize, car: &StudyCar, acts: Acts, problems: &mut
     let Ok(variant) = car.variant(0, &plan.factors) else {
         return;
     };
-    problems.extend(
-        variant
-            .unknown
-            .iter()
-            .filter(|(unknown, _)| *unknown == index)
-            .map(|(_, problem)| problem.clone()),
-    );
+    let unknown = variant
+        .unknown
+        .iter()
+        .filter(|(unknown, _)| *unknown == index);
+    problems.extend(unknown.map(|(_, problem)| problem.clone()));
     let Some(slot) = &variant.slots[index] else {
         return;
     };
@@ -59,9 +55,8 @@ fn numbers(plan: &Plan, index: usize, car: &StudyCar, acts: Acts, problems: &mut
         if bench.build().is_ok() || goes_with_another(plan, index, car, variant, value) {
             continue;
         }
-        for problem in bench.problems() {
-            problems.push(of_value(factor, entry, car, number, value, problem));
-        }
+        let of_value = |problem| of_value(factor, (entry, number), car, value, problem);
+        problems.extend(bench.problems().map(of_value));
     }
 }
 
@@ -74,34 +69,26 @@ fn goes_with_another(
     value: f64,
 ) -> bool {
     let mut bench = variant.blueprint.bench();
-    let mut possible = |other: usize, number: f64| {
-        let (Some(slot), Some(partner), Binding::Number(acts)) = (
-            &variant.slots[index],
-            &variant.slots[other],
-            car.bindings[other],
-        ) else {
+    let mut possible = |other: usize| {
+        let slots = (&variant.slots[index], &variant.slots[other]);
+        let ((Some(slot), Some(partner)), Binding::Number(acts)) = (slots, car.bindings[other])
+        else {
             return false;
         };
-        bench.reset();
-        bench.set(slot, value);
-        bench.set(partner, resolved(acts, partner.base(), number));
-        bench.build().is_ok()
-    };
-    let others = (0..plan.factors.len()).filter(|other| *other != index);
-    others
-        .flat_map(|other| {
-            extremes(plan, other)
-                .into_iter()
-                .map(move |(_, number)| (other, number))
+        extremes(plan, other).into_iter().any(|(_, number)| {
+            bench.reset();
+            bench.set(slot, value);
+            bench.set(partner, resolved(acts, partner.base(), number));
+            bench.build().is_ok()
         })
-        .any(|(other, number)| possible(other, number))
+    };
+    (0..plan.factors.len()).any(|other| other != index && possible(other))
 }
 
 fn of_value(
     factor: &Factor,
-    entry: Option<usize>,
+    (entry, number): (Option<usize>, f64),
     car: &StudyCar,
-    number: f64,
     value: f64,
     problem: Problem,
 ) -> Problem {
@@ -110,30 +97,28 @@ fn of_value(
         Acts::Scale => format!(", the file's value times {number},"),
         Acts::Offset => format!(", the file's value and {number},"),
     };
-    let unit = super::prepare::key_unit(&factor.key);
-    let unit = if unit == "-" {
-        unit.replace('-', "")
-    } else {
-        format!(" {unit}")
+    let unit = match cvtcycle_config::unit_of(&factor.key) {
+        "-" => String::new(),
+        unit => format!(" {unit}"),
     };
     let tail = matches!(
         factor.values,
         FactorValues::Distribution(Distribution::Normal { .. } | Distribution::Lognormal { .. })
     );
-    let hint = if tail && problem.hint.is_empty() {
-        "the distribution has no ends: cut it with truncated_normal, or give a smaller spread"
-            .to_owned()
-    } else {
-        problem.hint
+    let hint = match tail && problem.hint.is_empty() {
+        true => {
+            "the distribution has no ends: cut it with truncated_normal, or give a smaller spread"
+        }
+        false => &problem.hint,
     };
+    let (name, message) = (&car.name, &problem.message);
     Problem::invalid(format!(
-        "{}: {value}{unit}{by} is not possible: {}",
-        car.name, problem.message
+        "{name}: {value}{unit}{by} is not possible: {message}"
     ))
     .at(place(factor, entry))
-    .key(factor.key.clone())
+    .key(factor.key.as_str())
     .value(number.to_string())
-    .allowed(problem.allowed)
+    .allowed(problem.allowed.as_str())
     .hint(hint)
 }
 
@@ -143,20 +128,18 @@ fn variants(plan: &Plan, index: usize, car: &StudyCar, stride: usize, problems: 
         let Err(found) = car.variant((k + 1) * stride, &plan.factors) else {
             continue;
         };
-        for problem in found {
-            problems.push(
-                problem
-                    .clone()
-                    .at(if problem.place.line > 0 {
-                        problem.place.clone()
-                    } else {
-                        place(factor, Some(k))
-                    })
-                    .key(factor.key.clone())
-                    .value(word.to_string())
-                    .message(format!("{}: {}", car.name, problem.message)),
-            );
-        }
+        problems.extend(found.iter().map(|problem| {
+            let own = &problem.place;
+            let at = match own.line > 0 {
+                true => own.clone(),
+                false => place(factor, Some(k)),
+            };
+            let problem = problem.clone().with_context(&format!("{}: ", car.name));
+            problem
+                .at(at)
+                .key(factor.key.as_str())
+                .value(word.to_string())
+        }));
     }
 }
 
@@ -164,46 +147,32 @@ fn variants(plan: &Plan, index: usize, car: &StudyCar, stride: usize, problems: 
 fn extremes(plan: &Plan, index: usize) -> Vec<(Option<usize>, f64)> {
     match &plan.factors[index].values {
         FactorValues::List(list) => {
-            let number = |(k, value): (usize, &FactorValue)| match value {
-                FactorValue::Number(x) => Some((Some(k), *x)),
-                FactorValue::Word(_) => None,
-            };
-            list.iter().enumerate().filter_map(number).collect()
+            let entries = list.iter().enumerate();
+            entries
+                .filter_map(|(k, value)| Some((Some(k), value.number()?)))
+                .collect()
         }
         FactorValues::Distribution(distribution) => {
             let (low, high) = distribution.support();
-            let tails = if low.is_finite() && high.is_finite() {
-                None
-            } else {
-                Some(plan.design.share_span(&plan.factors, index))
+            let ends = match low.is_finite() && high.is_finite() {
+                true => Some((low, high)),
+                false => plan.span(index),
             };
-            let (low, high) = tails.map_or((low, high), |(low, high)| {
-                (
-                    distribution.inverse_cdf(low),
-                    distribution.inverse_cdf(high),
-                )
-            });
-            vec![(None, low), (None, high)]
+            ends.into_iter()
+                .flat_map(|(low, high)| [(None, low), (None, high)])
+                .collect()
         }
     }
 }
 
-fn at(factor: &Factor, entry: Option<usize>, message: &str) -> Problem {
-    Problem::invalid(message)
-        .at(place(factor, entry))
-        .key(factor.key.clone())
-}
-
 fn place(factor: &Factor, entry: Option<usize>) -> Place {
-    let key = if matches!(factor.values, FactorValues::Distribution(_)) {
-        "distribution"
-    } else {
-        "values"
+    let key = match factor.values {
+        FactorValues::Distribution(_) => "distribution",
+        FactorValues::List(_) => "values",
     };
-    entry
-        .map_or_else(
-            || factor.places.of(key),
-            |entry| factor.places.nth(key, entry),
-        )
-        .clone()
+    let place = match entry {
+        Some(entry) => factor.places.nth(key, entry),
+        None => factor.places.of(key),
+    };
+    place.clone()
 }

@@ -58,35 +58,39 @@ impl<'a> StudyTable<'a> {
         };
         let mut status = vec![Status::Missing; frame.cells()];
         frame.each("status", |at, values| {
-            if let Values::Text(words) = values {
-                for (cell, word) in status.iter_mut().skip(at).zip(words) {
-                    *cell = match &*word {
-                        "ok" => Status::Ok,
-                        "failed" => Status::Failed,
-                        _ => Status::NotRun,
-                    };
-                }
+            let Values::Text(words) = values else {
+                return;
+            };
+            for (cell, word) in status.iter_mut().skip(at).zip(words) {
+                *cell = match &*word {
+                    "ok" => Status::Ok,
+                    "failed" => Status::Failed,
+                    _ => Status::NotRun,
+                };
             }
         })?;
         frame.status = status;
         Ok(frame)
     }
 
-    fn cells(&self) -> usize {
-        usize::try_from(self.outline.points)
-            .unwrap_or(usize::MAX)
-            .saturating_mul(self.outline.cars.len())
+    fn points(&self) -> usize {
+        usize::try_from(self.outline.points).unwrap_or(usize::MAX)
     }
 
+    fn cells(&self) -> usize {
+        self.points().saturating_mul(self.outline.cars.len())
+    }
+
+    /// Hands on the cells of a column part by part, with the index of the first one.
     fn each(&self, name: &str, mut f: impl FnMut(usize, Values)) -> Result<(), Problem> {
-        let per_part = usize::try_from(self.outline.points_per_part).unwrap_or(usize::MAX)
-            * self.outline.cars.len();
+        let per_part = self
+            .outline
+            .points_per_part
+            .saturating_mul(self.outline.cars.len() as u64);
         for part in self.source.parts() {
-            let values = self.source.columns(part, &[name])?;
-            let at = usize::try_from(part)
-                .unwrap_or(usize::MAX)
-                .saturating_mul(per_part);
-            if let (Some(values), true) = (values.into_iter().next(), at < self.cells()) {
+            let values = self.source.columns(part, &[name])?.into_iter().next();
+            let at = usize::try_from(part.saturating_mul(per_part)).unwrap_or(usize::MAX);
+            if let Some(values) = values.filter(|_| at < self.cells()) {
                 f(at, values);
             }
         }
@@ -113,18 +117,14 @@ impl<'a> StudyTable<'a> {
     }
 
     /// Number of runs that ended so.
-    #[must_use]
     pub fn count(&self, status: Status) -> usize {
         self.status.iter().filter(|s| **s == status).count()
     }
 
     /// How the runs of a car ended, by point.
     pub fn status(&self, car: usize) -> impl Iterator<Item = Status> {
-        self.status
-            .iter()
-            .skip(car)
-            .step_by(self.outline.cars.len())
-            .copied()
+        let cars = self.outline.cars.len();
+        self.status.iter().skip(car).step_by(cars).copied()
     }
 
     /// A number of a car at each point; NaN where its run was not ok (or, for what compares it with the subject, the subject's was not).
@@ -132,7 +132,14 @@ impl<'a> StudyTable<'a> {
     /// # Errors
     /// A part that cannot be read.
     pub fn numbers(&self, name: &str, car: usize) -> Result<Vec<f64>, Problem> {
-        self.numbers_where(name, car, true)
+        let mut numbers = self.all_numbers(name, car)?;
+        let compares = name.starts_with("subject_excess_");
+        for ((x, own), subject) in numbers.iter_mut().zip(self.status(car)).zip(self.status(0)) {
+            if own != Status::Ok || (compares && subject != Status::Ok) {
+                *x = f64::NAN;
+            }
+        }
+        Ok(numbers)
     }
 
     /// A number of a car at each point, whatever its run's status.
@@ -140,32 +147,11 @@ impl<'a> StudyTable<'a> {
     /// # Errors
     /// A part that cannot be read.
     pub fn all_numbers(&self, name: &str, car: usize) -> Result<Vec<f64>, Problem> {
-        self.numbers_where(name, car, false)
-    }
-
-    fn numbers_where(&self, name: &str, car: usize, only_ok: bool) -> Result<Vec<f64>, Problem> {
-        let cars = self.outline.cars.len();
-        let mut numbers =
-            vec![f64::NAN; usize::try_from(self.outline.points).unwrap_or(usize::MAX)];
-        let compares = name.starts_with("subject_excess_");
-        self.each(name, |at, values| {
-            let Values::Number(cells) = values else {
-                return;
-            };
-            for (k, x) in cells.into_iter().enumerate().skip(car).step_by(cars) {
-                let cell = at + k;
-                if cell >= self.status.len() {
-                    break; // more rows than the study has points
-                }
-                let subject = cell / cars * cars;
-                let good = self.status[cell] == Status::Ok
-                    && (!compares || self.status[subject] == Status::Ok);
-                if good || !only_ok {
-                    numbers[cell / cars] = x;
-                }
-            }
-        })?;
-        Ok(numbers)
+        let cells = |values| match values {
+            Values::Number(cells) => cells,
+            _ => Vec::new(),
+        };
+        self.of_car(name, car, f64::NAN, cells)
     }
 
     /// A word of a car at each point; empty where there is none.
@@ -173,18 +159,29 @@ impl<'a> StudyTable<'a> {
     /// # Errors
     /// A part that cannot be read.
     pub fn words(&self, name: &str, car: usize) -> Result<Vec<Arc<str>>, Problem> {
+        let cells = |values| match values {
+            Values::Text(cells) => cells,
+            _ => Vec::new(),
+        };
+        self.of_car(name, car, "".into(), cells)
+    }
+
+    /// The cells of a car at each point.
+    fn of_car<T: Clone>(
+        &self,
+        name: &str,
+        car: usize,
+        missing: T,
+        cells: impl Fn(Values) -> Vec<T>,
+    ) -> Result<Vec<T>, Problem> {
         let cars = self.outline.cars.len();
-        let empty: Arc<str> = "".into();
-        let mut words = vec![empty; usize::try_from(self.outline.points).unwrap_or(usize::MAX)];
+        let mut all = vec![missing; self.points()];
         self.each(name, |at, values| {
-            if let Values::Text(cells) = values {
-                for (k, word) in cells.into_iter().enumerate().skip(car).step_by(cars) {
-                    if let Some(cell) = words.get_mut((at + k) / cars) {
-                        *cell = word;
-                    }
-                }
-            }
+            // A damaged part may have more rows than the study has points.
+            let into = all.iter_mut().skip(at / cars);
+            let of_car = cells(values).into_iter().skip(car).step_by(cars);
+            into.zip(of_car).for_each(|(into, cell)| *into = cell);
         })?;
-        Ok(words)
+        Ok(all)
     }
 }

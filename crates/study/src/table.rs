@@ -17,7 +17,6 @@ pub enum Values {
 
 impl Values {
     /// An empty column of a kind with room for a number of cells.
-    #[must_use]
     pub fn with_capacity(kind: Kind, cells: usize) -> Self {
         match kind {
             Kind::Number => Values::Number(Vec::with_capacity(cells)),
@@ -27,7 +26,6 @@ impl Values {
     }
 
     /// Number of cells.
-    #[must_use]
     pub fn len(&self) -> usize {
         match self {
             Values::Number(v) => v.len(),
@@ -37,13 +35,11 @@ impl Values {
     }
 
     /// Whether there are no cells.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// What the cells are.
-    #[must_use]
     pub fn kind(&self) -> Kind {
         match self {
             Values::Number(_) => Kind::Number,
@@ -80,7 +76,6 @@ pub struct Rows {
 
 impl Rows {
     /// No rows yet, with room for a number of them.
-    #[must_use]
     pub fn with_capacity(columns: &[Head], rows: usize) -> Self {
         Rows {
             values: columns
@@ -103,13 +98,11 @@ impl Rows {
     }
 
     /// Number of rows.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.values.first().map_or(0, Values::len)
     }
 
     /// Whether there are none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

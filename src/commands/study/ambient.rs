@@ -3,9 +3,10 @@
 use clap::Args;
 use cvtcycle::config::{Place, Problem, Problems};
 use cvtcycle::study::Study;
-use cvtcycle::study::plan::Plan;
+use cvtcycle::study::plan::{Axis, Base, FactorValue, Keep, Places, Plan};
 
 use super::execution::StudyRunArgs;
+use crate::args::problems::overrides;
 use crate::args::{ComparisonArgs, VehicleArgs};
 use crate::commands::Execute;
 use crate::print::{CommandResult, Terminal};
@@ -47,18 +48,26 @@ const TRACES: [&str; 6] = [
     "engine_oil_degc",
     "coolant_degc",
 ];
+/// Keys of the plan with the options that give them.
+const OPTIONS: [(&str, &str); 7] = [
+    ("vehicle", "--vehicle"),
+    ("baselines", "--baseline"),
+    ("cycle", "--cycle"),
+    ("lubricant", "--lubricant"),
+    ("engine_oil", "--engine-oil"),
+    ("set", "--set"),
+    ("set_all", "--set-all"),
+];
 
 impl Execute for StudyAmbientArgs {
     type Plan = Study;
 
-    /// The matrix is a plan like any other; its problems are reported under the options that made it.
     fn plan(&self, problems: &mut Problems) -> Option<Study> {
-        let text = self.plan_text();
         let mut own = Problems::default();
-        let plan = own.take(Plan::read(PLAN, &text.text()));
+        let plan = self.matrix(&mut own);
         let study = plan.and_then(|plan| self.run.prepare(plan, &mut own));
         own.into_iter()
-            .for_each(|problem| problems.add(text.as_option(problem)));
+            .for_each(|problem| problems.add(of_option(problem)));
         study
     }
 
@@ -67,100 +76,75 @@ impl Execute for StudyAmbientArgs {
     }
 }
 
-/// Name of the plan that these options make.
-const PLAN: &str = "study ambient";
-
-/// Lines of the plan with the option that each comes from.
-#[derive(Default)]
-struct PlanText(Vec<(&'static str, String)>);
-
-impl PlanText {
-    fn line(&mut self, option: &'static str, line: impl Into<String>) {
-        self.0.push((option, line.into()));
-    }
-
-    /// Adds `key = value`, if there is a value.
-    fn entry(&mut self, option: &'static str, key: &str, value: Option<String>) {
-        if let Some(value) = value {
-            self.line(option, format!("{key} = {value}"));
-        }
-    }
-
-    fn text(&self) -> String {
-        self.0.iter().map(|(_, line)| format!("{line}\n")).collect()
-    }
-
-    /// The problem of a line of the plan, under the option that made the line.
-    fn as_option(&self, problem: Problem) -> Problem {
-        if problem.place.file_name() != Some(PLAN) {
-            return problem;
-        }
-        let key = problem.key.trim_start_matches("study.");
-        let index = problem.place.line.checked_sub(1);
-        let line = index.and_then(|k| self.0.get(k));
-        let is_of_key = |line: &str| line.split(" = ").next() == Some(key);
-        let by_key = || self.0.iter().find(|(_, line)| is_of_key(line));
-        let option = match line.or_else(by_key) {
-            Some((option, _)) if !option.is_empty() => *option,
-            _ => "--ambient",
-        };
-        problem.at(Place::file(option)).key(option)
+/// A problem of a key of the plan is one of the option.
+fn of_option(problem: Problem) -> Problem {
+    let option = problem.place.file_name().unwrap_or_default().to_owned();
+    let is_option = ["--ambient", "--start"].contains(&option.as_str())
+        || OPTIONS.iter().any(|(_, name)| *name == option);
+    if is_option {
+        problem.key(option)
+    } else {
+        problem
     }
 }
 
 impl StudyAmbientArgs {
-    fn plan_text(&self) -> PlanText {
+    /// The plan of these options; none after a problem with one of them.
+    fn matrix(&self, problems: &mut Problems) -> Option<Plan> {
         let (car, comparison) = (&self.car, &self.comparison);
-        let title = format!("{} on {}, cold to warm", car.vehicle, comparison.cycle);
-        let baselines = (!comparison.baseline.is_empty()).then(|| {
-            let named: Vec<&String> = comparison.named_baselines().collect();
-            list(&named)
-        });
-        let sets = |sets: &[String]| (!sets.is_empty()).then(|| list(sets));
-        let keep = self.run.out.out.as_ref().map(|_| list(&TRACES));
-        let oil = |oil: &Option<String>| oil.as_deref().map(quoted);
-        let values = |text: &str| Some(format!("[{}]", numbers_or_words(text)));
-        let mut text = PlanText::default();
-        text.line("", "# Made by `cvtcycle study ambient`.");
-        text.line("", "[study]");
-        text.entry("", "title", Some(quoted(&title)));
-        text.entry("--vehicle", "vehicle", Some(quoted(&car.vehicle)));
-        text.entry("--baseline", "baselines", baselines);
-        text.entry("--cycle", "cycle", Some(quoted(&comparison.cycle)));
-        text.entry("--lubricant", "lubricant", oil(&car.lubricant));
-        text.entry("--engine-oil", "engine_oil", oil(&comparison.engine_oil));
-        text.entry("--set", "set", sets(&car.set));
-        text.entry("--set-all", "set_all", sets(&comparison.set_all));
-        text.entry("", "keep", keep);
-        for line in ["", "[study.design.grid]", ""] {
-            text.line("", line);
+        let before = problems.len();
+        let mut check = |key: &str, option: &str, word: &str| {
+            let value = FactorValue::of_option(key, word).map_err(|p| p.in_file(option));
+            problems.take(value)
+        };
+        check("vehicle", "--vehicle", &car.vehicle);
+        comparison
+            .named_baselines()
+            .for_each(|name| drop(check("vehicle", "--baseline", name)));
+        check("cycle", "--cycle", &comparison.cycle);
+        let oils = [
+            ("lubricant", "--lubricant", &car.lubricant),
+            ("engine_oil", "--engine-oil", &comparison.engine_oil),
+        ];
+        for (key, option, name) in oils {
+            name.iter().for_each(|name| drop(check(key, option, name)));
         }
-        text.line("--ambient", "[[factor]]");
-        text.entry("--ambient", "key", Some(quoted("ambient_degc")));
-        text.entry("--ambient", "name", Some(quoted("ambient")));
-        text.entry("--ambient", "values", values(&self.ambient));
-        text.line("", "");
-        text.line("--start", "[[factor]]");
-        text.entry("--start", "key", Some(quoted("start")));
-        text.entry("--start", "values", values(&self.start));
-        text
+        let axes = [
+            ("ambient_degc", "--ambient", &self.ambient),
+            ("start", "--start", &self.start),
+        ]
+        .map(|(key, option, words)| Axis {
+            values: words
+                .split(',')
+                .filter_map(|word| check(key, option, word))
+                .collect(),
+            place: Place::file(option),
+        });
+        let set = overrides("--set", &car.set, problems);
+        let set_all = overrides("--set-all", &comparison.set_all, problems);
+        if problems.len() > before {
+            return None;
+        }
+        let mut places = Places::new(Place::file("--ambient"));
+        OPTIONS
+            .iter()
+            .for_each(|(key, option)| places.add(key, Place::file(*option)));
+        let base = Base {
+            vehicle: car.vehicle.clone(),
+            baselines: (!comparison.baseline.is_empty())
+                .then(|| comparison.named_baselines().cloned().collect()),
+            cycle: comparison.cycle.clone(),
+            lubricant: car.lubricant.clone(),
+            engine_oil: comparison.engine_oil.clone(),
+            set,
+            set_all,
+            ..Base::default()
+        };
+        let keep = match self.run.out.out {
+            Some(_) => Keep::Columns(TRACES.map(str::to_owned).to_vec()),
+            None => Keep::Summary,
+        };
+        let title = format!("{} on {}, cold to warm", car.vehicle, comparison.cycle);
+        problems.take(Plan::matrix(&title, base, axes, keep, places))
     }
-}
-
-/// Finite numbers as TOML numbers; everything else as text, which the plan checks.
-fn numbers_or_words(text: &str) -> String {
-    let value = |word: &str| match word.trim().parse::<f64>() {
-        Ok(x) if x.is_finite() => format!("{x:?}"),
-        _ => quoted(word.trim()),
-    };
-    text.split(',').map(value).collect::<Vec<_>>().join(", ")
-}
-
-fn list<S: AsRef<str>>(words: &[S]) -> String {
-    let words: Vec<String> = words.iter().map(|word| quoted(word.as_ref())).collect();
-    format!("[{}]", words.join(", "))
-}
-
-fn quoted(word: &str) -> String {
-    toml::Value::String(word.to_owned()).to_string()
 }

@@ -13,12 +13,8 @@ use super::{PLAN, files, heads, manifest, rows, whole, write_part};
 fn read(path: &Path) -> Result<usize, cvtcycle::config::Problem> {
     let names: Vec<String> = heads().into_iter().map(|column| column.name).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let mut rows = 0;
-    Study::open(path)?.for_each("runs", &names, |_, part| {
-        rows += part.len();
-        Ok(())
-    })?;
-    Ok(rows)
+    let study = Study::open(path)?;
+    Ok(study.read("runs", &names)?.len())
 }
 
 #[test]
@@ -96,13 +92,12 @@ fn one_column_over_all_parts() {
         })
         .collect();
     assert_eq!(all.values, [Values::Number(wanted)]);
-    let mut order = Vec::new();
-    study
-        .for_each("trace", &["run"], |index, part| {
-            order.push((index, part.len()));
-            Ok(())
-        })
-        .unwrap();
+    let rows = |&part: &usize| study.part(part, "trace").unwrap().rows();
+    let order: Vec<(usize, u64)> = study
+        .present()
+        .iter()
+        .map(|part| (*part, rows(part)))
+        .collect();
     assert_eq!(order, [(0, 3), (1, 4), (2, 5), (3, 6)]);
     let problem = study.read("walks", &["run"]).unwrap_err();
     assert!(

@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Write};
 use cvtcycle::output::trace::columns_for;
 use cvtcycle::output::trace::write_trace;
 use cvtcycle::study::store::{
-    ParquetFile, ParquetTable, sha256, write_csv, write_parquet, write_trace_parquet,
+    ParquetFile, ParquetTable, RowWriter, sha256, write_csv, write_parquet, write_trace_parquet,
 };
 use cvtcycle::study::table::{Head, Kind, Rows, Values};
 use proptest::prelude::*;
@@ -215,7 +215,7 @@ fn groups_of_rows_and_long_columns_read_back_whole() {
     };
     let pieces = [piece(30_000, 1), piece(0, 2), piece(1, 3), piece(20_000, 4)];
     let mut out = Vec::new();
-    let mut table = ParquetTable::new(&mut out, &columns, &[], &pieces[0]).unwrap();
+    let mut table = Box::new(ParquetTable::new(&mut out, &columns, &[], &pieces[0]).unwrap());
     pieces.iter().for_each(|piece| table.write(piece).unwrap());
     table.finish().unwrap();
     let back = said(&read_back(&out));

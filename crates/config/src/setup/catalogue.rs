@@ -12,7 +12,7 @@ use crate::rig;
 use crate::{Document, KeyInfo, Reader, Target};
 use cvtcycle_model::files;
 use cvtcycle_model::fluid::Lubricant;
-use cvtcycle_model::keys::Key;
+use cvtcycle_model::keys::{Key, Table};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Prefix of the keys of the transmission oil.
@@ -87,25 +87,37 @@ fn rows() -> impl Iterator<Item = (String, &'static Key<'static>)> {
         (OIL, files::LUBRICANT),
         ("", files::RIG),
     ];
-    tables.into_iter().flat_map(|(prefix, table)| {
-        let mut rows = Vec::new();
-        table.walk("", &mut |path, key| {
-            rows.push((format!("{prefix}{path}"), key))
-        });
-        rows
-    })
+    let tables = tables.into_iter();
+    tables.flat_map(|(prefix, table)| rows_of(prefix, &table))
+}
+
+fn rows_of(prefix: &str, table: &Table) -> Vec<(String, &'static Key<'static>)> {
+    let mut rows = Vec::new();
+    table.walk("", &mut |path, key| {
+        rows.push((format!("{prefix}{path}"), key))
+    });
+    rows
 }
 
 fn gathered() -> Vec<KeyInfo> {
-    let info = |(key, row): (String, &Key<'_>)| KeyInfo {
+    rows().map(info).collect()
+}
+
+/// Every key of a table, those of unchosen options too; without values.
+#[must_use]
+pub fn keys_of(table: &Table) -> Vec<KeyInfo> {
+    rows_of("", table).into_iter().map(info).collect()
+}
+
+fn info((key, row): (String, &Key<'_>)) -> KeyInfo {
+    KeyInfo {
         key,
         unit: row.unit(),
         allowed: row.allowed(),
         is_number: row.is_number(),
         doc: row.doc.to_owned(),
         ..KeyInfo::default()
-    };
-    rows().map(info).collect()
+    }
 }
 
 /// Keys that are read from a text, with their values.

@@ -58,7 +58,7 @@ impl Kind<'_> {
                 });
                 format!("rows of {}", words.collect::<Vec<_>>().join(", "))
             }
-            Kind::Other(words) | Kind::List(words) => (*words).to_owned(),
+            Kind::Other(words) | Kind::List(_, words) => (*words).to_owned(),
             Kind::Name(known) => known(),
             Kind::Either(kinds) => {
                 let each: Vec<String> = kinds.iter().map(|kind| kind.allowed(quantity)).collect();

@@ -51,8 +51,8 @@ pub enum Kind<'k> {
     Texts,
     /// A list of rows.
     Rows(&'k [Column<'k>]),
-    /// A list of anything; the text says of what.
-    List(&'k str),
+    /// A list of values of this kind; the text says of what.
+    List(&'k Kind<'k>, &'k str),
     /// A text; the function says which ones are known.
     Name(fn() -> String),
     /// A value of any of these kinds.
@@ -260,9 +260,9 @@ pub mod spec {
         (Kind::Name(known), Presence::Required)
     }
 
-    /// A required list; the text says of what.
-    pub const fn list_of(what: &'static str) -> Spec {
-        (Kind::List(what), Presence::Required)
+    /// A required list of values of this kind; the text says of what.
+    pub const fn list_of(item: &'static Kind<'static>, what: &'static str) -> Spec {
+        (Kind::List(item, what), Presence::Required)
     }
 
     /// A required value of any of these kinds.

@@ -13,18 +13,8 @@
 mod draw;
 
 use super::plan::{Design, Factor, FactorValues};
+pub use super::plan::{Level, MAX_SOBOL_SAMPLES};
 use draw::{Purpose, mix, permute, uniform};
-
-/// Position of a factor at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Level {
-    /// Not varied: the value of the car's file.
-    Base,
-    /// An entry of its list.
-    Entry(usize),
-    /// A probability, within 0 and 1, at which its distribution (or list, equally likely) is read.
-    Share(f64),
-}
 
 /// Which of Saltelli's matrices a point belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,12 +27,6 @@ pub enum Role {
     AB(usize),
 }
 
-/// Most samples of a Sobol sequence: the length of the tables behind it.
-pub const MAX_SOBOL_SAMPLES: u64 = 1 << 16;
-
-/// Most dimensions of a Sobol sequence; Saltelli's design needs two a factor.
-pub const MAX_SOBOL_DIMENSIONS: usize = sobol_burley::NUM_DIMENSIONS as usize;
-
 /// Half of the resolution of the Sobol sequence (DE-7).
 const HALF_STEP: f64 = 1.0 / (1_u64 << 24) as f64;
 
@@ -53,7 +37,6 @@ const JITTER: f64 = (1_u64 << 20) as f64;
 const LOOKED_THROUGH: u64 = 1 << 20;
 
 /// Saltelli's role of a point among `factors` factors, and the sample it belongs to, which has `factors + 2` points in a row.
-#[must_use]
 pub fn saltelli_role(factors: usize, point: u64) -> (u64, Role) {
     let block = factors as u64 + 2;
     let role = match point % block {
@@ -66,15 +49,11 @@ pub fn saltelli_role(factors: usize, point: u64) -> (u64, Role) {
 
 impl Design {
     /// Number of points; none where it is too large to be counted.
-    #[must_use]
     pub fn points(&self, factors: &[Factor]) -> Option<u64> {
+        let mut entries = factors.iter().map(|factor| self.entries(factor));
         match *self {
-            Design::Grid => factors.iter().try_fold(1_u64, |points, factor| {
-                points.checked_mul(self.entries(factor))
-            }),
-            Design::OneAtATime { .. } => factors.iter().try_fold(1_u64, |points, factor| {
-                points.checked_add(self.entries(factor))
-            }),
+            Design::Grid => entries.try_fold(1_u64, u64::checked_mul),
+            Design::OneAtATime { .. } => entries.try_fold(1_u64, u64::checked_add),
             Design::LatinHypercube { samples, .. }
             | Design::Sobol { samples, .. }
             | Design::MonteCarlo { samples, .. } => Some(samples),
@@ -85,35 +64,30 @@ impl Design {
     /// Position of one factor at a point below [`Design::points`].
     ///
     /// # Panics
-    /// In a Sobol design if the factor's dimension is beyond [`MAX_SOBOL_DIMENSIONS`], which no plan that was read has.
-    #[must_use]
+    /// In a Sobol design if the factor's dimension is beyond [`super::plan::MAX_SOBOL_DIMENSIONS`], which no plan that was read has.
     pub fn level(&self, factors: &[Factor], point: u64, factor: usize) -> Level {
         let column = factor as u64;
         match *self {
             Design::Grid => {
-                let faster = factors.iter().skip(factor + 1).fold(1_u64, |radix, other| {
-                    radix.saturating_mul(self.entries(other))
-                });
-                factors.get(factor).map_or(Level::Base, |factor| {
-                    factor.entry(point / faster % self.entries(factor), 0.5)
-                }) // DE-5
+                let radix = |radix: u64, other| radix.saturating_mul(self.entries(other));
+                let faster = factors.iter().skip(factor + 1).fold(1_u64, radix);
+                let at = |factor: &Factor| factor.entry(point / faster % self.entries(factor), 0.5);
+                factors.get(factor).map_or(Level::Base, at) // DE-5
             }
             Design::OneAtATime { quantile } => {
-                let before = factors
-                    .iter()
-                    .take(factor)
-                    .fold(1_u64, |sum, other| sum.saturating_add(self.entries(other)));
-                let at = point
-                    .checked_sub(before)
-                    .zip(factors.get(factor))
-                    .filter(|(entry, factor)| *entry < self.entries(factor));
-                at.map_or(Level::Base, |(entry, factor)| factor.entry(entry, quantile))
+                let sum = |sum: u64, other| sum.saturating_add(self.entries(other));
+                let before = factors.iter().take(factor).fold(1_u64, sum);
+                match (point.checked_sub(before), factors.get(factor)) {
+                    (Some(entry), Some(factor)) if entry < self.entries(factor) => {
+                        factor.entry(entry, quantile)
+                    }
+                    _ => Level::Base,
+                }
             }
             Design::LatinHypercube { samples, seed } => {
                 let stratum = permute(point, samples, mix(seed, Purpose::Stratum, 0, column));
-                let jitter = ((uniform(seed, Purpose::Jitter, point, column) * JITTER).floor()
-                    + 0.5)
-                    / JITTER;
+                let jitter = uniform(seed, Purpose::Jitter, point, column) * JITTER;
+                let jitter = (jitter.floor() + 0.5) / JITTER;
                 Level::Share((stratum as f64 + jitter) / samples as f64) // DE-6
             }
             Design::Sobol { seed, .. } => Level::Share(sobol(point, factor, seed)),
@@ -123,23 +97,13 @@ impl Design {
             Design::Saltelli { seed, .. } => {
                 let (sample, role) = saltelli_role(factors.len(), point);
                 let from_b = role == Role::B || role == Role::AB(factor);
-                Level::Share(sobol(
-                    sample,
-                    factor + if from_b { factors.len() } else { 0 },
-                    seed,
-                )) // DE-8
+                let first = if from_b { factors.len() } else { 0 };
+                Level::Share(sobol(sample, first + factor, seed)) // DE-8
             }
         }
     }
 
-    /// Where all factors stand at a point, in their order, in place of what `out` held.
-    pub fn levels(&self, factors: &[Factor], point: u64, out: &mut Vec<Level>) {
-        out.clear();
-        out.extend((0..factors.len()).map(|factor| self.level(factors, point, factor)));
-    }
-
     /// The same design with other samples or another seed; none for a design that has neither.
-    #[must_use]
     pub fn with(mut self, new_samples: Option<u64>, new_seed: Option<u64>) -> Option<Self> {
         match &mut self {
             Design::Grid | Design::OneAtATime { .. } => return None,
@@ -155,7 +119,6 @@ impl Design {
     }
 
     /// Whether the factors are drawn rather than taken one by one.
-    #[must_use]
     pub fn is_sampled(&self) -> bool {
         !matches!(self, Design::Grid | Design::OneAtATime { .. })
     }
@@ -172,13 +135,9 @@ impl Design {
 
     /// Least and largest share at which a factor's distribution is read: exact for up to 2^20 samples; beyond, ends that one study in a
     /// thousand passes.
-    #[must_use]
     pub fn share_span(&self, factors: &[Factor], factor: usize) -> (f64, f64) {
-        let span = |shares: &mut dyn Iterator<Item = f64>| {
-            shares.fold((1.0_f64, 0.0_f64), |(low, high), share| {
-                (low.min(share), high.max(share))
-            })
-        };
+        let wider = |(low, high): (f64, f64), share| (low.min(share), high.max(share));
+        let span = |shares: &mut dyn Iterator<Item = f64>| shares.fold((1.0, 0.0), wider);
         let share = |point: u64, column: usize| match self.level(factors, point, column) {
             Level::Share(share) => share,
             Level::Base | Level::Entry(_) => 0.5,
@@ -188,12 +147,9 @@ impl Design {
             Design::OneAtATime { quantile } => return (quantile, 1.0 - quantile),
             Design::Saltelli { samples, .. } => {
                 let block = factors.len() as u64 + 2;
-                return span(&mut (0..samples).flat_map(|sample| {
-                    [
-                        share(sample * block, factor),
-                        share(sample * block + 1, factor),
-                    ]
-                }));
+                let firsts = (0..samples).map(|sample| sample * block);
+                let points = firsts.flat_map(|first| [first, first + 1]);
+                return span(&mut points.map(|point| share(point, factor)));
             }
             Design::LatinHypercube { samples, .. }
             | Design::Sobol { samples, .. }
@@ -223,9 +179,6 @@ impl Factor {
 fn sobol(sample: u64, dimension: usize, seed: u64) -> f64 {
     // The crate's seeds have 32 bits; its index 16.
     let seed = mix(seed, Purpose::Sobol, 0, 0) as u32;
-    f64::from(sobol_burley::sample(
-        (sample % MAX_SOBOL_SAMPLES) as u32,
-        dimension as u32,
-        seed,
-    )) + HALF_STEP // DE-7
+    let index = (sample % MAX_SOBOL_SAMPLES) as u32;
+    f64::from(sobol_burley::sample(index, dimension as u32, seed)) + HALF_STEP // DE-7
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use rust_xlsxwriter::{DocProperties, ExcelDateTime, Format, Workbook, Worksheet, XlsxError};
 
-use crate::store::Header;
+use crate::store::{Header, RowWriter};
 use crate::table::{Head, Rows, Values};
 use cvtcycle_output::number::finite;
 
@@ -47,12 +47,10 @@ impl<W: Write> XlsxTable<W> {
         }
         Ok(Self { out, book, row: 0 })
     }
+}
 
-    /// Adds some rows.
-    ///
-    /// # Errors
-    /// [`io::ErrorKind::InvalidInput`] for a text that is too long for a cell, or rows beyond the sheet.
-    pub fn write(&mut self, rows: &Rows) -> io::Result<()> {
+impl<W: Write> RowWriter for XlsxTable<W> {
+    fn write(&mut self, rows: &Rows) -> io::Result<()> {
         let sheet = self.book.worksheet_from_index(0).map_err(refused)?;
         for at in 0..rows.len() {
             self.row += 1;
@@ -80,11 +78,7 @@ impl<W: Write> XlsxTable<W> {
         Ok(())
     }
 
-    /// Writes the file.
-    ///
-    /// # Errors
-    /// Those of the file.
-    pub fn finish(mut self) -> io::Result<()> {
+    fn finish(mut self: Box<Self>) -> io::Result<()> {
         let bytes = self.book.save_to_buffer().map_err(refused)?;
         self.out.write_all(&bytes)?;
         self.out.flush()
@@ -152,7 +146,7 @@ mod tests {
                 Values::Text(vec![text.into(); 20]),
             ],
         };
-        let mut table = XlsxTable::new(&mut out, "runs", &heads)?;
+        let mut table = Box::new(XlsxTable::new(&mut out, "runs", &heads)?);
         table.write(&rows)?;
         table.finish()
     }

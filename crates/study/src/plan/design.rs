@@ -1,24 +1,18 @@
 //! The design of a plan, and what concerns all its factors at once.
 
-use super::{Cars, Design, Factor, FactorValues, Places, Plan, options};
-use crate::design::{MAX_SOBOL_DIMENSIONS, MAX_SOBOL_SAMPLES};
-use cvtcycle_config::{Bound, Problem, Problems, Section, readable, unit_of};
+use super::keys::{self, MAX_SAMPLES, ONE_AT_A_TIME, SAMPLE, STUDY};
+use super::{Cars, Design, Factor, FactorValues, Places, Plan};
+use cvtcycle_config::{Problem, Problems, Section, readable};
+use cvtcycle_model::keys::Values;
 
-/// Designs.
-const DESIGNS: [&str; 6] = [
-    "grid",
-    "one_at_a_time",
-    "latin_hypercube",
-    "sobol",
-    "monte_carlo",
-    "saltelli",
-];
-/// Most samples of a design without a limit of its own.
-const MAX_SAMPLES: u64 = 1_000_000_000;
+/// Most samples of a Sobol sequence: the length of the tables behind it.
+pub const MAX_SOBOL_SAMPLES: u64 = 1 << 16;
+
+/// Most dimensions of a Sobol sequence; Saltelli's design needs two a factor.
+pub const MAX_SOBOL_DIMENSIONS: usize = sobol_burley::NUM_DIMENSIONS as usize;
 
 impl Design {
     /// Numbers of samples that it may have; none for a design without samples.
-    #[must_use]
     pub fn sample_range(&self) -> Option<std::ops::RangeInclusive<u64>> {
         match self {
             Design::Grid | Design::OneAtATime { .. } => None,
@@ -30,27 +24,18 @@ impl Design {
 
 /// Reads the design; meaningless if one of its problems was reported.
 pub(super) fn read(study: &Section, places: &mut Places) -> Design {
-    let (name, d) = study.choose("design", &DESIGNS, None, "which combinations are driven");
+    let (name, d) = Values::choose(study, &STUDY.design);
     places.add_given(study, "design", "design");
     match name {
         "grid" => return Design::Grid,
         "one_at_a_time" => {
-            let quantile = d.number_or(
-                "quantile",
-                Bound::closed(1e-6, 0.49),
-                0.05,
-                "lower quantile of distributions; the upper one is 1 - it",
-            );
+            let quantile = Values::number(&d, &ONE_AT_A_TIME.quantile);
             return Design::OneAtATime { quantile };
         }
         _ => {}
     }
     places.add_given(&d, "samples", "design.samples");
-    let count = d.number(
-        "samples",
-        Bound::closed(2.0, MAX_SAMPLES as f64),
-        "number of samples",
-    );
+    let count = Values::number(&d, &SAMPLE.samples);
     let samples = count as u64;
     if count.is_finite() && (samples as f64 - count).abs() > 0.0 {
         d.complain(
@@ -61,19 +46,19 @@ pub(super) fn read(study: &Section, places: &mut Places) -> Design {
         );
     }
     if matches!(name, "sobol" | "saltelli") && samples > MAX_SOBOL_SAMPLES {
-        let hint = if name == "sobol" {
-            "use latin_hypercube for more"
-        } else {
-            "more are seldom of use; monte_carlo draws any number"
+        let hint = match name {
+            "sobol" => "use latin_hypercube for more",
+            _ => "more are seldom of use; monte_carlo draws any number",
         };
+        let allowed = format!("2 to {MAX_SOBOL_SAMPLES}");
         d.complain(
             "samples",
-            &format!("2 to {MAX_SOBOL_SAMPLES}"),
+            &allowed,
             "the Sobol sequence is not that long",
             hint,
         );
     }
-    let seed = d.integer_or("seed", 0..=i64::MAX, 1, "seed").unsigned_abs();
+    let seed = d.integer(&SAMPLE.seed).unsigned_abs();
     match name {
         "latin_hypercube" => Design::LatinHypercube { samples, seed },
         "sobol" => Design::Sobol { samples, seed },
@@ -86,37 +71,37 @@ pub(super) fn read(study: &Section, places: &mut Places) -> Design {
 pub(super) fn clashes(factors: &[Factor]) -> Problems {
     let mut problems = Problems::new();
     for (k, factor) in factors.iter().enumerate() {
+        let earlier = |is_like: &dyn Fn(&Factor) -> bool| {
+            let found = factors[..k].iter().find(|other| is_like(other));
+            found.map(|other| other.place.line)
+        };
         let overlaps = |other: &Factor| {
             other.cars == factor.cars || other.cars == Cars::All || factor.cars == Cars::All
         };
-        if let Some(first) = factors[..k]
-            .iter()
-            .find(|other| other.key == factor.key && overlaps(other))
-        {
+        if let Some(line) = earlier(&|other| other.key == factor.key && overlaps(other)) {
             let message = format!(
-                "`{}` is varied twice for the same car, first in line {}",
-                factor.key, first.place.line
+                "`{}` is varied twice for the same car, first in line {line}",
+                factor.key
             );
             let hint =
                 "join them, or give one `cars = \"subject\"` and the other `cars = \"baselines\"`";
-            problems.push(problem(factor, "key", &message, hint));
-        } else if let Some(first) = factors[..k].iter().find(|other| other.name == factor.name) {
+            problems.push(of_factor(factor, "key", message, hint));
+        } else if let Some(line) = earlier(&|other| other.name == factor.name) {
             let message = format!(
-                "the name `{}` was used before, by the factor in line {}",
-                factor.name, first.place.line
+                "the name `{}` was used before, by the factor in line {line}",
+                factor.name
             );
-            problems.push(problem(factor, "name", &message, "names are unique"));
+            problems.push(of_factor(factor, "name", message, "names are unique"));
         }
     }
     problems
 }
 
-fn problem(factor: &Factor, key: &str, message: &str, hint: &str) -> Problem {
+fn of_factor(factor: &Factor, key: &str, message: String, hint: &str) -> Problem {
     // What is not given follows from the key.
-    let place = if factor.places.of(key) == factor.places.of("") {
-        &factor.place
-    } else {
-        factor.places.of(key)
+    let place = match factor.places.of(key) {
+        place if place == factor.places.of("") => &factor.place,
+        place => place,
     };
     Problem::invalid(message)
         .at(place.clone())
@@ -124,29 +109,18 @@ fn problem(factor: &Factor, key: &str, message: &str, hint: &str) -> Problem {
         .hint(hint)
 }
 
-/// What is wrong between the design and a number of factors, of which those in `read` could be read.
-pub(super) fn limits(design: &Design, number: usize, read: &[Factor], places: &Places) -> Problems {
+/// What is wrong between the design of a plan and the number of its factors, not all of which could be read.
+pub(super) fn limits(plan: &Plan, number: usize) -> Problems {
+    let (design, read) = (&plan.design, &plan.factors);
     let mut problems = Problems::new();
-    let mut add = |place, key: &str, allowed: String, message: String, hint: &str| {
-        let (key, hint) = (key.to_owned(), hint.to_owned());
-        problems.push(
-            Problem::invalid(message)
-                .at(place)
-                .key(key)
-                .allowed(allowed)
-                .hint(hint),
-        );
+    let mut refuse = |allowed: &str, message: String, hint: &str| {
+        let place = plan.places.of("design").clone();
+        let problem = Problem::invalid(message).at(place).key("study.design");
+        problems.push(problem.allowed(allowed).hint(hint));
     };
-    let at = || places.of("design").clone();
     if number == 0 && *design != Design::Grid {
-        let allowed = "at least one [[factor]]".to_owned();
-        add(
-            at(),
-            "study.design",
-            allowed,
-            "nothing is varied".into(),
-            "add a [[factor]], or use the design `grid` for the base alone",
-        );
+        let hint = "add a [[factor]], or use the design `grid` for the base alone";
+        refuse("at least one [[factor]]", "nothing is varied".into(), hint);
     }
     let dimensions = match design {
         Design::Sobol { .. } => number,
@@ -154,81 +128,56 @@ pub(super) fn limits(design: &Design, number: usize, read: &[Factor], places: &P
         _ => 0,
     };
     if dimensions > MAX_SOBOL_DIMENSIONS {
-        let most = MAX_SOBOL_DIMENSIONS * number / dimensions;
-        add(
-            at(),
-            "study.design",
-            format!("up to {most} factors"),
-            format!("{number} factors are too many for this design"),
-            "leave some out",
+        let allowed = format!(
+            "up to {} factors",
+            MAX_SOBOL_DIMENSIONS * number / dimensions
         );
-    }
-    if *design == Design::Grid {
-        for factor in read
-            .iter()
-            .filter(|factor| matches!(factor.values, FactorValues::Distribution(_)))
-        {
-            let message = format!(
-                "factor {}: a distribution has no values for a grid",
-                factor.key
-            );
-            add(
-                factor.places.of("distribution").clone(),
-                "distribution",
-                "values or range".into(),
-                message,
-                "give `values` or a `range`",
-            );
-        }
+        let message = format!("{number} factors are too many for this design");
+        refuse(&allowed, message, "leave some out");
     }
     if read.len() == number && design.points(read).is_none() {
-        add(
-            at(),
-            "study.design",
-            String::new(),
-            "the design has more points than can be counted".into(),
-            "take fewer values or factors",
-        );
+        let message = "the design has more points than can be counted".into();
+        refuse("", message, "take fewer values or factors");
+    }
+    let is_drawn = |factor: &&Factor| matches!(factor.values, FactorValues::Distribution(_));
+    if *design == Design::Grid {
+        problems.extend(read.iter().filter(is_drawn).map(|factor| {
+            let message = "a distribution has no values for a grid".to_owned();
+            of_distribution(factor, message, "give `values` or a `range`")
+                .allowed("values or range")
+        }));
     }
     problems
+}
+
+fn of_distribution(factor: &Factor, message: String, hint: &str) -> Problem {
+    Problem::invalid(format!("factor {}: {message}", factor.key))
+        .at(factor.places.of("distribution").clone())
+        .key("distribution")
+        .hint(hint)
 }
 
 /// What only a whole plan shows: distributions of run options that leave their range, and factors of cars that do not exist.
 pub(super) fn reach(plan: &Plan) -> Problems {
     let mut problems = Problems::new();
+    let no_baselines = plan.base.baselines.as_ref().is_some_and(Vec::is_empty);
     for (k, factor) in plan.factors.iter().enumerate() {
-        if factor.cars == Cars::Baselines && plan.base.baselines.as_ref().is_some_and(Vec::is_empty)
-        {
+        if factor.cars == Cars::Baselines && no_baselines {
             let message = format!("factor {}: there are no baselines", factor.key);
-            problems.push(problem(
-                factor,
-                "cars",
-                &message,
-                "name them in `baselines`, or remove the factor",
-            ));
+            let hint = "name them in `baselines`, or remove the factor";
+            problems.push(of_factor(factor, "cars", message, hint));
         }
         let (Some(bound), FactorValues::Distribution(_), Some((low, high))) =
-            (options::bound(&factor.key), &factor.values, plan.span(k))
+            (keys::range(&factor.key), &factor.values, plan.span(k))
         else {
             continue;
         };
         if !(bound.contains(low) && bound.contains(high)) {
-            let message = format!(
-                "factor {}: the draws go from {} to {}",
-                factor.key,
-                readable(low, 4),
-                readable(high, 4)
-            );
-            let allowed = bound.in_unit(unit_of(options::quantity(&factor.key)));
-            let hint = "use truncated_normal, uniform or triangular".to_owned();
-            let place = factor.places.of("distribution").clone();
-            problems.push(
-                Problem::invalid(message)
-                    .at(place)
-                    .key("distribution")
-                    .allowed(allowed)
-                    .hint(hint),
-            );
+            let (low, high) = (readable(low, 4), readable(high, 4));
+            let message = format!("the draws go from {low} to {high}");
+            let hint = "use truncated_normal, uniform or triangular";
+            let allowed = bound.in_unit(keys::quantity(&factor.key).unit());
+            problems.push(of_distribution(factor, message, hint).allowed(allowed));
         }
     }
     problems

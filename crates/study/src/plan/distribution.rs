@@ -22,7 +22,6 @@ const NEGLIGIBLE: f64 = 40.0;
 
 impl Distribution {
     /// Value below which a share `u` of the distribution lies; `u` within 0 and 1, both ends excluded where the distribution is unbounded.
-    #[must_use]
     pub fn inverse_cdf(&self, u: f64) -> f64 {
         match *self {
             Distribution::Normal { mean, sd } => mean + sd * standard(u), // PD-1
@@ -53,19 +52,16 @@ impl Distribution {
     }
 
     /// Mean.
-    #[must_use]
     pub fn mean(&self) -> f64 {
         self.moments().0
     }
 
     /// Standard deviation.
-    #[must_use]
     pub fn sd(&self) -> f64 {
         self.moments().1
     }
 
     /// Least and largest possible value; infinite where there is none.
-    #[must_use]
     pub fn support(&self) -> (f64, f64) {
         match *self {
             Distribution::Normal { .. } => (f64::NEG_INFINITY, f64::INFINITY),
@@ -73,26 +69,6 @@ impl Distribution {
             Distribution::TruncatedNormal { low, high, .. }
             | Distribution::Uniform { low, high }
             | Distribution::Triangular { low, high, .. } => (low, high),
-        }
-    }
-
-    /// Least and largest value to be expected in a number of draws: the ends, and where there is none the quantiles 1/(2 points) and
-    /// 1 - 1/(2 points). What a design really draws is [`super::Plan::span`].
-    #[must_use]
-    pub fn expected_span(&self, points: u64) -> (f64, f64) {
-        let u = 0.5 / points.max(1) as f64;
-        let (low, high) = self.support();
-        let or = |end: f64, u: f64| {
-            if end.is_finite() {
-                end
-            } else {
-                self.inverse_cdf(u)
-            }
-        };
-        match self {
-            // Zero is an end that is never reached.
-            Distribution::Lognormal { .. } => (self.inverse_cdf(u), self.inverse_cdf(1.0 - u)),
-            _ => (or(low, u), or(high, 1.0 - u)),
         }
     }
 

@@ -2,7 +2,9 @@
 //!
 //! | file | contents |
 //! |---|---|
+//! | `keys` | every key of a plan: unit, range, options, default, meaning |
 //! | `read` | the head of a plan, and all its parts together |
+//! | `write` | a plan as TOML |
 //! | `factor`, `values` | one `[[factor]]` and its list, range or distribution |
 //! | `options` | what the run options allow, as factors and at the head |
 //! | `design` | the design's own keys, and what concerns all factors at once |
@@ -11,14 +13,19 @@
 mod design;
 mod distribution;
 mod factor;
+mod keys;
 mod options;
 mod places;
 mod read;
 mod values;
+mod write;
 
 pub use cvtcycle_config::embedded::plans as embedded_plans;
 use cvtcycle_config::setup::{Kind, NamedBy, text_of};
+pub use design::{MAX_SOBOL_DIMENSIONS, MAX_SOBOL_SAMPLES};
+pub use keys::PLAN;
 pub use places::Places;
+pub use write::Axis;
 
 use std::sync::Arc;
 
@@ -26,8 +33,6 @@ use serde::{Deserialize, Serialize};
 
 use cvtcycle_config::{Override, Place, Problems};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
-
-use super::design::Level;
 
 /// A whole plan.
 #[derive(Clone, Debug)]
@@ -153,12 +158,34 @@ pub enum FactorValue {
     Word(Arc<str>),
 }
 
-/// As a user would write it, words without quotes.
 impl std::fmt::Display for FactorValue {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             FactorValue::Number(x) => write!(f, "{x}"),
             FactorValue::Word(word) => f.write_str(word),
+        }
+    }
+}
+
+impl FactorValue {
+    /// The number; none of a word.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            FactorValue::Number(x) => Some(*x),
+            FactorValue::Word(_) => None,
+        }
+    }
+
+    /// Whether it is a number.
+    pub fn is_number(&self) -> bool {
+        self.number().is_some()
+    }
+
+    /// As a user would write it, words without quotes.
+    pub fn text(&self) -> Arc<str> {
+        match self {
+            FactorValue::Number(x) => x.to_string().into(),
+            FactorValue::Word(word) => word.clone(),
         }
     }
 }
@@ -222,6 +249,14 @@ impl Plan {
     /// Reads and checks a plan; `file` is the name under which problems cite it. Names of cars, fluids and cycles that the program carries
     /// are checked; files that the plan names are not opened, and keys of cars and names of result columns are not known here.
     ///
+    /// ```
+    /// use cvtcycle_study::plan::Plan;
+    /// let text = "study.design = \"grid\"\n[[factor]]\nkey = \"ambient_degc\"\nvalues = [-10, 25]\n";
+    /// let plan = Plan::read("plan.toml", text)?;
+    /// assert_eq!((plan.design.points(&plan.factors), plan.span(0)), (Some(2), Some((-10.0, 25.0))));
+    /// # Ok::<(), cvtcycle_config::Problems>(())
+    /// ```
+    ///
     /// # Errors
     /// All problems with their places.
     pub fn read(file: &str, text: &str) -> Result<Plan, Problems> {
@@ -239,31 +274,56 @@ impl Plan {
 
     /// Least and largest number that a factor takes in this plan; none for words. Exact, but for distributions drawn more than 2^20
     /// times ([`Design::share_span`]).
-    #[must_use]
     pub fn span(&self, factor: usize) -> Option<(f64, f64)> {
         let values = &self.factors.get(factor)?.values;
         match values {
             FactorValues::List(list) => {
-                let numbers = list.iter().filter_map(|value| match value {
-                    FactorValue::Number(x) => Some((*x, *x)),
-                    FactorValue::Word(_) => None,
-                });
+                let numbers = list.iter().filter_map(FactorValue::number).map(|x| (x, x));
                 numbers.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
             }
             FactorValues::Distribution(distribution) => {
                 let (low, high) = self.design.share_span(&self.factors, factor);
-                Some((
-                    distribution.inverse_cdf(low),
-                    distribution.inverse_cdf(high),
-                ))
+                let at = |share| distribution.inverse_cdf(share);
+                Some((at(low), at(high)))
             }
         }
     }
 }
 
+impl FactorValues {
+    /// The entries of a list; none of a distribution.
+    pub fn list(&self) -> &[FactorValue] {
+        match self {
+            FactorValues::List(list) => list,
+            FactorValues::Distribution(_) => &[],
+        }
+    }
+
+    /// The values, all as words where there are numbers and words.
+    pub fn unmixed(self) -> Self {
+        match self {
+            FactorValues::List(list) if !list.iter().all(FactorValue::is_number) => {
+                let words = list.iter().map(|value| FactorValue::Word(value.text()));
+                FactorValues::List(words.collect())
+            }
+            other => other,
+        }
+    }
+
+    /// Whether they are numbers.
+    pub fn are_numbers(&self) -> bool {
+        self.list().iter().all(FactorValue::is_number)
+    }
+}
+
 impl Factor {
+    /// Number of the entry of its list that is a value, counted from 1; 0 where there is none.
+    pub(crate) fn entry_of(&self, value: &FactorValue) -> usize {
+        let at = self.values.list().iter().position(|entry| entry == value);
+        at.map_or(0, |k| k + 1)
+    }
+
     /// Its value where a design puts it; none for the value of the car's own file.
-    #[must_use]
     pub fn value(&self, level: Level) -> Option<FactorValue> {
         match (&self.values, level) {
             (_, Level::Base) => None,
@@ -278,6 +338,17 @@ impl Factor {
             (FactorValues::Distribution(_), Level::Entry(_)) => None,
         }
     }
+}
+
+/// Position of a factor at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Level {
+    /// Not varied: the value of the car's file.
+    Base,
+    /// An entry of its list.
+    Entry(usize),
+    /// A probability, within 0 and 1, at which its distribution (or list, equally likely) is read.
+    Share(f64),
 }
 
 /// Which combinations of values are driven.

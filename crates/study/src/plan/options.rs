@@ -1,138 +1,105 @@
-//! What the run options allow. The same checks hold for the head of a plan and for factors.
+//! Values of the run options. The same checks hold for the head of a plan, for factors and for options of the command line.
 
 use std::sync::Arc;
 
-use super::{FactorValue, RUN_OPTIONS};
 use cvtcycle_config::cycle;
-use cvtcycle_config::setup::{AMBIENT, embedded_lubricants, embedded_vehicles, is_path};
-use cvtcycle_config::{Bound, RawValue, did_you_mean, unit_of};
-use cvtcycle_model::keys::Quantity;
-use cvtcycle_model::transmission::cvt::variator::Formulation;
+use cvtcycle_config::setup::is_path;
+use cvtcycle_config::{Problem, RawValue, did_you_mean};
+use cvtcycle_model::keys::{Key, Kind};
 
-/// Range of start temperatures, degC.
-const START: Bound = Bound::closed(-40.0, 130.0);
-/// Range of the longest step, s.
-const STEP: Bound = Bound::closed(0.01, 10.0);
+use super::FactorValue;
+use super::keys::{STUDY, known_words, numbers, run_option};
 
-/// Words of `start`.
-const STARTS: [&str; 2] = ["soak", "warm"];
-
-/// Whether a factor's key is a run option.
-pub(super) fn is_option(key: &str) -> bool {
-    RUN_OPTIONS.contains(&key)
-}
-
-/// Range of a run option's numbers; none for those that are words.
-pub(super) fn bound(option: &str) -> Option<Bound> {
-    match option {
-        "ambient_degc" => Some(AMBIENT),
-        "start" => Some(START),
-        "dt_s" => Some(STEP),
-        _ => None,
+impl FactorValue {
+    /// The value of a run option, or of `vehicle`, as written in the command line.
+    ///
+    /// ```
+    /// use cvtcycle_study::plan::FactorValue;
+    /// assert_eq!(FactorValue::of_option("ambient_degc", "-10"), Ok(FactorValue::Number(-10.0)));
+    /// assert!(FactorValue::of_option("start", "warmed").is_err());
+    /// ```
+    ///
+    /// # Errors
+    /// A problem without a place: a word that is not known, or a number out of range.
+    pub fn of_option(option: &str, written: &str) -> Result<Self, Problem> {
+        let written = written.trim();
+        let row = match option {
+            "vehicle" => &STUDY.vehicle,
+            _ => run_option(option).ok_or_else(|| {
+                Problem::unknown_name(format!("there is no run option `{option}`"))
+            })?,
+        };
+        let found = match (numbers(&row.kind), written.parse::<f64>()) {
+            (Some(range), Ok(x)) if range.contains(x) => Ok(FactorValue::Number(x)),
+            (Some(_), Ok(_)) => Err(Problem::out_of_range(format!("`{option}` is out of range"))),
+            (Some(_), Err(_)) if matches!(row.kind, Kind::Number(_)) => {
+                Err(Problem::wrong_type(format!("`{written}` is no number")))
+            }
+            _ => word(row, written).map_err(|(why, hint)| Problem::unknown_name(why).hint(hint)),
+        };
+        found.map_err(|problem| problem.value(written).allowed(row.allowed()))
     }
 }
 
-/// A key that ends in the unit of an option's numbers.
-pub(super) fn quantity(option: &str) -> &str {
-    if option == "start" {
-        "start_degc"
-    } else {
-        option
-    }
-}
-
-/// What an option allows, in words.
-pub(super) fn allowed(option: &str) -> String {
-    let numbers = bound(option).map(|bound| bound.in_unit(unit_of(quantity(option))));
-    match (option, numbers) {
-        ("start", Some(numbers)) => format!("{}, or {numbers}", STARTS.join(", ")),
-        (_, Some(numbers)) => numbers,
-        ("formulation", None) => Formulation::NAMES.map(|(name, _)| name).join(", "),
-        ("cycle", None) => {
-            "a name of `cvtcycle list cycles`, constant_V with V in km/h, or the path of a CSV file"
-                .to_owned()
-        }
-        ("vehicle", None) => format!(
-            "{}, or the path of a TOML file",
-            names(embedded_vehicles()).join(", ")
-        ),
-        _ => format!(
-            "{}, or the path of a TOML file",
-            names(embedded_lubricants()).join(", ")
-        ),
-    }
-}
-
-/// The value of an option (or of `vehicle`) as written; none, and reported, if it cannot be one.
-pub(super) fn value(option: &str, written: &RawValue) -> Option<FactorValue> {
-    if let Some(bound) = bound(option)
-        && (option != "start" || written.is_number())
+/// The value of a row of the head as written; none, and reported, if it cannot be one.
+pub(super) fn value(row: &Key, written: &RawValue) -> Option<FactorValue> {
+    let range = numbers(&row.kind);
+    if let Some(range) = range
+        && (written.is_number() || matches!(row.kind, Kind::Number(_)))
     {
-        return written
-            .number(Quantity::of(quantity(option)), bound)
-            .map(FactorValue::Number);
+        return written.number(row.quantity, range).map(FactorValue::Number);
     }
-    let Some(word) = written.word() else {
-        written.wrong_type(if option == "start" {
-            "soak, warm or a number"
-        } else {
-            "text"
-        });
+    let Some(text) = written.word() else {
+        match range {
+            Some(_) => written.wrong_type(&format!("{} or a number", known_words(row).join(", "))),
+            None => written.wrong_type("text"),
+        }
         return None;
     };
-    let known: Vec<&str> = match option {
-        "start" => STARTS.to_vec(),
-        "formulation" => Formulation::NAMES.map(|(name, _)| name).to_vec(),
-        "cycle" => cycle::names().to_vec(),
-        "vehicle" => names(embedded_vehicles()),
-        _ => names(embedded_lubricants()),
-    };
-    if let Some(why) = unknown(option, word, &known) {
-        written.complain(&allowed(option), &why, &hint(option, word, &known));
-        return None;
-    }
-    Some(FactorValue::Word(Arc::from(word)))
+    word(row, text)
+        .map_err(|(why, hint)| written.complain(&row.allowed(), &why, &hint))
+        .ok()
 }
 
-/// Why a word is none that an option knows.
-fn unknown(option: &str, word: &str, known: &[&str]) -> Option<String> {
-    let names_file = !matches!(option, "start" | "formulation");
-    if option == "cycle"
+/// A word that a row accepts; else what is wrong with it, and a hint.
+fn word(row: &Key, word: &str) -> Result<FactorValue, (String, String)> {
+    let is_name = matches!(row.kind, Kind::Name(_));
+    let known = known_words(row);
+    let good = || Ok(FactorValue::Word(Arc::from(word)));
+    let question = || did_you_mean(word, known.iter().copied()).unwrap_or_default();
+    let path = "a path needs a / or an ending";
+    let hint = match (row.name, question()) {
+        ("start", _) if word.trim().parse::<f64>().is_ok() => {
+            format!("write {} without quotes", word.trim())
+        }
+        ("vehicle", _) if word == "none" => "write baselines = []".to_owned(),
+        ("cycle", _) if word.starts_with("constant_") => {
+            "write, for example, constant_90".to_owned()
+        }
+        (_, question) if !is_name => question,
+        (_, question) if question.is_empty() => path.to_owned(),
+        (_, question) => format!("{question} {path}"),
+    };
+    if row.name == "cycle"
         && !cycle::is_csv(word)
         && let Some(constant) = cycle::constant_speed(word)
     {
-        return constant
-            .err()
-            .map(|problem| format!("`{word}`: {}", problem.message));
+        return match constant {
+            Ok(_) => good(),
+            Err(problem) => Err((format!("`{word}`: {}", problem.message), hint)),
+        };
     }
-    if known.contains(&word) || (names_file && is_path(word)) {
-        return None;
+    if known.contains(&word) || (is_name && is_path(word)) {
+        return good();
     }
-    let kind = match option {
-        "engine_oil" => "lubricant",
-        other => other,
-    };
-    Some(if names_file {
-        format!("there is no {kind} named `{word}`")
+    let kind = if row.name == "engine_oil" {
+        "lubricant"
     } else {
-        format!("`{word}` is not known for `{option}`")
-    })
-}
-
-fn hint(option: &str, word: &str, known: &[&str]) -> String {
-    let question = did_you_mean(word, known.iter().copied()).unwrap_or_default();
-    match option {
-        "start" if word.trim().parse::<f64>().is_ok() => {
-            format!("write {} without quotes", word.trim())
-        }
-        "vehicle" if word == "none" => "write baselines = []".to_owned(),
-        "cycle" if word.starts_with("constant_") => "write, for example, constant_90".to_owned(),
-        "start" | "formulation" => question,
-        _ if question.is_empty() => "a path needs a / or an ending".to_owned(),
-        _ => format!("{question} a path needs a / or an ending"),
-    }
-}
-
-fn names(embedded: &'static [(&'static str, &'static str)]) -> Vec<&'static str> {
-    embedded.iter().map(|(name, _)| *name).collect()
+        row.name
+    };
+    let why = match is_name {
+        true => format!("there is no {kind} named `{word}`"),
+        false => format!("`{word}` is not known for `{}`", row.name),
+    };
+    Err((why, hint))
 }

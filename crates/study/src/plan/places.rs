@@ -1,6 +1,6 @@
 //! Places of the parts of a plan, for problems that are found later.
 
-use cvtcycle_config::{Place, Section};
+use cvtcycle_config::{Place, RawValue, Section};
 
 /// Places of the keys of one table of a plan.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -11,7 +11,6 @@ pub struct Places {
 
 impl Places {
     /// Those of a table at `whole`.
-    #[must_use]
     pub fn new(whole: Place) -> Self {
         Places {
             whole,
@@ -20,26 +19,26 @@ impl Places {
     }
 
     /// Place of a key's value, such as `design`, `values` or `distribution.low`; the table itself where the key is not given.
-    #[must_use]
     pub fn of(&self, key: &str) -> &Place {
         self.find(key).unwrap_or(&self.whole)
     }
 
     /// Place of an item of a list, counted from 0; the whole value where it is no list, such as a range.
-    #[must_use]
     pub fn nth(&self, key: &str, item: usize) -> &Place {
         self.find(&item_name(key, item))
             .unwrap_or_else(|| self.of(key))
     }
 
     /// Notes a place.
-    pub(super) fn add(&mut self, key: &str, place: Place) {
+    pub fn add(&mut self, key: &str, place: Place) {
         self.known.push((key.to_owned(), place));
     }
 
-    /// Notes the place of an item of a list.
-    pub(super) fn add_item(&mut self, key: &str, item: usize, place: Place) {
-        self.add(&item_name(key, item), place);
+    /// Notes the places of the items of a list.
+    pub(super) fn add_items(&mut self, key: &str, items: &[RawValue]) {
+        for (k, item) in items.iter().enumerate() {
+            self.add(&item_name(key, k), item.place());
+        }
     }
 
     /// Notes the place of a key of `section` under the name `name`, where it is given.
@@ -50,10 +49,8 @@ impl Places {
     }
 
     fn find(&self, key: &str) -> Option<&Place> {
-        self.known
-            .iter()
-            .find(|(known, _)| known == key)
-            .map(|(_, place)| place)
+        let known = self.known.iter().find(|(known, _)| known == key);
+        known.map(|(_, place)| place)
     }
 }
 

@@ -1,23 +1,23 @@
 //! The head of a plan, and all its parts together.
 
+use super::keys::{STUDY, default, known_words};
 use super::{Base, FactorValue, Keep, Places, Plan, design, factor, options};
 use cvtcycle_config::{
     Document, Override, Problem, Problems, RawValue, Reader, Section, did_you_mean,
 };
+use cvtcycle_model::keys::{Key, Values};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_output::trace::COLUMNS;
-
-/// Runs above which the user has to agree, unless the plan says otherwise.
-const MAX_RUNS: i64 = 100_000;
 
 /// Reads a plan.
 pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Problems> {
     let mut document = Document::parse(file, text)?;
     let tables = document.take_tables("factor");
     let (mut plan, mut problems) = head(&document, file, text);
+    let is_of = |problem: &Problem, key: &str| problem.key.starts_with(key);
     let design_is_read = !problems
         .iter()
-        .any(|problem| problem.key == "study" || problem.key.starts_with("study.design"));
+        .any(|problem| problem.key == "study" || is_of(problem, "study.design"));
     for table in &tables {
         match factor::read(table) {
             Ok(factor) => plan.factors.push(factor),
@@ -25,13 +25,9 @@ pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Problems> {
         }
     }
     problems.append(design::clashes(&plan.factors));
-    if design_is_read && !has_other_factors(&problems) {
-        problems.append(design::limits(
-            &plan.design,
-            tables.len(),
-            &plan.factors,
-            &plan.places,
-        ));
+    // Factors may be written in a way that gives none.
+    if design_is_read && !problems.iter().any(|problem| is_of(problem, "factor")) {
+        problems.append(design::limits(&plan, tables.len()));
     }
     if problems.is_empty() {
         problems = design::reach(&plan);
@@ -40,20 +36,10 @@ pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Problems> {
         return Ok(plan);
     }
     problems.sort_by_key(|problem| {
-        (
-            problem.not_shown().is_some(),
-            problem.place.line,
-            problem.place.column,
-        )
+        let place = &problem.place;
+        (problem.not_shown().is_some(), place.line, place.column)
     });
     Err(problems)
-}
-
-/// Whether factors are written in a way that gives none.
-fn has_other_factors(problems: &[Problem]) -> bool {
-    problems
-        .iter()
-        .any(|problem| problem.key.starts_with("factor"))
 }
 
 fn head(document: &Document, file: &str, text: &str) -> (Plan, Problems) {
@@ -64,230 +50,170 @@ fn head(document: &Document, file: &str, text: &str) -> (Plan, Problems) {
     let plan = Plan {
         file: file.to_owned(),
         text: text.to_owned(),
-        title: s.text_or("title", &stem(file), "name for people"),
-        question: s.text_or("question", "", "what the study is to answer"),
+        title: Values::text_or(&s, &STUDY.title, &stem(file)),
+        question: Values::text_or(&s, &STUDY.question, ""),
         base: base(&s, &mut places),
         factors: Vec::new(),
         design,
         keep: keep(&s),
-        analyse: analyse(&s, &mut places),
-        most_runs: s
-            .integer_or(
-                "most_runs",
-                1..=i64::MAX,
-                MAX_RUNS,
-                "number of runs above which --yes is needed",
-            )
-            .unsigned_abs(),
+        analyse: names(&s, &STUDY.analyse, &mut places).unwrap_or_default(),
+        most_runs: s.integer(&STUDY.most_runs).unsigned_abs(),
         places,
     };
     let problems = reader.finish().err().unwrap_or_default();
-    (plan, problems.into_iter().map(fitting).collect())
-}
-
-/// A problem without hints that fit vehicle files only.
-fn fitting(problem: Problem) -> Problem {
-    if problem.key.starts_with("factor") {
-        problem.hint("factors are written as [[factor]]")
-    } else {
-        problem
-    }
+    // Hints that fit vehicle files only.
+    let fitting = |problem: Problem| match problem.key.starts_with("factor") {
+        true => problem.hint("factors are written as [[factor]]"),
+        false => problem,
+    };
+    (plan, problems.map(fitting))
 }
 
 fn stem(file: &str) -> String {
     let name = file.strip_prefix("embedded:").unwrap_or(file);
-    std::path::Path::new(name).file_stem().map_or_else(
+    let stem = std::path::Path::new(name).file_stem();
+    stem.map_or_else(
         || name.to_owned(),
         |stem| stem.to_string_lossy().into_owned(),
     )
 }
 
 fn base(s: &Section, places: &mut Places) -> Base {
-    let mut get = |key: &str, doc: &str| {
-        let written = s.raw(key, &options::allowed(key), doc)?;
-        places.add(key, written.place());
-        options::value(key, &written)
+    let mut get = |row: &Key| {
+        let written = s.written(row)?;
+        places.add(row.name, written.place());
+        options::value(row, &written)
     };
-    let vehicle = get("vehicle", "the car in question");
-    let cycle = get("cycle", "cycle of all runs");
-    let ambient = get("ambient_degc", "ambient temperature");
-    let start = get("start", "temperatures at the start");
-    let lubricant = get("lubricant", "transmission oil of the car in question");
-    let engine_oil = get("engine_oil", "engine oil of all cars");
-    let step = get("dt_s", "longest time step");
-    let formulation = get("formulation", "reading of the belt model");
-    let text = |value: Option<FactorValue>, default: &str| {
-        value.map_or_else(|| default.to_owned(), |value| value.to_string())
+    let mut text = |row: &Key| {
+        get(row)
+            .or_else(|| default(row))
+            .map(|value| value.to_string())
     };
-    let number = |value: Option<FactorValue>, default: f64| match value {
+    let vehicle = text(&STUDY.vehicle).unwrap_or_default();
+    let cycle = text(&STUDY.cycle).unwrap_or_default();
+    let start = text(&STUDY.start).unwrap_or_default();
+    let (lubricant, engine_oil) = (text(&STUDY.lubricant), text(&STUDY.engine_oil));
+    let formulation = text(&STUDY.formulation).unwrap_or_default();
+    let mut number = |row: &Key| match get(row).or_else(|| default(row)) {
         Some(FactorValue::Number(x)) => x,
-        _ => default,
+        _ => f64::NAN,
     };
-    let formulation = text(formulation, "");
     Base {
-        vehicle: text(vehicle, "rover_216_cvt"),
+        ambient_degc: number(&STUDY.ambient_degc),
+        dt_s: number(&STUDY.dt_s),
+        vehicle,
         baselines: baselines(s, places),
-        cycle: text(cycle, "ece15_eudc"),
-        ambient_degc: number(ambient, 25.0),
-        start: text(start, "soak"),
-        lubricant: lubricant.map(|value| value.to_string()),
-        engine_oil: engine_oil.map(|value| value.to_string()),
-        set: assignments(
-            s,
-            "set",
-            "overrides KEY=VALUE of the car in question",
-            places,
-        ),
-        set_all: assignments(s, "set_all", "overrides KEY=VALUE of all cars", places),
-        dt_s: number(step, 1.0),
-        formulation: Formulation::NAMES
-            .iter()
-            .find(|(name, _)| *name == formulation)
-            .map_or(Formulation::Smooth, |(_, f)| *f),
+        cycle,
+        start,
+        lubricant,
+        engine_oil,
+        set: overrides(s, &STUDY.set, places),
+        set_all: overrides(s, &STUDY.set_all, places),
+        formulation: Formulation::named(&formulation).unwrap_or_default(),
     }
 }
 
 /// Items of a list, with their places noted; none if the key is absent or no list.
-fn items<'r>(
-    s: &Section<'r>,
-    key: &str,
-    what: &str,
-    doc: &str,
-    places: &mut Places,
-) -> Option<Vec<RawValue<'r>>> {
-    let written = s.raw(key, what, doc)?;
-    places.add(key, written.place());
+fn items<'r>(s: &Section<'r>, row: &Key, places: &mut Places) -> Option<Vec<RawValue<'r>>> {
+    let written = s.written(row)?;
+    places.add(row.name, written.place());
     let items = written.items();
     match &items {
-        Some(items) => items
-            .iter()
-            .enumerate()
-            .for_each(|(k, item)| places.add_item(key, k, item.place())),
+        Some(items) => places.add_items(row.name, items),
         None => written.complain(
-            what,
-            &format!("`study.{key}` is no list"),
-            &format!("write {key} = [{}]", written.text()),
+            &row.allowed(),
+            &format!("`study.{}` is no list", row.name),
+            &format!("write {} = [{}]", row.name, written.text()),
         ),
     }
     items
 }
 
 fn baselines(s: &Section, places: &mut Places) -> Option<Vec<String>> {
-    let items = items(
-        s,
-        "baselines",
-        "a list of vehicles",
-        "cars to compare with; [] for none",
-        places,
-    )?;
-    Some(
-        items
-            .iter()
-            .filter_map(|item| options::value("vehicle", item))
-            .map(|value| value.to_string())
-            .collect(),
-    )
+    let items = items(s, &STUDY.baselines, places)?;
+    let names = items
+        .iter()
+        .filter_map(|item| options::value(&STUDY.vehicle, item));
+    Some(names.map(|value| value.to_string()).collect())
 }
 
-/// Assignments `KEY=VALUE`, checked as such.
-fn assignments(s: &Section, key: &str, doc: &str, places: &mut Places) -> Vec<Override> {
-    let items = items(s, key, "a list of texts KEY=VALUE", doc, places).unwrap_or_default();
-    let mut good = Vec::new();
-    for item in items {
-        let Some(assignment) = item.word() else {
+/// Overrides `KEY=VALUE`.
+fn overrides(s: &Section, row: &Key, places: &mut Places) -> Vec<Override> {
+    let parse = |item: &RawValue| {
+        let Some(text) = item.word() else {
             item.wrong_type("a text KEY=VALUE");
-            continue;
+            return None;
         };
         let example = "write, for example, \"road_load.mass_kg=1250\"";
-        match assignment.parse::<Override>() {
-            Ok(by) => good.push(by),
-            Err(problem) => item.report(problem.allowed("KEY=VALUE").hint(example)),
-        }
-    }
-    good
+        let report = |problem: Problem| item.report(problem.allowed("KEY=VALUE").hint(example));
+        text.parse::<Override>().map_err(report).ok()
+    };
+    let items = items(s, row, places).unwrap_or_default();
+    items.iter().filter_map(parse).collect()
 }
 
 fn keep(s: &Section) -> Keep {
-    let what = "summary, everything, or a list of columns of the trace";
-    let Some(written) = s.raw("keep", what, "what is kept of each run") else {
+    let row = &STUDY.keep;
+    let Some(written) = s.written(row) else {
         return Keep::Summary;
     };
+    let what = row.allowed();
     match (written.word(), written.items()) {
-        (Some("summary"), _) => Keep::Summary,
-        (Some("everything"), _) => Keep::Everything,
-        (_, Some(items)) => Keep::Columns(columns(&written, &items, what)),
+        (Some("everything"), _) => return Keep::Everything,
+        (Some("summary"), _) => {}
+        (_, Some(items)) => {
+            if items.is_empty() {
+                let message = "`study.keep` is an empty list";
+                written.complain(&what, message, "write keep = \"summary\"");
+            }
+            return Keep::Columns(unlike(row, &items, is_trace_column));
+        }
         (Some(word), None) => {
-            let columns = format!("write keep = [{}] for columns", written.text());
-            let hint = did_you_mean(word, ["summary", "everything"]).unwrap_or(columns);
+            let columns = || format!("write keep = [{}] for columns", written.text());
+            let hint = did_you_mean(word, known_words(row)).unwrap_or_else(columns);
             written.complain(
-                what,
+                &what,
                 &format!("`{word}` is not known for `study.keep`"),
                 &hint,
             );
-            Keep::Summary
         }
-        (None, None) => {
-            written.wrong_type(what);
-            Keep::Summary
-        }
+        (None, None) => written.wrong_type(&what),
     }
+    Keep::Summary
 }
 
-fn columns(whole: &RawValue, items: &[RawValue], what: &str) -> Vec<String> {
-    if items.is_empty() {
-        whole.complain(
-            what,
-            "`study.keep` is an empty list",
-            "write keep = \"summary\"",
-        );
+/// Whether the trace has a column; reported if not.
+fn is_trace_column(item: &RawValue, word: &str) -> bool {
+    let names = || COLUMNS.iter().map(|column| &*column.name);
+    let is_known = names().any(|name| name == word);
+    if !is_known {
+        let all = || "the trace of `run --out` shows all".to_owned();
+        let hint = did_you_mean(word, names()).unwrap_or_else(all);
+        let message = format!("the trace has no column `{word}`");
+        item.complain("columns of the trace", &message, &hint);
     }
-    let mut found: Vec<String> = Vec::new();
-    for item in items {
-        let Some(word) = item.word() else {
-            item.wrong_type("the name of a column");
-            continue;
-        };
-        if !COLUMNS.iter().any(|column| column.name == word) {
-            let hint = did_you_mean(word, COLUMNS.iter().map(|column| &*column.name))
-                .unwrap_or_else(|| "the trace of `run --out` shows all".to_owned());
-            item.complain(
-                "columns of the trace",
-                &format!("the trace has no column `{word}`"),
-                &hint,
-            );
-        } else if found.iter().any(|other| other == word) {
-            item.complain(
-                "",
-                &format!("`{word}` is listed twice in `study.keep`"),
-                "remove one",
-            );
-        } else {
-            found.push(word.to_owned());
-        }
-    }
-    found
+    is_known
 }
 
 /// Columns to analyse; their names are known only when the runs are.
-fn analyse(s: &Section, places: &mut Places) -> Vec<String> {
-    let items = items(
-        s,
-        "analyse",
-        "a list of columns of the results",
-        "columns that are analysed",
-        places,
-    )
-    .unwrap_or_default();
+fn names(s: &Section, row: &Key, places: &mut Places) -> Option<Vec<String>> {
+    Some(unlike(row, &items(s, row, places)?, |_, _| true))
+}
+
+/// Names of columns that are known, each once.
+fn unlike(
+    row: &Key,
+    items: &[RawValue],
+    is_known: impl Fn(&RawValue, &str) -> bool,
+) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     for item in items {
         match item.word() {
             None => item.wrong_type("the name of a column"),
+            Some(word) if !is_known(item, word) => {}
             Some(word) if found.iter().any(|other| other == word) => {
-                item.complain(
-                    "",
-                    &format!("`{word}` is listed twice in `study.analyse`"),
-                    "remove one",
-                );
+                let message = format!("`{word}` is listed twice in `study.{}`", row.name);
+                item.complain("", &message, "remove one");
             }
             Some(word) => found.push(word.to_owned()),
         }

@@ -2,56 +2,12 @@
 
 use std::sync::LazyLock;
 
-use cvtcycle_config::Bound;
 use cvtcycle_config::csv::{Cells, Column, Schema};
 use cvtcycle_output::columns;
 use cvtcycle_output::table::{self, Cell};
 
 use super::model::Solved;
-
-/// A number that a row gives: name, unit, and range in that unit.
-type Number = (&'static str, &'static str, Bound);
-
-pub const RATIO: usize = 0;
-pub const SPEED: usize = 1;
-pub const PRESSURE: usize = 2;
-pub const TORQUE: usize = 3;
-pub const PULLEY_ANGLE: usize = 4;
-pub const WEDGE_ANGLE: usize = 5;
-pub const BAND_OFFSET: usize = 6;
-pub const BAND_FRICTION: usize = 7;
-pub const SEGMENT_FRICTION: usize = 8;
-pub const BAND_COUNT: usize = 9;
-pub const ON_STOP: usize = 10;
-pub const BELT_TEMP: usize = 11;
-/// The first of these must be given in each row.
-pub const REQUIRED: usize = 4;
-
-/// Numbers that are read, in the order of the output. Their ranges keep out what is a slip of the pen or has no solution;
-/// what is merely outside the vehicle's or the model's validity is computed and flagged.
-pub const NUMBERS: [Number; 12] = [
-    // What the belt can run at is the model's to say.
-    ("ratio", "", Bound::any()),
-    ("input_speed_rpm", "rpm", Bound::closed(0.0, 100_000.0)),
-    (
-        "secondary_pressure_bar",
-        "bar",
-        Bound::closed(0.0, 10_000.0),
-    ),
-    (
-        "output_torque_nm",
-        "Nm",
-        Bound::closed(-100_000.0, 100_000.0),
-    ),
-    ("pulley_half_angle_deg", "degrees", Bound::closed(1.0, 45.0)),
-    ("wedge_half_angle_deg", "degrees", Bound::closed(1.0, 45.0)),
-    ("band_offset_mm", "mm", Bound::closed(0.0, 50.0)),
-    ("band_friction", "", Bound::closed(0.0, 0.5)),
-    ("segment_friction", "", Bound::closed(0.01, 1.0)),
-    ("band_count", "", Bound::closed(1.0, 100.0)),
-    ("primary_on_stop", "", Bound::closed(0.0, 1.0)),
-    ("belt_temp_degc", "degC", Bound::closed(-60.0, 200.0)),
-];
+use super::rows::{BAND_COUNT, NUMBERS, Number, ON_STOP, REQUIRED};
 
 /// Name of the column that is passed through.
 pub const CASE: &str = "case";
@@ -105,7 +61,6 @@ pub static OUTPUTS: LazyLock<Vec<table::Column<Point>>> = LazyLock::new(|| {
 });
 
 /// The columns of the output, in their order: what was read, then [`OUTPUTS`].
-#[must_use]
 pub fn output_columns(with_case: bool) -> Vec<table::Column<Point>> {
     let mut list = columns! { Point;
         text CASE, "", "", (case, _) => case.clone();
@@ -145,11 +100,6 @@ pub fn schema() -> Schema {
         ..Schema::default()
     }
 }
-
-/// Index of the column `case` in the schema.
-pub const CASE_INDEX: usize = NUMBERS.len();
-/// Index of the column `formulation` in the schema.
-pub const FORMULATION_INDEX: usize = CASE_INDEX + 1;
 
 fn computed() -> impl Iterator<Item = &'static str> {
     OUTPUTS.iter().map(|column| &*column.name)

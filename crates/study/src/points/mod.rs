@@ -7,6 +7,7 @@ mod model;
 mod rows;
 mod table;
 
-pub use columns::{NUMBERS, OUTPUTS, Point, output_columns};
+pub use columns::{OUTPUTS, Point, output_columns};
 pub use model::{Model, Solved};
+pub use rows::NUMBERS;
 pub use table::{Counts, Done, Job, Take, read};

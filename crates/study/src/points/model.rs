@@ -12,11 +12,10 @@ use cvtcycle_model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltPoint, Formulation, Geometry, belt_point, sliding_speed_m_s,
 };
 
-use super::columns::{
-    BAND_COUNT, BAND_FRICTION, BAND_OFFSET, BELT_TEMP, NUMBERS, ON_STOP, PRESSURE, PULLEY_ANGLE,
-    RATIO, SEGMENT_FRICTION, SPEED, TORQUE, WEDGE_ANGLE,
+use super::rows::{
+    BAND_COUNT, BAND_FRICTION, BAND_OFFSET, BELT_TEMP, Given, NUMBERS, ON_STOP, PRESSURE,
+    PULLEY_ANGLE, RATIO, SEGMENT_FRICTION, SPEED, TORQUE, WEDGE_ANGLE,
 };
-use super::rows::Given;
 
 /// Belt temperature to which the friction of a fluid refers, degC.
 const REFERENCE_DEGC: f64 = 85.0;
@@ -84,27 +83,21 @@ impl Model {
     pub fn check(&self, given: &Given, fallback: Formulation) -> Vec<(usize, Problem)> {
         let formulation = given.formulation.unwrap_or(fallback);
         let mut found = Vec::new();
+        let undefined = |place: &str, allowed: &str| {
+            let message = format!("{} is not defined at {place}", formulation.name());
+            Problem::invalid(message).allowed(allowed).hint(DEFINED)
+        };
+        let is_printed = formulation != Formulation::Smooth;
         if let Some(ratio) = given.numbers[RATIO] {
             if !runs(&self.cvt.belt, ratio) {
                 found.push((RATIO, no_geometry(self.ratios)));
-            } else if formulation != Formulation::Smooth && (ratio - 1.0).abs() <= 0.0 {
-                let message = format!("{} is not defined at ratio 1 (PR-1)", formulation.name());
-                found.push((
-                    RATIO,
-                    Problem::invalid(message)
-                        .allowed("a ratio other than exactly 1")
-                        .hint(DEFINED),
-                ));
+            } else if is_printed && (ratio - 1.0).abs() <= 0.0 {
+                let problem = undefined("ratio 1 (PR-1)", "a ratio other than exactly 1");
+                found.push((RATIO, problem));
             }
         }
-        if formulation != Formulation::Smooth && given.numbers[SPEED].is_some_and(|rpm| rpm <= 0.0)
-        {
-            found.push((
-                SPEED,
-                Problem::invalid(format!("{} is not defined at rest", formulation.name()))
-                    .allowed("above 0 rpm")
-                    .hint(DEFINED),
-            ));
+        if is_printed && given.numbers[SPEED].is_some_and(|rpm| rpm <= 0.0) {
+            found.push((SPEED, undefined("rest", "above 0 rpm")));
         }
         found
     }
@@ -123,17 +116,14 @@ impl Model {
         let clamp_n = self.cvt.secondary_clamp_n(pressure_pa, speed_rad_s / ratio);
         let mut numbers = given.numbers.map(|number| number.unwrap_or(f64::NAN));
         let own = |place: usize, value: f64| given.numbers[place].unwrap_or(value);
-        let index = Formulation::NAMES
-            .iter()
-            .position(|(_, known)| *known == formulation)
-            .unwrap_or_default();
-        let belt = &mut self.belts[index];
+        let is_it = |belt: &Belt| belt.formulation == formulation;
+        let index = self.belts.iter().position(is_it);
+        let belt = &mut self.belts[index.unwrap_or_default()];
         numbers[PULLEY_ANGLE] = own(PULLEY_ANGLE, self.pulley_angle_deg);
-        let angle = given.numbers[PULLEY_ANGLE].map(f64::to_radians);
-        (belt.cos_wedge, belt.tan_wedge) = angle
-            .map_or((vehicle.cos_wedge, vehicle.tan_wedge), |th| {
-                (th.cos(), th.tan())
-            });
+        (belt.cos_wedge, belt.tan_wedge) = match given.numbers[PULLEY_ANGLE].map(f64::to_radians) {
+            Some(angle) => (angle.cos(), angle.tan()),
+            None => (vehicle.cos_wedge, vehicle.tan_wedge),
+        };
         numbers[BAND_OFFSET] = own(BAND_OFFSET, vehicle.band_offset_m * 1e3);
         belt.band_offset_m =
             given.numbers[BAND_OFFSET].map_or(vehicle.band_offset_m, |mm| mm * 1e-3);
@@ -143,14 +133,11 @@ impl Model {
         if let Some(angle) = given.numbers[WEDGE_ANGLE] {
             at.prepared.wedge_half_cot = 0.5 / angle.to_radians().tan();
         }
-        numbers[WEDGE_ANGLE] = own(
-            WEDGE_ANGLE,
-            if formulation == Formulation::AppendixC {
-                11.0
-            } else {
-                numbers[PULLEY_ANGLE]
-            },
-        );
+        let wedge_deg = match formulation {
+            Formulation::AppendixC => 11.0,
+            _ => numbers[PULLEY_ANGLE],
+        };
+        numbers[WEDGE_ANGLE] = own(WEDGE_ANGLE, wedge_deg);
         if let Some(on_stop) = given.numbers[ON_STOP] {
             at.prepared.stop = if on_stop > 0.5 { 0.0 } else { 1.0 };
         }
@@ -162,20 +149,15 @@ impl Model {
         };
         let wrap = at.geometry.primary_wrap_rad;
         if load.band.mu * wrap / 2.0 > LARGEST_GRIP {
-            let allowed = format!(
-                "up to {:.3} at this ratio and temperature",
-                2.0 * LARGEST_GRIP / wrap
-            );
-            return Err((
-                BAND_FRICTION,
-                Problem::invalid("the bands would block themselves (TE-5)").allowed(allowed),
-            ));
+            let most = 2.0 * LARGEST_GRIP / wrap;
+            let allowed = format!("up to {most:.3} at this ratio and temperature");
+            let problem = Problem::invalid("the bands would block themselves (TE-5)");
+            return Err((BAND_FRICTION, problem.allowed(allowed)));
         }
         let point = belt_point(belt, &at, &load);
-        let point = if self.band_speed_share.abs() > 0.0 {
-            point.with_band_speed(belt, self.band_speed_share)
-        } else {
-            point
+        let point = match self.band_speed_share {
+            share if share.abs() > 0.0 => point.with_band_speed(belt, share),
+            _ => point,
         };
         let belt_k = given.numbers[BELT_TEMP].unwrap_or(REFERENCE_DEGC) + ZERO_DEGC_K;
         let flags = PointFlags::new(&point, &load, pressure_pa, belt_k, &self.limits);
@@ -251,12 +233,12 @@ fn no_geometry(ratios: [f64; 2]) -> Problem {
         return Problem::invalid("this belt does not fit round these pulleys at any ratio")
             .hint(hint);
     }
+    let message =
+        "the belt cannot run at this ratio: no radii on which both pulleys carry a segment";
     let allowed = format!("{:.4} to {:.4}", ratios[0], ratios[1]);
-    Problem::invalid(
-        "the belt cannot run at this ratio: no radii on which both pulleys carry a segment",
-    )
-    .allowed(allowed)
-    .hint("I = R_sec / R_pri")
+    Problem::invalid(message)
+        .allowed(allowed)
+        .hint("I = R_sec / R_pri")
 }
 
 /// Whether the belt has radii at this ratio.

@@ -7,9 +7,9 @@ use cvtcycle_config::csv::{Cells, Collector, Lines, Row, Table};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_model::transmission::cvt::variator::point::{PointFlags, PointStatus};
 
-use super::columns::{CASE_INDEX, schema};
+use super::columns::schema;
 use super::model::{Model, Solved};
-use super::rows::Given;
+use super::rows::{CASE_INDEX, Given};
 
 /// Takes computed rows in the order of the table. What it cannot do ends the reading.
 pub trait Take {
@@ -67,40 +67,32 @@ impl Counts {
 
     /// Name of every status with its number of points.
     pub fn by_status(&self) -> impl Iterator<Item = (&'static str, u64)> {
-        PointStatus::ALL
-            .into_iter()
-            .map(PointStatus::name)
-            .zip(self.status)
+        let names = PointStatus::ALL.into_iter().map(PointStatus::name);
+        names.zip(self.status)
     }
 
     /// Name of every flag with its number of points.
     pub fn by_flag(&self) -> impl Iterator<Item = (&'static str, u64)> {
-        PointFlags::NAMES
-            .into_iter()
-            .map(|(name, _)| name)
-            .zip(self.flags)
+        let names = PointFlags::NAMES.into_iter().map(|(name, _)| name);
+        names.zip(self.flags)
     }
 
     /// The counts in words, after the name of the file that holds the rows.
-    #[must_use]
     pub fn text(&self, out: &str) -> String {
         let some = |counts: &mut dyn Iterator<Item = (&'static str, u64)>| {
+            let counts = counts.filter(|(_, count)| *count > 0);
             let words: Vec<String> = counts
-                .filter(|(_, count)| *count > 0)
                 .map(|(name, count)| format!("{count} {name}"))
                 .collect();
-            if words.is_empty() {
-                "none".to_owned()
-            } else {
-                words.join(", ")
+            match words.as_slice() {
+                [] => "none".to_owned(),
+                words => words.join(", "),
             }
         };
         let (status, flags) = (some(&mut self.by_status()), some(&mut self.by_flag()));
         let noun = if self.points == 1 { "point" } else { "points" };
-        format!(
-            "{out}: {} {noun}: {status}\nflagged: {flags}\n",
-            self.points
-        )
+        let points = self.points;
+        format!("{out}: {points} {noun}: {status}\nflagged: {flags}\n")
     }
 }
 

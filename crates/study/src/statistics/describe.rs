@@ -52,21 +52,13 @@ pub struct Quantile {
 
 impl Summary {
     /// Describes a column.
-    #[must_use]
     pub fn of(values: &[f64]) -> Self {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
-        let Moments {
-            n,
-            missing,
-            mean,
-            sd,
-            min,
-            max,
-            mean_interval95,
-        } = Moments::of(values.iter().copied());
+        let all = Moments::of(values.iter().copied());
         sorted.sort_unstable_by(f64::total_cmp);
         let quantile = |p: f64| {
-            let interval95 = quantile_ranks(n, p).map(|at| at.and_then(|i| sorted.get(i).copied()));
+            let value = |at: Option<usize>| at.and_then(|i| sorted.get(i).copied());
+            let interval95 = quantile_ranks(all.n, p).map(value);
             Quantile {
                 p,
                 value: quantile_of_sorted(&sorted, p),
@@ -74,24 +66,21 @@ impl Summary {
             }
         };
         Summary {
-            n,
-            missing,
-            mean,
-            sd,
-            min,
-            max,
+            n: all.n,
+            missing: all.missing,
+            mean: all.mean,
+            sd: all.sd,
+            min: all.min,
+            max: all.max,
             quantiles: QUANTILES.map(quantile).to_vec(),
-            mean_interval95,
+            mean_interval95: all.mean_interval95,
         }
     }
 
     /// The quantile at one of [`QUANTILES`]; NaN at any other probability.
-    #[must_use]
     pub fn quantile(&self, p: f64) -> f64 {
-        self.quantiles
-            .iter()
-            .find(|q| (q.p - p).abs() < 1e-9)
-            .map_or(f64::NAN, |q| q.value)
+        let found = self.quantiles.iter().find(|q| (q.p - p).abs() < 1e-9);
+        found.map_or(f64::NAN, |q| q.value)
     }
 }
 
@@ -118,11 +107,10 @@ impl Moments {
         let (sum, squares) = finite()
             .map(|x| x - mean)
             .fold((0.0, 0.0), |(s, q), d| (s + d, q + d * d));
-        let sd = if n < 2 {
-            f64::NAN
-        } else {
-            ((squares - sum * sum / count).max(0.0) / (count - 1.0)).sqrt()
-        }; // DS-1
+        let sd = match n {
+            0 | 1 => f64::NAN,
+            _ => ((squares - sum * sum / count).max(0.0) / (count - 1.0)).sqrt(), // DS-1
+        };
         let (min, max) = finite().fold((f64::NAN, f64::NAN), |(low, high), x| {
             (x.min(low), x.max(high))
         });
@@ -140,7 +128,6 @@ impl Moments {
 }
 
 /// Quantile of ascending finite values by DS-3; NaN of none.
-#[must_use]
 pub fn quantile_of_sorted(sorted: &[f64], p: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else {
         return f64::NAN;
@@ -168,13 +155,10 @@ pub struct Share {
 
 impl Share {
     /// The share of the values for which `holds`.
-    #[must_use]
     pub fn of(values: &[f64], holds: impl Fn(f64) -> bool) -> Self {
-        let n = values.iter().filter(|x| x.is_finite()).count();
-        let k = values
-            .iter()
-            .filter(|x| x.is_finite() && holds(**x))
-            .count();
+        let known = || values.iter().filter(|x| x.is_finite());
+        let n = known().count();
+        let k = known().filter(|x| holds(**x)).count();
         Share {
             k,
             n,
@@ -185,23 +169,15 @@ impl Share {
     }
 
     /// The share of the values above zero: of a difference, in how many pairs the first one has more. Equal ones are not more.
-    #[must_use]
     pub fn above_zero(values: &[f64]) -> Self {
         Self::of(values, |x| x > 0.0)
     }
 }
 
 /// Differences of pairs, subject - baseline; NaN where one of the two is missing. The longer column's rest has no partner.
-#[must_use]
 pub fn difference(subject: &[f64], baseline: &[f64]) -> Vec<f64> {
-    let at = |column: &[f64], i: usize| {
-        column
-            .get(i)
-            .copied()
-            .filter(|x| x.is_finite())
-            .unwrap_or(f64::NAN)
-    };
-    (0..subject.len().max(baseline.len()))
-        .map(|i| at(subject, i) - at(baseline, i))
-        .collect()
+    let at = |column: &[f64], i: usize| column.get(i).copied().unwrap_or(f64::NAN);
+    let pair = |i| Some(at(subject, i) - at(baseline, i)).filter(|x| x.is_finite());
+    let rows = 0..subject.len().max(baseline.len());
+    rows.map(|i| pair(i).unwrap_or(f64::NAN)).collect()
 }

@@ -44,7 +44,6 @@ pub struct Groups {
 }
 
 /// Groups an output by the levels of a factor, row by row; a row without a level counts for none.
-#[must_use]
 pub fn group_means<S: AsRef<str>>(levels: &[S], output: &[f64]) -> Groups {
     let mut names: Vec<&str> = Vec::new();
     let mut rows: Vec<Vec<f64>> = Vec::new();
@@ -60,50 +59,37 @@ pub fn group_means<S: AsRef<str>>(levels: &[S], output: &[f64]) -> Groups {
         rows[at].push(*y);
     }
     let group = |(name, values): (&&str, &Vec<f64>)| {
-        let Moments {
-            n,
-            missing,
-            mean,
-            sd,
-            min,
-            max,
-            mean_interval95,
-        } = Moments::of(values.iter().copied());
+        let of_level = Moments::of(values.iter().copied());
         Group {
             label: (*name).to_owned(),
-            n,
-            missing,
-            mean,
-            sd,
-            min,
-            max,
-            mean_interval95,
+            n: of_level.n,
+            missing: of_level.missing,
+            mean: of_level.mean,
+            sd: of_level.sd,
+            min: of_level.min,
+            max: of_level.max,
+            mean_interval95: of_level.mean_interval95,
         }
     };
     let groups: Vec<Group> = names.iter().zip(&rows).map(group).collect();
     let all = Moments::of(rows.iter().flatten().copied());
     let filled = || groups.iter().filter(|g| g.n > 0);
-    let between: f64 = filled()
-        .map(|g| g.n as f64 * (g.mean - all.mean).powi(2))
-        .sum();
+    let between = |g: &Group| g.n as f64 * (g.mean - all.mean).powi(2);
+    let between: f64 = filled().map(between).sum();
     let within = all.sd.powi(2) * (all.n as f64 - 1.0);
     // Of a constant only rounding is left of both.
-    let eta_squared = if all.max > all.min {
-        (between / within).min(1.0)
-    } else {
-        f64::NAN
-    }; // GR-1
-    let (low, high) = filled().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), g| {
-        (g.mean.min(l), g.mean.max(h))
-    });
-    let range = if filled().count() > 1 {
-        high - low
-    } else {
-        f64::NAN
+    let eta_squared = match all.max > all.min {
+        true => (between / within).min(1.0), // GR-1
+        false => f64::NAN,
     };
+    let least = filled().map(|g| g.mean).fold(f64::INFINITY, f64::min);
+    let largest = filled().map(|g| g.mean).fold(f64::NEG_INFINITY, f64::max);
     Groups {
+        range: match filled().count() {
+            0 | 1 => f64::NAN,
+            _ => largest - least,
+        },
         groups,
-        range,
         eta_squared,
     }
 }

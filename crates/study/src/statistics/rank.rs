@@ -45,28 +45,20 @@ pub struct RankSensitivity {
 }
 
 /// Rank correlation and rank regression of an output on factors that are numbers. Where a column is shorter, its values are missing.
-#[must_use]
 pub fn rank_sensitivity(factors: &[&[f64]], output: &[f64]) -> RankSensitivity {
-    let all = factors
-        .iter()
-        .map(|x| x.len())
-        .max()
-        .unwrap_or(0)
-        .max(output.len());
-    let is_known = |column: &[f64], i: usize| column.get(i).is_some_and(|x| x.is_finite());
-    let kept: Vec<usize> = (0..all)
-        .filter(|&i| is_known(output, i) && factors.iter().all(|x| is_known(x, i)))
-        .collect();
+    let columns = || factors.iter().chain([&output]);
+    let all = columns().map(|x| x.len()).max().unwrap_or(0);
+    let is_known = |i: usize| columns().all(|x| x.get(i).is_some_and(|x| x.is_finite()));
+    let kept: Vec<usize> = (0..all).filter(|&i| is_known(i)).collect();
     let n = kept.len();
-    let standard =
-        |column: &[f64]| standardized(&ranks(&kept.iter().map(|&i| column[i]).collect::<Vec<_>>()));
+    let pick = |column: &[f64]| kept.iter().map(|&i| column[i]).collect::<Vec<_>>();
+    let standard = |column: &[f64]| standardized(&ranks(&pick(column)));
     let y = standard(output);
     let x: Vec<Option<Vec<f64>>> = factors.par_iter().map(|column| standard(column)).collect();
-    let rho = |x: &Option<Vec<f64>>| {
-        x.as_ref()
-            .zip(y.as_ref())
-            .map_or(f64::NAN, |(x, y)| dot(x, y).clamp(-1.0, 1.0))
-    }; // RK-1
+    let rho = |x: &Option<Vec<f64>>| match (x, &y) {
+        (Some(x), Some(y)) => dot(x, y).clamp(-1.0, 1.0), // RK-1
+        _ => f64::NAN,
+    };
     let rho: Vec<f64> = x.iter().map(rho).collect();
     let varied: Vec<usize> = (0..x.len()).filter(|&i| !rho[i].is_nan()).collect();
     let columns: Vec<&Vec<f64>> = varied.iter().filter_map(|&i| x[i].as_ref()).collect();
@@ -120,21 +112,13 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// R2 and coefficients with intervals; `None` where there are too few rows or the factors are not independent.
 fn regression(x: &[&Vec<f64>], rho: &DVector<f64>, n: usize) -> Option<(f64, Vec<Estimate>)> {
-    let freedom = n
-        .checked_sub(x.len() + 1)
-        .filter(|f| *f > 0 && !x.is_empty())? as f64;
-    let pairs: Vec<f64> = (0..x.len() * x.len())
-        .into_par_iter()
-        .map(|k| dot(x[k / x.len()], x[k % x.len()]))
-        .collect();
-    let inverse = DMatrix::from_vec(x.len(), x.len(), pairs)
-        .cholesky()?
-        .inverse();
-    if !inverse
-        .diagonal()
-        .iter()
-        .all(|inflation| *inflation <= MAX_INFLATION)
-    {
+    let d = x.len();
+    let freedom = n.checked_sub(d + 1).filter(|f| *f > 0 && d > 0)? as f64;
+    let pair = |k: usize| dot(x[k / d], x[k % d]);
+    let pairs: Vec<f64> = (0..d * d).into_par_iter().map(pair).collect();
+    let inverse = DMatrix::from_vec(d, d, pairs).cholesky()?.inverse();
+    let is_independent = |inflation: &f64| *inflation <= MAX_INFLATION;
+    if !inverse.diagonal().iter().all(is_independent) {
         return None;
     }
     let b = &inverse * rho; // RK-3
@@ -146,7 +130,7 @@ fn regression(x: &[&Vec<f64>], rho: &DVector<f64>, n: usize) -> Option<(f64, Vec
             interval95: Some([b[i] - half, b[i] + half]),
         }
     };
-    Some((r_squared, (0..x.len()).map(estimate).collect()))
+    Some((r_squared, (0..d).map(estimate).collect()))
 }
 
 fn fisher(rho: f64, n: usize) -> Option<[f64; 2]> {

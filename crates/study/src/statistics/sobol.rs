@@ -85,16 +85,14 @@ pub struct SobolIndices {
 }
 
 /// Indices from all samples.
-#[must_use]
 pub fn sobol_indices(blocks: &Blocks, bootstrap: Bootstrap) -> SobolIndices {
     let table = Table::new(blocks);
     let Some(point) = table.indices(None) else {
         return table.without_indices();
     };
-    let drawn: Vec<Indices> = (0..bootstrap.resamples)
-        .into_par_iter()
-        .filter_map(|k| table.indices(Some(&table.draw(bootstrap.seed, k))))
-        .collect();
+    let resample = |k| table.indices(Some(&table.draw(bootstrap.seed, k)));
+    let resamples = (0..bootstrap.resamples).into_par_iter();
+    let drawn: Vec<Indices> = resamples.filter_map(resample).collect();
     let estimate = |of: &(dyn Fn(&Indices) -> f64 + Sync)| Estimate {
         value: of(&point),
         interval95: percentile(&drawn, of),
@@ -114,31 +112,20 @@ pub fn sobol_indices(blocks: &Blocks, bootstrap: Bootstrap) -> SobolIndices {
 }
 
 /// Indices from the first N/16, N/8, N/4, N/2 and all N samples, to see whether they have settled. Sizes below two samples are left out.
-#[must_use]
 pub fn sobol_convergence(blocks: &Blocks, bootstrap: Bootstrap) -> Vec<SobolIndices> {
-    let all = blocks.samples();
-    [16, 8, 4, 2, 1]
-        .into_iter()
-        .map(|part| all / part)
-        .filter(|n| *n >= 2)
-        .map(|n| sobol_indices(&blocks.first(n), bootstrap))
-        .collect()
+    let sizes = [16, 8, 4, 2, 1].map(|part| blocks.samples() / part);
+    let indices = |n| sobol_indices(&blocks.first(n), bootstrap);
+    sizes.into_iter().filter(|n| *n >= 2).map(indices).collect()
 }
 
 impl<'a> Blocks<'a> {
     /// Number of samples, with and without outputs.
-    #[must_use]
     pub fn samples(&self) -> usize {
-        self.ab
-            .iter()
-            .chain([&self.a, &self.b])
-            .map(|column| column.len())
-            .max()
-            .unwrap_or(0)
+        let columns = self.ab.iter().chain([&self.a, &self.b]);
+        columns.map(|column| column.len()).max().unwrap_or(0)
     }
 
     /// The first samples of a design.
-    #[must_use]
     pub fn first(&self, samples: usize) -> Self {
         let cut = |column: &'a [f64]| &column[..samples.min(column.len())];
         Blocks {
@@ -168,20 +155,14 @@ struct Indices {
 
 impl Table {
     fn new(blocks: &Blocks) -> Self {
-        let columns: Vec<&[f64]> = [blocks.a, blocks.b]
-            .into_iter()
-            .chain(blocks.ab.iter().copied())
-            .collect();
+        let first = [blocks.a, blocks.b].into_iter();
+        let columns: Vec<&[f64]> = first.chain(blocks.ab.iter().copied()).collect();
         let (all, width) = (blocks.samples(), columns.len());
         let mut rows = Vec::with_capacity(all * width);
         for i in 0..all {
             let start = rows.len();
-            rows.extend(
-                columns
-                    .iter()
-                    .filter_map(|column| column.get(i))
-                    .filter(|y| y.is_finite()),
-            );
+            let row = columns.iter().filter_map(|column| column.get(i));
+            rows.extend(row.filter(|y| y.is_finite()));
             if rows.len() < start + width {
                 rows.truncate(start);
             }
@@ -238,14 +219,11 @@ impl Table {
             return None;
         }
         let centre = all / (n * (d + 2) as f64); // SO-1, of these samples
-        let first = sums
-            .iter()
-            .map(|s| (s[0] - centre * s[1]) / n / variance)
-            .collect(); // SO-3
-        let total = sums.iter().map(|s| s[2] / n / (2.0 * variance)).collect(); // SO-4
+        let first = |s: &[f64; 3]| (s[0] - centre * s[1]) / n / variance; // SO-3
+        let total = |s: &[f64; 3]| s[2] / n / (2.0 * variance); // SO-4
         Some(Indices {
-            first,
-            total,
+            first: sums.iter().map(first).collect(),
+            total: sums.iter().map(total).collect(),
             variance,
         })
     }

@@ -56,16 +56,11 @@ pub struct Tornado {
 }
 
 /// Effects of factors on an output, sorted. Without an output of the base nothing has an effect: all swings are NaN.
-#[must_use]
 pub fn tornado(base: f64, factors: &[TornadoInput]) -> Tornado {
     let mut bars: Vec<TornadoBar> = factors.iter().map(|factor| bar(base, factor)).collect();
     // A stable sort: equal swings stay in the order of the plan.
-    bars.sort_by(|a, b| {
-        a.swing
-            .is_nan()
-            .cmp(&b.swing.is_nan())
-            .then(b.swing.total_cmp(&a.swing))
-    });
+    let widest = |a: f64, b: f64| a.is_nan().cmp(&b.is_nan()).then(b.total_cmp(&a));
+    bars.sort_by(|a, b| widest(a.swing, b.swing));
     Tornado { base, bars }
 }
 
@@ -75,37 +70,25 @@ fn bar(base: f64, factor: &TornadoInput) -> TornadoBar {
         output: *output,
         effect: output - base,
     }; // TO-1
-    let known: Vec<&(String, f64)> = factor
-        .entries
-        .iter()
-        .filter(|(_, output)| (output - base).is_finite())
-        .collect();
-    let missing = factor.entries.len() - known.len();
-    let (low, high) = if let [a, b] = factor.entries.as_slice() {
-        let kept = |e: &(String, f64)| (e.1 - base).is_finite().then(|| end(e));
-        (kept(a), kept(b))
-    } else if let [one] = known[..] {
+    let is_known = |entry: &&(String, f64)| (entry.1 - base).is_finite();
+    let known: Vec<&(String, f64)> = factor.entries.iter().filter(is_known).collect();
+    let by_output = |a: &&&(String, f64), b: &&&(String, f64)| a.1.total_cmp(&b.1);
+    let kept = |entry: &(String, f64)| Some(entry).filter(is_known).map(end);
+    let (low, high) = match (factor.entries.as_slice(), known.as_slice()) {
+        ([a, b], _) => (kept(a), kept(b)),
         // On the side to which it goes.
-        if one.1 < base {
-            (Some(end(one)), None)
-        } else {
-            (None, Some(end(one)))
-        }
-    } else {
-        let by_output = |a: &&&(String, f64), b: &&&(String, f64)| a.1.total_cmp(&b.1);
+        (_, [one]) if one.1 < base => (Some(end(one)), None),
+        (_, [one]) => (None, Some(end(one))),
         // The first of equal ones on both sides.
-        (
+        _ => (
             known.iter().min_by(by_output).map(|e| end(e)),
             known.iter().rev().max_by(by_output).map(|e| end(e)),
-        )
+        ),
     };
     let effects = || low.iter().chain(&high).map(|end| end.effect);
     let swing = effects().fold(0.0, f64::max) - effects().fold(0.0, f64::min); // TO-1
-    let swing = if effects().next().is_none() {
-        f64::NAN
-    } else {
-        swing
-    };
+    let swing = effects().next().map_or(f64::NAN, |_| swing);
+    let missing = factor.entries.len() - known.len();
     TornadoBar {
         name: factor.name.clone(),
         low,

@@ -1,6 +1,5 @@
 //! Checksums of files, as lists in the format of `sha256sum`.
 
-use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -13,7 +12,6 @@ use cvtcycle_config::bounded;
 pub type Sum = [u8; 32];
 
 /// SHA-256 of some bytes.
-#[must_use]
 pub fn sha256(bytes: &[u8]) -> Sum {
     Sha256::digest(bytes).into()
 }
@@ -74,14 +72,8 @@ impl Checksums {
     pub fn text(&self) -> String {
         let mut text = String::new();
         for (name, sum) in &self.0 {
-            for byte in sum {
-                // Writing into a String cannot fail.
-                let done = write!(text, "{byte:02x}");
-                debug_assert!(done.is_ok());
-            }
-            text += "  ";
-            text += name;
-            text.push('\n');
+            text.extend(sum.iter().map(|byte| format!("{byte:02x}")));
+            text += &format!("  {name}\n");
         }
         text
     }
@@ -90,15 +82,11 @@ impl Checksums {
     pub fn parse(bytes: &[u8]) -> Option<Self> {
         let text = std::str::from_utf8(bytes).ok()?;
         let lines = text.strip_suffix('\n')?.split('\n');
-        lines
-            .map(|line| {
-                Some((
-                    line.get(66..).filter(|name| !name.is_empty())?.to_owned(),
-                    sum_in(line)?,
-                ))
-            })
-            .collect::<Option<_>>()
-            .map(Checksums)
+        let entry = |line: &str| {
+            let name = line.get(66..).filter(|name| !name.is_empty())?;
+            Some((name.to_owned(), sum_in(line)?))
+        };
+        lines.map(entry).collect::<Option<_>>().map(Checksums)
     }
 
     /// The list in a file; none if there is no such file, or it is damaged.
@@ -108,26 +96,20 @@ impl Checksums {
 
     /// The checksum of a file.
     pub fn get(&self, name: &str) -> Option<&Sum> {
-        self.0
-            .iter()
-            .find(|(other, _)| other == name)
-            .map(|(_, sum)| sum)
+        let found = self.0.iter().find(|(other, _)| other == name);
+        found.map(|(_, sum)| sum)
     }
 }
 
 /// The checksum at the beginning of a line, with the two spaces behind it.
 fn sum_in(line: &str) -> Option<Sum> {
-    let digits = line
-        .get(..64)
-        .filter(|_| line.get(64..66) == Some("  "))?
-        .as_bytes();
+    let digits = line.get(..66)?.strip_suffix("  ")?.as_bytes();
+    let digit = |d: u8| match d.is_ascii_uppercase() {
+        true => None,
+        false => char::from(d).to_digit(16),
+    };
     let mut sum = Sum::default();
     for (byte, pair) in sum.iter_mut().zip(digits.chunks_exact(2)) {
-        let digit = |d: u8| {
-            char::from(d)
-                .to_digit(16)
-                .filter(|_| !d.is_ascii_uppercase())
-        };
         *byte = u8::try_from(16 * digit(pair[0])? + digit(pair[1])?).ok()?;
     }
     Some(sum)

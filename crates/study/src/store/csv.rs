@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::check_shape;
+use super::{RowWriter, check_shape};
 use crate::table::{Head, Rows, Values};
 use cvtcycle_output::number::push_exact;
 use cvtcycle_output::table::CsvWriter;
@@ -18,7 +18,6 @@ pub enum Header {
 
 impl Header {
     /// The text over a column.
-    #[must_use]
     pub fn of(self, column: &Head) -> String {
         if self == Header::Names || column.unit.is_empty() {
             column.name.clone()
@@ -47,12 +46,10 @@ impl<W: Write> CsvTable<W> {
             columns: columns.to_vec(),
         })
     }
+}
 
-    /// Writes some rows.
-    ///
-    /// # Errors
-    /// Those of `out`; [`io::ErrorKind::InvalidInput`] for rows of another table.
-    pub fn write(&mut self, rows: &Rows) -> io::Result<()> {
+impl<W: Write> RowWriter for CsvTable<W> {
+    fn write(&mut self, rows: &Rows) -> io::Result<()> {
         check_shape(&self.columns, rows)?;
         (0..rows.len()).try_for_each(|row| {
             self.out.row(&rows.values, |values, text| match values {
@@ -64,11 +61,7 @@ impl<W: Write> CsvTable<W> {
         })
     }
 
-    /// Hands everything on.
-    ///
-    /// # Errors
-    /// Those of `out`.
-    pub fn finish(self) -> io::Result<()> {
+    fn finish(self: Box<Self>) -> io::Result<()> {
         self.out.finish()
     }
 }
@@ -78,7 +71,7 @@ impl<W: Write> CsvTable<W> {
 /// # Errors
 /// Those of [`CsvTable`].
 pub fn write_csv<W: Write>(out: W, columns: &[Head], rows: &Rows) -> io::Result<()> {
-    let mut table = CsvTable::new(out, columns, Header::Names)?;
+    let mut table = Box::new(CsvTable::new(out, columns, Header::Names)?);
     table.write(rows)?;
     table.finish()
 }

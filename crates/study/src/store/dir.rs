@@ -12,7 +12,7 @@ use super::checksums::{Checksums, Sum};
 use super::csv::write_csv;
 use super::disk::{clear, lock, put, remove_temporary};
 use super::layout::Layout;
-use super::manifest::{differences, lines};
+use super::manifest::{Difference, differences, lines};
 use super::names::{self, LOCK, MANIFEST, PARTS, PLAN, RESULTS, SUMMARY};
 use super::parquet::write_parquet;
 use super::read::{Study, is_whole, marked_parts};
@@ -61,29 +61,20 @@ impl StudyDir {
         let path = path.as_ref().to_path_buf();
         let layout = layout_of(&path, manifest)?;
         check_directory(&path)?;
-        let mut created = Created::new(&path).map_err(|error| {
-            failed(
-                &path,
-                &format!("cannot create directory {}", path.display()),
-                &error,
-            )
-        })?;
+        let name = path.display();
+        let cannot = |error| failed(&path, &format!("cannot create directory {name}"), &error);
+        let mut created = Created::new(&path).map_err(cannot)?;
         check_contents(&path, force)?;
         let lock = lock(&path)?;
         // Once more: another process may have begun a study just before the lock.
         let earlier = check_contents(&path, force)?;
-        let dir = StudyDir {
-            path,
-            layout,
-            whole: Mutex::default(),
-            _lock: lock,
-        };
+        let dir = StudyDir::new(path, layout, lock);
         // Better to learn now than after the first part that nothing can be written here.
         let begun = dir.begin(manifest, plan, earlier);
         if begun.is_err() && !earlier {
             // The directory must be empty to go again.
             drop(fs::remove_file(dir.path.join(LOCK)));
-            drop(fs::remove_dir(names::parts_folder(&dir.path)));
+            drop(fs::remove_dir(dir.parts()));
         }
         begun?;
         created.keep();
@@ -98,10 +89,8 @@ impl StudyDir {
     pub fn resume(path: impl AsRef<Path>, manifest: &[u8], plan: &[u8]) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         let layout = layout_of(&path, manifest)?;
-        let stored = || {
-            bounded::read_file(path.join(MANIFEST), bounded::RECORD)
-                .map_err(|error| no_study(&path, error))
-        };
+        let read = || bounded::read_file(path.join(MANIFEST), bounded::RECORD);
+        let stored = || read().map_err(|error| no_study(&path, error));
         // Looked for before the lock, which would leave its file in a directory of something else.
         stored()?;
         let lock = lock(&path)?;
@@ -109,63 +98,45 @@ impl StudyDir {
         if stored != manifest {
             return Err(other_settings(&path, (&stored, manifest), plan));
         }
-        let dir = StudyDir {
-            path,
-            layout,
-            whole: Mutex::default(),
-            _lock: lock,
-        };
-        let same_plan =
-            bounded::read_file(dir.path.join(PLAN), bounded::TOML).is_ok_and(|text| text == plan);
-        let parts = names::parts_folder(&dir.path);
-        let prepared = fs::create_dir_all(&parts)
-            .and_then(|()| remove_temporary(&dir.path))
-            .and_then(|()| remove_temporary(&parts));
-        let prepared = prepared.and_then(|()| {
-            if same_plan {
-                Ok(())
-            } else {
-                dir.put_bytes(PLAN, plan).map(drop)
-            }
-        });
-        prepared.map_err(|error| dir.cannot_write("the study", &error))?;
-        for index in marked_parts(&dir.path, &dir.layout)
-            .map_err(|error| dir.cannot_write("the parts", &error))?
-        {
+        let dir = StudyDir::new(path, layout, lock);
+        dir.prepare(plan)
+            .map_err(|error| dir.cannot_write("the study", &error))?;
+        let marked = marked_parts(&dir.path, &dir.layout);
+        for index in marked.map_err(|error| dir.cannot_write("the parts", &error))? {
             if is_whole(&dir.path, &dir.layout, index) {
                 dir.whole().insert(index);
-            } else {
-                // Not to stand for a part while its files are written again.
-                let gone = fs::remove_file(parts.join(names::part_mark(index)));
-                gone.map_err(|error| dir.cannot_write(&names::part_mark(index), &error))?;
+                continue;
             }
+            // Not to stand for a part while its files are written again.
+            let mark = names::part_mark(index);
+            let gone = fs::remove_file(dir.parts().join(&mark));
+            gone.map_err(|error| dir.cannot_write(&mark, &error))?;
         }
         Ok(dir)
     }
 
+    fn new(path: PathBuf, layout: Layout, lock: File) -> Self {
+        StudyDir {
+            path,
+            layout,
+            whole: Mutex::default(),
+            _lock: lock,
+        }
+    }
+
     /// Where it is.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Its parts and tables.
-    #[must_use]
-    pub fn layout(&self) -> &Layout {
-        &self.layout
-    }
-
     /// The parts that are not there yet, in their order.
-    #[must_use]
     pub fn missing(&self) -> Vec<usize> {
         let whole = self.whole();
-        (0..self.layout.parts)
-            .filter(|index| !whole.contains(index))
-            .collect()
+        let is_missing = |index: &usize| !whole.contains(index);
+        (0..self.layout.parts).filter(is_missing).collect()
     }
 
     /// Whether all parts are there.
-    #[must_use]
     pub fn is_complete(&self) -> bool {
         self.whole().len() == self.layout.parts
     }
@@ -175,19 +146,12 @@ impl StudyDir {
     /// # Errors
     /// A problem of `--out` with the words of the operating system. Parts that are whole stay, and the study can be resumed.
     pub fn write_part(&self, index: usize, tables: &[PartTable]) -> Result<(), Problem> {
-        let fits = tables.len() == self.layout.tables.len()
-            && tables
-                .iter()
-                .zip(&self.layout.tables)
-                .all(|(table, name)| table.name == name);
-        if index >= self.layout.parts || !fits {
-            return Err(problem(
-                &self.path,
-                &format!("part {index} is not one of the study's layout"),
-                "",
-            ));
+        let names = tables.iter().map(|table| table.name);
+        if index >= self.layout.parts || !names.eq(&self.layout.tables) {
+            let message = format!("part {index} is not one of the study's layout");
+            return Err(problem(&self.path, &message, ""));
         }
-        let parts = names::parts_folder(&self.path);
+        let parts = self.parts();
         let mut list = Checksums::default();
         for table in tables {
             for ending in self.layout.endings() {
@@ -196,10 +160,8 @@ impl StudyDir {
                     "csv" => write_csv(out, table.columns, table.rows),
                     _ => write_parquet(out, table.columns, table.rows, table.metadata),
                 });
-                list.0.push((
-                    name.clone(),
-                    written.map_err(|error| self.cannot_write(&name, &error))?,
-                ));
+                let sum = written.map_err(|error| self.cannot_write(&name, &error))?;
+                list.0.push((name, sum));
             }
         }
         let mark = names::part_mark(index);
@@ -216,42 +178,32 @@ impl StudyDir {
     /// # Errors
     /// A problem of `--out`: parts are missing, a name is no plain one, or the words of the operating system.
     pub fn finish(&self, files: &[(String, Vec<u8>)]) -> Result<Vec<PathBuf>, Problem> {
-        let missing = self.missing().len();
+        let (path, missing) = (self.path.display(), self.missing().len());
         if missing > 0 {
+            let parts = self.layout.parts;
             let message = format!(
-                "the study in {} is not complete: {missing} of {} parts are missing",
-                self.path.display(),
-                self.layout.parts
+                "the study in {path} is not complete: {missing} of {parts} parts are missing"
             );
             return Err(problem(&self.path, &message, "continue it with --resume"));
         }
-        let twice = |k: usize, name: &str| {
-            files[..k]
-                .iter()
-                .any(|(other, _)| other.eq_ignore_ascii_case(name))
-        };
-        if let Some((_, (name, _))) = files
-            .iter()
-            .enumerate()
-            .find(|(k, (name, _))| !names::is_result(name) || twice(*k, name))
-        {
-            return Err(problem(
-                &self.path,
-                &format!("`{name}` cannot be the name of a result"),
-                "",
-            ));
+        for (k, (name, _)) in files.iter().enumerate() {
+            let is_same = |(other, _): &(String, _)| other.eq_ignore_ascii_case(name);
+            if !names::is_result(name) || files[..k].iter().any(is_same) {
+                let message = format!("`{name}` cannot be the name of a result");
+                return Err(problem(&self.path, &message, ""));
+            }
         }
+        let put = |name: &str, bytes: &[u8]| {
+            let sum = self.put_bytes(name, bytes);
+            sum.map_err(|error| self.cannot_write(name, &error))
+        };
         let mut order: Vec<_> = files.iter().collect();
         order.sort_by_key(|(name, _)| name == SUMMARY);
         let mut list = Checksums::default();
         for (name, bytes) in order {
-            let sum = self
-                .put_bytes(name, bytes)
-                .map_err(|error| self.cannot_write(name, &error))?;
-            list.0.push((name.clone(), sum));
+            list.0.push((name.clone(), put(name, bytes)?));
         }
-        self.put_bytes(RESULTS, list.text().as_bytes())
-            .map_err(|error| self.cannot_write(RESULTS, &error))?;
+        put(RESULTS, list.text().as_bytes())?;
         Ok(files.iter().map(|(name, _)| self.path.join(name)).collect())
     }
 
@@ -263,25 +215,43 @@ impl StudyDir {
         Study::open(&self.path)
     }
 
+    fn parts(&self) -> PathBuf {
+        names::parts_folder(&self.path)
+    }
+
     fn whole(&self) -> MutexGuard<'_, BTreeSet<usize>> {
         // A set of numbers cannot be left half changed.
         self.whole.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn begin(&self, manifest: &[u8], plan: &[u8], earlier: bool) -> Result<(), Problem> {
-        let written = temporary_in(&self.path).map(drop).and_then(|()| {
+        let write = || {
+            temporary_in(&self.path)?;
             if earlier {
                 // While the old manifest is there: an interruption leaves an old study with fewer parts.
                 clear(&self.path)?;
             }
-            fs::create_dir_all(names::parts_folder(&self.path))?;
-            self.put_bytes(MANIFEST, manifest)
-        });
-        // From here on it is a study, which --resume can take up.
+            fs::create_dir_all(self.parts())?;
+            self.put_bytes(MANIFEST, manifest)?;
+            // From here on it is a study, which --resume can take up.
+            self.put_bytes(PLAN, plan)
+        };
+        let written = write();
         written
-            .and_then(|_| self.put_bytes(PLAN, plan))
             .map(drop)
             .map_err(|error| self.cannot_write("the study", &error))
+    }
+
+    /// Removes what an interrupted process left, and completes what it did not write.
+    fn prepare(&self, plan: &[u8]) -> io::Result<()> {
+        let stored = bounded::read_file(self.path.join(PLAN), bounded::TOML);
+        fs::create_dir_all(self.parts())?;
+        remove_temporary(&self.path)?;
+        remove_temporary(&self.parts())?;
+        match stored {
+            Ok(text) if text == plan => Ok(()),
+            _ => self.put_bytes(PLAN, plan).map(drop),
+        }
     }
 
     /// A file in the directory itself.
@@ -292,19 +262,14 @@ impl StudyDir {
     }
 
     fn cannot_write(&self, name: &str, error: &io::Error) -> Problem {
-        let problem = failed(
-            &self.path,
-            &format!("cannot write {name} in {}", self.path.display()),
-            error,
-        );
+        let what = format!("cannot write {name} in {}", self.path.display());
+        let problem = failed(&self.path, &what, error);
+        let kept = "parts that are whole are kept";
         let hint = match error.kind() {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-                "parts that are whole are kept; make room and continue with --resume".to_owned()
+                format!("{kept}; make room and continue with --resume")
             }
-            _ => format!(
-                "parts that are whole are kept and --resume continues them; {}",
-                problem.hint
-            ),
+            _ => format!("{kept} and --resume continues them; {}", problem.hint),
         };
         problem.hint(hint)
     }
@@ -312,53 +277,49 @@ impl StudyDir {
 
 fn layout_of(path: &Path, manifest: &[u8]) -> Result<Layout, Problem> {
     let parsed = serde_json::from_slice::<Value>(manifest).ok();
-    parsed
-        .as_ref()
-        .and_then(Layout::of)
-        .ok_or_else(|| problem(path, "the study has no manifest with a layout", ""))
+    let layout = parsed.as_ref().and_then(Layout::of);
+    layout.ok_or_else(|| problem(path, "the study has no manifest with a layout", ""))
 }
 
 /// Whether the directory holds an earlier study. Refuses what is not to be written over.
 fn check_contents(path: &Path, force: bool) -> Result<bool, Problem> {
-    let mut found = names_in(path).map_err(|error| {
-        failed(
-            path,
-            &format!("cannot read directory {}", path.display()),
-            &error,
-        )
-    })?;
+    let name = path.display();
+    let cannot = |error| failed(path, &format!("cannot read directory {name}"), &error);
+    let mut found = names_in(path).map_err(cannot)?;
     // What is left of a study that never began.
-    let empty =
-        |folder: PathBuf| fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
-    found.retain(|name| name != LOCK && !(name == PARTS && empty(names::parts_folder(path))));
+    let is_empty =
+        || fs::read_dir(names::parts_folder(path)).is_ok_and(|mut all| all.next().is_none());
+    found.retain(|name| name != LOCK && !(name == PARTS && is_empty()));
     let earlier = found.iter().any(|name| name == MANIFEST);
     if found.is_empty() || (earlier && force) {
         return Ok(earlier);
     }
-    let name = path.display();
-    Err(if earlier {
-        let message = format!("{name} holds a study: {}", list(&found));
-        problem(
-            path,
-            &message,
+    let (what, hint) = match earlier {
+        true => (
+            "a study",
             "continue it with --resume, replace it with --force, or choose another name",
-        )
-    } else {
-        let message = format!("{name} holds files of something else: {}", list(&found));
-        problem(path, &message, "choose another name, or an empty directory")
-    })
+        ),
+        false => (
+            "files of something else",
+            "choose another name, or an empty directory",
+        ),
+    };
+    let message = format!("{name} holds {what}: {}", list(&found));
+    Err(problem(path, &message, hint))
 }
 
 fn no_study(path: &Path, error: ReadError) -> Problem {
-    if error.kind() == ErrorKind::NotFound || error.kind() == ErrorKind::NotADirectory {
-        return problem(
-            path,
-            &format!("there is no study in {} to resume", path.display()),
-            "leave --resume out to begin it, or check the path",
-        );
-    }
-    let message = format!("cannot read {MANIFEST} in {}", path.display());
+    let name = path.display();
+    let message = format!("cannot read {MANIFEST} in {name}");
     match error {
+        error if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            let message = format!("there is no study in {name} to resume");
+            problem(
+                path,
+                &message,
+                "leave --resume out to begin it, or check the path",
+            )
+        }
         ReadError::Unreadable(error) => failed(path, &message, &error),
         refused => problem(path, &format!("{message}: {refused}"), refused.hint(""))
             .allowed(refused.allowed("")),
@@ -366,46 +327,33 @@ fn no_study(path: &Path, error: ReadError) -> Problem {
 }
 
 fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Problem {
-    let hint = "resume it with the same plan, files and program, or begin anew with --force or in another directory";
     let name = path.display();
-    let (Ok(stored), Ok(now)) = (serde_json::from_slice(stored), serde_json::from_slice(now))
-    else {
-        return problem(
-            path,
-            &format!("{MANIFEST} in {name} is damaged"),
-            "begin the study anew with --force or in another directory",
-        );
+    let parsed = |bytes| serde_json::from_slice::<Value>(bytes);
+    let (Ok(stored), Ok(now)) = (parsed(stored), parsed(now)) else {
+        let hint = "begin the study anew with --force or in another directory";
+        return problem(path, &format!("{MANIFEST} in {name} is damaged"), hint);
     };
     let mut found = differences(&stored, &now);
     // The line of the plan says more than what follows from it.
-    if let Some(stored) = bounded::read_file(path.join(PLAN), bounded::TOML)
-        .ok()
-        .filter(|stored| stored != plan)
-    {
-        found.insert(
-            0,
-            lines(
-                PLAN,
-                &String::from_utf8_lossy(&stored),
-                &String::from_utf8_lossy(plan),
-            ),
-        );
+    let stored = bounded::read_file(path.join(PLAN), bounded::TOML).ok();
+    if let Some(stored) = stored.filter(|stored| stored != plan) {
+        let text = String::from_utf8_lossy;
+        found.insert(0, lines(PLAN, &text(&stored), &text(plan)));
     }
-    let Some(first) = found.first() else {
-        return problem(
-            path,
-            &format!("{MANIFEST} in {name} was written in another form"),
-            hint,
-        );
+    let message = match found.as_slice() {
+        [] => format!("{MANIFEST} in {name} was written in another form"),
+        [first, rest @ ..] => {
+            let more = match rest.len() {
+                0 => String::new(),
+                1 => " (and one more value)".to_owned(),
+                n => format!(" (and {n} more values)"),
+            };
+            let Difference { path, stored, now } = first;
+            format!(
+                "the study in {name} is another one: `{path}` is {stored} there and {now} now{more}"
+            )
+        }
     };
-    let more = match found.len() - 1 {
-        0 => String::new(),
-        1 => " (and one more value)".to_owned(),
-        n => format!(" (and {n} more values)"),
-    };
-    let message = format!(
-        "the study in {name} is another one: `{}` is {} there and {} now{more}",
-        first.path, first.stored, first.now
-    );
+    let hint = "resume it with the same plan, files and program, or begin anew with --force or in another directory";
     problem(path, &message, hint)
 }

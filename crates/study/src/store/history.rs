@@ -25,12 +25,8 @@ pub fn read_trace_parquet(path: &Path) -> Result<History, Problems> {
     let file = ParquetFile::open_known(path, file).map_err(hinted)?;
     let columns = known(file.columns().iter().map(|head| head.name.as_str()));
     if columns.is_empty() {
-        return Err(file_problem(
-            path,
-            "this is no trace of cvtcycle: it has none of its columns",
-            AGAIN,
-        )
-        .into());
+        let message = "this is no trace of cvtcycle: it has none of its columns";
+        return Err(file_problem(path, message, AGAIN).into());
     }
     let lacks = |own: &TraceColumn| {
         file_problem(path, format!("the column {} is missing", own.name), AGAIN).key(&*own.name)
@@ -50,12 +46,8 @@ pub fn read_trace_parquet(path: &Path) -> Result<History, Problems> {
     }
     let names: Vec<&str> = columns.iter().map(|column| &*column.name).collect();
     let read = file.read(&names).map_err(hinted)?;
-    let numbers: Vec<&'static TraceColumn> = columns
-        .iter()
-        .copied()
-        .filter(|column| is_number(column))
-        .collect();
-    let mut history = History::empty(&numbers);
+    let numbers = columns.iter().copied().filter(|column| is_number(column));
+    let mut history = History::empty(&numbers.collect::<Vec<_>>());
     let (mut phases, mut flags): (Vec<Arc<str>>, Vec<Arc<str>>) = (Vec::new(), Vec::new());
     for (column, values) in columns.iter().zip(read.values) {
         match (&*column.name, values) {
@@ -65,13 +57,11 @@ pub fn read_trace_parquet(path: &Path) -> Result<History, Problems> {
             (name, Values::Count(counts)) if is_number(column) => {
                 history.put(name, counts.iter().map(|n| *n as f64).collect())
             }
-            (name, _) => problems.push(bad(
-                path,
-                name,
-                "",
-                "the column holds words where numbers are due, or the other way round",
-                "",
-            )),
+            (name, _) => {
+                let message =
+                    "the column holds words where numbers are due, or the other way round";
+                problems.push(bad(path, name, "", message, ""));
+            }
         }
     }
     steps(path, &mut history, &phases, &flags, &mut problems);
@@ -104,13 +94,8 @@ fn steps(
         }
     }
     problems.extend(unknown.map(|(row, word)| {
-        bad(
-            path,
-            "flags",
-            word,
-            &format!("unknown flag in row {}", row + 1),
-            FLAGS,
-        )
+        let message = format!("unknown flag in row {}", row + 1);
+        bad(path, "flags", word, &message, FLAGS)
     }));
 }
 
@@ -118,28 +103,20 @@ fn steps(
 fn times(path: &Path, history: &History) -> Problems {
     let (time, dt) = (history.time_s(), history.dt_s());
     let late = |row: &usize| !time[*row].is_finite() || (*row > 0 && time[*row] <= time[row - 1]);
-    let time = (0..time.len()).find(late).map(|row| {
-        bad(
-            path,
-            "time_s",
-            &time[row].to_string(),
-            &format!("the time does not rise in row {}", row + 1),
-            "above that of the row before",
-        )
+    let short = |row: &usize| !(dt[*row].is_finite() && dt[*row] > 0.0);
+    let at = |key: &str, row: usize, value: f64, message: &str, allowed: &str| {
+        let message = format!("{message} in row {}", row + 1);
+        bad(path, key, &value.to_string(), &message, allowed)
+    };
+    let late = (0..time.len()).find(late).map(|row| {
+        let allowed = "above that of the row before";
+        at("time_s", row, time[row], "the time does not rise", allowed)
     });
-    let dt = dt
-        .iter()
-        .position(|dt| !(dt.is_finite() && *dt > 0.0))
-        .map(|row| {
-            bad(
-                path,
-                "dt_s",
-                &dt[row].to_string(),
-                &format!("the length of the step is not positive in row {}", row + 1),
-                "above 0 s",
-            )
-        });
-    time.into_iter().chain(dt).collect()
+    let short = (0..dt.len()).find(short).map(|row| {
+        let message = "the length of the step is not positive";
+        at("dt_s", row, dt[row], message, "above 0 s")
+    });
+    late.into_iter().chain(short).collect()
 }
 
 fn bad(path: &Path, key: &str, value: &str, message: &str, allowed: &str) -> Problem {

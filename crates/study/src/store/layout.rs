@@ -21,7 +21,6 @@ pub struct Layout {
 
 impl Layout {
     /// The layout that a manifest states; none if it states none, or one that cannot be.
-    #[must_use]
     pub fn of(manifest: &Value) -> Option<Self> {
         let layout: Layout = serde_json::from_value(manifest.get("layout")?.clone()).ok()?;
         let tables = &layout.tables;

@@ -28,10 +28,9 @@ fn compare(path: &str, stored: Option<&Value>, now: Option<&Value>, found: &mut 
         (Some(Value::Object(a)), Some(Value::Object(b))) => {
             let new = b.keys().filter(|key| !a.contains_key(*key));
             for key in a.keys().chain(new) {
-                let path = if path.is_empty() {
-                    key.clone()
-                } else {
-                    format!("{path}.{key}")
+                let path = match path {
+                    "" => key.clone(),
+                    path => format!("{path}.{key}"),
                 };
                 compare(&path, a.get(key), b.get(key), found);
             }
@@ -57,41 +56,30 @@ fn compare(path: &str, stored: Option<&Value>, now: Option<&Value>, found: &mut 
 
 /// The first line in which two texts differ, that do.
 pub fn lines(path: &str, stored: &str, now: &str) -> Difference {
-    let (mut a, mut b) = (stored.lines(), now.lines());
-    let mut line = 1;
-    loop {
-        match (a.next(), b.next()) {
-            (Some(x), Some(y)) if x == y => line += 1,
-            (None, None) => {
-                let end = |text: &str| {
-                    if text.contains('\r') {
-                        "with carriage returns"
-                    } else {
-                        "other line ends"
-                    }
-                    .to_owned()
-                };
-                return Difference {
-                    path: path.to_owned(),
-                    stored: end(stored),
-                    now: end(now),
-                };
-            }
-            (x, y) => {
-                let quoted = |line: Option<&str>| {
-                    line.map_or_else(
-                        || "no such line".to_owned(),
-                        |line| cut(&format!("`{line}`")),
-                    )
-                };
-                return Difference {
-                    path: format!("{path}, line {line}"),
-                    stored: quoted(x),
-                    now: quoted(y),
-                };
-            }
+    let same = stored
+        .lines()
+        .zip(now.lines())
+        .take_while(|(a, b)| a == b)
+        .count();
+    let is_end = [stored, now].map(|text| text.lines().nth(same)) == [None; 2];
+    let (path, [stored, now]) = match is_end {
+        false => {
+            let line = |text: &str| text.lines().nth(same).map(|line| cut(&format!("`{line}`")));
+            let shown = |text| line(text).unwrap_or_else(|| "no such line".to_owned());
+            (
+                format!("{path}, line {}", same + 1),
+                [stored, now].map(shown),
+            )
         }
-    }
+        true => {
+            let ends = |text: &str| match text.contains('\r') {
+                true => "with carriage returns".to_owned(),
+                false => "other line ends".to_owned(),
+            };
+            (path.to_owned(), [stored, now].map(ends))
+        }
+    };
+    Difference { path, stored, now }
 }
 
 fn shown(value: Option<&Value>) -> String {

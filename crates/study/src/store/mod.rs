@@ -47,6 +47,21 @@ use std::path::Path;
 use super::table::{Head, Rows, Values};
 use cvtcycle_config::Problem;
 
+/// A table in some format, written piece by piece.
+pub trait RowWriter {
+    /// Writes some rows.
+    ///
+    /// # Errors
+    /// Those of the file; [`io::ErrorKind::InvalidInput`] for rows of another table, or that the format cannot hold.
+    fn write(&mut self, rows: &Rows) -> io::Result<()>;
+
+    /// Writes the end of the file and hands everything on.
+    ///
+    /// # Errors
+    /// Those of the file.
+    fn finish(self: Box<Self>) -> io::Result<()>;
+}
+
 /// A problem of a file or directory of a study.
 fn file_problem(path: &Path, message: impl Display, hint: &str) -> Problem {
     Problem::invalid(message.to_string())
@@ -57,17 +72,11 @@ fn file_problem(path: &Path, message: impl Display, hint: &str) -> Problem {
 
 /// Checks that rows fit under their heads.
 fn check_shape(columns: &[Head], rows: &Rows) -> io::Result<()> {
-    let fits = columns.len() == rows.values.len()
-        && columns
-            .iter()
-            .zip(&rows.values)
-            .all(|(column, values)| column.kind == values.kind() && values.len() == rows.len());
-    if fits {
-        Ok(())
-    } else {
-        Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "rows do not fit under the heads of their table",
-        ))
+    let fits =
+        |(head, values): (&Head, &Values)| head.kind == values.kind() && values.len() == rows.len();
+    if columns.len() == rows.values.len() && columns.iter().zip(&rows.values).all(fits) {
+        return Ok(());
     }
+    let message = "rows do not fit under the heads of their table";
+    Err(io::Error::new(io::ErrorKind::InvalidInput, message))
 }

@@ -22,7 +22,6 @@ const MARK_ENDING: &str = "sha256";
 const ENDINGS: [&str; 3] = ["parquet", "csv", MARK_ENDING];
 
 /// Whether a directory holds a study, whole or not.
-#[must_use]
 pub fn is_study(path: impl AsRef<Path>) -> bool {
     path.as_ref().join(MANIFEST).is_file()
 }
@@ -44,28 +43,18 @@ pub fn part_mark(index: usize) -> String {
 
 /// The part of which a file is the mark.
 pub fn marked_part(name: &str) -> Option<usize> {
-    let digits = name
-        .strip_prefix(MARK)?
-        .strip_prefix('_')?
-        .strip_suffix(MARK_ENDING)?
-        .strip_suffix('.')?;
-    let index = digits.parse().ok()?;
+    let (stem, _) = name.rsplit_once('.')?;
+    let index = stem.rsplit_once('_')?.1.parse().ok()?;
     // No second spelling of a number.
     (part_mark(index) == name).then_some(index)
 }
 
 /// Whether a name is that of a file of some part.
 pub fn is_part_file(name: &str) -> bool {
-    let Some((stem, ending)) = name.rsplit_once('.') else {
-        return false;
-    };
-    let Some((table, digits)) = stem.rsplit_once('_') else {
-        return false;
-    };
-    ENDINGS.contains(&ending)
-        && is_word(table)
-        && digits.len() >= 5
-        && digits.bytes().all(|b| b.is_ascii_digit())
+    let (stem, ending) = name.rsplit_once('.').unwrap_or_default();
+    let (table, digits) = stem.rsplit_once('_').unwrap_or_default();
+    let is_number = digits.len() >= 5 && digits.bytes().all(|b| b.is_ascii_digit());
+    ENDINGS.contains(&ending) && is_word(table) && is_number
 }
 
 /// Whether a name can be that of a table: small letters, digits and `_`, and not that of the marks.
@@ -74,22 +63,17 @@ pub fn is_table(name: &str) -> bool {
 }
 
 fn is_word(name: &str) -> bool {
-    (1..=40).contains(&name.len())
-        && name
-            .bytes()
-            .all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
+    let is_letter = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_';
+    (1..=40).contains(&name.len()) && name.bytes().all(is_letter)
 }
 
 /// Whether a name can be that of a result: plain, and none of the study's own files.
 pub fn is_result(name: &str) -> bool {
     let plain = Path::new(name).file_name().is_some_and(|last| last == name);
-    let own = [MANIFEST, PLAN, PARTS, RESULTS]
-        .iter()
-        .any(|own| own.eq_ignore_ascii_case(name));
-    plain
-        && !own
-        && !name.starts_with('.')
-        && !name.contains(|c: char| "/\\:".contains(c) || c.is_control())
+    let own = [MANIFEST, PLAN, PARTS, RESULTS];
+    let own = own.iter().any(|own| own.eq_ignore_ascii_case(name));
+    let is_odd = |c: char| "/\\:".contains(c) || c.is_control();
+    plain && !own && !name.starts_with('.') && !name.contains(is_odd)
 }
 
 #[cfg(test)]

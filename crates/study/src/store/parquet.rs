@@ -14,7 +14,7 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::{ColumnPath, Type};
 use serde_json::json;
 
-use super::check_shape;
+use super::{RowWriter, check_shape};
 use crate::table::{Head, Kind, Rows, Values};
 
 /// Key of the metadata under which the heads of the columns stand, as JSON.
@@ -50,28 +50,22 @@ impl<W: Write + Send> ParquetTable<W> {
         check_shape(columns, first)?;
         let mut names = HashSet::new();
         if columns.is_empty() || !columns.iter().all(|column| names.insert(&column.name)) {
-            return Err(io::Error::new(
-                io::ErrorKind::InvalidInput,
-                "a table needs columns, each with a name of its own",
-            ));
+            let message = "a table needs columns, each with a name of its own";
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
         }
-        let schema = schema(columns).map_err(io_error)?;
-        let file = SerializedFileWriter::new(
-            out,
-            Arc::new(schema),
-            Arc::new(properties(columns, metadata, first)),
-        );
+        let schema = Arc::new(schema(columns).map_err(io_error)?);
+        let properties = Arc::new(properties(columns, metadata, first));
+        let file = SerializedFileWriter::new(out, schema, properties);
         Ok(ParquetTable {
             file: file.map_err(io_error)?,
             columns: columns.to_vec(),
         })
     }
+}
 
-    /// Writes some rows as a row group; none are no group.
-    ///
-    /// # Errors
-    /// Whatever `out` reports; [`io::ErrorKind::InvalidInput`] for rows of another table.
-    pub fn write(&mut self, rows: &Rows) -> io::Result<()> {
+/// Some rows are a row group; none are no group.
+impl<W: Write + Send> RowWriter for ParquetTable<W> {
+    fn write(&mut self, rows: &Rows) -> io::Result<()> {
         check_shape(&self.columns, rows)?;
         if rows.is_empty() {
             return Ok(());
@@ -79,11 +73,7 @@ impl<W: Write + Send> ParquetTable<W> {
         write_group(&mut self.file, rows).map_err(io_error)
     }
 
-    /// Writes the end of the file and hands everything on.
-    ///
-    /// # Errors
-    /// Whatever `out` reports.
-    pub fn finish(mut self) -> io::Result<()> {
+    fn finish(mut self: Box<Self>) -> io::Result<()> {
         // Flushes as well. Giving `out` back would turn its error into words.
         self.file.finish().map(drop).map_err(io_error)
     }
@@ -99,7 +89,7 @@ pub fn write_parquet<W: Write + Send>(
     rows: &Rows,
     metadata: &[(&str, &str)],
 ) -> io::Result<()> {
-    let mut table = ParquetTable::new(out, columns, metadata, rows)?;
+    let mut table = Box::new(ParquetTable::new(out, columns, metadata, rows)?);
     table.write(rows)?;
     table.finish()
 }
@@ -123,14 +113,12 @@ fn schema(columns: &[Head]) -> Result<Type, ParquetError> {
 }
 
 fn properties(columns: &[Head], metadata: &[(&str, &str)], first: &Rows) -> WriterProperties {
-    let mut pairs: Vec<KeyValue> = metadata
+    let heads = json!(columns).to_string();
+    let pairs = metadata
         .iter()
-        .map(|(key, value)| KeyValue::new((*key).to_owned(), (*value).to_owned()))
-        .collect();
-    pairs.push(KeyValue::new(
-        COLUMNS_KEY.to_owned(),
-        json!(columns).to_string(),
-    ));
+        .copied()
+        .chain([(COLUMNS_KEY, heads.as_str())]);
+    let pairs = pairs.map(|(key, value)| KeyValue::new(key.to_owned(), value.to_owned()));
     let mut builder = WriterProperties::builder()
         .set_created_by(CREATED_BY.to_owned())
         .set_compression(Compression::SNAPPY)
@@ -139,7 +127,7 @@ fn properties(columns: &[Head], metadata: &[(&str, &str)], first: &Rows) -> Writ
         .set_offset_index_disabled(true)
         // What is one group here is to be one in the file.
         .set_max_row_group_row_count(None)
-        .set_key_value_metadata(Some(pairs));
+        .set_key_value_metadata(Some(pairs.collect()));
     for (column, values) in columns.iter().zip(&first.values) {
         // A name with dots is one name.
         let path = ColumnPath::new(vec![column.name.clone()]);
@@ -211,33 +199,25 @@ fn write_column(column: &mut SerializedColumnWriter, values: &Values) -> Result<
         Values::Number(numbers) => {
             let there: Vec<i16> = numbers.iter().map(|x| i16::from(x.is_finite())).collect();
             // Adding zero takes the sign from minus zero and changes nothing else. Where every number is there, none is looked at alone.
-            let all = there.iter().all(|there| *there > 0);
             let plain = numbers.iter().map(|x| x + 0.0);
-            let numbers: Vec<f64> = if all {
-                plain.collect()
-            } else {
-                plain.filter(|x| x.is_finite()).collect()
+            let numbers: Vec<f64> = match there.iter().all(|there| *there > 0) {
+                true => plain.collect(),
+                false => plain.filter(|x| x.is_finite()).collect(),
             };
-            column
-                .typed::<DoubleType>()
-                .write_batch(&numbers, Some(&there), None)?;
+            let column = column.typed::<DoubleType>();
+            column.write_batch(&numbers, Some(&there), None)?;
         }
         Values::Count(counts) => {
-            column
-                .typed::<Int64Type>()
-                .write_batch(counts, None, None)?;
+            let column = column.typed::<Int64Type>();
+            column.write_batch(counts, None, None)?;
         }
         Values::Text(words) => {
-            let there: Vec<i16> = words
-                .iter()
-                .map(|word| i16::from(!word.is_empty()))
-                .collect();
+            let there = words.iter().map(|word| i16::from(!word.is_empty()));
+            let there: Vec<i16> = there.collect();
             let mut known: HashMap<&str, ByteArray> = HashMap::new();
             let mut bytes = |word| {
-                known
-                    .entry(word)
-                    .or_insert_with(|| ByteArray::from(word))
-                    .clone()
+                let known = known.entry(word).or_insert_with(|| ByteArray::from(word));
+                known.clone()
             };
             let mut last: Option<(&Arc<str>, ByteArray)> = None;
             // Most words are the one before, often the very same.
@@ -245,14 +225,10 @@ fn write_column(column: &mut SerializedColumnWriter, values: &Values) -> Result<
                 Some((before, bytes)) if Arc::ptr_eq(before, word) => bytes.clone(),
                 _ => last.insert((word, bytes(&**word))).1.clone(),
             };
-            let words: Vec<ByteArray> = words
-                .iter()
-                .filter(|word| !word.is_empty())
-                .map(&mut next)
-                .collect();
-            column
-                .typed::<ByteArrayType>()
-                .write_batch(&words, Some(&there), None)?;
+            let words = words.iter().filter(|word| !word.is_empty());
+            let words: Vec<ByteArray> = words.map(&mut next).collect();
+            let column = column.typed::<ByteArrayType>();
+            column.write_batch(&words, Some(&there), None)?;
         }
     }
     Ok(())

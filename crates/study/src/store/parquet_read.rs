@@ -15,7 +15,7 @@ use cvtcycle_config::bounded::{self, ReadError};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
 use parquet::errors::ParquetError;
-use parquet::file::metadata::ColumnChunkMetaData;
+use parquet::file::metadata::{ColumnChunkMetaData, KeyValue};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
 /// What helps with a damaged file.
@@ -49,25 +49,17 @@ impl ParquetFile {
 
     /// Opens a file whose bytes are known to be those that were written.
     pub(super) fn open_known(path: &Path, mut file: File) -> Result<Self, Problem> {
-        let damaged = || {
-            file_problem(
-                path,
-                "the file is damaged: it is shorter than it says, or longer than any of this program",
-                MEND,
-            )
-        };
-        if !is_short(&mut file).map_err(|error| unreadable(path, &error.into()))? {
-            return Err(damaged());
-        }
-        let bytes = file
-            .metadata()
-            .map_err(|error| unreadable(path, &error.into()))?
-            .len();
-        let file = SerializedFileReader::new(file)
-            .map_err(|error| unreadable(path, &io_error(error).into()))?;
-        if !fits(&file, bytes) {
-            return Err(damaged());
-        }
+        const DAMAGED: &str =
+            "the file is damaged: it is shorter than it says, or longer than any of this program";
+        let refused = |error: io::Error| unreadable(path, &error.into());
+        let is_short = is_short(&mut file).map_err(refused)?;
+        let bytes = file.metadata().map_err(refused)?.len();
+        let reader = is_short.then(|| SerializedFileReader::new(file));
+        let reader = reader
+            .transpose()
+            .map_err(|error| refused(io_error(error)))?;
+        let file = reader.filter(|reader| fits(reader, bytes));
+        let file = file.ok_or_else(|| file_problem(path, DAMAGED, MEND))?;
         let columns = heads(&file)
             .ok_or_else(|| file_problem(path, "the file is no table of this program", ""))?;
         Ok(ParquetFile {
@@ -78,26 +70,20 @@ impl ParquetFile {
     }
 
     /// Heads of its columns.
-    #[must_use]
     pub fn columns(&self) -> &[Head] {
         &self.columns
     }
 
     /// Number of its rows.
-    #[must_use]
     pub fn rows(&self) -> u64 {
         u64::try_from(self.file.metadata().file_metadata().num_rows()).unwrap_or(0)
     }
 
     /// Pairs of its metadata, in their order.
-    #[must_use]
     pub fn metadata(&self) -> Vec<(String, String)> {
         let pairs = self.file.metadata().file_metadata().key_value_metadata();
-        pairs
-            .into_iter()
-            .flatten()
-            .map(|pair| (pair.key.clone(), pair.value.clone().unwrap_or_default()))
-            .collect()
+        let pair = |pair: &KeyValue| (pair.key.clone(), pair.value.clone().unwrap_or_default());
+        pairs.into_iter().flatten().map(pair).collect()
     }
 
     /// All rows of some columns, in the order of the names.
@@ -105,17 +91,14 @@ impl ParquetFile {
     /// # Errors
     /// A problem that names the file, for a column that it does not have or a file that cannot be read.
     pub fn read(&self, names: &[&str]) -> Result<Rows, Problem> {
-        let mut values = Vec::with_capacity(names.len());
-        for name in names {
+        let read = |name: &&str| {
             let found = self.columns.iter().position(|column| column.name == *name);
-            let index = found.ok_or_else(|| {
-                file_problem(&self.path, format!("the table has no column `{name}`"), "")
-            })?;
-            values.push(
-                self.column(index)
-                    .map_err(|error| unreadable(&self.path, &io_error(error).into()))?,
-            );
-        }
+            let unknown = || format!("the table has no column `{name}`");
+            let index = found.ok_or_else(|| file_problem(&self.path, unknown(), ""))?;
+            let column = self.column(index);
+            column.map_err(|error| unreadable(&self.path, &io_error(error).into()))
+        };
+        let values = names.iter().map(read).collect::<Result<_, _>>()?;
         Ok(Rows { values })
     }
 
@@ -141,21 +124,18 @@ impl ParquetFile {
                     })?;
                     wrong.map_or(Ok(()), Err)?;
                 }
-                _ => {
-                    return Err(ParquetError::General(
-                        "a column is not of the kind that its head says".to_owned(),
-                    ));
-                }
+                _ => return Err(damage("a column is not of the kind that its head says")),
             }
         }
-        if values.len() == total {
-            Ok(values)
-        } else {
-            Err(ParquetError::General(
-                "a column is shorter than the table".to_owned(),
-            ))
+        match values.len() == total {
+            true => Ok(values),
+            false => Err(damage("a column is shorter than the table")),
         }
     }
+}
+
+fn damage(message: &str) -> ParquetError {
+    ParquetError::General(message.to_owned())
 }
 
 /// Whether the file's last bytes do not ask for more memory than the footer of a table takes. The file is left at its beginning.
@@ -177,20 +157,22 @@ fn fits(file: &SerializedFileReader<File>, bytes: u64) -> bool {
     let metadata = file.metadata();
     let rows = u64::try_from(metadata.file_metadata().num_rows());
     let within = |column: &ColumnChunkMetaData| {
-        let start = column
-            .dictionary_page_offset()
-            .unwrap_or(column.data_page_offset());
-        let end = u64::try_from(start)
-            .ok()
-            .zip(u64::try_from(column.compressed_size()).ok())
-            .and_then(|(start, size)| start.checked_add(size));
-        end.is_some_and(|end| end <= bytes)
+        let start = column.dictionary_page_offset();
+        let start = start.unwrap_or(column.data_page_offset());
+        let ends = (
+            u64::try_from(start),
+            u64::try_from(column.compressed_size()),
+        );
+        let (Ok(start), Ok(size)) = ends else {
+            return false;
+        };
+        start.checked_add(size).is_some_and(|end| end <= bytes)
     };
-    rows.is_ok_and(|rows| rows <= MAX_ROWS)
-        && metadata
-            .row_groups()
-            .iter()
-            .all(|group| group.columns().iter().all(within))
+    let mut columns = metadata
+        .row_groups()
+        .iter()
+        .flat_map(|group| group.columns());
+    rows.is_ok_and(|rows| rows <= MAX_ROWS) && columns.all(within)
 }
 
 /// Hands on every cell of a column in a row group, none where it is null; `room` is how many there may be.
@@ -210,9 +192,8 @@ fn each<T: DataType>(
             return Ok(());
         }
         // A few bytes can stand for any number of equal cells.
-        room = room
-            .checked_sub(records)
-            .ok_or_else(|| ParquetError::General("a column is longer than the table".to_owned()))?;
+        let left = room.checked_sub(records);
+        room = left.ok_or_else(|| damage("a column is longer than the table"))?;
         if there.is_empty() {
             values.iter().for_each(|value| cell(Some(value)));
             continue;
@@ -241,18 +222,14 @@ fn word(
 /// The heads in the metadata; none if there are none or they are not those of the file's columns.
 fn heads(file: &SerializedFileReader<File>) -> Option<Vec<Head>> {
     let metadata = file.metadata().file_metadata();
-    let pair = metadata
-        .key_value_metadata()?
-        .iter()
-        .find(|pair| pair.key == COLUMNS_KEY)?;
+    let mut pairs = metadata.key_value_metadata()?.iter();
+    let pair = pairs.find(|pair| pair.key == COLUMNS_KEY)?;
     let columns: Vec<Head> = serde_json::from_str(pair.value.as_ref()?).ok()?;
-    let schema = metadata.schema_descr().columns();
-    let same = schema.len() == columns.len()
-        && schema
-            .iter()
-            .zip(&columns)
-            .all(|(found, head)| found.name() == head.name);
-    same.then_some(columns)
+    let schema = metadata.schema_descr().columns().iter();
+    let is_same = schema
+        .map(|column| column.name())
+        .eq(columns.iter().map(|head| &head.name));
+    is_same.then_some(columns)
 }
 
 /// Checks that the bytes that are left to read of a file are those that were written.

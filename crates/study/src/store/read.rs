@@ -14,7 +14,8 @@ use super::layout::Layout;
 use super::names::{self, MANIFEST, PLAN, RESULTS};
 use super::parquet_read::{MEND, ParquetFile, check_sum, unreadable};
 use crate::table::{Head, Rows};
-use cvtcycle_config::{Problem, bounded};
+use cvtcycle_config::Problem;
+use cvtcycle_config::bounded::{self, ReadError};
 
 /// How far a study has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +30,6 @@ pub struct Status {
 
 impl Status {
     /// Whether all parts are there.
-    #[must_use]
     pub fn is_complete(self) -> bool {
         self.present == self.expected
     }
@@ -54,28 +54,22 @@ impl Study {
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         let file = path.join(MANIFEST);
-        let bytes =
-            bounded::read_file(&file, bounded::RECORD).map_err(|error| match error.kind() {
-                io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
-                    let message = format!(
-                        "there is no study in {}: it has no {MANIFEST}",
-                        path.display()
-                    );
-                    file_problem(
-                        &path,
-                        message,
-                        "name the directory that was given to --out of `cvtcycle study`",
-                    )
-                }
-                _ => unreadable(&file, &error),
-            })?;
-        let parsed = serde_json::from_slice::<Value>(&bytes).ok();
-        let known =
-            parsed.and_then(|manifest| Layout::of(&manifest).map(|layout| (manifest, layout)));
-        let (manifest, layout) =
-            known.ok_or_else(|| file_problem(&file, "the manifest of the study is damaged", ""))?;
-        let mut present = marked_parts(&path, &layout)
-            .map_err(|error| unreadable(&names::parts_folder(&path), &error.into()))?;
+        let no_study = |error: ReadError| match error.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
+                let name = path.display();
+                let message = format!("there is no study in {name}: it has no {MANIFEST}");
+                let hint = "name the directory that was given to --out of `cvtcycle study`";
+                file_problem(&path, message, hint)
+            }
+            _ => unreadable(&file, &error),
+        };
+        let bytes = bounded::read_file(&file, bounded::RECORD).map_err(no_study)?;
+        let damaged = || file_problem(&file, "the manifest of the study is damaged", "");
+        let manifest = serde_json::from_slice::<Value>(&bytes).map_err(|_| damaged())?;
+        let layout = Layout::of(&manifest).ok_or_else(damaged)?;
+        let parts = names::parts_folder(&path);
+        let marked = marked_parts(&path, &layout);
+        let mut present = marked.map_err(|error| unreadable(&parts, &error.into()))?;
         present.sort_unstable();
         Ok(Study {
             path,
@@ -87,19 +81,16 @@ impl Study {
     }
 
     /// Where it is.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// What it was begun with.
-    #[must_use]
     pub fn manifest(&self) -> &Value {
         &self.manifest
     }
 
     /// Its parts and tables.
-    #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -114,13 +105,11 @@ impl Study {
     }
 
     /// The parts that are there, in their order.
-    #[must_use]
     pub fn present(&self) -> &[usize] {
         &self.present
     }
 
     /// How far it has come.
-    #[must_use]
     pub fn status(&self) -> Status {
         let finished = Checksums::read(&self.path.join(RESULTS)).is_some();
         Status {
@@ -139,10 +128,8 @@ impl Study {
         let name = names::part_file(table, index, "parquet");
         let path = folder.join(&name);
         if !self.layout.tables.iter().any(|other| other == table) {
-            let message = format!(
-                "the study has no table `{table}`, only {}",
-                self.layout.tables.join(", ")
-            );
+            let tables = self.layout.tables.join(", ");
+            let message = format!("the study has no table `{table}`, only {tables}");
             return Err(file_problem(&self.path, message, ""));
         }
         let file = bounded::open_file(&path).map_err(|error| unreadable(&path, &error))?;
@@ -150,9 +137,8 @@ impl Study {
         if !known.contains(&name) {
             let list = Checksums::read(&folder.join(names::part_mark(index)));
             let right = list.as_ref().and_then(|list| list.get(&name));
-            let right = right.ok_or_else(|| {
-                file_problem(&path, "the list of checksums of this part is damaged", MEND)
-            })?;
+            let message = "the list of checksums of this part is damaged";
+            let right = right.ok_or_else(|| file_problem(&path, message, MEND))?;
             check_sum(&path, &file, right)?;
             known.insert(name);
         }
@@ -165,9 +151,10 @@ impl Study {
     /// # Errors
     /// Those of [`Study::part`].
     pub fn heads(&self, table: &str) -> Result<Vec<Head>, Problem> {
-        self.present.first().map_or(Ok(Vec::new()), |&index| {
-            self.part(index, table).map(|file| file.columns().to_vec())
-        })
+        match self.present.first() {
+            Some(&index) => Ok(self.part(index, table)?.columns().to_vec()),
+            None => Ok(Vec::new()),
+        }
     }
 
     /// Number of rows of a table in all parts that are there.
@@ -175,41 +162,22 @@ impl Study {
     /// # Errors
     /// Those of [`Study::part`].
     pub fn rows(&self, table: &str) -> Result<u64, Problem> {
-        self.present
-            .iter()
-            .map(|&index| self.part(index, table).map(|file| file.rows()))
-            .sum()
-    }
-
-    /// Hands on some columns of a table part by part, in the order of the parts; only one part is in memory at a time.
-    ///
-    /// # Errors
-    /// Those of [`Study::part`], for a column that is not there, and those of `f`.
-    pub fn for_each(
-        &self,
-        table: &str,
-        names: &[&str],
-        mut f: impl FnMut(usize, Rows) -> Result<(), Problem>,
-    ) -> Result<(), Problem> {
-        self.present
-            .iter()
-            .try_for_each(|&index| f(index, self.part(index, table)?.read(names)?))
+        let rows = |&index: &usize| self.part(index, table).map(|file| file.rows());
+        self.present.iter().map(rows).sum()
     }
 
     /// Some columns of a table over all parts that are there. Of the table nothing else is in memory.
     ///
     /// # Errors
-    /// Those of [`Study::for_each`].
+    /// Those of [`Study::part`], and for a column that is not there.
     pub fn read(&self, table: &str, names: &[&str]) -> Result<Rows, Problem> {
-        let mut all: Option<Rows> = None;
-        self.for_each(table, names, |_, part| {
-            match &mut all {
-                None => all = Some(part),
-                Some(all) => all.append(part),
-            }
-            Ok(())
-        })?;
-        Ok(all.unwrap_or_default())
+        let read = |&index: &usize| self.part(index, table)?.read(names);
+        let mut parts = self.present.iter().map(read);
+        let mut all = parts.next().unwrap_or_else(|| Ok(Rows::default()))?;
+        for part in parts {
+            all.append(part?);
+        }
+        Ok(all)
     }
 }
 
@@ -222,11 +190,9 @@ pub(super) fn marked_parts(study: &Path, layout: &Layout) -> io::Result<Vec<usiz
     };
     let mut found = Vec::new();
     for entry in entries {
-        found.extend(
-            names::marked_part(&entry?.file_name().to_string_lossy())
-                .filter(|index| *index < layout.parts),
-        );
+        found.extend(names::marked_part(&entry?.file_name().to_string_lossy()));
     }
+    found.retain(|index| *index < layout.parts);
     Ok(found)
 }
 
@@ -237,9 +203,8 @@ pub(super) fn is_whole(study: &Path, layout: &Layout, index: usize) -> bool {
         return false;
     };
     let as_written = |name: &String| {
-        let sum = bounded::open_file(folder.join(name))
-            .ok()
-            .and_then(|file| sum_of(&file).ok());
+        let file = bounded::open_file(folder.join(name)).ok();
+        let sum = file.and_then(|file| sum_of(&file).ok());
         sum.is_some() && sum.as_ref() == list.get(name)
     };
     layout.files(index).iter().all(as_written)

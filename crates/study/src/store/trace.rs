@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::RowWriter;
 use super::parquet::ParquetTable;
 use crate::table::{Head, Rows};
 use crate::traces::SharedWords;
@@ -30,7 +31,7 @@ pub fn write_trace_parquet<W: Write + Send>(
     };
     let mut groups = rows.chunks(GROUP);
     let first = cells(groups.next().unwrap_or_default());
-    let mut table = ParquetTable::new(out, &heads, &[], &first)?;
+    let mut table = Box::new(ParquetTable::new(out, &heads, &[], &first)?);
     table.write(&first)?;
     groups.try_for_each(|group| table.write(&cells(group)))?;
     table.finish()
