@@ -1,10 +1,9 @@
 //! Choice of one of several options by the name of its table.
 use super::document::{Node, Table, Value};
+use super::log::join;
 use super::problem::Problem;
-use super::reader::join;
 use super::section::Section;
-use super::value::{Found, Lookup};
-use super::values::{default_option, options};
+use super::value::{Found, Lookup, default_option, options};
 use cvtcycle_model::keys::Key;
 
 /// How the choice came out.

@@ -45,3 +45,9 @@ pub fn text(files: &'static [File], name: &str) -> Option<&'static str> {
     let found = files.iter().find(|(known, _)| *known == name);
     found.map(|(_, text)| *text)
 }
+
+/// Whether a word given by the user is meant as a path.
+#[must_use]
+pub fn is_path(word: &str) -> bool {
+    word.contains(['/', '\\']) || std::path::Path::new(word).extension().is_some()
+}

@@ -2,9 +2,9 @@
 use std::fmt;
 
 use super::document::{Node, Value};
+use super::log::join;
 use super::overrides::Override;
 use super::problem::Problem;
-use super::reader::join;
 use super::section::Section;
 use super::value::Lookup;
 use cvtcycle_model::keys::{Bound, Column, Key, Kind, Presence, Quantity, count};

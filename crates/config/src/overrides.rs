@@ -1,7 +1,8 @@
 //! Overrides: values put over those of the files. The text `KEY=VALUE` is parsed once.
+use std::collections::HashMap;
 use std::fmt;
 use std::str::FromStr;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use serde::{Serialize, Serializer};
 use toml::de::DeValue;
@@ -10,7 +11,7 @@ use super::document::{Node, Span, Value, convert};
 use super::place::Input;
 use super::problem::Problem;
 use super::problems::Problems;
-use crate::setup::catalogue;
+use cvtcycle_model::files;
 use cvtcycle_model::keys::Key;
 
 /// Dotted key, taken apart.
@@ -139,7 +140,7 @@ impl Override {
             key: key.to_owned(),
             target,
             path: path_of(own),
-            row: catalogue::row(key),
+            row: row(key),
             value,
             value_text: value_text.to_owned(),
         }
@@ -195,6 +196,34 @@ impl Override {
 /// The names of a dotted key.
 pub(super) fn path_of(key: &str) -> KeyPath {
     key.split('.').map(|name| name.trim().into()).collect()
+}
+
+/// The row of a key, with the prefix of its file; none of an unknown key.
+fn row(key: &str) -> Option<&'static Key<'static>> {
+    static ROWS: OnceLock<HashMap<String, &'static Key<'static>>> = OnceLock::new();
+    let known = ROWS.get_or_init(|| rows().collect());
+    let own = key.strip_prefix(Target::EngineOil.prefix());
+    let key = own.map_or_else(
+        || key.to_owned(),
+        |own| format!("{}{own}", Target::Lubricant.prefix()),
+    );
+    known.get(&key).copied()
+}
+
+/// The rows of all tables with their dotted keys.
+pub(super) fn rows() -> impl Iterator<Item = (String, &'static Key<'static>)> {
+    let tables = [
+        ("", files::VEHICLE),
+        (Target::Lubricant.prefix(), files::LUBRICANT),
+        ("", files::RIG),
+    ];
+    tables.into_iter().flat_map(|(prefix, table)| {
+        let mut rows = Vec::new();
+        table.walk("", &mut |path, key| {
+            rows.push((format!("{prefix}{path}"), key))
+        });
+        rows
+    })
 }
 
 fn no_override(text: &str, key: &str, message: String) -> Problem {

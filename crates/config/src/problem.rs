@@ -106,46 +106,11 @@ impl Problem {
         self.at(Place::file(file))
     }
 
-    /// Of this key or column.
-    #[must_use]
-    pub fn key(self, key: impl Into<String>) -> Self {
-        let key = key.into();
-        Problem { key, ..self }
-    }
-
-    /// With this offending value.
-    #[must_use]
-    pub fn value(self, value: impl Into<String>) -> Self {
-        let value = value.into();
-        Problem { value, ..self }
-    }
-
-    /// With the accepted values.
-    #[must_use]
-    pub fn allowed(self, allowed: impl Into<String>) -> Self {
-        let allowed = allowed.into();
-        Problem { allowed, ..self }
-    }
-
-    /// With another message.
-    #[must_use]
-    pub fn message(self, message: impl Into<String>) -> Self {
-        let message = message.into();
-        Problem { message, ..self }
-    }
-
     /// With the context in which it was found at the beginning of its message.
     #[must_use]
     pub fn with_context(self, context: &str) -> Self {
         let message = format!("{context}{}", self.message);
         self.message(message)
-    }
-
-    /// With this hint.
-    #[must_use]
-    pub fn hint(self, hint: impl Into<String>) -> Self {
-        let hint = hint.into();
-        Problem { hint, ..self }
     }
 
     /// With known names that may have been meant.
@@ -179,6 +144,27 @@ impl Problem {
             _ => None,
         }
     }
+}
+
+macro_rules! texts {
+    ($($field:ident $doc:literal;)*) => {
+        impl Problem {
+            $(#[doc = $doc]
+            #[must_use]
+            pub fn $field(mut self, $field: impl Into<String>) -> Self {
+                self.$field = $field.into();
+                self
+            })*
+        }
+    };
+}
+
+texts! {
+    key "Of this key or column.";
+    value "With this offending value.";
+    allowed "With the accepted values.";
+    message "With another message.";
+    hint "With this hint.";
 }
 
 impl fmt::Display for Problem {

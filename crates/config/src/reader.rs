@@ -1,60 +1,13 @@
 //! One pass over a document: what was read, what is known, what is wrong.
 use std::cell::{Cell, RefCell};
-use std::collections::{BTreeSet, HashMap};
 
 use super::document::Document;
+use super::files::Files;
+use super::log::{KeyInfo, Log, parent};
 use super::place::Place;
 use super::problem::Problem;
 use super::problems::Problems;
-use super::section::Section;
-use super::unknown::{parent, unread};
-use crate::setup::Files;
-
-/// What is known about one key after reading it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct KeyInfo {
-    /// Dotted path.
-    pub key: String,
-    /// Unit as people write it, `-` for none.
-    pub unit: String,
-    /// Value in the key's unit; empty for an optional key that is not given.
-    pub value: String,
-    /// Value in SI units; none for what is no single number.
-    pub si: Option<f64>,
-    /// Where it comes from: source, derived, fitted, assumed, user, set or default; `choice` for a model chosen by its table.
-    pub status: String,
-    /// Reference for the value; empty where none is given.
-    pub source: String,
-    /// Remark on the value; may be empty.
-    pub note: String,
-    /// Allowed range or words.
-    pub allowed: String,
-    /// Whether the value is a single number.
-    pub is_number: bool,
-    /// Meaning of the key.
-    pub doc: String,
-}
-
-/// Problems of one document that are put into words; the rest is counted.
-const MAX_SHOWN: usize = 500;
-
-#[derive(Default)]
-pub(super) struct Log {
-    pub problems: Vec<Problem>,
-    /// Missing keys, apart because a mistyped key explains them.
-    pub missing: Vec<Problem>,
-    /// Problems beyond those that are shown.
-    pub more: usize,
-    pub keys: Vec<KeyInfo>,
-    /// Index of `keys` by their dotted path.
-    pub index: HashMap<String, usize>,
-    /// Paths whose whole content counts as read.
-    pub read: BTreeSet<String>,
-    /// Paths of tables that were read.
-    pub tables: BTreeSet<String>,
-    /// Paths at which one of several options is chosen.
-    pub choices: BTreeSet<String>,
-}
+use super::unknown::unread;
 
 /// One reading session. It collects all problems and what is known about every key that is read.
 ///
@@ -141,11 +94,6 @@ impl<'d> Reader<'d> {
         self.problem_count.get()
     }
 
-    /// The table of the whole document.
-    pub fn root(&self) -> Section<'_> {
-        Section::root(self)
-    }
-
     /// Adds a problem found outside the reader.
     pub fn problem(&self, problem: Problem) {
         self.report(|| problem);
@@ -216,44 +164,5 @@ impl<'d> Reader<'d> {
             problems.push(Problem::more(document.sources[0].input.clone(), log.more));
         }
         Err(problems)
-    }
-}
-
-impl Log {
-    /// Whether another problem is to be put into words.
-    pub fn has_room(&self) -> bool {
-        self.problems.len() + self.missing.len() < MAX_SHOWN
-    }
-
-    /// What is known about the key at a path.
-    pub fn info(&mut self, path: &str) -> Option<&mut KeyInfo> {
-        self.keys.get_mut(*self.index.get(path)?)
-    }
-
-    /// Adds a key; the first reading counts if it is read twice.
-    pub fn register(&mut self, info: KeyInfo) {
-        if !self.index.contains_key(&info.key) {
-            self.index.insert(info.key.clone(), self.keys.len());
-            self.keys.push(info);
-        }
-    }
-}
-
-/// Dotted path of an entry; names with unusual characters are quoted, so that a dot within a name
-/// does not look like a table.
-pub(super) fn join(path: &str, name: &str) -> String {
-    let bare = !name.is_empty()
-        && name
-            .chars()
-            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    let name = if bare {
-        name.to_string()
-    } else {
-        format!("{name:?}")
-    };
-    if path.is_empty() {
-        name
-    } else {
-        format!("{path}.{name}")
     }
 }

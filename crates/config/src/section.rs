@@ -2,9 +2,10 @@
 use std::ops::RangeInclusive;
 
 use super::document::{Node, Span, Table, Value};
+use super::log::join;
 use super::place::Place;
 use super::problem::Problem;
-use super::reader::{Reader, join};
+use super::reader::Reader;
 use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Values, spec};
 
 /// A table at a dotted path. An absent table is a table without keys.
@@ -19,18 +20,20 @@ pub struct Section<'r> {
     pub(super) muted: bool,
 }
 
-impl<'r> Section<'r> {
-    pub(super) fn root(reader: &'r Reader<'r>) -> Self {
-        let table = Some(&reader.document.root);
+impl Reader<'_> {
+    /// The table of the whole document.
+    pub fn root(&self) -> Section<'_> {
         Section {
-            reader,
+            reader: self,
             path: String::new(),
-            table,
-            header: reader.document.header.clone(),
+            table: Some(&self.document.root),
+            header: self.document.header.clone(),
             muted: false,
         }
     }
+}
 
+impl<'r> Section<'r> {
     /// Dotted path of the table; empty for the whole document.
     pub fn path(&self) -> &str {
         &self.path

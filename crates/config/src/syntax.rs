@@ -167,48 +167,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_that_are_no_text() {
-        for bytes in [&b"a\0b"[..], b"\xff\xfe\x00", b"PK\x03\x04\x80"] {
-            let problems = decode("x.toml", bytes).unwrap_err();
-            assert!(problems[0].message.contains("binary file"), "{problems:?}");
-            assert_eq!(problems[0].place.file_name(), Some("x.toml"));
-        }
-        assert!(
-            decode("x", b" \r\n\t").unwrap_err()[0]
-                .message
-                .contains("file is empty")
-        );
-        assert!(
-            decode("x", b"\xEF\xBB\xBF").unwrap_err()[0]
-                .message
-                .contains("file is empty")
-        );
-        assert_eq!(decode("x", b"\xEF\xBB\xBFa = 1").unwrap(), "a = 1");
-    }
-
-    #[test]
-    fn slips_in_a_line() {
-        assert_eq!(
-            slip("a = 2,40").unwrap(),
-            (4..8, "write 2.40 with a decimal point".into())
-        );
-        assert!(slip("a = -1,5 # x").unwrap().1.contains("-1.5"));
-        assert!(
-            slip("a = { value = 2,40, status = \"source\" }")
-                .unwrap()
-                .1
-                .contains("2.40")
-        );
-        assert!(slip("a_mm = 3 mm").unwrap().1.contains("without `mm`"));
-        assert!(slip("a = belt drive").unwrap().1.contains("\"belt drive\""));
-        assert_eq!(slip("a_mm = 3 mm # x").unwrap().0, 7..11);
-        let long = format!("a = 2,40 # {}", "x".repeat(MAX_LINE));
-        assert!(slip(&long).is_none());
-        assert!(slip("a = [1, 2").is_none());
-        assert!(slip("a = 1").is_none());
-    }
-
-    #[test]
     fn numbers_in_text() {
         assert_eq!(decimal_comma("2,40"), Some((4, "2.40".into())));
         assert_eq!(decimal_comma("2.40"), None);

@@ -2,9 +2,9 @@
 use std::collections::BTreeSet;
 
 use super::document::{Document, Entry, Span, Table, Value};
+use super::log::{Log, join, last, parent};
 use super::near::{is_suggestion, similarity, suggestion};
 use super::problem::Problem;
-use super::reader::{Log, join};
 use cvtcycle_model::keys::{Quantity, stem};
 
 /// Similarity above which a name in another table may be what was meant: short names of all tables are like each other.
@@ -174,12 +174,4 @@ fn shown<'k>(path: &str, known: &'k str, span: &Span) -> &'k str {
     } else {
         known
     }
-}
-
-fn last(path: &str) -> &str {
-    path.rsplit('.').next().unwrap_or(path)
-}
-
-pub(super) fn parent(path: &str) -> &str {
-    path.rsplit_once('.').map_or("", |(parent, _)| parent)
 }

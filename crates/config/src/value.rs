@@ -2,14 +2,13 @@
 use std::fmt::Display;
 
 use super::document::{Node, Span, Table, Value};
+use super::log::{KeyInfo, join};
 use super::near::{did_you_mean, one_of, suggest};
 use super::place::Place;
 use super::problem::Problem;
-use super::reader::{KeyInfo, join};
 use super::section::Section;
 use super::syntax::{decimal_comma, number_hint, number_with_unit};
-use super::values::options;
-use cvtcycle_model::keys::{Bound, Key, Quantity};
+use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Quantity};
 
 /// What a value's status may be in a file.
 pub(crate) const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
@@ -324,4 +323,21 @@ impl<'r> Section<'r> {
                 .value(document.shown(span))
         });
     }
+}
+
+/// The option that a key takes when nothing is given.
+pub(super) fn default_option(key: &Key<'_>) -> Option<&'static str> {
+    match key.presence {
+        Presence::Word(default) => options(key).find(|option| *option == default),
+        _ => None,
+    }
+}
+
+/// Names of the options of a key.
+pub(super) fn options(key: &Key<'_>) -> impl Iterator<Item = &'static str> {
+    let choices = match key.kind {
+        Kind::Words(choices) | Kind::Options(choices) => choices,
+        _ => &[],
+    };
+    choices.iter().map(|choice| choice.name)
 }

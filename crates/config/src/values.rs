@@ -1,9 +1,9 @@
 //! Values of the model's keys, read from a table of a file.
 use super::document::Value;
+use super::maps;
 use super::problem::Problem;
 use super::section::Section;
-use super::tables;
-use super::value::Lookup;
+use super::value::{Lookup, default_option, options};
 use cvtcycle_model::keys::{Key, Kind, Presence, Values};
 use cvtcycle_model::maps::BsfcMap;
 use cvtcycle_model::maps::LossMap;
@@ -154,7 +154,7 @@ impl<'r> Values for Section<'r> {
 
     fn loss_map(&self, key: &Key<'_>, first: &'static str) -> Option<LossMap> {
         let file = self.read_text(key).ok()?;
-        tables::loss_map(self, key.name, &file, first)
+        maps::loss_map(self, key.name, &file, first)
     }
 
     fn bsfc_map(
@@ -167,7 +167,7 @@ impl<'r> Values for Section<'r> {
         if file == Err(true) {
             self.missing(key);
         }
-        tables::bsfc_map(
+        maps::bsfc_map(
             self,
             key.name,
             &file.ok()?,
@@ -202,21 +202,4 @@ impl Section<'_> {
         }
         default
     }
-}
-
-/// The option that a key takes when nothing is given.
-pub(super) fn default_option(key: &Key<'_>) -> Option<&'static str> {
-    match key.presence {
-        Presence::Word(default) => options(key).find(|option| *option == default),
-        _ => None,
-    }
-}
-
-/// Names of the options of a key.
-pub(super) fn options(key: &Key<'_>) -> impl Iterator<Item = &'static str> {
-    let choices = match key.kind {
-        Kind::Words(choices) | Kind::Options(choices) => choices,
-        _ => &[],
-    };
-    choices.iter().map(|choice| choice.name)
 }

@@ -245,7 +245,7 @@ pub fn read<'s, 't>(
         }
     }
     if count == 0 {
-        problems.no_rows(schema);
+        problems.no_rows(schema.rows);
     }
     Some(table)
 }

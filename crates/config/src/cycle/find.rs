@@ -2,7 +2,7 @@
 
 use super::{Cycle, constant_speed, embedded, names, read_csv};
 use crate::bounded::{self, Limit};
-use crate::setup::is_path;
+use crate::embedded::is_path;
 use crate::{Argument, Problem, Problems, near, suggestion};
 
 /// A cycle by name (`ece15_eudc`, `constant_90`), or from the CSV file at a path.

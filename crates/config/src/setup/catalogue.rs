@@ -2,15 +2,14 @@
 //!
 //! The keys are the rows of the model's tables; the values come from reading the files.
 
-use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use super::Kind;
 use super::inputs::{head, parts};
 use crate::embedded;
+use crate::overrides::{rows, rows_of};
 use crate::rig;
 use crate::{Document, KeyInfo, Reader, Target};
-use cvtcycle_model::files;
 use cvtcycle_model::fluid::Lubricant;
 use cvtcycle_model::keys::{Key, Table};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
@@ -69,34 +68,6 @@ pub fn known_keys() -> &'static [KeyInfo] {
 pub fn known_names() -> &'static [String] {
     static NAMES: OnceLock<Vec<String>> = OnceLock::new();
     NAMES.get_or_init(|| known_keys().iter().map(|info| info.key.clone()).collect())
-}
-
-/// The row of a key, with the prefix of its file; none of an unknown key.
-pub(crate) fn row(key: &str) -> Option<&'static Key<'static>> {
-    static ROWS: OnceLock<HashMap<String, &'static Key<'static>>> = OnceLock::new();
-    let known = ROWS.get_or_init(|| rows().collect());
-    let own = key.strip_prefix(ENGINE_OIL);
-    let key = own.map_or_else(|| key.to_owned(), |own| format!("{OIL}{own}"));
-    known.get(&key).copied()
-}
-
-/// The rows of all tables with their dotted keys.
-fn rows() -> impl Iterator<Item = (String, &'static Key<'static>)> {
-    let tables = [
-        ("", files::VEHICLE),
-        (OIL, files::LUBRICANT),
-        ("", files::RIG),
-    ];
-    let tables = tables.into_iter();
-    tables.flat_map(|(prefix, table)| rows_of(prefix, &table))
-}
-
-fn rows_of(prefix: &str, table: &Table) -> Vec<(String, &'static Key<'static>)> {
-    let mut rows = Vec::new();
-    table.walk("", &mut |path, key| {
-        rows.push((format!("{prefix}{path}"), key))
-    });
-    rows
 }
 
 fn gathered() -> Vec<KeyInfo> {

@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::table_cache::TableCache;
 use super::{
     Files, Kind, NamedBy, Options, Setup, is_path, load_lubricant, stem, text_of,
     wrong_transmission,
 };
+use crate::files::TableCache;
 use crate::{Argument, Document, KeyInfo, Override, Place, Problems, Reader, Target};
 use cvtcycle_model::drive::{Car, Vehicle};
 use cvtcycle_model::engine::Engine;

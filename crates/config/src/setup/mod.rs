@@ -6,14 +6,12 @@ pub mod assumptions;
 pub mod catalogue;
 pub mod template;
 mod inputs;
-mod map_csv;
 mod wrong_transmission;
-mod table_cache;
-pub mod tables;
 
-pub use crate::embedded::{lubricants as embedded_lubricants, vehicles as embedded_vehicles};
-
-use std::sync::Arc;
+pub use crate::embedded::{
+    is_path, lubricants as embedded_lubricants, vehicles as embedded_vehicles,
+};
+pub use crate::files::{Disk, Files};
 
 use crate::bounded::{self, ReadError};
 use crate::embedded;
@@ -25,51 +23,6 @@ use cvtcycle_model::drive::Vehicle;
 use cvtcycle_model::fluid::Lubricant;
 
 use cvtcycle_model::transmission::cvt::variator::Formulation;
-
-/// Reads files that an input names; the only way in which loading touches the disk.
-pub trait Files: std::fmt::Debug + Send + Sync {
-    /// Bytes of a file.
-    ///
-    /// # Errors
-    /// The operating system's words, or more bytes than a table may have.
-    fn read(&self, path: &str) -> Result<Vec<u8>, String>;
-
-    /// As [`Files::read`], with what is allowed and what helps where that is known.
-    ///
-    /// # Errors
-    /// As there.
-    fn fetch(&self, path: &str) -> Result<Vec<u8>, ReadError> {
-        self.read(path)
-            .map_err(|why| ReadError::Unreadable(std::io::Error::other(why)))
-    }
-
-    /// What `make` makes of a file of a kind. A cache calls `make` once only.
-    fn table(
-        &self,
-        _kind: &'static str,
-        _file: &str,
-        make: &mut dyn FnMut() -> Option<Arc<tables::Table>>,
-    ) -> Option<Arc<tables::Table>> {
-        make()
-    }
-}
-
-/// The disk, with names relative to a folder.
-#[derive(Clone, Debug, Default)]
-pub struct Disk {
-    /// Folder of the file that names others; empty for the current one.
-    pub folder: std::path::PathBuf,
-}
-
-impl Files for Disk {
-    fn read(&self, path: &str) -> Result<Vec<u8>, String> {
-        self.fetch(path).map_err(|refused| refused.to_string())
-    }
-
-    fn fetch(&self, path: &str) -> Result<Vec<u8>, ReadError> {
-        bounded::read_file(self.folder.join(path), bounded::TABLE)
-    }
-}
 
 /// Fluids, overrides and belt model besides the vehicle file.
 #[derive(Clone, Debug, Default)]
@@ -173,12 +126,6 @@ impl Kind {
             Kind::Calibration => "calibration",
         }
     }
-}
-
-/// Whether a word given by the user is meant as a path.
-#[must_use]
-pub fn is_path(word: &str) -> bool {
-    word.contains(['/', '\\']) || std::path::Path::new(word).extension().is_some()
 }
 
 /// Text of an input, the name under which problems cite it, and its folder.

@@ -130,7 +130,7 @@ pub fn read(file: &str, reader: impl BufRead, mut job: Job<'_>) -> Result<Done, 
         job.row(&row, &mut problems, &mut done.counts)?;
     }
     if done.counts.points == 0 && problems.count() == before {
-        problems.no_rows(&schema);
+        problems.no_rows(schema.rows);
     }
     problems.finish().finish()?;
     Ok(done)

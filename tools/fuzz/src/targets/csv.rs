@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use cvtcycle::config::bounded::ReadError;
 use cvtcycle::config::cycle::read_csv;
 use cvtcycle::config::setup::{self, Files, Options, embedded_vehicles};
 use cvtcycle::config::{Problems, render};
@@ -48,7 +49,7 @@ pub fn cycle(data: &[u8]) {
 struct Only(Arc<[u8]>);
 
 impl Files for Only {
-    fn read(&self, _: &str) -> Result<Vec<u8>, String> {
+    fn read(&self, _: &str) -> Result<Vec<u8>, ReadError> {
         Ok(self.0.to_vec())
     }
 }

@@ -17,19 +17,16 @@ struct Row<'t> {
     values: Vec<f64>,
 }
 
-/// A map as read.
-pub(super) struct Map {
-    /// Indices of its columns in the schema.
-    pub columns: Vec<usize>,
-    /// Values in the columns' own units.
-    pub rows: Vec<Vec<f64>>,
-}
-
-/// Reads a map. The last column of the schema is its value, the others span its grid.
+/// Reads a map: the indices of its columns in the schema, and its rows in the columns' own units. The last column of the schema is its value,
+/// the others span its grid.
 ///
 /// # Errors
 /// All problems with line, column and value; after 50 the rest is counted in one last entry.
-pub(super) fn read(file: &str, bytes: &[u8], schema: &Schema) -> Result<Map, Problems> {
+pub(super) fn read(
+    file: &str,
+    bytes: &[u8],
+    schema: &Schema,
+) -> Result<(Vec<usize>, Vec<Vec<f64>>), Problems> {
     let mut problems = Collector::new(file);
     let mut rows = Vec::new();
     let table = csv::read(
@@ -57,7 +54,7 @@ pub(super) fn read(file: &str, bytes: &[u8], schema: &Schema) -> Result<Map, Pro
     }
     problems.finish().finish()?;
     let rows = rows.into_iter().map(|row| row.values).collect();
-    Ok(Map { columns, rows })
+    Ok((columns, rows))
 }
 
 /// Looks for combinations of the axes' values that stand twice, or never. What the file says is repeated in its own units.

@@ -1,22 +1,24 @@
 //! Tables that vehicle files name: BSFC and loss maps.
 
+mod grid;
+
+use std::borrow::Cow;
 use std::io::ErrorKind;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::Files;
-use super::map_csv::{self, MAX_ROWS};
 use crate::bounded::ReadError;
 use crate::csv::{Column, Schema};
 use crate::embedded;
-use crate::{Bound, Section};
-use cvtcycle_model::keys::Quantity;
-use cvtcycle_model::maps::BsfcMap;
-use cvtcycle_model::maps::LossMap;
+use crate::files::{Files, Made};
+use crate::problem::Problem;
+use crate::section::Section;
+use cvtcycle_model::keys::{Bound, Quantity};
+use cvtcycle_model::maps::{BsfcMap, LossMap};
 use cvtcycle_model::math::{GRID_AXES, Grid};
 
 /// A CSV of numbers with a header, read whole, and the map that was made of it.
 #[derive(Debug)]
-pub struct Table {
+struct Table {
     /// Indices of the columns in the schema.
     columns: Vec<usize>,
     rows: Vec<Vec<f64>>,
@@ -40,72 +42,61 @@ fn read(
     columns: Vec<Column>,
 ) -> Option<Arc<Table>> {
     if file.trim().is_empty() {
-        s.complain(
-            key,
-            "a CSV file",
-            "the name of the map is empty",
-            "name its file, or remove the key",
-        );
+        let problem = Problem::missing("the name of the map is empty").allowed("a CSV file");
+        s.report_at(key, problem.hint("name its file, or remove the key"));
         return None;
     }
     let schema = Schema {
         columns,
-        max_rows: MAX_ROWS,
+        max_rows: grid::MAX_ROWS,
         rows: "a row for every point of the grid",
         ..Schema::default()
     };
     let mut make = || {
-        let read;
         let bytes = match embedded::text(embedded::maps(), file) {
-            Some(text) => text.as_bytes(),
-            None => match fetch(s.reader.files, file) {
-                Ok(bytes) => {
-                    read = bytes;
-                    read.as_slice()
-                }
+            Some(text) => Cow::Borrowed(text.as_bytes()),
+            None => match bytes_of(s.reader.files, file) {
+                Ok(bytes) => Cow::Owned(bytes),
                 Err(why) => {
-                    s.complain(
-                        key,
-                        &why.allowed("a readable CSV file"),
-                        &format!("cannot read `{file}`: {why}"),
-                        why.hint("the path is relative to the vehicle file"),
-                    );
+                    let problem = Problem::unreadable(format!("cannot read `{file}`: {why}"))
+                        .allowed(why.allowed("a readable CSV file"))
+                        .hint(why.hint("the path is relative to the vehicle file"));
+                    s.report_at(key, problem);
                     return None;
                 }
             },
         };
-        match map_csv::read(file, bytes, &schema) {
-            Ok(map) => Some(Arc::new(Table {
-                columns: map.columns,
-                rows: map.rows,
+        match grid::read(file, &bytes, &schema) {
+            Ok((columns, rows)) => Some(Arc::new(Table {
+                columns,
+                rows,
                 loss: OnceLock::new(),
                 bsfc: Mutex::default(),
-            })),
+            }) as Made),
             Err(problems) => {
-                problems
-                    .into_iter()
-                    .for_each(|problem| s.report_problem(problem));
+                let report = |problem| s.report_problem(problem);
+                problems.into_iter().for_each(report);
                 None
             }
         }
     };
-    match s.reader.files {
-        Some(files) => files.table(kind, file, &mut make),
+    let made = match s.reader.files {
+        Some(files) => files.made(kind, file, &mut make),
         None => make(),
-    }
+    };
+    made?.downcast().ok()
 }
 
-fn fetch(files: Option<&dyn Files>, file: &str) -> Result<Vec<u8>, ReadError> {
+fn bytes_of(files: Option<&dyn Files>, file: &str) -> Result<Vec<u8>, ReadError> {
     let none = || ReadError::Unreadable(ErrorKind::NotFound.into());
-    files.ok_or_else(none)?.fetch(file)
+    files.ok_or_else(none)?.read(file)
 }
 
 /// What helps with a BSFC map that does not hang together.
 const GRID: &str = "give at least two speeds and two loads; more torque needs more fuel";
 
 /// A BSFC map from CSV, without friction; none after a problem.
-#[must_use]
-pub fn bsfc_map(
+pub(super) fn bsfc_map(
     s: &Section,
     key: &str,
     file: &str,
@@ -139,15 +130,17 @@ pub fn bsfc_map(
         .map(|r| (rpm.to_si(r[speed]), r[load] * factor, r[bsfc] / 3.6e9))
         .collect();
     let map = BsfcMap::from_rows(&rows, heating_value_j_kg, (0.0, 0.0))
-        .map_err(|why| s.complain(key, "a map of fuel over speed and load", &why, GRID))
+        .map_err(|why| {
+            let problem = Problem::conflict(why).allowed("a map of fuel over speed and load");
+            s.report_at(key, problem.hint(GRID));
+        })
         .ok()?;
     *made = Some((scale, map.clone()));
     Some(map)
 }
 
 /// A measured torque-loss map from CSV; `first` is the name of its first axis, `ratio` or `gear`.
-#[must_use]
-pub fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) -> Option<LossMap> {
+pub(super) fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) -> Option<LossMap> {
     let torque = if first == "gear" {
         "input_torque_nm"
     } else {
@@ -185,9 +178,14 @@ pub fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) -> Opti
             (x, r[loss])
         })
         .collect();
-    let why = "every combination of the columns' values must stand once";
+    let hint = "every combination of the columns' values must stand once";
     let grid = Grid::from_rows(&rows)
-        .map_err(|wrong| s.complain(key, "a full grid", &wrong, why))
+        .map_err(|wrong| {
+            s.report_at(
+                key,
+                Problem::conflict(wrong).allowed("a full grid").hint(hint),
+            );
+        })
         .ok()?;
     Some(table.loss.get_or_init(|| LossMap::new(grid)).clone())
 }
