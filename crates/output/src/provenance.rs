@@ -9,14 +9,12 @@ use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::{Kind, Options, Setup, embedded_vehicles, is_path, load, text_of};
 use cvtcycle_config::{KeyInfo, Problems, unit_of};
 use cvtcycle_model::drive::fuel_map;
-use cvtcycle_model::keys::RPM;
+use cvtcycle_model::keys::RAD_S;
 use cvtcycle_model::road::REFERENCE_K;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::controller::RatioDemand;
 
-/// rpm in one rad/s.
-const PER_RAD_S: f64 = 1.0 / RPM;
 /// Speed up to which lines of the variogram are drawn, km/h.
 const FASTEST_KMH: f64 = 200.0;
 /// Shares of rated power of the listed targets of a ratio control, with their names.
@@ -171,7 +169,7 @@ fn fuel_map_record(setup: &Setup) -> FuelMapRecord {
     let bsfc_g_kwh = |row: &Vec<f64>| row.iter().map(|b| finite(b * G_KWH)).collect();
     let map = fuel_map(setup);
     FuelMapRecord {
-        speed_rpm: map.speed_rad_s.iter().map(|w| w * PER_RAD_S).collect(),
+        speed_rpm: map.speed_rad_s.iter().map(|w| w * RAD_S).collect(),
         torque_nm: map.torque_nm,
         bsfc_g_kwh: map.bsfc_kg_j.iter().map(bsfc_g_kwh).collect(),
         full_load_nm: map.full_load_nm,
@@ -181,9 +179,9 @@ fn fuel_map_record(setup: &Setup) -> FuelMapRecord {
 /// Engine speed over road speed, wheels and belt without slip: gears, or limits and targets of a ratio control.
 fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
     let radius_m = setup.road_load.base.wheel_radius_m;
-    let highest_rpm = setup.engine().highest_rad_s * PER_RAD_S;
+    let highest_rpm = setup.engine().highest_rad_s * RAD_S;
     // rpm per km/h in a whole ratio from engine to wheel.
-    let slope = |overall: f64| overall / 3.6 / radius_m * PER_RAD_S;
+    let slope = |overall: f64| overall / 3.6 / radius_m * RAD_S;
     let straight = |name: String, overall: f64| {
         let fastest = (highest_rpm / slope(overall)).min(FASTEST_KMH);
         SpeedLine {
@@ -203,7 +201,7 @@ fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
             let limits = [("lowest ratio", low), ("highest ratio", high)];
             let limits = limits.map(|(name, ratio)| straight(name.to_owned(), ratio));
             let target = |(share, name): &(f64, &str)| {
-                let rpm = target_rad_s(cvt, setup.engine().rated_w, *share) * PER_RAD_S;
+                let rpm = target_rad_s(cvt, setup.engine().rated_w, *share) * RAD_S;
                 let (from, to) = (rpm / slope(low), (rpm / slope(high)).min(FASTEST_KMH));
                 SpeedLine {
                     name: (*name).to_owned(),

@@ -6,7 +6,7 @@ use cvtcycle_model::bench::transmission::{
 };
 use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
-use cvtcycle_model::keys::RPM;
+use cvtcycle_model::keys::RAD_S;
 use serde_json::{Map, Value, json};
 
 use crate::number::fixed;
@@ -26,7 +26,7 @@ pub fn given(x: f64) -> f64 {
 
 /// Input speed, rpm.
 pub fn rpm(set: &BenchPoint) -> f64 {
-    given(set.input_rad_s * (1.0 / RPM))
+    given(set.input_rad_s * RAD_S)
 }
 
 /// Bulk oil, degC.
@@ -320,7 +320,7 @@ fn steady_columns() -> Vec<Column<SteadyPoint>> {
         number "secondary_pressure_bar", "bar", "secondary pressure", p => bar(p.answer.secondary_pa);
         number "torque_loss_nm", "Nm", "all losses", p => p.answer.total_nm();
         number "input_torque_nm", "Nm", "torque at the input shaft", p => p.answer.input_nm;
-        number "output_speed_rpm", "rpm", "speed of the output shaft", p => p.answer.output_rad_s * (1.0 / RPM);
+        number "output_speed_rpm", "rpm", "speed of the output shaft", p => p.answer.output_rad_s * RAD_S;
         number "efficiency_percent", "%", "output over input power", p => efficiency_percent(p);
         number "slip_percent", "%", "belt slip", p => 100.0 * p.answer.belt.map_or(f64::NAN, |b| b.losses.slip_total);
     });

@@ -2,12 +2,12 @@
 //!
 //! Rows are in SI units; this table converts them to the units of the columns. See [`columns!`](crate::columns) for a new column.
 
-use std::f64::consts::PI;
 use std::io::{self, Write};
 use std::sync::LazyLock;
 
 use crate::table::{Cell, Column, Scope, write_csv};
 use crate::{Component, Row, columns};
+use cvtcycle_model::keys::{ZERO_DEGC_K, rpm};
 
 /// A column of the trace.
 pub type TraceColumn = Column<Row>;
@@ -16,16 +16,12 @@ fn kmh(speed_m_s: f64) -> f64 {
     speed_m_s * 3.6
 }
 
-pub(crate) fn rpm(speed_rad_s: f64) -> f64 {
-    speed_rad_s * 30.0 / PI
-}
-
 pub(crate) fn bar(pressure_pa: f64) -> f64 {
     pressure_pa / 1e5
 }
 
 pub(crate) fn degc(temperature_k: f64) -> f64 {
-    temperature_k - 273.15
+    temperature_k - ZERO_DEGC_K
 }
 
 /// Every column that a trace can have, in the order in which they are written.

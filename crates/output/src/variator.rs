@@ -8,7 +8,8 @@ use serde_json::json;
 use crate::number::fixed;
 use crate::rig::given;
 use crate::table::{Cell, Column, json_columns, json_rows, write_csv, write_json};
-use crate::trace::{bar, degc, rpm};
+use crate::trace::{bar, degc};
+use cvtcycle_model::keys::rpm;
 use crate::{PROGRAM, columns};
 
 /// Version of the JSON object.

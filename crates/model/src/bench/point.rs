@@ -32,7 +32,7 @@ impl Default for BenchPoint {
     fn default() -> Self {
         BenchPoint {
             ratio: 1.0,
-            input_rad_s: 2500.0 * std::f64::consts::PI / 30.0,
+            input_rad_s: crate::keys::rad_s(2500.0),
             output_nm: 0.0,
             throttle: 0.0,
             pressure_pa: None,

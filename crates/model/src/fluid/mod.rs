@@ -22,8 +22,7 @@ pub use viscosity::Viscosity;
 
 use crate::math::{clamp, exp, larger, ln};
 
-/// 0 degC in K.
-pub const ZERO_DEGC_K: f64 = 273.15;
+pub use crate::keys::ZERO_DEGC_K;
 
 /// Least share of the density at 15 degC; reached at some 1000 degC.
 const MIN_DENSITY: f64 = 0.3;

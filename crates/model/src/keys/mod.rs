@@ -7,7 +7,7 @@ mod quantity;
 mod range;
 
 pub use allowed::count;
-pub use quantity::{Quantity, RPM, stem};
+pub use quantity::{Quantity, RAD_S, RPM, ZERO_DEGC_K, rad_s, rpm, stem};
 pub use range::Bound;
 
 use crate::maps::{BsfcMap, LossMap};

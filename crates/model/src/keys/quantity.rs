@@ -12,6 +12,22 @@ pub struct Quantity {
 
 /// rad/s in one rpm.
 pub const RPM: f64 = PI / 30.0;
+/// rpm in one rad/s.
+pub const RAD_S: f64 = 1.0 / RPM;
+/// 0 degC in K.
+pub const ZERO_DEGC_K: f64 = 273.15;
+
+/// A speed in rad/s, converted to rpm.
+#[must_use]
+pub const fn rpm(rad_s: f64) -> f64 {
+    rad_s * 30.0 / PI
+}
+
+/// A speed in rpm, converted to rad/s.
+#[must_use]
+pub const fn rad_s(rpm: f64) -> f64 {
+    rpm * PI / 30.0
+}
 
 impl Quantity {
     /// A dimensionless number.
@@ -117,7 +133,7 @@ const UNITS: [Quantity; 58] = [
         suffix: "_degc",
         name: "°C",
         factor: 1.0,
-        offset: 273.15,
+        offset: ZERO_DEGC_K,
     },
     unit("_k", "K", 1.0),
     unit("_per_k", "1/K", 1.0),

@@ -100,7 +100,7 @@ pub struct Network {
 const STILL: f64 = 0.1;
 
 /// Pump speed at which the spray's conductance is given, rad/s: the transients of thesis 5.3.2 ran at 2500 rpm.
-pub const SPRAY_REFERENCE_RAD_S: f64 = 2500.0 * std::f64::consts::PI / 30.0;
+pub const SPRAY_REFERENCE_RAD_S: f64 = crate::keys::rad_s(2500.0);
 
 /// Temperatures of the nodes, K.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! Pictures of the transmission rig's tests, after the figures of thesis chapter 5.
 
 use super::lines::{LineChart, LinePanel, Look, Points, line_chart};
+use cvtcycle_model::keys::rpm;
 use cvtcycle_model::bench::BenchPoint;
 use cvtcycle_model::bench::transmission::{
     Branch, Conditions, Loop, Moment, Piece, Stage, SteadyPoint, StripDown, TwoBoxes,
@@ -223,7 +224,7 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
         (Look::solid(2), Branch::Cooling),
     ];
     let names = ["Warming by its own losses", "Cooling by the rig's cooler"];
-    let speed = given(subject.conditions.transient.speed_rad_s * 30.0 / std::f64::consts::PI);
+    let speed = given(rpm(subject.conditions.transient.speed_rad_s));
     let of_loop = |l: &Loop| {
         let both = |y: fn(&Moment) -> f64| {
             let on = |(look, branch): (Look, Branch)| {

@@ -13,14 +13,13 @@ use crate::charts::{
 };
 use cvtcycle_config::cycle::phase_group;
 use cvtcycle_model::drive::FuelMap;
+use cvtcycle_model::keys::RPM;
 use cvtcycle_output::Component;
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::FuelMapRecord;
 use cvtcycle_output::summary::RunSummary;
 use cvtcycle_output::trace::loss_column;
 
-/// rpm to rad/s.
-const RPM: f64 = std::f64::consts::PI / 30.0;
 /// g/kWh to kg/J.
 const G_KWH: f64 = 1.0 / 3.6e9;
 

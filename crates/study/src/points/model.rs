@@ -1,7 +1,7 @@
 //! A vehicle's belt with the values of a row in place of its own.
 
-use std::f64::consts::PI;
 
+use cvtcycle_model::keys::rad_s;
 use cvtcycle_config::Problem;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::fluid::{BandFriction, Lubricant, ZERO_DEGC_K};
@@ -111,7 +111,7 @@ impl Model {
         let formulation = given.formulation.unwrap_or(fallback);
         let ratio = given.required(RATIO);
         let vehicle = &self.cvt.belt;
-        let speed_rad_s = given.required(SPEED) * PI / 30.0;
+        let speed_rad_s = rad_s(given.required(SPEED));
         let pressure_pa = given.required(PRESSURE) * 1e5;
         let clamp_n = self.cvt.secondary_clamp_n(pressure_pa, speed_rad_s / ratio);
         let mut numbers = given.numbers.map(|number| number.unwrap_or(f64::NAN));

@@ -31,7 +31,7 @@ impl Spin {
 }
 
 /// Speed to which MB-3 and MB-4 refer, rad/s (2000 rpm).
-const REFERENCE_RAD_S: f64 = 2000.0 * std::f64::consts::PI / 30.0;
+const REFERENCE_RAD_S: f64 = crate::keys::rad_s(2000.0);
 
 impl Manual {
     fn spin(&self, speed_rad_s: f64, nu_m2_s: f64) -> Spin {

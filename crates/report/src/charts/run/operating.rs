@@ -8,10 +8,9 @@ use crate::charts::engine::{
 use crate::charts::grids::{Density, DensityCell, ISO, iso_lines};
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_model::drive::FuelMap;
+use cvtcycle_model::keys::RAD_S;
 use cvtcycle_output::{Flags, History};
 
-/// rad/s in rpm.
-const RPM: f64 = 30.0 / std::f64::consts::PI;
 const WIDE: f64 = 860.0 - PLOT_LEFT;
 /// Cells along an axis at most: small enough to show where time goes, large enough to be seen.
 const CELLS: (usize, usize) = (70, 60);
@@ -57,7 +56,7 @@ pub fn operating_points(run: &PlotRun) -> Picture {
 
 fn full_load(map: &FuelMap) -> Vec<Point> {
     let points = map.speed_rad_s.iter().zip(&map.full_load_nm);
-    points.map(|(w, t)| (w * RPM, *t)).collect()
+    points.map(|(w, t)| (w * RAD_S, *t)).collect()
 }
 
 /// Both axes: all points, the full-load line, and zero torque.

@@ -71,6 +71,4 @@ pub fn from_rows(count: usize, rows: impl Iterator<Item = TableRow>) -> Table {
     table
 }
 
-pub fn rpm(rad_s: f64) -> f64 {
-    rad_s * 30.0 / std::f64::consts::PI
-}
+pub use cvtcycle_model::keys::rpm;
