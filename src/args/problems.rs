@@ -1,6 +1,6 @@
 //! Problems of options, and the library's problems under the options of the command line.
 
-use cvtcycle::config::{Argument, Input, Override, Place, Problem, Problems};
+use cvtcycle::config::{Argument, Input, Override, Place, Problem, Problems, Setting};
 
 /// A problem of an option or argument.
 pub fn problem(option: &str, message: &str, hint: &str) -> Problem {
@@ -42,8 +42,12 @@ pub fn cite(option: &str, found: impl Into<Problems>) -> Problems {
     })
 }
 
-/// A problem under the option or argument of the command line that it is about.
+/// A problem under the option or argument of the command line that it is about, with the options that its hint speaks about.
 pub fn in_options(mut problem: Problem) -> Problem {
+    if !problem.settings.is_empty() {
+        let options: Vec<&str> = problem.settings.iter().map(|s| flag_of(*s)).collect();
+        problem.hint += &format!(" ({})", options.join(", "));
+    }
     match &problem.place.input {
         Input::File(_) => {}
         Input::Override(text) => problem.place = Place::file(format!("--set {text}")),
@@ -56,6 +60,15 @@ pub fn in_options(mut problem: Problem) -> Problem {
         }
     }
     problem
+}
+
+/// The option of the command line for a setting of the library.
+fn flag_of(setting: Setting) -> &'static str {
+    match setting {
+        Setting::Replace => "--force",
+        Setting::Resume => "--resume",
+        Setting::Added => "--with",
+    }
 }
 
 /// The option or argument of the command line for an argument of the library.

@@ -43,7 +43,7 @@ pub const TABLE: Limit = Limit {
 /// A trace of a run as CSV.
 pub const TRACE: Limit = Limit {
     bytes: 512 * MIB,
-    hint: "run it again with a larger --dt, or with --format parquet",
+    hint: "run it again with a larger time step, or with its trace as Parquet",
 };
 /// JSON of the program: summary, inputs, manifest.
 pub const RECORD: Limit = Limit {

@@ -42,7 +42,7 @@ pub use near::{did_you_mean, near, suggestion};
 pub use overrides::{KeyPath, Override, Target};
 pub use patched::PatchedDocument;
 pub use place::{Argument, Input, Place};
-pub use problem::{Problem, ProblemKind, readable};
+pub use problem::{Problem, ProblemKind, Setting, readable};
 pub use problems::Problems;
 pub use raw_value::RawValue;
 pub use reader::Reader;

@@ -12,7 +12,7 @@ use super::place::Input;
 use super::problem::Problem;
 use super::problems::Problems;
 use cvtcycle_model::files;
-use cvtcycle_model::keys::Key;
+use cvtcycle_model::keys::{Key, Table};
 
 /// Dotted key, taken apart.
 pub type KeyPath = Arc<[Box<str>]>;
@@ -217,13 +217,17 @@ pub(super) fn rows() -> impl Iterator<Item = (String, &'static Key<'static>)> {
         (Target::Lubricant.prefix(), files::LUBRICANT),
         ("", files::RIG),
     ];
-    tables.into_iter().flat_map(|(prefix, table)| {
-        let mut rows = Vec::new();
-        table.walk("", &mut |path, key| {
-            rows.push((format!("{prefix}{path}"), key))
-        });
-        rows
-    })
+    let tables = tables.into_iter();
+    tables.flat_map(|(prefix, table)| rows_of(prefix, &table))
+}
+
+/// The rows of a table with their dotted keys.
+pub(super) fn rows_of(prefix: &str, table: &Table) -> Vec<(String, &'static Key<'static>)> {
+    let mut rows = Vec::new();
+    table.walk("", &mut |path, key| {
+        rows.push((format!("{prefix}{path}"), key))
+    });
+    rows
 }
 
 fn no_override(text: &str, key: &str, message: String) -> Problem {

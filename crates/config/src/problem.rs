@@ -49,6 +49,18 @@ kinds! {
     Stopped stopped "The user or a time limit stopped the work.";
 }
 
+/// A setting of a call that a hint speaks about; a program adds the word by which its user gives it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Setting {
+    /// Earlier results are replaced.
+    Replace,
+    /// An interrupted study is continued.
+    Resume,
+    /// Results that are added to a report.
+    Added,
+}
+
 /// One problem of an input.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Problem {
@@ -66,6 +78,8 @@ pub struct Problem {
     pub message: String,
     /// What to do about it; empty if nothing useful can be said.
     pub hint: String,
+    /// Settings that the hint speaks about.
+    pub settings: Vec<Setting>,
     /// Known names that may have been meant, the most likely first.
     pub suggested: Vec<String>,
 }
@@ -111,6 +125,13 @@ impl Problem {
     pub fn with_context(self, context: &str) -> Self {
         let message = format!("{context}{}", self.message);
         self.message(message)
+    }
+
+    /// With the settings that its hint speaks about.
+    #[must_use]
+    pub fn settings(self, settings: &[Setting]) -> Self {
+        let settings = settings.to_vec();
+        Problem { settings, ..self }
     }
 
     /// With known names that may have been meant.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use super::files::{failed, problem, sync_directory, temporary_in};
-use cvtcycle_config::Problem;
+use cvtcycle_config::{Problem, Setting};
 
 /// A file that is written under a temporary name in its own directory; dropped before [`OutputFile::commit`], it goes again.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ impl OutputFile {
         let path = path.as_ref().to_path_buf();
         if path.file_name().is_none() {
             let message = "the name of the output file is empty";
-            let hint = "name a file, for example --out points.csv";
+            let hint = "name a file, for example points.csv";
             return Err(problem(&path, message, hint));
         }
         check_target(&path, force)?;
@@ -102,6 +102,6 @@ fn check_target(path: &Path, force: bool) -> Result<(), Problem> {
     if force {
         return Ok(());
     }
-    let hint = "choose another name, or replace it with --force";
-    Err(problem(path, &format!("{name} exists"), hint))
+    let hint = "choose another name, or replace it";
+    Err(problem(path, &format!("{name} exists"), hint).settings(&[Setting::Replace]))
 }

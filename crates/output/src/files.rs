@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{NamedTempFile, TempPath};
 
-use cvtcycle_config::{Argument, Problem};
+use cvtcycle_config::{Argument, Problem, Setting};
 
 /// The files that mark a directory as one of an earlier run or calibration.
 const MARKS: [&str; 2] = ["summary.json", "calibration.json"];
@@ -232,7 +232,7 @@ impl Drop for Swap {
 pub fn check_directory(path: &Path) -> Result<(), Problem> {
     if path.as_os_str().is_empty() {
         let message = "the name of the output directory is empty";
-        let hint = "name a directory, for example --out run1";
+        let hint = "name a directory, for example run1";
         return Err(problem(path, message, hint));
     }
     if path.exists() && !path.is_dir() {
@@ -283,13 +283,17 @@ fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Prob
     if names.is_empty() || (marked && force) {
         return Ok(());
     }
-    let (of, instead) = match marked {
-        true => ("the files of an earlier run", "replace them with --force"),
-        false => ("files of something else", "an empty directory"),
+    let (of, instead, settings): (_, _, &[Setting]) = match marked {
+        true => (
+            "the files of an earlier run",
+            "replace them",
+            &[Setting::Replace],
+        ),
+        false => ("files of something else", "an empty directory", &[]),
     };
     let message = format!("{} holds {of}: {}", path.display(), list(names));
     let hint = format!("choose another name, or {instead}");
-    Err(problem(path, &message, &hint))
+    Err(problem(path, &message, &hint).settings(settings))
 }
 
 /// The first names, and how many more there are.

@@ -15,7 +15,7 @@ pub const MAX_STEPS: usize = 2_000_000;
 /// Most phases, as of a cycle.
 const MAX_PHASES: usize = 200;
 /// What helps with a trace that is too long.
-pub const SHORTER: &str = "run it again with a larger --dt, or a part of the cycle";
+pub const SHORTER: &str = "run it again with a larger time step, or a part of the cycle";
 
 /// The steps of one car through one cycle, by column.
 #[derive(Clone, Debug, Default)]

@@ -13,8 +13,8 @@ use serde_json::{Value, json};
 use crate::number::plain;
 use crate::table::{Cell, Column, Scope, json_columns, write_csv, write_json};
 use crate::trace::{bar, degc};
-use cvtcycle_model::keys::rpm;
 use crate::{Component, Flags, PROGRAM, columns};
+use cvtcycle_model::keys::rpm;
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;

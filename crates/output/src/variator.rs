@@ -9,8 +9,8 @@ use crate::number::fixed;
 use crate::rig::given;
 use crate::table::{Cell, Column, json_columns, json_rows, write_csv, write_json};
 use crate::trace::{bar, degc};
-use cvtcycle_model::keys::rpm;
 use crate::{PROGRAM, columns};
+use cvtcycle_model::keys::rpm;
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;

@@ -34,7 +34,7 @@ pub mod write;
 use std::path::PathBuf;
 
 use cover::Cover;
-use cvtcycle_config::{Problem, Problems};
+use cvtcycle_config::{Problem, Problems, Setting};
 use document::Document;
 use results::{ResultDir, find};
 
@@ -78,10 +78,10 @@ pub fn report(
         [ResultDir::Run(a), ResultDir::Run(b)] => compare::document(a, b)?,
         _ => {
             let hint =
-                "two directories are compared if both are runs; add a study to a run by --with";
-            return Err(
-                problems::problem(&dirs[dirs.len() - 1], "these are not two runs", hint).into(),
-            );
+                "two directories are compared if both are runs; add a study to the report of a run";
+            let last = &dirs[dirs.len() - 1];
+            let problem = problems::problem(last, "these are not two runs", hint);
+            return Err(problem.settings(&[Setting::Added]).into());
         }
     };
     if let Ok(Some(cover)) = cover {

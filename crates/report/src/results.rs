@@ -148,8 +148,7 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
     }
     let file = path.join(SUMMARY);
     if !file.exists() {
-        let hint =
-            "name the directory that was given to --out of `cvtcycle run` or `cvtcycle study`";
+        let hint = "name a directory that `cvtcycle run` or `cvtcycle study` has written";
         return Err(problem(
             path,
             &format!(
@@ -162,7 +161,7 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
     }
     let value = json(&file).map_err(|problem| vec![problem])?;
     if is_validation(&value) {
-        let hint = "its report is validation.html in that directory; add it to the report of a run: `cvtcycle report RUN --with DIR`";
+        let hint = "its report is validation.html in that directory; it can be added to the report of a run";
         return Err(problem(
             path,
             "this is the answer of `cvtcycle validate`, not of a run",
@@ -211,7 +210,7 @@ fn add(found: &mut RunResults, dir: &Path, required: bool) -> Result<(), Problem
     match value.filter(is_validation) {
         Some(value) => found.validation = Some(value),
         None if required => {
-            let hint = "name the directory that was given to --out of `cvtcycle study` or `cvtcycle validate`";
+            let hint = "name a directory that `cvtcycle study` or `cvtcycle validate` has written";
             return Err(problem(
                 dir,
                 &format!("{} holds neither a study nor a validation", dir.display()),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::document::Document;
 use super::render::{html, markdown};
-use cvtcycle_config::Problem;
+use cvtcycle_config::{Problem, Setting};
 use cvtcycle_output::files::{failed, list, names_in, problem, sync_directory, temporary_in};
 
 /// Form of the document.
@@ -89,7 +89,7 @@ impl Target {
             .file_stem()
             .map(|stem| stem.to_string_lossy().into_owned());
         let Some(stem) = stem.filter(|stem| !stem.is_empty()) else {
-            let hint = "name a file, for example --out report.html";
+            let hint = "name a file, for example report.html";
             return Err(problem(file, "the name of the report is empty", hint));
         };
         let folder = format!("{stem}_figures");
@@ -132,7 +132,7 @@ impl Target {
             return Ok(());
         }
         let hint = format!(
-            "end its name in .{}, or choose the other --format",
+            "end its name in .{}, or choose the other format",
             endings.join(" or .")
         );
         Err(problem(
@@ -150,8 +150,9 @@ impl Target {
             Ok(_) if !force => Err(problem(
                 file,
                 &format!("{shown} is there already"),
-                "choose another name, or replace it with --force",
-            )),
+                "choose another name, or replace it",
+            )
+            .settings(&[Setting::Replace])),
             Ok(there) if there.is_file() && is_report(file) => Ok(()),
             Ok(_) => Err(problem(
                 file,

@@ -13,7 +13,7 @@ use std::path::Path;
 
 use super::store::{CsvTable, Header, ParquetTable, RowWriter, Status, Study};
 use super::table::{Head, Kind, Rows, Values};
-use cvtcycle_config::Problem;
+use cvtcycle_config::{Problem, Setting};
 use cvtcycle_output::file::OutputFile;
 use cvtcycle_output::files::problem;
 use xlsx::{MAX_CELLS, MAX_COLUMNS, MAX_ROWS, XlsxTable};
@@ -52,7 +52,7 @@ impl Format {
             let path_name = path.display();
             let message =
                 format!("the ending of {path_name} does not say in which format to write");
-            problem(path, &message, "for example --out runs.csv")
+            problem(path, &message, "for example runs.csv")
                 .allowed("a name that ends in .csv, .parquet or .xlsx")
         })
     }
@@ -86,7 +86,8 @@ pub fn export(
             study.path().display(),
             status.expected
         );
-        return Err(problem(study.path(), &message, "continue it with --resume"));
+        let problem = problem(study.path(), &message, "continue it");
+        return Err(problem.settings(&[Setting::Resume]));
     }
     let rows = study.rows(table)?;
     if format == Format::Xlsx {

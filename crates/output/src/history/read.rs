@@ -7,7 +7,7 @@ use cvtcycle_config::csv::{self, Cells, Collector, Column, Line, Schema, Table};
 use cvtcycle_config::{Bound, Problem, Problems};
 
 /// What helps with a trace that cannot be read.
-pub const AGAIN: &str = "write it anew with `cvtcycle run ... --out DIR --force`";
+pub const AGAIN: &str = "write it anew with `cvtcycle run`";
 /// What a cell of the column of flags may hold.
 pub const FLAGS: &str = "names of flags joined by |";
 

@@ -1,12 +1,12 @@
 //! Pictures of the transmission rig's tests, after the figures of thesis chapter 5.
 
 use super::lines::{LineChart, LinePanel, Look, Points, line_chart};
-use cvtcycle_model::keys::rpm;
 use cvtcycle_model::bench::BenchPoint;
 use cvtcycle_model::bench::transmission::{
     Branch, Conditions, Loop, Moment, Piece, Stage, SteadyPoint, StripDown, TwoBoxes,
 };
 use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::keys::rpm;
 use cvtcycle_output::rig::{given, oil_degc, rpm};
 
 /// File name and SVG text.

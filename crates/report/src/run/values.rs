@@ -38,7 +38,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Option<Section> {
                 percent_text(sensitivity.step_percent)
             ));
         }
-        None => section.text("How much each value matters was not computed for this run: use cvtcycle run --sensitivity always."),
+        None => section.text("How much each value matters was not computed for this run."),
     }
     for car in cars.iter().filter_map(|car| car.record) {
         of_car(&mut section, car, record.sensitivity.as_ref());

@@ -187,7 +187,7 @@ fn is_trace_column(item: &RawValue, word: &str) -> bool {
     let names = || COLUMNS.iter().map(|column| &*column.name);
     let is_known = names().any(|name| name == word);
     if !is_known {
-        let all = || "the trace of `run --out` shows all".to_owned();
+        let all = || "the trace of a run shows all".to_owned();
         let hint = did_you_mean(word, names()).unwrap_or_else(all);
         let message = format!("the trace has no column `{word}`");
         item.complain("columns of the trace", &message, &hint);

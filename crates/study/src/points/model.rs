@@ -1,10 +1,9 @@
 //! A vehicle's belt with the values of a row in place of its own.
 
-
-use cvtcycle_model::keys::rad_s;
 use cvtcycle_config::Problem;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::fluid::{BandFriction, Lubricant, ZERO_DEGC_K};
+use cvtcycle_model::keys::rad_s;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::point::{PointFlags, PointLimits};

@@ -17,8 +17,8 @@ use super::names::{self, LOCK, MANIFEST, PARTS, PLAN, RESULTS, SUMMARY};
 use super::parquet::write_parquet;
 use super::read::{Study, is_whole, marked_parts};
 use crate::table::{Head, Rows};
-use cvtcycle_config::Problem;
 use cvtcycle_config::bounded::{self, ReadError};
+use cvtcycle_config::{Problem, Setting};
 use cvtcycle_output::files::{
     Created, check_directory, failed, list, names_in, problem, sync_directory, temporary_in,
 };
@@ -184,7 +184,8 @@ impl StudyDir {
             let message = format!(
                 "the study in {path} is not complete: {missing} of {parts} parts are missing"
             );
-            return Err(problem(&self.path, &message, "continue it with --resume"));
+            let problem = problem(&self.path, &message, "continue it");
+            return Err(problem.settings(&[Setting::Resume]));
         }
         for (k, (name, _)) in files.iter().enumerate() {
             let is_same = |(other, _): &(String, _)| other.eq_ignore_ascii_case(name);
@@ -267,11 +268,11 @@ impl StudyDir {
         let kept = "parts that are whole are kept";
         let hint = match error.kind() {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-                format!("{kept}; make room and continue with --resume")
+                format!("{kept}; make room and continue")
             }
-            _ => format!("{kept} and --resume continues them; {}", problem.hint),
+            _ => format!("{kept} and can be continued; {}", problem.hint),
         };
-        problem.hint(hint)
+        problem.hint(hint).settings(&[Setting::Resume])
     }
 }
 
@@ -294,18 +295,20 @@ fn check_contents(path: &Path, force: bool) -> Result<bool, Problem> {
     if found.is_empty() || (earlier && force) {
         return Ok(earlier);
     }
-    let (what, hint) = match earlier {
+    let (what, hint, settings): (_, _, &[Setting]) = match earlier {
         true => (
             "a study",
-            "continue it with --resume, replace it with --force, or choose another name",
+            "continue it, replace it, or choose another name",
+            &[Setting::Resume, Setting::Replace],
         ),
         false => (
             "files of something else",
             "choose another name, or an empty directory",
+            &[],
         ),
     };
     let message = format!("{name} holds {what}: {}", list(&found));
-    Err(problem(path, &message, hint))
+    Err(problem(path, &message, hint).settings(settings))
 }
 
 fn no_study(path: &Path, error: ReadError) -> Problem {
@@ -314,11 +317,8 @@ fn no_study(path: &Path, error: ReadError) -> Problem {
     match error {
         error if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
             let message = format!("there is no study in {name} to resume");
-            problem(
-                path,
-                &message,
-                "leave --resume out to begin it, or check the path",
-            )
+            let hint = "begin it without resuming, or check the path";
+            problem(path, &message, hint).settings(&[Setting::Resume])
         }
         ReadError::Unreadable(error) => failed(path, &message, &error),
         refused => problem(path, &format!("{message}: {refused}"), refused.hint(""))
@@ -330,8 +330,9 @@ fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Pr
     let name = path.display();
     let parsed = |bytes| serde_json::from_slice::<Value>(bytes);
     let (Ok(stored), Ok(now)) = (parsed(stored), parsed(now)) else {
-        let hint = "begin the study anew with --force or in another directory";
-        return problem(path, &format!("{MANIFEST} in {name} is damaged"), hint);
+        let hint = "begin the study anew in its place or in another directory";
+        let message = format!("{MANIFEST} in {name} is damaged");
+        return problem(path, &message, hint).settings(&[Setting::Replace]);
     };
     let mut found = differences(&stored, &now);
     // The line of the plan says more than what follows from it.
@@ -354,6 +355,6 @@ fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Pr
             )
         }
     };
-    let hint = "resume it with the same plan, files and program, or begin anew with --force or in another directory";
-    problem(path, &message, hint)
+    let hint = "resume it with the same plan, files and program, or begin anew in its place or in another directory";
+    problem(path, &message, hint).settings(&[Setting::Replace])
 }

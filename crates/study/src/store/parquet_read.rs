@@ -19,8 +19,7 @@ use parquet::file::metadata::{ColumnChunkMetaData, KeyValue};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
 /// What helps with a damaged file.
-pub(super) const MEND: &str =
-    "a study computes its damaged parts anew when it is continued with --resume";
+pub(super) const MEND: &str = "a study computes its damaged parts anew when it is continued";
 
 /// Most rows of a file: a part has 50 000 rows of traces and those of one more point, of which each car may have as many as a trace.
 const MAX_ROWS: u64 = 16_000_000;

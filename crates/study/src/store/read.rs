@@ -58,7 +58,7 @@ impl Study {
             io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
                 let name = path.display();
                 let message = format!("there is no study in {name}: it has no {MANIFEST}");
-                let hint = "name the directory that was given to --out of `cvtcycle study`";
+                let hint = "name a directory that `cvtcycle study` has written";
                 file_problem(&path, message, hint)
             }
             _ => unreadable(&file, &error),
