@@ -65,3 +65,21 @@ fn looking_into_a_text_is_seen() {
     assert_eq!(looks_into(bad), [".message.contains("]);
     assert!(looks_into("// problem.message.contains(x)\nself.allowed.contains(1.0)").is_empty());
 }
+
+/// An option of the command line in a text, outside comments.
+fn names_an_option(line: &&str) -> bool {
+    let mut rest = line.split("--").skip(1);
+    let is_text = line.contains('"') && !line.trim_start().starts_with("//");
+    is_text && rest.any(|rest| rest.starts_with(|c: char| c.is_ascii_lowercase()))
+}
+
+#[test]
+fn no_text_of_the_library_names_an_option() {
+    let of_library = |module: &str| !module.starts_with("cvtcycle");
+    let mut wrong = Vec::new();
+    for source in sources().iter().filter(|source| of_library(&source.module)) {
+        let lines = source.code.lines().filter(names_an_option);
+        wrong.extend(lines.map(|line| format!("{}: {}", source.module, line.trim())));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

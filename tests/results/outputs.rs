@@ -9,6 +9,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
+use cvtcycle::config::{Argument, Setting};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::number::{fixed, percent, plain, signed, tiny};
 use cvtcycle::output::table::{Cell, Scope};
@@ -155,7 +156,7 @@ fn a_failure_leaves_nothing_behind() {
     });
     let problem = full.unwrap_err();
     assert!(
-        problem.key == "--out" && problem.message.contains("summary.json"),
+        problem.place.is_argument(Argument::Output) && problem.message.contains("summary.json"),
         "{problem:?}"
     );
     assert!(problem.hint.contains("space"));
@@ -218,7 +219,8 @@ fn an_earlier_run_is_replaced_only_when_asked() {
         problem.message.contains("old.svg, summary.json, trace.csv"),
         "{problem:?}"
     );
-    assert!(problem.hint.contains("--force") && problem.hint.contains("another name"));
+    assert_eq!(problem.settings, [Setting::Replace]);
+    assert!(problem.hint.contains("another name"));
     let mut dir = OutputDir::create(home.path(), true).unwrap();
     dir.write("summary.json", text("new")).unwrap();
     dir.write("trace.csv", text("new")).unwrap();

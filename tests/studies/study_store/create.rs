@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use cvtcycle::config::{Argument, Setting};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::study::store::{Study, StudyDir};
 use serde_json::json;
@@ -11,7 +12,7 @@ use super::{PLAN, files, manifest, results, whole, write_part};
 
 fn refused(dir: &TempDir, force: bool) -> String {
     let problem = StudyDir::create(dir.path(), &manifest(2), PLAN, force).unwrap_err();
-    assert_eq!(problem.key, "--out");
+    assert!(problem.place.is_argument(Argument::Output));
     format!("{} / {}", problem.message, problem.hint)
 }
 
@@ -64,7 +65,7 @@ fn files_of_something_else_and_earlier_studies_are_not_written_over() {
     let before = files(study.path());
     let said = refused(&study, false);
     assert!(
-        said.contains("holds a study") && said.contains("--resume") && said.contains("--force"),
+        said.contains("holds a study") && said.contains("continue it, replace it"),
         "{said}"
     );
     // Nor does a run take the directory of a study, though both have a summary.
@@ -187,7 +188,8 @@ fn results_have_plain_names_and_need_all_parts() {
     write_part(&study, 1);
     let problem = study.finish(&results()).unwrap_err();
     assert!(
-        problem.message.contains("1 of 2 parts are missing") && problem.hint.contains("--resume"),
+        problem.message.contains("1 of 2 parts are missing")
+            && problem.settings == [Setting::Resume],
         "{}",
         problem.message
     );

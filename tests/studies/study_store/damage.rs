@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use cvtcycle::config::Setting;
 use cvtcycle::study::store::{PartTable, Study, StudyDir};
 use cvtcycle::study::table::Values;
 use tempfile::TempDir;
@@ -37,7 +38,7 @@ fn a_part_with_any_byte_changed_or_cut_off_is_noticed() {
             "{what}: {}",
             problem.message
         );
-        assert!(problem.hint.contains("--resume"));
+        assert!(problem.hint.contains("continued"));
     };
     for at in 0..good.len() {
         noticed(&good[..at], format!("cut at {at}"));
@@ -132,7 +133,7 @@ fn a_part_that_cannot_be_written_leaves_nothing_and_the_others_stay() {
         .unwrap_err();
     assert!(
         problem.message.contains("cannot write trace_00001.parquet")
-            && problem.hint.contains("--resume"),
+            && problem.settings == [Setting::Resume],
         "{problem:?}"
     );
     assert_eq!(files(dir.path()), before);

@@ -6,7 +6,7 @@ use cvtcycle_model::bench::transmission::{
     Branch, Conditions, Loop, Moment, Piece, Stage, SteadyPoint, StripDown, TwoBoxes,
 };
 use cvtcycle_model::fluid::ZERO_DEGC_K;
-use cvtcycle_model::keys::rpm;
+use cvtcycle_model::keys;
 use cvtcycle_output::rig::{given, oil_degc, rpm};
 
 /// File name and SVG text.
@@ -224,7 +224,7 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
         (Look::solid(2), Branch::Cooling),
     ];
     let names = ["Warming by its own losses", "Cooling by the rig's cooler"];
-    let speed = given(rpm(subject.conditions.transient.speed_rad_s));
+    let speed = given(keys::rpm(subject.conditions.transient.speed_rad_s));
     let of_loop = |l: &Loop| {
         let both = |y: fn(&Moment) -> f64| {
             let on = |(look, branch): (Look, Branch)| {
