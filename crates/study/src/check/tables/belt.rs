@@ -5,7 +5,6 @@ use crate::check::expr::Table;
 use crate::check::source::{Kind, Source};
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::fluid::{BandFriction, Friction, Lubricant, ZERO_DEGC_K};
-use cvtcycle_model::keys::rpm;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::point::PointStatus;

@@ -11,7 +11,6 @@ use cvtcycle_config::setup::Setup;
 use cvtcycle_model::bench::transmission::{Branch, Conditions, Piece, Plan, strip_down, transient};
 use cvtcycle_model::bench::{Bench, BenchPoint};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
-use cvtcycle_model::keys::rpm;
 
 /// Columns of a transient before those of the bench.
 const OF_MOMENT: [&str; 4] = ["time_s", "cooling", "metal_degc", "gap_nm"];
