@@ -5,7 +5,7 @@ use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{Argument, Override, Problem, Problems, render};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::study::plan::{
-    Acts, Cars, Design, Distribution, FactorValue, FactorValues, Keep, Plan, embedded_plans,
+    Acts, Cars, Design, Distribution, FactorValue, FactorValues, Keep, PLAN, Plan, embedded_plans,
 };
 use proptest::prelude::*;
 
@@ -580,5 +580,20 @@ proptest! {
             prop_assert!(!problems.is_empty());
             prop_assert!(problems.iter().all(|p| p.place.line <= text.lines().count() && !p.message.is_empty()));
         }
+    }
+}
+
+/// Property: the page on plans names every key of their rows.
+#[test]
+fn the_page_on_plans_names_every_key() {
+    let page = include_str!("../../docs/plan_format.md");
+    for info in setup::catalogue::keys_of(&PLAN) {
+        let name = info.key.rsplit('.').next().unwrap_or_default();
+        assert!(page.contains(name), "{}", info.key);
+        assert!(
+            !info.doc.is_empty() && !info.allowed.is_empty(),
+            "{}",
+            info.key
+        );
     }
 }

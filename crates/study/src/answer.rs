@@ -106,6 +106,51 @@ pub struct Ranked {
 
 /// Computes what the study says from the parts that are there.
 ///
+/// ```
+/// use std::collections::BTreeSet;
+/// use std::sync::Mutex;
+///
+/// use cvtcycle_config::{Problem, Problems};
+/// use cvtcycle_study::plan::Plan;
+/// use cvtcycle_study::table::{Rows, Values};
+/// use cvtcycle_study::{NoProgress, PartWriter, Study, StudyManifest, StudyTable, TableSource, answer};
+///
+/// /// Keeps the table of runs in memory.
+/// struct Memory<'s>(&'s Study, Mutex<Vec<(u64, Rows)>>);
+///
+/// impl PartWriter for Memory<'_> {
+///     fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
+///         self.1.lock().expect("not poisoned").push((part, runs.clone()));
+///         Ok(())
+///     }
+/// }
+///
+/// impl TableSource for Memory<'_> {
+///     fn parts(&self) -> Vec<u64> {
+///         (0..self.0.parts()).collect()
+///     }
+///     fn columns(&self, part: u64, names: &[&str]) -> Result<Vec<Values>, Problem> {
+///         let parts = self.1.lock().expect("not poisoned");
+///         let rows = parts.iter().find(|(index, _)| *index == part).expect("written");
+///         let column = |name: &&str| self.0.columns.iter().position(|head| head.name == *name);
+///         Ok(names.iter().filter_map(column).map(|k| rows.1.values[k].clone()).collect())
+///     }
+///     fn traces(&self, _: u64, _: &[&str]) -> Result<Vec<Values>, Problem> {
+///         Ok(Vec::new())
+///     }
+/// }
+///
+/// let text = "study.cycle = \"constant_50\"\nstudy.baselines = []\nstudy.design = \"grid\"\n\
+///     [[factor]]\nkey = \"ambient_degc\"\nvalues = [0, 25]\n";
+/// let study = Study::prepare(Plan::read("plan.toml", text)?)?;
+/// let table = Memory(&study, Mutex::default());
+/// study.execute(&BTreeSet::new(), &table, &NoProgress)?;
+/// let manifest = StudyManifest::of(&study);
+/// let answer = answer(&StudyTable::new(&manifest, &table)?)?;
+/// assert_eq!((answer.points, answer.runs.ok, answer.outputs[0].summary.n), (2, 2, 2));
+/// # Ok::<(), Problems>(())
+/// ```
+///
 /// # Errors
 /// A part that cannot be read.
 pub fn answer(frame: &StudyTable) -> Result<Answer, Problem> {

@@ -1,6 +1,8 @@
 //! Summaries, quantiles and shares.
 
-use cvtcycle::study::statistics::{QUANTILES, Share, Summary, difference, quantile_of_sorted};
+use cvtcycle::study::statistics::{
+    QUANTILES, Share, Spread, Summary, difference, quantile_of_sorted,
+};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -64,7 +66,11 @@ fn what_is_missing_is_counted_and_changes_nothing_else() {
     let mut gaps = full.clone();
     gaps.splice(10..10, [f64::NAN, f64::INFINITY, f64::NEG_INFINITY]);
     let (a, b) = (Summary::of(&full), Summary::of(&gaps));
-    assert_eq!(Summary { missing: 3, ..a }, b);
+    let spread = Spread {
+        missing: 3,
+        ..a.spread
+    };
+    assert_eq!(Summary { spread, ..a }, b);
     let none = Summary::of(&[f64::NAN]);
     assert!(
         none.n == 0

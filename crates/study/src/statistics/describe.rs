@@ -10,6 +10,8 @@
 //! the space more evenly: there the true error is smaller, and the intervals are too wide rather than too narrow. Of a Saltelli design only
 //! the rows of A and B may go in: the mixed rows repeat all values but one of A.
 
+use std::ops::Deref;
+
 use serde::Serialize;
 
 use super::intervals::{clopper_pearson, quantile_ranks, student_975};
@@ -17,25 +19,24 @@ use super::intervals::{clopper_pearson, quantile_ranks, student_975};
 /// Probabilities of the quantiles of a summary.
 pub const QUANTILES: [f64; 7] = [0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975];
 
-/// An output in numbers.
+/// An output in numbers; read through it, the fields of [`Spread`] are its own.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
-    /// Number of values.
-    pub n: usize,
-    /// Number of cells without a value.
-    pub missing: usize,
-    /// Mean.
-    pub mean: f64,
-    /// Standard deviation of the population, from n - 1; NaN of fewer than two values.
-    pub sd: f64,
-    /// Least value.
-    pub min: f64,
-    /// Largest value.
-    pub max: f64,
+    /// Number, mean, spread and ends.
+    #[serde(flatten)]
+    pub spread: Spread,
     /// Quantiles at [`QUANTILES`].
     pub quantiles: Vec<Quantile>,
     /// Interval of the mean.
     pub mean_interval95: Option<[f64; 2]>,
+}
+
+impl Deref for Summary {
+    type Target = Spread;
+
+    fn deref(&self) -> &Spread {
+        &self.spread
+    }
 }
 
 /// One quantile.
@@ -54,26 +55,20 @@ impl Summary {
     /// Describes a column.
     pub fn of(values: &[f64]) -> Self {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
-        let all = Moments::of(values.iter().copied());
+        let spread = Spread::of(values.iter().copied());
         sorted.sort_unstable_by(f64::total_cmp);
         let quantile = |p: f64| {
             let value = |at: Option<usize>| at.and_then(|i| sorted.get(i).copied());
-            let interval95 = quantile_ranks(all.n, p).map(value);
             Quantile {
                 p,
                 value: quantile_of_sorted(&sorted, p),
-                interval95,
+                interval95: quantile_ranks(spread.n, p).map(value),
             }
         };
         Summary {
-            n: all.n,
-            missing: all.missing,
-            mean: all.mean,
-            sd: all.sd,
-            min: all.min,
-            max: all.max,
             quantiles: QUANTILES.map(quantile).to_vec(),
-            mean_interval95: all.mean_interval95,
+            mean_interval95: spread.mean_interval95(),
+            spread,
         }
     }
 
@@ -85,22 +80,27 @@ impl Summary {
 }
 
 /// What needs no order.
-pub(super) struct Moments {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// Number of values.
     pub n: usize,
+    /// Number of cells without a value.
     pub missing: usize,
+    /// Mean.
     pub mean: f64,
+    /// Standard deviation of the population, from n - 1; NaN of fewer than two values.
     pub sd: f64,
+    /// Least value.
     pub min: f64,
+    /// Largest value.
     pub max: f64,
-    pub mean_interval95: Option<[f64; 2]>,
 }
 
-impl Moments {
+impl Spread {
     /// Of all finite values.
-    pub fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
+    pub(super) fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
         let finite = || values.clone().filter(|x| x.is_finite());
         let n = finite().count();
-        let missing = values.clone().count() - n;
         let count = n as f64;
         let rough = finite().sum::<f64>() / count;
         let mean = rough + finite().map(|x| x - rough).sum::<f64>() / count; // DS-1
@@ -111,19 +111,22 @@ impl Moments {
             0 | 1 => f64::NAN,
             _ => ((squares - sum * sum / count).max(0.0) / (count - 1.0)).sqrt(), // DS-1
         };
-        let (min, max) = finite().fold((f64::NAN, f64::NAN), |(low, high), x| {
-            (x.min(low), x.max(high))
-        });
-        let half = student_975(count - 1.0) * sd / count.sqrt(); // DS-2
-        Moments {
+        Spread {
             n,
-            missing,
+            missing: values.clone().count() - n,
             mean,
             sd,
-            min,
-            max,
-            mean_interval95: half.is_finite().then_some([mean - half, mean + half]),
+            min: finite().fold(f64::NAN, |low, x| x.min(low)),
+            max: finite().fold(f64::NAN, |high, x| x.max(high)),
         }
+    }
+
+    /// Interval of the mean, for independent values.
+    pub(super) fn mean_interval95(&self) -> Option<[f64; 2]> {
+        let count = self.n as f64;
+        let half = student_975(count - 1.0) * self.sd / count.sqrt(); // DS-2
+        half.is_finite()
+            .then_some([self.mean - half, self.mean + half])
     }
 }
 

@@ -7,29 +7,30 @@
 //! In a grid with all combinations the mean at a level averages over all other factors evenly: its course is the main effect, and eta^2 the
 //! part of the grid's variance that it explains. There the rows are no random draws: read the spread (sd, min, max), not the interval.
 
+use std::ops::Deref;
+
 use serde::Serialize;
 
-use super::describe::Moments;
+use super::describe::Spread;
 
 /// The output at one level.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Group {
     /// The level.
     pub label: String,
-    /// Number of values.
-    pub n: usize,
-    /// Number of rows without a value.
-    pub missing: usize,
-    /// Mean.
-    pub mean: f64,
-    /// Standard deviation over everything else that varies.
-    pub sd: f64,
-    /// Least value.
-    pub min: f64,
-    /// Largest value.
-    pub max: f64,
+    /// The values there; read through the group, its fields are the group's own.
+    #[serde(flatten)]
+    pub spread: Spread,
     /// Interval of the mean, for independent rows.
     pub mean_interval95: Option<[f64; 2]>,
+}
+
+impl Deref for Group {
+    type Target = Spread;
+
+    fn deref(&self) -> &Spread {
+        &self.spread
+    }
 }
 
 /// The output at all levels of a factor.
@@ -59,20 +60,15 @@ pub fn group_means<S: AsRef<str>>(levels: &[S], output: &[f64]) -> Groups {
         rows[at].push(*y);
     }
     let group = |(name, values): (&&str, &Vec<f64>)| {
-        let of_level = Moments::of(values.iter().copied());
+        let spread = Spread::of(values.iter().copied());
         Group {
             label: (*name).to_owned(),
-            n: of_level.n,
-            missing: of_level.missing,
-            mean: of_level.mean,
-            sd: of_level.sd,
-            min: of_level.min,
-            max: of_level.max,
-            mean_interval95: of_level.mean_interval95,
+            mean_interval95: spread.mean_interval95(),
+            spread,
         }
     };
     let groups: Vec<Group> = names.iter().zip(&rows).map(group).collect();
-    let all = Moments::of(rows.iter().flatten().copied());
+    let all = Spread::of(rows.iter().flatten().copied());
     let filled = || groups.iter().filter(|g| g.n > 0);
     let between = |g: &Group| g.n as f64 * (g.mean - all.mean).powi(2);
     let between: f64 = filled().map(between).sum();
@@ -82,8 +78,9 @@ pub fn group_means<S: AsRef<str>>(levels: &[S], output: &[f64]) -> Groups {
         true => (between / within).min(1.0), // GR-1
         false => f64::NAN,
     };
-    let least = filled().map(|g| g.mean).fold(f64::INFINITY, f64::min);
-    let largest = filled().map(|g| g.mean).fold(f64::NEG_INFINITY, f64::max);
+    let means = || filled().map(|g| g.mean);
+    let least = means().fold(f64::INFINITY, |low, x| x.min(low));
+    let largest = means().fold(f64::NEG_INFINITY, |high, x| x.max(high));
     Groups {
         range: match filled().count() {
             0 | 1 => f64::NAN,
