@@ -20,6 +20,18 @@ const LISTED: usize = 8;
 ///
 /// Files are written under temporary names and renamed by [`OutputDir::commit`]. Dropped before
 /// that, it removes them again, with the directories that it created.
+///
+/// ```
+/// use cvtcycle_output::files::OutputDir;
+/// let path = std::env::temp_dir().join("cvtcycle_output_dir");
+/// let mut dir = OutputDir::create(&path, true)?;
+/// dir.put("summary.json", "{}")?;
+/// assert!(!path.join("summary.json").exists());
+/// let paths = dir.commit()?;
+/// assert!(paths[0].exists());
+/// # std::fs::remove_dir_all(path).expect("the directory of this example");
+/// # Ok::<(), cvtcycle_config::Problem>(())
+/// ```
 #[derive(Debug)]
 pub struct OutputDir {
     path: PathBuf,

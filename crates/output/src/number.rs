@@ -34,6 +34,11 @@ pub fn finite(x: f64) -> Option<f64> {
 }
 
 /// A number with fixed decimals, without the sign of a rounded zero; [`NONE`] where there is none.
+///
+/// ```
+/// use cvtcycle_output::number::fixed;
+/// assert_eq!([fixed(2.416, 2), fixed(-0.001, 2), fixed(None, 2)], ["2.42", "0.00", "-"]);
+/// ```
 pub fn fixed(x: impl Into<Option<f64>>, decimals: usize) -> String {
     let Some(x) = x.into().filter(|x| x.is_finite()) else {
         return NONE.to_owned();

@@ -103,6 +103,17 @@ pub fn loss_column(component: Component) -> Option<&'static TraceColumn> {
 ///
 /// Numbers read back to the same `f64`. A number that is not finite, and a phase without a name, become an empty field.
 ///
+/// ```
+/// use cvtcycle_output::Row;
+/// use cvtcycle_output::trace::{column, write_trace};
+/// let columns = ["time_s", "speed_kmh"].map(|name| column(name).expect("a column of every trace"));
+/// let row = Row { time_s: 1.0, speed_m_s: 10.0, ..Row::default() };
+/// let mut csv = Vec::new();
+/// write_trace(&mut csv, &columns, &[row], &[])?;
+/// assert_eq!(csv, b"time_s,speed_kmh\n1,36\n");
+/// # Ok::<(), std::io::Error>(())
+/// ```
+///
 /// # Errors
 /// Those of `out`.
 pub fn write_trace<W: Write>(

@@ -19,6 +19,29 @@ const MPG_US: f64 = 235.215;
 const ZERO_DEGC_K: f64 = cvtcycle_model::fluid::ZERO_DEGC_K;
 
 /// Puts the numbers of a run together; the first car is the subject.
+///
+/// ```
+/// use cvtcycle_config::Problems;
+/// use cvtcycle_config::cycle;
+/// use cvtcycle_config::setup::{Options, load};
+/// use cvtcycle_model::drive::{Conditions, Start, drive};
+/// use cvtcycle_output::summary::{Driven, Settings, StartWord, summarise};
+/// let setup = load("rover_216_cvt", &Options::default())?;
+/// let cycle = cycle::find("ece15_eudc")?;
+/// let conditions = Conditions {
+///     ambient_k: 263.15,
+///     start: Start::Soak,
+///     max_dt_s: 1.0,
+///     keep_rows: false,
+/// };
+/// let outcome = drive(&setup, &cycle, &conditions);
+/// let driven = [Driven { name: "rover", setup: &setup, outcome: &outcome }];
+/// let start = StartWord::Word("soak".to_owned());
+/// let summary = summarise(&cycle, -10.0, start, Settings::default(), &driven);
+/// let fuel = summary.runs[0].fuel_l_per_100km.unwrap_or(f64::NAN);
+/// assert!((5.0..12.0).contains(&fuel), "{fuel} L/100 km");
+/// # Ok::<(), Problems>(())
+/// ```
 pub fn summarise(
     cycle: &Cycle,
     ambient_degc: f64,
