@@ -1,7 +1,6 @@
 //! `losses`: loss of each transmission component at one operating point or over a grid.
 
 mod plan;
-mod plots;
 mod tables;
 
 use std::cell::RefCell;
@@ -12,6 +11,7 @@ use cvtcycle::config::Problems;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::loss_table::{MapPart, write_map};
 use cvtcycle::output::losses::{FlagCount, LossRow};
+use cvtcycle::report::charts::loss_figures;
 
 use super::Execute;
 use crate::args::{FormulationArgs, Names, OutArgs, TableOutputArgs, VehicleArgs, names_of};
@@ -98,7 +98,7 @@ impl Execute for LossesArgs {
             if losses.grid.len() > MAX_DRAWN {
                 return Ok(NOT_DRAWN);
             }
-            for (name, svg) in plots::plots(&losses) {
+            for (name, svg) in loss_figures(&losses) {
                 dir.put(&name, svg)?;
             }
             Ok("")

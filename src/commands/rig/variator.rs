@@ -1,11 +1,11 @@
 //! `rig variator`: the belt alone on its rig, slip against output torque.
 
 mod plan;
-mod plots;
 mod tables;
 
 use clap::Args;
 use cvtcycle::config::Problems;
+use cvtcycle::report::charts::variator_figures;
 
 use crate::args::{FormulationArgs, OutArgs, TableOutputArgs, VehicleArgs};
 use crate::commands::Execute;
@@ -80,7 +80,7 @@ impl Execute for RigVariatorArgs {
             dir.write("curves.csv", |out| found.write_curves(out))?;
             dir.write("points.csv", |out| found.write_points(out))?;
             dir.write("summary.json", |out| found.write_json(out))?;
-            for (name, svg) in plots::plots(&found) {
+            for (name, svg) in variator_figures(&found) {
                 dir.put(name, svg)?;
             }
             Ok("")

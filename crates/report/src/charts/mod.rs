@@ -8,16 +8,20 @@ mod engine;
 pub mod figures;
 mod grids;
 pub mod lines;
+mod loss_table;
 mod picture;
 pub mod rig_transmission;
 mod run;
 pub mod study;
+mod variator_curves;
 
 pub use engine::cell;
 pub use grids::{MapFigure, map_figure};
 pub use lines::{CurveFigure, CurvePanel, CurveSeries, StackFigure, curve_figure, stack_figure};
+pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};
 pub use run::{
     LossBins, PlotRun, bin_losses, driveline, fuel_bars, losses, operating_points, pressure,
     temperatures,
 };
+pub use variator_curves::variator_figures;

@@ -1,8 +1,12 @@
 //! Figures of a grid: maps over two axes, stacks over one, a panel for each combination of the other axes.
 
-use cvtcycle::output::Component;
-use cvtcycle::output::losses::{Axis, LossRow, LossTable};
-use cvtcycle::report::charts::{MapFigure, StackFigure, map_figure, stack_figure};
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+
+use cvtcycle_output::Component;
+use cvtcycle_output::losses::{Axis, LossRow, LossTable};
+
+use super::{MapFigure, StackFigure, map_figure, stack_figure};
 
 /// Smallest number of values on an axis of a map: values between two points are unknown.
 const MIN_ON_MAP: usize = 3;
@@ -19,8 +23,9 @@ const ORDER: [Axis; 7] = [
     Axis::Ratio,
 ];
 
-/// Figures with their file names; none for a single point.
-pub fn plots(plan: &LossTable) -> Vec<(String, String)> {
+/// Figures of the losses over a grid with their file names; none for a single point.
+#[must_use]
+pub fn loss_figures(plan: &LossTable) -> Vec<(String, String)> {
     let varied = plan.grid.varied();
     let gears = |axis: &Axis| *axis == Axis::Ratio && !plan.is_cvt();
     let on_map: Vec<Axis> = ORDER
@@ -39,22 +44,14 @@ pub fn plots(plan: &LossTable) -> Vec<(String, String)> {
                 .max_by_key(|axis| plan.grid.of(**axis).len());
             maps(plan, &Layout::new(plan, &rows, *x, y.copied()))
         }
-        ([x, ..], _) => vec![(
-            "losses_stacked.svg".to_owned(),
-            stack(plan, &Layout::new(plan, &rows, *x, None)),
-        )],
+        ([x, ..], _) => stack(plan, &Layout::new(plan, &rows, *x, None)),
         ([], false) => {
-            let x = ORDER
-                .into_iter()
-                .filter(|axis| varied.contains(axis))
-                .max_by_key(|axis| plan.grid.of(*axis).len());
-            vec![(
-                "losses_stacked.svg".to_owned(),
-                stack(
-                    plan,
-                    &Layout::new(plan, &rows, x.unwrap_or(Axis::Ratio), None),
-                ),
-            )]
+            let varied = ORDER.into_iter().filter(|axis| varied.contains(axis));
+            let x = varied.max_by_key(|axis| plan.grid.of(*axis).len());
+            stack(
+                plan,
+                &Layout::new(plan, &rows, x.unwrap_or(Axis::Ratio), None),
+            )
         }
         ([], true) => Vec::new(),
     }
@@ -94,32 +91,26 @@ impl<'a> Layout<'a> {
                 .collect::<Vec<u64>>()
         };
         // In the order of the grid, each combination once.
-        let mut groups: std::collections::BTreeMap<Vec<u64>, usize> =
-            std::collections::BTreeMap::new();
+        let mut places: BTreeMap<Vec<u64>, usize> = BTreeMap::new();
         let mut gathered: Vec<Vec<&LossRow>> = Vec::new();
         for row in rows {
-            let place = *groups.entry(key(row)).or_insert(gathered.len());
-            if place == gathered.len() {
-                gathered.push(Vec::new());
+            let place = *places.entry(key(row)).or_insert(gathered.len());
+            match gathered.get_mut(place) {
+                Some(group) => group.push(row),
+                None => gathered.push(vec![row]),
             }
-            gathered[place].push(row);
         }
         let count = gathered.len();
-        let panels = gathered.into_iter().take(MAX_PANELS).map(|list| {
+        let panels = gathered.into_iter().take(MAX_PANELS).map(|mut list| {
             let title = plan.held(&list[0].asked, &others);
-            let (x, y) = (x as usize, y.map(|y| y as usize));
-            let mut list = list;
+            let at = |row: &LossRow, axis: Axis| row.asked[axis as usize];
+            let by =
+                |axis: Axis| move |a: &&LossRow, b: &&LossRow| at(a, axis).total_cmp(&at(b, axis));
             list.sort_by(|a, b| {
-                a.asked[x]
-                    .total_cmp(&b.asked[x])
-                    .then(y.map_or(std::cmp::Ordering::Equal, |y| {
-                        a.asked[y].total_cmp(&b.asked[y])
-                    }))
+                by(x)(a, b).then_with(|| y.map_or(Ordering::Equal, |y| by(y)(a, b)))
             });
-            let rows = list
-                .chunk_by(|a, b| a.asked[x].to_bits() == b.asked[x].to_bits())
-                .map(<[&LossRow]>::to_vec)
-                .collect();
+            let columns = list.chunk_by(|a, b| at(a, x).to_bits() == at(b, x).to_bits());
+            let rows = columns.map(<[&LossRow]>::to_vec).collect();
             Panel { title, rows }
         });
         let values = |axis: Axis| {
@@ -192,27 +183,25 @@ fn maps(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
 }
 
 /// All components stacked over one axis.
-fn stack(plan: &LossTable, layout: &Layout) -> String {
+fn stack(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
     let components = plan.components();
     let values = |panel: &Panel, component: Component| {
-        panel
-            .rows
-            .iter()
+        let columns = panel.rows.iter();
+        columns
             .map(|column| column[0].answer.part_nm(component))
             .collect()
     };
     let panels = layout.panels.iter().map(|panel| {
-        (
-            panel.title.clone(),
-            components.iter().map(|c| values(panel, *c)).collect(),
-        )
+        let stacked = components.iter().map(|c| values(panel, *c));
+        (panel.title.clone(), stacked.collect())
     });
-    stack_figure(&StackFigure {
+    let figure = stack_figure(&StackFigure {
         title: "Torque losses of the transmission",
         subject: &layout.subject,
         value: "Loss at the input shaft [Nm]",
         x: (layout.x.0.title(plan.is_cvt()), &layout.x.1),
         parts: components.iter().map(|c| c.title().to_owned()).collect(),
         panels: panels.collect(),
-    })
+    });
+    vec![("losses_stacked.svg".to_owned(), figure)]
 }
