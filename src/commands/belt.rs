@@ -11,6 +11,7 @@ use cvtcycle::config::{Bound, Problems};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::PROGRAM;
 use cvtcycle::output::file::OutputFile;
+use cvtcycle::output::files::listed;
 use cvtcycle::study::points::{self, Counts, Done, Job, Model};
 use serde_json::{Map, Value, json};
 
@@ -68,21 +69,12 @@ pub struct BeltArgs {
     output: OutputArgs,
 }
 
-/// Computed rows, ready to be written.
-pub struct BeltPlan {
-    rows: RowSink,
-    head: Value,
-    /// Text on standard output.
-    stdout: String,
-    /// Notes on standard error.
-    stderr: String,
-}
-
 impl Execute for BeltArgs {
-    type Plan = BeltPlan;
+    /// Computed rows, ready to be written; the JSON object without them; what is printed besides.
+    type Plan = (RowSink, Value, CommandOutput);
 
     /// Reads and computes row by row: a table may be larger than memory, and all its problems are reported.
-    fn plan(&self, problems: &mut Problems) -> Option<BeltPlan> {
+    fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         let formulation = self.formulation.get(problems);
         let setup = self.car.load(Formulation::default(), problems);
         let range = Bound::closed(-1.0, 1.0);
@@ -113,29 +105,24 @@ impl Execute for BeltArgs {
         let Done { counts, ignored } = problems.take(points::read(name, reader, job))?;
         let setup = setup?;
         let quiet = self.output.quiet;
+        let ignored = listed(&ignored, MAX_LISTED);
         let stderr = match ignored.is_empty() || quiet {
             true => String::new(),
-            false => format!(
-                "cvtcycle: {name}: columns computed anew, not read: {}\n",
-                listed(&ignored)
-            ),
+            false => format!("cvtcycle: {name}: columns computed anew, not read: {ignored}\n"),
         };
         let stdout = out.filter(|_| !quiet && !self.output.json());
-        Some(BeltPlan {
-            rows,
-            head: head(&setup.name, &setup.oils().0.name, &counts),
+        let output = CommandOutput {
             stdout: stdout.map_or_else(String::new, |out| counts.text(&out)),
             stderr,
-        })
+            ..CommandOutput::default()
+        };
+        let head = head(&setup.name, &setup.oils().0.name, &counts);
+        Some((rows, head, output))
     }
 
-    fn run(&self, plan: BeltPlan, _: Terminal) -> CommandResult {
-        plan.rows.finish(&plan.head)?;
-        Ok(CommandOutput {
-            stdout: plan.stdout,
-            stderr: plan.stderr,
-            ..CommandOutput::default()
-        })
+    fn run(&self, (rows, head, output): Self::Plan, _: Terminal) -> CommandResult {
+        rows.finish(&head)?;
+        Ok(output)
     }
 }
 
@@ -155,17 +142,6 @@ fn open(points: &str) -> Result<Box<dyn BufRead>, Problems> {
     match File::open(points) {
         Ok(file) => Ok(Box::new(BufReader::with_capacity(1 << 16, file))),
         Err(error) => unreadable(&error.to_string(), hint),
-    }
-}
-
-/// The first names, and how many more there are.
-fn listed(names: &[String]) -> String {
-    let more = names.len().saturating_sub(MAX_LISTED);
-    let list = names[..names.len() - more].join(", ");
-    if more > 0 {
-        format!("{list} and {more} more")
-    } else {
-        list
     }
 }
 

@@ -31,15 +31,6 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// [`Ending::CheckFailed`] where the condition holds.
-    pub fn failed_if(failed: bool) -> Self {
-        if failed {
-            Ending::CheckFailed
-        } else {
-            Ending::Success
-        }
-    }
-
     /// Exit code of the process.
     pub fn code(self) -> u8 {
         match self {
@@ -89,7 +80,7 @@ pub struct Results {
 }
 
 impl Results {
-    /// All of them.
+    /// Results in all their forms.
     pub fn new(json: String, failures: Vec<String>, files: WrittenFiles) -> Self {
         Results {
             json,
@@ -129,7 +120,10 @@ impl Results {
         CommandOutput {
             stdout: String::new(),
             stderr: warnings.map(|line| format!("cvtcycle: {line}\n")).collect(),
-            ending: Ending::failed_if(!self.failures.is_empty()),
+            ending: match self.failures.is_empty() {
+                true => Ending::Success,
+                false => Ending::CheckFailed,
+            },
         }
     }
 }

@@ -308,10 +308,15 @@ fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Prob
     Err(problem(path, &message, &hint).settings(settings))
 }
 
-/// The first names, and how many more there are.
+/// The names of a directory, of many the first.
 pub fn list(names: &[String]) -> String {
-    let list = names[..names.len().min(LISTED)].join(", ");
-    match names.len().saturating_sub(LISTED) {
+    listed(names, LISTED)
+}
+
+/// The first names, and how many more there are.
+pub fn listed(names: &[String], max: usize) -> String {
+    let list = names[..names.len().min(max)].join(", ");
+    match names.len().saturating_sub(max) {
         0 => list,
         more => format!("{list} and {more} more"),
     }

@@ -258,8 +258,10 @@ impl<'a, T> TextColumns<'a, T> {
         T: 't,
     {
         let table = self.table(items);
-        let has_items = table.rows.len() > 1;
-        has_items.then(|| table.text()).unwrap_or_default()
+        match table.rows.len() {
+            0 | 1 => String::new(),
+            _ => table.text(),
+        }
     }
 
     /// The same, indented.
