@@ -163,6 +163,8 @@ fn parameters(o: &Outcome) -> String {
         .left("prior", prior)
         .right("share", share)
         .left("bound", |p| p.at_bound.unwrap_or_default())
+        // The last column would be wrapped: an empty one.
+        .left("", |_| "")
         .text(&o.parameters);
     if table.is_empty() {
         return table;

@@ -132,7 +132,7 @@ fn compared(summary: &Summary, comparison: &Comparison) -> String {
         .collect();
     if parts.len() > 1 {
         let detail = format!("({})", parts.join(", "));
-        let fits = line.len() + detail.len() < WIDTH;
+        let fits = line.len() + detail.len() < usize::from(WIDTH);
         line += &format!("{}{detail}", if fits { " " } else { "\n  " });
     }
     line + "\n"

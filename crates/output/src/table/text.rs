@@ -1,15 +1,14 @@
 //! Tables for people: aligned columns without rules, for a terminal of 80 to 100 columns and for `grep`, or Markdown.
 
-use unicode_width::UnicodeWidthStr;
+use comfy_table::presets::NOTHING;
+use comfy_table::{Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 
 use crate::number::fixed;
 
 /// Width of a table; the last column is wrapped beyond it.
-pub const WIDTH: usize = 98;
-/// Narrowest last column that is wrapped; a narrower one runs over the width.
-const MIN_WRAPPED: usize = 12;
+pub const WIDTH: u16 = 98;
 /// Blanks between two columns.
-const GAP: usize = 2;
+const GAP: u16 = 2;
 
 /// A table of texts, row by row.
 #[derive(Clone, Debug)]
@@ -18,6 +17,7 @@ pub struct TextTable {
     rows: Vec<Vec<String>>,
     indent: &'static str,
     min_widths: Vec<usize>,
+    width: u16,
 }
 
 impl TextTable {
@@ -36,6 +36,7 @@ impl TextTable {
             rows: Vec::new(),
             indent: "",
             min_widths: Vec::new(),
+            width: WIDTH,
         }
     }
 
@@ -64,43 +65,38 @@ impl TextTable {
 
     /// The lines, for a terminal.
     pub fn text(&self) -> String {
-        let widths = self.widths();
-        let mut text = String::new();
+        let mut table = Table::new();
+        table.load_style(NOTHING).set_width(self.width);
+        table.set_content_arrangement(ContentArrangement::Dynamic);
         for row in &self.rows {
-            let cells = row.iter().zip(&widths);
-            let cells: Vec<Vec<String>> = cells.map(|(cell, width)| wrap(cell, *width)).collect();
-            for k in 0..cells.iter().map(Vec::len).max().unwrap_or(0) {
-                let mut line = self.indent.to_owned();
-                for ((cell, width), right) in cells.iter().zip(&widths).zip(&self.right) {
-                    let part = cell.get(k).map_or("", String::as_str);
-                    let blanks = " ".repeat(width.saturating_sub(part.width()));
-                    line += &match right {
-                        true => blanks + part,
-                        false => part.to_owned() + &blanks,
-                    };
-                    line += &" ".repeat(GAP);
-                }
-                text += line.trim_end();
-                text.push('\n');
+            let cells = row
+                .iter()
+                .zip(&self.right)
+                .map(|(text, right)| match right {
+                    true => Cell::new(text).set_alignment(CellAlignment::Right),
+                    false => Cell::new(text).set_alignment(CellAlignment::Left),
+                });
+            table.add_row(cells);
+        }
+        let last = self.right.len().saturating_sub(1);
+        let content = table.column_max_content_widths();
+        for (k, column) in table.column_iter_mut().enumerate() {
+            column.set_padding((0, if k == last { 0 } else { GAP }));
+            if k < last {
+                let own = content.get(k).copied().unwrap_or(0);
+                let min = self
+                    .min_widths
+                    .get(k)
+                    .map_or(0, |min| u16::try_from(*min).unwrap_or(0));
+                let width = Width::Fixed(own.max(min) + GAP);
+                column.set_constraint(ColumnConstraint::Absolute(width));
             }
         }
-        text
-    }
-
-    /// Width of each column: that of its longest line, of the last one within what the others leave.
-    fn widths(&self) -> Vec<usize> {
-        let mut widths = Vec::new();
-        for k in 0..self.right.len() {
-            let left = WIDTH.saturating_sub(widths.iter().map(|width| width + GAP).sum());
-            let is_wrapped = k + 1 == self.right.len() && left >= MIN_WRAPPED;
-            let max = if is_wrapped { left } else { usize::MAX };
-            let cells = self.rows.iter().filter_map(|row| row.get(k));
-            let lines = cells.flat_map(|cell| wrap(cell, max));
-            let longest = lines.map(|line| line.width()).max().unwrap_or(0);
-            let min = self.min_widths.get(k).copied().unwrap_or(0);
-            widths.push(longest.max(min).max(1));
-        }
-        widths
+        let lines = table.trim_fmt();
+        let lines = lines.lines().map(str::trim_end);
+        lines
+            .map(|line| format!("{}{line}\n", self.indent))
+            .collect()
     }
 
     /// The rows as a table of Markdown; the first one is its heading.
@@ -132,40 +128,16 @@ impl TextTable {
 
 /// A sentence wrapped to the width of the tables, with a mark before its first line.
 pub fn wrapped(sentence: &str, mark: &str) -> String {
-    let blank = " ".repeat(mark.width());
+    let blank = " ".repeat(mark.chars().count());
+    let mut table = TextTable::new("l");
+    table.width -= u16::try_from(blank.len()).unwrap_or(0);
+    table.row([sentence]);
+    let text = table.text();
     let marks = [mark].into_iter().chain(std::iter::repeat(blank.as_str()));
-    let lines = wrap(sentence, WIDTH - blank.len());
-    let lines = lines.iter().zip(marks);
+    let lines = text.lines().zip(marks);
     lines
         .map(|(line, mark)| format!("{mark}{line}\n"))
         .collect()
-}
-
-/// The lines of a text, broken at blanks where they are longer than a width.
-fn wrap(text: &str, width: usize) -> Vec<String> {
-    let mut lines = Vec::new();
-    for line in text.split('\n') {
-        if line.width() <= width {
-            lines.push(line.to_owned());
-            continue;
-        }
-        let mut broken = String::new();
-        for word in line.split(' ') {
-            if !broken.is_empty() && broken.width() + 1 + word.width() > width {
-                lines.push(std::mem::take(&mut broken));
-            }
-            if !broken.is_empty() {
-                broken.push(' ');
-            }
-            broken += word;
-            while let Some((at, _)) = broken.char_indices().nth(width) {
-                let rest = broken.split_off(at);
-                lines.push(std::mem::replace(&mut broken, rest));
-            }
-        }
-        lines.push(broken);
-    }
-    lines
 }
 
 /// A text cut to a number of characters.
