@@ -1,6 +1,5 @@
 //! Groups of options, each option declared once. A command flattens the groups that it takes.
 
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -12,7 +11,6 @@ use cvtcycle::output::files::OutputDir;
 
 use super::problems::{bad_value, overrides, problem};
 use super::{Names, cycles, names_of, one_of, relative_to};
-use crate::print::to_stdout;
 
 /// The vehicle and its transmission oil.
 #[derive(Args, Clone, Debug)]
@@ -202,19 +200,6 @@ impl TableOutputArgs {
     /// True if JSON or CSV is printed, which is written as it is made.
     pub fn is_streamed(&self) -> bool {
         self.output.json() || self.format == TableFormat::Csv
-    }
-
-    /// Prints JSON or CSV if one of them is chosen.
-    pub fn stream(
-        &self,
-        json: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-        csv: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> Result<(), Problems> {
-        match self.format {
-            _ if self.output.json() => to_stdout(json),
-            TableFormat::Csv => to_stdout(csv),
-            TableFormat::Table => Ok(()),
-        }
     }
 }
 

@@ -16,7 +16,7 @@ use cvtcycle::report::charts::loss_figures;
 use super::Execute;
 use crate::args::{FormulationArgs, Names, OutArgs, TableOutputArgs, VehicleArgs, names_of};
 use crate::print::{
-    CommandOutput, CommandResult, Results, Terminal, WrittenFiles, json_text, to_stdout,
+    CommandOutput, CommandResult, Results, Terminal, WrittenFiles, json_text, stream, to_stdout,
 };
 use plan::LossesPlan;
 
@@ -107,8 +107,7 @@ impl Execute for LossesArgs {
         let count = |row: &LossRow| flags.borrow_mut().add(row.answer.flags);
         let rows = || losses.rows().inspect(count);
         let json = |out: &mut dyn io::Write| losses.write_json(out, rows());
-        self.output
-            .stream(json, |out| losses.write_csv(out, rows()))?;
+        stream(&self.output, json, |out| losses.write_csv(out, rows()))?;
         let table = match self.output.is_streamed() {
             true => String::new(),
             false => tables::table(&losses, rows(), terminal.stdout),

@@ -200,6 +200,19 @@ pub fn to_stdout(f: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(),
     unless_closed(f(&mut out).and_then(|()| out.flush())).map_err(|error| unwritten(&error).into())
 }
 
+/// Prints a table as JSON or CSV as it is made, if one of them is chosen.
+pub fn stream(
+    args: &TableOutputArgs,
+    json: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    csv: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Problems> {
+    match args.is_streamed() {
+        true if args.output.json() => to_stdout(json),
+        true => to_stdout(csv),
+        false => Ok(()),
+    }
+}
+
 /// Prints the output of a command, or its problems, and returns the exit code.
 pub fn finish(result: CommandResult, terminal: Terminal) -> ExitCode {
     let mut output = result.unwrap_or_else(|problems| CommandOutput {

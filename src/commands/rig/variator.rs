@@ -9,7 +9,7 @@ use cvtcycle::report::charts::variator_figures;
 
 use crate::args::{FormulationArgs, OutArgs, TableOutputArgs, VehicleArgs};
 use crate::commands::Execute;
-use crate::print::{CommandResult, Results, Terminal, WrittenFiles};
+use crate::print::{CommandResult, Results, Terminal, WrittenFiles, stream};
 use plan::VariatorPlan;
 
 /// Arguments of `rig variator`.
@@ -85,8 +85,11 @@ impl Execute for RigVariatorArgs {
             }
             Ok("")
         })?;
-        self.output
-            .stream(|out| found.write_json(out), |out| found.write_points(out))?;
+        stream(
+            &self.output,
+            |out| found.write_json(out),
+            |out| found.write_points(out),
+        )?;
         let results = Results::new(String::new(), Vec::new(), files);
         Ok(results.table_output(&self.output, || tables::tables(&found, terminal.stdout)))
     }
