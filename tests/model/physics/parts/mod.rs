@@ -22,3 +22,4 @@ mod spin;
 mod trace;
 mod viscosity;
 mod viscous_self_heating;
+mod wheel_work;
