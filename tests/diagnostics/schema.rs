@@ -136,8 +136,8 @@ fn mistakes_in_calibrations_and_rows_are_seen() {
             ".calibration.starts: maximum",
         ),
         (
-            "[calibration]\nvehical = \"a\"\n",
-            ".calibration.vehical: unknown",
+            "[calibration]\ncolour = \"a\"\n",
+            ".calibration.colour: unknown",
         ),
         (parameter, ".parameter[0]: required"),
         (

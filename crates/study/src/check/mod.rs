@@ -16,19 +16,19 @@
 //! | `rule` | the rule from computed and printed to a verdict |
 //! | `report` | JSON, CSV, Markdown |
 
-pub mod candidate;
+mod candidate;
 pub(crate) mod checks;
 pub mod expr;
 pub mod judge;
 pub mod keys;
-pub mod names;
+pub(crate) mod names;
 pub mod report;
 mod read;
 pub(crate) mod rows;
 pub mod rule;
-pub mod source;
-pub mod store;
-pub mod tables;
+pub(crate) mod source;
+pub(crate) mod store;
+pub(crate) mod tables;
 
 pub use candidate::CandidateVehicle;
 pub use cvtcycle_config::embedded::rows as embedded_rows;

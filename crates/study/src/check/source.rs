@@ -128,7 +128,7 @@ pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
 }
 
 /// A path relative to the file that names it as one relative to the working directory; another word as it is.
-pub fn beside(file: &str, word: &str) -> String {
+pub fn relative_to(file: &str, word: &str) -> String {
     match Path::new(file).parent().filter(|_| is_path(word)) {
         Some(folder) => folder.join(word).to_string_lossy().into_owned(),
         None => word.to_owned(),
@@ -142,7 +142,7 @@ pub fn resolve_paths(sources: &mut [Source], file: &str) {
             .into_iter()
             .flatten()
         {
-            *word = beside(file, word);
+            *word = relative_to(file, word);
         }
     }
 }

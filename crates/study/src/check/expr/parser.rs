@@ -204,7 +204,7 @@ impl<'a> Parser<'a> {
         self.arithmetic(0)
     }
 
-    /// Numbers joined by the operators of a level and of those that bind more; a minus stands before a power.
+    /// Numbers joined by the operators of a level and of those that bind more; the sign of a power comes before it.
     fn arithmetic(&mut self, level: usize) -> Result<Expr, Fault> {
         let Some(operators) = OPERATORS.get(level) else {
             return self.atom();

@@ -135,40 +135,30 @@ pub fn fits(belt: &Belt, ratio: f64) -> Result<(), String> {
     runs.then_some(()).ok_or_else(refusal)
 }
 
-struct OneBelt<'a> {
-    cvt: &'a Cvt,
-    oil: &'a Lubricant,
-    formulation: Formulation,
-}
-
 /// Computes all points.
 pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
     let Transmission::Cvt(cvt) = setup.transmission() else {
         return Err("the vehicle has no belt".to_owned());
     };
-    let one = OneBelt {
-        cvt,
-        oil: setup.oils().0,
-        formulation: source.formulation,
-    };
-    let axes: Vec<Vec<f64>> = Kind::Belt
-        .axes()
-        .iter()
-        .map(|key| source.axis(key))
-        .collect();
-    let printed = source.formulation != Formulation::Smooth;
-    for ratio in &axes[0] {
+    let axes = Kind::Belt.axes().iter().map(|key| source.axis(key));
+    let axes: Vec<Vec<f64>> = axes.collect();
+    let is_printed = source.formulation != Formulation::Smooth;
+    for ratio in &axes[RATIO] {
         fits(&cvt.belt, *ratio)?;
-        if printed && (ratio - 1.0).abs() <= 0.0 {
+        if is_printed && (ratio - 1.0).abs() <= 0.0 {
             return Err("the printed forms are not defined at ratio 1".to_owned());
         }
     }
-    if printed && axes[1].iter().any(|speed| *speed <= 0.0) {
+    if is_printed && axes[SPEED].iter().any(|speed| *speed <= 0.0) {
         return Err("the printed forms are not defined at rest".to_owned());
     }
+    let belt = Belt {
+        formulation: source.formulation,
+        ..cvt.belt.clone()
+    };
     let columns = columns();
     let rows = combinations(&axes).into_iter().map(|x| {
-        let solved = one.solve(x);
+        let solved = solve(x, cvt, &belt, setup.oils().0);
         TableRow {
             gross: solved.point.status != PointStatus::Ok,
             ..TableRow::new(numbers(&columns, &solved))
@@ -181,65 +171,55 @@ fn or(x: f64, other: f64) -> f64 {
     if x.is_nan() { other } else { x }
 }
 
-impl OneBelt<'_> {
-    fn band(&self, x: &[f64], belt_k: f64, eta_pa_s: f64) -> BandFriction {
-        let smooth = self.formulation == Formulation::Smooth;
-        let fluid = &self.oil.friction;
-        let mu = or(
-            x[BAND_FRICTION],
-            if smooth { fluid.band } else { PRINTED_BAND },
-        );
-        if x[BELT_TEMP].is_nan() {
-            return BandFriction {
-                mu,
-                film_share: 0.0,
-            };
-        }
-        let sliding = if smooth {
-            sliding_speed_m_s(&self.cvt.belt, x[RATIO], x[SPEED])
-        } else {
-            0.0
-        };
-        Friction { band: mu, ..*fluid }.band(belt_k, eta_pa_s, sliding)
+fn band(x: &[f64], belt: &Belt, fluid: &Friction, eta_pa_s: f64) -> BandFriction {
+    let is_smooth = belt.formulation == Formulation::Smooth;
+    let mu = or(
+        x[BAND_FRICTION],
+        if is_smooth { fluid.band } else { PRINTED_BAND },
+    );
+    if x[BELT_TEMP].is_nan() {
+        let film_share = 0.0;
+        return BandFriction { mu, film_share };
     }
+    let sliding = match is_smooth {
+        true => sliding_speed_m_s(belt, x[RATIO], x[SPEED]),
+        false => 0.0,
+    };
+    Friction { band: mu, ..*fluid }.band(x[BELT_TEMP], eta_pa_s, sliding)
+}
 
-    fn solve(&self, x: Vec<f64>) -> Solved {
-        let belt = Belt {
-            formulation: self.formulation,
-            ..self.cvt.belt.clone()
-        };
-        let mut at = BeltAtRatio::new(&belt, x[RATIO]);
-        if !x[ON_STOP].is_nan() {
-            at.prepared.stop = 1.0 - x[ON_STOP];
-        }
-        let fluid = &self.oil.friction;
-        let segment = match self.formulation {
-            Formulation::Smooth => fluid.segment,
-            printed => printed.segment_friction(fluid.segment),
-        };
-        let belt_k = or(x[BELT_TEMP], REFERENCE_K);
-        let eta_pa_s = self.oil.dynamic_pa_s(belt_k);
-        let load = BeltLoad {
-            primary_speed_rad_s: x[SPEED],
-            output_torque_nm: x[TORQUE],
-            secondary_clamp_n: self.cvt.secondary_clamp_n(x[PRESSURE], x[SPEED] / x[RATIO]),
-            band: self.band(&x, belt_k, eta_pa_s),
-            eta_pa_s,
-            film_thickness_m: fluid.film_thickness_m,
-            segment_friction: or(x[SEGMENT_FRICTION], segment),
-            flank_friction: fluid.flank,
-        };
-        let mut point = belt_point(&belt, &at, &load);
-        if !x[BAND_SPEED].is_nan() {
-            point = point.with_band_speed(&belt, x[BAND_SPEED]);
-        }
-        Solved {
-            x,
-            belt,
-            at,
-            load,
-            belt_k,
-            point,
-        }
+fn solve(x: Vec<f64>, cvt: &Cvt, belt: &Belt, oil: &Lubricant) -> Solved {
+    let mut at = BeltAtRatio::new(belt, x[RATIO]);
+    if !x[ON_STOP].is_nan() {
+        at.prepared.stop = 1.0 - x[ON_STOP];
+    }
+    let fluid = &oil.friction;
+    let segment = match belt.formulation {
+        Formulation::Smooth => fluid.segment,
+        printed => printed.segment_friction(fluid.segment),
+    };
+    let belt_k = or(x[BELT_TEMP], REFERENCE_K);
+    let eta_pa_s = oil.dynamic_pa_s(belt_k);
+    let load = BeltLoad {
+        primary_speed_rad_s: x[SPEED],
+        output_torque_nm: x[TORQUE],
+        secondary_clamp_n: cvt.secondary_clamp_n(x[PRESSURE], x[SPEED] / x[RATIO]),
+        band: band(&x, belt, fluid, eta_pa_s),
+        eta_pa_s,
+        film_thickness_m: fluid.film_thickness_m,
+        segment_friction: or(x[SEGMENT_FRICTION], segment),
+        flank_friction: fluid.flank,
+    };
+    let mut point = belt_point(belt, &at, &load);
+    if !x[BAND_SPEED].is_nan() {
+        point = point.with_band_speed(belt, x[BAND_SPEED]);
+    }
+    Solved {
+        x,
+        belt: belt.clone(),
+        at,
+        load,
+        belt_k,
+        point,
     }
 }

@@ -185,13 +185,11 @@ impl Row {
             let (start, width) = line.columns_of(*field);
             (cell, start, width)
         });
+        let is_kept = line.text.len() <= MAX_KEPT_LEN;
         Row {
             line: line.number,
             cells: cells.collect(),
-            text: match line.text.len() {
-                0..=MAX_KEPT_LEN => line.text.to_owned(),
-                _ => String::new(),
-            },
+            text: is_kept.then(|| line.text.to_owned()).unwrap_or_default(),
         }
     }
 }

@@ -7,10 +7,10 @@ use super::group;
 use super::keys::HEAD;
 use super::parameter;
 use super::types::{CalibrationPlan, Context, Found, problem};
-use crate::check::candidate::CandidateVehicle;
+use crate::check::CandidateVehicle;
 use crate::check::names::FileNames;
 use crate::check::rows::RowFile;
-use crate::check::source::{self, Source, beside};
+use crate::check::source::{self, Source, relative_to};
 use crate::check::{COMMON, embedded_rows};
 use crate::fit::solve::Options;
 use cvtcycle_config::setup::{Kind, NamedBy, catalogue, text_of};
@@ -131,13 +131,13 @@ fn common_sources() -> &'static Result<Vec<Source>, Problems> {
 
 fn head_of(s: &Section, file: &str, text: &str) -> CalibrationPlan {
     let count = |key| usize::try_from(s.integer(key)).unwrap_or(1);
-    let word = |key| s.optional_text(key).map(|word| beside(file, &word));
+    let word = |key| s.optional_text(key).map(|word| relative_to(file, &word));
     CalibrationPlan {
         file: file.to_owned(),
         text: text.to_owned(),
         title: Values::text_or(s, &HEAD.title, &stem(file)),
         car: CandidateVehicle {
-            vehicle: beside(file, &Values::text(s, &HEAD.vehicle)),
+            vehicle: relative_to(file, &Values::text(s, &HEAD.vehicle)),
             lubricant: word(&HEAD.lubricant),
             engine_oil: word(&HEAD.engine_oil),
             set: s.overrides(&HEAD.set),

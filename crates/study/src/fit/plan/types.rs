@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::check::candidate::CandidateVehicle;
+use crate::check::CandidateVehicle;
 use crate::check::expr::Expr;
 use crate::check::names::FileNames;
 use crate::check::rows::RowFile;
