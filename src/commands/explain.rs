@@ -10,7 +10,9 @@ use cvtcycle::config::{KeyInfo, Problem, Problems, near, suggestion};
 use cvtcycle::output::table::{Head, TextTable};
 use cvtcycle::output::trace::COLUMNS;
 use cvtcycle::output::{Component, Flags};
+use cvtcycle::study::check::keys::VALIDATION;
 use cvtcycle::study::equations::{Equation, by_label, cited, equations};
+use cvtcycle::study::fit::plan::keys::CALIBRATION;
 use cvtcycle::study::outputs::outputs;
 use cvtcycle::study::plan::PLAN;
 use serde_json::{Value, json};
@@ -37,6 +39,7 @@ Examples:
   cvtcycle explain clamp_safety
   cvtcycle explain torque capacity
   cvtcycle explain SL-8
+  cvtcycle explain calibration.starts
 
 The end of a key is enough (band_offset_mm); for a table all of its keys are explained. A term of the field finds the keys, columns \
 and flags that belong to it; other words find those whose meanings contain all of them.")]
@@ -278,10 +281,13 @@ fn matching_keys(word: &str, known: &'static [KeyInfo]) -> Vec<&'static KeyInfo>
         .unwrap_or_default()
 }
 
-/// Keys of the plans of studies.
+/// Keys of the plans of studies and calibrations, and of validation files.
 fn plan_keys() -> &'static [KeyInfo] {
     static KEYS: OnceLock<Vec<KeyInfo>> = OnceLock::new();
-    KEYS.get_or_init(|| catalogue::keys_of(&PLAN))
+    KEYS.get_or_init(|| {
+        let files = [PLAN, CALIBRATION, VALIDATION];
+        files.iter().flat_map(catalogue::keys_of).collect()
+    })
 }
 
 fn unknown(word: &str) -> Problem {
