@@ -87,26 +87,18 @@ impl Cover {
         if let Some(name) = logo {
             match logo_data(path, &name) {
                 Ok(data) => cover.logo = Some((data, words.unwrap_or_else(|| "Logo".to_owned()))),
-                Err((message, hint)) => root.complain(
-                    "logo",
-                    "a PNG, JPEG or SVG file of at most 500 kB",
-                    &message,
-                    &hint,
-                ),
+                Err((message, hint)) => {
+                    let allowed = "a PNG, JPEG or SVG file of at most 500 kB";
+                    root.complain("logo", allowed, &message, &hint);
+                }
             }
         }
         let remarks = root.table("remarks");
         for section in SECTIONS {
-            let remark = remarks.optional_text(&Key::new(
-                section,
-                spec::text(),
-                "remark at the beginning of that section",
-            ));
-            cover.remarks.extend(
-                remark
-                    .filter(|text| !text.trim().is_empty())
-                    .map(|text| (section, text)),
-            );
+            let meaning = "remark at the beginning of that section";
+            let remark = remarks.optional_text(&Key::new(section, spec::text(), meaning));
+            let remark = remark.filter(|text| !text.trim().is_empty());
+            cover.remarks.extend(remark.map(|text| (section, text)));
         }
         reader.finish()?;
         Ok(cover)
@@ -123,11 +115,8 @@ impl Cover {
         document.byline.clone_from(&self.byline);
         document.logo.clone_from(&self.logo);
         for (id, text) in &self.remarks {
-            match document
-                .sections
-                .iter_mut()
-                .find(|section| section.id == *id)
-            {
+            let mut sections = document.sections.iter_mut();
+            match sections.find(|section| section.id == *id) {
                 Some(section) => section.blocks.insert(0, Block::Remark(text.clone())),
                 None => document.warnings.push(format!(
                     "the cover has a remark on `{id}`, a section that this report does not have"
@@ -139,15 +128,17 @@ impl Cover {
 
 /// A logo as a data URI, or what is wrong with it and what helps.
 fn logo_data(cover: &str, name: &str) -> Result<String, (String, String)> {
-    let path = Path::new(cover)
-        .parent()
-        .unwrap_or(Path::new(""))
-        .join(name);
+    let folder = Path::new(cover).parent().unwrap_or(Path::new(""));
+    let path = folder.join(name);
     let bytes = bounded::read_file(&path, bounded::LOGO).map_err(|error| match error {
         ReadError::TooLarge(Some(size), limit) => {
             (format!("the logo has {size} bytes"), limit.hint.to_owned())
         }
-        _ => unreadable(&path, &error),
+        _ => {
+            let hint = error.hint("the path is taken from the folder of this file");
+            let message = format!("cannot read {}: {error}", path.display());
+            (message, hint.to_owned())
+        }
     })?;
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(1000)]).to_lowercase();
     let kind = match () {
@@ -161,16 +152,6 @@ fn logo_data(cover: &str, name: &str) -> Result<String, (String, String)> {
             ));
         }
     };
-    Ok(format!(
-        "data:{kind};base64,{}",
-        BASE64_STANDARD.encode(&bytes)
-    ))
-}
-
-fn unreadable(path: &Path, error: &ReadError) -> (String, String) {
-    let hint = error.hint("the path is taken from the folder of this file");
-    (
-        format!("cannot read {}: {error}", path.display()),
-        hint.to_owned(),
-    )
+    let data = BASE64_STANDARD.encode(&bytes);
+    Ok(format!("data:{kind};base64,{data}"))
 }

@@ -77,10 +77,11 @@ impl StudyResults {
         let text = String::from_utf8_lossy(&store.plan()?).into_owned();
         let file = path.join("plan.toml").display().to_string();
         let outline = StudyManifest::read(store.manifest(), &file, &text).map_err(|words| {
+            let hint = "read it with the program that wrote it, or run it again";
             problem(
                 &path.join(STUDY),
                 &format!("cannot read the study: {words}"),
-                "read it with the program that wrote it, or run it again",
+                hint,
             )
         })?;
         Self::of(outline, store)
@@ -122,8 +123,8 @@ impl StudyResults {
     pub fn unfinished(&self) -> Option<String> {
         let (there, all) = self.parts();
         let path = self.path.display();
-        (there < all)
-            .then(|| format!("the study in {path} is not finished: {there} of {all} parts"))
+        let text = format!("the study in {path} is not finished: {there} of {all} parts");
+        (there < all).then_some(text)
     }
 
     /// Parts that are there, and that there will be.
@@ -142,47 +143,30 @@ impl StudyResults {
 pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
     let entries = fs::read_dir(path).map_err(|error| unreadable(path, &error.into()))?;
     if is_study(path) {
-        return StudyResults::open(path)
-            .map(|study| ResultDir::Study(Box::new(study)))
-            .map_err(Problems::from);
+        return Ok(ResultDir::Study(Box::new(StudyResults::open(path)?)));
     }
     let file = path.join(SUMMARY);
     if !file.exists() {
         let hint = "name a directory that `cvtcycle run` or `cvtcycle study` has written";
-        return Err(problem(
-            path,
-            &format!(
-                "{} holds no run and no study: it has neither {SUMMARY} nor {STUDY}",
-                path.display()
-            ),
-            hint,
-        )
-        .into());
+        let shown = path.display();
+        let message =
+            format!("{shown} holds no run and no study: it has neither {SUMMARY} nor {STUDY}");
+        return Err(problem(path, &message, hint).into());
     }
-    let value = json(&file).map_err(|problem| vec![problem])?;
+    let value = json(&file)?;
     if is_validation(&value) {
         let hint = "its report is validation.html in that directory; it can be added to the report of a run";
-        return Err(problem(
-            path,
-            "this is the answer of `cvtcycle validate`, not of a run",
-            hint,
-        )
-        .into());
+        let message = "this is the answer of `cvtcycle validate`, not of a run";
+        return Err(problem(path, message, hint).into());
     }
     let mut found = run(path, &file, value)?;
-    let mut subdirectories: Vec<PathBuf> = entries
-        .flatten()
-        .map(|entry| entry.path())
-        .filter(|path| path.is_dir())
-        .collect();
+    let subdirectories = entries.flatten().map(|entry| entry.path());
+    let mut subdirectories: Vec<PathBuf> = subdirectories.filter(|path| path.is_dir()).collect();
     subdirectories.sort();
     let mut problems = Problems::new();
     let mut seen = std::collections::BTreeSet::new();
-    for (dir, required) in extra
-        .iter()
-        .map(|dir| (dir, true))
-        .chain(subdirectories.iter().map(|dir| (dir, false)))
-    {
+    let required = extra.iter().map(|dir| (dir, true));
+    for (dir, required) in required.chain(subdirectories.iter().map(|dir| (dir, false))) {
         // One study may be named twice, and lie in the directory of the run as well.
         if seen.insert(dir.canonicalize().unwrap_or_else(|_| dir.clone())) {
             problems.extend(add(&mut found, dir, required).err());
@@ -202,20 +186,13 @@ fn add(found: &mut RunResults, dir: &Path, required: bool) -> Result<(), Problem
         return Ok(());
     }
     let file = dir.join(SUMMARY);
-    let value = if file.exists() {
-        json(&file).ok()
-    } else {
-        None
-    };
+    let value = file.exists().then(|| json(&file).ok()).flatten();
     match value.filter(is_validation) {
         Some(value) => found.validation = Some(value),
         None if required => {
             let hint = "name a directory that `cvtcycle study` or `cvtcycle validate` has written";
-            return Err(problem(
-                dir,
-                &format!("{} holds neither a study nor a validation", dir.display()),
-                hint,
-            ));
+            let message = format!("{} holds neither a study nor a validation", dir.display());
+            return Err(problem(dir, &message, hint));
         }
         None => {}
     }
@@ -227,46 +204,38 @@ fn is_validation(value: &Value) -> bool {
 }
 
 fn run(path: &Path, file: &Path, value: Value) -> Result<RunResults, Problems> {
-    let summary: Summary = typed(file, value, SCHEMA).map_err(|problem| vec![problem])?;
+    let summary: Summary = typed(file, value, SCHEMA)?;
     let mut missing = Vec::new();
     let record_file = path.join(record::FILE);
-    let record = if record_file.exists() {
-        let value = json(&record_file).map_err(|problem| vec![problem])?;
-        Some(
-            typed::<Record>(&record_file, value, record::SCHEMA)
-                .map_err(|problem| vec![problem])?,
-        )
+    let mut record = None;
+    if record_file.exists() {
+        let value = json(&record_file)?;
+        record = Some(typed::<Record>(&record_file, value, record::SCHEMA)?);
     } else {
         missing.push(format!(
             "{} is not there: hashes, changed values, the fuel map and what matters are left out",
             record::FILE
         ));
-        None
-    };
+    }
     if summary.runs.is_empty() {
         return Err(problem(file, "the summary names no car", "run it again").into());
     }
-    let mut problems: Problems = summary
+    let wrong = summary
         .runs
         .iter()
-        .filter_map(|run| consistent(file, run).err())
-        .collect();
+        .filter_map(|run| consistent(file, run).err());
+    let mut problems: Problems = wrong.collect();
     let mut histories = Vec::new();
     for run in &summary.runs {
-        match history(path, &run.vehicle) {
-            Ok(Some(history)) => {
-                problems.extend(belongs(path, run, &history).err());
-                histories.push(Some(history));
-            }
-            Ok(None) => {
-                missing.push(format!(
-                    "the trace of {} is not there (trace_{}.csv): its figures over time are left out",
-                    run.vehicle, run.vehicle
-                ));
-                histories.push(None);
-            }
-            Err(found) => problems.extend(found),
+        let (car, history) = (&run.vehicle, history(path, &run.vehicle));
+        match &history {
+            Ok(Some(history)) => problems.extend(belongs(path, run, history).err()),
+            Ok(None) => missing.push(format!(
+                "the trace of {car} is not there (trace_{car}.csv): its figures over time are left out"
+            )),
+            Err(found) => problems.extend(found.clone()),
         }
+        histories.push(history.unwrap_or_default());
     }
     if !problems.is_empty() {
         return Err(problems);
@@ -331,18 +300,12 @@ fn typed<T: serde::de::DeserializeOwned>(
             let message = format!(
                 "it has schema {schema}, written by {program}; this program reads schema {known}"
             );
-            Err(problem(
-                path,
-                &message,
-                "make the report with the program that wrote it",
-            ))
+            let hint = "make the report with the program that wrote it";
+            Err(problem(path, &message, hint))
         }
         Some(_) => serde_json::from_value(value).map_err(|error| {
-            problem(
-                path,
-                &format!("the file is not as this program writes it: {error}"),
-                "it is damaged; run it again",
-            )
+            let message = format!("the file is not as this program writes it: {error}");
+            problem(path, &message, "it is damaged; run it again")
         }),
         None => Err(problem(
             path,

@@ -4,22 +4,14 @@ use serde_json::Value;
 
 use super::document::{ReportTable, Section};
 
-fn count(value: &Value, verdict: &str) -> u64 {
-    value["counts"][verdict].as_u64().unwrap_or(0)
-}
-
 /// Counts of the verdicts in words.
 fn counts(value: &Value) -> String {
-    let total: u64 = ["agrees", "fit", "differs", "not_comparable"]
-        .iter()
-        .map(|verdict| count(value, verdict))
-        .sum();
+    let counts = ["agrees", "fit", "differs", "not_comparable"];
+    let [agree, fit, differ, not] =
+        counts.map(|verdict| value["counts"][verdict].as_u64().unwrap_or(0));
+    let total = agree + fit + differ + not;
     format!(
-        "of {total} printed numbers {} agree, {} were fitted to, {} differ, and {} are not comparable",
-        count(value, "agrees"),
-        count(value, "fit"),
-        count(value, "differs"),
-        count(value, "not_comparable")
+        "of {total} printed numbers {agree} agree, {fit} were fitted to, {differ} differ, and {not} are not comparable"
     )
 }
 
@@ -34,53 +26,33 @@ pub fn doubt(value: &Value) -> String {
 pub fn section(value: &Value) -> Section {
     let mut section = Section::new("validation", "Validation");
     let text = |key: &str| value[key].as_str().unwrap_or_default().to_owned();
-    let set: Vec<&str> = value["set"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str)
-        .collect();
-    let with = if set.is_empty() {
-        String::new()
-    } else {
-        format!(" with {}", set.join(", "))
+    let set = value["set"].as_array().into_iter().flatten();
+    let set: Vec<&str> = set.filter_map(Value::as_str).collect();
+    let with = match set.as_slice() {
+        [] => String::new(),
+        set => format!(" with {}", set.join(", ")),
     };
     section.text(format!("Vehicle {}{with}, {}: {}. A number agrees when it lies within what is printed and the tolerance of the measurement; a row to which a parameter was fitted is called a fit, never an agreement.", text("vehicle"), text("program"), counts(value)));
-    let rows: Vec<&Value> = value["rows"].as_array().into_iter().flatten().collect();
-    let differs = |row: &&&Value| row["verdict"].as_str() == Some("differs");
-    section.table(table(
-        "Rows that differ",
-        rows.iter().filter(differs).copied(),
-        true,
-    ));
-    section.folded(table(
-        "All other rows",
-        rows.iter().filter(|row| !differs(row)).copied(),
-        false,
-    ));
+    let rows = value["rows"].as_array().into_iter().flatten();
+    let differs = |row: &&Value| row["verdict"].as_str() == Some("differs");
+    let (differing, others): (Vec<&Value>, Vec<&Value>) = rows.partition(differs);
+    section.table(table("Rows that differ", &differing, "Reason"));
+    section.folded(table("All other rows", &others, "Verdict"));
     section
 }
 
-fn table<'a>(caption: &str, rows: impl Iterator<Item = &'a Value>, reasons: bool) -> ReportTable {
-    let mut columns = vec!["Row", "What", "Printed", "Computed", "Unit"];
-    columns.push(if reasons { "Reason" } else { "Verdict" });
+/// Rows with a last column, under the key of its name in small letters.
+fn table(caption: &str, rows: &[&Value], last: &str) -> ReportTable {
+    let columns = ["Row", "What", "Printed", "Computed", "Unit", last];
     let mut table = ReportTable::of_words(caption, &columns);
     for row in rows {
         let text = |key: &str| row[key].as_str().unwrap_or_default().to_owned();
-        let condition = text("condition");
-        let what = if condition.is_empty() {
-            text("what")
-        } else {
-            format!("{} ({condition})", text("what"))
+        let what = match text("condition").as_str() {
+            "" => text("what"),
+            condition => format!("{} ({condition})", text("what")),
         };
-        table.row([
-            text("id"),
-            what,
-            text("printed"),
-            text("computed"),
-            text("unit"),
-            text(if reasons { "reason" } else { "verdict" }),
-        ]);
+        let numbers = ["printed", "computed", "unit", &last.to_lowercase()].map(text);
+        table.row([text("id"), what].into_iter().chain(numbers));
     }
     table
 }

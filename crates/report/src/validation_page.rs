@@ -65,24 +65,19 @@ fn chapters(report: &Report) -> Vec<Chapter> {
             names.push(&judged.row.chapter);
         }
     }
-    names
-        .iter()
-        .enumerate()
-        .map(|(k, name)| chapter(report, k, name))
-        .collect()
-}
-
-fn chapter(report: &Report, k: usize, name: &str) -> Chapter {
-    let own = report
-        .rows
-        .iter()
-        .filter(|judged| judged.row.chapter == name);
-    Chapter {
-        title: chapter_title(name),
-        anchor: format!("part-{}", k + 1),
-        counts: Counts::of(own.clone()),
-        rows: own.map(line).collect(),
-    }
+    let chapter = |(k, name): (usize, &&str)| {
+        let own = report
+            .rows
+            .iter()
+            .filter(|judged| judged.row.chapter == *name);
+        Chapter {
+            title: chapter_title(name),
+            anchor: format!("part-{}", k + 1),
+            counts: Counts::of(own.clone()),
+            rows: own.map(line).collect(),
+        }
+    };
+    names.iter().enumerate().map(chapter).collect()
 }
 
 /// "Chapter 5", "Appendix C", or the user's own word.

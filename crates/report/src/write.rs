@@ -34,16 +34,14 @@ impl Form {
     /// The form of a file by its ending.
     #[must_use]
     pub fn of(file: &Path) -> Option<Form> {
-        [Form::Html, Form::Markdown]
-            .into_iter()
-            .find(|form| form.endings().contains(&ending(file).as_str()))
+        let mut forms = [Form::Html, Form::Markdown].into_iter();
+        forms.find(|form| form.endings().contains(&ending(file).as_str()))
     }
 }
 
 fn ending(file: &Path) -> String {
-    file.extension()
-        .map(|ending| ending.to_string_lossy().to_lowercase())
-        .unwrap_or_default()
+    let ending = file.extension().unwrap_or_default();
+    ending.to_string_lossy().to_lowercase()
 }
 
 /// Whether a file is a report that this program has written.
@@ -85,18 +83,16 @@ impl Target {
     /// # Errors
     /// A problem of `--out` that says what is in the way.
     pub fn new(file: &Path, form: Form, force: bool) -> Result<Self, Problem> {
-        let stem = file
-            .file_stem()
-            .map(|stem| stem.to_string_lossy().into_owned());
-        let Some(stem) = stem.filter(|stem| !stem.is_empty()) else {
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        if stem.is_empty() {
             let hint = "name a file, for example report.html";
             return Err(problem(file, "the name of the report is empty", hint));
-        };
+        }
         let folder = format!("{stem}_figures");
-        let parent = match file.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
-            _ => PathBuf::from("."),
-        };
+        let parent = file
+            .parent()
+            .filter(|parent| !parent.as_os_str().is_empty());
+        let parent = parent.unwrap_or(Path::new(".")).to_path_buf();
         let target = Target {
             file: file.to_path_buf(),
             figures: parent.join(&folder),
@@ -121,25 +117,17 @@ impl Target {
         }
         if !parent.is_dir() {
             let message = format!("there is no directory {}", parent.display());
-            return Err(problem(
-                file,
-                &message,
-                "make it first, or choose another place",
-            ));
+            let hint = "make it first, or choose another place";
+            return Err(problem(file, &message, hint));
         }
         let endings = self.form.endings();
         if endings.contains(&ending(file).as_str()) {
             return Ok(());
         }
-        let hint = format!(
-            "end its name in .{}, or choose the other format",
-            endings.join(" or .")
-        );
-        Err(problem(
-            file,
-            &format!("{shown} has not the ending of its form"),
-            &hint,
-        ))
+        let endings = endings.join(" or .");
+        let hint = format!("end its name in .{endings}, or choose the other format");
+        let message = format!("{shown} has not the ending of its form");
+        Err(problem(file, &message, &hint))
     }
 
     /// Only an earlier report is replaced, and only with `force`.
@@ -147,18 +135,16 @@ impl Target {
         let (file, shown) = (&self.file, self.file.display());
         match fs::symlink_metadata(file) {
             Err(_) => Ok(()),
-            Ok(_) if !force => Err(problem(
-                file,
-                &format!("{shown} is there already"),
-                "choose another name, or replace it",
-            )
-            .settings(&[Setting::Replace])),
+            Ok(_) if !force => {
+                let message = format!("{shown} is there already");
+                let problem = problem(file, &message, "choose another name, or replace it");
+                Err(problem.settings(&[Setting::Replace]))
+            }
             Ok(there) if there.is_file() && is_report(file) => Ok(()),
-            Ok(_) => Err(problem(
-                file,
-                &format!("{shown} is no report of this program"),
-                "choose another name",
-            )),
+            Ok(_) => {
+                let message = format!("{shown} is no report of this program");
+                Err(problem(file, &message, "choose another name"))
+            }
         }
     }
 
@@ -166,25 +152,16 @@ impl Target {
         if !self.figures.exists() {
             return Ok(());
         }
-        let names = names_in(&self.figures).map_err(|error| {
-            failed(
-                &self.file,
-                &format!("cannot read {}", self.figures.display()),
-                &error,
-            )
-        })?;
-        let others: Vec<String> = names
-            .into_iter()
-            .filter(|name| !name.ends_with(".svg"))
-            .collect();
+        let shown = self.figures.display();
+        let names = names_in(&self.figures)
+            .map_err(|error| failed(&self.file, &format!("cannot read {shown}"), &error))?;
+        let others = names.into_iter().filter(|name| !name.ends_with(".svg"));
+        let others: Vec<String> = others.collect();
         if others.is_empty() {
             return Ok(());
         }
-        let message = format!(
-            "{} holds something else than figures: {}",
-            self.figures.display(),
-            list(&others)
-        );
+        let others = list(&others);
+        let message = format!("{shown} holds something else than figures: {others}");
         Err(problem(
             &self.file,
             &message,
@@ -202,18 +179,12 @@ impl Target {
             Form::Markdown => markdown(document, &self.folder.replace(' ', "%20")),
         };
         let text = text.map_err(|why| {
-            problem(
-                &self.file,
-                &format!("cannot fill in the template: {why}"),
-                "",
-            )
+            let message = format!("cannot fill in the template: {why}");
+            problem(&self.file, &message, "")
         })?;
         self.put(document, &text).map_err(|error| {
-            failed(
-                &self.file,
-                &format!("cannot write {}", self.file.display()),
-                &error,
-            )
+            let message = format!("cannot write {}", self.file.display());
+            failed(&self.file, &message, &error)
         })
     }
 
@@ -261,13 +232,8 @@ impl Target {
 /// A name without anything that leads elsewhere.
 #[must_use]
 pub fn file_name(name: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
     name.chars()
-        .map(|c| {
-            if c.is_alphanumeric() || "-_.".contains(c) {
-                c
-            } else {
-                '_'
-            }
-        })
+        .map(|c| if plain(c) { c } else { '_' })
         .collect()
 }
