@@ -24,10 +24,8 @@ pub(crate) fn consistent(file: &Path, run: &RunSummary) -> Result<(), Problem> {
     let fuel = run.fuel_l_per_100km;
     let fuel = fuel.is_none_or(|fuel| near(litres(fuel), run.fuel_l, run.fuel_l));
     // A run whose ledger did not close has said so itself.
-    let open = run
-        .failed_checks
-        .iter()
-        .any(|check| check == "ledger_error");
+    let mut failed = run.failed_checks.iter();
+    let open = failed.any(|check| check == "ledger_error");
     let closes = |kj: f64| near(kj, run.fuel_energy_kj, run.fuel_energy_kj);
     if fuel && (open || (closes(terms) && closes(ledger("fuel")))) {
         return Ok(());

@@ -209,10 +209,14 @@ impl ReportTable {
     /// Adds an emphasised row that begins with its name.
     pub fn strong(&mut self, name: impl Into<String>, cells: impl IntoIterator<Item = String>) {
         self.named(name, cells);
-        self.rows
-            .last_mut()
-            .into_iter()
-            .for_each(|row| row.strong = true);
+        self.emphasise(true);
+    }
+
+    /// Makes the last row emphasised or not.
+    pub(crate) fn emphasise(&mut self, strong: bool) {
+        if let Some(row) = self.rows.last_mut() {
+            row.strong = strong;
+        }
     }
 }
 

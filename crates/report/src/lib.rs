@@ -15,7 +15,7 @@
 //! Nothing is computed here that the results do not hold: sums, differences and shares of their numbers only.
 
 pub mod charts;
-pub mod compare;
+mod compare;
 mod consistency;
 pub mod cover;
 pub mod document;
@@ -23,24 +23,36 @@ pub mod results;
 pub mod number;
 mod problems;
 pub mod render;
-pub mod run;
-pub mod study;
-pub mod study_answers;
+mod run;
+mod study;
+mod study_answers;
 pub mod study_pictures;
-pub mod validation;
+mod validation;
 pub mod validation_page;
 pub mod write;
 
 use std::path::PathBuf;
 
 use cover::Cover;
-use cvtcycle_config::{Problem, Problems, Setting};
+use cvtcycle_config::{Problems, Setting};
 use document::Document;
+use problems::problem;
 use results::{ResultDir, find};
 
 /// The report of one directory, or of two runs against each other.
 ///
 /// `with` names studies and validations in other directories, `cover` the user's title page.
+///
+/// ```no_run
+/// use std::path::Path;
+///
+/// use cvtcycle_report::write::{Form, Target};
+///
+/// let document = cvtcycle_report::report(&["cold".into(), "offset_2mm".into()], &[], None)?;
+/// let target = Target::new(Path::new("offset.html"), Form::Html, false)?;
+/// let written = target.write(&document)?;
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
 ///
 /// # Errors
 /// All problems of all inputs.
@@ -49,16 +61,19 @@ pub fn report(
     with: &[PathBuf],
     cover: Option<&str>,
 ) -> Result<Document, Problems> {
+    let mut problems = Problems::new();
     let cover = cover.map(Cover::read).transpose();
-    let looked: Vec<Result<ResultDir, Problems>> = dirs.iter().map(|dir| find(dir, with)).collect();
-    let mut problems: Problems = cover.as_ref().err().cloned().unwrap_or_default();
-    problems.extend(
-        looked
-            .iter()
-            .filter_map(|found| found.as_ref().err())
-            .flatten()
-            .cloned(),
-    );
+    let cover = cover.unwrap_or_else(|found| {
+        problems.extend(found);
+        None
+    });
+    let mut results = Vec::new();
+    for dir in dirs {
+        match find(dir, with) {
+            Ok(found) => results.push(found),
+            Err(found) => problems.extend(found),
+        }
+    }
     if !problems.is_empty() {
         return Err(problems);
     }
@@ -68,23 +83,21 @@ pub fn report(
             "a study can be added to the report of one run, not of two: {} is the second one",
             other.display()
         );
-        return Err(problems::problem(first, &message, hint).into());
+        return Err(problem(first, &message, hint).into());
     }
-    let pair: Vec<ResultDir> = looked.into_iter().flatten().collect();
-    let one = |problem: Problem| vec![problem];
-    let mut document = match &pair[..] {
-        [ResultDir::Run(run)] => run::document(run).map_err(one)?,
-        [ResultDir::Study(study)] => study::document(study).map_err(one)?,
+    let mut document = match &results[..] {
+        [ResultDir::Run(run)] => run::document(run)?,
+        [ResultDir::Study(study)] => study::document(study)?,
         [ResultDir::Run(a), ResultDir::Run(b)] => compare::document(a, b)?,
         _ => {
             let hint =
                 "two directories are compared if both are runs; add a study to the report of a run";
-            let last = &dirs[dirs.len() - 1];
-            let problem = problems::problem(last, "these are not two runs", hint);
+            let message = "these are not two runs";
+            let problem = problem(&dirs[dirs.len() - 1], message, hint);
             return Err(problem.settings(&[Setting::Added]).into());
         }
     };
-    if let Ok(Some(cover)) = cover {
+    if let Some(cover) = cover {
         cover.apply(&mut document);
     }
     Ok(document)

@@ -186,9 +186,6 @@ pub fn capital(name: &str) -> String {
 #[must_use]
 pub fn capital_first(text: &str) -> String {
     let mut letters = text.chars();
-    letters
-        .next()
-        .map(|c| c.to_uppercase().collect::<String>())
-        .unwrap_or_default()
-        + letters.as_str()
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    first.collect::<String>() + letters.as_str()
 }

@@ -220,11 +220,8 @@ fn run(path: &Path, file: &Path, value: Value) -> Result<RunResults, Problems> {
     if summary.runs.is_empty() {
         return Err(problem(file, "the summary names no car", "run it again").into());
     }
-    let wrong = summary
-        .runs
-        .iter()
-        .filter_map(|run| consistent(file, run).err());
-    let mut problems: Problems = wrong.collect();
+    let runs = summary.runs.iter();
+    let mut problems: Problems = runs.filter_map(|run| consistent(file, run).err()).collect();
     let mut histories = Vec::new();
     for run in &summary.runs {
         let (car, history) = (&run.vehicle, history(path, &run.vehicle));

@@ -46,7 +46,7 @@ pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
         let texts = base[key].as_array().into_iter().flatten();
         texts
             .filter_map(Value::as_str)
-            .eq(own.iter().map(String::as_str))
+            .eq(own.iter().map(|text| &**text))
     };
     if !same("set", &run.settings.set) || !same("set_all", &run.settings.set_all) {
         list.push("other values set".to_owned());
@@ -65,12 +65,8 @@ pub fn answers(study: &StudyResults) -> Vec<String> {
         return matrix_answers(matrix);
     }
     let sentences = |of: &Comparison| [Some(compared(study, of)), decided(study, of)];
-    answer
-        .comparisons
-        .iter()
-        .flat_map(sentences)
-        .flatten()
-        .collect()
+    let sentences = answer.comparisons.iter().flat_map(sentences);
+    sentences.flatten().collect()
 }
 
 /// In how many pairs the subject uses more, and how much more.

@@ -166,11 +166,8 @@ fn of_output(output: &OutputAnswer, outline: &StudyManifest) -> Vec<(&'static st
 
 /// A factor's levels: at their numbers, or side by side where they are words.
 fn effect<'a>(name: &'a str, groups: &'a Groups, outline: &'a StudyManifest) -> EffectFactor<'a> {
-    let factor = outline
-        .plan
-        .factors
-        .iter()
-        .find(|factor| factor.name == name);
+    let mut factors = outline.plan.factors.iter();
+    let factor = factors.find(|factor| factor.name == name);
     let unit = factor.map_or("", |factor| factor.unit.as_str());
     let levels = groups.groups.iter();
     let at: Option<Vec<f64>> = levels.map(|group| group.label.parse().ok()).collect();

@@ -66,10 +66,8 @@ fn chapters(report: &Report) -> Vec<Chapter> {
         }
     }
     let chapter = |(k, name): (usize, &&str)| {
-        let own = report
-            .rows
-            .iter()
-            .filter(|judged| judged.row.chapter == *name);
+        let rows = report.rows.iter();
+        let own = rows.filter(|judged| judged.row.chapter == *name);
         Chapter {
             title: chapter_title(name),
             anchor: format!("part-{}", k + 1),

@@ -2,7 +2,7 @@
 //!
 //! Every picture is a function from plain numbers to a [`Picture`]: it fills in a chart of the `engine`, which draws it.
 
-pub mod ambient;
+pub(crate) mod ambient;
 pub mod calibration;
 mod engine;
 pub mod figures;
@@ -16,8 +16,6 @@ pub mod study;
 mod variator_curves;
 
 pub use engine::cell;
-pub use grids::{MapFigure, map_figure};
-pub use lines::{CurveFigure, CurvePanel, CurveSeries, StackFigure, curve_figure, stack_figure};
 pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};
 pub use run::{

@@ -27,15 +27,14 @@ pub(super) fn difference(subject: &Pair, names: &[String; 2]) -> Section {
         (term != Term::Transmission).then(|| DifferenceTerm::term(words, term, kj))
     };
     let components = Component::ALL.into_iter().filter_map(component);
+    let terms = TERMS.into_iter().filter_map(ledger);
     let of = |of: fn(&Car) -> f64| cars.map(of);
     let picture = difference_bars(&Difference {
         names: names.clone(),
         fuel_kj_per_l: of(|car| car.run.fuel_energy_kj / car.run.fuel_l),
         distance_km: of(|car| car.run.distance_km),
         fuel_kj: of(|car| car.run.fuel_energy_kj),
-        terms: components
-            .chain(TERMS.into_iter().filter_map(ledger))
-            .collect(),
+        terms: components.chain(terms).collect(),
     });
     let [a, b] = names;
     let caption = format!("What {b} has more or less than {a}, term by term.");
@@ -101,10 +100,8 @@ pub(super) fn traces(subject: &Pair, names: &[String; 2]) -> Section {
             names: names.clone(),
             panels: chunk.to_vec(),
         });
-        let titles: Vec<String> = chunk
-            .iter()
-            .map(|panel| panel.title.to_lowercase())
-            .collect();
+        let titles = chunk.iter().map(|panel| panel.title.to_lowercase());
+        let titles: Vec<String> = titles.collect();
         let caption = format!("Both subjects over time: {}.", titles.join(", "));
         section.figure(format!("traces_{}", k + 1), caption, picture);
     }

@@ -106,10 +106,8 @@ fn pairs<'a>(a: &[Car<'a>], b: &[Car<'a>]) -> Vec<Pair<'a>> {
         let b = rest_b.iter().find(|b| b.run.vehicle == a.run.vehicle)?;
         Some(Pair { a: *a, b: *b })
     };
-    [first]
-        .into_iter()
-        .chain(rest_a.iter().filter_map(other))
-        .collect()
+    let others = rest_a.iter().filter_map(other);
+    [first].into_iter().chain(others).collect()
 }
 
 fn answer(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -> Section {
@@ -302,21 +300,16 @@ fn changes(a: &CarRecord, b: &CarRecord) -> Vec<Change> {
         let value = car.values.iter().find(|value| value.key == key);
         value.map_or(String::new(), |value| value.value.clone())
     };
-    let only_b = b
-        .values
-        .iter()
-        .filter(|v| a.values.iter().all(|other| other.key != v.key));
+    let unknown = |v: &&ValueRecord| a.values.iter().all(|other| other.key != v.key);
+    let only_b = b.values.iter().filter(unknown);
     let change = |value: &ValueRecord| Change {
         key: value.key.clone(),
         unit: value.unit.clone(),
         shipped: find(a, &value.key),
         here: find(b, &value.key),
     };
-    let changes = a
-        .values
-        .iter()
-        .map(change)
-        .filter(|change| change.here != change.shipped);
+    let changes = a.values.iter().map(change);
+    let changes = changes.filter(|change| change.here != change.shipped);
     changes.chain(only_b.map(change)).collect()
 }
 

@@ -91,10 +91,7 @@ fn more_or_less(comparison: &Comparison) -> Option<String> {
 }
 
 fn checks(summary: &Summary) -> Vec<String> {
-    let runs = summary
-        .runs
-        .iter()
-        .filter(|run| !run.failed_checks.is_empty());
+    let failed = |run: &&RunSummary| !run.failed_checks.is_empty();
     let sentence = |run: &RunSummary| {
         let check = |check: &String| match run.flags_s.get(check) {
             Some(s) => format!("{} for {}", words(check), Quantity::Seconds.text(s)),
@@ -107,7 +104,7 @@ fn checks(summary: &Summary) -> Vec<String> {
             list.join(", ")
         )
     };
-    runs.map(sentence).collect()
+    summary.runs.iter().filter(failed).map(sentence).collect()
 }
 
 /// Fuel, distance and difference of each car, by phase.
@@ -119,11 +116,7 @@ fn fuel(summary: &Summary) -> ReportTable {
         let name = format!("{what} [{}]", quantity.unit());
         let values = runs.iter().enumerate();
         table.named(name, values.map(|(k, run)| quantity.bare(of(k, run))));
-        table
-            .rows
-            .last_mut()
-            .into_iter()
-            .for_each(|row| row.strong = strong);
+        table.emphasise(strong);
     };
     let groups = runs.first().map_or(&[][..], |run| &run.phases);
     for (p, group) in groups.iter().enumerate().filter(|_| groups.len() > 1) {

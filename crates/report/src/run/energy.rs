@@ -91,11 +91,7 @@ fn balance(cars: &[Car]) -> ReportTable {
         add(words, &|car| car.run.ledger_kj.get(term));
     }
     add("fuel", &|car| Some(car.run.fuel_energy_kj));
-    table
-        .rows
-        .last_mut()
-        .into_iter()
-        .for_each(|row| row.strong = true);
+    table.emphasise(true);
     table
 }
 

@@ -24,8 +24,7 @@ use cvtcycle_output::trace::loss_column;
 const G_KWH: f64 = 1.0 / 3.6e9;
 
 /// A recorded map in SI units.
-#[must_use]
-pub fn fuel_map(record: &FuelMapRecord) -> FuelMap {
+fn fuel_map(record: &FuelMapRecord) -> FuelMap {
     let si = |b: &Option<f64>| b.map_or(f64::NAN, |b| b * G_KWH);
     let rows = record.bsfc_g_kwh.iter();
     FuelMap {
@@ -154,11 +153,8 @@ fn loss_w<'a>(history: &'a History, component: &Component) -> &'a [f64] {
 fn phase_losses(all: &[Car], traced: &[&Car]) -> PhaseLosses {
     let groups = all[0].run.phases.iter().enumerate().map(|(k, phase)| {
         let of = |car: &&Car| {
-            let km = car
-                .run
-                .phases
-                .get(k)
-                .map_or(f64::NAN, |phase| phase.distance_km);
+            let phases = &car.run.phases;
+            let km = phases.get(k).map_or(f64::NAN, |phase| phase.distance_km);
             let losses = car
                 .history
                 .map(|history| group_losses(history, &phase.name));

@@ -19,7 +19,6 @@ use cvtcycle_output::summary::{RunSummary, StartWord, Summary};
 
 pub(super) use conditions::change_table;
 pub(super) use energy::TERMS;
-pub use figures::fuel_map;
 pub use reproduce::hashes;
 
 /// A car of a run with everything that is known of it.

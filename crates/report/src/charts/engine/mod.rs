@@ -1,8 +1,10 @@
 //! The chart engine: a [`Chart`] is data - panels with axes and shapes, legends, notes - and one renderer draws it as SVG.
+//!
+//! Plotters draws the frames of the panels, on a backend that writes our SVG; data, hatches and legends go to the same surface.
 
 mod axis;
+mod backend;
 mod chart;
-mod frame;
 mod legend;
 mod panel;
 mod place;

@@ -1,7 +1,7 @@
 //! The renderer: a chart becomes a picture.
 
+use super::backend::frame;
 use super::chart::{Chart, WIDTH};
-use super::frame::frame;
 use super::panel::{Item, Panel, Shape, free};
 use super::place::{Label, Place, at};
 use super::style::{INK, Style, marks, stroke};

@@ -64,10 +64,8 @@ impl Difference {
     fn complete_terms(&self) -> Vec<DifferenceTerm> {
         let mut terms = self.terms.clone();
         let sum = |k: usize| {
-            self.terms
-                .iter()
-                .map(|term| finite(term.kj[k]))
-                .sum::<f64>()
+            let kj = self.terms.iter().map(|term| finite(term.kj[k]));
+            kj.sum::<f64>()
         };
         let rest = [0, 1].map(|k| finite(self.fuel_kj[k]) - sum(k));
         let largest = |kj: [f64; 2]| kj[0].abs().max(kj[1].abs());

@@ -14,8 +14,8 @@ type Edge = (usize, usize, bool);
 
 impl Grid<'_> {
     fn at(&self, i: usize, j: usize) -> f64 {
-        self.values
-            .get(i)
+        let column = self.values.get(i);
+        column
             .and_then(|column| column.get(j))
             .copied()
             .unwrap_or(f64::NAN)

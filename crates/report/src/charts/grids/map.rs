@@ -10,7 +10,7 @@ use crate::charts::picture::PictureTable;
 
 /// A picture of one quantity over two axes.
 #[derive(Clone, Debug)]
-pub struct MapFigure<'a> {
+pub(crate) struct MapFigure<'a> {
     /// What it shows.
     pub title: &'a str,
     /// Of what.
@@ -75,8 +75,7 @@ impl Scale {
 }
 
 /// Draws the picture. Where values are not finite the panel stays white.
-#[must_use]
-pub fn map_figure(of: &MapFigure) -> String {
+pub(crate) fn map_figure(of: &MapFigure) -> String {
     let several = of.panels.len() > 1;
     let size = SIZES[usize::from(several)];
     let columns = match of.panels.len() {

@@ -8,4 +8,4 @@ mod map;
 
 pub(crate) use density::{Density, DensityCell};
 pub(crate) use iso::{ISO, iso_lines};
-pub use map::{MapFigure, map_figure};
+pub(crate) use map::{MapFigure, map_figure};

@@ -2,12 +2,10 @@
 //!
 //! Everything that is a line over a quantity and not over time is drawn here: ambient temperatures, tests of rigs, figures of the book.
 
-mod curves;
 mod stack;
 mod table;
 
-pub use curves::{CurveFigure, CurvePanel, CurveSeries, curve_figure};
-pub use stack::{StackFigure, stack_figure};
+pub(crate) use stack::{StackFigure, stack_figure};
 
 use super::engine::{
     Axis, BELOW, Block, CONTEXT, Chart, Entry, Fill, LEFT, PLOT_LEFT, Panel, Rect, STROKES, Shape,

@@ -7,7 +7,7 @@ use super::{Look, stack_layers};
 
 /// A picture of stacked parts.
 #[derive(Clone, Debug)]
-pub struct StackFigure<'a> {
+pub(crate) struct StackFigure<'a> {
     /// What it shows.
     pub title: &'a str,
     /// Of what.
@@ -30,8 +30,7 @@ const ABOVE: f64 = 24.0;
 const STRIP: f64 = 190.0;
 
 /// Draws the picture.
-#[must_use]
-pub fn stack_figure(of: &StackFigure) -> String {
+pub(crate) fn stack_figure(of: &StackFigure) -> String {
     let several = of.panels.len() > 1;
     let size = SIZES[usize::from(several)];
     let columns = if of.panels.len() > 4 {

@@ -70,10 +70,8 @@ fn draw_groups(panel: &mut Panel, runs: &[PlotRun], groups: &[String]) -> Pictur
 
 /// From zero, with room for the values over the highest bar.
 fn axis(runs: &[PlotRun]) -> Axis {
-    let values = runs
-        .iter()
-        .flat_map(|run| &run.group_fuel)
-        .map(|(_, fuel)| *fuel);
+    let groups = runs.iter().flat_map(|run| &run.group_fuel);
+    let values = groups.map(|(_, fuel)| *fuel);
     let highest = values.filter(|x| x.is_finite()).fold(0.0, f64::max);
     Axis::round("Fuel [L/100 km]", [0.0, 1.12 * highest].into_iter(), 8)
 }

@@ -95,11 +95,8 @@ pub fn losses(run: &PlotRun) -> Picture {
         Entry::fill(Fill::component(*c), name)
     };
     let entries: Vec<Entry> = components.iter().rev().map(entry).collect();
-    let names: Vec<&str> = entries
-        .iter()
-        .rev()
-        .map(|entry| entry.name.as_str())
-        .collect();
+    let names = entries.iter().rev().map(|entry| entry.name.as_str());
+    let names: Vec<&str> = names.collect();
     let heading = format!("All losses: {}", kilojoule(total));
     Chart::new("Transmission losses", run.name, PLOT_LEFT)
         .lead(format!("{heading}. By component: {}", names.join("; ")))

@@ -79,14 +79,11 @@ pub fn temperatures(run: &PlotRun) -> Picture {
         ("cooler_out_degc", "Cooler outlet"),
     ];
     let there = |column: &str| run.history.column(column).iter().any(|y| y.is_finite());
-    let lines: Vec<Series> = names
-        .into_iter()
-        .zip(STROKES)
-        .filter(|((column, _), _)| there(column))
-        .map(|((column, title), stroke)| Series::new(column, title, stroke))
-        .collect();
+    let lines = names.into_iter().zip(STROKES);
+    let lines = lines.filter(|((column, _), _)| there(column));
+    let lines = lines.map(|((column, title), stroke)| Series::new(column, title, stroke));
     let strip = Strip {
-        lines,
+        lines: lines.collect(),
         with: &[],
         legend: true,
         ..Strip::of("coolant_degc", "Temperature", 400.0, PLAIN)

@@ -72,12 +72,7 @@ fn table(plot: &ConvergencePlot) -> PictureTable {
         for (i, name) in plot.names.iter().enumerate() {
             let mut cells = vec![step.samples.to_string(), name.clone()];
             let factor = step.factors.get(i);
-            let estimates = factor.map(|f| {
-                [f.first, f.total]
-                    .iter()
-                    .flat_map(estimate_cells)
-                    .collect::<Vec<_>>()
-            });
+            let estimates = factor.map(|f| [f.first, f.total].map(|e| estimate_cells(&e)).concat());
             cells.extend(estimates.unwrap_or_default());
             cells.resize(table.columns.len(), String::new());
             table.push(cells);

@@ -79,20 +79,14 @@ pub fn distribution_plot(shown: &Shown, all: &[DistributionSeries], differences:
     let names = names.map(|(s, stroke)| Entry::line(stroke, s.name));
     let zero = differences.then(|| Entry::line(ZERO, "No difference"));
     let table = table(shown, &output, &series, (&edges, &shares), &notes);
-    Chart::new(
-        format!("{what}: {}", shown.output),
-        shown.subject,
-        PLOT_LEFT,
-    )
-    .lead(
-        format!("{headline} {}", notes.join(" "))
-            .trim()
-            .replace('\u{a0}', " "),
-    )
-    .panels([upper, lower])
-    .legend(FOOT, names.chain(zero))
-    .notes(FOOT, notes)
-    .picture(table)
+    let title = format!("{what}: {}", shown.output);
+    let lead = format!("{headline} {}", notes.join(" "));
+    Chart::new(title, shown.subject, PLOT_LEFT)
+        .lead(lead.trim().replace('\u{a0}', " "))
+        .panels([upper, lower])
+        .legend(FOOT, names.chain(zero))
+        .notes(FOOT, notes)
+        .picture(table)
 }
 
 /// A row for each bin, its middle first.
