@@ -3,10 +3,13 @@
 use std::cell::Cell;
 use std::rc::Rc;
 
+use cvtcycle::config::setup::catalogue;
 use cvtcycle::study::check::expr::{
     Computed, FUNCTIONS, Fault, Gives, Names, REDUCTIONS, Table, Tables, compute, parse,
 };
+use cvtcycle::study::check::keys::VALIDATION;
 use cvtcycle::study::check::{Printed, Verdict, rule};
+use cvtcycle::study::fit::plan::keys::CALIBRATION;
 
 struct Fixed {
     left_out: Cell<usize>,
@@ -258,6 +261,19 @@ fn the_page_names_every_function_and_reduction() {
     for name in names.chain(REDUCTIONS.iter().map(|r| r.name)) {
         let word = |c: char| !c.is_ascii_alphanumeric() && c != '_';
         assert!(page.split(word).any(|found| found == name), "{name}");
+    }
+}
+
+#[test]
+fn the_pages_name_every_key() {
+    let rows = include_str!("../../docs/validation_format.md");
+    let calibrations = include_str!("../../docs/calibration.md");
+    let both = [rows, calibrations].concat();
+    for (page, keys) in [(rows, VALIDATION), (&*both, CALIBRATION)] {
+        for info in catalogue::keys_of(&keys) {
+            let name = info.key.rsplit('.').next().unwrap_or_default();
+            assert!(page.contains(name) && !info.doc.is_empty(), "{}", info.key);
+        }
     }
 }
 
