@@ -70,7 +70,7 @@ impl Chart {
         }
         let empty = self.panels.iter().all(|panel| panel.no_data);
         let numbers = if empty {
-            "No data".to_owned()
+            "Without any data".to_owned()
         } else {
             table.in_words()
         };
