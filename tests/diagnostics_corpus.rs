@@ -25,6 +25,8 @@ mod corpus;
 mod keys;
 #[path = "diagnostics/kinds.rs"]
 mod kinds;
+#[path = "common/loose.rs"]
+mod loose;
 #[path = "diagnostics/reader.rs"]
 mod reader;
 #[path = "diagnostics/schema.rs"]

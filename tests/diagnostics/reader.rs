@@ -2,6 +2,7 @@
 //!
 //! `#~ part of a message` announces a problem of the next line that is no announcement; `#~ hint: …`
 //! and `#~ allowed: …` add to it what its hint and its allowed range must contain.
+use crate::loose::Loose;
 use cvtcycle::config::{
     Bound, Document, KeyInfo, Override, Problem, Problems, Reader, decode, near, render,
 };

@@ -138,17 +138,8 @@ impl Section<'_> {
         texts
     }
 
-    /// A table of numbers written as a list of rows, in SI units by the suffixes of the column names.
-    /// Empty if the key is absent; rows with a problem are left out.
-    pub fn rows(&self, key: &str, columns: &[Column<'_>], doc: &str) -> Vec<Vec<f64>> {
-        self.read_rows(&Key::new(
-            key,
-            (Kind::Rows(columns), Presence::Optional),
-            doc,
-        ))
-    }
-
-    /// The rows of a key, as [`Section::rows`].
+    /// A table of numbers written as a list of rows, in SI units by the suffixes of the column names. Empty if the key is absent; rows with
+    /// a problem are left out.
     pub(super) fn read_rows(&self, key: &Key<'_>) -> Vec<Vec<f64>> {
         let Kind::Rows(columns) = key.kind else {
             return Vec::new();

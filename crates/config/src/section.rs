@@ -1,12 +1,10 @@
 //! Reading of single values from one table.
-use std::ops::RangeInclusive;
-
 use super::document::{Node, Span, Table, Value};
 use super::log::join;
 use super::place::Place;
 use super::problem::Problem;
 use super::reader::Reader;
-use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Values, spec};
+use cvtcycle_model::keys::Key;
 
 /// A table at a dotted path. An absent table is a table without keys.
 #[derive(Clone)]
@@ -110,49 +108,6 @@ impl<'r> Section<'r> {
         }
     }
 
-    /// A required number, in SI units; NaN after a problem.
-    pub fn number(&self, key: &str, allowed: Bound, doc: &str) -> f64 {
-        Values::number(self, &Key::new(key, spec::within(allowed), doc))
-    }
-
-    /// A number, in SI units, with a default in the key's own unit; NaN after a problem.
-    pub fn number_or(&self, key: &str, allowed: Bound, default: f64, doc: &str) -> f64 {
-        let spec = spec::or(default, spec::within(allowed));
-        Values::number(self, &Key::new(key, spec, doc))
-    }
-
-    /// A number, in SI units, that may be absent; NaN after a problem.
-    pub fn optional_number(&self, key: &str, allowed: Bound, doc: &str) -> Option<f64> {
-        self.optional(&Key::new(key, spec::within(allowed), doc))
-    }
-
-    /// An integer with a default; the default also after a problem. It is not converted to SI units.
-    pub fn integer_or(
-        &self,
-        key: &str,
-        allowed: RangeInclusive<i64>,
-        default: i64,
-        doc: &str,
-    ) -> i64 {
-        let spec = spec::integer(*allowed.start(), *allowed.end(), default);
-        self.integer(&Key::new(key, spec, doc))
-    }
-
-    /// A boolean with a default; the default also after a problem.
-    pub fn boolean_or(&self, key: &str, default: bool, doc: &str) -> bool {
-        self.flag(&Key::new(key, spec::flag(default), doc))
-    }
-
-    /// A required text; empty after a problem.
-    pub fn text(&self, key: &str, doc: &str) -> String {
-        Values::text(self, &Key::new(key, spec::text(), doc))
-    }
-
-    /// A text with a default; empty after a problem.
-    pub fn text_or(&self, key: &str, default: &str, doc: &str) -> String {
-        Values::text_or(self, &Key::new(key, spec::text(), doc), default)
-    }
-
     /// A text that may be absent.
     pub fn optional_text(&self, key: &Key<'_>) -> Option<String> {
         self.read_text(key).ok()
@@ -163,50 +118,6 @@ impl<'r> Section<'r> {
         for name in self.names() {
             let _ = self.raw(name, "", "");
         }
-    }
-
-    /// One of `words`, with a default; the default also after a problem.
-    pub fn word_or(
-        &self,
-        key: &str,
-        words: &[&'static str],
-        default: &'static str,
-        doc: &str,
-    ) -> &'static str {
-        let choices = choices(words);
-        let spec = (Kind::Words(&choices), Presence::Word(default));
-        self.read_word(&Key::new(key, spec, doc), default)
-    }
-
-    /// The option under `name` and its table, as [`Values::choose`].
-    ///
-    /// # Panics
-    /// If `options` is empty.
-    pub fn choose(
-        &self,
-        name: &str,
-        options: &[&'static str],
-        default: Option<&'static str>,
-        doc: &str,
-    ) -> (&'static str, Section<'r>) {
-        let choices = choices(options);
-        let presence = default.map_or(Presence::Required, Presence::Word);
-        Values::choose(
-            self,
-            &Key::new(name, (Kind::Options(&choices), presence), doc),
-        )
-    }
-
-    /// A list of numbers in SI units, as [`Values::numbers`]. It is required unless `length` begins at 0.
-    pub fn numbers(
-        &self,
-        key: &str,
-        allowed: Bound,
-        length: RangeInclusive<usize>,
-        doc: &str,
-    ) -> Vec<f64> {
-        let spec = spec::numbers(allowed, *length.start(), *length.end());
-        Values::numbers(self, &Key::new(key, spec, doc))
     }
 
     /// Adds a problem found in a file that this section names.
@@ -227,9 +138,4 @@ impl<'r> Section<'r> {
     pub fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str) {
         self.report_at(key, Problem::invalid(message).allowed(allowed).hint(hint));
     }
-}
-
-/// Options without keys of their own.
-fn choices(words: &[&'static str]) -> Vec<Choice> {
-    words.iter().map(|word| Choice::word(word, "")).collect()
 }

@@ -1,5 +1,8 @@
 //! Inputs through the public items of the crate that reads them.
 
+#[path = "../../common/loose.rs"]
+mod loose;
+
 mod bounded;
 mod catalogue;
 mod check_only;

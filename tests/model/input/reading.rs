@@ -1,4 +1,5 @@
 //! Readings of small documents, through the interface that the vehicle files are read with.
+use crate::loose::Loose;
 use cvtcycle_config::{Bound, Document, KeyInfo, Problem, Problems, Reader};
 use cvtcycle_model::keys::{Key, spec};
 

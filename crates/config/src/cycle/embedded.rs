@@ -42,100 +42,52 @@ struct Entry {
     six_gears: SixGears,
 }
 
-macro_rules! entry {
-    ($name:literal, $title:literal) => {
-        entry!($name, $title, Automatic::Same)
-    };
-    ($name:literal, $title:literal, $automatic:expr) => {
-        entry!($name, $title, $automatic, SixGears::AsTable)
-    };
-    ($name:literal, $title:literal, $automatic:expr, $six:expr) => {
-        Entry {
+macro_rules! entries {
+    (@ $default:expr) => { $default };
+    (@ $default:expr, $given:expr) => { $given };
+    ($($name:literal $title:literal $(drives $automatic:expr)? $(, with $six:expr)?;)*) => {
+        static ENTRIES: [Entry; 27] = [$(Entry {
             name: $name,
             title: $title,
             table: include_str!(concat!("../../../../cycles/", $name, ".csv")),
-            automatic: $automatic,
-            six_gears: $six,
-        }
+            automatic: entries!(@ Automatic::Same $(, $automatic)?),
+            six_gears: entries!(@ SixGears::AsTable $(, $six)?),
+        },)*];
     };
 }
 
 const EUDC_S: f64 = 400.0;
 const MVEGA_IDLE_S: f64 = 40.0;
 
-static ENTRIES: [Entry; 27] = [
-    entry!("artemis_motorway130", "Artemis motorway, 130 km/h version"),
-    entry!("artemis_motorway150", "Artemis motorway, 150 km/h version"),
-    entry!("artemis_road", "Artemis rural road"),
-    entry!("artemis_urban", "Artemis urban"),
-    entry!(
-        "ece15",
-        "ECE 15, one elementary urban cycle (UN R83 part one)",
-        Automatic::Table("ece15_auto"),
-        SixGears::LikeFive
-    ),
-    entry!(
-        "ece15_auto",
-        "ECE 15, one elementary urban cycle without gear-change plateaux"
-    ),
-    entry!(
-        "ece15_eudc",
-        "NEDC: four ECE 15 and one EUDC, 1180 s (UN R83)",
-        Automatic::Table("ece15_eudc_auto")
-    ),
-    entry!("ece15_eudc_auto", "NEDC without gear-change plateaux"),
-    entry!(
-        "ece15_eudc_low",
-        "NEDC for low-powered cars: EUDC up to 90 km/h",
-        Automatic::Table("ece15_eudc_low_auto")
-    ),
-    entry!(
-        "ece15_eudc_low_auto",
-        "NEDC for low-powered cars without gear-change plateaux"
-    ),
-    entry!(
-        "eudc",
-        "EUDC, extra-urban cycle (UN R83 part two)",
-        Automatic::Table("eudc_auto")
-    ),
-    entry!("eudc_auto", "EUDC without gear-change plateaux"),
-    entry!(
-        "eudc_low",
-        "EUDC for low-powered cars, up to 90 km/h",
-        Automatic::TailOf {
-            name: "ece15_eudc_low_auto",
-            duration_s: EUDC_S
-        }
-    ),
-    entry!("ftp75", "FTP-75 with 600 s engine-off soak (40 CFR 86)"),
-    entry!("hwfet", "HWFET, highway fuel economy test (40 CFR 600)"),
-    entry!("jc08", "JC08 (Japan)"),
-    entry!("jp_10_15_mode", "10-15 mode (Japan)"),
-    entry!("la92", "LA92, unified cycle (California)"),
-    entry!(
-        "mvega_idle40",
-        "MVEG-A: 40 s idle before sampling, then the NEDC (until 2000)",
-        Automatic::IdleThen {
-            idle_s: MVEGA_IDLE_S,
-            name: "ece15_eudc_auto"
-        },
-        SixGears::IdleThen {
-            idle_s: MVEGA_IDLE_S,
-            name: "ece15_eudc"
-        }
-    ),
-    entry!("nycc", "NYCC, New York City cycle (40 CFR 86)"),
-    entry!("sc03", "SC03, air-conditioning test (40 CFR 86)"),
-    entry!(
-        "udds",
-        "UDDS, urban dynamometer driving schedule (40 CFR 86)"
-    ),
-    entry!("us06", "US06, aggressive driving (40 CFR 86)"),
-    entry!("wltc_class1", "WLTC class 1 (UN GTR 15)"),
-    entry!("wltc_class2", "WLTC class 2 (UN GTR 15)"),
-    entry!("wltc_class3a", "WLTC class 3a (UN GTR 15)"),
-    entry!("wltc_class3b", "WLTC class 3b (UN GTR 15)"),
-];
+entries! {
+    "artemis_motorway130" "Artemis motorway, 130 km/h version";
+    "artemis_motorway150" "Artemis motorway, 150 km/h version";
+    "artemis_road" "Artemis rural road";
+    "artemis_urban" "Artemis urban";
+    "ece15" "ECE 15, one elementary urban cycle (UN R83 part one)" drives Automatic::Table("ece15_auto"), with SixGears::LikeFive;
+    "ece15_auto" "ECE 15, one elementary urban cycle without gear-change plateaux";
+    "ece15_eudc" "NEDC: four ECE 15 and one EUDC, 1180 s (UN R83)" drives Automatic::Table("ece15_eudc_auto");
+    "ece15_eudc_auto" "NEDC without gear-change plateaux";
+    "ece15_eudc_low" "NEDC for low-powered cars: EUDC up to 90 km/h" drives Automatic::Table("ece15_eudc_low_auto");
+    "ece15_eudc_low_auto" "NEDC for low-powered cars without gear-change plateaux";
+    "eudc" "EUDC, extra-urban cycle (UN R83 part two)" drives Automatic::Table("eudc_auto");
+    "eudc_auto" "EUDC without gear-change plateaux";
+    "eudc_low" "EUDC for low-powered cars, up to 90 km/h" drives Automatic::TailOf { name: "ece15_eudc_low_auto", duration_s: EUDC_S };
+    "ftp75" "FTP-75 with 600 s engine-off soak (40 CFR 86)";
+    "hwfet" "HWFET, highway fuel economy test (40 CFR 600)";
+    "jc08" "JC08 (Japan)";
+    "jp_10_15_mode" "10-15 mode (Japan)";
+    "la92" "LA92, unified cycle (California)";
+    "mvega_idle40" "MVEG-A: 40 s idle before sampling, then the NEDC (until 2000)" drives Automatic::IdleThen { idle_s: MVEGA_IDLE_S, name: "ece15_eudc_auto" }, with SixGears::IdleThen { idle_s: MVEGA_IDLE_S, name: "ece15_eudc" };
+    "nycc" "NYCC, New York City cycle (40 CFR 86)";
+    "sc03" "SC03, air-conditioning test (40 CFR 86)";
+    "udds" "UDDS, urban dynamometer driving schedule (40 CFR 86)";
+    "us06" "US06, aggressive driving (40 CFR 86)";
+    "wltc_class1" "WLTC class 1 (UN GTR 15)";
+    "wltc_class2" "WLTC class 2 (UN GTR 15)";
+    "wltc_class3a" "WLTC class 3a (UN GTR 15)";
+    "wltc_class3b" "WLTC class 3b (UN GTR 15)";
+}
 
 static NAMES: [&str; ENTRIES.len()] = {
     let mut names = [""; ENTRIES.len()];

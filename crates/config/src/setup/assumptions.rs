@@ -1,7 +1,6 @@
 //! The book of assumptions: where every value and every equation comes from, as Markdown.
 
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
 
 use super::catalogue::{self, File};
 use crate::KeyInfo;
@@ -26,9 +25,8 @@ pub fn book(equations: &[Equation]) -> String {
         Printed by `cvtcycle assumptions` from the vehicle files, the lubricant files, the rig files and the heads of the model files; do not \
         edit it by hand.\n\n"
         .to_owned();
-    // Writing into a String cannot fail.
     for (status, words) in STATUSES {
-        let _ = writeln!(text, "- **{status}**: {words}");
+        text += &format!("- **{status}**: {words}\n");
     }
     text.push_str("- **default**: no file gives it; the program's own value\n\n");
     text.push_str("How far the assumed and fitted values may be off, and what that does to the comparison: `docs/uncertainty.md`.\n\n");
@@ -41,60 +39,43 @@ pub fn book(equations: &[Equation]) -> String {
     text
 }
 
+/// A row of a table; bars in a cell are escaped.
+fn row(text: &mut String, cells: &[&str]) {
+    for cell in cells {
+        *text += &format!("| {} ", cell.replace('|', "\\|"));
+    }
+    text.push_str("|\n");
+}
+
 fn counts(text: &mut String, files: &[File]) {
     text.push_str("| file | assumed | fitted | derived | source | default |\n|---|---:|---:|---:|---:|---:|\n");
+    let statuses = STATUSES.iter().map(|(status, _)| *status);
+    let statuses: Vec<&str> = statuses.chain(["default"]).collect();
     for file in files {
-        let _ = write!(text, "| {} |", file.name);
-        for status in STATUSES
-            .iter()
-            .map(|(status, _)| *status)
-            .chain(["default"])
-        {
-            let _ = write!(
-                text,
-                " {} |",
-                file.keys
-                    .iter()
-                    .filter(|info| info.status == status)
-                    .count()
-            );
-        }
-        text.push('\n');
+        let with = |status: &&str| file.keys.iter().filter(|info| info.status == *status);
+        let counts: Vec<String> = statuses.iter().map(|s| with(s).count().to_string()).collect();
+        let cells = std::iter::once(file.name).chain(counts.iter().map(String::as_str));
+        row(text, &cells.collect::<Vec<_>>());
     }
 }
 
 fn of_file(text: &mut String, file: &File) {
-    let title = file
-        .keys
-        .iter()
-        .find(|info| info.key.ends_with("title"))
-        .map_or("", |info| &info.value);
+    let is_title = |info: &&KeyInfo| info.key.ends_with("title");
+    let title = file.keys.iter().find(is_title);
+    let title = title.map_or("", |info| &info.value);
     let mut kind = file.kind.word().to_owned();
     kind[..1].make_ascii_uppercase();
-    let _ = writeln!(text, "\n## {kind} `{}`: {title}", file.name);
+    *text += &format!("\n## {kind} `{}`: {title}\n", file.name);
     for (status, _) in STATUSES {
-        let keys: Vec<&KeyInfo> = file
-            .keys
-            .iter()
-            .filter(|info| info.status == status && !info.key.ends_with("title"))
-            .collect();
-        if !keys.is_empty() {
-            let _ = writeln!(
-                text,
-                "\n### {status}\n\n| key | value | source | note | meaning |\n|---|---|---|---|---|"
-            );
+        let has_status = |info: &&KeyInfo| info.status == status && !is_title(info);
+        let mut keys = file.keys.iter().filter(has_status).peekable();
+        if keys.peek().is_some() {
+            *text += &format!("\n### {status}\n\n");
+            text.push_str("| key | value | source | note | meaning |\n|---|---|---|---|---|\n");
         }
         for info in keys {
-            let value = value(info);
-            let _ = writeln!(
-                text,
-                "| `{}` | {} | {} | {} | {} |",
-                info.key,
-                cell(&value),
-                cell(&info.source),
-                cell(&info.note),
-                cell(&info.doc)
-            );
+            let (key, value) = (format!("`{}`", info.key), value(info));
+            row(text, &[&key, &value, &info.source, &info.note, &info.doc]);
         }
     }
 }
@@ -107,14 +88,9 @@ fn defaults(text: &mut String, files: &[File]) {
     let mut seen = BTreeSet::new();
     for file in files {
         for info in file.keys.iter().filter(|info| info.status == "default") {
-            let key = file.full_key(&info.key);
+            let key = format!("`{}`", file.full_key(&info.key));
             if seen.insert(key.clone()) {
-                let _ = writeln!(
-                    text,
-                    "| `{key}` | {} | {} |",
-                    cell(&value(info)),
-                    cell(&info.doc)
-                );
+                row(text, &[&key, &value(info), &info.doc]);
             }
         }
     }
@@ -123,28 +99,22 @@ fn defaults(text: &mut String, files: &[File]) {
 fn of_equations(text: &mut String, equations: &[Equation]) {
     text.push_str("\n## Equations and what is built into them\n");
     let fitted = |e: &Equation| !is_assumed(e) && e.status.contains("fitted");
-    let all = || equations.iter().copied();
-    group(text, "with an assumed part", all().filter(is_assumed));
-    group(text, "with a fitted part", all().filter(fitted));
-    group(
-        text,
-        "source or derived",
-        all().filter(|e| !is_assumed(e) && !fitted(e)),
-    );
-}
-
-fn group(text: &mut String, title: &str, list: impl Iterator<Item = Equation>) {
-    let _ = writeln!(
-        text,
-        "\n### {title}\n\n| label | statement | status | module |\n|---|---|---|---|"
-    );
-    for e in list {
-        // Statements come out of a Markdown table: their bars are escaped already.
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | `{}` |",
-            e.label, e.statement, e.status, e.module
-        );
+    let rest = |e: &Equation| !is_assumed(e) && !fitted(e);
+    let groups: [(&str, &dyn Fn(&Equation) -> bool); 3] = [
+        ("with an assumed part", &is_assumed),
+        ("with a fitted part", &fitted),
+        ("source or derived", &rest),
+    ];
+    for (title, is_in) in groups {
+        *text += &format!("\n### {title}\n\n");
+        text.push_str("| label | statement | status | module |\n|---|---|---|---|\n");
+        for e in equations.iter().filter(|e| is_in(e)) {
+            // Statements come out of a Markdown table: their bars are escaped already.
+            *text += &format!(
+                "| {} | {} | {} | `{}` |\n",
+                e.label, e.statement, e.status, e.module
+            );
+        }
     }
 }
 
@@ -160,8 +130,4 @@ pub fn value(info: &KeyInfo) -> String {
         (value, "-" | "") => value.to_owned(),
         (value, unit) => format!("{value} {unit}"),
     }
-}
-
-fn cell(text: &str) -> String {
-    text.replace('|', "\\|")
 }

@@ -1,0 +1,120 @@
+//! Readings without a row of a table: name, range and meaning are in the call.
+
+use std::ops::RangeInclusive;
+
+use cvtcycle_config::Section;
+use cvtcycle_model::keys::{Bound, Choice, Column, Key, Kind, Presence, Values, spec};
+
+/// As the methods of [`Values`], with the parts of a key in place of the key.
+#[allow(dead_code, reason = "each test crate uses a part of it")]
+pub trait Loose: Sized {
+    fn number(&self, key: &str, allowed: Bound, doc: &str) -> f64;
+    fn number_or(&self, key: &str, allowed: Bound, default: f64, doc: &str) -> f64;
+    fn optional_number(&self, key: &str, allowed: Bound, doc: &str) -> Option<f64>;
+    fn integer_or(&self, key: &str, range: RangeInclusive<i64>, default: i64, doc: &str) -> i64;
+    fn boolean_or(&self, key: &str, default: bool, doc: &str) -> bool;
+    fn text(&self, key: &str, doc: &str) -> String;
+    fn text_or(&self, key: &str, default: &str, doc: &str) -> String;
+    fn word_or(
+        &self,
+        key: &str,
+        words: &[&'static str],
+        default: &'static str,
+        doc: &str,
+    ) -> &'static str;
+    fn choose(
+        &self,
+        key: &str,
+        options: &[&'static str],
+        default: Option<&'static str>,
+        doc: &str,
+    ) -> (&'static str, Self);
+    fn numbers(
+        &self,
+        key: &str,
+        each: Bound,
+        length: RangeInclusive<usize>,
+        doc: &str,
+    ) -> Vec<f64>;
+    fn rows(&self, key: &str, columns: &[Column<'_>], doc: &str) -> Vec<Vec<f64>>;
+}
+
+impl Loose for Section<'_> {
+    fn number(&self, key: &str, allowed: Bound, doc: &str) -> f64 {
+        Values::number(self, &Key::new(key, spec::within(allowed), doc))
+    }
+
+    fn number_or(&self, key: &str, allowed: Bound, default: f64, doc: &str) -> f64 {
+        let spec = spec::or(default, spec::within(allowed));
+        Values::number(self, &Key::new(key, spec, doc))
+    }
+
+    fn optional_number(&self, key: &str, allowed: Bound, doc: &str) -> Option<f64> {
+        self.optional(&Key::new(key, spec::within(allowed), doc))
+    }
+
+    fn integer_or(&self, key: &str, range: RangeInclusive<i64>, default: i64, doc: &str) -> i64 {
+        let spec = spec::integer(*range.start(), *range.end(), default);
+        self.integer(&Key::new(key, spec, doc))
+    }
+
+    fn boolean_or(&self, key: &str, default: bool, doc: &str) -> bool {
+        self.flag(&Key::new(key, spec::flag(default), doc))
+    }
+
+    fn text(&self, key: &str, doc: &str) -> String {
+        Values::text(self, &Key::new(key, spec::text(), doc))
+    }
+
+    fn text_or(&self, key: &str, default: &str, doc: &str) -> String {
+        Values::text_or(self, &Key::new(key, spec::text(), doc), default)
+    }
+
+    fn word_or(
+        &self,
+        key: &str,
+        words: &[&'static str],
+        default: &'static str,
+        doc: &str,
+    ) -> &'static str {
+        let choices = choices(words);
+        let spec = (Kind::Words(&choices), Presence::Word(default));
+        Values::word(self, &Key::new(key, spec, doc))
+    }
+
+    fn choose(
+        &self,
+        key: &str,
+        options: &[&'static str],
+        default: Option<&'static str>,
+        doc: &str,
+    ) -> (&'static str, Self) {
+        let choices = choices(options);
+        let presence = default.map_or(Presence::Required, Presence::Word);
+        Values::choose(
+            self,
+            &Key::new(key, (Kind::Options(&choices), presence), doc),
+        )
+    }
+
+    fn numbers(
+        &self,
+        key: &str,
+        each: Bound,
+        length: RangeInclusive<usize>,
+        doc: &str,
+    ) -> Vec<f64> {
+        let spec = spec::numbers(each, *length.start(), *length.end());
+        Values::numbers(self, &Key::new(key, spec, doc))
+    }
+
+    fn rows(&self, key: &str, columns: &[Column<'_>], doc: &str) -> Vec<Vec<f64>> {
+        let spec = (Kind::Rows(columns), Presence::Optional);
+        Values::rows(self, &Key::new(key, spec, doc)).unwrap_or_default()
+    }
+}
+
+/// Options without keys of their own.
+fn choices(words: &[&'static str]) -> Vec<Choice> {
+    words.iter().map(|word| Choice::word(word, "")).collect()
+}
