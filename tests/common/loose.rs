@@ -29,13 +29,8 @@ pub trait Loose: Sized {
         default: Option<&'static str>,
         doc: &str,
     ) -> (&'static str, Self);
-    fn numbers(
-        &self,
-        key: &str,
-        each: Bound,
-        length: RangeInclusive<usize>,
-        doc: &str,
-    ) -> Vec<f64>;
+    fn numbers(&self, key: &str, each: Bound, length: RangeInclusive<usize>, doc: &str)
+    -> Vec<f64>;
     fn rows(&self, key: &str, columns: &[Column<'_>], doc: &str) -> Vec<Vec<f64>>;
 }
 

@@ -7,7 +7,7 @@ use super::overrides::Override;
 use super::problem::Problem;
 use super::section::Section;
 use super::value::Lookup;
-use cvtcycle_model::keys::{Bound, Column, Key, Kind, Presence, Quantity, count};
+use cvtcycle_model::keys::{Bound, Column, Key, Kind, Quantity, count};
 
 impl Section<'_> {
     /// A list of numbers in SI units. After a problem the numbers concerned are NaN, and the length is

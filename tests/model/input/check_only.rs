@@ -1,6 +1,6 @@
 //! Silent readings find the same values and as many problems as ordinary ones; drafts are what assignments make of a document.
-use crate::reading::document;
 use crate::loose::Loose;
+use crate::reading::document;
 use cvtcycle_config::{Bound, KeyPath, Override, PatchedDocument, Reader};
 use cvtcycle_model::keys::{Key, Kind, Presence, spec};
 

@@ -1,6 +1,6 @@
 //! Choice of options by table, word and assignment.
-use crate::reading::{document, only, with};
 use crate::loose::Loose;
+use crate::reading::{document, only, with};
 use cvtcycle_config::{Bound, Document, KeyInfo, Problems, Reader};
 
 const CLAMPS: [&str; 2] = ["torque_following", "map"];

@@ -52,8 +52,11 @@ fn counts(text: &mut String, files: &[File]) {
     let statuses = STATUSES.iter().map(|(status, _)| *status);
     let statuses: Vec<&str> = statuses.chain(["default"]).collect();
     for file in files {
-        let with = |status: &&str| file.keys.iter().filter(|info| info.status == *status);
-        let counts: Vec<String> = statuses.iter().map(|s| with(s).count().to_string()).collect();
+        let count = |status: &&str| {
+            let keys = file.keys.iter().filter(|info| info.status == *status);
+            keys.count().to_string()
+        };
+        let counts: Vec<String> = statuses.iter().map(count).collect();
         let cells = std::iter::once(file.name).chain(counts.iter().map(String::as_str));
         row(text, &cells.collect::<Vec<_>>());
     }
