@@ -8,6 +8,7 @@
 //!
 //! Valid for clamping forces from zero on; torque above VA-2 is flagged `gross_slip` and slip is bounded (SL-9).
 
+mod at_ratio;
 mod bands;
 mod deflection;
 mod formulation;
@@ -18,6 +19,7 @@ mod tension;
 mod printed;
 pub mod point;
 
+pub use at_ratio::{BeltAtRatio, Prepared};
 pub use bands::sliding_speed_m_s;
 pub use deflection::Deflection;
 pub use formulation::Formulation;
@@ -28,7 +30,7 @@ pub use slip::Slip;
 pub use tension::Tension;
 
 use crate::fluid::{BandFriction, Lubricant};
-use crate::math::{Curve, ln, ramp, smaller};
+use crate::math::{Curve, smaller};
 
 /// The checked belt and pulleys.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,117 +95,6 @@ impl Belt {
             sliding_speed_m_s(self, ratio, primary_rad_s)
         } else {
             0.0
-        }
-    }
-}
-
-/// The belt at one ratio: everything that does not depend on torque or pressure.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeltAtRatio {
-    /// Geometry.
-    pub geometry: Geometry,
-    /// Direction of the tension step, -1 in low, +1 in high (TE-6).
-    pub direction: f64,
-    /// Primary clamp over secondary clamp (TE-1).
-    pub thrust_ratio: f64,
-    /// What the loss equations need of this ratio, worked out once.
-    pub prepared: Prepared,
-}
-
-/// Coefficients of one ratio, so that an operating point costs few divisions; pairs are primary, secondary.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Prepared {
-    /// Contact arcs, m.
-    pub arc_m: [f64; 2],
-    /// Segments in the wraps.
-    pub count: [f64; 2],
-    /// Resultant normal force of a segment per clamping force.
-    pub normal_per_clamp: [f64; 2],
-    /// Shoulder friction of a segment per tension step.
-    pub shoulder_per_step: [f64; 2],
-    /// Extension of the band pack per shoulder force of the primary, m/N (SL-1).
-    pub band_gap_m_n: f64,
-    /// Compression of the free strut per force, m/N (SL-2).
-    pub strut_gap_m_n: f64,
-    /// Friction-weighted sliding of the band pack per turn of the primary, times BT-4, m/rad (BT-3).
-    pub slide_m: [f64; 2],
-    /// Film shear torque per share, viscosity, speed over thickness, m4 (FI-1).
-    pub film_m4: f64,
-    /// Share of the primary's deflection left by its end stop (WE-4).
-    pub stop: f64,
-    /// Half the cotangent of the angle in the wedge terms (WE-2).
-    pub wedge_half_cot: f64,
-    /// Arcs over twice the segment thickness, referred to the primary shaft, 1/m (WE-3).
-    pub wedge_per_m: [f64; 2],
-    /// Penetration torque per friction force and deflection (PE-1).
-    pub penetration: f64,
-    /// One over the segments in the wraps.
-    pub inv_segments: [f64; 2],
-    /// One over the belt ratio.
-    pub inv_ratio: f64,
-    /// One over the secondary radius, 1/m.
-    pub inv_secondary_radius: f64,
-    /// Torque capacity per clamping force and segment friction, m (VA-2).
-    pub capacity_m: f64,
-    /// One over the width of the blend between the loading branches, 1/N.
-    pub per_blend_n: f64,
-}
-
-impl Prepared {
-    fn new(belt: &Belt, g: &Geometry) -> Self {
-        let pitch = belt.segment_thickness_m;
-        let arc_m = [
-            g.primary_radius_m * g.primary_wrap_rad,
-            g.secondary_radius_m * g.secondary_wrap_rad,
-        ];
-        let least = smaller(g.primary_wrap_rad, g.secondary_wrap_rad);
-        Prepared {
-            arc_m,
-            count: arc_m.map(|a| a / pitch),
-            normal_per_clamp: arc_m.map(|a| 2.0 * pitch / (a * belt.cos_wedge)),
-            shoulder_per_step: [g.primary_radius_m, g.secondary_radius_m]
-                .map(|r| pitch / (r * least)),
-            band_gap_m_n: belt.length_m
-                / (belt.youngs_pa * belt.band_area_m2() * g.primary_wrap_rad),
-            strut_gap_m_n: g.strut_m / (belt.youngs_pa * belt.strut_area_m2),
-            slide_m: bands::slide_m(belt, g),
-            film_m4: bands::film_m4(belt, g),
-            stop: belt
-                .formulation
-                .primary_stop(1.0 - ramp(g.ratio, belt.stop_from_ratio, belt.stop_to_ratio)), // WE-4
-            wedge_half_cot: 0.5 / belt.formulation.wedge_tan(belt.tan_wedge),
-            wedge_per_m: deflection::wedge_per_m(belt, g),
-            penetration: deflection::penetration(belt, g),
-            inv_segments: arc_m.map(|a| pitch / a),
-            inv_ratio: 1.0 / g.ratio,
-            inv_secondary_radius: 1.0 / g.secondary_radius_m,
-            capacity_m: 2.0 * g.secondary_radius_m / belt.cos_wedge,
-            per_blend_n: 1.0 / belt.blend_n,
-        }
-    }
-}
-
-/// From here on tanh is 1 to the last bit.
-const FULL_STEP: f64 = 20.0;
-
-impl BeltAtRatio {
-    /// Prepares a ratio.
-    pub fn new(belt: &Belt, ratio: f64) -> Self {
-        let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
-        let log = ln(ratio);
-        let steep = log / belt.unity_width;
-        BeltAtRatio {
-            geometry,
-            prepared: Prepared::new(belt, &geometry),
-            direction: if steep.abs() < FULL_STEP {
-                -steep.tanh()
-            } else {
-                -steep.signum()
-            }, // TE-6
-            thrust_ratio: match &belt.thrust_ratio {
-                Some(curve) => curve.at(log),
-                None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
-            },
         }
     }
 }
