@@ -185,7 +185,7 @@ impl ValidateArgs {
         };
         let mechanism = self.mechanism.as_ref().filter(|name| *name != ALL);
         is(self.chapter.as_ref(), &row.chapter)
-            && is(mechanism, &row.mechanism)
+            && is(mechanism, row.mechanism)
             && (!self.held_out || row.is_held_out())
     }
 
