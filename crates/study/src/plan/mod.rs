@@ -158,38 +158,6 @@ pub enum FactorValue {
     Word(Arc<str>),
 }
 
-impl std::fmt::Display for FactorValue {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            FactorValue::Number(x) => write!(f, "{x}"),
-            FactorValue::Word(word) => f.write_str(word),
-        }
-    }
-}
-
-impl FactorValue {
-    /// The number; none of a word.
-    pub fn number(&self) -> Option<f64> {
-        match self {
-            FactorValue::Number(x) => Some(*x),
-            FactorValue::Word(_) => None,
-        }
-    }
-
-    /// Whether it is a number.
-    pub fn is_number(&self) -> bool {
-        self.number().is_some()
-    }
-
-    /// As a user would write it, words without quotes.
-    pub fn text(&self) -> Arc<str> {
-        match self {
-            FactorValue::Number(x) => x.to_string().into(),
-            FactorValue::Word(word) => word.clone(),
-        }
-    }
-}
-
 /// The values that a factor takes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FactorValues {

@@ -10,7 +10,37 @@ use cvtcycle_model::keys::{Key, Kind};
 use super::FactorValue;
 use super::keys::{STUDY, known_words, numbers, run_option};
 
+impl std::fmt::Display for FactorValue {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            FactorValue::Number(x) => write!(f, "{x}"),
+            FactorValue::Word(word) => f.write_str(word),
+        }
+    }
+}
+
 impl FactorValue {
+    /// The number; none of a word.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            FactorValue::Number(x) => Some(*x),
+            FactorValue::Word(_) => None,
+        }
+    }
+
+    /// Whether it is a number.
+    pub fn is_number(&self) -> bool {
+        self.number().is_some()
+    }
+
+    /// As a user would write it, words without quotes.
+    pub fn text(&self) -> Arc<str> {
+        match self {
+            FactorValue::Number(x) => x.to_string().into(),
+            FactorValue::Word(word) => word.clone(),
+        }
+    }
+
     /// The value of a run option, or of `vehicle`, as written in the command line.
     ///
     /// ```
