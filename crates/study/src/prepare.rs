@@ -188,7 +188,7 @@ fn in_plan(plan: &Plan, key: &str, problem: Problem) -> Problem {
         Input::File(_) => return problem,
         Input::Argument(Argument::Lubricant) => plan.places.of("lubricant").clone(),
         Input::Argument(Argument::EngineOil) => plan.places.of("engine_oil").clone(),
-        Input::Argument(_) => plan.places.of(key).clone(),
+        Input::Argument(_) => return problem.at(plan.places.of(key).clone()).key(key),
         Input::Override(text) => {
             let is_own = plan.base.set.iter().any(|by| by.to_string() == *text);
             let key = if is_own { "set" } else { "set_all" };
@@ -223,13 +223,16 @@ fn cycles(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<Cycle> {
     });
     let find = |(word, place): (Arc<str>, &Place)| {
         let found = cycle::find(&in_folder(folder, &word));
-        let of_plan = |problem: Problem| match problem.place.is_argument(Argument::Cycle) {
-            true if is_path(&word) => problem
-                .at(place.clone())
-                .hint("a path in a plan begins at the plan's folder"),
-            true => problem.at(place.clone()),
+        let of_plan = |problem: Problem| {
             // A problem within a file keeps its place there, with a line or without.
-            false => problem,
+            if !problem.place.is_argument(Argument::Cycle) {
+                return problem;
+            }
+            let problem = problem.at(place.clone()).key("cycle");
+            match is_path(&word) {
+                true => problem.hint("a path in a plan begins at the plan's folder"),
+                false => problem,
+            }
         };
         found
             .map_err(|found| problems.extend(found.map(of_plan)))

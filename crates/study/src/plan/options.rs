@@ -41,7 +41,7 @@ impl FactorValue {
         }
     }
 
-    /// The value of a run option, or of `vehicle`, as written in the command line.
+    /// The value of a run option, or else of `vehicle`, as written in the command line.
     ///
     /// ```
     /// use cvtcycle_study::plan::FactorValue;
@@ -53,12 +53,7 @@ impl FactorValue {
     /// A problem without a place: a word that is not known, or a number out of range.
     pub fn of_option(option: &str, written: &str) -> Result<Self, Problem> {
         let written = written.trim();
-        let row = match option {
-            "vehicle" => &STUDY.vehicle,
-            _ => run_option(option).ok_or_else(|| {
-                Problem::unknown_name(format!("there is no run option `{option}`"))
-            })?,
-        };
+        let row = run_option(option).unwrap_or(&STUDY.vehicle);
         let found = match (numbers(&row.kind), written.parse::<f64>()) {
             (Some(range), Ok(x)) if range.contains(x) => Ok(FactorValue::Number(x)),
             (Some(_), Ok(_)) => Err(Problem::out_of_range(format!("`{option}` is out of range"))),
