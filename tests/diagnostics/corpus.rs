@@ -7,8 +7,8 @@
 //! (what the program prints)
 //! ```
 //!
-//! A file that is no plain text (another encoding, other line ends) has `(escaped)` after its name and is one line with `\r`, `\n`, `\\`
-//! and `\x00` for its bytes. A file named `made_...` is written by `kinds::made`; a file without a message is read by another one.
+//! A file that is no plain text (another encoding, other line ends) has `(escaped)` after its name and is lines of
+//! the form of the fuzzers' corpus: bytes outside printable ASCII are escaped as in Rust. A file named `made_...` is written by `kinds::made`; a file without a message is read by another one.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -41,24 +41,10 @@ impl Case {
         if !self.escaped {
             return self.input.as_bytes().to_vec();
         }
-        let mut rest = self.input.trim_end_matches('\n').bytes();
-        let mut bytes = Vec::new();
-        while let Some(byte) = rest.next() {
-            bytes.push(match (byte, byte == b'\\') {
-                (byte, false) => byte,
-                _ => match rest.next() {
-                    Some(b'r') => b'\r',
-                    Some(b'n') => b'\n',
-                    Some(b'\\') => b'\\',
-                    Some(b'x') => {
-                        let hex: String = rest.by_ref().take(2).map(char::from).collect();
-                        u8::from_str_radix(&hex, 16).expect("two hexadecimal digits")
-                    }
-                    other => panic!("{}: \\ before {other:?}", self.name),
-                },
-            });
-        }
-        bytes
+        let lines = super::escaped::parse(&self.input);
+        lines
+            .unwrap_or_else(|_| panic!("{}: wrong escape", self.name))
+            .concat()
     }
 }
 
