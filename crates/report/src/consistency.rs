@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::problems::problem;
-use super::run::TERMS;
+use super::terms::TERMS;
 use cvtcycle_config::Problem;
 use cvtcycle_output::Component;
 use cvtcycle_output::history::History;

@@ -20,6 +20,7 @@ mod consistency;
 pub mod cover;
 pub mod document;
 pub mod results;
+mod terms;
 pub mod number;
 mod problems;
 pub mod render;

@@ -6,7 +6,8 @@ use crate::charts::figures::{
 };
 use crate::document::{ReportTable, Section};
 use crate::number::{NONE, Quantity, capital};
-use crate::run::{Car, TERMS};
+use crate::run::Car;
+use crate::terms::TERMS;
 use cvtcycle_output::Component;
 use cvtcycle_output::history::History;
 

@@ -3,18 +3,8 @@
 use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, percent};
 use super::Car;
-use crate::charts::figures::{CarEnergy, Term, energy_flow, transmission_flow};
-
-/// Terms of the power ledger with their names and what they are.
-pub(crate) const TERMS: [(&str, &str, Term); 7] = [
-    ("wheels", "rolling and air, net", Term::Wheels),
-    ("brake", "brakes", Term::Brake),
-    ("losses", "transmission", Term::Transmission),
-    ("accessories", "accessories", Term::Accessories),
-    ("kinetic", "rotating parts", Term::Kinetic),
-    ("engine_heat", "heat to the engine", Term::EngineHeat),
-    ("exhaust", "exhaust", Term::Exhaust),
-];
+use crate::charts::figures::{CarEnergy, energy_flow, transmission_flow};
+use crate::terms::TERMS;
 
 /// A car's ledger as the figures want it, kJ.
 fn car_energy(car: &Car) -> CarEnergy {

@@ -18,7 +18,6 @@ use cvtcycle_output::record::{CarRecord, Record};
 use cvtcycle_output::summary::{RunSummary, StartWord, Summary};
 
 pub(super) use conditions::change_table;
-pub(super) use energy::TERMS;
 pub use reproduce::hashes;
 
 /// A car of a run with everything that is known of it.
