@@ -22,7 +22,6 @@ mod calibration;
 #[path = "diagnostics/corpus.rs"]
 mod corpus;
 #[path = "../tools/fuzz/src/corpus.rs"]
-#[expect(dead_code, reason = "the corpus of the fuzzers is also written")]
 mod escaped;
 #[path = "diagnostics/keys.rs"]
 mod keys;

@@ -25,8 +25,11 @@ pub enum InputKind {
     Study,
 }
 
-/// Kinds with their names and those of the embedded inputs.
-const KINDS: [(InputKind, &str, fn() -> Vec<&'static str>); 6] = [
+/// A kind, its name, and the names of its embedded inputs.
+type KindRow = (InputKind, &'static str, fn() -> Vec<&'static str>);
+
+/// All kinds.
+const KINDS: [KindRow; 6] = [
     (InputKind::Vehicle, "vehicle", || Kind::Vehicle.names()),
     (InputKind::Lubricant, "lubricant", || {
         Kind::Lubricant.names()

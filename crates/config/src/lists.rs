@@ -98,13 +98,10 @@ impl Section<'_> {
 
     /// Overrides of a list of texts `KEY=VALUE`; empty if the key is absent.
     pub fn overrides(&self, key: &Key<'_>) -> Vec<Override> {
-        let example = "write, for example, \"road_load.mass_kg=1250\"";
         self.list(key, |item, text| {
-            let read = text.parse::<Override>().map_err(|problem| {
-                let problem = problem.allowed("KEY=VALUE").hint(example);
-                self.report(&item.span, key.name, problem);
-            });
-            read.ok()
+            let read = text.parse::<Override>();
+            let report = |problem| self.report(&item.span, key.name, problem);
+            read.map_err(report).ok()
         })
     }
 

@@ -234,7 +234,8 @@ fn no_override(text: &str, key: &str, message: String) -> Problem {
     Problem::syntax(message)
         .at(Input::Override(text.to_owned()))
         .key(key)
-        .hint("write table.key=VALUE")
+        .allowed("KEY=VALUE")
+        .hint("write, for example, \"road_load.mass_kg=1250\"")
 }
 
 impl FromStr for Override {

@@ -79,9 +79,9 @@ pub struct Problem {
     /// What to do about it; empty if nothing useful can be said.
     pub hint: String,
     /// Settings that the hint speaks about.
-    pub settings: Vec<Setting>,
+    pub settings: &'static [Setting],
     /// Known names that may have been meant, the most likely first.
-    pub suggested: Vec<String>,
+    pub suggested: Box<[String]>,
 }
 
 impl Problem {
@@ -129,8 +129,7 @@ impl Problem {
 
     /// With the settings that its hint speaks about.
     #[must_use]
-    pub fn settings(self, settings: &[Setting]) -> Self {
-        let settings = settings.to_vec();
+    pub fn settings(self, settings: &'static [Setting]) -> Self {
         Problem { settings, ..self }
     }
 

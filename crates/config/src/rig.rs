@@ -14,7 +14,7 @@ use crate::{Document, KeyInfo, Override, Problems, Reader, Section, Target};
 /// ```
 /// use cvtcycle_config::{Override, rig};
 /// let (conditions, _) = rig::load(&[Override::number("rig.ratio.high", 0.45)])?;
-/// assert_eq!(conditions.ratio.high, 0.45);
+/// assert_eq!(conditions.high_ratio, 0.45);
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
 pub fn load(set: &[Override]) -> Result<(Conditions, Vec<KeyInfo>), Problems> {

@@ -295,7 +295,7 @@ fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Prob
     if names.is_empty() || (marked && force) {
         return Ok(());
     }
-    let (of, instead, settings): (_, _, &[Setting]) = match marked {
+    let (of, instead, settings): (_, _, &'static [Setting]) = match marked {
         true => (
             "the files of an earlier run",
             "replace them",

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::consistency::{belongs, consistent};
 use super::problems::{problem, unreadable};
 use cvtcycle_config::bounded;
-use cvtcycle_config::{Place, Problem, Problems};
+use cvtcycle_config::{Place, Problem, Problems, Setting};
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::{self, Record};
 use cvtcycle_output::summary::{SCHEMA, Summary};
@@ -157,7 +157,8 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
     if is_validation(&value) {
         let hint = "its report is validation.html in that directory; it can be added to the report of a run";
         let message = "this is the answer of `cvtcycle validate`, not of a run";
-        return Err(problem(path, message, hint).into());
+        let problem = problem(path, message, hint);
+        return Err(problem.settings(&[Setting::Added]).into());
     }
     let mut found = run(path, &file, value)?;
     let subdirectories = entries.flatten().map(|entry| entry.path());

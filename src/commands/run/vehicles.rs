@@ -5,7 +5,7 @@ use cvtcycle::config::{Argument, Override, Problem, Problems};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 
 use super::RunArgs;
-use crate::args::problems::{assigned, cite, overrides};
+use crate::args::problems::{assigned, overrides};
 
 /// A vehicle of a run.
 pub struct RunVehicle {
@@ -39,14 +39,16 @@ pub fn load(args: &RunArgs, formulation: Formulation, problems: &mut Problems) -
     if setup.is_none() {
         // The fluids are checked by themselves where the vehicle cannot be read.
         let fluids = [
-            (&car.lubricant, "--lubricant"),
-            (&comparison.engine_oil, "--engine-oil"),
+            (&car.lubricant, Argument::Lubricant),
+            (&comparison.engine_oil, Argument::EngineOil),
         ];
-        for (word, option) in fluids {
-            if let Some(word) = word {
-                let fluid = setup::load_lubricant(word);
-                problems.take(fluid.map_err(|found| cite(option, found)));
-            }
+        for (word, argument) in fluids {
+            let fluid = word.as_ref().map(|word| setup::load_lubricant(word));
+            let named = |problem: Problem| match problem.place.is_argument(Argument::Lubricant) {
+                true => problem.at(argument),
+                false => problem,
+            };
+            problems.take(fluid.transpose().map_err(|found| found.map(named)));
         }
     }
     let names = comparison.baselines(&car.vehicle, setup.as_ref(), problems);

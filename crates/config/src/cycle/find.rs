@@ -13,7 +13,7 @@ use crate::{Argument, Problem, Problems, near, suggestion};
 /// ```
 /// use cvtcycle_config::cycle::find;
 /// assert_eq!(find("ece15")?.trace_for(true).duration_s(), 195.0);
-/// assert_eq!(find("ece15_euc").unwrap_err()[0].suggested, ["ece15_eudc"]);
+/// assert_eq!(find("ece15_euc").unwrap_err()[0].suggested[0], "ece15_eudc");
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
 pub fn find(word: &str) -> Result<Cycle, Problems> {

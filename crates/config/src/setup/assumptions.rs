@@ -99,19 +99,16 @@ fn defaults(text: &mut String, files: &[File]) {
     }
 }
 
+const ASSUMED: &str = "with an assumed part";
+const FITTED: &str = "with a fitted part";
+const SOURCED: &str = "source or derived";
+
 fn of_equations(text: &mut String, equations: &[Equation]) {
     text.push_str("\n## Equations and what is built into them\n");
-    let fitted = |e: &Equation| !is_assumed(e) && e.status.contains("fitted");
-    let rest = |e: &Equation| !is_assumed(e) && !fitted(e);
-    let groups: [(&str, &dyn Fn(&Equation) -> bool); 3] = [
-        ("with an assumed part", &is_assumed),
-        ("with a fitted part", &fitted),
-        ("source or derived", &rest),
-    ];
-    for (title, is_in) in groups {
+    for title in [ASSUMED, FITTED, SOURCED] {
         *text += &format!("\n### {title}\n\n");
         text.push_str("| label | statement | status | module |\n|---|---|---|---|\n");
-        for e in equations.iter().filter(|e| is_in(e)) {
+        for e in equations.iter().filter(|e| origin(e) == title) {
             // Statements come out of a Markdown table: their bars are escaped already.
             *text += &format!(
                 "| {} | {} | {} | `{}` |\n",
@@ -121,8 +118,16 @@ fn of_equations(text: &mut String, equations: &[Equation]) {
     }
 }
 
-fn is_assumed(equation: &Equation) -> bool {
-    equation.status.contains("ASSUMED") || equation.statement.contains("ASSUMED")
+/// What the equation rests on, by the words of its status.
+fn origin(equation: &Equation) -> &'static str {
+    let says = |word| equation.status.contains(word);
+    if says("ASSUMED") || equation.statement.contains("ASSUMED") {
+        ASSUMED
+    } else if says("fitted") {
+        FITTED
+    } else {
+        SOURCED
+    }
 }
 
 /// Value with its unit.

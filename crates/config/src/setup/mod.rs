@@ -181,7 +181,7 @@ fn stem(word: &str) -> String {
 /// ```
 /// use cvtcycle_config::setup::load_lubricant;
 /// let (oil, keys) = load_lubricant("dexron_iii")?;
-/// assert_eq!(keys[0].key, "lubricant.title");
+/// assert_eq!(keys[0].key, "title");
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
 pub fn load_lubricant(word: &str) -> Result<(Lubricant, Vec<KeyInfo>), Problems> {
@@ -214,7 +214,7 @@ pub fn read_lubricant(file: &str, text: &str) -> Result<(Lubricant, Vec<KeyInfo>
 ///     ..Options::default()
 /// };
 /// let car = load("rover_216_cvt", &options)?;
-/// assert_eq!(car.road_load.mass_kg, 1250.0);
+/// assert_eq!(car.road_load.base.mass_kg, 1250.0);
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
 pub fn load(word: &str, options: &Options) -> Result<Setup, Problems> {

@@ -74,7 +74,7 @@ impl VehicleTemplate {
     /// let mass = template.slot("road_load.mass_kg")?;
     /// let mut variant = template.bench();
     /// variant.set(&mass, 2.0 * mass.base());
-    /// assert_eq!(variant.build().unwrap().road_load.mass_kg, 2.0 * mass.base());
+    /// assert_eq!(variant.build().unwrap().road_load.base.mass_kg, 2.0 * mass.base());
     /// # Ok::<(), cvtcycle_config::Problems>(())
     /// ```
     pub fn load(word: &str, options: &Options) -> Result<(VehicleTemplate, Setup), Problems> {

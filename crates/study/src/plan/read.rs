@@ -144,9 +144,8 @@ fn overrides(s: &Section, row: &Key, places: &mut Places) -> Vec<Override> {
             item.wrong_type("a text KEY=VALUE");
             return None;
         };
-        let example = "write, for example, \"road_load.mass_kg=1250\"";
-        let report = |problem: Problem| item.report(problem.allowed("KEY=VALUE").hint(example));
-        text.parse::<Override>().map_err(report).ok()
+        let read = text.parse::<Override>();
+        read.map_err(|problem| item.report(problem)).ok()
     };
     let items = items(s, row, places).unwrap_or_default();
     items.iter().filter_map(parse).collect()

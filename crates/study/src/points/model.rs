@@ -106,7 +106,7 @@ impl Model {
         &mut self,
         given: &Given,
         fallback: Formulation,
-    ) -> Result<Solved, (usize, Problem)> {
+    ) -> Result<Solved, Box<(usize, Problem)>> {
         let formulation = given.formulation.unwrap_or(fallback);
         let ratio = given.required(RATIO);
         let vehicle = &self.cvt.belt;
@@ -151,7 +151,7 @@ impl Model {
             let most = 2.0 * LARGEST_GRIP / wrap;
             let allowed = format!("up to {most:.3} at this ratio and temperature");
             let problem = Problem::invalid("the bands would block themselves (TE-5)");
-            return Err((BAND_FRICTION, problem.allowed(allowed)));
+            return Err(Box::new((BAND_FRICTION, problem.allowed(allowed))));
         }
         let point = belt_point(belt, &at, &load);
         let point = match self.band_speed_share {

@@ -157,7 +157,7 @@ impl Job<'_> {
             return Ok(());
         }
         match model.solve(&given, self.formulation) {
-            Err((place, problem)) => row.report(place, problems, problem),
+            Err(refused) => row.report(refused.0, problems, refused.1),
             // What will not be written need not be formatted.
             Ok(solved) if problems.is_empty() => {
                 counts.add(&solved);

@@ -295,7 +295,7 @@ fn check_contents(path: &Path, force: bool) -> Result<bool, Problem> {
     if found.is_empty() || (earlier && force) {
         return Ok(earlier);
     }
-    let (what, hint, settings): (_, _, &[Setting]) = match earlier {
+    let (what, hint, settings): (_, _, &'static [Setting]) = match earlier {
         true => (
             "a study",
             "continue it, replace it, or choose another name",

@@ -185,11 +185,11 @@ impl Row {
             let (start, width) = line.columns_of(*field);
             (cell, start, width)
         });
-        let is_kept = line.text.len() <= MAX_KEPT_LEN;
+        let kept = Some(line.text).filter(|text| text.len() <= MAX_KEPT_LEN);
         Row {
             line: line.number,
             cells: cells.collect(),
-            text: is_kept.then(|| line.text.to_owned()).unwrap_or_default(),
+            text: kept.unwrap_or_default().to_owned(),
         }
     }
 }
