@@ -497,7 +497,7 @@ fn with_map(vehicle: &str, csv: &[u8], key: &str) -> Setup {
     .unwrap();
     std::fs::write(folder.path().join("map.csv"), csv).unwrap();
     let options = Options {
-        set: vec![Override::new(&key, "map.csv").unwrap()],
+        set: vec![Override::new(key, "map.csv").unwrap()],
         ..Options::default()
     };
     load(file.to_str().unwrap(), &options)

@@ -1,5 +1,7 @@
 //! Inputs through the public items of the crate that reads them.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
 #[path = "../../common/loose.rs"]
 mod loose;
 
