@@ -105,7 +105,6 @@ impl Column {
             Cells::Word | Cells::Ignored => (Bound::any(), false),
         };
         let is_whole = |x: f64| !whole || x.fract() == 0.0;
-        let unit = unit_of(&self.name);
         let gap = if self.may_be_empty {
             "leave the cell empty where nothing was measured"
         } else {
@@ -121,10 +120,12 @@ impl Column {
             Ok(x) if !is_whole(x) => {
                 Problem::wrong_type("this is not a whole number").hint("write it without decimals")
             }
-            Ok(_) => Problem::out_of_range("this value is out of range").hint(match unit {
-                "-" => "",
-                _ => "the unit is in the column's name",
-            }),
+            Ok(_) => Problem::out_of_range("this value is out of range").hint(
+                match unit_of(&self.name) {
+                    "-" => "",
+                    _ => "the unit is in the column's name",
+                },
+            ),
             Err(_) if text.is_empty() => Problem::missing("the value is missing").hint(gap),
             Err(_) if text.contains(',') => Problem::wrong_type("this is not a number")
                 .hint("write a decimal point: 12.5 and not 12,5"),
@@ -133,7 +134,7 @@ impl Column {
         };
         let allowed = match (self.allowed, whole) {
             ("", true) => format!("a whole number from {}", range.in_unit("-")),
-            ("", false) => range.in_unit(unit).to_string(),
+            ("", false) => range.in_unit(unit_of(&self.name)).to_string(),
             (words, _) => words.to_owned(),
         };
         Err(match self.hint {

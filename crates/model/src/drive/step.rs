@@ -96,7 +96,11 @@ impl<'a> Drive<'a> {
             dt_s: step.dt_s,
             engine_off: step.engine_off,
         };
-        let transmission = transmission.get_or_insert_with(|| car.transmission.start(&input));
+        // Not `get_or_insert_with`, which is a call in every step.
+        let transmission = match transmission {
+            Some(state) => state,
+            none => none.insert(car.transmission.start(&input)),
+        };
         if kinetic_j.is_nan() {
             let w = transmission.driveline.engine_rad_s;
             let idling = 0.5 * car.engine.inertia_kg_m2 * w * w;

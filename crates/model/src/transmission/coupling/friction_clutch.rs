@@ -94,12 +94,12 @@ impl Coupling for FrictionClutch {
         engine_nm
     }
 
-    #[inline]
+    #[inline(always)]
     fn creep_nm(&self, output_rad_s: f64, idle_rad_s: f64) -> f64 {
         self.creep_nm * (1.0 - ramp(output_rad_s, 0.0, idle_rad_s)) // LC-2
     }
 
-    #[inline]
+    #[inline(always)]
     fn overrun_share(&self, output_rad_s: f64, idle_rad_s: f64) -> f64 {
         let from = 1.1 * idle_rad_s;
         let to = larger(self.release_rad_s, from);
