@@ -224,7 +224,7 @@ fn faults_have_their_place_and_a_hint() {
         ("1 +", "expected a number"),
         ("1 § 2", "no meaning"),
         ("slope(low: y)", "another form"),
-        ("2 * range(low: y)", "stand alone"),
+        ("2 * range(low: y)", "no part of a larger expression"),
         ("abs(1, 2)", "one argument"),
         ("each(low: y)", "expected `in`"),
         ("1 2", "an operator or the end"),

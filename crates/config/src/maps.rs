@@ -178,7 +178,7 @@ pub(super) fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) 
             (x, r[loss])
         })
         .collect();
-    let hint = "every combination of the columns' values must stand once";
+    let hint = "every combination of the columns' values has one row";
     let grid = Grid::from_rows(&rows)
         .map_err(|wrong| {
             s.report_at(

@@ -40,7 +40,7 @@ impl OutputFile {
         })
     }
 
-    /// Where the file will stand.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -11,7 +11,7 @@ use crate::table::{Column, write_csv};
 use cvtcycle_model::bench::{Bench, BenchPoint, Parts};
 use cvtcycle_model::transmission::Transmission;
 
-/// A component that a map can stand for, named like its key in the vehicle file.
+/// A component that a map can replace, named like its key in the vehicle file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapPart {
     /// Whole belt.

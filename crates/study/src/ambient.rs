@@ -8,7 +8,7 @@ use super::study_table::StudyTable;
 use super::table::Values;
 use cvtcycle_config::Problem;
 
-/// The matrix. Numbers stand by car, start and ambient; NaN where a run has none.
+/// The matrix. Numbers by car, start and ambient; NaN where a run has none.
 #[derive(Clone, Debug, Serialize)]
 pub struct Matrix {
     /// Names of the cars, the subject first.

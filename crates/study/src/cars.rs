@@ -33,7 +33,7 @@ pub(super) enum Binding {
     Step,
 }
 
-/// A car in one combination of words: checked documents, and where the numbers stand in them.
+/// A car in one combination of words: checked documents, and the places of the numbers in them.
 pub(super) struct CarVariant {
     pub blueprint: VehicleTemplate,
     /// By factor; none for factors that are no number of this car.

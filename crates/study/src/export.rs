@@ -3,7 +3,7 @@
 //! | format | for | what to know |
 //! |---|---|---|
 //! | `.csv` | anything | names with units; begins with a byte order mark if and only if there is a letter beyond ASCII, since Excel takes such a file for another encoding without it; pandas, polars, DuckDB and Excel skip the mark |
-//! | `.parquet` | programs | names without units, which stand in the metadata with the manifest; a row group a part |
+//! | `.parquet` | programs | names without units, which are in the metadata with the manifest; a row group a part |
 //! | `.xlsx` | Excel, LibreOffice | names with units, numbers as numbers whatever the decimal sign of the country; at most 1 048 575 rows, 16 384 columns and 5 000 000 cells |
 
 mod xlsx;

@@ -13,7 +13,7 @@ pub(super) struct Filler<'s> {
     words: Words,
 }
 
-/// Words that stand in many rows, each held once.
+/// Words of many rows, each held once.
 struct Words {
     empty: Arc<str>,
     ok: Arc<str>,

@@ -81,7 +81,7 @@ fn line_of(bytes: &[u8], at: usize) -> usize {
     bytes.iter().take(at).filter(|&&byte| byte == b'\n').count() + 1
 }
 
-/// Splits a line at its commas. A field may stand in double quotes, and then hold commas; a quote in it is written twice
+/// Splits a line at its commas. A field in double quotes may hold commas; a quote in it is written twice
 /// and stays so.
 ///
 /// # Errors

@@ -57,7 +57,7 @@ pub(super) fn read(
     Ok((columns, rows))
 }
 
-/// Looks for combinations of the axes' values that stand twice, or never. What the file says is repeated in its own units.
+/// Looks for combinations of the axes' values that have two rows, or none. Values are shown in the units of the file.
 fn full(schema: &Schema, columns: &[usize], rows: &[Row], problems: &mut Collector) {
     let value = schema.columns.len() - 1;
     let axes: Vec<(usize, &str)> = columns

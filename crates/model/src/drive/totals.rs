@@ -151,7 +151,7 @@ impl Recorder for Totals {
         p.terms.add(terms, row.dt_s);
         let mut left = row.flags.0;
         while left != 0 {
-            let bit = left.trailing_zeros() as usize; // flags stand in the order of their bits
+            let bit = left.trailing_zeros() as usize; // flags are in the order of their bits
             if let Some(seconds) = self.flag_s.get_mut(bit) {
                 *seconds += row.dt_s;
             }

@@ -1,4 +1,4 @@
-//! exp and ln in plain arithmetic: short enough to stand inside a loop, and the same bits on every machine.
+//! exp and ln in plain arithmetic: short enough to be inlined into a loop, and the same bits on every machine.
 //!
 //! exp x = 2^k t_j exp r with t_j = 2^(j/64) and |r| <= ln 2 / 128, exp r by its Taylor series to r^5; the rest is below 4e-17.
 //! ln x = e ln 2 + ln c + ln(1 + r) with x = 2^e c (1 + r), c the middle of one of 128 cells, ln(1 + r) by its series to r^7; the

@@ -30,7 +30,7 @@ pub fn clamp(x: f64, low: f64, high: f64) -> f64 {
 
 /// Linear ramp: 0 at or below `from`, 1 at or above `to`.
 ///
-/// `from` and `to` may stand in either order; equal ends give a step: 0 below them, 1 at them and above.
+/// `from` and `to` may be in either order; equal ends give a step: 0 below them, 1 at them and above.
 #[inline]
 pub fn ramp(x: f64, from: f64, to: f64) -> f64 {
     let width = to - from;

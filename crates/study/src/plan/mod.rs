@@ -57,7 +57,7 @@ pub struct Plan {
     pub analyse: Vec<String>,
     /// Number of runs above which the user must agree.
     pub most_runs: u64,
-    /// Where the keys of `[study]` stand; `design` is the place of the design's table.
+    /// Places of the keys of `[study]`; `design` is the place of the design's table.
     pub places: Places,
 }
 
@@ -110,7 +110,7 @@ pub struct Factor {
     pub source: String,
     /// Place of its key in the plan.
     pub place: Place,
-    /// Where its values stand: `values` and its items, `range`, `distribution` and `distribution.low` or the like.
+    /// Places of its values: `values` and its items, `range`, `distribution` and `distribution.low` or the like.
     pub places: Places,
 }
 

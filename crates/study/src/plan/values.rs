@@ -48,7 +48,7 @@ impl Of<'_> {
     }
 }
 
-/// Reads the values that the table of a factor gives in one of the three ways, and notes where they stand; none if that is reported.
+/// Reads the values that the table of a factor gives in one of the three ways, and records their places; none if that is reported.
 pub(super) fn read(s: &Section, of: Of, places: &mut Places) -> Option<FactorValues> {
     let list = list(s, of, places);
     let range = range(s, of, places).map(FactorValues::List);

@@ -107,7 +107,7 @@ impl StudyDir {
                 dir.whole().insert(index);
                 continue;
             }
-            // Not to stand for a part while its files are written again.
+            // The part does not count as whole while its files are written again.
             let mark = names::part_mark(index);
             let gone = fs::remove_file(dir.parts().join(&mark));
             gone.map_err(|error| dir.cannot_write(&mark, &error))?;

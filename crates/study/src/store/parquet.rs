@@ -17,7 +17,7 @@ use serde_json::json;
 use super::{RowWriter, check_shape};
 use crate::table::{Head, Kind, Rows, Values};
 
-/// Key of the metadata under which the heads of the columns stand, as JSON.
+/// Key of the metadata of the heads of the columns, as JSON.
 pub const COLUMNS_KEY: &str = "cvtcycle.columns";
 /// Writer of the files, as Parquet's own field says it.
 const CREATED_BY: &str = cvtcycle_output::PROGRAM;
@@ -29,7 +29,7 @@ const LOOKED_AT: usize = 8192;
 /// A Parquet table that is written piece by piece, a row group each.
 ///
 /// Numbers are optional DOUBLEs, null where they are not finite; minus zero is written as zero, as in CSV. Counts are required INT64s,
-/// words optional UTF-8 strings, null where they are empty. Name, unit and meaning of the columns stand in the metadata under
+/// words optional UTF-8 strings, null where they are empty. Name, unit and meaning of the columns are in the metadata under
 /// `cvtcycle.columns`.
 pub struct ParquetTable<W: Write + Send> {
     file: SerializedFileWriter<W>,

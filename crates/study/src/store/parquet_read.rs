@@ -190,7 +190,7 @@ fn each<T: DataType>(
         if records == 0 {
             return Ok(());
         }
-        // A few bytes can stand for any number of equal cells.
+        // A few bytes can encode any number of equal cells.
         let left = room.checked_sub(records);
         room = left.ok_or_else(|| damage("a column is longer than the table"))?;
         if there.is_empty() {

@@ -6,33 +6,17 @@ use cvtcycle_model::thermal::{
     SPRAY_REFERENCE_RAD_S, SUMP,
 };
 
+/// The network of the part's tests, with a heat exchanger and a bypassed cooler.
 fn network() -> Network {
+    let base = crate::parts::network::network();
+    let bypassed = |cooler| Cooler {
+        bypass_below_k: 340.0,
+        ..cooler
+    };
     Network {
-        capacity_j_k: [28e3, 22e3, 8.4e3, 24e3, 6e3],
-        coolant_oil_w_k: 150.0,
-        block_air_w_k: 8.0,
-        block_air_per_speed: 1.0,
-        pan_air_w_k: 3.0,
-        pan_air_per_speed: 0.5,
-        radiator_w_k: 100.0,
-        radiator_per_speed: 40.0,
-        thermostat_from_k: 353.15,
-        thermostat_to_k: 365.15,
-        oil_metal_w_k: 250.0,
-        case_air_w_k: 9.0,
-        case_air_per_speed: 1.2,
-        bell_housing_w_k: 4.0,
-        spray_w_k: 70.0,
         exchanger_w_k: 60.0,
-        exchanger_opens_k: 343.15,
-        cooler: Some(Cooler {
-            still_w_k: 3.0,
-            per_speed_w_s_k_m: 2.0,
-            flow_share: 0.5,
-            highest_m3_s: 2e-4,
-            bypass_below_k: 340.0,
-        }),
-        under_bonnet: 0.1,
+        cooler: base.cooler.map(bypassed),
+        ..base
     }
 }
 

@@ -1,35 +1,8 @@
 //! The belt against an independent transcription of the printed program, and its properties.
 
+use crate::belt_properties::thesis_belt;
 use cvtcycle_model::fluid::BandFriction;
 use cvtcycle_model::transmission::cvt::variator::*;
-
-pub fn thesis_belt(formulation: Formulation) -> Belt {
-    let th = 11f64.to_radians();
-    Belt {
-        centre_distance_m: 0.155,
-        length_m: 0.6486,
-        segment_thickness_m: 1.46e-3,
-        cos_wedge: th.cos(),
-        tan_wedge: th.tan(),
-        band_count: 12.0,
-        band_thickness_m: 0.217e-3,
-        band_width_m: 20e-3,
-        band_offset_m: 3e-3,
-        mass_kg_m: 1.039 / 0.6486,
-        youngs_pa: 206e9,
-        strut_area_m2: 10e-6,
-        initial_gap_m: 0.0,
-        primary_compliance_per_n: 1.0 / 0.6e7,
-        secondary_compliance_per_n: 1.0 / 5e7,
-        stop_from_ratio: 2.30,
-        stop_to_ratio: 2.417,
-        unity_width: 0.015,
-        blend_n: 120.0,
-        slip_bound: 0.1,
-        thrust_ratio: None,
-        formulation,
-    }
-}
 
 fn load(speed_rpm: f64, torque: f64, bar: f64, mu: f64) -> BeltLoad {
     BeltLoad {

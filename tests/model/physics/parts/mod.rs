@@ -9,7 +9,7 @@ mod fuel;
 mod gears;
 mod geometry;
 mod grid;
-mod network;
+pub mod network;
 mod phases;
 mod pressure;
 mod pump;

@@ -90,7 +90,7 @@ impl Trend {
     }
 
     /// Takes a step at standstill: nothing slips, and what follows is not like it.
-    pub(super) fn stand(&mut self) {
+    pub(super) fn reset_at_standstill(&mut self) {
         *self = Trend {
             loss: Series {
                 value: self.loss.value,
@@ -210,7 +210,7 @@ mod tests {
             (trend.next(0.6).0 - 0.02).abs() < 1e-15,
             "one step alone has no trend"
         );
-        trend.stand();
+        trend.reset_at_standstill();
         let (slip, loss_nm) = trend.next(0.6);
         assert!(slip.abs() < 1e-15 && (loss_nm - 1.0).abs() < 1e-15);
     }

@@ -115,7 +115,7 @@ pub(super) fn standstill<P: PrimeMover>(
     let valid = at.inside_maps && at.load_share <= FULL_LOAD_LIMIT;
     common_flags(step, &mut output, valid);
     remember(past, &output, true);
-    warm_start.trend.stand();
+    warm_start.trend.reset_at_standstill();
     past.coupled = false;
     output
 }

@@ -148,3 +148,26 @@ fn explain(of: &Difference) -> String {
         "Each term is also given as the fuel with that energy; both columns add up to the difference of fuel.{far}"
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Difference;
+
+    #[test]
+    fn fuel_of_the_terms_adds_up_to_that_of_the_run() {
+        let of = Difference {
+            fuel_kj_per_l: [32_000.0, 31_500.0],
+            distance_km: [11.0, 10.9],
+            ..Difference::default()
+        };
+        let terms = [
+            [15_000.0, 14_900.0],
+            [-0.8, 0.0],
+            [390.0, 520.5],
+            [2300.0, 2310.0],
+        ];
+        let sum: f64 = terms.iter().map(|kj| of.litres(*kj)[2]).sum();
+        let all = [0, 1].map(|k| terms.iter().map(|kj| kj[k]).sum());
+        assert!((sum - of.litres(all)[2]).abs() < 1e-12);
+    }
+}

@@ -42,7 +42,7 @@ pub fn parse(text: &str, names: &dyn Names) -> Result<Expr, Vec<Fault>> {
             at: 0,
             width: text.chars().count().max(1),
             word: text.to_owned(),
-            message: "`range` and `span` stand alone, they are no number to go on with".to_owned(),
+            message: "`range` and `span` are no part of a larger expression".to_owned(),
             hint: "use min(...) or max(...) within a larger expression".to_owned(),
         }]),
         Ok(expr) if parser.faults.is_empty() => Ok(expr),

@@ -53,7 +53,7 @@ pub(super) fn read(document: &Document, context: &Context) -> Result<Found, Prob
             ));
         }
         [.., last] => {
-            let message = format!("{} stand together", ways.join(" and "));
+            let message = format!("{} in one group", ways.join(" and "));
             s.complain(last, "one of them", &message, "write a [[data]] for each");
             // Which keys belong to it is not known.
             s.pass_over();

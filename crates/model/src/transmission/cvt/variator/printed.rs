@@ -1,6 +1,6 @@
 //! The belt as printed, for verification: Appendix C with its repairs, and chapter 8 where its equations differ.
 //!
-//! Geometry, tension, bands and deflection are those of the other files; here stand the rows that driving smooths away.
+//! Geometry, tension, bands and deflection are those of the other files; this file has the statements that driving smooths.
 //!
 //! | label | statement | status |
 //! |---|---|---|
