@@ -12,8 +12,8 @@ use cvtcycle::output::trace::COLUMNS;
 use cvtcycle::output::{Component, Flags};
 use cvtcycle::study::check::keys::VALIDATION;
 use cvtcycle::study::equations::{Equation, by_label, cited, equations};
+use cvtcycle::study::execute::outputs::outputs;
 use cvtcycle::study::fit::plan::keys::CALIBRATION;
-use cvtcycle::study::outputs::outputs;
 use cvtcycle::study::plan::PLAN;
 use serde_json::{Value, json};
 

@@ -39,7 +39,6 @@ const OUTSIDE: &[(&str, &str)] = &[
         "study::check::judge",
         "found by computing only: tests/results/validate.rs",
     ),
-    ("study::export", "output"),
     ("study::store", "files that the program wrote"),
 ];
 

@@ -12,8 +12,8 @@ use cvtcycle_config::{Place, Problem, Problems, Setting};
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::{self, Record};
 use cvtcycle_output::summary::{SCHEMA, Summary};
-use cvtcycle_study::ambient::{WarmUp, warm_ups};
-use cvtcycle_study::manifest::TRACES;
+use cvtcycle_study::answer::ambient::{WarmUp, warm_ups};
+use cvtcycle_study::execute::manifest::TRACES;
 use cvtcycle_study::store::{self, is_study, read_trace_parquet};
 use cvtcycle_study::{Answer, StudyManifest, StudyTable, answer};
 

@@ -5,9 +5,9 @@ use serde_json::Value;
 use super::number::{Quantity, degc};
 use super::results::StudyResults;
 use cvtcycle_output::summary::{StartWord, Summary};
-use cvtcycle_study::ambient::Matrix;
+use cvtcycle_study::answer::ambient::Matrix;
 use cvtcycle_study::answer::{Comparison, OutputAnswer};
-use cvtcycle_study::outputs::EXCESS;
+use cvtcycle_study::execute::outputs::EXCESS;
 
 /// Differences between the cases of a study and of a run; none if they are the same.
 ///

@@ -2,7 +2,7 @@
 
 use cvtcycle::output::number::{plain, signed};
 use cvtcycle::output::table::TextColumns;
-use cvtcycle::study::ambient::Matrix;
+use cvtcycle::study::answer::ambient::Matrix;
 
 use crate::print::colour::Paint;
 use crate::print::sections;

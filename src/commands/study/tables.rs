@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::answer::{Comparison, OutputAnswer};
-use cvtcycle::study::outputs::EXCESS;
+use cvtcycle::study::execute::outputs::EXCESS;
 use cvtcycle::study::plan::Design;
 use cvtcycle::study::statistics::{
     Estimate, FactorIndices, Group, Groups, SobolIndices, Tornado, TornadoBar, TornadoEnd,

@@ -2,7 +2,7 @@
 
 use super::lines::{LineChart, LinePanel, Look, Points, line_chart};
 use super::picture::Picture;
-use cvtcycle_study::ambient::{FuelPart, Matrix, WarmUp};
+use cvtcycle_study::answer::ambient::{FuelPart, Matrix, WarmUp};
 
 const AMBIENT: &str = "Ambient temperature [\u{b0}C]";
 

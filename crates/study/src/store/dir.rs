@@ -16,7 +16,7 @@ use super::manifest::{Difference, differences, lines};
 use super::names::{self, LOCK, MANIFEST, PARTS, PLAN, RESULTS, SUMMARY};
 use super::parquet::write_parquet;
 use super::read::{Study, is_whole, marked_parts};
-use crate::table::{Head, Rows};
+use super::table::{Head, Rows};
 use cvtcycle_config::bounded::{self, ReadError};
 use cvtcycle_config::{Problem, Setting};
 use cvtcycle_output::files::{

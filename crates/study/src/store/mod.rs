@@ -20,6 +20,7 @@ mod checksums;
 mod csv;
 mod dir;
 mod disk;
+mod export;
 mod history;
 mod layout;
 mod manifest;
@@ -27,24 +28,28 @@ mod names;
 mod parquet;
 mod parquet_read;
 mod read;
+mod table;
 mod trace;
+mod xlsx;
 
 pub use checksums::sha256;
 pub use csv::{CsvTable, Header, write_csv};
 pub use dir::{PartTable, StudyDir};
+pub use export::{Exported, Format, export};
 pub use history::read_trace_parquet;
 pub use layout::Layout;
 pub use names::is_study;
 pub use parquet::{ParquetTable, write_parquet};
 pub use parquet_read::ParquetFile;
 pub use read::{Status, Study};
+pub use table::{Head, Kind, Rows, Values};
+pub(crate) use trace::SharedWords;
 pub use trace::write_trace_parquet;
 
 use std::fmt::Display;
 use std::io;
 use std::path::Path;
 
-use super::table::{Head, Rows, Values};
 use cvtcycle_config::Problem;
 
 /// A table in some format, written piece by piece.

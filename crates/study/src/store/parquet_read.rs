@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::checksums::{Sum, sum_of};
 use super::file_problem;
 use super::parquet::{COLUMNS_KEY, io_error};
-use crate::table::{Head, Rows, Values};
+use super::table::{Head, Rows, Values};
 use cvtcycle_config::Problem;
 use cvtcycle_config::bounded::{self, ReadError};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};

@@ -13,7 +13,7 @@ use super::file_problem;
 use super::layout::Layout;
 use super::names::{self, MANIFEST, PLAN, RESULTS};
 use super::parquet_read::{MEND, ParquetFile, check_sum, unreadable};
-use crate::table::{Head, Rows};
+use super::table::{Head, Rows};
 use cvtcycle_config::Problem;
 use cvtcycle_config::bounded::{self, ReadError};
 

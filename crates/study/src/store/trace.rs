@@ -1,12 +1,13 @@
 //! A trace as a Parquet file.
 
 use std::io::{self, Write};
+use std::sync::Arc;
 
 use super::RowWriter;
 use super::parquet::ParquetTable;
-use crate::table::{Head, Rows};
-use crate::traces::SharedWords;
+use super::table::{Head, Rows, Values};
 use cvtcycle_output::Row;
+use cvtcycle_output::table::Cell;
 use cvtcycle_output::trace::TraceColumn;
 
 /// Rows of a row group.
@@ -35,4 +36,50 @@ pub fn write_trace_parquet<W: Write + Send>(
     table.write(&first)?;
     groups.try_for_each(|group| table.write(&cells(group)))?;
     table.finish()
+}
+
+/// Words of a run, each kept once.
+#[derive(Default)]
+pub(crate) struct SharedWords(Vec<(Cell, Arc<str>)>);
+
+impl SharedWords {
+    /// The text of a cell; equal cells share it.
+    fn text(&mut self, cell: Cell, phases: &[String]) -> Arc<str> {
+        if let Some((_, text)) = self.0.iter().find(|(other, _)| *other == cell) {
+            return text.clone();
+        }
+        let mut text = String::new();
+        cell.push(&mut text, phases);
+        let text: Arc<str> = text.into();
+        self.0.push((cell, text.clone()));
+        text
+    }
+
+    /// Appends the cells of some rows of one run to the columns of a table.
+    pub fn push<'v>(
+        &mut self,
+        columns: &[&TraceColumn],
+        rows: &[Row],
+        phases: &[String],
+        values: impl Iterator<Item = &'v mut Values>,
+    ) {
+        for (column, cells) in columns.iter().zip(values) {
+            match cells {
+                Values::Number(cells) => column.numbers(rows, cells),
+                Values::Count(cells) => {
+                    cells.extend(rows.iter().map(|row| count(&column.cell(row))))
+                }
+                Values::Text(cells) => {
+                    cells.extend(rows.iter().map(|row| self.text(column.cell(row), phases)));
+                }
+            }
+        }
+    }
+}
+
+fn count(cell: &Cell) -> i64 {
+    match cell {
+        Cell::Count(n) => i64::try_from(*n).unwrap_or(i64::MAX),
+        _ => 0,
+    }
 }

@@ -4,19 +4,29 @@
 //! How the points fall into parts follows from the plan alone, so that the same parts come out on any number of threads and after any
 //! interruption. Memory holds a few parts, whatever the number of points.
 
+mod cars;
+pub mod manifest;
+pub mod outputs;
+mod point;
+mod preflight;
+mod prepare;
+mod rows;
+
+pub use cars::StudyCar;
+pub use manifest::StudyManifest;
+pub use prepare::Study;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::cars::StudyCar;
-use super::filler::Filler;
-use super::point::Worker;
-use super::prepare::Study;
-use super::progress::Progress;
-use super::table::Rows;
-use super::traces::Traces;
+use crate::progress::Progress;
+use crate::store::{PartTable, Rows, StudyDir};
 use cvtcycle_config::Problem;
+use manifest::{RUNS, TRACES};
+use point::Worker;
+use rows::{Filler, Traces};
 
 /// Least number of points that a thread takes at a time, and the number of such takings that a larger part is divided into. What comes out
 /// does not depend on them.
@@ -35,6 +45,39 @@ pub trait PartWriter: Sync {
     /// # Errors
     /// What is in the way; the study then stops.
     fn write(&self, part: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem>;
+}
+
+/// Writes the parts of a study into its directory.
+pub struct DirWriter<'a> {
+    study: &'a Study,
+    dir: &'a StudyDir,
+}
+
+impl<'a> DirWriter<'a> {
+    /// For a study in its directory.
+    pub fn new(study: &'a Study, dir: &'a StudyDir) -> Self {
+        DirWriter { study, dir }
+    }
+}
+
+impl PartWriter for DirWriter<'_> {
+    fn write(&self, part: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem> {
+        let index = usize::try_from(part).unwrap_or(usize::MAX);
+        let trace = trace.map(|rows| PartTable {
+            name: TRACES,
+            columns: &self.study.trace_columns,
+            rows,
+            metadata: &[],
+        });
+        let runs = PartTable {
+            name: RUNS,
+            columns: &self.study.columns,
+            rows: runs,
+            metadata: &[],
+        };
+        let tables: Vec<PartTable> = trace.into_iter().chain([runs]).collect();
+        self.dir.write_part(index, &tables)
+    }
 }
 
 /// How an execution ended.

@@ -4,8 +4,9 @@ use std::io::{self, Write};
 
 use rust_xlsxwriter::{DocProperties, ExcelDateTime, Format, Workbook, Worksheet, XlsxError};
 
-use crate::store::{Header, RowWriter};
-use crate::table::{Head, Rows, Values};
+use super::RowWriter;
+use super::csv::Header;
+use super::table::{Head, Rows, Values};
 use cvtcycle_output::number::finite;
 
 /// Limit of the rows of a sheet below its header.
@@ -124,7 +125,7 @@ fn refused(error: XlsxError) -> io::Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::Kind;
+    use crate::store::Kind;
     use std::io::ErrorKind;
 
     fn write(mut out: impl Write, text: &str) -> io::Result<()> {

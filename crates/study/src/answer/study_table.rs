@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::manifest::StudyManifest;
-use super::table::Values;
+use crate::execute::manifest::{RUNS, StudyManifest, TRACES};
+use crate::store::{self, Values};
 use cvtcycle_config::Problem;
 
 /// Whatever holds the parts of a study's table of runs.
@@ -22,6 +22,24 @@ pub trait TableSource {
     /// # Errors
     /// A part that cannot be read, or that has no traces.
     fn traces(&self, part: u64, names: &[&str]) -> Result<Vec<Values>, Problem>;
+}
+
+impl TableSource for store::Study {
+    fn parts(&self) -> Vec<u64> {
+        self.present().iter().map(|part| *part as u64).collect()
+    }
+
+    fn columns(&self, part: u64, names: &[&str]) -> Result<Vec<Values>, Problem> {
+        self.part(usize::try_from(part).unwrap_or(usize::MAX), RUNS)?
+            .read(names)
+            .map(|rows| rows.values)
+    }
+
+    fn traces(&self, part: u64, names: &[&str]) -> Result<Vec<Values>, Problem> {
+        self.part(usize::try_from(part).unwrap_or(usize::MAX), TRACES)?
+            .read(names)
+            .map(|rows| rows.values)
+    }
 }
 
 /// A study's table, seen by car and point. Points of parts that are not there have no numbers.

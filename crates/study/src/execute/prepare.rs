@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::cars::{StudyCar, words};
 use super::outputs::{EXCESS, FUEL, Run, outputs, phase_excess, phase_fuel};
-use super::plan::{Keep, Plan};
-use super::table::{Head, Kind};
+use crate::plan::{Keep, Plan};
+use crate::store::{Head, Kind};
 use cvtcycle_config::cycle::{self, Cycle};
 use cvtcycle_config::setup::is_path;
 use cvtcycle_config::{Argument, Input, Place, Problem, Problems, did_you_mean, unit_of};
@@ -35,9 +35,6 @@ pub struct Study {
     pub(super) outputs: Vec<Column<Run>>,
     pub(super) traces: Vec<&'static TraceColumn>,
 }
-
-/// Number of leading columns: point, vehicle, role, status, reason.
-pub const HEAD_COLUMNS: usize = 5;
 
 impl Study {
     /// Checks everything that a plan names: cars, cycles, keys, every value of every factor by itself, names of columns.

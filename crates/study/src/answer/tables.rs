@@ -3,8 +3,8 @@
 use cvtcycle_output::columns;
 use cvtcycle_output::table::{Column, csv_bytes};
 
-use crate::answer::{Answer, OutputAnswer, Ranked};
-use crate::manifest::StudyManifest;
+use super::{Answer, OutputAnswer, Ranked};
+use crate::execute::manifest::StudyManifest;
 use crate::statistics::{
     Estimate, FactorIndices, Group, QUANTILES, RankFactor, SobolIndices, Tornado, TornadoBar,
     TornadoEnd,

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::outputs::{EXCESS, FUEL, phase_excess, phase_fuel};
-use super::plan::{Design, FactorValue, Plan};
 use super::study_table::StudyTable;
-use super::table::Values;
+use crate::execute::outputs::{EXCESS, FUEL, phase_excess, phase_fuel};
+use crate::plan::{Design, FactorValue, Plan};
+use crate::store::Values;
 use cvtcycle_config::Problem;
 
 /// The matrix. Numbers by car, start and ambient; NaN where a run has none.

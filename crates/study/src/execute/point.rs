@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use super::cars::{Binding, StudyCar};
-use super::plan::{Acts, Factor, FactorValue, Plan};
 use super::preflight::resolved;
 use super::prepare::Study;
-use super::traces::Traces;
+use super::rows::{PointRun, Status, Traces};
+use crate::plan::{Acts, Factor, FactorValue, Plan};
 use cvtcycle_config::Problem;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::setup::template::{ParameterRef, Variant};
@@ -18,38 +18,6 @@ use cvtcycle_output::summary::{Driven, RunSummary, Settings, compare, run_summar
 #[derive(Default)]
 pub(super) struct Worker {
     benches: HashMap<(usize, usize), Variant>,
-}
-
-/// Why a run has no numbers, or numbers that failed a check.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Status {
-    Ok,
-    Failed(String),
-    NotRun(String),
-}
-
-impl Status {
-    pub fn word(&self) -> &'static str {
-        match self {
-            Status::Ok => "ok",
-            Status::Failed(_) => "failed",
-            Status::NotRun(_) => "not_run",
-        }
-    }
-
-    pub fn reason(&self) -> &str {
-        match self {
-            Status::Ok => "",
-            Status::Failed(reason) | Status::NotRun(reason) => reason,
-        }
-    }
-}
-
-/// A run of a point.
-pub(super) struct PointRun {
-    pub status: Status,
-    pub factors: Vec<Option<FactorValue>>,
-    pub numbers: Vec<f64>,
 }
 
 /// A car at a point, with the values of the factors there.

@@ -1,20 +1,27 @@
 //! From a study's table to what it says: each output described, the subject held against its baselines, and which factor decides.
 
+pub mod ambient;
+mod study_table;
+mod tables;
+
+pub use study_table::{StudyTable, TableSource};
+pub use tables::tables;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::ambient::{Matrix, matrix};
-use super::design::{Role, saltelli_role};
-use super::outputs::EXCESS;
-use super::plan::{Design, Factor, FactorValue, Plan};
-use super::statistics::{
+use crate::design::{Role, saltelli_role};
+use crate::execute::outputs::EXCESS;
+use crate::plan::{Design, Factor, FactorValue, Plan};
+use crate::statistics::{
     Blocks, Bootstrap, Groups, RankSensitivity, Share, SobolIndices, Summary, Tornado,
     TornadoInput, group_means, rank_sensitivity, sobol_convergence, tornado,
 };
-use super::study_table::{Status, StudyTable};
+use ambient::{Matrix, matrix};
 use cvtcycle_config::Problem;
+use study_table::Status;
 
 /// What a study says.
 #[derive(Clone, Debug, Serialize)]
@@ -112,7 +119,7 @@ pub struct Ranked {
 ///
 /// use cvtcycle_config::{Problem, Problems};
 /// use cvtcycle_study::plan::Plan;
-/// use cvtcycle_study::table::{Rows, Values};
+/// use cvtcycle_study::store::{Rows, Values};
 /// use cvtcycle_study::{NoProgress, PartWriter, Study, StudyManifest, StudyTable, TableSource, answer};
 ///
 /// /// Keeps the table of runs in memory.
@@ -175,7 +182,7 @@ pub fn answer(frame: &StudyTable) -> Result<Answer, Problem> {
     }
     let is_done = |status: &Status| *status != Status::Missing;
     Ok(Answer {
-        schema: super::manifest::SCHEMA,
+        schema: crate::execute::manifest::SCHEMA,
         title: outline.title.clone(),
         question: outline.question.clone(),
         points: outline.points,

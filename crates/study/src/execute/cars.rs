@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::plan::{Acts, Base, Cars, Factor, FactorValue, Plan};
+use crate::plan::{Acts, Base, Cars, Factor, FactorValue, Plan};
 use cvtcycle_config::setup::template::{ParameterRef, VehicleTemplate};
 use cvtcycle_config::setup::{NamedBy, Options, Setup};
 use cvtcycle_config::{Override, Problem, ProblemKind, Problems};

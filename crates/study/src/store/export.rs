@@ -6,17 +6,18 @@
 //! | `.parquet` | programs | names without units, which are in the metadata with the manifest; a row group a part |
 //! | `.xlsx` | Excel, LibreOffice | names with units, numbers as numbers whatever the decimal sign of the country; at most 1 048 575 rows, 16 384 columns and 5 000 000 cells |
 
-mod xlsx;
-
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::store::{CsvTable, Header, ParquetTable, RowWriter, Status, Study};
+use super::RowWriter;
+use super::csv::{CsvTable, Header};
+use super::parquet::ParquetTable;
+use super::read::{Status, Study};
 use super::table::{Head, Kind, Rows, Values};
+use super::xlsx::{MAX_CELLS, MAX_COLUMNS, MAX_ROWS, XlsxTable};
 use cvtcycle_config::{Problem, Setting};
 use cvtcycle_output::file::OutputFile;
 use cvtcycle_output::files::problem;
-use xlsx::{MAX_CELLS, MAX_COLUMNS, MAX_ROWS, XlsxTable};
 
 /// Byte order mark, as UTF-8.
 const BOM: &[u8] = b"\xEF\xBB\xBF";

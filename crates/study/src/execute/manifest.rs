@@ -5,10 +5,10 @@ use cvtcycle_output::hash::hash;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::plan::{Design, Factor, FactorValue, FactorValues, Plan};
 use super::prepare::Study;
-use super::store::Layout;
-use super::table::Head;
+use crate::plan::{Design, Factor, FactorValue, FactorValues, Plan};
+use crate::store::Head;
+use crate::store::Layout;
 
 /// Name of the table of runs.
 pub const RUNS: &str = "runs";

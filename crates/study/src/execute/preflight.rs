@@ -1,7 +1,7 @@
 //! Every value of a factor tried by itself, before anything starts.
 
 use super::cars::{Binding, CarVariant, StudyCar, words};
-use super::plan::{Acts, Distribution, Factor, FactorValues, Plan};
+use crate::plan::{Acts, Distribution, Factor, FactorValues, Plan};
 use cvtcycle_config::{Place, Problem, Problems};
 
 /// Notes the problems of a factor: a key that a car does not know, values that its files do not allow.
