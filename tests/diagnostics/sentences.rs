@@ -58,7 +58,7 @@ const EXCUSED: &[(&str, &str)] = &[
     (" The message is one sentence", "text of documentation"),
     (
         "problem is",
-        "tests/model/physics/cycles.rs counts problems that are not shown",
+        "tests/model/input/cycle.rs counts problems that are not shown",
     ),
     (
         "a number with a decimal point, or nothing",

@@ -9,11 +9,13 @@
     reason = "tests; some equalities hold to the last bit"
 )]
 
+use cvtcycle_model::equations::EQUATIONS;
+
 mod belt;
+mod bench;
 mod clamp;
 mod control;
 mod drive;
-mod effort;
 mod engine;
 mod fluid;
 mod fuel;
@@ -24,6 +26,7 @@ mod rig;
 mod road;
 mod rows;
 mod spin;
+mod transition;
 
 /// Equal to rounding: two ways of one sum.
 #[track_caller]
@@ -41,4 +44,18 @@ pub fn near(got: f64, want: f64, share: f64) {
         (got - want).abs() <= share * want.abs(),
         "{got} instead of {want}"
     );
+}
+
+#[test]
+fn every_line_has_a_statement_and_a_status() {
+    assert!(EQUATIONS.len() > 80, "{}", EQUATIONS.len());
+    for equation in EQUATIONS {
+        assert!(
+            !equation.status.is_empty() && !equation.statement.is_empty(),
+            "{equation:?}"
+        );
+    }
+    let find = |label: &str| EQUATIONS.iter().find(|equation| equation.label == label);
+    assert!(find("LE-3").is_some_and(|equation| equation.statement.contains("in - out")));
+    assert!(find("LE-3").is_some_and(|equation| equation.module.starts_with("model::")));
 }

@@ -1,7 +1,119 @@
-//! Unit tests of `model::cycle::trace`.
+//! Unit tests of `model::cycle`: commands of gears, phases, traces.
 #![allow(clippy::float_cmp, reason = "division points are promised exactly")]
 
-use cvtcycle_model::cycle::{Interval, Step, Trace};
+use GearCommand::{Change, Declutched, InGear, Neutral};
+use cvtcycle_model::cycle::gears::{GearColumns, GearCommand, Note, commands};
+use cvtcycle_model::cycle::{Cycle, Interval, Step, Trace, Weighting};
+
+fn decode(rows: &[(u8, &str)]) -> Vec<GearCommand> {
+    commands(
+        rows.iter()
+            .map(|&(gear, note)| (gear, Note::parse(note).unwrap())),
+    )
+}
+
+#[test]
+fn notes_become_commands() {
+    let rows = [
+        (0, "PM"),
+        (0, "K1"),
+        (1, "1"),
+        (0, "GC"),
+        (0, "GC"),
+        (2, ""),
+        (0, "K2"),
+        (0, ""),
+        (3, "pm"),
+        (4, "k5"),
+    ];
+    let expected = [
+        Neutral,
+        Declutched(1),
+        InGear(1),
+        Change(2),
+        Change(2),
+        InGear(2),
+        Declutched(2),
+        Neutral,
+        Neutral,
+        Declutched(5),
+    ];
+    assert_eq!(decode(&rows), expected);
+}
+
+#[test]
+fn a_change_goes_into_its_own_gear_then_into_the_next_engaged() {
+    assert_eq!(decode(&[(3, "GC"), (2, "")]), [Change(3), InGear(2)]);
+    assert_eq!(decode(&[(0, "GC"), (0, "K2")]), [Change(2), Declutched(2)]);
+    assert_eq!(
+        decode(&[(0, "GC"), (0, "PM"), (1, "")]),
+        [Change(1), Neutral, InGear(1)]
+    );
+    assert_eq!(
+        decode(&[(4, ""), (0, "GC"), (0, "PM")]),
+        [InGear(4), Neutral, Neutral]
+    );
+}
+
+#[test]
+fn only_known_notes_are_taken() {
+    for bad in [
+        "K", "K0", "K11", "K+1", "KX", "P", "GCC", "K1 ", "é", "11", "-1", "+1",
+    ] {
+        assert_eq!(Note::parse(bad), None, "{bad}");
+    }
+}
+
+#[test]
+fn a_column_serves_the_gear_counts_it_was_made_for() {
+    let columns = GearColumns::new(Some(vec![InGear(5)]), Some(vec![InGear(6)]), None);
+    assert_eq!(columns.for_count(5), Some(&[InGear(5)][..]));
+    assert_eq!(columns.for_count(6), Some(&[InGear(6)][..]));
+    assert_eq!(columns.for_count(4), None);
+    let columns = GearColumns::new(Some(vec![InGear(5)]), None, Some(vec![Change(4)]));
+    assert_eq!(columns.for_count(3), None);
+    assert_eq!(columns.for_count(4), Some(&[Change(4)][..]));
+    assert_eq!(columns.for_count(5), Some(&[InGear(5)][..]));
+    assert_eq!(columns.for_count(6), Some(&[Change(4)][..]));
+}
+
+fn cycle(phases: &[&str]) -> Cycle {
+    Cycle {
+        name: "town".into(),
+        title: String::new(),
+        phases: phases.iter().map(|&p| p.to_owned()).collect(),
+        weighting: Weighting::None,
+        manual: Trace::without_gears(Vec::new()),
+        automatic: None,
+    }
+}
+
+#[test]
+fn groups_merge_the_four_ece15_and_nothing_else() {
+    let groups = cycle(&[
+        "IDLE40", "ECE15_1", "ECE15_2", "ECE15_3", "ECE15_4", "EUDC", "ECE15_5",
+    ])
+    .phase_groups();
+    let expected = [
+        ("idle40", vec![0]),
+        ("ece15", vec![1, 2, 3, 4]),
+        ("eudc", vec![5]),
+        ("ece15_5", vec![6]),
+    ];
+    let expected: Vec<_> = expected
+        .into_iter()
+        .map(|(name, list)| (name.to_owned(), list))
+        .collect();
+    assert_eq!(groups, expected);
+}
+
+#[test]
+fn a_cycle_without_phases_is_one_group() {
+    assert_eq!(
+        cycle(&[]).phase_groups(),
+        vec![("town".to_owned(), vec![0])]
+    );
+}
 
 fn ramp(start_s: f64, end_s: f64, start_speed_m_s: f64, end_speed_m_s: f64) -> Interval {
     Interval {
