@@ -11,9 +11,10 @@ use cvtcycle_model::transmission::Transmission;
 use serde_json::{Value, json};
 
 use crate::number::plain;
+use crate::record::Manifest;
 use crate::table::{Cell, Column, Scope, json_columns, write_csv, write_json};
 use crate::trace::{bar, degc};
-use crate::{Component, Flags, PROGRAM, columns};
+use crate::{Component, Flags, columns};
 use cvtcycle_model::keys::rpm;
 
 /// Version of the JSON object.
@@ -364,9 +365,7 @@ impl LossTable {
 
     /// Everything of the JSON object but its points.
     pub fn json_head(&self) -> Value {
-        json!({
-            "schema": SCHEMA,
-            "program": PROGRAM,
+        Manifest::new(SCHEMA).with(&json!({
             "settings": {
                 "vehicle": self.setup.name,
                 "transmission": if self.is_cvt() { "cvt" } else { "manual" },
@@ -376,7 +375,7 @@ impl LossTable {
             },
             "columns": json_columns(&self.columns()),
             "count": self.grid.len(),
-        })
+        }))
     }
 
     /// Writes rows as CSV.

@@ -30,8 +30,18 @@ pub fn cycle_record(cycle: &Cycle) -> CycleRecord {
     CycleRecord {
         name: cycle.name.clone(),
         title: cycle.title.clone(),
-        sha256: hash(format!("{cycle:?}").as_bytes()),
+        sha256: cycle_sha256(cycle),
     }
+}
+
+/// Hash of a cycle as it was read.
+pub fn cycle_sha256(cycle: &Cycle) -> String {
+    hash(format!("{cycle:?}").as_bytes())
+}
+
+/// Hash of a whole checked car, with what its files name in turn.
+pub fn car_sha256(setup: &Setup) -> String {
+    hash(format!("{:?}", setup.car(REFERENCE_K)).as_bytes())
 }
 
 /// What is known of a car. `name` is its name within the run, `word` what the user calls it.
@@ -69,7 +79,7 @@ pub fn car_record(
         },
         lubricant: fluid(&options.lubricant, "vehicle.transmission_oil")?,
         engine_oil: fluid(&options.engine_oil, "vehicle.engine_oil")?,
-        resolved_sha256: hash(format!("{:?}", setup.car(REFERENCE_K)).as_bytes()),
+        resolved_sha256: car_sha256(setup),
         reference_values: (reference.same, reference.setup.keys.len()),
         changes: changes(&reference.setup.keys, &setup.keys),
         reference: reference.setup.name,

@@ -12,6 +12,7 @@ pub use named::Named;
 use serde::{Deserialize, Serialize};
 
 use super::Flags;
+use super::record::Manifest;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::drive::Outcome;
 
@@ -30,10 +31,9 @@ const STRICT: [Flags; 4] = [
 /// A whole run: the subject and its baselines through one cycle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// Name and version of the program.
-    pub program: String,
+    /// Version [`SCHEMA`] of this object, and the program.
+    #[serde(flatten)]
+    pub manifest: Manifest,
     /// Name of the cycle.
     pub cycle: String,
     /// Ambient temperature, degC.

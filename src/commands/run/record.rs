@@ -4,11 +4,10 @@ use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::model::drive::Conditions;
 use cvtcycle::output::provenance::{car_record, cycle_record};
-use cvtcycle::output::record::{Record, SCHEMA};
+use cvtcycle::output::record::{Manifest, Record, SCHEMA};
 use cvtcycle::study::sensitivity::{Named, sensitivity};
 
 use super::vehicles::RunVehicle;
-use cvtcycle::output::PROGRAM;
 
 /// Steps of a cycle up to which `auto` computes sensitivities, which take some seven hundred runs.
 const MAX_STEPS: usize = 20_000;
@@ -60,8 +59,7 @@ pub fn record(
     let named: Vec<Named> = vehicles.iter().map(named).collect();
     let words = std::env::args_os().skip(1);
     Ok(Record {
-        schema: SCHEMA,
-        program: PROGRAM.to_owned(),
+        manifest: Manifest::new(SCHEMA),
         command: command_line(words.map(|word| word.to_string_lossy().into_owned())),
         cycle: cycle_record(cycle),
         cars: records.collect::<Result<_, _>>()?,

@@ -5,6 +5,7 @@ use super::{
     StartWord, Summary,
 };
 use crate::number::finite;
+use crate::record::Manifest;
 use crate::{Component, Flags, PhaseTotals, TERM_NAMES};
 use cvtcycle_config::cycle::{Cycle, Weighting};
 use cvtcycle_model::drive::{Outcome, litres_per_100km};
@@ -59,8 +60,7 @@ pub fn summarise(
         .map(|baseline| compare(&runs[0], baseline))
         .collect();
     Summary {
-        schema: SCHEMA,
-        program: crate::PROGRAM.to_owned(),
+        manifest: Manifest::new(SCHEMA),
         cycle: cycle.name.clone(),
         ambient_degc,
         start,

@@ -12,7 +12,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("reproducibility", "Reproducibility");
     let mut facts = vec![(
         "Program of the run".to_owned(),
-        found.summary.program.clone(),
+        found.summary.manifest.program.clone(),
     )];
     if let Some(record) = &found.record {
         facts.push(("Command".to_owned(), record.command.clone()));

@@ -2,6 +2,8 @@
 
 use cvtcycle_config::Problems;
 use cvtcycle_output::hash::hash;
+use cvtcycle_output::provenance::{car_sha256, cycle_sha256};
+use cvtcycle_output::record::Manifest;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -21,10 +23,11 @@ impl Study {
     /// The manifest as indented JSON with a line end.
     pub fn manifest(&self, csv: bool) -> String {
         let plan = &self.plan;
-        let value = json!({
-            "schema": SCHEMA,
-            "kind": "study",
-            "program": cvtcycle_output::PROGRAM,
+        let manifest = Manifest {
+            kind: Some("study".to_owned()),
+            ..Manifest::new(SCHEMA)
+        };
+        let value = manifest.with(&json!({
             "title": plan.title,
             "question": plan.question,
             "plan_sha256": hash(plan.text.as_bytes()),
@@ -37,11 +40,11 @@ impl Study {
             "factors": plan.factors.iter().map(factor).collect::<Vec<_>>(),
             "analyse": self.analysed(),
             "phases": self.phases,
-            "cycles": self.cycles.iter().map(|cycle| json!({"name": cycle.name, "sha256": hash(format!("{cycle:?}").as_bytes())})).collect::<Vec<_>>(),
+            "cycles": self.cycles.iter().map(|cycle| json!({"name": cycle.name, "sha256": cycle_sha256(cycle)})).collect::<Vec<_>>(),
             "columns": columns(&self.columns),
             "trace_columns": columns(&self.trace_columns),
             "cars": self.cars.iter().map(|car| self.car_values(car)).collect::<Vec<_>>(),
-        });
+        }));
         let text = serde_json::to_string_pretty(&value).unwrap_or_default();
         text + "\n"
     }
@@ -88,7 +91,7 @@ impl Study {
             "lubricant": setup.oils().0.name,
             "engine_oil": setup.oils().1.name,
             // Other files, such as measured maps, are in the car though not in its keys.
-            "sha256": hash(format!("{:?}", setup.car(cvtcycle_model::road::REFERENCE_K)).as_bytes()),
+            "sha256": car_sha256(setup),
             "values": values.collect::<serde_json::Map<_, _>>(),
         })
     }
@@ -143,7 +146,8 @@ pub struct StudyManifest {
 /// The entries of `study.json` that are read.
 #[derive(Deserialize)]
 struct Stored {
-    schema: u32,
+    #[serde(flatten)]
+    manifest: Manifest,
     title: String,
     question: String,
     design: Design,
@@ -190,8 +194,8 @@ impl StudyManifest {
     /// The first mistake in the manifest, in words.
     pub fn read(manifest: &Value, file: &str, plan: &str) -> Result<Self, String> {
         let stored = Stored::deserialize(manifest).map_err(|error| error.to_string())?;
-        if stored.schema != SCHEMA {
-            let found = stored.schema;
+        if stored.manifest.schema != SCHEMA {
+            let found = stored.manifest.schema;
             return Err(format!(
                 "it has schema {found}; this program reads schema {SCHEMA}"
             ));

@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::plan::CalibrationPlan;
 pub use super::solve::Direction;
 use cvtcycle_output::hash::hash;
+use cvtcycle_output::record::Manifest;
 
 /// Version of the form of `calibration.json`.
 pub const SCHEMA: u32 = 1;
@@ -120,10 +121,9 @@ pub struct Start {
 /// A finished calibration.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Outcome {
-    /// Version of this form.
-    pub schema: u32,
-    /// Program and version.
-    pub program: String,
+    /// Version [`SCHEMA`] of this object, and the program.
+    #[serde(flatten)]
+    pub manifest: Manifest,
     /// Title.
     pub title: String,
     /// Plan as cited.
@@ -175,8 +175,7 @@ impl Outcome {
     pub(super) fn of_plan(plan: &CalibrationPlan) -> Self {
         let files = plan.files.iter();
         Outcome {
-            schema: SCHEMA,
-            program: cvtcycle_output::PROGRAM.to_owned(),
+            manifest: Manifest::new(SCHEMA),
             title: plan.title.clone(),
             plan: plan.file.clone(),
             plan_sha256: hash(plan.text.as_bytes()),
