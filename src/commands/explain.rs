@@ -11,7 +11,7 @@ use cvtcycle::output::table::{Head, TextTable};
 use cvtcycle::output::trace::COLUMNS;
 use cvtcycle::output::{Component, Flags};
 use cvtcycle::study::check::keys::VALIDATION;
-use cvtcycle::study::equations::{Equation, by_label, cited, equations};
+use cvtcycle::study::equations::{Equation, by_label, equations, of_labels};
 use cvtcycle::study::execute::outputs::outputs;
 use cvtcycle::study::fit::plan::keys::CALIBRATION;
 use cvtcycle::study::plan::PLAN;
@@ -140,7 +140,7 @@ impl Meanings {
             !words.is_empty() && words.iter().all(is_in)
         };
         let known = catalogue::known_keys().iter();
-        let keys = known.filter(|info| has(&info.key, &info.doc));
+        let keys = known.filter(|info| has(&info.key, &info.meaning()));
         self.keys
             .extend(keys.map(|key| (key, Vec::new())).take(MAX_FOUND));
         let columns = all_columns().filter(|(_, column)| has(&column.name, &column.doc));
@@ -171,8 +171,8 @@ impl Meanings {
             let entry =
                 |(file, info): &(&str, KeyInfo)| json!({ "file": file, "entry": key_json(info) });
             json!({
-                "key": known.key, "unit": known.unit, "allowed": known.allowed, "meaning": known.doc,
-                "equations": cited(&known.doc).iter().map(equation).collect::<Vec<_>>(),
+                "key": known.key, "unit": known.unit, "allowed": known.allowed, "meaning": known.meaning(),
+                "equations": of_labels(known.labels).map(|e| equation(&e)).collect::<Vec<_>>(),
                 "values": values.iter().map(entry).collect::<Vec<_>>(),
             })
         };
@@ -219,9 +219,9 @@ impl Meanings {
 }
 
 fn key_text(known: &KeyInfo, values: &[(&str, KeyInfo)], paint: Paint) -> String {
-    let (doc, unit) = (&*known.doc, or_none(&known.unit));
+    let (meaning, unit) = (known.meaning(), or_none(&known.unit));
     let mut facts = vec![
-        ("meaning", doc),
+        ("meaning", &*meaning),
         ("unit", unit),
         ("allowed", &*known.allowed),
     ];
@@ -229,7 +229,7 @@ fn key_text(known: &KeyInfo, values: &[(&str, KeyInfo)], paint: Paint) -> String
         let statement = e.statement.replace("\\|", "|");
         format!("{}: {statement} ({})", e.label, e.status)
     };
-    let equations: Vec<String> = cited(&known.doc).iter().map(equation).collect();
+    let equations: Vec<String> = of_labels(known.labels).map(|e| equation(&e)).collect();
     let names = ["equation"].into_iter().chain(std::iter::repeat(""));
     facts.extend(names.zip(equations.iter().map(String::as_str)));
     if plan_keys().iter().any(|key| std::ptr::eq(key, known)) {

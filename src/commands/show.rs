@@ -59,7 +59,7 @@ enum Status {
 pub fn key_json(info: &KeyInfo) -> Value {
     json!({
         "key": info.key, "value": info.value, "unit": info.unit, "status": info.status, "source": info.source,
-        "note": info.note, "allowed": info.allowed, "meaning": info.doc,
+        "note": info.note, "allowed": info.allowed, "meaning": info.meaning(),
     })
 }
 

@@ -2,6 +2,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use super::problem::Problem;
+use cvtcycle_model::keys::with_labels;
 
 /// What is known about one key after reading it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,6 +27,15 @@ pub struct KeyInfo {
     pub is_number: bool,
     /// Meaning of the key.
     pub doc: String,
+    /// Labels of the equations that use it.
+    pub labels: &'static [&'static str],
+}
+
+impl KeyInfo {
+    /// Meaning and labels as they are printed: "displacement (PU-1, PU-4)".
+    pub fn meaning(&self) -> String {
+        with_labels(&self.doc, self.labels)
+    }
 }
 
 /// Problems of one document that are put into words; the rest is counted.

@@ -120,7 +120,7 @@ fn options(choices: &[Choice]) -> Value {
 
 /// Meaning, unit and allowed values.
 fn description(key: &Key<'_>) -> String {
-    let mut text = format!("{}\n\nAllowed: {}", key.doc, key.allowed());
+    let mut text = format!("{}\n\nAllowed: {}", key.meaning(), key.allowed());
     if let Kind::Words(choices) | Kind::Options(choices) = key.kind {
         for choice in choices {
             text += &format!("\n- {}: {}", choice.name, choice.doc);

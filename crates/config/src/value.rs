@@ -127,6 +127,7 @@ impl<'r> Section<'r> {
                 allowed: key.allowed(),
                 is_number: key.is_number(),
                 doc: key.doc.to_string(),
+                labels: key.labels,
                 ..KeyInfo::default()
             });
             log.read.insert(path);

@@ -162,6 +162,7 @@ fn change(shipped: Option<&KeyInfo>, here: Option<&KeyInfo>) -> Change {
 }
 
 fn value(info: &KeyInfo) -> ValueRecord {
+    let meaning = info.meaning();
     let info = info.clone();
     ValueRecord {
         key: info.key,
@@ -169,7 +170,7 @@ fn value(info: &KeyInfo) -> ValueRecord {
         unit: info.unit,
         status: info.status,
         source: info.source,
-        doc: info.doc,
+        doc: meaning,
     }
 }
 

@@ -57,6 +57,7 @@ fn both_forms_carry_their_status() {
         allowed: "0.5 to 10 mm".into(),
         is_number: true,
         doc: "Distance of the bands".into(),
+        labels: &[],
     };
     assert_eq!(keys.unwrap(), [expected]);
 }

@@ -87,6 +87,7 @@ fn info((key, row): (String, &Key<'_>)) -> KeyInfo {
         allowed: row.allowed(),
         is_number: row.is_number(),
         doc: row.doc.to_owned(),
+        labels: row.labels,
         ..KeyInfo::default()
     }
 }

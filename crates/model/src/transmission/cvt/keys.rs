@@ -16,15 +16,15 @@ keys! {
         RatioKeys::TABLE, BeltKeys::TABLE, VariatorKeys::TABLE, PressureKeys::TABLE, PumpKeys::TABLE,
         ShaftKeys::TABLE, ClutchKeys::TABLE, DriveKeys::TABLE, MapKeys::TABLE
     ] {
-        final_drive_ratio: number(1.0, 20.0), "secondary speed over wheel speed (CV-1)";
+        final_drive_ratio: number(1.0, 20.0), "secondary speed over wheel speed", ["CV-1"];
         clamp: or_word("map", options(ClampKeys::CHOICES)), "clamp law: the Rover's map, torque following, or slip limited";
         launch: LAUNCH, "launch device: a wet or dry friction clutch";
-        belt_heat_share: or(0.7, number(0.0, 1.0)), "share of belt loss that heats belt and pulleys (SI-3)";
+        belt_heat_share: or(0.7, number(0.0, 1.0)), "share of belt loss that heats belt and pulleys", ["SI-3"];
     }
 
     /// Keys of `[transmission.cvt.pressure]`.
     PRESSURE: PressureKeys = "pressure" [] {
-        radius_exponent: or(1.43, number(0.0, 4.0)), "exponent of primary radius in the clamp map (PC-1)";
+        radius_exponent: or(1.43, number(0.0, 4.0)), "exponent of primary radius in the clamp map", ["PC-1"];
         cap_bar: number(1.0, 200.0), "largest secondary pressure";
         floor_bar: number(0.0, 200.0), "smallest secondary pressure";
     }

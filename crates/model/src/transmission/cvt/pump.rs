@@ -201,28 +201,28 @@ keys! {
             Choice::word("fixed", "the whole displacement works"),
             Choice::new("dual_cavity", "one of two cavities can idle", DualCavityKeys::TABLE),
             Choice::new("variable", "the displacement follows the demand", VariableKeys::TABLE),
-        ])), "fixed, dual_cavity or variable displacement (PU-4)";
-        displacement_cc_rev: number(0.5, 100.0), "displacement (PU-1)";
-        friction_coefficient: or(0.0, number(0.0, 1.0)), "Coulomb coefficient C_f (PU-1)";
-        viscous_coefficient: number(0.0, 1e6), "viscous coefficient C_v (PU-1)";
-        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (PU-1)";
-        film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the gaps halves the viscous torque; absent: no heating (PU-1, FH-1)";
-        inlet_bar_per_l_min: optional(number(0.0, 1.0)), "drop in strainer and suction line at 10 mPa s; absent: none (PU-5)";
-        constant_nm: or(0.0, number(0.0, 10.0)), "constant torque T_c (PU-1)";
-        line_drop_bar: or(0.0, number(0.0, 50.0)), "pressure drop between pump and secondary (PU-1)";
-        residual_bar: or(1.0, number(0.0, 50.0)), "pressure against which idle displacement turns (PU-4)";
-        lubrication_l_min: or(3.0, number(0.0, 50.0)), "lubrication flow (PU-2)";
-        leakage_l_min_per_bar: or(0.1, number(0.0, 2.0)), "leakage at 10 mPa s (PU-2)";
+        ])), "fixed, dual_cavity or variable displacement", ["PU-4"];
+        displacement_cc_rev: number(0.5, 100.0), "displacement", ["PU-1"];
+        friction_coefficient: or(0.0, number(0.0, 1.0)), "Coulomb coefficient C_f", ["PU-1"];
+        viscous_coefficient: number(0.0, 1e6), "viscous coefficient C_v", ["PU-1"];
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["PU-1"];
+        film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the gaps halves the viscous torque; absent: no heating", ["PU-1", "FH-1"];
+        inlet_bar_per_l_min: optional(number(0.0, 1.0)), "drop in strainer and suction line at 10 mPa s; absent: none", ["PU-5"];
+        constant_nm: or(0.0, number(0.0, 10.0)), "constant torque T_c", ["PU-1"];
+        line_drop_bar: or(0.0, number(0.0, 50.0)), "pressure drop between pump and secondary", ["PU-1"];
+        residual_bar: or(1.0, number(0.0, 50.0)), "pressure against which idle displacement turns", ["PU-4"];
+        lubrication_l_min: or(3.0, number(0.0, 50.0)), "lubrication flow", ["PU-2"];
+        leakage_l_min_per_bar: or(0.1, number(0.0, 2.0)), "leakage at 10 mPa s", ["PU-2"];
     }
 
     /// Keys of `[transmission.cvt.pump.kind.dual_cavity]`.
     DUAL_CAVITY: DualCavityKeys = "dual_cavity" [] {
-        share: or(0.5, number(0.05, 1.0)), "share of displacement in the cavity that always works (PU-4)";
+        share: or(0.5, number(0.05, 1.0)), "share of displacement in the cavity that always works", ["PU-4"];
     }
 
     /// Keys of `[transmission.cvt.pump.kind.variable]`.
     VARIABLE: VariableKeys = "variable" [] {
-        least_share: or(0.25, number(0.05, 1.0)), "smallest share of the displacement (PU-4)";
+        least_share: or(0.25, number(0.05, 1.0)), "smallest share of the displacement", ["PU-4"];
     }
 }
 

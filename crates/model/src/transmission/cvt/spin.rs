@@ -147,27 +147,27 @@ impl SpinAtTemperature {
 keys! {
     /// Keys of `[transmission.cvt.input_shaft]`.
     SHAFT: ShaftKeys = "input_shaft" [] {
-        constant_nm: number(0.0, 20.0), "torque at rest (IS-1)";
-        viscous_nm_per_rpm: number(0.0, 0.01), "slope at 11 mm2/s (IS-1)";
-        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (IS-1)";
-        film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the films halves it; absent: no heating (IS-1, FH-1)";
+        constant_nm: number(0.0, 20.0), "torque at rest", ["IS-1"];
+        viscous_nm_per_rpm: number(0.0, 0.01), "slope at 11 mm2/s", ["IS-1"];
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["IS-1"];
+        film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the films halves it; absent: no heating", ["IS-1", "FH-1"];
     }
 
     /// Keys of `[transmission.cvt.reverse_clutch]`.
     CLUTCH: ClutchKeys = "reverse_clutch" [] {
-        drag_nm: number(0.0, 20.0), "drag at 11 mm2/s (CD-1)";
-        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (CD-1)";
-        cap_nm: number(0.0, 20.0), "largest drag (CD-1)";
+        drag_nm: number(0.0, 20.0), "drag at 11 mm2/s", ["CD-1"];
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["CD-1"];
+        cap_nm: number(0.0, 20.0), "largest drag", ["CD-1"];
     }
 
     /// Keys of `[transmission.cvt.final_drive]`.
     DRIVE: DriveKeys = "final_drive" [] {
-        boundary_nm: number(0.0, 20.0), "part that falls with speed, at the secondary (FD-1)";
-        boundary_rpm: number(10.0, 20_000.0), "its speed scale (FD-1)";
-        viscous_nm: number(0.0, 20.0), "viscous part at 11 mm2/s (FD-1)";
-        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (FD-1)";
-        film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the films halves it; absent: no heating (FD-1, FH-1)";
-        mesh_efficiency: number(0.8, 1.0), "efficiency of the meshes (FD-2)";
+        boundary_nm: number(0.0, 20.0), "part that falls with speed, at the secondary", ["FD-1"];
+        boundary_rpm: number(10.0, 20_000.0), "its speed scale", ["FD-1"];
+        viscous_nm: number(0.0, 20.0), "viscous part at 11 mm2/s", ["FD-1"];
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["FD-1"];
+        film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the films halves it; absent: no heating", ["FD-1", "FH-1"];
+        mesh_efficiency: number(0.8, 1.0), "efficiency of the meshes", ["FD-2"];
     }
 }
 
