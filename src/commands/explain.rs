@@ -1,7 +1,5 @@
 //! `explain`: the meaning of a key, a column, a flag, an equation or a term of the field.
 
-mod terms;
-
 use std::sync::OnceLock;
 
 use clap::Args;
@@ -71,9 +69,7 @@ impl Execute for ExplainArgs {
         let mut meanings = Meanings::default();
         meanings.add(&word);
         if meanings.is_empty() {
-            terms::names_of(&word)
-                .iter()
-                .for_each(|name| meanings.add(name));
+            names_of(&word).iter().for_each(|name| meanings.add(name));
         }
         if meanings.is_empty() {
             meanings.add_keys(&word, plan_keys());
@@ -301,7 +297,7 @@ fn unknown(word: &str) -> Problem {
     let others = all_columns().map(|(_, column)| column.name);
     let others = others.chain(all_flags().map(|(name, _)| name.to_owned()));
     let others = others.chain(equations().map(|equation| equation.label.to_owned()));
-    let others = others.chain(terms::terms().map(|term| term.replace(' ', "-")));
+    let others = others.chain(terms().map(|term| term.replace(' ', "-")));
     let names: Vec<(String, String)> = keys
         .chain(others.map(|name| (name.clone(), name)))
         .collect();
@@ -318,4 +314,29 @@ fn unknown(word: &str) -> Problem {
     let allowed = "a key, table, column, flag, label of an equation, or term";
     let message = format!("`{word}` is not known");
     bad_value("explain", word, allowed, &message, &hint)
+}
+
+/// Terms of the field, a line for each concept: its terms, a colon, the names.
+const TERMS: &str = include_str!("explain/terms.txt");
+
+/// Items of a list separated by commas.
+fn items(list: &'static str) -> impl Iterator<Item = &'static str> {
+    list.split(',').map(str::trim)
+}
+
+fn concepts() -> impl Iterator<Item = (&'static str, &'static str)> {
+    TERMS.lines().filter_map(|line| line.split_once(':'))
+}
+
+/// All terms.
+fn terms() -> impl Iterator<Item = &'static str> {
+    concepts().flat_map(|(terms, _)| items(terms))
+}
+
+/// Names of keys, tables, columns and flags that belong to a term; `-` and `_` count as blanks.
+fn names_of(word: &str) -> Vec<&'static str> {
+    let plain = |text: &str| text.to_lowercase().replace(['-', '_'], " ");
+    let has = |terms| items(terms).any(|term| plain(term) == plain(word));
+    let found = concepts().find(|(terms, _)| has(terms));
+    found.map_or_else(Vec::new, |(_, names)| items(names).collect())
 }

@@ -32,7 +32,6 @@ const OUTSIDE: &[(&str, &str)] = &[
     ("output::file", "output"),
     ("output::files", "output"),
     ("report::compare", "directories that the program wrote"),
-    ("report::consistency", "directories that the program wrote"),
     ("report::problems", "directories that the program wrote"),
     ("report::results", "directories that the program wrote"),
     (

@@ -2,8 +2,8 @@
 
 use cvtcycle::config::Override;
 use cvtcycle::config::setup::{Options, embedded_vehicles, load};
-use cvtcycle::output::hash::hash;
 use cvtcycle::output::provenance::car_record;
+use cvtcycle::output::provenance::hash;
 use cvtcycle::output::record::{CarRecord, Effect, SpeedLine};
 
 fn record_of(word: &str, set: &[&str], lubricant: Option<&str>) -> CarRecord {

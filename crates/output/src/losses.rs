@@ -57,32 +57,28 @@ impl Axis {
         Axis::Speed,
     ];
 
+    /// Title of a plot's axis and heading of a table's column.
+    fn names(self, cvt: bool) -> (&'static str, &'static str) {
+        match self {
+            Axis::Ratio if cvt => ("Belt ratio", "ratio"),
+            Axis::Ratio => ("Gear", "gear"),
+            Axis::Sump => ("Oil in the sump [\u{b0}C]", "sump \u{b0}C"),
+            Axis::Belt => ("Belt and spray [\u{b0}C]", "belt \u{b0}C"),
+            Axis::Throttle => ("Throttle", "throttle"),
+            Axis::Pressure => ("Secondary pressure [bar]", "bar"),
+            Axis::Torque => ("Torque at the output shaft [Nm]", "Nm out"),
+            Axis::Speed => ("Input speed [rpm]", "rpm"),
+        }
+    }
+
     /// Title of a plot's axis.
     pub fn title(self, cvt: bool) -> &'static str {
-        match self {
-            Axis::Ratio if cvt => "Belt ratio",
-            Axis::Ratio => "Gear",
-            Axis::Sump => "Oil in the sump [\u{b0}C]",
-            Axis::Belt => "Belt and spray [\u{b0}C]",
-            Axis::Throttle => "Throttle",
-            Axis::Pressure => "Secondary pressure [bar]",
-            Axis::Torque => "Torque at the output shaft [Nm]",
-            Axis::Speed => "Input speed [rpm]",
-        }
+        self.names(cvt).0
     }
 
     /// Heading of a table's column.
     pub fn short(self, cvt: bool) -> &'static str {
-        match self {
-            Axis::Ratio if cvt => "ratio",
-            Axis::Ratio => "gear",
-            Axis::Sump => "sump \u{b0}C",
-            Axis::Belt => "belt \u{b0}C",
-            Axis::Throttle => "throttle",
-            Axis::Pressure => "bar",
-            Axis::Torque => "Nm out",
-            Axis::Speed => "rpm",
-        }
+        self.names(cvt).1
     }
 
     /// A value of the axis, without its unit.

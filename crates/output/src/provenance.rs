@@ -1,6 +1,5 @@
 //! What a car was made from: its files with their hashes, what differs from the shipped vehicle most like it, every value.
 
-use crate::hash::hash;
 use crate::number::finite;
 use crate::record::{
     CarRecord, Change, CycleRecord, FileRecord, FuelMapRecord, SpeedLine, ValueRecord,
@@ -14,6 +13,7 @@ use cvtcycle_model::road::REFERENCE_K;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::controller::RatioDemand;
+use sha2::{Digest, Sha256};
 
 /// Speed up to which lines of the variogram are drawn, km/h.
 const FASTEST_KMH: f64 = 200.0;
@@ -24,6 +24,12 @@ const TARGETS: [(f64, &str); 4] = [
     (0.30, "target, 30 % of rated power"),
     (0.60, "target, 60 % of rated power"),
 ];
+
+/// SHA-256 in hexadecimal.
+pub fn hash(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
 
 /// A cycle's name and hash.
 pub fn cycle_record(cycle: &Cycle) -> CycleRecord {

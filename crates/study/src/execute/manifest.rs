@@ -1,8 +1,7 @@
 //! The manifest of a study, `study.json`: the same study gives the same bytes, by which a resumed study is recognised.
 
 use cvtcycle_config::Problems;
-use cvtcycle_output::hash::hash;
-use cvtcycle_output::provenance::{car_sha256, cycle_sha256};
+use cvtcycle_output::provenance::{car_sha256, cycle_sha256, hash};
 use cvtcycle_output::record::Manifest;
 use serde::Deserialize;
 use serde_json::{Value, json};

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::plan::CalibrationPlan;
 pub use super::solve::Direction;
-use cvtcycle_output::hash::hash;
+use cvtcycle_output::provenance::hash;
 use cvtcycle_output::record::Manifest;
 
 /// Version of the form of `calibration.json`.

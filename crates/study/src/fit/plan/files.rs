@@ -10,7 +10,7 @@ use crate::fit::data::sheet::{SD, Sheet, and_more};
 use crate::fit::data::{bytes_of, points, scalars, trace};
 use cvtcycle_config::{Bound, Problem, Problems, Section, did_you_mean, unit_of};
 use cvtcycle_model::keys::{Quantity, Values};
-use cvtcycle_output::hash::hash;
+use cvtcycle_output::provenance::hash;
 
 /// Reads the file of a group; what is wrong is reported to `s`.
 pub(super) fn read(s: &Section, way: &str, context: &Context, found: &mut Found) {
