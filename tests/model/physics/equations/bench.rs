@@ -72,11 +72,11 @@ fn val_bench_torques_add_up() {
             let a = bench.solve(&p);
             let slip = a.belt.unwrap().losses.slip_total;
             let ws = p.input_rad_s * (1.0 - slip) / 0.8;
-            near(a.output_rad_s, ws / cvt.final_drive, 1e-9);
+            near(a.output_rad_s, ws / cvt.final_drive.ratio, 1e-9);
             let lost: f64 = a.loss_nm.iter().sum();
             near(
                 a.input_nm,
-                output_nm / cvt.final_drive * ws / p.input_rad_s + lost,
+                output_nm / cvt.final_drive.ratio * ws / p.input_rad_s + lost,
                 1e-9,
             );
             same(a.total_nm(), lost);

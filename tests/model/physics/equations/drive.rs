@@ -11,11 +11,11 @@ use cvtcycle_model::math::{Curve, Grid};
 use cvtcycle_model::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::coupling::CouplingLoad;
-use cvtcycle_model::transmission::cvt::CvtMaps;
 use cvtcycle_model::transmission::cvt::controller::{ClampLaw, ClampSignals};
 use cvtcycle_model::transmission::cvt::variator::{
     BeltAtRatio, BeltLoad, belt_state, sliding_speed_m_s,
 };
+use cvtcycle_model::transmission::cvt::{Cvt, CvtMaps, viscosity_power};
 use cvtcycle_model::transmission::{StepOutput, Transmission};
 
 /// What fixes the output torque.
@@ -24,6 +24,12 @@ enum Bind {
     Demand,
     Least,
     FullLoad,
+}
+
+/// Torque of the input shaft at a viscosity and a speed (IS-1).
+pub fn shaft_nm(cvt: &Cvt, nu_m2_s: f64, speed_rad_s: f64) -> f64 {
+    let shaft = &cvt.shaft_drag;
+    shaft.torque_nm(viscosity_power(nu_m2_s, shaft.exponent), speed_rad_s)
 }
 
 /// Fluids of a setting.
@@ -50,7 +56,7 @@ fn belt_load(b: &Bench, s: &Setting, wp: f64, secondary_nm: f64, clamp_n: f64) -
     let sliding = sliding_speed_m_s(
         &cvt.belt,
         s.ratio,
-        s.ratio * cvt.final_drive * s.wheel_rad_s,
+        s.ratio * cvt.final_drive.ratio * s.wheel_rad_s,
     );
     BeltLoad {
         primary_speed_rad_s: wp,
@@ -87,7 +93,7 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
         d.residual <= 1e-7 && !d.flags.contains(Flags::NOT_CONVERGED),
         "{place}"
     );
-    let ws = cvt.final_drive * s.wheel_rad_s;
+    let ws = cvt.final_drive.ratio * s.wheel_rad_s;
     let wp = s.ratio * ws / (1.0 - d.slip); // CV-1
     let (we, pa, demand_nm) = (
         d.engine_rad_s,
@@ -95,10 +101,16 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
         s.wheel_nm * s.wheel_rad_s / ws,
     );
     let output_nm = d.output_w / ws;
-    let spin = cvt.spin.at(o.nu_sump);
-    let secondary_nm = cvt
-        .spin
-        .secondary_torque_nm(cvt.spin.drive_nm(&spin, ws), output_nm);
+    let clutch_nm = cvt
+        .clutch_drag
+        .torque_nm(viscosity_power(o.nu_sump, cvt.clutch_drag.exponent));
+    let drive = &cvt.final_drive;
+    let drag_nm = drive.drag_nm(
+        viscosity_power(o.nu_sump, drive.exponent),
+        cvtcycle_model::math::exp(drive.fall_exponent(ws)),
+        ws,
+    );
+    let secondary_nm = drive.secondary_torque_nm(drag_nm, output_nm);
     let at = BeltAtRatio::new(&cvt.belt, s.ratio);
     let load = belt_load(b, s, wp, secondary_nm, cvt.secondary_clamp_n(pa, ws));
     let belt = belt_state(&cvt.belt, &at, &load);
@@ -115,7 +127,7 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
         (Component::BeltSlip, belt.losses.slip_nm),
         (Component::BeltWedge, belt.losses.wedge_nm),
         (Component::BeltPenetration, belt.losses.penetration_nm),
-        (Component::ClutchDrag, spin.clutch_nm),
+        (Component::ClutchDrag, clutch_nm),
     ] {
         watts(lost(part), nm * wp);
     }
@@ -127,11 +139,14 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
         cvt.pump.steady_need_m3_s(pa, o.eta_sump),
     );
     watts(lost(Component::Pump), pump.torque_nm * we);
-    watts(lost(Component::InputShaft), spin.shaft_nm(we) * we);
+    watts(
+        lost(Component::InputShaft),
+        shaft_nm(cvt, o.nu_sump, we) * we,
+    );
     near(d.oil_flow_m3_s, pump.working_m3_s, 1e-6);
     assert!((belt.losses.slip_total - d.slip).abs() < 2e-7, "{place}");
-    let primary_nm = belt.input_torque_nm + spin.clutch_nm; // CV-2
-    let spin_nm = pump.torque_nm + spin.shaft_nm(we);
+    let primary_nm = belt.input_torque_nm + clutch_nm; // CV-2
+    let spin_nm = pump.torque_nm + shaft_nm(cvt, o.nu_sump, we);
     let tight = |got: f64, want: f64| {
         assert!(
             (got - want).abs() <= 1e-5 * (1.0 + want.abs()),
@@ -244,7 +259,7 @@ fn engine_and_clamp(x: &Solved) {
         oil_k: x.s.sump_degc + ZERO,
         radius_factor: cvt.radius_factor(&x.at),
     };
-    let ws = cvt.final_drive * x.s.wheel_rad_s;
+    let ws = cvt.final_drive.ratio * x.s.wheel_rad_s;
     near(
         d.secondary_pa,
         cvt.pressure_pa(&signals, &x.at, || x.load, ws),
@@ -415,17 +430,17 @@ fn standing(b: &Bench) {
         let idle = engine.idle_rad_s;
         same(d.engine_rad_s, idle);
         let creep = cvt.coupling.creep_nm(0.0, idle);
-        let spin = cvt.spin.at(o.nu_sump);
+        let shaft_nm = shaft_nm(cvt, o.nu_sump, idle);
         let pump = cvt.pump.state(
             &cvt.pump.at(o.eta_sump),
             idle,
             d.secondary_pa,
             cvt.pump.steady_need_m3_s(d.secondary_pa, o.eta_sump),
         );
-        same(d.shaft_nm, creep + pump.torque_nm + spin.shaft_nm(idle));
+        same(d.shaft_nm, creep + pump.torque_nm + shaft_nm);
         same(d.loss_w[Component::LaunchClutch], creep * idle);
         same(d.loss_w[Component::Pump], pump.torque_nm * idle);
-        same(d.loss_w[Component::InputShaft], spin.shaft_nm(idle) * idle);
+        same(d.loss_w[Component::InputShaft], shaft_nm * idle);
         same(d.oil_flow_m3_s, pump.working_m3_s);
         let share = (d.shaft_nm + engine.accessories_nm(idle)) / engine.full_load_nm(idle);
         assert!(
@@ -503,7 +518,7 @@ fn val_maps_in_a_step() {
             !(20.0..=100.0).contains(&sump_degc),
             "{s:?}"
         );
-        let wp = b.cvt().final_drive * wheel_rad_s / (1.0 - d.slip);
+        let wp = b.cvt().final_drive.ratio * wheel_rad_s / (1.0 - d.slip);
         near(d.loss_w[Component::FinalDrive] + 1.0, 0.7 * wp + 1.0, 1e-9);
         near(d.loss_w[Component::Pump], 0.7 * d.engine_rad_s, 1e-9);
     }

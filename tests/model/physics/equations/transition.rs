@@ -3,7 +3,7 @@
 //!
 //! Truth of the counts: the program, frozen; they fall when the solve gets better, and are then written down anew.
 
-use super::drive::{bench, oil};
+use super::drive::{bench, oil, shaft_nm};
 use super::near;
 use crate::common::bench_step::{Bench, Setting};
 use crate::common::{CARS, Keep, ZERO, car, cycle, hill};
@@ -57,7 +57,7 @@ fn shifted(
     let free = (drawn - cvt.pump.steady_need_m3_s(past_pa, eta)).max(0.0);
     let (down, up) = volumes(cvt, from);
     let demand = RatioDemand {
-        secondary_rad_s: cvt.final_drive * wheel.wheel_rad_s,
+        secondary_rad_s: cvt.final_drive.ratio * wheel.wheel_rad_s,
         power_w: wheel.power_w,
         rated_w: car.engine.rated_w,
         full_load_rad_s: cvt
@@ -248,7 +248,7 @@ fn val_overrun_fades_in_over_two_per_cent() {
     let cvt = b.cvt();
     let k = 60.0 + ZERO;
     let engine = b.car.engine.at(k, k, &b.car.engine_oil, 1.0);
-    let ws = cvt.final_drive * 40.0;
+    let ws = cvt.final_drive.ratio * 40.0;
     for (over, together) in [
         (1.0, 1.0),
         (1.01, 0.5),
@@ -271,7 +271,7 @@ fn val_overrun_fades_in_over_two_per_cent() {
             d.secondary_pa,
             cvt.pump.steady_need_m3_s(d.secondary_pa, o.eta_sump),
         );
-        let spin_nm = pump.torque_nm + cvt.spin.at(o.nu_sump).shaft_nm(we);
+        let spin_nm = pump.torque_nm + shaft_nm(cvt, o.nu_sump, we);
         let carried = share
             * cvt.coupling.overrun_share(wp, engine.idle_rad_s)
             * (engine.drag_nm(we) + engine.accessories_nm(we) + spin_nm);
