@@ -8,8 +8,8 @@ use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::{Kind, Options, Setup, embedded_vehicles, is_path, load, text_of};
 use cvtcycle_config::{KeyInfo, Problems, unit_of};
 use cvtcycle_model::drive::fuel_map;
+use cvtcycle_model::engine::FuelModel;
 use cvtcycle_model::keys::RAD_S;
-use cvtcycle_model::road::REFERENCE_K;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::controller::RatioDemand;
@@ -45,9 +45,36 @@ pub fn cycle_sha256(cycle: &Cycle) -> String {
     hash(format!("{cycle:?}").as_bytes())
 }
 
-/// Hash of a whole checked car, with what its files name in turn.
+/// Hash of a whole checked car: of [`car_text`].
 pub fn car_sha256(setup: &Setup) -> String {
-    hash(format!("{:?}", setup.car(REFERENCE_K)).as_bytes())
+    hash(car_text(setup).as_bytes())
+}
+
+/// A checked car as lines `key = value`, sorted by key and in SI units, with the formulation of its belt and the points of the maps that its
+/// files name. What only names or describes a file (`[vehicle]`, titles), statuses and notes are left out.
+fn car_text(setup: &Setup) -> String {
+    let is_value = |info: &&KeyInfo| {
+        let names = info.key.starts_with("vehicle.") || info.key.ends_with(".title");
+        !names && !info.value.is_empty()
+    };
+    let line = |info: &KeyInfo| match info.si {
+        Some(si) => format!("{} = {si:?}\n", info.key),
+        None => format!("{} = {}\n", info.key, info.value),
+    };
+    let mut lines: Vec<String> = setup.keys.iter().filter(is_value).map(line).collect();
+    lines.sort_unstable();
+    if let Transmission::Cvt(cvt) = setup.transmission() {
+        lines.push(format!("formulation = {}\n", cvt.belt.formulation.name()));
+    }
+    for (component, map) in setup.transmission().maps() {
+        let (axes, values) = (map.grid().axes(), map.grid().values());
+        lines.push(format!("map {} = {axes:?} {values:?}\n", component.name()));
+    }
+    if let FuelModel::Map(map) = &setup.engine().fuel {
+        let (speeds, loads, fuel) = (&map.speed_rad_s, &map.bmep_pa, &map.fuel_pa);
+        lines.push(format!("map fuel = {speeds:?} {loads:?} {fuel:?}\n"));
+    }
+    lines.concat()
 }
 
 /// What is known of a car. `name` is its name within the run, `word` what the user calls it.
