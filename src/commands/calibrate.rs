@@ -13,8 +13,8 @@ use cvtcycle::config::{ProblemKind, Problems};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::charts::calibration::calibration_pictures;
 use cvtcycle::study::fit::outcome::Outcome;
+use cvtcycle::study::fit::outcome::tables as csv_tables;
 use cvtcycle::study::fit::plan::CalibrationPlan;
-use cvtcycle::study::fit::tables::tables as csv_tables;
 use cvtcycle::study::fit::{calibrate, fitted, open};
 
 use super::Execute;

@@ -10,9 +10,11 @@
 use crate::sources::{Source, sources};
 
 /// Marks of a module that makes problems.
-const MARKS: [&str; 5] = [
+const MARKS: [&str; 7] = [
     "Problem::",
     ".complain(",
+    ".conflict(",
+    ".missing(",
     "Complaint::new(",
     "Problem {",
     "Fault {",
@@ -111,11 +113,19 @@ const EXCUSED: &[(&str, &str)] = &[
 ];
 
 /// What makes a complaint of the texts within its brackets.
-const MAKERS: [&str; 20] = [
+const MAKERS: [&str; 28] = [
     "allowed",
     "hint",
     "message",
     "complain",
+    "conflict",
+    "missing",
+    "duplicate",
+    "unknown_key",
+    "unknown_name",
+    "out_of_range",
+    "too_large",
+    "mistyped",
     "Complaint::new",
     "Problem",
     "Complaint",

@@ -84,7 +84,7 @@ impl<'r> Section<'r> {
         if let Some(default) = default_option(key) {
             return Choice::Default(default);
         }
-        self.missing(key);
+        self.report_missing(key);
         Choice::Failed
     }
 

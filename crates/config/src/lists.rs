@@ -35,7 +35,7 @@ impl Section<'_> {
                     self.wrong_type(key.name, found.node, "a list of numbers");
                 }
             }
-            Lookup::Absent if least > 0 => self.missing(key),
+            Lookup::Absent if least > 0 => self.report_missing(key),
             Lookup::Absent => self.defaulted(key.name, "[]", None),
             Lookup::Bad => {}
         }
@@ -75,7 +75,7 @@ impl Section<'_> {
     fn range_of(&self, key: &Key<'_>, node: &Node, text: &str, allowed: Bound) -> Vec<f64> {
         match range_values(text) {
             Some(values) if values.iter().all(|x| allowed.contains(*x)) => return values,
-            Some(_) => self.out_of_range(key.name, node, &key.allowed()),
+            Some(_) => self.report_out_of_range(key.name, node, &key.allowed()),
             None => {
                 let message = format!("`{}`: `{text}` is no range", join(&self.path, key.name));
                 let hint = match text.split_once("..") {

@@ -41,7 +41,7 @@ kinds! {
     Conflict conflict "Values that contradict each other.";
     WrongTransmission wrong_transmission "A key of a transmission that the vehicle does not have.";
     NotSingle not_single "A key that holds no single number, where one is needed.";
-    Syntax syntax "Text that is not valid TOML, CSV, JSON or Parquet.";
+    Syntax syntax "Text that is not valid TOML, CSV, JSON or Parquet, or no valid expression.";
     TooLarge too_large "More rows, values, bytes or cases than the limit.";
     Unreadable unreadable "A file that cannot be read.";
     Output output "A file or folder that cannot be written.";

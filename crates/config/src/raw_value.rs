@@ -2,7 +2,7 @@
 //! has to be.
 use super::document::{Node, Value};
 use super::place::Place;
-use super::problem::Problem;
+use super::problem::{Problem, ProblemKind};
 use super::section::Section;
 use super::value::Lookup;
 use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Quantity};
@@ -115,7 +115,37 @@ impl<'r> RawValue<'r> {
     }
 
     /// Reports that it does not fit.
-    pub fn complain(&self, allowed: &str, message: &str, hint: &str) {
-        self.report(Problem::invalid(message).allowed(allowed).hint(hint));
+    pub fn complain(&self, kind: ProblemKind, allowed: &str, message: &str, hint: &str) {
+        self.report(Problem::new(kind, message).allowed(allowed).hint(hint));
     }
+}
+
+/// A complaint of each kind, about a key of a section and about a value.
+macro_rules! complaints {
+    ($($name:ident $kind:ident $doc:literal;)*) => {
+        impl Section<'_> {
+            $(#[doc = concat!("As [`Section::complain`]: ", $doc)]
+            pub fn $name(&self, key: &str, allowed: &str, message: &str, hint: &str) {
+                self.complain(ProblemKind::$kind, key, allowed, message, hint);
+            })*
+        }
+
+        impl RawValue<'_> {
+            $(#[doc = concat!("As [`RawValue::complain`]: ", $doc)]
+            pub fn $name(&self, allowed: &str, message: &str, hint: &str) {
+                self.complain(ProblemKind::$kind, allowed, message, hint);
+            })*
+        }
+    };
+}
+
+complaints! {
+    conflict Conflict "values contradict each other.";
+    missing Missing "a required value is missing.";
+    duplicate Duplicate "something is given twice.";
+    unknown_key UnknownKey "a key or column is not known.";
+    unknown_name UnknownName "a word is none of the known names.";
+    out_of_range OutOfRange "a number is outside its range.";
+    too_large TooLarge "there are more values than the limit.";
+    mistyped WrongType "the value is of another type.";
 }

@@ -2,7 +2,7 @@
 use super::document::{Node, Span, Table, Value};
 use super::log::join;
 use super::place::Place;
-use super::problem::Problem;
+use super::problem::{Problem, ProblemKind};
 use super::reader::Reader;
 use cvtcycle_model::keys::Key;
 
@@ -135,7 +135,7 @@ impl<'r> Section<'r> {
     }
 
     /// As [`Section::report_at`], for a value that does not fit.
-    pub fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str) {
-        self.report_at(key, Problem::invalid(message).allowed(allowed).hint(hint));
+    pub fn complain(&self, kind: ProblemKind, key: &str, allowed: &str, message: &str, hint: &str) {
+        self.report_at(key, Problem::new(kind, message).allowed(allowed).hint(hint));
     }
 }

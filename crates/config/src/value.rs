@@ -99,7 +99,7 @@ impl<'r> Section<'r> {
         }
         let range = allowed.in_unit(quantity.unit());
         if value.is_finite() {
-            self.out_of_range(key, node, &range);
+            self.report_out_of_range(key, node, &range);
         } else {
             let message = format!("`{}` is not a finite number", join(&self.path, key));
             let problem = Problem::out_of_range(message).allowed(range);
@@ -224,7 +224,7 @@ impl<'r> Section<'r> {
             .record(|log| log.info(&join(&self.path, key)).map_or((), write));
     }
 
-    pub(super) fn out_of_range(&self, key: &str, node: &Node, allowed: &str) {
+    pub(super) fn report_out_of_range(&self, key: &str, node: &Node, allowed: &str) {
         let message = format!("`{}` is out of range", join(&self.path, key));
         let problem = Problem::out_of_range(message).allowed(allowed);
         self.report(&node.span, key, problem);
@@ -287,7 +287,7 @@ impl<'r> Section<'r> {
     }
 
     /// Reports a required key that is absent.
-    pub(super) fn missing(&self, of: &Key<'_>) {
+    pub(super) fn report_missing(&self, of: &Key<'_>) {
         let key = of.name;
         if self.muted {
             return;

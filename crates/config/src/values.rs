@@ -22,7 +22,7 @@ impl<'r> Values for Section<'r> {
             Presence::Number(default) => Values::number_or(self, key, default),
             _ => self.read_number(key, key.range()).unwrap_or_else(|absent| {
                 if absent {
-                    self.missing(key);
+                    self.report_missing(key);
                 }
                 f64::NAN
             }),
@@ -72,7 +72,7 @@ impl<'r> Values for Section<'r> {
                 value
             }
             Value::Integer(_) => {
-                self.out_of_range(key.name, found.node, &key.allowed());
+                self.report_out_of_range(key.name, found.node, &key.allowed());
                 default
             }
             _ => {
@@ -110,7 +110,7 @@ impl<'r> Values for Section<'r> {
             Err(true) => {
                 match default {
                     Some(default) => self.defaulted(key.name, default, None),
-                    None => self.missing(key),
+                    None => self.report_missing(key),
                 }
                 default.unwrap_or_default().to_owned()
             }
@@ -146,7 +146,7 @@ impl<'r> Values for Section<'r> {
             return None;
         }
         if matches!(key.presence, Presence::Required) && !Section::has(self, key.name) {
-            self.missing(key);
+            self.report_missing(key);
             return None;
         }
         Some(rows)
@@ -165,7 +165,7 @@ impl<'r> Values for Section<'r> {
     ) -> Option<BsfcMap> {
         let file = self.read_text(key);
         if file == Err(true) {
-            self.missing(key);
+            self.report_missing(key);
         }
         maps::bsfc_map(
             self,

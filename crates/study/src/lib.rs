@@ -17,7 +17,6 @@
 //! | `check` | comparison with published values |
 //! | `fit` | parameters fitted to measurements |
 //! | `equations` | the labelled equations of model and statistics |
-//! | `progress` | progress of long computations |
 
 pub mod answer;
 pub mod check;
@@ -28,10 +27,29 @@ pub mod design;
 pub mod equations;
 pub mod execute;
 pub mod plan;
-pub mod progress;
 pub mod statistics;
 pub mod store;
 
 pub use answer::{Answer, StudyTable, TableSource, answer};
 pub use execute::{End, PartWriter, Study, StudyCar, StudyManifest};
-pub use progress::{NoProgress, Progress};
+
+/// Receives progress from several threads at once.
+pub trait Progress: Sync {
+    /// Counts finished units of work: runs of a study, evaluations of a fit.
+    fn advance(&self, count: u64);
+
+    /// True if the computation is to stop now. What is finished is kept.
+    fn stopped(&self) -> bool;
+}
+
+/// Ignores progress and never stops.
+#[derive(Clone, Copy, Debug)]
+pub struct NoProgress;
+
+impl Progress for NoProgress {
+    fn advance(&self, _: u64) {}
+
+    fn stopped(&self) -> bool {
+        false
+    }
+}

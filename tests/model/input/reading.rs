@@ -204,8 +204,8 @@ fn complaints_stand_at_the_value() {
     let reader = Reader::new(&document);
     let section = reader.root().table("a");
     section.number("x", Bound::any(), "");
-    section.complain("x", "below y", "`x` is above `y`", "swap them");
-    section.complain("y", "", "no `y`", "");
+    section.conflict("x", "below y", "`x` is above `y`", "swap them");
+    section.missing("y", "", "no `y`", "");
     reader.problem(Problem::invalid("from outside"));
     drop(section);
     let problems = reader.finish().unwrap_err();

@@ -21,7 +21,7 @@ use std::ops::Range;
 use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::progress::Progress;
+use crate::Progress;
 use crate::store::{PartTable, Rows, StudyDir};
 use cvtcycle_config::Problem;
 use manifest::{RUNS, TRACES};

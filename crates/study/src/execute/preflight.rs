@@ -17,7 +17,7 @@ pub(super) fn factor(plan: &Plan, index: usize, cars: &[StudyCar], problems: &mu
     let is_not = |car: &StudyCar| car.bindings[index] == Binding::Not;
     if cars.iter().all(is_not) && !cars.is_empty() {
         let message = "the study has no baseline, so no car has this factor";
-        let problem = Problem::invalid(message)
+        let problem = Problem::conflict(message)
             .at(place(factor, None))
             .key(factor.key.as_str());
         problems.push(problem.hint("name baselines, or give `cars = \"subject\"`"));
@@ -112,14 +112,13 @@ fn of_value(
         false => &problem.hint,
     };
     let (name, message) = (&car.name, &problem.message);
-    Problem::invalid(format!(
-        "{name}: {value}{unit}{by} is not possible: {message}"
-    ))
-    .at(place(factor, entry))
-    .key(factor.key.as_str())
-    .value(number.to_string())
-    .allowed(problem.allowed.as_str())
-    .hint(hint)
+    let message = format!("{name}: {value}{unit}{by} is not possible: {message}");
+    Problem::new(problem.kind, message)
+        .at(place(factor, entry))
+        .key(factor.key.as_str())
+        .value(number.to_string())
+        .allowed(problem.allowed.as_str())
+        .hint(hint)
 }
 
 fn variants(plan: &Plan, index: usize, car: &StudyCar, stride: usize, problems: &mut Problems) {

@@ -7,6 +7,7 @@ use super::cars::{StudyCar, words};
 use super::outputs::{EXCESS, FUEL, Run, outputs, phase_excess, phase_fuel};
 use crate::plan::{Keep, Plan};
 use crate::store::{Head, Kind};
+use cvtcycle_config::ProblemKind::{self, TooLarge, UnknownName};
 use cvtcycle_config::cycle::{self, Cycle};
 use cvtcycle_config::setup::is_path;
 use cvtcycle_config::{Argument, Input, Place, Problem, Problems, did_you_mean, unit_of};
@@ -60,7 +61,13 @@ impl Study {
         let cycles = cycles(&plan, &folder, &mut problems);
         let Some(points) = plan.design.points(&plan.factors) else {
             let message = "the design has more points than can be counted";
-            problems.push(of_plan(&plan, "design", message, "give fewer values"));
+            problems.push(of_plan(
+                TooLarge,
+                &plan,
+                "design",
+                message,
+                "give fewer values",
+            ));
             return Err(problems);
         };
         for index in 0..plan.factors.len() {
@@ -126,7 +133,7 @@ fn unknown_analysed(plan: &Plan, outputs: &[Column<Run>]) -> Problems {
         let hint = did_you_mean(name, known()).map_or_else(String::new, |hint| hint + " ");
         let message = format!("there is no number named `{name}` in a run's row");
         let hint = format!("{hint}docs/plan_format.md names them");
-        of_plan(plan, "analyse", &message, &hint).value(name.as_str())
+        of_plan(UnknownName, plan, "analyse", &message, &hint).value(name.as_str())
     };
     plan.analyse
         .iter()
@@ -136,9 +143,9 @@ fn unknown_analysed(plan: &Plan, outputs: &[Column<Run>]) -> Problems {
 }
 
 /// A problem of a key of the plan's head.
-fn of_plan(plan: &Plan, key: &str, message: &str, hint: &str) -> Problem {
+fn of_plan(kind: ProblemKind, plan: &Plan, key: &str, message: &str, hint: &str) -> Problem {
     let place = plan.places.of(key).clone();
-    Problem::invalid(message).at(place).key(key).hint(hint)
+    Problem::new(kind, message).at(place).key(key).hint(hint)
 }
 
 /// A file that the plan names, seen from the current directory.

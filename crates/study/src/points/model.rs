@@ -84,7 +84,9 @@ impl Model {
         let mut found = Vec::new();
         let undefined = |place: &str, allowed: &str| {
             let message = format!("{} is not defined at {place}", formulation.name());
-            Problem::invalid(message).allowed(allowed).hint(DEFINED)
+            Problem::out_of_range(message)
+                .allowed(allowed)
+                .hint(DEFINED)
         };
         let is_printed = formulation != Formulation::Smooth;
         if let Some(ratio) = given.numbers[RATIO] {
@@ -150,7 +152,7 @@ impl Model {
         if load.band.mu * wrap / 2.0 > LARGEST_GRIP {
             let most = 2.0 * LARGEST_GRIP / wrap;
             let allowed = format!("up to {most:.3} at this ratio and temperature");
-            let problem = Problem::invalid("the bands would block themselves (TE-5)");
+            let problem = Problem::out_of_range("the bands would block themselves (TE-5)");
             return Err(Box::new((BAND_FRICTION, problem.allowed(allowed))));
         }
         let point = belt_point(belt, &at, &load);
@@ -229,13 +231,13 @@ fn friction(
 fn no_geometry(ratios: [f64; 2]) -> Problem {
     if ratios[0].is_nan() {
         let hint = "check length_m of the belt against centre_distance_mm";
-        return Problem::invalid("this belt does not fit round these pulleys at any ratio")
+        return Problem::conflict("this belt does not fit round these pulleys at any ratio")
             .hint(hint);
     }
     let message =
         "the belt cannot run at this ratio: no radii on which both pulleys carry a segment";
     let allowed = format!("{:.4} to {:.4}", ratios[0], ratios[1]);
-    Problem::invalid(message)
+    Problem::out_of_range(message)
         .allowed(allowed)
         .hint("I = R_sec / R_pri")
 }

@@ -1,6 +1,6 @@
 //! The belt alone as a table.
 
-use super::columns::{Column, TableRow, combinations, from_rows, numbers, rpm};
+use super::{Column, TableRow, combinations, from_rows, numbers, rpm};
 use crate::check::expr::Table;
 use crate::check::source::{Kind, Source};
 use cvtcycle_config::setup::Setup;

@@ -64,7 +64,7 @@ pub fn check(form: Form, file: &str, bytes: &[u8]) -> Result<usize, Problems> {
 /// The operating system's words, or more bytes than a table may have, at the place in the plan.
 pub(super) fn bytes_of(path: &str, place: &Place, key: &str) -> Result<Vec<u8>, Problems> {
     bounded::read_file(path, bounded::TABLE).map_err(|error| {
-        Problem::invalid(format!("cannot read `{path}`: {error}"))
+        Problem::unreadable(format!("cannot read `{path}`: {error}"))
             .at(place.clone())
             .key(key)
             .value(path)

@@ -32,7 +32,7 @@ pub fn read(
         let known =
             |phases: &&[String]| word.is_empty() || phases.iter().any(|phase| phase == word);
         if let Some(phases) = phases.filter(|phases| !known(phases)) {
-            let problem = Problem::invalid(format!("the cycle has no phase `{word}`"))
+            let problem = Problem::unknown_name(format!("the cycle has no phase `{word}`"))
                 .allowed(phases.join(", "))
                 .hint("leave the cell empty for the whole cycle");
             problems.add(sheet.problem(row, phase.unwrap_or(0), problem));
@@ -49,13 +49,13 @@ fn no_quantity(word: &str, quantities: &[&'static str]) -> Problem {
         .filter(|full| rest(full) == Some(true));
     let with_unit: Vec<&str> = with_unit.collect();
     if !with_unit.is_empty() {
-        return Problem::invalid("this quantity has no unit")
+        return Problem::unknown_name("this quantity has no unit")
             .allowed(with_unit.join(", "))
             .hint("name it by its unit, and see that the value is in it");
     }
     let hint = did_you_mean(word, quantities.iter().copied());
     let allowed = "totals of a run, such as fuel_l_per_100km or end_sump_degc: docs/calibration.md lists them";
-    Problem::invalid("there is no such quantity")
+    Problem::unknown_name("there is no such quantity")
         .allowed(allowed)
         .hint(hint.unwrap_or_else(|| "remove the row or rename it".to_owned()))
 }

@@ -36,7 +36,7 @@ pub fn read(file: &str, bytes: &[u8], computed: &[&'static str]) -> (Option<Shee
         let falls: Vec<&[(usize, f64)]> = pairs.collect();
         if let Some([(_, before), (row, _)]) = falls.first() {
             let message = format!("the time does not rise{}", and_more(falls.len()));
-            let complaint = Problem::invalid(message)
+            let complaint = Problem::out_of_range(message)
                 .allowed(format!("above {before} s"))
                 .hint("sort the rows, remove repeated ones");
             problems.add(sheet.problem(*row, time, complaint));
