@@ -85,6 +85,7 @@ fn any_pump() -> impl Strategy<Value = Pump> {
             Pump {
                 heating,
                 inlet_pa_s_m3,
+                inlet_depression_pa: 0.7e5,
                 kind,
                 displacement_m3_rad: cc / std::f64::consts::TAU,
                 friction,
@@ -180,6 +181,7 @@ fn pump_is_continuous_in_speed_and_need() {
             viscous_exponent: 0.9,
             heating: ViscousSelfHeating::halving_at_w(Some(600.0)),
             inlet_pa_s_m3: 2e7,
+            inlet_depression_pa: 0.7e5,
             constant_nm: 0.0,
             line_drop_pa: 0.0,
             residual_pa: 1e5,

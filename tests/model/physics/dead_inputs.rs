@@ -130,7 +130,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 19] = [
+const NEEDS: [(&str, &[&str], &str); 20] = [
     (
         "variator.piston_outer_mm",
         &["transmission.cvt.variator.compensated=false"],
@@ -194,6 +194,11 @@ const NEEDS: [(&str, &[&str], &str); 19] = [
         "pump.lubrication_l_min",
         &["transmission.cvt.pump.kind=variable"],
         "a fixed pump gives all its flow: shifts are limited only near idle",
+    ),
+    (
+        "pump.inlet_depression_bar",
+        &["transmission.cvt.pump.inlet_bar_per_l_min=0.004"],
+        "bounds the flow of oil thicker than in these runs; a fixed pump needs little of its flow",
     ),
     (
         "pump.inlet_bar_per_l_min",

@@ -17,6 +17,7 @@ fn pump(kind: PumpKind) -> Pump {
         viscous_exponent: 0.9,
         heating: ViscousSelfHeating::halving_at_w(Some(900.0)),
         inlet_pa_s_m3: 1.2e7,
+        inlet_depression_pa: 0.6e5,
         constant_nm: 0.11,
         line_drop_pa: 0.8e5,
         residual_pa: 1.5e5,
@@ -34,7 +35,7 @@ fn heated(unheated: f64, speed: f64, halving_w: f64) -> f64 {
 #[test]
 fn val_pump_by_hand() {
     let (eta, w, pa) = (0.25, 260.0, 17e5);
-    let drawn = |flow: f64| flow / (1.0 + (flow * 1.2e7 * eta / 0.01 / 0.7e5).powi(4)).powf(0.25);
+    let drawn = |flow: f64| flow / (1.0 + (flow * 1.2e7 * eta / 0.01 / 0.6e5).powi(4)).powf(0.25);
     let flow = 1.6e-6 * w;
     let smooth = |u: f64| u * u * (3.0 - 2.0 * u);
     for need in [0.0, 0.44, 0.47, 0.49, 0.6, 0.9, 1.0, 1.3].map(|share| share * drawn(flow)) {

@@ -116,6 +116,7 @@ pub fn pump(kind: PumpKind) -> Pump {
         viscous_exponent: 0.9,
         heating: ViscousSelfHeating::NONE,
         inlet_pa_s_m3: 0.0,
+        inlet_depression_pa: 0.7e5,
         constant_nm: 0.0,
         line_drop_pa: 0.0,
         residual_pa: 1e5,
@@ -179,6 +180,12 @@ fn val_thick_oil_fills_no_more_than_the_air_pushes_in() {
             && fast.working_m3_s > 7.7 * litre_min
     );
     assert!(!warm.flow_limited && (warm.working_m3_s / warm.flow_m3_s - 1.0).abs() < 1e-7);
+    let high_up = Pump {
+        inlet_depression_pa: 0.5e5,
+        ..p
+    };
+    let share = p.at(3.0).inv_inlet_flow / high_up.at(3.0).inv_inlet_flow;
+    assert!((share - 5.0 / 7.0).abs() < 1e-15);
     // The torque loses nothing: the chamber is filled from the outlet.
     let unbounded = Pump {
         inlet_pa_s_m3: 0.0,
