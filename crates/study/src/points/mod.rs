@@ -7,6 +7,7 @@ mod model;
 mod rows;
 
 pub use columns::{OUTPUTS, Point, output_columns};
+pub(crate) use model::{GivenFriction, belt_k, belt_load};
 pub use model::{Model, Solved};
 pub use rows::NUMBERS;
 

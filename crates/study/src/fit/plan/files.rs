@@ -7,7 +7,7 @@ use super::{BenchPoints, Context, Found, Measured, Observable, Observation};
 use crate::check::source::{self, Kind, Source};
 use crate::check::tables::{self, bench};
 use crate::fit::data::sheet::{SD, Sheet, and_more};
-use crate::fit::data::{bytes_of, points, scalars, trace};
+use crate::fit::data::{TIME, bench_points, bytes_of, read_points, read_scalars, read_trace};
 use cvtcycle_config::{Bound, Problem, Problems, Section, did_you_mean, unit_of};
 use cvtcycle_model::keys::{Quantity, Values};
 use cvtcycle_output::provenance::hash;
@@ -147,7 +147,7 @@ fn of_points(s: &Section, (path, bytes): File, context: &Context, found: &mut Fo
     };
     let fold_by = s.optional_text(&DATA.fold_by);
     let Some(bytes) = bytes else { return };
-    let (sheet, problems) = points::read(path, bytes);
+    let (sheet, problems) = read_points(path, bytes);
     report(s, problems);
     let Some(sheet) = sheet else { return };
     deviations.check(s, &sheet);
@@ -185,7 +185,7 @@ fn of_points(s: &Section, (path, bytes): File, context: &Context, found: &mut Fo
         }
     }
     found.benches.push(BenchPoints {
-        points: points::points(&sheet, bench::parts(&car)),
+        points: bench_points(&sheet, bench::parts(&car)),
         source: car,
     });
 }
@@ -254,12 +254,12 @@ fn of_trace(s: &Section, (path, bytes): File, context: &Context, found: &mut Fou
         .into_iter()
         .flat_map(|kind| tables::columns(kind, false));
     let names: Vec<&'static str> = names.collect();
-    let (sheet, problems) = trace::read(path, bytes, &names);
+    let (sheet, problems) = read_trace(path, bytes, &names);
     report(s, problems);
     let Some(sheet) = sheet else { return };
     deviations.check(s, &sheet);
     let Some(source) = source else { return };
-    let time = sheet.find(trace::TIME);
+    let time = sheet.find(TIME);
     let at = |row: usize| sheet.number(row, time).unwrap_or(f64::NAN);
     if let Some(end_s) = end_of(&source) {
         let late = (0..sheet.rows.len()).filter(|row| at(*row) > end_s);
@@ -316,7 +316,7 @@ fn of_scalars(s: &Section, (path, bytes): File, context: &Context, found: &mut F
         .as_ref()
         .and_then(|source| source::cycle(source).ok());
     let phases = cycle.as_ref().map(source::phases);
-    let (sheet, problems) = scalars::read(path, bytes, &names, phases.as_deref());
+    let (sheet, problems) = read_scalars(path, bytes, &names, phases.as_deref());
     report(s, problems);
     let (Some(source), Some(sheet)) = (source, sheet) else {
         return;
