@@ -5,7 +5,7 @@
 use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Quantity, Repeat, Table};
 use serde_json::{Map, Value, json};
 
-use crate::value::STATUSES;
+use crate::reader::value::STATUSES;
 
 /// The schema of a kind of file: its name in the title, and its keys.
 ///

@@ -1,7 +1,7 @@
 //! Collects the problems of a CSV file with their places.
 
 use super::text::{Field, decode, empty, split};
-use crate::source::shortened;
+use crate::problem::source::shortened;
 use crate::{Input, Place, Problem, Problems};
 
 /// Most problems that are described; the rest is counted.

@@ -7,9 +7,9 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::inputs::Inputs;
-use super::{Options, Setup, wrong_transmission};
-use crate::overrides::path_of;
+use super::inputs::{Inputs, wrong_keys};
+use super::{Options, Setup};
+use crate::document::overrides::path_of;
 use crate::{
     Document, Input, KeyInfo, KeyPath, Override, PatchedDocument, Problem, Problems, Reader,
     Target, unit_of,
@@ -132,8 +132,7 @@ impl VehicleTemplate {
         let inputs = &self.inputs;
         let set = std::slice::from_ref(&by);
         if let Some(document) = &inputs.files[0].document
-            && let Some(wrong) =
-                wrong_transmission::wrong_keys(document, set, &inputs.frame.name).pop()
+            && let Some(wrong) = wrong_keys(document, set, &inputs.frame.name).pop()
         {
             return Err(unset(wrong));
         }

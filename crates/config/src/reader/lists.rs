@@ -1,18 +1,18 @@
 //! Reading of lists and of tables of numbers.
 use std::fmt;
 
-use super::document::{Node, Value};
-use super::log::join;
-use super::overrides::Override;
-use super::problem::Problem;
-use super::section::Section;
-use super::value::Lookup;
+use crate::document::overrides::Override;
+use crate::document::{Node, Value};
+use crate::problem::Problem;
+use crate::reader::log::join;
+use crate::reader::section::Section;
+use crate::reader::value::Lookup;
 use cvtcycle_model::keys::{Bound, Column, Key, Kind, Quantity, count};
 
 impl Section<'_> {
     /// A list of numbers in SI units. After a problem the numbers concerned are NaN, and the length is
     /// within the allowed one all the same.
-    pub(super) fn read_numbers(&self, key: &Key<'_>) -> Vec<f64> {
+    pub(crate) fn read_numbers(&self, key: &Key<'_>) -> Vec<f64> {
         let (allowed, least, most) = match key.kind {
             Kind::Numbers(each, least, most) => (each, least, most),
             _ => (Bound::any(), 0, usize::MAX),
@@ -137,7 +137,7 @@ impl Section<'_> {
 
     /// A table of numbers written as a list of rows, in SI units by the suffixes of the column names. Empty if the key is absent; rows with
     /// a problem are left out.
-    pub(super) fn read_rows(&self, key: &Key<'_>) -> Vec<Vec<f64>> {
+    pub(crate) fn read_rows(&self, key: &Key<'_>) -> Vec<Vec<f64>> {
         let Kind::Rows(columns) = key.kind else {
             return Vec::new();
         };

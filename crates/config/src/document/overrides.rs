@@ -7,10 +7,9 @@ use std::sync::{Arc, OnceLock};
 use serde::{Serialize, Serializer};
 use toml::de::DeValue;
 
-use super::document::{Node, Span, Value, convert};
-use super::place::Input;
-use super::problem::Problem;
-use super::problems::Problems;
+use crate::document::{Node, Span, Value, convert};
+use crate::problem::place::Input;
+use crate::problem::{Problem, Problems};
 use cvtcycle_model::files;
 use cvtcycle_model::keys::{Key, Table};
 
@@ -171,7 +170,7 @@ impl Override {
     }
 
     /// Key in its file, taken apart.
-    pub(super) fn path(&self) -> &KeyPath {
+    pub(crate) fn path(&self) -> &KeyPath {
         &self.path
     }
 
@@ -182,7 +181,7 @@ impl Override {
     }
 
     /// The value as a part of a document, whose source of that index has the text of the value.
-    pub(super) fn node(&self, source: usize) -> Node {
+    pub(crate) fn node(&self, source: usize) -> Node {
         let mut value = self.value.clone();
         value.move_to(source);
         let range = 0..self.value_text.len();
@@ -194,7 +193,7 @@ impl Override {
 }
 
 /// The names of a dotted key.
-pub(super) fn path_of(key: &str) -> KeyPath {
+pub(crate) fn path_of(key: &str) -> KeyPath {
     key.split('.').map(|name| name.trim().into()).collect()
 }
 
@@ -211,7 +210,7 @@ fn row(key: &str) -> Option<&'static Key<'static>> {
 }
 
 /// The rows of all tables with their dotted keys.
-pub(super) fn rows() -> impl Iterator<Item = (String, &'static Key<'static>)> {
+pub(crate) fn rows() -> impl Iterator<Item = (String, &'static Key<'static>)> {
     let tables = [
         ("", files::VEHICLE),
         (Target::Lubricant.prefix(), files::LUBRICANT),
@@ -222,7 +221,7 @@ pub(super) fn rows() -> impl Iterator<Item = (String, &'static Key<'static>)> {
 }
 
 /// The rows of a table with their dotted keys.
-pub(super) fn rows_of(prefix: &str, table: &Table) -> Vec<(String, &'static Key<'static>)> {
+pub(crate) fn rows_of(prefix: &str, table: &Table) -> Vec<(String, &'static Key<'static>)> {
     let mut rows = Vec::new();
     table.walk("", &mut |path, key| {
         rows.push((format!("{prefix}{path}"), key))

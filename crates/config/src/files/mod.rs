@@ -1,4 +1,7 @@
-//! Files that an input names.
+//! Files that an input names, the limits of their size (`bounded`), and the files that the program carries (`embedded`).
+
+pub mod bounded;
+pub mod embedded;
 
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -6,7 +9,7 @@ use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::bounded::{self, ReadError};
+use self::bounded::ReadError;
 
 /// What was made of a file.
 pub type Made = Arc<dyn Any + Send + Sync>;

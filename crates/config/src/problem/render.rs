@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
-use super::place::{Input, Place};
-use super::problem::Problem;
+use crate::problem::Problem;
+use crate::problem::place::{Input, Place};
 
 /// Widest text that is shown without being cut.
 const WIDTH: usize = 120;

@@ -1,9 +1,9 @@
 //! Values of the model's keys, read from a table of a file.
-use super::document::Value;
-use super::maps;
-use super::problem::Problem;
-use super::section::Section;
-use super::value::{Lookup, default_option, options};
+use crate::document::Value;
+use crate::problem::Problem;
+use crate::reader::maps;
+use crate::reader::section::Section;
+use crate::reader::value::{Lookup, default_option, options};
 use cvtcycle_model::keys::{Key, Kind, Presence, Values};
 use cvtcycle_model::maps::BsfcMap;
 use cvtcycle_model::maps::LossMap;
@@ -184,7 +184,7 @@ impl<'r> Values for Section<'r> {
 
 impl Section<'_> {
     /// One of the key's words; the default also after a problem.
-    pub(super) fn read_word(&self, key: &Key<'_>, default: &'static str) -> &'static str {
+    pub(crate) fn read_word(&self, key: &Key<'_>, default: &'static str) -> &'static str {
         match self.open(key) {
             Lookup::Found(found) => {
                 let Value::Text(text) = &found.node.value else {

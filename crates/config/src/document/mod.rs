@@ -1,4 +1,10 @@
-//! A parsed text in which every value knows its place, and the overrides put into it.
+//! A parsed text in which every value knows its place (`shape`, `syntax`: what is no TOML), and the overrides put into it.
+
+pub(crate) mod overrides;
+pub(crate) mod patched;
+mod shape;
+pub(crate) mod syntax;
+
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -6,16 +12,14 @@ use std::sync::Arc;
 
 use toml::de::{DeInteger, DeTable, DeValue};
 
-use super::place::{Input, Place};
-use super::problem::Problem;
-use super::problems::Problems;
-use super::shape::{self, Excess};
-use super::source::{MAX_VALUE, Source, shortened};
-use super::syntax;
+use self::shape::Excess;
+use crate::problem::place::{Input, Place};
+use crate::problem::source::{MAX_VALUE, Source, shortened};
+use crate::problem::{Problem, Problems};
 
 /// A stretch of one source, in bytes.
 #[derive(Clone, Debug)]
-pub(super) struct Span {
+pub(crate) struct Span {
     pub source: usize,
     pub range: Range<usize>,
 }
@@ -29,7 +33,7 @@ impl Span {
 
 /// A value with its place.
 #[derive(Clone, Debug)]
-pub(super) struct Node {
+pub(crate) struct Node {
     pub value: Value,
     pub span: Span,
 }
@@ -46,7 +50,7 @@ impl Node {
 
 /// A TOML value; integers too large for 64 bits are kept as floating-point numbers.
 #[derive(Clone, Debug)]
-pub(super) enum Value {
+pub(crate) enum Value {
     Text(String),
     Integer(i64),
     Float(f64),
@@ -100,7 +104,7 @@ impl Value {
 
 /// A table: its entries, and the option that an assignment names for it.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Table {
+pub(crate) struct Table {
     pub entries: BTreeMap<String, Entry>,
     pub choice: Option<Box<Node>>,
 }
@@ -132,7 +136,7 @@ impl Table {
 
 /// A key's place and its value.
 #[derive(Clone, Debug)]
-pub(super) struct Entry {
+pub(crate) struct Entry {
     pub key: Span,
     pub node: Node,
 }
@@ -140,12 +144,12 @@ pub(super) struct Entry {
 /// A parsed input with the place of every value.
 #[derive(Clone, Debug)]
 pub struct Document {
-    pub(super) sources: Vec<Arc<Source>>,
-    pub(super) root: Table,
+    pub(crate) sources: Vec<Arc<Source>>,
+    pub(crate) root: Table,
     /// Header of the table, where the document is one item of a list ([`Document::take_tables`]).
-    pub(super) header: Option<Span>,
+    pub(crate) header: Option<Span>,
     /// `[[NAME]]` of a table of a list.
-    pub(super) title: Option<String>,
+    pub(crate) title: Option<String>,
 }
 
 impl Document {
@@ -207,12 +211,12 @@ impl Document {
     }
 
     /// Place of a span.
-    pub(super) fn place(&self, span: &Span) -> Place {
+    pub(crate) fn place(&self, span: &Span) -> Place {
         self.sources[span.source].place(span.range.clone())
     }
 
     /// The text of a span as written.
-    pub(super) fn written(&self, span: &Span) -> &str {
+    pub(crate) fn written(&self, span: &Span) -> &str {
         self.sources[span.source]
             .text
             .get(span.range.clone())
@@ -220,7 +224,7 @@ impl Document {
     }
 
     /// The text of a span as it is repeated in a problem: cut where it is long.
-    pub(super) fn shown(&self, span: &Span) -> String {
+    pub(crate) fn shown(&self, span: &Span) -> String {
         shortened(self.written(span), MAX_VALUE)
     }
 }
@@ -266,7 +270,7 @@ fn nested(source: &Source, at: usize) -> Problem {
 }
 
 /// The value of an override, as of the first source; what is nested too deep is left out, which a command line hardly can be.
-pub(super) fn convert(value: &DeValue<'_>) -> Value {
+pub(crate) fn convert(value: &DeValue<'_>) -> Value {
     Levels::default().value(value, 0)
 }
 

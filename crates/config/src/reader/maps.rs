@@ -6,12 +6,12 @@ use std::borrow::Cow;
 use std::io::ErrorKind;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use crate::bounded::ReadError;
 use crate::csv::{Column, Schema};
-use crate::embedded;
+use crate::files::bounded::ReadError;
+use crate::files::embedded;
 use crate::files::{Files, Made};
 use crate::problem::Problem;
-use crate::section::Section;
+use crate::reader::section::Section;
 use cvtcycle_model::keys::{Bound, Quantity};
 use cvtcycle_model::maps::{BsfcMap, LossMap};
 use cvtcycle_model::math::{GRID_AXES, Grid};
@@ -96,7 +96,7 @@ fn bytes_of(files: Option<&dyn Files>, file: &str) -> Result<Vec<u8>, ReadError>
 const GRID: &str = "give at least two speeds and two loads; more torque needs more fuel";
 
 /// A BSFC map from CSV, without friction; none after a problem.
-pub(super) fn bsfc_map(
+pub(crate) fn bsfc_map(
     s: &Section,
     key: &str,
     file: &str,
@@ -140,7 +140,7 @@ pub(super) fn bsfc_map(
 }
 
 /// A measured torque-loss map from CSV; `first` is the name of its first axis, `ratio` or `gear`.
-pub(super) fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) -> Option<LossMap> {
+pub(crate) fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) -> Option<LossMap> {
     let torque = if first == "gear" {
         "input_torque_nm"
     } else {

@@ -1,7 +1,7 @@
 //! What a reading session writes down.
 use std::collections::{BTreeSet, HashMap};
 
-use super::problem::Problem;
+use crate::problem::Problem;
 use cvtcycle_model::keys::with_labels;
 
 /// What is known about one key after reading it.
@@ -42,7 +42,7 @@ impl KeyInfo {
 const MAX_SHOWN: usize = 500;
 
 #[derive(Default)]
-pub(super) struct Log {
+pub(crate) struct Log {
     pub problems: Vec<Problem>,
     /// Missing keys, apart because a mistyped key explains them.
     pub missing: Vec<Problem>,
@@ -81,7 +81,7 @@ impl Log {
 
 /// Dotted path of an entry; names with unusual characters are quoted, so that a dot within a name
 /// does not look like a table.
-pub(super) fn join(path: &str, name: &str) -> String {
+pub(crate) fn join(path: &str, name: &str) -> String {
     let bare = !name.is_empty()
         && name
             .chars()
@@ -98,10 +98,10 @@ pub(super) fn join(path: &str, name: &str) -> String {
     }
 }
 
-pub(super) fn last(path: &str) -> &str {
+pub(crate) fn last(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or(path)
 }
 
-pub(super) fn parent(path: &str) -> &str {
+pub(crate) fn parent(path: &str) -> &str {
     path.rsplit_once('.').map_or("", |(parent, _)| parent)
 }

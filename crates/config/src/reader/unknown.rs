@@ -1,10 +1,10 @@
 //! Entries of a document that no reading asked for: what their keys most likely mean.
 use std::collections::BTreeSet;
 
-use super::document::{Document, Entry, Span, Table, Value};
-use super::log::{Log, join, last, parent};
-use super::near::{is_suggestion, similarity, suggestion};
-use super::problem::Problem;
+use crate::document::{Document, Entry, Span, Table, Value};
+use crate::problem::Problem;
+use crate::problem::near::{is_suggestion, similarity, suggestion};
+use crate::reader::log::{Log, join, last, parent};
 use cvtcycle_model::keys::{Quantity, stem};
 
 /// Similarity above which a name in another table may be what was meant: short names of all tables are like each other.
@@ -136,7 +136,7 @@ impl Log {
 }
 
 /// Collects the entries that were not read; an unknown table counts as one entry.
-pub(super) fn unread<'t>(
+pub(crate) fn unread<'t>(
     log: &Log,
     table: &'t Table,
     path: &str,

@@ -1,21 +1,21 @@
 //! Reading of single values from one table.
-use super::document::{Node, Span, Table, Value};
-use super::log::join;
-use super::place::Place;
-use super::problem::{Problem, ProblemKind};
-use super::reader::Reader;
+use crate::document::{Node, Span, Table, Value};
+use crate::problem::place::Place;
+use crate::problem::{Problem, ProblemKind};
+use crate::reader::Reader;
+use crate::reader::log::join;
 use cvtcycle_model::keys::Key;
 
 /// A table at a dotted path. An absent table is a table without keys.
 #[derive(Clone)]
 pub struct Section<'r> {
-    pub(super) reader: &'r Reader<'r>,
-    pub(super) path: String,
-    pub(super) table: Option<&'r Table>,
+    pub(crate) reader: &'r Reader<'r>,
+    pub(crate) path: String,
+    pub(crate) table: Option<&'r Table>,
     /// Header of the table, or of the nearest one around it that exists.
-    pub(super) header: Option<Span>,
+    pub(crate) header: Option<Span>,
     /// Whether missing keys go without saying, after a problem with the table itself.
-    pub(super) muted: bool,
+    pub(crate) muted: bool,
 }
 
 impl Reader<'_> {
@@ -93,7 +93,7 @@ impl<'r> Section<'r> {
     }
 
     /// The table `name` within this one, before it is known whether there is one. Silent readings know no paths.
-    pub(super) fn below(&self, name: &str) -> Section<'r> {
+    pub(crate) fn below(&self, name: &str) -> Section<'r> {
         let path = if self.reader.is_check_only() {
             String::new()
         } else {

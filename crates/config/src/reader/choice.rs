@@ -1,9 +1,9 @@
 //! Choice of one of several options by the name of its table.
-use super::document::{Node, Table, Value};
-use super::log::join;
-use super::problem::Problem;
-use super::section::Section;
-use super::value::{Found, Lookup, default_option, options};
+use crate::document::{Node, Table, Value};
+use crate::problem::Problem;
+use crate::reader::log::join;
+use crate::reader::section::Section;
+use crate::reader::value::{Found, Lookup, default_option, options};
 use cvtcycle_model::keys::Key;
 
 /// How the choice came out.
@@ -19,7 +19,7 @@ impl<'r> Section<'r> {
     /// its name alone (`key = "option"`, with all its defaults); an assignment from the command line,
     /// to the key or to a key within an option, goes before the file. Without any, the default.
     /// After a problem it is the default or the first option, with a section that reports nothing missing.
-    pub(super) fn choose_option(&self, key: &Key<'_>) -> (&'static str, Section<'r>) {
+    pub(crate) fn choose_option(&self, key: &Key<'_>) -> (&'static str, Section<'r>) {
         let name = key.name;
         let node = self
             .table

@@ -5,17 +5,17 @@
 //! where the text is no TOML. Texts and comments do not count.
 
 /// Most tables, and lists at the beginning of a line; the largest shipped file has 177.
-pub(super) const MAX_TABLES: usize = 20_000;
+pub(crate) const MAX_TABLES: usize = 20_000;
 /// Most equals signs: keys with their values, and mistakes around them, of which the parser makes several each.
-pub(super) const MAX_KEYS: usize = 100_000;
+pub(crate) const MAX_KEYS: usize = 100_000;
 /// Most names of one dotted key; the longest that is read has 7. The parser itself allows 80 open brackets.
-pub(super) const MAX_NAMES: usize = 16;
+pub(crate) const MAX_NAMES: usize = 16;
 /// Most levels of a value that is kept: all that is read has fewer than ten.
-pub(super) const MAX_LEVELS: usize = 64;
+pub(crate) const MAX_LEVELS: usize = 64;
 
 /// What a text has too much of, and the byte at which it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Excess {
+pub(crate) enum Excess {
     Tables(usize),
     Keys(usize),
     Names(usize),
@@ -39,7 +39,7 @@ enum Word {
 }
 
 /// The first place at which a text has too much structure.
-pub(super) fn excess(text: &str) -> Option<Excess> {
+pub(crate) fn excess(text: &str) -> Option<Excess> {
     let bytes = text.as_bytes();
     let (mut at, mut tables, mut keys) = (0, 0, 0);
     let (mut line_start, mut header) = (true, false);

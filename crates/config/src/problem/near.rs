@@ -7,7 +7,7 @@ const MIN_SIMILARITY: f64 = 0.6;
 const MAX_LEN: usize = 200;
 
 /// Similarity of two names, from 0 to 1.
-pub(super) fn similarity(a: &str, b: &str) -> f64 {
+pub(crate) fn similarity(a: &str, b: &str) -> f64 {
     if a.len().max(b.len()) > MAX_LEN {
         return 0.0;
     }
@@ -19,7 +19,7 @@ pub(super) fn similarity(a: &str, b: &str) -> f64 {
 }
 
 /// Whether a similarity is high enough to suggest the name.
-pub(super) fn is_suggestion(similarity: f64) -> bool {
+pub(crate) fn is_suggestion(similarity: f64) -> bool {
     similarity >= MIN_SIMILARITY
 }
 
@@ -52,12 +52,12 @@ pub fn did_you_mean<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) 
 }
 
 /// "one of a, b, c".
-pub(super) fn one_of(words: &[&str]) -> String {
+pub(crate) fn one_of(words: &[&str]) -> String {
     format!("one of {}", words.join(", "))
 }
 
 /// Question for near names, else the list of what is known.
-pub(super) fn suggest(wanted: &str, known: &[&str]) -> String {
+pub(crate) fn suggest(wanted: &str, known: &[&str]) -> String {
     did_you_mean(wanted, known.iter().copied())
         .unwrap_or_else(|| format!("write {}", one_of(known)))
 }

@@ -1,9 +1,8 @@
 //! Problems that are found before any key is read: bytes that are no text, text that is no TOML.
 use std::ops::Range;
 
-use super::problem::Problem;
-use super::problems::Problems;
-use super::source::{MAX_VALUE, Source, shortened};
+use crate::problem::source::{MAX_VALUE, Source, shortened};
+use crate::problem::{Problem, Problems};
 
 /// Bytes of a line up to which slips are looked for: longer lines are not written by hand, and the search
 /// takes time with the square of the length.
@@ -41,7 +40,7 @@ const MAX_SHOWN: usize = 100;
 
 /// The parser's errors as problems, one per line: what follows the first error of a line is
 /// mostly its consequence.
-pub(super) fn problems(source: &Source, errors: &[toml::de::Error]) -> Problems {
+pub(crate) fn problems(source: &Source, errors: &[toml::de::Error]) -> Problems {
     let mut ordered: Vec<(Range<usize>, &str)> = errors
         .iter()
         .map(|error| {
@@ -135,7 +134,7 @@ fn slip(line: &str) -> Option<(Range<usize>, String)> {
 }
 
 /// Length of a number with a decimal comma at the start of `text`, and the number with a point.
-pub(super) fn decimal_comma(text: &str) -> Option<(usize, String)> {
+pub(crate) fn decimal_comma(text: &str) -> Option<(usize, String)> {
     let digits =
         |text: &str| text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
     let sign = usize::from(text.starts_with(['+', '-']));
@@ -146,7 +145,7 @@ pub(super) fn decimal_comma(text: &str) -> Option<(usize, String)> {
 }
 
 /// Splits "3 mm" into the figure and the unit.
-pub(super) fn number_with_unit(text: &str) -> Option<(&str, &str)> {
+pub(crate) fn number_with_unit(text: &str) -> Option<(&str, &str)> {
     let text = text.trim();
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.,".contains(c)))?;
     let (figure, unit) = (&text[..end], text[end..].trim_start());
@@ -157,7 +156,7 @@ pub(super) fn number_with_unit(text: &str) -> Option<(&str, &str)> {
 }
 
 /// What to write instead of a number with its unit.
-pub(super) fn number_hint(figure: &str, unit: &str) -> String {
+pub(crate) fn number_hint(figure: &str, unit: &str) -> String {
     let figure = figure.replace(',', ".");
     format!("write {figure} without `{unit}`: the unit is at the end of the key's name")
 }

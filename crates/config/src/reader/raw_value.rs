@@ -1,10 +1,10 @@
 //! Values as they are written: in the unit of their key and each with its place, for inputs in which another key decides what a value
 //! has to be.
-use super::document::{Node, Value};
-use super::place::Place;
-use super::problem::{Problem, ProblemKind};
-use super::section::Section;
-use super::value::Lookup;
+use crate::document::{Node, Value};
+use crate::problem::place::Place;
+use crate::problem::{Problem, ProblemKind};
+use crate::reader::section::Section;
+use crate::reader::value::Lookup;
 use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Quantity};
 
 /// A value as written. Its checks report at its own place.

@@ -1,13 +1,13 @@
 //! What the readings of all kinds of values have in common: look-up, origin, registration, complaints.
 use std::fmt::Display;
 
-use super::document::{Node, Span, Table, Value};
-use super::log::{KeyInfo, join};
-use super::near::{did_you_mean, one_of, suggest};
-use super::place::Place;
-use super::problem::Problem;
-use super::section::Section;
-use super::syntax::{decimal_comma, number_hint, number_with_unit};
+use crate::document::syntax::{decimal_comma, number_hint, number_with_unit};
+use crate::document::{Node, Span, Table, Value};
+use crate::problem::Problem;
+use crate::problem::near::{did_you_mean, one_of, suggest};
+use crate::problem::place::Place;
+use crate::reader::log::{KeyInfo, join};
+use crate::reader::section::Section;
 use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Quantity};
 
 /// What a value's status may be in a file.
@@ -16,7 +16,7 @@ pub(crate) const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"
 const FIELDS: [&str; 4] = ["value", "status", "source", "note"];
 
 /// A value as found, with its origin.
-pub(super) struct Found<'r> {
+pub(crate) struct Found<'r> {
     pub node: &'r Node,
     pub status: &'r str,
     pub source: &'r str,
@@ -24,7 +24,7 @@ pub(super) struct Found<'r> {
 }
 
 /// Value at a key.
-pub(super) enum Lookup<'r> {
+pub(crate) enum Lookup<'r> {
     Absent,
     /// Something that is no value; reported already.
     Bad,
@@ -46,7 +46,7 @@ fn text_hint(text: &str) -> String {
 
 impl<'r> Section<'r> {
     /// The number in SI units; an error says whether the key is absent (else it is reported already).
-    pub(super) fn read_number(&self, key: &Key<'_>, allowed: Bound) -> Result<f64, bool> {
+    pub(crate) fn read_number(&self, key: &Key<'_>, allowed: Bound) -> Result<f64, bool> {
         match self.open(key) {
             Lookup::Found(found) => {
                 let value = self
@@ -61,7 +61,7 @@ impl<'r> Section<'r> {
         }
     }
 
-    pub(super) fn read_text(&self, key: &Key<'_>) -> Result<String, bool> {
+    pub(crate) fn read_text(&self, key: &Key<'_>) -> Result<String, bool> {
         match self.open(key) {
             Lookup::Found(found) => match &found.node.value {
                 Value::Text(text) => {
@@ -79,7 +79,7 @@ impl<'r> Section<'r> {
     }
 
     /// A finite number within its range, in its own unit.
-    pub(super) fn check_number(
+    pub(crate) fn check_number(
         &self,
         key: &str,
         quantity: Quantity,
@@ -109,7 +109,7 @@ impl<'r> Section<'r> {
     }
 
     /// Looks a key up, counts it as read and as known, and unwraps `{ value = …, status = … }`.
-    pub(super) fn open(&self, key: &Key<'_>) -> Lookup<'r> {
+    pub(crate) fn open(&self, key: &Key<'_>) -> Lookup<'r> {
         self.register(key);
         let Some(entry) = self.table.and_then(|table| table.entries.get(key.name)) else {
             return Lookup::Absent;
@@ -118,7 +118,7 @@ impl<'r> Section<'r> {
     }
 
     /// Counts a key as read and as known.
-    pub(super) fn register(&self, key: &Key<'_>) {
+    pub(crate) fn register(&self, key: &Key<'_>) {
         self.reader.record(|log| {
             let path = join(&self.path, key.name);
             log.register(KeyInfo {
@@ -135,7 +135,7 @@ impl<'r> Section<'r> {
     }
 
     /// The value with its origin, from either of its two forms.
-    pub(super) fn unwrap(&self, key: &str, node: &'r Node) -> Lookup<'r> {
+    pub(crate) fn unwrap(&self, key: &str, node: &'r Node) -> Lookup<'r> {
         let (status, source) = if node.span.is_set() {
             ("set", "command line")
         } else {
@@ -202,7 +202,7 @@ impl<'r> Section<'r> {
     }
 
     /// Completes what is known about a key with the value that was given.
-    pub(super) fn given(&self, key: &str, found: &Found<'_>, value: impl Display, si: Option<f64>) {
+    pub(crate) fn given(&self, key: &str, found: &Found<'_>, value: impl Display, si: Option<f64>) {
         self.fill(key, |info| {
             (info.value, info.si) = (value.to_string(), si);
             info.status = found.status.to_string();
@@ -212,7 +212,7 @@ impl<'r> Section<'r> {
     }
 
     /// Completes what is known about a key with its default.
-    pub(super) fn defaulted(&self, key: &str, value: impl Display, si: Option<f64>) {
+    pub(crate) fn defaulted(&self, key: &str, value: impl Display, si: Option<f64>) {
         self.fill(key, |info| {
             (info.value, info.si) = (value.to_string(), si);
             info.status = "default".to_string();
@@ -224,13 +224,13 @@ impl<'r> Section<'r> {
             .record(|log| log.info(&join(&self.path, key)).map_or((), write));
     }
 
-    pub(super) fn report_out_of_range(&self, key: &str, node: &Node, allowed: &str) {
+    pub(crate) fn report_out_of_range(&self, key: &str, node: &Node, allowed: &str) {
         let message = format!("`{}` is out of range", join(&self.path, key));
         let problem = Problem::out_of_range(message).allowed(allowed);
         self.report(&node.span, key, problem);
     }
 
-    pub(super) fn wrong_type(&self, key: &str, node: &Node, expected: &str) {
+    pub(crate) fn wrong_type(&self, key: &str, node: &Node, expected: &str) {
         let (path, found) = (self.dotted(key), node.value.kind());
         let message = format!("`{path}`: expected {expected}, found {found}");
         // The range that the key was registered with, where the message does not say it already.
@@ -246,7 +246,7 @@ impl<'r> Section<'r> {
     }
 
     /// Reports a word that is none of those that the key knows.
-    pub(super) fn unknown_word(&self, key: &Key<'_>, span: &Span, word: &str) {
+    pub(crate) fn unknown_word(&self, key: &Key<'_>, span: &Span, word: &str) {
         let message = format!("`{word}` is not known for `{}`", join(&self.path, key.name));
         let hint = suggest(word, &options(key).collect::<Vec<_>>());
         let problem = Problem::unknown_name(message);
@@ -287,7 +287,7 @@ impl<'r> Section<'r> {
     }
 
     /// Reports a required key that is absent.
-    pub(super) fn report_missing(&self, of: &Key<'_>) {
+    pub(crate) fn report_missing(&self, of: &Key<'_>) {
         let key = of.name;
         if self.muted {
             return;
@@ -305,7 +305,7 @@ impl<'r> Section<'r> {
     }
 
     /// A problem of a key that is absent: at the header of the table.
-    pub(super) fn absent(&self, key: &str, problem: Problem) -> Problem {
+    pub(crate) fn absent(&self, key: &str, problem: Problem) -> Problem {
         let document = self.reader.document;
         let whole = || Place::from(document.sources[0].input.clone());
         let header = self.header.as_ref();
@@ -315,7 +315,7 @@ impl<'r> Section<'r> {
     }
 
     /// Reports a problem of a value of this table.
-    pub(super) fn report(&self, span: &Span, key: &str, problem: Problem) {
+    pub(crate) fn report(&self, span: &Span, key: &str, problem: Problem) {
         let document = self.reader.document;
         self.reader.report(|| {
             problem
@@ -327,7 +327,7 @@ impl<'r> Section<'r> {
 }
 
 /// The option that a key takes when nothing is given.
-pub(super) fn default_option(key: &Key<'_>) -> Option<&'static str> {
+pub(crate) fn default_option(key: &Key<'_>) -> Option<&'static str> {
     match key.presence {
         Presence::Word(default) => options(key).find(|option| *option == default),
         _ => None,
@@ -335,7 +335,7 @@ pub(super) fn default_option(key: &Key<'_>) -> Option<&'static str> {
 }
 
 /// Names of the options of a key.
-pub(super) fn options(key: &Key<'_>) -> impl Iterator<Item = &'static str> {
+pub(crate) fn options(key: &Key<'_>) -> impl Iterator<Item = &'static str> {
     let choices = match key.kind {
         Kind::Words(choices) | Kind::Options(choices) => choices,
         _ => &[],

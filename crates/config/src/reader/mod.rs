@@ -1,26 +1,37 @@
-//! One pass over a document: what was read, what is known, what is wrong.
+//! One pass over a document: what was read, what is known, what is wrong. A `Section` gives the values of a table of keys (`value`: one;
+//! `lists`; `choice`; `maps` of files), `log` keeps what was read, `unknown` names what was not.
+
+mod choice;
+mod lists;
+pub(crate) mod log;
+mod maps;
+pub(crate) mod raw_value;
+pub(crate) mod section;
+mod unknown;
+pub(crate) mod value;
+mod values;
+
 use std::cell::{Cell, RefCell};
 
-use super::document::Document;
-use super::files::Files;
-use super::log::{KeyInfo, Log, parent};
-use super::place::Place;
-use super::problem::Problem;
-use super::problems::Problems;
-use super::unknown::unread;
+use crate::document::Document;
+use crate::files::Files;
+use crate::problem::place::Place;
+use crate::problem::{Problem, Problems};
+use crate::reader::log::{KeyInfo, Log, parent};
+use crate::reader::unknown::unread;
 
 /// One reading session. It collects all problems and what is known about every key that is read.
 ///
 /// A check-only session checks the same and writes no text: it counts problems without describing them, and knows nothing about
 /// keys. Code that reads a section is the same for both: all texts are made inside `record` and `report`.
 pub struct Reader<'d> {
-    pub(super) document: &'d Document,
+    pub(crate) document: &'d Document,
     /// None in a check-only session.
     log: Option<RefCell<Log>>,
     /// Problems so far.
     problem_count: Cell<usize>,
     /// Files that the document names.
-    pub(super) files: Option<&'d dyn Files>,
+    pub(crate) files: Option<&'d dyn Files>,
 }
 
 impl<'d> Reader<'d> {
@@ -53,24 +64,24 @@ impl<'d> Reader<'d> {
     }
 
     /// True in check-only mode.
-    pub(super) fn is_check_only(&self) -> bool {
+    pub(crate) fn is_check_only(&self) -> bool {
         self.log.is_none()
     }
 
     /// Writes something down, except in a check-only session.
-    pub(super) fn record(&self, write: impl FnOnce(&mut Log)) {
+    pub(crate) fn record(&self, write: impl FnOnce(&mut Log)) {
         if let Some(log) = &self.log {
             write(&mut log.borrow_mut());
         }
     }
 
     /// Counts a problem; `message` describes it, except in a check-only session or after many.
-    pub(super) fn report(&self, message: impl FnOnce() -> Problem) {
+    pub(crate) fn report(&self, message: impl FnOnce() -> Problem) {
         self.count(|log| &mut log.problems, message);
     }
 
     /// Counts a missing key, apart from other problems.
-    pub(super) fn report_missing(&self, message: impl FnOnce() -> Problem) {
+    pub(crate) fn report_missing(&self, message: impl FnOnce() -> Problem) {
         self.count(|log| &mut log.missing, message);
     }
 
@@ -90,7 +101,7 @@ impl<'d> Reader<'d> {
     }
 
     /// Problems so far.
-    pub(super) fn problem_count(&self) -> usize {
+    pub(crate) fn problem_count(&self) -> usize {
         self.problem_count.get()
     }
 

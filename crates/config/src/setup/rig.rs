@@ -3,7 +3,7 @@
 use cvtcycle_model::bench::transmission::Conditions;
 pub use cvtcycle_model::bench::transmission::{OIL, TORQUE};
 
-use crate::embedded;
+use crate::files::embedded;
 use crate::{Document, KeyInfo, Override, Problems, Reader, Section, Target};
 
 /// The embedded conditions with overrides; of `set` only those of the rig count.

@@ -2,16 +2,16 @@
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use super::place::{Input, Place};
+use crate::problem::place::{Input, Place};
 
 /// A longer line is not repeated with a problem.
 const MAX_LINE: usize = 1000;
 /// A longer value is cut where it is repeated.
-pub(super) const MAX_VALUE: usize = 200;
+pub(crate) const MAX_VALUE: usize = 200;
 
 /// One input: the file, or one override.
 #[derive(Debug)]
-pub(super) struct Source {
+pub(crate) struct Source {
     pub input: Input,
     pub text: String,
     /// Bytes of the line ends; found when the first place is needed.
@@ -106,7 +106,7 @@ impl Source {
 }
 
 /// A text as it is repeated in a problem: at most so many characters of it.
-pub(super) fn shortened(text: &str, max: usize) -> String {
+pub(crate) fn shortened(text: &str, max: usize) -> String {
     match text.char_indices().nth(max) {
         Some((end, _)) => format!("{}...", &text[..end]),
         None => text.to_string(),
