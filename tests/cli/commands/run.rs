@@ -24,7 +24,7 @@ fn json_of_a_run_has_every_key_of_the_contract() {
     assert_eq!(summary["ambient_degc"], -10.0);
     let run_keys = "vehicle role transmission distance_km duration_s fuel_l_per_100km co2_g_per_km phases wheel_work_positive_kj \
         wheel_work_negative_kj fuel_energy_kj loss_kj kinetic_kj standstill_fuel_g min_clamp_safety at_ratio_limit_s end_degc \
-        ledger_error trace_missed_s outside_validity_s";
+        ledger_error trace_missed_s outside_validity_s transmission_efficiency_percent";
     let runs = summary["runs"].as_array().unwrap();
     assert_eq!(runs.len(), 3);
     for run in runs {
@@ -85,6 +85,10 @@ fn numbers_of_the_summary_belong_together() {
                 (sum / ledger - 1.0).abs() < 1e-9,
                 "{formulation}: {sum} {ledger}"
             );
+            let work = run["wheel_work_positive_kj"].as_f64().unwrap();
+            let efficiency = run["transmission_efficiency_percent"].as_f64().unwrap();
+            assert!((efficiency - 100.0 * work / (work + ledger)).abs() < 1e-9);
+            assert!((30.0..95.0).contains(&efficiency), "{efficiency}");
             let l = run["fuel_l"].as_f64().unwrap() / run["distance_km"].as_f64().unwrap() * 100.0;
             assert!((l / run["fuel_l_per_100km"].as_f64().unwrap() - 1.0).abs() < 1e-12);
             assert!((run["mpg_us"].as_f64().unwrap() * l - 235.215).abs() < 1e-9);

@@ -103,6 +103,8 @@ pub struct RunSummary {
     pub solve: Solve,
     /// Names of the checks that failed: `missed_trace`, `ledger_error`, `not_converged`, or a flag under `--strict`.
     pub failed_checks: Vec<String>,
+    /// Demanded work at the wheels in driving over that work with all losses of the transmission; null without either.
+    pub transmission_efficiency_percent: Option<f64>,
 }
 
 /// One group of phases.
@@ -240,6 +242,9 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
             evaluations_per_step: finite(totals.evaluations as f64 / totals.rows as f64),
         },
         failed_checks: Vec::new(),
+        transmission_efficiency_percent: finite(
+            100.0 * all.wheel_positive_j / (all.wheel_positive_j + all.terms.losses),
+        ),
     };
     summary.failed_checks = summary.checks(settings.strict);
     summary

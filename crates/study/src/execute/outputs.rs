@@ -41,6 +41,9 @@ pub fn outputs(phases: &[String], components: &[Component]) -> Vec<Column<Run>> 
     let mut list = fuel(phases);
     list.extend(energy(components));
     list.extend(states());
+    list.extend(columns! { Run;
+        optional "transmission_efficiency_percent", "%", "mean efficiency of the transmission over the cycle: demanded work at the wheels in driving over that work with all losses, those of idling and overrun included", (r, _) => r.transmission_efficiency_percent;
+    });
     list
 }
 
