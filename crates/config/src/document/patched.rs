@@ -179,6 +179,7 @@ impl Document {
             Problem::conflict(format!("`{value}` is a value, so `{path}` cannot exist"))
                 .at(by.input())
                 .key(path)
+                .names_key()
                 .hint(format!("set `{value}` itself"))
         })?;
         let source = Source::new(by.input(), by.value());

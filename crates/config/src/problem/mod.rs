@@ -94,6 +94,9 @@ pub struct Problem {
     pub settings: &'static [Setting],
     /// Known names that may have been meant, the most likely first.
     pub suggested: Box<[String]>,
+    /// True if the message names the key; else the key is put before it in a text with lines.
+    #[serde(skip)]
+    pub names_key: bool,
 }
 
 impl Problem {
@@ -137,6 +140,27 @@ impl Problem {
     pub fn with_context(self, context: &str) -> Self {
         let message = format!("{context}{}", self.message);
         self.message(message)
+    }
+
+    /// Of this key or column. The message names it only if it was made for it: see [`Problem::names_key`].
+    #[must_use]
+    pub fn key(self, key: impl Into<String>) -> Self {
+        let key = key.into();
+        let names_key = self.names_key && self.key == key;
+        Problem { names_key, ..self }.of(key)
+    }
+
+    /// With a message that names the key, which is given before or with the place.
+    #[must_use]
+    pub fn names_key(self) -> Self {
+        let names_key = true;
+        Problem { names_key, ..self }
+    }
+
+    /// Of this key or column, which the message names or not, as before.
+    pub(crate) fn of(self, key: impl Into<String>) -> Self {
+        let key = key.into();
+        Problem { key, ..self }
     }
 
     /// With the settings that its hint speaks about.
@@ -192,7 +216,6 @@ macro_rules! texts {
 }
 
 texts! {
-    key "Of this key or column.";
     value "With this offending value.";
     allowed "With the accepted values.";
     message "With another message.";

@@ -99,7 +99,7 @@ fn group(problem: &Problem) -> Group<'static> {
 /// The key of a value in a file where the message leaves it open, as that of a table cell does: the line of column names is far away.
 fn unsaid_key(problem: &Problem) -> Option<&str> {
     let key = problem.key.as_str();
-    let said = key.is_empty() || key.len() > MAX_KEY || problem.message.contains(key);
+    let said = key.is_empty() || key.len() > MAX_KEY || problem.names_key;
     (problem.place.line > 0 && !said).then_some(key)
 }
 

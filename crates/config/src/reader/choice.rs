@@ -185,7 +185,9 @@ impl<'r> Section<'r> {
             second.0,
             at(second.1)
         );
-        let problem = Problem::conflict(message).allowed(key.allowed());
+        let problem = Problem::conflict(message)
+            .names_key()
+            .allowed(key.allowed());
         self.report(&second.1.span, key.name, problem.hint("keep one of them"));
         Choice::Failed
     }

@@ -28,7 +28,9 @@ impl Section<'_> {
                         let path = join(&self.path, key.name);
                         let (count, found_count) = (count(least, most), values.len());
                         let message = format!("`{path}`: expected {count}, found {found_count}");
-                        let problem = Problem::wrong_type(message).allowed(key.allowed());
+                        let problem = Problem::wrong_type(message)
+                            .names_key()
+                            .allowed(key.allowed());
                         self.report(&found.node.span, key.name, problem);
                     }
                 } else {
@@ -84,7 +86,7 @@ impl Section<'_> {
                     }
                     _ => "the end lies above the beginning and the step above 0, as in \"1000..4000:250\"".to_string(),
                 };
-                let problem = Problem::syntax(message).allowed(key.allowed());
+                let problem = Problem::syntax(message).names_key().allowed(key.allowed());
                 self.report(&node.span, key.name, problem.hint(hint));
             }
         }
@@ -176,7 +178,9 @@ impl Section<'_> {
             let (expected, found) = (columns.len(), cells.len());
             let message = format!("`{path}`: expected {expected} numbers in a row, found {found}");
             let hint = format!("write [{}]", names.join(", "));
-            let problem = Problem::wrong_type(message).allowed(key.allowed());
+            let problem = Problem::wrong_type(message)
+                .names_key()
+                .allowed(key.allowed());
             self.report(&node.span, key.name, problem.hint(hint));
             return None;
         }

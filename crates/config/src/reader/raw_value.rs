@@ -118,6 +118,12 @@ impl<'r> RawValue<'r> {
     pub fn complain(&self, kind: ProblemKind, allowed: &str, message: &str, hint: &str) {
         self.report(Problem::new(kind, message).allowed(allowed).hint(hint));
     }
+
+    /// As [`RawValue::complain`], with a message that names the key.
+    pub fn complain_by_name(&self, kind: ProblemKind, allowed: &str, message: &str, hint: &str) {
+        let problem = Problem::new(kind, message).names_key();
+        self.report(problem.allowed(allowed).hint(hint));
+    }
 }
 
 /// A complaint of each kind, about a key of a section and about a value.

@@ -138,4 +138,17 @@ impl<'r> Section<'r> {
     pub fn complain(&self, kind: ProblemKind, key: &str, allowed: &str, message: &str, hint: &str) {
         self.report_at(key, Problem::new(kind, message).allowed(allowed).hint(hint));
     }
+
+    /// As [`Section::complain`], with a message that names the key.
+    pub fn complain_by_name(
+        &self,
+        kind: ProblemKind,
+        key: &str,
+        allowed: &str,
+        message: &str,
+        hint: &str,
+    ) {
+        let problem = Problem::new(kind, message).names_key();
+        self.report_at(key, problem.allowed(allowed).hint(hint));
+    }
 }

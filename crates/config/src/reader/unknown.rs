@@ -30,7 +30,8 @@ impl Log {
             if is_table { "table" } else { "key" }
         ))
         .at(document.place(span))
-        .key(path.to_string())
+        .key(path)
+        .names_key()
         .value(if is_table {
             String::new()
         } else {

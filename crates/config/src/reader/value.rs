@@ -102,7 +102,7 @@ impl<'r> Section<'r> {
             self.report_out_of_range(key, node, &range);
         } else {
             let message = format!("`{}` is not a finite number", join(&self.path, key));
-            let problem = Problem::out_of_range(message).allowed(range);
+            let problem = Problem::out_of_range(message).names_key().allowed(range);
             self.report(&node.span, key, problem);
         }
         None
@@ -153,7 +153,7 @@ impl<'r> Section<'r> {
         let Some(value) = table.wrapped() else {
             let message = format!("`{}` is a table without `value`", join(&self.path, key));
             let hint = "write `KEY = VALUE` or `KEY = { value = VALUE, status = \"…\" }`";
-            let problem = Problem::wrong_type(message).hint(hint);
+            let problem = Problem::wrong_type(message).names_key().hint(hint);
             self.report(&node.span, key, problem);
             return Lookup::Bad;
         };
@@ -181,6 +181,7 @@ impl<'r> Section<'r> {
                 _ => {
                     let message = format!("unknown field `{name}` in `{}`", join(&self.path, key));
                     let problem = Problem::unknown_key(message)
+                        .names_key()
                         .allowed(FIELDS.join(", "))
                         .hint(suggest(name, &FIELDS));
                     self.report(&entry.key, key, problem);
@@ -193,6 +194,7 @@ impl<'r> Section<'r> {
         if !STATUSES.contains(&text) {
             let message = format!("`{}` has no known status", join(&self.path, key));
             let problem = Problem::unknown_name(message)
+                .names_key()
                 .allowed(one_of(&STATUSES))
                 .hint(did_you_mean(text, STATUSES).unwrap_or_default());
             self.report(&node.span, key, problem);
@@ -226,7 +228,7 @@ impl<'r> Section<'r> {
 
     pub(crate) fn report_out_of_range(&self, key: &str, node: &Node, allowed: &str) {
         let message = format!("`{}` is out of range", join(&self.path, key));
-        let problem = Problem::out_of_range(message).allowed(allowed);
+        let problem = Problem::out_of_range(message).names_key().allowed(allowed);
         self.report(&node.span, key, problem);
     }
 
@@ -241,7 +243,8 @@ impl<'r> Section<'r> {
             allowed = range.filter(|range| *range != expected).unwrap_or_default();
         });
         let hint = self.type_hint(key, node, expected);
-        let problem = Problem::wrong_type(message).allowed(allowed).hint(hint);
+        let problem = Problem::wrong_type(message).names_key();
+        let problem = problem.allowed(allowed).hint(hint);
         self.report(&node.span, key, problem);
     }
 
@@ -249,7 +252,7 @@ impl<'r> Section<'r> {
     pub(crate) fn unknown_word(&self, key: &Key<'_>, span: &Span, word: &str) {
         let message = format!("`{word}` is not known for `{}`", join(&self.path, key.name));
         let hint = suggest(word, &options(key).collect::<Vec<_>>());
-        let problem = Problem::unknown_name(message);
+        let problem = Problem::unknown_name(message).names_key();
         self.report(span, key.name, problem.allowed(key.allowed()).hint(hint));
     }
 
@@ -299,7 +302,7 @@ impl<'r> Section<'r> {
                 (path, _) => format!("[{path}]"),
             };
             let message = format!("missing key `{}`", join(&self.path, key));
-            let problem = Problem::missing(message).allowed(of.allowed());
+            let problem = Problem::missing(message).names_key().allowed(of.allowed());
             self.absent(key, problem.hint(format!("add `{key} = …` to {table}")))
         });
     }
@@ -311,7 +314,7 @@ impl<'r> Section<'r> {
         let header = self.header.as_ref();
         problem
             .at(header.map_or_else(whole, |span| document.place(span)))
-            .key(join(&self.path, key))
+            .of(join(&self.path, key))
     }
 
     /// Reports a problem of a value of this table.
@@ -320,7 +323,7 @@ impl<'r> Section<'r> {
         self.reader.report(|| {
             problem
                 .at(document.place(span))
-                .key(self.dotted(key))
+                .of(self.dotted(key))
                 .value(document.shown(span))
         });
     }

@@ -152,7 +152,11 @@ impl VehicleTemplate {
         }
         let problems = changed(inputs, set).read().err().unwrap_or_default();
         let problem = problems.into_iter().find(|problem| problem.key == own);
-        let unknown = || Problem::unknown_key(format!("unknown key `{key}`")).key(key);
+        let unknown = || {
+            Problem::unknown_key(format!("unknown key `{key}`"))
+                .key(key)
+                .names_key()
+        };
         Err(unset(problem.unwrap_or_else(unknown)))
     }
 
@@ -182,6 +186,7 @@ fn no_number(key: &str, info: KeyInfo) -> Problem {
     Problem::not_single(format!("`{key}` holds no single number"))
         .at(Input::Override(key.to_owned()))
         .key(key)
+        .names_key()
         .value(info.value)
         .allowed(info.allowed)
         .hint("give its values as texts")

@@ -55,6 +55,7 @@ fn check(table: &Table, header: Line<'_>, problems: &mut Collector<'_>) {
     for own in missing(&columns_of(table)) {
         problems.line(header, &own.name, || {
             Problem::missing(format!("the column {} is missing", own.name))
+                .names_key()
                 .allowed(format!("with {}: {}", own.name, own.doc))
                 .hint(AGAIN)
         });

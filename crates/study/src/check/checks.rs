@@ -6,6 +6,7 @@ use super::rows::ValidationRow;
 use super::rule::{Printed, Verdict};
 use super::source::{Kind, Source};
 use super::tables;
+use cvtcycle_config::ProblemKind;
 use cvtcycle_config::ProblemKind::{Conflict, Missing};
 use cvtcycle_config::{Place, Problem, Section};
 use cvtcycle_model::keys::{Key, Values};
@@ -18,11 +19,23 @@ pub fn number_or_range(s: &Section, keys: [&Key; 3]) -> Option<(f64, f64)> {
     let [value, low, high] = keys.map(|key| s.optional(key));
     if value.is_some() && (low.is_some() || high.is_some()) {
         let message = "`value` with `low` or `high`";
-        s.conflict("value", VALUE_OR_ENDS, message, "keep one of the forms");
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            "value",
+            VALUE_OR_ENDS,
+            message,
+            "keep one of the forms",
+        );
     }
     if low.zip(high).is_some_and(|(low, high)| low > high) {
         let message = "`low` is above `high`";
-        s.conflict("low", "at most `high`", message, "swap them");
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            "low",
+            "at most `high`",
+            message,
+            "swap them",
+        );
     }
     let (least, largest) = (f64::NEG_INFINITY, f64::INFINITY);
     match value {
@@ -40,7 +53,8 @@ pub fn printed(s: &Section, compute: Option<&Expr>, broken: bool) -> Option<Prin
     match (compute.map(Expr::gives), numbers) {
         (Some(Gives::Truth), Some(_)) => {
             let message = "`compute` gives yes or no, but a number is printed";
-            s.conflict(
+            s.complain_by_name(
+                ProblemKind::Conflict,
                 "compute",
                 "a number or a range",
                 message,
@@ -62,7 +76,7 @@ pub fn printed(s: &Section, compute: Option<&Expr>, broken: bool) -> Option<Prin
         (Some(_), numbers) => {
             if expect.is_some() {
                 let message = "`expect` belongs to an order or sign";
-                s.conflict("expect", "", message, "remove it");
+                s.complain_by_name(ProblemKind::Conflict, "expect", "", message, "remove it");
             }
             numbers
         }
@@ -172,6 +186,7 @@ fn within(mut place: Place, key: &str, text: &str, fault: Fault) -> Problem {
     Problem::syntax(format!("`{key}`: {}", fault.message))
         .at(place)
         .key(key)
+        .names_key()
         .value(fault.word)
         .hint(hint)
 }

@@ -201,6 +201,7 @@ fn judged(view: &View, file: &RowFile, row: &ValidationRow) -> Result<Judged, Pr
             Problem::failed(format!("row {id}: `{what}` cannot be computed: {why}"))
                 .at(row.place.clone())
                 .key(what)
+                .names_key()
                 .value(row.compute_text.clone())
         })
     };

@@ -7,6 +7,7 @@ use super::keys::{CAUSE, ROW, TOLERANCE};
 use super::rows::{Cause, RowFile, Tolerance, ValidationRow};
 use super::rule::{Printed, Verdict};
 use super::source::{self, Source};
+use cvtcycle_config::ProblemKind;
 use cvtcycle_config::ProblemKind::{Conflict, Missing};
 use cvtcycle_config::setup::catalogue;
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean};
@@ -219,7 +220,13 @@ impl Head<'_> {
         let allowed = known().collect::<Vec<_>>().join(", ");
         let Some(name) = name else {
             let hint = "name a tolerance of the head of the file";
-            s.missing("tolerance", &allowed, "missing key `tolerance`", hint);
+            s.complain_by_name(
+                ProblemKind::Missing,
+                "tolerance",
+                &allowed,
+                "missing key `tolerance`",
+                hint,
+            );
             return None;
         };
         let Some(found) = self.tolerances.iter().find(|t| t.name == name) else {

@@ -221,6 +221,7 @@ fn too_many(factor: &Factor) -> Problem {
     Problem::too_large(message)
         .at(factor.place.clone())
         .key(key.as_str())
+        .names_key()
         .allowed(format!(
             "at most {MAX_VARIANTS} combinations of words of one car"
         ))

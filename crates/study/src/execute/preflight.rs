@@ -113,12 +113,15 @@ fn of_value(
     };
     let (name, message) = (&car.name, &problem.message);
     let message = format!("{name}: {value}{unit}{by} is not possible: {message}");
-    Problem::new(problem.kind, message)
-        .at(place(factor, entry))
-        .key(factor.key.as_str())
-        .value(number.to_string())
-        .allowed(problem.allowed.as_str())
-        .hint(hint)
+    Problem {
+        names_key: problem.names_key && problem.key == factor.key,
+        ..Problem::new(problem.kind, message)
+            .at(place(factor, entry))
+            .key(factor.key.as_str())
+            .value(number.to_string())
+            .allowed(problem.allowed.as_str())
+            .hint(hint)
+    }
 }
 
 fn variants(plan: &Plan, index: usize, car: &StudyCar, stride: usize, problems: &mut Problems) {

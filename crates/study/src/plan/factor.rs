@@ -3,6 +3,7 @@
 use super::keys::{FACTOR, quantity, run_option};
 use super::values::{self, Of};
 use super::{Acts, Cars, Factor, FactorValues, Places, RUN_OPTIONS};
+use cvtcycle_config::ProblemKind;
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean, unit_of};
 use cvtcycle_model::keys::{Key, Presence, Values};
 
@@ -144,7 +145,8 @@ fn name(s: &Section, key: &str, cars: Cars) -> String {
     };
     let name = Values::text_or(s, &FACTOR.name, &default);
     if s.has("name") && name.trim().is_empty() {
-        s.missing(
+        s.complain_by_name(
+            ProblemKind::Missing,
             "name",
             "a short name",
             "`name` is empty",

@@ -7,6 +7,7 @@ use super::keys::{
     self, FACTOR, LOGNORMAL, MAX_IN_RANGE, NORMAL, RANGE, TRIANGULAR, TRUNCATED, UNIFORM,
 };
 use super::{Acts, Distribution, FactorValue, FactorValues, Places, options};
+use cvtcycle_config::ProblemKind;
 use cvtcycle_config::ProblemKind::{Conflict, Missing, OutOfRange, TooLarge};
 use cvtcycle_config::{Bound, RawValue, Section};
 use cvtcycle_model::keys::{Key, Kind, Quantity, Values};
@@ -63,7 +64,8 @@ pub(super) fn read(s: &Section, of: Of, places: &mut Places) -> Option<FactorVal
             s.missing("values", one_of, NONE, hint);
         }
         [first, .., last] => {
-            s.conflict(
+            s.complain_by_name(
+                ProblemKind::Conflict,
                 last,
                 one_of,
                 &format!("`{last}` with `{first}`"),
@@ -79,11 +81,21 @@ fn list(s: &Section, of: Of, places: &mut Places) -> Option<FactorValues> {
     places.add("values", written.place());
     let Some(items) = written.items() else {
         let hint = format!("write values = [{}]", written.text());
-        written.mistyped("a list", "`values` is no list", &hint);
+        written.complain_by_name(
+            ProblemKind::WrongType,
+            "a list",
+            "`values` is no list",
+            &hint,
+        );
         return None;
     };
     if items.is_empty() {
-        written.missing("a list of at least one value", "`values` is empty", "");
+        written.complain_by_name(
+            ProblemKind::Missing,
+            "a list of at least one value",
+            "`values` is empty",
+            "",
+        );
         return None;
     }
     places.add_items("values", &items);
@@ -94,13 +106,18 @@ fn list(s: &Section, of: Of, places: &mut Places) -> Option<FactorValues> {
         .position(|v| v.is_number() != values[0].is_number());
     if let Some(k) = mixed.filter(|_| of.key != "start") {
         let message = "`values` mixes numbers with other values";
-        items[k].mistyped("numbers alone, or none", message, "make two factors of it");
+        items[k].complain_by_name(
+            ProblemKind::WrongType,
+            "numbers alone, or none",
+            message,
+            "make two factors of it",
+        );
         return None;
     }
     let again = (0..values.len()).find(|&k| values[..k].contains(&values[k]));
     if let Some(k) = again {
         let message = format!("`{}` is listed twice in `values`", values[k]);
-        items[k].duplicate("", &message, "remove one");
+        items[k].complain_by_name(ProblemKind::Duplicate, "", &message, "remove one");
     }
     again
         .is_none()

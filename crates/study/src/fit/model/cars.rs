@@ -262,9 +262,8 @@ fn at_bounds(free: &FreeParameter, slot: &ParameterRef, bench: &mut Variant) -> 
         } else {
             &first.allowed
         };
-        problems.push(
-            problem(first.kind, place, word, allowed, message, hint).value(value.to_string()),
-        );
+        let problem = problem(first.kind, place, word, allowed, message, hint).names_key();
+        problems.push(problem.value(value.to_string()));
     }
     problems
 }

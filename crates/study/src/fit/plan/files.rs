@@ -8,7 +8,7 @@ use crate::check::source::{self, Kind, Source};
 use crate::check::tables::{self, bench};
 use crate::fit::data::sheet::{SD, Sheet, and_more};
 use crate::fit::data::{TIME, bench_points, bytes_of, read_points, read_scalars, read_trace};
-use cvtcycle_config::{Bound, Problem, Problems, Section, did_you_mean, unit_of};
+use cvtcycle_config::{Bound, Problem, ProblemKind, Problems, Section, did_you_mean, unit_of};
 use cvtcycle_model::keys::{Quantity, Values};
 use cvtcycle_output::provenance::hash;
 
@@ -106,7 +106,7 @@ impl Deviations {
                 let message = format!("{name} has no standard deviation here");
                 let hint = format!("add a column {SD}{name}, or `sd` to the [[data]] of the plan");
                 let problem = Problem::missing(message).allowed("a standard deviation");
-                s.report_problem(sheet.problem(row, *k, problem.hint(hint)));
+                s.report_problem(sheet.problem(row, *k, problem.hint(hint)).names_key());
             }
         }
     }
@@ -234,7 +234,13 @@ fn source_of(s: &Section, way: &str, kinds: &[Kind], context: &Context) -> Optio
     if source.kind == Kind::Transient && tests > 1 {
         let message = format!("source `{name}` is {tests} tests, one at each ratio");
         let hint = "write a source with one `ratio`, continuing it with `like`";
-        s.conflict("source", "a source of one test", &message, hint);
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            "source",
+            "a source of one test",
+            &message,
+            hint,
+        );
         return None;
     }
     Some((*source).clone())

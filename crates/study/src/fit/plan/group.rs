@@ -95,23 +95,17 @@ pub(super) fn read(document: &Document, context: &Context) -> Result<Found, Prob
 /// The standard deviation that a whole group has: `sd`, or a share of what was measured.
 fn sd_of(s: &Section) -> impl Fn(f64) -> f64 {
     let (absolute, share) = (s.optional(&DATA.sd), s.optional(&DATA.sd_share));
-    let (kind, key, message, hint) = match (absolute, share) {
-        (Some(_), Some(_)) => (
-            Conflict,
-            "sd_share",
-            "`sd` with `sd_share`",
-            "keep one of them",
-        ),
-        (None, None) => (
-            Missing,
-            "sd",
-            "the data have no standard deviation",
-            "how far may a repeated measurement be off? give that as `sd`",
-        ),
-        _ => (Missing, "", "", ""),
-    };
-    if !key.is_empty() {
-        s.complain(kind, key, "`sd` or `sd_share`", message, hint);
+    let (allowed, both) = ("`sd` or `sd_share`", "`sd` with `sd_share`");
+    match (absolute, share) {
+        (Some(_), Some(_)) => {
+            s.complain_by_name(Conflict, "sd_share", allowed, both, "keep one of them");
+        }
+        (None, None) => {
+            let message = "the data have no standard deviation";
+            let hint = "how far may a repeated measurement be off? give that as `sd`";
+            s.missing("sd", allowed, message, hint);
+        }
+        _ => {}
     }
     let of_share = move |x: f64| share.map(|share| share * x.abs());
     move |x: f64| absolute.or(of_share(x)).unwrap_or(f64::NAN)
@@ -215,7 +209,7 @@ fn statement(s: &Section, context: &Context, found: &mut Found) {
         let message = "`compute` gives no single number";
         let hint =
             "write a range as `min(...)` and `max(...)`, an order as a difference with `low = 0`";
-        s.mistyped("compute", "a number", message, hint);
+        s.complain_by_name(ProblemKind::WrongType, "compute", "a number", message, hint);
         return;
     }
     let label = if s.has("name") {

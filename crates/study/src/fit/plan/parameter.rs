@@ -3,6 +3,7 @@
 use super::FreeParameter;
 use super::keys::{PARAMETER, PRIOR};
 use crate::fit::solve::Prior;
+use cvtcycle_config::ProblemKind;
 use cvtcycle_config::{Document, Problems, Reader, Section};
 use cvtcycle_model::keys::Values;
 
@@ -27,13 +28,25 @@ pub(super) fn read(document: &Document) -> Result<FreeParameter, Problems> {
     let [low, high] = [&PARAMETER.low, &PARAMETER.high].map(|key| Values::number(&s, key));
     if low >= high {
         let hint = "swap them, or leave the parameter out to hold it";
-        s.conflict("low", "below `high`", "`low` is not below `high`", hint);
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            "low",
+            "below `high`",
+            "`low` is not below `high`",
+            hint,
+        );
     }
     let start = s.optional(&PARAMETER.start);
     let inside = |x: f64| low <= x && x <= high;
     if start.is_some_and(|x| !inside(x) && low < high && x.is_finite()) {
         let (allowed, hint) = (format!("{low} to {high}"), "move it, or widen the bounds");
-        s.out_of_range("start", &allowed, "`start` is outside the bounds", hint);
+        s.complain_by_name(
+            ProblemKind::OutOfRange,
+            "start",
+            &allowed,
+            "`start` is outside the bounds",
+            hint,
+        );
     }
     let prior = prior(&s);
     let status = s.word(&PARAMETER.status);
