@@ -4,13 +4,12 @@
 //! |---|---|
 //! | `embedded` | the regulations' cycles that the program carries |
 //! | `find` | a cycle by name or path, `constant_90` and other constant speeds |
-//! | `read` | a CSV file to a checked cycle; `schema` has its columns, `row` checks its rows |
+//! | `read` | a CSV file to a checked cycle; `row` has its columns and checks its rows |
 
 mod embedded;
 mod find;
 mod read;
 mod row;
-mod schema;
 
 pub use cvtcycle_model::cycle::*;
 pub use embedded::{embedded, names};

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use super::gears::{GearColumns, GearCommand, commands};
-use super::row::{Row, Rows};
-use super::schema::{GEARS, NOTE, schema};
+use super::row::{GEARS, NOTE, Row, Rows, schema};
 use super::{Cycle, Interval, Trace, Weighting};
 use crate::csv::{self, Collector, Line, Table};
 use crate::{Problem, Problems};
