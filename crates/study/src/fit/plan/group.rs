@@ -10,7 +10,7 @@ use crate::check::checks::number_or_range;
 use crate::check::expr::{Expr, Gives};
 use crate::check::rows::ValidationRow;
 use crate::check::rule::Printed;
-use cvtcycle_config::ProblemKind::{self, Conflict, Duplicate, Missing, UnknownName, WrongType};
+use cvtcycle_config::ProblemKind::{Conflict, Duplicate, Missing, WrongType};
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean};
 use cvtcycle_model::keys::Values;
 
@@ -142,35 +142,34 @@ fn rows(s: &Section, context: &Context, found: &mut Found) {
                 });
                 found.rows.push(id);
             }
-            Err((kind, message, hint)) => {
-                let allowed = "rows that compute a number";
-                let problem = problem(kind, &place, "rows", allowed, message, &hint);
-                s.report_problem(problem.value(format!("{id:?}")));
-            }
+            Err(problem) => s.report_problem(
+                problem
+                    .at(place)
+                    .key("rows")
+                    .value(format!("{id:?}"))
+                    .allowed("rows that compute a number"),
+            ),
         }
     }
 }
 
-/// A validation row that gives a number, with the index of its list of sources; or message and hint.
+/// A validation row that gives a number, with the index of its list of sources; or what is wrong.
 fn row<'a>(
     id: &String,
     context: &Context<'a>,
     found: &Found,
-) -> Result<(usize, &'a ValidationRow, &'a Expr, Measured), (ProblemKind, String, String)> {
+) -> Result<(usize, &'a ValidationRow, &'a Expr, Measured), Problem> {
     let files = context.rows.iter().enumerate();
     let mut all = files.flat_map(|(k, file)| file.rows.iter().map(move |row| (k + 1, row)));
     let refuse = |kind, message: &str, hint: &str| {
-        Err((kind, format!("row {id} {message}"), hint.to_owned()))
+        Err(Problem::new(kind, format!("row {id} {message}")).hint(hint))
     };
     let Some((view, row)) = all.find(|(_, row)| row.id == *id) else {
         let known = context.rows.iter().flat_map(|file| &file.rows);
         let hint = did_you_mean(id, known.map(|row| &*row.id))
             .unwrap_or_else(|| "`cvtcycle validate` lists them".to_owned());
-        return Err((
-            UnknownName,
-            format!("there is no validation row `{id}`"),
-            hint,
-        ));
+        let message = format!("there is no validation row `{id}`");
+        return Err(Problem::unknown_name(message).hint(hint));
     };
     let (Some(expr), Some(Printed::Range(low, high))) = (&row.compute, row.printed) else {
         let hint =
