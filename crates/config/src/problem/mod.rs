@@ -30,7 +30,7 @@ macro_rules! kinds {
             #[default]
             Invalid,
             /// So many more problems of the file are counted and not described.
-            NotShown(usize),
+            NotShown(u32),
         }
 
         impl Problem {
@@ -185,7 +185,7 @@ impl Problem {
             "problems are"
         };
         Problem::new(
-            ProblemKind::NotShown(count),
+            ProblemKind::NotShown(u32::try_from(count).unwrap_or(u32::MAX)),
             format!("{count} more {more} not shown"),
         )
         .at(input)
@@ -196,7 +196,7 @@ impl Problem {
     #[must_use]
     pub fn not_shown(&self) -> Option<usize> {
         match self.kind {
-            ProblemKind::NotShown(count) => Some(count),
+            ProblemKind::NotShown(count) => usize::try_from(count).ok(),
             _ => None,
         }
     }
