@@ -1,9 +1,6 @@
 //! `calibrate`: parameters fitted to measurements, with their errors.
 
 mod tables;
-#[cfg(test)]
-#[path = "../../tests/cli/calibration_tables.rs"]
-mod tests;
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -172,3 +169,7 @@ fn date(days: u64) -> String {
     let year = era * 400 + year_of_era + u64::from(month <= 2);
     format!("{year:04}-{month:02}-{day:02}")
 }
+
+#[cfg(test)]
+#[path = "../../tests/cli/calibration_tables.rs"]
+mod tests;
