@@ -208,7 +208,7 @@ fn statement(s: &Section, context: &Context, found: &mut Found) {
         let message = "`compute` gives no single number";
         let hint =
             "write a range as `min(...)` and `max(...)`, an order as a difference with `low = 0`";
-        s.complain_by_name(ProblemKind::WrongType, "compute", "a number", message, hint);
+        s.complain_by_name(WrongType, "compute", "a number", message, hint);
         return;
     }
     let label = if s.has("name") {
