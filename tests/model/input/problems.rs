@@ -56,6 +56,7 @@ fn problem() -> Problem {
             ..Place::file("car.toml")
         })
         .key("belt.band_offset_mm")
+        .names_key()
         .value("99.0")
         .allowed("0.5 to 10 mm")
         .hint("try less")
