@@ -7,7 +7,7 @@ use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residua
 
 #[path = "../fixtures/outcome.rs"]
 mod outcomes;
-use outcomes::{every, named, noise};
+use outcomes::{named, noise};
 
 /// Rows of a CSV file by the names of its columns.
 fn rows(bytes: &[u8]) -> Vec<HashMap<String, String>> {
