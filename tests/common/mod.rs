@@ -11,6 +11,7 @@ pub mod range;
 use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, read_csv};
 use cvtcycle_config::setup::{Options, Setup, load};
 use cvtcycle_config::{Override, render};
+use cvtcycle_model::bench::{Bench, BenchPoint};
 use cvtcycle_model::drive::Recorder;
 use cvtcycle_model::drive::{Conditions, Outcome, Start, drive, litres_per_100km};
 use cvtcycle_model::drive::{EnergyTerms, Row};
@@ -42,6 +43,21 @@ pub fn try_car(name: &str, sets: &[String]) -> Result<Setup, String> {
 pub fn car(name: &str, sets: &[&str]) -> Setup {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     try_car(name, &sets).unwrap_or_else(|problems| panic!("{name} {sets:?}: {problems}"))
+}
+
+/// The bench of the reference car.
+pub fn rover_bench() -> Bench {
+    Bench::new(&car("rover_216_cvt", &[]))
+}
+
+/// A loaded point of the bench: 200 Nm at the output, belt at 90 degC.
+pub fn loaded_point() -> BenchPoint {
+    BenchPoint {
+        output_nm: 200.0,
+        throttle: 0.3,
+        belt_k: Some(90.0 + ZERO),
+        ..BenchPoint::default()
+    }
 }
 
 /// An embedded or constant-speed cycle.

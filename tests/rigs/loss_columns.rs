@@ -1,5 +1,5 @@
 //! Columns and maps of the losses command against the bench: powers and efficiency, units, flags, the torque that each map takes.
-use crate::common::{RPM, ZERO, car};
+use crate::common::{RPM, ZERO, car, loaded_point, rover_bench};
 use cvtcycle::model::bench::{Bench, BenchPoint, Parts};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::output::Component;
@@ -14,23 +14,10 @@ fn same(got: f64, want: f64) {
     );
 }
 
-fn bench() -> Bench {
-    Bench::new(&car("rover_216_cvt", &[]))
-}
-
-fn point() -> BenchPoint {
-    BenchPoint {
-        output_nm: 200.0,
-        throttle: 0.3,
-        belt_k: Some(90.0 + ZERO),
-        ..BenchPoint::default()
-    }
-}
-
 /// Powers, efficiency, slip and safety of a row, in drive, overrun, without load, and where both shafts drive.
 #[test]
 fn val_rows_of_the_bench() {
-    let bench = bench();
+    let bench = rover_bench();
     let mut seen = [0; 4];
     for output_nm in [-900.0, -300.0, -20.0, -1.0, 0.0, 5.0, 100.0, 900.0] {
         let mut asked = [f64::NAN; Axis::COUNT];
@@ -90,13 +77,13 @@ fn val_rows_of_the_bench() {
 #[test]
 fn val_map_parts_take_their_own_torque() {
     use cvtcycle::output::loss_table::MapPart;
-    let bench = bench();
+    let bench = rover_bench();
     let cvt = bench.cvt().unwrap();
     let p = BenchPoint {
         output_nm: 40.0,
         ratio: 0.8,
         pressure_pa: Some(15e5),
-        ..point()
+        ..loaded_point()
     };
     let whole = bench.solve(&BenchPoint {
         output_nm: 40.0 * cvt.final_drive.ratio,
@@ -159,7 +146,7 @@ fn val_map_parts_take_their_own_torque() {
 fn val_columns_of_the_bench() {
     use cvtcycle::output::losses::{FlagCount, columns};
     use cvtcycle::output::table::Cell;
-    let bench = bench();
+    let bench = rover_bench();
     let mut asked = [f64::NAN; Axis::COUNT];
     for (axis, value) in [
         (Axis::Ratio, 0.7),

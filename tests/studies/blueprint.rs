@@ -237,7 +237,7 @@ fn numbers_that_the_file_leaves_out() {
     every_number(&word, &Options::default());
 }
 
-/// A table for an option may be missing, or a word may stand for it; a number of the option then makes the table.
+/// A table for an option may be missing, or a word may replace it; a number of the option then makes the table.
 #[test]
 fn numbers_of_options_that_stand_as_a_word_or_not_at_all() {
     let folder = tempfile::tempdir().unwrap();

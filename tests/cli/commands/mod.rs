@@ -132,7 +132,7 @@ fn assumptions_has_every_value_of_the_shipped_files() {
     }
 }
 
-/// Every command's help ends with examples, and they work as they stand there.
+/// Every command's help ends with examples, and each of them runs as printed.
 #[test]
 fn the_examples_of_the_help_work() {
     let dir = tempfile::tempdir().unwrap();

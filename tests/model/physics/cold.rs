@@ -103,7 +103,7 @@ fn val_d341_lines_against_published_limits_in_the_cold() {
     assert!(mpa_s("engine_10w40", -30.0) > 6600.0);
 }
 
-/// Outside truth: the power laws as they stood before films could warm and the inlet could starve, written out here. A file without the
+/// Outside truth: the power laws from before films could warm and the inlet could starve, written out here. A file without the
 /// keys means what it meant, to the last bit.
 #[test]
 fn val_files_without_the_keys_keep_the_power_laws() {

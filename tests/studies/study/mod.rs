@@ -156,7 +156,7 @@ fn killed_at_many_moments_it_ends_with_the_same_bytes() {
         sleep(Duration::from_micros(333 * (kills as u64 % 40)));
         child.kill().unwrap();
         let status = child.wait().unwrap();
-        // A study that was killed before its manifest stood has to be begun again.
+        // A study that was killed before its manifest was written has to be begun again.
         first = !dir.path().join("killed/study.json").exists();
         if status.code() == Some(0) {
             break;

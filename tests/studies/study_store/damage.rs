@@ -127,7 +127,7 @@ fn a_part_that_cannot_be_written_leaves_nothing_and_the_others_stay() {
         rows: &rows,
         metadata: &[],
     };
-    // Rows that do not fit stand for any error in the middle of a file.
+    // Rows that do not fit represent any error in the middle of a file.
     let problem = study
         .write_part(1, &[table("trace"), table("runs")])
         .unwrap_err();

@@ -322,7 +322,7 @@ fn every_equation_becomes_sound_mathml() {
                     .all(|node| !node.has_tag_name("merror")),
                 "{name}: {math}"
             );
-            // What Markdown would take for its own must not stand bare.
+            // What Markdown would take for its own must not be bare.
             let bare = |c: char| {
                 document
                     .descendants()

@@ -74,7 +74,7 @@ pub struct Point {
     pub item: String,
     /// The original expression, with single spaces.
     pub text: String,
-    /// How often the same text stood in the same function before.
+    /// Number of earlier points with the same text in the same function.
     pub nth: usize,
     /// Bytes of the whole expression.
     pub span: Range<usize>,
@@ -217,7 +217,7 @@ pub struct Edit {
     pub outer: Range<usize>,
 }
 
-/// A file with all its mutants, and where each point came to stand.
+/// A file with all its mutants, and the place of each point in it.
 #[derive(Debug)]
 pub struct Written {
     /// The text.

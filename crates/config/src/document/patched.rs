@@ -15,7 +15,7 @@ pub struct PatchedDocument {
     document: Document,
     /// Index of the source that the numbers come from.
     source: usize,
-    /// What stood there before, in the order of the changes.
+    /// The former entries, in the order of the changes.
     changes: Vec<Change>,
 }
 
@@ -24,7 +24,7 @@ pub struct PatchedDocument {
 struct Change {
     path: KeyPath,
     depth: usize,
-    /// None where nothing stood.
+    /// None where there was no entry.
     before: Option<Entry>,
 }
 
@@ -156,7 +156,7 @@ fn entry_mut<'t>(root: &'t mut Table, path: &[Box<str>]) -> Option<&'t mut Entry
     root.inner_mut(parents)?.entries.get_mut(&**last)
 }
 
-/// Puts an entry, or none, at a path whose tables exist, and gives what stood there.
+/// Puts an entry, or none, at a path whose tables exist, and returns the former entry.
 fn replace(root: &mut Table, path: &[Box<str>], entry: Option<Entry>) -> Option<Entry> {
     let (last, parents) = path.split_last()?;
     let table = root.inner_mut(parents)?;

@@ -6,10 +6,10 @@ use crate::document::{Node, Value};
 use crate::problem::Problem;
 use crate::reader::log::join;
 use crate::reader::section::Section;
-use crate::reader::value::Lookup;
+use crate::reader::value::{Found, Lookup};
 use cvtcycle_model::keys::{Bound, Column, Key, Kind, Quantity, count};
 
-impl Section<'_> {
+impl<'r> Section<'r> {
     /// A list of numbers in SI units. After a problem the numbers concerned are NaN, and the length is
     /// within the allowed one all the same.
     pub(crate) fn read_numbers(&self, key: &Key<'_>) -> Vec<f64> {
@@ -107,22 +107,30 @@ impl Section<'_> {
         })
     }
 
+    /// The items of a list with their entry; `None` if the key is absent, or has no list, which is a problem.
+    fn items(&self, key: &Key<'_>, expected: &str) -> Option<(Found<'r>, &'r [Node])> {
+        let found = match self.open(key) {
+            Lookup::Found(found) => found,
+            Lookup::Absent => {
+                self.defaulted(key.name, "[]", None);
+                return None;
+            }
+            Lookup::Bad => return None,
+        };
+        let Value::List(items) = &found.node.value else {
+            self.wrong_type(key.name, found.node, expected);
+            return None;
+        };
+        Some((found, items))
+    }
+
     /// What `read` makes of the texts of a list; empty if the key is absent.
     fn list<T: fmt::Debug>(
         &self,
         key: &Key<'_>,
         read: impl Fn(&Node, &str) -> Option<T>,
     ) -> Vec<T> {
-        let found = match self.open(key) {
-            Lookup::Found(found) => found,
-            Lookup::Absent => {
-                self.defaulted(key.name, "[]", None);
-                return Vec::new();
-            }
-            Lookup::Bad => return Vec::new(),
-        };
-        let Value::List(items) = &found.node.value else {
-            self.wrong_type(key.name, found.node, "a list of texts");
+        let Some((found, items)) = self.items(key, "a list of texts") else {
             return Vec::new();
         };
         let text = |item: &Node| match &item.value {
@@ -143,16 +151,7 @@ impl Section<'_> {
         let Kind::Rows(columns) = key.kind else {
             return Vec::new();
         };
-        let found = match self.open(key) {
-            Lookup::Found(found) => found,
-            Lookup::Absent => {
-                self.defaulted(key.name, "[]", None);
-                return Vec::new();
-            }
-            Lookup::Bad => return Vec::new(),
-        };
-        let Value::List(items) = &found.node.value else {
-            self.wrong_type(key.name, found.node, "a list of rows");
+        let Some((found, items)) = self.items(key, "a list of rows") else {
             return Vec::new();
         };
         let row = |item| self.row(key, item, columns);

@@ -28,7 +28,7 @@ pub trait Take {
     /// Why no row can be taken.
     fn begin(&mut self, with_case: bool) -> Result<(), Problems>;
 
-    /// A row and its `case` as it stood in the input, quotes within doubled; empty where there is none. Rows that come before a bad one
+    /// A row and its `case` as in the input, quotes within doubled; empty where there is none. Rows that come before a bad one
     /// are given too: the consumer drops them when the table turns out bad.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Where physics says which way a number goes: the reason and the range stand at each test.
+//! Where physics says which way a number goes: each test gives the reason and the range.
 
 use super::*;
 

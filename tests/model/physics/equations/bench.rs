@@ -2,7 +2,7 @@
 
 use super::{near, same};
 use crate::common::bench_step::{Bench as StepBench, Setting};
-use crate::common::{RPM, ZERO, car};
+use crate::common::{RPM, ZERO, car, loaded_point, rover_bench};
 use cvtcycle_config::setup::{Options, load};
 use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
 use cvtcycle_model::flags::Flags;
@@ -10,19 +10,6 @@ use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::variator::point::LIMIT_SLACK;
 use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, Formulation, belt_point};
-
-pub fn bench() -> Bench {
-    Bench::new(&car("rover_216_cvt", &[]))
-}
-
-fn point() -> BenchPoint {
-    BenchPoint {
-        output_nm: 200.0,
-        throttle: 0.3,
-        belt_k: Some(90.0 + ZERO),
-        ..BenchPoint::default()
-    }
-}
 
 /// What a bench is set to where nothing is said: ratio 1, 2500 rpm, 75 degC, the shipped box, no load.
 #[test]
@@ -46,7 +33,7 @@ fn defaults_of_the_bench() {
 /// RB-1: the sum over the parts, with the box complete and with parts taken out; speeds and slip at the output.
 #[test]
 fn val_bench_torques_add_up() {
-    let bench = bench();
+    let bench = rover_bench();
     let cvt = bench.cvt().unwrap();
     for (final_drive, pump, reverse_clutch) in [
         (true, true, true),
@@ -67,7 +54,7 @@ fn val_bench_torques_add_up() {
                 parts,
                 pressure_pa,
                 ratio: 0.8,
-                ..point()
+                ..loaded_point()
             };
             let a = bench.solve(&p);
             let slip = a.belt.unwrap().losses.slip_total;
@@ -95,7 +82,7 @@ fn val_bench_torques_add_up() {
             belt: false,
             ..Parts::ALL
         },
-        ..point()
+        ..loaded_point()
     });
     assert!(bare.output_rad_s == 0.0 && bare.belt_k.is_nan() && bare.belt.is_none());
     same(
@@ -109,11 +96,11 @@ fn val_bench_torques_add_up() {
 /// RB-2: the belt's temperature over the sump, from its loss.
 #[test]
 fn val_belt_warms_over_the_sump() {
-    let bench = bench();
+    let bench = rover_bench();
     let p = BenchPoint {
         belt_k: None,
         sump_k: 60.0 + ZERO,
-        ..point()
+        ..loaded_point()
     };
     let a = bench.solve(&p);
     let car = bench.car();
@@ -133,7 +120,7 @@ fn flag(a: &BenchAnswer, flag: Flags) -> bool {
 /// Flags of the bench: each bound from both sides, each cause by itself.
 #[test]
 fn flags_of_the_bench() {
-    let bench = bench();
+    let bench = rover_bench();
     let cvt = bench.cvt().unwrap();
     let outside = |p: BenchPoint| flag(&bench.solve(&p), Flags::OUTSIDE_VALIDITY);
     let (low, high) = (cvt.ratio.low, cvt.ratio.high);
@@ -147,7 +134,7 @@ fn flags_of_the_bench() {
             outside(BenchPoint {
                 ratio,
                 output_nm: 0.0,
-                ..point()
+                ..loaded_point()
             }),
             want,
             "{ratio}"
@@ -165,7 +152,7 @@ fn flags_of_the_bench() {
             outside(BenchPoint {
                 sump_k: sump + ZERO,
                 belt_k: Some(belt + ZERO),
-                ..point()
+                ..loaded_point()
             }),
             want,
             "{sump} {belt}"
@@ -177,7 +164,7 @@ fn flags_of_the_bench() {
         let a = bench.solve(&BenchPoint {
             output_nm,
             pressure_pa: Some(8e5),
-            ..point()
+            ..loaded_point()
         });
         let belt = a.belt.unwrap();
         let secondary =
@@ -254,7 +241,7 @@ fn val_printed_slip_on_the_bench() {
             ratio: 2.0,
             output_nm: 350.0,
             pressure_pa: Some(25e5),
-            ..point()
+            ..loaded_point()
         };
         let (a, oil) = (bench.solve(&p), &bench.car().oil);
         let belt = a.belt.unwrap();
@@ -303,7 +290,7 @@ fn val_printed_slip_on_the_bench() {
 /// Ends of the ratio that the geometry allows: at the third digit inside the belt fits, at the next one outside it does not.
 #[test]
 fn val_solvable_ratios_are_the_last_that_fit() {
-    let shipped = bench().cvt().unwrap().belt.clone();
+    let shipped = rover_bench().cvt().unwrap().belt.clone();
     for (centre, length) in [
         (shipped.centre_distance_m, shipped.length_m),
         (0.155, 0.45),
@@ -371,7 +358,7 @@ fn val_a_mapped_belt_warms_over_the_sump() {
     let p = BenchPoint {
         belt_k: None,
         sump_k: 60.0 + ZERO,
-        ..point()
+        ..loaded_point()
     };
     let (a, car) = (bench.solve(&p), bench.car());
     same(a.belt_nm(), 4.0);

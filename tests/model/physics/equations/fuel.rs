@@ -9,7 +9,7 @@ const FRICTION: (f64, f64) = (2.398_82, 0.002_86);
 
 const BAR: f64 = 1e5;
 
-fn line() -> Willans {
+fn willans() -> Willans {
     Willans {
         a: 0.4851,
         b: 0.01193,
@@ -23,7 +23,7 @@ fn line() -> Willans {
 /// WI-1 and WI-2 with the root found by bisection of the balance itself.
 #[test]
 fn val_willans_root_of_its_balance() {
-    let w = line();
+    let w = willans();
     for (cm, brake, friction) in [
         (3.0, 1.0, 2.5),
         (9.0, 8.0, 2.6),
@@ -55,7 +55,7 @@ fn val_willans_root_of_its_balance() {
 /// Beyond the turning point fuel is held there and the point is flagged; so is an efficiency outside 0.05 to 1.
 #[test]
 fn val_willans_bounds() {
-    let (w, need) = (line(), 30.0);
+    let (w, need) = (willans(), 30.0);
     let b = w.a + w.b * 5.0 + w.c * 25.0;
     assert!(b * b + 4.0 * w.a2 * need < 0.0);
     let p = FuelModel::Willans(w).fuel_mep(5.0, 200.0, (need - 3.0) * BAR, 3.0 * BAR);
@@ -73,7 +73,7 @@ fn val_willans_bounds() {
             b: 0.0,
             c: 0.0,
             a2: 0.0,
-            ..line()
+            ..willans()
         };
         let p = FuelModel::Willans(w).fuel_mep(5.0, 200.0, 2.0 * BAR, BAR);
         same(p.fuel_pa, 3.0 / held * BAR);
@@ -232,17 +232,6 @@ fn an_efficiency_above_one_at_the_bend_is_refused() {
             && line(0.7, 0.01, 0.0).is_ok()
             && line(0.7, 0.03, 0.0).is_err()
     );
-}
-
-fn willans() -> Willans {
-    Willans {
-        a: 0.4851,
-        b: 0.01193,
-        c: -0.00065,
-        a2: -0.00385,
-        l: 2.39882,
-        l2: 0.00286,
-    }
 }
 
 /// BSFC of the natural-aspiration set at 2000 rpm and 79 mm stroke, from the facts table (g/kWh at bmep bar).

@@ -1,8 +1,7 @@
 //! The rigs: a transient from its seconds, the second box, the variator rig from its parts.
 
-use super::bench::bench;
 use super::{near, same};
-use crate::common::{ZERO, car};
+use crate::common::{ZERO, car, rover_bench};
 use cvtcycle_config::Override;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, NODES, SUMP};
 use cvtcycle_model::transmission::component::Component;
@@ -13,7 +12,7 @@ use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad};
 fn val_transient_from_its_seconds() {
     use cvtcycle_model::bench::transmission::{Branch, transient};
     let (bench, mut c) = (
-        bench(),
+        rover_bench(),
         cvtcycle_config::rig::load(&[Override::number("rig.transient.end_degc", 45.0)])
             .unwrap()
             .0,
@@ -144,7 +143,7 @@ fn val_transient_from_its_seconds() {
 fn val_second_box_is_a_difference() {
     use cvtcycle_model::bench::transmission::{Plan, second_box};
     let c = cvtcycle_config::rig::load(&[]).unwrap().0;
-    for two in second_box(&bench(), &c, &Plan::of(&c)) {
+    for two in second_box(&rover_bench(), &c, &Plan::of(&c)) {
         same(
             two.difference_nm(),
             two.second.answer.total_nm() - two.first.answer.total_nm(),
