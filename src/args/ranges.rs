@@ -1,6 +1,6 @@
 //! Values of an option: a number, a list, ranges, or these mixed, such as `25,50,75` or `1000..4000:250`.
 
-use cvtcycle::config::{Bound, Problem, Problems, unit_of};
+use cvtcycle::config::{Bound, Problem, Problems, decimal, evenly, unit_of};
 
 use super::problems::bad_value;
 use super::quoted;
@@ -86,15 +86,10 @@ impl List<'_> {
             let hint = format!("write, for example, {from}..{to}:{}", step_for(low, high));
             return Err(self.bad(part, "has a step that is not above zero", hint));
         }
-        let count = ((high - low) / step * (1.0 + 1e-12)).floor();
-        if count >= MAX_VALUES {
+        evenly(low, high, step, MAX_VALUES).map_err(|count| {
             let hint = format!("at most {MAX_VALUES} values; take a larger step");
-            return Err(self.bad(part, &format!("has {:.0} values", count + 1.0), hint));
-        }
-        let steps = (0..=count as u32).map(|i| clean(low + f64::from(i) * step));
-        // The end of the range, also where the last step nearly meets it.
-        let before_end = steps.filter(|x| (high - x).abs() > 1e-9 * step);
-        Ok(before_end.chain([high]).collect())
+            self.bad(part, &format!("has {count:.0} values"), hint)
+        })
     }
 
     fn number(&self, part: &str, text: &str) -> Result<f64, Problem> {
@@ -143,12 +138,7 @@ impl List<'_> {
 
 /// A round step for a range.
 fn step_for(low: f64, high: f64) -> f64 {
-    clean(round_step((high - low) / PIECES))
-}
-
-/// Without the last digits, in which sums of decimal fractions carry their rounding.
-fn clean(x: f64) -> f64 {
-    format!("{x:.12e}").parse().unwrap_or(x)
+    decimal(round_step((high - low) / PIECES))
 }
 
 /// 1, 2 or 5 times a power of ten, not below `x`; 1 where there is no range.

@@ -35,6 +35,7 @@ pub use problem::place::{Argument, Input, Place};
 pub use problem::render::render;
 pub use problem::{Problem, ProblemKind, Problems, Setting, readable};
 pub use reader::Reader;
+pub use reader::lists::{decimal, evenly};
 pub use reader::log::KeyInfo;
 pub use reader::raw_value::RawValue;
 pub use reader::section::Section;

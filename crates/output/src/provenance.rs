@@ -4,7 +4,7 @@ use crate::number::finite;
 use crate::record::{
     CarRecord, Change, CycleRecord, FileRecord, FuelMapRecord, SpeedLine, ValueRecord,
 };
-use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::cycle::{Cycle, GearCommand, Weighting};
 use cvtcycle_config::setup::{Kind, Options, Setup, embedded_vehicles, is_path, load, text_of};
 use cvtcycle_config::{KeyInfo, Problems, unit_of};
 use cvtcycle_model::drive::fuel_map;
@@ -40,9 +40,37 @@ pub fn cycle_record(cycle: &Cycle) -> CycleRecord {
     }
 }
 
-/// Hash of a cycle as it was read.
+/// Hash of what a cycle prescribes: of the text of its phases, intervals and gears.
 pub fn cycle_sha256(cycle: &Cycle) -> String {
-    hash(format!("{cycle:?}").as_bytes())
+    hash(cycle_text(cycle).as_bytes())
+}
+
+/// A cycle as lines: weighting and phases, then for each trace a row an interval and the columns of its gears. Speeds are in m/s. Name and
+/// title are left out.
+fn cycle_text(cycle: &Cycle) -> String {
+    let mut text = match cycle.weighting {
+        Weighting::None => "weighting = none\n".to_owned(),
+        Weighting::Ftp75 => "weighting = ftp75\n".to_owned(),
+    };
+    text += &format!("phases = {}\n", cycle.phases.join(","));
+    for (name, trace) in [
+        ("manual", Some(&cycle.manual)),
+        ("automatic", cycle.automatic.as_ref()),
+    ] {
+        let Some(trace) = trace else { continue };
+        text += &format!("{name} = start_s,end_s,start_m_s,end_m_s,phase,grade,engine_off\n");
+        for row in &trace.intervals {
+            let (start_m_s, end_m_s) = (row.start_speed_m_s, row.end_speed_m_s);
+            let (start_s, end_s, phase) = (row.start_s, row.end_s, row.phase);
+            let (grade, off) = (row.grade, u8::from(row.engine_off));
+            text += &format!("{start_s},{end_s},{start_m_s},{end_m_s},{phase},{grade},{off}\n");
+        }
+        for (column, commands) in trace.gear_columns() {
+            let commands: Vec<String> = commands.iter().map(GearCommand::to_string).collect();
+            text += &format!("{column} = {}\n", commands.join(","));
+        }
+    }
+    text
 }
 
 /// Hash of a whole checked car: of the text of its values and maps.

@@ -198,27 +198,35 @@ impl<'r> Section<'r> {
 /// Most numbers of one range.
 const MAX_IN_RANGE: f64 = 10_000.0;
 
-/// `from..to:step` with both ends; a last step that falls short of `to` is kept short.
+/// The numbers of `from..to:step`.
 fn range_values(text: &str) -> Option<Vec<f64>> {
     let (from, rest) = text.split_once("..")?;
     let (to, step) = rest.split_once(':')?;
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
     let (from, to, step) = (number(from)?, number(to)?, number(step)?);
-    let count = ((to - from) / step).floor();
-    if !(step > 0.0 && from <= to && count < MAX_IN_RANGE) {
-        return None;
+    let good = step > 0.0 && from <= to;
+    good.then(|| evenly(from, to, step, MAX_IN_RANGE).ok())?
+}
+
+/// Numbers from `from` to `to` in steps of `step` above 0, without the digits in which sums of decimal fractions carry their rounding. Both ends
+/// are among them: a last step that falls short of `to` is kept short.
+///
+/// # Errors
+/// How many numbers there would be, where these are more than `most`.
+pub fn evenly(from: f64, to: f64, step: f64, most: f64) -> Result<Vec<f64>, f64> {
+    // The end is a number of its own where the steps do not meet it.
+    let count = ((to - from) / step * (1.0 + 1e-12)).floor();
+    if count >= most {
+        return Err(count + 1.0);
     }
-    let values: Vec<f64> = (0..=count as u32)
-        .map(|i| from + step * f64::from(i))
-        .collect();
-    let whole = values
-        .last()
-        .is_some_and(|last| (to - last).abs() <= 1e-9 * step);
-    Some(if whole {
-        values
-    } else {
-        values.into_iter().chain([to]).collect()
-    })
+    let steps = (0..=count as u32).map(|i| decimal(from + f64::from(i) * step));
+    let before_end = steps.filter(|x| (to - x).abs() > 1e-9 * step);
+    Ok(before_end.chain([to]).collect())
+}
+
+/// A number without the last digits of its rounding.
+pub fn decimal(x: f64) -> f64 {
+    format!("{x:.12e}").parse().unwrap_or(x)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! `lists`; `choice`; `maps` of files), `log` keeps what was read, `unknown` names what was not.
 
 mod choice;
-mod lists;
+pub mod lists;
 pub(crate) mod log;
 mod maps;
 pub(crate) mod raw_value;

@@ -3,6 +3,8 @@
 //! A table gives a gear number (0: none engaged) and a note: `PM` neutral with the clutch engaged, `K1`, `K2`, `K5` that gear
 //! with the clutch disengaged, `GC` gear change (UN R83 Annex 4a, tables 1 and 2).
 
+use std::fmt;
+
 /// What the driver of a manual car does over one interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GearCommand {
@@ -21,6 +23,18 @@ impl GearCommand {
         match self {
             Self::Neutral => 0,
             Self::Declutched(gear) | Self::InGear(gear) | Self::Change(gear) => gear,
+        }
+    }
+}
+
+/// The gear number with the note of a table, as in `2 GC`.
+impl fmt::Display for GearCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Neutral => f.write_str("0 PM"),
+            Self::Declutched(gear) => write!(f, "{gear} K{gear}"),
+            Self::InGear(gear) => write!(f, "{gear}"),
+            Self::Change(gear) => write!(f, "{gear} GC"),
         }
     }
 }
@@ -127,6 +141,17 @@ impl GearColumns {
             plain,
             plain_highest,
         }
+    }
+
+    /// The columns there are, with their names in a table.
+    pub fn columns(&self) -> impl Iterator<Item = (&'static str, &[GearCommand])> {
+        let all = [
+            ("gear_5mt", &self.five),
+            ("gear_6mt", &self.six),
+            ("gear", &self.plain),
+        ];
+        all.into_iter()
+            .filter_map(|(name, column)| Some((name, column.as_deref()?)))
     }
 
     /// True without any column.

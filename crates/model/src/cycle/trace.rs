@@ -185,6 +185,11 @@ impl Trace {
         &mut self.gears
     }
 
+    /// The prescribed gears by the name of their column.
+    pub fn gear_columns(&self) -> impl Iterator<Item = (&'static str, &[GearCommand])> {
+        self.gears.columns()
+    }
+
     /// Whether the trace prescribes gears for some gearbox.
     pub fn has_gears(&self) -> bool {
         !self.gears.is_empty()

@@ -16,8 +16,8 @@
 mod keys;
 mod viscosity;
 
-pub use keys::FluidKeys;
 pub(crate) use keys::viscosity;
+pub use keys::{FRICTION, FluidKeys};
 pub use viscosity::Viscosity;
 
 use crate::math::{clamp, exp, larger, ln};

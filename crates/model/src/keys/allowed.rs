@@ -24,6 +24,7 @@ impl Key<'_> {
     pub const fn range(&self) -> Bound {
         match self.kind {
             Kind::Number(range) | Kind::Numbers(range, ..) | Kind::Grid(range) => range,
+            Kind::Integer(low, high) => Bound::closed(low as f64, high as f64),
             _ => Bound::any(),
         }
     }

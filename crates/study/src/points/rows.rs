@@ -2,7 +2,8 @@
 
 use cvtcycle_config::csv::{Collector, Row};
 use cvtcycle_config::{Bound, Problem, did_you_mean};
-use cvtcycle_model::transmission::cvt::variator::{BELT, Formulation};
+use cvtcycle_model::fluid::FRICTION;
+use cvtcycle_model::transmission::cvt::variator::{BELT, Formulation, VARIATOR};
 
 /// A number that a row gives: name, unit, and range in that unit.
 pub type Number = (&'static str, &'static str, Bound);
@@ -22,9 +23,12 @@ pub const BELT_TEMP: usize = 11;
 /// The first of these must be given in each row.
 pub const REQUIRED: usize = 4;
 
+const HALF_ANGLE: Bound = VARIATOR.half_wedge_deg.range();
+
 /// Numbers that are read, in the order of the output. Their ranges keep out what is a slip of the pen or has no solution;
 /// what is merely outside the vehicle's or the model's validity is computed and flagged.
-/// The range of the bands' offset is that of the vehicle's key.
+/// What a vehicle or a lubricant has a key for has the range of that key; the friction of the bands is that at the point's temperature and
+/// sliding speed, not the key's at 85 degC.
 pub const NUMBERS: [Number; 12] = [
     // What the belt can run at is the model's to say.
     ("ratio", "", Bound::any()),
@@ -39,12 +43,12 @@ pub const NUMBERS: [Number; 12] = [
         "Nm",
         Bound::closed(-100_000.0, 100_000.0),
     ),
-    ("pulley_half_angle_deg", "degrees", Bound::closed(1.0, 45.0)),
-    ("wedge_half_angle_deg", "degrees", Bound::closed(1.0, 45.0)),
+    ("pulley_half_angle_deg", "degrees", HALF_ANGLE),
+    ("wedge_half_angle_deg", "degrees", HALF_ANGLE),
     (BELT.band_offset_mm.name, "mm", BELT.band_offset_mm.range()),
     ("band_friction", "", Bound::closed(0.0, 0.5)),
-    ("segment_friction", "", Bound::closed(0.01, 1.0)),
-    ("band_count", "", Bound::closed(1.0, 100.0)),
+    ("segment_friction", "", FRICTION.segment.range()),
+    ("band_count", "", BELT.band_count.range()),
     ("primary_on_stop", "", Bound::closed(0.0, 1.0)),
     ("belt_temp_degc", "degC", Bound::closed(-60.0, 200.0)),
 ];

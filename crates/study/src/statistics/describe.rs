@@ -176,11 +176,3 @@ impl Share {
         Self::of(values, |x| x > 0.0)
     }
 }
-
-/// Differences of pairs, subject - baseline; NaN where one of the two is missing. The longer column's rest has no partner.
-pub fn difference(subject: &[f64], baseline: &[f64]) -> Vec<f64> {
-    let at = |column: &[f64], i: usize| column.get(i).copied().unwrap_or(f64::NAN);
-    let pair = |i| Some(at(subject, i) - at(baseline, i)).filter(|x| x.is_finite());
-    let rows = 0..subject.len().max(baseline.len());
-    rows.map(|i| pair(i).unwrap_or(f64::NAN)).collect()
-}

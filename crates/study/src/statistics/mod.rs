@@ -11,7 +11,7 @@ mod rank;
 mod sobol;
 mod tornado;
 
-pub use describe::{QUANTILES, Quantile, Share, Spread, Summary, difference, quantile_of_sorted};
+pub use describe::{QUANTILES, Quantile, Share, Spread, Summary, quantile_of_sorted};
 pub use groups::{Group, Groups, group_means};
 pub use rank::{RankFactor, RankSensitivity, rank_sensitivity};
 pub use sobol::{Blocks, Bootstrap, FactorIndices, SobolIndices, sobol_convergence, sobol_indices};
