@@ -17,6 +17,8 @@
     reason = "helpers and tables of tests"
 )]
 
+#[path = "common/announced.rs"]
+mod announced;
 #[path = "diagnostics/calibrations.rs"]
 mod calibration;
 #[path = "diagnostics/corpus.rs"]

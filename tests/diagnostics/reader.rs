@@ -2,6 +2,7 @@
 //!
 //! `#~ part of a message` announces a problem of the next line that is no announcement; `#~ hint: …`
 //! and `#~ allowed: …` add to it what its hint and its allowed range must contain.
+use crate::announced::{differences, expectations};
 use crate::loose::Loose;
 use cvtcycle::config::{
     Bound, Document, KeyInfo, Override, Problem, Problems, Reader, decode, near, render,
@@ -63,68 +64,6 @@ fn problems(file: &str, text: &str) -> Problems {
         Ok(document) => read(&document).err().unwrap_or_default(),
         Err(problems) => problems,
     }
-}
-
-#[derive(Default)]
-struct Expected {
-    line: usize,
-    message: String,
-    hint: String,
-    allowed: String,
-}
-
-fn expectations(text: &str) -> Vec<Expected> {
-    let mut all: Vec<Expected> = Vec::new();
-    let mut open = 0;
-    for (index, line) in text.lines().enumerate() {
-        let Some(part) = line.trim_start().strip_prefix("#~ ") else {
-            let from = all.len() - open;
-            all[from..]
-                .iter_mut()
-                .for_each(|expected| expected.line = index + 1);
-            open = 0;
-            continue;
-        };
-        match (part.split_once(": "), all.last_mut()) {
-            (Some(("hint", hint)), Some(last)) => last.hint = hint.to_string(),
-            (Some(("allowed", allowed)), Some(last)) => last.allowed = allowed.to_string(),
-            _ => {
-                all.push(Expected {
-                    message: part.to_string(),
-                    ..Expected::default()
-                });
-                open += 1;
-            }
-        }
-    }
-    all
-}
-
-/// The differences between the expected problems and the found ones, as text.
-fn differences(expected: &[Expected], found: &[Problem]) -> String {
-    let mut rest: Vec<&Problem> = found.iter().collect();
-    let mut text = String::new();
-    for wanted in expected {
-        let fits = |problem: &&Problem| {
-            problem.place.line == wanted.line
-                && problem.message.contains(&wanted.message)
-                && problem.hint.contains(&wanted.hint)
-                && problem.allowed.contains(&wanted.allowed)
-        };
-        match rest.iter().position(fits) {
-            Some(at) => drop(rest.remove(at)),
-            None => {
-                text += &format!(
-                    "not found: line {} {} / {}\n",
-                    wanted.line, wanted.message, wanted.hint
-                )
-            }
-        }
-    }
-    for problem in rest {
-        text += &format!("not expected: {problem:#?}\n");
-    }
-    text
 }
 
 #[test]

@@ -18,6 +18,7 @@ mod rig_variator;
 use std::process::Output;
 
 use assert_cmd::Command;
+use serde_json::Value;
 
 /// What the program answers to a command and its words.
 fn run(command: &[&str], words: &[&str]) -> Output {
@@ -39,4 +40,43 @@ fn printed(command: &[&str], words: &[&str]) -> String {
         String::from_utf8_lossy(&output.stderr)
     );
     String::from_utf8(output.stdout).unwrap()
+}
+
+/// Names of the columns, and the JSON, of a command whose CSV and JSON carry the same points, number for number.
+fn same_points(command: &[&str], words: &[&str]) -> (Vec<String>, Value) {
+    let csv = printed(command, &[words, &["--format", "csv"]].concat());
+    let json: Value =
+        serde_json::from_str(&printed(command, &[words, &["--json"]].concat())).unwrap();
+    let mut reader = csv::Reader::from_reader(csv.as_bytes());
+    let names: Vec<String> = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(str::to_owned)
+        .collect();
+    let records: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let points = json["points"].as_array().unwrap();
+    assert_eq!(
+        (records.len(), json["count"].as_u64()),
+        (points.len(), Some(points.len() as u64))
+    );
+    for (record, point) in records.iter().zip(points) {
+        for (name, cell) in names.iter().zip(record) {
+            match &point[name] {
+                // The reader of JSON rounds the last bit its own way.
+                Value::Number(x) => {
+                    let (a, b) = (cell.parse::<f64>().unwrap(), x.as_f64().unwrap());
+                    assert!((a - b).abs() <= 4e-16 * a.abs(), "{name}: {a} {b}");
+                }
+                Value::Null => assert_eq!(cell, "", "{name}"),
+                Value::String(word) => assert_eq!(cell, word),
+                Value::Array(flags) => {
+                    let flags: Vec<&str> = flags.iter().map(|f| f.as_str().unwrap()).collect();
+                    assert_eq!(cell, flags.join("|"));
+                }
+                other => panic!("{name}: {other}"),
+            }
+        }
+    }
+    (names, json)
 }

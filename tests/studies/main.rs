@@ -6,6 +6,8 @@
     reason = "helpers and tables of tests"
 )]
 
+#[path = "../common/announced.rs"]
+mod announced;
 #[path = "../common/mod.rs"]
 mod common;
 #[allow(dead_code, reason = "the pictures of runs are used by tests/results")]

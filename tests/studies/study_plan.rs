@@ -1,8 +1,9 @@
 //! Plans of studies: every rule with a bad plan, the examples of the documentation, the plans that the program carries.
 #![allow(clippy::unwrap_used, reason = "tests say what they found")]
 
+use crate::announced::{differences, expectations};
 use cvtcycle::config::setup::{self, Options};
-use cvtcycle::config::{Argument, Override, Problem, Problems, render};
+use cvtcycle::config::{Argument, Override, Problems, render};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::study::plan::{
     Acts, Cars, Design, Distribution, FactorValue, FactorValues, Keep, PLAN, Plan, embedded_plans,
@@ -42,36 +43,6 @@ fn words(values: &FactorValues) -> Vec<String> {
     list.iter().map(ToString::to_string).collect()
 }
 
-/// What is announced: line, and parts of message, hint and allowed range.
-#[derive(Debug, Default)]
-struct Expected {
-    line: usize,
-    message: String,
-    hint: String,
-    allowed: String,
-}
-
-fn expectations(text: &str) -> Vec<Expected> {
-    let mut all: Vec<Expected> = Vec::new();
-    for (k, line) in text.lines().enumerate() {
-        let Some(part) = line.strip_prefix("#~ ") else {
-            all.iter_mut()
-                .filter(|expected| expected.line == 0)
-                .for_each(|expected| expected.line = k + 1);
-            continue;
-        };
-        match (part.split_once(": "), all.last_mut()) {
-            (Some(("hint", hint)), Some(last)) => last.hint = hint.to_owned(),
-            (Some(("allowed", allowed)), Some(last)) => last.allowed = allowed.to_owned(),
-            _ => all.push(Expected {
-                message: part.to_owned(),
-                ..Expected::default()
-            }),
-        }
-    }
-    all
-}
-
 #[test]
 fn every_problem_of_a_bad_plan_is_reported_at_its_place() {
     let all = include_str!("../plans/bad.txt");
@@ -80,7 +51,7 @@ fn every_problem_of_a_bad_plan_is_reported_at_its_place() {
     let mut wrong = String::new();
     for text in plans {
         // Announcements are comments, so that lines keep their numbers.
-        let mut problems = bad(text);
+        let problems = bad(text);
         let shown = render(&problems, false);
         assert!(
             problems
@@ -100,24 +71,7 @@ fn every_problem_of_a_bad_plan_is_reported_at_its_place() {
             !shown.contains("--set") && !shown.contains("top of the file"),
             "{shown}"
         );
-        for expected in expectations(text) {
-            let fits = |problem: &Problem| {
-                problem.place.line == expected.line
-                    && problem.message.contains(&expected.message)
-                    && problem.hint.contains(&expected.hint)
-                    && problem.allowed.contains(&expected.allowed)
-            };
-            match problems.iter().position(fits) {
-                Some(k) => drop(problems.remove(k)),
-                None => wrong += &format!("expected {expected:?}\n"),
-            }
-        }
-        wrong.extend(problems.iter().map(|p| {
-            format!(
-                "found    {}: {} (allowed: {}; hint: {})\n",
-                p.place.line, p.message, p.allowed, p.hint
-            )
-        }));
+        wrong += &differences(&expectations(text), &problems);
     }
     assert!(wrong.is_empty(), "\n{wrong}");
 }
