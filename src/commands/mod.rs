@@ -14,16 +14,24 @@ mod show;
 mod study;
 mod validate;
 
+use std::sync::LazyLock;
+
 use clap::{ColorChoice, Parser, Subcommand};
 
 use crate::print::{CommandResult, Terminal};
 use cvtcycle::config::Problems;
+use cvtcycle::output::BUILD;
+
+/// Version, and which build of it: a study is resumed by the same build only.
+static LONG_VERSION: LazyLock<String> =
+    LazyLock::new(|| format!("{} (build {BUILD})", env!("CARGO_PKG_VERSION")));
 
 /// Drive-cycle losses and fuel of cars with a pushing-belt CVT, cold and warm, from component physics
 #[derive(Debug, Parser)]
 #[command(
     name = "cvtcycle",
     version,
+    long_version = LONG_VERSION.as_str(),
     max_term_width = 100,
     propagate_version = true,
     after_help = "Example: cvtcycle run --cycle ece15_eudc --ambient -10\n\n\

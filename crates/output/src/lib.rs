@@ -21,3 +21,6 @@ pub use history::History;
 
 /// Name and version of the program, as the result files cite it.
 pub const PROGRAM: &str = concat!("cvtcycle ", env!("CARGO_PKG_VERSION"));
+/// Which build of the program this is: a hash of its sources, its data and its libraries' versions. Programs of one version that may compute
+/// other numbers have other builds.
+pub const BUILD: &str = env!("CVTCYCLE_BUILD");

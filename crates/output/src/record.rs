@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::PROGRAM;
+use crate::{BUILD, PROGRAM};
 
 /// Version of the object; a new number when a name goes or changes its meaning.
 pub const SCHEMA: u32 = 1;
@@ -22,6 +22,9 @@ pub struct Manifest {
     pub kind: Option<String>,
     /// Name and version of the program.
     pub program: String,
+    /// Which build of the program: [`BUILD`]. Empty in files of versions that had none.
+    #[serde(default)]
+    pub build: String,
 }
 
 impl Manifest {
@@ -31,6 +34,7 @@ impl Manifest {
             schema,
             kind: None,
             program: PROGRAM.to_owned(),
+            build: BUILD.to_owned(),
         }
     }
 

@@ -8,6 +8,7 @@ fn json_of_a_run_has_every_key_of_the_contract() {
     for key in [
         "schema",
         "program",
+        "build",
         "cycle",
         "ambient_degc",
         "start",
@@ -19,6 +20,12 @@ fn json_of_a_run_has_every_key_of_the_contract() {
     assert_eq!(
         summary["program"],
         concat!("cvtcycle ", env!("CARGO_PKG_VERSION"))
+    );
+    let version = stdout(&run(&["--version"]));
+    let build = summary["build"].as_str().unwrap();
+    assert!(
+        build.len() == 16 && version.ends_with(&format!(" (build {build})\n")),
+        "{version}"
     );
     assert_eq!(summary["start"], "soak");
     assert_eq!(summary["ambient_degc"], -10.0);

@@ -4,6 +4,7 @@
 mod create;
 mod damage;
 mod export;
+mod identity;
 mod resume;
 mod run;
 mod tables;
@@ -14,6 +15,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::sync::Arc;
 
+use cvtcycle::output::BUILD;
 use cvtcycle::study::store::{Head, Kind, Rows, Values};
 use cvtcycle::study::store::{PartTable, StudyDir};
 use serde_json::json;
@@ -76,7 +78,7 @@ fn rows(part: usize) -> Rows {
 
 fn manifest_of(parts: usize, tables: &[&str], csv: bool) -> Vec<u8> {
     let layout = json!({ "parts": parts, "tables": tables, "csv": csv });
-    json!({ "program": "cvtcycle 0.1.0", "seed": 7, "layout": layout, "plan": "title = 1\n" })
+    json!({ "program": "cvtcycle 0.1.0", "build": BUILD, "seed": 7, "layout": layout, "plan": "title = 1\n" })
         .to_string()
         .into_bytes()
 }

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::thread;
 
+use cvtcycle::output::BUILD;
 use cvtcycle::study::store::StudyDir;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -151,6 +152,22 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
         "{said}"
     );
     assert!(!said.contains("more values"), "{said}");
+    // Another program has another build, which says nothing more.
+    let said = refused(dir.path(), |m| {
+        m["program"] = "cvtcycle 9.9.9".into();
+        m["build"] = "0123456789abcdef".into();
+    });
+    assert!(
+        said.contains("`program` is") && !said.contains("more value"),
+        "{said}"
+    );
+    let said = refused(dir.path(), |m| m["build"] = "0123456789abcdef".into());
+    let words =
+        format!("was begun by another build of the program: {BUILD} there, 0123456789abcdef now");
+    assert!(
+        said.contains(&words) && said.contains("resume it with that program"),
+        "{said}"
+    );
     let said = refused(dir.path(), |m| m["plan"] = "title = 2\n".into());
     assert!(
         said.contains("`plan, line 1` is `title = 1` there and `title = 2` now"),

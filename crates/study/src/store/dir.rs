@@ -335,11 +335,24 @@ fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Pr
         return problem(path, &message, hint).settings(&[Setting::Replace]);
     };
     let mut found = differences(&stored, &now);
+    let builds =
+        [&stored, &now].map(|manifest| manifest["build"].as_str().unwrap_or("unknown").to_owned());
     // The line of the plan says more than what follows from it.
     let stored = bounded::read_file(path.join(PLAN), bounded::TOML).ok();
     if let Some(stored) = stored.filter(|stored| stored != plan) {
         let text = String::from_utf8_lossy;
         found.insert(0, lines(PLAN, &text(&stored), &text(plan)));
+    }
+    let before = found.len();
+    found.retain(|difference| difference.path != "build");
+    if found.is_empty() && before > 0 {
+        let [there, now] = builds;
+        let message = format!(
+            "the study in {name} was begun by another build of the program: {there} there, {now} now"
+        );
+        let hint =
+            "resume it with that program, or begin anew in its place or in another directory";
+        return problem(path, &message, hint).settings(&[Setting::Replace]);
     }
     let message = match found.as_slice() {
         [] => format!("{MANIFEST} in {name} was written in another form"),
