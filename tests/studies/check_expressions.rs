@@ -5,14 +5,19 @@ use std::rc::Rc;
 
 use cvtcycle::config::setup::catalogue;
 use cvtcycle::study::check::expr::{
-    Computed, FUNCTIONS, Fault, Gives, Names, REDUCTIONS, Table, Tables, compute, parse,
+    Computed, FUNCTIONS, Fault, Gives, MAX_EVALUATIONS, MAX_TOKENS, Names, REDUCTIONS, Table,
+    Tables, compute, parse,
 };
 use cvtcycle::study::check::keys::VALIDATION;
-use cvtcycle::study::check::{Printed, Verdict, rule};
+use cvtcycle::study::check::{
+    COMMON, CandidateVehicle, Printed, Verdict, embedded_rows, judge, read, rule,
+};
 use cvtcycle::study::fit::plan::keys::CALIBRATION;
 
 struct Fixed {
     left_out: Cell<usize>,
+    /// Evaluations that are left.
+    left: Cell<u64>,
 }
 
 impl Names for Fixed {
@@ -64,6 +69,13 @@ impl Tables for Fixed {
         Ok(item.map_or(3.0, |k| k as f64))
     }
 
+    fn spend(&self, evaluations: u64) -> Result<(), String> {
+        let left = self.left.get().checked_sub(evaluations);
+        self.left.set(left.unwrap_or(0));
+        left.map(drop)
+            .ok_or_else(|| "no evaluations are left".to_owned())
+    }
+
     fn left_out(&self, rows: usize) {
         self.left_out.set(self.left_out.get() + rows);
     }
@@ -74,6 +86,7 @@ impl Tables for Fixed {
 fn fixed() -> Fixed {
     Fixed {
         left_out: Cell::default(),
+        left: Cell::new(1_000_000),
     }
 }
 
@@ -237,8 +250,98 @@ fn faults_have_their_place_and_a_hint() {
             "{text}: {found:?}"
         );
     }
-    assert!(faults(&"(".repeat(5000))[0].message.contains("too deep"));
-    assert!(parse(&"-".repeat(5000), &fixed()).is_err());
+    assert!(faults(&"(".repeat(500))[0].message.contains("too deep"));
+    assert!(parse(&"-".repeat(500), &fixed()).is_err());
+}
+
+/// What everything that walks through an expression says of it, on a stack of 1 MiB.
+fn walked(text: String) -> Result<f64, String> {
+    let walk = move || {
+        let names = fixed();
+        let expr = parse(&text, &names).map_err(|faults| faults[0].message.clone())?;
+        assert!(expr.sources().len() < text.len() && expr.clone() == expr);
+        Ok(match compute(&expr, &names)? {
+            Computed::Number(x) => x,
+            Computed::Truth(holds, _) => f64::from(u8::from(holds)),
+            Computed::Range(low, _) => low,
+        })
+    };
+    let thread = std::thread::Builder::new().stack_size(1 << 20).spawn(walk);
+    thread.unwrap().join().unwrap()
+}
+
+#[test]
+fn an_expression_of_a_thousand_tokens_is_the_longest() {
+    for (begin, sign, want) in [
+        ("-", "+", 498.0),
+        ("-", "-", -500.0),
+        ("-", "*", -1.0),
+        ("-", "^", -1.0),
+        ("-", "<", 0.0),
+        ("not ", " and ", 0.0),
+        ("not ", " or ", 1.0),
+    ] {
+        let longest = begin.to_owned() + &["1"; MAX_TOKENS / 2].join(sign);
+        assert_eq!(walked(longest.clone()), Ok(want), "{sign}");
+        let why = walked(longest.clone() + sign + "1").expect_err(sign);
+        assert!(why.contains("more than 1000 words"), "{sign}: {why}");
+        // However long it is, only the first token that is too many is looked at.
+        let longer = parse(&longest.repeat(100), &fixed()).expect_err(sign);
+        assert!(
+            longer.len() == 1 && longer[0].at == longest.len(),
+            "{longer:?}"
+        );
+    }
+    let brackets = format!("{}1{}", "(".repeat(39), ")".repeat(39));
+    assert_eq!(walked(brackets), Ok(1.0));
+    let previous = format!("max(low: {}y{})", "prev(".repeat(38), ")".repeat(38));
+    assert!(walked(previous).is_err_and(|why| why.contains("no number")));
+}
+
+#[test]
+fn nested_loops_and_reductions_end_with_the_evaluations() {
+    let sums = (0..9).fold("y".to_owned(), |inner, _| format!("sum(low: {inner})"));
+    let nested = |kind: &str, depth: usize, innermost: &str| {
+        (0..depth).fold(innermost.to_owned(), |inner, k| {
+            format!("{kind}(a{k} in 0,1,2,3,4,5,6,7,8,9: {inner})")
+        })
+    };
+    for text in [
+        sums.clone(),
+        format!("{sums} > 0"),
+        nested("each", 30, "1 == 1"),
+        format!("span(b in 0, 1: {})", nested("each", 29, "b < 2")),
+        format!("min(low: {})", nested("each", 30, "y > 0")),
+    ] {
+        assert_eq!(
+            of(&text),
+            Err("no evaluations are left".to_owned()),
+            "{text}"
+        );
+    }
+    // Three deep they are cheap, but not all of their numbers are listed.
+    match of(&nested("each", 3, "a0 + a1 + a2 < 100")) {
+        Ok(Computed::Truth(true, behind)) => assert!(
+            behind.starts_with("0: 0: 0: 0 < 100; 1: 1 < 100")
+                && behind.ends_with("...")
+                && behind.len() < 5000,
+            "{behind}"
+        ),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn the_shipped_rows_take_less_than_a_fiftieth_of_the_evaluations() {
+    let owned = |(name, text): &(&str, &str)| ((*name).to_owned(), (*text).to_owned());
+    let texts: Vec<_> = embedded_rows().iter().map(owned).collect();
+    let candidate = CandidateVehicle {
+        vehicle: "rover_216_cvt".to_owned(),
+        ..CandidateVehicle::default()
+    };
+    let report = judge(&read(COMMON, &texts).unwrap(), &candidate, |_| true).unwrap();
+    let taken = report.evaluations;
+    assert!(taken > 0 && taken < MAX_EVALUATIONS / 50, "{taken}");
 }
 
 #[test]

@@ -223,3 +223,62 @@ fn a_table_of_nothing_but_mistakes_is_reported_in_bounded_memory() {
         message
     );
 }
+
+/// A file of one row with an expression.
+fn row(sources: &str, compute: &str) -> String {
+    format!(
+        "[tolerances.t]\nshare = 0.1\nunit = \"-\"\nfrom = \"x\"\n{sources}\n[[row]]\nid = \"a\"\nchapter = \"x\"\n\
+        mechanism = \"geometry\"\nkind = \"C\"\nwhat = \"w\"\nprinted = \"1\"\nvalue = 1\ntolerance = \"t\"\ncompute = \"{compute}\"\n\
+        verdict = \"agrees\"\n"
+    )
+}
+
+#[test]
+fn an_expression_without_end_is_one_problem_of_every_command() {
+    let dir = folder();
+    let calibration = |compute: &str| {
+        format!(
+            "[calibration]\nvehicle = \"rover_216_cvt\"\n[[parameter]]\nkey = \"transmission.cvt.pump.displacement_cc_rev\"\nlow = 5\n\
+            high = 20\n[[data]]\nfrom = \"a test\"\ncompute = \"{compute}\"\nvalue = 1\nsd = 0.1\n"
+        )
+    };
+    let long = |sign: &str, count: usize| vec!["1"; count].join(sign);
+    for compute in [
+        long("+", 2000),
+        long("^", 30_000),
+        long(" and ", 30_000),
+        filled("", "1-", "1")[..1_000_000].to_owned() + "1",
+    ] {
+        fs::write(dir.path().join("rows.toml"), row("", &compute)).unwrap();
+        fs::write(dir.path().join("fit.toml"), calibration(&compute)).unwrap();
+        for line in [
+            "validate --only-rows --rows rows.toml",
+            "check fit.toml",
+            "calibrate fit.toml --out nowhere",
+        ] {
+            refused_once(
+                dir.path(),
+                64,
+                line,
+                &["more than 1000 words, numbers and signs"],
+            );
+        }
+    }
+    assert!(!dir.path().join("nowhere").exists());
+}
+
+#[test]
+fn loops_without_end_are_one_problem() {
+    let dir = folder();
+    let each = (0..30).fold("1 == 1".to_owned(), |inner, k| {
+        format!("each(a{k} in 0,1,2,3,4,5,6,7,8,9: {inner})")
+    });
+    let sum = (0..9).fold("loss_nm".to_owned(), |inner, _| format!("sum(b: {inner})"));
+    let belt = "[sources.b]\nsource = \"belt\"\nratio = [0.5, 1]\nspeed_rpm = 2000\npressure_bar = 20\ntorque_nm = \"0..60:10\"\n";
+    let each = row("", &each).replace("value = 1\ntolerance = \"t\"\n", "");
+    for text in [each, row(belt, &sum)] {
+        fs::write(dir.path().join("rows.toml"), text).unwrap();
+        let line = "validate --only-rows --rows rows.toml";
+        refused_once(dir.path(), 64, line, &["more than 100000000 evaluations"]);
+    }
+}

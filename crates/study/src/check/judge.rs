@@ -4,13 +4,13 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use super::expr::{Computed, Expr, compute};
+use super::expr::{Computed, Expr, MAX_EVALUATIONS, compute};
 use super::rows::{RowFile, ValidationRow};
 use super::rule::{Verdict, off, verdict};
 use super::source::Source;
 use super::store::{Cars, Store, View, once};
 use cvtcycle_config::setup::{NamedBy, Options, Setup, load};
-use cvtcycle_config::{KeyInfo, Override, Problem, Problems, Target, rig};
+use cvtcycle_config::{KeyInfo, Override, Problem, ProblemKind, Problems, Target, rig};
 use cvtcycle_model::bench::transmission::Conditions;
 
 /// A row with its result.
@@ -65,6 +65,8 @@ pub struct Report {
     pub candidate: CandidateVehicle,
     /// Rows in order.
     pub rows: Vec<Judged>,
+    /// Evaluations that the rows took, of at most [`MAX_EVALUATIONS`].
+    pub evaluations: u64,
 }
 
 impl Report {
@@ -137,20 +139,35 @@ pub fn judge(
     }
     let store = Store::new(&cars);
     let mut rows = Vec::new();
-    for file in files {
-        let view = View::new(&store, &file.sources);
-        for row in file.rows.iter().filter(|row| wanted(row)) {
-            match judged(&view, file, row) {
-                Ok(judged) => rows.push(judged),
-                Err(problem) => problems.push(problem),
+    let views = files
+        .iter()
+        .map(|file| (file, View::new(&store, &file.sources)));
+    let views: Vec<_> = views.collect();
+    let all = views
+        .iter()
+        .flat_map(|(file, view)| file.rows.iter().map(move |row| (file, view, row)));
+    for (file, view, row) in all.filter(|(.., row)| wanted(row)) {
+        match judged(view, file, row) {
+            Ok(judged) => rows.push(judged),
+            Err(problem) if store.evaluations().is_some() => problems.push(problem),
+            Err(problem) => {
+                // The rows after it have none left either.
+                let allowed = format!("up to {MAX_EVALUATIONS} evaluations of all rows together");
+                problems.push(problem.kind(ProblemKind::TooLarge).allowed(allowed));
+                break;
             }
         }
     }
+    let evaluations = store.evaluations().unwrap_or(MAX_EVALUATIONS);
     if !problems.is_empty() {
         return Err(problems);
     }
     let candidate = candidate.clone();
-    Ok(Report { candidate, rows })
+    Ok(Report {
+        candidate,
+        rows,
+        evaluations,
+    })
 }
 
 /// A car, or the problems of its files.

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::rc::Rc;
 
-use super::expr::{Table, Tables};
+use super::expr::{MAX_EVALUATIONS, Table, Tables};
 use super::source::{Kind, Source};
 use super::tables::{self, Driven};
 use cvtcycle_config::Target;
@@ -47,6 +47,8 @@ pub struct Store<'a> {
     cars: &'a dyn Cars,
     runs: RefCell<HashMap<String, Rc<Result<Driven, String>>>>,
     tables: RefCell<HashMap<String, Result<Rc<Table>, String>>>,
+    /// Evaluations that are left; none after one was refused.
+    left: Cell<Option<u64>>,
 }
 
 impl<'a> Store<'a> {
@@ -56,7 +58,26 @@ impl<'a> Store<'a> {
             cars,
             runs: RefCell::default(),
             tables: RefCell::default(),
+            left: Cell::new(Some(MAX_EVALUATIONS)),
         }
+    }
+
+    fn spend(&self, evaluations: u64) -> Result<(), String> {
+        let left = self
+            .left
+            .get()
+            .and_then(|left| left.checked_sub(evaluations));
+        self.left.set(left);
+        left.map(drop).ok_or_else(|| {
+            format!(
+                "more than {MAX_EVALUATIONS} evaluations; nested each, span and reductions multiply"
+            )
+        })
+    }
+
+    /// Evaluations so far; none if more were asked for than there may be.
+    pub fn evaluations(&self) -> Option<u64> {
+        self.left.get().map(|left| MAX_EVALUATIONS - left)
     }
 
     /// The table of a source, or of its totals.
@@ -155,6 +176,10 @@ impl Tables for View<'_> {
         let setup = self.store.cars.setup(spec);
         let setup = setup.map_err(|_| "the vehicle cannot be loaded".to_owned())?;
         of_keys(&format!("vehicle `{}`", setup.name), &setup.keys)
+    }
+
+    fn spend(&self, evaluations: u64) -> Result<(), String> {
+        self.store.spend(evaluations)
     }
 
     fn left_out(&self, rows: usize) {

@@ -6,6 +6,12 @@ use super::functions::{Compute, Form, Gives, truth};
 use super::reduce::{Point, Points, Table, least, most, short};
 use super::{Expr, Order, Reduce};
 
+/// Most evaluations of parts of expressions and of rows that the rows of a command, or the observations of one evaluation of a fit, may take
+/// together; the shipped rows take less than a fiftieth. Loops and reductions within each other multiply.
+pub const MAX_EVALUATIONS: u64 = 100_000_000;
+/// Most bytes of the numbers behind a truth, to which more are not added.
+const MAX_BEHIND: usize = 4000;
+
 /// Source of the numbers.
 pub trait Tables {
     /// The table of a source, or of its totals.
@@ -19,6 +25,12 @@ pub trait Tables {
     /// # Errors
     /// Why there is none.
     fn key(&self, source: Option<usize>, path: &str, item: Option<usize>) -> Result<f64, String>;
+
+    /// Takes so many evaluations, of a part of an expression or of a row, from those that are left.
+    ///
+    /// # Errors
+    /// None are left.
+    fn spend(&self, evaluations: u64) -> Result<(), String>;
 
     /// Records rows of a source that would count but for gross slip.
     fn left_out(&self, rows: usize);
@@ -92,6 +104,7 @@ fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
 impl Context<'_> {
     /// The number of an expression; 1 and 0 for yes and no.
     fn eval(&mut self, expr: &Expr) -> Result<f64, String> {
+        self.tables.spend(1)?;
         Ok(match expr {
             Expr::Number(x) => *x,
             Expr::Column(k) => self
@@ -198,6 +211,7 @@ impl Context<'_> {
             recording: self.recording,
         };
         for row in 0..table.columns.first().map_or(0, Vec::len) {
+            inner.tables.spend(1)?;
             inner.row = Some((table, row));
             if let Some(filter) = &r.filter
                 && inner.eval(filter)? <= 0.5
@@ -238,19 +252,25 @@ impl Context<'_> {
                 text
             }
             Expr::And(list) | Expr::Or(list) => {
-                let parts: Vec<String> = list.iter().map(|part| self.behind(part)).collect();
-                parts.join("; ")
+                let mut text = String::new();
+                for part in list {
+                    add(&mut text, &self.behind(part));
+                }
+                text
             }
             Expr::Not(inner) => format!("not {}", self.behind(inner)),
             Expr::Loop(_, list, body) => {
-                let mut parts = Vec::new();
+                let mut text = String::new();
                 for item in list {
                     let Ok(value) = self.eval(item) else { continue };
                     self.variables.push(value);
-                    parts.push(format!("{}: {}", short(value), self.behind(body)));
+                    add(
+                        &mut text,
+                        &format!("{}: {}", short(value), self.behind(body)),
+                    );
                     self.variables.pop();
                 }
-                parts.join("; ")
+                text
             }
             Expr::Reduce(r) if r.of.gives == Gives::Truth => {
                 self.behind_rows(r).unwrap_or_else(|_| "-".to_owned())
@@ -270,6 +290,21 @@ impl Context<'_> {
         let (low, high) = (short(points.min()), short(points.max()));
         Ok(format!("{low} to {high} over {count} rows"))
     }
+}
+
+/// Adds to a list in words as long as there is room.
+fn add(list: &mut String, next: &str) {
+    const MORE: &str = "; ...";
+    if !list.is_empty() && list.len() + next.len() > MAX_BEHIND {
+        if !list.ends_with(MORE) {
+            *list += MORE;
+        }
+        return;
+    }
+    if !list.is_empty() {
+        *list += "; ";
+    }
+    *list += next;
 }
 
 impl Order {

@@ -37,10 +37,14 @@ const SIGNS: [&str; 15] = [
     "<=", ">=", "==", "<", ">", "+", "-", "*", "/", "^", "(", ")", ",", ":", "=",
 ];
 
+/// Most tokens of an expression; the longest shipped one has 139. A tree of so many is at most half as deep, which every recursion over
+/// it has room for on a stack of 1 MiB.
+pub const MAX_TOKENS: usize = 1000;
+
 /// Splits a text; the last token is the end.
 ///
 /// # Errors
-/// The first character that belongs to no token.
+/// The first character that belongs to no token, or the first token that is too many.
 pub fn tokens(text: &str) -> Result<Vec<Token>, Fault> {
     let chars: Vec<char> = text.chars().collect();
     let token = |kind, from: usize, to: usize| Token {
@@ -76,7 +80,14 @@ pub fn tokens(text: &str) -> Result<Vec<Token>, Fault> {
             let sign = SIGNS.iter().find(here).ok_or_else(unknown)?;
             (TokenKind::Sign, sign.len())
         };
-        found.push(token(kind, at, at + width));
+        let next = token(kind, at, at + width);
+        if found.len() == MAX_TOKENS {
+            return Err(next.fault(
+                format!("the expression has more than {MAX_TOKENS} words, numbers and signs"),
+                "compute a part of it in a row of its own".to_owned(),
+            ));
+        }
+        found.push(next);
         at += width;
     }
     found.push(token(TokenKind::End, at, at));

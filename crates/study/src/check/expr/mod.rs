@@ -10,9 +10,10 @@ mod lexer;
 mod parser;
 mod reduce;
 
-pub use eval::{Computed, Tables, compute};
+pub use eval::{Computed, MAX_EVALUATIONS, Tables, compute};
 pub(crate) use functions::truth;
 pub use functions::{FUNCTIONS, Form, Function, Gives, REDUCTIONS, Reduction};
+pub use lexer::MAX_TOKENS;
 pub use parser::{Names, parse};
 pub use reduce::{Table, short};
 
