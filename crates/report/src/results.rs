@@ -98,6 +98,7 @@ impl StudyResults {
             Some(matrix) if traced => warm_ups(&frame, matrix).unwrap_or_default(),
             _ => Vec::new(),
         };
+        store.unchanged()?;
         let (path, manifest) = (store.path().to_path_buf(), store.manifest().clone());
         Ok(StudyResults {
             path,

@@ -113,6 +113,55 @@ fn force_removes_parts_and_results_of_the_earlier_study_and_nothing_else() {
     assert_eq!(files(&path)["study.json"], manifest(2));
 }
 
+/// What is behind a link belongs to something else: it is neither removed nor read nor written.
+#[cfg(unix)]
+#[test]
+fn nothing_of_a_study_lies_behind_a_link() {
+    use std::os::unix::fs::symlink;
+    let other = TempDir::new().unwrap();
+    whole(other.path(), 3);
+    let before = files(other.path());
+    for name in [
+        ".lock",
+        "study.json",
+        "plan.toml",
+        "parts",
+        "results.sha256",
+    ] {
+        let dir = TempDir::new().unwrap();
+        let path = dir.path().join("study");
+        whole(&path, 3);
+        let here = path.join(name);
+        if here.is_dir() {
+            fs::remove_dir_all(&here).unwrap();
+        } else {
+            fs::remove_file(&here).unwrap();
+        }
+        symlink(other.path().join(name), &here).unwrap();
+        let words = format!("{name} in {} is a link; it is not followed", path.display());
+        for problem in [
+            StudyDir::create(&path, &manifest(2), PLAN, true).unwrap_err(),
+            StudyDir::resume(&path, &manifest(3), PLAN).unwrap_err(),
+            Study::open(&path).unwrap_err(),
+        ] {
+            assert_eq!(problem.message, words);
+            assert!(problem.hint.contains("put the file or folder itself there"));
+        }
+        assert_eq!(files(other.path()), before, "{name}");
+    }
+    // Nor is a folder that waits empty behind a link filled.
+    let dir = TempDir::new().unwrap();
+    let empty = TempDir::new().unwrap();
+    symlink(empty.path(), dir.path().join("parts")).unwrap();
+    let problem = StudyDir::create(dir.path(), &manifest(2), PLAN, false).unwrap_err();
+    assert!(problem.message.contains("parts in"), "{}", problem.message);
+    // The directory itself is what the user names.
+    let link = dir.path().join("link");
+    symlink(other.path(), &link).unwrap();
+    drop(StudyDir::resume(&link, &manifest(3), PLAN).unwrap());
+    assert!(files(empty.path()).is_empty());
+}
+
 #[test]
 fn only_one_process_writes_a_study_and_others_may_read() {
     let dir = TempDir::new().unwrap();

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::thread;
 
+use cvtcycle::config::Setting;
 use cvtcycle::output::BUILD;
-use cvtcycle::study::store::StudyDir;
+use cvtcycle::study::store::{Study, StudyDir};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -131,6 +132,57 @@ fn a_part_that_is_not_whole_is_computed_again() {
         assert_eq!(finish(dir.path()), [1], "{name}");
         assert_eq!(files(dir.path()), all, "{name}");
     }
+}
+
+#[test]
+fn a_part_that_went_while_the_study_ran_is_in_no_results() {
+    let spoil: [(&str, Spoil); 2] = [
+        ("part_00001.sha256", |path| fs::remove_file(path).unwrap()),
+        ("runs_00001.parquet", |path| fs::write(path, "x").unwrap()),
+    ];
+    for (name, spoil) in spoil {
+        let dir = TempDir::new().unwrap();
+        let study = StudyDir::create(dir.path(), &manifest(PARTS), PLAN, false).unwrap();
+        (0..PARTS).for_each(|part| write_part(&study, part));
+        assert_eq!(study.study().unwrap().present().len(), PARTS);
+        spoil(&dir.path().join("parts").join(name));
+        let mut problems = vec![study.finish(&results()).unwrap_err()];
+        // A part without its mark would be missing from the answer; one with other bytes is noticed when it is read.
+        if name.starts_with("part_") {
+            problems.push(study.study().unwrap_err());
+        }
+        for problem in problems {
+            assert!(
+                problem.message.contains("1 of 3 parts in")
+                    && problem
+                        .message
+                        .contains("was changed or removed while the study ran")
+                    && problem.settings == [Setting::Resume],
+                "{problem:?}"
+            );
+        }
+        assert!(!dir.path().join("summary.json").exists(), "{name}");
+        drop(study);
+        assert_eq!(finish(dir.path()), [1], "{name}");
+    }
+}
+
+#[test]
+fn what_is_read_belongs_to_the_manifest_that_was_read_before() {
+    let dir = TempDir::new().unwrap();
+    whole(dir.path(), PARTS);
+    let study = Study::open(dir.path()).unwrap();
+    study.unchanged().unwrap();
+    // The same study computed anew has the same parts.
+    drop(StudyDir::create(dir.path(), &manifest(PARTS), PLAN, true).unwrap());
+    study.unchanged().unwrap();
+    drop(StudyDir::create(dir.path(), &manifest(PARTS + 1), PLAN, true).unwrap());
+    let problem = study.unchanged().unwrap_err();
+    assert!(
+        problem.message.contains("was replaced while it was read")
+            && problem.hint == "read it again",
+        "{problem:?}"
+    );
 }
 
 fn refused(path: &Path, change: impl Fn(&mut Value)) -> String {

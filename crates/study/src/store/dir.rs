@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::csv::write_csv;
 use super::files::{Checksums, Sum};
-use super::files::{clear, lock, put, remove_temporary};
+use super::files::{NO_LINK, clear, link_in, lock, put, remove_temporary};
 use super::manifest::{Difference, differences, lines};
 use super::names::Layout;
 use super::names::{self, LOCK, MANIFEST, PARTS, PLAN, RESULTS, SUMMARY};
@@ -65,6 +65,7 @@ impl StudyDir {
         let cannot = |error| failed(&path, &format!("cannot create directory {name}"), &error);
         let mut created = Created::new(&path).map_err(cannot)?;
         check_contents(&path, force)?;
+        no_link(&path)?;
         let lock = lock(&path)?;
         // Once more: another process may have begun a study just before the lock.
         let earlier = check_contents(&path, force)?;
@@ -93,6 +94,7 @@ impl StudyDir {
         let stored = || read().map_err(|error| no_study(&path, error));
         // Looked for before the lock, which would leave its file in a directory of something else.
         stored()?;
+        no_link(&path)?;
         let lock = lock(&path)?;
         let stored = stored()?;
         if stored != manifest {
@@ -172,8 +174,8 @@ impl StudyDir {
         Ok(())
     }
 
-    /// Writes the results over all parts into the directory itself, each whole or not at all, `summary.json` last, then the mark of a
-    /// finished study.
+    /// Writes the results over all parts, which are as they were written, into the directory itself, each whole or not at all, `summary.json`
+    /// last, then the mark of a finished study.
     ///
     /// # Errors
     /// A problem of `--out`: parts are missing, a name is no plain one, or the words of the operating system.
@@ -194,6 +196,8 @@ impl StudyDir {
                 return Err(problem(&self.path, &message, ""));
             }
         }
+        let lost = |index: &usize| !is_whole(&self.path, &self.layout, *index);
+        self.none_lost((0..self.layout.parts).filter(lost).count())?;
         let put = |name: &str, bytes: &[u8]| {
             let sum = self.put_bytes(name, bytes);
             sum.map_err(|error| self.cannot_write(name, &error))
@@ -211,9 +215,25 @@ impl StudyDir {
     /// What is there so far, to be read.
     ///
     /// # Errors
-    /// Those of [`Study::open`].
+    /// Those of [`Study::open`], and a part that was written is no longer there.
     pub fn study(&self) -> Result<Study, Problem> {
-        Study::open(&self.path)
+        let study = Study::open(&self.path)?;
+        let is_lost = |index: &&usize| !study.present().contains(index);
+        self.none_lost(self.whole().iter().filter(is_lost).count())?;
+        Ok(study)
+    }
+
+    fn none_lost(&self, lost: usize) -> Result<(), Problem> {
+        if lost == 0 {
+            return Ok(());
+        }
+        let (path, parts) = (self.path.display(), self.layout.parts);
+        let were = if lost == 1 { "was" } else { "were" };
+        let message = format!(
+            "{lost} of {parts} parts in {path} {were} changed or removed while the study ran"
+        );
+        let hint = "compute what is missing again and finish";
+        Err(problem(&self.path, &message, hint).settings(&[Setting::Resume]))
     }
 
     fn parts(&self) -> PathBuf {
@@ -274,6 +294,10 @@ impl StudyDir {
         };
         problem.hint(hint).settings(&[Setting::Resume])
     }
+}
+
+fn no_link(path: &Path) -> Result<(), Problem> {
+    link_in(path).map_or(Ok(()), |message| Err(problem(path, &message, NO_LINK)))
 }
 
 fn layout_of(path: &Path, manifest: &[u8]) -> Result<Layout, Problem> {

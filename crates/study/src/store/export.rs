@@ -116,6 +116,7 @@ pub fn export(
         io::ErrorKind::InvalidInput => problem(out.path(), &error.to_string(), NO_LIMIT),
         _ => out.cannot_write(&error),
     })?;
+    study.unchanged()?;
     Ok(Exported { rows, status })
 }
 

@@ -2,9 +2,9 @@
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::names::{self, LOCK, RESULTS};
+use super::names::{self, LOCK, MANIFEST, PARTS, PLAN, RESULTS};
 use cvtcycle_config::{Problem, bounded};
 use cvtcycle_output::files::{failed, is_temporary, problem, temporary_in};
 use sha2::{Digest, Sha256};
@@ -168,30 +168,66 @@ pub fn remove_temporary(folder: &Path) -> io::Result<()> {
 }
 
 fn remove_files(folder: &Path, which: impl Fn(&str) -> bool) -> io::Result<()> {
-    for entry in fs::read_dir(folder)? {
+    files_in(folder, which)?
+        .iter()
+        .try_for_each(fs::remove_file)
+}
+
+/// Files of a folder, and links, which are not followed; none of a folder that is not there.
+fn files_in(folder: &Path, which: impl Fn(&str) -> bool) -> io::Result<Vec<PathBuf>> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries?,
+    };
+    let mut found = Vec::new();
+    for entry in entries {
         let entry = entry?;
         if which(&entry.file_name().to_string_lossy()) && !entry.file_type()?.is_dir() {
-            fs::remove_file(entry.path())?;
+            found.push(entry.path());
         }
     }
-    Ok(())
+    Ok(found)
 }
 
 /// Removes the results and parts of an earlier study, and nothing else.
 pub fn clear(path: &Path) -> io::Result<()> {
-    let results = Checksums::read(&path.join(RESULTS)).unwrap_or_default();
-    remove_files(path, |name| {
-        is_temporary(name) || (names::is_result(name) && results.get(name).is_some())
-    })?;
-    remove_files(path, |name| name == RESULTS)?;
-    let parts = names::parts_folder(path);
-    if parts.is_dir() {
-        remove_files(&parts, |name| {
-            is_temporary(name) || names::is_part_file(name)
-        })?;
-    }
-    Ok(())
+    removals(path)?.iter().try_for_each(fs::remove_file)
 }
+
+/// What [`clear`] removes, in this order: marks go before the files that they vouch for, so that what an interruption leaves is a
+/// study with fewer parts, and the list of the results after them, so that the next one finds them.
+fn removals(path: &Path) -> io::Result<Vec<PathBuf>> {
+    let results = Checksums::read(&path.join(RESULTS)).unwrap_or_default();
+    let parts = names::parts_folder(path);
+    let is_mark = |name: &str| names::marked_part(name).is_some();
+    Ok([
+        files_in(&parts, is_mark)?,
+        files_in(path, |name| {
+            is_temporary(name) || (names::is_result(name) && results.get(name).is_some())
+        })?,
+        files_in(path, |name| name == RESULTS)?,
+        files_in(&parts, |name| {
+            !is_mark(name) && (is_temporary(name) || names::is_part_file(name))
+        })?,
+    ]
+    .concat())
+}
+
+/// The first of a study's own names that is a link, in words: what is behind it is no part of the study.
+pub fn link_in(path: &Path) -> Option<String> {
+    let is_link =
+        |name: &&str| fs::symlink_metadata(path.join(name)).is_ok_and(|found| found.is_symlink());
+    let name = [LOCK, MANIFEST, PLAN, PARTS, RESULTS]
+        .into_iter()
+        .find(is_link)?;
+    Some(format!(
+        "{name} in {} is a link; it is not followed",
+        path.display()
+    ))
+}
+
+/// What helps against [`link_in`].
+pub const NO_LINK: &str = "put the file or folder itself there, or name another directory";
 
 #[cfg(test)]
 mod tests {
@@ -204,6 +240,53 @@ mod tests {
         let line = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad  abc.txt\n";
         assert_eq!(list.text(), line);
         assert_eq!(Checksums::parse(line.as_bytes()), Some(list));
+    }
+
+    /// Wherever the removal of an earlier study ends, every mark that is left has its files, and the next removal finds the rest.
+    #[test]
+    fn what_an_interrupted_removal_leaves_is_a_study_with_fewer_parts() {
+        let folder = || {
+            let dir = tempfile::tempdir().expect("a folder");
+            let parts = names::parts_folder(dir.path());
+            fs::create_dir(&parts).expect("made");
+            let write =
+                |name: &str, text: &str| fs::write(dir.path().join(name), text).expect("written");
+            for part in 0..3 {
+                write(&format!("parts/runs_{part:05}.parquet"), "rows");
+                write(&format!("parts/{}", names::part_mark(part)), "sums");
+            }
+            let sums =
+                ["statistics.json", "tornado.svg"].map(|name| (name.to_owned(), sha256(b"")));
+            sums.iter().for_each(|(name, _)| write(name, ""));
+            write(RESULTS, &Checksums(sums.to_vec()).text());
+            write("mine.svg", "");
+            dir
+        };
+        let there = |dir: &Path, name: String| dir.join(PARTS).join(name).exists();
+        let all = removals(folder().path()).expect("listed").len();
+        assert_eq!(all, 9);
+        for removed in 0..=all {
+            let dir = folder();
+            let list = removals(dir.path()).expect("listed");
+            for path in &list[..removed] {
+                fs::remove_file(path).expect("removed");
+            }
+            let marked = (0..3).filter(|part| there(dir.path(), names::part_mark(*part)));
+            let marked: Vec<usize> = marked.collect();
+            assert_eq!(marked.len(), 3_usize.saturating_sub(removed));
+            assert!(
+                marked
+                    .iter()
+                    .all(|part| there(dir.path(), names::part_file("runs", *part, "parquet")))
+            );
+            clear(dir.path()).expect("cleared");
+            let left = fs::read_dir(dir.path())
+                .expect("read")
+                .filter_map(Result::ok);
+            let mut left: Vec<_> = left.map(|entry| entry.file_name()).collect();
+            left.sort();
+            assert_eq!(left, ["mine.svg", PARTS]);
+        }
     }
 
     #[test]

@@ -9,13 +9,13 @@ use std::sync::{Mutex, PoisonError};
 use serde_json::Value;
 
 use super::file_problem;
-use super::files::{Checksums, sum_of};
+use super::files::{Checksums, NO_LINK, Sum, link_in, sha256, sum_of};
 use super::names::Layout;
 use super::names::{self, MANIFEST, PLAN, RESULTS};
 use super::parquet_read::{MEND, ParquetFile, check_sum, unreadable};
 use super::table::{Head, Rows};
 use cvtcycle_config::Problem;
-use cvtcycle_config::ProblemKind::{Missing, Syntax, UnknownName};
+use cvtcycle_config::ProblemKind::{Conflict, Missing, Syntax, UnknownName, Unreadable};
 use cvtcycle_config::bounded::{self, ReadError};
 
 /// How far a study has come.
@@ -41,6 +41,8 @@ impl Status {
 pub struct Study {
     path: PathBuf,
     manifest: Value,
+    /// SHA-256 of the manifest's bytes.
+    opened: Sum,
     layout: Layout,
     present: Vec<usize>,
     // Files whose checksum was found right: it is computed once only.
@@ -64,6 +66,9 @@ impl Study {
             }
             _ => unreadable(&file, &error),
         };
+        if let Some(message) = link_in(&path) {
+            return Err(file_problem(Unreadable, &path, message, NO_LINK));
+        }
         let bytes = bounded::read_file(&file, bounded::RECORD).map_err(no_study)?;
         let damaged = || file_problem(Syntax, &file, "the manifest of the study is damaged", "");
         let manifest = serde_json::from_slice::<Value>(&bytes).map_err(|_| damaged())?;
@@ -75,6 +80,7 @@ impl Study {
         Ok(Study {
             path,
             manifest,
+            opened: sha256(&bytes),
             layout,
             present,
             known: Mutex::default(),
@@ -94,6 +100,22 @@ impl Study {
     /// Its parts and tables.
     pub fn layout(&self) -> &Layout {
         &self.layout
+    }
+
+    /// Checks, after parts were read, that they are those of the manifest that was read before them.
+    ///
+    /// # Errors
+    /// A problem that names the directory.
+    pub fn unchanged(&self) -> Result<(), Problem> {
+        let now = bounded::read_file(self.path.join(MANIFEST), bounded::RECORD);
+        if now.is_ok_and(|bytes| sha256(&bytes) == self.opened) {
+            return Ok(());
+        }
+        let message = format!(
+            "the study in {} was replaced while it was read",
+            self.path.display()
+        );
+        Err(file_problem(Conflict, &self.path, message, "read it again"))
     }
 
     /// The plan, byte for byte.
