@@ -11,10 +11,8 @@ use crate::plan::{Design, Factor, FactorValue, FactorValues, Plan};
 use crate::store::Head;
 use crate::store::Layout;
 
-/// Name of the table of runs.
-pub const RUNS: &str = "runs";
-/// Name of the table of traces.
-pub const TRACES: &str = "trace";
+pub use crate::store::{RUNS, TRACES};
+
 /// Version of the manifest and of the tables; a new number when a name goes or changes its meaning.
 pub const SCHEMA: u32 = 1;
 

@@ -22,7 +22,7 @@ use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::Progress;
-use crate::store::{PartTable, Rows, StudyDir};
+use crate::store::{PartTable, Rows, StudyDir, TRACE_ROWS};
 use cvtcycle_config::Problem;
 use manifest::{RUNS, TRACES};
 use point::Worker;
@@ -35,8 +35,6 @@ const CHUNKS: u64 = 64;
 /// Most points of a part, and the number of parts that a small study is divided into at least.
 const MAX_POINTS: u64 = 4096;
 const PARTS: u64 = 32;
-/// Most rows of traces in a part.
-const MAX_TRACE_ROWS: u64 = 50_000;
 
 /// Where whole parts go: in no certain order, and several at once.
 pub trait PartWriter: Sync {
@@ -97,7 +95,7 @@ impl Study {
             return small;
         }
         let per_point = self.trace_rows_per_point().max(1);
-        small.min((MAX_TRACE_ROWS / per_point).max(1))
+        small.min((TRACE_ROWS / per_point).max(1))
     }
 
     /// Number of parts.

@@ -2,8 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
+use cvtcycle_output::history::MAX_STEPS;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+
+/// Name of the table of runs.
+pub const RUNS: &str = "runs";
+/// Name of the table of traces.
+pub const TRACES: &str = "trace";
+/// Rows of traces up to which a part takes further points.
+pub const TRACE_ROWS: u64 = 50_000;
+/// Most rows of a table of a part: those of traces before its last point, and of that point as many as may be kept.
+pub const MAX_PART_ROWS: u64 = TRACE_ROWS + MAX_STEPS as u64;
 
 /// Manifest; marks the directory.
 pub const MANIFEST: &str = "study.json";

@@ -3,11 +3,13 @@
 use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::file_problem;
 use super::files::{Sum, sum_of};
+use super::names::MAX_PART_ROWS;
 use super::parquet::{COLUMNS_KEY, io_error};
 use super::table::{Head, Rows, Values};
 use cvtcycle_config::Problem;
@@ -22,10 +24,11 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 /// What helps with a damaged file.
 pub(super) const MEND: &str = "a study computes its damaged parts anew when it is continued";
 
-/// Most rows of a file: a part has 50 000 rows of traces and those of one more point, of which each car may have as many as a trace.
-const MAX_ROWS: u64 = 16_000_000;
 /// Most bytes of the footer; that of a table with all columns and a hundred groups of rows has some hundred kB.
 const MAX_METADATA: u32 = 16 << 20;
+/// Bytes that a byte of a column can become at most: a copy of Snappy's takes three bytes for up to 64. Small columns have a head in addition.
+const MAX_UNPACKED: u64 = 32;
+const HEAD: u64 = 1 << 16;
 /// Cells for which room is made at once; a file may name any number.
 const ROOM: usize = 1 << 16;
 
@@ -44,7 +47,22 @@ impl ParquetFile {
     pub fn open(path: &Path, sum: &Sum) -> Result<Self, Problem> {
         let file = bounded::open_file(path).map_err(|error| unreadable(path, &error))?;
         check_sum(path, &file, sum)?;
-        Self::open_known(path, file)
+        Self::open_known(path, file)?.with_rows(&(0..=MAX_PART_ROWS))
+    }
+
+    /// Refuses a file with another number of rows: a few bytes can encode any number of equal ones.
+    pub(super) fn with_rows(self, due: &RangeInclusive<u64>) -> Result<Self, Problem> {
+        let (rows, most) = (self.rows(), due.end());
+        if due.contains(&rows) {
+            return Ok(self);
+        }
+        let due = if due.start() == most {
+            format!("{most} are due")
+        } else {
+            format!("up to {most} are due")
+        };
+        let message = format!("the file is damaged: it has {rows} rows, {due}");
+        Err(file_problem(Syntax, &self.path, message, MEND))
     }
 
     /// Opens a file whose bytes are known to be those that were written.
@@ -167,13 +185,16 @@ fn fits(file: &SerializedFileReader<File>, bytes: u64) -> bool {
         let (Ok(start), Ok(size)) = ends else {
             return false;
         };
+        let unpacked = u64::try_from(column.uncompressed_size());
+        let most = size.saturating_mul(MAX_UNPACKED).saturating_add(HEAD);
         start.checked_add(size).is_some_and(|end| end <= bytes)
+            && unpacked.is_ok_and(|unpacked| unpacked <= most)
     };
     let mut columns = metadata
         .row_groups()
         .iter()
         .flat_map(|group| group.columns());
-    rows.is_ok_and(|rows| rows <= MAX_ROWS) && columns.all(within)
+    rows.is_ok() && columns.all(within)
 }
 
 /// Hands on every cell of a column in a row group, none where it is null; `room` is how many there may be.

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::fs;
 use std::io;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -11,7 +12,7 @@ use serde_json::Value;
 use super::file_problem;
 use super::files::{Checksums, NO_LINK, Sum, link_in, sha256, sum_of};
 use super::names::Layout;
-use super::names::{self, MANIFEST, PLAN, RESULTS};
+use super::names::{self, MANIFEST, MAX_PART_ROWS, PLAN, RESULTS, RUNS};
 use super::parquet_read::{MEND, ParquetFile, check_sum, unreadable};
 use super::table::{Head, Rows};
 use cvtcycle_config::Problem;
@@ -166,7 +167,22 @@ impl Study {
             known.insert(name);
         }
         drop(known);
-        ParquetFile::open_known(&path, file)
+        ParquetFile::open_known(&path, file)?.with_rows(&self.rows_due(index, table))
+    }
+
+    /// Rows that a table of a part may have: of runs those of its points, as far as the manifest says how many there are.
+    fn rows_due(&self, index: usize, table: &str) -> RangeInclusive<u64> {
+        let number = |key: &str| self.manifest[key].as_u64().filter(|_| table == RUNS);
+        let of_runs = || {
+            let (points, size) = (number("points")?, number("points_per_part")?);
+            let cars = self.manifest["cars"].as_array()?.len() as u64;
+            let before = size.checked_mul(index as u64)?;
+            points.saturating_sub(before).min(size).checked_mul(cars)
+        };
+        match of_runs().filter(|rows| *rows <= MAX_PART_ROWS) {
+            Some(rows) => rows..=rows,
+            None => 0..=MAX_PART_ROWS,
+        }
     }
 
     /// Heads of the columns of a table; none as long as no part is there.
