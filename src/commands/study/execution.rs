@@ -79,6 +79,14 @@ impl StudyRunArgs {
 
     /// Runs a study, writes its files and returns its results.
     pub fn run(&self, study: &Study, terminal: Terminal) -> CommandResult {
+        let results = self.results(study, terminal);
+        results.map_err(|problems| match self.out.out {
+            Some(_) => problems,
+            None => problems.map(of_nothing_kept),
+        })
+    }
+
+    fn results(&self, study: &Study, terminal: Terminal) -> CommandResult {
         // Without --out the parts are written to a directory that is deleted afterwards.
         let temporary = match &self.out.out {
             Some(_) => None,
@@ -141,6 +149,15 @@ impl StudyRunArgs {
             ..CommandOutput::default()
         }
     }
+}
+
+/// A problem of a directory that is deleted: nothing in it can be continued or replaced.
+fn of_nothing_kept(problem: Problem) -> Problem {
+    if problem.settings.is_empty() {
+        return problem;
+    }
+    let hint = "nothing is kept without --out: name a directory on a disk with room";
+    problem.hint(hint).settings(&[])
 }
 
 fn temporary_dir() -> Result<TempDir, Problems> {

@@ -98,6 +98,28 @@ fn a_read_only_home_and_folder_are_enough_to_read() {
     }
 }
 
+/// Without --out there is nothing that could be continued.
+#[test]
+fn a_study_that_keeps_nothing_has_no_advice_to_continue() {
+    let dir = folder();
+    let command = format!(
+        "trap '' XFSZ; ulimit -f 2; exec '{}' study plan.toml --quiet",
+        bin().display()
+    );
+    let output = std::process::Command::new("bash")
+        .args(["-c", &command])
+        .current_dir(dir.path())
+        .output()
+        .unwrap();
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("nothing is kept without --out: name a directory on a disk with room")
+            && !said.contains("--resume"),
+        "{said}"
+    );
+}
+
 /// A limit to the size of files, as `ulimit -f` sets it: the signal that goes with it is not taken for an end of the program's own.
 #[test]
 fn a_limit_to_the_size_of_files_leaves_nothing_behind() {

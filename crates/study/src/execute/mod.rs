@@ -20,6 +20,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::{self, ScopedJoinHandle};
 
 use crate::Progress;
 use crate::store::{PartTable, Rows, StudyDir, TRACE_ROWS};
@@ -134,6 +135,17 @@ impl Study {
         sink: &dyn PartWriter,
         progress: &dyn Progress,
     ) -> Result<End, Problem> {
+        self.execute_with(thread::Builder::new(), done, sink, progress)
+    }
+
+    /// Executes with a thread that writes, if that one starts; without it those that drive write.
+    fn execute_with(
+        &self,
+        writing: thread::Builder,
+        done: &BTreeSet<u64>,
+        sink: &dyn PartWriter,
+        progress: &dyn Progress,
+    ) -> Result<End, Problem> {
         let left = (0..self.parts()).filter(|part| !done.contains(part));
         let state = QueueState {
             left: Box::new(left),
@@ -149,17 +161,18 @@ impl Study {
         };
         // One part waits while another is written: enough that no thread is idle, little enough that memory stays flat.
         let (send, receive) = sync_channel::<Part>(1);
-        std::thread::scope(|scope| {
+        thread::scope(|scope| {
             let queue = &queue;
             let write_all = || {
                 receive
                     .into_iter()
                     .try_for_each(|part| queue.write(part, sink))
             };
-            let writer = scope.spawn(write_all);
-            let ends = rayon::broadcast(|_| self.work(queue, (sink, &send), progress));
+            let writer = writing.spawn_scoped(scope, write_all).ok();
+            let send = writer.is_some().then_some(send);
+            let ends = rayon::broadcast(|_| self.work(queue, (sink, send.as_ref()), progress));
             drop(send);
-            let written = writer.join();
+            let written = writer.map_or(Ok(Ok(())), ScopedJoinHandle::join);
             let written = written.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             let ends: Vec<End> = ends.into_iter().collect::<Result<_, _>>()?;
             written?;
@@ -174,7 +187,7 @@ impl Study {
     fn work(
         &self,
         queue: &Queue,
-        (sink, send): (&dyn PartWriter, &SyncSender<Part>),
+        (sink, send): (&dyn PartWriter, Option<&SyncSender<Part>>),
         progress: &dyn Progress,
     ) -> Result<End, Problem> {
         let mut worker = Worker::default();
@@ -188,7 +201,12 @@ impl Study {
                 continue;
             };
             // To the writing thread, or written here where that one is behind.
-            let taken = match send.try_send(self.whole(part, pieces, queue)) {
+            let part = self.whole(part, pieces, queue);
+            let sent = match send {
+                Some(send) => send.try_send(part),
+                None => Err(TrySendError::Full(part)),
+            };
+            let taken = match sent {
                 Ok(()) => continue,
                 Err(TrySendError::Full(part)) => queue.write(part, sink),
                 // It has failed and takes nothing more; its problem comes with its end.
@@ -331,5 +349,45 @@ impl<'s> Queue<'s> {
     fn state(&self) -> MutexGuard<'_, QueueState<'s>> {
         // A thread that has panicked ends the study in any case.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::NoProgress;
+    use crate::plan::Plan;
+
+    /// Keeps the rows of every part in words: a missing number is equal to another.
+    #[derive(Default)]
+    struct Shelf(Mutex<BTreeMap<u64, String>>);
+
+    impl PartWriter for Shelf {
+        fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
+            let mut parts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            assert!(
+                parts.insert(part, format!("{runs:?}")).is_none(),
+                "{part} twice"
+            );
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn where_no_thread_can_start_those_that_drive_write_the_same_parts() {
+        let text = "[study]\nbaselines = []\ncycle = \"ece15\"\ndesign = \"grid\"\n\
+            [[factor]]\nkey = \"ambient_degc\"\nrange = { from = 0, to = 39, step = 1 }\n";
+        let plan = Plan::read("p.toml", text).expect("a plan");
+        let study = Study::prepare(plan).expect("a study");
+        // No system has room for such a stack.
+        let none = thread::Builder::new().stack_size(usize::MAX / 4);
+        let shelves = [none, thread::Builder::new()].map(|writing| {
+            let shelf = Shelf::default();
+            let end = study.execute_with(writing, &BTreeSet::new(), &shelf, &NoProgress);
+            assert_eq!(end.expect("written"), End::Complete);
+            shelf.0.into_inner().expect("whole")
+        });
+        assert_eq!(shelves[0].len() as u64, study.parts());
+        assert_eq!(shelves[0], shelves[1]);
     }
 }

@@ -34,7 +34,7 @@ keys! {
         formulation: words(Formulation::CHOICES, "smooth"), "reading of the belt model";
         keep: or_word("summary", either(KEEP)), "what is kept of each run";
         analyse: computed("the fuel columns", list_of(&Kind::Text, "a list of columns of the results")), "columns that are analysed";
-        most_runs: integer(1, i64::MAX, 100_000), "number of runs above which a study has to be confirmed";
+        most_runs: integer(1, 10_000_000, 100_000), "number of runs above which a study has to be confirmed";
         design: options(DESIGNS), "which combinations are driven";
     }
 }
