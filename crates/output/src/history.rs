@@ -10,8 +10,6 @@ use super::table::{Kind, Scope};
 use super::trace::{COLUMNS, TraceColumn, loss_column};
 use super::{Component, Flags, Row};
 
-/// Most steps of a trace that is read: as many as a cycle may have rows, 23 days at 1 s. Some 500 bytes of memory each.
-pub const MAX_STEPS: usize = 2_000_000;
 /// Most phases, as of a cycle.
 const MAX_PHASES: usize = 200;
 /// What helps with a trace that is too long.

@@ -1,6 +1,8 @@
 //! Lists of problems, their text for people, and names that a mistyped one may have meant.
 
-use cvtcycle_config::{Input, Place, Problem, Problems, near, render};
+use cvtcycle_config::{
+    Input, Place, Problem, Problems, is_hidden, near, one_line, render, visible,
+};
 
 const MAX_DESCRIBED: usize = 1000;
 
@@ -148,6 +150,71 @@ fn places_beyond_the_line_do_not_panic() {
     };
     let wild = problem().at(place).message("a\u{1b}[31mb\nc");
     assert!(!render(&[wild], false).contains('\u{1b}'));
+}
+
+/// Every character that a stranger's text must not bring to a screen.
+fn hidden() -> impl Iterator<Item = char> {
+    let ranges = [
+        '\0'..='\u{8}',
+        '\u{B}'..='\u{1F}',
+        '\u{7F}'..='\u{9F}',
+        '\u{61C}'..='\u{61C}',
+        '\u{200E}'..='\u{200F}',
+        '\u{2028}'..='\u{202E}',
+        '\u{2066}'..='\u{2069}',
+        '\u{FDD0}'..='\u{FDEF}',
+        '\u{FEFF}'..='\u{FEFF}',
+    ];
+    ranges.into_iter().flatten()
+}
+
+#[test]
+fn hidden_characters_are_known_and_replaced() {
+    let found: Vec<char> = ('\0'..=char::MAX).filter(|c| is_hidden(*c)).collect();
+    assert_eq!(found, hidden().collect::<Vec<char>>());
+    let text = "a\tä\n\u{20AC}\u{1F697}";
+    assert_eq!(visible(text), text);
+    assert_eq!(one_line(text), "a\u{FFFD}ä\u{FFFD}\u{20AC}\u{1F697}");
+    assert_eq!(visible("\u{1b}[2J\u{202e}\n"), "\u{FFFD}[2J\u{FFFD}\n");
+}
+
+#[test]
+fn no_part_of_a_problem_brings_a_hidden_character() {
+    for c in hidden() {
+        let wild = format!("a{c}b");
+        let with_line = problem()
+            .at(Place {
+                input: file(&wild),
+                line_text: format!("x{c}y = 1"),
+                column: 3,
+                width: 1,
+                ..problem().place
+            })
+            .message(&wild)
+            .allowed(&wild)
+            .hint(&wild);
+        let without_line = with_line.clone().in_file(&wild).value(&wild);
+        let of_cell = Problem::invalid("no")
+            .key(&wild)
+            .at(with_line.place.clone());
+        for (problem, times) in [(with_line, 6), (without_line, 6), (of_cell, 4)] {
+            let text = render(&[problem], false);
+            assert!(!text.contains(is_hidden), "{text:?}");
+            assert_eq!(text.matches('\u{FFFD}').count(), times, "{text}");
+        }
+    }
+    // The caret is below the character after the replaced one.
+    let place = Place {
+        line_text: "x\u{9b}y = 1".into(),
+        column: 3,
+        width: 1,
+        ..problem().place
+    };
+    let text = render(&[problem().at(place)], false);
+    assert!(
+        text.contains("7 | x\u{FFFD}y = 1\n  |   ^ allowed"),
+        "{text}"
+    );
 }
 
 #[test]

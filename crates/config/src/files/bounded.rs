@@ -9,9 +9,18 @@
 //! | [`CHECKSUMS`] | 1 MiB | ten thousand files |
 //! | [`LOGO`] | 500 kB | it is copied into the report |
 //!
+//! What is computed and kept is counted before anything is computed:
+//!
+//! | limit | number | of |
+//! |---|---|---|
+//! | [`STEPS`] | 2 000 000 | rows that are kept of all cars of a run together: 23 days at 1 s |
+//! | [`SOURCE_ROWS`] | 500 000 | rows of all sources of a file of rows or of a calibration; the largest shipped file has 115 000 |
+//! | [`CELLS`] | 64 000 000 | numbers of the traces of one point of a study, which a thread holds: 512 MB |
+//!
 //! The size of a file is read first, so that a large one is refused unread, but it is not trusted: pipes and devices have none, and a file
 //! may grow while it is read.
 
+use crate::problem::Problem;
 use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -60,6 +69,40 @@ pub const LOGO: Limit = Limit {
     bytes: 500_000,
     hint: "make it smaller: it is copied into the report",
 };
+
+/// Most rows that are kept of all cars of a run together, and most that a trace may have which is read.
+pub const STEPS: usize = 2_000_000;
+/// Most rows of all sources of a file of rows or of a calibration.
+pub const SOURCE_ROWS: usize = 500_000;
+/// Most numbers of the traces of one point of a study.
+pub const CELLS: usize = 64_000_000;
+/// Longest time step that a run may have, s.
+const LONGEST_STEP_S: f64 = 10.0;
+
+/// Checks that a run of so many steps of up to `dt_s` may keep their rows. The caller gives the place.
+///
+/// # Errors
+/// There are more than [`STEPS`].
+pub fn kept_steps(steps: usize, dt_s: f64) -> Result<(), Problem> {
+    if steps <= STEPS {
+        return Ok(());
+    }
+    let least_s = dt_s * steps as f64 / STEPS as f64;
+    let step = even_steps().find(|step_s| *step_s >= least_s);
+    let step = step.map(|step_s| format!("take a step of {step_s} s or more, "));
+    let other = "drive a part of the cycle or fewer cars, or keep no rows";
+    let message = format!("the run keeps {steps} steps of {dt_s} s");
+    Err(Problem::too_large(message)
+        .allowed(format!("up to {STEPS} steps"))
+        .hint(step.unwrap_or_default() + other))
+}
+
+/// Steps of 1, 2 and 5 times a power of ten up to the longest, s: the rows of most cycles are cut by them without a rest.
+fn even_steps() -> impl Iterator<Item = f64> {
+    let all = [0.01, 0.1, 1.0, LONGEST_STEP_S].map(|power| [power, 2.0 * power, 5.0 * power]);
+    let all = all.into_iter().flatten();
+    all.take_while(|step_s| *step_s <= LONGEST_STEP_S)
+}
 
 impl Limit {
     /// What is allowed, in words.
@@ -183,5 +226,32 @@ fn is_file(path: &Path) -> Result<(), ReadError> {
         Ok(())
     } else {
         Err(ReadError::NoFile)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_steps_than_are_kept_are_refused_with_the_step_that_is_enough() {
+        assert_eq!(kept_steps(STEPS, 1.0), Ok(()));
+        let other = "drive a part of the cycle or fewer cars, or keep no rows";
+        for (steps, dt_s, step) in [
+            (9_972_000, 0.1, "take a step of 0.5 s or more, "),
+            (STEPS + 1, 1.0, "take a step of 2 s or more, "),
+            (2 * STEPS, 0.01, "take a step of 0.02 s or more, "),
+            (10 * STEPS, 1.0, "take a step of 10 s or more, "),
+            (10 * STEPS + 1, 1.0, ""),
+            (usize::MAX, 0.01, ""),
+        ] {
+            let problem = kept_steps(steps, dt_s).expect_err(step);
+            assert_eq!(
+                problem.message,
+                format!("the run keeps {steps} steps of {dt_s} s")
+            );
+            assert_eq!(problem.allowed, "up to 2000000 steps");
+            assert_eq!(problem.hint, format!("{step}{other}"));
+        }
     }
 }

@@ -7,11 +7,13 @@
 //! | `source` | the text of a file, for the lines of problems |
 //! | `near` | names like a mistyped one |
 //! | `render` | problems as text for people |
+//! | `visible` | characters of a stranger's text that must not reach a screen |
 
 pub(crate) mod near;
 pub(crate) mod place;
 pub(crate) mod render;
 pub(crate) mod source;
+pub(crate) mod visible;
 
 use crate::problem::place::{Input, Place};
 use serde::Serialize;

@@ -6,6 +6,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use crate::problem::Problem;
 use crate::problem::place::{Input, Place};
+use crate::problem::visible::{one_line, visible};
 
 /// Widest text that is shown without being cut.
 const WIDTH: usize = 120;
@@ -33,7 +34,7 @@ pub fn render(problems: &[Problem], colour: bool) -> String {
     }
     let inputs: BTreeSet<String> = problems
         .iter()
-        .map(|problem| visible(problem.place.input.to_string()))
+        .map(|problem| shown(problem.place.input.to_string()))
         .filter(|input| !input.is_empty())
         .collect();
     let inputs: Vec<String> = inputs.into_iter().collect();
@@ -54,11 +55,11 @@ pub fn render(problems: &[Problem], colour: bool) -> String {
 fn group(problem: &Problem) -> Group<'static> {
     let place = &problem.place;
     let has_line = place.line > 0 && !place.line_text.is_empty();
-    let mut title = visible(&problem.message);
+    let mut title = shown(&problem.message);
     if let Some(key) = unsaid_key(problem) {
-        title = format!("{}: {title}", visible(key));
+        title = format!("{}: {title}", shown(key));
     }
-    let input = visible(place.input.to_string());
+    let input = shown(place.input.to_string());
     if !has_line && place.input != Input::default() {
         title = match place.line {
             0 => format!("{input}: {title}"),
@@ -69,16 +70,17 @@ fn group(problem: &Problem) -> Group<'static> {
     let allowed = if problem.allowed.is_empty() {
         String::new()
     } else {
-        format!("allowed: {}", visible(&problem.allowed))
+        format!("allowed: {}", shown(&problem.allowed))
     };
     if has_line {
-        let annotation = AnnotationKind::Primary.span(underlined(place));
+        let line = visible(&place.line_text);
+        let annotation = AnnotationKind::Primary.span(underlined(&line, place));
         let annotation = if allowed.is_empty() {
             annotation
         } else {
             annotation.label(allowed)
         };
-        let snippet = Snippet::source(place.line_text.clone())
+        let snippet = Snippet::source(line.into_owned())
             .line_start(place.line)
             .path(input);
         group = group.element(snippet.annotation(annotation));
@@ -86,12 +88,12 @@ fn group(problem: &Problem) -> Group<'static> {
         let value = if problem.value.is_empty() {
             String::new()
         } else {
-            format!("{}; ", visible(&problem.value))
+            format!("{}; ", shown(&problem.value))
         };
         group = group.element(Level::NOTE.message(format!("{value}{allowed}")));
     }
     if !problem.hint.is_empty() {
-        group = group.element(Level::HELP.message(visible(&problem.hint)));
+        group = group.element(Level::HELP.message(shown(&problem.hint)));
     }
     group
 }
@@ -103,9 +105,8 @@ fn unsaid_key(problem: &Problem) -> Option<&str> {
     (problem.place.line > 0 && !said).then_some(key)
 }
 
-/// The bytes of the line that the caret underlines.
-fn underlined(place: &Place) -> std::ops::Range<usize> {
-    let line = &place.line_text;
+/// The bytes of the line, as it is shown, that the caret underlines: one character there is one of the file.
+fn underlined(line: &str, place: &Place) -> std::ops::Range<usize> {
     let byte = |characters: usize| {
         line.char_indices()
             .nth(characters)
@@ -115,16 +116,11 @@ fn underlined(place: &Place) -> std::ops::Range<usize> {
     byte(first)..byte(first.saturating_add(place.width.max(1)))
 }
 
-/// Input is repeated without its control characters, which could rewrite the terminal, and not without end.
-fn visible(text: impl AsRef<str>) -> String {
+/// Input is repeated without hidden characters, on one line, and not without end.
+fn shown(text: impl AsRef<str>) -> String {
     let text = text.as_ref();
-    let mut shown: String = text
-        .chars()
-        .take(MAX_TEXT)
-        .map(|c| if c.is_control() { '\u{FFFD}' } else { c })
-        .collect();
-    if text.chars().nth(MAX_TEXT).is_some() {
-        shown.push_str("...");
+    match text.char_indices().nth(MAX_TEXT) {
+        Some((end, _)) => format!("{}...", one_line(&text[..end])),
+        None => one_line(text).into_owned(),
     }
-    shown
 }

@@ -1,8 +1,9 @@
 //! A `trace_*.csv` of this program back to a history.
 
-use super::{History, MAX_PHASES, MAX_STEPS, SHORTER, flags_of, is_number, known, missing};
+use super::{History, MAX_PHASES, SHORTER, flags_of, is_number, known, missing};
 use crate::Flags;
 use crate::trace::{COLUMNS, TraceColumn};
+use cvtcycle_config::bounded::STEPS;
 use cvtcycle_config::csv::{self, Cells, Collector, Column, Line, Schema, Table};
 use cvtcycle_config::{Bound, Problem, Problems};
 
@@ -25,7 +26,7 @@ fn schema() -> Schema {
         columns: COLUMNS.iter().map(column).collect(),
         names: "time_s,dt_s,phase,...".into(),
         lenient: Some(("trace of cvtcycle", AGAIN)),
-        max_rows: (MAX_STEPS, SHORTER),
+        max_rows: (STEPS, SHORTER),
         ..Schema::default()
     }
 }

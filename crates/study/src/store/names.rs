@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cvtcycle_output::history::MAX_STEPS;
+use cvtcycle_config::bounded::STEPS;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -13,7 +13,7 @@ pub const TRACES: &str = "trace";
 /// Rows of traces up to which a part takes further points.
 pub const TRACE_ROWS: u64 = 50_000;
 /// Most rows of a table of a part: those of traces before its last point, and of that point as many as may be kept.
-pub const MAX_PART_ROWS: u64 = TRACE_ROWS + MAX_STEPS as u64;
+pub const MAX_PART_ROWS: u64 = TRACE_ROWS + STEPS as u64;
 
 /// Manifest; marks the directory.
 pub const MANIFEST: &str = "study.json";

@@ -12,9 +12,10 @@ use super::table::{Head, Rows, Values};
 use cvtcycle_config::ProblemKind::{
     self, Missing, OutOfRange, Syntax, TooLarge, UnknownName, WrongType,
 };
-use cvtcycle_config::{Problem, Problems, bounded};
+use cvtcycle_config::bounded::{self, STEPS};
+use cvtcycle_config::{Problem, Problems};
 use cvtcycle_output::history::{
-    AGAIN, FLAGS, History, MAX_STEPS, SHORTER, flags_of, is_number, known, missing, too_many_phases,
+    AGAIN, FLAGS, History, SHORTER, flags_of, is_number, known, missing, too_many_phases,
 };
 use cvtcycle_output::table::Cell;
 use cvtcycle_output::trace::TraceColumn;
@@ -123,10 +124,10 @@ pub fn read_trace_parquet(path: &Path) -> Result<History, Problems> {
     if file.rows() == 0 {
         problems.push(file_problem(Missing, path, "the file has no rows", AGAIN));
     }
-    if file.rows() > MAX_STEPS as u64 {
+    if file.rows() > STEPS as u64 {
         let message = format!("the file says that it has {} rows", file.rows());
         return Err(file_problem(TooLarge, path, message, SHORTER)
-            .allowed(format!("up to {MAX_STEPS}"))
+            .allowed(format!("up to {STEPS}"))
             .into());
     }
     if !problems.is_empty() {
