@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::rc::Rc;
 
+use cvtcycle::config::bounded::SOURCE_ROWS;
 use cvtcycle::config::setup::catalogue;
 use cvtcycle::study::check::expr::{
     Computed, FUNCTIONS, Fault, Gives, MAX_EVALUATIONS, MAX_TOKENS, Names, REDUCTIONS, Table,
@@ -328,6 +329,17 @@ fn nested_loops_and_reductions_end_with_the_evaluations() {
             "{behind}"
         ),
         other => panic!("{other:?}"),
+    }
+}
+
+/// 500 000 rows are the limit.
+#[test]
+fn the_sources_of_a_shipped_file_have_less_than_half_of_the_rows_that_are_allowed() {
+    let owned = |(name, text): &(&str, &str)| ((*name).to_owned(), (*text).to_owned());
+    let texts: Vec<_> = embedded_rows().iter().map(owned).collect();
+    for file in read(COMMON, &texts).unwrap() {
+        let rows: usize = file.sources.iter().map(|source| source.rows()).sum();
+        assert!(rows < SOURCE_ROWS / 2, "{}: {rows}", file.name);
     }
 }
 

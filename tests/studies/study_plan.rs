@@ -5,6 +5,7 @@ use crate::announced::{differences, expectations};
 use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{Argument, Override, Problems, render};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::study::Study;
 use cvtcycle::study::plan::{
     Acts, Cars, Design, Distribution, FactorValue, FactorValues, Keep, PLAN, Plan, embedded_plans,
 };
@@ -142,6 +143,54 @@ fn limits_of_the_designs() {
     assert_eq!(plan.design.points(&plan.factors), Some(1 << 62));
     let plan = good("[study]\ndesign = \"grid\"\n");
     assert_eq!(plan.design.points(&plan.factors), Some(1));
+}
+
+/// A thread holds the traces of a point: its rows and numbers are counted before anything starts, with the shortest step that a factor reaches.
+#[test]
+fn the_traces_of_a_point_are_counted_before_anything_runs() {
+    let cars = ["\"rover_216_5mt\""; 9].join(", ");
+    let plan = |head: &str, factor: &str| {
+        let design = if factor.contains("distribution") {
+            "design.monte_carlo.samples = 70"
+        } else {
+            "design = \"grid\""
+        };
+        let text = format!(
+            "[study]\ntitle = \"t\"\nvehicle = \"rover_216_5mt\"\nbaselines = [{cars}]\ncycle = \"wltc_class3b\"\n{head}\n\
+             {design}\n[[factor]]\n{factor}\n"
+        );
+        Study::prepare(good(&text))
+    };
+    let refused = |head: &str, factor: &str| match plan(head, factor) {
+        Err(problems) if problems.len() == 1 => problems[0].clone(),
+        Err(problems) => panic!("{problems:?}"),
+        Ok(_) => panic!("{head}: accepted"),
+    };
+    let ambient = "key = \"ambient_degc\"\nvalues = [0, 10]";
+    let dt = |values: &str| format!("key = \"dt_s\"\n{values}");
+    // Ten cars through 1800 s: 1 800 000 steps of 0.01 s, each with some 50 columns.
+    let few = plan("keep = [\"time_s\"]\ndt_s = 0.01", ambient).unwrap();
+    assert_eq!(few.points_per_part(), 1);
+    let coarse = plan("keep = [\"time_s\"]", &dt("values = [1, 2]")).unwrap();
+    let fine = plan("keep = [\"time_s\"]", &dt("values = [1, 0.1]")).unwrap();
+    assert!(coarse.points_per_part() >= fine.points_per_part());
+    let everything = "keep = \"everything\"";
+    assert!(plan("dt_s = 0.01", ambient).is_ok() && plan(everything, ambient).is_ok());
+    let cells = refused(&format!("{everything}\ndt_s = 0.01"), ambient);
+    assert!(
+        cells.message.starts_with("one point keeps ")
+            && cells.key == "keep"
+            && cells.place.line == 6,
+        "{cells:?}"
+    );
+    let spread = "status = \"assumed\"\ndistribution.uniform = { low = 0.01, high = 1 }";
+    for factor in [dt("values = [1, 0.01]"), dt(spread)] {
+        let problem = refused(everything, &factor);
+        assert!(
+            problem.message.starts_with("one point keeps "),
+            "{problem:?}"
+        );
+    }
 }
 
 #[test]

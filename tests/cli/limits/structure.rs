@@ -282,3 +282,76 @@ fn loops_without_end_are_one_problem() {
         refused_once(dir.path(), 64, line, &["more than 100000000 evaluations"]);
     }
 }
+
+/// Cycles and grids of a few bytes that ask for millions of rows.
+#[test]
+fn rows_that_are_kept_are_counted_before_anything_is_computed() {
+    let dir = folder();
+    let points: Vec<String> = (0..27)
+        .map(|k| format!("[{}, {}]", k * 3590, 50 * (k % 2)))
+        .collect();
+    let run = format!(
+        "[sources.g]\nsource = \"run\"\ndt_s = 0.01\npoints = [{}]\n",
+        points.join(", ")
+    );
+    let bench = |k: usize| {
+        format!(
+            "[sources.g{k}]\nsource = \"bench\"\nratio = [0.5, 1, 2]\nspeed_rpm = \"1000..6000:1\"\ntemp_degc = \"20..29:1\"\n"
+        )
+    };
+    let benches: String = (0..12).map(bench).collect();
+    let transient = "[sources.g]\nsource = \"transient\"\nratio = \"0.5..2.4:0.002\"\n";
+    for (sources, compute, words) in [
+        (run.as_str(), "max(g: time_s)", "take a dt_s of 0.2 or more"),
+        (
+            &benches,
+            "max(g0: total_nm)",
+            "the sources have 600120 rows together with this one",
+        ),
+        (transient, "max(g: time_s)", "rows together with this one"),
+    ] {
+        fs::write(dir.path().join("rows.toml"), row(sources, compute)).unwrap();
+        refused_once(
+            dir.path(),
+            64,
+            "validate --only-rows --rows rows.toml",
+            &[words],
+        );
+        let calibration = format!(
+            "[calibration]\nvehicle = \"rover_216_cvt\"\n{sources}[[parameter]]\nkey = \"transmission.cvt.pump.displacement_cc_rev\"\n\
+            low = 5\nhigh = 20\n[[data]]\nfrom = \"a test\"\ncompute = \"{compute}\"\nvalue = 1\nsd = 0.1\n"
+        );
+        fs::write(dir.path().join("fit.toml"), calibration).unwrap();
+        for line in ["check fit.toml", "calibrate fit.toml --out nowhere"] {
+            refused_once(dir.path(), 64, line, &[words]);
+        }
+    }
+    let cycle: String = (0..=277)
+        .map(|k| format!("{},{}\n", k * 3600, 50 * (k % 2)))
+        .collect();
+    fs::write(
+        dir.path().join("long.csv"),
+        format!("time_s,speed_kmh\n{cycle}"),
+    )
+    .unwrap();
+    let plan = |dt: &str, factor: &str| {
+        format!(
+            "[study]\nvehicle = \"rover_216_5mt\"\nbaselines = []\ncycle = \"long.csv\"\ndt_s = {dt}\nkeep = \"everything\"\n\
+            design = \"grid\"\n[[factor]]\n{factor}\n"
+        )
+    };
+    for text in [
+        plan("0.1", "key = \"ambient_degc\"\nvalues = [0, 10]"),
+        plan("10", "key = \"dt_s\"\nvalues = [0.1]"),
+    ] {
+        fs::write(dir.path().join("plan.toml"), text).unwrap();
+        for line in [
+            "check plan.toml",
+            "study plan.toml",
+            "study plan.toml --out nowhere",
+        ] {
+            refused_once(dir.path(), 64, line, &["steps of 0.1 s"]);
+        }
+    }
+    assert!(!dir.path().join("nowhere").exists());
+}

@@ -87,14 +87,20 @@ pub fn kept_steps(steps: usize, dt_s: f64) -> Result<(), Problem> {
     if steps <= STEPS {
         return Ok(());
     }
-    let least_s = dt_s * steps as f64 / STEPS as f64;
-    let step = even_steps().find(|step_s| *step_s >= least_s);
+    let step = long_enough_s(steps, dt_s, STEPS);
     let step = step.map(|step_s| format!("take a step of {step_s} s or more, "));
     let other = "drive a part of the cycle or fewer cars, or keep no rows";
     let message = format!("the run keeps {steps} steps of {dt_s} s");
     Err(Problem::too_large(message)
         .allowed(format!("up to {STEPS} steps"))
         .hint(step.unwrap_or_default() + other))
+}
+
+/// The shortest even step with which so many steps of `dt_s` become at most `most`; none if the longest is too short.
+#[must_use]
+pub fn long_enough_s(steps: usize, dt_s: f64, most: usize) -> Option<f64> {
+    let least_s = dt_s * steps as f64 / most as f64;
+    even_steps().find(|step_s| *step_s >= least_s)
 }
 
 /// Steps of 1, 2 and 5 times a power of ten up to the longest, s: the rows of most cycles are cut by them without a rest.

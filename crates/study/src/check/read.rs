@@ -93,6 +93,7 @@ fn file(
                 _ => p,
             }),
     );
+    problems.extend(source::within_budget(&read.sources).err());
     source::resolve_paths(&mut read.sources, name);
     read.tolerances.extend(lent_tolerances.iter().cloned());
     read.sources.extend(lent_sources.iter().cloned());

@@ -4,9 +4,11 @@ use std::path::Path;
 
 use super::keys::{BeltKeys, BenchKeys, FluidKeys, RunKeys, StripDownKeys, TransientKeys};
 use super::keys::{KINDS, RUN, SOURCE};
+use cvtcycle_config::bounded::{SOURCE_ROWS, long_enough_s};
 use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, names, read_csv};
 use cvtcycle_config::setup::is_path;
-use cvtcycle_config::{Override, Place, Section, did_you_mean, unit_of};
+use cvtcycle_config::{Override, Place, Problem, Section, did_you_mean, unit_of};
+use cvtcycle_model::bench::transmission::MAX_DURATION_S;
 use cvtcycle_model::keys::{Key, Presence, Values};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
@@ -87,9 +89,6 @@ pub struct Source {
     pub phase: String,
 }
 
-/// Most points of a source.
-const MAX_POINTS: usize = 200_000;
-
 /// Parts that can be taken out of the box.
 const PARTS: [&str; 4] = ["final_drive", "belt", "reverse_clutch", "pump"];
 
@@ -125,6 +124,33 @@ pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
         }
     }
     done
+}
+
+/// Checks that the sources of a file do not have more rows together than are kept; what is computed once stays until the command ends.
+///
+/// # Errors
+/// A problem at the source with which they pass the limit.
+pub fn within_budget(sources: &[Source]) -> Result<(), Problem> {
+    let mut sum = 0_usize;
+    for source in sources {
+        let rows = source.rows();
+        sum = sum.saturating_add(rows);
+        if sum <= SOURCE_ROWS {
+            continue;
+        }
+        let alone = (source.kind == Kind::Run && rows > SOURCE_ROWS)
+            .then(|| long_enough_s(rows, source.dt_s(), SOURCE_ROWS));
+        let hint = match alone.flatten() {
+            Some(step_s) => format!("take a dt_s of {step_s} or more"),
+            None => "take a larger dt_s, wider steps, or fewer ratios".to_owned(),
+        };
+        let message = format!("the sources have {sum} rows together with this one");
+        let problem = Problem::too_large(message)
+            .allowed(format!("up to {SOURCE_ROWS} rows of all sources of a file"))
+            .hint(hint);
+        return Err(problem.at(source.place.clone()));
+    }
+    Ok(())
 }
 
 /// A path relative to the file that names it as one relative to the working directory; another word as it is.
@@ -180,16 +206,6 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
             let allowed = key.range().in_unit(unit_of(key.name));
             s.missing(key.name, &allowed, &message, hint);
         }
-    }
-    let lengths = source
-        .axes
-        .iter()
-        .map(|(_, list)| list.as_ref().map_or(1, Vec::len));
-    let count = lengths.fold(1_usize, usize::saturating_mul);
-    if count > MAX_POINTS {
-        let allowed = format!("up to {MAX_POINTS} points");
-        let message = format!("source `{name}` has {count} points");
-        s.too_large("source", &allowed, &message, "use wider steps");
     }
     match kind {
         Kind::Bench if s.has("without") => source.without = without(s, &SOURCE.without),
@@ -326,6 +342,26 @@ impl Source {
     /// The first value of a setting of a run; NaN where there is none.
     fn first(&self, key: &Key) -> f64 {
         self.axis(key).first().copied().unwrap_or(f64::NAN)
+    }
+
+    /// Rows of its table, found without computing it; of tests that end by themselves as many as they may have.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        let lengths = self
+            .axes
+            .iter()
+            .map(|(_, list)| list.as_ref().map_or(1, Vec::len));
+        let points = lengths.fold(1_usize, usize::saturating_mul);
+        match self.kind {
+            Kind::Vehicle => 0,
+            Kind::Run => cycle(self).map_or(0, |cycle| {
+                let count = |automatic| cycle.trace_for(automatic).step_count(self.dt_s());
+                count(false).max(count(true))
+            }),
+            // Warming and cooling, a row a second.
+            Kind::Transient => points.saturating_mul(2 * MAX_DURATION_S as usize),
+            Kind::Bench | Kind::Belt | Kind::Fluid | Kind::StripDown => points,
+        }
     }
 
     /// Start temperature in K, where one is given.

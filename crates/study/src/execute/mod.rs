@@ -23,8 +23,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ScopedJoinHandle};
 
 use crate::Progress;
+use crate::plan::{Factor, FactorValue, FactorValues, STUDY};
 use crate::store::{PartTable, Rows, StudyDir, TRACE_ROWS};
-use cvtcycle_config::Problem;
+use cvtcycle_config::bounded::{CELLS, kept_steps};
+use cvtcycle_config::{Place, Problem};
 use manifest::{RUNS, TRACES};
 use point::Worker;
 use rows::{Filler, Traces};
@@ -110,18 +112,64 @@ impl Study {
         (part * size)..((part + 1) * size).min(self.points)
     }
 
+    /// Rows of the traces of a point at most: those of all cars, on the longest cycle with the shortest step.
     fn trace_rows_per_point(&self) -> u64 {
+        let (dt_s, _) = self.shortest_step();
         let rows = |car: &StudyCar| {
             let mut setups = car.setups(&self.plan.factors);
             let automatic = setups.any(|setup| setup.transmission().is_cvt());
-            let dt_s = self.plan.base.dt_s;
             let traces = self.cycles.iter().map(|cycle| cycle.trace_for(automatic));
             traces
                 .map(|trace| trace.step_count(dt_s))
                 .max()
                 .unwrap_or(0) as u64
         };
-        self.cars.iter().map(rows).sum()
+        let sum = |sum: u64, car| sum.saturating_add(rows(car));
+        self.cars.iter().fold(0, sum)
+    }
+
+    /// The shortest step of a point, s, and where the plan gives it.
+    fn shortest_step(&self) -> (f64, &Place) {
+        let plan = &self.plan;
+        let own = (plan.base.dt_s, plan.places.of("dt_s"));
+        let of_factor = |factor: &Factor| match &factor.values {
+            FactorValues::List(list) => list
+                .iter()
+                .filter_map(FactorValue::number)
+                .fold(own.0, f64::min),
+            // One without ends reaches down to what the key allows.
+            FactorValues::Distribution(distribution) => {
+                distribution.support().0.max(STUDY.dt_s.range().low())
+            }
+        };
+        let factors = plan.factors.iter().filter(|factor| factor.key == "dt_s");
+        let factors = factors.map(|factor| (of_factor(factor), &factor.place));
+        factors.fold(own, |a, b| if b.0 < a.0 { b } else { a })
+    }
+
+    /// Checks that the traces of a point, which a thread holds until they are written, are not too large.
+    ///
+    /// # Errors
+    /// A problem of the plan.
+    fn check_traces(&self) -> Result<(), Problem> {
+        let columns = self.traces.len();
+        if columns == 0 {
+            return Ok(());
+        }
+        let rows = usize::try_from(self.trace_rows_per_point()).unwrap_or(usize::MAX);
+        let (dt_s, place) = self.shortest_step();
+        kept_steps(rows, dt_s).map_err(|problem| problem.at(place.clone()).key("dt_s"))?;
+        let cells = rows.saturating_mul(columns);
+        if cells <= CELLS {
+            return Ok(());
+        }
+        Err(
+            Problem::too_large(format!("one point keeps {cells} numbers of traces"))
+                .at(self.plan.places.of("keep").clone())
+                .key("keep")
+                .allowed(format!("up to {CELLS} numbers"))
+                .hint("keep fewer columns, or take a larger dt_s"),
+        )
     }
 
     /// Computes the parts that are not in `done` and gives them to the writer. Uses the threads of the pool in which it is called, and one

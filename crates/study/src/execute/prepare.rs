@@ -86,7 +86,7 @@ impl Study {
         let columns = head_columns().into_iter().chain(heads);
         let traces = traces(&plan, &cars, &parts);
         let trace_heads = head_columns().into_iter().take(2);
-        Ok(Study {
+        let study = Study {
             points,
             cars,
             cycles,
@@ -102,7 +102,9 @@ impl Study {
             outputs,
             traces,
             plan,
-        })
+        };
+        study.check_traces()?;
+        Ok(study)
     }
 
     /// Number of runs.

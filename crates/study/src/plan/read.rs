@@ -56,7 +56,7 @@ fn head(document: &Document, file: &str, text: &str) -> (Plan, Problems) {
         base: base(&s, &mut places),
         factors: Vec::new(),
         design,
-        keep: keep(&s),
+        keep: keep(&s, &mut places),
         analyse: names(&s, &STUDY.analyse, &mut places).unwrap_or_default(),
         most_runs: s.integer(&STUDY.most_runs).unsigned_abs(),
         places,
@@ -153,11 +153,12 @@ fn overrides(s: &Section, row: &Key, places: &mut Places) -> Vec<Override> {
     items.iter().filter_map(parse).collect()
 }
 
-fn keep(s: &Section) -> Keep {
+fn keep(s: &Section, places: &mut Places) -> Keep {
     let row = &STUDY.keep;
     let Some(written) = s.written(row) else {
         return Keep::Summary;
     };
+    places.add(row.name, written.place());
     let what = row.allowed();
     match (written.word(), written.items()) {
         (Some("everything"), _) => return Keep::Everything,

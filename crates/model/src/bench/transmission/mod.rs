@@ -12,4 +12,4 @@ pub use conditions::{Conditions, PressureFactors, RigCooler, Speeds, TransientTe
 pub use keys::{OIL, RigKeys, TORQUE};
 pub use steady::{Plan, SteadyPoint, TwoBoxes, loaded, second_box, steady};
 pub use strip_down::{Found, Piece, Stage, StripDown, strip_down};
-pub use transient::{Branch, Loop, LoopEnergy, Moment, on_the_rig, transient};
+pub use transient::{Branch, Loop, LoopEnergy, MAX_DURATION_S, Moment, on_the_rig, transient};

@@ -16,7 +16,7 @@ use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, Network,
 /// Step, s: the rig recorded once a second (thesis 5.3).
 const STEP_S: f64 = 1.0;
 /// A branch that takes longer has come to rest before its end.
-const MAX_DURATION_S: f64 = 4.0 * 3600.0;
+pub const MAX_DURATION_S: f64 = 4.0 * 3600.0;
 
 /// Half of a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -135,25 +135,24 @@ impl Driven {
 pub fn trace(source: &Source, driven: &Driven) -> Table {
     let wanted = driven.phases(source);
     let (mut launch, mut since_launch_s, mut at_rest) = (0.0, f64::NAN, true);
-    let (more, mut rows) = (more(), Vec::new());
-    for row in &driven.outcome.rows {
+    let more = more();
+    // Row by row into the table, so that there is no second copy of all.
+    let rows = driven.outcome.rows.iter().filter_map(|row| {
         let moving = row.speed_m_s > 0.0;
         if moving && at_rest {
             (launch, since_launch_s) = (launch + 1.0, 0.0);
         }
         since_launch_s += row.dt_s;
         at_rest = !moving;
-        if wanted.contains(&row.phase) {
-            let state = Step {
-                row,
-                rated_w: driven.rated_w,
-                launch,
-                since_launch_s,
-            };
-            rows.push(step(&more, &state));
-        }
-    }
-    from_rows(columns().len(), rows.into_iter())
+        let state = Step {
+            row,
+            rated_w: driven.rated_w,
+            launch,
+            since_launch_s,
+        };
+        wanted.contains(&row.phase).then(|| step(&more, &state))
+    });
+    from_rows(columns().len(), rows)
 }
 
 fn step<'a>(more: &[Column<Step<'a>>], step: &Step<'a>) -> TableRow {

@@ -57,6 +57,7 @@ fn partly(file: &str, text: &str) -> Result<(CalibrationPlan, Problems), Problem
     let head = root.table("calibration");
     let mut sources = source::read(&root.table("sources"), common);
     source::resolve_paths(&mut sources, file);
+    let own = sources.len();
     sources.extend(common.iter().cloned());
     let mut plan = head_of(&head, file, text);
     let exists = head.exists();
@@ -76,6 +77,7 @@ fn partly(file: &str, text: &str) -> Result<(CalibrationPlan, Problems), Problem
             hint,
         ));
     }
+    problems.extend(source::within_budget(&sources[..own]).err());
     // What is written in another way is there all the same.
     let written = [("[[parameter]]", &parameters), ("[[data]]", &data)];
     let written = written.map(|(header, list)| list.len().max(usize::from(is_hinted(header))));
