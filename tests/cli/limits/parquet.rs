@@ -13,7 +13,7 @@ use parquet::file::metadata::{
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use tempfile::TempDir;
 
-use super::{folder, refused, short_run, sparse};
+use super::{folder, refused, short_run, sparse, within};
 
 const DAMAGED: &str =
     "the file is damaged: it is shorter than it says, or longer than any of this program";
