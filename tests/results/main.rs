@@ -11,6 +11,7 @@ mod common;
 #[path = "../fixtures/mod.rs"]
 mod fixtures;
 
+mod failures;
 mod history;
 mod outputs;
 mod pictures;

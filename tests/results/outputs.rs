@@ -337,6 +337,9 @@ fn numbers_for_people() {
     assert_eq!(fixed(-0.04, 1), "0.0");
     assert_eq!(fixed(-10.04, 1), "-10.0");
     assert_eq!(fixed(f64::NAN, 1), "-");
+    assert_eq!(fixed(999_999_999_999_999.0, 0), "999999999999999");
+    assert_eq!(fixed(-1e15, 0), "-1.00e15");
+    assert_eq!(fixed(f64::MAX, 3), "1.80e308");
     assert_eq!(fixed(None, 1), "-");
     assert_eq!(signed(5.26, 1), "+5.3");
     assert_eq!(signed(0.01, 1), "0.0");

@@ -24,6 +24,11 @@ macro_rules! flags {
                 self.0 & other.0 == other.0
             }
 
+            /// True where a bit of `other` is set.
+            pub fn any(self, other: $set) -> bool {
+                self.0 & other.0 != 0
+            }
+
             /// Names of the flags that are set, in the order of the bits.
             pub fn names(self) -> impl Iterator<Item = &'static str> {
                 let set = Self::NAMES.iter().filter(move |(flag, _)| self.contains(*flag));
@@ -55,6 +60,14 @@ flags! {
         ENGINE_OFF = 10, "engine_off", "the engine is switched off (soak)";
         NOT_CONVERGED = 11, "not_converged", "the implicit solve stopped at its iteration bound above its tolerance; exit code 1";
         LAUNCH_NOT_IN_LOW = 12, "launch_not_in_low", "the car pulls away in another ratio than low";
-        OVERSPEED = 13, "overspeed", "engine speed above its limit";
+        OVERSPEED = 13, "overspeed", "engine speed above its limit; exit code 1 if more than 1 % above the end of the full-load line as well";
+        TOO_HOT = 14, "too_hot", "coolant above 130 degC (a half-and-half mix boils at 129 degC with 1 bar over ambient), or engine oil or transmission oil above 160 degC; exit code 1";
+        WRONG_GEAR = 15, "wrong_gear", "the cycle prescribes no gear or an open clutch while the car is driven faster; a gear was engaged; exit code 1";
     }
+}
+
+impl Flags {
+    /// What no car can do, as far as its engine, its oil and its cycle go.
+    pub const IMPOSSIBLE: Flags =
+        Flags(Flags::OVERSPEED.0 | Flags::TOO_HOT.0 | Flags::WRONG_GEAR.0);
 }

@@ -5,6 +5,9 @@ use std::fmt::Write as _;
 /// Text in place of a missing number in tables for people.
 pub const NONE: &str = "-";
 
+/// A number from here on is given with an exponent.
+const MANY_FIGURES: f64 = 1e15;
+
 /// Appends the shortest decimal that reads back to the same number, with an exponent below 1e-5 and from 1e16 on; `NaN`, `inf` and
 /// `-inf` for what is not finite, zero without a sign.
 pub fn push_exact(text: &mut String, x: f64) {
@@ -33,16 +36,21 @@ pub fn finite(x: f64) -> Option<f64> {
     x.is_finite().then_some(x + 0.0)
 }
 
-/// A number with fixed decimals, without the sign of a rounded zero; [`NONE`] where there is none.
+/// A number with fixed decimals, without the sign of a rounded zero; [`NONE`] where there is none. From 1e15 on, where the figures
+/// before the point are more than a number has, with an exponent.
 ///
 /// ```
 /// use cvtcycle_output::number::fixed;
 /// assert_eq!([fixed(2.416, 2), fixed(-0.001, 2), fixed(None, 2)], ["2.42", "0.00", "-"]);
+/// assert_eq!(fixed(1.234e300, 2), "1.23e300");
 /// ```
 pub fn fixed(x: impl Into<Option<f64>>, decimals: usize) -> String {
     let Some(x) = x.into().filter(|x| x.is_finite()) else {
         return NONE.to_owned();
     };
+    if x.abs() >= MANY_FIGURES {
+        return format!("{x:.2e}");
+    }
     let text = format!("{x:.decimals$}");
     match text.strip_prefix('-') {
         Some(digits) if !has_digits(digits) => digits.to_owned(),

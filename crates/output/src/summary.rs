@@ -3,9 +3,11 @@
 //! Names are a contract with users' scripts. A number that was not computed, or is none, is null. Outside
 //! units (degC, kJ, L/100 km) begin here.
 
+mod failure;
 mod run;
 
-pub use run::{Deficit, PhaseSummary, RunSummary, Solve, run_summary};
+pub use failure::{Deficit, Failure};
+pub use run::{PhaseSummary, RunSummary, Solve, run_summary};
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};

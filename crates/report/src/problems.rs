@@ -49,7 +49,7 @@ pub(crate) fn consistent(file: &Path, run: &RunSummary) -> Result<(), Problem> {
     let fuel = fuel.is_none_or(|fuel| near(litres(fuel), run.fuel_l, run.fuel_l));
     // A run whose ledger did not close has said so itself.
     let mut failed = run.failed_checks.iter();
-    let open = failed.any(|check| check == "ledger_error");
+    let open = failed.any(|check| ["ledger_error", "not_finite"].contains(&check.as_str()));
     let closes = |kj: f64| near(kj, run.fuel_energy_kj, run.fuel_energy_kj);
     if fuel && (open || (closes(terms) && closes(ledger("fuel")))) {
         return Ok(());

@@ -247,32 +247,12 @@ fn notes(summary: &Summary) -> String {
 
 /// One line for each failed check.
 pub fn failures(summary: &Summary) -> Vec<String> {
-    let of = |run| move |check: &String| failure(run, check);
-    let runs = summary.runs.iter();
-    runs.flat_map(|run| run.failed_checks.iter().map(of(run)))
-        .collect()
-}
-
-fn failure(run: &RunSummary, check: &str) -> String {
-    let seconds = fixed(run.flags_s.get(check), 1);
-    let what = match check {
-        "missed_trace" => {
-            let worst = run.worst_deficit.as_ref().map_or_else(String::new, |d| {
-                let torque = d.wheel_torque_nm;
-                let torque = torque.map(|nm| format!(" or {} Nm at the wheels", fixed(nm, 0)));
-                let (torque, phase) = (torque.unwrap_or_default(), &d.phase);
-                let (at, kw) = (fixed(d.at_s, 1), fixed(d.power_w / 1e3, 1));
-                format!(", worst at {at} s in {phase}: {kw} kW{torque} missing")
-            });
-            format!("misses the trace for {seconds} s{worst}")
-        }
-        "ledger_error" => {
-            let (step, whole) = (tiny(run.ledger_error), tiny(run.run_ledger_error));
-            format!(
-                "energy does not balance: relative error {step} in the worst time step, {whole} over the run"
-            )
-        }
-        flag => format!("{flag} for {seconds} s"),
+    let of = |run: &RunSummary| {
+        let line = |failure| {
+            let text = run.failure_text(failure);
+            format!("check failed: {} {text}", run.vehicle)
+        };
+        run.failures.iter().map(line).collect::<Vec<_>>()
     };
-    format!("check failed: {} {what}", run.vehicle)
+    summary.runs.iter().flat_map(of).collect()
 }

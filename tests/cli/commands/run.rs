@@ -326,3 +326,102 @@ fn a_missed_trace_is_exit_code_1() {
     );
     assert!(stderr(&output).contains("misses the trace"));
 }
+
+/// Cars and cycles that cannot be end with code 1, the place and the time, without `--strict`.
+#[test]
+fn what_no_car_can_do_is_exit_code_1() {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, text) in [
+        (
+            "first_gear.csv",
+            "time_s,speed_kmh,gear\n0,0,0\n60,120,1\n238,120,1\n",
+        ),
+        (
+            "no_gear.csv",
+            "time_s,speed_kmh,gear\n0,0,0\n40,80,0\n118,80,0\n",
+        ),
+        ("idle.csv", "time_s,speed_kmh\n0,0\n3600,0\n"),
+    ] {
+        fs::write(dir.path().join(name), text).unwrap();
+    }
+    let gain = "transmission.cvt.launch.friction_clutch.gain_nm_per_rpm2=1e-7";
+    let seal = "transmission.manual.seal.torque_nm=20";
+    let thick = "transmission.manual.seal.viscous_exponent=1.5";
+    let manual = ["--vehicle", "rover_216_5mt"];
+    for (words, check, unit, text) in [
+        (
+            [&manual[..], &["--cycle", "first_gear.csv"]].concat(),
+            "overspeed",
+            "rpm",
+            "rover_216_5mt turns the engine at 15117 rpm at ",
+        ),
+        (
+            [&manual[..], &["--cycle", "no_gear.csv"]].concat(),
+            "wrong_gear",
+            "",
+            "rover_216_5mt is driven faster for 40.0 s in which the cycle prescribes no gear, first at 1.0 s in no_gear",
+        ),
+        (
+            vec!["--cycle", "ece15", "--set", gain],
+            "overspeed",
+            "rpm",
+            "rover_216_cvt turns the engine at ",
+        ),
+        (
+            [
+                &manual[..],
+                &[
+                    "--cycle",
+                    "ece15",
+                    "--ambient",
+                    "-40",
+                    "--set",
+                    seal,
+                    "--set",
+                    thick,
+                ],
+            ]
+            .concat(),
+            "too_hot",
+            "degC",
+            "rover_216_5mt heats the transmission oil to ",
+        ),
+        (
+            [
+                &manual[..],
+                &["--cycle", "idle.csv", "--set", "thermal.radiator.fan_w_k=0"],
+            ]
+            .concat(),
+            "too_hot",
+            "degC",
+            "rover_216_5mt heats the coolant to 254.1 degC at 3600.0 s in idle, above 130 degC, for ",
+        ),
+    ] {
+        let words = [&["run", "--baseline", "none"], &words[..]].concat();
+        let output = run_in(dir.path(), &words);
+        assert_eq!(output.status.code(), Some(1), "{words:?}");
+        let line = format!("check failed: {text}");
+        assert!(stderr(&output).contains(&line), "{}", stderr(&output));
+        let output = run_in(dir.path(), &[&words[..], &["--json"]].concat());
+        assert_eq!(output.status.code(), Some(1), "{words:?}");
+        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let run = &summary["runs"][0];
+        let failures = run["failures"].as_array().unwrap();
+        let names: Vec<&Value> = failures.iter().map(|failure| &failure["check"]).collect();
+        assert!(
+            names
+                .iter()
+                .copied()
+                .eq(run["failed_checks"].as_array().unwrap())
+        );
+        let found = failures
+            .iter()
+            .find(|failure| failure["check"] == check)
+            .unwrap();
+        assert!(found["seconds"].as_f64().unwrap() > 0.0 && found["at_s"].is_number());
+        assert!(found["phase"].is_string());
+        assert_eq!(found["unit"].as_str().unwrap_or_default(), unit);
+        let beyond = found["value"].as_f64().zip(found["limit"].as_f64());
+        assert!(beyond.map_or(unit.is_empty(), |(value, limit)| value > limit));
+    }
+}

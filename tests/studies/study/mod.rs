@@ -369,6 +369,34 @@ values = [2.2, 2.417]
     }
 }
 
+/// A run that no car can drive is a failed one: it is in no mean.
+#[test]
+fn runs_that_cannot_be_are_left_out() {
+    let plan = |gains: &str| {
+        format!(
+            "[study]\ntitle = \"t\"\nvehicle = \"rover_216_cvt\"\nbaselines = []\ncycle = \"ece15\"\n[study.design.grid]\n\
+             [[factor]]\nkey = \"transmission.cvt.launch.friction_clutch.gain_nm_per_rpm2\"\nvalues = [{gains}]\n"
+        )
+    };
+    let mean = |answer: &Value| {
+        let text = answer.to_string();
+        let at = text.find("\"mean\":").unwrap();
+        text[at..].split(',').next().unwrap().to_owned()
+    };
+    let good = "1.9e-5, 2.0e-5";
+    let dir = folder(&plan(good));
+    let alone = json(&ends(dir.path(), &["study", "plan.toml", "--json"], 0));
+    fs::write(dir.path().join("plan.toml"), plan(&format!("1e-7, {good}"))).unwrap();
+    let output = ends(dir.path(), &["study", "plan.toml", "--json"], 1);
+    let answer = json(&output);
+    assert_eq!(
+        (&answer["runs"]["ok"], &answer["runs"]["failed"]),
+        (&2.into(), &1.into())
+    );
+    assert!(stderr(&output).contains("overspeed"), "{}", stderr(&output));
+    assert_eq!(mean(&answer), mean(&alone));
+}
+
 /// A run of a study is the run of `run`: the same conditions give the same numbers, to the last bit.
 #[test]
 fn rows_are_the_numbers_of_run() {

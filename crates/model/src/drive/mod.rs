@@ -11,11 +11,12 @@ mod vehicle;
 
 pub use balance::{EnergyTerms, TERM_NAMES};
 pub use car::Car;
-pub use row::Row;
+pub use row::{HIGHEST_K, Row};
 pub use run::{
-    Conditions, FuelMap, Outcome, RowSink, Start, drive, drive_into, fuel_map, litres_per_100km,
+    Conditions, FuelMap, Outcome, RowSink, Start, co2_g_per_km, drive, drive_into, fuel_map,
+    litres_per_100km,
 };
 pub use simulate::{Recorder, State, simulate};
 pub use step::{Drive, loss_heat_w};
-pub use totals::{PhaseTotals, Totals};
+pub use totals::{Extreme, PhaseTotals, Totals};
 pub use vehicle::Vehicle;

@@ -2,11 +2,19 @@
 
 use super::{Car, EnergyTerms};
 use crate::cycle::Step;
-use crate::engine::{Burn, EngineAtTemperature};
+use crate::engine::{Burn, EngineAtTemperature, HIGHEST_COOLANT_K};
 use crate::flags::Flags;
+use crate::fluid::VALID_K;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::component::ByComponent;
 use crate::transmission::{StepInput, StepOutput};
+
+/// Nodes with the highest temperature, K, that each of them may have; above it a row is too hot.
+pub const HIGHEST_K: [(usize, f64); 3] = [
+    (COOLANT, HIGHEST_COOLANT_K),
+    (ENGINE_OIL, *VALID_K.end()),
+    (SUMP, *VALID_K.end()),
+];
 
 /// One time step: means over the step that ends at `time_s`; temperatures are those at its end.
 #[derive(Clone, Copy, Debug, Default)]
@@ -152,6 +160,8 @@ pub(super) fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, En
     flags.set(Flags::FUEL_CUT, b.cut && d.engine_rad_s > 0.0);
     flags.set(Flags::OUTSIDE_VALIDITY, b.outside);
     let t = &a.heat.heat.node_k;
+    let hot = |(node, most): &(usize, f64)| t[*node] > *most;
+    flags.set(Flags::TOO_HOT, HIGHEST_K.iter().any(hot));
     let row = Row {
         time_s: step.time_s,
         dt_s: step.dt_s,

@@ -212,9 +212,21 @@ pub fn fuel_map(vehicle: &Vehicle) -> FuelMap {
     }
 }
 
-/// Fuel in L/100 km from mass and distance; NaN for no distance.
+/// Shortest distance that a fuel consumption is given for, m.
+const SHORTEST_M: f64 = 1.0;
+
+/// Carbon dioxide in g/km from the mass of fuel and distance; NaN for less than a metre.
+pub fn co2_g_per_km(fuel_kg: f64, co2_kg_kg: f64, distance_m: f64) -> f64 {
+    if distance_m >= SHORTEST_M {
+        fuel_kg * co2_kg_kg * 1e6 / distance_m
+    } else {
+        f64::NAN
+    }
+}
+
+/// Fuel in L/100 km from mass and distance; NaN for less than a metre.
 pub fn litres_per_100km(fuel_kg: f64, density_kg_m3: f64, distance_m: f64) -> f64 {
-    if distance_m > 0.0 {
+    if distance_m >= SHORTEST_M {
         fuel_kg / density_kg_m3 * 1000.0 / (distance_m / 100_000.0)
     } else {
         f64::NAN

@@ -1,6 +1,6 @@
 //! Sums of a run by phase, gathered row by row without keeping the rows.
 
-use super::{EnergyTerms, Recorder, Row};
+use super::{EnergyTerms, HIGHEST_K, Recorder, Row};
 use crate::flags::Flags;
 use crate::math::larger;
 use crate::transmission::component::ByComponent;
@@ -26,6 +26,32 @@ pub struct PhaseTotals {
     pub terms: EnergyTerms,
 }
 
+/// Largest value of the rows that were looked at, and when.
+#[derive(Clone, Copy, Debug)]
+pub struct Extreme {
+    /// Value; minus infinity if no row was looked at.
+    pub value: f64,
+    /// End of its row, s; NaN without one.
+    pub at_s: f64,
+}
+
+impl Default for Extreme {
+    fn default() -> Self {
+        Extreme {
+            value: f64::NEG_INFINITY,
+            at_s: f64::NAN,
+        }
+    }
+}
+
+impl Extreme {
+    fn see(&mut self, value: f64, at_s: f64) {
+        if value > self.value {
+            *self = Extreme { value, at_s };
+        }
+    }
+}
+
 /// Sums and extremes over a whole run.
 #[derive(Clone, Debug, Default)]
 pub struct Totals {
@@ -45,6 +71,16 @@ pub struct Totals {
     pub worst_deficit_nm: f64,
     /// End of the row with the worst deficit, s.
     pub worst_deficit_at_s: f64,
+    /// Highest engine speed of the rows above its limit, rad/s.
+    pub fastest_rad_s: Extreme,
+    /// Highest temperatures of the rows that are too hot, K, in the order of [`HIGHEST_K`].
+    pub hottest_k: [Extreme; HIGHEST_K.len()],
+    /// End of the first row with a gear that the cycle does not prescribe, s.
+    pub wrong_gear_at_s: f64,
+    /// Time in which torque, speed, fuel or a temperature was no number, s.
+    pub not_finite_s: f64,
+    /// End of the first such row, s.
+    pub not_finite_at_s: f64,
     /// Largest residual of the implicit solve.
     pub worst_residual: f64,
     /// Evaluations of the driveline.
@@ -61,6 +97,8 @@ impl Totals {
             min_clamp_safety: f64::INFINITY,
             min_clamp_at_s: f64::NAN,
             worst_deficit_at_s: f64::NAN,
+            wrong_gear_at_s: f64::NAN,
+            not_finite_at_s: f64::NAN,
             ..Totals::default()
         }
     }
@@ -112,6 +150,43 @@ impl Totals {
         }
         if row.solve_residual.is_nan() || row.solve_residual > self.worst_residual {
             self.worst_residual = row.solve_residual;
+        }
+        if row.flags.any(Flags::IMPOSSIBLE) {
+            let temps_k = [row.coolant_k, row.engine_oil_k, row.sump_k]; // in the order of HIGHEST_K
+            self.impossible(row.flags, row.time_s, row.engine_speed_rad_s, temps_k);
+        }
+        // One sum, so that a row pays for one test.
+        let sum = row.engine_torque_nm
+            + row.engine_speed_rad_s
+            + row.fuel_kg_s
+            + (row.coolant_k + row.engine_oil_k + row.sump_k + row.metal_k);
+        if !sum.is_finite() {
+            if self.not_finite_at_s.is_nan() {
+                self.not_finite_at_s = row.time_s;
+            }
+            self.not_finite_s += row.dt_s;
+        }
+    }
+
+    // Numbers and no row, so that none has to be put together for this rare case.
+    #[cold]
+    fn impossible(
+        &mut self,
+        flags: Flags,
+        at_s: f64,
+        engine_rad_s: f64,
+        temps_k: [f64; HIGHEST_K.len()],
+    ) {
+        if flags.contains(Flags::OVERSPEED) {
+            self.fastest_rad_s.see(engine_rad_s, at_s);
+        }
+        if flags.contains(Flags::TOO_HOT) {
+            for (extreme, temp_k) in self.hottest_k.iter_mut().zip(temps_k) {
+                extreme.see(temp_k, at_s);
+            }
+        }
+        if flags.contains(Flags::WRONG_GEAR) && self.wrong_gear_at_s.is_nan() {
+            self.wrong_gear_at_s = at_s;
         }
     }
 }

@@ -23,6 +23,9 @@ use crate::fluid::{Lubricant, Viscosity, ZERO_DEGC_K};
 use crate::math::{Curve, clamp, exp, larger, ln};
 use crate::prime_mover::PrimeMover;
 
+/// Highest temperature of the coolant, K: a half-and-half mix of water and glycol boils at 129 degC with 1 bar over ambient.
+pub const HIGHEST_COOLANT_K: f64 = 130.0 + ZERO_DEGC_K;
+
 /// The checked engine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Engine {

@@ -2,25 +2,17 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::failure::{Deficit, Failure, LedgerErrors, failures};
 use super::{Driven, Named, Settings};
-use crate::number::finite;
+use crate::number::{finite, fixed, tiny};
 use crate::{Component, Flags, PhaseTotals, TERM_NAMES};
 use cvtcycle_config::cycle::{Cycle, Weighting};
-use cvtcycle_model::drive::{Outcome, litres_per_100km};
+use cvtcycle_model::drive::{Outcome, co2_g_per_km, litres_per_100km};
 use cvtcycle_model::engine::Engine;
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
-/// Ledger error above which a run counts as failed.
-const LEDGER_TOLERANCE: f64 = 1e-9;
-/// Flags that fail a strict run.
-const STRICT: [Flags; 4] = [
-    Flags::OUTSIDE_VALIDITY,
-    Flags::GROSS_SLIP,
-    Flags::LOW_CLAMP,
-    Flags::FLOW_LIMITED,
-];
 /// Miles per imperial gallon at 1 L/100 km.
 const MPG_UK: f64 = 282.481;
 /// Miles per US gallon at 1 L/100 km.
@@ -101,8 +93,11 @@ pub struct RunSummary {
     pub worst_deficit: Option<Deficit>,
     /// How the implicit solve went.
     pub solve: Solve,
-    /// Names of the checks that failed: `missed_trace`, `ledger_error`, `not_converged`, or a flag under `--strict`.
+    /// Names of the checks that failed, as in `failures`.
     pub failed_checks: Vec<String>,
+    /// The checks that failed, each with its time and its worst or first row; empty in files of an earlier version.
+    #[serde(default)]
+    pub failures: Vec<Failure>,
     /// Demanded work at the wheels in driving over that work with all losses of the transmission; null without either.
     pub transmission_efficiency_percent: Option<f64>,
 }
@@ -126,19 +121,6 @@ pub struct PhaseSummary {
     pub transmission_loss_kj: f64,
 }
 
-/// The worst row of a missed trace.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Deficit {
-    /// Missing power.
-    pub power_w: f64,
-    /// Missing torque at the wheels.
-    pub wheel_torque_nm: Option<f64>,
-    /// End of the row.
-    pub at_s: f64,
-    /// Phase of the row.
-    pub phase: String,
-}
-
 /// How the implicit solve went.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solve {
@@ -159,24 +141,46 @@ impl RunSummary {
         self.ledger_kj.get("losses").unwrap_or(0.0)
     }
 
-    fn checks(&self, strict: bool) -> Vec<String> {
-        let flag = |flag: Flags| {
-            let name = flag.names().next().unwrap_or_default();
-            (name, self.flags_s.get(name).is_some_and(|s| s > 0.0))
-        };
-        // Stated as what is good, so that an error that is no number fails.
-        let closed = |error: Option<f64>| error.is_some_and(|e| e <= LEDGER_TOLERANCE);
-        let balanced = closed(self.ledger_error) && closed(self.run_ledger_error);
-        let mut list = vec![
-            flag(Flags::MISSED_TRACE),
-            ("ledger_error", !balanced),
-            flag(Flags::NOT_CONVERGED),
-        ];
-        if strict {
-            list.extend(STRICT.map(flag));
+    /// One of its failures as the end of a sentence that begins with the car.
+    pub fn failure_text(&self, failure: &Failure) -> String {
+        let seconds = fixed(failure.seconds, 1);
+        let (at, phase) = (fixed(failure.at_s, 1), failure.phase.as_deref());
+        let row = format!("at {at} s in {}", phase.unwrap_or_default());
+        let unit = failure.unit.as_deref().unwrap_or_default();
+        let limit = fixed(failure.limit, 0);
+        let value = |decimals| format!("{} {unit} {row}", fixed(failure.value, decimals));
+        match failure.check.as_str() {
+            "missed_trace" => {
+                let worst = self.worst_deficit.as_ref().map_or_else(String::new, |d| {
+                    let torque = d.wheel_torque_nm;
+                    let torque = torque.map(|nm| format!(" or {} Nm at the wheels", fixed(nm, 0)));
+                    let (torque, kw) = (torque.unwrap_or_default(), fixed(d.power_w / 1e3, 1));
+                    format!(", worst {row}: {kw} kW{torque} missing")
+                });
+                format!("misses the trace for {seconds} s{worst}")
+            }
+            "ledger_error" => {
+                let (step, whole) = (tiny(self.ledger_error), tiny(self.run_ledger_error));
+                format!(
+                    "energy does not balance: relative error {step} in the worst time step, {whole} over the run"
+                )
+            }
+            "overspeed" => {
+                let value = value(0);
+                format!("turns the engine at {value}, above {limit} {unit}, for {seconds} s")
+            }
+            "too_hot" => {
+                let (of, value) = (failure.of.as_deref().unwrap_or("oil"), value(1));
+                format!("heats the {of} to {value}, above {limit} {unit}, for {seconds} s")
+            }
+            "wrong_gear" => format!(
+                "is driven faster for {seconds} s in which the cycle prescribes no gear, first {row}"
+            ),
+            "not_finite" => format!(
+                "has a torque, speed, fuel flow or temperature that is no number for {seconds} s, first {row}"
+            ),
+            flag => format!("{flag} for {seconds} s"),
         }
-        list.retain(|(_, failed)| *failed);
-        list.into_iter().map(|(name, _)| name.to_owned()).collect()
     }
 }
 
@@ -236,17 +240,24 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
         trace_missed_s: seconds(Flags::MISSED_TRACE),
         outside_validity_s: seconds(Flags::OUTSIDE_VALIDITY),
         flags_s: flags.map(|((_, name), s)| (*name, finite(s))).collect(),
-        worst_deficit: worst_deficit(cycle, driven, cvt),
+        worst_deficit: Deficit::of(cycle, driven),
         solve: Solve {
             worst_residual: totals.worst_residual,
             evaluations_per_step: finite(totals.evaluations as f64 / totals.rows as f64),
         },
         failed_checks: Vec::new(),
+        failures: Vec::new(),
         transmission_efficiency_percent: finite(
             100.0 * all.wheel_positive_j / (all.wheel_positive_j + all.terms.losses),
         ),
     };
-    summary.failed_checks = summary.checks(settings.strict);
+    let ledger = LedgerErrors {
+        row: summary.ledger_error,
+        run: summary.run_ledger_error,
+    };
+    summary.failures = failures(cycle, settings, driven, ledger);
+    let names = summary.failures.iter().map(|failure| failure.check.clone());
+    summary.failed_checks = names.collect();
     summary
 }
 
@@ -266,7 +277,11 @@ impl PhaseFuel {
         let litres = litres_per_100km(part.fuel_kg, engine.fuel_density_kg_m3, part.distance_m);
         PhaseFuel {
             l_per_100km: finite(litres),
-            co2_g_per_km: finite(part.fuel_kg * engine.co2_kg_kg * 1e6 / part.distance_m),
+            co2_g_per_km: finite(co2_g_per_km(
+                part.fuel_kg,
+                engine.co2_kg_kg,
+                part.distance_m,
+            )),
         }
     }
 }
@@ -339,21 +354,4 @@ fn end_temperatures(outcome: &Outcome, cvt: bool) -> Named {
     ]
     .into_iter()
     .collect()
-}
-
-fn worst_deficit(cycle: &Cycle, driven: &Driven, cvt: bool) -> Option<Deficit> {
-    let totals = &driven.outcome.totals;
-    let at_s = finite(totals.worst_deficit_at_s)?;
-    let intervals = &cycle.trace_for(cvt).intervals;
-    let interval = intervals.iter().find(|i| at_s <= i.end_s + 1e-9)?;
-    let phase = cycle
-        .phases
-        .get(usize::from(interval.phase))
-        .unwrap_or(&cycle.name);
-    Some(Deficit {
-        power_w: totals.worst_deficit_w,
-        wheel_torque_nm: finite(totals.worst_deficit_nm),
-        at_s,
-        phase: phase.to_lowercase(),
-    })
 }

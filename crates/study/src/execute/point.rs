@@ -12,7 +12,7 @@ use cvtcycle_config::setup::Setup;
 use cvtcycle_config::setup::template::{ParameterRef, Variant};
 use cvtcycle_model::drive::{Conditions, Row, Start, drive_into};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
-use cvtcycle_output::summary::{Driven, RunSummary, Settings, compare, run_summary};
+use cvtcycle_output::summary::{Driven, Failure, RunSummary, Settings, compare, run_summary};
 
 /// What one thread keeps from point to point: a bench for each variant of each car.
 #[derive(Default)]
@@ -255,26 +255,14 @@ fn start(word: &str) -> Start {
 
 /// A run fails as `run` fails; gross slip, of which `run` only warns, makes its numbers no statement about a car that anyone would build.
 fn status(summary: &RunSummary) -> Status {
-    let mut reasons = summary.failed_checks.clone();
-    let slips = summary.flags_s.get("gross_slip").is_some_and(|s| s > 0.0);
-    if slips {
-        reasons.push("gross_slip".to_owned());
-    }
+    let mut reasons: Vec<String> = summary.failures.iter().map(Failure::brief).collect();
+    let slips = summary.flags_s.get("gross_slip").filter(|s| *s > 0.0);
+    reasons.extend(slips.map(|s| format!("gross_slip for {s:.0} s")));
     if reasons.is_empty() {
-        return Status::Ok;
+        Status::Ok
+    } else {
+        Status::Failed(reasons.join("; "))
     }
-    let describe = |name: &String| match (name.as_str(), &summary.worst_deficit) {
-        ("missed_trace", Some(worst)) => {
-            let (missed_s, at_s, phase) = (summary.trace_missed_s, worst.at_s, &worst.phase);
-            let kw = worst.power_w / 1e3;
-            format!("missed_trace for {missed_s:.0} s, worst {kw:.1} kW at {at_s:.0} s in {phase}")
-        }
-        (name, _) => match summary.flags_s.get(name) {
-            Some(s) => format!("{name} for {s:.0} s"),
-            None => name.to_owned(),
-        },
-    };
-    Status::Failed(reasons.iter().map(describe).collect::<Vec<_>>().join("; "))
 }
 
 /// Problems in one line.

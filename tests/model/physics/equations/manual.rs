@@ -115,6 +115,7 @@ struct Step {
     command: Option<GearCommand>,
     wheel_rad_s: f64,
     wheel_nm: f64,
+    accel_m_s2: f64,
     degc: f64,
     before_gear: u8,
     before_rad_s: f64,
@@ -127,6 +128,7 @@ const STEP: Step = Step {
     command: None,
     wheel_rad_s: 30.0,
     wheel_nm: 100.0,
+    accel_m_s2: 0.0,
     degc: 40.0,
     before_gear: 2,
     before_rad_s: 150.0,
@@ -143,6 +145,7 @@ fn solve(car: &Car, s: &Step) -> (StepOutput, TransmissionState) {
         speed_m_s: s.wheel_rad_s * 0.28,
         wheel_rad_s: s.wheel_rad_s,
         power_w: s.wheel_nm * s.wheel_rad_s,
+        accel_m_s2: s.accel_m_s2,
         ..WheelDemand::default()
     };
     let heat = Heat { node_k: [k; NODES] };
@@ -284,6 +287,42 @@ fn check(car: &Car, s: &Step, d: &StepOutput, gear: u8) -> usize {
         assert_eq!(d.flags.contains(flag), want, "{flag:?}: {place}");
     }
     bind
+}
+
+/// A gear where the cycle has none: only while the car is driven faster.
+#[test]
+fn a_car_that_is_driven_faster_without_a_prescribed_gear_is_flagged() {
+    let car = car(CARS[1], &[]).car(293.15);
+    use GearCommand::{Change, Declutched, InGear, Neutral};
+    let mut flagged = 0;
+    for command in [
+        None,
+        Some(Neutral),
+        Some(Declutched(2)),
+        Some(InGear(2)),
+        Some(Change(2)),
+    ] {
+        for wheel_rad_s in [0.0, 30.0] {
+            for wheel_nm in [-100.0, 0.0, 100.0] {
+                for accel_m_s2 in [-0.5, 0.0, 0.5] {
+                    let step = Step {
+                        command,
+                        wheel_rad_s,
+                        wheel_nm,
+                        accel_m_s2,
+                        ..STEP
+                    };
+                    let none = matches!(command, Some(Neutral | Declutched(_)));
+                    let faster = accel_m_s2 > 0.0 && wheel_nm > 0.0 && wheel_rad_s > 0.0;
+                    let (output, _) = solve(&car, &step);
+                    let found = output.flags.contains(Flags::WRONG_GEAR);
+                    assert_eq!(found, none && faster, "{step:?}");
+                    flagged += u32::from(found);
+                }
+            }
+        }
+    }
+    assert_eq!(flagged, 2);
 }
 
 /// In gear: launch, drive, overrun, creep and full load, cold and warm, with the engine free to follow and held back by its inertia.

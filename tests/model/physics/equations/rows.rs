@@ -6,7 +6,7 @@ use crate::common::{CARS, Keep, ZERO, at, car, cycle, hill};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_model::drive::Row;
 use cvtcycle_model::drive::{Car, State, simulate};
-use cvtcycle_model::drive::{Start, drive, fuel_map, litres_per_100km};
+use cvtcycle_model::drive::{Start, co2_g_per_km, drive, fuel_map, litres_per_100km};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, NODES, SUMP};
@@ -355,5 +355,10 @@ fn val_fuel_map_by_hand() {
         }
     }
     same(litres_per_100km(0.745, 745.0, 20_000.0), 5.0);
-    assert!(litres_per_100km(1.0, 745.0, 0.0).is_nan());
+    same(litres_per_100km(0.745, 745.0, 1.0), 100_000.0);
+    same(co2_g_per_km(1.0, 3.1, 20_000.0), 155.0);
+    for short_m in [0.0, 1e-300, 0.999] {
+        assert!(litres_per_100km(1.0, 745.0, short_m).is_nan());
+        assert!(co2_g_per_km(1.0, 3.1, short_m).is_nan());
+    }
 }

@@ -223,6 +223,24 @@ fn temperatures(row: &Row, before: &Heat, after: &Heat, car: &Car) -> Checked {
     Ok(())
 }
 
+/// The flags of what no car can do are those of the columns; the cycles prescribe no gears.
+fn impossible(row: &Row, car: &Car) -> Checked {
+    let hot = row.coolant_k > ZERO + 130.0
+        || row.engine_oil_k > ZERO + 160.0
+        || row.sump_k > ZERO + 160.0;
+    for (flag, want) in [
+        (Flags::TOO_HOT, hot),
+        (
+            Flags::OVERSPEED,
+            row.engine_speed_rad_s > car.engine.highest_rad_s,
+        ),
+        (Flags::WRONG_GEAR, false),
+    ] {
+        prop_assert_eq!(row.flags.contains(flag), want, "{:?}", flag);
+    }
+    Ok(())
+}
+
 fn after(row: &Row, before: &Heat) -> Heat {
     let belt_k = if row.belt_spray_k.is_nan() {
         before.node_k[4]
@@ -284,6 +302,7 @@ fn every_row(wide: f64, cases: u32) {
                 let next = after(row, &before);
                 let checked = books(&step, row, terms, &car)
                     .and_then(|()| signs(row))
+                    .and_then(|()| impossible(row, &car))
                     .and_then(|()| torque_in(row))
                     .and_then(|()| engine_bounds(row, &car, &before))
                     .and_then(|()| temperatures(row, &before, &next, &car));

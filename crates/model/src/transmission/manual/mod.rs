@@ -6,7 +6,7 @@
 //! | MB-2 | seals: c (nu/nu_r)^m | split of the CO2MPAS hot loss ASSUMED |
 //! | MB-3 | bearings: c (n/2000 nu/nu_r)^(2/3), by FH-1 | source: SKF / Palmgren load-independent form; size from the split |
 //! | MB-4 | churning: c n/2000 (nu/nu_r)^m | form ASSUMED; size from the split |
-//! | MB-5 | gears: the cycle's, else shift speeds with hysteresis; a lower gear where the one in force lacks torque | prescribed gears source: UN R83; rest derived |
+//! | MB-5 | gears: the cycle's, else shift speeds with hysteresis; a lower gear where the one in force lacks torque, and one where the cycle has none and the car would fall behind | prescribed gears source: UN R83; rest derived |
 //!
 //! nu_r is the gear oil's viscosity at 80 degC. At that temperature the sum follows the published 0.925 Nm + 0.000407 Nm/rpm within 5 %
 //! from 1000 to 4000 rpm; cold it rises about as viscosity^0.3. In neutral the engine turns the input shaft and a share of the losses; declutched, the wheels turn the box.
@@ -116,6 +116,16 @@ impl Manual {
         }
     }
 
+    /// True where the cycle has no gear in force, and one was needed to drive the car faster.
+    fn is_wrong_gear<P: PrimeMover>(step: &StepInput<P>, output: &StepOutput) -> bool {
+        let no_gear = matches!(
+            step.gear,
+            Some(GearCommand::Neutral | GearCommand::Declutched(_))
+        );
+        let engaged = !output.flags.contains(Flags::CLUTCH_OPEN);
+        no_gear && engaged && step.wheel.power_w > 0.0 && step.wheel.accel_m_s2 > 0.0
+    }
+
     /// Solves one step.
     pub fn solve<P: PrimeMover>(
         &self,
@@ -152,6 +162,8 @@ impl Manual {
             Flags::OVERSPEED,
             output.engine_rad_s > step.engine.max_rad_s(),
         );
+        let wrong_gear = Self::is_wrong_gear(step, &output);
+        output.flags.set(Flags::WRONG_GEAR, wrong_gear);
         output.flags.set(
             Flags::OUTSIDE_VALIDITY,
             !VALID_K.contains(&step.heat.node_k[SUMP]),

@@ -164,7 +164,7 @@ fn step<'a>(more: &[Column<Step<'a>>], step: &Step<'a>) -> TableRow {
     TableRow {
         weight: step.row.dt_s,
         gross: flags.contains(Flags::GROSS_SLIP),
-        outside: flags.contains(Flags::OUTSIDE_VALIDITY),
+        outside: flags.contains(Flags::OUTSIDE_VALIDITY) || flags.any(Flags::IMPOSSIBLE),
         ..TableRow::new(trace.chain(set).chain(numbers(more, step)))
     }
 }
