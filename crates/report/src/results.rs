@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::problems::{belongs, consistent, problem, unreadable};
 use cvtcycle_config::bounded;
-use cvtcycle_config::{Place, Problem, Problems, Setting};
+use cvtcycle_config::{Input, Place, Problem, Problems, Setting};
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::{self, Record};
 use cvtcycle_output::summary::{SCHEMA, Summary};
@@ -272,15 +272,12 @@ fn history(path: &Path, vehicle: &str) -> Result<Option<History>, Problems> {
 fn json(path: &Path) -> Result<Value, Problem> {
     let bytes =
         bounded::read_file(path, bounded::RECORD).map_err(|error| unreadable(path, &error))?;
-    serde_json::from_slice(&bytes).map_err(|error| {
+    bounded::json(&bytes).map_err(|problem| {
         let place = Place {
-            line: error.line(),
-            column: error.column(),
-            ..Place::file(path.display().to_string())
+            input: Input::File(path.display().to_string()),
+            ..problem.place.clone()
         };
-        Problem::syntax(format!("this is no whole JSON: {error}"))
-            .at(place)
-            .hint("the file is damaged; run it again")
+        problem.at(place)
     })
 }
 

@@ -355,3 +355,46 @@ fn rows_that_are_kept_are_counted_before_anything_is_computed() {
     }
     assert!(!dir.path().join("nowhere").exists());
 }
+
+#[test]
+fn json_of_more_values_than_any_result_is_one_problem() {
+    let dir = folder();
+    let made = dir.path().join("made");
+    fs::create_dir(&made).unwrap();
+    let filled = |head: &str, piece: &str, tail: &str| {
+        format!("{head}{}{tail}", piece.repeat((60 << 20) / piece.len()))
+    };
+    for (head, piece, tail) in [
+        ("{\"schema\": 1, \"runs\": [", "1,", "1]}"),
+        ("{\"schema\": 1, \"runs\": [", "[],", "1]}"),
+        ("{\"schema\": 1, \"runs\": ", "[", ""),
+    ] {
+        let text = filled(head, piece, tail);
+        for (name, line) in [
+            ("summary.json", "report made --out r.html"),
+            ("study.json", "study show made"),
+            ("study.json", "study short.toml --out made --resume"),
+        ] {
+            fs::write(made.join(name), &text).unwrap();
+            fs::write(dir.path().join("short.toml"), PLAN).unwrap();
+            let words = ["the file has more than 1000000 values", name];
+            if line.ends_with("resume") {
+                refused(dir.path(), 256, line);
+            } else {
+                refused_once(dir.path(), 256, line, &words);
+            }
+            fs::remove_file(made.join(name)).unwrap();
+        }
+    }
+    // One text is one value, whatever is in it.
+    let text = filled("{\"schema\": 1, \"x\": \"", "[,", "\"}");
+    fs::write(made.join("summary.json"), text).unwrap();
+    let printed = refused(dir.path(), 256, "report made --out r.html");
+    assert!(
+        printed.contains("not as this program writes it"),
+        "{printed:.1000}"
+    );
+}
+
+const PLAN: &str = "[study]\ntitle = \"t\"\nvehicle = \"rover_216_cvt\"\nbaselines = []\ncycle = \"ece15\"\n[study.design.grid]\n\
+    [[factor]]\nkey = \"road_load.mass_kg\"\nvalues = [1000, 1100]\n";

@@ -9,18 +9,21 @@
 //! | [`CHECKSUMS`] | 1 MiB | ten thousand files |
 //! | [`LOGO`] | 500 kB | it is copied into the report |
 //!
-//! What is computed and kept is counted before anything is computed:
+//! What is kept is counted before it is computed or built:
 //!
 //! | limit | number | of |
 //! |---|---|---|
 //! | [`STEPS`] | 2 000 000 | rows that are kept of all cars of a run together: 23 days at 1 s |
 //! | [`SOURCE_ROWS`] | 500 000 | rows of all sources of a file of rows or of a calibration; the largest shipped file has 115 000 |
+//! | [`NODES`] | 1 000 000 | values of a JSON file of the program; one takes 32 bytes and more, however short it is |
 //! | [`CELLS`] | 64 000 000 | numbers of the traces of one point of a study, which a thread holds: 512 MB |
 //!
 //! The size of a file is read first, so that a large one is refused unread, but it is not trusted: pipes and devices have none, and a file
 //! may grow while it is read.
 
 use crate::problem::Problem;
+use crate::problem::place::Place;
+use serde_json::Value;
 use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -76,6 +79,8 @@ pub const STEPS: usize = 2_000_000;
 pub const SOURCE_ROWS: usize = 500_000;
 /// Most numbers of the traces of one point of a study.
 pub const CELLS: usize = 64_000_000;
+/// Most values of a JSON file of the program.
+pub const NODES: usize = 1_000_000;
 /// Longest time step that a run may have, s.
 const LONGEST_STEP_S: f64 = 10.0;
 
@@ -108,6 +113,45 @@ fn even_steps() -> impl Iterator<Item = f64> {
     let all = [0.01, 0.1, 1.0, LONGEST_STEP_S].map(|power| [power, 2.0 * power, 5.0 * power]);
     let all = all.into_iter().flatten();
     all.take_while(|step_s| *step_s <= LONGEST_STEP_S)
+}
+
+/// JSON of the program. The caller gives the file.
+///
+/// # Errors
+/// It has more than [`NODES`] values, or is no whole JSON at a line and column.
+pub fn json(bytes: &[u8]) -> Result<Value, Problem> {
+    if nodes(bytes) > NODES {
+        return Err(
+            Problem::too_large(format!("the file has more than {NODES} values"))
+                .allowed(format!("up to {NODES}"))
+                .hint(DAMAGED),
+        );
+    }
+    serde_json::from_slice(bytes).map_err(|error| {
+        let place = Place {
+            line: error.line(),
+            column: error.column(),
+            ..Place::default()
+        };
+        Problem::syntax(format!("this is no whole JSON: {error}"))
+            .at(place)
+            .hint("the file is damaged; run it again")
+    })
+}
+
+/// Values of a JSON text, names of values counted as such: each has a sign before or after it outside strings.
+fn nodes(bytes: &[u8]) -> usize {
+    let (mut count, mut in_string, mut escaped) = (0, false, false);
+    for byte in bytes {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' => escaped = in_string,
+            b'"' => in_string = !in_string,
+            b',' | b':' | b'[' | b'{' if !in_string => count += 1,
+            _ => {}
+        }
+    }
+    count
 }
 
 impl Limit {
@@ -238,6 +282,28 @@ fn is_file(path: &Path) -> Result<(), ReadError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn json_values_are_counted_outside_strings() {
+        for (text, count) in [
+            ("", 0),
+            ("1", 0),
+            ("[]", 1),
+            ("[1,2,[3]]", 4),
+            ("{\"a\":{\"b\":[1,2]},\"c\":null}", 8),
+            ("{\"[,:{\":\"[[[[\\\"[[[\\\\\"}", 2),
+            ("\\[", 1),
+            ("\"\\", 0),
+        ] {
+            assert_eq!(nodes(text.as_bytes()), count, "{text}");
+        }
+        let list = |count: usize| format!("[{}1]", "1,".repeat(count));
+        assert!(json(list(NODES - 1).as_bytes()).is_ok());
+        let problem = json(list(NODES).as_bytes()).expect_err("one too many");
+        assert_eq!(problem.message, "the file has more than 1000000 values");
+        let broken = json(b"{\n \"a\": }").expect_err("no value");
+        assert_eq!((broken.place.line, broken.place.column), (2, 7));
+    }
 
     #[test]
     fn more_steps_than_are_kept_are_refused_with_the_step_that_is_enough() {

@@ -6,8 +6,6 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use serde_json::Value;
-
 use super::csv::write_csv;
 use super::files::{Checksums, Sum};
 use super::files::{NO_LINK, clear, link_in, lock, put, remove_temporary};
@@ -301,7 +299,7 @@ fn no_link(path: &Path) -> Result<(), Problem> {
 }
 
 fn layout_of(path: &Path, manifest: &[u8]) -> Result<Layout, Problem> {
-    let parsed = serde_json::from_slice::<Value>(manifest).ok();
+    let parsed = bounded::json(manifest).ok();
     let layout = parsed.as_ref().and_then(Layout::of);
     layout.ok_or_else(|| problem(path, "the study has no manifest with a layout", ""))
 }
@@ -352,8 +350,7 @@ fn no_study(path: &Path, error: ReadError) -> Problem {
 
 fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Problem {
     let name = path.display();
-    let parsed = |bytes| serde_json::from_slice::<Value>(bytes);
-    let (Ok(stored), Ok(now)) = (parsed(stored), parsed(now)) else {
+    let (Ok(stored), Ok(now)) = (bounded::json(stored), bounded::json(now)) else {
         let hint = "begin the study anew in its place or in another directory";
         let message = format!("{MANIFEST} in {name} is damaged");
         return problem(path, &message, hint).settings(&[Setting::Replace]);

@@ -16,7 +16,7 @@ use super::names::{self, MANIFEST, MAX_PART_ROWS, PLAN, RESULTS, RUNS};
 use super::parquet_read::{MEND, ParquetFile, check_sum, unreadable};
 use super::table::{Head, Rows};
 use cvtcycle_config::Problem;
-use cvtcycle_config::ProblemKind::{Conflict, Missing, Syntax, UnknownName, Unreadable};
+use cvtcycle_config::ProblemKind::{Conflict, Missing, Syntax, TooLarge, UnknownName, Unreadable};
 use cvtcycle_config::bounded::{self, ReadError};
 
 /// How far a study has come.
@@ -72,7 +72,10 @@ impl Study {
         }
         let bytes = bounded::read_file(&file, bounded::RECORD).map_err(no_study)?;
         let damaged = || file_problem(Syntax, &file, "the manifest of the study is damaged", "");
-        let manifest = serde_json::from_slice::<Value>(&bytes).map_err(|_| damaged())?;
+        let manifest = bounded::json(&bytes).map_err(|found| match found.kind {
+            TooLarge => found.in_file(file.display().to_string()),
+            _ => damaged(),
+        })?;
         let layout = Layout::of(&manifest).ok_or_else(damaged)?;
         let parts = names::parts_folder(&path);
         let marked = marked_parts(&path, &layout);
