@@ -3,14 +3,15 @@
 mod plan;
 mod tables;
 
-use std::cell::RefCell;
+use std::cell::Cell;
 use std::io;
 
 use clap::Args;
 use cvtcycle::config::Problems;
+use cvtcycle::output::Flags;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::loss_table::{MapPart, write_map};
-use cvtcycle::output::losses::{FlagCount, LossRow};
+use cvtcycle::output::losses::{Axis, LossRow};
 use cvtcycle::report::charts::loss_figures;
 
 use super::Execute;
@@ -103,20 +104,27 @@ impl Execute for LossesArgs {
             }
             Ok("")
         })?;
-        let flags = RefCell::new(FlagCount::default());
-        let count = |row: &LossRow| flags.borrow_mut().add(row.answer.flags);
-        let rows = || losses.rows().inspect(count);
+        let unsolved = Cell::new((0_usize, None));
+        let look = |row: &LossRow| {
+            if row.answer.flags.contains(Flags::NOT_CONVERGED) {
+                let (count, first) = unsolved.get();
+                unsolved.set((count + 1, first.or(Some(row.asked))));
+            }
+        };
+        let rows = || losses.rows().inspect(look);
         let json = |out: &mut dyn io::Write| losses.write_json(out, rows());
         stream(&self.output, json, |out| losses.write_csv(out, rows()))?;
         let table = match self.output.is_streamed() {
             true => String::new(),
             false => tables::table(&losses, rows(), terminal.stdout),
         };
-        let count = losses.grid.len();
-        let flags = flags.borrow();
-        let unsolved = flags.named().find(|(name, _)| *name == "not_converged");
-        let failures = unsolved.map(|(_, n)| format!("{n} of {count} points not converged"));
-        let failures = failures.into_iter().collect();
+        let (count, all) = (unsolved.get().0, losses.grid.len());
+        let failure = |first: [f64; Axis::COUNT]| {
+            let has = if count == 1 { "has" } else { "have" };
+            let first = losses.held(&first, &Axis::ALL);
+            format!("check failed: {count} of {all} points {has} no solution, first at {first}")
+        };
+        let failures = unsolved.get().1.map(failure).into_iter().collect();
         let results = Results::new(String::new(), failures, files);
         Ok(results.table_output(&self.output, || table))
     }

@@ -636,3 +636,53 @@ fn printed_forms() {
     );
     assert!((point["belt_spray_degc"].as_f64().unwrap() - 80.0).abs() < 1e-9);
 }
+
+/// Property: no loss is below zero. Where slip leaves nothing that turns there are no losses, and the command fails.
+#[test]
+fn no_loss_is_below_zero_over_a_wide_grid() {
+    let mut unsolved = 0;
+    for (_, formulation) in Formulation::NAMES {
+        for sets in [&[][..], &["transmission.cvt.belt.initial_gap_mm=68"]] {
+            let options = Options {
+                formulation,
+                set: Override::parse_all(sets).unwrap(),
+                ..Options::default()
+            };
+            let bench = Bench::as_printed(&load("rover_216_cvt", &options).unwrap());
+            for (ratio, rpm) in [0.42, 0.7, 1.2, 2.3]
+                .into_iter()
+                .flat_map(|ratio| [0.001, 1.0, 1000.0, 6000.0].map(|rpm| (ratio, rpm)))
+            {
+                for (output_nm, degc) in [
+                    (-100.0, 80.0),
+                    (0.0, -40.0),
+                    (275.0, -40.0),
+                    (1300.0, 150.0),
+                ] {
+                    let point = BenchPoint {
+                        ratio,
+                        input_rad_s: rpm * RPM,
+                        output_nm,
+                        sump_k: degc + ZERO,
+                        ..BenchPoint::default()
+                    };
+                    let answer = bench.solve(&point);
+                    let negative = answer.loss_nm.iter().any(|nm| *nm < 0.0);
+                    assert!(!negative, "{formulation:?} {sets:?} {point:?} {answer:?}");
+                    if answer.loss_nm.iter().all(|nm| nm.is_nan()) {
+                        assert!(answer.flags.contains(Flags::NOT_CONVERGED));
+                        unsolved += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(unsolved > 0);
+    let words = "--speed 0.001 --temp -40 --torque 275 --ratio 0.42 --formulation appendix_c";
+    let output = run(&words.split(' ').collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8(output.stderr).unwrap();
+    let line = "check failed: 1 of 1 points has no solution, first at ";
+    assert!(said.contains(line), "{said}");
+    assert!(!String::from_utf8(output.stdout).unwrap().contains("-309"));
+}

@@ -398,23 +398,3 @@ impl LossTable {
         write_json(out, &self.json_head(), &self.columns(), rows)
     }
 }
-
-/// Counts flags over rows.
-#[derive(Clone, Debug, Default)]
-pub struct FlagCount([usize; Flags::NAMES.len()]);
-
-impl FlagCount {
-    /// Counts a row.
-    pub fn add(&mut self, flags: Flags) {
-        for (count, (flag, _)) in self.0.iter_mut().zip(Flags::NAMES) {
-            *count += usize::from(flags.contains(flag));
-        }
-    }
-
-    /// Names and numbers of those that occurred, in the order of the bits.
-    pub fn named(&self) -> impl Iterator<Item = (&'static str, usize)> {
-        let counted = Flags::NAMES.iter().zip(self.0);
-        let counted = counted.map(|((_, name), n)| (*name, n));
-        counted.filter(|(_, n)| *n > 0)
-    }
-}

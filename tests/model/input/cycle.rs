@@ -425,6 +425,7 @@ fn a_constant_speed_is_600_s_with_flying_start() {
         ("constant_120", 20_000.0),
         ("constant_88.5", 14_750.0),
         ("constant_250", 250_000.0 / 6.0),
+        ("constant_0.001", 1.0 / 6.0),
     ] {
         let cycle = constant_speed(name).unwrap().unwrap();
         let trace = cycle.trace_for(true);
@@ -448,7 +449,7 @@ fn a_constant_speed_is_600_s_with_flying_start() {
 fn other_names_are_left_to_others_and_bad_speeds_explained() {
     assert!(constant_speed("ece15").is_none() && constant_speed("constant90").is_none());
     for bad in [
-        "0", "", ".", "-5", "+5", "250.1", "1e2", "nan", "inf", "88,5", "9.0.0", "90kmh",
+        "0", "0.0009", "", ".", "-5", "+5", "250.1", "1e2", "nan", "inf", "88,5", "9.0.0", "90kmh",
     ] {
         let problem = constant_speed(&format!("constant_{bad}"))
             .unwrap()

@@ -75,12 +75,16 @@ const PREFIX: &str = "constant_";
 // ASSUMED: long enough for the fluids of a warm car to settle, short enough to wait for
 const DURATION_S: f64 = 600.0;
 const HIGHEST_KMH: f64 = 250.0;
+/// Slower is no speed of a car: a metre in an hour.
+const LOWEST_KMH: f64 = 0.001;
+/// The constant speeds that there are.
+pub const CONSTANT: &str = "constant_V with V in km/h, 0.001 to 250";
 
 /// The cycle `constant_90`, `constant_120` or, in general, `constant_V`: 600 s at V km/h with a flying start.
 /// `None` if the name does not begin with `constant_`.
 ///
 /// # Errors
-/// V is not a plain decimal number above 0 and up to 250.
+/// V is not a plain decimal number from 0.001 to 250.
 #[must_use]
 pub fn constant_speed(name: &str) -> Option<Result<Cycle, Problem>> {
     let text = name.strip_prefix(PREFIX)?;
@@ -100,7 +104,7 @@ fn speed_kmh(text: &str) -> Option<f64> {
         return None;
     }
     let kmh = text.parse::<f64>().ok()?;
-    (kmh > 0.0 && kmh <= HIGHEST_KMH).then_some(kmh)
+    (LOWEST_KMH..=HIGHEST_KMH).contains(&kmh).then_some(kmh)
 }
 
 fn cycle(name: &str, text: &str, kmh: f64) -> Cycle {
@@ -133,8 +137,6 @@ fn problem(name: &str, text: &str) -> Problem {
     Problem::out_of_range("this is not a constant speed the program can drive")
         .at(Argument::Cycle)
         .value(name)
-        .allowed(format!(
-            "constant_V with V in km/h, above 0 and up to {HIGHEST_KMH}"
-        ))
+        .allowed(CONSTANT)
         .hint(hint)
 }

@@ -250,7 +250,10 @@ impl OnBench<'_> {
         } else {
             0.0
         };
-        let input_nm = through + pass.loss_nm.iter().sum::<f64>(); // RB-1
+        // A belt that slips by all of its speed or more leaves the secondary shaft at rest or turning backward: there is no such point.
+        let turns = !p.parts.belt || pass.secondary_rad_s > 0.0;
+        let loss_nm = pass.loss_nm.map(|nm| if turns { nm } else { f64::NAN });
+        let input_nm = through + loss_nm.iter().sum::<f64>(); // RB-1
         let limits = cvt.ratio.high * (1.0 - LIMIT_SLACK)..=cvt.ratio.low * (1.0 + LIMIT_SLACK);
         let valid = VALID_K.contains(&p.sump_k)
             && VALID_K.contains(&u.belt_k)
@@ -259,15 +262,16 @@ impl OnBench<'_> {
         let belt = pass.belt;
         let low_clamp = belt.is_some_and(|b| b.losses.capacity_nm < pass.secondary_nm.abs());
         let mut flags = Flags::default();
-        flags.set(Flags::NOT_CONVERGED, !converged);
-        flags.set(Flags::GROSS_SLIP, belt.is_some_and(|b| b.losses.gross_slip));
+        let slips = belt.is_some_and(|b| b.losses.gross_slip);
+        flags.set(Flags::NOT_CONVERGED, !converged || !turns);
+        flags.set(Flags::GROSS_SLIP, slips || !turns);
         flags.set(Flags::LOW_CLAMP, low_clamp);
         flags.set(Flags::FLOW_LIMITED, pass.flow_limited);
         flags.set(Flags::OVERRUN, input_nm < 0.0);
         flags.set(Flags::OUTSIDE_VALIDITY, !valid);
         let with = |part: bool, value: f64, without: f64| if part { value } else { without };
         BenchAnswer {
-            loss_nm: pass.loss_nm,
+            loss_nm,
             input_nm,
             output_rad_s: with(
                 p.parts.belt,

@@ -47,7 +47,7 @@ impl Default for BenchPoint {
 /// The bench's answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchAnswer {
-    /// Loss of each component, Nm at the input shaft.
+    /// Loss of each component, Nm at the input shaft; NaN where slip leaves no point at which the box turns.
     pub loss_nm: ByComponent<f64>,
     /// Torque at the input shaft, Nm (RB-1, RB-3).
     pub input_nm: f64,

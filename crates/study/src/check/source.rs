@@ -5,7 +5,7 @@ use std::path::Path;
 use super::keys::{BeltKeys, BenchKeys, FluidKeys, RunKeys, StripDownKeys, TransientKeys};
 use super::keys::{KINDS, RUN, SOURCE};
 use cvtcycle_config::bounded::{SOURCE_ROWS, long_enough_s};
-use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, names, read_csv};
+use cvtcycle_config::cycle::{CONSTANT, Cycle, constant_speed, embedded, names, read_csv};
 use cvtcycle_config::setup::is_path;
 use cvtcycle_config::{Override, Place, Problem, Section, did_you_mean, unit_of};
 use cvtcycle_model::bench::transmission::MAX_DURATION_S;
@@ -263,8 +263,8 @@ fn run(s: &Section, source: &mut Source) {
         Err(why) => {
             let hint = did_you_mean(&source.cycle, names().iter().copied())
                 .unwrap_or_else(|| "`cvtcycle list cycles` shows all".to_owned());
-            let allowed = "the name of an embedded cycle, or constant_V with V in km/h, above 0 and up to 300";
-            s.unknown_name("cycle", allowed, &why, &hint);
+            let allowed = format!("the name of an embedded cycle, or {CONSTANT}");
+            s.unknown_name("cycle", &allowed, &why, &hint);
         }
         Ok(cycle) => {
             let groups = phases(&cycle);
