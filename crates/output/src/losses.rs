@@ -14,7 +14,7 @@ use crate::number::plain;
 use crate::record::Manifest;
 use crate::table::{Cell, Column, Scope, json_columns, write_csv, write_json};
 use crate::trace::{bar, degc};
-use crate::{Component, Flags, columns};
+use crate::{Component, columns};
 use cvtcycle_model::keys::rpm;
 
 /// Version of the JSON object.
