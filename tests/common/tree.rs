@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Every file below a directory with its bytes; the lock is not content.
+/// Every file below a directory with its bytes.
 #[must_use]
 pub fn tree(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     fn walk(root: &Path, dir: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) {
@@ -12,7 +12,7 @@ pub fn tree(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 walk(root, &path, files);
-            } else if path.file_name().unwrap() != ".lock" {
+            } else {
                 files.insert(
                     path.strip_prefix(root).unwrap().to_owned(),
                     fs::read(&path).unwrap(),

@@ -10,6 +10,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use cvtcycle::config::{Argument, Setting};
+use cvtcycle::output::file::OutputFile;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::number::{fixed, percent, plain, signed, tiny};
 use cvtcycle::output::table::{Cell, Scope};
@@ -258,6 +259,66 @@ fn a_failing_commit_puts_the_earlier_run_back() {
     );
     for name in ["summary.json", "trace.csv"] {
         assert_eq!(fs::read_to_string(home.path().join(name)).unwrap(), "old");
+    }
+}
+
+/// Of two that write into one directory the second is refused and removes nothing; when the first has ended it is free.
+#[test]
+fn one_at_a_time_writes_into_a_directory() {
+    let home = tempfile::tempdir().unwrap();
+    let path = home.path().join("new/run1");
+    let mut first = OutputDir::create(&path, false).unwrap();
+    for force in [false, true] {
+        let problem = OutputDir::create(&path, force).unwrap_err();
+        assert!(
+            problem.message.contains("another process is writing in"),
+            "{problem:?}"
+        );
+        assert!(problem.hint.contains("wait until it has ended"));
+    }
+    first.write("summary.json", text("{}")).unwrap();
+    first.commit().unwrap();
+    assert_eq!(names_in(&path), ["summary.json"]);
+    drop(OutputDir::create(&path, true).unwrap());
+    assert_eq!(names_in(&path), ["summary.json"]);
+}
+
+/// What a killed process left half written goes with the next run, but for what another process still writes, and links.
+#[test]
+fn what_was_left_half_written_goes_with_the_next_run() {
+    let home = tempfile::tempdir().unwrap();
+    let old = home.path().join(".cvtcycle-old.tmp");
+    fs::write(&old, "half").unwrap();
+    let mut points = OutputFile::create(home.path().join("points.csv"), false).unwrap();
+    assert!(!old.exists());
+    points.write_all(b"a,b").unwrap();
+    fs::write(&old, "half").unwrap();
+    let mine = home.path().join("mine");
+    fs::write(&mine, "mine").unwrap();
+    assert!(OutputDir::create(home.path(), true).is_err());
+    assert!(old.exists(), "a directory that is refused is left alone");
+    fs::remove_file(&mine).unwrap();
+    OutputDir::create(home.path(), false)
+        .unwrap()
+        .commit()
+        .unwrap();
+    assert!(!old.exists());
+    points.commit().unwrap();
+    assert_eq!(names_in(home.path()), ["points.csv"]);
+}
+
+/// A file that appears while another one of that name is written is not replaced without being asked.
+#[test]
+fn a_file_that_appeared_meanwhile_is_not_replaced() {
+    let home = tempfile::tempdir().unwrap();
+    let path = home.path().join("points.csv");
+    for (force, text) in [(false, "mine"), (true, "")] {
+        let file = OutputFile::create(&path, force).unwrap();
+        fs::write(&path, "mine").unwrap();
+        assert_eq!(file.commit().is_ok(), force);
+        assert_eq!(fs::read_to_string(&path).unwrap(), text);
+        fs::remove_file(&path).unwrap();
+        assert!(names_in(home.path()).is_empty());
     }
 }
 

@@ -1,12 +1,12 @@
 //! One file of a command: it appears under its name when it is complete, or not at all.
 
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use super::files::{failed, problem, sync_directory, temporary_in};
+use super::files::{DirLock, failed, problem, sync_directory, temporary_in};
 use cvtcycle_config::{Problem, Setting};
 
 /// A file that is written under a temporary name in its own directory; dropped before [`OutputFile::commit`], it goes again.
@@ -31,8 +31,13 @@ impl OutputFile {
         }
         check_target(&path, force)?;
         let folder = folder(&path);
+        if let Ok(lock) = DirLock::take(&folder) {
+            lock.sweep(&folder);
+        }
         let what = format!("cannot write in {}", folder.display());
         let out = temporary_in(&folder).map_err(|error| failed(&path, &what, &error))?;
+        // So that no other process takes it for one that was left half written; where there are no locks none looks for those.
+        drop(out.as_file().try_lock());
         Ok(OutputFile {
             path,
             out: BufWriter::new(out),
@@ -51,14 +56,20 @@ impl OutputFile {
     /// A problem of `--out`; no file of that name has then appeared or changed.
     pub fn commit(self) -> Result<PathBuf, Problem> {
         let OutputFile { path, out, force } = self;
-        // Somebody else may have written it meanwhile.
+        // Another process may have written it meanwhile.
         check_target(&path, force)?;
         let file = out.into_inner().map_err(io::IntoInnerError::into_error);
         let written = file.and_then(|file| {
             file.as_file().sync_all()?;
-            file.persist(&path).map_err(|error| error.error)
+            place(file, &path, force)
         });
-        written.map_err(|error| cannot_write(&path, &error))?;
+        match written {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists && !force => {
+                check_target(&path, force)?;
+                return Err(cannot_write(&path, &error));
+            }
+            written => written.map_err(|error| cannot_write(&path, &error))?,
+        }
         sync_directory(&folder(&path));
         Ok(path)
     }
@@ -77,6 +88,20 @@ impl Write for OutputFile {
     fn flush(&mut self) -> io::Result<()> {
         self.out.flush()
     }
+}
+
+/// Gives a file its name; without `force` in one step with the look whether that is free, where the file system has such a step.
+fn place(file: NamedTempFile, path: &Path, force: bool) -> io::Result<()> {
+    let placed = match force {
+        true => file.persist(path),
+        false => match file.persist_noclobber(path) {
+            Err(refused) if refused.error.kind() != ErrorKind::AlreadyExists => {
+                refused.file.persist(path)
+            }
+            placed => placed,
+        },
+    };
+    placed.map(drop).map_err(|error| error.error)
 }
 
 fn folder(path: &Path) -> PathBuf {

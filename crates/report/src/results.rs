@@ -8,6 +8,7 @@ use serde_json::Value;
 use super::problems::{belongs, consistent, problem, unreadable};
 use cvtcycle_config::bounded;
 use cvtcycle_config::{Input, Place, Problem, Problems, Setting};
+use cvtcycle_output::files;
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::{self, Record};
 use cvtcycle_output::summary::{SCHEMA, Summary};
@@ -140,6 +141,7 @@ impl StudyResults {
 /// All problems: no such directory, nothing of this program in it, a newer schema, damaged files.
 pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
     let entries = fs::read_dir(path).map_err(|error| unreadable(path, &error.into()))?;
+    settle(path)?;
     if is_study(path) {
         return Ok(ResultDir::Study(Box::new(StudyResults::open(path)?)));
     }
@@ -184,6 +186,7 @@ fn add(found: &mut RunResults, dir: &Path, required: bool) -> Result<(), Problem
         found.studies.push(StudyResults::open(dir)?);
         return Ok(());
     }
+    settle(dir)?;
     let file = dir.join(SUMMARY);
     let value = file.exists().then(|| json(&file).ok()).flatten();
     match value.filter(is_validation) {
@@ -196,6 +199,12 @@ fn add(found: &mut RunResults, dir: &Path, required: bool) -> Result<(), Problem
         None => {}
     }
     Ok(())
+}
+
+/// Completes what an interrupted command was putting into place.
+fn settle(dir: &Path) -> Result<(), Problem> {
+    let settled = files::settle(dir);
+    settled.map_err(|problem| problem.in_file(dir.display().to_string()))
 }
 
 fn is_validation(value: &Value) -> bool {

@@ -1,13 +1,13 @@
 //! The files of a report: the document, and its figures in a folder next to it. All of them appear, or none.
 
 use std::fs;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use super::document::Document;
 use super::render::{html, markdown};
 use cvtcycle_config::{Problem, Setting};
-use cvtcycle_output::files::{failed, list, names_in, problem, sync_directory, temporary_in};
+use cvtcycle_output::files::{DirLock, FileSet, failed, list, names_in, problem, temporary_in};
 
 /// Form of the document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +73,7 @@ pub struct Target {
     /// Name of the folder of figures.
     folder: String,
     form: Form,
+    force: bool,
 }
 
 impl Target {
@@ -97,9 +98,10 @@ impl Target {
             figures: parent.join(&folder),
             folder,
             form,
+            force,
         };
         target.check_place(&parent)?;
-        target.check_earlier(force)?;
+        target.check_earlier()?;
         target.check_figures()?;
         // Before the work, not after it.
         let shown = parent.display();
@@ -130,11 +132,11 @@ impl Target {
     }
 
     /// Only an earlier report is replaced, and only with `force`.
-    fn check_earlier(&self, force: bool) -> Result<(), Problem> {
+    fn check_earlier(&self) -> Result<(), Problem> {
         let (file, shown) = (&self.file, self.file.display());
         match fs::symlink_metadata(file) {
             Err(_) => Ok(()),
-            Ok(_) if !force => {
+            Ok(_) if !self.force => {
                 let message = format!("{shown} is there already");
                 let problem = problem(file, &message, "choose another name, or replace it");
                 Err(problem.settings(&[Setting::Replace]))
@@ -147,25 +149,30 @@ impl Target {
         }
     }
 
-    fn check_figures(&self) -> Result<(), Problem> {
-        if !self.figures.exists() {
-            return Ok(());
-        }
+    /// Names of the figures of an earlier report.
+    fn check_figures(&self) -> Result<Vec<String>, Problem> {
         let shown = self.figures.display();
+        let other =
+            |message: String| problem(&self.file, &message, "choose another name for the report");
+        if self.figures.is_symlink() {
+            return Err(other(format!("{shown} is a link; it is not followed")));
+        }
+        if !self.figures.exists() {
+            return Ok(Vec::new());
+        }
         let names = names_in(&self.figures)
             .map_err(|error| failed(&self.file, &format!("cannot read {shown}"), &error))?;
-        let others = names.into_iter().filter(|name| !name.ends_with(".svg"));
-        let others: Vec<String> = others.collect();
-        if others.is_empty() {
-            return Ok(());
+        let (figures, others): (Vec<_>, Vec<_>) =
+            names.into_iter().partition(|name| name.ends_with(".svg"));
+        match others.is_empty() {
+            true => Ok(figures),
+            false => {
+                let others = list(&others);
+                Err(other(format!(
+                    "{shown} holds something else than figures: {others}"
+                )))
+            }
         }
-        let others = list(&others);
-        let message = format!("{shown} holds something else than figures: {others}");
-        Err(problem(
-            &self.file,
-            &message,
-            "choose another name for the report",
-        ))
     }
 
     /// Writes the report. Returns the document's path and those of the figures.
@@ -181,49 +188,38 @@ impl Target {
             let message = format!("cannot fill in the template: {why}");
             problem(&self.file, &message, "")
         })?;
-        self.put(document, &text).map_err(|error| {
-            let message = format!("cannot write {}", self.file.display());
-            failed(&self.file, &message, &error)
-        })
+        self.put(document, &text)
     }
 
-    fn put(&self, document: &Document, text: &str) -> io::Result<Vec<PathBuf>> {
+    fn put(&self, document: &Document, text: &str) -> Result<Vec<PathBuf>, Problem> {
         let parent = self.figures.parent().unwrap_or(Path::new("."));
-        // In the directory of the target, so that only a rename is left to do.
-        let fresh = tempfile::Builder::new()
-            .prefix(".cvtcycle-")
-            .suffix(".tmp")
-            .tempdir_in(parent)?;
-        let new = fresh.path().join("new");
-        fs::create_dir(&new)?;
+        let mut set = FileSet::begin(DirLock::wait(parent)?)?;
+        // Once more: another process may have written a report meanwhile.
+        self.check_earlier()?;
+        let earlier = self.check_figures()?;
+        set.sweep();
+        let cannot = |error: &io::Error| {
+            let message = format!("cannot write {}", self.file.display());
+            failed(&self.file, &message, error)
+        };
+        let mut write = |name: &Path, text: &str| {
+            let written = set.write(name, |out| out.write_all(text.as_bytes()));
+            written.map_err(|error| cannot(&error))
+        };
+        let folder = Path::new(self.figures.file_name().unwrap_or_default());
         let mut paths = vec![self.file.clone()];
         for figure in document.figures() {
             let name = format!("{}.svg", file_name(&figure.name));
-            let mut file = fs::File::create(new.join(&name))?;
-            file.write_all(figure.picture.svg.as_bytes())?;
-            file.sync_all()?;
+            write(&folder.join(&name), &figure.picture.svg)?;
             paths.push(self.figures.join(name));
         }
-        let mut page = temporary_in(parent)?;
-        page.write_all(text.as_bytes())?;
-        page.as_file().sync_all()?;
-        let old = fresh.path().join("old");
-        let replaced = self.figures.exists();
-        if replaced {
-            fs::rename(&self.figures, &old)?;
-        }
-        let back = |error: io::Error| {
-            if replaced {
-                // Nothing more can be done if the way back fails as well.
-                let gone = fs::remove_dir_all(&self.figures);
-                drop(gone.and_then(|()| fs::rename(&old, &self.figures)));
+        write(Path::new(self.file.file_name().unwrap_or_default()), text)?;
+        for name in earlier {
+            if !paths.contains(&self.figures.join(&name)) {
+                set.remove(folder.join(name));
             }
-            error
-        };
-        fs::rename(&new, &self.figures).map_err(back)?;
-        page.persist(&self.file)
-            .map_err(|error| back(error.error))?;
-        sync_directory(parent);
+        }
+        set.commit().map_err(|(_, error)| cannot(&error))?;
         Ok(paths)
     }
 }

@@ -1,13 +1,14 @@
 //! Signals: an end from outside at any moment leaves whole files or none.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use super::{ends, folder, made, program, same, tree, words};
+use super::{ends, folder, made, program, same, stderr, tree, words};
 
 const TERM: i32 = 15;
 const INT: i32 = 2;
@@ -88,37 +89,56 @@ fn a_study_that_is_ended_is_resumed_to_the_same_bytes() {
     }
 }
 
-/// A run and a report that are ended at many moments: a file under a final name is whole and that of an undisturbed one; where the mark
-/// exists, all of them do; and the same command works afterwards.
+/// Commands that write a set of files, and the option with which they give another one.
+const SETS: [(&str, &str); 3] = [
+    (
+        "run --cycle minute.csv --sensitivity never --quiet --out cut",
+        " --ambient 0",
+    ),
+    ("validate --chapter 8 --quiet --out cut", ""),
+    (
+        "losses --ratio low --speed 1000..4000:250 --temp 25,80 --quiet --out cut",
+        " --torque 5",
+    ),
+];
+
+/// What a folder holds, without the record, which has the command.
+fn set(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut files = if dir.exists() {
+        tree(dir)
+    } else {
+        BTreeMap::new()
+    };
+    files.remove(Path::new("inputs.json"));
+    files
+}
+
+/// Commands that are ended at many moments, in a new folder and over an earlier set: there are the files of an undisturbed command, or those
+/// that were there before, or, put into place halfway, a journal. The same command with --force works at once, and leaves nothing hidden.
 #[test]
-fn what_is_ended_leaves_whole_files_or_none() {
+fn what_is_ended_leaves_all_files_or_none() {
     let dir = made();
-    let lines = [
-        (
-            "run --cycle minute.csv --sensitivity never --quiet --out",
-            "cut",
-            "summary.json",
-        ),
-        ("validate --chapter 8 --quiet --out", "cut", "summary.json"),
-        (
-            "losses --ratio low --speed 1000..4000:250 --temp 25,80 --quiet --out",
-            "cut",
-            "summary.json",
-        ),
-    ];
-    for (line, name, mark) in lines {
-        let out = dir.path().join(name);
-        // What the line before left; there is nothing at first.
-        drop(fs::remove_dir_all(&out));
-        ends(dir.path(), &format!("{line} {name}"), 0);
-        let whole: Vec<_> = tree(&out)
-            .into_iter()
-            .filter(|(path, _)| path.as_os_str() != "inputs.json")
-            .collect();
+    let out = dir.path().join("cut");
+    for (line, other) in SETS {
+        let all = |line: &str| {
+            drop(fs::remove_dir_all(&out));
+            ends(dir.path(), line, 0);
+            (set(&out), tree(&out))
+        };
+        let (earlier, files) = all(&format!("{line}{other}"));
+        let (whole, _) = all(line);
         let (mut cut, mut done) = (0, 0);
         for moment in 0..40_u64 {
-            fs::remove_dir_all(&out).unwrap();
-            let mut child = program(dir.path(), &words(&format!("{line} {name}")))
+            drop(fs::remove_dir_all(&out));
+            let replaces = moment % 4 > 1;
+            if replaces {
+                fs::create_dir(&out).unwrap();
+                for (name, bytes) in &files {
+                    fs::write(out.join(name), bytes).unwrap();
+                }
+            }
+            let command = format!("{line}{}", if replaces { " --force" } else { "" });
+            let mut child = program(dir.path(), &words(&command))
                 .stderr(Stdio::null())
                 .spawn()
                 .unwrap();
@@ -140,31 +160,74 @@ fn what_is_ended_leaves_whole_files_or_none() {
                 status.code() == Some(0) || status.signal() == Some(number),
                 "{line}: {status}"
             );
-            if status.code() == Some(0) {
-                done += 1
-            } else {
-                cut += 1
-            };
-            if !out.exists() {
-                fs::create_dir(&out).unwrap();
+            let mut left = set(&out);
+            let hidden = left.clone();
+            left.retain(|name, _| !name.to_string_lossy().starts_with(".cvtcycle-"));
+            let is_halfway = hidden.contains_key(Path::new(".cvtcycle-commit.json"));
+            match status.code() {
+                Some(_) => assert!(
+                    left == whole && left == hidden,
+                    "{line}: {:?}",
+                    hidden.keys()
+                ),
+                None => assert!(
+                    is_halfway
+                        || left == whole
+                        || left
+                            == if replaces {
+                                earlier.clone()
+                            } else {
+                                BTreeMap::new()
+                            },
+                    "{line}: {:?}",
+                    hidden.keys()
+                ),
             }
-            let left = tree(&out);
-            for (path, bytes) in &whole {
-                assert!(
-                    left.get(path).is_none_or(|now| now == bytes),
-                    "{line}: {} is another",
-                    path.display()
-                );
-                assert!(
-                    left.contains_key(path) || !left.contains_key(Path::new(mark)),
-                    "{line}: {} is missing",
-                    path.display()
-                );
+            if status.code() == Some(0) {
+                done += 1;
+            } else {
+                cut += 1;
+                if moment % 5 == 0 {
+                    ends(dir.path(), &format!("{line} --force"), 0);
+                    assert!(set(&out) == whole, "{line}: {:?}", set(&out).keys());
+                }
             }
         }
         eprintln!("{line}: ended {cut} times, came to its own end {done} times");
         assert!(cut > 0);
-        fs::remove_dir_all(&out).unwrap();
-        ends(dir.path(), &format!("{line} {name}"), 0);
+    }
+}
+
+/// Two commands that begin in one new folder at once: one writes all its files, the other is refused.
+#[test]
+fn of_two_commands_in_one_folder_one_is_refused() {
+    let dir = made();
+    for (line, other) in SETS {
+        let out = dir.path().join("cut");
+        for moment in 0..6_u64 {
+            drop(fs::remove_dir_all(&out));
+            let lines = [line.to_owned(), format!("{line}{other}")];
+            let children = lines.each_ref().map(|line| {
+                let child = program(dir.path(), &words(line))
+                    .stderr(Stdio::piped())
+                    .spawn();
+                sleep(Duration::from_millis(moment));
+                child.unwrap()
+            });
+            let outputs = children.map(|child| child.wait_with_output().unwrap());
+            let mut codes = outputs.each_ref().map(|output| output.status.code());
+            let winner = usize::from(codes[0] != Some(0));
+            codes.sort_unstable();
+            assert_eq!(codes, [Some(0), Some(2)], "{line}");
+            let said = stderr(&outputs[1 - winner]);
+            assert!(
+                said.contains("another process is writing in") || said.contains("earlier run"),
+                "{said}"
+            );
+            let left = set(&out);
+            drop(fs::remove_dir_all(&out));
+            ends(dir.path(), &lines[winner], 0);
+            assert!(left == set(&out), "{line}: {:?}", left.keys());
+        }
     }
 }

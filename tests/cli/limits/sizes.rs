@@ -232,7 +232,10 @@ fn a_setup_is_read_under_the_same_bound() {
 const OWN: [(&str, &str); 4] = [
     ("config::files::bounded", "has the limits"),
     ("cvtcycle::commands::belt", "reads line by line"),
-    ("output::files", "a directory, to be synced"),
+    (
+        "output::files::lock",
+        "directories, to be locked and synced",
+    ),
     (
         "report::write",
         "the first and the last bytes of an earlier report",

@@ -254,6 +254,28 @@ fn the_same_run_gives_the_same_page_and_is_not_in_the_way_of_the_next() {
         said["figures"].as_array().unwrap().len(),
         drawings(&first).len()
     );
+    // What a killed command was putting into place is completed first, and figures of an earlier report go.
+    let (page, summary) = (
+        place.text("cold/report.html"),
+        place.text("cold/summary.json"),
+    );
+    place.write("cold/report_figures/old.svg", "old");
+    place.write("cold/.cvtcycle-0.tmp", &summary);
+    place.write("cold/summary.json", "{}");
+    place.write(
+        "cold/.cvtcycle-commit.json",
+        r#"{"schema":1,"build":"","files":[[".cvtcycle-0.tmp","summary.json"]],"remove":[]}"#,
+    );
+    place.done(&["report", "cold", "--force"]);
+    assert_eq!(place.text("cold/report.html"), page);
+    assert_eq!(place.text("cold/summary.json"), summary);
+    for gone in [
+        "report_figures/old.svg",
+        ".cvtcycle-0.tmp",
+        ".cvtcycle-commit.json",
+    ] {
+        assert!(!place.has(&format!("cold/{gone}")), "{gone}");
+    }
     // A folder with something of the user's own in it is left alone.
     place.write("cold/report_figures/mine.txt", "x");
     place.refused(

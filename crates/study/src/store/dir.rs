@@ -1,24 +1,25 @@
 //! The directory of a study while it is written.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::csv::write_csv;
 use super::files::{Checksums, Sum};
-use super::files::{NO_LINK, clear, link_in, lock, put, remove_temporary};
+use super::files::{NO_LINK, clear, link_in, put};
 use super::manifest::{Difference, differences, lines};
 use super::names::Layout;
-use super::names::{self, LOCK, MANIFEST, PARTS, PLAN, RESULTS, SUMMARY};
+use super::names::{self, MANIFEST, PARTS, PLAN, RESULTS, SUMMARY};
 use super::parquet::write_parquet;
 use super::read::{Study, is_whole, marked_parts};
 use super::table::{Head, Rows};
 use cvtcycle_config::bounded::{self, ReadError};
 use cvtcycle_config::{Problem, Setting};
 use cvtcycle_output::files::{
-    Created, check_directory, failed, list, names_in, problem, sync_directory, temporary_in,
+    DirLock, check_directory, complete, failed, list, names_in, problem, sync_directory,
+    temporary_in,
 };
 
 /// A piece of a table: the rows of one part.
@@ -40,8 +41,7 @@ pub struct StudyDir {
     path: PathBuf,
     layout: Layout,
     whole: Mutex<BTreeSet<usize>>,
-    // Held until it is dropped, by whatever ends the process.
-    _lock: File,
+    lock: DirLock,
 }
 
 impl StudyDir {
@@ -59,24 +59,19 @@ impl StudyDir {
         let path = path.as_ref().to_path_buf();
         let layout = layout_of(&path, manifest)?;
         check_directory(&path)?;
-        let name = path.display();
-        let cannot = |error| failed(&path, &format!("cannot create directory {name}"), &error);
-        let mut created = Created::new(&path).map_err(cannot)?;
-        check_contents(&path, force)?;
-        no_link(&path)?;
-        let lock = lock(&path)?;
-        // Once more: another process may have begun a study just before the lock.
+        let lock = DirLock::create(&path)?;
+        complete(&lock)?;
         let earlier = check_contents(&path, force)?;
-        let dir = StudyDir::new(path, layout, lock);
+        no_link(&path)?;
+        let mut dir = StudyDir::new(path, layout, lock);
         // Better to learn now than after the first part that nothing can be written here.
         let begun = dir.begin(manifest, plan, earlier);
         if begun.is_err() && !earlier {
             // The directory must be empty to go again.
-            drop(fs::remove_file(dir.path.join(LOCK)));
             drop(fs::remove_dir(dir.parts()));
         }
         begun?;
-        created.keep();
+        dir.lock.keep();
         Ok(dir)
     }
 
@@ -90,10 +85,10 @@ impl StudyDir {
         let layout = layout_of(&path, manifest)?;
         let read = || bounded::read_file(path.join(MANIFEST), bounded::RECORD);
         let stored = || read().map_err(|error| no_study(&path, error));
-        // Looked for before the lock, which would leave its file in a directory of something else.
+        // Looked for before the lock: where there is no study there is nothing to wait for.
         stored()?;
         no_link(&path)?;
-        let lock = lock(&path)?;
+        let lock = DirLock::take(&path)?;
         let stored = stored()?;
         if stored != manifest {
             return Err(other_settings(&path, (&stored, manifest), plan));
@@ -115,12 +110,12 @@ impl StudyDir {
         Ok(dir)
     }
 
-    fn new(path: PathBuf, layout: Layout, lock: File) -> Self {
+    fn new(path: PathBuf, layout: Layout, lock: DirLock) -> Self {
         StudyDir {
             path,
             layout,
             whole: Mutex::default(),
-            _lock: lock,
+            lock,
         }
     }
 
@@ -246,6 +241,7 @@ impl StudyDir {
     fn begin(&self, manifest: &[u8], plan: &[u8], earlier: bool) -> Result<(), Problem> {
         let write = || {
             temporary_in(&self.path)?;
+            self.sweep();
             if earlier {
                 // While the old manifest is there: an interruption leaves an old study with fewer parts.
                 clear(&self.path)?;
@@ -265,12 +261,18 @@ impl StudyDir {
     fn prepare(&self, plan: &[u8]) -> io::Result<()> {
         let stored = bounded::read_file(self.path.join(PLAN), bounded::TOML);
         fs::create_dir_all(self.parts())?;
-        remove_temporary(&self.path)?;
-        remove_temporary(&self.parts())?;
+        self.sweep();
         match stored {
             Ok(text) if text == plan => Ok(()),
             _ => self.put_bytes(PLAN, plan).map(drop),
         }
+    }
+
+    /// Removes what ended processes left half written.
+    fn sweep(&self) {
+        self.lock.sweep(&self.path);
+        self.lock.sweep(&self.parts());
+        self.lock.remove_old_file();
     }
 
     /// A file in the directory itself.
@@ -312,7 +314,7 @@ fn check_contents(path: &Path, force: bool) -> Result<bool, Problem> {
     // What is left of a study that never began.
     let is_empty =
         || fs::read_dir(names::parts_folder(path)).is_ok_and(|mut all| all.next().is_none());
-    found.retain(|name| name != LOCK && !(name == PARTS && is_empty()));
+    found.retain(|name| !(name == PARTS && is_empty()));
     let earlier = found.iter().any(|name| name == MANIFEST);
     if found.is_empty() || (earlier && force) {
         return Ok(earlier);

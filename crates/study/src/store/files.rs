@@ -1,12 +1,12 @@
-//! Files of a study: their checksums, as lists in the format of `sha256sum`; put into place, locked, removed.
+//! Files of a study: their checksums, as lists in the format of `sha256sum`; put into place, removed.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use super::names::{self, LOCK, MANIFEST, PARTS, PLAN, RESULTS};
-use cvtcycle_config::{Problem, bounded};
-use cvtcycle_output::files::{failed, is_temporary, problem, temporary_in};
+use super::names::{self, MANIFEST, PARTS, PLAN, RESULTS};
+use cvtcycle_config::bounded;
+use cvtcycle_output::files::{LOCK, is_temporary, temporary_in};
 use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
 
@@ -133,44 +133,6 @@ pub fn put(
     file.persist(folder.join(name))
         .map_err(|error| error.error)?;
     Ok(sum)
-}
-
-/// Locks the directory for this process. The lock ends with the process, however that ends; the file stays and means nothing.
-pub fn lock(path: &Path) -> Result<File, Problem> {
-    let cannot =
-        |error: &io::Error| failed(path, &format!("cannot lock {}", path.display()), error);
-    let file = OpenOptions::new()
-        .read(true)
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .open(path.join(LOCK))
-        .map_err(|error| cannot(&error))?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => {
-            let message = format!("another process is writing the study in {}", path.display());
-            Err(problem(
-                path,
-                &message,
-                "wait until it has ended, or choose another directory",
-            ))
-        }
-        // Some network file systems know no locks; nothing is written over unless two studies are begun there at once.
-        Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => Ok(file),
-        Err(TryLockError::Error(error)) => Err(cannot(&error)),
-    }
-}
-
-/// Removes what an interrupted process left half written; this process holds the lock.
-pub fn remove_temporary(folder: &Path) -> io::Result<()> {
-    remove_files(folder, is_temporary)
-}
-
-fn remove_files(folder: &Path, which: impl Fn(&str) -> bool) -> io::Result<()> {
-    files_in(folder, which)?
-        .iter()
-        .try_for_each(fs::remove_file)
 }
 
 /// Files of a folder, and links, which are not followed; none of a folder that is not there.

@@ -7,8 +7,9 @@
 //! DIR/parts/part_00000.sha256    checksums of the files of a part; written last, marks the part as whole
 //! DIR/statistics.json, ...       results over all parts, at the end
 //! DIR/results.sha256             checksums of the results; written last, marks the study as finished
-//! DIR/.lock                      empty; locked by the process that writes
 //! ```
+//!
+//! The process that writes locks the directory ([`DirLock`](cvtcycle_output::files::DirLock)).
 //!
 //! A part counts only if its marked files are all there with these checksums, so that neither a killed process nor a damaged disk
 //! leaves rows that are believed. The lists have the format of `sha256sum` and can be checked with `sha256sum -c`. Parquet is read only

@@ -23,8 +23,6 @@ pub const PLAN: &str = "plan.toml";
 pub const PARTS: &str = "parts";
 /// Checksums of the results; marks a finished study.
 pub const RESULTS: &str = "results.sha256";
-/// Locked by the process that writes.
-pub const LOCK: &str = ".lock";
 /// Of the results, this one appears last.
 pub const SUMMARY: &str = "summary.json";
 /// Word before the number of a part's mark.

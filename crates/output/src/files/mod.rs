@@ -1,11 +1,17 @@
 //! The files of a run: all of them appear under their names, or none.
+mod lock;
+mod set;
+
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::{NamedTempFile, TempPath};
+use tempfile::NamedTempFile;
 
 use cvtcycle_config::{Argument, Problem, Setting};
+
+pub use lock::{DirLock, sync_directory};
+pub use set::{FileSet, complete, settle};
 
 /// The files that mark a directory as one of an earlier run or calibration.
 const MARKS: [&str; 2] = ["summary.json", "calibration.json"];
@@ -13,12 +19,16 @@ const MARKS: [&str; 2] = ["summary.json", "calibration.json"];
 const STUDY: &str = "study.json";
 /// Names of files that are still being written begin and end like this.
 const TEMPORARY: (&str, &str) = (".cvtcycle-", ".tmp");
+/// The journal of files that are being put into place.
+const JOURNAL: &str = ".cvtcycle-commit.json";
+/// Locked by the process that writes, where the directory itself cannot be locked.
+pub const LOCK: &str = ".lock";
 /// A directory's contents are listed up to this number of names.
 const LISTED: usize = 8;
 
-/// A directory that receives the files of a run.
+/// A directory that receives the files of a run, and that no other process writes meanwhile.
 ///
-/// Files are written under temporary names and renamed by [`OutputDir::commit`]. Dropped before
+/// Files are written under temporary names and renamed by [`OutputDir::commit`], all or none. Dropped before
 /// that, it removes them again, with the directories that it created.
 ///
 /// ```
@@ -36,9 +46,7 @@ const LISTED: usize = 8;
 pub struct OutputDir {
     path: PathBuf,
     earlier: Vec<String>,
-    // Before `created`: fields are dropped in this order, and a directory must be empty to go.
-    written: Vec<(String, TempPath)>,
-    created: Created,
+    set: FileSet,
 }
 
 impl OutputDir {
@@ -50,22 +58,14 @@ impl OutputDir {
     pub fn create(path: impl AsRef<Path>, force: bool) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         check_directory(&path)?;
-        let cannot = |what: &str, error| {
-            let what = format!("cannot {what} directory {}", path.display());
-            failed(&path, &what, &error)
-        };
-        let created = Created::new(&path).map_err(|error| cannot("create", error))?;
-        let earlier = names_in(&path).map_err(|error| cannot("read", error))?;
+        let set = FileSet::begin(DirLock::create(&path)?)?;
+        let what = format!("cannot read directory {}", path.display());
+        let earlier = names_in(&path).map_err(|error| failed(&path, &what, &error))?;
         check_contents(&path, &earlier, force)?;
-        let dir = OutputDir {
-            path,
-            earlier,
-            written: Vec::new(),
-            created,
-        };
+        set.sweep();
+        let dir = OutputDir { path, earlier, set };
         // Better to learn now than after the simulation that nothing can be written here.
-        dir.temporary()
-            .map_err(|error| dir.cannot_write("a file", &error))?;
+        temporary_in(&dir.path).map_err(|error| dir.cannot_write("a file", &error))?;
         Ok(dir)
     }
 
@@ -80,18 +80,8 @@ impl OutputDir {
         f: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
     ) -> Result<(), Problem> {
         self.check_name(name)?;
-        let written = self.temporary().and_then(|file| {
-            // The bare file: the named one would add its temporary name to every error.
-            let mut out = BufWriter::new(file.as_file());
-            f(&mut out)?;
-            out.flush()?;
-            drop(out);
-            file.as_file().sync_all()?;
-            Ok(file.into_temp_path())
-        });
-        let temporary = written.map_err(|error| self.cannot_write(name, &error))?;
-        self.written.push((name.to_string(), temporary));
-        Ok(())
+        let written = self.set.write(Path::new(name), f);
+        written.map_err(|error| self.cannot_write(name, &error))
     }
 
     /// Writes one file from memory.
@@ -104,7 +94,7 @@ impl OutputDir {
 
     /// Names that an earlier run left in the directory and that this run has not written.
     pub fn left_over(&self) -> Vec<String> {
-        let is_left = |name: &&String| !self.written.iter().any(|(other, _)| other == *name);
+        let is_left = |name: &&String| !self.set.names().any(|other| other == Path::new(name));
         self.earlier.iter().filter(is_left).cloned().collect()
     }
 
@@ -112,42 +102,26 @@ impl OutputDir {
     ///
     /// # Errors
     /// A problem of `--out`; the directory is then as it was before the run.
-    pub fn commit(mut self) -> Result<Vec<PathBuf>, Problem> {
-        let paths = self.written.iter().map(|(name, _)| self.path.join(name));
-        let paths: Vec<PathBuf> = paths.collect();
-        let mut written = std::mem::take(&mut self.written);
-        // The mark comes last, so that a directory with missing files never has it.
-        written.sort_by_key(|(name, _)| is_mark(name));
-        let mut swap = Swap::default();
-        for (name, temporary) in written {
-            let spare = self.temporary().map(NamedTempFile::into_temp_path);
-            let done = spare.and_then(|spare| swap.put(temporary, self.path.join(&name), spare));
-            done.map_err(|error| self.cannot_write(&name, &error))?;
-        }
-        swap.keep();
-        self.created.keep();
-        sync_directory(&self.path);
+    pub fn commit(self) -> Result<Vec<PathBuf>, Problem> {
+        let OutputDir { path, set, .. } = self;
+        let paths = set.names().map(|name| path.join(name)).collect();
+        let unplaced = |(file, error): (PathBuf, io::Error)| {
+            failed(&path, &format!("cannot write {}", file.display()), &error)
+        };
+        set.commit().map_err(unplaced)?;
         Ok(paths)
     }
 
-    fn temporary(&self) -> io::Result<NamedTempFile> {
-        temporary_in(&self.path)
-    }
-
     fn check_name(&self, name: &str) -> Result<(), Problem> {
-        let plain = Path::new(name).file_name().is_some_and(|last| last == name);
-        if !plain || name.contains(['/', '\\', ':']) {
+        if !set::is_plain_name(name) || name.contains(['/', '\\', ':']) {
             let message = format!("`{name}` cannot be the name of an output file");
             let hint = "rename the vehicle or cycle that gives the file its name";
             return Err(problem(&self.path, &message, hint));
         }
         // Not all file systems tell upper from lower case.
         let lower = name.to_lowercase();
-        if self
-            .written
-            .iter()
-            .any(|(other, _)| other.to_lowercase() == lower)
-        {
+        let is_same = |other: &Path| other.to_string_lossy().to_lowercase() == lower;
+        if self.set.names().any(is_same) {
             let message = format!("two files of the run would be named {name}");
             let hint = "give every vehicle of the run a name of its own";
             return Err(problem(&self.path, &message, hint));
@@ -162,81 +136,6 @@ impl OutputDir {
             format!("{name} in {}", self.path.display())
         };
         failed(&self.path, &format!("cannot write {target}"), error)
-    }
-}
-
-/// Directories that did not exist before, outermost first; removed on drop if they are empty.
-#[derive(Debug, Default)]
-pub struct Created(Vec<PathBuf>);
-
-impl Created {
-    /// Creates what is missing of a directory.
-    pub fn new(path: &Path) -> io::Result<Self> {
-        let missing = |dir: &&Path| !dir.as_os_str().is_empty() && !dir.exists();
-        let new = path.ancestors().take_while(missing).map(Path::to_path_buf);
-        let mut new: Vec<PathBuf> = new.collect();
-        new.reverse();
-        // Kept first: what was created before an error must go again.
-        let created = Created(new);
-        fs::create_dir_all(path)?;
-        Ok(created)
-    }
-
-    /// Lets them stay.
-    pub fn keep(&mut self) {
-        self.0.clear();
-    }
-}
-
-impl Drop for Created {
-    fn drop(&mut self) {
-        for dir in self.0.iter().rev() {
-            // Fails if somebody else has put a file there meanwhile, and then it must stay.
-            drop(fs::remove_dir(dir));
-        }
-    }
-}
-
-/// Files put into place, undone on drop unless kept.
-#[derive(Default)]
-struct Swap {
-    done: Vec<(PathBuf, Option<TempPath>)>,
-}
-
-impl Swap {
-    /// Renames `new` to `target`; an earlier file of that name waits under the name `spare`.
-    fn put(&mut self, new: TempPath, target: PathBuf, spare: TempPath) -> io::Result<()> {
-        let spare = match fs::symlink_metadata(&target) {
-            Ok(meta) if meta.is_dir() => {
-                let kind = io::ErrorKind::IsADirectory;
-                return Err(io::Error::new(kind, "is a directory"));
-            }
-            Ok(_) => {
-                fs::rename(&target, &spare)?;
-                Some(spare)
-            }
-            Err(_) => None,
-        };
-        let renamed = new.persist(&target).map_err(|error| error.error);
-        self.done.push((target, spare));
-        renamed
-    }
-
-    fn keep(mut self) {
-        // The earlier files go with their temporary names.
-        self.done.clear();
-    }
-}
-
-impl Drop for Swap {
-    fn drop(&mut self) {
-        for (target, spare) in self.done.drain(..).rev() {
-            // Nothing more can be done if the way back fails as well.
-            match spare {
-                Some(spare) => drop(spare.persist(&target)),
-                None => drop(fs::remove_file(&target)),
-            }
-        }
     }
 }
 
@@ -272,12 +171,12 @@ pub fn is_temporary(name: &str) -> bool {
     name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1)
 }
 
-/// Names in a directory, sorted, without what an interrupted run may have left half written.
+/// Names in a directory, sorted, without the lock and what an interrupted run may have left half written.
 pub fn names_in(path: &Path) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(path)? {
         let name = entry?.file_name().to_string_lossy().into_owned();
-        if !is_temporary(&name) {
+        if !is_temporary(&name) && ![LOCK, JOURNAL].contains(&name.as_str()) {
             names.push(name);
         }
     }
@@ -319,13 +218,6 @@ pub fn listed(names: &[String], max: usize) -> String {
     match names.len().saturating_sub(max) {
         0 => list,
         more => format!("{list} and {more} more"),
-    }
-}
-
-/// Makes the renames last through a power cut, where directories can be synced at all.
-pub fn sync_directory(path: &Path) {
-    if let Ok(dir) = fs::File::open(path) {
-        drop(dir.sync_all());
     }
 }
 

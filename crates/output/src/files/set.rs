@@ -1,0 +1,595 @@
+//! Files that get their names together, wherever the process ends.
+//!
+//! All of them are written under temporary names first. Then a journal says which name each one gets, and its own rename is the moment in
+//! which the new set counts: a process that is killed before leaves the earlier files as they were, and what one leaves that is killed
+//! after is completed by the next one that reads or writes there.
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use cvtcycle_config::Problem;
+use cvtcycle_config::bounded;
+
+use super::lock::{DirLock, is_there, sync_directory};
+use super::{JOURNAL, failed, is_temporary, problem, temporary_in};
+use crate::BUILD;
+
+const SCHEMA: u32 = 1;
+
+/// Files of a directory that get their names together: names in it, or in a folder in it. Dropped before [`FileSet::commit`], it removes them.
+#[derive(Debug)]
+pub struct FileSet {
+    /// Path of each file now, and its name.
+    files: Vec<(PathBuf, PathBuf)>,
+    /// Names of earlier files that go.
+    remove: Vec<PathBuf>,
+    /// Other files under temporary names.
+    others: Vec<PathBuf>,
+    // Last: the files go while no other process may write.
+    lock: DirLock,
+}
+
+/// A file that could not be put into place, and why.
+type Unplaced = (PathBuf, io::Error);
+
+/// What puts files into place; each can be undone.
+#[derive(Debug)]
+enum Step {
+    Folder(PathBuf),
+    Rename(PathBuf, PathBuf),
+    Sync(PathBuf),
+    Remove(PathBuf),
+}
+
+/// What is being put into place.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Journal {
+    schema: u32,
+    build: String,
+    /// Temporary name and name of each file.
+    files: Vec<(String, String)>,
+    remove: Vec<String>,
+}
+
+impl FileSet {
+    /// Begins a set in a locked directory, after what another process was putting into place there.
+    ///
+    /// # Errors
+    /// A problem of `--out`: the directory cannot be written, or belongs to another user, or the journal is damaged.
+    pub fn begin(lock: DirLock) -> Result<Self, Problem> {
+        complete(&lock)?;
+        Ok(FileSet {
+            files: Vec::new(),
+            remove: Vec::new(),
+            others: Vec::new(),
+            lock,
+        })
+    }
+
+    /// Removes what ended processes left half written.
+    pub fn sweep(&self) {
+        self.lock.sweep(self.lock.path());
+    }
+
+    /// Writes a file, down to the disk, under a temporary name.
+    ///
+    /// # Errors
+    /// Those of the operating system.
+    pub fn write(
+        &mut self,
+        name: &Path,
+        f: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let temporary = self.temporary(f)?;
+        self.files.push((temporary, name.to_path_buf()));
+        Ok(())
+    }
+
+    /// Lets an earlier file go with the commit.
+    pub fn remove(&mut self, name: PathBuf) {
+        self.remove.push(name);
+    }
+
+    /// Names of the files so far.
+    pub fn names(&self) -> impl Iterator<Item = &Path> {
+        self.files.iter().map(|(_, name)| name.as_path())
+    }
+
+    /// Gives every file its name.
+    ///
+    /// # Errors
+    /// The file that cannot be put into place; all earlier files have then their names again.
+    pub fn commit(mut self) -> Result<(), Unplaced> {
+        carry_out(&self.steps()?)?;
+        self.lock.keep();
+        Ok(())
+    }
+
+    fn temporary(
+        &self,
+        f: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
+    ) -> io::Result<PathBuf> {
+        let file = temporary_in(self.lock.path())?;
+        // The bare file: the named one would add its temporary name to every error.
+        let mut out = BufWriter::new(file.as_file());
+        f(&mut out)?;
+        out.flush()?;
+        drop(out);
+        file.as_file().sync_all()?;
+        file.into_temp_path().keep().map_err(|error| error.error)
+    }
+
+    /// A name for a file that waits for its end.
+    fn spare(&self) -> io::Result<PathBuf> {
+        let spare = temporary_in(self.lock.path())?.into_temp_path();
+        spare.keep().map_err(|error| error.error)
+    }
+
+    /// What the commit does, in this order. The first rename is that of the journal.
+    fn steps(&mut self) -> Result<Vec<Step>, Unplaced> {
+        let root = self.lock.path().to_path_buf();
+        let place = root.join(JOURNAL);
+        let journal = self.journal().map_err(|error| (place.clone(), error))?;
+        let mut steps = Vec::new();
+        if let Some(journal) = &journal {
+            steps.push(Step::Rename(journal.clone(), place.clone()));
+            steps.push(Step::Sync(root.clone()));
+        }
+        let new = |(path, name): &(PathBuf, PathBuf)| (Some(path.clone()), root.join(name));
+        let gone = |name: &PathBuf| (None, root.join(name));
+        let targets = self.files.iter().map(new);
+        let targets: Vec<_> = targets.chain(self.remove.iter().map(gone)).collect();
+        let mut folders = BTreeSet::from([root.clone()]);
+        for (new, target) in targets {
+            let folder = target.parent().unwrap_or(&root).to_path_buf();
+            if !is_there(&folder) && !folders.contains(&folder) {
+                steps.push(Step::Folder(folder.clone()));
+            }
+            folders.insert(folder);
+            if let Ok(found) = fs::symlink_metadata(&target) {
+                if found.is_dir() {
+                    let error = io::Error::new(ErrorKind::IsADirectory, "is a directory");
+                    return Err((target, error));
+                }
+                let spare = self.spare().map_err(|error| (target.clone(), error))?;
+                steps.push(Step::Rename(target.clone(), spare.clone()));
+                self.others.push(spare);
+            }
+            if let Some(new) = new {
+                steps.push(Step::Rename(new, target));
+            }
+        }
+        steps.extend(folders.into_iter().map(Step::Sync));
+        steps.extend(journal.map(|_| Step::Remove(place)));
+        Ok(steps)
+    }
+
+    /// Writes the journal under a temporary name. None for names that are no text, which it cannot hold: they are put into place without.
+    fn journal(&mut self) -> io::Result<Option<PathBuf>> {
+        let text = |path: &Path| path.to_str().map(str::to_owned);
+        let last = |path: &Path| text(Path::new(path.file_name()?));
+        let files = self.files.iter();
+        let files: Option<Vec<_>> = files
+            .map(|(path, name)| Some((last(path)?, text(name)?)))
+            .collect();
+        let remove: Option<Vec<_>> = self.remove.iter().map(|name| text(name)).collect();
+        let Some((files, remove)) = files.zip(remove) else {
+            return Ok(None);
+        };
+        let journal = Journal {
+            schema: SCHEMA,
+            build: BUILD.to_owned(),
+            files,
+            remove,
+        };
+        let bytes = serde_json::to_vec_pretty(&journal)?;
+        let path = self.temporary(|out| out.write_all(&bytes))?;
+        self.others.push(path.clone());
+        Ok(Some(path))
+    }
+}
+
+impl Drop for FileSet {
+    fn drop(&mut self) {
+        // A journal that could not be taken back needs what it names.
+        if is_there(&self.lock.path().join(JOURNAL)) {
+            return;
+        }
+        let files = self.files.iter().map(|(path, _)| path);
+        for path in files.chain(&self.others) {
+            drop(fs::remove_file(path));
+        }
+    }
+}
+
+impl Step {
+    fn run(&self) -> io::Result<()> {
+        match self {
+            Step::Folder(path) => fs::create_dir(path),
+            Step::Rename(from, to) => fs::rename(from, to),
+            Step::Remove(path) => fs::remove_file(path),
+            Step::Sync(path) => {
+                sync_directory(path);
+                Ok(())
+            }
+        }
+    }
+
+    fn undo(&self) -> io::Result<()> {
+        match self {
+            Step::Folder(path) => fs::remove_dir(path),
+            Step::Rename(from, to) => fs::rename(to, from),
+            Step::Remove(_) | Step::Sync(_) => Ok(()),
+        }
+    }
+
+    /// The file that it is about, by its own name.
+    fn subject(&self) -> &Path {
+        match self {
+            Step::Rename(from, to) if has_temporary_name(to) => from,
+            Step::Folder(path) | Step::Rename(_, path) | Step::Remove(path) | Step::Sync(path) => {
+                path
+            }
+        }
+    }
+}
+
+fn has_temporary_name(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default();
+    is_temporary(&name.to_string_lossy())
+}
+
+/// Takes all steps or, if one fails, none: the way back ends with the journal, so that it may be interrupted as well.
+fn carry_out(steps: &[Step]) -> Result<(), Unplaced> {
+    for (done, step) in steps.iter().enumerate() {
+        if let Err(error) = step.run() {
+            // If one way back is closed the journal stays, and the next command completes the set.
+            drop(steps[..done].iter().rev().try_for_each(Step::undo));
+            return Err((step.subject().to_path_buf(), error));
+        }
+    }
+    Ok(())
+}
+
+/// Completes what a process that was killed was putting into place in a directory, if it holds such a set. Needs no lock where there is none.
+///
+/// # Errors
+/// A problem of `--out`: another process writes there, the directory cannot be written, or the journal is damaged.
+pub fn settle(dir: &Path) -> Result<(), Problem> {
+    if !is_there(&dir.join(JOURNAL)) {
+        return Ok(());
+    }
+    let lock = DirLock::wait(dir)?;
+    complete(&lock)?;
+    lock.sweep(dir);
+    Ok(())
+}
+
+/// The same for a process that holds the lock.
+///
+/// # Errors
+/// A problem of `--out`: the directory cannot be written, or another user wrote the journal, or it is damaged.
+pub fn complete(lock: &DirLock) -> Result<(), Problem> {
+    let root = lock.path();
+    let file = root.join(JOURNAL);
+    if !is_there(&file) {
+        return Ok(());
+    }
+    let name = root.display();
+    let interrupted =
+        format!("a command was interrupted while it put its files into place in {name}");
+    let failed = |error: io::Error| {
+        let hint = "make the directory writable, or write the results anew in another one";
+        failed(root, &interrupted, &error).hint(hint)
+    };
+    let is_own = is_own(root, &file).map_err(failed)?;
+    if !is_own {
+        let hint = "repeat the command as the user who ran it";
+        return Err(problem(root, &interrupted, hint));
+    }
+    let Some(journal) = Journal::read(root, &file) else {
+        let message = format!("{JOURNAL} in {name} is damaged");
+        let hint = "remove it, and write the results anew in another directory";
+        return Err(problem(root, &message, hint));
+    };
+    journal
+        .complete(root)
+        .and_then(|()| fs::remove_file(&file))
+        .map_err(failed)
+}
+
+impl Journal {
+    /// Reads a journal, whose author may be unknown; none if it is not one that this program wrote.
+    fn read(root: &Path, file: &Path) -> Option<Self> {
+        let is_plain = |path: &Path| fs::symlink_metadata(path).map(|found| found.is_file());
+        if !is_plain(file).ok()? {
+            return None;
+        }
+        let bytes = bounded::read_file(file, bounded::CHECKSUMS).ok()?;
+        let journal: Journal = serde_json::from_slice(&bytes).ok()?;
+        let is_written = |name: &str| {
+            is_temporary(name) && is_plain_name(name) && is_plain(&root.join(name)).unwrap_or(true)
+        };
+        let (temporary, names): (Vec<_>, Vec<_>) = journal.files.iter().cloned().unzip();
+        let fits = journal.schema == SCHEMA
+            && temporary.iter().all(|name| is_written(name))
+            && names
+                .iter()
+                .chain(&journal.remove)
+                .all(|name| is_place(root, name));
+        fits.then_some(journal)
+    }
+
+    /// Does what is left of it.
+    fn complete(&self, root: &Path) -> io::Result<()> {
+        let mut folders = BTreeSet::from([root.to_path_buf()]);
+        for (temporary, name) in &self.files {
+            let (temporary, target) = (root.join(temporary), root.join(name));
+            let folder = target.parent().unwrap_or(root).to_path_buf();
+            // Else it has its name already.
+            if is_there(&temporary) {
+                if !is_there(&folder) {
+                    fs::create_dir(&folder)?;
+                }
+                fs::rename(temporary, target)?;
+            }
+            folders.insert(folder);
+        }
+        for name in &self.remove {
+            match fs::remove_file(root.join(name)) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+        folders.iter().for_each(|folder| sync_directory(folder));
+        Ok(())
+    }
+}
+
+/// Whether a name leads nowhere else.
+pub(super) fn is_plain_name(name: &str) -> bool {
+    Path::new(name).file_name().is_some_and(|last| last == name)
+}
+
+/// Whether a name is that of a file in the directory, or in a folder in it that is no link.
+fn is_place(root: &Path, name: &str) -> bool {
+    let is_own = |name: &str| is_plain_name(name) && !is_temporary(name) && name != JOURNAL;
+    match name.split_once('/') {
+        None => is_own(name),
+        Some((folder, name)) => {
+            let found = fs::symlink_metadata(root.join(folder));
+            is_own(folder) && is_own(name) && found.map_or(true, |found| found.is_dir())
+        }
+    }
+}
+
+/// Whether the user of this process wrote a file: only then is done what it says.
+#[cfg(unix)]
+fn is_own(root: &Path, file: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let mine = temporary_in(root)?.as_file().metadata()?.uid();
+    Ok(fs::symlink_metadata(file)?.uid() == mine)
+}
+
+#[cfg(not(unix))]
+fn is_own(root: &Path, _: &Path) -> io::Result<bool> {
+    temporary_in(root).map(|_| true)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    type Tree = BTreeMap<String, String>;
+
+    fn tree(dir: &Path) -> Tree {
+        let mut tree = Tree::new();
+        for entry in fs::read_dir(dir).expect("read").map(|e| e.expect("read")) {
+            let name = entry.file_name().into_string().expect("text");
+            if entry.path().is_dir() {
+                let inner = self::tree(&entry.path()).into_iter();
+                tree.extend(inner.map(|(file, text)| (format!("{name}/{file}"), text)));
+            } else {
+                tree.insert(name, fs::read_to_string(entry.path()).expect("read"));
+            }
+        }
+        tree
+    }
+
+    fn tree_of(files: &[(&str, &str)]) -> Tree {
+        let owned = |(name, text): &(&str, &str)| ((*name).to_owned(), (*text).to_owned());
+        files.iter().map(owned).collect()
+    }
+
+    fn folder(files: &Tree) -> tempfile::TempDir {
+        let dir = tempfile::tempdir().expect("a folder");
+        for (name, text) in files {
+            let path = dir.path().join(name);
+            fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+            fs::write(path, text).expect("written");
+        }
+        dir
+    }
+
+    fn begun(dir: &Path, new: &[(&str, &str)], gone: &[&str]) -> FileSet {
+        let mut set = FileSet::begin(DirLock::take(dir).expect("locked")).expect("begun");
+        for (name, text) in new {
+            let written = set.write(Path::new(name), |out| out.write_all(text.as_bytes()));
+            written.expect("written");
+        }
+        gone.iter().for_each(|name| set.remove(PathBuf::from(name)));
+        set
+    }
+
+    /// Ends as a process ends that is killed: nothing is removed, and the lock is free.
+    fn kill(mut set: FileSet) {
+        set.files.clear();
+        set.others.clear();
+    }
+
+    const RUN: [(&str, &str); 3] = [("a.csv", "1"), ("b.csv", "1"), ("summary.json", "1")];
+
+    /// What was there, what is new, and what goes.
+    type Case = (
+        &'static [(&'static str, &'static str)],
+        &'static [(&'static str, &'static str)],
+        &'static [&'static str],
+    );
+    const CASES: [Case; 5] = [
+        (&[], &RUN, &[]),
+        (&RUN, &[("a.csv", "2"), ("summary.json", "2")], &["b.csv"]),
+        (&[("a.csv", "0"), ("mine.txt", "0")], &RUN, &[]),
+        (&[], &[("r.md", "2"), ("r_figures/x.svg", "2")], &[]),
+        (
+            &[
+                ("r.md", "1"),
+                ("r_figures/x.svg", "1"),
+                ("r_figures/y.svg", "1"),
+            ],
+            &[
+                ("r.md", "2"),
+                ("r_figures/x.svg", "2"),
+                ("r_figures/z.svg", "2"),
+            ],
+            &["r_figures/y.svg"],
+        ),
+    ];
+
+    fn after(before: &Tree, new: &[(&str, &str)], gone: &[&str]) -> Tree {
+        let mut after = before.clone();
+        after.extend(tree_of(new));
+        after.retain(|name, _| !gone.contains(&name.as_str()));
+        after
+    }
+
+    /// Killed at any step, the directory holds the earlier files until the journal has its name, and the new ones after, as soon as it is settled.
+    #[test]
+    fn wherever_the_process_ends_the_files_are_all_old_or_all_new() {
+        for (before, new, gone) in CASES {
+            let before = tree_of(before);
+            let after = after(&before, new, gone);
+            let mut steps = usize::MAX;
+            for done in 0.. {
+                let dir = folder(&before);
+                let mut set = begun(dir.path(), new, gone);
+                let list = set.steps().expect("planned");
+                steps = steps.min(list.len());
+                if done > steps {
+                    break;
+                }
+                for step in &list[..done] {
+                    step.run().expect("done");
+                }
+                kill(set);
+                settle(dir.path()).expect("settled");
+                let lock = DirLock::take(dir.path()).expect("locked");
+                lock.sweep(dir.path());
+                let expected = if done == 0 { &before } else { &after };
+                assert_eq!(&tree(dir.path()), expected, "after {done} of {steps} steps");
+            }
+            assert!(steps > 2 + new.len());
+        }
+    }
+
+    /// A step that fails takes all steps before it back; and if the way back is interrupted as well, the set is completed.
+    #[test]
+    fn wherever_a_step_fails_the_earlier_files_are_back() {
+        for (before, new, gone) in CASES {
+            let before = tree_of(before);
+            let after = after(&before, new, gone);
+            let steps = begun(folder(&before).path(), new, gone).steps();
+            for failing in 0..steps.expect("planned").len() {
+                let dir = folder(&before);
+                let mut set = begun(dir.path(), new, gone);
+                let mut list = set.steps().expect("planned");
+                let nothing = dir.path().join("nothing");
+                list.insert(failing, Step::Rename(nothing.clone(), nothing));
+                let (path, _) = carry_out(&list).expect_err("it fails");
+                assert!(path.ends_with("nothing"));
+                drop(set);
+                assert_eq!(tree(dir.path()), before, "step {failing} failed");
+
+                let mut set = begun(dir.path(), new, gone);
+                let list = set.steps().expect("planned");
+                for step in &list[..failing] {
+                    step.run().expect("done");
+                }
+                for step in list[1.min(failing)..failing].iter().rev() {
+                    step.undo().expect("undone");
+                }
+                kill(set);
+                settle(dir.path()).expect("settled");
+                DirLock::take(dir.path()).expect("locked").sweep(dir.path());
+                let expected = if failing == 0 { &before } else { &after };
+                assert_eq!(&tree(dir.path()), expected, "back from step {failing}");
+            }
+        }
+    }
+
+    /// Of two that write into one directory one is refused, and changes nothing.
+    #[test]
+    fn one_at_a_time() {
+        let dir = folder(&Tree::new());
+        let first = begun(dir.path(), &RUN, &[]);
+        let problem = DirLock::take(dir.path()).expect_err("it is locked");
+        assert!(problem.message.contains("another process is writing in"));
+        first.commit().expect("put into place");
+        assert_eq!(tree(dir.path()), tree_of(&RUN));
+        drop(begun(dir.path(), &[("c.csv", "2")], &[]));
+        assert_eq!(tree(dir.path()), tree_of(&RUN));
+    }
+
+    /// A journal that another program wrote leads nowhere: names stay in the directory, and only temporary files are moved.
+    #[test]
+    fn a_journal_that_leads_elsewhere_is_damaged() {
+        let temporary = ".cvtcycle-0.tmp";
+        let journal = |from: &str, to: &str, gone: &str, schema: u32| {
+            let (files, remove) = ([[from, to]], [gone]);
+            serde_json::json!({ "schema": schema, "build": "", "files": files, "remove": remove })
+                .to_string()
+        };
+        let bad = [
+            journal(temporary, "../mine.txt", "gone", 1),
+            journal(temporary, "/mine.txt", "gone", 1),
+            journal(temporary, "a/b/mine.txt", "gone", 1),
+            journal(temporary, JOURNAL, "gone", 1),
+            journal(temporary, "", "gone", 1),
+            journal(temporary, "link/mine.txt", "gone", 1),
+            journal("mine.txt", "other", "gone", 1),
+            journal("../.cvtcycle-0.tmp", "other", "gone", 1),
+            journal(".cvtcycle-folder.tmp", "other", "gone", 1),
+            journal(temporary, "other", "../mine.txt", 1),
+            journal(temporary, "other", "link/mine.txt", 1),
+            journal(temporary, "other", "gone", 2),
+            "{".to_owned(),
+            "[".repeat(100_000),
+        ];
+        for text in bad
+            .iter()
+            .filter(|text| cfg!(unix) || !text.contains("link/"))
+        {
+            let outer = folder(&tree_of(&[("mine.txt", "mine"), ("else/mine.txt", "mine")]));
+            let dir = outer.path().join("dir");
+            fs::create_dir_all(dir.join(".cvtcycle-folder.tmp")).expect("made");
+            for (name, text) in [("mine.txt", "mine"), (temporary, "new"), (JOURNAL, text)] {
+                fs::write(dir.join(name), text).expect("written");
+            }
+            #[cfg(unix)]
+            std::os::unix::fs::symlink("../else", dir.join("link")).expect("linked");
+            let before = tree(outer.path());
+            let problem = settle(&dir).expect_err("it is damaged");
+            assert!(
+                problem.message.contains("damaged"),
+                "{text}: {}",
+                problem.message
+            );
+            assert_eq!(tree(outer.path()), before, "{text}");
+        }
+    }
+}
