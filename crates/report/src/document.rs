@@ -1,5 +1,7 @@
 //! What a report consists of, without its form.
 
+use std::collections::BTreeSet;
+
 use crate::charts::Picture;
 
 /// A report.
@@ -91,7 +93,7 @@ pub struct ReportRow {
 /// A figure.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// Name of its file without the ending, unique within the document.
+    /// Name, from which that of its file is made.
     pub name: String,
     /// What is to be seen.
     pub caption: String,
@@ -235,12 +237,32 @@ impl Figure {
 }
 
 impl Document {
-    /// All figures in their order.
-    pub fn figures(&self) -> impl Iterator<Item = &Figure> {
+    /// The figures, each with the name of its file, which is plain and no other figure has.
+    pub fn figures(&self) -> impl Iterator<Item = (String, &Figure)> {
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);
-        blocks.filter_map(|block| match block {
+        let figures = blocks.filter_map(|block| match block {
             Block::Figure(figure) => Some(figure),
             _ => None,
+        });
+        let mut taken = BTreeSet::new();
+        figures.map(move |figure| {
+            let name = plain(&figure.name);
+            let numbered = |k: usize| match k {
+                1 => name.clone(),
+                k => format!("{name}_{k}"),
+            };
+            // Not all file systems tell upper from lower case.
+            let is_free = |name: &String| taken.insert(name.to_lowercase());
+            let name = (1..).map(numbered).find(is_free).unwrap_or_default();
+            (format!("{name}.svg"), figure)
         })
     }
+}
+
+/// A name without anything that leads elsewhere.
+fn plain(name: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+    name.chars()
+        .map(|c| if plain(c) { c } else { '_' })
+        .collect()
 }

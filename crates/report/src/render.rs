@@ -1,8 +1,12 @@
 //! A document in its form: HTML or Markdown, by the templates in `reports/`.
 
+use std::fmt;
+
 use askama::Template;
+use askama::filters::Escaper;
 
 use super::document::{Block, Document};
+use cvtcycle_config::visible;
 use cvtcycle_output::PROGRAM;
 
 #[derive(Template)]
@@ -19,7 +23,7 @@ struct Text<'a> {
     program: &'static str,
     document: &'a Document,
     sections: Vec<ShownSection<'a>>,
-    /// Folder of the figures.
+    /// Address of the folder of figures.
     figures: &'a str,
 }
 
@@ -33,6 +37,18 @@ struct ShownSection<'a> {
 struct ShownBlock<'a> {
     block: &'a Block,
     number: usize,
+    /// Name of the file of a figure.
+    file: String,
+}
+
+/// Text of files in HTML: escaped, with hidden characters as U+FFFD.
+#[derive(Clone, Copy)]
+pub(crate) struct Html;
+
+impl Escaper for Html {
+    fn write_escaped_str<W: fmt::Write>(&self, dest: W, text: &str) -> fmt::Result {
+        askama::filters::Html.write_escaped_str(dest, &visible(text))
+    }
 }
 
 /// The document as one HTML page that loads nothing.
@@ -49,7 +65,7 @@ pub fn html(document: &Document) -> Result<String, String> {
     .map_err(|error| error.to_string())
 }
 
-/// The document as Markdown; its figures are the SVG files in the folder `figures`.
+/// The document as Markdown; its figures are the SVG files in the folder with the address `figures`.
 ///
 /// # Errors
 /// Never for the templates of this program.
@@ -76,6 +92,7 @@ pub fn markdown(document: &Document, figures: &str) -> Result<String, String> {
 
 fn sections<'a>(document: &'a Document) -> Vec<ShownSection<'a>> {
     let (mut figures, mut tables) = (0, 0);
+    let mut files = document.figures().map(|(file, _)| file);
     let mut shown = |block: &'a Block| {
         let count = match block {
             Block::Table(_) | Block::Folded(_) => &mut tables,
@@ -84,7 +101,15 @@ fn sections<'a>(document: &'a Document) -> Vec<ShownSection<'a>> {
         };
         *count += 1;
         let number = *count;
-        ShownBlock { block, number }
+        let file = match block {
+            Block::Figure(_) => files.next().unwrap_or_default(),
+            _ => String::new(),
+        };
+        ShownBlock {
+            block,
+            number,
+            file,
+        }
     };
     let sections = document.sections.iter();
     let sections = sections.map(|of| ShownSection {
@@ -110,28 +135,17 @@ fn with_own_ids(svg: &str, number: &usize) -> String {
 mod filters {
     use std::fmt::Display;
 
+    use cvtcycle_output::escape;
+
     /// Text that Markdown and HTML take as it is.
     #[askama::filter_fn]
     pub fn md(text: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
-        Ok(super::plain_markdown(&text.to_string()))
+        Ok(escape::markdown(&text.to_string()))
     }
-}
 
-/// Text with everything that Markdown or HTML could take for markup escaped.
-fn plain_markdown(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\\' | '`' | '*' | '_' | '[' | ']' | '|' | '#' | '~' | '!' => {
-                out.push('\\');
-                out.push(c);
-            }
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '&' => out.push_str("&amp;"),
-            '\n' | '\r' | '\t' => out.push(' '),
-            c => out.push(c),
-        }
+    /// The name of a file as part of an address.
+    #[askama::filter_fn]
+    pub fn url(name: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
+        Ok(escape::url_path(name.to_string().as_bytes()))
     }
-    out
 }

@@ -1,5 +1,6 @@
 //! The files of a report: the document, and its figures in a folder next to it. All of them appear, or none.
 
+use std::ffi::OsString;
 use std::fs;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -7,6 +8,7 @@ use std::path::{Path, PathBuf};
 use super::document::Document;
 use super::render::{html, markdown};
 use cvtcycle_config::{Problem, Setting};
+use cvtcycle_output::escape::url_path;
 use cvtcycle_output::files::{DirLock, FileSet, failed, list, names_in, problem, temporary_in};
 
 /// Form of the document.
@@ -71,7 +73,7 @@ pub struct Target {
     file: PathBuf,
     figures: PathBuf,
     /// Name of the folder of figures.
-    folder: String,
+    folder: OsString,
     form: Form,
     force: bool,
 }
@@ -83,12 +85,13 @@ impl Target {
     /// # Errors
     /// A problem of `--out` that says what is in the way.
     pub fn new(file: &Path, form: Form, force: bool) -> Result<Self, Problem> {
-        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        let stem = file.file_stem().unwrap_or_default();
         if stem.is_empty() {
             let hint = "name a file, for example report.html";
             return Err(problem(file, "the name of the report is empty", hint));
         }
-        let folder = format!("{stem}_figures");
+        let mut folder = stem.to_os_string();
+        folder.push("_figures");
         let parent = file
             .parent()
             .filter(|parent| !parent.as_os_str().is_empty());
@@ -182,7 +185,7 @@ impl Target {
     pub fn write(&self, document: &Document) -> Result<Vec<PathBuf>, Problem> {
         let text = match self.form {
             Form::Html => html(document),
-            Form::Markdown => markdown(document, &self.folder.replace(' ', "%20")),
+            Form::Markdown => markdown(document, &url_path(self.folder.as_encoded_bytes())),
         };
         let text = text.map_err(|why| {
             let message = format!("cannot fill in the template: {why}");
@@ -206,10 +209,9 @@ impl Target {
             let written = set.write(name, |out| out.write_all(text.as_bytes()));
             written.map_err(|error| cannot(&error))
         };
-        let folder = Path::new(self.figures.file_name().unwrap_or_default());
+        let folder = Path::new(&self.folder);
         let mut paths = vec![self.file.clone()];
-        for figure in document.figures() {
-            let name = format!("{}.svg", file_name(&figure.name));
+        for (name, figure) in document.figures() {
             write(&folder.join(&name), &figure.picture.svg)?;
             paths.push(self.figures.join(name));
         }
@@ -222,12 +224,4 @@ impl Target {
         set.commit().map_err(|(_, error)| cannot(&error))?;
         Ok(paths)
     }
-}
-
-/// A name without anything that leads elsewhere.
-pub fn file_name(name: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
-    name.chars()
-        .map(|c| if plain(c) { c } else { '_' })
-        .collect()
 }

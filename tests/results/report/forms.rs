@@ -46,6 +46,19 @@ fn words_stay_words_and_ids_stay_apart_in_html() {
     assert!(page.contains("Figure 2.") && page.contains("Table of figure 2"));
 }
 
+/// Hidden characters are shown, whatever the form.
+#[test]
+fn hidden_characters_are_seen_in_every_form() {
+    let mut document = document();
+    document.title = "T\u{1b}]0;x\u{7}\u{202e}\u{0}".into();
+    for page in [html(&document), markdown(&document, "figures")] {
+        let page = page.unwrap_or_else(|e| unreachable!("{e}"));
+        let hidden = page.chars().find(|c| cvtcycle::config::is_hidden(*c));
+        assert!(hidden.is_none(), "{hidden:?}");
+        assert!(page.contains("T\u{fffd}"), "{page}");
+    }
+}
+
 #[test]
 fn words_stay_words_in_markdown() {
     let text = markdown(&document(), "figures").unwrap_or_else(|e| unreachable!("{e}"));

@@ -286,6 +286,62 @@ fn the_same_run_gives_the_same_page_and_is_not_in_the_way_of_the_next() {
     assert!(place.has("cold/report_figures/mine.txt"));
 }
 
+/// Names of files and of phases that Markdown, HTML or an address would take for something else.
+#[test]
+fn every_link_of_a_markdown_report_names_a_file_that_is_there() {
+    let place = Place::new();
+    let car = fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/vehicles/rover_216_5mt.toml"
+    ))
+    .unwrap();
+    for name in [
+        "my car (v2)",
+        "a<img src=x onerror=alert(1)>",
+        "a b",
+        "a_b",
+        "ü%",
+    ] {
+        place.write(&format!("{name}.toml"), &car);
+    }
+    place.write(
+        "short.csv",
+        "time_s,speed_kmh,phase\n0,0,a](x)\n4,0,a](x)\n14,32,<b>\n24,32,<b>\n34,0,<b>\n",
+    );
+    let words = "run --cycle short.csv --sensitivity never --quiet --out run --vehicle";
+    let mut words: Vec<&str> = words.split(' ').collect();
+    words.push("my car (v2).toml");
+    for name in [
+        "a<img src=x onerror=alert(1)>.toml",
+        "a b.toml",
+        "a_b.toml",
+        "ü%.toml",
+    ] {
+        words.extend(["--baseline", name]);
+    }
+    place.done(&words);
+    place.done(&["report", "run", "--quiet", "--out", "my (report) ü.md"]);
+    let text = place.text("my (report) ü.md");
+    let links = text.match_indices("](");
+    let links = links.filter(|(at, _)| !text[..*at].ends_with('\\'));
+    let links = links.map(|(at, _)| text[at + 2..].split(')').next().unwrap());
+    let links: Vec<&str> = links.collect();
+    let files = fs::read_dir(place.path().join("my (report) ü_figures")).unwrap();
+    assert_eq!(links.len(), files.count());
+    for link in links {
+        assert!(link.is_ascii(), "{link}");
+        let mut pieces = link.split('%');
+        let mut path = pieces.next().unwrap().as_bytes().to_vec();
+        for piece in pieces {
+            path.push(u8::from_str_radix(&piece[..2], 16).unwrap());
+            path.extend(piece[2..].bytes());
+        }
+        let path = String::from_utf8(path).unwrap();
+        assert!(place.has(&path), "{link} is not there");
+    }
+    assert!(!text.contains('<'), "markup is escaped");
+}
+
 #[test]
 fn a_year_of_traces_stays_small() {
     let place = Place::new();

@@ -98,32 +98,6 @@ impl TextTable {
             .map(|line| format!("{}{line}\n", self.indent))
             .collect()
     }
-
-    /// The rows as a table of Markdown; the first one is its heading.
-    ///
-    /// ```
-    /// use cvtcycle_output::table::TextTable;
-    /// let mut table = TextTable::new("lr");
-    /// table.row(["part", "Nm"]);
-    /// table.row(["a|b", "1.5"]);
-    /// assert_eq!(table.markdown(), "| part | Nm |\n| --- | ---: |\n| a\\|b | 1.5 |\n");
-    /// ```
-    pub fn markdown(&self) -> String {
-        let line = |row: &Vec<String>| {
-            let cells = row
-                .iter()
-                .map(|cell| cell.replace('|', "\\|").replace('\n', " "));
-            format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
-        };
-        let rules = self
-            .right
-            .iter()
-            .map(|right| if *right { "---:" } else { "---" });
-        let rules = format!("| {} |\n", rules.collect::<Vec<_>>().join(" | "));
-        let (head, rows) = self.rows.split_at(1.min(self.rows.len()));
-        let head = head.iter().map(line).chain([rules]);
-        head.chain(rows.iter().map(line)).collect()
-    }
 }
 
 /// A sentence wrapped to the width of the tables, with a mark before its first line.

@@ -1,5 +1,6 @@
 //! A report as JSON, CSV and Markdown, and its words for people.
 
+use cvtcycle_output::escape;
 use cvtcycle_output::number::exact;
 use cvtcycle_output::record::Manifest;
 use cvtcycle_output::table::CsvWriter;
@@ -164,33 +165,22 @@ pub fn markdown(report: &Report) -> String {
             computed = format!("{computed} {}", unit_text(&row.unit));
         }
         let verdict = judged.verdict.word();
-        let cells = [&row.id, &what, &row.printed_text, computed.trim(), verdict].map(escaped);
+        let cells =
+            [&row.id, &what, &row.printed_text, computed.trim(), verdict].map(escape::markdown);
         text += &format!("| {} |\n", cells.join(" | "));
         let line = notes_line(judged);
         if !line.is_empty() {
-            notes += &format!("- **{}**: {}\n", escaped(&row.id), escaped(&line));
+            notes += &format!(
+                "- **{}**: {}\n",
+                escape::markdown(&row.id),
+                escape::markdown(&line)
+            );
         }
     }
     if !notes.is_empty() {
         text.push('\n');
     }
     text + &notes
-}
-
-/// Text in a Markdown table: nothing that ends the cell or begins markup.
-fn escaped(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '\n' | '\r' => out.push(' '),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '&' => out.push_str("&amp;"),
-            '|' | '*' | '_' | '`' | '[' | ']' | '\\' | '$' => out.extend(['\\', c]),
-            _ => out.push(c),
-        }
-    }
-    out
 }
 
 /// A computed result for people, without its unit.

@@ -2,6 +2,8 @@
 
 use std::fmt::{Display, Write as _};
 
+use cvtcycle_output::escape::xml;
+
 /// Canvas units per pixel. Coordinates are written in whole units; at one unit per pixel gentle slopes would turn into stairs.
 pub(crate) const UNITS: f64 = 4.0;
 
@@ -70,7 +72,7 @@ impl Svg {
     pub fn text_element(&mut self, place: &[(&str, &dyn Display)], paint: &str, text: &str) {
         self.tag("text", place, paint);
         // Writing into a String cannot fail, here and below.
-        let _ = writeln!(self.body, ">{}</text>", escape(text));
+        let _ = writeln!(self.body, ">{}</text>", xml(text));
     }
 
     fn tag(&mut self, name: &str, place: &[(&str, &dyn Display)], paint: &str) {
@@ -90,7 +92,7 @@ impl Svg {
 
     /// Opens a group whose full text shows under the pointer.
     pub fn open_titled(&mut self, title: &str) {
-        let _ = writeln!(self.body, "<g><title>{}</title>", escape(title));
+        let _ = writeln!(self.body, "<g><title>{}</title>", xml(title));
     }
 
     /// Closes the group.
@@ -154,8 +156,8 @@ impl Svg {
              height=\"{height}\" viewBox=\"0 0 {w} {h}\">\n<title>{}</title>\n\
              <desc>{}</desc>\n<defs>{}</defs>\n\
              <rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n{}</svg>\n",
-            escape(title),
-            escape(description),
+            xml(title),
+            xml(description),
             self.defs,
             self.body
         )
@@ -250,22 +252,4 @@ impl Path {
             self.start = false;
         }
     }
-}
-
-/// Text that XML can hold.
-fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\n' | '\r' | '\t' => out.push(' '),
-            // XML 1.0 has no way to write these.
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
 }

@@ -1,0 +1,68 @@
+//! Text of files in other forms: what the form would take for markup is escaped, and hidden characters are shown as U+FFFD.
+
+use std::fmt::Write;
+
+use cvtcycle_config::visible;
+
+/// Text that Markdown and the HTML in it take as it is: one line, nothing that ends a cell of a table or begins markup.
+///
+/// ```
+/// # use cvtcycle_output::escape::markdown;
+/// assert_eq!(markdown("a|b <c>\n$d$"), r"a\|b &lt;c&gt; \$d\$");
+/// ```
+#[must_use]
+pub fn markdown(text: &str) -> String {
+    escaped(text, |c, out| match c {
+        '<' => out.push_str("&lt;"),
+        '>' => out.push_str("&gt;"),
+        '&' => out.push_str("&amp;"),
+        c if r"\`*_[]|#~!$".contains(c) => out.extend(['\\', c]),
+        c => out.push(c),
+    })
+}
+
+/// Text that an element or an attribute of XML can hold, as one line.
+///
+/// ```
+/// # use cvtcycle_output::escape::xml;
+/// assert_eq!(xml("a < \"b\"\u{1b}\tc"), "a &lt; &quot;b&quot;\u{fffd} c");
+/// ```
+#[must_use]
+pub fn xml(text: &str) -> String {
+    escaped(text, |c, out| match c {
+        '&' => out.push_str("&amp;"),
+        '<' => out.push_str("&lt;"),
+        '>' => out.push_str("&gt;"),
+        '"' => out.push_str("&quot;"),
+        // XML 1.0 has no way to write these.
+        '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
+        c => out.push(c),
+    })
+}
+
+/// A path as part of an address: every byte but letters, digits, `-._~` and `/` by its number.
+///
+/// ```
+/// # use cvtcycle_output::escape::url_path;
+/// assert_eq!(url_path("my car (v2)/ü.svg".as_bytes()), "my%20car%20%28v2%29/%C3%BC.svg");
+/// ```
+#[must_use]
+pub fn url_path(path: &[u8]) -> String {
+    let mut out = String::with_capacity(path.len());
+    for &byte in path {
+        if byte.is_ascii_alphanumeric() || b"-._~/".contains(&byte) {
+            out.push(char::from(byte));
+        } else {
+            // Writing to a text does not fail.
+            let _ = write!(out, "%{byte:02X}");
+        }
+    }
+    out
+}
+
+fn escaped(text: &str, put: impl Fn(char, &mut String)) -> String {
+    let line = text.replace(['\n', '\r', '\t'], " ");
+    let mut out = String::with_capacity(text.len());
+    visible(&line).chars().for_each(|c| put(c, &mut out));
+    out
+}
