@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches};
-use cvtcycle::config::Problem;
+use cvtcycle::config::{Problem, is_hidden, visible};
 
 use args::problems::bad_value;
 use commands::Cli;
@@ -51,17 +51,22 @@ fn not_utf8(words: &[OsString]) -> Problem {
 
 /// Help, version and usage errors, written by our own writer, which handles a closed pipe and a full disk.
 fn usage(error: &clap::Error, terminal: Terminal) -> CommandOutput {
-    let text = |colours: bool| match colours {
+    let plain = error.render().to_string();
+    // It repeats words of the command line.
+    let has_hidden = plain.contains(is_hidden);
+    let text = |colours: bool| match colours && !has_hidden {
         true => error.render().ansi().to_string(),
-        false => error.render().to_string(),
+        false => visible(&plain).into_owned(),
     };
-    if error.use_stderr() {
-        CommandOutput {
-            stderr: text(terminal.stderr.is_on()),
+    match error.use_stderr() {
+        true => CommandOutput {
+            problems: text(terminal.stderr.is_on()),
             ending: Ending::BadInput,
             ..CommandOutput::default()
-        }
-    } else {
-        CommandOutput::text(text(terminal.stdout.is_on()))
+        },
+        false => CommandOutput {
+            help: text(terminal.stdout.is_on()),
+            ..CommandOutput::default()
+        },
     }
 }

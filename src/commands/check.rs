@@ -65,11 +65,12 @@ impl Execute for CheckArgs {
             stdout: ok
                 .map(|(file, kind)| format!("ok  {file} ({})\n", kind.word()))
                 .collect(),
-            stderr: render(
+            problems: render(
                 &bad.flatten().cloned().collect::<Vec<_>>(),
                 terminal.stderr.is_on(),
             ),
             ending,
+            ..CommandOutput::default()
         })
     }
 }

@@ -17,7 +17,8 @@ use cvtcycle::report::charts::loss_figures;
 use super::Execute;
 use crate::args::{FormulationArgs, Names, OutArgs, TableOutputArgs, VehicleArgs, names_of};
 use crate::print::{
-    CommandOutput, CommandResult, Results, Terminal, WrittenFiles, json_text, stream, to_stdout,
+    CommandOutput, CommandResult, Form, Paint, Results, Terminal, WrittenFiles, json_text, stream,
+    to_stdout,
 };
 use plan::LossesPlan;
 
@@ -139,7 +140,7 @@ impl LossesArgs {
         write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
     ) -> CommandResult {
         if out.is_none() {
-            to_stdout(write)?;
+            to_stdout(Form::Text(Paint::NONE), write)?;
             return Ok(CommandOutput::default());
         }
         let name = self.as_map.as_deref().unwrap_or_default();

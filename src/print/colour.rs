@@ -6,6 +6,17 @@ use std::io::IsTerminal;
 
 use clap::{ColorChoice, ValueEnum};
 
+/// Marks of styles within the program: code points that are no characters. [`Screen`](super::screen::Screen) turns them into what a terminal takes;
+/// one in the text of a file can make its line bold and nothing else.
+const HEADING: char = '\u{FDD0}';
+const BAD: char = '\u{FDD1}';
+pub const STYLE_END: char = '\u{FDD2}';
+const STYLES: [(char, &str); 3] = [
+    (HEADING, "\u{1b}[1m"),
+    (BAD, "\u{1b}[1;31m"),
+    (STYLE_END, "\u{1b}[0m"),
+];
+
 /// Colours of the two output streams.
 #[derive(Clone, Copy, Debug)]
 pub struct Terminal {
@@ -51,6 +62,9 @@ impl Terminal {
 }
 
 impl Paint {
+    /// Without colours.
+    pub const NONE: Paint = Paint(false);
+
     /// True if colours are on.
     pub fn is_on(self) -> bool {
         self.0
@@ -58,18 +72,25 @@ impl Paint {
 
     /// A heading.
     pub fn heading(self, text: &str) -> String {
-        self.wrap("1", text)
+        self.wrap(HEADING, text)
     }
 
     /// A failure.
     pub fn bad(self, text: &str) -> String {
-        self.wrap("1;31", text)
+        self.wrap(BAD, text)
     }
 
-    fn wrap(self, code: &str, text: &str) -> String {
+    fn wrap(self, style: char, text: &str) -> String {
         match self.0 {
-            true => format!("\u{1b}[{code}m{text}\u{1b}[0m"),
+            true => format!("{style}{text}{STYLE_END}"),
             false => text.to_owned(),
         }
+    }
+
+    /// What a terminal takes for the mark of a style; none for other characters, and without colours.
+    pub fn code(self, mark: char) -> Option<&'static str> {
+        let styles = STYLES.iter().filter(|_| self.0);
+        let mut codes = styles.filter(|(style, _)| *style == mark);
+        codes.next().map(|(_, code)| *code)
     }
 }

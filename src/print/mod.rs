@@ -2,6 +2,7 @@
 
 pub mod colour;
 pub mod progress;
+mod screen;
 
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
@@ -13,8 +14,9 @@ use serde::Serialize;
 
 use crate::args::problems::{in_options, problem};
 use crate::args::{OutputArgs, TableOutputArgs};
-use colour::Paint;
-pub use colour::Terminal;
+pub use colour::{Paint, Terminal};
+pub use screen::Form;
+use screen::Screen;
 
 /// How a command ended; each has its exit code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,6 +49,10 @@ impl Ending {
 pub struct CommandOutput {
     pub stdout: String,
     pub stderr: String,
+    /// On standard error, before the other text: complaints in the styles of their renderer, which lets no hidden character pass.
+    pub problems: String,
+    /// On standard output: help in the styles of its renderer.
+    pub help: String,
     pub ending: Ending,
 }
 
@@ -118,12 +124,12 @@ impl Results {
     pub fn warnings(&self) -> CommandOutput {
         let warnings = self.failures.iter().cloned().chain(self.files.left_over());
         CommandOutput {
-            stdout: String::new(),
             stderr: warnings.map(|line| format!("cvtcycle: {line}\n")).collect(),
             ending: match self.failures.is_empty() {
                 true => Ending::Success,
                 false => Ending::CheckFailed,
             },
+            ..CommandOutput::default()
         }
     }
 }
@@ -181,22 +187,25 @@ pub fn sections<S: AsRef<str>>(
     shown.map(section).collect()
 }
 
-/// A value as indented JSON with a line end.
+/// A value as indented JSON with a line end, hidden characters as `\uXXXX`.
 ///
 /// # Errors
 /// A map whose keys are no text; no value of this program is one.
 pub fn json_text(value: &impl Serialize) -> Result<String, Problems> {
     serde_json::to_string_pretty(value)
-        .map(|text| text + "\n")
+        .map(|text| screen::escaped(text) + "\n")
         .map_err(|error| problem("--json", &error.to_string(), "").into())
 }
 
-/// Writes a long text to standard output through `f` as it is made.
+/// Writes a long text in a form to standard output through `f` as it is made.
 ///
 /// # Errors
 /// A problem of standard output with the message of the operating system; a closed pipe is no error.
-pub fn to_stdout(f: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Problems> {
-    let mut out = BufWriter::new(io::stdout().lock());
+pub fn to_stdout(
+    form: Form,
+    f: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Problems> {
+    let mut out = BufWriter::new(Screen::new(io::stdout().lock(), form));
     unless_closed(f(&mut out).and_then(|()| out.flush())).map_err(|error| unwritten(&error).into())
 }
 
@@ -207,8 +216,8 @@ pub fn stream(
     csv: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Problems> {
     match args.is_streamed() {
-        true if args.output.json() => to_stdout(json),
-        true => to_stdout(csv),
+        true if args.output.json() => to_stdout(Form::Json, json),
+        true => to_stdout(Form::Text(Paint::NONE), csv),
         false => Ok(()),
     }
 }
@@ -216,17 +225,28 @@ pub fn stream(
 /// Prints the output of a command, or its problems, and returns the exit code.
 pub fn finish(result: CommandResult, terminal: Terminal) -> ExitCode {
     let mut output = result.unwrap_or_else(|problems| CommandOutput {
-        stderr: render(&problems.map(in_options), terminal.stderr.is_on()),
+        problems: render(&problems.map(in_options), terminal.stderr.is_on()),
         ending: Ending::BadInput,
         ..CommandOutput::default()
     });
-    if let Err(error) = write(&mut io::stdout().lock(), &output.stdout) {
+    let stdout = write(
+        io::stdout().lock(),
+        &output.help,
+        &output.stdout,
+        terminal.stdout,
+    );
+    if let Err(error) = stdout {
         let text = render(&[unwritten(&error)], terminal.stderr.is_on());
-        output.stderr.insert_str(0, &text);
+        output.problems.insert_str(0, &text);
         output.ending = Ending::BadInput;
     }
     // If standard error cannot be written either, no stream is left for a message.
-    drop(write(&mut io::stderr().lock(), &output.stderr));
+    drop(write(
+        io::stderr().lock(),
+        &output.problems,
+        &output.stderr,
+        terminal.stderr,
+    ));
     ExitCode::from(output.ending.code())
 }
 
@@ -235,8 +255,12 @@ fn unwritten(error: &io::Error) -> Problem {
     problem("standard output", &format!("cannot write: {error}"), hint)
 }
 
-fn write(out: &mut impl Write, text: &str) -> io::Result<()> {
-    unless_closed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+/// Writes what a renderer has styled, then text of any origin.
+fn write(mut out: impl Write, styled: &str, text: &str, paint: Paint) -> io::Result<()> {
+    let written = out.write_all(styled.as_bytes());
+    let mut screen = Screen::new(out, Form::Text(paint));
+    let written = written.and_then(|()| screen.write_all(text.as_bytes()));
+    unless_closed(written.and_then(|()| screen.flush()))
 }
 
 /// A reader that closes the pipe early (`| head`) is no error.

@@ -10,7 +10,7 @@ use cvtcycle::study::points::{OUTPUTS, Point, Solved, Take, output_columns};
 use tempfile::{SpooledTempFile, spooled_tempfile};
 
 use crate::args::problems::problem;
-use crate::print::to_stdout;
+use crate::print::{Form, Paint, to_stdout};
 
 /// Bytes for standard output that are buffered in memory; more are buffered on disk.
 const MAX_IN_MEMORY: usize = 1 << 20;
@@ -93,13 +93,13 @@ impl RowSink {
     pub fn finish(self, head: &serde_json::Value) -> Result<(), Problems> {
         match self.csv {
             Some(Buffer::File(file)) => drop(file.commit()?),
-            Some(Buffer::Spool(spool)) => send(spool, "", "")?,
+            Some(Buffer::Spool(spool)) => send(Form::Text(Paint::NONE), spool, "", "")?,
             None => {}
         }
         if let Some(Buffer::Spool(spool)) = self.json {
             let head = head.to_string();
             let open = head.strip_suffix('}').unwrap_or(&head);
-            send(spool, &format!("{open},\"rows\":["), "\n]}\n")?;
+            send(Form::Json, spool, &format!("{open},\"rows\":["), "\n]}\n")?;
         }
         Ok(())
     }
@@ -126,13 +126,18 @@ fn csv_line(line: &mut String, columns: &[Column<Point>], row: &Point) {
 }
 
 /// Copies a buffer to standard output.
-fn send(spool: BufWriter<SpooledTempFile>, before: &str, after: &str) -> Result<(), Problems> {
+fn send(
+    form: Form,
+    spool: BufWriter<SpooledTempFile>,
+    before: &str,
+    after: &str,
+) -> Result<(), Problems> {
     let kept = spool
         .into_inner()
         .map_err(io::IntoInnerError::into_error)
         .and_then(|mut kept| kept.seek(SeekFrom::Start(0)).map(|_| kept));
     let mut kept = kept.map_err(|error| cannot_buffer(&error))?;
-    to_stdout(|out| {
+    to_stdout(form, |out| {
         out.write_all(before.as_bytes())?;
         io::copy(&mut kept, out)?;
         out.write_all(after.as_bytes())

@@ -152,3 +152,84 @@ fn colours_are_for_terminals_and_for_those_who_ask() {
     }
     assert!(!coloured(&["run", "--json", "--color=always"], false));
 }
+
+/// Every kind of hidden character in the texts of a car and a study, and in words of the command line: nothing of them reaches a stream but
+/// the program's own styles, and JSON holds the same text.
+#[test]
+fn hidden_characters_reach_no_stream() {
+    let hidden = "\u{1b}]0;x\u{7}\u{1b}[8m\u{7f}\u{9b}\u{85}\u{202e}\u{2066}\u{2028}\u{feff}\u{fdd1}\u{fdd2}end";
+    let escaped: String = hidden
+        .encode_utf16()
+        .map(|unit| format!("\\u{unit:04x}"))
+        .collect();
+    let dir = tempfile::tempdir().unwrap();
+    let car = include_str!("../../../vehicles/rover_216_5mt.toml");
+    let title = "Rover 216, 1.6 L, 5-speed manual (like for like)";
+    assert!(car.contains(title));
+    let car = car.replace(title, &format!("T{escaped}"));
+    fs::write(dir.path().join("car.toml"), car).unwrap();
+    fs::write(
+        dir.path().join("plan.toml"),
+        format!(
+            "[study]\ntitle = \"T{escaped}\"\nquestion = \"Q{escaped}\"\nvehicle = \"car.toml\"\ncycle = \"ece15\"\n\
+             [study.design.monte_carlo]\nsamples = 20\n[[factor]]\nname = \"F{escaped}\"\nkey = \"engine.electrical_w\"\nstatus = \"assumed\"\n\
+             source = \"S{escaped}\"\ndistribution.uniform = {{ low = 100, high = 500 }}\n"
+        ),
+    )
+    .unwrap();
+    let word = format!("W{}", hidden.replace('\u{7}', ""));
+    let lines: [&[&str]; 8] = [
+        &["show", "./car.toml"],
+        &[
+            "run",
+            "--vehicle",
+            "car.toml",
+            "--cycle",
+            "ece15",
+            "--baseline",
+            "none",
+        ],
+        &["losses", "--vehicle", "car.toml"],
+        &["study", "plan.toml", "--out", "study", "--force"],
+        &["study", "show", "study"],
+        &["run", "--cycle", &word],
+        &["run", &word],
+        &["check", &word],
+    ];
+    let whole = serde_json::json!(hidden).to_string();
+    let mut same = 0;
+    for (k, line) in lines.iter().enumerate() {
+        for more in [&[][..], &["--json"], &["--color", "always"]] {
+            let output = run_in(dir.path(), &[*line, more].concat());
+            let code = if k < 5 { 0 } else { 2 };
+            assert_eq!(
+                output.status.code(),
+                Some(code),
+                "{line:?}: {}",
+                stderr(&output)
+            );
+            for text in [stdout(&output), stderr(&output)] {
+                let mut plain = text.clone();
+                if more.len() == 2 {
+                    // Styles of the program and of the renderers of help and complaints: codes of `m`, and none that hides.
+                    let mut pieces = text.split("\u{1b}[");
+                    plain = pieces.next().unwrap().to_owned();
+                    for piece in pieces {
+                        let (code, rest) = piece.split_once('m').unwrap();
+                        assert!(
+                            code.bytes().all(|b| b.is_ascii_digit() || b == b';') && code != "8"
+                        );
+                        plain += rest;
+                    }
+                }
+                let found = plain.chars().find(|c| cvtcycle::config::is_hidden(*c));
+                assert!(found.is_none(), "{line:?} {more:?}: {found:?} in {text}");
+            }
+            if more == ["--json"] {
+                let value: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+                same += usize::from(value.to_string().contains(whole.trim_matches('"')));
+            }
+        }
+    }
+    assert!(same > 0, "JSON has the title as it is");
+}
