@@ -384,7 +384,7 @@ fn what_no_car_can_do_is_exit_code_1() {
             .concat(),
             "too_hot",
             "degC",
-            "rover_216_5mt heats the transmission oil to ",
+            "rover_216_5mt heats the coolant to ",
         ),
         (
             [
