@@ -4,7 +4,7 @@
 mod create;
 mod damage;
 mod export;
-mod identity;
+mod build_identity;
 mod resume;
 mod run;
 mod tables;
