@@ -159,13 +159,21 @@ impl Execute for RunArgs {
             set_all: self.comparison.set_all.clone(),
             strict: self.strict,
         };
-        let summary = summarise(cycle, plan.ambient_degc, plan.start.1, settings, &driven);
+        let mut summary = summarise(cycle, plan.ambient_degc, plan.start.1, settings, &driven);
+        let mut record = None;
+        if out.is_some() {
+            let inputs = files::record(vehicles, cycle, &conditions, plan.sensitivity)?;
+            record.insert(inputs).name_run(&mut summary);
+        }
         let json = json_text(&summary)?;
         let files = WrittenFiles::write(out, |dir| {
-            let record = files::record(vehicles, cycle, &conditions, plan.sensitivity)?;
-            dir.put(FILE, json_text(&record)?)?;
-            dir.put("summary.json", &json)?;
             files::write(dir, plan.format, &summary, cycle, &driven)?;
+            dir.put("summary.json", &json)?;
+            // Last: it lists the others.
+            if let Some(mut record) = record {
+                record.files = dir.sums().clone();
+                dir.put(FILE, json_text(&record)?)?;
+            }
             Ok("")
         })?;
         let results = Results::new(json, tables::failures(&summary), files);

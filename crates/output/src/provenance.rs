@@ -1,5 +1,6 @@
 //! What a car was made from: its files with their hashes, what differs from the shipped vehicle most like it, every value.
 
+use crate::files::{hex, sha256};
 use crate::number::finite;
 use crate::record::{
     CarRecord, Change, CycleRecord, FileRecord, FuelMapRecord, SpeedLine, ValueRecord,
@@ -13,7 +14,6 @@ use cvtcycle_model::keys::RAD_S;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::controller::RatioDemand;
-use sha2::{Digest, Sha256};
 
 /// Speed up to which lines of the variogram are drawn, km/h.
 const FASTEST_KMH: f64 = 200.0;
@@ -27,8 +27,7 @@ const TARGETS: [(f64, &str); 4] = [
 
 /// SHA-256 in hexadecimal.
 pub fn hash(bytes: &[u8]) -> String {
-    let digest = Sha256::digest(bytes);
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+    hex(&sha256(bytes))
 }
 
 /// A cycle's name and hash.

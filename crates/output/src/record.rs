@@ -5,6 +5,9 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::files::Sums;
+use crate::provenance::hash;
+use crate::summary::Summary;
 use crate::{BUILD, PROGRAM};
 
 /// Version of the object; a new number when a name goes or changes its meaning.
@@ -25,6 +28,9 @@ pub struct Manifest {
     /// Which build of the program: [`BUILD`]. Empty in files of versions that had none.
     #[serde(default)]
     pub build: String,
+    /// Which run the file is of, where a run has several files: equal inputs and numbers have one word. Empty in files of versions that had none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub run: String,
 }
 
 impl Manifest {
@@ -35,6 +41,7 @@ impl Manifest {
             kind: None,
             program: PROGRAM.to_owned(),
             build: BUILD.to_owned(),
+            run: String::new(),
         }
     }
 
@@ -69,6 +76,32 @@ pub struct Record {
     pub cars: Vec<CarRecord>,
     /// How much each value matters; none where it was not asked for.
     pub sensitivity: Option<Sensitivity>,
+    /// SHA-256 of the other files that were written with it, by their names.
+    #[serde(default, skip_serializing_if = "Sums::is_empty")]
+    pub files: Sums,
+}
+
+/// Length of the word that names a run.
+const RUN_DIGITS: usize = 16;
+
+impl Record {
+    /// Names the run of a summary and its record in both: by a hash of what they say, but for the words of the command line.
+    pub fn name_run(&mut self, summary: &mut Summary) {
+        let bare = Record {
+            command: String::new(),
+            ..self.clone()
+        };
+        let text = serde_json::to_vec(&(&*summary, bare)).unwrap_or_default();
+        let mut word = hash(&text);
+        word.truncate(RUN_DIGITS);
+        summary.manifest.run.clone_from(&word);
+        self.manifest.run = word;
+    }
+
+    /// Whether a file of that name is of this run; of a record of an early version, which lists none, any file is.
+    pub fn has_file(&self, name: &str) -> bool {
+        self.files.is_empty() || self.files.contains_key(name)
+    }
 }
 
 /// A cycle.

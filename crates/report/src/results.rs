@@ -8,8 +8,9 @@ use serde_json::Value;
 use super::problems::{belongs, consistent, problem, unreadable};
 use cvtcycle_config::bounded;
 use cvtcycle_config::{Input, Place, Problem, Problems, Setting};
-use cvtcycle_output::files;
+use cvtcycle_output::files::{self, hex, sum_of};
 use cvtcycle_output::history::History;
+use cvtcycle_output::provenance::hash;
 use cvtcycle_output::record::{self, Record};
 use cvtcycle_output::summary::{SCHEMA, Summary};
 use cvtcycle_study::answer::ambient::{WarmUp, warm_ups};
@@ -153,14 +154,14 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
             format!("{shown} holds no run and no study: it has neither {SUMMARY} nor {STUDY}");
         return Err(problem(path, &message, hint).into());
     }
-    let value = json(&file)?;
+    let (value, sum) = json(&file)?;
     if is_validation(&value) {
         let hint = "its report is validation.html in that directory; it can be added to the report of a run";
         let message = "this is the answer of `cvtcycle validate`, not of a run";
         let problem = problem(path, message, hint);
         return Err(problem.settings(&[Setting::Added]).into());
     }
-    let mut found = run(path, &file, value)?;
+    let mut found = run(path, &file, value, &sum)?;
     let subdirectories = entries.flatten().map(|entry| entry.path());
     let mut subdirectories: Vec<PathBuf> = subdirectories.filter(|path| path.is_dir()).collect();
     subdirectories.sort();
@@ -188,8 +189,8 @@ fn add(found: &mut RunResults, dir: &Path, required: bool) -> Result<(), Problem
     }
     settle(dir)?;
     let file = dir.join(SUMMARY);
-    let value = file.exists().then(|| json(&file).ok()).flatten();
-    match value.filter(is_validation) {
+    let found_file = file.exists().then(|| json(&file).ok()).flatten();
+    match found_file.map(|(value, _)| value).filter(is_validation) {
         Some(value) => found.validation = Some(value),
         None if required => {
             let hint = "name a directory that `cvtcycle study` or `cvtcycle validate` has written";
@@ -211,14 +212,23 @@ fn is_validation(value: &Value) -> bool {
     value["counts"].is_object() && value["rows"].is_array()
 }
 
-fn run(path: &Path, file: &Path, value: Value) -> Result<RunResults, Problems> {
+fn run(path: &Path, file: &Path, value: Value, sum: &str) -> Result<RunResults, Problems> {
     let summary: Summary = typed(file, value, SCHEMA)?;
     let mut missing = Vec::new();
     let record_file = path.join(record::FILE);
     let mut record = None;
     if record_file.exists() {
-        let value = json(&record_file)?;
-        record = Some(typed::<Record>(&record_file, value, record::SCHEMA)?);
+        let (value, _) = json(&record_file)?;
+        let found = typed::<Record>(&record_file, value, record::SCHEMA)?;
+        if found.manifest.run != summary.manifest.run {
+            return Err(mixed(path, record::FILE, "of another run than").into());
+        }
+        if summary.manifest.run.is_empty() {
+            missing.push(
+                "the files have no word for their run: they are from an earlier version, and may be of several runs".to_owned(),
+            );
+        }
+        record = Some(found);
     } else {
         missing.push(format!(
             "{} is not there: hashes, changed values, the fuel map and what matters are left out",
@@ -232,19 +242,27 @@ fn run(path: &Path, file: &Path, value: Value) -> Result<RunResults, Problems> {
     let mut problems: Problems = runs.filter_map(|run| consistent(file, run).err()).collect();
     let mut histories = Vec::new();
     for run in &summary.runs {
-        let (car, history) = (&run.vehicle, history(path, &run.vehicle));
-        match &history {
-            Ok(Some(history)) => problems.extend(belongs(path, run, history).err()),
-            Ok(None) => missing.push(format!(
-                "the trace of {car} is not there (trace_{car}.csv): its figures over time are left out"
-            )),
-            Err(found) => problems.extend(found.clone()),
+        let (car, history) = (&run.vehicle, history(path, &run.vehicle, record.as_ref()));
+        match history {
+            Ok(Some(trace)) => {
+                let whole = belongs(path, run, &trace.history)
+                    .and_then(|()| same(path, &trace.name, &trace.sum, record.as_ref()));
+                problems.extend(whole.err());
+                histories.push(Some(trace.history));
+            }
+            Ok(None) => {
+                missing.push(format!(
+                    "the trace of {car} is not there (trace_{car}.csv): its figures over time are left out"
+                ));
+                histories.push(None);
+            }
+            Err(found) => problems.extend(found),
         }
-        histories.push(history.unwrap_or_default());
     }
     if !problems.is_empty() {
         return Err(problems);
     }
+    same(path, SUMMARY, sum, record.as_ref())?;
     Ok(RunResults {
         path: path.to_path_buf(),
         summary,
@@ -256,38 +274,77 @@ fn run(path: &Path, file: &Path, value: Value) -> Result<RunResults, Problems> {
     })
 }
 
-/// The trace of a car, from whichever file there is.
-fn history(path: &Path, vehicle: &str) -> Result<Option<History>, Problems> {
+/// Whether a file is the one that the record lists.
+fn same(path: &Path, name: &str, sum: &str, record: Option<&Record>) -> Result<(), Problem> {
+    let listed = record.and_then(|record| record.files.get(name));
+    match listed.is_none_or(|listed| listed == sum) {
+        true => Ok(()),
+        false => Err(mixed(path, name, "not the file that was written with")),
+    }
+}
+
+fn mixed(path: &Path, name: &str, what: &str) -> Problem {
+    let other = if name == SUMMARY { record::FILE } else { SUMMARY };
+    let message = format!("{name} in {} is {what} {other}", path.display());
+    let hint = "it has been changed or belongs to another run; run it again";
+    problem(&path.join(name), &message, hint)
+}
+
+/// A trace, and the file that it is from.
+struct TraceFile {
+    history: History,
+    name: String,
+    sum: String,
+}
+
+/// The trace of a car, from whichever file of the run there is.
+fn history(
+    path: &Path,
+    vehicle: &str,
+    record: Option<&Record>,
+) -> Result<Option<TraceFile>, Problems> {
     // A name is the middle of a file name and must not lead anywhere else.
     if vehicle.is_empty() || vehicle.contains(['/', '\\', ':']) {
         let message =
             format!("`{vehicle}` cannot be the name of a vehicle: no file can be named after it");
         return Err(problem(&path.join(SUMMARY), &message, "run it again").into());
     }
-    let csv = path.join(format!("trace_{vehicle}.csv"));
-    if csv.exists() {
+    let is_there = |name: &String| {
+        record.is_none_or(|record| record.has_file(name)) && path.join(name).exists()
+    };
+    let name = format!("trace_{vehicle}.csv");
+    if is_there(&name) {
+        let csv = path.join(&name);
         let bytes =
             bounded::read_file(&csv, bounded::TRACE).map_err(|error| unreadable(&csv, &error))?;
-        return History::read_csv(&csv.display().to_string(), &bytes).map(Some);
+        let history = History::read_csv(&csv.display().to_string(), &bytes)?;
+        let sum = hash(&bytes);
+        return Ok(Some(TraceFile { history, name, sum }));
     }
-    let parquet = path.join(format!("trace_{vehicle}.parquet"));
-    if parquet.exists() {
-        read_trace_parquet(&parquet).map(Some)
-    } else {
-        Ok(None)
+    let name = format!("trace_{vehicle}.parquet");
+    if !is_there(&name) {
+        return Ok(None);
     }
+    let parquet = path.join(&name);
+    let history = read_trace_parquet(&parquet)?;
+    let sum = fs::File::open(&parquet).and_then(|file| sum_of(&file));
+    let sum = sum.map_err(|error| unreadable(&parquet, &error.into()))?;
+    let sum = hex(&sum);
+    Ok(Some(TraceFile { history, name, sum }))
 }
 
-fn json(path: &Path) -> Result<Value, Problem> {
+/// The value of a JSON file, and its checksum.
+fn json(path: &Path) -> Result<(Value, String), Problem> {
     let bytes =
         bounded::read_file(path, bounded::RECORD).map_err(|error| unreadable(path, &error))?;
-    bounded::json(&bytes).map_err(|problem| {
+    let value = bounded::json(&bytes).map_err(|problem| {
         let place = Place {
             input: Input::File(path.display().to_string()),
             ..problem.place.clone()
         };
         problem.at(place)
-    })
+    })?;
+    Ok((value, hash(&bytes)))
 }
 
 /// Parses JSON of a known schema.

@@ -4,7 +4,7 @@ use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::model::drive::{Conditions, fuel_map};
 use cvtcycle::output::History;
-use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::files::{OutputDir, Sums};
 use cvtcycle::output::provenance::{car_record, cycle_record};
 use cvtcycle::output::record::{Manifest, Record, SCHEMA};
 use cvtcycle::output::summary::{Driven, Summary};
@@ -145,6 +145,7 @@ pub fn record(
         sensitivity: wanted
             .then(|| sensitivity(&named, cycle, conditions))
             .transpose()?,
+        files: Sums::new(),
     })
 }
 

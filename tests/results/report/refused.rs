@@ -173,6 +173,72 @@ fn a_trace_has_to_be_that_of_the_summary() {
     assert!(!place.has("cold/report.html"));
 }
 
+/// Files of two runs are never taken for one, whichever of them comes from the other.
+#[test]
+fn files_of_two_runs_are_never_one() {
+    let place = Place::new();
+    run(&place, "one", &["--strict"]);
+    run(&place, "two", &[]);
+    // Both have the same numbers and traces: what tells them apart is the setting alone.
+    let names = ["summary.json", "inputs.json"];
+    for name in names {
+        let own = place.text(&format!("one/{name}"));
+        place.write(
+            &format!("one/{name}"),
+            &place.text(&format!("two/{name}")),
+        );
+        place.refused(
+            &["report", "one"],
+            2,
+            &["inputs.json in one is of another run than summary.json"],
+        );
+        place.write(&format!("one/{name}"), &own);
+    }
+    // One figure of one file, of which no sum depends.
+    let change = |name: &str, from: &str, to: &str, said: &str| {
+        let own = place.text(name);
+        assert!(own.contains(from), "{name}: {from}");
+        place.write(name, &own.replacen(from, to, 1));
+        place.refused(&["report", "one"], 2, &[said]);
+        place.write(name, &own);
+    };
+    change(
+        "one/summary.json",
+        "\"ambient_degc\": -10.0",
+        "\"ambient_degc\": -11.0",
+        "summary.json in one is not the file that was written with inputs.json",
+    );
+    let trace = place.text("one/trace_rover_216_5mt.csv");
+    let last = trace.lines().last().unwrap();
+    change(
+        "one/trace_rover_216_5mt.csv",
+        last,
+        &last.replacen("clutch_open", "engine_off", 1),
+        "trace_rover_216_5mt.csv in one is not the file that was written with summary.json",
+    );
+    place.done(&["report", "one"]);
+    // A trace of an earlier run in another format is not in the way.
+    run(&place, "two", &["--format", "parquet", "--force"]);
+    place.write("two/trace_rover_216_cvt.csv", "of an earlier run");
+    place.done(&["report", "two"]);
+    // Files without the word are read, and not vouched for.
+    for name in names {
+        let text = place.text(&format!("one/{name}"));
+        let lines = text.lines().filter(|line| !line.starts_with("  \"run\":"));
+        place.write(
+            &format!("one/{name}"),
+            &lines.collect::<Vec<_>>().join("\n"),
+        );
+    }
+    let listed = place.text("one/inputs.json").replace("\"files\"", "\"old\"");
+    place.write("one/inputs.json", &listed);
+    place.refused(
+        &["report", "one", "--force"],
+        1,
+        &["the files have no word for their run"],
+    );
+}
+
 #[test]
 fn a_study_of_another_case_stays_out_of_the_answer() {
     let place = Place::new();

@@ -1,6 +1,7 @@
 //! The files of a run: all of them appear under their names, or none.
 mod lock;
 mod set;
+mod sum;
 
 use std::fs;
 use std::io::{self, Write};
@@ -12,6 +13,7 @@ use cvtcycle_config::{Argument, Problem, Setting};
 
 pub use lock::{DirLock, sync_directory};
 pub use set::{FileSet, complete, settle};
+pub use sum::{Sum, Summing, Sums, hex, sha256, sum_of};
 
 /// The files that mark a directory as one of an earlier run or calibration.
 const MARKS: [&str; 2] = ["summary.json", "calibration.json"];
@@ -47,6 +49,7 @@ pub struct OutputDir {
     path: PathBuf,
     earlier: Vec<String>,
     set: FileSet,
+    sums: Sums,
 }
 
 impl OutputDir {
@@ -63,7 +66,12 @@ impl OutputDir {
         let earlier = names_in(&path).map_err(|error| failed(&path, &what, &error))?;
         check_contents(&path, &earlier, force)?;
         set.sweep();
-        let dir = OutputDir { path, earlier, set };
+        let dir = OutputDir {
+            path,
+            earlier,
+            set,
+            sums: Sums::new(),
+        };
         // Better to learn now than after the simulation that nothing can be written here.
         temporary_in(&dir.path).map_err(|error| dir.cannot_write("a file", &error))?;
         Ok(dir)
@@ -81,7 +89,14 @@ impl OutputDir {
     ) -> Result<(), Problem> {
         self.check_name(name)?;
         let written = self.set.write(Path::new(name), f);
-        written.map_err(|error| self.cannot_write(name, &error))
+        let sum = written.map_err(|error| self.cannot_write(name, &error))?;
+        self.sums.insert(name.to_owned(), hex(&sum));
+        Ok(())
+    }
+
+    /// SHA-256 of the files so far, by their names.
+    pub fn sums(&self) -> &Sums {
+        &self.sums
     }
 
     /// Writes one file from memory.

@@ -14,6 +14,7 @@ use cvtcycle_config::Problem;
 use cvtcycle_config::bounded;
 
 use super::lock::{DirLock, is_there, sync_directory};
+use super::sum::{Sum, Summing};
 use super::{JOURNAL, failed, is_temporary, problem, temporary_in};
 use crate::BUILD;
 
@@ -75,7 +76,7 @@ impl FileSet {
         self.lock.sweep(self.lock.path());
     }
 
-    /// Writes a file, down to the disk, under a temporary name.
+    /// Writes a file, down to the disk, under a temporary name, and returns its checksum.
     ///
     /// # Errors
     /// Those of the operating system.
@@ -83,10 +84,10 @@ impl FileSet {
         &mut self,
         name: &Path,
         f: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
-    ) -> io::Result<()> {
-        let temporary = self.temporary(f)?;
+    ) -> io::Result<Sum> {
+        let (temporary, sum) = self.temporary(f)?;
         self.files.push((temporary, name.to_path_buf()));
-        Ok(())
+        Ok(sum)
     }
 
     /// Lets an earlier file go with the commit.
@@ -112,15 +113,16 @@ impl FileSet {
     fn temporary(
         &self,
         f: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
-    ) -> io::Result<PathBuf> {
+    ) -> io::Result<(PathBuf, Sum)> {
         let file = temporary_in(self.lock.path())?;
         // The bare file: the named one would add its temporary name to every error.
-        let mut out = BufWriter::new(file.as_file());
+        let mut out = Summing::new(BufWriter::new(file.as_file()));
         f(&mut out)?;
         out.flush()?;
-        drop(out);
+        let sum = out.finish();
         file.as_file().sync_all()?;
-        file.into_temp_path().keep().map_err(|error| error.error)
+        let path = file.into_temp_path().keep().map_err(|error| error.error)?;
+        Ok((path, sum))
     }
 
     /// A name for a file that waits for its end.
@@ -187,7 +189,7 @@ impl FileSet {
             remove,
         };
         let bytes = serde_json::to_vec_pretty(&journal)?;
-        let path = self.temporary(|out| out.write_all(&bytes))?;
+        let (path, _) = self.temporary(|out| out.write_all(&bytes))?;
         self.others.push(path.clone());
         Ok(Some(path))
     }

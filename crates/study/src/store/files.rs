@@ -1,69 +1,14 @@
 //! Files of a study: their checksums, as lists in the format of `sha256sum`; put into place, removed.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, ErrorKind, Read, Write};
+use std::fs;
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use super::names::{self, MANIFEST, PARTS, PLAN, RESULTS};
 use cvtcycle_config::bounded;
-use cvtcycle_output::files::{LOCK, is_temporary, temporary_in};
-use sha2::{Digest, Sha256};
+use cvtcycle_output::files::{LOCK, Summing, hex, is_temporary, temporary_in};
+pub use cvtcycle_output::files::{Sum, sha256, sum_of};
 use tempfile::NamedTempFile;
-
-/// SHA-256 of a file's bytes.
-pub type Sum = [u8; 32];
-
-/// SHA-256 of some bytes.
-pub fn sha256(bytes: &[u8]) -> Sum {
-    Sha256::digest(bytes).into()
-}
-
-/// SHA-256 of what is left to read of a file.
-pub fn sum_of(mut file: &File) -> io::Result<Sum> {
-    let mut hasher = Sha256::new();
-    let mut buffer = vec![0; 1 << 16];
-    loop {
-        match file.read(&mut buffer) {
-            Ok(0) => return Ok(hasher.finalize().into()),
-            Ok(n) => hasher.update(&buffer[..n]),
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
-        }
-    }
-}
-
-/// Takes the checksum of what is written through it.
-pub struct Summing<W> {
-    out: W,
-    hasher: Sha256,
-}
-
-impl<W: Write> Summing<W> {
-    /// Nothing yet.
-    pub fn new(out: W) -> Self {
-        Summing {
-            out,
-            hasher: Sha256::new(),
-        }
-    }
-
-    /// The checksum.
-    pub fn finish(self) -> Sum {
-        self.hasher.finalize().into()
-    }
-}
-
-impl<W: Write> Write for Summing<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let written = self.out.write(bytes)?;
-        self.hasher.update(&bytes[..written]);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
-    }
-}
 
 /// Names of files with their checksums.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -74,8 +19,7 @@ impl Checksums {
     pub fn text(&self) -> String {
         let mut text = String::new();
         for (name, sum) in &self.0 {
-            text.extend(sum.iter().map(|byte| format!("{byte:02x}")));
-            text += &format!("  {name}\n");
+            text += &format!("{}  {name}\n", hex(sum));
         }
         text
     }
