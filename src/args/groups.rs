@@ -10,7 +10,7 @@ use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 
 use super::problems::{bad_value, overrides, problem};
-use super::{Names, cycles, names_of, one_of, relative_to};
+use super::{Names, count_if_given, cycles, names_of, one_of, relative_to, threads};
 
 /// The vehicle and its transmission oil.
 #[derive(Args, Clone, Debug)]
@@ -204,23 +204,21 @@ impl TableOutputArgs {
 }
 
 /// Number of threads.
-#[derive(Args, Clone, Copy, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct ThreadArgs {
     /// Threads, 1 to 1024 [default: one for each core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    threads: Option<String>,
 }
 
 impl ThreadArgs {
-    /// Runs a computation on so many threads.
-    ///
-    /// # Errors
-    /// A problem if the system cannot start them.
-    pub fn install<T: Send>(self, run: impl FnOnce() -> T + Send) -> Result<T, Problems> {
-        let threads = self.threads.map_or(0, usize::from);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let message = |error| format!("cannot start threads: {error}");
-        let pool = pool.map_err(|error| problem("--threads", &message(error), "give fewer"))?;
-        Ok(pool.install(run))
+    /// Begins so many threads.
+    pub fn begin(&self, problems: &mut Problems) {
+        let before = problems.len();
+        let given = self.threads.as_ref();
+        let given = count_if_given("--threads", given, 1..=threads::MOST, problems);
+        if problems.len() == before {
+            problems.take(threads::begin(given));
+        }
     }
 }

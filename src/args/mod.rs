@@ -4,16 +4,19 @@ pub mod groups;
 pub mod input_kind;
 pub mod problems;
 pub mod ranges;
+pub mod threads;
 
 pub use groups::{
     ComparisonArgs, FormulationArgs, JsonArgs, OutArgs, OutputArgs, TableOutputArgs, ThreadArgs,
     VehicleArgs,
 };
 
+use std::ops::RangeInclusive;
+
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use cvtcycle::config::bounded::Limit;
 use cvtcycle::config::setup::is_path;
-use cvtcycle::config::{Argument, Bound, Problems, cycle, unit_of};
+use cvtcycle::config::{Argument, Bound, Problem, Problems, cycle, unit_of};
 
 use problems::{bad_value, cite, did_you_mean};
 
@@ -66,10 +69,62 @@ pub fn number(option: &str, value: &str, range: Bound, suffix: &str) -> Result<f
     };
     match value.trim().parse::<f64>() {
         Ok(x) if range.contains(x) => Ok(x),
-        Ok(x) if x.is_finite() => bad("out of range", ""),
+        Ok(x) if x.is_finite() => bad("out of range", &nearest(range, x, unit)),
         Ok(_) => bad("not a finite number", &number_hint(option, value, unit)),
         Err(_) => bad("not a number", &number_hint(option, value, unit)),
     }
+}
+
+/// What helps with a number out of its range; nothing where its end is not allowed itself.
+fn nearest(range: Bound, x: f64, unit: &str) -> String {
+    let end = match x > range.high() {
+        true => range.high(),
+        false if range.includes_low() => range.low(),
+        false => return String::new(),
+    };
+    let unit = if unit == "-" { "" } else { unit };
+    format!(
+        "the nearest allowed value is {}",
+        format!("{end} {unit}").trim_end()
+    )
+}
+
+/// A whole number within its range.
+pub fn count(option: &str, value: &str, range: RangeInclusive<u64>) -> Result<u64, Problem> {
+    let (low, high) = (*range.start(), *range.end());
+    let bad = |what: &str, hint: &str| {
+        let (message, allowed) = (
+            format!("{} is {what}", quoted(value)),
+            format!("{low} to {high}"),
+        );
+        Err(bad_value(option, value, &allowed, &message, hint))
+    };
+    let Ok(number) = value.trim().parse::<i128>() else {
+        return bad(
+            "not a whole number",
+            &format!("write a whole number: {option} {low}"),
+        );
+    };
+    match u64::try_from(number) {
+        Ok(number) if range.contains(&number) => Ok(number),
+        _ => {
+            let end = if number < i128::from(low) { low } else { high };
+            bad(
+                "out of range",
+                &format!("the nearest allowed value is {end}"),
+            )
+        }
+    }
+}
+
+/// The same for an option that may be left out.
+pub fn count_if_given(
+    option: &str,
+    value: Option<&String>,
+    range: RangeInclusive<u64>,
+    problems: &mut Problems,
+) -> Option<u64> {
+    value.and_then(|value| problems.take(count(option, value, range)))
 }
 
 /// What people write behind a temperature in degC or a time in s.

@@ -3,7 +3,7 @@
 use cvtcycle::config::{Bound, Problem, Problems, decimal, evenly, unit_of};
 
 use super::problems::bad_value;
-use super::quoted;
+use super::{nearest, quoted};
 
 /// Largest number of values of one option.
 const MAX_VALUES: f64 = 1e6;
@@ -109,7 +109,10 @@ impl List<'_> {
     fn within(&self, part: &str, x: f64) -> Result<f64, Problem> {
         match self.allowed.contains(x) {
             true => Ok(x),
-            false => Err(self.bad(part, "is out of range", String::new())),
+            false => {
+                let hint = nearest(self.allowed, x, self.unit);
+                Err(self.bad(part, "is out of range", hint))
+            }
         }
     }
 

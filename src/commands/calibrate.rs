@@ -15,13 +15,16 @@ use cvtcycle::study::fit::plan::CalibrationPlan;
 use cvtcycle::study::fit::{calibrate, fitted, open};
 
 use super::Execute;
-use crate::args::{Names, OutArgs, OutputArgs, ThreadArgs};
+use crate::args::{Names, OutArgs, OutputArgs, ThreadArgs, count_if_given};
 use crate::print::progress::{Progress, handle_interrupts};
 use crate::print::{
     CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
 };
 
 /// Arguments of `calibrate`.
+/// Most starts of a search.
+const MAX_STARTS: u64 = 1000;
+
 #[derive(Args, Clone, Debug)]
 #[command(
     mut_arg("out", |out| out.help("Write the fitted files, tables, plots and calibration.json into this directory")),
@@ -43,11 +46,11 @@ pub struct CalibrateArgs {
     #[command(flatten)]
     out: OutArgs,
     /// Number of starts of the search, 1 to 1000 [default: from the plan]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
-    starts: Option<u16>,
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    starts: Option<String>,
     /// Seed of the starts [default: from the plan]
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    seed: Option<String>,
     /// Do not leave out one fold after the other: faster, but without prediction errors
     #[arg(long)]
     no_folds: bool,
@@ -62,19 +65,25 @@ impl Execute for CalibrateArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         handle_interrupts();
+        self.threads.begin(problems);
+        let mut count = |option, text: &Option<String>, range| {
+            count_if_given(option, text.as_ref(), range, problems)
+        };
+        let starts = count("--starts", &self.starts, 1..=MAX_STARTS);
+        let seed = count("--seed", &self.seed, 0..=u64::MAX);
         let plan = problems.take(open(&self.plan));
         let out = self.out.dir(problems);
         let mut plan = plan?;
         let search = &mut plan.search;
-        search.starts = self.starts.map_or(search.starts, usize::from);
-        search.seed = self.seed.unwrap_or(search.seed);
+        search.starts = starts.map_or(search.starts, |starts| starts as usize);
+        search.seed = seed.unwrap_or(search.seed);
         plan.leave_out &= !self.no_folds;
         Some((plan, out))
     }
 
     fn run(&self, (plan, out): Self::Plan, terminal: Terminal) -> CommandResult {
         let progress = Progress::evaluations(self.output.quiet);
-        let outcome = self.threads.install(|| calibrate(&plan, &progress))?;
+        let outcome = calibrate(&plan, &progress);
         progress.finish();
         let outcome = match outcome {
             Err(problems) if problems.iter().any(|p| p.kind == ProblemKind::Stopped) => {

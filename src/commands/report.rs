@@ -8,7 +8,7 @@ use cvtcycle::report::report;
 use cvtcycle::report::write::{Form, Target};
 
 use super::Execute;
-use crate::args::{Names, OutArgs, OutputArgs, names_of, one_of};
+use crate::args::{Names, OutArgs, OutputArgs, names_of, one_of, threads};
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::config::Problems;
 
@@ -52,6 +52,7 @@ impl Execute for ReportArgs {
     type Plan = (Document, Target);
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
+        problems.take(threads::begin(None));
         let out = self.out.out.as_deref();
         let form = match &self.format {
             Some(word) => problems

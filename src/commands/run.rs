@@ -19,7 +19,7 @@ use super::Execute;
 use crate::args::problems::did_you_mean;
 use crate::args::{
     ComparisonArgs, FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, names_of, number,
-    one_of,
+    one_of, threads,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use files::{SensitivityMode, TraceFormat};
@@ -119,6 +119,12 @@ impl Execute for RunArgs {
         let format = problems.take(one_of("--format", &self.format, &TraceFormat::NAMES));
         let sensitivity = one_of("--sensitivity", &self.sensitivity, &SensitivityMode::NAMES);
         let sensitivity = problems.take(sensitivity);
+        if self.out.out.is_some() {
+            problems.take(threads::begin(None));
+            let kept = cycle.as_ref().zip(dt_s);
+            let kept = kept.map(|(cycle, dt_s)| vehicles::kept_steps(&vehicles, cycle, dt_s));
+            kept.and_then(|kept| problems.take(kept));
+        }
         let out = self.out.dir(problems);
         Some(RunPlan {
             cycle: cycle?,

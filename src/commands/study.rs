@@ -12,11 +12,11 @@ use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::Study;
-use cvtcycle::study::plan::{Design, Plan};
+use cvtcycle::study::plan::{Design, MAX_SAMPLES, Plan};
 
 use super::Execute;
 use crate::args::problems::{bad_value, problem};
-use crate::args::{Names, OutputArgs};
+use crate::args::{Names, OutputArgs, count_if_given, threads};
 use crate::print::{CommandResult, Terminal};
 use execution::{StudyRunArgs, results};
 
@@ -73,11 +73,11 @@ struct StudyPlanArgs {
     #[arg(value_name = "NAME|PLAN.toml", value_parser = Names(|| Kind::Plan.names()), hide_possible_values = true)]
     plan: Option<String>,
     /// Number of samples, for designs that draw samples [default: from the plan]
-    #[arg(long, value_name = "N")]
-    samples: Option<u64>,
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    samples: Option<String>,
     /// Seed of the samples [default: from the plan]
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    seed: Option<String>,
     #[command(flatten)]
     run: StudyRunArgs,
 }
@@ -92,8 +92,14 @@ impl Execute for StudyPlanArgs {
             problems.add(problem("PLAN", "no plan is named", &hint));
             return None;
         };
+        self.run.begin(problems);
+        let mut count = |option, text: &Option<String>, range| {
+            count_if_given(option, text.as_ref(), range, problems)
+        };
+        let samples = count("--samples", &self.samples, 2..=MAX_SAMPLES);
+        let seed = count("--seed", &self.seed, 0..=u64::MAX);
         let mut plan = problems.take(Plan::open(word))?;
-        plan.design = problems.take(self.design(&plan.design))?;
+        plan.design = problems.take(changed(&plan.design, samples, seed))?;
         self.run.prepare(plan, problems)
     }
 
@@ -102,29 +108,28 @@ impl Execute for StudyPlanArgs {
     }
 }
 
-impl StudyPlanArgs {
-    /// The design of the plan with the samples and the seed of the options.
-    fn design(&self, design: &Design) -> Result<Design, Problem> {
-        let option = match (self.samples, self.seed) {
-            (None, None) => return Ok(*design),
-            (Some(_), _) => "--samples",
-            (None, Some(_)) => "--seed",
-        };
-        let changed = design.with(self.samples, self.seed);
-        let (Some(range), Some(changed)) = (design.sample_range(), changed) else {
-            let message = "the design of the plan draws no samples";
-            let hint = "--samples and --seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs";
-            return Err(problem(option, message, hint));
-        };
-        match self.samples {
-            Some(samples) if !range.contains(&samples) => {
-                let allowed = format!("{} to {}", range.start(), range.end());
-                let message = format!("{samples} samples are out of range for this design");
-                let value = samples.to_string();
-                Err(bad_value(option, &value, &allowed, &message, ""))
-            }
-            _ => Ok(changed),
+/// The design of the plan with the samples and the seed of the options.
+fn changed(design: &Design, samples: Option<u64>, seed: Option<u64>) -> Result<Design, Problem> {
+    let option = match (samples, seed) {
+        (None, None) => return Ok(*design),
+        (Some(_), _) => "--samples",
+        (None, Some(_)) => "--seed",
+    };
+    let (Some(range), Some(changed)) = (design.sample_range(), design.with(samples, seed)) else {
+        let message = "the design of the plan draws no samples";
+        let hint =
+            "--samples and --seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs";
+        return Err(problem(option, message, hint));
+    };
+    match samples {
+        Some(samples) if !range.contains(&samples) => {
+            let allowed = format!("{} to {}", range.start(), range.end());
+            let message = format!("{samples} samples are out of range for this design");
+            let hint = format!("the nearest allowed value is {}", range.end());
+            let value = samples.to_string();
+            Err(bad_value(option, &value, &allowed, &message, &hint))
         }
+        _ => Ok(changed),
     }
 }
 
@@ -145,6 +150,7 @@ impl Execute for StudyShowArgs {
     type Plan = StudyResults;
 
     fn plan(&self, problems: &mut Problems) -> Option<StudyResults> {
+        problems.take(threads::begin(None));
         problems.take(StudyResults::open(&self.dir))
     }
 

@@ -255,6 +255,13 @@ fn unwritten(error: &io::Error) -> Problem {
     problem("standard output", &format!("cannot write: {error}"), hint)
 }
 
+/// Writes a warning to standard error at once, before what the command prints there in its end.
+pub fn warn(line: &str) {
+    let line = format!("cvtcycle: {line}\n");
+    // Without a stream there is no place for it.
+    drop(write(io::stderr().lock(), "", &line, Paint::NONE));
+}
+
 /// Writes what a renderer has styled, then text of any origin.
 fn write(mut out: impl Write, styled: &str, text: &str, paint: Paint) -> io::Result<()> {
     let written = out.write_all(styled.as_bytes());

@@ -2,6 +2,7 @@
 
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
+use std::thread;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -52,7 +53,10 @@ impl Progress {
         } else if std::io::stderr().is_terminal() {
             let bar = ProgressBar::with_draw_target(total, ProgressDrawTarget::stderr());
             bar.set_style(style(template));
-            bar.enable_steady_tick(Duration::from_millis(200));
+            // It ticks in a thread of its own, and ends the process where none can be started.
+            if thread::Builder::new().spawn(|| ()).is_ok() {
+                bar.enable_steady_tick(Duration::from_millis(200));
+            }
             Display::Bar(bar)
         } else {
             Display::Lines(Mutex::new(Instant::now()))

@@ -1,5 +1,7 @@
 //! The vehicles of a run: the subject with its overrides, then the baselines.
 
+use cvtcycle::config::bounded;
+use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::{self, NamedBy, Options, Setup};
 use cvtcycle::config::{Argument, Override, Problem, Problems};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
@@ -17,6 +19,20 @@ pub struct RunVehicle {
     pub word: String,
     /// Options it was loaded with.
     pub options: Options,
+}
+
+/// Whether the steps of all vehicles are few enough to be kept.
+///
+/// # Errors
+/// A problem of `--dt`.
+pub fn kept_steps(vehicles: &[RunVehicle], cycle: &Cycle, dt_s: f64) -> Result<(), Problem> {
+    let steps = vehicles.iter().map(|car| {
+        let is_cvt = car.setup.transmission().is_cvt();
+        cycle.trace_for(is_cvt).step_count(dt_s)
+    });
+    let steps = steps.fold(0, usize::saturating_add);
+    bounded::kept_steps(steps, dt_s)
+        .map_err(|problem| problem.in_file("--dt").key("--dt").value(dt_s.to_string()))
 }
 
 /// Loads all vehicles, subject first. A bad one leaves its problems, and the others are read as well.

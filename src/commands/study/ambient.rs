@@ -64,6 +64,7 @@ impl Execute for StudyAmbientArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Study> {
         let mut own = Problems::default();
+        self.run.begin(&mut own);
         let plan = self.matrix(&mut own);
         let study = plan.and_then(|plan| self.run.prepare(plan, &mut own));
         own.into_iter()

@@ -58,10 +58,15 @@ pub enum PartFormat {
 }
 
 impl StudyRunArgs {
-    /// Reads the vehicles of a plan, and checks the number of runs.
-    pub fn prepare(&self, plan: Plan, problems: &mut Problems) -> Option<Study> {
+    /// Checks the options that need no plan, and begins the threads.
+    pub fn begin(&self, problems: &mut Problems) {
         handle_interrupts();
         self.out.path(problems);
+        self.threads.begin(problems);
+    }
+
+    /// Reads the vehicles of a plan, and checks the number of runs.
+    pub fn prepare(&self, plan: Plan, problems: &mut Problems) -> Option<Study> {
         let study = problems.take(Study::prepare(plan))?;
         let (runs, max) = (study.runs(), study.plan.most_runs);
         if runs > max && !self.yes {
@@ -127,9 +132,7 @@ impl StudyRunArgs {
         let points: u64 = points.map(|points| points.end - points.start).sum();
         let progress = Progress::runs(points * study.cars.len() as u64, self.output.quiet);
         let sink = DirWriter::new(study, dir);
-        let end = self
-            .threads
-            .install(|| study.execute(&done, &sink, &progress))?;
+        let end = study.execute(&done, &sink, &progress);
         progress.finish();
         Ok(end?)
     }

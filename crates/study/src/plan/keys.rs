@@ -11,7 +11,7 @@ use super::{FactorValue, RUN_OPTIONS};
 /// Most values of a range.
 pub(super) const MAX_IN_RANGE: i64 = 10_000;
 /// Most samples of a design without a limit of its own.
-pub(super) const MAX_SAMPLES: u64 = 1_000_000_000;
+pub const MAX_SAMPLES: u64 = 1_000_000_000;
 
 /// A plan: its head and its factors.
 pub const PLAN: Table = Table::of(&[StudyKeys::TABLE, FactorKeys::TABLE.repeated(Repeat::List)]);
