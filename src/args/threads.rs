@@ -36,7 +36,11 @@ pub fn begin(given: Option<u64>) -> Result<(), Problem> {
     let (mut waiting, mut refused) = (Vec::new(), None);
     for _ in 1..wanted {
         let (sender, receiver) = mpsc::channel::<rayon::ThreadBuilder>();
-        let wait = move || drop(receiver.recv().map(rayon::ThreadBuilder::run));
+        let wait = move || {
+            if let Ok(thread) = receiver.recv() {
+                thread.run();
+            }
+        };
         match thread::Builder::new().spawn(wait) {
             Ok(_) => waiting.push(sender),
             Err(error) => {
@@ -61,7 +65,8 @@ pub fn begin(given: Option<u64>) -> Result<(), Problem> {
         .use_current_thread()
         .spawn_handler(|thread| {
             let sender = waiting.pop().ok_or(io::ErrorKind::NotFound)?;
-            sender.send(thread).map_err(io::Error::other)
+            let sent = sender.send(thread);
+            sent.map_err(|_| io::ErrorKind::BrokenPipe.into())
         })
         .build();
     let started = started.map_err(|error| {

@@ -2,8 +2,8 @@
 
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
-use std::thread;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use cvtcycle::study;

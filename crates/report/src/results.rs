@@ -284,7 +284,11 @@ fn same(path: &Path, name: &str, sum: &str, record: Option<&Record>) -> Result<(
 }
 
 fn mixed(path: &Path, name: &str, what: &str) -> Problem {
-    let other = if name == SUMMARY { record::FILE } else { SUMMARY };
+    let other = if name == SUMMARY {
+        record::FILE
+    } else {
+        SUMMARY
+    };
     let message = format!("{name} in {} is {what} {other}", path.display());
     let hint = "it has been changed or belongs to another run; run it again";
     problem(&path.join(name), &message, hint)

@@ -214,6 +214,47 @@ fn all_bad_inputs_are_reported_at_once() {
     }
 }
 
+/// Numbers of options are no other kind of mistake: all are reported with the rest, with what is allowed and the nearest of it.
+#[test]
+fn numbers_of_options_are_reported_with_the_rest() {
+    let message = refused(&[
+        "study",
+        "nosuch",
+        "--samples",
+        "0",
+        "--threads",
+        "0",
+        "--seed",
+        "-1",
+    ]);
+    for part in [
+        "there is no plan named `nosuch`",
+        "--samples: `0` is out of range",
+        "2 to 1000000000",
+        "--threads: `0` is out of range",
+        "the nearest allowed value is 1\n",
+        "--seed: `-1` is out of range",
+        "the nearest allowed value is 0\n",
+        "4 problems in",
+    ] {
+        assert!(message.contains(part), "{part} is not in\n{message}");
+    }
+    let message = refused(&["calibrate", "nosuch", "--starts", "1001", "--threads", "x"]);
+    for part in [
+        "--starts: `1001` is out of range",
+        "the nearest allowed value is 1000\n",
+        "--threads: `x` is not a whole number",
+        "write a whole number: --threads 1",
+        "3 problems in",
+    ] {
+        assert!(message.contains(part), "{part} is not in\n{message}");
+    }
+    let message = refused(&["run", "--ambient", "99", "--dt", "-0.5"]);
+    for part in ["is 60 °C", "is 0.01 s", "2 problems in"] {
+        assert!(message.contains(part), "{part} is not in\n{message}");
+    }
+}
+
 #[test]
 fn unknown_and_impossible_overrides_name_the_key() {
     let message = refused(&[

@@ -31,6 +31,119 @@ fn any_number_of_threads_gives_the_same_bytes() {
     }
 }
 
+/// Commands that compute in parallel, each to `OUT`.
+const PARALLEL: [&str; 6] = [
+    "run --cycle minute.csv --baseline none --sensitivity always --quiet --out OUT",
+    "study plan.toml --quiet --out OUT",
+    "study plan.toml --quiet --threads 1 --out OUT",
+    "study show made_study",
+    "report made_study --quiet --out OUT.html",
+    "calibrate fit.toml --no-folds --quiet --out OUT",
+];
+
+/// No thread can be started, as where a container bounds processes: one computes, with a warning, and gives the same bytes.
+#[test]
+fn where_no_thread_can_be_started_one_computes() {
+    let dir = made();
+    let fit = "[calibration]\nvehicle = \"rover_216_cvt\"\n[sources.g]\nsource = \"bench\"\nratio = 1\nspeed_rpm = [1000, 3000]\n\
+        temp_degc = 80\n[[parameter]]\nkey = \"transmission.cvt.pump.displacement_cc_rev\"\nlow = 5\nhigh = 20\n[[data]]\n\
+        from = \"a test\"\ncompute = \"max(g: pump_nm)\"\nvalue = 2\nsd = 0.1\n";
+    fs::write(dir.path().join("fit.toml"), fit).unwrap();
+    let strace = |line: &str| {
+        let mut command = Command::new("strace");
+        let inject = ["clone", "clone3"].map(|call| format!("inject={call}:error=EAGAIN"));
+        command
+            .current_dir(dir.path())
+            .args(["-f", "-qq", "-o", "calls.txt", "-e", "trace=clone,clone3"])
+            .args(["-e", &inject[0], "-e", &inject[1]])
+            .arg(bin())
+            .args(words(line))
+            .env("RAYON_NUM_THREADS", "4");
+        command.output()
+    };
+    let works = strace("--version").is_ok_and(|output| output.status.success());
+    assert!(
+        works || std::env::var_os("CVTCYCLE_REQUIRE_STRACE").is_none(),
+        "strace does not work here"
+    );
+    if !works {
+        eprintln!("skipped: strace does not work here");
+        return;
+    }
+    for line in PARALLEL {
+        // The same words in both, as the record of a run has them.
+        let line = line.replace("OUT", "made_now");
+        let away = |to: &str| {
+            for name in ["made_now", "made_now.html", "made_now_figures"] {
+                let from = dir.path().join(name);
+                if from.exists() {
+                    fs::rename(from, dir.path().join(to).join(name)).unwrap();
+                }
+            }
+        };
+        for folder in ["with", "without"] {
+            drop(fs::remove_dir_all(dir.path().join(folder)));
+            fs::create_dir(dir.path().join(folder)).unwrap();
+        }
+        let with = program(dir.path(), &words(&line))
+            .env("RAYON_NUM_THREADS", "4")
+            .output()
+            .unwrap();
+        assert!(
+            [Some(0), Some(1)].contains(&with.status.code()),
+            "{line}: {}",
+            stderr(&with)
+        );
+        away("with");
+        let without = strace(&line).unwrap();
+        away("without");
+        let said = stderr(&without);
+        assert_eq!(without.status.code(), with.status.code(), "{line}: {said}");
+        let warned =
+            said.contains("cannot start threads: ") && said.contains("; one thread computes");
+        assert_eq!(warned, !line.contains("--threads"), "{line}: {said}");
+        assert!(without.stdout == with.stdout, "{line}");
+        same(&dir.path().join("with"), &dir.path().join("without"));
+    }
+    // What was asked for is not replaced.
+    let output = strace("study plan.toml --quiet --threads 2 --out refused").unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("--threads: cannot start threads"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(!dir.path().join("refused").exists());
+}
+
+/// The variable is bounded as the option is, and refused before anything is started.
+#[test]
+fn the_variable_of_threads_is_bounded() {
+    let dir = made();
+    for value in ["99999", "0", "x", "-1"] {
+        for line in [
+            "run --cycle minute.csv --quiet --out refused",
+            "study plan.toml --quiet --out refused",
+            "study show made_study",
+            "report made_run --quiet",
+        ] {
+            let mut command = program(dir.path(), &words(line));
+            let output = command.env("RAYON_NUM_THREADS", value).output().unwrap();
+            let said = stderr(&output);
+            assert_eq!(output.status.code(), Some(2), "{line}: {said}");
+            assert!(
+                said.contains(&format!("RAYON_NUM_THREADS: `{value}` is "))
+                    && said.contains("1 to 1024"),
+                "{line}: {said}"
+            );
+        }
+        assert!(!dir.path().join("refused").exists());
+    }
+    let mut command = program(dir.path(), &words("study plan.toml --quiet --threads 2"));
+    let output = command.env("RAYON_NUM_THREADS", "x").output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
 const LINES: [&str; 7] = [
     "run --cycle minute.csv",
     "run --cycle minute.csv --json",

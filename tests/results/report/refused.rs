@@ -183,10 +183,7 @@ fn files_of_two_runs_are_never_one() {
     let names = ["summary.json", "inputs.json"];
     for name in names {
         let own = place.text(&format!("one/{name}"));
-        place.write(
-            &format!("one/{name}"),
-            &place.text(&format!("two/{name}")),
-        );
+        place.write(&format!("one/{name}"), &place.text(&format!("two/{name}")));
         place.refused(
             &["report", "one"],
             2,
@@ -230,7 +227,9 @@ fn files_of_two_runs_are_never_one() {
             &lines.collect::<Vec<_>>().join("\n"),
         );
     }
-    let listed = place.text("one/inputs.json").replace("\"files\"", "\"old\"");
+    let listed = place
+        .text("one/inputs.json")
+        .replace("\"files\"", "\"old\"");
     place.write("one/inputs.json", &listed);
     place.refused(
         &["report", "one", "--force"],

@@ -23,8 +23,8 @@ mod write;
 pub use cvtcycle_config::embedded::plans as embedded_plans;
 use cvtcycle_config::setup::{Kind, NamedBy, text_of};
 pub use design::{MAX_SOBOL_DIMENSIONS, MAX_SOBOL_SAMPLES};
-pub use keys::{MAX_SAMPLES, PLAN};
 pub(crate) use keys::STUDY;
+pub use keys::{MAX_SAMPLES, PLAN};
 pub use places::Places;
 pub use write::Axis;
 
