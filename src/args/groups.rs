@@ -10,7 +10,7 @@ use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 
 use super::problems::{bad_value, overrides, problem};
-use super::{Names, count_if_given, cycles, names_of, one_of, relative_to, threads};
+use super::{Names, count, cycles, names_of, one_of, relative_to, threads};
 
 /// The vehicle and its transmission oil.
 #[derive(Args, Clone, Debug)]
@@ -214,11 +214,9 @@ pub struct ThreadArgs {
 impl ThreadArgs {
     /// Begins so many threads.
     pub fn begin(&self, problems: &mut Problems) {
-        let before = problems.len();
         let given = self.threads.as_ref();
-        let given = count_if_given("--threads", given, 1..=threads::MOST, problems);
-        if problems.len() == before {
-            problems.take(threads::begin(given));
-        }
+        let given = given.map(|text| count("--threads", text, 1..=threads::MOST));
+        let given = given.map(|given| problems.take(given).unwrap_or(1));
+        problems.take(threads::begin(given));
     }
 }

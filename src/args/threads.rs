@@ -27,39 +27,20 @@ pub fn begin(given: Option<u64>) -> Result<(), Problem> {
     if THREADS.get().is_some() {
         return Ok(());
     }
-    let wanted = match (given, std::env::var(VARIABLE)) {
-        (Some(threads), _) => threads,
-        (None, Ok(text)) if !text.is_empty() => count(VARIABLE, &text, 1..=MOST)?,
-        (None, _) => thread::available_parallelism().map_or(1, |n| (n.get() as u64).min(MOST)),
-    };
+    let wanted = wanted(given);
     // The library gives up if one thread cannot be started. So they are started first, and wait for what it has them do.
     let (mut waiting, mut refused) = (Vec::new(), None);
-    for _ in 1..wanted {
-        let (sender, receiver) = mpsc::channel::<rayon::ThreadBuilder>();
-        let wait = move || {
-            if let Ok(thread) = receiver.recv() {
-                thread.run();
-            }
-        };
-        match thread::Builder::new().spawn(wait) {
-            Ok(_) => waiting.push(sender),
+    for _ in 1..*wanted.as_ref().unwrap_or(&1) {
+        match waiting_thread() {
+            Ok(sender) => waiting.push(sender),
             Err(error) => {
-                refused = Some(error);
+                refused = Some(format!("cannot start threads: {error}"));
                 break;
             }
         }
     }
+    // Also after a problem: the library would else begin threads of its own, as many as the variable says.
     let threads = waiting.len() + 1;
-    if let Some(error) = refused {
-        let message = format!("cannot start threads: {error}");
-        if given.is_some() {
-            return Err(problem("--threads", &message, "give fewer"));
-        }
-        warn(&match threads {
-            1 => format!("{message}; one thread computes"),
-            _ => format!("{message}; {threads} threads compute"),
-        });
-    }
     let started = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .use_current_thread()
@@ -69,11 +50,43 @@ pub fn begin(given: Option<u64>) -> Result<(), Problem> {
             sent.map_err(|_| io::ErrorKind::BrokenPipe.into())
         })
         .build();
-    let started = started.map_err(|error| {
-        let message = format!("cannot start threads: {error}");
-        problem("--threads", &message, "give fewer")
-    })?;
-    // No thread but this one has been here.
-    drop(THREADS.set(started));
-    Ok(())
+    match started {
+        // No thread but this one has been here.
+        Ok(started) => drop(THREADS.set(started)),
+        Err(error) => refused = Some(format!("cannot start threads: {error}")),
+    }
+    wanted?;
+    match refused {
+        Some(message) if given.is_some() => Err(problem("--threads", &message, "give fewer")),
+        Some(message) => {
+            warn(&match threads {
+                1 => format!("{message}; one thread computes"),
+                _ => format!("{message}; {threads} threads compute"),
+            });
+            Ok(())
+        }
+        None => Ok(()),
+    }
+}
+
+fn wanted(given: Option<u64>) -> Result<u64, Problem> {
+    match (given, std::env::var(VARIABLE)) {
+        (Some(threads), _) => Ok(threads),
+        (None, Ok(text)) if !text.is_empty() => count(VARIABLE, &text, 1..=MOST),
+        (None, _) => {
+            let cores = thread::available_parallelism();
+            Ok(cores.map_or(1, |cores| (cores.get() as u64).min(MOST)))
+        }
+    }
+}
+
+/// A thread that waits for what it is to do.
+fn waiting_thread() -> io::Result<mpsc::Sender<rayon::ThreadBuilder>> {
+    let (sender, receiver) = mpsc::channel::<rayon::ThreadBuilder>();
+    let wait = move || {
+        if let Ok(thread) = receiver.recv() {
+            thread.run();
+        }
+    };
+    thread::Builder::new().spawn(wait).map(|_| sender)
 }
