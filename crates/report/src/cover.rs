@@ -62,8 +62,15 @@ impl Cover {
     /// All problems of the file, with line and hint, and of the logo.
     pub fn read(path: &str) -> Result<Self, Problems> {
         let bytes = cvtcycle_config::cycle::bytes(Argument::Cover, path, bounded::TOML)?;
-        let text = decode(path, &bytes)?;
-        let toml = Toml::parse(path, &text)?;
+        Self::parse(path, &decode(path, &bytes)?)
+    }
+
+    /// Reads the text of a cover; `path` is the name that problems cite, in whose folder the logo is.
+    ///
+    /// # Errors
+    /// As [`Cover::read`].
+    pub fn parse(path: &str, text: &str) -> Result<Self, Problems> {
+        let toml = Toml::parse(path, text)?;
         let reader = Reader::new(&toml);
         let root = reader.root();
         let text = |key: &str, doc: &str| {

@@ -341,14 +341,34 @@ fn history(
 fn json(path: &Path) -> Result<(Value, String), Problem> {
     let bytes =
         bounded::read_file(path, bounded::RECORD).map_err(|error| unreadable(path, &error))?;
-    let value = bounded::json(&bytes).map_err(|problem| {
+    Ok((value(path, &bytes)?, hash(&bytes)))
+}
+
+fn value(path: &Path, bytes: &[u8]) -> Result<Value, Problem> {
+    bounded::json(bytes).map_err(|problem| {
         let place = Place {
             input: Input::File(path.display().to_string()),
             ..problem.place.clone()
         };
         problem.at(place)
-    })?;
-    Ok((value, hash(&bytes)))
+    })
+}
+
+/// Reads the text of a `summary.json`; `name` is the one that problems cite.
+///
+/// # Errors
+/// It is no JSON of this program, or too large.
+pub fn parse_summary(name: &str, bytes: &[u8]) -> Result<Summary, Problem> {
+    typed(Path::new(name), value(Path::new(name), bytes)?, SCHEMA)
+}
+
+/// Reads the text of an `inputs.json`, likewise.
+///
+/// # Errors
+/// As [`parse_summary`].
+pub fn parse_record(name: &str, bytes: &[u8]) -> Result<Record, Problem> {
+    let value = value(Path::new(name), bytes)?;
+    typed(Path::new(name), value, record::SCHEMA)
 }
 
 /// Parses JSON of a known schema.

@@ -33,7 +33,7 @@ mod xlsx;
 pub use csv::{CsvTable, Header, write_csv};
 pub use dir::{PartTable, StudyDir};
 pub use export::{Exported, Format, export};
-pub use files::sha256;
+pub use files::{Checksums, sha256};
 pub(crate) use names::TRACE_ROWS;
 pub use names::{Layout, RUNS, TRACES, is_study};
 pub use parquet::{ParquetTable, write_parquet};

@@ -3,8 +3,11 @@
 //! | target | what the bytes are |
 //! |---|---|
 //! | `vehicle`, `lubricant`, `study_plan`, `calibration_plan` | a TOML file: the bytes themselves, or edits of a shipped file ([`edits`]) |
+//! | `rows`, `cover` | a file of rows, or of the cover of a report (TOML), likewise |
+//! | `expression` | an expression of rows, over two small tables |
 //! | `overrides` | assignments of `--set`, one a line |
 //! | `cycle`, `map`, `points`, `measured`, `history` | a CSV file, after a byte that chooses the form where there are several |
+//! | `summary`, `inputs`, `study_manifest`, `checksums` | a file of results (JSON; a list of checksums), the manifest after a byte that chooses its plan |
 //! | `belt` | a belt and its operating point: any finite numbers, or a table row with numbers in their ranges |
 //! | `drive` | a valid car and a short cycle: numbers of a shipped car moved within what their keys allow |
 //!
@@ -14,25 +17,34 @@ mod belt;
 mod csv;
 mod drive;
 mod edits;
+mod expression;
 #[path = "../../../../tests/common/range.rs"]
 mod range;
+mod results;
 mod toml;
 
 /// Does something with any bytes.
 pub type Target = fn(&[u8]);
 
 /// The targets by name.
-pub const TARGETS: [(&str, Target); 12] = [
+pub const TARGETS: [(&str, Target); 19] = [
     ("vehicle", toml::vehicle),
     ("lubricant", toml::lubricant),
     ("study_plan", toml::study_plan),
     ("calibration_plan", toml::calibration_plan),
+    ("rows", toml::rows),
+    ("cover", toml::cover),
+    ("expression", expression::expression),
     ("overrides", toml::overrides),
     ("cycle", csv::cycle),
     ("map", csv::map),
     ("points", csv::points),
     ("measured", csv::measured),
     ("history", csv::history),
+    ("summary", results::summary),
+    ("inputs", results::inputs),
+    ("study_manifest", results::study_manifest),
+    ("checksums", results::checksums),
     ("belt", belt::belt),
     ("drive", drive::drive_car),
 ];

@@ -4,6 +4,8 @@ use std::sync::OnceLock;
 
 use cvtcycle::config::setup::{self, Disk, Options, embedded_lubricants, embedded_vehicles};
 use cvtcycle::config::{Override, Problems, decode, render};
+use cvtcycle::report::cover::Cover;
+use cvtcycle::study::check::{self, COMMON, embedded_rows};
 use cvtcycle::study::fit::{embedded_calibrations, plan as calibration};
 use cvtcycle::study::plan::{Plan, embedded_plans};
 
@@ -11,6 +13,10 @@ use super::{edits, within_memory};
 
 /// A text of at most so many bytes is edited eight times as often as a longer one, which takes as much longer to read.
 const SHORT: usize = 4000;
+
+/// A cover with everything that it may hold.
+const COVER: &str = "title = \"Band offset\"\nsubtitle = \"Review 7\"\nauthor = \"A. Engineer\"\norganisation = \"Example\"\n\
+    date = \"2026-11-21\"\nlogo = \"no/such.svg\"\nlogo_words = \"Example\"\n[remarks]\nanswer = \"First.\\nSecond.\"\nlosses = \"...\"\n";
 
 type Texts = OnceLock<Vec<&'static str>>;
 
@@ -75,6 +81,20 @@ pub fn calibration_plan(data: &[u8]) {
     static SHIPPED: Texts = OnceLock::new();
     let text = edits::text(data, texts(&SHIPPED, embedded_calibrations()));
     read(&text, |text| calibration::read("fuzz.toml", text));
+}
+
+pub fn rows(data: &[u8]) {
+    static SHIPPED: Texts = OnceLock::new();
+    let text = edits::text(data, texts(&SHIPPED, embedded_rows()));
+    read(&text, |text| {
+        check::read(COMMON, &[("fuzz.toml".to_owned(), text.to_owned())])
+    });
+}
+
+pub fn cover(data: &[u8]) {
+    static SHIPPED: [&str; 1] = [COVER];
+    let text = edits::text(data, &SHIPPED);
+    read(&text, |text| Cover::parse("fuzz.toml", text));
 }
 
 /// Overrides of a shipped car: the first byte chooses it.
