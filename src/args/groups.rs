@@ -10,7 +10,7 @@ use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 
 use super::problems::{bad_value, overrides, problem};
-use super::{Names, count, cycles, names_of, one_of, relative_to, threads};
+use super::{Names, count, cycles, names_of, one_of, relative_to};
 
 /// The vehicle and its transmission oil.
 #[derive(Args, Clone, Debug)]
@@ -203,6 +203,9 @@ impl TableOutputArgs {
     }
 }
 
+/// Most threads.
+pub const MOST_THREADS: u64 = 1024;
+
 /// Number of threads.
 #[derive(Args, Clone, Debug)]
 pub struct ThreadArgs {
@@ -212,11 +215,10 @@ pub struct ThreadArgs {
 }
 
 impl ThreadArgs {
-    /// Begins so many threads.
-    pub fn begin(&self, problems: &mut Problems) {
-        let given = self.threads.as_ref();
-        let given = given.map(|text| count("--threads", text, 1..=threads::MOST));
-        let given = given.map(|given| problems.take(given).unwrap_or(1));
-        problems.take(threads::begin(given));
+    /// Their number, if it is given; 1 after a problem with it.
+    pub fn given(&self, problems: &mut Problems) -> Option<u64> {
+        let text = self.threads.as_ref()?;
+        let given = count("--threads", text, 1..=MOST_THREADS);
+        Some(problems.take(given).unwrap_or(1))
     }
 }

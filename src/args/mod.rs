@@ -4,7 +4,6 @@ pub mod groups;
 pub mod input_kind;
 pub mod problems;
 pub mod ranges;
-pub mod threads;
 
 pub use groups::{
     ComparisonArgs, FormulationArgs, JsonArgs, OutArgs, OutputArgs, TableOutputArgs, ThreadArgs,

@@ -14,7 +14,7 @@ use cvtcycle::study::fit::outcome::tables as csv_tables;
 use cvtcycle::study::fit::plan::CalibrationPlan;
 use cvtcycle::study::fit::{calibrate, fitted, open};
 
-use super::Execute;
+use super::{Execute, threads};
 use crate::args::{Names, OutArgs, OutputArgs, ThreadArgs, count_if_given};
 use crate::print::progress::{Progress, handle_interrupts};
 use crate::print::{
@@ -65,7 +65,8 @@ impl Execute for CalibrateArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         handle_interrupts();
-        self.threads.begin(problems);
+        let threads = self.threads.given(problems);
+        problems.take(threads::begin(threads));
         let mut count = |option, text: &Option<String>, range| {
             count_if_given(option, text.as_ref(), range, problems)
         };

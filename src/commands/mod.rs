@@ -12,6 +12,7 @@ mod run;
 mod shell;
 mod show;
 mod study;
+mod threads;
 mod validate;
 
 use std::sync::LazyLock;

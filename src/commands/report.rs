@@ -7,8 +7,8 @@ use cvtcycle::report::document::Document;
 use cvtcycle::report::report;
 use cvtcycle::report::write::{Form, Target};
 
-use super::Execute;
-use crate::args::{Names, OutArgs, OutputArgs, names_of, one_of, threads};
+use super::{Execute, threads};
+use crate::args::{Names, OutArgs, OutputArgs, names_of, one_of};
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::config::Problems;
 

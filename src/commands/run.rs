@@ -13,13 +13,13 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
-use cvtcycle::output::summary::{Driven, Settings, StartWord, summarise};
+use cvtcycle::output::summary::{Driven, Settings, StartWord, name_run, summarise};
 
-use super::Execute;
+use super::{Execute, threads};
 use crate::args::problems::did_you_mean;
 use crate::args::{
     ComparisonArgs, FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, names_of, number,
-    one_of, threads,
+    one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use files::{SensitivityMode, TraceFormat};
@@ -169,7 +169,7 @@ impl Execute for RunArgs {
         let mut record = None;
         if out.is_some() {
             let inputs = files::record(vehicles, cycle, &conditions, plan.sensitivity)?;
-            record.insert(inputs).name_run(&mut summary);
+            name_run(&mut summary, record.insert(inputs));
         }
         let json = json_text(&summary)?;
         let files = WrittenFiles::write(out, |dir| {

@@ -14,9 +14,9 @@ use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::Study;
 use cvtcycle::study::plan::{Design, MAX_SAMPLES, Plan};
 
-use super::Execute;
+use super::{Execute, threads};
 use crate::args::problems::{bad_value, problem};
-use crate::args::{Names, OutputArgs, count_if_given, threads};
+use crate::args::{Names, OutputArgs, count_if_given};
 use crate::print::{CommandResult, Terminal};
 use execution::{StudyRunArgs, results};
 

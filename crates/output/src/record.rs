@@ -6,8 +6,6 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::files::Sums;
-use crate::provenance::hash;
-use crate::summary::Summary;
 use crate::{BUILD, PROGRAM};
 
 /// Version of the object; a new number when a name goes or changes its meaning.
@@ -81,23 +79,7 @@ pub struct Record {
     pub files: Sums,
 }
 
-/// Length of the word that names a run.
-const RUN_DIGITS: usize = 16;
-
 impl Record {
-    /// Names the run of a summary and its record in both: by a hash of what they say, but for the words of the command line.
-    pub fn name_run(&mut self, summary: &mut Summary) {
-        let bare = Record {
-            command: String::new(),
-            ..self.clone()
-        };
-        let text = serde_json::to_vec(&(&*summary, bare)).unwrap_or_default();
-        let mut word = hash(&text);
-        word.truncate(RUN_DIGITS);
-        summary.manifest.run.clone_from(&word);
-        self.manifest.run = word;
-    }
-
     /// Whether a file of that name is of this run; of a record of an early version, which lists none, any file is.
     pub fn has_file(&self, name: &str) -> bool {
         self.files.is_empty() || self.files.contains_key(name)

@@ -13,6 +13,7 @@ use cvtcycle::study::store::StudyDir;
 use cvtcycle::study::{End, Study, StudyManifest};
 use tempfile::TempDir;
 
+use super::super::threads;
 use super::tables;
 use crate::args::problems::{bad_value, problem};
 use crate::args::{OutArgs, OutputArgs, ThreadArgs};
@@ -62,7 +63,8 @@ impl StudyRunArgs {
     pub fn begin(&self, problems: &mut Problems) {
         handle_interrupts();
         self.out.path(problems);
-        self.threads.begin(problems);
+        let threads = self.threads.given(problems);
+        problems.take(threads::begin(threads));
     }
 
     /// Reads the vehicles of a plan, and checks the number of runs.

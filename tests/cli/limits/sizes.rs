@@ -85,7 +85,8 @@ fn results_of_a_gigabyte_are_refused_without_being_read() {
         );
         fs::write(path(name), content).unwrap();
     }
-    // A footer of zeros is none.
+    // A footer of zeros is none. Without the record any trace is read.
+    fs::remove_file(path("inputs.json")).unwrap();
     fs::remove_file(path("trace_rover_216_cvt.csv")).unwrap();
     sparse(&path("trace_rover_216_cvt.parquet"), GIGABYTE);
     let message = refused(dir.path(), 64, "report made --out r.html");
@@ -229,13 +230,14 @@ fn a_setup_is_read_under_the_same_bound() {
 }
 
 /// Modules that open files by themselves, with the reason.
-const OWN: [(&str, &str); 4] = [
+const OWN: [(&str, &str); 5] = [
     ("config::files::bounded", "has the limits"),
     ("cvtcycle::commands::belt", "reads line by line"),
     (
         "output::files::lock",
         "directories, to be locked and synced",
     ),
+    ("report::results", "the checksum of a trace"),
     (
         "report::write",
         "the first and the last bytes of an earlier report",

@@ -6,12 +6,11 @@ use std::thread;
 
 use cvtcycle::config::Problem;
 
-use super::count;
-use super::problems::problem;
+use crate::args::count;
+use crate::args::groups::MOST_THREADS;
+use crate::args::problems::problem;
 use crate::print::warn;
 
-/// Most threads.
-pub const MOST: u64 = 1024;
 /// Their number, where no option gives one.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
@@ -72,10 +71,10 @@ pub fn begin(given: Option<u64>) -> Result<(), Problem> {
 fn wanted(given: Option<u64>) -> Result<u64, Problem> {
     match (given, std::env::var(VARIABLE)) {
         (Some(threads), _) => Ok(threads),
-        (None, Ok(text)) if !text.is_empty() => count(VARIABLE, &text, 1..=MOST),
+        (None, Ok(text)) if !text.is_empty() => count(VARIABLE, &text, 1..=MOST_THREADS),
         (None, _) => {
             let cores = thread::available_parallelism();
-            Ok(cores.map_or(1, |cores| (cores.get() as u64).min(MOST)))
+            Ok(cores.map_or(1, |cores| (cores.get() as u64).min(MOST_THREADS)))
         }
     }
 }
