@@ -15,6 +15,7 @@
 mod environment;
 mod names;
 mod places;
+mod processes;
 mod signals;
 mod streams;
 use std::fs;
