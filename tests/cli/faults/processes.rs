@@ -340,13 +340,7 @@ fn interleaving(golden: &Golden, traced: bool, random: &mut Random) -> Result<()
         .filter(|(name, _)| !is_hidden(name))
         .collect();
     let is_study = it.join("study.json").exists();
-    let is_whole = || {
-        golden
-            .results
-            .keys()
-            .any(|line| golden.whole(line) == shown)
-    };
-    if !is_study && !shown.is_empty() && !is_whole() {
+    if !is_study && !shown.is_empty() && !golden.is_whole(&shown) {
         let names: Vec<_> = shown.keys().collect();
         return Err(format!("{said}\nno whole result: {names:?}"));
     }

@@ -7,9 +7,9 @@ use cvtcycle::output::BUILD;
 use tempfile::TempDir;
 
 #[path = "../../../crates/output/build/identity.rs"]
-mod identity;
+mod build;
 
-use identity::{INPUTS, identity};
+use build::{INPUTS, identity};
 
 /// A workspace of one file for each input that counts.
 fn workspace() -> TempDir {
