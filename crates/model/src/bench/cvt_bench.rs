@@ -70,6 +70,8 @@ fn printed_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
             active_segments: p.active_segments,
             held: false,
         },
+        band_nm: sum(p.band_loss_nm),
+        film_nm: sum(p.film_loss_nm),
         losses: BeltLosses {
             slip_total: p.slip_total,
             band_nm: sum(p.band_loss_nm),

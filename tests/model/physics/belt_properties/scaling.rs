@@ -90,10 +90,14 @@ fn check_forces(now: &BeltState, was: &BeltState, u: &Units) -> Result<(), TestC
         u.force,
         scale,
     )?;
-    for (k, (a, b)) in values(now).iter().zip(values(was)).enumerate() {
-        if ["band", "film", "wedge", "penetration"].contains(&NAMES[k]) {
-            same(NAMES[k], *a, b, torque, b)?;
-        }
+    let (l, m) = (&now.losses, &was.losses);
+    for (name, a, b) in [
+        ("band", now.band_nm, was.band_nm),
+        ("film", now.film_nm, was.film_nm),
+        ("wedge", l.wedge_nm, m.wedge_nm),
+        ("penetration", l.penetration_nm, m.penetration_nm),
+    ] {
+        same(name, a, b, torque, b)?;
     }
     same(
         "capacity",

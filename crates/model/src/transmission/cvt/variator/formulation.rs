@@ -63,6 +63,13 @@ impl Formulation {
         self == Formulation::Smooth
     }
 
+    /// One force between bands and segments on both pulleys (TE-7, BT-6), and the share of slip in the loss by statics (SL-11, SL-12). The
+    /// printed forms take the tension step from the primary alone, and count slip by the forces on the segments (SL-7).
+    #[inline]
+    pub fn by_statics(self) -> bool {
+        self == Formulation::Smooth
+    }
+
     /// Band friction force scaled by the smaller wrap.
     #[inline]
     pub fn scales_band_force(self) -> bool {

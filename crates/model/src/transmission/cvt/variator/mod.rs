@@ -30,7 +30,7 @@ pub use slip::Slip;
 pub use tension::Tension;
 
 use crate::fluid::{BandFriction, Lubricant};
-use crate::math::{Curve, smaller};
+use crate::math::{Curve, larger, smaller};
 
 /// The checked belt and pulleys.
 #[derive(Clone, Debug, PartialEq)]
@@ -162,6 +162,10 @@ pub struct BeltState {
     pub tension: Tension,
     /// Slip in detail.
     pub slip: Slip,
+    /// Boundary friction of the bands before slip relieves them, Nm at the primary shaft (BT-3, BT-6).
+    pub band_nm: f64,
+    /// Shear of the film before slip relieves it, Nm at the primary shaft (FI-1).
+    pub film_nm: f64,
     /// Losses, total slip and capacity.
     pub losses: BeltLosses,
 }
@@ -214,26 +218,45 @@ struct Parts {
 
 #[inline(always)]
 fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
-    let tension = Tension::new(belt, at, load, at.direction);
+    let tension = Tension::driving(belt, at, load);
     let mu_segment = belt.formulation.segment_friction(load.segment_friction);
+    let band_nm = bands::band_loss_nm(at, &tension, load.band.mu);
+    let film_nm = bands::film_loss_nm(at, load);
+    let slip = slip::slip(belt, at, &tension, mu_segment);
     Parts {
-        slip: slip::slip(belt, at, &tension, mu_segment),
-        band_nm: bands::band_loss_nm(at, &tension, load.band.mu),
-        film_nm: bands::film_loss_nm(at, load),
+        slip: if belt.formulation.by_statics() {
+            let net_nm = load.output_torque_nm * at.prepared.inv_ratio;
+            slip.by_statics(net_nm, sum(band_nm) + film_nm)
+        } else {
+            slip
+        },
+        band_nm,
+        film_nm,
         deflection: deflection::deflection(belt, at, &tension, load.flank_friction),
         capacity_nm: capacity_nm(at, &tension, mu_segment),
         tension,
     }
 }
 
+fn sum(pair: [f64; 2]) -> f64 {
+    pair[0] + pair[1]
+}
+
 #[inline(always)]
 fn losses(load: &BeltLoad, parts: &Parts) -> BeltLosses {
-    let sum = |pair: [f64; 2]| pair[0] + pair[1];
     let (slip, capacity_nm) = (&parts.slip, parts.capacity_nm);
+    let share_nm = slip.primary_loss_nm + slip.secondary_loss_nm;
+    // Slip against the torque relieves bands and film, both by the same share (SL-11).
+    let sliding_nm = sum(parts.band_nm) + parts.film_nm;
+    let left = if share_nm < 0.0 {
+        larger(1.0 + share_nm / sliding_nm, 0.0)
+    } else {
+        1.0
+    };
     BeltLosses {
-        band_nm: sum(parts.band_nm),
-        film_nm: parts.film_nm,
-        slip_nm: slip.primary_loss_nm + slip.secondary_loss_nm,
+        band_nm: left * sum(parts.band_nm),
+        film_nm: left * parts.film_nm,
+        slip_nm: larger(share_nm, 0.0),
         wedge_nm: sum(parts.deflection.wedge_nm),
         penetration_nm: sum(parts.deflection.penetration_nm),
         slip_total: slip.primary + slip.secondary,
@@ -249,6 +272,8 @@ fn state(at: &BeltAtRatio, load: &BeltLoad, parts: &Parts) -> BeltState {
             + losses.sum_nm(), // VA-1
         tension: parts.tension,
         slip: parts.slip,
+        band_nm: sum(parts.band_nm),
+        film_nm: parts.film_nm,
         losses,
     }
 }

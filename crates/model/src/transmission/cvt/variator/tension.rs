@@ -7,12 +7,15 @@
 //! | TE-3 | dT = -s mu_b Q_p, s = -1 in low, +1 in high | source: thesis eq. 46, App. C |
 //! | TE-4 | C_x = T/R_s - dT | source: thesis eq. 42 |
 //! | TE-5 | TE-2 to TE-4 solved: A = 2 F_p tan th + m beta_p v2, Z = T/R_s + s mu_b A, c = mu_b beta_p / 2, C_x = Z/(1 - s c) for Z >= 0, Z/(1 + s c) below | derived |
+//! | TE-7 | one force on both pulleys: dT = -s mu_b beta Tm, beta the smaller wrap, Tm = A + \|C_x\|/2, A = F_p tan th/beta_p + F_s tan th/beta_s + m v2; C_x as TE-5 with mu_b beta A and c = mu_b beta/2 | derived: the belt has two strands, so its tension steps by the same force over both pulleys, and the smaller wrap limits it |
 //! | TE-6 | s = -tanh(ln I / eps) | ASSUMED smoothing: the printed switch at I = 1 is a jump |
 //!
 //! Symbols: F clamping force N, th half wedge angle, m belt mass per length kg/m, v belt speed m/s, mu_b band friction.
-//! C_x is continuous in T with a bend at C_x = 0. Needs mu_b beta_p / 2 < 1, true for mu_b < 0.53.
+//! C_x is continuous in T with a bend at C_x = 0. TE-3 and TE-5 are those of the printed forms, TE-7 that of `smooth`. TE-5 needs mu_b beta_p / 2 < 1,
+//! true for mu_b < 0.53; TE-7 mu_b beta / 2 < 1, true for mu_b < 0.64.
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry};
+use crate::math::smaller;
 
 /// Band pack and segment forces at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,26 +34,70 @@ pub struct Tension {
     pub step_n: f64,
 }
 
+/// Compression C_x for the step that it has without one, Z, and the rise of the step with it, s c (TE-5, TE-7).
+#[inline(always)]
+fn compression_n(z: f64, sc: f64) -> f64 {
+    // The divisors are known before the torque is: nothing waits for a division.
+    z * if z >= 0.0 {
+        1.0 / (1.0 - sc)
+    } else {
+        1.0 / (1.0 + sc)
+    }
+}
+
+/// Clamping forces of primary and secondary (TE-1), and the belt's flow of momentum m v2, N.
+#[inline(always)]
+fn forces_n(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> ([f64; 2], f64) {
+    let v = load.primary_speed_rad_s * at.geometry.primary_radius_m;
+    let clamp_n = [
+        load.secondary_clamp_n * at.thrust_ratio,
+        load.secondary_clamp_n,
+    ]; // TE-1
+    (clamp_n, belt.mass_kg_m * v * v)
+}
+
 impl Tension {
+    /// The belt's tension by its formulation, with the smoothed direction of the step (TE-6).
+    #[inline(always)]
+    pub fn driving(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Self {
+        if belt.formulation.by_statics() {
+            Tension::one_force(belt, at, load)
+        } else {
+            Tension::new(belt, at, load, at.direction)
+        }
+    }
+
+    /// Solves tension and compression with one force between bands and segments on both pulleys (TE-7).
+    #[inline(always)]
+    pub fn one_force(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Self {
+        let (g, s) = (&at.geometry, at.direction);
+        let (clamp_n, centrifugal_n) = forces_n(belt, at, load);
+        let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
+        let mean =
+            belt.tan_wedge * load.secondary_clamp_n * at.prepared.clamps_per_wrap + centrifugal_n; // A
+        let grip = load.band.mu * smaller(wraps[0], wraps[1]);
+        let z = load.output_torque_nm * at.prepared.inv_secondary_radius + s * grip * mean;
+        let cx = compression_n(z, s * (0.5 * grip)); // TE-7
+        let tension = mean + 0.5 * cx.abs();
+        Tension {
+            primary_clamp_n: clamp_n[0],
+            secondary_clamp_n: clamp_n[1],
+            primary_shoulder_n: tension * wraps[0],
+            secondary_shoulder_n: tension * wraps[1],
+            compression_n: cx,
+            step_n: -s * (grip * tension), // TE-7
+        }
+    }
+
     /// Solves tension and compression for a direction s of the tension step, -1 in low, +1 in high (TE-2 to TE-5).
     #[inline(always)]
     pub fn new(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, s: f64) -> Self {
         let (g, mu, bp) = (&at.geometry, load.band.mu, at.geometry.primary_wrap_rad);
-        let v = load.primary_speed_rad_s * g.primary_radius_m;
-        let centrifugal_n = belt.mass_kg_m * v * v;
-        let clamp_n = [
-            load.secondary_clamp_n * at.thrust_ratio,
-            load.secondary_clamp_n,
-        ];
+        let (clamp_n, centrifugal_n) = forces_n(belt, at, load);
         let a = 2.0 * clamp_n[0] * belt.tan_wedge + bp * centrifugal_n;
         let z = load.output_torque_nm * at.prepared.inv_secondary_radius + s * mu * a;
         let c = mu * bp / 2.0;
-        // The divisors are known before the torque is: nothing waits for a division.
-        let cx = z * if z >= 0.0 {
-            1.0 / (1.0 - s * c)
-        } else {
-            1.0 / (1.0 + s * c)
-        }; // TE-5
+        let cx = compression_n(z, s * c); // TE-5
         let q_p = a + cx.abs() * bp / 2.0; // TE-2
         let bs = g.secondary_wrap_rad;
         Tension {
