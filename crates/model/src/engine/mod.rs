@@ -7,7 +7,7 @@
 //! | EN-3 | enrichment = 1 + e max(0, (60 degC - T_c)/60 K) | ASSUMED |
 //! | EN-4 | accessories: T = P_el/w + T_0, w at least half the idle speed | source: CO2MPAS class values |
 //! | EN-5 | full load falls with altitude as (p/p_0)^1.2 | source: ISO 1585 naturally aspirated, pressure term only |
-//! | EN-6 | waste = fuel - indicated; exhaust takes its share, falling linearly with speed; friction goes to the engine | source: ADVISOR (0.40 to 0.30); unburnt enrichment goes to the exhaust |
+//! | EN-6 | waste = fuel - crank power; exhaust takes its share, falling linearly with speed, at most fuel - indicated; oil takes its share of friction, the coolant the rest | source: ADVISOR (0.40 to 0.30 of fuel less shaft power); bound derived; unburnt enrichment goes to the exhaust |
 //! | EN-7 | overrun torque = friction x drag factor; fuel off where the fuel line reaches zero; the wheels drag the engine only above 1.1 idle (LC-3) | source: CO2MPAS rule; drag factor ASSUMED |
 //! | EN-8 | the full-load line is not lowered by cold friction: denser charge and friction act against each other | ASSUMED |
 //!
@@ -20,7 +20,7 @@ pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
 pub use keys::EngineKeys;
 
 use crate::fluid::{Lubricant, Viscosity, ZERO_DEGC_K};
-use crate::math::{Curve, clamp, exp, larger, ln};
+use crate::math::{Curve, clamp, exp, larger, ln, smaller};
 use crate::prime_mover::PrimeMover;
 
 /// The checked engine.
@@ -299,14 +299,17 @@ impl EngineAtTemperature<'_> {
         let fast = (speed_rad_s - e.idle_hot_rad_s) / (e.highest_rad_s - e.idle_hot_rad_s);
         let exhaust_share =
             e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * clamp(fast, 0.0, 1.0);
-        let waste = burnt - indicated;
+        let waste = burnt - brake_pa * watts;
+        // The exhaust has no more than the gas kept: nothing once fuel is cut.
+        let hot_gas = smaller(exhaust_share * waste, burnt - indicated);
+        let to_oil = e.friction_to_oil * friction;
         let fuel_w = burnt * self.enrichment;
         Burn {
             fuel_kg_s: fuel_w / e.heating_value_j_kg,
             fuel_w,
-            to_coolant_w: (1.0 - exhaust_share) * waste + (1.0 - e.friction_to_oil) * friction, // EN-6
-            to_oil_w: e.friction_to_oil * friction,
-            exhaust_w: exhaust_share * waste + (self.enrichment - 1.0) * burnt,
+            to_coolant_w: waste - hot_gas - to_oil, // EN-6
+            to_oil_w: to_oil,
+            exhaust_w: hot_gas + (self.enrichment - 1.0) * burnt,
             cut: point.fuel_pa <= 0.0,
             // More taken up than the closed throttle explains would be energy from nowhere in the heat of friction.
             outside: point.outside

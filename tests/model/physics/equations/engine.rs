@@ -151,16 +151,14 @@ fn val_heat_by_hand() {
         let p = e.fuel.fuel_mep(e.piston_m_s(speed), speed, brake, friction);
         let share: f64 = (speed - 85.0) / (e.highest_rad_s - 85.0);
         let exhaust = 0.42 - 0.11 * share.clamp(0.0, 1.0);
-        let waste = (p.fuel_pa - p.indicated_pa) * watts;
+        let waste = p.fuel_pa * watts - nm * speed;
+        let exhaust = (exhaust * waste).min((p.fuel_pa - p.indicated_pa) * watts);
         let burn = now.burn(speed, nm);
         same(burn.fuel_w, 1.15 * p.fuel_pa * watts);
         same(burn.fuel_kg_s, burn.fuel_w / e.heating_value_j_kg);
         same(burn.to_oil_w, 0.37 * friction * watts);
-        same(
-            burn.to_coolant_w,
-            (1.0 - exhaust) * waste + 0.63 * friction * watts,
-        );
-        same(burn.exhaust_w, exhaust * waste + 0.15 * p.fuel_pa * watts);
+        same(burn.to_coolant_w, waste - exhaust - 0.37 * friction * watts);
+        same(burn.exhaust_w, exhaust + 0.15 * p.fuel_pa * watts);
         assert!(!burn.cut && burn.outside == p.outside);
     }
     // Fuel cut: the drag itself becomes heat; more drag than the closed throttle explains is flagged, with the margin of the flag.
@@ -181,6 +179,60 @@ fn val_heat_by_hand() {
     }
     let rest = now.burn(0.0, 10.0);
     assert!(rest.fuel_w == 0.0 && rest.to_coolant_w == 0.0 && !rest.cut);
+}
+
+/// EN-6 against the definition of its source: ADVISOR's files of spark-ignition engines have the waste heat as fuel power less mechanical
+/// power out (`fc_waste_pwr_map`), and `fc_ex_pwr_frac` as the exhaust's share of that.
+#[test]
+fn val_exhaust_share_is_of_fuel_less_brake() {
+    let setup = car("rover_216_cvt", &[]);
+    let e = setup.engine();
+    let now = e.at(e.hot_k, e.hot_k, setup.oils().1, 1.0);
+    let speed = 2000.0 * PI / 30.0;
+    let nm = e.torque_nm(4e5);
+    let burn = now.burn(speed, nm);
+    let share = burn.exhaust_w / (burn.fuel_w - nm * speed);
+    let want = 0.4 - 0.1 * (2000.0 - 850.0) / (6500.0 - 850.0);
+    assert!((share - want).abs() < 1e-12, "{share} and {want}");
+}
+
+/// EN-6 through the fuel cut: heat to coolant and exhaust has no jump where fuel goes to zero while friction stays.
+#[test]
+fn heat_is_continuous_at_fuel_cut() {
+    let (setup, e) = engine();
+    let now = at(&setup, &e, 30.0, 20.0);
+    let speed = 200.0;
+    let cut = -e.torque_nm(now.friction_pa(speed));
+    let jump = |step: f64| {
+        let heat = |i: i32| {
+            let burn = now.burn(speed, cut + step * f64::from(i));
+            [burn.to_coolant_w, burn.exhaust_w, burn.to_oil_w]
+        };
+        (-20..20)
+            .flat_map(|i| std::iter::zip(heat(i), heat(i + 1)))
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max)
+    };
+    let (coarse, fine) = (jump(0.1), jump(0.05));
+    assert!(fine < 0.51 * coarse && coarse < 100.0, "{coarse} {fine} W");
+}
+
+/// EN-6: no node is cooled by burning fuel, at any speed, torque and temperature.
+#[test]
+fn engine_heat_is_never_negative() {
+    let (setup, e) = engine();
+    for degc in [-30.0, 20.0, 90.0] {
+        let now = at(&setup, &e, degc, degc);
+        for i in 1..60 {
+            let speed = 12.0 * f64::from(i);
+            let (low, high) = (-now.drag_nm(speed), now.full_load_nm(speed));
+            for k in 0..=50 {
+                let burn = now.burn(speed, low + (high - low) * f64::from(k) / 50.0);
+                let least = burn.to_coolant_w.min(burn.to_oil_w).min(burn.exhaust_w);
+                assert!(least >= 0.0, "{degc} degC {speed} rad/s: {burn:?}");
+            }
+        }
+    }
 }
 
 /// The grid of [`Engine::speed_for_power`]: 400 parts from idle to the highest speed; the route ends at the peak of the grid.
