@@ -10,6 +10,12 @@ use cvtcycle_model::keys::{Quantity, stem};
 /// Similarity above which a name in another table may be what was meant: short names of all tables are like each other.
 const ELSEWHERE: f64 = 0.75;
 
+/// Keys of earlier versions, and what to do instead.
+const REPLACED: [(&str, &str); 1] = [(
+    "engine.friction.temperature_exponent",
+    "remove it: friction in the cold follows the oil's viscosity, with `viscous_share` and `viscous_exponent` (EN-2)",
+)];
+
 impl Log {
     /// The problem of an entry that was not read, and the known key it most likely means.
     pub fn unknown(
@@ -45,6 +51,10 @@ impl Log {
                     (document.place(&word.span), document.shown(&word.span));
             }
             problem.message = format!("`{path}` is a table, not a value");
+            return (problem, None);
+        }
+        if let Some((_, instead)) = REPLACED.iter().find(|(key, _)| *key == path) {
+            problem.hint = (*instead).to_string();
             return (problem, None);
         }
         if let Some(known) = self.other_unit(path, span) {

@@ -12,8 +12,8 @@ pub trait PrimeMover {
     fn max_rad_s(&self) -> f64;
     /// Rated power, W.
     fn rated_w(&self) -> f64;
-    /// Full-load torque over that at sea level.
-    fn full_load_factor(&self) -> f64;
+    /// Full-load torque at a speed over that of the warm machine in the reference air.
+    fn full_load_share(&self, speed_rad_s: f64) -> f64;
     /// Full-load torque at a speed.
     fn full_load_nm(&self, speed_rad_s: f64) -> f64;
     /// Torque of the accessories at a speed.

@@ -20,6 +20,8 @@ use crate::cycle::{Motion, Step};
 pub const GRAVITY_M_S2: f64 = 9.80665;
 /// Ambient at which road-load coefficients hold, K (20 degC).
 pub const REFERENCE_K: f64 = 293.15;
+/// Ambient at which full-load lines hold, K (25 degC: SAE J1349, ISO 1585).
+const CHARGE_REFERENCE_K: f64 = 298.15;
 
 /// The checked road load, coefficients in force for one ambient.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -188,13 +190,12 @@ impl RoadLoadInput {
             .for_ambient(self.surface, &ambient, self.rolling_per_k)
     }
 
-    /// Full-load factor of altitude, (p/p_0)^1.2.
-    pub fn full_load_factor(&self) -> f64 {
-        Ambient {
-            temp_k: REFERENCE_K,
+    /// Charge of a naturally aspirated engine over that at 25 degC and sea level (EN-5). The root: cold air is warmed on its way in.
+    pub fn charge(&self, ambient_k: f64) -> f64 {
+        let ambient = Ambient {
+            temp_k: ambient_k,
             altitude_m: self.altitude_m,
-        }
-        .pressure_ratio()
-        .powf(1.2)
+        };
+        ambient.pressure_ratio() * (CHARGE_REFERENCE_K / ambient_k).sqrt() // EN-5
     }
 }

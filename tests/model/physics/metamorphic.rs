@@ -201,7 +201,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 19] = [
+const NEEDS: [(&str, &[&str], &str); 17] = [
     (
         "variator.piston_outer_mm",
         &["transmission.cvt.variator.compensated=false"],
@@ -226,16 +226,6 @@ const NEEDS: [(&str, &[&str], &str); 19] = [
         "engine.inertia_torque_nm",
         &["engine.inertia_torque_nm=10"],
         "bounds the torque of inertia; never reached at steps of 1 s",
-    ),
-    (
-        "engine.friction.viscous_share",
-        &["engine_oil.kv40_mm2_s=60", "engine_oil.kv100_mm2_s=10"],
-        "with the reference oil it cancels, by design (EN-2)",
-    ),
-    (
-        "engine.friction.viscous_exponent",
-        &["engine_oil.kv40_mm2_s=60", "engine_oil.kv100_mm2_s=10"],
-        "with the reference oil it cancels, by design (EN-2)",
     ),
     (
         "ratio.down_per_s",

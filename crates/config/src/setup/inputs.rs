@@ -291,7 +291,7 @@ pub(super) fn parts<V: Values>(
         oil,
         engine_oil,
         ambient_k: cvtcycle_model::road::REFERENCE_K,
-        full_load_factor: 1.0,
+        charge: 1.0,
         belt_heat_share,
     };
     (road_load, car)

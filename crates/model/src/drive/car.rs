@@ -25,8 +25,8 @@ pub struct Car {
     pub engine_oil: Lubricant,
     /// Ambient temperature, K.
     pub ambient_k: f64,
-    /// Full-load factor of altitude.
-    pub full_load_factor: f64,
+    /// Charge of the engine's cylinders over that at 25 degC and sea level (EN-5).
+    pub charge: f64,
     /// Share of belt loss that heats the belt node.
     pub belt_heat_share: f64,
 }

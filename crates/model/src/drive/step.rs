@@ -11,7 +11,6 @@ use super::row::{Inertia, Input, Solved, row};
 use super::{Car, EnergyTerms, Row, State};
 use crate::cycle::{GearCommand, Step, Trace};
 use crate::engine::Burn;
-use crate::fluid::Lubricant;
 use crate::math::{clamp, larger, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
@@ -38,8 +37,6 @@ pub struct Drive<'a> {
     car: &'a Car,
     /// Gears of the cycle, one an interval.
     gears: Option<&'a [GearCommand]>,
-    /// Engine oil, where its viscosity is not that of the reference oil.
-    engine_oil: Option<&'a Lubricant>,
     state: State,
 }
 
@@ -49,7 +46,6 @@ impl<'a> Drive<'a> {
         Drive {
             car,
             gears: None,
-            engine_oil: car.engine.non_reference_oil(&car.engine_oil),
             state,
         }
     }
@@ -81,11 +77,11 @@ impl<'a> Drive<'a> {
             kinetic_j,
         } = &mut self.state;
         let wheel = car.road_load.wheel(step);
-        let engine = car.engine.at_temperatures(
+        let engine = car.engine.at(
             heat.node_k[COOLANT],
             heat.node_k[ENGINE_OIL],
-            self.engine_oil,
-            car.full_load_factor,
+            &car.engine_oil,
+            car.charge,
         );
         let input = StepInput {
             wheel: &wheel,

@@ -32,11 +32,11 @@ keys! {
 
     /// Keys of `[engine.friction]`.
     FRICTION: FrictionKeys = "friction" [] {
-        temperature_exponent: number(0.0, 8.0), "exponent t of friction with temperature (EN-2)";
         hot_degc: number(60.0, 130.0), "temperature of the warm engine (EN-2)";
-        viscous_share: number(0.0, 1.0), "share of friction that follows the oil's viscosity (EN-2)";
+        viscous_share: number(0.0, 1.0), "share of hot friction that rubs in oil and follows its viscosity (EN-2)";
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity (EN-2)";
-        reference_kv40_mm2_s: number(1.5, 1000.0), "reference oil at 40 degC, for which the temperature exponent holds (EN-2)";
+        film_coolant_share: or(0.0, number(0.0, 1.0)), "temperature of the oil films, from that of the oil (0) to that of the coolant (1) (EN-2)";
+        reference_kv40_mm2_s: number(1.5, 1000.0), "reference oil at 40 degC, for which the hot friction holds (EN-2)";
         reference_kv100_mm2_s: number(1.5, 1000.0), "reference oil at 100 degC (EN-2)";
         overrun_factor: or(1.0, number(1.0, 3.0)), "closed-throttle drag over friction (EN-7)";
     }
@@ -90,6 +90,7 @@ impl Engine {
         let (friction, idle) = (s.table("friction"), s.table("idle"));
         let (fuel, heat) = (s.table("fuel"), s.table("heat"));
         let displacement_m3 = s.number(&ENGINE.displacement_cc);
+        let hot_k = friction.number(&FRICTION.hot_degc);
         let line;
         let engine = Engine {
             displacement_m3,
@@ -101,11 +102,11 @@ impl Engine {
             inertia_torque_nm: s.number(&ENGINE.inertia_torque_nm),
             idle_hot_rad_s: idle.number(&IDLE.hot_rpm),
             idle_cold_rad_s: idle.number(&IDLE.cold_rpm),
-            friction_exponent: friction.number(&FRICTION.temperature_exponent),
-            hot_k: friction.number(&FRICTION.hot_degc),
+            hot_k,
             viscous_share: friction.number(&FRICTION.viscous_share),
             viscous_exponent: friction.number(&FRICTION.viscous_exponent),
-            reference_oil: reference_oil(&friction),
+            reference_m2_s: reference_oil(&friction).kinematic_m2_s(hot_k),
+            film_coolant_share: friction.number(&FRICTION.film_coolant_share),
             overrun_drag: friction.number(&FRICTION.overrun_factor),
             enrichment: fuel.number(&FUEL.cold_enrichment),
             electrical_w: s.number(&ENGINE.electrical_w),

@@ -3,15 +3,16 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | EN-1 | idle = hot + (cold - hot) clip((60 degC - T_c)/70 K, 0, 1) | ASSUMED |
-//! | EN-2 | friction factor = theta^-t (1 + s ((nu/nu_r)^m - 1)), theta = T/T_hot at most 1, T mean of coolant and oil | source: CO2MPAS (theta^-t); share s and m ASSUMED, so that the oil counts |
+//! | EN-2 | friction factor = 1 + s ((nu(T_f)/nu_r(T_hot))^m - 1), T_f = T_o + x (T_c - T_o), at most T_hot | source: Shayler, Leong, Murphy, SAE 2005-01-1654 (rubbing friction follows the oil's viscosity); s and m ASSUMED within its class of engines |
 //! | EN-3 | enrichment = 1 + e max(0, (60 degC - T_c)/60 K) | ASSUMED |
 //! | EN-4 | accessories: T = P_el/w + T_0, w at least half the idle speed | source: CO2MPAS class values |
-//! | EN-5 | full load falls with altitude as (p/p_0)^1.2 | source: ISO 1585 naturally aspirated, pressure term only |
+//! | EN-5 | charge g = (p/p_0) (298.15 K/T_amb)^0.5 | source: form of SAE J1349 (charge with pressure and root of temperature, friction constant) |
 //! | EN-6 | waste = fuel - crank power; exhaust takes its share, falling linearly with speed, at most fuel - indicated; oil takes its share of friction, the coolant the rest | source: ADVISOR (0.40 to 0.30 of fuel less shaft power); bound derived; unburnt enrichment goes to the exhaust |
 //! | EN-7 | overrun torque = friction x drag factor; fuel off where the fuel line reaches zero; the wheels drag the engine only above 1.1 idle (LC-3) | source: CO2MPAS rule; drag factor ASSUMED |
-//! | EN-8 | the full-load line is not lowered by cold friction: denser charge and friction act against each other | ASSUMED |
+//! | EN-8 | full load = g (T_hot + T_f) - Theta T_f, at least 2 % of T_hot; T_hot the line of the file, T_f hot friction | derived: the air limits indicated torque, friction takes its part |
 //!
-//! nu_r is the viscosity of the reference oil at the same temperature, so that with the reference oil EN-2 is the published law.
+//! nu is the viscosity of the oil in use, nu_r that of the reference oil, for which the hot friction of the fuel model holds. The share 1 - s of
+//! that friction is throttling, gas exchange and accessories, which do not thicken in the cold.
 
 mod fuel;
 mod keys;
@@ -19,9 +20,12 @@ mod keys;
 pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
 pub use keys::EngineKeys;
 
-use crate::fluid::{Lubricant, Viscosity, ZERO_DEGC_K};
+use crate::fluid::{Lubricant, ZERO_DEGC_K};
 use crate::math::{Curve, clamp, exp, larger, ln, smaller};
 use crate::prime_mover::PrimeMover;
+
+/// Part of the full-load line that is left to an engine whose air does not carry its friction: keeps the throttle finite.
+const LEAST_FULL_LOAD: f64 = 0.02;
 
 /// The checked engine.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,16 +48,16 @@ pub struct Engine {
     pub idle_hot_rad_s: f64,
     /// Idle speed at -10 degC and below, rad/s.
     pub idle_cold_rad_s: f64,
-    /// Friction exponent t.
-    pub friction_exponent: f64,
     /// Temperature at which friction is that of the warm engine, K.
     pub hot_k: f64,
-    /// Viscous share s of friction.
+    /// Share s of hot friction that rubs in oil.
     pub viscous_share: f64,
     /// Exponent m of viscosity.
     pub viscous_exponent: f64,
-    /// Viscosity of the reference oil.
-    pub reference_oil: Viscosity,
+    /// Viscosity of the reference oil in the warm engine, m2/s.
+    pub reference_m2_s: f64,
+    /// Temperature of the oil films between that of the oil (0) and the coolant (1).
+    pub film_coolant_share: f64,
     /// Overrun drag over friction.
     pub overrun_drag: f64,
     /// Enrichment e.
@@ -78,7 +82,7 @@ pub struct Engine {
     pub fuel: FuelModel,
 }
 
-/// The engine at one temperature state and altitude.
+/// The engine at one temperature state, in one air.
 #[derive(Clone, Copy, Debug)]
 pub struct EngineAtTemperature<'a> {
     /// The engine.
@@ -89,8 +93,8 @@ pub struct EngineAtTemperature<'a> {
     pub idle_rad_s: f64,
     /// Fuel factor of enrichment (EN-3).
     pub enrichment: f64,
-    /// Full-load factor of altitude (EN-5).
-    pub full_load_factor: f64,
+    /// Charge of the cylinders over that at 25 degC and sea level (EN-5).
+    pub charge: f64,
 }
 
 /// What the engine burns and rejects at one operating point, W unless said.
@@ -113,51 +117,20 @@ pub struct Burn {
 }
 
 impl Engine {
-    /// The oil in use, where its viscosity is not that of the reference oil: then EN-2 has its second factor.
-    pub fn non_reference_oil<'a>(&self, oil: &'a Lubricant) -> Option<&'a Lubricant> {
-        (oil.viscosity != self.reference_oil).then_some(oil)
-    }
-
-    /// Prepares the engine for coolant and oil temperature, oil and ambient pressure ratio.
+    /// Prepares the engine for coolant and oil temperature, oil and charge.
+    #[inline(always)]
     pub fn at(
         &self,
         coolant_k: f64,
         oil_k: f64,
         oil: &Lubricant,
-        pressure_factor: f64,
+        charge: f64,
     ) -> EngineAtTemperature<'_> {
-        self.at_temperatures(
-            coolant_k,
-            oil_k,
-            self.non_reference_oil(oil),
-            pressure_factor,
-        )
-    }
-
-    /// The same, with what [`Engine::non_reference_oil`] says of the oil: it holds for a whole drive.
-    #[inline(always)]
-    pub fn at_temperatures(
-        &self,
-        coolant_k: f64,
-        oil_k: f64,
-        other_oil: Option<&Lubricant>,
-        pressure_factor: f64,
-    ) -> EngineAtTemperature<'_> {
-        let theta = 0.5 * (coolant_k + oil_k) / self.hot_k;
-        let viscous = other_oil.map_or(1.0, |oil| {
-            let relative = oil.kinematic_m2_s(oil_k) / self.reference_oil.kinematic_m2_s(oil_k);
-            1.0 + self.viscous_share * (exp(self.viscous_exponent * ln(relative)) - 1.0)
-        });
-        let thick = if theta < 1.0 {
-            exp(-self.friction_exponent * ln(theta))
-        } else {
-            1.0
-        };
         let cold = clamp((60.0 + ZERO_DEGC_K - coolant_k) / 70.0, 0.0, 1.0);
         let enrich = (60.0 + ZERO_DEGC_K - coolant_k) / 60.0;
         EngineAtTemperature {
             engine: self,
-            friction_factor: thick * viscous, // EN-2
+            friction_factor: self.friction_factor(coolant_k, oil_k, oil),
             idle_rad_s: self.idle_hot_rad_s + (self.idle_cold_rad_s - self.idle_hot_rad_s) * cold, // EN-1
             enrichment: 1.0
                 + if enrich > 0.0 {
@@ -165,8 +138,17 @@ impl Engine {
                 } else {
                     0.0
                 }, // EN-3
-            full_load_factor: pressure_factor,
+            charge,
         }
+    }
+
+    /// Friction over that of the warm engine with the reference oil.
+    #[inline(always)]
+    fn friction_factor(&self, coolant_k: f64, oil_k: f64, oil: &Lubricant) -> f64 {
+        let film_k = oil_k + self.film_coolant_share * (coolant_k - oil_k);
+        let film_k = smaller(film_k, self.hot_k);
+        let thicker = oil.kinematic_m2_s(film_k) / self.reference_m2_s;
+        1.0 + self.viscous_share * (exp(self.viscous_exponent * ln(thicker)) - 1.0) // EN-2
     }
 
     /// Torque of a mean effective pressure (four-stroke), Nm.
@@ -229,8 +211,8 @@ impl PrimeMover for EngineAtTemperature<'_> {
     }
 
     #[inline]
-    fn full_load_factor(&self) -> f64 {
-        self.full_load_factor
+    fn full_load_share(&self, speed_rad_s: f64) -> f64 {
+        self.full_load_nm(speed_rad_s) / self.engine.full_load.at(speed_rad_s)
     }
 
     #[inline]
@@ -240,7 +222,15 @@ impl PrimeMover for EngineAtTemperature<'_> {
 
     #[inline]
     fn full_load_nm(&self, speed_rad_s: f64) -> f64 {
-        self.engine.full_load.at(speed_rad_s) * self.full_load_factor // EN-5
+        let hot = self.engine.full_load.at(speed_rad_s);
+        let piston_m_s = self.engine.piston_m_s(speed_rad_s);
+        let friction = self
+            .engine
+            .torque_nm(self.engine.fuel.hot_friction_pa(piston_m_s));
+        // Written so that a warm engine in the reference air has its line to the bit.
+        let now =
+            hot + (self.charge - 1.0) * (hot + friction) - (self.friction_factor - 1.0) * friction;
+        larger(now, LEAST_FULL_LOAD * hot) // EN-8
     }
 
     /// EN-4: none at standstill.

@@ -180,7 +180,8 @@ fn val_start_by_hand() {
     let Transmission::Cvt(cvt) = &car.transmission else {
         panic!("a CVT")
     };
-    let idle = car.engine.at(300.0, 300.0, &car.engine_oil, 1.0).idle_rad_s;
+    let engine = car.engine.at(300.0, 300.0, &car.engine_oil, 1.0);
+    let idle = engine.idle_rad_s;
     for (wheel, power) in [
         (0.0, 0.0),
         (2.0, 1e3),
@@ -197,7 +198,7 @@ fn val_start_by_hand() {
             c.overrun_rad_s + (share / 0.01).clamp(0.0, 1.0) * (c.gentle_rad_s - c.overrun_rad_s);
         target += c.rise_rad_s * (share - c.gentle_share).max(0.0);
         if share > 0.0 {
-            target = target.max(cvt.full_load_route.at(power / c.route_efficiency));
+            target = target.max(super::route_rad_s(cvt, &engine, power / c.route_efficiency));
         }
         let ratio = if ws > 0.0 {
             (target.min(c.highest_rad_s) / ws).clamp(c.high, c.low)

@@ -426,9 +426,11 @@ fn shifted(
         secondary_rad_s: cvt.final_drive * wheel.wheel_rad_s,
         power_w: wheel.power_w,
         rated_w: car.engine.rated_w,
-        full_load_rad_s: cvt
-            .full_load_route
-            .at(wheel.power_w / (cvt.ratio.route_efficiency * 0.8)),
+        full_load_rad_s: super::route_rad_s(
+            cvt,
+            &engine,
+            wheel.power_w / cvt.ratio.route_efficiency,
+        ),
         ratio_before: from,
         flow_down_per_s: free / down,
         flow_up_per_s: free / up,
@@ -475,6 +477,7 @@ fn val_shift_of_the_shipped_box() {
         (1.5, 50.0, 45e3),
         (1.3, 50.0, 40e3),
         (1.2, 50.0, 35e3),
+        (1.9, 30.0, 27e3),
         (2.4, 2.0, 2e3),
     ] {
         for pa in [8e5, 45e5, 90e5] {
@@ -486,11 +489,13 @@ fn val_shift_of_the_shipped_box() {
                     ..WheelDemand::default()
                 };
                 let (d, demand) = shifted(&b, from, &wheel, pa, degc);
+                let k = degc + ZERO;
+                let engine = b.car.engine.at(k, k, &b.car.engine_oil, 0.8);
                 // Kick-down tries again with 10 % less efficiency each time (RC-7).
                 let asked = (0..9).map(|k| {
-                    let share = b.cvt().ratio.route_efficiency * 0.9f64.powi(k) * 0.8;
+                    let share = b.cvt().ratio.route_efficiency * 0.9f64.powi(k);
                     b.cvt().ratio.step(&RatioDemand {
-                        full_load_rad_s: b.cvt().full_load_route.at(power / share),
+                        full_load_rad_s: super::route_rad_s(b.cvt(), &engine, power / share),
                         ..demand
                     })
                 });

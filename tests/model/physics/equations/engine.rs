@@ -66,45 +66,122 @@ fn val_enrichment_by_hand() {
     }
 }
 
-/// EN-2: the published law with the reference oil, and its second factor with another one.
+/// EN-2: a third of the way from oil to coolant, another oil than the reference, warm beyond the bound.
 #[test]
 fn val_cold_friction_by_hand() {
     let (setup, e) = engine();
-    let own = setup.oils().1.clone();
     let other = setup.oils().0.clone();
-    let reference = Engine {
-        reference_oil: own.viscosity.clone(),
-        ..e.clone()
+    let e = Engine {
+        film_coolant_share: 1.0 / 3.0,
+        ..e
     };
-    for (coolant, oil) in [(80.0, 60.0), (-10.0, -14.0), (20.0, 40.0)] {
-        let theta = (0.5 * (coolant + oil) + ZERO) / e.hot_k;
-        let plain = if theta < 1.0 {
-            theta.powf(-e.friction_exponent)
-        } else {
-            1.0
-        };
-        same(
-            reference
-                .at(coolant + ZERO, oil + ZERO, &own, 1.0)
-                .friction_factor,
-            plain,
-        );
-        let ratio = other.kinematic_m2_s(oil + ZERO) / own.kinematic_m2_s(oil + ZERO);
-        let second = 1.0 + 0.4 * (ratio.powf(0.35) - 1.0);
-        same(
-            reference
-                .at(coolant + ZERO, oil + ZERO, &other, 1.0)
-                .friction_factor,
-            plain * second,
-        );
+    let reference = setup.oils().1.kinematic_m2_s(e.hot_k);
+    same(e.reference_m2_s, reference);
+    for oil in [setup.oils().1, &other] {
+        for (coolant, degc) in [(80.0, 60.0), (-10.0, -14.0), (20.0, 40.0), (130.0, 110.0)] {
+            let film = (degc + (coolant - degc) / 3.0 + ZERO).min(e.hot_k);
+            let ratio = oil.kinematic_m2_s(film) / reference;
+            let now = e.at(coolant + ZERO, degc + ZERO, oil, 1.0);
+            same(now.friction_factor, 1.0 + 0.4 * (ratio.powf(0.35) - 1.0));
+        }
     }
-    let hot = e.hot_k - ZERO;
-    same(
-        reference
-            .at(hot + 20.0 + ZERO, hot + ZERO, &own, 1.0)
-            .friction_factor,
-        1.0,
+}
+
+/// EN-2: the fuel model's hot friction is that of the warm engine with the reference oil, to the bit, and so is the full-load line (EN-8).
+#[test]
+fn theta_is_one_hot_with_the_reference_oil() {
+    let setup = car("rover_216_cvt", &[]);
+    let e = setup.engine();
+    for above in [0.0, 25.0] {
+        let now = e.at(e.hot_k, e.hot_k + above, setup.oils().1, 1.0);
+        assert!(now.friction_factor == 1.0);
+        for rpm in [850.0, 2345.0, 6400.0] {
+            assert!(now.full_load_nm(rpm * PI / 30.0) == e.full_load.at(rpm * PI / 30.0));
+        }
+    }
+}
+
+/// EN-2 follows the bulk oil (ASME ICEF2001, Nottingham: friction decays with the viscosity at the temperature of sump or main gallery), not
+/// a coolant that is warm already.
+#[test]
+fn cold_friction_follows_the_oil_not_the_coolant() {
+    let setup = car("rover_216_cvt", &[]);
+    let factor = |coolant: f64, oil: f64| {
+        setup
+            .engine()
+            .at(coolant + ZERO, oil + ZERO, setup.oils().1, 1.0)
+            .friction_factor
+    };
+    assert!(factor(80.0, 20.0) == factor(20.0, 20.0) && factor(20.0, 20.0) > 1.3);
+}
+
+/// EN-2: the thinner oil takes less in the cold and, unlike a law of temperature alone, when hot.
+#[test]
+fn thinner_oil_saves_hot_and_cold() {
+    let thick = car("rover_216_cvt", &[]);
+    let thin = car(
+        "rover_216_cvt",
+        &["engine_oil.kv40_mm2_s=65", "engine_oil.kv100_mm2_s=11"],
     );
+    let factor = |setup: &Setup, degc: f64| {
+        setup
+            .engine()
+            .at(degc + ZERO, degc + ZERO, setup.oils().1, 1.0)
+            .friction_factor
+    };
+    assert!(factor(&thin, 90.0) < 0.99 && factor(&thin, 90.0) > 0.95);
+    assert!(factor(&thin, -10.0) < 0.95 * factor(&thick, -10.0));
+}
+
+/// EN-2 against a measured car: fuel a revolution at idle some 30 s after a start (oil by then 29 degC, coolant 36 degC) over that of the
+/// hot engine. Truth: `validation/outside/engine_idle_after_start.csv`, 1.17; 1.10 to 1.30 for another engine of the kind.
+#[test]
+fn val_idle_fuel_per_revolution() {
+    let setup = car(
+        "rover_216_5mt",
+        &["engine_oil.kv40_mm2_s=65", "engine_oil.kv100_mm2_s=11"],
+    );
+    let e = setup.engine();
+    let a_turn = |coolant: f64, oil: f64| {
+        let now = e.at(coolant + ZERO, oil + ZERO, setup.oils().1, 1.0);
+        let speed = 850.0 * PI / 30.0;
+        let burn = now.burn(speed, now.accessories_nm(speed));
+        burn.fuel_w / now.enrichment / speed
+    };
+    let ratio = a_turn(36.0, 29.0) / a_turn(90.0, 90.0);
+    assert!((1.10..1.30).contains(&ratio), "{ratio}");
+}
+
+/// EN-8 against the air: what a naturally aspirated engine burns at full load is no more than the mixture it draws, with a volumetric efficiency of
+/// 1.1 at most (a tuned intake at its best speed) and 14.6 kg of air a kg of petrol.
+#[test]
+fn val_full_load_is_what_the_air_burns() {
+    for name in crate::common::CARS {
+        for degc in [-40.0, -30.0, -10.0, 25.0, 40.0] {
+            let setup = car(name, &[]);
+            let cold = setup.car(degc + ZERO);
+            let e = &cold.engine;
+            let now = e.at(degc + ZERO, degc + ZERO, &cold.engine_oil, cold.charge);
+            let air = 1.1 * 1.2041 * 293.15 / (degc + ZERO) * e.heating_value_j_kg / 14.6;
+            for share in 3..=20 {
+                let speed = e.highest_rad_s * f64::from(share) / 20.0;
+                let crank_nm = now.full_load_nm(speed);
+                let point = e.fuel.fuel_mep(
+                    e.piston_m_s(speed),
+                    speed,
+                    e.mep_pa(crank_nm),
+                    now.friction_pa(speed),
+                );
+                assert!(crank_nm > 0.1 * e.full_load.at(speed));
+                assert!(
+                    point.fuel_pa <= air,
+                    "{name} {degc} degC {speed} rad/s: {} of {} bar",
+                    point.fuel_pa / 1e5,
+                    air / 1e5
+                );
+            }
+        }
+    }
 }
 
 /// EN-4, EN-5, EN-7 and the relation of torque, pressure and piston speed of a four-stroke engine.
@@ -124,7 +201,17 @@ fn val_torques_by_hand() {
     ] {
         same(now.accessories_nm(speed), nm);
     }
-    same(now.full_load_nm(300.0), 0.9 * e.full_load.at(300.0));
+    let (line, hot) = (
+        e.full_load.at(300.0),
+        e.torque_nm(e.fuel.hot_friction_pa(e.piston_m_s(300.0))),
+    );
+    same(
+        now.full_load_nm(300.0),
+        0.9 * (line + hot) - now.friction_factor * hot,
+    );
+    same(now.full_load_share(300.0), now.full_load_nm(300.0) / line);
+    let thin = e.at(50.0 + ZERO, 40.0 + ZERO, setup.oils().1, 0.1);
+    same(thin.full_load_nm(300.0), 0.02 * line);
     let friction = e.fuel.hot_friction_pa(e.piston_m_s(300.0)) * now.friction_factor;
     same(now.friction_pa(300.0), friction);
     same(

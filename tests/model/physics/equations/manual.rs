@@ -353,18 +353,19 @@ fn an_engine_too_weak_to_idle_is_flagged() {
     };
     let (d, _) = solve(&car, &s);
     let k = s.degc + ZERO;
-    let nm = d.shaft_nm
-        + car
-            .engine
-            .at(k, k, &car.engine_oil, 1.0)
-            .accessories_nm(d.engine_rad_s);
+    let (w, cold) = (d.engine_rad_s, car.engine.clone());
+    let cold = cold.at(k, k, &car.engine_oil, 1.0);
+    let nm = d.shaft_nm + cold.accessories_nm(w);
+    // What cold friction takes off the line (EN-8).
+    let hot_nm = cold.engine.torque_nm(cold.friction_pa(w)) / cold.friction_factor;
+    let lost_nm = (cold.friction_factor - 1.0) * hot_nm;
     for (share, want) in [
         (1.0 + 1e-4, true),
         (1.04, true),
         (1.0 + 1e-6, false),
         (0.5, false),
     ] {
-        car.engine.full_load = cvtcycle_model::math::Curve::constant(nm / share);
+        car.engine.full_load = cvtcycle_model::math::Curve::constant(nm / share + lost_nm);
         let (d, _) = solve(&car, &s);
         near(d.throttle, share.min(1.0), 1e-12);
         assert_eq!(d.flags.contains(Flags::OUTSIDE_VALIDITY), want, "{share}");

@@ -3,6 +3,7 @@
 use super::{near, same};
 use cvtcycle_config::cycle::{Motion, Step};
 use cvtcycle_config::setup::{Options, load};
+use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::road::{Ambient, RoadLoad, Surface};
 
 fn car() -> RoadLoad {
@@ -155,12 +156,13 @@ fn val_road_load_of_a_file() {
     let at = |sets: &[&str]| {
         let setup = crate::common::car("rover_216_cvt", sets);
         let car = setup.car(293.15);
-        (car.road_load, car.full_load_factor)
+        (car.road_load, car.charge)
     };
     let (plain, factor) = at(&[]);
-    same(factor, 1.0);
+    let warmer = (298.15f64 / 293.15).sqrt();
+    same(factor, warmer);
     let high = at(&["road_load.altitude_m=1500"]).1;
-    same(high, (1.0 - 2.25577e-5 * 1500.0f64).powf(5.25588 * 1.2));
+    same(high, warmer * (1.0 - 2.25577e-5 * 1500.0f64).powf(5.25588));
     let (loaded, _) = at(&["road_load.payload_kg=100"]);
     same(loaded.mass_kg, plain.mass_kg + 100.0);
     same(
@@ -215,5 +217,16 @@ fn val_road_load_of_a_file() {
         ]);
         same(r83.f0_n, f0);
         same(r83.f2_n_per_m_s2, kmh * 12.96);
+    }
+}
+
+/// EN-5 and EN-8 against the exponent of 1.2 that ISO 1585 has for pressure: full load of a warm engine at altitude.
+#[test]
+fn val_full_load_at_altitude() {
+    let setup = crate::common::car("rover_216_cvt", &[]);
+    let e = setup.engine();
+    for pressure in [0.9f64, 0.8, 0.7] {
+        let now = e.at(e.hot_k, e.hot_k, setup.oils().1, pressure);
+        near(now.full_load_share(300.0), pressure.powf(1.2), 0.03);
     }
 }

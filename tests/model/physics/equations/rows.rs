@@ -85,12 +85,9 @@ struct Seen {
 
 fn check(car: &Car, row: &Row, c: &mut Carried, seen: &mut Seen, place: &str) {
     let (t, w, dt) = (c.heat.node_k, row.engine_speed_rad_s, row.dt_s);
-    let now = car.engine.at(
-        t[COOLANT],
-        t[ENGINE_OIL],
-        &car.engine_oil,
-        car.full_load_factor,
-    );
+    let now = car
+        .engine
+        .at(t[COOLANT], t[ENGINE_OIL], &car.engine_oil, car.charge);
     let off = row.flags.contains(Flags::ENGINE_OFF);
     let begun = 0.5 * car.engine.inertia_kg_m2 * w * w;
     let accessories = now.accessories_nm(w);
@@ -232,7 +229,7 @@ fn val_rows_from_their_parts() {
         let setup = car(name, &[]);
         let mut car = setup.car(ambient_degc + ZERO);
         car.network.cooler = None; // the row has no oil flow
-        car.full_load_factor = if ambient_degc > 19.0 && ambient_degc < 21.0 {
+        car.charge = if ambient_degc > 19.0 && ambient_degc < 21.0 {
             0.3
         } else {
             0.95

@@ -136,7 +136,7 @@ fn engine_bounds(row: &Row, car: &Car, before: &Heat) -> Checked {
         before.node_k[COOLANT],
         before.node_k[ENGINE_OIL],
         &car.engine_oil,
-        car.full_load_factor,
+        car.charge,
     );
     let w = row.engine_speed_rad_s;
     if w <= 0.0 || row.flags.contains(Flags::NOT_CONVERGED) {

@@ -113,6 +113,16 @@ impl Cvt {
             + self.centrifugal_n_s2 * secondary_rad_s * secondary_rad_s
     }
 
+    /// Lowest engine speed at which full load gives a power, rad/s (RC-3). The hot line knows it at once; what air and cold friction leave of
+    /// that line falls with speed, so three passes from the speed of greatest power settle it.
+    #[inline]
+    pub fn full_load_rad_s<P: PrimeMover>(&self, engine: &P, power_w: f64) -> f64 {
+        (0..3).fold(self.ratio.highest_rad_s, |speed, _| {
+            self.full_load_route
+                .at(power_w / engine.full_load_share(speed)) // RC-3
+        })
+    }
+
     /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
     pub fn radius_factor(&self, at: &BeltAtRatio) -> f64 {
         exp(self.radius_exponent * ln(self.low_radius_m / at.geometry.primary_radius_m))
@@ -132,9 +142,10 @@ impl Cvt {
             secondary_rad_s: secondary,
             power_w: input.wheel.power_w,
             rated_w: input.engine.rated_w(),
-            full_load_rad_s: self
-                .full_load_route
-                .at(input.wheel.power_w / self.ratio.route_efficiency),
+            full_load_rad_s: self.full_load_rad_s(
+                input.engine,
+                input.wheel.power_w / self.ratio.route_efficiency,
+            ),
             ratio_before: self.ratio.low,
             flow_down_per_s: 0.0,
             flow_up_per_s: 0.0,

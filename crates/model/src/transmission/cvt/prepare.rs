@@ -62,9 +62,7 @@ fn shift<P: PrimeMover>(
         secondary_rad_s: cvt.final_drive * input.wheel.wheel_rad_s,
         power_w: input.wheel.power_w,
         rated_w: input.engine.rated_w(),
-        full_load_rad_s: cvt
-            .full_load_route
-            .at(input.wheel.power_w / (route.efficiency * input.engine.full_load_factor())),
+        full_load_rad_s: cvt.full_load_rad_s(input.engine, input.wheel.power_w / route.efficiency),
         ratio_before: before.ratio,
         flow_down_per_s: free / down_m3, // RC-5
         flow_up_per_s: free / up_m3,     // RC-5
