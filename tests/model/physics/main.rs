@@ -19,6 +19,7 @@ mod cycles;
 mod equations;
 mod maps;
 mod metamorphic;
+mod outside;
 mod parts;
 mod rig_transmission;
 mod rig_variator;

@@ -10,7 +10,7 @@
 use super::row::{Inertia, Input, Solved, row};
 use super::{Car, EnergyTerms, Row, State};
 use crate::cycle::{GearCommand, Step, Trace};
-use crate::engine::Burn;
+use crate::engine::{Burn, Running};
 use crate::math::{clamp, larger, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
@@ -75,13 +75,20 @@ impl<'a> Drive<'a> {
             heat,
             transmission,
             kinetic_j,
+            running,
         } = &mut self.state;
         let wheel = car.road_load.wheel(step);
-        let engine = car.engine.at(
+        *running = running.started(heat.node_k[COOLANT]);
+        if !car.transmission.is_cvt() {
+            *running = running.rolled(wheel.wheel_rad_s); // a CVT holds its speed by its ratio
+        }
+        let engine = car.engine.in_step(
             heat.node_k[COOLANT],
             heat.node_k[ENGINE_OIL],
             &car.engine_oil,
             car.charge,
+            running,
+            step.dt_s,
         );
         let input = StepInput {
             wheel: &wheel,
@@ -130,6 +137,17 @@ impl<'a> Drive<'a> {
             },
         );
         *heat = heat_step.heat;
+        *running = if step.engine_off {
+            Running::STOPPED
+        } else {
+            Running {
+                since_s: running.since_s + step.dt_s,
+                speed_rad_s: output.engine_rad_s,
+                wheel_rad_s: wheel.wheel_rad_s,
+                cut: burn.cut,
+                ..*running
+            }
+        };
         // An engine at rest has no rotating energy, not even a rest of rounding.
         *kinetic_j = if output.engine_rad_s <= 0.0 {
             0.0
@@ -166,7 +184,11 @@ fn inertia(
     let torque = if wanted > 0.0 {
         clamp(engine.full_load_nm(w) - steady, 0.0, smaller(wanted, bound)) // SI-2
     } else {
-        clamp(-(steady + engine.drag_nm(w)), larger(wanted, -bound), 0.0) // SI-2
+        clamp(
+            -(steady + engine.own_drag_nm(w)),
+            larger(wanted, -bound),
+            0.0,
+        ) // SI-2
     };
     let over = if coupled && output.brake_w > 0.0 && wanted < torque {
         torque - wanted

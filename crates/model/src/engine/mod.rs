@@ -2,13 +2,13 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | EN-1 | idle = hot + (cold - hot) clip((60 degC - T_c)/70 K, 0, 1) | ASSUMED |
+//! | EN-1 | idle = hot + (cold - hot) clip((T_w - T_c)/(T_w - T_k), 0, 1) + n_a clip((60 degC - T_start)/30 K, 0, 1) (1 - t/t_a) while t < t_a | T_w, T_k and the line fitted to idle after start of another car (validation/outside); n_a ASSUMED |
 //! | EN-2 | friction factor = 1 + s ((nu(T_f)/nu_r(T_hot))^m - 1), T_f = T_o + x (T_c - T_o), at most T_hot | source: Shayler, Leong, Murphy, SAE 2005-01-1654 (rubbing friction follows the oil's viscosity); s and m ASSUMED within its class of engines |
-//! | EN-3 | enrichment = 1 + e max(0, (60 degC - T_c)/60 K) | ASSUMED |
+//! | EN-3 | enrichment = 1 + e clip((60 degC - T_c)/60 K, 0, 1) | ASSUMED |
 //! | EN-4 | accessories: T = P_el/w + T_0, w at least half the idle speed | source: CO2MPAS class values |
 //! | EN-5 | charge g = (p/p_0) (298.15 K/T_amb)^0.5 | source: form of SAE J1349 (charge with pressure and root of temperature, friction constant) |
 //! | EN-6 | waste = fuel - crank power; exhaust takes its share, falling linearly with speed, at most fuel - indicated; oil takes its share of friction, the coolant the rest | source: ADVISOR (0.40 to 0.30 of fuel less shaft power); bound derived; unburnt enrichment goes to the exhaust |
-//! | EN-7 | overrun torque = friction x drag factor; fuel off where the fuel line reaches zero; the wheels drag the engine only above 1.1 idle (LC-3) | source: CO2MPAS rule; drag factor ASSUMED |
+//! | EN-7 | overrun torque = friction x drag factor; fuel off where the fuel line reaches zero; the wheels drag the engine only above 1.1 idle (LC-3); without fuel cut (EN-11) the engine turns itself | source: CO2MPAS rule; drag factor ASSUMED |
 //! | EN-8 | full load = g (T_hot + T_f) - Theta T_f, at least 2 % of T_hot; T_hot the line of the file, T_f hot friction | derived: the air limits indicated torque, friction takes its part |
 //!
 //! nu is the viscosity of the oil in use, nu_r that of the reference oil, for which the hot friction of the fuel model holds. The share 1 - s of
@@ -16,9 +16,11 @@
 
 mod fuel;
 mod keys;
+mod start;
 
 pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
 pub use keys::EngineKeys;
+pub use start::Running;
 
 use crate::fluid::{Lubricant, ZERO_DEGC_K};
 use crate::math::{Curve, clamp, exp, larger, ln, smaller};
@@ -46,8 +48,16 @@ pub struct Engine {
     pub inertia_torque_nm: f64,
     /// Idle speed hot, rad/s.
     pub idle_hot_rad_s: f64,
-    /// Idle speed at -10 degC and below, rad/s.
+    /// Idle speed cold, rad/s.
     pub idle_cold_rad_s: f64,
+    /// Coolant up to which idle is cold, K.
+    pub idle_cold_k: f64,
+    /// Coolant from which idle is hot, K.
+    pub idle_warm_k: f64,
+    /// Idle speed above that at a cold start, rad/s.
+    pub idle_after_start_rad_s: f64,
+    /// Time in which that falls to nothing, s.
+    pub idle_after_start_s: f64,
     /// Temperature at which friction is that of the warm engine, K.
     pub hot_k: f64,
     /// Share s of hot friction that rubs in oil.
@@ -62,6 +72,16 @@ pub struct Engine {
     pub overrun_drag: f64,
     /// Enrichment e.
     pub enrichment: f64,
+    /// Fuel of a start at 0 degC and below, kg.
+    pub start_kg: f64,
+    /// Time in which it is given, s.
+    pub start_s: f64,
+    /// Coolant from which fuel is cut in overrun, K.
+    pub cut_from_k: f64,
+    /// Speed above which it is cut, rad/s.
+    pub cut_above_rad_s: f64,
+    /// Speed below which it comes back, rad/s.
+    pub fuel_back_rad_s: f64,
     /// Electrical load at the shaft, W.
     pub electrical_w: f64,
     /// Torque of pumps and belts, Nm.
@@ -93,6 +113,10 @@ pub struct EngineAtTemperature<'a> {
     pub idle_rad_s: f64,
     /// Fuel factor of enrichment (EN-3).
     pub enrichment: f64,
+    /// Fuel of the start, kg/s (EN-9).
+    pub start_kg_s: f64,
+    /// Whether fuel is cut in overrun (EN-11).
+    pub cuts: bool,
     /// Charge of the cylinders over that at 25 degC and sea level (EN-5).
     pub charge: f64,
 }
@@ -117,8 +141,7 @@ pub struct Burn {
 }
 
 impl Engine {
-    /// Prepares the engine for coolant and oil temperature, oil and charge.
-    #[inline(always)]
+    /// The engine long after its start, with fuel cut in overrun, at coolant and oil temperature, oil and charge.
     pub fn at(
         &self,
         coolant_k: f64,
@@ -126,20 +149,47 @@ impl Engine {
         oil: &Lubricant,
         charge: f64,
     ) -> EngineAtTemperature<'_> {
-        let cold = clamp((60.0 + ZERO_DEGC_K - coolant_k) / 70.0, 0.0, 1.0);
-        let enrich = (60.0 + ZERO_DEGC_K - coolant_k) / 60.0;
+        EngineAtTemperature {
+            cuts: true,
+            ..self.in_step(coolant_k, oil_k, oil, charge, &Running::LONG, 1.0)
+        }
+    }
+
+    /// The engine in a step of `dt_s`, after what it did before.
+    #[inline(always)]
+    pub fn in_step(
+        &self,
+        coolant_k: f64,
+        oil_k: f64,
+        oil: &Lubricant,
+        charge: f64,
+        running: &Running,
+        dt_s: f64,
+    ) -> EngineAtTemperature<'_> {
+        let cold = clamp((60.0 + ZERO_DEGC_K - coolant_k) / 60.0, 0.0, 1.0);
         EngineAtTemperature {
             engine: self,
             friction_factor: self.friction_factor(coolant_k, oil_k, oil),
-            idle_rad_s: self.idle_hot_rad_s + (self.idle_cold_rad_s - self.idle_hot_rad_s) * cold, // EN-1
-            enrichment: 1.0
-                + if enrich > 0.0 {
-                    self.enrichment * enrich
-                } else {
-                    0.0
-                }, // EN-3
+            idle_rad_s: self.idle_rad_s(coolant_k, running, dt_s),
+            enrichment: 1.0 + self.enrichment * cold, // EN-3
+            start_kg_s: self.start_kg_s(running, dt_s),
+            cuts: self.cuts(coolant_k, running),
             charge,
         }
+    }
+
+    /// Idle speed, its mean over a step, rad/s.
+    #[inline(always)]
+    fn idle_rad_s(&self, coolant_k: f64, running: &Running, dt_s: f64) -> f64 {
+        let width = self.idle_warm_k - self.idle_cold_k;
+        let cold = clamp((self.idle_warm_k - coolant_k) / width, 0.0, 1.0);
+        let started = clamp((60.0 + ZERO_DEGC_K - running.start_k) / 30.0, 0.0, 1.0);
+        // Integral of 1 - t/t_a: half of what is spent, times t_a.
+        let fading = running.spending_per_s(self.idle_after_start_s, dt_s);
+        let raised = 0.5 * self.idle_after_start_s * fading * started;
+        self.idle_hot_rad_s
+            + (self.idle_cold_rad_s - self.idle_hot_rad_s) * cold
+            + self.idle_after_start_rad_s * raised // EN-1
     }
 
     /// Friction over that of the warm engine with the reference oil.
@@ -245,14 +295,24 @@ impl PrimeMover for EngineAtTemperature<'_> {
         } // EN-4
     }
 
-    /// EN-7: in overrun with fuel cut off.
+    /// EN-7: in overrun with fuel cut off; where it is not cut, the engine burns what turns it and drags nothing (EN-11).
     #[inline]
     fn drag_nm(&self, speed_rad_s: f64) -> f64 {
-        self.engine.torque_nm(self.friction_pa(speed_rad_s)) * self.engine.overrun_drag // EN-7
+        if self.cuts {
+            self.own_drag_nm(speed_rad_s)
+        } else {
+            0.0
+        }
     }
 }
 
 impl EngineAtTemperature<'_> {
+    /// Torque that slows the engine down without fuel, Nm: what its own rotating energy may turn against, whether or not fuel is cut for the wheels.
+    #[inline]
+    pub fn own_drag_nm(&self, speed_rad_s: f64) -> f64 {
+        self.engine.torque_nm(self.friction_pa(speed_rad_s)) * self.engine.overrun_drag // EN-7
+    }
+
     /// Friction mean effective pressure at the present temperature, Pa.
     #[inline]
     pub fn friction_pa(&self, speed_rad_s: f64) -> f64 {
@@ -293,18 +353,23 @@ impl EngineAtTemperature<'_> {
         // The exhaust has no more than the gas kept: nothing once fuel is cut.
         let hot_gas = smaller(exhaust_share * waste, burnt - indicated);
         let to_oil = e.friction_to_oil * friction;
-        let fuel_w = burnt * self.enrichment;
+        let start_w = if point.fuel_pa > 0.0 {
+            self.start_kg_s * e.heating_value_j_kg
+        } else {
+            0.0
+        };
+        let fuel_w = burnt * self.enrichment + start_w;
         Burn {
             fuel_kg_s: fuel_w / e.heating_value_j_kg,
             fuel_w,
             to_coolant_w: waste - hot_gas - to_oil, // EN-6
             to_oil_w: to_oil,
-            exhaust_w: hot_gas + (self.enrichment - 1.0) * burnt,
+            exhaust_w: hot_gas + (self.enrichment - 1.0) * burnt + start_w, // EN-9
             cut: point.fuel_pa <= 0.0,
             // More taken up than the closed throttle explains would be energy from nowhere in the heat of friction.
             outside: point.outside
                 || (point.fuel_pa <= 0.0
-                    && -torque_nm > self.drag_nm(speed_rad_s) * (1.0 + 1e-4) + 1e-3),
+                    && -torque_nm > self.own_drag_nm(speed_rad_s) * (1.0 + 1e-4) + 1e-3),
         }
     }
 }

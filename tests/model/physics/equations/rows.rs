@@ -7,6 +7,7 @@ use cvtcycle_config::cycle::Cycle;
 use cvtcycle_model::drive::Row;
 use cvtcycle_model::drive::{Car, State, simulate};
 use cvtcycle_model::drive::{Start, drive, fuel_map, litres_per_100km};
+use cvtcycle_model::engine::Running;
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, NODES, SUMP};
@@ -54,6 +55,7 @@ fn heat_w(car: &Car, row: &Row) -> [f64; NODES] {
 struct Carried {
     heat: Heat,
     kinetic_j: f64,
+    running: Running,
 }
 
 /// Whether the launch device holds at the end of a row (LC-5).
@@ -85,10 +87,34 @@ struct Seen {
 
 fn check(car: &Car, row: &Row, c: &mut Carried, seen: &mut Seen, place: &str) {
     let (t, w, dt) = (c.heat.node_k, row.engine_speed_rad_s, row.dt_s);
-    let now = car
-        .engine
-        .at(t[COOLANT], t[ENGINE_OIL], &car.engine_oil, car.charge);
     let off = row.flags.contains(Flags::ENGINE_OFF);
+    if c.running.since_s == 0.0 {
+        c.running.start_k = t[COOLANT];
+    }
+    // EN-11 looks at a speed that has fallen as that of the wheels, in a box with gears.
+    let wheel_rad_s = row.speed_m_s / car.road_load.wheel_radius_m;
+    if wheel_rad_s < c.running.wheel_rad_s && !car.transmission.is_cvt() {
+        c.running.speed_rad_s *= wheel_rad_s / c.running.wheel_rad_s;
+    }
+    c.running.wheel_rad_s = wheel_rad_s;
+    let now = car.engine.in_step(
+        t[COOLANT],
+        t[ENGINE_OIL],
+        &car.engine_oil,
+        car.charge,
+        &c.running,
+        dt,
+    );
+    c.running = if off {
+        Running::STOPPED
+    } else {
+        Running {
+            since_s: c.running.since_s + dt,
+            speed_rad_s: w,
+            cut: row.flags.contains(Flags::FUEL_CUT),
+            ..c.running
+        }
+    };
     let begun = 0.5 * car.engine.inertia_kg_m2 * w * w;
     let accessories = now.accessories_nm(w);
     close(row.accessories_w, accessories * w, 1e3, place);
@@ -113,7 +139,7 @@ fn check(car: &Car, row: &Row, c: &mut Carried, seen: &mut Seen, place: &str) {
                 .max(0.0)
                 .min(wanted.min(bound))
         } else {
-            (-(steady + now.drag_nm(w)))
+            (-(steady + now.own_drag_nm(w)))
                 .max(wanted.max(-bound))
                 .min(0.0)
         }; // SI-2
@@ -238,19 +264,17 @@ fn val_rows_from_their_parts() {
             car.engine.inertia_torque_nm = 6.0; // a bound that is met
         }
         let (rows, start) = run(&car, &cycle, dt);
+        let (coolant, oil) = (start.node_k[COOLANT], start.node_k[ENGINE_OIL]);
+        let running = Running::STOPPED.started(coolant);
         let idle = car
             .engine
-            .at(
-                start.node_k[COOLANT],
-                start.node_k[ENGINE_OIL],
-                &car.engine_oil,
-                1.0,
-            )
+            .in_step(coolant, oil, &car.engine_oil, car.charge, &running, dt)
             .idle_rad_s;
         let kinetic_j = 0.5 * car.engine.inertia_kg_m2 * idle * idle;
         let mut carried = Carried {
             heat: start,
             kinetic_j,
+            running: Running::STOPPED,
         };
         for row in &rows {
             let place = format!("{name} {ambient_degc} {} s", row.time_s);
