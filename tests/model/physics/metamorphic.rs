@@ -216,7 +216,10 @@ const NEEDS: [(&str, &[&str], &str); 20] = [
     ),
     (
         "road_load.rolling_per_k",
-        &["road_load.surface=road"],
+        &[
+            "road_load.surface=road",
+            "road_load.tyre.rolling_coefficient=0",
+        ],
         "a dynamometer's coefficients are fixed",
     ),
     (
@@ -697,6 +700,10 @@ fn twice_the_car_burns_twice_the_fuel() {
         "thermal.engine.oil_kj_k",
         "thermal.engine.coolant_oil_w_k",
         "thermal.engine.block_air_w_k",
+        "engine.fuel.start_g",
+        "road_load.tyre.heat_capacity_kj_k",
+        "road_load.tyre.still_w_k",
+        "road_load.tyre.wind_w_k",
         "thermal.engine.block_air_w_k_per_m_s",
         "thermal.engine.pan_air_w_k",
         "thermal.engine.pan_air_w_k_per_m_s",

@@ -29,7 +29,7 @@ pub fn rows(name: &str) -> Vec<HashMap<String, f64>> {
 }
 
 /// A cycle after a soak, with its rows.
-fn soaked(name: &str, cycle_name: &str, degc: f64) -> Outcome {
+pub fn soaked(name: &str, cycle_name: &str, degc: f64) -> Outcome {
     let conditions = Conditions {
         keep_rows: true,
         ..at(degc, Start::Soak)
@@ -115,5 +115,27 @@ fn first_idle_at_minus_30() {
         let litres = first / 11.0 * 3.6e6 / car(name, &[]).engine().fuel_density_kg_m3;
         println!("{name}: {litres:.2} L/h");
         assert!((1.5..=4.0).contains(&litres), "{name}: {litres}");
+    }
+}
+
+/// RL-6 on the dynamometer: the cold first bag of FTP75 takes more work at the wheels than the same trace in the third.
+#[test]
+fn tyres_warm_up_on_rollers_too() {
+    for name in CARS {
+        let o = soaked(name, "ftp75", -6.7);
+        let bags: Vec<f64> = o
+            .totals
+            .phases
+            .iter()
+            .filter(|phase| phase.distance_m > 0.0)
+            .map(|phase| phase.wheel_positive_j)
+            .collect();
+        assert!(bags[0] > 1.005 * bags[2], "{name}: {bags:?}");
+        let warmest = o
+            .rows
+            .iter()
+            .map(|row| row.tyre_k - ZERO)
+            .fold(-50.0, f64::max);
+        assert!((5.0..20.0).contains(&warmest), "{name}: {warmest} degC");
     }
 }

@@ -285,6 +285,7 @@ pub(super) fn parts<V: Values>(
     let car = Car {
         name,
         road_load: road_load.base,
+        tyre: road_load.tyre,
         transmission,
         engine,
         network,

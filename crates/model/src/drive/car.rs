@@ -2,7 +2,7 @@
 
 use crate::engine::Engine;
 use crate::fluid::Lubricant;
-use crate::road::RoadLoad;
+use crate::road::{RoadLoad, Tyre};
 use crate::thermal::Network;
 use crate::transmission::Transmission;
 
@@ -13,6 +13,8 @@ pub struct Car {
     pub name: String,
     /// Road load for the ambient.
     pub road_load: RoadLoad,
+    /// Tyres.
+    pub tyre: Tyre,
     /// Transmission.
     pub transmission: Transmission,
     /// Engine.

@@ -83,6 +83,8 @@ pub struct Row {
     pub cooler_in_k: f64,
     /// Oil from the cooler, K; NaN without one.
     pub cooler_out_k: f64,
+    /// Tyres, K.
+    pub tyre_k: f64,
     /// Heat stored in the nodes, W.
     pub stored_w: f64,
     /// Heat given to the air, W.
@@ -118,6 +120,7 @@ pub(super) struct Solved<'a> {
     /// Heat into each node, as the network received it.
     pub power_w: [f64; NODES],
     pub heat: &'a HeatStep,
+    pub tyre_k: f64,
 }
 
 /// Energy terms of a step, each from the model that owns it.
@@ -201,6 +204,7 @@ pub(super) fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, En
         },
         cooler_in_k: a.heat.cooler_in_k,
         cooler_out_k: a.heat.cooler_out_k,
+        tyre_k: a.tyre_k,
         stored_w: a.heat.stored_w,
         to_air_w: a.heat.to_air_w,
         power_ledger_error: terms.power_error(),

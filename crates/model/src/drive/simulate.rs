@@ -18,6 +18,8 @@ pub struct State {
     pub kinetic_j: f64,
     /// What the engine did.
     pub running: Running,
+    /// Temperature of the tyres, K.
+    pub tyre_k: f64,
 }
 
 impl State {
@@ -28,6 +30,7 @@ impl State {
             transmission: None,
             kinetic_j: f64::NAN,
             running: Running::STOPPED,
+            tyre_k: temp_k,
         }
     }
 }

@@ -76,8 +76,12 @@ impl<'a> Drive<'a> {
             transmission,
             kinetic_j,
             running,
+            tyre_k,
         } = &mut self.state;
-        let wheel = car.road_load.wheel(step);
+        let wheel = car.road_load.wheel(step, car.tyre.extra_n(*tyre_k));
+        *tyre_k = car
+            .tyre
+            .advance_k(*tyre_k, car.ambient_k, &step.motion, step.dt_s);
         *running = running.started(heat.node_k[COOLANT]);
         if !car.transmission.is_cvt() {
             *running = running.rolled(wheel.wheel_rad_s); // a CVT holds its speed by its ratio
@@ -134,6 +138,7 @@ impl<'a> Drive<'a> {
                 burn: &burn,
                 power_w,
                 heat: &heat_step,
+                tyre_k: *tyre_k,
             },
         );
         *heat = heat_step.heat;
@@ -144,7 +149,6 @@ impl<'a> Drive<'a> {
                 since_s: running.since_s + step.dt_s,
                 speed_rad_s: output.engine_rad_s,
                 wheel_rad_s: wheel.wheel_rad_s,
-                cut: burn.cut,
                 ..*running
             }
         };

@@ -51,8 +51,8 @@ keys! {
         start_g: or(0.0, number(0.0, 100.0)), "fuel of a start at 0 degC and below, none from 60 degC (EN-9)";
         start_s: or(30.0, above(0.0, 300.0)), "time in which it is given (EN-9)";
         cut_from_degc: or(45.0, number(-40.0, 110.0)), "coolant from which fuel is cut in overrun (EN-11)";
-        cut_above_rpm: or(1400.0, number(500.0, 6000.0)), "engine speed above which it is cut (EN-11)";
-        fuel_back_rpm: or(1300.0, number(400.0, 6000.0)), "engine speed below which it comes back (EN-11)";
+        cut_above_rpm: or(1400.0, number(500.0, 6000.0)), "engine speed above which all of it is cut (EN-11)";
+        fuel_back_rpm: or(1300.0, number(400.0, 6000.0)), "engine speed below which none is cut (EN-11)";
         heating_value_mj_kg: number(20.0, 60.0), "lower heating value";
         density_kg_m3: number(500.0, 1000.0), "density of the fuel";
         co2_per_fuel: number(0.0, 4.0), "CO2 per mass of fuel";
@@ -157,11 +157,11 @@ fn check_pairs<V: Values>(idle: &V, fuel: &V, engine: &Engine) {
             "raise it or lower `cold_degc`",
         );
     }
-    if engine.fuel_back_rad_s > engine.cut_above_rad_s {
+    if engine.fuel_back_rad_s >= engine.cut_above_rad_s {
         fuel.complain(
             FUEL.fuel_back_rpm.name,
-            "at most cut_above_rpm",
-            "fuel would come back above the speed at which it is cut",
+            "below cut_above_rpm",
+            "fuel would be back at the speed at which it is cut",
             "lower it or raise `cut_above_rpm`",
         );
     }

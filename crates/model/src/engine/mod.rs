@@ -78,9 +78,9 @@ pub struct Engine {
     pub start_s: f64,
     /// Coolant from which fuel is cut in overrun, K.
     pub cut_from_k: f64,
-    /// Speed above which it is cut, rad/s.
+    /// Speed above which all of it is cut, rad/s.
     pub cut_above_rad_s: f64,
-    /// Speed below which it comes back, rad/s.
+    /// Speed below which none is cut, rad/s.
     pub fuel_back_rad_s: f64,
     /// Electrical load at the shaft, W.
     pub electrical_w: f64,
@@ -115,8 +115,8 @@ pub struct EngineAtTemperature<'a> {
     pub enrichment: f64,
     /// Fuel of the start, kg/s (EN-9).
     pub start_kg_s: f64,
-    /// Whether fuel is cut in overrun (EN-11).
-    pub cuts: bool,
+    /// Share of its own drag that the engine takes up in overrun, with fuel cut (EN-11).
+    pub cut_share: f64,
     /// Charge of the cylinders over that at 25 degC and sea level (EN-5).
     pub charge: f64,
 }
@@ -150,7 +150,7 @@ impl Engine {
         charge: f64,
     ) -> EngineAtTemperature<'_> {
         EngineAtTemperature {
-            cuts: true,
+            cut_share: 1.0,
             ..self.in_step(coolant_k, oil_k, oil, charge, &Running::LONG, 1.0)
         }
     }
@@ -173,7 +173,7 @@ impl Engine {
             idle_rad_s: self.idle_rad_s(coolant_k, running, dt_s),
             enrichment: 1.0 + self.enrichment * cold, // EN-3
             start_kg_s: self.start_kg_s(running, dt_s),
-            cuts: self.cuts(coolant_k, running),
+            cut_share: self.cut_share(coolant_k, running),
             charge,
         }
     }
@@ -298,11 +298,7 @@ impl PrimeMover for EngineAtTemperature<'_> {
     /// EN-7: in overrun with fuel cut off; where it is not cut, the engine burns what turns it and drags nothing (EN-11).
     #[inline]
     fn drag_nm(&self, speed_rad_s: f64) -> f64 {
-        if self.cuts {
-            self.own_drag_nm(speed_rad_s)
-        } else {
-            0.0
-        }
+        self.cut_share * self.own_drag_nm(speed_rad_s) // EN-11
     }
 }
 

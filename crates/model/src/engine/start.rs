@@ -3,11 +3,13 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | EN-9 | fuel of a start: m(t) = m_0 clip((60 degC - T_start)/60 K, 0, 1) F(t/tau), F(u) = 2u - u2 up to u = 1, then 1 | form: enrichment that fades in some 30 s (manuals of the 1990s), by coolant at the start; size ASSUMED |
-//! | EN-11 | fuel is cut in overrun from a coolant temperature on and above a speed, and comes back below a lower one | source: Saab 900 workshop manual 1987 (45 degC, 1400 to 1750 rpm, back 1300 to 1450 rpm) |
+//! | EN-11 | share of overrun in which fuel is cut: from none to all over 1 K of coolant above T_cut, times from none to all between n_back and n_cut | source: Saab 900 workshop manual 1987 (45 degC, 1400 to 1750 rpm, back 1300 to 1450 rpm); ramps ASSUMED in place of hysteresis |
+//!
+//! A hysteresis in EN-11 would make the fuel of a drive depend on the path through its band, and so on the step (1 % at 1/32 s).
 
 use super::Engine;
 use crate::fluid::ZERO_DEGC_K;
-use crate::math::{clamp, smaller};
+use crate::math::{clamp, ramp, smaller};
 
 /// What the engine did before a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,8 +22,6 @@ pub struct Running {
     pub speed_rad_s: f64,
     /// Speed of the wheels, rad/s.
     pub wheel_rad_s: f64,
-    /// Whether fuel was cut.
-    pub cut: bool,
 }
 
 impl Running {
@@ -31,7 +31,6 @@ impl Running {
         start_k: 0.0,
         speed_rad_s: 0.0,
         wheel_rad_s: 0.0,
-        cut: false,
     };
 
     /// Started long ago.
@@ -84,14 +83,11 @@ impl Engine {
         self.start_kg * cold * running.spending_per_s(self.start_s, dt_s) // EN-9
     }
 
-    /// Whether fuel is cut in overrun; decided before the solve, so that nothing jumps within one.
+    /// Share of the overrun drag that is taken up with fuel cut; decided before the solve, so that nothing jumps within one.
     #[inline]
-    pub(super) fn cuts(&self, coolant_k: f64, running: &Running) -> bool {
-        let least_rad_s = if running.cut {
-            self.fuel_back_rad_s
-        } else {
-            self.cut_above_rad_s
-        };
-        coolant_k >= self.cut_from_k && running.speed_rad_s > least_rad_s // EN-11
+    pub(super) fn cut_share(&self, coolant_k: f64, running: &Running) -> f64 {
+        let warm = ramp(coolant_k, self.cut_from_k, self.cut_from_k + 1.0);
+        let speed = running.speed_rad_s;
+        warm * ramp(speed, self.fuel_back_rad_s, self.cut_above_rad_s) // EN-11
     }
 }

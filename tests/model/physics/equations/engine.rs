@@ -4,6 +4,7 @@ use super::{near, same};
 use crate::common::{ZERO, car};
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::engine::{Engine, EngineAtTemperature, Running};
+use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use std::f64::consts::PI;
 
@@ -179,33 +180,57 @@ fn val_enrichment_by_hand() {
     }
 }
 
-/// EN-11: fuel is cut from a coolant temperature on and above a speed, and comes back below a lower one; without the cut nothing is dragged, and what
-/// the engine burns turns it.
+/// EN-11: the share of the drag that is taken up with fuel cut, by coolant and speed; the rest of what turns the engine is burnt.
 #[test]
 fn val_fuel_cut_by_hand() {
     let setup = car("rover_216_cvt", &[]);
     let e = setup.engine();
-    for (degc, rpm, cut, want) in [
-        (44.9, 3000.0, true, false),
-        (45.1, 3000.0, false, true),
-        (60.0, 1390.0, false, false),
-        (60.0, 1410.0, false, true),
-        (60.0, 1310.0, true, true),
-        (60.0, 1290.0, true, false),
+    for (degc, rpm, share) in [
+        (44.9, 3000.0, 0.0),
+        (45.2, 3000.0, 0.2),
+        (46.1, 3000.0, 1.0),
+        (60.0, 1390.0, 0.9),
+        (60.0, 1410.0, 1.0),
+        (60.0, 1310.0, 0.1),
+        (60.0, 1290.0, 0.0),
+        (45.5, 1350.0, 0.25),
     ] {
         let running = Running {
             speed_rad_s: rpm * PI / 30.0,
-            cut,
             ..Running::LONG
         };
         let k = degc + ZERO;
         let now = e.in_step(k, k, setup.oils().1, 1.0, &running, 1.0);
-        assert_eq!(now.cuts, want, "{degc} degC {rpm} rpm");
+        near(now.cut_share + 1.0, share + 1.0, 1e-9);
         let drag = e.torque_nm(now.friction_pa(200.0));
-        same(now.drag_nm(200.0), if want { drag } else { 0.0 });
         same(now.own_drag_nm(200.0), drag);
+        near(now.drag_nm(200.0) + 1.0, share * drag + 1.0, 1e-9);
         let burn = now.burn(200.0, -now.drag_nm(200.0) * (1.0 + 1e-9));
-        assert!(burn.cut == want && !burn.outside && (burn.fuel_w > 0.0) == !want);
+        assert!(burn.cut == (share == 1.0) && !burn.outside && (burn.fuel_w > 0.0) != burn.cut);
+    }
+}
+
+/// EN-11 in a drive: no second with fuel cut before the coolant is at 45 degC; some after.
+#[test]
+fn no_fuel_is_cut_by_a_cold_engine() {
+    for name in crate::common::CARS {
+        let o = crate::outside::soaked(name, "ece15_eudc", 25.0);
+        let cut = |warm: bool| {
+            let rows = o
+                .rows
+                .iter()
+                .filter(|row| (row.coolant_k >= 45.0 + ZERO) == warm);
+            rows.filter(|row| {
+                row.flags.contains(Flags::OVERRUN) && row.flags.contains(Flags::FUEL_CUT)
+            })
+            .count()
+        };
+        assert!(
+            cut(false) == 0 && cut(true) > 10,
+            "{name}: {} {}",
+            cut(false),
+            cut(true)
+        );
     }
 }
 

@@ -111,7 +111,6 @@ fn check(car: &Car, row: &Row, c: &mut Carried, seen: &mut Seen, place: &str) {
         Running {
             since_s: c.running.since_s + dt,
             speed_rad_s: w,
-            cut: row.flags.contains(Flags::FUEL_CUT),
             ..c.running
         }
     };

@@ -21,7 +21,7 @@ fn work(automatic: bool, dt: f64) -> (f64, f64) {
         .trace_for(automatic)
         .steps(dt)
         .fold((0.0, 0.0), |(p, n), s| {
-            let w = car.wheel(&s);
+            let w = car.wheel(&s, 0.0);
             (p + w.positive_j, n + w.negative_j)
         })
 }

@@ -3,6 +3,7 @@
 use super::Manual;
 use super::losses::Spin;
 use crate::flags::Flags;
+use crate::math::larger;
 use crate::prime_mover::PrimeMover;
 use crate::thermal::SUMP;
 use crate::transmission::component::Component;
@@ -111,7 +112,8 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             .manual
             .coupling
             .min_output_nm(input, w, engine.idle_rad_s(), absorbed_nm);
-        let engine_nm = engine.full_load_nm(w) - accessories_nm;
+        // An engine too weak for its own accessories in the cold drives nothing; the row is flagged.
+        let engine_nm = larger(engine.full_load_nm(w) - accessories_nm, 0.0);
         let most = self.manual.coupling.output_nm(engine_nm, input, w);
         let limit = if at.input_nm < least {
             Some(least)
