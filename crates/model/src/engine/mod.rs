@@ -349,11 +349,7 @@ impl EngineAtTemperature<'_> {
         // The exhaust has no more than the gas kept: nothing once fuel is cut.
         let hot_gas = smaller(exhaust_share * waste, burnt - indicated);
         let to_oil = e.friction_to_oil * friction;
-        let start_w = if point.fuel_pa > 0.0 {
-            self.start_kg_s * e.heating_value_j_kg
-        } else {
-            0.0
-        };
+        let start_w = self.start_kg_s * e.heating_value_j_kg;
         let fuel_w = burnt * self.enrichment + start_w;
         Burn {
             fuel_kg_s: fuel_w / e.heating_value_j_kg,
@@ -361,7 +357,7 @@ impl EngineAtTemperature<'_> {
             to_coolant_w: waste - hot_gas - to_oil, // EN-6
             to_oil_w: to_oil,
             exhaust_w: hot_gas + (self.enrichment - 1.0) * burnt + start_w, // EN-9
-            cut: point.fuel_pa <= 0.0,
+            cut: fuel_w <= 0.0,
             // More taken up than the closed throttle explains would be energy from nowhere in the heat of friction.
             outside: point.outside
                 || (point.fuel_pa <= 0.0
