@@ -12,7 +12,8 @@ use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
 use cvtcycle_model::drive::Row;
 use cvtcycle_model::drive::{Start, drive};
 use cvtcycle_model::flags::Flags;
-use cvtcycle_model::thermal::{ENGINE_OIL, SUMP};
+use cvtcycle_model::thermal::{BELT, ENGINE_OIL, SUMP};
+use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 
 fn kmh(row: &Row) -> f64 {
@@ -560,4 +561,21 @@ fn val_no_load_input_is_the_sum_of_the_losses() {
             p.input_nm
         );
     }
+}
+
+/// The belt's node holds the belt and the skin of the sheaves, not the sheaves. Truth: the belt's mass of the file times 0.46 kJ/kgK for steel, and at most
+/// 1 kJ/K of skin (depth of a wave of 10 s under 0.02 m2 of track).
+#[test]
+fn val_belt_node_holds_the_belt() {
+    let setup = car("rover_216_cvt", &[]);
+    let car = setup.car(298.15);
+    let Transmission::Cvt(cvt) = &car.transmission else {
+        panic!("a CVT")
+    };
+    let steel_j_k = 460.0 * cvt.belt.mass_kg_m * cvt.belt.length_m;
+    let node_j_k = car.network.capacity_j_k[BELT];
+    assert!(
+        steel_j_k < node_j_k && node_j_k <= 1.5 * steel_j_k + 1000.0,
+        "{node_j_k}"
+    );
 }
