@@ -203,7 +203,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 20] = [
+const NEEDS: [(&str, &[&str], &str); 19] = [
     (
         "variator.piston_outer_mm",
         &["transmission.cvt.variator.compensated=false"],
@@ -288,11 +288,6 @@ const NEEDS: [(&str, &[&str], &str); 20] = [
         "pump.leakage_l_min_per_bar",
         &["transmission.cvt.pump.kind=variable"],
         "as the lubrication flow",
-    ),
-    (
-        "friction.band_floor",
-        &["lubricant.friction.band_rise_per_k=0.01"],
-        "bounds the fall of friction with cold, reached below 10 degC",
     ),
     (
         "engine.highest_rpm",

@@ -58,7 +58,7 @@ const CVT: [Line; 8] = [
         "bands",
         &[Component::BeltBand],
         "friction that rises with belt temperature (LU-4)",
-        "`band_floor`, and the lift-off of LU-5",
+        "nothing but its fall with temperature, and the lift-off of LU-5",
         FEW,
     ),
     line(
