@@ -227,6 +227,8 @@ fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
         flow_down_per_s: f64::INFINITY,
         flow_up_per_s: f64::INFINITY,
         coupled: true,
+        last_direction: 0,
+        free_up_to_rad_s: 0.0,
         dt_s: 1.0,
     })
 }

@@ -229,7 +229,7 @@ fn val_ratio_use() {
     );
     assert!(between > 0.5 && high > 0.4);
     assert!(
-        !falls.is_empty() && falls.iter().all(|d| *d <= 0.0) && falls.iter().any(|d| *d < -3.0),
+        !falls.is_empty() && falls.iter().all(|d| *d <= 0.0) && falls.iter().any(|d| *d < -0.5),
         "{falls:?}"
     );
 }
@@ -578,4 +578,40 @@ fn val_belt_node_holds_the_belt() {
         steel_j_k < node_j_k && node_j_k <= 1.5 * steel_j_k + 1000.0,
         "{node_j_k}"
     );
+}
+
+/// Reversals of the ratio by more than 0.5 % in a minute of driving, after a soak at 25 degC.
+fn reversals_a_minute(name: &str, sets: &[&str]) -> f64 {
+    let rows = soak_rows(&car("rover_216_cvt", sets), &cycle(name), 25.0).rows;
+    let (mut count, mut turn, mut direction) = (0, rows[0].belt_ratio, 0.0);
+    for row in &rows {
+        let change = (row.belt_ratio / turn).ln();
+        if change * direction >= 0.0 {
+            turn = row.belt_ratio; // goes on, or stays
+            direction = if change == 0.0 { direction } else { change };
+        } else if change.abs() > 0.005 {
+            (count, turn, direction) = (count + 1, row.belt_ratio, change);
+        }
+    }
+    let moving = rows.iter().filter(|row| row.speed_m_s > 0.0).count();
+    f64::from(count) / moving as f64 * 60.0
+}
+
+/// The ratio does not hunt (RC-2, RC-10). Truth: reversals counted from the column of the ratio; the limits are a judgement, and a second line in overrun
+/// without hysteresis exceeds the one of FTP75 twice.
+#[test]
+fn the_ratio_does_not_hunt() {
+    for (name, most) in [("ftp75", 3.5), ("us06", 6.0), ("ece15_eudc", 2.0)] {
+        let found = reversals_a_minute(name, &[]);
+        println!("{name}: {found:.2} reversals a minute");
+        assert!(found <= most, "{name}: {found}");
+    }
+    let before = reversals_a_minute(
+        "ftp75",
+        &[
+            "transmission.cvt.ratio.overrun_rpm=1500",
+            "transmission.cvt.ratio.hysteresis=0",
+        ],
+    );
+    assert!(before > 7.0, "{before}");
 }

@@ -1,4 +1,4 @@
-//! Ratio control RC-1 to RC-8, clamp map PC-1 and PC-2, launch clutch LC-1 to LC-5.
+//! Ratio control RC-1 to RC-8, RC-10, clamp map PC-1 and PC-2, launch clutch LC-1 to LC-5.
 
 use super::same;
 use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
@@ -19,6 +19,7 @@ fn control() -> RatioControl {
         up_per_s: 0.35,
         down_per_s: 0.9,
         rate_speed_rad_s: 100.0,
+        hysteresis: 0.05,
     }
 }
 
@@ -32,6 +33,8 @@ fn demand(power_share: f64, secondary_rad_s: f64, before: f64) -> RatioDemand {
         flow_down_per_s: 9.0,
         flow_up_per_s: 9.0,
         coupled: true,
+        last_direction: 0,
+        free_up_to_rad_s: 0.0,
         dt_s: 0.5,
     }
 }
@@ -308,4 +311,42 @@ fn val_launch_clutch_by_hand() {
         ..c
     };
     same(early.overrun_share(108.0, idle), 0.5);
+}
+
+/// RC-10: a small reversal is not made, a large one in full, the ends of the ratio are reached, and near idle speed nothing is held.
+#[test]
+fn val_hysteresis_by_hand() {
+    let c = control();
+    let step = |last_direction: i8, before: f64| {
+        c.step(&RatioDemand {
+            last_direction,
+            free_up_to_rad_s: 90.0,
+            ..demand(0.1, 100.0, before) // towards 1.8
+        })
+    };
+    for (last, before, moves) in [
+        (-1, 1.8 / 1.04, false),
+        (-1, 1.8 / 1.06, true),
+        (1, 1.8 / 1.04, true),
+        (0, 1.8 / 1.04, true),
+        (1, 1.8 * 1.04, false),
+        (1, 1.8 * 1.06, true),
+        (-1, 1.8 * 1.04, true),
+    ] {
+        let (ratio, change, _) = step(last, before);
+        same(ratio, if moves { 1.8 } else { before });
+        same(change, if moves { (1.8 / before).ln() } else { 0.0 });
+    }
+    let slow = RatioDemand {
+        last_direction: -1,
+        free_up_to_rad_s: 190.0,
+        ..demand(0.1, 100.0, 1.8 / 1.04)
+    };
+    same(c.step(&slow).0, 1.8);
+    let low = RatioDemand {
+        last_direction: -1,
+        free_up_to_rad_s: 90.0,
+        ..demand(0.1, 70.0, 2.35) // towards 2.57, held at the end
+    };
+    same(c.step(&low).0, 2.4);
 }

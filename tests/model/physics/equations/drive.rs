@@ -108,9 +108,11 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
     let load = belt_load(b, s, wp, secondary_nm, cvt.secondary_clamp_n(pa, ws));
     let belt = belt_state(&cvt.belt, &at, &load);
     let lost = |c: Component| d.loss_w[c];
+    // The solve stops at 1e-7 of slip, which is as much of the power through the belt (SL-11).
+    let slip_w = 1e-7 * d.output_w.abs();
     let watts = |got: f64, want: f64| {
         assert!(
-            (got - want).abs() <= 2e-6 * want.abs() + 2e-5,
+            (got - want).abs() <= 2e-6 * want.abs() + 2e-5 + slip_w,
             "{got} instead of {want}: {place}"
         )
     };
@@ -435,6 +437,8 @@ fn shifted(
         flow_down_per_s: free / down,
         flow_up_per_s: free / up,
         coupled: true,
+        last_direction: 0,
+        free_up_to_rad_s: 0.0,
         dt_s: 0.5,
     };
     (car.transmission.solve(&around, &mut state), demand)

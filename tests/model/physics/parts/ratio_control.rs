@@ -16,6 +16,7 @@ fn control() -> RatioControl {
         up_per_s: 0.35,
         down_per_s: 1.0,
         rate_speed_rad_s: 1000.0 * RPM,
+        hysteresis: 0.05,
     }
 }
 
@@ -29,6 +30,8 @@ fn demand(secondary: f64, power: f64, before: f64) -> RatioDemand {
         flow_down_per_s: 9.0,
         flow_up_per_s: 9.0,
         coupled: true,
+        last_direction: 0,
+        free_up_to_rad_s: 0.0,
         dt_s: 1.0,
     }
 }

@@ -26,6 +26,8 @@ fn demand(r: &Reference, share: f64) -> RatioDemand {
         flow_down_per_s: f64::INFINITY,
         flow_up_per_s: f64::INFINITY,
         coupled: true,
+        last_direction: 0,
+        free_up_to_rad_s: 0.0,
         dt_s: 1.0,
     }
 }

@@ -26,6 +26,8 @@ pub(super) struct Step<'a, P> {
     pub shift_flow_m3_s: f64,
     /// True where pump flow held the shift back.
     pub shift_held: bool,
+    /// Direction of the last change of ratio (RC-10).
+    pub shift_direction: i8,
     /// Engine speeds within reach.
     pub reach: Reach,
     /// Secondary pressure before the step, Pa.

@@ -92,6 +92,8 @@ pub struct CvtState {
     pub belt: BeltAtRatio,
     /// Start of the solve.
     pub warm_start: WarmStart,
+    /// Direction of the last change of ratio: 1 towards low, -1 towards high, 0 before the first (RC-10).
+    pub shift_direction: i8,
 }
 
 impl CvtState {
@@ -100,6 +102,7 @@ impl CvtState {
         CvtState {
             belt,
             warm_start: WarmStart::default(),
+            shift_direction: 0,
         }
     }
 }
@@ -150,6 +153,8 @@ impl Cvt {
             flow_down_per_s: 0.0,
             flow_up_per_s: 0.0,
             coupled: true,
+            last_direction: 0,
+            free_up_to_rad_s: 0.0,
             dt_s: input.dt_s,
         };
         let ratio = if secondary > 0.0 {

@@ -1,7 +1,7 @@
 //! What a step of the CVT knows before its solve: the ratio after shifting, and everything that depends on ratio and temperature only.
 
 use super::Cvt;
-use super::controller::RatioDemand;
+use super::controller::{FREE_OVER_IDLE, RatioDemand, direction_after};
 use super::driveline::{Driveline, Parts};
 use super::evaluate::Step;
 use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
@@ -36,13 +36,15 @@ struct Shift {
     flow_m3_s: f64,
     /// True where pump flow held it back.
     held: bool,
+    /// Direction of the last change (RC-10).
+    direction: i8,
 }
 
 fn shift<P: PrimeMover>(
     cvt: &Cvt,
     input: &StepInput<P>,
     past: &DrivelineState,
-    before: &Geometry,
+    (before, last_direction): (&Geometry, i8),
     route: Route,
 ) -> Shift {
     if input.wheel.wheel_rad_s <= 0.0 {
@@ -50,6 +52,7 @@ fn shift<P: PrimeMover>(
             ratio: before.ratio,
             flow_m3_s: 0.0,
             held: false,
+            direction: last_direction,
         }; // RC-4
     }
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
@@ -67,6 +70,8 @@ fn shift<P: PrimeMover>(
         flow_down_per_s: free / down_m3, // RC-5
         flow_up_per_s: free / up_m3,     // RC-5
         coupled: past.coupled,
+        last_direction,
+        free_up_to_rad_s: FREE_OVER_IDLE * input.engine.idle_rad_s(),
         dt_s: input.dt_s,
     };
     let (ratio, change, held) = cvt.ratio.step(&demand);
@@ -79,6 +84,7 @@ fn shift<P: PrimeMover>(
         ratio,
         flow_m3_s: volume / input.dt_s,
         held,
+        direction: direction_after(change, last_direction),
     }
 }
 
@@ -141,13 +147,13 @@ impl Powers {
     }
 }
 
-/// Prepares a step: shifts from the geometry `before` it, brings the belt to the new ratio, and evaluates what the solve does not change.
+/// Prepares a step: shifts from the geometry and direction `before` it, brings the belt to the new ratio, and evaluates what the solve does not change.
 #[inline(never)]
 pub(super) fn prepare<'a, P: PrimeMover>(
     cvt: &'a Cvt,
     input: &'a StepInput<'a, P>,
     past: &DrivelineState,
-    before: &Geometry,
+    before: (&Geometry, i8),
     belt: &'a mut BeltAtRatio,
     efficiency: f64,
 ) -> Step<'a, P> {
@@ -205,6 +211,7 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         load: BeltLoad::unloaded(oil, eta_belt, friction.band_on_film(belt_k, powers.film)),
         shift_flow_m3_s: shift.flow_m3_s,
         shift_held: shift.held,
+        shift_direction: shift.direction,
         reach: input.reach(past.engine_rad_s),
         pressure_before_pa: past.secondary_pa,
         coupled: past.coupled,

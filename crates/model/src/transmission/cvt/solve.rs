@@ -248,7 +248,11 @@ pub(super) fn solve<P: PrimeMover>(
     own: &mut CvtState,
     past: &mut DrivelineState,
 ) -> StepOutput {
-    let CvtState { belt, warm_start } = own;
+    let CvtState {
+        belt,
+        warm_start,
+        shift_direction,
+    } = own;
     let before = belt.geometry;
     if input.engine_off {
         return engine_off(input, before.ratio, past);
@@ -257,7 +261,14 @@ pub(super) fn solve<P: PrimeMover>(
     let mut efficiency = cvt.ratio.route_efficiency;
     work.slopes = warm_start.slopes;
     loop {
-        let step = prepare(cvt, input, past, &before, belt, efficiency);
+        let step = prepare(
+            cvt,
+            input,
+            past,
+            (&before, *shift_direction),
+            belt,
+            efficiency,
+        );
         if step.secondary_rad_s <= 0.0 {
             return standstill(&step, past, warm_start);
         }
@@ -267,6 +278,7 @@ pub(super) fn solve<P: PrimeMover>(
             continue; // kick-down: losses are larger than RC-3 reckons with, so a higher speed is tried (RC-7)
         };
         warm_start.slopes = work.slopes;
+        *shift_direction = step.shift_direction;
         warm_start.overrun = limit == Limit::EngineDrag;
         let outcome = Outcome {
             limit,
