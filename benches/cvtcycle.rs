@@ -24,7 +24,7 @@ use cvtcycle::model::transmission::cvt::variator::{
 use cvtcycle::model::transmission::{StepInput, Transmission, TransmissionState};
 use cvtcycle::output::{EnergyTerms, Row};
 use cvtcycle::study::plan::Plan;
-use cvtcycle::study::table::Rows;
+use cvtcycle::study::store::Rows;
 use cvtcycle::study::{NoProgress, PartWriter, Study};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};

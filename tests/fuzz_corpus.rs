@@ -18,44 +18,28 @@ use std::fs::read_to_string;
 /// Limit of the corpus in bytes: it holds only inputs that reach code which no other input reaches.
 const MAX_BYTES: usize = 1 << 20;
 
-fn inputs(target: &str) -> Vec<Vec<u8>> {
-    let name = format!("tools/fuzz/corpus/{target}.txt");
-    let text = read_to_string(&name).unwrap_or_else(|error| panic!("{name}: {error}"));
-    corpus::parse(&text).unwrap_or_else(|line| panic!("{name}:{line}: wrong escape"))
-}
+const CORPUS: &str = "tools/fuzz/corpus.txt";
 
 #[test]
 fn every_committed_input_is_answered_or_refused() {
+    let text = read_to_string(CORPUS).unwrap();
+    let mut size = 0;
+    let mut packed = String::new();
     for (name, _) in targets::TARGETS {
-        let inputs = inputs(name);
+        let wrong = |line| panic!("{CORPUS}:{line}: wrong escape");
+        let inputs = corpus::inputs(&text, name).unwrap_or_else(wrong);
         assert!(inputs.len() >= 10, "{name} has {} inputs", inputs.len());
         for (number, bytes) in inputs.iter().enumerate() {
             let answered = std::panic::catch_unwind(|| targets::run(name, bytes));
-            assert!(answered.is_ok(), "{name}.txt:{}", number + 1);
+            assert!(answered.is_ok(), "{name}, input {}", number + 1);
+            size += bytes.len();
         }
+        packed += &corpus::lines(name, inputs);
     }
-}
-
-#[test]
-fn every_target_has_a_program_and_a_small_corpus() {
-    let manifest = read_to_string("tools/fuzz/Cargo.toml").unwrap();
-    let files = std::fs::read_dir("tools/fuzz/corpus").unwrap();
-    let files = files.filter(|entry| entry.as_ref().unwrap().path().is_file());
-    assert_eq!(files.count(), targets::TARGETS.len());
-    let mut size = 0;
-    for (name, _) in targets::TARGETS {
-        assert!(manifest.contains(&format!("name = \"{name}\"")), "{name}");
-        let program = read_to_string(format!("tools/fuzz/fuzz_targets/{name}.rs")).unwrap();
-        let call = format!("run(\"{name}\", data)");
-        assert!(program.contains(&call), "{name}");
-        let inputs = inputs(name);
-        size += inputs.iter().map(Vec::len).sum::<usize>();
-        assert_eq!(
-            inputs.len(),
-            corpus::parse(&corpus::format(inputs)).unwrap().len(),
-            "{name}: twice"
-        );
-    }
+    assert!(
+        packed == text,
+        "{CORPUS}: `corpus pack` would write it otherwise"
+    );
     assert!(size <= MAX_BYTES, "{size} bytes");
 }
 

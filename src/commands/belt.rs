@@ -9,9 +9,9 @@ use std::path::Path;
 use clap::Args;
 use cvtcycle::config::{Bound, Problems};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
-use cvtcycle::output::PROGRAM;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::output::files::listed;
+use cvtcycle::output::record::Manifest;
 use cvtcycle::study::points::{self, Counts, Done, Job, Model};
 use serde_json::{Map, Value, json};
 
@@ -152,13 +152,11 @@ fn head(vehicle: &str, lubricant: &str, counts: &Counts) -> Value {
             .map(|(name, count)| (name.to_owned(), json!(count)))
             .collect::<Map<_, _>>()
     };
-    json!({
-        "schema": 1,
-        "program": PROGRAM,
+    Manifest::new(1).with(&json!({
         "vehicle": vehicle,
         "lubricant": lubricant,
         "points": counts.points,
         "status": object(&mut counts.by_status()),
         "flags": object(&mut counts.by_flag()),
-    })
+    }))
 }

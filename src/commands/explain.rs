@@ -1,7 +1,5 @@
 //! `explain`: the meaning of a key, a column, a flag, an equation or a term of the field.
 
-mod terms;
-
 use std::sync::OnceLock;
 
 use clap::Args;
@@ -11,9 +9,9 @@ use cvtcycle::output::table::{Head, TextTable};
 use cvtcycle::output::trace::COLUMNS;
 use cvtcycle::output::{Component, Flags};
 use cvtcycle::study::check::keys::VALIDATION;
-use cvtcycle::study::equations::{Equation, by_label, cited, equations};
+use cvtcycle::study::equations::{Equation, by_label, equations, of_labels};
+use cvtcycle::study::execute::outputs::outputs;
 use cvtcycle::study::fit::plan::keys::CALIBRATION;
-use cvtcycle::study::outputs::outputs;
 use cvtcycle::study::plan::PLAN;
 use serde_json::{Value, json};
 
@@ -71,9 +69,7 @@ impl Execute for ExplainArgs {
         let mut meanings = Meanings::default();
         meanings.add(&word);
         if meanings.is_empty() {
-            terms::names_of(&word)
-                .iter()
-                .for_each(|name| meanings.add(name));
+            names_of(&word).iter().for_each(|name| meanings.add(name));
         }
         if meanings.is_empty() {
             meanings.add_keys(&word, plan_keys());
@@ -140,7 +136,7 @@ impl Meanings {
             !words.is_empty() && words.iter().all(is_in)
         };
         let known = catalogue::known_keys().iter();
-        let keys = known.filter(|info| has(&info.key, &info.doc));
+        let keys = known.filter(|info| has(&info.key, &info.meaning()));
         self.keys
             .extend(keys.map(|key| (key, Vec::new())).take(MAX_FOUND));
         let columns = all_columns().filter(|(_, column)| has(&column.name, &column.doc));
@@ -171,8 +167,8 @@ impl Meanings {
             let entry =
                 |(file, info): &(&str, KeyInfo)| json!({ "file": file, "entry": key_json(info) });
             json!({
-                "key": known.key, "unit": known.unit, "allowed": known.allowed, "meaning": known.doc,
-                "equations": cited(&known.doc).iter().map(equation).collect::<Vec<_>>(),
+                "key": known.key, "unit": known.unit, "allowed": known.allowed, "meaning": known.meaning(),
+                "equations": of_labels(known.labels).map(|e| equation(&e)).collect::<Vec<_>>(),
                 "values": values.iter().map(entry).collect::<Vec<_>>(),
             })
         };
@@ -219,9 +215,9 @@ impl Meanings {
 }
 
 fn key_text(known: &KeyInfo, values: &[(&str, KeyInfo)], paint: Paint) -> String {
-    let (doc, unit) = (&*known.doc, or_none(&known.unit));
+    let (meaning, unit) = (known.meaning(), or_none(&known.unit));
     let mut facts = vec![
-        ("meaning", doc),
+        ("meaning", &*meaning),
         ("unit", unit),
         ("allowed", &*known.allowed),
     ];
@@ -229,7 +225,7 @@ fn key_text(known: &KeyInfo, values: &[(&str, KeyInfo)], paint: Paint) -> String
         let statement = e.statement.replace("\\|", "|");
         format!("{}: {statement} ({})", e.label, e.status)
     };
-    let equations: Vec<String> = cited(&known.doc).iter().map(equation).collect();
+    let equations: Vec<String> = of_labels(known.labels).map(|e| equation(&e)).collect();
     let names = ["equation"].into_iter().chain(std::iter::repeat(""));
     facts.extend(names.zip(equations.iter().map(String::as_str)));
     if plan_keys().iter().any(|key| std::ptr::eq(key, known)) {
@@ -301,7 +297,7 @@ fn unknown(word: &str) -> Problem {
     let others = all_columns().map(|(_, column)| column.name);
     let others = others.chain(all_flags().map(|(name, _)| name.to_owned()));
     let others = others.chain(equations().map(|equation| equation.label.to_owned()));
-    let others = others.chain(terms::terms().map(|term| term.replace(' ', "-")));
+    let others = others.chain(terms().map(|term| term.replace(' ', "-")));
     let names: Vec<(String, String)> = keys
         .chain(others.map(|name| (name.clone(), name)))
         .collect();
@@ -318,4 +314,29 @@ fn unknown(word: &str) -> Problem {
     let allowed = "a key, table, column, flag, label of an equation, or term";
     let message = format!("`{word}` is not known");
     bad_value("explain", word, allowed, &message, &hint)
+}
+
+/// Terms of the field, a line for each concept: its terms, a colon, the names.
+const TERMS: &str = include_str!("explain/terms.txt");
+
+/// Items of a list separated by commas.
+fn items(list: &'static str) -> impl Iterator<Item = &'static str> {
+    list.split(',').map(str::trim)
+}
+
+fn concepts() -> impl Iterator<Item = (&'static str, &'static str)> {
+    TERMS.lines().filter_map(|line| line.split_once(':'))
+}
+
+/// All terms.
+fn terms() -> impl Iterator<Item = &'static str> {
+    concepts().flat_map(|(terms, _)| items(terms))
+}
+
+/// Names of keys, tables, columns and flags that belong to a term; `-` and `_` count as blanks.
+fn names_of(word: &str) -> Vec<&'static str> {
+    let plain = |text: &str| text.to_lowercase().replace(['-', '_'], " ");
+    let has = |terms| items(terms).any(|term| plain(term) == plain(word));
+    let found = concepts().find(|(terms, _)| has(terms));
+    found.map_or_else(Vec::new, |(_, names)| items(names).collect())
 }

@@ -9,7 +9,6 @@ mod losses;
 mod report;
 mod rig;
 mod run;
-mod schema;
 mod shell;
 mod show;
 mod study;
@@ -72,7 +71,7 @@ enum Command {
     /// Check input files without running them
     Check(check::CheckArgs),
     /// Print the JSON Schema of an input file, for editors and other programs
-    Schema(schema::SchemaArgs),
+    Schema(shell::SchemaArgs),
     /// Print the book of assumptions: the source of every value
     Assumptions(shell::AssumptionsArgs),
     /// Print a completion script for a shell
@@ -118,7 +117,7 @@ impl Cli {
             Command::Show(args) => args.execute(terminal),
             Command::Explain(args) => args.execute(terminal),
             Command::Check(args) => args.execute(terminal),
-            Command::Schema(args) => schema::schema(args),
+            Command::Schema(args) => shell::schema(args),
             Command::Assumptions(args) => shell::assumptions(args),
             Command::Completions(args) => shell::completions(args),
             Command::Man(args) => shell::man(args),

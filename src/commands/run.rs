@@ -1,7 +1,6 @@
 //! `run`: a vehicle and its baselines on one cycle.
 
 mod files;
-mod record;
 mod tables;
 mod vehicles;
 
@@ -23,8 +22,7 @@ use crate::args::{
     one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
-use files::TraceFormat;
-use record::SensitivityMode;
+use files::{SensitivityMode, TraceFormat};
 use vehicles::RunVehicle;
 
 /// Allowed length of a step, s.
@@ -164,7 +162,7 @@ impl Execute for RunArgs {
         let summary = summarise(cycle, plan.ambient_degc, plan.start.1, settings, &driven);
         let json = json_text(&summary)?;
         let files = WrittenFiles::write(out, |dir| {
-            let record = record::record(vehicles, cycle, &conditions, plan.sensitivity)?;
+            let record = files::record(vehicles, cycle, &conditions, plan.sensitivity)?;
             dir.put(FILE, json_text(&record)?)?;
             dir.put("summary.json", &json)?;
             files::write(dir, plan.format, &summary, cycle, &driven)?;

@@ -7,7 +7,7 @@ use cvtcycle::config::setup::catalogue;
 use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::config::{KeyInfo, Problems};
 use cvtcycle::output::number::{fixed, signed};
-use cvtcycle::output::table::{TextColumns, TextTable};
+use cvtcycle::output::table::{TextColumns, TextTable, distinct};
 use serde_json::{Value, json};
 
 use super::Execute;
@@ -59,7 +59,7 @@ enum Status {
 pub fn key_json(info: &KeyInfo) -> Value {
     json!({
         "key": info.key, "value": info.value, "unit": info.unit, "status": info.status, "source": info.source,
-        "note": info.note, "allowed": info.allowed, "meaning": info.doc,
+        "note": info.note, "allowed": info.allowed, "meaning": info.meaning(),
     })
 }
 
@@ -189,12 +189,7 @@ fn tables(keys: &[KeyInfo], paint: Paint) -> String {
         width(&|info| info.status.len()),
     ];
     // In the order of reading, but every table in one piece.
-    let mut order: Vec<&str> = Vec::new();
-    for info in keys {
-        if !order.contains(&split(&info.key).0) {
-            order.push(split(&info.key).0);
-        }
-    }
+    let order = distinct(keys.iter().map(|info| split(&info.key).0));
     let section = |name: &str| {
         let mut table = TextTable::new("llll").indented().min_widths(&widths);
         for info in keys.iter().filter(|info| split(&info.key).0 == name) {

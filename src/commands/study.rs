@@ -3,7 +3,6 @@
 mod ambient;
 mod execution;
 mod export;
-mod matrix;
 mod tables;
 
 use std::path::PathBuf;

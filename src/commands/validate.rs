@@ -6,7 +6,7 @@ use clap::Args;
 use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{Problem, Problems, bounded, decode};
 use cvtcycle::output::files::OutputDir;
-use cvtcycle::report::validation_page::page;
+use cvtcycle::report::validation::page;
 use cvtcycle::study::check::{
     COMMON, CandidateVehicle, MECHANISMS, Report, RowFile, ValidationRow, csv, embedded_rows, json,
     judge, markdown, read,

@@ -2,7 +2,7 @@
 
 use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 
-use super::{failures, tables};
+use super::{date, failures, tables};
 use crate::print::Terminal;
 
 #[path = "../fixtures/outcome.rs"]
@@ -168,4 +168,18 @@ fn numbers_have_the_digits_that_their_error_leaves() {
         (of(f64::NAN, 1.0), tables::to_error(0.0, None)),
         ("-".to_owned(), "0".to_owned())
     );
+}
+
+#[test]
+fn val_known_days() {
+    // As `date -u -d @SECONDS +%F` has them.
+    assert_eq!(
+        [0, 58, 59].map(date),
+        ["1970-01-01", "1970-02-28", "1970-03-01"]
+    );
+    assert_eq!(
+        [11_016, 11_017, 19_782].map(date),
+        ["2000-02-29", "2000-03-01", "2024-02-29"]
+    );
+    assert_eq!([20_819, u64::MAX].map(date), ["2027-01-01", "9999-12-31"]);
 }

@@ -72,7 +72,7 @@ impl Bench {
     /// Primary speed over wheel speed at a setting without slip; input speed of the box in a gear.
     pub fn overall(&self, ratio: f64) -> f64 {
         match &self.car.transmission {
-            Transmission::Cvt(cvt) => cvt.final_drive * ratio,
+            Transmission::Cvt(cvt) => cvt.final_drive.ratio * ratio,
             Transmission::Manual(manual) => manual.overall[ratio as usize - 1],
         }
     }

@@ -41,9 +41,11 @@ impl Case {
         if !self.escaped {
             return self.input.as_bytes().to_vec();
         }
-        let lines = super::escaped::parse(&self.input);
-        lines
-            .unwrap_or_else(|_| panic!("{}: wrong escape", self.name))
+        let lines = self.input.lines();
+        let bytes = lines.map(|line| super::escaped::unescape(line.as_bytes()));
+        let bytes: Option<Vec<_>> = bytes.collect();
+        bytes
+            .unwrap_or_else(|| panic!("{}: wrong escape", self.name))
             .concat()
     }
 }

@@ -10,9 +10,11 @@
 use crate::sources::{Source, sources};
 
 /// Marks of a module that makes problems.
-const MARKS: [&str; 5] = [
+const MARKS: [&str; 7] = [
     "Problem::",
     ".complain(",
+    ".conflict(",
+    ".missing(",
     "Complaint::new(",
     "Problem {",
     "Fault {",
@@ -20,26 +22,21 @@ const MARKS: [&str; 5] = [
 
 /// Modules (with their submodules) whose problems are not of a user's input file, with the reason.
 const OUTSIDE: &[(&str, &str)] = &[
-    ("config::assign", "overrides: unit tests of config"),
-    ("config::cycle::constant", "names given to options"),
     ("config::cycle::find", "names given to options"),
     (
         "config::setup",
         "names given to options: only this module, see INSIDE",
     ),
-    ("config::setup::wrong_transmission", "overrides"),
     ("cvtcycle", "options, words of the command line, output"),
     ("output::file", "output"),
     ("output::files", "output"),
     ("report::compare", "directories that the program wrote"),
-    ("report::consistency", "directories that the program wrote"),
     ("report::problems", "directories that the program wrote"),
     ("report::results", "directories that the program wrote"),
     (
         "study::check::judge",
         "found by computing only: tests/results/validate.rs",
     ),
-    ("study::export", "output"),
     ("study::store", "files that the program wrote"),
 ];
 
@@ -59,7 +56,7 @@ const EXCUSED: &[(&str, &str)] = &[
     (" The message is one sentence", "text of documentation"),
     (
         "problem is",
-        "tests/model/physics/cycles.rs counts problems that are not shown",
+        "tests/model/input/cycle.rs counts problems that are not shown",
     ),
     (
         "a number with a decimal point, or nothing",
@@ -70,6 +67,14 @@ const EXCUSED: &[(&str, &str)] = &[
     (
         "`{path}` is a table, not a value",
         "overrides only: unit tests of config",
+    ),
+    (
+        "`{value}` is a value, so `{path}` cannot exist",
+        "overrides only: tests/model/input/overrides.rs",
+    ),
+    (
+        "set `{value}` itself",
+        "overrides only: tests/model/input/overrides.rs",
     ),
     (
         "stopped before the model",
@@ -113,11 +118,19 @@ const EXCUSED: &[(&str, &str)] = &[
 ];
 
 /// What makes a complaint of the texts within its brackets.
-const MAKERS: [&str; 20] = [
+const MAKERS: [&str; 28] = [
     "allowed",
     "hint",
     "message",
     "complain",
+    "conflict",
+    "missing",
+    "duplicate",
+    "unknown_key",
+    "unknown_name",
+    "out_of_range",
+    "too_large",
+    "mistyped",
     "Complaint::new",
     "Problem",
     "Complaint",

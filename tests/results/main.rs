@@ -12,10 +12,8 @@ mod common;
 mod fixtures;
 
 mod history;
-mod numbers;
 mod outputs;
 mod pictures;
 mod record;
 mod report;
-mod report_forms;
 mod validate;

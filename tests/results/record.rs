@@ -2,8 +2,8 @@
 
 use cvtcycle::config::Override;
 use cvtcycle::config::setup::{Options, embedded_vehicles, load};
-use cvtcycle::output::hash::hash;
 use cvtcycle::output::provenance::car_record;
+use cvtcycle::output::provenance::hash;
 use cvtcycle::output::record::{CarRecord, Effect, SpeedLine};
 
 fn record_of(word: &str, set: &[&str], lubricant: Option<&str>) -> CarRecord {
@@ -57,6 +57,35 @@ fn what_was_set_comes_first_and_another_oil_in_full() {
         record.changes
     );
     assert!(record.lubricant.file.contains("dexron_ii"));
+}
+
+/// The hash of a car follows its values and the contents of its maps, and neither the form of a value nor names.
+#[test]
+fn the_hash_of_a_car_is_that_of_its_values() {
+    let hash_of = |word: &str, set: &[&str]| record_of(word, set, None).resolved_sha256;
+    let (car, offset) = ("rover_216_cvt", "transmission.cvt.belt.band_offset_mm");
+    let shipped = hash_of(car, &[]);
+    for same in [
+        format!("{offset}=3.0"),
+        format!("{offset}=3e0"),
+        "vehicle.title=\"another name\"".to_owned(),
+    ] {
+        assert_eq!(hash_of(car, &[&same]), shipped, "{same}");
+    }
+    assert_ne!(hash_of(car, &[&format!("{offset}=3.1")]), shipped);
+    let dir = tempfile::tempdir().unwrap_or_else(|e| unreachable!("{e}"));
+    let mut found = vec![shipped];
+    for loss in ["0.7", "0.8"] {
+        let path = dir.path().join("pump.csv");
+        let text = format!("torque_loss_nm\n{loss}\n");
+        std::fs::write(&path, text).unwrap_or_else(|e| unreachable!("{e}"));
+        let set = format!("transmission.cvt.maps.pump={:?}", path.display());
+        found.push(hash_of(car, &[&set]));
+    }
+    let count = found.len();
+    found.sort_unstable();
+    found.dedup();
+    assert_eq!(found.len(), count, "{found:?}");
 }
 
 /// Lines from rest, each as steep as its ratio: between both limits lies the span of the file's belt ratios.

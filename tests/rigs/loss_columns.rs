@@ -99,7 +99,7 @@ fn val_map_parts_take_their_own_torque() {
         ..point()
     };
     let whole = bench.solve(&BenchPoint {
-        output_nm: 40.0 * cvt.final_drive,
+        output_nm: 40.0 * cvt.final_drive.ratio,
         ..p
     });
     same(
@@ -126,7 +126,7 @@ fn val_map_parts_take_their_own_torque() {
         MapPart::Belt.loss_nm(&bench, &p),
         bench
             .solve(&BenchPoint {
-                output_nm: 40.0 * cvt.final_drive,
+                output_nm: 40.0 * cvt.final_drive.ratio,
                 parts,
                 ..p
             })

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
+use cvtcycle::study::fit::outcome::tables;
 use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
-use cvtcycle::study::fit::tables::tables;
 
 #[path = "../fixtures/outcome.rs"]
 mod outcomes;

@@ -1,6 +1,7 @@
 //! Labels of the equations of model and statistics.
 
-use cvtcycle::study::equations::{cited, equations};
+use cvtcycle::config::setup::catalogue::known_keys;
+use cvtcycle::study::equations::{by_label, equations};
 
 #[test]
 fn labels_are_unique() {
@@ -11,8 +12,11 @@ fn labels_are_unique() {
     assert_eq!(labels.len(), count);
 }
 
+/// Property: every label of a row of the keys is that of an equation.
 #[test]
-fn labels_in_a_text_are_cited() {
-    assert_eq!(cited("displacement (PU-1, PU-4)").len(), 2);
-    assert!(cited("class UN-R83 (none)").is_empty());
+fn labels_of_keys_are_those_of_equations() {
+    let labels = known_keys().iter().flat_map(|info| info.labels);
+    assert!(labels.clone().count() > 170);
+    let unknown: Vec<_> = labels.filter(|label| by_label(label).is_none()).collect();
+    assert!(unknown.is_empty(), "{unknown:?}");
 }

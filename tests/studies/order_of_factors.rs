@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use cvtcycle::config::{Problem, Problems, render};
 use cvtcycle::study::plan::Plan;
-use cvtcycle::study::table::{Rows, Values};
+use cvtcycle::study::store::{Rows, Values};
 use cvtcycle::study::{End, NoProgress, PartWriter, Study};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestRunner};

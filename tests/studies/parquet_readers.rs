@@ -13,11 +13,11 @@ use std::sync::Arc;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::output::trace::columns_for;
 use cvtcycle::output::trace::write_trace;
-use cvtcycle::study::export::{Format, export};
+use cvtcycle::study::store::{Format, export};
+use cvtcycle::study::store::{Head, Kind, Rows, Values};
 use cvtcycle::study::store::{
     PartTable, Study, StudyDir, write_csv, write_parquet, write_trace_parquet,
 };
-use cvtcycle::study::table::{Head, Kind, Rows, Values};
 use serde_json::json;
 use tempfile::TempDir;
 

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use cvtcycle::config::Problem;
 use cvtcycle::study::plan::Plan;
-use cvtcycle::study::table::{Rows, Values};
+use cvtcycle::study::store::{Rows, Values};
 use cvtcycle::study::{End, NoProgress, PartWriter, Progress, Study};
 
 /// 70 points of two cars through a short cycle: 24 parts, the last one with a point, the others with three.

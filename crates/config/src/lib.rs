@@ -3,52 +3,42 @@
 //! A [`Document`] is the parsed text with its places, a [`Reader`] one pass over it. The
 //! keys of vehicles, lubricants and rigs are rows of the model (`cvtcycle_model::keys`); messages,
 //! `explain`, the schema and the book of assumptions come from the same rows as the reading.
-mod assign;
+//!
+//! | room | content |
+//! |---|---|
+//! | `problem` | what is wrong, where, and its text |
+//! | `files` | files that an input names, limits of their size, the files that the program carries |
+//! | `csv` | CSV tables against a schema |
+//! | `document` | TOML text to a tree with places; overrides and changed numbers over it |
+//! | `reader` | values of keys in SI units with their origin: numbers, lists, choices, maps |
+//! | `setup` | vehicles, lubricants, rig; the catalogue of keys, the book of assumptions |
+//! | `cycle` | drive cycles |
+//! | `schema` | JSON Schema of the files |
 pub mod csv;
 pub mod cycle;
-pub mod setup;
-pub mod rig;
-pub mod bounded;
-mod choice;
 mod document;
 mod files;
-mod maps;
-mod patched;
-pub mod embedded;
-mod lists;
-mod log;
-mod near;
-mod overrides;
-mod place;
 mod problem;
-mod problems;
 mod reader;
-mod render;
 pub mod schema;
-mod section;
-mod shape;
-mod source;
-mod syntax;
-mod unknown;
-mod value;
-mod values;
-mod raw_value;
+pub mod setup;
 
 pub use cvtcycle_model::keys::Bound;
 use cvtcycle_model::keys::Quantity;
 pub use document::Document;
-pub use log::KeyInfo;
-pub use near::{did_you_mean, near, suggestion};
-pub use overrides::{KeyPath, Override, Target};
-pub use patched::PatchedDocument;
-pub use place::{Argument, Input, Place};
-pub use problem::{Problem, ProblemKind, Setting, readable};
-pub use problems::Problems;
-pub use raw_value::RawValue;
+pub use document::overrides::{KeyPath, Override, Target};
+pub use document::patched::PatchedDocument;
+pub use document::syntax::decode;
+pub use files::{bounded, embedded};
+pub use problem::near::{did_you_mean, near, suggestion};
+pub use problem::place::{Argument, Input, Place};
+pub use problem::render::render;
+pub use problem::{Problem, ProblemKind, Problems, Setting, readable};
 pub use reader::Reader;
-pub use render::render;
-pub use section::Section;
-pub use syntax::decode;
+pub use reader::log::KeyInfo;
+pub use reader::raw_value::RawValue;
+pub use reader::section::Section;
+pub use setup::rig;
 
 /// A value in the unit of the key, converted to SI (temperatures to kelvin).
 #[must_use]

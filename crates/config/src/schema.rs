@@ -5,7 +5,7 @@
 use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Quantity, Repeat, Table};
 use serde_json::{Map, Value, json};
 
-use crate::value::STATUSES;
+use crate::reader::value::STATUSES;
 
 /// The schema of a kind of file: its name in the title, and its keys.
 ///
@@ -120,7 +120,7 @@ fn options(choices: &[Choice]) -> Value {
 
 /// Meaning, unit and allowed values.
 fn description(key: &Key<'_>) -> String {
-    let mut text = format!("{}\n\nAllowed: {}", key.doc, key.allowed());
+    let mut text = format!("{}\n\nAllowed: {}", key.meaning(), key.allowed());
     if let Kind::Words(choices) | Kind::Options(choices) = key.kind {
         for choice in choices {
             text += &format!("\n- {}: {}", choice.name, choice.doc);

@@ -348,7 +348,7 @@ pub fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
 
 /// A problem of the output.
 pub fn problem(path: &Path, message: &str, hint: &str) -> Problem {
-    Problem::invalid(message.to_string())
+    Problem::output(message.to_string())
         .at(Argument::Output)
         .value(path.display().to_string())
         .hint(hint.to_string())

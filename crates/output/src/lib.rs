@@ -2,7 +2,6 @@
 
 pub mod file;
 pub mod files;
-pub mod hash;
 pub mod history;
 pub mod loss_table;
 pub mod losses;

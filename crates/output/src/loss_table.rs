@@ -82,7 +82,7 @@ impl MapPart {
 /// Final drive of a CVT, overall ratio of a manual box's gear.
 fn own_ratio(bench: &Bench, point: &BenchPoint) -> f64 {
     match &bench.car().transmission {
-        Transmission::Cvt(cvt) => cvt.final_drive,
+        Transmission::Cvt(cvt) => cvt.final_drive.ratio,
         Transmission::Manual(manual) => manual.overall[point.ratio as usize - 1],
     }
 }

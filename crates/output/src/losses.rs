@@ -11,9 +11,10 @@ use cvtcycle_model::transmission::Transmission;
 use serde_json::{Value, json};
 
 use crate::number::plain;
+use crate::record::Manifest;
 use crate::table::{Cell, Column, Scope, json_columns, write_csv, write_json};
 use crate::trace::{bar, degc};
-use crate::{Component, Flags, PROGRAM, columns};
+use crate::{Component, Flags, columns};
 use cvtcycle_model::keys::rpm;
 
 /// Version of the JSON object.
@@ -56,32 +57,28 @@ impl Axis {
         Axis::Speed,
     ];
 
+    /// Title of a plot's axis and heading of a table's column.
+    fn names(self, cvt: bool) -> (&'static str, &'static str) {
+        match self {
+            Axis::Ratio if cvt => ("Belt ratio", "ratio"),
+            Axis::Ratio => ("Gear", "gear"),
+            Axis::Sump => ("Oil in the sump [\u{b0}C]", "sump \u{b0}C"),
+            Axis::Belt => ("Belt and spray [\u{b0}C]", "belt \u{b0}C"),
+            Axis::Throttle => ("Throttle", "throttle"),
+            Axis::Pressure => ("Secondary pressure [bar]", "bar"),
+            Axis::Torque => ("Torque at the output shaft [Nm]", "Nm out"),
+            Axis::Speed => ("Input speed [rpm]", "rpm"),
+        }
+    }
+
     /// Title of a plot's axis.
     pub fn title(self, cvt: bool) -> &'static str {
-        match self {
-            Axis::Ratio if cvt => "Belt ratio",
-            Axis::Ratio => "Gear",
-            Axis::Sump => "Oil in the sump [\u{b0}C]",
-            Axis::Belt => "Belt and spray [\u{b0}C]",
-            Axis::Throttle => "Throttle",
-            Axis::Pressure => "Secondary pressure [bar]",
-            Axis::Torque => "Torque at the output shaft [Nm]",
-            Axis::Speed => "Input speed [rpm]",
-        }
+        self.names(cvt).0
     }
 
     /// Heading of a table's column.
     pub fn short(self, cvt: bool) -> &'static str {
-        match self {
-            Axis::Ratio if cvt => "ratio",
-            Axis::Ratio => "gear",
-            Axis::Sump => "sump \u{b0}C",
-            Axis::Belt => "belt \u{b0}C",
-            Axis::Throttle => "throttle",
-            Axis::Pressure => "bar",
-            Axis::Torque => "Nm out",
-            Axis::Speed => "rpm",
-        }
+        self.names(cvt).1
     }
 
     /// A value of the axis, without its unit.
@@ -364,9 +361,7 @@ impl LossTable {
 
     /// Everything of the JSON object but its points.
     pub fn json_head(&self) -> Value {
-        json!({
-            "schema": SCHEMA,
-            "program": PROGRAM,
+        Manifest::new(SCHEMA).with(&json!({
             "settings": {
                 "vehicle": self.setup.name,
                 "transmission": if self.is_cvt() { "cvt" } else { "manual" },
@@ -376,7 +371,7 @@ impl LossTable {
             },
             "columns": json_columns(&self.columns()),
             "count": self.grid.len(),
-        })
+        }))
     }
 
     /// Writes rows as CSV.

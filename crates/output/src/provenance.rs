@@ -1,6 +1,5 @@
 //! What a car was made from: its files with their hashes, what differs from the shipped vehicle most like it, every value.
 
-use crate::hash::hash;
 use crate::number::finite;
 use crate::record::{
     CarRecord, Change, CycleRecord, FileRecord, FuelMapRecord, SpeedLine, ValueRecord,
@@ -9,11 +8,12 @@ use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::{Kind, Options, Setup, embedded_vehicles, is_path, load, text_of};
 use cvtcycle_config::{KeyInfo, Problems, unit_of};
 use cvtcycle_model::drive::fuel_map;
+use cvtcycle_model::engine::FuelModel;
 use cvtcycle_model::keys::RAD_S;
-use cvtcycle_model::road::REFERENCE_K;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::controller::RatioDemand;
+use sha2::{Digest, Sha256};
 
 /// Speed up to which lines of the variogram are drawn, km/h.
 const FASTEST_KMH: f64 = 200.0;
@@ -25,13 +25,56 @@ const TARGETS: [(f64, &str); 4] = [
     (0.60, "target, 60 % of rated power"),
 ];
 
+/// SHA-256 in hexadecimal.
+pub fn hash(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// A cycle's name and hash.
 pub fn cycle_record(cycle: &Cycle) -> CycleRecord {
     CycleRecord {
         name: cycle.name.clone(),
         title: cycle.title.clone(),
-        sha256: hash(format!("{cycle:?}").as_bytes()),
+        sha256: cycle_sha256(cycle),
     }
+}
+
+/// Hash of a cycle as it was read.
+pub fn cycle_sha256(cycle: &Cycle) -> String {
+    hash(format!("{cycle:?}").as_bytes())
+}
+
+/// Hash of a whole checked car: of [`car_text`].
+pub fn car_sha256(setup: &Setup) -> String {
+    hash(car_text(setup).as_bytes())
+}
+
+/// A checked car as lines `key = value`, sorted by key and in SI units, with the formulation of its belt and the points of the maps that its
+/// files name. What only names or describes a file (`[vehicle]`, titles), statuses and notes are left out.
+fn car_text(setup: &Setup) -> String {
+    let is_value = |info: &&KeyInfo| {
+        let names = info.key.starts_with("vehicle.") || info.key.ends_with(".title");
+        !names && !info.value.is_empty()
+    };
+    let line = |info: &KeyInfo| match info.si {
+        Some(si) => format!("{} = {si:?}\n", info.key),
+        None => format!("{} = {}\n", info.key, info.value),
+    };
+    let mut lines: Vec<String> = setup.keys.iter().filter(is_value).map(line).collect();
+    lines.sort_unstable();
+    if let Transmission::Cvt(cvt) = setup.transmission() {
+        lines.push(format!("formulation = {}\n", cvt.belt.formulation.name()));
+    }
+    for (component, map) in setup.transmission().maps() {
+        let (axes, values) = (map.grid().axes(), map.grid().values());
+        lines.push(format!("map {} = {axes:?} {values:?}\n", component.name()));
+    }
+    if let FuelModel::Map(map) = &setup.engine().fuel {
+        let (speeds, loads, fuel) = (&map.speed_rad_s, &map.bmep_pa, &map.fuel_pa);
+        lines.push(format!("map fuel = {speeds:?} {loads:?} {fuel:?}\n"));
+    }
+    lines.concat()
 }
 
 /// What is known of a car. `name` is its name within the run, `word` what the user calls it.
@@ -69,7 +112,7 @@ pub fn car_record(
         },
         lubricant: fluid(&options.lubricant, "vehicle.transmission_oil")?,
         engine_oil: fluid(&options.engine_oil, "vehicle.engine_oil")?,
-        resolved_sha256: hash(format!("{:?}", setup.car(REFERENCE_K)).as_bytes()),
+        resolved_sha256: car_sha256(setup),
         reference_values: (reference.same, reference.setup.keys.len()),
         changes: changes(&reference.setup.keys, &setup.keys),
         reference: reference.setup.name,
@@ -152,6 +195,7 @@ fn change(shipped: Option<&KeyInfo>, here: Option<&KeyInfo>) -> Change {
 }
 
 fn value(info: &KeyInfo) -> ValueRecord {
+    let meaning = info.meaning();
     let info = info.clone();
     ValueRecord {
         key: info.key,
@@ -159,7 +203,7 @@ fn value(info: &KeyInfo) -> ValueRecord {
         unit: info.unit,
         status: info.status,
         source: info.source,
-        doc: info.doc,
+        doc: meaning,
     }
 }
 
@@ -197,7 +241,7 @@ fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
                 .collect()
         }
         Transmission::Cvt(cvt) => {
-            let [low, high] = [cvt.ratio.low, cvt.ratio.high].map(|r| cvt.final_drive * r);
+            let [low, high] = [cvt.ratio.low, cvt.ratio.high].map(|r| cvt.final_drive.ratio * r);
             let limits = [("lowest ratio", low), ("highest ratio", high)];
             let limits = limits.map(|(name, ratio)| straight(name.to_owned(), ratio));
             let target = |(share, name): &(f64, &str)| {

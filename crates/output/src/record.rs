@@ -3,19 +3,60 @@
 //! Written as `inputs.json` next to the summary, so that a report needs nothing but the directory.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::PROGRAM;
 
 /// Version of the object; a new number when a name goes or changes its meaning.
 pub const SCHEMA: u32 = 1;
 /// Name of the file.
 pub const FILE: &str = "inputs.json";
 
+/// What made a result: the first entries of every JSON file of results.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of the file's form; a new number when a name goes or changes its meaning.
+    pub schema: u32,
+    /// What the directory of the file is, where this is known by the file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<String>,
+    /// Name and version of the program.
+    pub program: String,
+}
+
+impl Manifest {
+    /// Of this program, for a file in this version of its form.
+    pub fn new(schema: u32) -> Self {
+        Manifest {
+            schema,
+            kind: None,
+            program: PROGRAM.to_owned(),
+        }
+    }
+
+    /// One JSON object: these entries, then those of `rest`.
+    pub fn with(&self, rest: &impl Serialize) -> Value {
+        #[derive(Serialize)]
+        struct Whole<'a, T> {
+            #[serde(flatten)]
+            manifest: &'a Manifest,
+            #[serde(flatten)]
+            rest: &'a T,
+        }
+        serde_json::to_value(Whole {
+            manifest: self,
+            rest,
+        })
+        .unwrap_or_default()
+    }
+}
+
 /// Everything that a run was made from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// [`SCHEMA`].
-    pub schema: u32,
-    /// Name and version of the program.
-    pub program: String,
+    /// Version [`SCHEMA`] of this object, and the program.
+    #[serde(flatten)]
+    pub manifest: Manifest,
     /// The command line, quoted for a shell.
     pub command: String,
     /// The cycle.

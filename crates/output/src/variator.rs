@@ -5,11 +5,12 @@ use std::io::{self, Write};
 use cvtcycle_model::bench::variator::{CurveSummary, Held, Resolution, VariatorRig, VariatorRow};
 use serde_json::json;
 
+use crate::columns;
 use crate::number::fixed;
+use crate::record::Manifest;
 use crate::rig::given;
 use crate::table::{Cell, Column, json_columns, json_rows, write_csv, write_json};
 use crate::trace::{bar, degc};
-use crate::{PROGRAM, columns};
 use cvtcycle_model::keys::rpm;
 
 /// Version of the JSON object.
@@ -129,9 +130,7 @@ impl VariatorCurves {
     /// Those of `out`.
     pub fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {
         let columns = point_columns();
-        let head = json!({
-            "schema": SCHEMA,
-            "program": PROGRAM,
+        let head = Manifest::new(SCHEMA).with(&json!({
             "settings": {
                 "vehicle": self.vehicle,
                 "lubricant": self.lubricant,
@@ -142,7 +141,7 @@ impl VariatorCurves {
             "curves": json_rows(&curve_columns(), &self.numbers()),
             "columns": json_columns(&columns),
             "count": self.points().count(),
-        });
+        }));
         write_json(out, &head, &columns, self.points())
     }
 }

@@ -20,7 +20,7 @@ use base64::prelude::BASE64_STANDARD;
 
 use super::document::{Block, Document};
 use cvtcycle_config::bounded::{self, ReadError};
-use cvtcycle_config::{Argument, Document as Toml, Problems, Reader, decode};
+use cvtcycle_config::{Argument, Document as Toml, ProblemKind, Problems, Reader, decode};
 use cvtcycle_model::keys::{Key, spec};
 
 /// Sections that a report may have, in their order.
@@ -89,7 +89,7 @@ impl Cover {
                 Ok(data) => cover.logo = Some((data, words.unwrap_or_else(|| "Logo".to_owned()))),
                 Err((message, hint)) => {
                     let allowed = "a PNG, JPEG or SVG file of at most 500 kB";
-                    root.complain("logo", allowed, &message, &hint);
+                    root.complain(ProblemKind::Unreadable, "logo", allowed, &message, &hint);
                 }
             }
         }

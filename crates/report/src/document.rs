@@ -101,7 +101,6 @@ pub struct Figure {
 
 impl Section {
     /// An empty section.
-    #[must_use]
     pub fn new(id: &str, title: &str) -> Self {
         Section {
             id: id.to_owned(),
@@ -152,7 +151,6 @@ impl Section {
 
 impl ReportTable {
     /// A table of a column of names and columns of numbers with their units.
-    #[must_use]
     pub fn of_numbers(
         caption: &str,
         first: &str,
@@ -169,7 +167,6 @@ impl ReportTable {
     }
 
     /// A table of words.
-    #[must_use]
     pub fn of_words(caption: &str, columns: &[&str]) -> Self {
         let column = |name: &&str| ReportColumn {
             name: (*name).to_owned(),
@@ -183,13 +180,11 @@ impl ReportTable {
     }
 
     /// Whether every column but the first holds numbers.
-    #[must_use]
     pub fn all_numbers(&self) -> bool {
         self.columns.iter().skip(1).all(|column| column.number)
     }
 
     /// Whether the cells of a column have to be marked as numbers, since not all columns hold some.
-    #[must_use]
     pub fn marked(&self, column: &usize) -> bool {
         let own = self.columns.get(*column);
         !self.all_numbers() && own.is_some_and(|column| column.number)
@@ -222,7 +217,6 @@ impl ReportTable {
 
 impl Figure {
     /// The numbers of the picture as a table, for the figure of that number.
-    #[must_use]
     pub fn numbers(&self, number: &usize) -> ReportTable {
         let table = &self.picture.table;
         let caption = format!("Numbers of figure {number}");

@@ -16,20 +16,17 @@
 
 pub mod charts;
 mod compare;
-mod consistency;
 pub mod cover;
 pub mod document;
 pub mod results;
-mod terms;
 pub mod number;
 mod problems;
 pub mod render;
 mod run;
 mod study;
-mod study_answers;
+pub mod study_answers;
 pub mod study_pictures;
-mod validation;
-pub mod validation_page;
+pub mod validation;
 pub mod write;
 
 use std::path::PathBuf;

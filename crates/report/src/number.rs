@@ -103,7 +103,6 @@ impl Quantity {
 
 /// A number with decimals and a true minus; with five digits and more before the point, groups of three are set apart. [`NONE`] where it is
 /// not finite.
-#[must_use]
 pub fn grouped(x: f64, decimals: usize) -> String {
     if !x.is_finite() {
         return NONE.to_owned();
@@ -140,33 +139,41 @@ pub(crate) fn minus(text: &str) -> String {
     }
 }
 
+/// A unit as it is written.
+pub(crate) fn sign(unit: &str) -> &str {
+    if unit == "degC" { "\u{b0}C" } else { unit }
+}
+
+/// "Torque [Nm]"; the name alone without a unit.
+pub(crate) fn with_unit(name: &str, unit: &str) -> String {
+    match sign(unit) {
+        "" => name.to_owned(),
+        unit => format!("{name} [{unit}]"),
+    }
+}
+
 /// A temperature as the user gave it, without decimals that he did not write.
-#[must_use]
 pub fn degc(x: f64) -> String {
     format!("{}{SPACE}\u{b0}C", minus(&format!("{}", x + 0.0)))
 }
 
 /// A part of a whole, per cent.
-#[must_use]
 pub fn percent(part: impl Into<Option<f64>>, whole: f64) -> String {
     Quantity::Percent.bare(part.into().map(|part| 100.0 * part / whole))
 }
 
 /// A small error such as 3e-15.
-#[must_use]
 pub fn tiny(x: Option<f64>) -> String {
     let text = |_| number::tiny(x).replace('-', &MINUS.to_string());
     x.map_or_else(|| NONE.to_owned(), text)
 }
 
 /// A word of the program as people read it.
-#[must_use]
 pub fn words(name: &str) -> String {
     name.replace('_', " ")
 }
 
 /// A phase as people write it: `ECE15`, `EUDC`, but `cold transient`.
-#[must_use]
 pub fn phase(name: &str) -> String {
     let code = name.chars().any(|c| c.is_ascii_digit()) || name.eq_ignore_ascii_case("eudc");
     if code {
@@ -177,13 +184,11 @@ pub fn phase(name: &str) -> String {
 }
 
 /// The same, as the beginning of a line.
-#[must_use]
 pub fn capital(name: &str) -> String {
     capital_first(&words(name))
 }
 
 /// A text with a capital first letter.
-#[must_use]
 pub fn capital_first(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().into_iter().flat_map(char::to_uppercase);

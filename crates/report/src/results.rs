@@ -5,15 +5,14 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::consistency::{belongs, consistent};
-use super::problems::{problem, unreadable};
+use super::problems::{belongs, consistent, problem, unreadable};
 use cvtcycle_config::bounded;
 use cvtcycle_config::{Place, Problem, Problems, Setting};
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::{self, Record};
 use cvtcycle_output::summary::{SCHEMA, Summary};
-use cvtcycle_study::ambient::{WarmUp, warm_ups};
-use cvtcycle_study::manifest::TRACES;
+use cvtcycle_study::answer::ambient::{WarmUp, warm_ups};
+use cvtcycle_study::execute::manifest::TRACES;
 use cvtcycle_study::store::{self, is_study, read_trace_parquet};
 use cvtcycle_study::{Answer, StudyManifest, StudyTable, answer};
 
@@ -119,7 +118,6 @@ impl StudyResults {
     }
 
     /// A sentence on the parts that are missing, if the study is not finished.
-    #[must_use]
     pub fn unfinished(&self) -> Option<String> {
         let (there, all) = self.parts();
         let path = self.path.display();
@@ -128,7 +126,6 @@ impl StudyResults {
     }
 
     /// Parts that are there, and that there will be.
-    #[must_use]
     pub fn parts(&self) -> (usize, usize) {
         let status = self.store.status();
         (status.present, status.expected)

@@ -8,7 +8,7 @@ use super::results::StudyResults;
 use super::study_answers::answers;
 use super::study_pictures::study_pictures;
 use cvtcycle_config::Problem;
-use cvtcycle_study::ambient::Matrix;
+use cvtcycle_study::answer::ambient::Matrix;
 use cvtcycle_study::plan::Design;
 
 /// The study as a section of a report.

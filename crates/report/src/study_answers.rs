@@ -5,14 +5,14 @@ use serde_json::Value;
 use super::number::{Quantity, degc};
 use super::results::StudyResults;
 use cvtcycle_output::summary::{StartWord, Summary};
-use cvtcycle_study::ambient::Matrix;
+use cvtcycle_study::StudyManifest;
+use cvtcycle_study::answer::ambient::Matrix;
 use cvtcycle_study::answer::{Comparison, OutputAnswer};
-use cvtcycle_study::outputs::EXCESS;
+use cvtcycle_study::execute::outputs::EXCESS;
 
 /// Differences between the cases of a study and of a run; none if they are the same.
 ///
 /// Ambient and start count only where no factor sets them.
-#[must_use]
 pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
     let (plan, base) = (&study.outline.plan, &study.manifest["base"]);
     let free = |key: &str| plan.factors.iter().all(|factor| factor.key != key);
@@ -55,7 +55,6 @@ pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
 }
 
 /// The answer of a study in sentences.
-#[must_use]
 pub fn answers(study: &StudyResults) -> Vec<String> {
     let answer = &study.answer;
     if answer.points_done == 0 {
@@ -117,31 +116,52 @@ fn compared(study: &StudyResults, of: &Comparison) -> String {
 fn decided(study: &StudyResults, of: &Comparison) -> Option<String> {
     let own = |o: &&OutputAnswer| o.output == EXCESS && o.car == of.baseline;
     let output = study.answer.outputs.iter().find(own)?;
-    let (measure, mut ranked) = ranked(study, output)?;
-    ranked.retain(|(_, x)| x.is_finite());
-    ranked.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let (measure, ranked) = ranked(output, &study.outline)?;
+    let measure = match measure {
+        Measure::Variance => "total share of the variance",
+        Measure::Swing => "swing in percentage points",
+        Measure::Rank => "rank correlation",
+    };
     let factor = |(name, x): &(String, f64)| format!("{name} ({})", Quantity::Index.bare(*x));
     let factors: Vec<String> = ranked.iter().take(MAX_NAMED).map(factor).collect();
-    (!factors.is_empty()).then(|| format!("Most decided by {} [{measure}].", factors.join(", ")))
+    Some(format!(
+        "Most decided by {} [{measure}].",
+        factors.join(", ")
+    ))
 }
 
-/// A measure of the effect of each factor.
-type Ranked = (&'static str, Vec<(String, f64)>);
+/// What ranks the factors of an output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Total share of the variance.
+    Variance,
+    /// Swing of the output between the ends of a factor.
+    Swing,
+    /// Rank correlation.
+    Rank,
+}
 
-fn ranked(study: &StudyResults, output: &OutputAnswer) -> Option<Ranked> {
-    if let Some(indices) = output.sobol.last() {
-        let factors = study.outline.plan.factors.iter().zip(&indices.factors);
+/// Factors with the measure of the design, the strongest first; none where no factor has one.
+pub fn ranked(
+    output: &OutputAnswer,
+    outline: &StudyManifest,
+) -> Option<(Measure, Vec<(String, f64)>)> {
+    let (measure, mut list): (_, Vec<(String, f64)>) = if let Some(indices) = output.sobol.last() {
+        let factors = outline.plan.factors.iter().zip(&indices.factors);
         let factors = factors.map(|(factor, i)| (factor.name.clone(), i.total.value));
-        return Some(("total share of the variance", factors.collect()));
-    }
-    if let Some(tornado) = &output.tornado {
+        (Measure::Variance, factors.collect())
+    } else if let Some(tornado) = &output.tornado {
         let bars = tornado.bars.iter().map(|bar| (bar.name.clone(), bar.swing));
-        return Some(("swing in percentage points", bars.collect()));
-    }
-    let rank = output.rank.as_ref()?;
-    let factors = rank.factors.iter().zip(&rank.of.factors);
-    let factors = factors.map(|(name, f)| (name.clone(), f.spearman.value));
-    Some(("rank correlation", factors.collect()))
+        (Measure::Swing, bars.collect())
+    } else {
+        let rank = output.rank.as_ref()?;
+        let factors = rank.factors.iter().zip(&rank.of.factors);
+        let factors = factors.map(|(name, f)| (name.clone(), f.spearman.value));
+        (Measure::Rank, factors.collect())
+    };
+    list.retain(|(_, x)| x.is_finite());
+    list.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    (!list.is_empty()).then_some((measure, list))
 }
 
 /// The excess at the coldest and the warmest ambient, for each start.

@@ -7,9 +7,9 @@ use crate::charts::study::{
     rank_plot, sobol_plot, tornado_plot,
 };
 use cvtcycle_config::Problem;
-use cvtcycle_study::ambient::{Matrix, WarmUp};
+use cvtcycle_study::answer::ambient::{Matrix, WarmUp};
 use cvtcycle_study::answer::{OutputAnswer, described_numbers};
-use cvtcycle_study::outputs::{EXCESS, FUEL};
+use cvtcycle_study::execute::outputs::{EXCESS, FUEL};
 use cvtcycle_study::statistics::Groups;
 use cvtcycle_study::{Answer, StudyManifest, StudyTable};
 

@@ -1,11 +1,19 @@
-//! The results of `validate` as a section of a report.
+//! The results of `validate`: as a section of a report, and as an HTML page of their own: one file, readable without scripts, on paper
+//! and in the dark.
 
+use askama::Template;
 use serde_json::Value;
 
 use super::document::{ReportTable, Section};
+use cvtcycle_config::Override;
+use cvtcycle_output::table::distinct;
+use cvtcycle_study::check::expr::short;
+use cvtcycle_study::check::judge::{Judged, Report};
+use cvtcycle_study::check::report::{Counts, computed_text, notes, unit_text};
+use cvtcycle_study::check::rule::Verdict;
 
 /// Counts of the verdicts in words.
-fn counts(value: &Value) -> String {
+fn counts_in_words(value: &Value) -> String {
     let counts = ["agrees", "fit", "differs", "not_comparable"];
     let [agree, fit, differ, not] =
         counts.map(|verdict| value["counts"][verdict].as_u64().unwrap_or(0));
@@ -16,13 +24,11 @@ fn counts(value: &Value) -> String {
 }
 
 /// The verdicts in one line.
-#[must_use]
 pub fn doubt(value: &Value) -> String {
-    format!("Held against the thesis, {}.", counts(value))
+    format!("Held against the thesis, {}.", counts_in_words(value))
 }
 
 /// The rows of a validation: those that differ first, all others folded away.
-#[must_use]
 pub fn section(value: &Value) -> Section {
     let mut section = Section::new("validation", "Validation");
     let text = |key: &str| value[key].as_str().unwrap_or_default().to_owned();
@@ -32,7 +38,7 @@ pub fn section(value: &Value) -> Section {
         [] => String::new(),
         set => format!(" with {}", set.join(", ")),
     };
-    section.text(format!("Vehicle {}{with}, {}: {}. A number agrees when it lies within what is printed and the tolerance of the measurement; a row to which a parameter was fitted is called a fit, never an agreement.", text("vehicle"), text("program"), counts(value)));
+    section.text(format!("Vehicle {}{with}, {}: {}. A number agrees when it lies within what is printed and the tolerance of the measurement; a row to which a parameter was fitted is called a fit, never an agreement.", text("vehicle"), text("program"), counts_in_words(value)));
     let rows = value["rows"].as_array().into_iter().flatten();
     let differs = |row: &&Value| row["verdict"].as_str() == Some("differs");
     let (differing, others): (Vec<&Value>, Vec<&Value>) = rows.partition(differs);
@@ -55,4 +61,113 @@ fn table(caption: &str, rows: &[&Value], last: &str) -> ReportTable {
         table.row([text("id"), what].into_iter().chain(numbers));
     }
     table
+}
+
+#[derive(Template)]
+#[template(path = "validation.html")]
+struct Page {
+    program: &'static str,
+    vehicle: String,
+    set: Vec<Override>,
+    counts: Counts,
+    total: usize,
+    moved: Vec<String>,
+    chapters: Vec<Chapter>,
+}
+
+struct Chapter {
+    title: String,
+    anchor: String,
+    counts: Counts,
+    rows: Vec<Line>,
+}
+
+struct Line {
+    id: String,
+    what: String,
+    condition: String,
+    printed: String,
+    tolerance: String,
+    computed: String,
+    unit: String,
+    verdict: &'static str,
+    class: &'static str,
+    notes: Vec<String>,
+}
+
+/// A report as an HTML page.
+///
+/// # Errors
+/// Never for the templates of this program.
+pub fn page(report: &Report) -> Result<String, String> {
+    let page = Page {
+        program: cvtcycle_output::PROGRAM,
+        vehicle: report.candidate.vehicle.clone(),
+        set: report.candidate.set.clone(),
+        counts: Counts::of(report.rows.iter()),
+        total: report.rows.len(),
+        moved: report.moved().map(|judged| judged.row.id.clone()).collect(),
+        chapters: chapters(report),
+    };
+    page.render().map_err(|e| e.to_string())
+}
+
+/// Rows by chapter, chapters in the order of their first rows.
+fn chapters(report: &Report) -> Vec<Chapter> {
+    let names = distinct(report.rows.iter().map(|judged| judged.row.chapter.as_str()));
+    let chapter = |(k, name): (usize, &&str)| {
+        let rows = report.rows.iter();
+        let own = rows.filter(|judged| judged.row.chapter == *name);
+        Chapter {
+            title: chapter_title(name),
+            anchor: format!("part-{}", k + 1),
+            counts: Counts::of(own.clone()),
+            rows: own.map(line).collect(),
+        }
+    };
+    names.iter().enumerate().map(chapter).collect()
+}
+
+/// "Chapter 5", "Appendix C", or the user's own word.
+pub fn chapter_title(name: &str) -> String {
+    match name {
+        "C" => "Appendix C".to_owned(),
+        name if name.parse::<u32>().is_ok() => format!("Chapter {name}"),
+        name => name.to_owned(),
+    }
+}
+
+/// Widths on both sides of what is printed; empty where there are none, or next to none.
+fn tolerance(judged: &Judged) -> String {
+    let [below, above] = judged.row.tolerance_widths;
+    let widest = if below > above { below } else { above };
+    if judged.row.tolerance.is_empty() || widest < 1e-3 {
+        String::new()
+    } else if (below - above).abs() <= 1e-9 * widest {
+        format!("± {}", short(above))
+    } else {
+        format!("-{}, +{}", short(below), short(above))
+    }
+}
+
+fn line(judged: &Judged) -> Line {
+    let row = &judged.row;
+    let (verdict, class) = match judged.verdict {
+        Verdict::Agrees => ("agrees", "agrees"),
+        Verdict::Fit => ("fit", "fit"),
+        Verdict::Differs => ("differs", "differs"),
+        Verdict::NotComparable => ("not comparable", "none"),
+    };
+    Line {
+        id: row.id.clone(),
+        what: row.what.clone(),
+        condition: row.condition.clone(),
+        printed: row.printed_text.clone(),
+        tolerance: tolerance(judged),
+        computed: computed_text(judged),
+        unit: unit_text(&row.unit).to_owned(),
+        verdict,
+        class,
+        notes: notes(judged),
+    }
 }

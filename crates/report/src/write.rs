@@ -32,7 +32,6 @@ impl Form {
     }
 
     /// The form of a file by its ending.
-    #[must_use]
     pub fn of(file: &Path) -> Option<Form> {
         let mut forms = [Form::Html, Form::Markdown].into_iter();
         forms.find(|form| form.endings().contains(&ending(file).as_str()))
@@ -230,7 +229,6 @@ impl Target {
 }
 
 /// A name without anything that leads elsewhere.
-#[must_use]
 pub fn file_name(name: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
     name.chars()

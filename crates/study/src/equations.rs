@@ -18,11 +18,7 @@ pub fn by_label(label: &str) -> Option<Equation> {
     equations().find(|equation| equation.label.eq_ignore_ascii_case(label))
 }
 
-/// The equations whose labels a text names in brackets, as in "displacement (PU-1, PU-4)".
-pub fn cited(text: &str) -> Vec<Equation> {
-    let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'));
-    words
-        .filter(|word| word.bytes().all(|b| !b.is_ascii_lowercase()))
-        .filter_map(by_label)
-        .collect()
+/// The equations of some labels.
+pub fn of_labels(labels: &[&str]) -> impl Iterator<Item = Equation> {
+    labels.iter().filter_map(|label| by_label(label))
 }

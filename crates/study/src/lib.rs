@@ -8,51 +8,48 @@
 //! |---|---|
 //! | `plan` | a TOML file to a plan: cars, factors, design |
 //! | `design` | from the index of a point to a level of each factor |
-//! | `prepare`, `cars`, `check` | a plan to a study: cars loaded once, every value tried |
-//! | `point` | one point: cars changed, driven, rows filled |
-//! | `traces` | rows of runs to columns, as they are driven |
-//! | `execute` | parts of points on all cores, written while the next is computed |
-//! | `outputs` | the numbers of a row: one table of names, units, getters |
-//! | `table` | columns in memory |
-//! | `store`, `disk` | parts and results on disk, whole or absent; reading them again |
-//! | `manifest`, `outline` | what a study is, written and read |
-//! | `frame` | the table by car and point |
+//! | `execute` | a plan to a study with its cars loaded and every value tried; its points on all cores, in whole parts |
+//! | `store` | tables of columns; parts and results on disk, whole or absent; reading and exporting them |
 //! | `statistics` | pure functions: description, Sobol indices, tornado, ranks |
-//! | `answer`, `ambient` | what the study says |
-//! | `export` | all rows as one file |
+//! | `answer` | what the study says, from its table by car and point |
+//! | `sensitivity` | every value of a car changed by itself |
+//! | `points` | the belt at points of a table |
+//! | `check` | comparison with published values |
+//! | `fit` | parameters fitted to measurements |
 //! | `equations` | the labelled equations of model and statistics |
 
-pub mod ambient;
 pub mod answer;
-mod cars;
-mod preflight;
 pub mod check;
 pub mod fit;
 pub mod points;
 pub mod sensitivity;
 pub mod design;
-pub mod disk;
 pub mod equations;
 pub mod execute;
-pub mod export;
-mod filler;
-pub mod manifest;
-pub mod outputs;
 pub mod plan;
-mod point;
-pub mod prepare;
-pub mod progress;
 pub mod statistics;
 pub mod store;
-mod study_table;
-pub mod table;
-pub mod tables;
-mod traces;
 
-pub use answer::{Answer, answer};
-pub use cars::StudyCar;
-pub use execute::{End, PartWriter};
-pub use manifest::StudyManifest;
-pub use prepare::Study;
-pub use progress::{NoProgress, Progress};
-pub use study_table::{StudyTable, TableSource};
+pub use answer::{Answer, StudyTable, TableSource, answer};
+pub use execute::{End, PartWriter, Study, StudyCar, StudyManifest};
+
+/// Receives progress from several threads at once.
+pub trait Progress: Sync {
+    /// Counts finished units of work: runs of a study, evaluations of a fit.
+    fn advance(&self, count: u64);
+
+    /// True if the computation is to stop now. What is finished is kept.
+    fn stopped(&self) -> bool;
+}
+
+/// Ignores progress and never stops.
+#[derive(Clone, Copy, Debug)]
+pub struct NoProgress;
+
+impl Progress for NoProgress {
+    fn advance(&self, _: u64) {}
+
+    fn stopped(&self) -> bool {
+        false
+    }
+}

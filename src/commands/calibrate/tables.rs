@@ -1,7 +1,7 @@
 //! A calibration as tables: errors first, then the numbers behind them.
 
 use cvtcycle::output::number::{NONE, fixed, signed};
-use cvtcycle::output::table::{TextColumns, TextTable, cut, wrapped};
+use cvtcycle::output::table::{TextColumns, TextTable, cut, distinct, wrapped};
 use cvtcycle::study::fit::outcome::{Fold, Outcome, Parameter, Residual, Start, rms};
 
 use crate::print::colour::Paint;
@@ -181,12 +181,7 @@ fn parameters(o: &Outcome) -> String {
 }
 
 fn groups(o: &Outcome) -> String {
-    let mut names: Vec<&str> = Vec::new();
-    for r in &o.residuals {
-        if !names.contains(&r.group.as_str()) {
-            names.push(&r.group);
-        }
-    }
+    let names = distinct(o.residuals.iter().map(|r| r.group.as_str()));
     let of = |get: fn(&Residual) -> Option<f64>| {
         move |name: &&str| rms_of(o.residuals.iter().filter(|r| r.group == *name).map(get))
     };

@@ -1,14 +1,19 @@
-//! The files of a run.
+//! The files of a run: traces, plots, and the inputs that it was made from.
 
-use cvtcycle::config::Problem;
 use cvtcycle::config::cycle::Cycle;
-use cvtcycle::model::drive::fuel_map;
+use cvtcycle::config::{Problem, Problems};
+use cvtcycle::model::drive::{Conditions, fuel_map};
 use cvtcycle::output::History;
 use cvtcycle::output::files::OutputDir;
-use cvtcycle::output::summary::{Driven, RunSummary, Summary};
+use cvtcycle::output::provenance::{car_record, cycle_record};
+use cvtcycle::output::record::{Manifest, Record, SCHEMA};
+use cvtcycle::output::summary::{Driven, Summary};
 use cvtcycle::output::trace::{columns_for, write_trace};
 use cvtcycle::report::charts::{self, PlotRun};
+use cvtcycle::study::sensitivity::{Named, sensitivity};
 use cvtcycle::study::store::write_trace_parquet;
+
+use super::vehicles::RunVehicle;
 
 /// Formats of the traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +68,7 @@ pub fn write(
             name,
             history,
             fuel_map: Some(fuel_map(car.setup)),
-            group_fuel: group_fuel(run),
+            group_fuel: charts::group_fuel(run),
         };
         let pressure = history
             .is_cvt()
@@ -83,16 +88,72 @@ pub fn write(
     dir.put("fuel_comparison.svg", charts::fuel_bars(&runs).svg)
 }
 
-/// Fuel of each phase, of the cycle, and weighted where the cycle is, L/100 km.
-fn group_fuel(run: &RunSummary) -> Vec<(String, f64)> {
-    let total = [("total", run.fuel_l_per_100km)].into_iter();
-    let weighted = run
-        .weighted_fuel_l_per_100km
-        .map(|fuel| ("weighted", Some(fuel)));
-    // The only group of a cycle is its total.
-    let phases = run.phases.iter().filter(|_| run.phases.len() > 1);
-    let phases = phases.map(|phase| (phase.name.as_str(), phase.fuel_l_per_100km));
-    let all = phases.chain(total).chain(weighted);
-    all.map(|(name, fuel)| (name.to_owned(), fuel.unwrap_or(f64::NAN)))
-        .collect()
+/// Steps of a cycle up to which `auto` computes sensitivities, which take some seven hundred runs.
+const MAX_STEPS: usize = 20_000;
+
+/// When sensitivities are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensitivityMode {
+    /// Unless the cycle is long.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
+
+impl SensitivityMode {
+    /// Names on the command line.
+    pub const NAMES: [(&'static str, SensitivityMode); 3] = [
+        ("auto", SensitivityMode::Auto),
+        ("always", SensitivityMode::Always),
+        ("never", SensitivityMode::Never),
+    ];
+}
+
+/// Inputs of a run.
+///
+/// # Errors
+/// Problems of files that changed since they were read.
+pub fn record(
+    vehicles: &[RunVehicle],
+    cycle: &Cycle,
+    conditions: &Conditions,
+    mode: SensitivityMode,
+) -> Result<Record, Problems> {
+    let records = vehicles
+        .iter()
+        .map(|car| car_record(&car.name, &car.word, &car.options, &car.setup));
+    let steps = cycle.trace_for(true).step_count(conditions.max_dt_s);
+    let wanted = match mode {
+        SensitivityMode::Auto => steps <= MAX_STEPS,
+        SensitivityMode::Always => true,
+        SensitivityMode::Never => false,
+    };
+    let named = |car: &RunVehicle| Named {
+        name: car.name.clone(),
+        word: car.word.clone(),
+        options: car.options.clone(),
+    };
+    let named: Vec<Named> = vehicles.iter().map(named).collect();
+    let words = std::env::args_os().skip(1);
+    Ok(Record {
+        manifest: Manifest::new(SCHEMA),
+        command: command_line(words.map(|word| word.to_string_lossy().into_owned())),
+        cycle: cycle_record(cycle),
+        cars: records.collect::<Result<_, _>>()?,
+        sensitivity: wanted
+            .then(|| sensitivity(&named, cycle, conditions))
+            .transpose()?,
+    })
+}
+
+/// The command line, quoted for a shell.
+fn command_line(words: impl Iterator<Item = String>) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
+    let quoted = |word: String| match !word.is_empty() && word.chars().all(plain) {
+        true => format!(" {word}"),
+        false => format!(" '{}'", word.replace('\'', "'\\''")),
+    };
+    "cvtcycle".to_owned() + &words.map(quoted).collect::<String>()
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::report::study_pictures::study_pictures;
-use cvtcycle::study::disk::DirWriter;
+use cvtcycle::study::execute::DirWriter;
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::StudyDir;
 use cvtcycle::study::{End, Study, StudyManifest};
@@ -162,7 +162,7 @@ pub fn results(study: &StudyResults) -> Result<Results, Problems> {
 fn files(study: &StudyResults) -> Result<Vec<(String, Vec<u8>)>, Problems> {
     let statistics = json_text(&study.answer)?.into_bytes();
     let mut files = vec![("statistics.json".to_owned(), statistics)];
-    files.extend(cvtcycle::study::tables::tables(
+    files.extend(cvtcycle::study::answer::tables(
         &study.answer,
         &study.outline,
     ));

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use cvtcycle::output::file::OutputFile;
-use cvtcycle::study::export::{Format, export};
-use cvtcycle::study::manifest::{RUNS, TRACES};
+use cvtcycle::study::execute::manifest::{RUNS, TRACES};
 use cvtcycle::study::store::Study;
+use cvtcycle::study::store::{Format, export};
 
 use crate::args::{OutArgs, OutputArgs};
 use crate::commands::Execute;

@@ -3,18 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use cvtcycle::report::results::StudyResults;
+use cvtcycle::report::study_answers::{Measure, ranked};
+use cvtcycle::study::answer::ambient::Matrix;
 use cvtcycle::study::answer::{Comparison, OutputAnswer};
-use cvtcycle::study::outputs::EXCESS;
+use cvtcycle::study::execute::outputs::EXCESS;
 use cvtcycle::study::plan::Design;
 use cvtcycle::study::statistics::{
     Estimate, FactorIndices, Group, Groups, SobolIndices, Tornado, TornadoBar, TornadoEnd,
 };
 use cvtcycle::study::{Answer, StudyManifest};
 
-use super::matrix;
 use crate::print::colour::Paint;
 use crate::print::sections;
-use cvtcycle::output::number::{NONE, fixed, signed};
+use cvtcycle::output::number::{NONE, fixed, plain, signed};
 use cvtcycle::output::table::TextColumns;
 
 /// Number of factors that are listed for an output.
@@ -27,7 +28,7 @@ pub fn tables(study: &StudyResults, paint: Paint) -> String {
     let (answer, outline) = (&study.answer, &study.outline);
     let text = head(study, paint);
     if let Some(matrix) = &answer.matrix {
-        return text + &matrix::tables(matrix, paint);
+        return text + &matrix_tables(matrix, paint);
     }
     let sampled = outline.plan.design.is_sampled();
     let of = answer.comparisons.iter();
@@ -38,6 +39,60 @@ pub fn tables(study: &StudyResults, paint: Paint) -> String {
         ("Outputs", outputs(answer)),
     ];
     text + &sections(body, paint) + &factors(answer, outline, paint)
+}
+
+/// Start and ambient temperature of a row, by index.
+type MatrixRow = (usize, usize);
+
+/// Fuel of each part of the cycle with the difference to the baselines, and end temperatures.
+fn matrix_tables(matrix: &Matrix, paint: Paint) -> String {
+    let rows = |columns: &TextColumns<MatrixRow>| {
+        let ambients = matrix.ambient_degc.len();
+        let of_start = |start| (0..ambients).map(move |ambient| (start, ambient));
+        let rows: Vec<MatrixRow> = (0..matrix.starts.len()).flat_map(of_start).collect();
+        columns.text(&rows)
+    };
+    let fuel = matrix.fuel.iter().map(|part| {
+        let name = match part.name.as_str() {
+            "total" => "whole cycle",
+            name => name,
+        };
+        let mut columns = lead(matrix);
+        for (car, numbers) in matrix.cars.iter().zip(&part.l_per_100km) {
+            columns = columns.number(car, 2, |row| cell(numbers, row));
+        }
+        for (car, numbers) in matrix.cars.iter().skip(1).zip(&part.excess_percent) {
+            columns = columns.right(format!("over {car}"), |row| signed(cell(numbers, row), 1));
+        }
+        let title = format!("Fuel, {name}, L/100 km, and difference of the subject, %");
+        (title, rows(&columns))
+    });
+    let ends = matrix.ends.iter().map(|part| {
+        let mut columns = lead(matrix);
+        for (car, numbers) in matrix.cars.iter().zip(&part.degc) {
+            columns = columns.number(car, 1, |row| cell(numbers, row));
+        }
+        let title = format!("End temperature, {}, degC", part.name);
+        (title, rows(&columns))
+    });
+    sections(fuel.chain(ends), paint)
+}
+
+fn cell(numbers: &[Vec<f64>], (start, ambient): &MatrixRow) -> Option<f64> {
+    numbers.get(*start)?.get(*ambient).copied()
+}
+
+/// Columns of start and ambient temperature; a start is named in its first row.
+fn lead(matrix: &Matrix) -> TextColumns<'_, MatrixRow> {
+    let start = |(start, ambient): &MatrixRow| match ambient {
+        0 => matrix.starts[*start].as_str(),
+        _ => "",
+    };
+    TextColumns::new()
+        .left("start", start)
+        .right("ambient", |(_, ambient)| {
+            plain(matrix.ambient_degc[*ambient])
+        })
 }
 
 fn head(study: &StudyResults, paint: Paint) -> String {
@@ -112,40 +167,18 @@ fn compared(of: &Comparison, answer: &Answer, sampled: bool) -> String {
 fn strongest(of: &Comparison, answer: &Answer, outline: &StudyManifest) -> Option<String> {
     let mut outputs = answer.outputs.iter();
     let output = outputs.find(|o| o.output == EXCESS && o.car == of.baseline)?;
-    let ranked = ranked(output, outline)?;
+    let (measure, ranked) = ranked(output, outline)?;
     let name = |(name, x): &(String, f64)| format!("{name} ({})", fixed(*x, 2));
     let first: Vec<String> = ranked.iter().take(3).map(name).collect();
-    let measure = match (&output.tornado, output.sobol.is_empty()) {
-        (Some(_), _) => "swing, points",
-        (None, false) => "share of the variance, with interactions",
-        _ => "rank correlation",
+    let measure = match measure {
+        Measure::Variance => "share of the variance, with interactions",
+        Measure::Swing => "swing, points",
+        Measure::Rank => "rank correlation",
     };
     let (baseline, first) = (&of.baseline, first.join(", "));
     Some(format!(
         "Largest effects on the difference to {baseline}: {first} [{measure}].\n"
     ))
-}
-
-/// Factors with the measure of the design, the strongest first.
-fn ranked(output: &OutputAnswer, outline: &StudyManifest) -> Option<Vec<(String, f64)>> {
-    let mut list: Vec<(String, f64)> = if let Some(indices) = output.sobol.last() {
-        let factors = outline.plan.factors.iter().zip(&indices.factors);
-        factors
-            .map(|(factor, i)| (factor.name.clone(), i.total.value))
-            .collect()
-    } else if let Some(tornado) = &output.tornado {
-        let bars = tornado.bars.iter();
-        bars.map(|bar| (bar.name.clone(), bar.swing)).collect()
-    } else {
-        let rank = output.rank.as_ref()?;
-        let factors = rank.factors.iter().zip(&rank.of.factors);
-        factors
-            .map(|(name, f)| (name.clone(), f.spearman.value))
-            .collect()
-    };
-    list.retain(|(_, x)| x.is_finite());
-    list.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    (!list.is_empty()).then_some(list)
 }
 
 fn outputs(answer: &Answer) -> String {
@@ -247,7 +280,7 @@ fn levels(output: &OutputAnswer) -> String {
 }
 
 fn sobol(output: &OutputAnswer, outline: &StudyManifest, indices: &SobolIndices) -> String {
-    let Some(ranked) = ranked(output, outline) else {
+    let Some((_, ranked)) = ranked(output, outline) else {
         return "  the output does not vary\n".to_owned();
     };
     let span = |e: &Estimate| match e.interval95 {

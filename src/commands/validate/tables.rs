@@ -1,7 +1,7 @@
 //! A validation as tables.
 
-use cvtcycle::output::table::{TextColumns, TextTable, cut};
-use cvtcycle::report::validation_page::chapter_title;
+use cvtcycle::output::table::{TextColumns, TextTable, cut, distinct};
+use cvtcycle::report::validation::chapter_title;
 use cvtcycle::study::check::{Judged, Report, Verdict, computed_text, notes_line, unit_text};
 
 use crate::print::colour::Paint;
@@ -16,12 +16,7 @@ pub fn tables(report: &Report, paint: Paint) -> String {
     let heading = paint.heading("Published values compared with the model");
     let mut text = format!("{heading}  {}\n", candidate.vehicle);
     text.extend(candidate.set.iter().map(|set| format!("--set {set}\n")));
-    let mut chapters: Vec<&str> = Vec::new();
-    for judged in &report.rows {
-        if !chapters.contains(&judged.row.chapter.as_str()) {
-            chapters.push(&judged.row.chapter);
-        }
-    }
+    let chapters = distinct(report.rows.iter().map(|j| j.row.chapter.as_str()));
     let of_chapter = |name| {
         let rows = report.rows.iter().filter(|j| j.row.chapter == name);
         (chapter_title(name), chapter(&rows.collect::<Vec<_>>()))

@@ -12,7 +12,6 @@
     reason = "helpers of tests; a test that is skipped says so"
 )]
 
-mod clock;
 mod environment;
 mod names;
 mod places;

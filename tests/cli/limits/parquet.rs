@@ -5,8 +5,8 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use cvtcycle::config::Problem;
+use cvtcycle::study::store::{Head, Kind, Rows, Values};
 use cvtcycle::study::store::{ParquetFile, read_trace_parquet, sha256, write_parquet};
-use cvtcycle::study::table::{Head, Kind, Rows, Values};
 use parquet::file::metadata::{
     FileMetaData, ParquetMetaData, ParquetMetaDataWriter, RowGroupMetaData,
 };

@@ -240,7 +240,7 @@ fn a_setup_is_read_under_the_same_bound() {
 
 /// Modules that open files by themselves, with the reason.
 const OWN: [(&str, &str); 4] = [
-    ("config::bounded", "has the limits"),
+    ("config::files::bounded", "has the limits"),
     ("cvtcycle::commands::belt", "reads line by line"),
     ("output::files", "a directory, to be synced"),
     (

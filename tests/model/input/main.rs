@@ -5,16 +5,10 @@
 #[path = "../../common/loose.rs"]
 mod loose;
 
-mod bounded;
-mod catalogue;
-mod check_only;
 mod choices;
-mod constant;
-mod csv;
-mod near;
+mod cycle;
+mod files;
 mod overrides;
 mod problems;
 mod reading;
-mod render;
-mod rig;
-mod syntax;
+mod setup;

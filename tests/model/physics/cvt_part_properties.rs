@@ -10,8 +10,11 @@
 use crate::common::{at, car, cycle, try_car};
 use cvtcycle_model::drive::{Start, drive};
 use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
+use cvtcycle_model::transmission::cvt::clutch_drag::ClutchDrag;
+use cvtcycle_model::transmission::cvt::final_drive::FinalDrive;
 use cvtcycle_model::transmission::cvt::pump::{Pump, PumpAtTemperature, PumpKind};
-use cvtcycle_model::transmission::cvt::spin::{NU_REFERENCE_M2_S, Spin};
+use cvtcycle_model::transmission::cvt::shaft_drag::ShaftDrag;
+use cvtcycle_model::transmission::cvt::{NU_REFERENCE_M2_S, viscosity_power};
 use cvtcycle_model::transmission::viscous_self_heating::ViscousSelfHeating;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -82,6 +85,7 @@ fn any_pump() -> impl Strategy<Value = Pump> {
             Pump {
                 heating,
                 inlet_pa_s_m3,
+                inlet_depression_pa: 0.7e5,
                 kind,
                 displacement_m3_rad: cc / std::f64::consts::TAU,
                 friction,
@@ -177,6 +181,7 @@ fn pump_is_continuous_in_speed_and_need() {
             viscous_exponent: 0.9,
             heating: ViscousSelfHeating::halving_at_w(Some(600.0)),
             inlet_pa_s_m3: 2e7,
+            inlet_depression_pa: 0.7e5,
             constant_nm: 0.0,
             line_drop_pa: 0.0,
             residual_pa: 1e5,
@@ -204,36 +209,40 @@ fn pump_is_continuous_in_speed_and_need() {
 
 // ---------------------------------------------------------------- shaft, reverse clutch, final drive
 
-fn any_spin() -> impl Strategy<Value = Spin> {
-    let exponents = (0.0..1.5f64, 0.0..1.5f64, 0.0..1.5f64);
-    let heating = (any_heating(), any_heating());
-    (
-        exponents,
-        0.0..3.0f64,
-        0.0..1e-3f64,
-        0.0..1.0f64,
-        0.0..3.0f64,
-        0.8..=1.0f64,
-        heating,
+fn any_shaft() -> impl Strategy<Value = ShaftDrag> {
+    (0.0..3.0f64, 0.0..1e-3f64, 0.0..1.5f64, any_heating()).prop_map(
+        |(constant_nm, viscous_nm_s, exponent, heating)| ShaftDrag {
+            constant_nm,
+            viscous_nm_s,
+            exponent,
+            heating,
+        },
     )
-        .prop_map(|all| {
-            let (m, constant, slope, clutch, drive, eta, heating) = all;
-            Spin {
-                shaft_heating: heating.0,
-                drive_heating: heating.1,
-                shaft_constant_nm: constant,
-                shaft_viscous_nm_s: slope,
-                shaft_exponent: m.0,
-                clutch_nm: clutch,
-                clutch_exponent: m.1,
-                clutch_cap_nm: 0.5,
-                drive_boundary_nm: drive,
-                drive_scale_rad_s: 2000.0 * RPM,
-                drive_viscous_nm: 0.29,
-                drive_exponent: m.2,
-                mesh_efficiency: eta,
-            }
-        })
+}
+
+fn any_final_drive() -> impl Strategy<Value = FinalDrive> {
+    (0.0..3.0f64, 0.0..1.5f64, 0.8..=1.0f64, any_heating()).prop_map(
+        |(boundary_nm, exponent, mesh_efficiency, heating)| FinalDrive {
+            ratio: 6.0,
+            boundary_nm,
+            scale_rad_s: 2000.0 * RPM,
+            viscous_nm: 0.29,
+            exponent,
+            heating,
+            mesh_efficiency,
+        },
+    )
+}
+
+/// Torque of the input shaft at a viscosity and a speed.
+fn shaft_nm(shaft: &ShaftDrag, nu: f64, w: f64) -> f64 {
+    shaft.torque_nm(viscosity_power(nu, shaft.exponent), w)
+}
+
+/// Drag of the final drive at a viscosity and a speed.
+fn drive_nm(drive: &FinalDrive, nu: f64, w: f64) -> f64 {
+    let fall = drive.fall_exponent(w).exp();
+    drive.drag_nm(viscosity_power(nu, drive.exponent), fall, w)
 }
 
 proptest! {
@@ -241,44 +250,47 @@ proptest! {
 
     /// Drags are finite, never negative, do not fall with viscosity, and the clutch's never exceeds its cap (IS-1, CD-1, FD-1).
     #[test]
-    fn drags_rise_with_viscosity(spin in any_spin(), (a, b) in pair(1e-6, 5e-3), w in 0.0..1500.0f64) {
-        let (thin, thick) = (spin.at(a), spin.at(b));
-        let drags = |now: &cvtcycle_model::transmission::cvt::spin::SpinAtTemperature| [now.shaft_nm(w), now.clutch_nm, spin.drive_nm(now, w)];
-        for (x, y) in drags(&thin).iter().zip(drags(&thick)) {
+    fn drags_rise_with_viscosity(
+        (shaft, drive) in (any_shaft(), any_final_drive()),
+        (clutch_nm, exponent) in (0.0..1.0f64, 0.0..1.5f64),
+        (a, b) in pair(1e-6, 5e-3),
+        w in 0.0..1500.0f64,
+    ) {
+        let clutch = ClutchDrag { drag_nm: clutch_nm, exponent, cap_nm: 0.5 };
+        let drags = |nu: f64| [shaft_nm(&shaft, nu, w), clutch.torque_nm(viscosity_power(nu, exponent)), drive_nm(&drive, nu, w)];
+        for (x, y) in drags(a).iter().zip(drags(b)) {
             prop_assert!(x.is_finite() && *x >= 0.0 && y >= x * (1.0 - 1e-12), "{x} then {y}");
         }
-        prop_assert!(thick.clutch_nm <= spin.clutch_cap_nm);
-        // At the reference viscosity and without heating the constants hold as they stand, whatever the exponents; heating takes away
+        prop_assert!(drags(b)[1] <= 0.5);
+        // At the reference viscosity and without heating the constants hold as they are, whatever the exponents; heating takes away
         // from the viscous part only.
-        let plain = Spin { shaft_heating: ViscousSelfHeating::NONE, drive_heating: ViscousSelfHeating::NONE, ..spin };
-        let now = plain.at(NU_REFERENCE_M2_S);
-        prop_assert!((now.shaft_nm(w) - spin.shaft_constant_nm - spin.shaft_viscous_nm_s * w).abs() < 1e-12);
-        for (heated, unheated) in drags(&thick).iter().zip([plain.at(b).shaft_nm(w), plain.at(b).clutch_nm, plain.drive_nm(&plain.at(b), w)]) {
-            prop_assert!(*heated <= unheated && unheated.is_finite());
-        }
-        prop_assert!(thick.shaft_nm(w) >= spin.shaft_constant_nm);
-        prop_assert!((spin.drive_nm(&now, 0.0) - spin.drive_boundary_nm - spin.drive_viscous_nm).abs() < 1e-12);
+        let plain_shaft = ShaftDrag { heating: ViscousSelfHeating::NONE, ..shaft };
+        let plain_drive = FinalDrive { heating: ViscousSelfHeating::NONE, ..drive };
+        prop_assert!((shaft_nm(&plain_shaft, NU_REFERENCE_M2_S, w) - shaft.constant_nm - shaft.viscous_nm_s * w).abs() < 1e-12);
+        prop_assert!((drive_nm(&plain_drive, NU_REFERENCE_M2_S, 0.0) - drive.boundary_nm - drive.viscous_nm).abs() < 1e-12);
+        prop_assert!(shaft_nm(&shaft, b, w) <= shaft_nm(&plain_shaft, b, w));
+        prop_assert!(drive_nm(&drive, b, w) <= drive_nm(&plain_drive, b, w));
+        prop_assert!(shaft_nm(&shaft, b, w) >= shaft.constant_nm);
     }
 
     /// The shaft's drag does not fall with speed, the final drive's does not rise with it (thesis 5.5.5, 5.5.1).
     #[test]
-    fn val_drags_against_speed(spin in any_spin(), (a, b) in pair(0.0, 1500.0), nu in 1e-6..5e-3f64) {
-        let now = spin.at(nu);
-        prop_assert!(now.shaft_nm(a) <= now.shaft_nm(b));
-        prop_assert!(spin.drive_nm(&now, a) >= spin.drive_nm(&now, b));
+    fn val_drags_against_speed(shaft in any_shaft(), drive in any_final_drive(), (a, b) in pair(0.0, 1500.0), nu in 1e-6..5e-3f64) {
+        prop_assert!(shaft_nm(&shaft, nu, a) <= shaft_nm(&shaft, nu, b));
+        prop_assert!(drive_nm(&drive, nu, a) >= drive_nm(&drive, nu, b));
     }
 
     /// Final drive: in drive the secondary gives eta of its torque above drag, in overrun it gets eta of it; so the loss is never
     /// negative, is the drag alone at eta = 1, and output torque carries over without a jump and in order (FD-2).
     #[test]
-    fn final_drive_loses_both_ways(spin in any_spin(), drag in 0.0..5.0f64, (a, b) in pair(-500.0, 500.0)) {
-        let secondary = |output: f64| spin.secondary_torque_nm(drag, output);
-        prop_assert!(secondary(a) - a >= drag * spin.mesh_efficiency - 1e-12, "{} for {a}", secondary(a));
-        prop_assert!(secondary(a) < secondary(b) && secondary(b) - secondary(a) <= (b - a) / spin.mesh_efficiency * (1.0 + 1e-12) + 1e-12);
+    fn final_drive_loses_both_ways(drive in any_final_drive(), drag in 0.0..5.0f64, (a, b) in pair(-500.0, 500.0)) {
+        let (secondary, eta) = (|output: f64| drive.secondary_torque_nm(drag, output), drive.mesh_efficiency);
+        prop_assert!(secondary(a) - a >= drag * eta - 1e-12, "{} for {a}", secondary(a));
+        prop_assert!(secondary(a) < secondary(b) && secondary(b) - secondary(a) <= (b - a) / eta * (1.0 + 1e-12) + 1e-12);
         let through = a + drag;
         let (more, less) = if through >= 0.0 { (secondary(a), through) } else { (-through, -secondary(a)) };
-        prop_assert!((less - spin.mesh_efficiency * more).abs() <= 1e-12 * more);
-        let perfect = Spin { mesh_efficiency: 1.0, ..spin };
+        prop_assert!((less - eta * more).abs() <= 1e-12 * more);
+        let perfect = FinalDrive { mesh_efficiency: 1.0, ..drive };
         prop_assert_eq!(perfect.secondary_torque_nm(drag, a), through);
     }
 }

@@ -11,11 +11,11 @@ mod common;
 
 mod allocation;
 mod belt_properties;
-mod bench;
 mod cold;
 mod conserve;
 mod cvt_part_properties;
 mod cycles;
+mod dead_inputs;
 mod equations;
 mod maps;
 mod metamorphic;

@@ -155,3 +155,35 @@ fn nothing_to_draw_is_still_a_picture() {
     }
     assert!(line_chart(&of(vec![lone(&[])])).svg.contains("no data"));
 }
+
+#[test]
+fn many_lines_in_words_are_the_span_of_each_quantity() {
+    let curve = |k: u32| {
+        let height = f64::from(k);
+        let look = Look::solid(k as usize);
+        (look, vec![(1000.0, height), (2000.0, 10.0 * height)])
+    };
+    let force = LinePanel {
+        series: (1..=4).map(curve).collect(),
+        ..lone(&[])
+    };
+    let heat = LinePanel {
+        y_title: "Heat [W]",
+        series: (5..=8).map(curve).collect(),
+        ..LinePanel::default()
+    };
+    let said = |panels: Vec<LinePanel>| {
+        let svg = line_chart(&of(panels)).svg;
+        let words = svg.split("<desc>").nth(1).expect("a picture in words");
+        words.split("</desc>").next().unwrap_or_default().to_owned()
+    };
+    assert_eq!(
+        said(vec![force.clone(), heat]),
+        "Force [N], Heat [W] over Speed [rpm]. Speed [rpm] from 1000 to 2000; Force [N] from 1.00 to 40.0; Heat [W] from 5.0 to 80.0."
+    );
+    let few = said(vec![lone(&[(1.0, 2.0), (3.0, 4.0)])]);
+    assert!(
+        few.starts_with("Force [N] over Speed [rpm]. Speed [rpm], "),
+        "{few}"
+    );
+}

@@ -7,14 +7,12 @@
     reason = "helpers and tables of tests"
 )]
 
+mod bars;
 mod calibration;
 mod difference;
 mod flow;
 mod lines;
-mod loss_bars;
 mod overlay;
-mod phase_bars;
 mod runs;
 mod svg_checks;
-mod temperature_bars;
 mod variogram;

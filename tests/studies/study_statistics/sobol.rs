@@ -3,7 +3,7 @@
 use cvtcycle::study::statistics::{Blocks, Bootstrap, Estimate, sobol_convergence, sobol_indices};
 use serde_json::Value;
 
-use super::functions::{Known, Outputs, additive, ishigami, sobol_g};
+use super::{Known, Outputs, additive, ishigami, sobol_g};
 
 fn holds(estimate: &Estimate, truth: f64) -> bool {
     estimate

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use cvtcycle::config::Setting;
+use cvtcycle::study::store::Values;
 use cvtcycle::study::store::{PartTable, Study, StudyDir};
-use cvtcycle::study::table::Values;
 use tempfile::TempDir;
 
 use super::{PLAN, files, heads, manifest, rows, whole, write_part};

@@ -5,9 +5,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use cvtcycle::output::file::OutputFile;
-use cvtcycle::study::export::{Exported, Format, export};
+use cvtcycle::study::store::{Exported, Format, export};
+use cvtcycle::study::store::{Kind, Rows, Values};
 use cvtcycle::study::store::{ParquetFile, PartTable, Study, StudyDir, sha256};
-use cvtcycle::study::table::{Kind, Rows, Values};
 use tempfile::TempDir;
 
 use super::{PLAN, head, heads, manifest, manifest_of, rows, whole, write_part};

@@ -14,8 +14,8 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::sync::Arc;
 
+use cvtcycle::study::store::{Head, Kind, Rows, Values};
 use cvtcycle::study::store::{PartTable, StudyDir};
-use cvtcycle::study::table::{Head, Kind, Rows, Values};
 use serde_json::json;
 
 const PLAN: &[u8] = b"title = \"test\"\n";

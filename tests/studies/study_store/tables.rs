@@ -4,10 +4,10 @@ use std::io::{ErrorKind, Write};
 
 use cvtcycle::output::trace::columns_for;
 use cvtcycle::output::trace::write_trace;
+use cvtcycle::study::store::{Head, Kind, Rows, Values};
 use cvtcycle::study::store::{
     ParquetFile, ParquetTable, RowWriter, sha256, write_csv, write_parquet, write_trace_parquet,
 };
-use cvtcycle::study::table::{Head, Kind, Rows, Values};
 use proptest::prelude::*;
 
 use super::{Small, head, heads, rows};

@@ -1,26 +1,30 @@
-//! The committed corpus: `corpus/TARGET.txt`, one input a line, each byte outside printable ASCII (and the backslash) escaped as in Rust.
+//! The committed corpus: `corpus.txt`, one input a line after the name of its target, each byte outside printable ASCII (and the backslash)
+//! escaped as in Rust.
 
-/// The inputs of a file of the corpus.
+/// The inputs of a target in the corpus.
 ///
 /// # Errors
 /// The number of the first line that holds a wrong escape, or bytes that need one.
-pub fn parse(text: &str) -> Result<Vec<Vec<u8>>, usize> {
-    let lines = text.lines().enumerate();
-    lines
-        .map(|(at, line)| unescape(line.as_bytes()).ok_or(at + 1))
-        .collect()
+pub fn inputs(corpus: &str, target: &str) -> Result<Vec<Vec<u8>>, usize> {
+    let own = |line: (usize, &'_ str)| -> Option<Result<Vec<u8>, usize>> {
+        let (name, input) = line.1.split_once(' ').unwrap_or((line.1, ""));
+        (name == target).then(|| unescape(input.as_bytes()).ok_or(line.0 + 1))
+    };
+    corpus.lines().enumerate().filter_map(own).collect()
 }
 
-/// A file of the corpus: its inputs in order, each once.
+/// The lines of a target in the corpus: its inputs in order, each once.
 #[must_use]
-pub fn format(mut inputs: Vec<Vec<u8>>) -> String {
+pub fn lines(target: &str, mut inputs: Vec<Vec<u8>>) -> String {
     inputs.sort();
     inputs.dedup();
-    let line = |input: &Vec<u8>| input.escape_ascii().to_string() + "\n";
+    let line = |input: &Vec<u8>| format!("{target} {}\n", input.escape_ascii());
     inputs.iter().map(line).collect()
 }
 
-fn unescape(line: &[u8]) -> Option<Vec<u8>> {
+/// The bytes of an escaped line; none after a wrong escape, or where a byte needs one.
+#[must_use]
+pub fn unescape(line: &[u8]) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(line.len());
     let mut rest = line.iter().copied();
     while let Some(byte) = rest.next() {
@@ -45,21 +49,26 @@ fn unescape(line: &[u8]) -> Option<Vec<u8>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{format, parse};
+    use super::{inputs, lines};
 
     #[test]
     fn every_byte_survives() {
         let all: Vec<u8> = (0..=255).collect();
-        let inputs = vec![Vec::new(), all.clone(), all.repeat(2), b"\\x41\n".to_vec()];
-        let text = format(inputs.clone());
-        assert!(text.is_ascii() && text.lines().count() == 4);
-        assert_eq!(parse(&text), Ok(inputs));
+        let own = vec![Vec::new(), all.clone(), all.repeat(2), b"\\x41\n".to_vec()];
+        let text = lines("a", own.clone()) + &lines("b", vec![b"a b".to_vec()]);
+        assert!(text.is_ascii() && text.lines().count() == 5);
+        assert_eq!(inputs(&text, "a"), Ok(own));
+        assert_eq!(inputs(&text, "b"), Ok(vec![b"a b".to_vec()]));
     }
 
     #[test]
     fn wrong_escapes_are_refused_with_their_line() {
         for wrong in ["\\", "\\q", "\\x4", "\\xg0", "a\tb", "\u{e9}"] {
-            assert_eq!(parse(&format!("good\n{wrong}\n")), Err(2), "{wrong}");
+            assert_eq!(
+                inputs(&format!("a good\na {wrong}\n"), "a"),
+                Err(2),
+                "{wrong}"
+            );
         }
     }
 }

@@ -1,9 +1,11 @@
-//! Runs tests in a process of its own, with a limit of time.
+//! Runs tests in a process of its own, with a limit of time; shares work among threads.
 
 use crate::compile::Program;
 use std::os::unix::process::CommandExt as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 /// How a run ended.
@@ -120,4 +122,42 @@ pub fn first_failed(output: &Path) -> Option<String> {
     let text = String::from_utf8_lossy(&bytes);
     let (_, list) = text.rsplit_once("\nfailures:\n")?;
     Some(list.lines().next()?.trim().to_owned())
+}
+
+/// Calls `work(worker, index)` for every index below `count` on some threads, in order; stops at the first error.
+///
+/// # Errors
+/// The first error of the work.
+pub fn share(
+    jobs: usize,
+    count: usize,
+    work: impl Fn(usize, usize) -> Result<(), String> + Sync,
+) -> Result<(), String> {
+    let next = AtomicUsize::new(0);
+    let error = Mutex::new(None);
+    std::thread::scope(|scope| {
+        for worker in 0..jobs {
+            let (next, error, work) = (&next, &error, &work);
+            scope.spawn(move || {
+                loop {
+                    let index = next.fetch_add(1, Relaxed);
+                    if index >= count || lock(error).is_some() {
+                        return;
+                    }
+                    if let Err(problem) = work(worker, index) {
+                        *lock(error) = Some(problem);
+                    }
+                }
+            });
+        }
+    });
+    let problem = lock(&error).take();
+    problem.map_or(Ok(()), Err)
+}
+
+/// A lock that somebody who panicked leaves usable.
+pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner)
 }

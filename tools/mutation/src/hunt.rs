@@ -3,7 +3,6 @@
 use crate::compile::Program;
 use crate::exec::{self, End, Run};
 use crate::reach::Test;
-use crate::work;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fs;
@@ -92,7 +91,7 @@ impl Hunt<'_> {
             .map_err(|e| format!("{}: {e}", path.display()))?;
         let (log, luck) = (Mutex::new(log), Mutex::new(Luck::new()));
         let done = Mutex::new(0);
-        work::share(jobs, mutants.len(), |worker, index| {
+        exec::share(jobs, mutants.len(), |worker, index| {
             let (fate, by) = self.one(&mutants[index], worker, &luck)?;
             let Quarry { key, source, .. } = &mutants[index];
             let line = serde_json::to_string(&Outcome {
@@ -105,10 +104,10 @@ impl Hunt<'_> {
             if !self.all_tests && !matches!(fate, Fate::Caught | Fate::Hung) {
                 return Ok(());
             }
-            work::lock(&log)
+            exec::lock(&log)
                 .write_all(format!("{line}\n").as_bytes())
                 .map_err(|e| format!("{}: {e}", path.display()))?;
-            let mut done = work::lock(&done);
+            let mut done = exec::lock(&done);
             *done += 1;
             if *done % 100 == 0 {
                 println!("{done} of {} mutants", mutants.len());
@@ -128,7 +127,7 @@ impl Hunt<'_> {
             return Ok((Fate::Unreached, String::new()));
         }
         {
-            let luck = work::lock(luck);
+            let luck = exec::lock(luck);
             let price = |b: &Batch| {
                 let (tries, catches) = luck.get(&b.name).copied().unwrap_or_default();
                 b.seconds * f64::from(tries + 2) / f64::from(catches + 1)
@@ -147,7 +146,7 @@ impl Hunt<'_> {
                 limit,
                 output: &output,
             })?;
-            let mut luck = work::lock(luck);
+            let mut luck = exec::lock(luck);
             let (tries, catches) = luck.entry(batch.name.clone()).or_default();
             *tries += 1;
             if end != End::Passed {

@@ -10,8 +10,6 @@ mod find;
 mod hunt;
 mod point;
 mod reach;
-mod survivors;
-mod work;
 
 use clap::Parser;
 use config::Config;
@@ -205,7 +203,7 @@ struct Counts {
 
 /// Prints counts, survivors without a reason, and reasons without a survivor. Whether all survivors have a reason.
 fn judge(root: &Path, state: &Path, points: &[&Point]) -> Result<bool, String> {
-    let reasons = survivors::read(root)?;
+    let reasons = config::survivors(root)?;
     let log = hunt::log(state);
     let mut files: BTreeMap<&str, Counts> = BTreeMap::new();
     let (mut without, mut fates) = (Vec::new(), HashMap::new());

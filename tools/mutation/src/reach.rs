@@ -3,7 +3,6 @@
 use crate::compile::Program;
 use crate::config::Config;
 use crate::exec::{self, End, Run};
-use crate::work;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
@@ -76,12 +75,12 @@ pub fn measure(
             .filter(|n| config.runs(&format!("{}::{n}", program.name)))
             .collect();
         let done = Mutex::new(Vec::new());
-        work::share(jobs, names.len(), |worker, index| {
+        exec::share(jobs, names.len(), |worker, index| {
             let test = one(root, state, program, &names[index], worker)?;
-            work::lock(&done).push(test);
+            exec::lock(&done).push(test);
             Ok(())
         })?;
-        let mut tests = work::lock(&done).clone();
+        let mut tests = exec::lock(&done).clone();
         tests.sort_by(|a, b| a.name.cmp(&b.name));
         let seconds: f64 = tests.iter().map(|t| t.seconds).sum();
         println!("{}: {} tests, {seconds:.1} s", program.name, tests.len());

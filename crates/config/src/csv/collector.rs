@@ -1,7 +1,7 @@
 //! Collects the problems of a CSV file with their places.
 
 use super::text::{Field, decode, empty, split};
-use crate::source::shortened;
+use crate::problem::source::shortened;
 use crate::{Input, Place, Problem, Problems};
 
 /// Most problems that are described; the rest is counted.
@@ -213,7 +213,7 @@ impl<'f> Collector<'f> {
             start: 0,
             end: line.text.len(),
         };
-        self.push(|file| problem().at(place(file, line, whole)).key(key));
+        self.push(|file| problem().at(place(file, line, whole)).of(key));
     }
 
     /// Reports a problem of one value of the column `key`.
@@ -227,7 +227,7 @@ impl<'f> Collector<'f> {
         self.push(|file| {
             problem()
                 .at(place(file, line, field))
-                .key(key)
+                .of(key)
                 .value(shortened(line.text_of(field), MAX_VALUE_LEN))
         });
     }

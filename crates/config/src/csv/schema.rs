@@ -243,6 +243,7 @@ impl Schema {
                 Problem::duplicate("duplicate column").allowed("each column once")
             } else {
                 Problem::conflict(format!("{text} and {} say the same thing", first.name))
+                    .names_key()
                     .allowed("one of them")
             }
             .hint("remove one of them")
@@ -268,6 +269,7 @@ impl Schema {
                 problems.line(line, &own.name, || {
                     let names: Vec<&str> = same().map(name).collect();
                     Problem::missing(format!("the column {} is missing", names.join(" or ")))
+                        .names_key()
                         .allowed(self.all())
                         .hint("add it; the unit is in the name")
                 });

@@ -3,19 +3,15 @@
 //! | file | content |
 //! |---|---|
 //! | `embedded` | the regulations' cycles that the program carries |
-//! | `find` | a cycle by name or path |
-//! | `constant` | `constant_90` and other constant speeds |
-//! | `read` | a CSV file to a checked cycle; `schema` has its columns, `row` checks its rows |
+//! | `find` | a cycle by name or path, `constant_90` and other constant speeds |
+//! | `read` | a CSV file to a checked cycle; `row` has its columns and checks its rows |
 
-mod constant;
 mod embedded;
 mod find;
 mod read;
 mod row;
-mod schema;
 
-pub use constant::constant_speed;
 pub use cvtcycle_model::cycle::*;
 pub use embedded::{embedded, names};
-pub use find::{bytes, find, is_csv};
+pub use find::{bytes, constant_speed, find, is_csv};
 pub use read::read_csv;

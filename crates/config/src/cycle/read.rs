@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use super::gears::{GearColumns, GearCommand, commands};
-use super::row::{Row, Rows};
-use super::schema::{GEARS, NOTE, schema};
+use super::row::{GEARS, NOTE, Row, Rows, schema};
 use super::{Cycle, Interval, Trace, Weighting};
 use crate::csv::{self, Collector, Line, Table};
 use crate::{Problem, Problems};
@@ -77,6 +76,7 @@ fn check_notes(table: &Table, header: Line<'_>, problems: &mut Collector<'_>) {
     if table.has(NOTE) && !GEARS.iter().any(|k| table.has(*k)) {
         problems.line(header, "gear_note", || {
             Problem::missing("gear_note needs a column with the gears")
+                .names_key()
                 .allowed("gear, gear_5mt or gear_6mt")
                 .hint("add a column gear, 0 where none is engaged")
         });

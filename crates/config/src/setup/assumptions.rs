@@ -78,7 +78,10 @@ fn of_file(text: &mut String, file: &File) {
         }
         for info in keys {
             let (key, value) = (format!("`{}`", info.key), value(info));
-            row(text, &[&key, &value, &info.source, &info.note, &info.doc]);
+            row(
+                text,
+                &[&key, &value, &info.source, &info.note, &info.meaning()],
+            );
         }
     }
 }
@@ -93,7 +96,7 @@ fn defaults(text: &mut String, files: &[File]) {
         for info in file.keys.iter().filter(|info| info.status == "default") {
             let key = format!("`{}`", file.full_key(&info.key));
             if seen.insert(key.clone()) {
-                row(text, &[&key, &value(info), &info.doc]);
+                row(text, &[&key, &value(info), &info.meaning()]);
             }
         }
     }

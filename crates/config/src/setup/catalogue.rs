@@ -6,9 +6,9 @@ use std::sync::OnceLock;
 
 use super::Kind;
 use super::inputs::{head, parts};
-use crate::embedded;
-use crate::overrides::{rows, rows_of};
-use crate::rig;
+use crate::document::overrides::{rows, rows_of};
+use crate::files::embedded;
+use crate::setup::rig;
 use crate::{Document, KeyInfo, Reader, Target};
 use cvtcycle_model::fluid::Lubricant;
 use cvtcycle_model::keys::{Key, Table};
@@ -87,6 +87,7 @@ fn info((key, row): (String, &Key<'_>)) -> KeyInfo {
         allowed: row.allowed(),
         is_number: row.is_number(),
         doc: row.doc.to_owned(),
+        labels: row.labels,
         ..KeyInfo::default()
     }
 }

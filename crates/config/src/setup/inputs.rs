@@ -1,14 +1,8 @@
 //! The documents of a car, and one reading of them.
 
-use std::path::Path;
-use std::sync::Arc;
-
-use super::{
-    Files, Kind, NamedBy, Options, Setup, is_path, load_lubricant, stem, text_of,
-    wrong_transmission,
-};
+use super::{Files, Kind, NamedBy, Options, Setup, is_path, load_lubricant, stem, text_of};
 use crate::files::TableCache;
-use crate::{Argument, Document, KeyInfo, Override, Place, Problems, Reader, Target};
+use crate::{Argument, Document, KeyInfo, Override, Place, Problem, Problems, Reader, Target};
 use cvtcycle_model::drive::{Car, Vehicle};
 use cvtcycle_model::engine::Engine;
 use cvtcycle_model::files::{HEAD, VEHICLE_FILE};
@@ -20,6 +14,8 @@ use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_model::transmission::manual::Manual;
+use std::path::Path;
+use std::sync::Arc;
 
 /// A document and what is wrong with it so far.
 #[derive(Clone, Debug, Default)]
@@ -71,7 +67,7 @@ impl Inputs {
         let mut document = Document::parse(file, text)?;
         let name = stem(file.strip_prefix("embedded:").unwrap_or(file));
         // Set all the same, keys of another box would call for a whole box.
-        wrong_transmission::wrong_keys(&document, &options.set, &name).finish()?;
+        wrong_keys(&document, &options.set, &name).finish()?;
         let of_vehicle = |target| [Target::Vehicle, Target::Rig].contains(&target);
         let problems = apply(&mut document, &options.set, of_vehicle);
         let own = head(&Reader::check_only(&document).root(), "");
@@ -296,4 +292,32 @@ pub(super) fn parts<V: Values>(
         belt_heat_share,
     };
     (road_load, car)
+}
+
+/// The kinds of box with their words.
+const BOXES: [(&str, &str); 2] = [("cvt", "CVT"), ("manual", "manual box")];
+
+/// Overrides of keys of a kind of box that the vehicle does not have.
+pub(super) fn wrong_keys(document: &Document, set: &[Override], name: &str) -> Problems {
+    let reader = Reader::new(document);
+    let own = reader.root().table("transmission").names();
+    let Some((there, has)) = BOXES.iter().find(|(kind, _)| own.contains(kind)) else {
+        return Problems::new();
+    };
+    let of = |by: &Override| {
+        let kind = by.key().strip_prefix("transmission.")?.split('.').next()?;
+        let (_, lacks) = BOXES
+            .iter()
+            .find(|(known, _)| *known == kind && !own.contains(known))?;
+        let problem = Problem::wrong_transmission(format!("{name} has a {has} and no {lacks}"))
+            .at(by.input())
+            .key(by.key())
+            .value(by.to_string())
+            .allowed(format!("keys of [transmission.{there}]"))
+            .hint(format!(
+                "set a key of [transmission.{there}], or take another vehicle"
+            ));
+        Some(problem)
+    };
+    set.iter().filter_map(of).collect()
 }

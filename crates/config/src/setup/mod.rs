@@ -6,15 +6,15 @@ pub mod assumptions;
 pub mod catalogue;
 pub mod template;
 mod inputs;
-mod wrong_transmission;
+pub mod rig;
 
-pub use crate::embedded::{
+pub use crate::files::embedded::{
     is_path, lubricants as embedded_lubricants, vehicles as embedded_vehicles,
 };
 pub use crate::files::{Disk, Files};
 
-use crate::bounded::{self, ReadError};
-use crate::embedded;
+use crate::files::bounded::{self, ReadError};
+use crate::files::embedded;
 use crate::{
     Argument, Bound, Document, KeyInfo, Override, Problem, Problems, Reader, decode, did_you_mean,
 };

@@ -7,9 +7,9 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::inputs::Inputs;
-use super::{Options, Setup, wrong_transmission};
-use crate::overrides::path_of;
+use super::inputs::{Inputs, wrong_keys};
+use super::{Options, Setup};
+use crate::document::overrides::path_of;
 use crate::{
     Document, Input, KeyInfo, KeyPath, Override, PatchedDocument, Problem, Problems, Reader,
     Target, unit_of,
@@ -132,8 +132,7 @@ impl VehicleTemplate {
         let inputs = &self.inputs;
         let set = std::slice::from_ref(&by);
         if let Some(document) = &inputs.files[0].document
-            && let Some(wrong) =
-                wrong_transmission::wrong_keys(document, set, &inputs.frame.name).pop()
+            && let Some(wrong) = wrong_keys(document, set, &inputs.frame.name).pop()
         {
             return Err(unset(wrong));
         }
@@ -153,7 +152,11 @@ impl VehicleTemplate {
         }
         let problems = changed(inputs, set).read().err().unwrap_or_default();
         let problem = problems.into_iter().find(|problem| problem.key == own);
-        let unknown = || Problem::unknown_key(format!("unknown key `{key}`")).key(key);
+        let unknown = || {
+            Problem::unknown_key(format!("unknown key `{key}`"))
+                .key(key)
+                .names_key()
+        };
         Err(unset(problem.unwrap_or_else(unknown)))
     }
 
@@ -183,6 +186,7 @@ fn no_number(key: &str, info: KeyInfo) -> Problem {
     Problem::not_single(format!("`{key}` holds no single number"))
         .at(Input::Override(key.to_owned()))
         .key(key)
+        .names_key()
         .value(info.value)
         .allowed(info.allowed)
         .hint("give its values as texts")

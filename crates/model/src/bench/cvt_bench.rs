@@ -141,10 +141,10 @@ impl OnBench<'_> {
         let (cvt, pa) = (line.cvt, u.pressure_pa);
         let mut inside_maps = true;
         let secondary_rad_s = w * (1.0 - u.slip) / p.ratio; // CV-1
-        let output = p.output_nm / cvt.final_drive;
+        let output = p.output_nm / cvt.final_drive.ratio;
         let secondary = line.secondary_nm(
             output,
-            || cvt.spin.drive_nm(&line.spin, secondary_rad_s),
+            || line.final_drive_nm(secondary_rad_s),
             (w, secondary_rad_s),
             pa,
             &mut inside_maps,
@@ -248,7 +248,7 @@ impl OnBench<'_> {
     fn answer(&self, u: &Unknown, pass: &Pass, converged: bool) -> BenchAnswer {
         let (cvt, p) = (self.line.cvt, self.point);
         let through = if p.parts.belt {
-            p.output_nm / cvt.final_drive * pass.secondary_rad_s / p.input_rad_s
+            p.output_nm / cvt.final_drive.ratio * pass.secondary_rad_s / p.input_rad_s
         } else {
             0.0
         };
@@ -271,7 +271,11 @@ impl OnBench<'_> {
         BenchAnswer {
             loss_nm: pass.loss_nm,
             input_nm,
-            output_rad_s: with(p.parts.belt, pass.secondary_rad_s / cvt.final_drive, 0.0),
+            output_rad_s: with(
+                p.parts.belt,
+                pass.secondary_rad_s / cvt.final_drive.ratio,
+                0.0,
+            ),
             secondary_pa: with(p.parts.pump, u.pressure_pa, f64::NAN),
             belt_k: with(p.parts.belt, u.belt_k, f64::NAN),
             belt,

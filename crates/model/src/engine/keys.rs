@@ -14,10 +14,10 @@ keys! {
         rated_kw: number(5.0, 600.0), "rated power; the ratio controller's measure of power";
         full_load: rows(&[("speed_rpm", Bound::closed(0.0, 15_000.0)), ("torque_nm", Bound::open_low(0.0, 2000.0))]), "full-load line: rows [speed rpm, torque Nm], at sea level";
         highest_rpm: number(300.0, 12_000.0), "largest speed; above it rows are flagged overspeed";
-        inertia_kg_m2: above(0.0, 5.0), "engine, flywheel and primary side (SI-1)";
-        inertia_torque_nm: or(60.0, number(5.0, 500.0)), "largest torque that changes the speed of the rotating parts (SI-2)";
-        electrical_w: number(0.0, 5000.0), "electrical load at the shaft (EN-4)";
-        accessory_nm: number(0.0, 20.0), "torque of pumps and belts (EN-4)";
+        inertia_kg_m2: above(0.0, 5.0), "engine, flywheel and primary side", ["SI-1"];
+        inertia_torque_nm: or(60.0, number(5.0, 500.0)), "largest torque that changes the speed of the rotating parts", ["SI-2"];
+        electrical_w: number(0.0, 5000.0), "electrical load at the shaft", ["EN-4"];
+        accessory_nm: number(0.0, 20.0), "torque of pumps and belts", ["EN-4"];
         model: or_word("willans", options(&[
             Choice::new("willans", "extended Willans line", WillansKeys::TABLE),
             Choice::new("bsfc_map", "BSFC map from CSV", BsfcKeys::TABLE),
@@ -26,33 +26,33 @@ keys! {
 
     /// Keys of `[engine.idle]`.
     IDLE: IdleKeys = "idle" [] {
-        hot_rpm: number(400.0, 2000.0), "idle speed, warm (EN-1)";
-        cold_rpm: number(400.0, 3000.0), "idle speed at cold_degc and below (EN-1)";
-        cold_degc: or(37.0, number(-40.0, 60.0)), "coolant up to which idle is cold_rpm (EN-1)";
-        warm_degc: or(71.0, number(0.0, 110.0)), "coolant from which idle is hot_rpm (EN-1)";
-        after_start_rpm: or(0.0, number(0.0, 2000.0)), "idle speed above that at a cold start (EN-1)";
-        after_start_s: or(30.0, above(0.0, 300.0)), "time in which that falls to nothing (EN-1)";
+        hot_rpm: number(400.0, 2000.0), "idle speed, warm", ["EN-1"];
+        cold_rpm: number(400.0, 3000.0), "idle speed at cold_degc and below", ["EN-1"];
+        cold_degc: or(37.0, number(-40.0, 60.0)), "coolant up to which idle is cold_rpm", ["EN-1"];
+        warm_degc: or(71.0, number(0.0, 110.0)), "coolant from which idle is hot_rpm", ["EN-1"];
+        after_start_rpm: or(0.0, number(0.0, 2000.0)), "idle speed above that at a cold start", ["EN-1"];
+        after_start_s: or(30.0, above(0.0, 300.0)), "time in which that falls to nothing", ["EN-1"];
     }
 
     /// Keys of `[engine.friction]`.
     FRICTION: FrictionKeys = "friction" [] {
-        hot_degc: number(60.0, 130.0), "temperature of the warm engine (EN-2)";
-        viscous_share: number(0.0, 1.0), "share of hot friction that rubs in oil and follows its viscosity (EN-2)";
-        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (EN-2)";
-        film_coolant_share: or(0.0, number(0.0, 1.0)), "temperature of the oil films, from that of the oil (0) to that of the coolant (1) (EN-2)";
-        reference_kv40_mm2_s: number(1.5, 1000.0), "reference oil at 40 degC, for which the hot friction holds (EN-2)";
-        reference_kv100_mm2_s: number(1.5, 1000.0), "reference oil at 100 degC (EN-2)";
-        overrun_factor: or(1.0, number(1.0, 3.0)), "closed-throttle drag over friction (EN-7)";
+        hot_degc: number(60.0, 130.0), "temperature of the warm engine", ["EN-2"];
+        viscous_share: number(0.0, 1.0), "share of hot friction that rubs in oil and follows its viscosity", ["EN-2"];
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["EN-2"];
+        film_coolant_share: or(0.0, number(0.0, 1.0)), "temperature of the oil films, from that of the oil (0) to that of the coolant (1)", ["EN-2"];
+        reference_kv40_mm2_s: number(1.5, 1000.0), "reference oil at 40 degC, for which the hot friction holds", ["EN-2"];
+        reference_kv100_mm2_s: number(1.5, 1000.0), "reference oil at 100 degC", ["EN-2"];
+        overrun_factor: or(1.0, number(1.0, 3.0)), "closed-throttle drag over friction", ["EN-7"];
     }
 
     /// Keys of `[engine.fuel]`.
     FUEL: FuelKeys = "fuel" [] {
-        cold_enrichment: number(0.0, 2.0), "extra fuel at 0 degC coolant and below, none from 60 degC (EN-3)";
-        start_g: or(0.0, number(0.0, 100.0)), "fuel of a start at 0 degC and below, none from 60 degC (EN-9)";
-        start_s: or(30.0, above(0.0, 300.0)), "time in which it is given (EN-9)";
-        cut_from_degc: or(45.0, number(-40.0, 110.0)), "coolant from which fuel is cut in overrun (EN-11)";
-        cut_above_rpm: or(1400.0, number(500.0, 6000.0)), "engine speed above which all of it is cut (EN-11)";
-        fuel_back_rpm: or(1300.0, number(400.0, 6000.0)), "engine speed below which none is cut (EN-11)";
+        cold_enrichment: number(0.0, 2.0), "extra fuel at 0 degC coolant and below, none from 60 degC", ["EN-3"];
+        start_g: or(0.0, number(0.0, 100.0)), "fuel of a start at 0 degC and below, none from 60 degC", ["EN-9"];
+        start_s: or(30.0, above(0.0, 300.0)), "time in which it is given", ["EN-9"];
+        cut_from_degc: or(45.0, number(-40.0, 110.0)), "coolant from which fuel is cut in overrun", ["EN-11"];
+        cut_above_rpm: or(1400.0, number(500.0, 6000.0)), "engine speed above which all of it is cut", ["EN-11"];
+        fuel_back_rpm: or(1300.0, number(400.0, 6000.0)), "engine speed below which none is cut", ["EN-11"];
         heating_value_mj_kg: number(20.0, 60.0), "lower heating value";
         density_kg_m3: number(500.0, 1000.0), "density of the fuel";
         co2_per_fuel: number(0.0, 4.0), "CO2 per mass of fuel";
@@ -60,26 +60,26 @@ keys! {
 
     /// Keys of `[engine.heat]`.
     HEAT: HeatKeys = "heat" [] {
-        exhaust_share_idle: number(0.0, 1.0), "share of waste heat in the exhaust at idle (EN-6)";
-        exhaust_share_fast: number(0.0, 1.0), "share at the largest speed (EN-6)";
-        friction_to_oil: number(0.0, 1.0), "share of friction heat that goes to the oil (EN-6)";
+        exhaust_share_idle: number(0.0, 1.0), "share of waste heat in the exhaust at idle", ["EN-6"];
+        exhaust_share_fast: number(0.0, 1.0), "share at the largest speed", ["EN-6"];
+        friction_to_oil: number(0.0, 1.0), "share of friction heat that goes to the oil", ["EN-6"];
     }
 
     /// Keys of `[engine.model.willans]`.
     WILLANS: WillansKeys = "willans" [] {
-        l: or(DEFAULT.l, number(0.0, 5.0)), "hot friction mean effective pressure at zero speed, bar (WI-1, BM-2)";
-        l2: or(DEFAULT.l2, number(0.0, 0.05)), "its rise with piston speed squared, bar s2/m2 (WI-1, BM-2)";
-        a: or(DEFAULT.a, number(0.2, 0.7)), "indicated efficiency at zero speed and load (WI-1)";
-        b: or(DEFAULT.b, number(-0.02, 0.05)), "its rise with piston speed, s/m (WI-1)";
-        c: or(DEFAULT.c, number(-0.01, 0.001)), "its bend with piston speed, s2/m2 (WI-1)";
-        a2: or(DEFAULT.a2, number(-0.02, 0.0)), "fall of efficiency with load, 1/bar (WI-1)";
+        l: or(DEFAULT.l, number(0.0, 5.0)), "hot friction mean effective pressure at zero speed, bar", ["WI-1", "BM-2"];
+        l2: or(DEFAULT.l2, number(0.0, 0.05)), "its rise with piston speed squared, bar s2/m2", ["WI-1", "BM-2"];
+        a: or(DEFAULT.a, number(0.2, 0.7)), "indicated efficiency at zero speed and load", ["WI-1"];
+        b: or(DEFAULT.b, number(-0.02, 0.05)), "its rise with piston speed, s/m", ["WI-1"];
+        c: or(DEFAULT.c, number(-0.01, 0.001)), "its bend with piston speed, s2/m2", ["WI-1"];
+        a2: or(DEFAULT.a2, number(-0.02, 0.0)), "fall of efficiency with load, 1/bar", ["WI-1"];
     }
 
     /// Keys of `[engine.model.bsfc_map]`.
     BSFC: BsfcKeys = "bsfc_map" [] {
-        l: or(DEFAULT.l, number(0.0, 5.0)), "hot friction mean effective pressure at zero speed, bar (WI-1, BM-2)";
-        l2: or(DEFAULT.l2, number(0.0, 0.05)), "its rise with piston speed squared, bar s2/m2 (WI-1, BM-2)";
-        file: text(), "CSV with speed_rpm, bmep_bar or torque_nm, bsfc_g_kwh on a full grid (BM-1)";
+        l: or(DEFAULT.l, number(0.0, 5.0)), "hot friction mean effective pressure at zero speed, bar", ["WI-1", "BM-2"];
+        l2: or(DEFAULT.l2, number(0.0, 0.05)), "its rise with piston speed squared, bar s2/m2", ["WI-1", "BM-2"];
+        file: text(), "CSV with speed_rpm, bmep_bar or torque_nm, bsfc_g_kwh on a full grid", ["BM-1"];
     }
 }
 

@@ -7,27 +7,27 @@ keys! {
     /// Keys of a lubricant file.
     FLUID: FluidKeys = "" [FrictionKeys::TABLE] {
         title: computed("name of the file", text()), "name for people";
-        viscosity_table: optional(rows(&[("temp_degc", Bound::closed(-60.0, 200.0)), ("kinematic_mm2_s", Bound::closed(1.0, 1e7))])), "rows [temperature degC, kinematic viscosity mm2/s]; replaces kv40 and kv100 (LU-1)";
-        kv40_mm2_s: required_if("without viscosity_table", number(1.5, 5000.0)), "kinematic viscosity at 40 degC (LU-1)";
-        kv100_mm2_s: required_if("without viscosity_table", number(1.5, 5000.0)), "kinematic viscosity at 100 degC (LU-1)";
-        density15_kg_m3: number(650.0, 1200.0), "density at 15 degC (LU-2, LU-3)";
+        viscosity_table: optional(rows(&[("temp_degc", Bound::closed(-60.0, 200.0)), ("kinematic_mm2_s", Bound::closed(1.0, 1e7))])), "rows [temperature degC, kinematic viscosity mm2/s]; replaces kv40 and kv100", ["LU-1"];
+        kv40_mm2_s: required_if("without viscosity_table", number(1.5, 5000.0)), "kinematic viscosity at 40 degC", ["LU-1"];
+        kv100_mm2_s: required_if("without viscosity_table", number(1.5, 5000.0)), "kinematic viscosity at 100 degC", ["LU-1"];
+        density15_kg_m3: number(650.0, 1200.0), "density at 15 degC", ["LU-2", "LU-3"];
     }
 
     /// Keys of `[friction]`.
     FRICTION: FrictionKeys = "friction" [LiftKeys::TABLE] {
-        band: or(0.13, number(0.0, 0.4)), "band boundary friction at 85 degC (LU-4)";
-        band_rise_per_k: or(0.002, number(0.0, 0.02)), "rise of band friction with belt temperature (LU-4)";
-        segment: or(0.125, number(0.02, 0.4)), "friction segment on pulley (SL-4, VA-2)";
-        flank: or(0.13, number(0.0, 0.4)), "friction in wedging and penetration (WE-3, PE-1)";
+        band: or(0.13, number(0.0, 0.4)), "band boundary friction at 85 degC", ["LU-4"];
+        band_rise_per_k: or(0.002, number(0.0, 0.02)), "rise of band friction with belt temperature", ["LU-4"];
+        segment: or(0.125, number(0.02, 0.4)), "friction segment on pulley", ["SL-4", "VA-2"];
+        flank: or(0.13, number(0.0, 0.4)), "friction in wedging and penetration", ["WE-3", "PE-1"];
     }
 
     /// Keys of `[friction.lift_off]`.
     LIFT: LiftKeys = "lift_off" [] {
-        enabled: flag(true), "whether the bands can ride on oil (LU-5)";
-        reduction: or(0.2, number(0.0, 0.95)), "part of the boundary friction that a carrying film removes (LU-4)";
-        load_n_per_m: or(0.0075, above(0.0, 10.0)), "eta dv at which the film carries half (LU-5)";
-        exponent: or(5.0, number(0.5, 8.0)), "sharpness of lift-off (LU-5)";
-        film_thickness_um: or(1.5, number(0.01, 100.0)), "thickness of the carrying film (FI-1)";
+        enabled: flag(true), "whether the bands can ride on oil", ["LU-5"];
+        reduction: or(0.2, number(0.0, 0.95)), "part of the boundary friction that a carrying film removes", ["LU-4"];
+        load_n_per_m: or(0.0075, above(0.0, 10.0)), "eta dv at which the film carries half", ["LU-5"];
+        exponent: or(5.0, number(0.5, 8.0)), "sharpness of lift-off", ["LU-5"];
+        film_thickness_um: or(1.5, number(0.01, 100.0)), "thickness of the carrying film", ["FI-1"];
     }
 }
 

@@ -21,7 +21,7 @@ impl Key<'_> {
 
     /// The range of a key that holds numbers, in its unit.
     #[must_use]
-    pub fn range(&self) -> Bound {
+    pub const fn range(&self) -> Bound {
         match self.kind {
             Kind::Number(range) | Kind::Numbers(range, ..) | Kind::Grid(range) => range,
             _ => Bound::any(),

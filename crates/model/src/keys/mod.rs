@@ -25,8 +25,10 @@ pub struct Key<'k> {
     pub kind: Kind<'k>,
     /// Whether it has to be given, and its value if it is not.
     pub presence: Presence<'k>,
-    /// Meaning, with the labels of the equations that use it.
+    /// Meaning.
     pub doc: &'k str,
+    /// Labels of the equations that use it.
+    pub labels: &'static [&'static str],
 }
 
 /// What a key accepts.
@@ -189,7 +191,18 @@ impl<'k> Key<'k> {
             kind: spec.0,
             presence: spec.1,
             doc,
+            labels: &[],
         }
+    }
+
+    /// The key with the labels of the equations that use it.
+    pub const fn in_equations(self, labels: &'static [&'static str]) -> Self {
+        Key { labels, ..self }
+    }
+
+    /// Meaning and labels as they are printed: "displacement (PU-1, PU-4)".
+    pub fn meaning(&self) -> String {
+        with_labels(self.doc, self.labels)
     }
 
     /// The key with the unit of this suffix, which its name does not end in.
@@ -198,6 +211,14 @@ impl<'k> Key<'k> {
             quantity: Quantity::of(suffix),
             ..self
         }
+    }
+}
+
+/// A meaning followed by the labels of its equations in brackets.
+pub fn with_labels(doc: &str, labels: &[&str]) -> String {
+    match labels {
+        [] => doc.to_owned(),
+        _ => format!("{doc} ({})", labels.join(", ")),
     }
 }
 
@@ -268,8 +289,8 @@ pub trait Values: Sized {
 
 /// Declares tables of keys: of each a struct of rows, a static with them, and its [`Table`].
 ///
-/// A row is `NAME: SPEC, MEANING;` with a maker of [`spec`](crate::keys::spec); the unit is the end of the name, or that of a third
-/// entry such as `"_degc"`.
+/// A row is `NAME: SPEC, MEANING, [LABELS];` with a maker of [`spec`](crate::keys::spec) and the labels of the equations that use
+/// the key, if any; the unit is the end of the name, or that of a last entry such as `"_degc"`.
 ///
 /// ```
 /// cvtcycle_model::keys! {
@@ -285,7 +306,7 @@ macro_rules! keys {
     ($(
         $(#[$meta:meta])*
         $table:ident: $keys:ident = $path:literal [$($inner:expr),* $(,)?] {
-            $($name:ident: $spec:expr, $doc:literal $(, $unit:literal)?;)*
+            $($name:ident: $spec:expr, $doc:literal $(, [$($label:literal),+])? $(, $unit:literal)?;)*
         }
     )+) => {$(
         $(#[$meta])*
@@ -296,7 +317,8 @@ macro_rules! keys {
         $(#[$meta])*
         pub static $table: $keys = {
             use $crate::keys::spec::*;
-            $keys { $($name: $crate::keys::Key::new($crate::keys::bare(stringify!($name)), $spec, $doc)$(.in_unit_of($unit))?,)* }
+            $keys { $($name: $crate::keys::Key::new($crate::keys::bare(stringify!($name)), $spec, $doc)
+                $(.in_equations(&[$($label),+]))?$(.in_unit_of($unit))?,)* }
         };
         impl $keys {
             /// The keys as a table of the file.

@@ -32,6 +32,11 @@ impl LossMap {
         LossMap { grid }
     }
 
+    /// The grid of the map.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
     /// Torque loss at the input shaft, Nm, never negative, and whether the point lies within the map.
     pub fn loss_nm(&self, p: &MapPoint) -> (f64, bool) {
         let (loss, inside) = self.grid.at([

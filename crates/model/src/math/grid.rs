@@ -54,6 +54,16 @@ impl Grid {
         })
     }
 
+    /// Coordinates along each axis, rising.
+    pub fn axes(&self) -> &[Vec<f64>; GRID_AXES] {
+        &self.axes
+    }
+
+    /// Values, with the last axis running fastest.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// Value at `x` and whether `x` lies within the grid on every axis that has more than one value.
     pub fn at(&self, x: [f64; GRID_AXES]) -> (f64, bool) {
         let mut low = [0usize; GRID_AXES];

@@ -37,33 +37,33 @@ keys! {
         surface: words(&[
             Choice::word("dynamometer", "fixed coefficients"),
             Choice::word("road", "air and rolling follow ambient (RL-2)"),
-        ], "dynamometer"), "dynamometer: fixed coefficients; road: air and rolling follow ambient (RL-2); for the road give body or coast-down coefficients, since the R83 table has most of the rolling in f2";
-        payload_kg: or(0.0, number(0.0, 5000.0)), "load added to the mass (RL-1)";
-        rotating_factor: or(0.015, number(0.0, 0.2)), "rotating inertia of wheels and output side over mass (RL-1)";
-        altitude_m: or(0.0, number(-500.0, 5000.0)), "altitude of the road (RL-4, EN-5)";
+        ], "dynamometer"), "dynamometer: fixed coefficients; road: air and rolling follow ambient; for the road give body or coast-down coefficients, since the R83 table has most of the rolling in f2", ["RL-2"];
+        payload_kg: or(0.0, number(0.0, 5000.0)), "load added to the mass", ["RL-1"];
+        rotating_factor: or(0.015, number(0.0, 0.2)), "rotating inertia of wheels and output side over mass", ["RL-1"];
+        altitude_m: or(0.0, number(-500.0, 5000.0)), "altitude of the road", ["RL-4", "EN-5"];
         form: options(&[
             Choice::new("coefficients", "coast-down coefficients f0, f1, f2", CoefficientKeys::TABLE),
             Choice::new("body", "drag coefficient, frontal area and rolling resistance", BodyKeys::TABLE),
             Choice::new("r83", "class of UN R83 from the reference mass", R83Keys::TABLE),
         ]), "coefficients f0 f1 f2; body (c_d, area, rolling); or r83 (class from reference mass)";
-        mass_kg: required_if("with form coefficients or body", number(200.0, 5000.0)), "inertia mass without payload (RL-1)";
+        mass_kg: required_if("with form coefficients or body", number(200.0, 5000.0)), "inertia mass without payload", ["RL-1"];
         wheel_radius_m: number(0.15, 0.6), "dynamic tyre radius";
-        rolling_per_k: or(0.00864, number(0.0, 0.03)), "rise of rolling resistance per kelvin below 20 degC, without tyres that warm up (RL-2)";
-        load_factor: or(1.0, number(0.2, 3.0)), "factor on the road load, not on the inertia: 1.1 in the US cold test (RL-8)";
+        rolling_per_k: or(0.00864, number(0.0, 0.03)), "rise of rolling resistance per kelvin below 20 degC, without tyres that warm up", ["RL-2"];
+        load_factor: or(1.0, number(0.2, 3.0)), "factor on the road load, not on the inertia: 1.1 in the US cold test", ["RL-8"];
     }
 
     /// Keys of `[road_load.form.coefficients]`.
     COEFFICIENTS: CoefficientKeys = "coefficients" [] {
-        f0_n: number(0.0, 2000.0), "constant part (RL-1)";
-        f1_n_per_kmh: or(0.0, number(-20.0, 50.0)), "part linear in speed; US targets have some below zero (RL-1)";
-        f2_n_per_kmh2: number(0.0, 1.0), "part quadratic in speed, per (km/h)2 (RL-1)";
+        f0_n: number(0.0, 2000.0), "constant part", ["RL-1"];
+        f1_n_per_kmh: or(0.0, number(-20.0, 50.0)), "part linear in speed; US targets have some below zero", ["RL-1"];
+        f2_n_per_kmh2: number(0.0, 1.0), "part quadratic in speed, per (km/h)2", ["RL-1"];
     }
 
     /// Keys of `[road_load.form.body]`.
     BODY: BodyKeys = "body" [] {
-        drag_coefficient: number(0.1, 1.5), "c_d (RL-3)";
-        frontal_area_m2: number(0.5, 6.0), "frontal area (RL-3)";
-        rolling_coefficient: number(0.002, 0.05), "c_r (RL-3)";
+        drag_coefficient: number(0.1, 1.5), "c_d", ["RL-3"];
+        frontal_area_m2: number(0.5, 6.0), "frontal area", ["RL-3"];
+        rolling_coefficient: number(0.002, 0.05), "c_r", ["RL-3"];
     }
 
     /// Keys of `[road_load.form.r83]`.

@@ -66,13 +66,13 @@ impl Tyre {
 keys! {
     /// Keys of `[road_load.tyre]`.
     TYRE: TyreKeys = "tyre" [] {
-        rolling_coefficient: or(0.0, number(0.0, 0.05)), "c_r of the warm tyre; 0: the tyres do not warm up (RL-6). On the road it replaces rolling_per_k";
-        per_k: or(0.0095, number(0.0, 0.03)), "rise of rolling resistance per kelvin of tyre temperature (RL-6)";
-        warm_degc: or(40.0, number(-40.0, 100.0)), "tyre temperature at which the road load holds (RL-6)";
-        share: or(1.0, number(0.0, 1.0)), "share of the car's rolling resistance that takes part: less on rollers under one axle (RL-6)";
-        heat_capacity_kj_k: or(45.0, number(1.0, 500.0)), "heat capacity of all tyres (RL-7)";
-        still_w_k: or(20.0, number(0.0, 1000.0)), "tyres to air at standstill (RL-7)";
-        wind_w_k: or(13.7, number(0.0, 1000.0)), "tyres to air, times road speed in m/s to the power of 0.7 (RL-7)";
+        rolling_coefficient: or(0.0, number(0.0, 0.05)), "c_r of the warm tyre; 0: the tyres do not warm up. On the road it replaces rolling_per_k", ["RL-6"];
+        per_k: or(0.0095, number(0.0, 0.03)), "rise of rolling resistance per kelvin of tyre temperature", ["RL-6"];
+        warm_degc: or(40.0, number(-40.0, 100.0)), "tyre temperature at which the road load holds", ["RL-6"];
+        share: or(1.0, number(0.0, 1.0)), "share of the car's rolling resistance that takes part: less on rollers under one axle", ["RL-6"];
+        heat_capacity_kj_k: or(45.0, number(1.0, 500.0)), "heat capacity of all tyres", ["RL-7"];
+        still_w_k: or(20.0, number(0.0, 1000.0)), "tyres to air at standstill", ["RL-7"];
+        wind_w_k: or(13.7, number(0.0, 1000.0)), "tyres to air, times road speed in m/s to the power of 0.7", ["RL-7"];
     }
 }
 

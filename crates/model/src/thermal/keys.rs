@@ -7,50 +7,50 @@ use crate::keys::{Values, keys};
 keys! {
     /// Keys of `[thermal]` and its tables.
     THERMAL: ThermalKeys = "thermal" [EngineKeys::TABLE, RadiatorKeys::TABLE, GearboxKeys::TABLE, CoolerKeys::TABLE] {
-        under_bonnet_rise: or(0.0, number(0.0, 0.8)), "under-bonnet air: share of coolant over ambient (TH-4)";
+        under_bonnet_rise: or(0.0, number(0.0, 0.8)), "under-bonnet air: share of coolant over ambient", ["TH-4"];
     }
 
     /// Keys of `[thermal.engine]`.
     ENGINE: EngineKeys = "engine" [] {
-        block_kj_k: number(0.1, 1000.0), "heat capacity of coolant, block and head (TH-1)";
-        oil_kj_k: number(0.1, 1000.0), "heat capacity of engine oil, pan and crank train (TH-1)";
-        coolant_oil_w_k: number(0.0, 5000.0), "coolant to engine oil (TH-1)";
-        block_air_w_k: number(0.0, 5000.0), "block to air at standstill (TH-1)";
-        block_air_w_k_per_m_s: number(0.0, 5000.0), "block to air over road speed (TH-1)";
-        pan_air_w_k: number(0.0, 5000.0), "oil pan to air at standstill (TH-1)";
-        pan_air_w_k_per_m_s: number(0.0, 5000.0), "oil pan to air over road speed (TH-1)";
+        block_kj_k: number(0.1, 1000.0), "heat capacity of coolant, block and head", ["TH-1"];
+        oil_kj_k: number(0.1, 1000.0), "heat capacity of engine oil, pan and crank train", ["TH-1"];
+        coolant_oil_w_k: number(0.0, 5000.0), "coolant to engine oil", ["TH-1"];
+        block_air_w_k: number(0.0, 5000.0), "block to air at standstill", ["TH-1"];
+        block_air_w_k_per_m_s: number(0.0, 5000.0), "block to air over road speed", ["TH-1"];
+        pan_air_w_k: number(0.0, 5000.0), "oil pan to air at standstill", ["TH-1"];
+        pan_air_w_k_per_m_s: number(0.0, 5000.0), "oil pan to air over road speed", ["TH-1"];
     }
 
     /// Keys of `[thermal.radiator]`.
     RADIATOR: RadiatorKeys = "radiator" [] {
-        fan_w_k: number(0.0, 5000.0), "radiator fully open at standstill, fan (TH-2)";
-        ram_w_k_per_m_s: number(0.0, 5000.0), "radiator over road speed (TH-2)";
-        thermostat_from_degc: number(40.0, 120.0), "thermostat begins to open (TH-2)";
-        thermostat_to_degc: number(41.0, 130.0), "thermostat fully open (TH-2)";
+        fan_w_k: number(0.0, 5000.0), "radiator fully open at standstill, fan", ["TH-2"];
+        ram_w_k_per_m_s: number(0.0, 5000.0), "radiator over road speed", ["TH-2"];
+        thermostat_from_degc: number(40.0, 120.0), "thermostat begins to open", ["TH-2"];
+        thermostat_to_degc: number(41.0, 130.0), "thermostat fully open", ["TH-2"];
     }
 
     /// Keys of `[thermal.transmission]`.
     GEARBOX: GearboxKeys = "transmission" [] {
         oil_l: number(0.2, 30.0), "oil in the sump";
-        metal_kj_k: number(0.1, 1000.0), "heat capacity of case, gears, shafts and sheaves (TH-1)";
-        belt_kj_k: required_if("with a CVT", number(0.1, 1000.0)), "heat capacity of belt and the skin of the sheaves (TH-1)";
-        oil_metal_w_k: number(0.0, 5000.0), "oil to metal (TH-1)";
-        case_air_w_k: number(0.0, 5000.0), "case to air at standstill (TH-1)";
-        case_air_v07_w_k: number(0.0, 5000.0), "case to air, times v^0.7 in m/s (TH-1)";
-        bell_housing_w_k: number(0.0, 5000.0), "block to case through the bell housing (TH-1)";
-        spray_w_k: required_if("with a CVT", number(0.0, 5000.0)), "belt and pulleys to the sump by spray, pump at 2500 rpm (TH-8)";
-        exchanger_w_k: or(0.0, number(0.0, 5000.0)), "coolant to transmission oil heat exchanger (TH-1)";
-        exchanger_opens_degc: or(70.0, number(-60.0, 120.0)), "coolant temperature from which the exchanger's valve opens (TH-7)";
+        metal_kj_k: number(0.1, 1000.0), "heat capacity of case, gears, shafts and sheaves", ["TH-1"];
+        belt_kj_k: required_if("with a CVT", number(0.1, 1000.0)), "heat capacity of belt and the skin of the sheaves", ["TH-1"];
+        oil_metal_w_k: number(0.0, 5000.0), "oil to metal", ["TH-1"];
+        case_air_w_k: number(0.0, 5000.0), "case to air at standstill", ["TH-1"];
+        case_air_v07_w_k: number(0.0, 5000.0), "case to air, times v^0.7 in m/s", ["TH-1"];
+        bell_housing_w_k: number(0.0, 5000.0), "block to case through the bell housing", ["TH-1"];
+        spray_w_k: required_if("with a CVT", number(0.0, 5000.0)), "belt and pulleys to the sump by spray, pump at 2500 rpm", ["TH-8"];
+        exchanger_w_k: or(0.0, number(0.0, 5000.0)), "coolant to transmission oil heat exchanger", ["TH-1"];
+        exchanger_opens_degc: or(70.0, number(-60.0, 120.0)), "coolant temperature from which the exchanger's valve opens", ["TH-7"];
     }
 
     /// Keys of `[thermal.cooler]`.
     COOLER: CoolerKeys = "cooler" [] {
-        fitted: flag(false), "whether there is an oil-to-air cooler (TH-3)";
-        still_w_k: or(3.0, number(0.0, 2000.0)), "U A at standstill (TH-3)";
-        ram_w_k_per_m_s: or(2.0, number(0.0, 2000.0)), "U A over road speed (TH-3)";
-        flow_share: or(0.5, number(0.0, 1.0)), "share of the pump's flow through the cooler (TH-3)";
-        highest_l_min: or(20.0, number(0.1, 100.0)), "largest flow through the cooler (TH-3)";
-        bypass_below_degc: or(-60.0, number(-60.0, 200.0)), "sump temperature below which the cooler is bypassed (TH-3)";
+        fitted: flag(false), "whether there is an oil-to-air cooler", ["TH-3"];
+        still_w_k: or(3.0, number(0.0, 2000.0)), "U A at standstill", ["TH-3"];
+        ram_w_k_per_m_s: or(2.0, number(0.0, 2000.0)), "U A over road speed", ["TH-3"];
+        flow_share: or(0.5, number(0.0, 1.0)), "share of the pump's flow through the cooler", ["TH-3"];
+        highest_l_min: or(20.0, number(0.1, 100.0)), "largest flow through the cooler", ["TH-3"];
+        bypass_below_degc: or(-60.0, number(-60.0, 200.0)), "sump temperature below which the cooler is bypassed", ["TH-3"];
         bypassed: flag(false), "cooler always bypassed";
     }
 }

@@ -11,6 +11,7 @@ pub use step::{DrivelineState, StepInput, StepOutput};
 
 use self::component::{Component, Part};
 use self::cvt::CvtState;
+use crate::maps::LossMap;
 use crate::prime_mover::PrimeMover;
 
 /// A transmission of either kind.
@@ -65,6 +66,20 @@ impl Transmission {
     /// True for a CVT, which drives the automatic trace.
     pub fn is_cvt(&self) -> bool {
         matches!(self, Transmission::Cvt(_))
+    }
+
+    /// Measured maps in place of models, with the component whose loss each gives.
+    pub fn maps(&self) -> impl Iterator<Item = (Component, &LossMap)> {
+        Component::ALL.into_iter().filter_map(move |component| {
+            let map = match self {
+                Transmission::Cvt(cvt) => cvt.maps.as_ref()?[component].as_ref(),
+                Transmission::Manual(manual) => {
+                    let own = component.part() == Part::ManualMap;
+                    manual.map.as_ref().filter(|_| own)
+                }
+            };
+            Some((component, map?))
+        })
     }
 
     /// Loss components of the transmission, in the order of the power flow.

@@ -55,6 +55,7 @@ fn check(table: &Table, header: Line<'_>, problems: &mut Collector<'_>) {
     for own in missing(&columns_of(table)) {
         problems.line(header, &own.name, || {
             Problem::missing(format!("the column {} is missing", own.name))
+                .names_key()
                 .allowed(format!("with {}: {}", own.name, own.doc))
                 .hint(AGAIN)
         });
@@ -100,7 +101,7 @@ impl Reading {
         if let (Some(before_s), Some(time_s)) = (self.before_s, time_s)
             && time_s <= before_s
         {
-            let problem = Problem::invalid("the time does not rise")
+            let problem = Problem::out_of_range("the time does not rise")
                 .allowed(format!("above {before_s}, the time of the row above"))
                 .hint("are rows doubled or out of order?");
             row.report(self.time, problems, problem);
@@ -126,7 +127,7 @@ impl Reading {
 pub fn too_many_phases(history: &History) -> Option<Problem> {
     let message = "there are too many phases";
     (history.phases().len() > MAX_PHASES).then(|| {
-        Problem::invalid(message)
+        Problem::too_large(message)
             .allowed(format!("up to {MAX_PHASES} different names"))
             .hint(AGAIN)
     })

@@ -2,7 +2,7 @@
 
 use super::lines::{LineChart, LinePanel, Look, Points, line_chart};
 use super::picture::Picture;
-use cvtcycle_study::ambient::{FuelPart, Matrix, WarmUp};
+use cvtcycle_study::answer::ambient::{FuelPart, Matrix, WarmUp};
 
 const AMBIENT: &str = "Ambient temperature [\u{b0}C]";
 
@@ -72,7 +72,6 @@ fn by_part(
 }
 
 /// Fuel against ambient temperature: whole cycle and phases.
-#[must_use]
 pub fn ambient_fuel(matrix: &Matrix, title: &str) -> Picture {
     line_chart(&LineChart {
         title: "Fuel against ambient temperature".into(),
@@ -84,7 +83,6 @@ pub fn ambient_fuel(matrix: &Matrix, title: &str) -> Picture {
 }
 
 /// Excess of the subject against ambient temperature; none without baselines.
-#[must_use]
 pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<Picture> {
     let (subject, baselines) = matrix.cars.split_first()?;
     let over: Vec<String> = baselines
@@ -106,7 +104,6 @@ pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<Picture> {
 }
 
 /// Warm-up from one start: a row of panels for each car, sump at the left, engine oil at the right; a line for each ambient temperature.
-#[must_use]
 pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> Picture {
     let mut panels = Vec::new();
     for (car, name) in matrix.cars.iter().enumerate() {

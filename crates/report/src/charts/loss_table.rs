@@ -2,44 +2,45 @@
 
 use std::collections::BTreeMap;
 
+use super::engine::{self, Axis, BELOW, Chart, Entry, Fill, LEFT, PLOT_LEFT, Side, grid};
 use super::grids::{MapFigure, map_figure};
-use super::lines::{StackFigure, stack_figure};
+use super::lines::{Look, stack_layers};
+use super::picture::PictureTable;
 use cvtcycle_output::Component;
-use cvtcycle_output::losses::{Axis, LossRow, LossTable};
+use cvtcycle_output::losses::{Axis as GridAxis, LossRow, LossTable};
 
 /// Smallest number of values on an axis of a map: values between two points are unknown.
 const MIN_ON_MAP: usize = 3;
 /// Largest number of panels of a figure.
 const MAX_PANELS: usize = 12;
 /// Axes by priority.
-const ORDER: [Axis; 7] = [
-    Axis::Speed,
-    Axis::Torque,
-    Axis::Sump,
-    Axis::Pressure,
-    Axis::Throttle,
-    Axis::Belt,
-    Axis::Ratio,
+const ORDER: [GridAxis; 7] = [
+    GridAxis::Speed,
+    GridAxis::Torque,
+    GridAxis::Sump,
+    GridAxis::Pressure,
+    GridAxis::Throttle,
+    GridAxis::Belt,
+    GridAxis::Ratio,
 ];
 
 /// Figures with their file names; none for a single point.
-#[must_use]
 pub fn loss_figures(plan: &LossTable) -> Vec<(String, String)> {
     let varied = plan.grid.varied();
-    let count = |axis: &Axis| plan.grid.of(*axis).len();
-    let gears = |axis: &Axis| *axis == Axis::Ratio && !plan.is_cvt();
+    let count = |axis: &GridAxis| plan.grid.of(*axis).len();
+    let gears = |axis: &GridAxis| *axis == GridAxis::Ratio && !plan.is_cvt();
     let drawn = ORDER.into_iter().filter(|axis| varied.contains(axis));
     let on_map = drawn
         .clone()
         .filter(|axis| count(axis) >= MIN_ON_MAP && !gears(axis));
     let rows: Vec<LossRow> = plan.rows().collect();
-    let stacked = |x: Axis| {
+    let stacked = |x: GridAxis| {
         let svg = stack(plan, &Layout::new(plan, &rows, x, None));
         vec![("losses_stacked.svg".to_owned(), svg)]
     };
     match (on_map.collect::<Vec<_>>().as_slice(), varied.is_empty()) {
         (_, true) => Vec::new(),
-        ([], false) => stacked(drawn.max_by_key(count).unwrap_or(Axis::Ratio)),
+        ([], false) => stacked(drawn.max_by_key(count).unwrap_or(GridAxis::Ratio)),
         ([x], _) => stacked(*x),
         ([x, rest @ ..], _) => {
             // The axis with most values, so that few panels are needed; of equals the first.
@@ -57,20 +58,20 @@ struct Panel<'a> {
 }
 
 struct Layout<'a> {
-    x: (Axis, Vec<f64>),
-    y: Option<(Axis, Vec<f64>)>,
+    x: (GridAxis, Vec<f64>),
+    y: Option<(GridAxis, Vec<f64>)>,
     panels: Vec<Panel<'a>>,
     subject: String,
 }
 
 impl<'a> Layout<'a> {
-    fn new(plan: &LossTable, rows: &'a [LossRow], x: Axis, y: Option<Axis>) -> Self {
-        let along = |axis: &Axis| x == *axis || y == Some(*axis);
+    fn new(plan: &LossTable, rows: &'a [LossRow], x: GridAxis, y: Option<GridAxis>) -> Self {
+        let along = |axis: &GridAxis| x == *axis || y == Some(*axis);
         let varied = plan.grid.varied().into_iter();
-        let others: Vec<Axis> = varied.filter(|axis| !along(axis)).collect();
-        let held = |axis: &Axis| !along(axis) && !others.contains(axis);
-        let fixed: Vec<Axis> = Axis::ALL.into_iter().filter(held).collect();
-        let at = |row: &LossRow, axis: Axis| row.asked[axis as usize];
+        let others: Vec<GridAxis> = varied.filter(|axis| !along(axis)).collect();
+        let held = |axis: &GridAxis| !along(axis) && !others.contains(axis);
+        let fixed: Vec<GridAxis> = GridAxis::ALL.into_iter().filter(held).collect();
+        let at = |row: &LossRow, axis: GridAxis| row.asked[axis as usize];
         // In the order of the grid, each combination once.
         let mut places: BTreeMap<Vec<u64>, usize> = BTreeMap::new();
         let mut groups: Vec<Vec<&LossRow>> = Vec::new();
@@ -93,7 +94,7 @@ impl<'a> Layout<'a> {
             let rows = columns.map(<[&LossRow]>::to_vec).collect();
             Panel { title, rows }
         };
-        let values = |axis: Axis| {
+        let values = |axis: GridAxis| {
             let mut values = plan.grid.of(axis).to_vec();
             values.sort_by(f64::total_cmp);
             (axis, values)
@@ -110,14 +111,6 @@ impl<'a> Layout<'a> {
             subject,
         }
     }
-
-    /// Title and values of each panel; `column` gets the rows of one value of the horizontal axis.
-    fn values<T>(&self, of: impl Fn(&Panel<'a>) -> T) -> Vec<(String, T)> {
-        let panels = self.panels.iter();
-        panels
-            .map(|panel| (panel.title.clone(), of(panel)))
-            .collect()
-    }
 }
 
 /// One map of the total and one of each group of components.
@@ -129,13 +122,14 @@ fn maps(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
     let draw = |file: &str, title: &str, parts: &[Component]| {
         let sum = |row: &&LossRow| parts.iter().map(|c| row.answer.part_nm(*c)).sum();
         let column = |column: &Vec<&LossRow>| column.iter().map(sum).collect();
+        let panel = |of: &Panel| (of.title.clone(), of.rows.iter().map(column).collect());
         let figure = MapFigure {
             title,
             subject: &layout.subject,
             value: "Loss [Nm]",
             x: (layout.x.0.title(cvt), &layout.x.1),
             y: (y_axis.title(cvt), y),
-            panels: layout.values(|panel| panel.rows.iter().map(column).collect()),
+            panels: layout.panels.iter().map(panel).collect(),
         };
         (format!("losses_{file}.svg"), map_figure(&figure))
     };
@@ -155,22 +149,67 @@ fn maps(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
     [total].into_iter().chain(groups).collect()
 }
 
+/// Sizes of a lone panel and of one of several, pixels.
+const SIZES: [(f64, f64); 2] = [(600.0, 400.0), (290.0, 220.0)];
+const TOP: f64 = 58.0;
+/// Room above a panel for its title, pixels.
+const ABOVE: f64 = 24.0;
+/// Width of the legend, pixels.
+const STRIP: f64 = 190.0;
+
 /// All components stacked over one axis.
 fn stack(plan: &LossTable, layout: &Layout) -> String {
-    let components = plan.components();
-    let panels = layout.values(|panel| {
-        let part = |c: &Component| {
-            let columns = panel.rows.iter();
-            columns.map(|column| column[0].answer.part_nm(*c)).collect()
+    let parts = plan.components();
+    let several = layout.panels.len() > 1;
+    let size = SIZES[usize::from(several)];
+    let columns = match layout.panels.len() {
+        count if count > 4 => 3,
+        count => count.clamp(1, 2),
+    };
+    let titled = layout.panels.iter().any(|panel| !panel.title.is_empty());
+    let top = TOP + if titled { ABOVE } else { 0.0 };
+    let pitch = (size.0 + LEFT + 20.0, size.1 + ABOVE + BELOW + 8.0);
+    let place = grid((PLOT_LEFT, top), size, pitch, columns);
+    let loss = |row: &LossRow, part: Component| row.answer.part_nm(part);
+    let sum = |column: &Vec<&LossRow>| {
+        let losses = parts.iter().map(|part| loss(column[0], *part));
+        losses.filter(|x| x.is_finite()).sum::<f64>()
+    };
+    let sums = layout.panels.iter().flat_map(|panel| &panel.rows).map(sum);
+    let ticks = if several { (4, 5) } else { (8, 8) };
+    let (axis, xs) = &layout.x;
+    let x = Axis::exact(axis.title(plan.is_cvt()), xs[0], xs[xs.len() - 1], ticks.0);
+    let y = Axis::round("Loss at the input shaft [Nm]", sums.chain([0.0]), ticks.1);
+    let panel = |(k, of): (usize, &Panel)| {
+        let mut panel = engine::Panel::new(place(k), x.clone(), y.clone()).heading(&of.title);
+        let layer = |(k, part): (usize, &Component)| {
+            let losses = of.rows.iter().map(|column| loss(column[0], *part));
+            (Look::solid(k), xs.iter().copied().zip(losses).collect())
         };
-        components.iter().map(part).collect()
-    });
-    stack_figure(&StackFigure {
-        title: "Torque losses of the transmission",
-        subject: &layout.subject,
-        value: "Loss at the input shaft [Nm]",
-        x: (layout.x.0.title(plan.is_cvt()), &layout.x.1),
-        parts: components.iter().map(|c| c.title().to_owned()).collect(),
-        panels,
-    })
+        let layers = parts.iter().enumerate().map(layer).collect();
+        stack_layers(&mut panel, layers, parts.len());
+        panel
+    };
+    // Listed from the top, as they lie in the stack.
+    let entries = parts.iter().enumerate().rev();
+    let entries = entries.map(|(k, part)| Entry::fill(Fill::nth(k, parts.len()), part.title()));
+    let edge = place(columns - 1).right;
+    let side = Side {
+        corner: (edge + 16.0, top),
+        width: STRIP - 8.0,
+        entries: entries.collect(),
+        ..Side::default()
+    };
+    let titles: Vec<&str> = parts.iter().map(|part| part.title()).collect();
+    Chart::new(
+        "Torque losses of the transmission",
+        &layout.subject,
+        PLOT_LEFT,
+    )
+    .lead(format!("Stacked from the bottom: {}", titles.join(", ")))
+    .width(edge + STRIP + 16.0)
+    .panels(layout.panels.iter().enumerate().map(panel))
+    .side(side)
+    .picture(PictureTable::default())
+    .svg
 }

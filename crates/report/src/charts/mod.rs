@@ -19,7 +19,7 @@ pub use engine::cell;
 pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};
 pub use run::{
-    LossBins, PlotRun, bin_losses, driveline, fuel_bars, losses, operating_points, pressure,
-    temperatures,
+    LossBins, PlotRun, bin_losses, driveline, fuel_bars, group_fuel, losses, operating_points,
+    pressure, temperatures,
 };
 pub use variator_curves::variator_figures;

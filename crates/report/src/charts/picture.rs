@@ -1,5 +1,7 @@
 //! A picture with the table of its numbers, which also fills the box under the pointer.
 
+use crate::number::with_unit;
+
 /// A picture and its numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
@@ -21,12 +23,13 @@ pub struct PictureTable {
     pub note: String,
 }
 
-/// Rows at most that are listed in the picture in words.
-const MAX_LISTED: usize = 12;
+/// Rows and cells at most that are listed in the picture in words.
+const MAX_LISTED: (usize, usize) = (12, 50);
+/// Columns at most whose span is given there.
+pub(crate) const MAX_SPANS: usize = 6;
 
 impl PictureTable {
     /// A table of columns.
-    #[must_use]
     pub fn new(columns: &[(&str, &'static str)]) -> Self {
         let column = |(name, unit): &(&str, &'static str)| ((*name).to_owned(), *unit);
         PictureTable {
@@ -36,7 +39,6 @@ impl PictureTable {
     }
 
     /// A table with names and units of its columns that are made at run time.
-    #[must_use]
     pub fn with_columns(columns: impl IntoIterator<Item = (String, &'static str)>) -> Self {
         PictureTable {
             columns: columns.into_iter().collect(),
@@ -66,27 +68,29 @@ impl PictureTable {
         numbers.filter(|list| !list.is_empty())
     }
 
-    /// The numbers in words: the rows of a short table, the span of each column of a long one.
+    /// "Torque [Nm] from 2 to 11", over some columns; none if they hold words, or nothing.
+    pub(crate) fn span(&self, name: &str, columns: &[usize]) -> Option<String> {
+        let numbers = columns.iter().filter_map(|column| self.numbers(*column));
+        let numbers: Vec<(f64, &str)> = numbers.flatten().collect();
+        let low = numbers.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let high = numbers.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(format!("{name} from {} to {}", low.1, high.1))
+    }
+
+    /// The numbers in words: the rows of a short table, the spans of the first columns of a long one.
     pub(crate) fn in_words(&self) -> String {
-        let head = |(name, unit): &(String, &'static str)| match *unit {
-            "" => name.clone(),
-            unit => format!("{name} [{unit}]"),
-        };
-        let heads: Vec<String> = self.columns.iter().map(head).collect();
-        if self.rows.is_empty() {
+        let heads = self.columns.iter();
+        let heads: Vec<String> = heads.map(|(name, unit)| with_unit(name, unit)).collect();
+        let rows = self.rows.len();
+        if rows == 0 {
             return String::new();
         }
-        if self.rows.len() <= MAX_LISTED {
+        if rows <= MAX_LISTED.0 && rows * heads.len() <= MAX_LISTED.1 {
             let rows: Vec<String> = self.rows.iter().map(|row| row.join(", ")).collect();
             return format!("{}: {}", heads.join(", "), rows.join("; "));
         }
-        let span = |(k, head): (usize, &String)| {
-            let numbers = self.numbers(k)?;
-            let low = numbers.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-            let high = numbers.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-            Some(format!("{head} from {} to {}", low.1, high.1))
-        };
-        let spans: Vec<String> = heads.iter().enumerate().filter_map(span).collect();
-        spans.join("; ")
+        let spans = heads.iter().enumerate();
+        let spans = spans.filter_map(|(k, head)| self.span(head, &[k]));
+        spans.take(MAX_SPANS).collect::<Vec<_>>().join("; ")
     }
 }

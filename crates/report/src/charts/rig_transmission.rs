@@ -162,7 +162,6 @@ const STEADY: [Quantity; 2] = [
 ];
 
 /// Torque loss and secondary pressure against speed, a line for each temperature (Figs 5-1 to 5-4).
-#[must_use]
 pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
     let sheet = Sheet {
         rows,
@@ -180,7 +179,6 @@ pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
 }
 
 /// Torque loss under load against speed, a line for each torque, a panel for each temperature.
-#[must_use]
 pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
     let sheet = Sheet {
         rows,
@@ -216,7 +214,6 @@ pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
 }
 
 /// Torque loss against bulk oil temperature, warming and cooling (Figs 5-5 and 5-6).
-#[must_use]
 pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
     // The looks of the second and the third line.
     let branches = [
@@ -259,7 +256,6 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
 }
 
 /// Torque loss of both boxes against speed, a panel for each temperature (Figs 5-7 to 5-14).
-#[must_use]
 pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
     let sheet = Sheet {
         rows,
@@ -284,7 +280,6 @@ pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
 }
 
 /// The strip-down: stages (Figs 5-17 to 5-27), contributions (5-33 to 5-40), components (5-41 to 5-45).
-#[must_use]
 pub fn strip_down(rows: &[StripDown], subject: &Subject) -> Vec<Picture> {
     let sheet = Sheet {
         rows,

@@ -78,7 +78,6 @@ const RADII: [(&str, usize, [Get; 2]); 3] = [
 ];
 
 /// Figures with their file names.
-#[must_use]
 pub fn variator_figures(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
     let tests = plan.curves.chunk_by(Curve::is_same_test).take(MAX_TESTS);
     let tests: Vec<&[Curve]> = tests.collect();

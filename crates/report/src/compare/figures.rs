@@ -2,12 +2,11 @@
 
 use super::Pair;
 use crate::charts::figures::{
-    Difference, DifferenceTerm, Overlay, OverlayPanel, Term, difference_bars, overlay,
+    Difference, DifferenceTerm, Overlay, OverlayPanel, TERMS, Term, difference_bars, overlay,
 };
 use crate::document::{ReportTable, Section};
 use crate::number::{NONE, Quantity, capital};
 use crate::run::Car;
-use crate::terms::TERMS;
 use cvtcycle_output::Component;
 use cvtcycle_output::history::History;
 

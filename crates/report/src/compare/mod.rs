@@ -258,7 +258,7 @@ const CONDITIONS: [Condition; 10] = [
     ("Set for all cars", |run| {
         run.summary.settings.set_all.join(", ")
     }),
-    ("Program", |run| run.summary.program.clone()),
+    ("Program", |run| run.summary.manifest.program.clone()),
 ];
 
 fn of_subject(run: &RunResults, of: fn(&RunSummary) -> &String) -> String {
@@ -316,7 +316,10 @@ fn changes(a: &CarRecord, b: &CarRecord) -> Vec<Change> {
 fn reproduce(a: &RunResults, b: &RunResults, names: &[String; 2]) -> Section {
     let mut section = Section::new("reproducibility", "Reproducibility");
     for (found, name) in [(a, &names[0]), (b, &names[1])] {
-        let mut facts = vec![(format!("Program of {name}"), found.summary.program.clone())];
+        let mut facts = vec![(
+            format!("Program of {name}"),
+            found.summary.manifest.program.clone(),
+        )];
         if let Some(record) = &found.record {
             facts.push((format!("Command of {name}"), record.command.clone()));
             let cycle = format!("Cycle of {name}, SHA-256");

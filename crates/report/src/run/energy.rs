@@ -3,8 +3,7 @@
 use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, percent};
 use super::Car;
-use crate::charts::figures::{CarEnergy, energy_flow, transmission_flow};
-use crate::terms::TERMS;
+use crate::charts::figures::{CarEnergy, TERMS, energy_flow, transmission_flow};
 
 /// A car's ledger as the figures want it, kJ.
 fn car_energy(car: &Car) -> CarEnergy {

@@ -9,7 +9,7 @@ use crate::charts::figures::{
     loss_by_temperature, variogram,
 };
 use crate::charts::{
-    PlotRun, driveline, fuel_bars, losses, operating_points, pressure, temperatures,
+    PlotRun, driveline, fuel_bars, group_fuel, losses, operating_points, pressure, temperatures,
 };
 use cvtcycle_config::cycle::phase_group;
 use cvtcycle_model::drive::FuelMap;
@@ -17,7 +17,7 @@ use cvtcycle_model::keys::RPM;
 use cvtcycle_output::Component;
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::FuelMapRecord;
-use cvtcycle_output::summary::RunSummary;
+use cvtcycle_output::table::distinct;
 use cvtcycle_output::trace::loss_column;
 
 /// g/kWh to kg/J.
@@ -63,18 +63,6 @@ fn plot<'a>(car: &Car<'a>) -> Option<PlotRun<'a>> {
         fuel_map,
         group_fuel: group_fuel(car.run),
     })
-}
-
-/// Fuel of each phase group and of the whole, for the bars.
-fn group_fuel(run: &RunSummary) -> Vec<(String, f64)> {
-    let phases = run.phases.iter().filter(|_| run.phases.len() > 1);
-    let phases = phases.map(|p| (p.name.clone(), p.fuel_l_per_100km));
-    let total = ("total".to_owned(), run.fuel_l_per_100km);
-    let weighted = run.weighted_fuel_l_per_100km;
-    let weighted = weighted.map(|fuel| ("weighted".to_owned(), Some(fuel)));
-    let all = phases.chain([total]).chain(weighted);
-    all.map(|(name, fuel)| (name, fuel.unwrap_or(f64::NAN)))
-        .collect()
 }
 
 fn losses_section(all: &[Car]) -> Section {
@@ -189,13 +177,8 @@ fn warm_up(all: &[Car]) -> Section {
         .iter()
         .map(|car| (car.run.vehicle.clone(), Quantity::Degc.unit()));
     let mut table = ReportTable::of_numbers("Temperatures at the end", "Node", columns);
-    let mut nodes: Vec<&str> = Vec::new();
-    for (name, _) in all.iter().flat_map(|car| car.run.end_degc.iter()) {
-        if !nodes.contains(&name) {
-            nodes.push(name);
-        }
-    }
-    for node in nodes {
+    let nodes = all.iter().flat_map(|car| car.run.end_degc.iter());
+    for node in distinct(nodes.map(|(name, _)| name)) {
         let ends = all.iter().map(|car| car.run.end_degc.get(node));
         table.named(capital(node), ends.map(|degc| Quantity::Degc.bare(degc)));
     }

@@ -33,7 +33,6 @@ pub struct Car<'a> {
 
 impl Car<'_> {
     /// Losses of the transmission, kJ, in the order of the power flow.
-    #[must_use]
     pub fn losses_kj(&self) -> Vec<(Component, f64)> {
         let loss = |c: Component| Some((c, self.run.loss_kj.get(c.name())?));
         Component::ALL.into_iter().filter_map(loss).collect()
@@ -41,7 +40,6 @@ impl Car<'_> {
 }
 
 /// The cars of a run, the subject first.
-#[must_use]
 pub fn cars<'a>(found: &'a RunResults) -> Vec<Car<'a>> {
     let runs = found.summary.runs.iter().zip(&found.histories);
     let records = found.record.as_ref().map_or(&[][..], |record| &record.cars);
@@ -101,7 +99,6 @@ fn title(summary: &Summary) -> String {
 }
 
 /// The cycle as people call it.
-#[must_use]
 pub fn cycle_title(summary: &Summary, record: Option<&Record>) -> String {
     let title = record.map(|r| r.cycle.title.clone());
     let title = title.filter(|title| !title.is_empty());
@@ -109,7 +106,6 @@ pub fn cycle_title(summary: &Summary, record: Option<&Record>) -> String {
 }
 
 /// The start in words.
-#[must_use]
 pub fn start_line(summary: &Summary) -> String {
     match &summary.start {
         StartWord::Word(word) if word == "warm" => "after the same cycle from a soak".to_owned(),
@@ -119,7 +115,6 @@ pub fn start_line(summary: &Summary) -> String {
 }
 
 /// Ambient and start in words.
-#[must_use]
 pub fn conditions_line(summary: &Summary) -> String {
     let ambient = degc(summary.ambient_degc);
     format!("ambient {ambient}, {}", start_line(summary))

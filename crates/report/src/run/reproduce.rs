@@ -12,7 +12,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("reproducibility", "Reproducibility");
     let mut facts = vec![(
         "Program of the run".to_owned(),
-        found.summary.program.clone(),
+        found.summary.manifest.program.clone(),
     )];
     if let Some(record) = &found.record {
         facts.push(("Command".to_owned(), record.command.clone()));
@@ -48,7 +48,6 @@ const SOLUTION: [Line; 4] = [
 ];
 
 /// Files of every car with their hashes.
-#[must_use]
 pub fn hashes(record: &Record, caption: &str) -> ReportTable {
     let mut table = ReportTable::of_words(caption, &["Car", "What", "File", "SHA-256"]);
     for car in &record.cars {

@@ -1,10 +1,14 @@
-//! Keys of a row that depend on each other.
+//! Expressions of a row, and keys that depend on each other.
 
-use super::expr::{Expr, Gives};
+use super::expr::{Expr, Fault, Gives, Names, parse};
 use super::keys::ROW;
 use super::rows::ValidationRow;
 use super::rule::{Printed, Verdict};
-use cvtcycle_config::Section;
+use super::source::{Kind, Source};
+use super::tables;
+use cvtcycle_config::ProblemKind;
+use cvtcycle_config::ProblemKind::{Conflict, Missing};
+use cvtcycle_config::{Place, Problem, Section};
 use cvtcycle_model::keys::{Key, Values};
 
 /// What the keys of a number or range accept together.
@@ -15,11 +19,23 @@ pub fn number_or_range(s: &Section, keys: [&Key; 3]) -> Option<(f64, f64)> {
     let [value, low, high] = keys.map(|key| s.optional(key));
     if value.is_some() && (low.is_some() || high.is_some()) {
         let message = "`value` with `low` or `high`";
-        s.complain("value", VALUE_OR_ENDS, message, "keep one of the forms");
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            "value",
+            VALUE_OR_ENDS,
+            message,
+            "keep one of the forms",
+        );
     }
     if low.zip(high).is_some_and(|(low, high)| low > high) {
         let message = "`low` is above `high`";
-        s.complain("low", "at most `high`", message, "swap them");
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            "low",
+            "at most `high`",
+            message,
+            "swap them",
+        );
     }
     let (least, largest) = (f64::NEG_INFINITY, f64::INFINITY);
     match value {
@@ -37,7 +53,8 @@ pub fn printed(s: &Section, compute: Option<&Expr>, broken: bool) -> Option<Prin
     match (compute.map(Expr::gives), numbers) {
         (Some(Gives::Truth), Some(_)) => {
             let message = "`compute` gives yes or no, but a number is printed";
-            s.complain(
+            s.complain_by_name(
+                ProblemKind::Conflict,
                 "compute",
                 "a number or a range",
                 message,
@@ -48,7 +65,7 @@ pub fn printed(s: &Section, compute: Option<&Expr>, broken: bool) -> Option<Prin
         (Some(Gives::Truth), None) => Some(Printed::Truth(expect.unwrap_or(true))),
         (Some(_), None) => {
             let message = "`compute` gives a number, but none is printed";
-            s.complain(
+            s.missing(
                 "value",
                 VALUE_OR_ENDS,
                 message,
@@ -59,7 +76,7 @@ pub fn printed(s: &Section, compute: Option<&Expr>, broken: bool) -> Option<Prin
         (Some(_), numbers) => {
             if expect.is_some() {
                 let message = "`expect` belongs to an order or sign";
-                s.complain("expect", "", message, "remove it");
+                s.complain_by_name(ProblemKind::Conflict, "expect", "", message, "remove it");
             }
             numbers
         }
@@ -73,30 +90,103 @@ pub fn complete(s: &Section, row: &ValidationRow) {
     let is_computed = !row.compute_text.trim().is_empty();
     let is_compared = !is(Verdict::NotComparable);
     let is_fitted = !row.fitted_to.is_empty();
-    let complain = |found: bool, key: &str, allowed: &str, message: &str, hint: &str| {
+    let complain = |kind, found: bool, key: &str, allowed: &str, message: &str, hint: &str| {
         if found {
-            s.complain(key, allowed, message, hint);
+            s.complain(kind, key, allowed, message, hint);
         }
     };
     let found = !is_computed && is_compared;
     let message = "the row is not computed";
     let hint = "add an expression, or verdict = \"not comparable\" and a reason";
-    complain(found, "compute", "an expression", message, hint);
+    complain(Missing, found, "compute", "an expression", message, hint);
     let found = is_computed && !is_compared;
     let message = "a computed row cannot be `not comparable`";
     let (allowed, hint) = ("agrees, fit, differs", "remove `compute` or the verdict");
-    complain(found, "verdict", allowed, message, hint);
+    complain(Conflict, found, "verdict", allowed, message, hint);
     let found = (is(Verdict::Differs) || !is_compared) && row.reason.trim().is_empty();
     let (message, hint) = ("the verdict needs a reason", "say in a sentence why");
-    complain(found, "reason", "a sentence", message, hint);
+    complain(Missing, found, "reason", "a sentence", message, hint);
     let found = is(Verdict::Differs) && !s.has("cause");
     let message = "a row that differs needs its computed cause";
     let hint = "add a table `cause` with `what` and `compute`: a number that shows the reason";
-    complain(found, "cause", "a table", message, hint);
+    complain(Missing, found, "cause", "a table", message, hint);
     let found = is(Verdict::Fit) && !is_fitted;
     let message = "a fit names the parameters that were fitted to it";
-    complain(found, "fitted_to", "keys of parameters", message, "");
+    complain(
+        Missing,
+        found,
+        "fitted_to",
+        "keys of parameters",
+        message,
+        "",
+    );
     let found = is(Verdict::Agrees) && is_fitted;
     let message = "a row to which a parameter was fitted never `agrees`";
-    complain(found, "verdict", "fit, differs", message, "record `fit`");
+    complain(
+        Conflict,
+        found,
+        "verdict",
+        "fit, differs",
+        message,
+        "record `fit`",
+    );
+}
+
+/// Sources of a file, and the known keys.
+pub struct FileNames<'a> {
+    /// Sources of computed values.
+    pub sources: &'a [Source],
+    /// Keys of the vehicle files.
+    pub keys: &'a [String],
+}
+
+impl Names for FileNames<'_> {
+    fn sources(&self) -> Vec<&str> {
+        self.sources.iter().map(|source| &*source.name).collect()
+    }
+
+    fn columns(&self, source: usize, totals: bool) -> Vec<&'static str> {
+        match self.sources.get(source).map(|source| source.kind) {
+            Some(kind) if kind == Kind::Run || !totals => tables::columns(kind, totals),
+            _ => Vec::new(),
+        }
+    }
+
+    fn keys(&self) -> &[String] {
+        self.keys
+    }
+}
+
+/// Parses the expression of a key; its faults are reported as problems with their place in the text. None for an empty text.
+pub fn expression(s: &Section, key: &str, text: &str, names: &FileNames) -> Option<Expr> {
+    if text.trim().is_empty() {
+        return None;
+    }
+    let report = |fault| s.report_problem(within(s.place(key), key, text, fault));
+    let parsed = parse(text, names);
+    parsed
+        .map_err(|faults| faults.into_iter().for_each(report))
+        .ok()
+}
+
+/// A fault in an expression as a problem at its place.
+fn within(mut place: Place, key: &str, text: &str, fault: Fault) -> Problem {
+    // The place is exact if the text is on one line without escapes.
+    let quoted = place.line_text.chars().skip(place.column.saturating_sub(1));
+    let quoted = quoted.collect::<String>();
+    let unquoted = quoted.strip_prefix(['"', '\'']);
+    if unquoted.is_some_and(|rest| rest.starts_with(text)) {
+        place.column += 1 + fault.at;
+        place.width = fault.width;
+    }
+    let hint = match fault.hint.as_str() {
+        "" => "docs/validation_format.md shows what an expression may hold",
+        hint => hint,
+    };
+    Problem::syntax(format!("`{key}`: {}", fault.message))
+        .at(place)
+        .key(key)
+        .names_key()
+        .value(fault.word)
+        .hint(hint)
 }

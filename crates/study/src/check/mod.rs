@@ -10,18 +10,15 @@
 //! | `source` | sources as read; `tables` turns them into tables of numbers |
 //! | `keys` | the keys of the files |
 //! | `rows` | files and rows; `read` and `checks` read them |
-//! | `candidate` | the vehicle that is validated |
 //! | `store` | sources computed once, for all expressions |
-//! | `judge` | verdicts of the rows |
+//! | `judge` | the vehicle that is validated, and verdicts of the rows |
 //! | `rule` | the rule from computed and printed to a verdict |
 //! | `report` | JSON, CSV, Markdown |
 
-mod candidate;
 pub(crate) mod checks;
 pub mod expr;
 pub mod judge;
 pub mod keys;
-pub(crate) mod names;
 pub mod report;
 mod read;
 pub(crate) mod rows;
@@ -30,13 +27,12 @@ pub(crate) mod source;
 pub(crate) mod store;
 pub(crate) mod tables;
 
-pub use candidate::CandidateVehicle;
 pub use cvtcycle_config::embedded::rows as embedded_rows;
 
 /// The file whose tolerances and sources all files may use: name and text.
 pub const COMMON: (&str, &str) = cvtcycle_config::embedded::common_rows()[0];
 pub use expr::Computed;
-pub use judge::{HeldOut, Judged, Report, judge};
+pub use judge::{CandidateVehicle, HeldOut, Judged, Report, judge};
 pub use keys::MECHANISMS;
 pub use read::read;
 pub use report::{computed_text, csv, json, markdown, notes_line, unit_text};

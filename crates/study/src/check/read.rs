@@ -2,12 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::checks::{complete, printed};
+use super::checks::{FileNames, complete, expression, printed};
 use super::keys::{CAUSE, ROW, TOLERANCE};
-use super::names::{FileNames, expression};
 use super::rows::{Cause, RowFile, Tolerance, ValidationRow};
 use super::rule::{Printed, Verdict};
 use super::source::{self, Source};
+use cvtcycle_config::ProblemKind;
+use cvtcycle_config::ProblemKind::{Conflict, Missing};
 use cvtcycle_config::setup::catalogue;
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean};
 use cvtcycle_model::keys::Values;
@@ -41,7 +42,7 @@ pub fn read(common: (&str, &str), files: &[(String, String)]) -> Result<Vec<RowF
             let (id, place) = (&row.id, &first.id_place);
             let (file, line) = (&place.input, place.line);
             let message = format!("the id `{id}` was used before, in {file} line {line}");
-            let twice = Problem::invalid(message).at(row.id_place.clone());
+            let twice = Problem::duplicate(message).at(row.id_place.clone());
             problems.push(twice.key("id").value(id.clone()).hint("ids are unique"));
         }
     }
@@ -122,8 +123,15 @@ fn file(
 fn tolerance(s: &Section, name: &str) -> Tolerance {
     let (absolute, relative) = (s.optional(&TOLERANCE.width), s.optional(&TOLERANCE.share));
     if s.exists() && absolute.is_some() == relative.is_some() {
+        let kind = absolute.map_or(Missing, |_| Conflict);
         let message = format!("tolerance `{name}` needs either `width` or `share`");
-        s.complain("width", "width or share", &message, "give one of them");
+        s.complain(
+            kind,
+            "width",
+            "width or share",
+            &message,
+            "give one of them",
+        );
     }
     Tolerance {
         name: name.to_owned(),
@@ -199,7 +207,7 @@ impl Head<'_> {
         let name = s.optional_text(&ROW.tolerance);
         if !matches!(printed, Some(Printed::Range(..))) {
             if name.is_some() && !is_broken {
-                s.complain(
+                s.conflict(
                     "tolerance",
                     "",
                     "an order or sign has no tolerance",
@@ -212,18 +220,24 @@ impl Head<'_> {
         let allowed = known().collect::<Vec<_>>().join(", ");
         let Some(name) = name else {
             let hint = "name a tolerance of the head of the file";
-            s.complain("tolerance", &allowed, "missing key `tolerance`", hint);
+            s.complain_by_name(
+                ProblemKind::Missing,
+                "tolerance",
+                &allowed,
+                "missing key `tolerance`",
+                hint,
+            );
             return None;
         };
         let Some(found) = self.tolerances.iter().find(|t| t.name == name) else {
             let message = format!("there is no tolerance `{name}`");
             let hint = did_you_mean(&name, known()).unwrap_or_default();
-            s.complain("tolerance", &allowed, &message, &hint);
+            s.unknown_name("tolerance", &allowed, &message, &hint);
             return None;
         };
         if found.unit != "-" && found.unit != unit {
             let message = format!("tolerance `{name}` is in {}, the row in {unit}", found.unit);
-            s.complain(
+            s.conflict(
                 "tolerance",
                 "the same unit",
                 &message,
@@ -240,7 +254,7 @@ impl Head<'_> {
             let hint = did_you_mean(key, known).unwrap_or_default();
             let message = format!("there is no parameter `{key}`");
             let allowed = "keys of a vehicle or lubricant";
-            s.complain("fitted_to", allowed, &message, &hint);
+            s.unknown_key("fitted_to", allowed, &message, &hint);
         }
         keys
     }

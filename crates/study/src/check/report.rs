@@ -1,6 +1,7 @@
 //! A report as JSON, CSV and Markdown, and its words for people.
 
 use cvtcycle_output::number::exact;
+use cvtcycle_output::record::Manifest;
 use cvtcycle_output::table::CsvWriter;
 use serde::Serialize;
 use serde_json::{Value, json as object};
@@ -41,16 +42,14 @@ impl Counts {
 /// A report as one JSON object.
 #[must_use]
 pub fn json(report: &Report) -> Value {
-    object!({
-        "schema": SCHEMA,
-        "program": cvtcycle_output::PROGRAM,
+    Manifest::new(SCHEMA).with(&object!({
         "vehicle": report.candidate.vehicle,
         "set": report.candidate.set,
         "counts": Counts::of(report.rows.iter()),
         "held_out": report.held_out(),
         "moved": report.moved().map(|row| row.row.id.as_str()).collect::<Vec<_>>(),
         "rows": report.rows.iter().map(row_of).collect::<Vec<_>>(),
-    })
+    }))
 }
 
 /// A row as a JSON object; no number and an infinite one are null.

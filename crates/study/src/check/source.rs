@@ -119,7 +119,7 @@ pub fn read(sources: &Section, common: &[Source]) -> Vec<Source> {
             let allowed = "the name of another source, not in a circle";
             let message = "there is no such source to continue";
             let s = sources.table(name);
-            s.complain("like", allowed, message, &hint);
+            s.unknown_name("like", allowed, message, &hint);
             s.pass_over();
             done.push(Source::new(name, Kind::Vehicle));
         }
@@ -178,7 +178,7 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
             let message = format!("source `{name}` has no `{}`", key.name);
             let hint = "give a number, a list or a range";
             let allowed = key.range().in_unit(unit_of(key.name));
-            s.complain(key.name, &allowed, &message, hint);
+            s.missing(key.name, &allowed, &message, hint);
         }
     }
     let lengths = source
@@ -189,7 +189,7 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
     if count > MAX_POINTS {
         let allowed = format!("up to {MAX_POINTS} points");
         let message = format!("source `{name}` has {count} points");
-        s.complain("source", &allowed, &message, "use wider steps");
+        s.too_large("source", &allowed, &message, "use wider steps");
     }
     match kind {
         Kind::Bench if s.has("without") => source.without = without(s, &SOURCE.without),
@@ -210,7 +210,7 @@ fn kind(s: &Section, base: Option<&Source>) -> Option<Kind> {
         let message = "the source does not say what it computes";
         let hint = "add, for example, `source = \"bench\"`";
         let allowed = KINDS.map(|choice| choice.name).join(", ");
-        s.complain("source", &allowed, message, hint);
+        s.missing("source", &allowed, message, hint);
     }
     base.map(|base| base.kind)
 }
@@ -220,7 +220,7 @@ pub fn without(s: &Section, key: &Key) -> Vec<String> {
     let without = s.texts(key);
     for part in without.iter().filter(|part| !PARTS.contains(&&***part)) {
         let message = format!("there is no part `{part}`");
-        s.complain(key.name, &PARTS.join(", "), &message, "");
+        s.unknown_name(key.name, &PARTS.join(", "), &message, "");
     }
     without
 }
@@ -242,19 +242,19 @@ fn run(s: &Section, source: &mut Source) {
         Err(why) if !source.points.is_empty() => {
             let hint =
                 "times rise by up to 3600 s, speeds are 0 to 300 km/h and change by up to 12 m/s2";
-            s.complain("points", "rows [time s, speed km/h] of a cycle", &why, hint);
+            s.out_of_range("points", "rows [time s, speed km/h] of a cycle", &why, hint);
         }
         Err(why) => {
             let hint = did_you_mean(&source.cycle, names().iter().copied())
                 .unwrap_or_else(|| "`cvtcycle list cycles` shows all".to_owned());
             let allowed = "the name of an embedded cycle, or constant_V with V in km/h, above 0 and up to 300";
-            s.complain("cycle", allowed, &why, &hint);
+            s.unknown_name("cycle", allowed, &why, &hint);
         }
         Ok(cycle) => {
             let groups = phases(&cycle);
             if !source.phase.is_empty() && !groups.contains(&source.phase) {
                 let message = format!("the cycle has no phase `{}`", source.phase);
-                s.complain("phase", &groups.join(", "), &message, "");
+                s.unknown_name("phase", &groups.join(", "), &message, "");
             }
         }
     }

@@ -11,7 +11,7 @@ use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 use super::outcome::{Outcome, Parameter};
 use super::plan::{CalibrationPlan, problem, stem};
 use cvtcycle_config::setup::{Kind, NamedBy, is_path, text_of};
-use cvtcycle_config::{Override, Problems, Target};
+use cvtcycle_config::{Override, ProblemKind, Problems, Target};
 
 /// Significant digits of a fitted value, far beyond its standard error.
 const DIGITS: usize = 7;
@@ -144,7 +144,7 @@ fn parsed(plan: &CalibrationPlan, text: &str) -> Result<DocumentMut, Problems> {
     // The model was loaded from it before.
     text.parse().map_err(|error| {
         let message = format!("the file cannot be changed: {error}");
-        problem(&plan.place, "vehicle", "", message, "").into()
+        problem(ProblemKind::Syntax, &plan.place, "vehicle", "", message, "").into()
     })
 }
 

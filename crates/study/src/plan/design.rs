@@ -2,6 +2,7 @@
 
 use super::keys::{self, MAX_SAMPLES, ONE_AT_A_TIME, SAMPLE, STUDY};
 use super::{Cars, Design, Factor, FactorValues, Places, Plan};
+use cvtcycle_config::ProblemKind::{self, Conflict, Duplicate, Missing, OutOfRange, TooLarge};
 use cvtcycle_config::{Problem, Problems, Section, readable};
 use cvtcycle_model::keys::Values;
 
@@ -38,7 +39,7 @@ pub(super) fn read(study: &Section, places: &mut Places) -> Design {
     let count = Values::number(&d, &SAMPLE.samples);
     let samples = count as u64;
     if count.is_finite() && (samples as f64 - count).abs() > 0.0 {
-        d.complain(
+        d.mistyped(
             "samples",
             "a whole number",
             "`samples` is no whole number",
@@ -51,7 +52,7 @@ pub(super) fn read(study: &Section, places: &mut Places) -> Design {
             _ => "more are seldom of use; monte_carlo draws any number",
         };
         let allowed = format!("2 to {MAX_SOBOL_SAMPLES}");
-        d.complain(
+        d.too_large(
             "samples",
             &allowed,
             "the Sobol sequence is not that long",
@@ -85,25 +86,32 @@ pub(super) fn clashes(factors: &[Factor]) -> Problems {
             );
             let hint =
                 "join them, or give one `cars = \"subject\"` and the other `cars = \"baselines\"`";
-            problems.push(of_factor(factor, "key", message, hint));
+            problems.push(of_factor(Duplicate, factor, "key", message, hint));
         } else if let Some(line) = earlier(&|other| other.name == factor.name) {
             let message = format!(
                 "the name `{}` was used before, by the factor in line {line}",
                 factor.name
             );
-            problems.push(of_factor(factor, "name", message, "names are unique"));
+            let hint = "names are unique";
+            problems.push(of_factor(Duplicate, factor, "name", message, hint));
         }
     }
     problems
 }
 
-fn of_factor(factor: &Factor, key: &str, message: String, hint: &str) -> Problem {
+fn of_factor(
+    kind: ProblemKind,
+    factor: &Factor,
+    key: &str,
+    message: String,
+    hint: &str,
+) -> Problem {
     // What is not given follows from the key.
     let place = match factor.places.of(key) {
         place if place == factor.places.of("") => &factor.place,
         place => place,
     };
-    Problem::invalid(message)
+    Problem::new(kind, message)
         .at(place.clone())
         .key(key)
         .hint(hint)
@@ -113,14 +121,19 @@ fn of_factor(factor: &Factor, key: &str, message: String, hint: &str) -> Problem
 pub(super) fn limits(plan: &Plan, number: usize) -> Problems {
     let (design, read) = (&plan.design, &plan.factors);
     let mut problems = Problems::new();
-    let mut refuse = |allowed: &str, message: String, hint: &str| {
+    let mut refuse = |kind, allowed: &str, message: String, hint: &str| {
         let place = plan.places.of("design").clone();
-        let problem = Problem::invalid(message).at(place).key("study.design");
+        let problem = Problem::new(kind, message).at(place).key("study.design");
         problems.push(problem.allowed(allowed).hint(hint));
     };
     if number == 0 && *design != Design::Grid {
         let hint = "add a [[factor]], or use the design `grid` for the base alone";
-        refuse("at least one [[factor]]", "nothing is varied".into(), hint);
+        refuse(
+            Missing,
+            "at least one [[factor]]",
+            "nothing is varied".into(),
+            hint,
+        );
     }
     let dimensions = match design {
         Design::Sobol { .. } => number,
@@ -133,25 +146,25 @@ pub(super) fn limits(plan: &Plan, number: usize) -> Problems {
             MAX_SOBOL_DIMENSIONS * number / dimensions
         );
         let message = format!("{number} factors are too many for this design");
-        refuse(&allowed, message, "leave some out");
+        refuse(TooLarge, &allowed, message, "leave some out");
     }
     if read.len() == number && design.points(read).is_none() {
         let message = "the design has more points than can be counted".into();
-        refuse("", message, "take fewer values or factors");
+        refuse(TooLarge, "", message, "take fewer values or factors");
     }
     let is_drawn = |factor: &&Factor| matches!(factor.values, FactorValues::Distribution(_));
     if *design == Design::Grid {
         problems.extend(read.iter().filter(is_drawn).map(|factor| {
             let message = "a distribution has no values for a grid".to_owned();
-            of_distribution(factor, message, "give `values` or a `range`")
+            of_distribution(Conflict, factor, message, "give `values` or a `range`")
                 .allowed("values or range")
         }));
     }
     problems
 }
 
-fn of_distribution(factor: &Factor, message: String, hint: &str) -> Problem {
-    Problem::invalid(format!("factor {}: {message}", factor.key))
+fn of_distribution(kind: ProblemKind, factor: &Factor, message: String, hint: &str) -> Problem {
+    Problem::new(kind, format!("factor {}: {message}", factor.key))
         .at(factor.places.of("distribution").clone())
         .key("distribution")
         .hint(hint)
@@ -165,7 +178,7 @@ pub(super) fn reach(plan: &Plan) -> Problems {
         if factor.cars == Cars::Baselines && no_baselines {
             let message = format!("factor {}: there are no baselines", factor.key);
             let hint = "name them in `baselines`, or remove the factor";
-            problems.push(of_factor(factor, "cars", message, hint));
+            problems.push(of_factor(Conflict, factor, "cars", message, hint));
         }
         let (Some(bound), FactorValues::Distribution(_), Some((low, high))) =
             (keys::range(&factor.key), &factor.values, plan.span(k))
@@ -177,7 +190,7 @@ pub(super) fn reach(plan: &Plan) -> Problems {
             let message = format!("the draws go from {low} to {high}");
             let hint = "use truncated_normal, uniform or triangular";
             let allowed = bound.in_unit(keys::quantity(&factor.key).unit());
-            problems.push(of_distribution(factor, message, hint).allowed(allowed));
+            problems.push(of_distribution(OutOfRange, factor, message, hint).allowed(allowed));
         }
     }
     problems

@@ -3,6 +3,7 @@
 use super::keys::{FACTOR, quantity, run_option};
 use super::values::{self, Of};
 use super::{Acts, Cars, Factor, FactorValues, Places, RUN_OPTIONS};
+use cvtcycle_config::ProblemKind;
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean, unit_of};
 use cvtcycle_model::keys::{Key, Presence, Values};
 
@@ -23,7 +24,7 @@ pub(super) fn read(document: &Document) -> Result<Factor, Problems> {
     let values = values::read(&s, Of { key: &key, acts }, &mut places);
     let is_number = values.as_ref().is_none_or(FactorValues::are_numbers);
     if acts != Acts::Value && !is_number {
-        s.complain(
+        s.conflict(
             "acts",
             "value",
             "words cannot be scaled or offset",
@@ -36,7 +37,7 @@ pub(super) fn read(document: &Document) -> Result<Factor, Problems> {
             "a distribution needs a status",
             "add `status = \"assumed\"`",
         );
-        s.complain("status", &FACTOR.status.allowed(), message, hint);
+        s.missing("status", &FACTOR.status.allowed(), message, hint);
     }
     let factor = Factor {
         name: name(&s, &key, cars),
@@ -90,12 +91,12 @@ fn key(s: &Section) -> String {
     );
     if !key.split('.').all(bare) {
         let hint = "write, for example, transmission.cvt.pump.displacement_cc_rev";
-        s.complain("key", &allowed, &format!("`{key}` is no key"), hint);
+        s.unknown_key("key", &allowed, &format!("`{key}` is no key"), hint);
     } else if !key.contains('.') {
         let hint = did_you_mean(&key, RUN_OPTIONS)
             .unwrap_or_else(|| "`cvtcycle show` lists the keys".to_owned());
         let message = format!("`{key}` is neither a run option nor a dotted key");
-        s.complain("key", &allowed, &message, &hint);
+        s.unknown_key("key", &allowed, &message, &hint);
     }
     key
 }
@@ -108,7 +109,7 @@ fn cars(s: &Section, key: &str) -> Cars {
         ..FACTOR.cars
     });
     if is_shared && word != "all" {
-        s.complain(
+        s.conflict(
             "cars",
             "all",
             &format!("`{key}` is the same for all cars"),
@@ -126,7 +127,7 @@ fn acts(s: &Section, key: &str) -> Acts {
     let word = s.word(&FACTOR.acts);
     if run_option(key).is_some() && word != "value" {
         let message = format!("`{key}` is in no car's file that it could {word}");
-        s.complain("acts", "value", &message, "remove `acts`");
+        s.conflict("acts", "value", &message, "remove `acts`");
         return Acts::Value;
     }
     match word {
@@ -144,7 +145,8 @@ fn name(s: &Section, key: &str, cars: Cars) -> String {
     };
     let name = Values::text_or(s, &FACTOR.name, &default);
     if s.has("name") && name.trim().is_empty() {
-        s.complain(
+        s.complain_by_name(
+            ProblemKind::Missing,
             "name",
             "a short name",
             "`name` is empty",

@@ -82,7 +82,7 @@ pub(super) fn value(row: &Key, written: &RawValue) -> Option<FactorValue> {
         return None;
     };
     word(row, text)
-        .map_err(|(why, hint)| written.complain(&row.allowed(), &why, &hint))
+        .map_err(|(why, hint)| written.unknown_name(&row.allowed(), &why, &hint))
         .ok()
 }
 

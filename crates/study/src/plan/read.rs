@@ -2,6 +2,7 @@
 
 use super::keys::{STUDY, default, known_words};
 use super::{Base, FactorValue, Keep, Places, Plan, design, factor, options};
+use cvtcycle_config::ProblemKind;
 use cvtcycle_config::{
     Document, Override, Problem, Problems, RawValue, Reader, Section, did_you_mean,
 };
@@ -120,7 +121,8 @@ fn items<'r>(s: &Section<'r>, row: &Key, places: &mut Places) -> Option<Vec<RawV
     let items = written.items();
     match &items {
         Some(items) => places.add_items(row.name, items),
-        None => written.complain(
+        None => written.complain_by_name(
+            ProblemKind::WrongType,
             &row.allowed(),
             &format!("`study.{}` is no list", row.name),
             &format!("write {} = [{}]", row.name, written.text()),
@@ -163,14 +165,20 @@ fn keep(s: &Section) -> Keep {
         (_, Some(items)) => {
             if items.is_empty() {
                 let message = "`study.keep` is an empty list";
-                written.complain(&what, message, "write keep = \"summary\"");
+                written.complain_by_name(
+                    ProblemKind::Missing,
+                    &what,
+                    message,
+                    "write keep = \"summary\"",
+                );
             }
             return Keep::Columns(unlike(row, &items, is_trace_column));
         }
         (Some(word), None) => {
             let columns = || format!("write keep = [{}] for columns", written.text());
             let hint = did_you_mean(word, known_words(row)).unwrap_or_else(columns);
-            written.complain(
+            written.complain_by_name(
+                ProblemKind::UnknownName,
                 &what,
                 &format!("`{word}` is not known for `study.keep`"),
                 &hint,
@@ -189,7 +197,7 @@ fn is_trace_column(item: &RawValue, word: &str) -> bool {
         let all = || "the trace of a run shows all".to_owned();
         let hint = did_you_mean(word, names()).unwrap_or_else(all);
         let message = format!("the trace has no column `{word}`");
-        item.complain("columns of the trace", &message, &hint);
+        item.unknown_name("columns of the trace", &message, &hint);
     }
     is_known
 }
@@ -212,7 +220,7 @@ fn unlike(
             Some(word) if !is_known(item, word) => {}
             Some(word) if found.iter().any(|other| other == word) => {
                 let message = format!("`{word}` is listed twice in `study.{}`", row.name);
-                item.complain("", &message, "remove one");
+                item.complain_by_name(ProblemKind::Duplicate, "", &message, "remove one");
             }
             Some(word) => found.push(word.to_owned()),
         }

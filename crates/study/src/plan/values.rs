@@ -7,6 +7,8 @@ use super::keys::{
     self, FACTOR, LOGNORMAL, MAX_IN_RANGE, NORMAL, RANGE, TRIANGULAR, TRUNCATED, UNIFORM,
 };
 use super::{Acts, Distribution, FactorValue, FactorValues, Places, options};
+use cvtcycle_config::ProblemKind;
+use cvtcycle_config::ProblemKind::{Conflict, Missing, OutOfRange, TooLarge};
 use cvtcycle_config::{Bound, RawValue, Section};
 use cvtcycle_model::keys::{Key, Kind, Quantity, Values};
 
@@ -43,7 +45,7 @@ impl Of<'_> {
             && keys::range(self.key).is_none()
         {
             let message = format!("`{}` takes words, not numbers", self.key);
-            s.complain(way, &row.allowed(), &message, "give them as values = [...]");
+            s.mistyped(way, &row.allowed(), &message, "give them as values = [...]");
         }
     }
 }
@@ -59,10 +61,11 @@ pub(super) fn read(s: &Section, of: Of, places: &mut Places) -> Option<FactorVal
         [_] => return list.or(range).or(distribution),
         [] => {
             let hint = "add values = [...], range = { ... } or [factor.distribution.NAME]";
-            s.complain("values", one_of, NONE, hint);
+            s.missing("values", one_of, NONE, hint);
         }
         [first, .., last] => {
-            s.complain(
+            s.complain_by_name(
+                ProblemKind::Conflict,
                 last,
                 one_of,
                 &format!("`{last}` with `{first}`"),
@@ -78,11 +81,21 @@ fn list(s: &Section, of: Of, places: &mut Places) -> Option<FactorValues> {
     places.add("values", written.place());
     let Some(items) = written.items() else {
         let hint = format!("write values = [{}]", written.text());
-        written.complain("a list", "`values` is no list", &hint);
+        written.complain_by_name(
+            ProblemKind::WrongType,
+            "a list",
+            "`values` is no list",
+            &hint,
+        );
         return None;
     };
     if items.is_empty() {
-        written.complain("a list of at least one value", "`values` is empty", "");
+        written.complain_by_name(
+            ProblemKind::Missing,
+            "a list of at least one value",
+            "`values` is empty",
+            "",
+        );
         return None;
     }
     places.add_items("values", &items);
@@ -93,13 +106,18 @@ fn list(s: &Section, of: Of, places: &mut Places) -> Option<FactorValues> {
         .position(|v| v.is_number() != values[0].is_number());
     if let Some(k) = mixed.filter(|_| of.key != "start") {
         let message = "`values` mixes numbers with other values";
-        items[k].complain("numbers alone, or none", message, "make two factors of it");
+        items[k].complain_by_name(
+            ProblemKind::WrongType,
+            "numbers alone, or none",
+            message,
+            "make two factors of it",
+        );
         return None;
     }
     let again = (0..values.len()).find(|&k| values[..k].contains(&values[k]));
     if let Some(k) = again {
         let message = format!("`{}` is listed twice in `values`", values[k]);
-        items[k].complain("", &message, "remove one");
+        items[k].complain_by_name(ProblemKind::Duplicate, "", &message, "remove one");
     }
     again
         .is_none()
@@ -130,7 +148,7 @@ fn value(item: &RawValue, of: Of) -> Option<FactorValue> {
             true => String::new(),
             false => format!("write {} without quotes", word.trim()),
         };
-        item.complain(allowed, &format!("{} is no word", item.text()), &hint);
+        item.mistyped(allowed, &format!("{} is no word", item.text()), &hint);
         return None;
     }
     Some(FactorValue::Word(Arc::from(word)))
@@ -162,13 +180,19 @@ fn range(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
     let (from, to) = (end(&RANGE.from), end(&RANGE.to));
     let step = table.optional(&RANGE.step);
     let count = table.integer(&RANGE.count);
-    let refuse = |key: &str, allowed: &str, message: &str, hint: &str| {
-        table.complain(key, allowed, message, hint);
+    let refuse = |kind, key: &str, allowed: &str, message: &str, hint: &str| {
+        table.complain(kind, key, allowed, message, hint);
         None
     };
     if from >= to {
         let (allowed, hint) = (format!("above {from}"), "swap `from` and `to`");
-        return refuse("to", &allowed, "the range ends before it begins", hint);
+        return refuse(
+            Conflict,
+            "to",
+            &allowed,
+            "the range ends before it begins",
+            hint,
+        );
     }
     let either = "count or step";
     let numbers = match (table.has("count"), step) {
@@ -176,6 +200,7 @@ fn range(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
         (false, Some(step)) if (to - from) / step >= MAX_IN_RANGE as f64 => {
             let allowed = format!("up to {MAX_IN_RANGE} values");
             return refuse(
+                TooLarge,
                 "step",
                 &allowed,
                 "the range has too many values",
@@ -184,16 +209,28 @@ fn range(s: &Section, of: Of, places: &mut Places) -> Option<Vec<FactorValue>> {
         }
         (false, Some(step)) => stepwise(from, to, step),
         (true, Some(_)) => {
-            return refuse("step", either, "`step` with `count`", "keep one of them");
+            return refuse(
+                Conflict,
+                "step",
+                either,
+                "`step` with `count`",
+                "keep one of them",
+            );
         }
         (false, None) => {
             let message = "the range has neither `count` nor `step`";
-            return refuse("count", either, message, "add count = 5 or a step");
+            return refuse(Missing, "count", either, message, "add count = 5 or a step");
         }
     };
     if numbers.windows(2).any(|pair| pair[0] >= pair[1]) {
         let hint = "widen the range, or take fewer values";
-        return refuse("to", "", "the values lie too close to each other", hint);
+        return refuse(
+            Conflict,
+            "to",
+            "",
+            "the values lie too close to each other",
+            hint,
+        );
     }
     let is_whole = numbers.iter().all(|x| x.is_finite());
     is_whole.then(|| numbers.into_iter().map(FactorValue::Number).collect())
@@ -262,9 +299,9 @@ fn distribution(s: &Section, of: Of, places: &mut Places) -> Option<Distribution
 
 /// Whether the parameters of a distribution go together; if not, it is reported. Parameters that were reported already are NaN.
 fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
-    let refused = |wrong: bool, key: &str, allowed: &str, message: &str, hint: &str| {
+    let refused = |kind, wrong: bool, key: &str, allowed: &str, message: &str, hint: &str| {
         if wrong {
-            t.complain(key, allowed, message, hint);
+            t.complain(kind, key, allowed, message, hint);
         }
         wrong
     };
@@ -274,13 +311,14 @@ fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
             format!("at least {least:e}"),
             "the standard deviation is so small that nothing varies",
         );
-        refused(sd < least, "sd", &allowed, message, "");
+        refused(OutOfRange, sd < least, "sd", &allowed, message, "");
         sd >= least
     };
     let ends = |low: f64, high: f64| {
         let far = (high - low).is_infinite();
         let allowed = format!("above {low}");
         let below = refused(
+            Conflict,
             low >= high,
             "high",
             &allowed,
@@ -291,7 +329,7 @@ fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
             "a finite distance from `low`",
             "`low` and `high` are too far apart",
         );
-        refused(!below && far, "high", allowed, message, "");
+        refused(OutOfRange, !below && far, "high", allowed, message, "");
         low < high && (high - low).is_finite()
     };
     match *found {
@@ -300,6 +338,7 @@ fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
             let message = "the factors of a scale would reach zero";
             let wide = acts == Acts::Scale && sd > 0.5 * mean;
             let wide = refused(
+                OutOfRange,
                 wide,
                 "sd",
                 &allowed,
@@ -323,7 +362,14 @@ fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
                 100.0 * left
             );
             let hint = "move the mean, or use uniform or triangular";
-            refused(left < MIN_LEFT, "low", "at least 1 %", &message, hint);
+            refused(
+                Conflict,
+                left < MIN_LEFT,
+                "low",
+                "at least 1 %",
+                &message,
+                hint,
+            );
             left >= MIN_LEFT
         }
         Distribution::Uniform { low, high } => ends(low, high),
@@ -331,7 +377,14 @@ fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
             let fits = ends(low, high);
             let outside = fits && (mode < low || mode > high);
             let message = "the most likely value lies outside `low` to `high`";
-            refused(outside, "mode", &format!("{low} to {high}"), message, "");
+            refused(
+                OutOfRange,
+                outside,
+                "mode",
+                &format!("{low} to {high}"),
+                message,
+                "",
+            );
             fits && low <= mode && mode <= high
         }
         Distribution::Lognormal {

@@ -2,12 +2,11 @@
 
 use std::sync::LazyLock;
 
+use super::model::Solved;
+use super::rows::{BAND_COUNT, NUMBERS, Number, ON_STOP, REQUIRED};
 use cvtcycle_config::csv::{Cells, Column, Schema};
 use cvtcycle_output::columns;
 use cvtcycle_output::table::{self, Cell};
-
-use super::model::Solved;
-use super::rows::{BAND_COUNT, NUMBERS, Number, ON_STOP, REQUIRED};
 
 /// Name of the column that is passed through.
 pub const CASE: &str = "case";

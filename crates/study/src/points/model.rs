@@ -2,7 +2,7 @@
 
 use cvtcycle_config::Problem;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::fluid::{BandFriction, Lubricant, ZERO_DEGC_K};
+use cvtcycle_model::fluid::{BandFriction, Friction, Lubricant, ZERO_DEGC_K};
 use cvtcycle_model::keys::rad_s;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
@@ -84,7 +84,9 @@ impl Model {
         let mut found = Vec::new();
         let undefined = |place: &str, allowed: &str| {
             let message = format!("{} is not defined at {place}", formulation.name());
-            Problem::invalid(message).allowed(allowed).hint(DEFINED)
+            Problem::out_of_range(message)
+                .allowed(allowed)
+                .hint(DEFINED)
         };
         let is_printed = formulation != Formulation::Smooth;
         if let Some(ratio) = given.numbers[RATIO] {
@@ -140,17 +142,24 @@ impl Model {
         if let Some(on_stop) = given.numbers[ON_STOP] {
             at.prepared.stop = if on_stop > 0.5 { 0.0 } else { 1.0 };
         }
+        let [band, segment] = frictions(formulation, &self.oil);
+        numbers[BAND_FRICTION] = own(BAND_FRICTION, band);
+        numbers[SEGMENT_FRICTION] = own(SEGMENT_FRICTION, segment);
+        let friction = GivenFriction {
+            band: numbers[BAND_FRICTION],
+            segment: numbers[SEGMENT_FRICTION],
+            belt_k: numbers[BELT_TEMP] + ZERO_DEGC_K,
+        };
         let load = BeltLoad {
-            primary_speed_rad_s: speed_rad_s,
             output_torque_nm: given.required(TORQUE),
             secondary_clamp_n: clamp_n,
-            ..friction(&self.oil, belt, ratio, speed_rad_s, &mut numbers)
+            ..belt_load(&self.oil, belt, ratio, speed_rad_s, &friction)
         };
         let wrap = at.geometry.primary_wrap_rad;
         if load.band.mu * wrap / 2.0 > LARGEST_GRIP {
             let most = 2.0 * LARGEST_GRIP / wrap;
             let allowed = format!("up to {most:.3} at this ratio and temperature");
-            let problem = Problem::invalid("the bands would block themselves (TE-5)");
+            let problem = Problem::out_of_range("the bands would block themselves (TE-5)");
             return Err(Box::new((BAND_FRICTION, problem.allowed(allowed))));
         }
         let point = belt_point(belt, &at, &load);
@@ -158,7 +167,7 @@ impl Model {
             share if share.abs() > 0.0 => point.with_band_speed(belt, share),
             _ => point,
         };
-        let belt_k = given.numbers[BELT_TEMP].unwrap_or(REFERENCE_DEGC) + ZERO_DEGC_K;
+        let belt_k = belt_k(friction.belt_k);
         let flags = PointFlags::new(&point, &load, pressure_pa, belt_k, &self.limits);
         Ok(Solved {
             point,
@@ -169,50 +178,54 @@ impl Model {
     }
 }
 
-/// Frictions of a row; `numbers` receives those in force.
-fn friction(
+/// What is given of friction and temperature at a point; NaN where nothing is.
+pub(crate) struct GivenFriction {
+    pub band: f64,
+    pub segment: f64,
+    pub belt_k: f64,
+}
+
+/// Temperature of a belt for which none is given, K.
+pub(crate) fn belt_k(given_k: f64) -> f64 {
+    or(given_k, REFERENCE_DEGC + ZERO_DEGC_K)
+}
+
+fn or(x: f64, other: f64) -> f64 {
+    if x.is_nan() { other } else { x }
+}
+
+/// Boundary friction of bands and segments where none is given.
+fn frictions(formulation: Formulation, oil: &Lubricant) -> [f64; 2] {
+    let band = match formulation {
+        Formulation::Smooth => oil.friction.band,
+        _ => PRINTED_BAND_FRICTION,
+    };
+    [band, formulation.segment_friction(oil.friction.segment)]
+}
+
+/// The load of a point without torque and clamping: friction and film as given, else as fluid and formulation have them.
+pub(crate) fn belt_load(
     oil: &Lubricant,
     belt: &Belt,
     ratio: f64,
     speed_rad_s: f64,
-    numbers: &mut [f64; NUMBERS.len()],
+    given: &GivenFriction,
 ) -> BeltLoad {
     let fluid = &oil.friction;
-    let (smooth, has_film) = (
-        belt.formulation == Formulation::Smooth,
-        belt.formulation.has_film(),
-    );
-    let (band, segment) = if smooth {
-        (fluid.band, fluid.segment)
-    } else {
-        (
-            PRINTED_BAND_FRICTION,
-            belt.formulation.segment_friction(fluid.segment),
-        )
-    };
-    let or = |x: f64, other: f64| if x.is_nan() { other } else { x };
-    numbers[BAND_FRICTION] = or(numbers[BAND_FRICTION], band);
-    numbers[SEGMENT_FRICTION] = or(numbers[SEGMENT_FRICTION], segment);
-    let degc = numbers[BELT_TEMP];
-    let belt_k = or(degc, REFERENCE_DEGC) + ZERO_DEGC_K;
+    let [band, segment] = frictions(belt.formulation, oil);
+    let mu = or(given.band, band);
+    let belt_k = belt_k(given.belt_k);
     let eta_pa_s = oil.dynamic_pa_s(belt_k);
-    let band = if degc.is_nan() {
-        BandFriction {
-            mu: numbers[BAND_FRICTION],
-            film_share: 0.0,
-        }
+    let band = if given.belt_k.is_nan() {
+        let film_share = 0.0;
+        BandFriction { mu, film_share }
     } else {
         // The printed forms know no film: without sliding there is no lift-off, the rise with temperature stays (LU-4).
-        let sliding = if has_film {
-            sliding_speed_m_s(belt, ratio, speed_rad_s)
-        } else {
-            0.0
+        let sliding = match belt.formulation.has_film() {
+            true => sliding_speed_m_s(belt, ratio, speed_rad_s),
+            false => 0.0,
         };
-        cvtcycle_model::fluid::Friction {
-            band: numbers[BAND_FRICTION],
-            ..*fluid
-        }
-        .band(belt_k, eta_pa_s, sliding)
+        Friction { band: mu, ..*fluid }.band(belt_k, eta_pa_s, sliding)
     };
     BeltLoad {
         primary_speed_rad_s: speed_rad_s,
@@ -221,7 +234,7 @@ fn friction(
         band,
         eta_pa_s,
         film_thickness_m: fluid.film_thickness_m,
-        segment_friction: numbers[SEGMENT_FRICTION],
+        segment_friction: or(given.segment, segment),
         flank_friction: fluid.flank,
     }
 }
@@ -229,13 +242,13 @@ fn friction(
 fn no_geometry(ratios: [f64; 2]) -> Problem {
     if ratios[0].is_nan() {
         let hint = "check length_m of the belt against centre_distance_mm";
-        return Problem::invalid("this belt does not fit round these pulleys at any ratio")
+        return Problem::conflict("this belt does not fit round these pulleys at any ratio")
             .hint(hint);
     }
     let message =
         "the belt cannot run at this ratio: no radii on which both pulleys carry a segment";
     let allowed = format!("{:.4} to {:.4}", ratios[0], ratios[1]);
-    Problem::invalid(message)
+    Problem::out_of_range(message)
         .allowed(allowed)
         .hint("I = R_sec / R_pri")
 }

@@ -2,7 +2,7 @@
 
 use cvtcycle_config::csv::{Collector, Row};
 use cvtcycle_config::{Bound, Problem, did_you_mean};
-use cvtcycle_model::transmission::cvt::variator::Formulation;
+use cvtcycle_model::transmission::cvt::variator::{BELT, Formulation};
 
 /// A number that a row gives: name, unit, and range in that unit.
 pub type Number = (&'static str, &'static str, Bound);
@@ -24,6 +24,7 @@ pub const REQUIRED: usize = 4;
 
 /// Numbers that are read, in the order of the output. Their ranges keep out what is a slip of the pen or has no solution;
 /// what is merely outside the vehicle's or the model's validity is computed and flagged.
+/// The range of the bands' offset is that of the vehicle's key.
 pub const NUMBERS: [Number; 12] = [
     // What the belt can run at is the model's to say.
     ("ratio", "", Bound::any()),
@@ -40,7 +41,7 @@ pub const NUMBERS: [Number; 12] = [
     ),
     ("pulley_half_angle_deg", "degrees", Bound::closed(1.0, 45.0)),
     ("wedge_half_angle_deg", "degrees", Bound::closed(1.0, 45.0)),
-    ("band_offset_mm", "mm", Bound::closed(0.0, 50.0)),
+    (BELT.band_offset_mm.name, "mm", BELT.band_offset_mm.range()),
     ("band_friction", "", Bound::closed(0.0, 0.5)),
     ("segment_friction", "", Bound::closed(0.01, 1.0)),
     ("band_count", "", Bound::closed(1.0, 100.0)),

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
+use super::table::{Head, Rows, Values};
 use super::{RowWriter, check_shape};
-use crate::table::{Head, Rows, Values};
 use cvtcycle_output::number::push_exact;
 use cvtcycle_output::table::CsvWriter;
 

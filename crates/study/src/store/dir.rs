@@ -8,15 +8,15 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde_json::Value;
 
-use super::checksums::{Checksums, Sum};
 use super::csv::write_csv;
-use super::disk::{clear, lock, put, remove_temporary};
-use super::layout::Layout;
+use super::files::{Checksums, Sum};
+use super::files::{clear, lock, put, remove_temporary};
 use super::manifest::{Difference, differences, lines};
+use super::names::Layout;
 use super::names::{self, LOCK, MANIFEST, PARTS, PLAN, RESULTS, SUMMARY};
 use super::parquet::write_parquet;
 use super::read::{Study, is_whole, marked_parts};
-use crate::table::{Head, Rows};
+use super::table::{Head, Rows};
 use cvtcycle_config::bounded::{self, ReadError};
 use cvtcycle_config::{Problem, Setting};
 use cvtcycle_output::files::{

@@ -16,36 +16,36 @@
 //!
 //! Names are never taken from a file's contents, but for the list of results, where only plain names in DIR itself are accepted.
 
-mod checksums;
 mod csv;
 mod dir;
-mod disk;
-mod history;
-mod layout;
+mod export;
+mod files;
 mod manifest;
 mod names;
 mod parquet;
 mod parquet_read;
 mod read;
+mod table;
 mod trace;
+mod xlsx;
 
-pub use checksums::sha256;
 pub use csv::{CsvTable, Header, write_csv};
 pub use dir::{PartTable, StudyDir};
-pub use history::read_trace_parquet;
-pub use layout::Layout;
-pub use names::is_study;
+pub use export::{Exported, Format, export};
+pub use files::sha256;
+pub use names::{Layout, is_study};
 pub use parquet::{ParquetTable, write_parquet};
 pub use parquet_read::ParquetFile;
 pub use read::{Status, Study};
-pub use trace::write_trace_parquet;
+pub use table::{Head, Kind, Rows, Values};
+pub(crate) use trace::SharedWords;
+pub use trace::{read_trace_parquet, write_trace_parquet};
 
 use std::fmt::Display;
 use std::io;
 use std::path::Path;
 
-use super::table::{Head, Rows, Values};
-use cvtcycle_config::Problem;
+use cvtcycle_config::{Problem, ProblemKind};
 
 /// A table in some format, written piece by piece.
 pub trait RowWriter {
@@ -63,8 +63,8 @@ pub trait RowWriter {
 }
 
 /// A problem of a file or directory of a study.
-fn file_problem(path: &Path, message: impl Display, hint: &str) -> Problem {
-    Problem::invalid(message.to_string())
+fn file_problem(kind: ProblemKind, path: &Path, message: impl Display, hint: &str) -> Problem {
+    Problem::new(kind, message.to_string())
         .in_file(path.display().to_string())
         .value(path.display().to_string())
         .hint(hint)

@@ -14,8 +14,8 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::{ColumnPath, Type};
 use serde_json::json;
 
+use super::table::{Head, Kind, Rows, Values};
 use super::{RowWriter, check_shape};
-use crate::table::{Head, Kind, Rows, Values};
 
 /// Key of the metadata of the heads of the columns, as JSON.
 pub const COLUMNS_KEY: &str = "cvtcycle.columns";

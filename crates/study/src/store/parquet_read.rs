@@ -6,11 +6,12 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::checksums::{Sum, sum_of};
 use super::file_problem;
+use super::files::{Sum, sum_of};
 use super::parquet::{COLUMNS_KEY, io_error};
-use crate::table::{Head, Rows, Values};
+use super::table::{Head, Rows, Values};
 use cvtcycle_config::Problem;
+use cvtcycle_config::ProblemKind::{Syntax, UnknownKey, Unreadable};
 use cvtcycle_config::bounded::{self, ReadError};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
@@ -58,9 +59,10 @@ impl ParquetFile {
             .transpose()
             .map_err(|error| refused(io_error(error)))?;
         let file = reader.filter(|reader| fits(reader, bytes));
-        let file = file.ok_or_else(|| file_problem(path, DAMAGED, MEND))?;
-        let columns = heads(&file)
-            .ok_or_else(|| file_problem(path, "the file is no table of this program", ""))?;
+        let file = file.ok_or_else(|| file_problem(Syntax, path, DAMAGED, MEND))?;
+        let columns = heads(&file).ok_or_else(|| {
+            file_problem(Syntax, path, "the file is no table of this program", "")
+        })?;
         Ok(ParquetFile {
             path: path.to_path_buf(),
             file,
@@ -93,7 +95,7 @@ impl ParquetFile {
         let read = |name: &&str| {
             let found = self.columns.iter().position(|column| column.name == *name);
             let unknown = || format!("the table has no column `{name}`");
-            let index = found.ok_or_else(|| file_problem(&self.path, unknown(), ""))?;
+            let index = found.ok_or_else(|| file_problem(UnknownKey, &self.path, unknown(), ""))?;
             let column = self.column(index);
             column.map_err(|error| unreadable(&self.path, &io_error(error).into()))
         };
@@ -237,7 +239,7 @@ pub(super) fn check_sum(path: &Path, file: &File, sum: &Sum) -> Result<(), Probl
         return Ok(());
     }
     let message = "the file is damaged: its checksum is not that of what was written";
-    Err(file_problem(path, message, MEND))
+    Err(file_problem(Syntax, path, message, MEND))
 }
 
 pub(super) fn unreadable(path: &Path, error: &ReadError) -> Problem {
@@ -246,5 +248,11 @@ pub(super) fn unreadable(path: &Path, error: &ReadError) -> Problem {
     } else {
         error.hint("check the file and its permissions")
     };
-    file_problem(path, format!("cannot read the file: {error}"), hint).allowed(error.allowed(""))
+    file_problem(
+        Unreadable,
+        path,
+        format!("cannot read the file: {error}"),
+        hint,
+    )
+    .allowed(error.allowed(""))
 }

@@ -8,13 +8,14 @@ use std::sync::{Mutex, PoisonError};
 
 use serde_json::Value;
 
-use super::checksums::{Checksums, sum_of};
 use super::file_problem;
-use super::layout::Layout;
+use super::files::{Checksums, sum_of};
+use super::names::Layout;
 use super::names::{self, MANIFEST, PLAN, RESULTS};
 use super::parquet_read::{MEND, ParquetFile, check_sum, unreadable};
-use crate::table::{Head, Rows};
+use super::table::{Head, Rows};
 use cvtcycle_config::Problem;
+use cvtcycle_config::ProblemKind::{Missing, Syntax, UnknownName};
 use cvtcycle_config::bounded::{self, ReadError};
 
 /// How far a study has come.
@@ -59,12 +60,12 @@ impl Study {
                 let name = path.display();
                 let message = format!("there is no study in {name}: it has no {MANIFEST}");
                 let hint = "name a directory that `cvtcycle study` has written";
-                file_problem(&path, message, hint)
+                file_problem(Missing, &path, message, hint)
             }
             _ => unreadable(&file, &error),
         };
         let bytes = bounded::read_file(&file, bounded::RECORD).map_err(no_study)?;
-        let damaged = || file_problem(&file, "the manifest of the study is damaged", "");
+        let damaged = || file_problem(Syntax, &file, "the manifest of the study is damaged", "");
         let manifest = serde_json::from_slice::<Value>(&bytes).map_err(|_| damaged())?;
         let layout = Layout::of(&manifest).ok_or_else(damaged)?;
         let parts = names::parts_folder(&path);
@@ -130,7 +131,7 @@ impl Study {
         if !self.layout.tables.iter().any(|other| other == table) {
             let tables = self.layout.tables.join(", ");
             let message = format!("the study has no table `{table}`, only {tables}");
-            return Err(file_problem(&self.path, message, ""));
+            return Err(file_problem(UnknownName, &self.path, message, ""));
         }
         let file = bounded::open_file(&path).map_err(|error| unreadable(&path, &error))?;
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
@@ -138,7 +139,7 @@ impl Study {
             let list = Checksums::read(&folder.join(names::part_mark(index)));
             let right = list.as_ref().and_then(|list| list.get(&name));
             let message = "the list of checksums of this part is damaged";
-            let right = right.ok_or_else(|| file_problem(&path, message, MEND))?;
+            let right = right.ok_or_else(|| file_problem(Syntax, &path, message, MEND))?;
             check_sum(&path, &file, right)?;
             known.insert(name);
         }

@@ -11,7 +11,6 @@
 )]
 
 mod continuity;
-mod finite;
 mod limits;
 mod monotone;
 mod scaling;

@@ -10,14 +10,15 @@
 )]
 
 use cvtcycle_model::engine::EngineAtTemperature;
+use cvtcycle_model::equations::EQUATIONS;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::transmission::cvt::Cvt;
 
 mod belt;
+mod bench;
 mod clamp;
 mod control;
 mod drive;
-mod effort;
 mod engine;
 mod fluid;
 mod fuel;
@@ -28,6 +29,7 @@ mod rig;
 mod road;
 mod rows;
 mod spin;
+mod transition;
 
 /// RC-3 with EN-8: three passes from the speed of greatest power, each with the part of the hot line that is left at the speed before.
 pub fn route_rad_s(cvt: &Cvt, engine: &EngineAtTemperature, power_w: f64) -> f64 {
@@ -55,4 +57,18 @@ pub fn near(got: f64, want: f64, share: f64) {
         (got - want).abs() <= share * want.abs(),
         "{got} instead of {want}"
     );
+}
+
+#[test]
+fn every_line_has_a_statement_and_a_status() {
+    assert!(EQUATIONS.len() > 80, "{}", EQUATIONS.len());
+    for equation in EQUATIONS {
+        assert!(
+            !equation.status.is_empty() && !equation.statement.is_empty(),
+            "{equation:?}"
+        );
+    }
+    let find = |label: &str| EQUATIONS.iter().find(|equation| equation.label == label);
+    assert!(find("LE-3").is_some_and(|equation| equation.statement.contains("in - out")));
+    assert!(find("LE-3").is_some_and(|equation| equation.module.starts_with("model::")));
 }

@@ -1,7 +1,7 @@
-//! Road load: RL-1 to RL-5.
+//! Road load: RL-1 to RL-8, and wheel work over a whole cycle.
 
 use super::{near, same};
-use cvtcycle_config::cycle::{Motion, Step};
+use cvtcycle_config::cycle::{Motion, Step, embedded};
 use cvtcycle_config::setup::{Options, load};
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::road::{Ambient, RoadLoad, Surface, Tyre};
@@ -338,5 +338,67 @@ fn val_two_zeros_of_the_force() {
             "{from} {to}: {got:?} {want:?}"
         );
         assert!(got.positive_j > 1.0 && got.negative_j < -1.0);
+    }
+}
+
+fn rover() -> RoadLoad {
+    RoadLoad {
+        f0_n: 6.3,
+        f1_n_per_m_s: 0.0,
+        f2_n_per_m_s2: 0.0433 * 12.96,
+        mass_kg: 1130.0,
+        inertia_kg: 1130.0 * 1.015,
+        wheel_radius_m: 0.2832,
+    }
+}
+
+/// Colder air is denser and tyres roll harder; a dynamometer does not know.
+#[test]
+fn cold_road_drags_more() {
+    let cold = Ambient {
+        temp_k: 263.15,
+        altitude_m: 0.0,
+    };
+    let road = rover().for_ambient(Surface::Road, &cold, 0.00864);
+    assert!(road.f0_n > 1.2 * 6.3 && road.f2_n_per_m_s2 > 1.1 * rover().f2_n_per_m_s2);
+    assert_eq!(
+        rover().for_ambient(Surface::Dynamometer, &cold, 0.00864),
+        rover()
+    );
+}
+
+/// Standard atmosphere: 0.7942 of the density at 2260 m by the isothermal part, pressure 898.7 hPa at 1000 m.
+#[test]
+fn val_standard_atmosphere() {
+    let p = Ambient {
+        temp_k: 288.15,
+        altitude_m: 1000.0,
+    }
+    .pressure_ratio()
+        * 1013.25;
+    assert!((p - 898.75).abs() < 0.1, "{p}");
+}
+
+fn work(automatic: bool, dt: f64) -> (f64, f64) {
+    let cycle = embedded("ece15_eudc").expect("embedded");
+    let car = rover();
+    cycle
+        .trace_for(automatic)
+        .steps(dt)
+        .fold((0.0, 0.0), |(p, n), s| {
+            let w = car.wheel(&s, 0.0);
+            (p + w.positive_j, n + w.negative_j)
+        })
+}
+
+/// Outside truth: the project's independent calculation, within 1e-4, at any step.
+#[test]
+fn val_wheel_work() {
+    for (automatic, want) in [(true, 3403.32e3), (false, 3413.28e3)] {
+        for dt in [1.0, 0.25] {
+            let (p, n) = work(automatic, dt);
+            assert!((p / want - 1.0).abs() < 1e-4, "{p}");
+            assert!((n / -1103.40e3 - 1.0).abs() < 1e-4, "{n}");
+        }
     }
 }

@@ -65,7 +65,7 @@ fn coupled(car: &Car, row: &Row) -> bool {
     match &car.transmission {
         Transmission::Manual(_) => !slips && row.gear > 0,
         Transmission::Cvt(cvt) => {
-            let primary = row.belt_ratio * cvt.final_drive * row.speed_m_s
+            let primary = row.belt_ratio * cvt.final_drive.ratio * row.speed_m_s
                 / car.road_load.wheel_radius_m
                 / (1.0 - row.slip);
             row.speed_m_s > 0.0 && row.engine_speed_rad_s <= primary * (1.0 + 1e-4)

@@ -12,11 +12,10 @@
 )]
 
 mod cars;
-mod clock;
+mod invariance;
 mod network;
 mod rows;
 mod traces;
-mod units;
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestCaseResult, TestRunner};

@@ -36,7 +36,7 @@ fn variogram(r: &Reference) -> String {
     let cvt = r.cvt();
     let radius_m = r.cvt_car.road_load.base.wheel_radius_m;
     // Engine speed at a road speed for a belt ratio, rpm.
-    let geared = |kmh: f64, ratio: f64| kmh / 3.6 / radius_m * cvt.final_drive * ratio / RPM;
+    let geared = |kmh: f64, ratio: f64| kmh / 3.6 / radius_m * cvt.final_drive.ratio * ratio / RPM;
     let limit = |name: &str, ratio: f64| {
         let mut line = sweep(name, 0.0, 180.0, 360, |v| geared(v, ratio));
         line.points.retain(|p| p.1 <= 6200.0);

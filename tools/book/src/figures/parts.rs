@@ -3,8 +3,10 @@
 use super::reference::{RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::math::exp;
 use cvtcycle::model::transmission::coupling::CouplingLoad;
 use cvtcycle::model::transmission::cvt::pump::{Pump, PumpKind};
+use cvtcycle::model::transmission::cvt::viscosity_power;
 use cvtcycle::output::Component;
 
 const SPEED: &str = "Engine speed [rpm]";
@@ -108,11 +110,11 @@ fn flow(r: &Reference) -> String {
 }
 
 fn input_shaft(r: &Reference) -> String {
-    let spin = r.cvt().spin;
+    let shaft = r.cvt().shaft_drag;
     let line = |degc: f64| {
-        let now = spin.at(nu(r, degc));
+        let power = viscosity_power(nu(r, degc), shaft.exponent);
         sweep(&format!("{degc:.0} degC"), 1000.0, 4000.0, 60, |n| {
-            now.shaft_nm(n * RPM)
+            shaft.torque_nm(power, n * RPM)
         })
     };
     plot(
@@ -130,8 +132,10 @@ fn input_shaft(r: &Reference) -> String {
 }
 
 fn reverse_clutch(r: &Reference) -> String {
-    let spin = r.cvt().spin;
-    let drag = sweep("drag", -20.0, 100.0, 240, |t| spin.at(nu(r, t)).clutch_nm);
+    let clutch = r.cvt().clutch_drag;
+    let drag = sweep("drag", -20.0, 100.0, 240, |t| {
+        clutch.torque_nm(viscosity_power(nu(r, t), clutch.exponent))
+    });
     plot(
         "Reverse clutch drag",
         "fluid of the Rover (CD-1)",
@@ -147,13 +151,15 @@ fn reverse_clutch(r: &Reference) -> String {
 }
 
 fn final_drive(r: &Reference) -> String {
-    let spin = r.cvt().spin;
+    let drive = r.cvt().final_drive;
     let lines = |ratio: f64, from: f64| -> Vec<Line> {
         [0.0, 25.0, 50.0, 95.0]
             .map(|degc| {
-                let now = spin.at(nu(r, degc));
+                let power = viscosity_power(nu(r, degc), drive.exponent);
                 sweep(&format!("{degc:.0} degC"), from, 4000.0, 90, |n| {
-                    spin.secondary_torque_nm(spin.drive_nm(&now, n * RPM / ratio), 0.0) / ratio
+                    let w = n * RPM / ratio;
+                    let drag_nm = drive.drag_nm(power, exp(drive.fall_exponent(w)), w);
+                    drive.secondary_torque_nm(drag_nm, 0.0) / ratio
                 })
             })
             .to_vec()

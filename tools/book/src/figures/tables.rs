@@ -4,7 +4,7 @@ use super::{PAGES, Page};
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::{Options, load};
 use cvtcycle::config::{KeyInfo, render};
-use cvtcycle::study::equations::{by_label, cited};
+use cvtcycle::study::equations::by_label;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -113,11 +113,7 @@ pub fn keys(page: &Page, labels: &[Labelled]) -> Result<Vec<KeyInfo>, String> {
                 || key.starts_with(&format!("{k}.")) && *k != "transmission"
         })
     };
-    let of_page = |info: &KeyInfo| {
-        cited(&info.doc)
-            .iter()
-            .any(|e| labels.iter().any(|l| l.label == e.label))
-    };
+    let of_page = |info: &KeyInfo| labels.iter().any(|l| info.labels.contains(&&*l.label));
     // The engine oil lends no friction to the belt: its keys of that kind would only confuse.
     let useful = |key: &str| !key.starts_with("engine_oil.friction");
     Ok(setup

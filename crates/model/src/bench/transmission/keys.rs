@@ -48,7 +48,7 @@ keys! {
         final_drive_removed: number(0.5, 1.5), "secondary pressure with the final drive removed, over that of the complete box";
         belt_removed: number(0.5, 1.5), "secondary pressure with the belt removed as well, over that of the complete box";
         clutch_removed: number(0.5, 1.5), "secondary pressure with the clutch plates removed as well, over that of the complete box";
-        second_box: number(0.5, 1.5), "secondary pressure of the second box (RT-6), over that of the complete box";
+        second_box: number(0.5, 1.5), "secondary pressure of the second box, over that of the complete box", ["RT-6"];
     }
 
     /// Keys of `[rig.transient]`.
@@ -65,9 +65,9 @@ keys! {
 
     /// Keys of `[rig.cooler]`.
     COOLER: CoolerKeys = "cooler" [] {
-        flow_l_min: above(0.0, 100.0), "oil flow through the rig's cooler (RT-2)";
-        conductance_w_k: above(0.0, 20_000.0), "conductance of the rig's cooler (RT-2)";
-        coolant_degc: number(-60.0, 60.0), "coolant of the rig's cooler (RT-2)";
+        flow_l_min: above(0.0, 100.0), "oil flow through the rig's cooler", ["RT-2"];
+        conductance_w_k: above(0.0, 20_000.0), "conductance of the rig's cooler", ["RT-2"];
+        coolant_degc: number(-60.0, 60.0), "coolant of the rig's cooler", ["RT-2"];
     }
 
     /// Keys of `[rig.transducer]`.

@@ -110,10 +110,10 @@ impl Coupling for FrictionClutch {
 keys! {
     /// Keys of `[….launch.friction_clutch]`.
     FRICTION_CLUTCH: FrictionClutchKeys = "friction_clutch" [] {
-        engage_rpm: or(1000.0, number(300.0, 5000.0)), "engine speed at which it begins to engage (LC-1)";
-        gain_nm_per_rpm2: or(3.0e-5, number(1e-7, 1e-2)), "torque over the square of engine speed above it (LC-1)";
-        creep_nm: computed("5 with a CVT, 0 with a manual gearbox", number(0.0, 50.0)), "torque passed on at idle in gear (LC-2)";
-        release_rpm: or(1000.0, number(300.0, 5000.0)), "input speed below which it opens in overrun (LC-3)";
+        engage_rpm: or(1000.0, number(300.0, 5000.0)), "engine speed at which it begins to engage", ["LC-1"];
+        gain_nm_per_rpm2: or(3.0e-5, number(1e-7, 1e-2)), "torque over the square of engine speed above it", ["LC-1"];
+        creep_nm: computed("5 with a CVT, 0 with a manual gearbox", number(0.0, 50.0)), "torque passed on at idle in gear", ["LC-2"];
+        release_rpm: or(1000.0, number(300.0, 5000.0)), "input speed below which it opens in overrun", ["LC-3"];
     }
 }
 

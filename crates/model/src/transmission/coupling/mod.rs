@@ -102,7 +102,11 @@ pub trait Coupling: Debug + Send + Sync {
             return self.creep_nm(output_rad_s, idle_rad_s);
         }
         // A slipping clutch whose engine is faster cannot take torque from the box; faded in, so that a solve sees no step.
-        let together = 1.0 - ramp(engine_rad_s / output_rad_s, 1.0, 1.02);
+        let together = if engine_rad_s > output_rad_s {
+            1.0 - ramp(engine_rad_s / output_rad_s, 1.0, 1.02)
+        } else {
+            1.0
+        };
         -together * self.overrun_share(output_rad_s, idle_rad_s) * absorbed_nm
     }
 

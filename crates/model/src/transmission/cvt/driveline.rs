@@ -2,11 +2,11 @@
 
 use super::controller::ClampSignals;
 use super::pump::{PumpAtTemperature, PumpState};
-use super::spin::SpinAtTemperature;
 use super::variator::{BeltAtRatio, BeltLosses};
-use super::{Cvt, CvtMaps};
+use super::{Cvt, CvtMaps, viscosity_power};
 use crate::fluid::Lubricant;
 use crate::maps::MapPoint;
+use crate::math::exp;
 use crate::transmission::component::Component;
 
 /// The parts of a CVT that are in the box.
@@ -40,13 +40,43 @@ pub(crate) enum Shaft {
     Secondary,
 }
 
+/// Powers of viscosity in the drags of the shafts, (nu/nu_80)^m with the exponent of each.
+#[derive(Clone, Copy)]
+pub(crate) struct ViscosityPowers {
+    pub shaft: f64,
+    pub clutch: f64,
+    pub final_drive: f64,
+}
+
+impl ViscosityPowers {
+    /// The powers at a viscosity.
+    pub fn new(cvt: &Cvt, nu_m2_s: f64) -> Self {
+        ViscosityPowers {
+            shaft: viscosity_power(nu_m2_s, cvt.shaft_drag.exponent),
+            clutch: viscosity_power(nu_m2_s, cvt.clutch_drag.exponent),
+            final_drive: viscosity_power(nu_m2_s, cvt.final_drive.exponent),
+        }
+    }
+
+    /// Their logarithms, from ln(nu/nu_80).
+    #[inline]
+    pub fn exponents(cvt: &Cvt, log_nu: f64) -> [f64; 3] {
+        [
+            cvt.shaft_drag.exponent,
+            cvt.clutch_drag.exponent,
+            cvt.final_drive.exponent,
+        ]
+        .map(|exponent| exponent * log_nu)
+    }
+}
+
 /// The CVT at one ratio and oil temperature: what depends on neither torque, pressure nor speed.
 #[derive(Clone, Copy)]
 pub(crate) struct Driveline<'a> {
     pub cvt: &'a Cvt,
     pub at: &'a BeltAtRatio,
     pub parts: Parts,
-    pub spin: SpinAtTemperature,
+    pub viscosity: ViscosityPowers,
     pub pump: PumpAtTemperature,
     /// Leakage of the oil circuit, m3/(s Pa).
     pub leakage_m3_s_pa: f64,
@@ -135,7 +165,7 @@ impl<'a> Driveline<'a> {
             cvt,
             at,
             parts,
-            spin: cvt.spin.at(oil.kinematic_m2_s(oil_k)),
+            viscosity: ViscosityPowers::new(cvt, oil.kinematic_m2_s(oil_k)),
             pump: cvt.pump.at(eta_pa_s),
             leakage_m3_s_pa: cvt.pump.leakage_now_m3_s_pa(eta_pa_s),
             radius_factor: cvt.radius_factor(at),
@@ -163,6 +193,13 @@ impl<'a> Driveline<'a> {
         Some(loss)
     }
 
+    /// Load-independent torque of the final drive at the secondary shaft, Nm (FD-1).
+    pub fn final_drive_nm(&self, secondary_rad_s: f64) -> f64 {
+        let drive = &self.cvt.final_drive;
+        let fall = exp(drive.fall_exponent(secondary_rad_s));
+        drive.drag_nm(self.viscosity.final_drive, fall, secondary_rad_s)
+    }
+
     /// Torque at the secondary pulley for a torque behind the final drive, `drive_nm` its load-independent loss, Nm.
     #[inline]
     pub fn secondary_nm(
@@ -179,7 +216,10 @@ impl<'a> Driveline<'a> {
         let at = (primary_rad_s, output_nm, pressure_pa);
         match self.mapped(Component::FinalDrive, at, inside) {
             Some(loss) => output_nm + loss * primary_rad_s / secondary_rad_s,
-            None => self.cvt.spin.secondary_torque_nm(drive_nm(), output_nm),
+            None => self
+                .cvt
+                .final_drive
+                .secondary_torque_nm(drive_nm(), output_nm),
         }
     }
 
@@ -208,7 +248,8 @@ impl<'a> Driveline<'a> {
         if self.parts.reverse_clutch {
             let at = (primary_rad_s, 0.0, pressure_pa);
             let mapped = self.mapped(Component::ClutchDrag, at, inside);
-            torques.clutch = mapped.unwrap_or(self.spin.clutch_nm);
+            torques.clutch =
+                mapped.unwrap_or_else(|| self.cvt.clutch_drag.torque_nm(self.viscosity.clutch));
         }
     }
 
@@ -235,7 +276,11 @@ impl<'a> Driveline<'a> {
         torques.pump = state.torque_nm;
         torques.shaft = self
             .mapped(Component::InputShaft, at, inside)
-            .unwrap_or_else(|| self.spin.shaft_nm(engine_rad_s));
+            .unwrap_or_else(|| {
+                self.cvt
+                    .shaft_drag
+                    .torque_nm(self.viscosity.shaft, engine_rad_s)
+            });
         state
     }
 

@@ -1,8 +1,10 @@
 //! Keys of `[transmission.cvt]`, and a CVT from their values.
 
+use super::clutch_drag::{ClutchDrag, ClutchKeys};
 use super::controller::{ClampKeys, RatioControl, RatioKeys, clamp};
+use super::final_drive::{DriveKeys, FinalDrive};
 use super::pump::{Pump, PumpKeys};
-use super::spin::{ClutchKeys, DriveKeys, ShaftKeys, Spin};
+use super::shaft_drag::{ShaftDrag, ShaftKeys};
 use super::variator::{Belt, BeltKeys, Formulation, Geometry, VARIATOR, VariatorKeys};
 use super::{Cvt, CvtMaps};
 use crate::engine::Engine;
@@ -16,15 +18,15 @@ keys! {
         RatioKeys::TABLE, BeltKeys::TABLE, VariatorKeys::TABLE, PressureKeys::TABLE, PumpKeys::TABLE,
         ShaftKeys::TABLE, ClutchKeys::TABLE, DriveKeys::TABLE, MapKeys::TABLE
     ] {
-        final_drive_ratio: number(1.0, 20.0), "secondary speed over wheel speed (CV-1)";
+        final_drive_ratio: number(1.0, 20.0), "secondary speed over wheel speed", ["CV-1"];
         clamp: or_word("map", options(ClampKeys::CHOICES)), "clamp law: the Rover's map, torque following, or slip limited";
         launch: LAUNCH, "launch device: a wet or dry friction clutch";
-        belt_heat_share: or(0.7, number(0.0, 1.0)), "share of belt loss that heats belt and pulleys (SI-3)";
+        belt_heat_share: or(0.7, number(0.0, 1.0)), "share of belt loss that heats belt and pulleys", ["SI-3"];
     }
 
     /// Keys of `[transmission.cvt.pressure]`.
     PRESSURE: PressureKeys = "pressure" [] {
-        radius_exponent: or(1.43, number(0.0, 4.0)), "exponent of primary radius in the clamp map (PC-1)";
+        radius_exponent: or(1.43, number(0.0, 4.0)), "exponent of primary radius in the clamp map", ["PC-1"];
         cap_bar: number(1.0, 200.0), "largest secondary pressure";
         floor_bar: number(0.0, 200.0), "smallest secondary pressure";
     }
@@ -63,13 +65,17 @@ impl Cvt {
         let radius_exponent = pressure.number(&PRESSURE.radius_exponent);
         let (floor_pa, cap_pa) = pressures(&pressure);
         Cvt {
-            final_drive: s.number(&CVT.final_drive_ratio),
+            final_drive: FinalDrive::from_values(
+                &s.table("final_drive"),
+                s.number(&CVT.final_drive_ratio),
+            ),
             secondary_piston_m2: v.number(&VARIATOR.secondary_piston_cm2),
             primary_piston_m2: v.number(&VARIATOR.primary_piston_cm2),
             spring_n: v.number(&VARIATOR.spring_n),
             centrifugal_n_s2: centrifugal(&v, oil),
             pump: Pump::from_values(&s.table("pump")),
-            spin: Spin::from_values(s),
+            shaft_drag: ShaftDrag::from_values(&s.table("input_shaft")),
+            clutch_drag: ClutchDrag::from_values(&s.table("reverse_clutch")),
             ratio,
             clamp,
             radius_exponent,

@@ -12,9 +12,11 @@
 //! The last iterate is accepted and every torque follows from it, so that the ledger closes whatever residual is left.
 
 mod clamping;
+pub mod clutch_drag;
 pub mod controller;
+pub mod final_drive;
 pub mod pump;
-pub mod spin;
+pub mod shaft_drag;
 pub mod variator;
 pub(crate) mod driveline;
 mod evaluate;
@@ -29,9 +31,11 @@ pub use keys::CvtKeys;
 pub use secant::{Slopes, Trend, WarmStart};
 
 use self::clamping::Clamping;
+use self::clutch_drag::ClutchDrag;
 use self::controller::{ClampLaw, ClampSignals, RatioControl};
+use self::final_drive::FinalDrive;
 use self::pump::Pump;
-use self::spin::Spin;
+use self::shaft_drag::ShaftDrag;
 use self::variator::{Belt, BeltAtRatio, BeltLoad};
 use super::component::{ByComponent, Component};
 use super::coupling::Coupling;
@@ -41,14 +45,22 @@ use crate::math::{Curve, exp, larger, ln};
 use crate::prime_mover::PrimeMover;
 use std::sync::Arc;
 
+/// Kinematic viscosity nu_80 to which the constants of the shafts' drags refer, m2/s.
+pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
+
+/// The power (nu/nu_80)^m of the shafts' drags (IS-1, CD-1, FD-1).
+pub fn viscosity_power(nu_m2_s: f64, exponent: f64) -> f64 {
+    exp(exponent * ln(nu_m2_s / NU_REFERENCE_M2_S))
+}
+
 /// Measured maps in place of models, by component.
 pub type CvtMaps = ByComponent<Option<LossMap>>;
 
 /// The checked CVT.
 #[derive(Clone, Debug)]
 pub struct Cvt {
-    /// Final drive ratio.
-    pub final_drive: f64,
+    /// Final drive.
+    pub final_drive: FinalDrive,
     /// Belt and pulleys.
     pub belt: Belt,
     /// Secondary piston area, m2.
@@ -61,8 +73,10 @@ pub struct Cvt {
     pub centrifugal_n_s2: f64,
     /// Pump.
     pub pump: Pump,
-    /// Input shaft, reverse clutch, final drive.
-    pub spin: Spin,
+    /// Input shaft.
+    pub shaft_drag: ShaftDrag,
+    /// Reverse clutch.
+    pub clutch_drag: ClutchDrag,
     /// Ratio control.
     pub ratio: RatioControl,
     /// Clamp law.
@@ -140,7 +154,7 @@ impl Cvt {
 
     /// State at the beginning of a cycle: in low at rest, in the ratio of the variogram when rolling.
     pub fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> (CvtState, DrivelineState) {
-        let secondary = self.final_drive * input.wheel.wheel_rad_s;
+        let secondary = self.final_drive.ratio * input.wheel.wheel_rad_s;
         let demand = controller::RatioDemand {
             secondary_rad_s: secondary,
             power_w: input.wheel.power_w,

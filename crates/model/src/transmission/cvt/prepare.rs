@@ -1,12 +1,11 @@
 //! What a step of the CVT knows before its solve: the ratio after shifting, and everything that depends on ratio and temperature only.
 
-use super::Cvt;
 use super::controller::{FREE_OVER_IDLE, RatioDemand, direction_after};
-use super::driveline::{Driveline, Parts};
+use super::driveline::{Driveline, Parts, ViscosityPowers};
 use super::evaluate::Step;
 use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
-use super::spin::{NU_REFERENCE_M2_S, SpinAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
+use super::{Cvt, NU_REFERENCE_M2_S};
 use crate::math::{exp_each, larger, ln_each};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, SUMP};
@@ -62,7 +61,7 @@ fn shift<P: PrimeMover>(
     let free = drawn - cvt.pump.need_m3_s(past.secondary_pa, route.leakage_m3_s_pa);
     let free = larger(free, 0.0);
     let demand = RatioDemand {
-        secondary_rad_s: cvt.final_drive * input.wheel.wheel_rad_s,
+        secondary_rad_s: cvt.final_drive.ratio * input.wheel.wheel_rad_s,
         power_w: input.wheel.power_w,
         rated_w: input.engine.rated_w(),
         full_load_rad_s: cvt.full_load_rad_s(input.engine, input.wheel.power_w / route.efficiency),
@@ -90,7 +89,7 @@ fn shift<P: PrimeMover>(
 
 /// Powers and exponentials of a step.
 struct Powers {
-    spin: SpinAtTemperature,
+    viscosity: ViscosityPowers,
     drive_nm: f64,
     viscous_factor: f64,
     radius_factor: f64,
@@ -111,17 +110,17 @@ impl Powers {
     #[inline(always)]
     fn new(cvt: &Cvt, at: &BeltAtRatio, lift_exponent: f64, b: &Bases) -> Self {
         let films = b.film_load > 0.0;
-        let [spin, pump, film, radius] = ln_each([
+        let [nu, pump, film, radius] = ln_each([
             b.nu_m2_s / NU_REFERENCE_M2_S,
             b.eta_pa_s / ETA_REFERENCE_PA_S,
             if films { b.film_load } else { 1.0 },
             cvt.low_radius_m / at.geometry.primary_radius_m,
         ]);
-        let [shaft, clutch, drive] = cvt.spin.exponents(spin);
+        let [shaft, clutch, final_drive] = ViscosityPowers::exponents(cvt, nu);
         let [
             shaft,
             clutch,
-            drive,
+            final_drive,
             fall,
             viscous_factor,
             radius_factor,
@@ -129,17 +128,21 @@ impl Powers {
         ] = exp_each([
             shaft,
             clutch,
-            drive,
-            cvt.spin.drive_fall_exponent(b.secondary_rad_s),
+            final_drive,
+            cvt.final_drive.fall_exponent(b.secondary_rad_s),
             cvt.pump.viscous_exponent * pump,
             cvt.radius_exponent * radius,
             lift_exponent * film,
         ]);
-        let spin = cvt.spin.with_powers([shaft, clutch, drive]);
-        let drive_nm = cvt.spin.drive_with_fall_nm(&spin, b.secondary_rad_s, fall);
         Powers {
-            spin,
-            drive_nm,
+            viscosity: ViscosityPowers {
+                shaft,
+                clutch,
+                final_drive,
+            },
+            drive_nm: cvt
+                .final_drive
+                .drag_nm(final_drive, fall, b.secondary_rad_s),
             viscous_factor,
             radius_factor,
             film: if films { film } else { 0.0 },
@@ -179,7 +182,7 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         *belt = BeltAtRatio::new(&cvt.belt, shift.ratio);
     }
     let at = &*belt;
-    let secondary_rad_s = cvt.final_drive * input.wheel.wheel_rad_s;
+    let secondary_rad_s = cvt.final_drive.ratio * input.wheel.wheel_rad_s;
     let sliding = cvt
         .belt
         .sliding_m_s(shift.ratio, shift.ratio * secondary_rad_s);
@@ -195,7 +198,7 @@ pub(super) fn prepare<'a, P: PrimeMover>(
             cvt,
             at,
             parts: Parts::ALL,
-            spin: powers.spin,
+            viscosity: powers.viscosity,
             pump: PumpAtTemperature {
                 viscous_factor: powers.viscous_factor,
                 ..inlet

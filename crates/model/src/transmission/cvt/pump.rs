@@ -6,7 +6,7 @@
 //! | PU-2 | flow need = lubrication + leakage p (eta_80/eta) + shift flow | ASSUMED values |
 //! | PU-3 | shift flow = A \|dx/dt\|, x = 2 tan th R | derived: thesis 9.1 requires it |
 //! | PU-4 | dual cavity and variable: only the share of D that the need requires works against p, the rest against a residual pressure | source: thesis 9.1 in words; control ASSUMED |
-//! | PU-5 | drawn flow = V/(1 + (V/V_max)^4)^(1/4), V_max = 0.7 bar/(k eta/eta_r) | derived: laminar drop k eta V in strainer and suction line, bounded by the air's pressure; k and 0.7 bar ASSUMED |
+//! | PU-5 | drawn flow = V/(1 + (V/V_max)^4)^(1/4), V_max = p_i/(k eta/eta_r) | derived: laminar drop k eta V in strainer and suction line, bounded by the air's pressure; k and p_i = 0.7 bar ASSUMED |
 //!
 //! D displacement per radian m3/rad, p pump outlet pressure Pa, w rad/s, V flow of the displacement that draws. Valid for p >= 0, w >= 0.
 //!
@@ -54,6 +54,8 @@ pub struct Pump {
     pub heating: ViscousSelfHeating,
     /// Pressure drop of strainer and suction line over flow at reference viscosity, Pa s/m3; 0 without one (PU-5).
     pub inlet_pa_s_m3: f64,
+    /// Depression at the inlet that fills no further: air pressure less vapour, dissolved air and height, Pa (PU-5).
+    pub inlet_depression_pa: f64,
     /// Constant torque T_c, Nm.
     pub constant_nm: f64,
     /// Pressure drop between pump and secondary, Pa.
@@ -68,9 +70,6 @@ pub struct Pump {
 
 /// Viscosity at which C_v is defined, Pa s.
 pub const ETA_REFERENCE_PA_S: f64 = 0.010;
-
-/// Depression at the inlet that fills no further, Pa (PU-5): ambient less vapour, dissolved air and height. ASSUMED.
-const INLET_DEPRESSION_PA: f64 = 0.7e5;
 
 /// What the pump's oil does at one temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,7 +137,7 @@ impl Pump {
         let drop_pa_s_m3 = self.inlet_pa_s_m3 * eta_pa_s / ETA_REFERENCE_PA_S;
         PumpAtTemperature {
             viscous_factor,
-            inv_inlet_flow: drop_pa_s_m3 / INLET_DEPRESSION_PA,
+            inv_inlet_flow: drop_pa_s_m3 / self.inlet_depression_pa,
         } // PU-5
     }
 
@@ -201,28 +200,29 @@ keys! {
             Choice::word("fixed", "the whole displacement works"),
             Choice::new("dual_cavity", "one of two cavities can idle", DualCavityKeys::TABLE),
             Choice::new("variable", "the displacement follows the demand", VariableKeys::TABLE),
-        ])), "fixed, dual_cavity or variable displacement (PU-4)";
-        displacement_cc_rev: number(0.5, 100.0), "displacement (PU-1)";
-        friction_coefficient: or(0.0, number(0.0, 1.0)), "Coulomb coefficient C_f (PU-1)";
-        viscous_coefficient: number(0.0, 1e6), "viscous coefficient C_v (PU-1)";
-        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (PU-1)";
-        film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the gaps halves the viscous torque; absent: no heating (PU-1, FH-1)";
-        inlet_bar_per_l_min: optional(number(0.0, 1.0)), "drop in strainer and suction line at 10 mPa s; absent: none (PU-5)";
-        constant_nm: or(0.0, number(0.0, 10.0)), "constant torque T_c (PU-1)";
-        line_drop_bar: or(0.0, number(0.0, 50.0)), "pressure drop between pump and secondary (PU-1)";
-        residual_bar: or(1.0, number(0.0, 50.0)), "pressure against which idle displacement turns (PU-4)";
-        lubrication_l_min: or(3.0, number(0.0, 50.0)), "lubrication flow (PU-2)";
-        leakage_l_min_per_bar: or(0.1, number(0.0, 2.0)), "leakage at 10 mPa s (PU-2)";
+        ])), "fixed, dual_cavity or variable displacement", ["PU-4"];
+        displacement_cc_rev: number(0.5, 100.0), "displacement", ["PU-1"];
+        friction_coefficient: or(0.0, number(0.0, 1.0)), "Coulomb coefficient C_f", ["PU-1"];
+        viscous_coefficient: number(0.0, 1e6), "viscous coefficient C_v", ["PU-1"];
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["PU-1"];
+        film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the gaps halves the viscous torque; absent: no heating", ["PU-1", "FH-1"];
+        inlet_bar_per_l_min: optional(number(0.0, 1.0)), "drop in strainer and suction line at 10 mPa s; absent: none", ["PU-5"];
+        inlet_depression_bar: or(0.7, number(0.1, 1.0)), "depression at the inlet that fills the pump no further", ["PU-5"];
+        constant_nm: or(0.0, number(0.0, 10.0)), "constant torque T_c", ["PU-1"];
+        line_drop_bar: or(0.0, number(0.0, 50.0)), "pressure drop between pump and secondary", ["PU-1"];
+        residual_bar: or(1.0, number(0.0, 50.0)), "pressure against which idle displacement turns", ["PU-4"];
+        lubrication_l_min: or(3.0, number(0.0, 50.0)), "lubrication flow", ["PU-2"];
+        leakage_l_min_per_bar: or(0.1, number(0.0, 2.0)), "leakage at 10 mPa s", ["PU-2"];
     }
 
     /// Keys of `[transmission.cvt.pump.kind.dual_cavity]`.
     DUAL_CAVITY: DualCavityKeys = "dual_cavity" [] {
-        share: or(0.5, number(0.05, 1.0)), "share of displacement in the cavity that always works (PU-4)";
+        share: or(0.5, number(0.05, 1.0)), "share of displacement in the cavity that always works", ["PU-4"];
     }
 
     /// Keys of `[transmission.cvt.pump.kind.variable]`.
     VARIABLE: VariableKeys = "variable" [] {
-        least_share: or(0.25, number(0.05, 1.0)), "smallest share of the displacement (PU-4)";
+        least_share: or(0.25, number(0.05, 1.0)), "smallest share of the displacement", ["PU-4"];
     }
 }
 
@@ -247,6 +247,7 @@ impl Pump {
             viscous_exponent: p.number(&PUMP.viscous_exponent),
             heating: ViscousSelfHeating::from_values(p, &PUMP.film_heating_w),
             inlet_pa_s_m3: p.optional(&PUMP.inlet_bar_per_l_min).unwrap_or(0.0),
+            inlet_depression_pa: p.number(&PUMP.inlet_depression_bar),
             constant_nm: p.number(&PUMP.constant_nm),
             line_drop_pa: p.number(&PUMP.line_drop_bar),
             residual_pa: p.number(&PUMP.residual_bar),

@@ -11,34 +11,34 @@ keys! {
         MeshKeys::TABLE, SealKeys::TABLE, BearingKeys::TABLE, ChurningKeys::TABLE, MapKeys::TABLE
     ] {
         overall_ratios: list(0.5, 40.0, 2, 10), "engine speed over wheel speed in each gear, from first";
-        upshift_kmh: list(1.0, 300.0, 1, 9), "vehicle speeds to shift up where a cycle has no gears (MB-5)";
-        downshift_kmh: list(1.0, 300.0, 1, 9), "vehicle speeds to shift down (MB-5)";
-        reference_mm2_s: number(1.5, 1000.0), "viscosity at which the torques hold (MB-2)";
+        upshift_kmh: list(1.0, 300.0, 1, 9), "vehicle speeds to shift up where a cycle has no gears", ["MB-5"];
+        downshift_kmh: list(1.0, 300.0, 1, 9), "vehicle speeds to shift down", ["MB-5"];
+        reference_mm2_s: number(1.5, 1000.0), "viscosity at which the torques hold", ["MB-2"];
         neutral_share: number(0.0, 1.0), "share of the losses that turns in neutral";
         launch: LAUNCH, "launch device: a wet or dry friction clutch";
     }
 
     /// Keys of `[transmission.manual.mesh]`.
     MESH: MeshKeys = "mesh" [] {
-        efficiency: number(0.8, 1.0), "of gear and final drive together (MB-1)";
+        efficiency: number(0.8, 1.0), "of gear and final drive together", ["MB-1"];
     }
 
     /// Keys of `[transmission.manual.seal]`.
     SEAL: SealKeys = "seal" [] {
-        torque_nm: number(0.0, 20.0), "at reference viscosity (MB-2)";
-        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (MB-2)";
+        torque_nm: number(0.0, 20.0), "at reference viscosity", ["MB-2"];
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["MB-2"];
     }
 
     /// Keys of `[transmission.manual.bearing]`.
     BEARING: BearingKeys = "bearing" [] {
-        torque_nm: number(0.0, 20.0), "at 2000 rpm and reference viscosity (MB-3)";
-        film_heating_w: SELF_HEATING, "dissipation at which the heat of the films halves the torque; absent: no heating (MB-3, FH-1)";
+        torque_nm: number(0.0, 20.0), "at 2000 rpm and reference viscosity", ["MB-3"];
+        film_heating_w: SELF_HEATING, "dissipation at which the heat of the films halves the torque; absent: no heating", ["MB-3", "FH-1"];
     }
 
     /// Keys of `[transmission.manual.churning]`.
     CHURNING: ChurningKeys = "churning" [] {
-        torque_nm: number(0.0, 20.0), "at 2000 rpm and reference viscosity (MB-4)";
-        viscous_exponent: number(0.0, 1.5), "exponent of viscosity (MB-4)";
+        torque_nm: number(0.0, 20.0), "at 2000 rpm and reference viscosity", ["MB-4"];
+        viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["MB-4"];
     }
 
     /// Keys of `[transmission.manual.maps]`.

@@ -28,8 +28,8 @@ use crate::cycle::GearCommand;
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::maps::LossMap;
-use crate::math::{clamp, larger};
-use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
+use crate::math::larger;
+use crate::prime_mover::PrimeMover;
 use crate::thermal::SUMP;
 use std::sync::Arc;
 
@@ -152,12 +152,9 @@ impl Manual {
             Flags::OVERSPEED,
             output.engine_rad_s > step.engine.max_rad_s(),
         );
-        let crank_nm = output.shaft_nm + step.engine.accessories_nm(output.engine_rad_s);
-        let share = crank_nm / step.engine.full_load_nm(output.engine_rad_s);
-        output.throttle = clamp(share, 0.0, 1.0);
         output.flags.set(
             Flags::OUTSIDE_VALIDITY,
-            !VALID_K.contains(&step.heat.node_k[SUMP]) || share > FULL_LOAD_LIMIT,
+            !VALID_K.contains(&step.heat.node_k[SUMP]),
         );
         state.gear = if output.gear > 0 {
             output.gear

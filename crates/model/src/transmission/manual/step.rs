@@ -3,8 +3,8 @@
 use super::Manual;
 use super::losses::Spin;
 use crate::flags::Flags;
-use crate::math::larger;
-use crate::prime_mover::PrimeMover;
+use crate::math::{clamp, larger};
+use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use crate::transmission::component::Component;
 use crate::transmission::coupling::{CouplingLoad, EngineSide};
@@ -50,6 +50,7 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             ..StepOutput::at_rest()
         };
         lose_spin(&mut output, &spin, share * w);
+        self.set_throttle(&mut output, self.step.engine.full_load_nm(w));
         output
     }
 
@@ -75,6 +76,8 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             lose_spin(&mut output, &spin, input);
             output.split_brake_and_shortfall(self.step.wheel, output_nm * input);
         }
+        let full_load_nm = self.step.engine.full_load_nm(output.engine_rad_s);
+        self.set_throttle(&mut output, full_load_nm);
         output
     }
 
@@ -82,21 +85,30 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         let mut gear = gear;
         loop {
             let output = self.in_gear(gear);
-            let next = self
-                .manual
-                .overall
-                .get(usize::from(gear).wrapping_sub(2))
-                .map(|r| r * self.step.wheel.wheel_rad_s);
-            match next {
-                Some(speed)
-                    if output.flags.contains(Flags::MISSED_TRACE)
-                        && speed < self.step.engine.max_rad_s() =>
-                {
-                    gear -= 1
-                }
-                _ => return output,
+            if !output.flags.contains(Flags::MISSED_TRACE) || !self.may_shift_down(gear) {
+                return output;
             }
+            gear -= 1;
         }
+    }
+
+    /// True where there is a gear below, and the engine may turn as fast as the wheels would have it there.
+    fn may_shift_down(&self, gear: u8) -> bool {
+        let below = usize::from(gear).checked_sub(2);
+        below.is_some_and(|below| {
+            self.manual.overall[below] * self.step.wheel.wheel_rad_s < self.step.engine.max_rad_s()
+        })
+    }
+
+    /// Sets the throttle, for the engine's full load at its speed.
+    fn set_throttle(&self, output: &mut StepOutput, full_load_nm: f64) {
+        let engine = self.step.engine;
+        let crank_nm = output.shaft_nm + engine.accessories_nm(output.engine_rad_s);
+        let share = crank_nm / full_load_nm;
+        output.throttle = clamp(share, 0.0, 1.0);
+        output
+            .flags
+            .set(Flags::OUTSIDE_VALIDITY, share > FULL_LOAD_LIMIT);
     }
 
     /// The box in a gear: the torque demanded, or the one at the engine's limit.
@@ -112,8 +124,9 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             .manual
             .coupling
             .min_output_nm(input, w, engine.idle_rad_s(), absorbed_nm);
+        let mut full_load_nm = engine.full_load_nm(w);
         // An engine too weak for its own accessories in the cold drives nothing; the row is flagged.
-        let engine_nm = larger(engine.full_load_nm(w) - accessories_nm, 0.0);
+        let engine_nm = larger(full_load_nm - accessories_nm, 0.0);
         let most = self.manual.coupling.output_nm(engine_nm, input, w);
         let limit = if at.input_nm < least {
             Some(least)
@@ -132,12 +145,11 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             let output_nm;
             (output_nm, output.iterations) = turning.output_for(torque);
             at = turning.at(output_nm);
-            output.residual = (at.input_nm - torque).abs() / engine.full_load_nm(w);
-            w = if torque > least {
-                w
-            } else {
-                self.engine_rad_s(torque, input)
-            };
+            output.residual = (at.input_nm - torque).abs() / full_load_nm;
+            if torque <= least {
+                w = self.engine_rad_s(torque, input);
+                full_load_nm = engine.full_load_nm(w);
+            }
         }
         output.engine_rad_s = w;
         // A box that drives the engine has it at one torque with its input; below a limit's zero there is only rounding.
@@ -167,6 +179,7 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         flags.set(Flags::OVERRUN, at.input_nm < 0.0);
         flags.set(Flags::OUTSIDE_VALIDITY, !at.inside_map);
         flags.set(Flags::NOT_CONVERGED, output.residual > 1e-8);
+        self.set_throttle(&mut output, full_load_nm);
         output
     }
 

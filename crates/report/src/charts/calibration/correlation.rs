@@ -27,7 +27,6 @@ const ON_LIGHT: &str = "#111111";
 const ON_DARK: &str = "#ffffff";
 
 /// Draws the matrix of correlations, rows and columns in the order of the parameters.
-#[must_use]
 pub fn correlation_plot(outcome: &Outcome) -> Picture {
     let count = outcome.parameters.len();
     let n = count.min(MAX_DRAWN);

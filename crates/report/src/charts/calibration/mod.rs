@@ -8,6 +8,8 @@ mod trace;
 
 use super::engine::{PLOT_LEFT, Symbol, WIDTH, optional_cell, round_step};
 use super::picture::Picture;
+use crate::number::sign;
+use cvtcycle_output::table::distinct;
 use cvtcycle_study::fit::outcome::{Outcome, Residual};
 
 pub use correlation::correlation_plot;
@@ -31,7 +33,6 @@ const AFTER: &str = "#0072b2";
 const LEFT_OUT: &str = "#d55e00";
 
 /// All pictures that the outcome has data for, with names that can be those of files.
-#[must_use]
 pub fn calibration_pictures(outcome: &Outcome) -> Vec<(String, Picture)> {
     let mut list = Vec::new();
     if !outcome.residuals.is_empty() {
@@ -63,13 +64,7 @@ fn subject(outcome: &Outcome) -> String {
 
 /// Names of the groups in the order of the data.
 fn groups(outcome: &Outcome) -> Vec<&str> {
-    let mut names: Vec<&str> = Vec::new();
-    for residual in &outcome.residuals {
-        if !names.contains(&residual.group.as_str()) {
-            names.push(&residual.group);
-        }
-    }
-    names
+    distinct(outcome.residuals.iter().map(|r| r.group.as_str()))
 }
 
 /// The symbol of a group, the same in every picture.
@@ -109,7 +104,7 @@ fn unit(unit: &str) -> &str {
         "" => "-",
         // As keys have it.
         "N m" => "Nm",
-        other => super::study::sign(other),
+        other => sign(other),
     }
 }
 

@@ -24,7 +24,6 @@ const FITTED: Stroke = stroke(AFTER, 2.2, &[]);
 const BOUND: Stroke = stroke(INK, 1.2, &[5.0, 3.0]);
 
 /// Draws a row for each parameter: prior above, fitted value below, both with two standard deviations, on an axis from bound to bound.
-#[must_use]
 pub fn parameters_plot(outcome: &Outcome) -> Picture {
     let all = &outcome.parameters;
     let rows = &all[..all.len().min(MAX_ROWS)];

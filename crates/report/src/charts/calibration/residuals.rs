@@ -81,7 +81,6 @@ impl Pitch {
 }
 
 /// Draws the residuals by group: with the files' values, fitted, and predicted by a fit that has not seen the observation.
-#[must_use]
 pub fn residuals_plot(outcome: &Outcome) -> Picture {
     let (kept, thinned) = shown(outcome);
     let mut table = table();

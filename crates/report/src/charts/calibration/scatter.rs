@@ -9,6 +9,7 @@ use crate::charts::engine::{
     range, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
+use cvtcycle_output::table::distinct;
 use cvtcycle_study::fit::outcome::{Outcome, Residual};
 
 /// Most panels: more do not fit on a page.
@@ -17,18 +18,12 @@ const GAP: (f64, f64) = (18.0, 10.0);
 const RADIUS: f64 = 3.4;
 
 /// Draws computed over measured numbers, before (open) and after (filled), with standard deviations, ranges and the line of agreement.
-#[must_use]
 pub fn scatter_plot(outcome: &Outcome) -> Picture {
     let (kept, thinned) = shown(outcome);
     let mut table = table();
     let rows = kept.iter().map(|k| &outcome.residuals[*k]);
     let rows: Vec<(&Residual, usize)> = rows.map(|r| (r, table.push(cells(r)))).collect();
-    let mut units: Vec<&str> = Vec::new();
-    for (r, _) in &rows {
-        if !units.contains(&unit(&r.unit)) {
-            units.push(unit(&r.unit));
-        }
-    }
+    let mut units = distinct(rows.iter().map(|(r, _)| unit(&r.unit)));
     let mut notes = vec!["Bars: a standard deviation on either side, or the measured range. Thin line: computed = measured.".to_owned()];
     notes.extend(thinned);
     notes.extend(common_note(outcome));

@@ -25,7 +25,6 @@ const LINES: [(Stroke, &str); 4] = [
 ];
 
 /// Draws each measured column of each trace over time, with its name.
-#[must_use]
 pub fn trace_plots(outcome: &Outcome) -> Vec<(String, Picture)> {
     let timed = |r: &&Residual| r.time_s.is_some_and(f64::is_finite);
     let mut found: Vec<(&str, &str, Vec<&Residual>)> = Vec::new();

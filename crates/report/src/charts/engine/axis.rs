@@ -102,7 +102,6 @@ pub(crate) fn number(value: f64, step: f64) -> String {
 }
 
 /// A number for a cell, with as many decimals as `step` between neighbours needs; empty if it is not finite.
-#[must_use]
 pub fn cell(value: f64, step: f64) -> String {
     if value.is_finite() {
         number(value, step)

@@ -7,7 +7,8 @@ use super::place::{Label, Place, at};
 use super::style::{INK, Style, marks, stroke};
 use super::svg::{Path, Point, Rect, Svg, units};
 use super::text::{Cut, text_width};
-use crate::charts::picture::{Picture, PictureTable};
+use crate::charts::picture::{MAX_SPANS, Picture, PictureTable};
+use cvtcycle_output::table::distinct;
 
 /// Size of the title and of the line below it, pixels.
 const TITLE: f64 = 15.0;
@@ -57,27 +58,45 @@ impl Chart {
         draw_text(svg, text(42.0, &self.subject, SUBJECT).quiet());
     }
 
-    /// The picture in words: its first sentence, the titles of its axes, its numbers.
+    /// The picture in words: its first sentence, the titles of its axes, its key numbers.
     fn alt_text(&self, table: &PictureTable) -> String {
-        let mut axes: Vec<String> = Vec::new();
-        for panel in self.panels.iter().filter(|panel| panel.framed) {
-            let titles = [panel.y.title.as_str(), &panel.x.title];
-            let titles = titles.into_iter().filter(|title| !title.is_empty());
-            let both = titles.collect::<Vec<_>>().join(" over ");
-            if !both.is_empty() && !axes.contains(&both) {
-                axes.push(both);
-            }
-        }
-        let empty = self.panels.iter().all(|panel| panel.no_data);
-        let numbers = if empty {
-            "Without any data".to_owned()
-        } else {
-            table.in_words()
+        let framed = || self.panels.iter().filter(|panel| panel.framed);
+        let axes = distinct(framed().map(|panel| panel.x.title.as_str()));
+        let axes = axes.into_iter().map(|x| {
+            let own = framed().filter(|panel| panel.x.title == x);
+            let y = distinct(own.map(|panel| panel.y.title.as_str())).join(", ");
+            joined([y, x.to_owned()], " over ")
+        });
+        let numbers = match self.panels.iter().all(|panel| panel.no_data) {
+            true => "Without any data".to_owned(),
+            false => self.key_numbers(table),
         };
-        let parts = [self.lead.clone(), axes.join("; "), numbers];
-        let parts = parts.into_iter().filter(|part| !part.is_empty());
-        parts.collect::<Vec<_>>().join(". ") + "."
+        let lead = self.lead.trim_end_matches('.').to_owned();
+        joined([lead, joined(axes, "; "), numbers], ". ") + "."
     }
+
+    /// The numbers in words; where many lines are drawn, the span of each quantity.
+    fn key_numbers(&self, table: &PictureTable) -> String {
+        let lines = self.panels.iter().flat_map(|panel| &panel.columns);
+        if lines.count() <= MAX_SPANS {
+            return table.in_words();
+        }
+        let over = self.panels.iter().find(|panel| panel.over_table);
+        let over = over.and_then(|panel| table.span(&panel.x.title, &[0]));
+        let quantities = distinct(self.panels.iter().map(|panel| panel.y.title.as_str()));
+        let spans = quantities.into_iter().filter_map(|y| {
+            let own = self.panels.iter().filter(|panel| panel.y.title == y);
+            let columns: Vec<usize> = own.flat_map(|panel| panel.columns.clone()).collect();
+            table.span(y, &columns)
+        });
+        joined(over.into_iter().chain(spans), "; ")
+    }
+}
+
+/// Those texts that are not empty, with a sign between them.
+fn joined(parts: impl IntoIterator<Item = String>, sign: &str) -> String {
+    let parts = parts.into_iter().filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join(sign)
 }
 
 fn draw_panel(svg: &mut Svg, panel: &Panel) {

@@ -1,6 +1,6 @@
 //! What changed between two runs, term by term: the terms add up to the difference of fuel.
 
-use super::bar_rows::{at_end, axis_with_room, bar, bars_panel, name};
+use super::bars::{at_end, axis_with_room, bar, bars_panel, name};
 use super::{MARGIN, TEXT, TOP, Term, energy, finite};
 use crate::charts::engine::{Chart, Fill, INK, QUIET, Style, WIDTH, at, cell, rows_left, stroke};
 use crate::charts::picture::{Picture, PictureTable};
@@ -35,13 +35,11 @@ pub struct DifferenceTerm {
 
 impl DifferenceTerm {
     /// A component of the transmission.
-    #[must_use]
     pub fn of(component: Component, kj: [f64; 2]) -> Self {
         Self::term(&capital(component.name()), Term::Component(component), kj)
     }
 
     /// A term of the ledger.
-    #[must_use]
     pub fn term(name: &str, term: Term, kj: [f64; 2]) -> Self {
         let name = name.to_owned();
         DifferenceTerm { name, term, kj }
@@ -82,7 +80,6 @@ impl Difference {
 }
 
 /// Difference B - A of every term, in kJ and as fuel of that energy in L/100 km, with the difference of fuel at the end.
-#[must_use]
 pub fn difference_bars(of: &Difference) -> Picture {
     let terms = of.complete_terms();
     let last = terms.len() - 1;

@@ -31,13 +31,11 @@ pub struct CarEnergy {
 
 impl CarEnergy {
     /// All losses of the transmission, kJ.
-    #[must_use]
     pub fn transmission_kj(&self) -> f64 {
         self.losses_kj.iter().map(|(_, kj)| finite(*kj)).sum()
     }
 
     /// Work into the transmission at the flywheel, kJ: what leaves it again as losses, at the brakes and at the wheels.
-    #[must_use]
     pub fn flywheel_kj(&self) -> f64 {
         self.transmission_kj() + finite(self.brake_kj) + finite(self.wheels_kj)
     }
@@ -54,7 +52,6 @@ impl CarEnergy {
 }
 
 /// From fuel to wheel; the transmission is one branch.
-#[must_use]
 pub fn energy_flow(car: &CarEnergy) -> Picture {
     let engine = vec![
         branch("Exhaust", Term::Exhaust, car.exhaust_kj),
@@ -84,7 +81,6 @@ pub fn energy_flow(car: &CarEnergy) -> Picture {
 }
 
 /// From the flywheel to the wheels, with a branch for each component.
-#[must_use]
 pub fn transmission_flow(car: &CarEnergy) -> Picture {
     let source = car.flywheel_kj();
     let component = |(c, kj): &(Component, f64)| {

@@ -2,25 +2,22 @@
 //!
 //! Each is a function from plain numbers, in the units that its input states, to a [`Picture`](super::Picture).
 
-mod bar_rows;
+mod bars;
 mod difference;
 mod flow;
-mod loss_bars;
 mod overlay;
-mod phase_bars;
 mod sankey;
 mod temperature_bars;
 mod variogram;
 
+pub use bars::{CarLosses, CarParts, PhaseLosses, loss_by_component, loss_by_phase};
 pub use difference::{Difference, DifferenceTerm, difference_bars};
 pub use flow::{CarEnergy, energy_flow, transmission_flow};
-pub use loss_bars::{CarLosses, loss_by_component};
 pub use overlay::{Overlay, OverlayPanel, overlay};
-pub use phase_bars::{CarParts, PhaseLosses, loss_by_phase};
 pub use temperature_bars::{LossTrace, loss_by_temperature};
 pub use variogram::{GuideLine, Variogram, variogram};
 
-use super::engine::{Fill, WIDTH};
+use super::engine::Fill;
 use crate::number::grouped;
 use cvtcycle_output::Component;
 
@@ -98,6 +95,17 @@ impl Term {
         })
     }
 }
+
+/// Terms of the power ledger with their names and what they are.
+pub(crate) const TERMS: [(&str, &str, Term); 7] = [
+    ("wheels", "rolling and air, net", Term::Wheels),
+    ("brake", "brakes", Term::Brake),
+    ("losses", "transmission", Term::Transmission),
+    ("accessories", "accessories", Term::Accessories),
+    ("kinetic", "rotating parts", Term::Kinetic),
+    ("engine_heat", "heat to the engine", Term::EngineHeat),
+    ("exhaust", "exhaust", Term::Exhaust),
+];
 
 #[cfg(test)]
 mod tests {

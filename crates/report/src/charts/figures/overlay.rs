@@ -5,6 +5,7 @@ use crate::charts::engine::{
     Axis, Chart, Entry, INK, PLOT_LEFT, Panel, Rect, Stroke, WIDTH, cell, range, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
+use crate::number::{sign, with_unit};
 
 /// Traces of two runs.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,18 +45,7 @@ impl OverlayPanel {
 
     /// The unit as it is written; none for a plain number.
     fn sign(&self) -> &'static str {
-        match self.unit {
-            "-" => "",
-            "degC" => "\u{b0}C",
-            unit => unit,
-        }
-    }
-
-    fn axis_title(&self) -> String {
-        match self.sign() {
-            "" => self.title.clone(),
-            unit => format!("{} [{unit}]", self.title),
-        }
+        sign(if self.unit == "-" { "" } else { self.unit })
     }
 
     /// A step with about four digits over the range of the panel.
@@ -67,7 +57,6 @@ impl OverlayPanel {
 }
 
 /// Panels over time, A solid and B dashed.
-#[must_use]
 pub fn overlay(of: &Overlay) -> Picture {
     let times = of.panels.iter().flat_map(OverlayPanel::points);
     let (start, end) = range(times.map(|point| point.0)).unwrap_or((0.0, 1.0));
@@ -81,7 +70,11 @@ pub fn overlay(of: &Overlay) -> Picture {
         &of.panels
     };
     let panel = |(k, of): (usize, &OverlayPanel)| {
-        let y = Axis::round(&of.axis_title(), of.points().map(|point| point.1), 5);
+        let y = Axis::round(
+            &with_unit(&of.title, of.sign()),
+            of.points().map(|point| point.1),
+            5,
+        );
         let rect = Rect::new(PLOT_LEFT, TOP + k as f64 * (TALL + GAP), WIDE, TALL);
         let mut panel = Panel::new(rect, time.clone(), y)
             .over_table()

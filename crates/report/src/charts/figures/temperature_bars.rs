@@ -54,7 +54,6 @@ impl Bin {
 }
 
 /// Mean loss power by component against the temperature of the sump, with the time spent in each bin of temperature below it.
-#[must_use]
 pub fn loss_by_temperature(of: &LossTrace) -> Picture {
     let (bins, left_out_s) = bins(of);
     let [mut upper, mut lower] = panels(&bins);

@@ -51,7 +51,6 @@ impl Variogram<'_> {
 }
 
 /// Engine speed against vehicle speed: time spent in each cell, with lines over it.
-#[must_use]
 pub fn variogram(of: &Variogram) -> Picture {
     let (x, y) = axes(of);
     let cells = Density::size_for(&x, &y, CELLS);

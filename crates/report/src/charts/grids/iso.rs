@@ -1,7 +1,6 @@
 //! Lines of equal specific consumption on an engine's map.
 
-use super::contour::Grid;
-use super::labels::LineLabels;
+use super::contour::{Grid, LineLabels};
 use crate::charts::engine::{
     Item, Label, Panel, Point, Rect, Shape, Stroke, Style, number, range, stroke,
 };

@@ -1,7 +1,6 @@
 //! A quantity over two axes: filled bands of equal value with labelled lines between them, one panel or several next to each other.
 
-use super::contour::Grid;
-use super::labels::LineLabels;
+use super::contour::{Grid, LineLabels};
 use crate::charts::engine::{
     Axis, BELOW, Chart, INK, Item, LEFT, Label, PLOT_LEFT, Panel, Point, Rect, Shape, Stroke,
     Style, at, free, grid, number, ramp, range, round_step, stroke,

@@ -3,7 +3,6 @@
 mod contour;
 mod density;
 mod iso;
-mod labels;
 mod map;
 
 pub(crate) use density::{Density, DensityCell};

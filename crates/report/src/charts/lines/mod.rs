@@ -2,10 +2,7 @@
 //!
 //! Everything that is a line over a quantity and not over time is drawn here: ambient temperatures, tests of rigs, figures of the book.
 
-mod stack;
 mod table;
-
-pub(crate) use stack::{StackFigure, stack_figure};
 
 use super::engine::{
     Axis, BELOW, Block, CONTEXT, Chart, Entry, Fill, LEFT, PLOT_LEFT, Panel, Rect, STROKES, Shape,
@@ -80,7 +77,6 @@ pub struct LineChart {
 }
 
 /// Draws a chart of lines.
-#[must_use]
 pub fn line_chart(of: &LineChart) -> Picture {
     let (table, columns) = table::table(of);
     let rects = layout(of);
@@ -161,7 +157,6 @@ impl LineChart {
 
 impl Look {
     /// The solid line of that number.
-    #[must_use]
     pub fn solid(index: usize) -> Self {
         let dotted = false;
         Look { index, dotted }
@@ -246,7 +241,7 @@ fn heights(panel: &LinePanel) -> Vec<f64> {
 }
 
 /// Adds the series of a panel as areas upon each other; a value that is not finite counts as nothing.
-fn stack_layers(drawn: &mut Panel, series: Vec<(Look, Points)>, count: usize) {
+pub(crate) fn stack_layers(drawn: &mut Panel, series: Vec<(Look, Points)>, count: usize) {
     let longest = series.iter().map(|(_, points)| points.len()).max();
     let mut base = vec![0.0; longest.unwrap_or(0)];
     for (look, points) in series {

@@ -3,6 +3,7 @@
 use super::super::engine::{cell, range, round_step};
 use super::super::picture::PictureTable;
 use super::{LineChart, LinePanel, Look};
+use cvtcycle_output::table::distinct;
 
 /// Rows at most, and cells: a table of many columns has fewer rows.
 const MAX_ROWS: usize = 600;
@@ -13,12 +14,7 @@ const MAX_CELLS: usize = 8000;
 /// Panels over one quantity share its column, the first one. Where a chart has panels over several quantities, each quantity has a column
 /// and rows of its own.
 pub(super) fn table(chart: &LineChart) -> (PictureTable, Vec<Vec<usize>>) {
-    let mut quantities: Vec<&'static str> = Vec::new();
-    for title in chart.panels.iter().map(|panel| chart.x_title(panel)) {
-        if !quantities.contains(&title) {
-            quantities.push(title);
-        }
-    }
+    let quantities = distinct(chart.panels.iter().map(|panel| chart.x_title(panel)));
     let mut table = PictureTable::with_columns(quantities.iter().map(|title| split(title)));
     let mut places = Vec::new();
     for panel in &chart.panels {

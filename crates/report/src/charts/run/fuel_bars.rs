@@ -6,6 +6,7 @@ use crate::charts::engine::{
     text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
+use cvtcycle_output::table::distinct;
 
 const TOP: f64 = 58.0;
 const TALL: f64 = 340.0;
@@ -18,7 +19,6 @@ const TURNED: f64 = 15.0;
 const GAP: f64 = 0.28;
 
 /// Fuel in L/100 km by phase group and in total, one bar per vehicle.
-#[must_use]
 pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
     let groups = groups(runs);
     let bars = (groups.len() * runs.len()).max(1) as f64;
@@ -96,12 +96,8 @@ fn value_of(run: &PlotRun, group: &str) -> Option<f64> {
 
 /// The groups of all runs in the order of their first mention, the total last.
 fn groups(runs: &[PlotRun]) -> Vec<String> {
-    let mut groups: Vec<String> = Vec::new();
-    for (name, _) in runs.iter().flat_map(|run| &run.group_fuel) {
-        if !groups.contains(name) {
-            groups.push(name.clone());
-        }
-    }
+    let names = runs.iter().flat_map(|run| &run.group_fuel);
+    let mut groups = distinct(names.map(|(name, _)| name.clone()));
     groups.sort_by_key(|name| name == "total");
     groups
 }

@@ -29,7 +29,6 @@ pub struct LossBins {
 
 impl LossBins {
     /// Energy that a component has lost in all bins, J.
-    #[must_use]
     pub fn energy_j(&self, component: Component) -> f64 {
         let bins = self.mean_w.iter().zip(&self.seconds);
         bins.map(|(w, s)| w[component as usize] * s).sum()
@@ -40,7 +39,6 @@ impl LossBins {
 ///
 /// Steps are never divided, and means are weighted by time: the energy of every component stays the
 /// same. Losses that are not finite count as nothing.
-#[must_use]
 pub fn bin_losses(history: &History, bins: usize) -> LossBins {
     let mut out = LossBins::default();
     let (time, steps) = (history.time_s(), history.dt_s());
@@ -72,7 +70,6 @@ pub fn bin_losses(history: &History, bins: usize) -> LossBins {
 }
 
 /// Loss power of the transmission over time, stacked in the order of the power flow.
-#[must_use]
 pub fn losses(run: &PlotRun) -> Picture {
     let bins = bin_losses(run.history, BINS);
     let components = run.history.components();

@@ -13,6 +13,7 @@ pub use traces::{driveline, pressure, temperatures};
 
 use cvtcycle_model::drive::FuelMap;
 use cvtcycle_output::History;
+use cvtcycle_output::summary::RunSummary;
 
 /// A run and what else its pictures show.
 #[derive(Clone, Debug)]
@@ -25,4 +26,21 @@ pub struct PlotRun<'a> {
     pub fuel_map: Option<FuelMap>,
     /// Fuel in L/100 km of each phase group and of the `total`, in the order of the plot.
     pub group_fuel: Vec<(String, f64)>,
+}
+
+/// Fuel of each phase group, of the cycle, and weighted where the cycle is, L/100 km: for [`PlotRun::group_fuel`].
+pub fn group_fuel(run: &RunSummary) -> Vec<(String, f64)> {
+    // The only group of a cycle is its total.
+    let phases = run.phases.iter().filter(|_| run.phases.len() > 1);
+    let phases = phases.map(|phase| (phase.name.as_str(), phase.fuel_l_per_100km));
+    let weighted = run.weighted_fuel_l_per_100km.map(Some);
+    let whole = [
+        ("total", Some(run.fuel_l_per_100km)),
+        ("weighted", weighted),
+    ];
+    let whole = whole
+        .into_iter()
+        .filter_map(|(name, fuel)| Some((name, fuel?)));
+    let named = |(name, fuel): (&str, Option<f64>)| (name.to_owned(), fuel.unwrap_or(f64::NAN));
+    phases.chain(whole).map(named).collect()
 }

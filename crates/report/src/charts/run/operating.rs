@@ -18,7 +18,6 @@ const FULL_LOAD: Stroke = stroke(INK, 2.0, &[]);
 
 /// Engine torque against engine speed: time spent in the cells of a grid, under lines of equal specific consumption and the full-load
 /// torque. Times in which the engine is off are left out.
-#[must_use]
 pub fn operating_points(run: &PlotRun) -> Picture {
     let points = points(run.history);
     let map = run.fuel_map.as_ref();

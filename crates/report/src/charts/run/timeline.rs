@@ -6,6 +6,7 @@ use crate::charts::engine::{
     cell, range, stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
+use crate::number::{sign, with_unit};
 use cvtcycle_output::History;
 use cvtcycle_output::trace::column;
 
@@ -77,10 +78,8 @@ impl Strip {
     }
 
     fn axis(&self, history: &History) -> Axis {
-        let title = match self.lines.first().map_or("", |line| unit(line.column)) {
-            "" => self.title.to_owned(),
-            unit => format!("{} [{unit}]", self.title),
-        };
+        let unit = self.lines.first().map_or("", |line| unit(line.column));
+        let title = with_unit(self.title, unit);
         let values = self.values(history).map(|y| y.min(self.max));
         let values = values.filter(|y| y.is_finite());
         let ticks = (self.tall / 28.0) as usize;
@@ -137,10 +136,7 @@ pub(super) fn timeline(run: &PlotRun, title: &str, strips: &[Strip]) -> Picture 
 
 /// Unit of a column.
 fn unit(name: &str) -> &'static str {
-    match column(name).map_or("", |column| column.unit) {
-        "degC" => "\u{b0}C",
-        unit => unit,
-    }
+    sign(column(name).map_or("", |column| column.unit))
 }
 
 /// The points of a column: means lie in the middle of their step, temperatures at its end, a gear holds for the whole of it.

@@ -13,7 +13,6 @@ const PRESSURES: [Stroke; 2] = [stroke(INK, 1.6, &[]), stroke("#d55e00", 1.3, &[
 const MAX_SAFETY: (f64, f64, f64) = (4.0, 4.0, 30.0);
 
 /// Vehicle speed, ratio or gear, engine speed and throttle over time.
-#[must_use]
 pub fn driveline(run: &PlotRun) -> Picture {
     let ratio = if run.history.is_cvt() {
         ("belt_ratio", "Belt ratio")
@@ -35,7 +34,6 @@ pub fn driveline(run: &PlotRun) -> Picture {
 }
 
 /// Pulley pressures, belt slip and clamp safety over time, with the vehicle speed for context.
-#[must_use]
 pub fn pressure(run: &PlotRun) -> Picture {
     let pressures = [
         ("secondary_pressure_bar", "Secondary pressure"),
@@ -68,7 +66,6 @@ pub fn pressure(run: &PlotRun) -> Picture {
 }
 
 /// Temperatures over time.
-#[must_use]
 pub fn temperatures(run: &PlotRun) -> Picture {
     let names = [
         ("coolant_degc", "Coolant"),

@@ -26,7 +26,6 @@ struct Texts<'a> {
 }
 
 /// Draws first-order and total Sobol indices of factors by name with their intervals, the largest total index first.
-#[must_use]
 pub fn sobol_plot(shown: &Shown, names: &[String], of: &SobolIndices) -> Picture {
     let factors = names.iter().zip(&of.factors);
     let rows = factors.map(|(name, f)| (name.as_str(), [f.first, f.total]));
@@ -55,7 +54,6 @@ pub fn sobol_plot(shown: &Shown, names: &[String], of: &SobolIndices) -> Picture
 }
 
 /// Draws rank correlations and rank regression coefficients with their intervals, the strongest correlation first.
-#[must_use]
 pub fn rank_plot(shown: &Shown, names: &[String], of: &RankSensitivity) -> Picture {
     let factors = names.iter().zip(&of.factors);
     let rows = factors.map(|(name, f)| (name.as_str(), [f.spearman, f.regression]));

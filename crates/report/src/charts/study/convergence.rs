@@ -7,14 +7,8 @@ use crate::charts::engine::{
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::statistics::{Estimate, SobolIndices};
 
-/// Indices at growing numbers of samples.
-#[derive(Clone, Copy, Debug)]
-struct ConvergencePlot<'a> {
-    /// Names of the factors, in the order of the indices.
-    names: &'a [String],
-    /// Indices, the fewest samples first.
-    steps: &'a [SobolIndices],
-}
+/// Names of the factors, and their indices in that order at growing numbers of samples.
+type Steps<'a> = (&'a [String], &'a [SobolIndices]);
 
 const TOP: f64 = 58.0;
 const TALL: f64 = 230.0;
@@ -27,16 +21,14 @@ type Pick = fn(&SobolIndices, usize) -> Option<Estimate>;
 
 /// Draws first-order indices over total ones against the number of samples, with their intervals as bands. Of more than seven factors
 /// those with the seven largest total indices.
-#[must_use]
 pub fn convergence_plot(shown: &Shown, names: &[String], steps: &[SobolIndices]) -> Picture {
-    let plot = &ConvergencePlot { names, steps };
-    let chosen = chosen(plot);
+    let chosen = chosen((names, steps));
     let mut notes = vec![
         "Bands: intervals of 95 %. Those of few samples may leave the plot; the table has them."
             .to_owned(),
     ];
-    if chosen.len() < plot.names.len() {
-        let (some, all) = (chosen.len(), plot.names.len());
+    if chosen.len() < names.len() {
+        let (some, all) = (chosen.len(), names.len());
         notes.push(format!(
             "{some} of {all} factors, those with the largest total indices."
         ));
@@ -47,29 +39,29 @@ pub fn convergence_plot(shown: &Shown, names: &[String], steps: &[SobolIndices])
         }),
         ("Total index [-]", |s, i| s.factors.get(i).map(|f| f.total)),
     ];
-    let mut panels = indices.map(|(title, pick)| draw(plot, &chosen, title, pick));
+    let mut panels = indices.map(|(title, pick)| draw((names, steps), &chosen, title, pick));
     for (k, panel) in panels.iter_mut().enumerate() {
         let top = TOP + k as f64 * (TALL + GAP);
         panel.rect = Rect::new(PLOT_LEFT, top, WIDE, TALL);
         panel.x_labels = k == 1;
     }
     let lines = chosen.iter().zip(STROKES);
-    let lines = lines.map(|(&i, stroke)| Entry::line(stroke, &plot.names[i]));
+    let lines = lines.map(|(&i, stroke)| Entry::line(stroke, &names[i]));
     let title = format!("Convergence of Sobol indices: {}", shown.output);
     Chart::new(title, shown.subject, PLOT_LEFT)
         .panels(panels)
         .legend(FOOT, lines)
         .notes(FOOT, notes)
-        .picture(table(plot))
+        .picture(table((names, steps)))
 }
 
 /// A row for each number of samples and factor, in this order.
-fn table(plot: &ConvergencePlot) -> PictureTable {
+fn table((names, steps): Steps) -> PictureTable {
     let mut table = PictureTable::new(&[("Samples", ""), ("Factor", "")]);
     let estimates = ["First order", "Total"].map(estimate_columns);
     table.columns.extend(estimates.concat());
-    for step in plot.steps {
-        for (i, name) in plot.names.iter().enumerate() {
+    for step in steps {
+        for (i, name) in names.iter().enumerate() {
             let mut cells = vec![step.samples.to_string(), name.clone()];
             let factor = step.factors.get(i);
             let estimates = factor.map(|f| [f.first, f.total].map(|e| estimate_cells(&e)).concat());
@@ -87,24 +79,24 @@ fn place_of(step: &SobolIndices) -> f64 {
 }
 
 /// The factors that are drawn, the largest total index of the last step first.
-fn chosen(plot: &ConvergencePlot) -> Vec<usize> {
+fn chosen((names, steps): Steps) -> Vec<usize> {
     let total = |i: usize| {
-        let last = plot.steps.last().and_then(|s| s.factors.get(i));
+        let last = steps.last().and_then(|s| s.factors.get(i));
         last.map_or(f64::NAN, |f| f.total.value)
     };
-    let mut order: Vec<usize> = (0..plot.names.len()).collect();
+    let mut order: Vec<usize> = (0..names.len()).collect();
     by_size(&mut order, |i| total(*i));
     order.truncate(STROKES.len());
     order
 }
 
-fn draw(plot: &ConvergencePlot, chosen: &[usize], title: &str, pick: Pick) -> Panel {
+fn draw((names, steps): Steps, chosen: &[usize], title: &str, pick: Pick) -> Panel {
     let estimates = |i: usize| {
-        let steps = plot.steps.iter().enumerate();
+        let steps = steps.iter().enumerate();
         steps.filter_map(move |(k, s)| pick(s, i).map(|e| (k, place_of(s), e)))
     };
-    let first = plot.steps.first().map_or(0.0, place_of);
-    let last = plot.steps.last().map_or(1.0, place_of);
+    let first = steps.first().map_or(0.0, place_of);
+    let last = steps.last().map_or(1.0, place_of);
     // The bands of few samples are so wide that nothing else would be seen: they may leave the plot.
     let seen = |(_, x, e): (usize, f64, Estimate)| {
         let ends = e.interval95.filter(|_| x > last - SEEN);
@@ -113,10 +105,10 @@ fn draw(plot: &ConvergencePlot, chosen: &[usize], title: &str, pick: Pick) -> Pa
     let all = chosen.iter().flat_map(|&i| estimates(i));
     let y = Axis::round(title, all.flat_map(seen), 6);
     let tick = |step: &SobolIndices| (place_of(step), step.samples.to_string());
-    let ticks = plot.steps.iter().map(tick);
+    let ticks = steps.iter().map(tick);
     let x = Axis::labelled("Samples [-]", (first - 0.25, last + 0.25), ticks.collect());
     let mut panel = Panel::new(Rect::default(), x, y);
-    panel.no_data = plot.steps.is_empty() || chosen.is_empty();
+    panel.no_data = steps.is_empty() || chosen.is_empty();
     let order = || chosen.iter().enumerate().rev();
     for (k, &i) in order() {
         let ends =
@@ -135,7 +127,7 @@ fn draw(plot: &ConvergencePlot, chosen: &[usize], title: &str, pick: Pick) -> Pa
         panel.series(points, STROKES[k]);
         for (step, x, e) in estimates(i) {
             let style = Style::colour(STROKES[k].colour).class("mark");
-            let row = step * plot.names.len() + i;
+            let row = step * names.len() + i;
             panel.symbol(Symbol::CIRCLE, at(x, e.value), 2.8, style.row(row));
         }
     }

@@ -35,6 +35,8 @@ const STEPS: usize = 1500;
 const BINS: f64 = 100.0;
 /// Rounding up after a division by this lands on the nearest round number.
 const NEAREST: f64 = 1.6;
+/// Most series that the picture in words describes.
+const IN_WORDS: usize = 2;
 /// Quantiles with a mark.
 const MARKED: [f64; 3] = [0.05, 0.5, 0.95];
 /// Dashed, so that it stays apart from the frame.
@@ -43,7 +45,6 @@ const GUIDE: Stroke = stroke(QUIET, 0.9, &[3.0, 3.0]);
 
 /// Draws histogram and cumulative curve of each series over one axis, with the 5, 50 and 95 % quantiles marked; of more than seven the
 /// first seven. Of differences of pairs zero is marked and the share above it written.
-#[must_use]
 pub fn distribution_plot(shown: &Shown, all: &[DistributionSeries], differences: bool) -> Picture {
     let series = all.iter().take(STROKES.len());
     let series: Vec<Drawn> = series.map(prepare).collect();
@@ -80,7 +81,10 @@ pub fn distribution_plot(shown: &Shown, all: &[DistributionSeries], differences:
     let zero = differences.then(|| Entry::line(ZERO, "No difference"));
     let table = table(shown, &output, &series, (&edges, &shares), &notes);
     let title = format!("{what}: {}", shown.output);
-    let lead = format!("{headline} {}", notes.join(" "));
+    let lead = format!(
+        "{headline} {}",
+        notes[..notes.len().min(IN_WORDS)].join(" ")
+    );
     Chart::new(title, shown.subject, PLOT_LEFT)
         .lead(lead.trim().replace('\u{a0}', " "))
         .panels([upper, lower])

@@ -1,11 +1,12 @@
 //! Main effects of a grid: the mean over everything else, level by level, a panel for each factor.
 
-use super::{FOOT, RIGHT, Shown, by_size, sign};
+use super::{FOOT, RIGHT, Shown, by_size};
 use crate::charts::engine::{
     Axis, BELOW, Chart, Cut, Entry, Fill, LEFT, Label, PLAIN, PLOT_LEFT, Panel, Rect, Shape, Style,
     Symbol, at, cell, round_step, stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
+use crate::number::sign;
 use cvtcycle_study::statistics::{Group, Groups};
 
 /// One factor.
@@ -34,7 +35,6 @@ const MAX_FACTORS: usize = 12;
 
 /// Draws the mean of the output at each level of each factor with its spread over all others, the factor with the largest effect first. All
 /// panels have one vertical axis, so that effects can be compared.
-#[must_use]
 pub fn effects_plot(shown: &Shown, factors: &[EffectFactor]) -> Picture {
     let mut factors: Vec<&EffectFactor> = factors.iter().collect();
     by_size(&mut factors, |f| f.groups.range);

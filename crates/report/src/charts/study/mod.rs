@@ -15,6 +15,7 @@ pub use effects::{EffectFactor, effects_plot};
 pub use tornado::tornado_plot;
 
 use super::engine::{PLOT_LEFT, Point, WIDTH, number, optional_cell, round_step};
+use crate::number::{sign, with_unit};
 use cvtcycle_study::statistics::Estimate;
 
 /// Right edge of the plots, and their width, pixels.
@@ -44,11 +45,7 @@ pub struct Shown<'a> {
 impl Shown<'_> {
     /// Title of an axis of this output, or of something else of its unit.
     fn axis(&self, what: &str) -> String {
-        if self.unit.is_empty() {
-            what.to_owned()
-        } else {
-            format!("{what} [{}]", self.sign())
-        }
+        with_unit(what, self.unit)
     }
 
     /// The unit after a number.
@@ -56,24 +53,14 @@ impl Shown<'_> {
         if matches!(self.unit, "" | "-") {
             String::new()
         } else {
-            format!("\u{a0}{}", self.sign().replace(' ', "\u{a0}"))
+            format!("\u{a0}{}", sign(self.unit).replace(' ', "\u{a0}"))
         }
-    }
-
-    /// The unit as it is written.
-    fn sign(&self) -> &str {
-        sign(self.unit)
     }
 
     /// A column of a table in this output's unit.
     fn column(&self, name: impl Into<String>) -> (String, &'static str) {
         column(name.into(), self.unit)
     }
-}
-
-/// A unit as it is written.
-pub(crate) fn sign(unit: &str) -> &str {
-    if unit == "degC" { "\u{b0}C" } else { unit }
 }
 
 /// Name and unit of a column; a unit that no output of the program has is part of the name.
@@ -84,7 +71,7 @@ fn column(name: String, unit: &str) -> (String, &'static str) {
     match (unit, KNOWN.into_iter().find(|known| *known == sign(unit))) {
         ("" | "-", _) => (name, ""),
         (_, Some(known)) => (name, known),
-        _ => (format!("{name} [{}]", sign(unit)), ""),
+        _ => (with_unit(&name, unit), ""),
     }
 }
 

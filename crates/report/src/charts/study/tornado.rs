@@ -12,7 +12,6 @@ use cvtcycle_study::statistics::{Tornado, TornadoBar, TornadoEnd};
 const END: (f64, f64) = (11.0, 120.0);
 
 /// Draws the tornado: change of the output against the base, with the factor's values at the ends of its bar.
-#[must_use]
 pub fn tornado_plot(shown: &Shown, tornado: &Tornado) -> Picture {
     let all = &tornado.bars;
     let many = all.len() > MAX_ROWS + 1;

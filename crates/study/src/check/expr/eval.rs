@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::functions::{Compute, Form, Gives, truth};
 use super::reduce::{Point, Points, Table, least, most, short};
-use super::syntax::{Expr, Order, Reduce};
+use super::{Expr, Order, Reduce};
 
 /// Source of the numbers.
 pub trait Tables {

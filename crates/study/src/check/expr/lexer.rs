@@ -1,6 +1,6 @@
 //! A text to tokens: numbers, names, signs.
 
-use super::syntax::Fault;
+use super::Fault;
 
 /// A token with its place, counted in characters.
 #[derive(Clone, Debug, PartialEq)]

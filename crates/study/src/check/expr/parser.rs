@@ -2,7 +2,7 @@
 
 use super::functions::{Compute, FUNCTIONS, Form, NEGATIVE, OPERATORS, REDUCTIONS, Reduction};
 use super::lexer::{Token, TokenKind, tokens};
-use super::syntax::{Expr, Fault, Loop, Order, Reduce};
+use super::{Expr, Fault, Loop, Order, Reduce};
 use cvtcycle_config::{did_you_mean, near};
 
 /// Deepest nesting of brackets, which limits the recursion.

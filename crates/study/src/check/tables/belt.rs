@@ -1,21 +1,17 @@
 //! The belt alone as a table.
 
-use super::columns::{Column, TableRow, combinations, from_rows, numbers, rpm};
+use super::{Column, TableRow, combinations, from_rows, numbers, rpm};
 use crate::check::expr::Table;
 use crate::check::source::{Kind, Source};
+use crate::points::{GivenFriction, belt_k, belt_load};
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::fluid::{BandFriction, Friction, Lubricant, ZERO_DEGC_K};
+use cvtcycle_model::fluid::{Lubricant, ZERO_DEGC_K};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::point::PointStatus;
 use cvtcycle_model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltPoint, Formulation, Geometry, belt_point, sliding_speed_m_s,
 };
-
-/// Band friction of the printed forms, where none is given.
-const PRINTED_BAND: f64 = 0.13;
-/// Belt temperature where none is given, K.
-const REFERENCE_K: f64 = 85.0 + ZERO_DEGC_K;
 
 const RATIO: usize = 0;
 const SPEED: usize = 1;
@@ -45,7 +41,7 @@ pub fn columns() -> Vec<Column<Solved>> {
         "pressure_bar" s => s.x[PRESSURE] / 1e5;
         "torque_nm" s => s.x[TORQUE];
         "belt_degc" s => s.belt_k - ZERO_DEGC_K;
-        "band_speed_share" s => or(s.x[BAND_SPEED], 0.0);
+        "band_speed_share" s => if s.x[BAND_SPEED].is_nan() { 0.0 } else { s.x[BAND_SPEED] };
         "band_friction" s => s.load.band.mu;
         "primary_radius_mm" s => 1e3 * s.point.geometry.primary_radius_m;
         "secondary_radius_mm" s => 1e3 * s.point.geometry.secondary_radius_m;
@@ -167,59 +163,31 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
     Ok(from_rows(columns.len(), rows))
 }
 
-fn or(x: f64, other: f64) -> f64 {
-    if x.is_nan() { other } else { x }
-}
-
-fn band(x: &[f64], belt: &Belt, fluid: &Friction, eta_pa_s: f64) -> BandFriction {
-    let is_smooth = belt.formulation == Formulation::Smooth;
-    let mu = or(
-        x[BAND_FRICTION],
-        if is_smooth { fluid.band } else { PRINTED_BAND },
-    );
-    if x[BELT_TEMP].is_nan() {
-        let film_share = 0.0;
-        return BandFriction { mu, film_share };
-    }
-    let sliding = match is_smooth {
-        true => sliding_speed_m_s(belt, x[RATIO], x[SPEED]),
-        false => 0.0,
-    };
-    Friction { band: mu, ..*fluid }.band(x[BELT_TEMP], eta_pa_s, sliding)
-}
-
 fn solve(x: Vec<f64>, cvt: &Cvt, belt: &Belt, oil: &Lubricant) -> Solved {
     let mut at = BeltAtRatio::new(belt, x[RATIO]);
     if !x[ON_STOP].is_nan() {
         at.prepared.stop = 1.0 - x[ON_STOP];
     }
-    let fluid = &oil.friction;
-    let segment = match belt.formulation {
-        Formulation::Smooth => fluid.segment,
-        printed => printed.segment_friction(fluid.segment),
+    let given = GivenFriction {
+        band: x[BAND_FRICTION],
+        segment: x[SEGMENT_FRICTION],
+        belt_k: x[BELT_TEMP],
     };
-    let belt_k = or(x[BELT_TEMP], REFERENCE_K);
-    let eta_pa_s = oil.dynamic_pa_s(belt_k);
     let load = BeltLoad {
-        primary_speed_rad_s: x[SPEED],
         output_torque_nm: x[TORQUE],
         secondary_clamp_n: cvt.secondary_clamp_n(x[PRESSURE], x[SPEED] / x[RATIO]),
-        band: band(&x, belt, fluid, eta_pa_s),
-        eta_pa_s,
-        film_thickness_m: fluid.film_thickness_m,
-        segment_friction: or(x[SEGMENT_FRICTION], segment),
-        flank_friction: fluid.flank,
+        ..belt_load(oil, belt, x[RATIO], x[SPEED], &given)
     };
     let mut point = belt_point(belt, &at, &load);
     if !x[BAND_SPEED].is_nan() {
         point = point.with_band_speed(belt, x[BAND_SPEED]);
     }
     Solved {
+        belt_k: belt_k(x[BELT_TEMP]),
         x,
         belt: belt.clone(),
         at,
         load,
-        belt_k,
         point,
     }
 }

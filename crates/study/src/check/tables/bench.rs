@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use super::belt;
-use super::columns::{Column, TableRow, combinations, from_rows, numbers, rpm};
+use super::{Column, TableRow, combinations, from_rows, numbers, rpm};
 use crate::check::expr::{Table, truth};
 use crate::check::keys::BENCH;
 use crate::check::source::Source;

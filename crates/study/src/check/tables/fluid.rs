@@ -1,6 +1,6 @@
 //! A fluid over temperature as a table.
 
-use super::columns::{Column, TableRow, from_rows, numbers};
+use super::{Column, TableRow, from_rows, numbers};
 use crate::check::expr::Table;
 use crate::check::keys::FLUID;
 use crate::check::source::Source;

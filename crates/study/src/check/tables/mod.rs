@@ -1,7 +1,12 @@
 //! Sources to tables of numbers in engineer's units.
 
-#[macro_use]
-mod columns;
+/// Columns of rows `R`, one a line: `NAME ROW => NUMBER;`.
+macro_rules! columns {
+    ($row:ty; $($name:literal $r:pat => $value:expr;)*) => {
+        vec![$(Column::<$row> { name: $name, get: |$r: &$row| $value }),*]
+    };
+}
+
 mod belt;
 pub mod bench;
 mod fluid;
@@ -13,9 +18,70 @@ use super::source::{Kind, Source};
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::bench::transmission::Conditions;
 
-use columns::names;
-
+use cvtcycle_model::keys::rpm;
 pub use run::{Driven, drive};
+
+/// A column: its name with the unit, and the number of a row.
+pub struct Column<R> {
+    pub name: &'static str,
+    pub get: fn(&R) -> f64,
+}
+
+pub fn names<R>(columns: Vec<Column<R>>) -> impl Iterator<Item = &'static str> {
+    columns.into_iter().map(|column| column.name)
+}
+
+pub fn numbers<R>(columns: &[Column<R>], row: &R) -> impl Iterator<Item = f64> {
+    columns.iter().map(move |column| (column.get)(row))
+}
+
+/// Every combination of the values of some axes, the last axis fastest.
+pub fn combinations(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    axes.iter().fold(vec![Vec::new()], |rows, axis| {
+        let with = |row: &Vec<f64>, x: f64| row.iter().copied().chain([x]).collect::<Vec<f64>>();
+        rows.iter()
+            .flat_map(|row| axis.iter().map(move |x| with(row, *x)))
+            .collect()
+    })
+}
+
+/// A row of a table.
+pub struct TableRow {
+    pub numbers: Vec<f64>,
+    pub weight: f64,
+    /// The belt slips grossly.
+    pub gross: bool,
+    /// Outside the validity of a model.
+    pub outside: bool,
+}
+
+impl TableRow {
+    pub fn new(numbers: impl Iterator<Item = f64>) -> Self {
+        TableRow {
+            numbers: numbers.collect(),
+            weight: 1.0,
+            gross: false,
+            outside: false,
+        }
+    }
+}
+
+/// A table of `count` columns.
+pub fn from_rows(count: usize, rows: impl Iterator<Item = TableRow>) -> Table {
+    let mut table = Table {
+        columns: vec![Vec::new(); count],
+        ..Table::default()
+    };
+    for row in rows {
+        for (column, x) in table.columns.iter_mut().zip(row.numbers) {
+            column.push(x);
+        }
+        table.weight.push(row.weight);
+        table.gross.push(row.gross);
+        table.outside.push(row.outside);
+    }
+    table
+}
 
 /// Names of the columns of a kind of source, or of its totals.
 #[must_use]

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use super::bench;
-use super::columns::{TableRow, from_rows, rpm};
+use super::{TableRow, from_rows, rpm};
 use crate::check::expr::{Table, truth};
 use crate::check::keys::{STRIP_DOWN, TRANSIENT};
 use crate::check::source::Source;

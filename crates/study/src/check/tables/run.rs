@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use super::columns::{Column, TableRow, from_rows, names, numbers};
+use super::{Column, TableRow, from_rows, names, numbers};
 use crate::check::expr::{Table, truth};
 use crate::check::source::{Source, cycle};
 use cvtcycle_config::cycle::Cycle;

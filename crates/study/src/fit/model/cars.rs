@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use crate::check::source::Source;
 use crate::fit::plan::{CalibrationPlan, FreeParameter, Observable, problem};
 use crate::fit::solve::Parameter;
+use cvtcycle_config::ProblemKind::{Conflict, Missing, OutOfRange};
 use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle_config::setup::{Setup, load};
 use cvtcycle_config::{Argument, Input, KeyInfo, Override, Place, Problem, ProblemKind, Problems};
@@ -183,7 +184,14 @@ impl<'p> Cars<'p> {
             source.name, free.key
         );
         let hint = "fit the two fluids in plans of their own";
-        Some(problem(&source.place, "lubricant", "", message, hint))
+        Some(problem(
+            Conflict,
+            &source.place,
+            "lubricant",
+            "",
+            message,
+            hint,
+        ))
     }
 
     /// Parameters that an override sets.
@@ -193,7 +201,14 @@ impl<'p> Cars<'p> {
         both.map(|free| {
             let message = format!("`{}` is set and free", free.key);
             let hint = "what is set is held: remove it from `set`, or remove its [[parameter]]";
-            problem(&place.clone().of_item(&free.key), "set", "", message, hint)
+            problem(
+                Conflict,
+                &place.clone().of_item(&free.key),
+                "set",
+                "",
+                message,
+                hint,
+            )
         })
         .collect()
     }
@@ -247,7 +262,8 @@ fn at_bounds(free: &FreeParameter, slot: &ParameterRef, bench: &mut Variant) -> 
         } else {
             &first.allowed
         };
-        problems.push(problem(place, word, allowed, message, hint).value(value.to_string()));
+        let problem = problem(first.kind, place, word, allowed, message, hint).names_key();
+        problems.push(problem.value(value.to_string()));
     }
     problems
 }
@@ -255,17 +271,27 @@ fn at_bounds(free: &FreeParameter, slot: &ParameterRef, bench: &mut Variant) -> 
 /// The parameter of the fit.
 fn parameter(free: &FreeParameter, slot: &ParameterRef, problems: &mut Problems) -> Parameter {
     let start = free.start.unwrap_or(slot.base());
-    let mut refuse = |allowed: &str, message: &str, hint: &str| {
+    let mut refuse = |kind, allowed: &str, message: &str, hint: &str| {
         let message = format!("parameter {}: {message}", free.key);
-        problems.push(problem(&free.place, "start", allowed, message, hint));
+        problems.push(problem(kind, &free.place, "start", allowed, message, hint));
     };
     if start.is_nan() {
         let hint = "add `start`, in the unit of the key";
-        refuse("a number", "the file has no value to start from", hint);
+        refuse(
+            Missing,
+            "a number",
+            "the file has no value to start from",
+            hint,
+        );
     } else if !(free.low..=free.high).contains(&start) {
         let allowed = format!("{} to {}", free.low, free.high);
         let message = format!("the file's value {start} is outside the bounds");
-        refuse(&allowed, &message, "widen the bounds, or add `start`");
+        refuse(
+            OutOfRange,
+            &allowed,
+            &message,
+            "widen the bounds, or add `start`",
+        );
     }
     Parameter {
         prior: free.prior,

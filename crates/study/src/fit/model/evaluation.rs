@@ -193,7 +193,7 @@ impl store::Cars for WithValues<'_> {
             Car::Fixed(setup) => Ok(Rc::new(setup.clone())),
             Car::Fitted(index) => {
                 let built = once(&self.built, index, || self.build(index));
-                built.map_err(|message| Problem::invalid(message).into())
+                built.map_err(|message| Problem::failed(message).into())
             }
         }
     }

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use super::keys::DATA;
-use super::types::{BenchPoints, Context, Found, Measured, Observable, Observation};
+use super::{BenchPoints, Context, Found, Measured, Observable, Observation};
 use crate::check::source::{self, Kind, Source};
 use crate::check::tables::{self, bench};
 use crate::fit::data::sheet::{SD, Sheet, and_more};
-use crate::fit::data::{bytes_of, points, scalars, trace};
-use cvtcycle_config::{Bound, Problem, Problems, Section, did_you_mean, unit_of};
+use crate::fit::data::{TIME, bench_points, bytes_of, read_points, read_scalars, read_trace};
+use cvtcycle_config::{Bound, Problem, ProblemKind, Problems, Section, did_you_mean, unit_of};
 use cvtcycle_model::keys::{Quantity, Values};
-use cvtcycle_output::hash::hash;
+use cvtcycle_output::provenance::hash;
 
 /// Reads the file of a group; what is wrong is reported to `s`.
 pub(super) fn read(s: &Section, way: &str, context: &Context, found: &mut Found) {
@@ -92,7 +92,7 @@ impl Deviations {
                 let hint = did_you_mean(name, measured());
                 let hint = hint.unwrap_or_else(|| "remove it".to_owned());
                 let table = s.table("sd_by_column");
-                table.complain(name, "measured columns of the file", &message, &hint);
+                table.unknown_key(name, "measured columns of the file", &message, &hint);
             }
         }
         for (k, name) in sheet.measured.iter().zip(measured()) {
@@ -105,8 +105,8 @@ impl Deviations {
             if let Some(row) = (0..sheet.rows.len()).find(lacks) {
                 let message = format!("{name} has no standard deviation here");
                 let hint = format!("add a column {SD}{name}, or `sd` to the [[data]] of the plan");
-                let problem = Problem::invalid(message).allowed("a standard deviation");
-                s.report_problem(sheet.problem(row, *k, problem.hint(hint)));
+                let problem = Problem::missing(message).allowed("a standard deviation");
+                s.report_problem(sheet.problem(row, *k, problem.hint(hint)).names_key());
             }
         }
     }
@@ -147,7 +147,7 @@ fn of_points(s: &Section, (path, bytes): File, context: &Context, found: &mut Fo
     };
     let fold_by = s.optional_text(&DATA.fold_by);
     let Some(bytes) = bytes else { return };
-    let (sheet, problems) = points::read(path, bytes);
+    let (sheet, problems) = read_points(path, bytes);
     report(s, problems);
     let Some(sheet) = sheet else { return };
     deviations.check(s, &sheet);
@@ -157,7 +157,7 @@ fn of_points(s: &Section, (path, bytes): File, context: &Context, found: &mut Fo
         let columns: Vec<&str> = columns.filter(|name| !name.is_empty()).collect();
         let message = format!("the file has no column `{name}`");
         let hint = "name one of the file's columns";
-        s.complain("fold_by", &columns.join(", "), &message, hint);
+        s.unknown_key("fold_by", &columns.join(", "), &message, hint);
     }
     let (names, bench) = (bench::columns(), context.benches);
     for row in 0..sheet.rows.len() {
@@ -185,7 +185,7 @@ fn of_points(s: &Section, (path, bytes): File, context: &Context, found: &mut Fo
         }
     }
     found.benches.push(BenchPoints {
-        points: points::points(&sheet, bench::parts(&car)),
+        points: bench_points(&sheet, bench::parts(&car)),
         source: car,
     });
 }
@@ -224,7 +224,7 @@ fn source_of(s: &Section, way: &str, kinds: &[Kind], context: &Context) -> Optio
         let add = "add [sources.NAME] with source = \"run\", its cycle, ambient and start";
         let hint = did_you_mean(&name, known.iter().copied()).unwrap_or_else(|| add.to_owned());
         let message = format!("there is no such source `{name}` for a {way} file");
-        s.complain("source", &known.join(", "), &message, &hint);
+        s.unknown_name("source", &known.join(", "), &message, &hint);
         return None;
     };
     let ratios = source.axes.iter().find(|(key, _)| *key == "ratio");
@@ -234,7 +234,13 @@ fn source_of(s: &Section, way: &str, kinds: &[Kind], context: &Context) -> Optio
     if source.kind == Kind::Transient && tests > 1 {
         let message = format!("source `{name}` is {tests} tests, one at each ratio");
         let hint = "write a source with one `ratio`, continuing it with `like`";
-        s.complain("source", "a source of one test", &message, hint);
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            "source",
+            "a source of one test",
+            &message,
+            hint,
+        );
         return None;
     }
     Some((*source).clone())
@@ -254,12 +260,12 @@ fn of_trace(s: &Section, (path, bytes): File, context: &Context, found: &mut Fou
         .into_iter()
         .flat_map(|kind| tables::columns(kind, false));
     let names: Vec<&'static str> = names.collect();
-    let (sheet, problems) = trace::read(path, bytes, &names);
+    let (sheet, problems) = read_trace(path, bytes, &names);
     report(s, problems);
     let Some(sheet) = sheet else { return };
     deviations.check(s, &sheet);
     let Some(source) = source else { return };
-    let time = sheet.find(trace::TIME);
+    let time = sheet.find(TIME);
     let at = |row: usize| sheet.number(row, time).unwrap_or(f64::NAN);
     if let Some(end_s) = end_of(&source) {
         let late = (0..sheet.rows.len()).filter(|row| at(*row) > end_s);
@@ -267,7 +273,7 @@ fn of_trace(s: &Section, (path, bytes): File, context: &Context, found: &mut Fou
         if let Some(first) = late.first() {
             let more = and_more(late.len());
             let problem =
-                Problem::invalid(format!("this time is beyond the end of the cycle{more}"))
+                Problem::out_of_range(format!("this time is beyond the end of the cycle{more}"))
                     .allowed(format!("up to {end_s} s"))
                     .hint("cut the trace, or name the cycle that was driven");
             s.report_problem(sheet.problem(*first, time.unwrap_or(0), problem));
@@ -316,7 +322,7 @@ fn of_scalars(s: &Section, (path, bytes): File, context: &Context, found: &mut F
         .as_ref()
         .and_then(|source| source::cycle(source).ok());
     let phases = cycle.as_ref().map(source::phases);
-    let (sheet, problems) = scalars::read(path, bytes, &names, phases.as_deref());
+    let (sheet, problems) = read_scalars(path, bytes, &names, phases.as_deref());
     report(s, problems);
     let (Some(source), Some(sheet)) = (source, sheet) else {
         return;

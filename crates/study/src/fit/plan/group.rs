@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use super::files;
 use super::keys::DATA;
-use super::types::{Context, Found, Group, Measured, Observable, Observation, problem};
+use super::{Context, Found, Group, Measured, Observable, Observation, problem};
+use crate::check::checks::expression;
 use crate::check::checks::number_or_range;
 use crate::check::expr::{Expr, Gives};
-use crate::check::names::expression;
 use crate::check::rows::ValidationRow;
 use crate::check::rule::Printed;
+use cvtcycle_config::ProblemKind::{Conflict, Duplicate, Missing, WrongType};
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean};
 use cvtcycle_model::keys::Values;
 
@@ -45,6 +46,7 @@ pub(super) fn read(document: &Document, context: &Context) -> Result<Found, Prob
             let hint = "give `rows`, `compute`, `points`, `trace` or `scalars`";
             let message = "the group has no data".to_owned();
             s.report_problem(problem(
+                Missing,
                 &s.place("rows"),
                 "",
                 &WAYS.join(", "),
@@ -54,7 +56,7 @@ pub(super) fn read(document: &Document, context: &Context) -> Result<Found, Prob
         }
         [.., last] => {
             let message = format!("{} in one group", ways.join(" and "));
-            s.complain(last, "one of them", &message, "write a [[data]] for each");
+            s.conflict(last, "one of them", &message, "write a [[data]] for each");
             // Which keys belong to it is not known.
             s.pass_over();
         }
@@ -77,7 +79,14 @@ pub(super) fn read(document: &Document, context: &Context) -> Result<Found, Prob
             _ => "name a CSV file, relative to the plan, and fill the cells of what was measured",
         };
         let message = "there is no measured number in it".to_owned();
-        let nothing = problem(&place, way, "at least one measured number", message, hint);
+        let nothing = problem(
+            Missing,
+            &place,
+            way,
+            "at least one measured number",
+            message,
+            hint,
+        );
         return Err(in_group(nothing).into());
     }
     Ok(found)
@@ -86,17 +95,17 @@ pub(super) fn read(document: &Document, context: &Context) -> Result<Found, Prob
 /// The standard deviation that a whole group has: `sd`, or a share of what was measured.
 fn sd_of(s: &Section) -> impl Fn(f64) -> f64 {
     let (absolute, share) = (s.optional(&DATA.sd), s.optional(&DATA.sd_share));
-    let (key, message, hint) = match (absolute, share) {
-        (Some(_), Some(_)) => ("sd_share", "`sd` with `sd_share`", "keep one of them"),
-        (None, None) => (
-            "sd",
-            "the data have no standard deviation",
-            "how far may a repeated measurement be off? give that as `sd`",
-        ),
-        _ => ("", "", ""),
-    };
-    if !key.is_empty() {
-        s.complain(key, "`sd` or `sd_share`", message, hint);
+    let (allowed, both) = ("`sd` or `sd_share`", "`sd` with `sd_share`");
+    match (absolute, share) {
+        (Some(_), Some(_)) => {
+            s.complain_by_name(Conflict, "sd_share", allowed, both, "keep one of them");
+        }
+        (None, None) => {
+            let message = "the data have no standard deviation";
+            let hint = "how far may a repeated measurement be off? give that as `sd`";
+            s.missing("sd", allowed, message, hint);
+        }
+        _ => {}
     }
     let of_share = move |x: f64| share.map(|share| share * x.abs());
     move |x: f64| absolute.or(of_share(x)).unwrap_or(f64::NAN)
@@ -109,7 +118,7 @@ fn share_of_zero(s: &Section, what: &str, size: f64) {
         let message =
             format!("{what} is 0, or a range about 0: no share of it is a standard deviation");
         let hint = "give `sd` in the unit of the data";
-        s.complain("sd_share", "for numbers other than 0", &message, hint);
+        s.conflict("sd_share", "for numbers other than 0", &message, hint);
     }
 }
 
@@ -133,41 +142,46 @@ fn rows(s: &Section, context: &Context, found: &mut Found) {
                 });
                 found.rows.push(id);
             }
-            Err((message, hint)) => {
-                let allowed = "rows that compute a number";
-                let problem = problem(&place, "rows", allowed, message, &hint);
-                s.report_problem(problem.value(format!("{id:?}")));
-            }
+            Err(problem) => s.report_problem(
+                problem
+                    .at(place)
+                    .key("rows")
+                    .value(format!("{id:?}"))
+                    .allowed("rows that compute a number"),
+            ),
         }
     }
 }
 
-/// A validation row that gives a number, with the index of its list of sources; or message and hint.
+/// A validation row that gives a number, with the index of its list of sources; or what is wrong.
 fn row<'a>(
     id: &String,
     context: &Context<'a>,
     found: &Found,
-) -> Result<(usize, &'a ValidationRow, &'a Expr, Measured), (String, String)> {
+) -> Result<(usize, &'a ValidationRow, &'a Expr, Measured), Problem> {
     let files = context.rows.iter().enumerate();
     let mut all = files.flat_map(|(k, file)| file.rows.iter().map(move |row| (k + 1, row)));
-    let refuse = |message: &str, hint: &str| Err((format!("row {id} {message}"), hint.to_owned()));
+    let refuse = |kind, message: &str, hint: &str| {
+        Err(Problem::new(kind, format!("row {id} {message}")).hint(hint))
+    };
     let Some((view, row)) = all.find(|(_, row)| row.id == *id) else {
         let known = context.rows.iter().flat_map(|file| &file.rows);
         let hint = did_you_mean(id, known.map(|row| &*row.id))
             .unwrap_or_else(|| "`cvtcycle validate` lists them".to_owned());
-        return Err((format!("there is no validation row `{id}`"), hint));
+        let message = format!("there is no validation row `{id}`");
+        return Err(Problem::unknown_name(message).hint(hint));
     };
     let (Some(expr), Some(Printed::Range(low, high))) = (&row.compute, row.printed) else {
         let hint =
             "an order or a sign has no residual: write its margin as a `compute` of your own";
-        return refuse("computes no number", hint);
+        return refuse(WrongType, "computes no number", hint);
     };
     if expr.gives() != Gives::Number {
         let hint = "write its ends as `compute = \"min(...)\"` and `\"max(...)\"`";
-        return refuse("computes a range", hint);
+        return refuse(WrongType, "computes a range", hint);
     }
     if found.rows.contains(id) {
-        return refuse("is there twice", "remove one");
+        return refuse(Duplicate, "is there twice", "remove one");
     }
     Ok((view, row, expr, Measured::between(low, high)))
 }
@@ -180,7 +194,7 @@ fn statement(s: &Section, context: &Context, found: &mut Found) {
     if measured.is_none() {
         let hint = "add `value`, or `low` and `high`";
         let allowed = "value, or low and high";
-        s.complain("value", allowed, "nothing was measured", hint);
+        s.missing("value", allowed, "nothing was measured", hint);
     }
     let (low, high) = measured.unwrap_or((f64::NAN, f64::NAN));
     let measured = Measured::between(low, high);
@@ -194,7 +208,7 @@ fn statement(s: &Section, context: &Context, found: &mut Found) {
         let message = "`compute` gives no single number";
         let hint =
             "write a range as `min(...)` and `max(...)`, an order as a difference with `low = 0`";
-        s.complain("compute", "a number", message, hint);
+        s.complain_by_name(WrongType, "compute", "a number", message, hint);
         return;
     }
     let label = if s.has("name") {

@@ -1,8 +1,9 @@
 //! One `[[parameter]]` of a plan.
 
+use super::FreeParameter;
 use super::keys::{PARAMETER, PRIOR};
-use super::types::FreeParameter;
 use crate::fit::solve::Prior;
+use cvtcycle_config::ProblemKind;
 use cvtcycle_config::{Document, Problems, Reader, Section};
 use cvtcycle_model::keys::Values;
 
@@ -17,7 +18,7 @@ pub(super) fn read(document: &Document) -> Result<FreeParameter, Problems> {
     if !key.is_empty() && !key.contains('.') {
         let allowed = "a dotted key of the vehicle's files";
         let message = format!("`{key}` is no dotted key");
-        s.complain(
+        s.unknown_key(
             "key",
             allowed,
             &message,
@@ -27,20 +28,32 @@ pub(super) fn read(document: &Document) -> Result<FreeParameter, Problems> {
     let [low, high] = [&PARAMETER.low, &PARAMETER.high].map(|key| Values::number(&s, key));
     if low >= high {
         let hint = "swap them, or leave the parameter out to hold it";
-        s.complain("low", "below `high`", "`low` is not below `high`", hint);
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            "low",
+            "below `high`",
+            "`low` is not below `high`",
+            hint,
+        );
     }
     let start = s.optional(&PARAMETER.start);
     let inside = |x: f64| low <= x && x <= high;
     if start.is_some_and(|x| !inside(x) && low < high && x.is_finite()) {
         let (allowed, hint) = (format!("{low} to {high}"), "move it, or widen the bounds");
-        s.complain("start", &allowed, "`start` is outside the bounds", hint);
+        s.complain_by_name(
+            ProblemKind::OutOfRange,
+            "start",
+            &allowed,
+            "`start` is outside the bounds",
+            hint,
+        );
     }
     let prior = prior(&s);
     let status = s.word(&PARAMETER.status);
     if prior.is_some() && !s.has("status") {
         let allowed = PARAMETER.status.allowed();
         let hint = "add `status = \"assumed\"`";
-        s.complain("status", &allowed, "a prior needs a status", hint);
+        s.missing("status", &allowed, "a prior needs a status", hint);
     }
     let free = FreeParameter {
         low,
@@ -71,7 +84,7 @@ fn prior(s: &Section) -> Option<Prior> {
     if sd <= 0.0 {
         let message = "the standard deviation is not above 0";
         let hint = "leave the parameter out to hold it at its value";
-        s.complain("sd", "above 0", message, hint);
+        s.out_of_range("sd", "above 0", message, hint);
     }
     Some(Prior { mean, sd })
 }

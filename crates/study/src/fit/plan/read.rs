@@ -2,19 +2,16 @@
 
 use std::sync::OnceLock;
 
-use super::clashes::clashes;
-use super::group;
 use super::keys::HEAD;
-use super::parameter;
-use super::types::{CalibrationPlan, Context, Found, problem};
-use crate::check::CandidateVehicle;
-use crate::check::names::FileNames;
+use super::{CalibrationPlan, Context, Found, group, parameter, problem};
+use crate::check::checks::FileNames;
 use crate::check::rows::RowFile;
 use crate::check::source::{self, Source, relative_to};
-use crate::check::{COMMON, embedded_rows};
+use crate::check::{COMMON, CandidateVehicle, embedded_rows};
 use crate::fit::solve::Options;
+use cvtcycle_config::ProblemKind::{self, Duplicate, Missing};
 use cvtcycle_config::setup::{Kind, NamedBy, catalogue, text_of};
-use cvtcycle_config::{Document, Problem, ProblemKind, Problems, Reader, Section, near};
+use cvtcycle_config::{Document, Place, Problem, Problems, Reader, Section, near};
 use cvtcycle_model::keys::Values;
 
 /// Reads the plan that a word of the user means: an embedded name, or the path of a TOML file.
@@ -70,7 +67,14 @@ fn partly(file: &str, text: &str) -> Result<(CalibrationPlan, Problems), Problem
         let message = "the plan has no [calibration]".to_owned();
         let hint = "add [calibration] with the vehicle that is fitted";
         let place = &plan.place;
-        problems.push(problem(place, "calibration", "a table", message, hint));
+        problems.push(problem(
+            Missing,
+            place,
+            "calibration",
+            "a table",
+            message,
+            hint,
+        ));
     }
     // What is written in another way is there all the same.
     let written = [("[[parameter]]", &parameters), ("[[data]]", &data)];
@@ -206,4 +210,74 @@ fn join(plan: &mut CalibrationPlan, found: Found) {
     plan.runs.extend(found.runs);
     plan.rows.extend(found.rows);
     plan.files.extend(found.files);
+}
+
+/// All clashes; `[parameters, groups]` is how many were written, and `sound` whether nothing else is wrong.
+fn clashes(plan: &CalibrationPlan, [parameters, groups]: [usize; 2], sound: bool) -> Problems {
+    let mut problems = Problems::new();
+    let mut add = |kind, place: &Place, key: &str, allowed: &str, message: String, hint: &str| {
+        problems.push(problem(kind, place, key, allowed, message, hint));
+    };
+    if parameters == 0 {
+        let (allowed, message) = ("at least one [[parameter]]", "nothing is free".to_owned());
+        let hint = "add a [[parameter]] with key, low and high";
+        add(Missing, &plan.place, "parameter", allowed, message, hint);
+    }
+    if groups == 0 {
+        let (allowed, message) = ("at least one [[data]]", "there are no data".to_owned());
+        let hint = "add a [[data]] with what was measured";
+        add(Missing, &plan.place, "data", allowed, message, hint);
+    }
+    for (k, free) in plan.parameters.iter().enumerate() {
+        if let Some(first) = plan.parameters[..k]
+            .iter()
+            .find(|other| other.key == free.key)
+        {
+            let (key, line) = (&free.key, first.place.line);
+            let message = format!("`{key}` is free twice, first in line {line}");
+            add(Duplicate, &free.place, "key", "", message, "remove one");
+        }
+    }
+    for (k, group) in plan.groups.iter().enumerate() {
+        if let Some(first) = plan.groups[..k]
+            .iter()
+            .find(|other| other.name == group.name)
+        {
+            let (name, line) = (&group.name, first.place.line);
+            let message = format!("the name `{name}` was used before, by the data in line {line}");
+            add(
+                Duplicate,
+                &group.place,
+                "name",
+                "",
+                message,
+                "give each [[data]] a `name` of its own",
+            );
+        }
+    }
+    for (k, id) in plan.rows.iter().enumerate() {
+        if plan.rows[..k].contains(id) {
+            // Observations of rows bear their identifiers.
+            let last = plan.observations.iter().rfind(|o| o.label == *id);
+            let place = last.map_or(&plan.place, |o| &o.place);
+            let message = format!("row {id} is used by two groups");
+            let hint = "a number counts once: remove it from one of them";
+            add(Duplicate, place, "rows", "", message, hint);
+        }
+    }
+    let measured = plan.observations.len();
+    let priors = plan
+        .parameters
+        .iter()
+        .filter(|free| free.prior.is_some())
+        .count();
+    if sound && groups > 0 && measured + priors < parameters {
+        let message = format!(
+            "too few data: measured numbers {measured}, priors {priors}, parameters {parameters}"
+        );
+        let allowed = format!("at least {parameters} measured numbers and priors together");
+        let hint = "hold some parameters, add data, or give priors";
+        add(Missing, &plan.place, "data", &allowed, message, hint);
+    }
+    problems
 }

@@ -8,7 +8,7 @@ use super::objective::{Objective, prior_residuals};
 use super::search::search;
 use super::starts::starts;
 use super::types::{Failure, Fit, FitEnd, Options, Parameter, Prior, Residuals, Start};
-use crate::progress::Progress;
+use crate::Progress;
 
 /// Fits the parameters: least squares of the residuals and of the priors between the bounds. Starts run in parallel, and so do the
 /// columns of each Jacobian; the best start is the one of least cost, the earlier of equal ones.

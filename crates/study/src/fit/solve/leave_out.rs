@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::fit::fit;
 use super::objective::{EvalError, Objective, wrong_count};
 use super::types::{Fit, FitEnd, Options, Parameter, Residuals};
-use crate::progress::Progress;
+use crate::Progress;
 
 /// A group left out.
 #[derive(Clone, Debug, PartialEq)]

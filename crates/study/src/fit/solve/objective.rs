@@ -8,7 +8,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::types::{Parameter, Residuals};
-use crate::progress::Progress;
+use crate::Progress;
 
 /// Reason for an evaluation without result.
 #[derive(Clone, Debug, PartialEq)]

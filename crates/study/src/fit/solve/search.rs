@@ -137,7 +137,7 @@ fn rounds(
 mod tests {
     use super::super::types::{Parameter, Residuals};
     use super::*;
-    use crate::progress::NoProgress;
+    use crate::NoProgress;
 
     struct Parabola;
 

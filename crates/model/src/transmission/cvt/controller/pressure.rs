@@ -93,26 +93,26 @@ impl MapLaw {
 keys! {
     /// Keys of `[transmission.cvt.clamp.torque_following]`.
     FOLLOWING: FollowingKeys = "torque_following" [] {
-        safety_factor: or(1.3, number(0.5, 10.0)), "capacity over torque (PC-3)";
-        least_torque_nm: or(20.0, number(0.0, 500.0)), "smallest torque clamped for (PC-3)";
+        safety_factor: or(1.3, number(0.5, 10.0)), "capacity over torque", ["PC-3"];
+        least_torque_nm: or(20.0, number(0.0, 500.0)), "smallest torque clamped for", ["PC-3"];
     }
 
     /// Keys of `[transmission.cvt.clamp.slip_limited]`.
     SLIP: SlipKeys = "slip_limited" [] {
-        slip_percent: or(2.0, number(0.1, 10.0)), "largest slip (PC-4)";
-        safety_factor: or(1.05, number(0.5, 10.0)), "smallest capacity over torque (PC-4)";
-        least_torque_nm: or(20.0, number(0.0, 500.0)), "smallest torque clamped for (PC-4)";
+        slip_percent: or(2.0, number(0.1, 10.0)), "largest slip", ["PC-4"];
+        safety_factor: or(1.05, number(0.5, 10.0)), "smallest capacity over torque", ["PC-4"];
+        least_torque_nm: or(20.0, number(0.0, 500.0)), "smallest torque clamped for", ["PC-4"];
     }
 
     /// Keys of `[transmission.cvt.clamp.map]`.
     MAP: ClampKeys = "map" [] {
-        base_bar: number(0.0, 200.0), "pressure in low at closed throttle (PC-1)";
-        throttle_bar: number(0.0, 200.0), "rise to full throttle (PC-1)";
-        cold_per_k: number(0.0, 0.02), "rise per kelvin below 80 degC (PC-1)";
-        slow_factor: number(0.05, 1.5), "factor at the slow speed (PC-2)";
-        slow_rpm: number(0.0, 10_000.0), "slow speed (PC-2)";
-        full_rpm: number(0.0, 10_000.0), "speed at which the factor is 1 (PC-2)";
-        fall_per_1000_rpm: or(0.0, number(0.0, 0.2)), "fall of the factor per 1000 rpm above full_rpm (PC-2)";
+        base_bar: number(0.0, 200.0), "pressure in low at closed throttle", ["PC-1"];
+        throttle_bar: number(0.0, 200.0), "rise to full throttle", ["PC-1"];
+        cold_per_k: number(0.0, 0.02), "rise per kelvin below 80 degC", ["PC-1"];
+        slow_factor: number(0.05, 1.5), "factor at the slow speed", ["PC-2"];
+        slow_rpm: number(0.0, 10_000.0), "slow speed", ["PC-2"];
+        full_rpm: number(0.0, 10_000.0), "speed at which the factor is 1", ["PC-2"];
+        fall_per_1000_rpm: or(0.0, number(0.0, 0.2)), "fall of the factor per 1000 rpm above full_rpm", ["PC-2"];
     }
 }
 

@@ -165,15 +165,15 @@ keys! {
     RATIO: RatioKeys = "ratio" [] {
         low: number(0.3, 3.3), "belt ratio of the lowest gear";
         high: number(0.3, 3.3), "belt ratio of the highest gear";
-        gentle_rpm: number(500.0, 10_000.0), "engine speed in gentle driving (RC-1)";
-        gentle_power_share: number(0.0, 1.0), "share of rated power up to which driving is gentle (RC-1)";
-        rise_rpm: number(0.0, 20_000.0), "rise of engine speed over the share of rated power above it (RC-1)";
-        overrun_rpm: optional(number(500.0, 10_000.0)), "engine speed in overrun; absent: that of gentle driving (RC-2)";
-        route_efficiency: or(0.85, number(0.3, 1.0)), "wheel power over engine power on the full-load route (RC-3)";
-        up_per_s: above(0.0, 20.0), "rate of ln I towards high (RC-4)";
-        down_per_s: above(0.0, 20.0), "rate of ln I towards low (RC-4)";
-        rate_speed_rpm: number(500.0, 10_000.0), "primary speed from which the full rates hold (RC-4)";
-        hysteresis: or(0.05, number(0.0, 0.5)), "change of ln I from which the ratio turns round (RC-10)";
+        gentle_rpm: number(500.0, 10_000.0), "engine speed in gentle driving", ["RC-1"];
+        gentle_power_share: number(0.0, 1.0), "share of rated power up to which driving is gentle", ["RC-1"];
+        rise_rpm: number(0.0, 20_000.0), "rise of engine speed over the share of rated power above it", ["RC-1"];
+        overrun_rpm: optional(number(500.0, 10_000.0)), "engine speed in overrun; absent: that of gentle driving", ["RC-2"];
+        route_efficiency: or(0.85, number(0.3, 1.0)), "wheel power over engine power on the full-load route", ["RC-3"];
+        up_per_s: above(0.0, 20.0), "rate of ln I towards high", ["RC-4"];
+        down_per_s: above(0.0, 20.0), "rate of ln I towards low", ["RC-4"];
+        rate_speed_rpm: number(500.0, 10_000.0), "primary speed from which the full rates hold", ["RC-4"];
+        hysteresis: or(0.05, number(0.0, 0.5)), "change of ln I from which the ratio turns round", ["RC-10"];
     }
 }
 

@@ -7,36 +7,36 @@ keys! {
     /// Keys of `[transmission.cvt.belt]`.
     BELT: BeltKeys = "belt" [] {
         length_m: number(0.2, 2.0), "length of the belt";
-        thrust_ratio: optional(rows(&[("ratio", Bound::closed(0.2, 5.0)), ("thrust_ratio", Bound::closed(0.2, 5.0))])), "rows [belt ratio, F_p/F_s]; replaces the wrap ratio (TE-1)";
-        segment_thickness_mm: number(0.5, 5.0), "thickness of a segment (SL-4)";
-        band_count: integer(1, 40, 12), "bands in a pack (BT-2)";
-        band_thickness_mm: number(0.05, 1.0), "thickness of a band (BT-1)";
-        band_width_mm: number(1.0, 100.0), "width of both band packs (SL-1, FI-1)";
-        band_offset_mm: number(0.0, 20.0), "offset of band 1 above the rocking edge (BT-1)";
-        mass_kg: number(0.1, 10.0), "mass of the belt (TE-2)";
-        youngs_gpa: number(50.0, 500.0), "Young's modulus of bands and segments (SL-1)";
-        strut_area_mm2: number(0.5, 200.0), "contact area of segments in the free strut (SL-2)";
-        initial_gap_mm: or(0.0, number(0.0, 100.0)), "sum of the gaps at no load (SL-5)";
-        unity_width: or(0.015, number(1e-4, 0.2)), "smoothing of the tension step at I = 1, in ln I (TE-6)";
-        blend_n: or(120.0, number(1.0, 2000.0)), "blend between loading branches at C_x = 0 (SL-8)";
+        thrust_ratio: optional(rows(&[("ratio", Bound::closed(0.2, 5.0)), ("thrust_ratio", Bound::closed(0.2, 5.0))])), "rows [belt ratio, F_p/F_s]; replaces the wrap ratio", ["TE-1"];
+        segment_thickness_mm: number(0.5, 5.0), "thickness of a segment", ["SL-4"];
+        band_count: integer(1, 40, 12), "bands in a pack", ["BT-2"];
+        band_thickness_mm: number(0.05, 1.0), "thickness of a band", ["BT-1"];
+        band_width_mm: number(1.0, 100.0), "width of both band packs", ["SL-1", "FI-1"];
+        band_offset_mm: number(0.0, 20.0), "offset of band 1 above the rocking edge", ["BT-1"];
+        mass_kg: number(0.1, 10.0), "mass of the belt", ["TE-2"];
+        youngs_gpa: number(50.0, 500.0), "Young's modulus of bands and segments", ["SL-1"];
+        strut_area_mm2: number(0.5, 200.0), "contact area of segments in the free strut", ["SL-2"];
+        initial_gap_mm: or(0.0, number(0.0, 100.0)), "sum of the gaps at no load", ["SL-5"];
+        unity_width: or(0.015, number(1e-4, 0.2)), "smoothing of the tension step at I = 1, in ln I", ["TE-6"];
+        blend_n: or(120.0, number(1.0, 2000.0)), "blend between loading branches at C_x = 0", ["SL-8"];
         // Both pulleys together must leave the belt some grip: at 100 % the engine's speed would have no bound.
-        slip_bound_percent: or(10.0, number(1.0, 40.0)), "bound of each pulley's slip (SL-9)";
+        slip_bound_percent: or(10.0, number(1.0, 40.0)), "bound of each pulley's slip", ["SL-9"];
     }
 
     /// Keys of `[transmission.cvt.variator]`.
     VARIATOR: VariatorKeys = "variator" [] {
         half_wedge_deg: number(4.0, 25.0), "half wedge angle of the pulleys";
-        centre_distance_mm: number(60.0, 400.0), "centre distance of the pulleys (GE-2)";
-        primary_stiffness_n: number(1e5, 1e12), "primary: deflection = R F over this (WE-1)";
-        secondary_stiffness_n: number(1e5, 1e12), "secondary: deflection = R F over this (WE-1)";
-        stop_from_ratio: number(0.3, 5.0), "ratio from which the primary leans on its end stop (WE-4)";
-        stop_to_ratio: number(0.3, 5.0), "ratio at which it rests on it (WE-4)";
-        secondary_piston_cm2: number(5.0, 1000.0), "secondary piston area (VA-3)";
+        centre_distance_mm: number(60.0, 400.0), "centre distance of the pulleys", ["GE-2"];
+        primary_stiffness_n: number(1e5, 1e12), "primary: deflection = R F over this", ["WE-1"];
+        secondary_stiffness_n: number(1e5, 1e12), "secondary: deflection = R F over this", ["WE-1"];
+        stop_from_ratio: number(0.3, 5.0), "ratio from which the primary leans on its end stop", ["WE-4"];
+        stop_to_ratio: number(0.3, 5.0), "ratio at which it rests on it", ["WE-4"];
+        secondary_piston_cm2: number(5.0, 1000.0), "secondary piston area", ["VA-3"];
         primary_piston_cm2: number(5.0, 2000.0), "primary piston area; sets primary pressure and up-shift flow only";
-        spring_n: number(0.0, 10_000.0), "spring force on the secondary (VA-3)";
-        compensated: flag(true), "centrifugal oil head balanced (VA-3)";
-        piston_outer_mm: or(63.0, number(0.0, 300.0)), "outer radius of the secondary's oil chamber (VA-3)";
-        piston_inner_mm: or(30.0, number(0.0, 300.0)), "inner radius of the secondary's oil chamber (VA-3)";
+        spring_n: number(0.0, 10_000.0), "spring force on the secondary", ["VA-3"];
+        compensated: flag(true), "centrifugal oil head balanced", ["VA-3"];
+        piston_outer_mm: or(63.0, number(0.0, 300.0)), "outer radius of the secondary's oil chamber", ["VA-3"];
+        piston_inner_mm: or(30.0, number(0.0, 300.0)), "inner radius of the secondary's oil chamber", ["VA-3"];
     }
 }
 

@@ -1,0 +1,335 @@
+//! A parsed text in which every value knows its place (`shape`, `syntax`: what is no TOML), and the overrides put into it.
+
+pub(crate) mod overrides;
+pub(crate) mod patched;
+mod shape;
+pub(crate) mod syntax;
+
+use std::cell::Cell;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use toml::de::{DeInteger, DeTable, DeValue};
+
+use self::shape::Excess;
+use crate::problem::place::{Input, Place};
+use crate::problem::source::{MAX_VALUE, Source, shortened};
+use crate::problem::{Problem, Problems};
+
+/// A stretch of one source, in bytes.
+#[derive(Clone, Debug)]
+pub(crate) struct Span {
+    pub source: usize,
+    pub range: Range<usize>,
+}
+
+impl Span {
+    /// Whether it comes from an override rather than from the file.
+    pub fn is_set(&self) -> bool {
+        self.source > 0
+    }
+}
+
+/// A value with its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Node {
+    pub value: Value,
+    pub span: Span,
+}
+
+impl Node {
+    /// The value itself where it is of the form `{ value = …, status = … }`.
+    pub fn inner(&self) -> &Node {
+        match &self.value {
+            Value::Table(table) => table.wrapped().unwrap_or(self),
+            _ => self,
+        }
+    }
+}
+
+/// A TOML value; integers too large for 64 bits are kept as floating-point numbers.
+#[derive(Clone, Debug)]
+pub(crate) enum Value {
+    Text(String),
+    Integer(i64),
+    Float(f64),
+    Boolean(bool),
+    Date,
+    List(Vec<Node>),
+    Table(Table),
+}
+
+impl Value {
+    /// What it is, for "expected …, found …".
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Value::Text(_) => "text",
+            Value::Integer(_) => "an integer",
+            Value::Float(_) => "a number",
+            Value::Boolean(_) => "a boolean",
+            Value::Date => "a date",
+            Value::List(_) => "a list",
+            Value::Table(_) => "a table",
+        }
+    }
+
+    /// A number as a file would have it: a whole one as an integer.
+    pub fn of(number: f64) -> Value {
+        const MAX: f64 = 9e18; // below the largest integer
+        let whole = number.trunc();
+        if whole.to_bits() == number.to_bits() && (-MAX..=MAX).contains(&whole) {
+            Value::Integer(whole as i64)
+        } else {
+            Value::Float(number)
+        }
+    }
+
+    /// Says that all of it comes from the source of that index.
+    pub fn move_to(&mut self, source: usize) {
+        let node = |node: &mut Node| {
+            node.span.source = source;
+            node.value.move_to(source);
+        };
+        match self {
+            Value::List(items) => items.iter_mut().for_each(node),
+            Value::Table(table) => table.entries.values_mut().for_each(|entry| {
+                entry.key.source = source;
+                node(&mut entry.node);
+            }),
+            _ => {}
+        }
+    }
+}
+
+/// A table: its entries, and the option that an assignment names for it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Table {
+    pub entries: BTreeMap<String, Entry>,
+    pub choice: Option<Box<Node>>,
+}
+
+impl Table {
+    /// The value of the form `{ value = …, status = … }`.
+    pub fn wrapped(&self) -> Option<&Node> {
+        self.entries.get("value").map(|entry| &entry.node)
+    }
+
+    /// The table at a path of tables in it.
+    pub fn inner_mut(&mut self, path: &[Box<str>]) -> Option<&mut Table> {
+        path.iter().try_fold(self, |table, key| {
+            match &mut table.entries.get_mut(&**key)?.node.value {
+                Value::Table(inner) => Some(inner),
+                _ => None,
+            }
+        })
+    }
+
+    /// Whether an override reaches into it.
+    pub fn is_touched(&self) -> bool {
+        self.entries.values().any(|entry| match &entry.node.value {
+            Value::Table(table) => entry.node.span.is_set() || table.is_touched(),
+            _ => entry.node.span.is_set(),
+        })
+    }
+}
+
+/// A key's place and its value.
+#[derive(Clone, Debug)]
+pub(crate) struct Entry {
+    pub key: Span,
+    pub node: Node,
+}
+
+/// A parsed input with the place of every value.
+#[derive(Clone, Debug)]
+pub struct Document {
+    pub(crate) sources: Vec<Arc<Source>>,
+    pub(crate) root: Table,
+    /// Header of the table, where the document is one item of a list ([`Document::take_tables`]).
+    pub(crate) header: Option<Span>,
+    /// `[[NAME]]` of a table of a list.
+    pub(crate) title: Option<String>,
+}
+
+impl Document {
+    /// Parses `text`; `file` is the name to show in messages.
+    ///
+    /// # Errors
+    /// All places where the text is not valid TOML, at most one per line; beyond some number the rest is counted. One problem where the
+    /// text has more tables or is nested deeper than any input could be.
+    pub fn parse(file: &str, text: &str) -> Result<Document, Problems> {
+        let source = Source::new(Input::File(file.to_owned()), text);
+        if let Some(excess) = shape::excess(text) {
+            return Err(too_much(&source, excess).into());
+        }
+        let (table, errors) = DeTable::parse_recoverable(text);
+        if !errors.is_empty() {
+            return Err(syntax::problems(&source, &errors));
+        }
+        let levels = Levels::default();
+        let root = levels.table(table.get_ref(), 0);
+        match levels.too_deep.take() {
+            Some(at) => Err(nested(&source, at).into()),
+            None => Ok(Document {
+                sources: vec![Arc::new(source)],
+                root,
+                header: None,
+                title: None,
+            }),
+        }
+    }
+
+    /// Takes the tables of the list `key` (`[[key]]`) out, each as a document of its own with its places in this text. What is not a
+    /// list of tables stays, so that reading the rest reports it.
+    pub fn take_tables(&mut self, key: &str) -> Vec<Document> {
+        let is_table = |node: &Node| matches!(node.value, Value::Table(_));
+        let all = |entry: &Entry| matches!(&entry.node.value, Value::List(items) if items.iter().all(is_table));
+        if !self.root.entries.get(key).is_some_and(all) {
+            return Vec::new();
+        }
+        let Some(Entry {
+            node: Node {
+                value: Value::List(items),
+                ..
+            },
+            ..
+        }) = self.root.entries.remove(key)
+        else {
+            return Vec::new();
+        };
+        let document = |item: Node| match item.value {
+            Value::Table(root) => Some(Document {
+                sources: self.sources.clone(),
+                root,
+                header: Some(item.span),
+                title: Some(format!("[[{key}]]")),
+            }),
+            _ => None,
+        };
+        items.into_iter().filter_map(document).collect()
+    }
+
+    /// Place of a span.
+    pub(crate) fn place(&self, span: &Span) -> Place {
+        self.sources[span.source].place(span.range.clone())
+    }
+
+    /// The text of a span as written.
+    pub(crate) fn written(&self, span: &Span) -> &str {
+        self.sources[span.source]
+            .text
+            .get(span.range.clone())
+            .unwrap_or_default()
+    }
+
+    /// The text of a span as it is repeated in a problem: cut where it is long.
+    pub(crate) fn shown(&self, span: &Span) -> String {
+        shortened(self.written(span), MAX_VALUE)
+    }
+}
+
+fn too_much(source: &Source, excess: Excess) -> Problem {
+    let file =
+        "is this the file that was meant? measured values belong into a CSV file that it names";
+    let key = "a dotted key is `table.table.key`; text is written in quotes";
+    let (at, limit, what, message, hint) = match excess {
+        Excess::Tables(at) => (
+            at,
+            shape::MAX_TABLES,
+            "tables",
+            "the file has too many tables",
+            file,
+        ),
+        Excess::Keys(at) => (
+            at,
+            shape::MAX_KEYS,
+            "keys",
+            "the file has too many keys",
+            file,
+        ),
+        Excess::Names(at) => (
+            at,
+            shape::MAX_NAMES,
+            "names",
+            "this key has too many names",
+            key,
+        ),
+    };
+    Problem::too_large(message)
+        .at(source.place(at..at + 1))
+        .allowed(format!("up to {limit} {what}"))
+        .hint(hint)
+}
+
+fn nested(source: &Source, at: usize) -> Problem {
+    Problem::too_large("tables and lists are nested too deep here")
+        .at(source.place(at..at + 1))
+        .allowed(format!("up to {} levels", shape::MAX_LEVELS))
+        .hint("is a bracket too many open?")
+}
+
+/// The value of an override, as of the first source; what is nested too deep is left out, which a command line hardly can be.
+pub(crate) fn convert(value: &DeValue<'_>) -> Value {
+    Levels::default().value(value, 0)
+}
+
+/// The parser's values to those that are kept, down to the deepest level.
+#[derive(Default)]
+struct Levels {
+    /// The first byte below it.
+    too_deep: Cell<Option<usize>>,
+}
+
+impl Levels {
+    fn value(&self, value: &DeValue<'_>, level: usize) -> Value {
+        match value {
+            DeValue::String(text) => Value::Text(text.to_string()),
+            DeValue::Integer(integer) => convert_integer(integer),
+            DeValue::Float(float) => Value::Float(float.as_str().parse().unwrap_or(f64::NAN)),
+            DeValue::Boolean(boolean) => Value::Boolean(*boolean),
+            DeValue::Datetime(_) => Value::Date,
+            DeValue::Array(items) => {
+                Value::List(items.iter().map(|item| self.node(item, level)).collect())
+            }
+            DeValue::Table(table) => Value::Table(self.table(table, level)),
+        }
+    }
+
+    fn node(&self, value: &toml::Spanned<DeValue<'_>>, level: usize) -> Node {
+        let span = of_file(value.span());
+        let value = if level < shape::MAX_LEVELS {
+            self.value(value.get_ref(), level + 1)
+        } else {
+            let first = self.too_deep.get().or(Some(span.range.start));
+            self.too_deep.set(first);
+            Value::Date
+        };
+        Node { value, span }
+    }
+
+    fn table(&self, table: &DeTable<'_>, level: usize) -> Table {
+        let entries = table.iter().map(|(key, value)| {
+            let entry = Entry {
+                key: of_file(key.span()),
+                node: self.node(value, level),
+            };
+            (key.get_ref().to_string(), entry)
+        });
+        Table {
+            entries: entries.collect(),
+            choice: None,
+        }
+    }
+}
+
+fn of_file(range: Range<usize>) -> Span {
+    Span { source: 0, range }
+}
+
+fn convert_integer(integer: &DeInteger<'_>) -> Value {
+    match i64::from_str_radix(integer.as_str(), integer.radix()) {
+        Ok(value) => Value::Integer(value),
+        Err(_) => Value::Float(integer.as_str().parse().unwrap_or(f64::INFINITY)),
+    }
+}

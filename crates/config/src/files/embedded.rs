@@ -1,0 +1,53 @@
+//! The files that the program carries, by kind. The cycles are in [`crate::cycle`].
+
+/// Name and text of a file.
+pub type File = (&'static str, &'static str);
+
+macro_rules! embedded {
+    ($($(#[$meta:meta])* $function:ident: $folder:literal $ending:literal [$($name:literal)*];)*) => {
+        $(
+            $(#[$meta])*
+            #[must_use]
+            pub const fn $function() -> &'static [File] {
+                &[$(($name, include_str!(concat!("../../../../", $folder, "/", $name, $ending)))),*]
+            }
+        )*
+    };
+}
+
+embedded! {
+    /// Vehicles.
+    vehicles: "vehicles" ".toml" ["mondeo_20_5mt" "rover_216_5mt" "rover_216_cvt"];
+    /// Lubricants.
+    lubricants: "lubricants" ".toml" [
+        "cvtf_ezl799_class" "dexron_ii" "dexron_iii" "gear_75w80" "engine_5w30" "engine_10w40"
+    ];
+    /// Conditions of the test rigs.
+    rigs: "rigs" ".toml" ["rig_transmission"];
+    /// Measured maps.
+    maps: "vehicles/maps" ".csv" ["si_1900_bsfc"];
+    /// Plans of studies.
+    plans: "plans" ".toml" ["oil_at_minus_10" "pump_and_offset" "uncertainty_rover"];
+    /// Plans of calibrations.
+    calibrations: "calibrations" ".toml" ["rover_216_transmission" "rover_216_warm_up"];
+    /// Tolerances and sources that all files with published values may use.
+    common_rows: "validation" ".toml" ["common"];
+    /// Published values, in the order of the thesis.
+    rows: "validation" ".toml" [
+        "chapter_1" "chapter_2" "chapter_3" "chapter_4" "chapter_5" "chapter_6" "chapter_7" "chapter_8" "chapter_9"
+        "appendix_c"
+    ];
+}
+
+/// The text of a file among `files`.
+#[must_use]
+pub fn text(files: &'static [File], name: &str) -> Option<&'static str> {
+    let found = files.iter().find(|(known, _)| *known == name);
+    found.map(|(_, text)| *text)
+}
+
+/// Whether a word given by the user is meant as a path.
+#[must_use]
+pub fn is_path(word: &str) -> bool {
+    word.contains(['/', '\\']) || std::path::Path::new(word).extension().is_some()
+}

@@ -1,0 +1,249 @@
+//! Reading of lists and of tables of numbers.
+use std::fmt;
+
+use crate::document::overrides::Override;
+use crate::document::{Node, Value};
+use crate::problem::Problem;
+use crate::reader::log::join;
+use crate::reader::section::Section;
+use crate::reader::value::Lookup;
+use cvtcycle_model::keys::{Bound, Column, Key, Kind, Quantity, count};
+
+impl Section<'_> {
+    /// A list of numbers in SI units. After a problem the numbers concerned are NaN, and the length is
+    /// within the allowed one all the same.
+    pub(crate) fn read_numbers(&self, key: &Key<'_>) -> Vec<f64> {
+        let (allowed, least, most) = match key.kind {
+            Kind::Numbers(each, least, most) => (each, least, most),
+            _ => (Bound::any(), 0, usize::MAX),
+        };
+        let mut values = Vec::new();
+        match self.open(key) {
+            Lookup::Found(found) => {
+                if let Value::List(items) = &found.node.value {
+                    values = self.each_number(key, items, allowed);
+                    if (least..=most).contains(&values.len()) {
+                        self.given(key.name, &found, format_args!("{values:?}"), None);
+                    } else {
+                        let path = join(&self.path, key.name);
+                        let (count, found_count) = (count(least, most), values.len());
+                        let message = format!("`{path}`: expected {count}, found {found_count}");
+                        let problem = Problem::wrong_type(message)
+                            .names_key()
+                            .allowed(key.allowed());
+                        self.report(&found.node.span, key.name, problem);
+                    }
+                } else {
+                    self.wrong_type(key.name, found.node, "a list of numbers");
+                }
+            }
+            Lookup::Absent if least > 0 => self.report_missing(key),
+            Lookup::Absent => self.defaulted(key.name, "[]", None),
+            Lookup::Bad => {}
+        }
+        values.truncate(most);
+        values.resize(values.len().max(least), f64::NAN);
+        let si = |value| key.quantity.to_si(value);
+        values.into_iter().map(si).collect()
+    }
+
+    /// The items of a list as numbers in the key's unit, NaN where one is wrong.
+    fn each_number(&self, key: &Key<'_>, items: &[Node], allowed: Bound) -> Vec<f64> {
+        let number = |item| self.check_number(key.name, key.quantity, item, allowed);
+        let numbers = items.iter().map(|item| number(item).unwrap_or(f64::NAN));
+        numbers.collect()
+    }
+
+    /// Numbers in SI units, written as one number, a list of numbers, or a range `"1000..4000:250"` with both ends; none if the key is
+    /// absent, NaN after a problem.
+    pub fn grid(&self, key: &Key<'_>) -> Option<Vec<f64>> {
+        let allowed = key.range();
+        let found = match self.open(key) {
+            Lookup::Found(found) => found,
+            Lookup::Absent => return None,
+            Lookup::Bad => return Some(vec![f64::NAN]),
+        };
+        let values: Vec<f64> = match &found.node.value {
+            Value::List(items) => self.each_number(key, items, allowed),
+            Value::Text(text) => self.range_of(key, found.node, text, allowed),
+            _ => self.each_number(key, std::slice::from_ref(found.node), allowed),
+        };
+        self.given(key.name, &found, format_args!("{values:?}"), None);
+        let si = |value| key.quantity.to_si(value);
+        Some(values.into_iter().map(si).collect())
+    }
+
+    /// The numbers of a range in the key's unit; NaN after a problem.
+    fn range_of(&self, key: &Key<'_>, node: &Node, text: &str, allowed: Bound) -> Vec<f64> {
+        match range_values(text) {
+            Some(values) if values.iter().all(|x| allowed.contains(*x)) => return values,
+            Some(_) => self.report_out_of_range(key.name, node, &key.allowed()),
+            None => {
+                let message = format!("`{}`: `{text}` is no range", join(&self.path, key.name));
+                let hint = match text.split_once("..") {
+                    Some((from, to)) if !to.contains(':') => {
+                        format!("add the step, as in \"{from}..{to}:5\"")
+                    }
+                    _ => "the end lies above the beginning and the step above 0, as in \"1000..4000:250\"".to_string(),
+                };
+                let problem = Problem::syntax(message).names_key().allowed(key.allowed());
+                self.report(&node.span, key.name, problem.hint(hint));
+            }
+        }
+        vec![f64::NAN]
+    }
+
+    /// Texts of a list; empty if the key is absent.
+    pub fn texts(&self, key: &Key<'_>) -> Vec<String> {
+        self.list(key, |_, text| Some(text.to_owned()))
+    }
+
+    /// Overrides of a list of texts `KEY=VALUE`; empty if the key is absent.
+    pub fn overrides(&self, key: &Key<'_>) -> Vec<Override> {
+        self.list(key, |item, text| {
+            let read = text.parse::<Override>();
+            let report = |problem| self.report(&item.span, key.name, problem);
+            read.map_err(report).ok()
+        })
+    }
+
+    /// What `read` makes of the texts of a list; empty if the key is absent.
+    fn list<T: fmt::Debug>(
+        &self,
+        key: &Key<'_>,
+        read: impl Fn(&Node, &str) -> Option<T>,
+    ) -> Vec<T> {
+        let found = match self.open(key) {
+            Lookup::Found(found) => found,
+            Lookup::Absent => {
+                self.defaulted(key.name, "[]", None);
+                return Vec::new();
+            }
+            Lookup::Bad => return Vec::new(),
+        };
+        let Value::List(items) = &found.node.value else {
+            self.wrong_type(key.name, found.node, "a list of texts");
+            return Vec::new();
+        };
+        let text = |item: &Node| match &item.value {
+            Value::Text(text) => read(item, text),
+            _ => {
+                self.wrong_type(key.name, item, "text");
+                None
+            }
+        };
+        let texts: Vec<T> = items.iter().filter_map(text).collect();
+        self.given(key.name, &found, format_args!("{texts:?}"), None);
+        texts
+    }
+
+    /// A table of numbers written as a list of rows, in SI units by the suffixes of the column names. Empty if the key is absent; rows with
+    /// a problem are left out.
+    pub(crate) fn read_rows(&self, key: &Key<'_>) -> Vec<Vec<f64>> {
+        let Kind::Rows(columns) = key.kind else {
+            return Vec::new();
+        };
+        let found = match self.open(key) {
+            Lookup::Found(found) => found,
+            Lookup::Absent => {
+                self.defaulted(key.name, "[]", None);
+                return Vec::new();
+            }
+            Lookup::Bad => return Vec::new(),
+        };
+        let Value::List(items) = &found.node.value else {
+            self.wrong_type(key.name, found.node, "a list of rows");
+            return Vec::new();
+        };
+        let row = |item| self.row(key, item, columns);
+        let mut rows: Vec<Vec<f64>> = items.iter().filter_map(row).collect();
+        self.given(key.name, &found, format_args!("{rows:?}"), None);
+        for (column, (name, _)) in columns.iter().enumerate() {
+            let quantity = Quantity::of(name);
+            rows.iter_mut()
+                .for_each(|row| row[column] = quantity.to_si(row[column]));
+        }
+        rows
+    }
+
+    /// One row in the columns' own units.
+    fn row(&self, key: &Key<'_>, node: &Node, columns: &[Column<'_>]) -> Option<Vec<f64>> {
+        let Value::List(cells) = &node.value else {
+            self.wrong_type(key.name, node, "a row of numbers in brackets");
+            return None;
+        };
+        if cells.len() != columns.len() {
+            let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+            let path = join(&self.path, key.name);
+            let (expected, found) = (columns.len(), cells.len());
+            let message = format!("`{path}`: expected {expected} numbers in a row, found {found}");
+            let hint = format!("write [{}]", names.join(", "));
+            let problem = Problem::wrong_type(message)
+                .names_key()
+                .allowed(key.allowed());
+            self.report(&node.span, key.name, problem.hint(hint));
+            return None;
+        }
+        // All cells are looked at before the row is dropped, so that every problem is reported.
+        let mut good = true;
+        let mut row = Vec::with_capacity(cells.len());
+        for (cell, (name, bound)) in cells.iter().zip(columns) {
+            let number = self.check_number(key.name, Quantity::of(name), cell, *bound);
+            good &= number.is_some();
+            row.extend(number);
+        }
+        good.then_some(row)
+    }
+}
+
+/// Most numbers of one range.
+const MAX_IN_RANGE: f64 = 10_000.0;
+
+/// `from..to:step` with both ends; a last step that falls short of `to` is kept short.
+fn range_values(text: &str) -> Option<Vec<f64>> {
+    let (from, rest) = text.split_once("..")?;
+    let (to, step) = rest.split_once(':')?;
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+    let (from, to, step) = (number(from)?, number(to)?, number(step)?);
+    let count = ((to - from) / step).floor();
+    if !(step > 0.0 && from <= to && count < MAX_IN_RANGE) {
+        return None;
+    }
+    let values: Vec<f64> = (0..=count as u32)
+        .map(|i| from + step * f64::from(i))
+        .collect();
+    let whole = values
+        .last()
+        .is_some_and(|last| (to - last).abs() <= 1e-9 * step);
+    Some(if whole {
+        values
+    } else {
+        values.into_iter().chain([to]).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::range_values;
+
+    #[test]
+    fn ranges_have_both_ends() {
+        assert_eq!(range_values("1..2:0.5"), Some(vec![1.0, 1.5, 2.0]));
+        assert_eq!(
+            range_values(" 1 .. 2 : 0.4 "),
+            Some(vec![1.0, 1.4, 1.8, 2.0])
+        );
+        assert_eq!(range_values("3..3:1"), Some(vec![3.0]));
+        for bad in [
+            "1..2",
+            "2..1:1",
+            "1..2:0",
+            "1..2:-1",
+            "0..1:1e-9",
+            "a..2:1",
+            "1..inf:1",
+        ] {
+            assert_eq!(range_values(bad), None, "{bad}");
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! What a reading session writes down.
+use std::collections::{BTreeSet, HashMap};
+
+use crate::problem::Problem;
+use cvtcycle_model::keys::with_labels;
+
+/// What is known about one key after reading it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KeyInfo {
+    /// Dotted path.
+    pub key: String,
+    /// Unit as people write it, `-` for none.
+    pub unit: String,
+    /// Value in the key's unit; empty for an optional key that is not given.
+    pub value: String,
+    /// Value in SI units; none for what is no single number.
+    pub si: Option<f64>,
+    /// Where it comes from: source, derived, fitted, assumed, user, set or default; `choice` for a model chosen by its table.
+    pub status: String,
+    /// Reference for the value; empty where none is given.
+    pub source: String,
+    /// Remark on the value; may be empty.
+    pub note: String,
+    /// Allowed range or words.
+    pub allowed: String,
+    /// Whether the value is a single number.
+    pub is_number: bool,
+    /// Meaning of the key.
+    pub doc: String,
+    /// Labels of the equations that use it.
+    pub labels: &'static [&'static str],
+}
+
+impl KeyInfo {
+    /// Meaning and labels as they are printed: "displacement (PU-1, PU-4)".
+    pub fn meaning(&self) -> String {
+        with_labels(&self.doc, self.labels)
+    }
+}
+
+/// Problems of one document that are put into words; the rest is counted.
+const MAX_SHOWN: usize = 500;
+
+#[derive(Default)]
+pub(crate) struct Log {
+    pub problems: Vec<Problem>,
+    /// Missing keys, apart because a mistyped key explains them.
+    pub missing: Vec<Problem>,
+    /// Problems beyond those that are shown.
+    pub more: usize,
+    pub keys: Vec<KeyInfo>,
+    /// Index of `keys` by their dotted path.
+    pub index: HashMap<String, usize>,
+    /// Paths whose whole content counts as read.
+    pub read: BTreeSet<String>,
+    /// Paths of tables that were read.
+    pub tables: BTreeSet<String>,
+    /// Paths at which one of several options is chosen.
+    pub choices: BTreeSet<String>,
+}
+
+impl Log {
+    /// Whether another problem is to be put into words.
+    pub fn has_room(&self) -> bool {
+        self.problems.len() + self.missing.len() < MAX_SHOWN
+    }
+
+    /// What is known about the key at a path.
+    pub fn info(&mut self, path: &str) -> Option<&mut KeyInfo> {
+        self.keys.get_mut(*self.index.get(path)?)
+    }
+
+    /// Adds a key; the first reading counts if it is read twice.
+    pub fn register(&mut self, info: KeyInfo) {
+        if !self.index.contains_key(&info.key) {
+            self.index.insert(info.key.clone(), self.keys.len());
+            self.keys.push(info);
+        }
+    }
+}
+
+/// Dotted path of an entry; names with unusual characters are quoted, so that a dot within a name
+/// does not look like a table.
+pub(crate) fn join(path: &str, name: &str) -> String {
+    let bare = !name.is_empty()
+        && name
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    let name = if bare {
+        name.to_string()
+    } else {
+        format!("{name:?}")
+    };
+    if path.is_empty() {
+        name
+    } else {
+        format!("{path}.{name}")
+    }
+}
+
+pub(crate) fn last(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
+
+pub(crate) fn parent(path: &str) -> &str {
+    path.rsplit_once('.').map_or("", |(parent, _)| parent)
+}

@@ -1,0 +1,191 @@
+//! Tables that vehicle files name: BSFC and loss maps.
+
+mod grid;
+
+use std::borrow::Cow;
+use std::io::ErrorKind;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use crate::csv::{Column, Schema};
+use crate::files::bounded::ReadError;
+use crate::files::embedded;
+use crate::files::{Files, Made};
+use crate::problem::Problem;
+use crate::reader::section::Section;
+use cvtcycle_model::keys::{Bound, Quantity};
+use cvtcycle_model::maps::{BsfcMap, LossMap};
+use cvtcycle_model::math::{GRID_AXES, Grid};
+
+/// A CSV of numbers with a header, read whole, and the map that was made of it.
+#[derive(Debug)]
+struct Table {
+    /// Indices of the columns in the schema.
+    columns: Vec<usize>,
+    rows: Vec<Vec<f64>>,
+    loss: OnceLock<LossMap>,
+    /// With the bits of heating value and displacement, which are parts of its numbers.
+    bsfc: Mutex<Option<([u64; 2], BsfcMap)>>,
+}
+
+impl Table {
+    /// Index of a column of the schema in each row.
+    fn index(&self, column: usize) -> Option<usize> {
+        self.columns.iter().position(|k| *k == column)
+    }
+}
+
+fn read(
+    s: &Section,
+    key: &str,
+    file: &str,
+    kind: &'static str,
+    columns: Vec<Column>,
+) -> Option<Arc<Table>> {
+    if file.trim().is_empty() {
+        let problem = Problem::missing("the name of the map is empty").allowed("a CSV file");
+        s.report_at(key, problem.hint("name its file, or remove the key"));
+        return None;
+    }
+    let schema = Schema {
+        columns,
+        max_rows: grid::MAX_ROWS,
+        rows: "a row for every point of the grid",
+        ..Schema::default()
+    };
+    let mut make = || {
+        let bytes = match embedded::text(embedded::maps(), file) {
+            Some(text) => Cow::Borrowed(text.as_bytes()),
+            None => match bytes_of(s.reader.files, file) {
+                Ok(bytes) => Cow::Owned(bytes),
+                Err(why) => {
+                    let problem = Problem::unreadable(format!("cannot read `{file}`: {why}"))
+                        .allowed(why.allowed("a readable CSV file"))
+                        .hint(why.hint("the path is relative to the vehicle file"));
+                    s.report_at(key, problem);
+                    return None;
+                }
+            },
+        };
+        match grid::read(file, &bytes, &schema) {
+            Ok((columns, rows)) => Some(Arc::new(Table {
+                columns,
+                rows,
+                loss: OnceLock::new(),
+                bsfc: Mutex::default(),
+            }) as Made),
+            Err(problems) => {
+                let report = |problem| s.report_problem(problem);
+                problems.into_iter().for_each(report);
+                None
+            }
+        }
+    };
+    let made = match s.reader.files {
+        Some(files) => files.made(kind, file, &mut make),
+        None => make(),
+    };
+    made?.downcast().ok()
+}
+
+fn bytes_of(files: Option<&dyn Files>, file: &str) -> Result<Vec<u8>, ReadError> {
+    let none = || ReadError::Unreadable(ErrorKind::NotFound.into());
+    files.ok_or_else(none)?.read(file)
+}
+
+/// What helps with a BSFC map that does not hang together.
+const GRID: &str = "give at least two speeds and two loads; more torque needs more fuel";
+
+/// A BSFC map from CSV, without friction; none after a problem.
+pub(crate) fn bsfc_map(
+    s: &Section,
+    key: &str,
+    file: &str,
+    heating_value_j_kg: f64,
+    displacement_m3: f64,
+) -> Option<BsfcMap> {
+    let column = |name, low, high| Column::number(name, Bound::closed(low, high)).required();
+    let columns = vec![
+        column("speed_rpm", 100.0, 20_000.0),
+        column("bmep_bar", 0.05, 40.0).group("load"),
+        column("torque_nm", 0.1, 5000.0).group("load"),
+        column("bsfc_g_kwh", 100.0, 3000.0),
+    ];
+    let table = read(s, key, file, "bsfc", columns)?;
+    let scale = [heating_value_j_kg.to_bits(), displacement_m3.to_bits()];
+    let mut made = table.bsfc.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, map)) = made.as_ref().filter(|(of, _)| *of == scale) {
+        return Some(map.clone());
+    }
+    let (speed, bsfc) = (table.index(0), table.index(3));
+    let load = table.index(1).map(|i| (i, 1e5));
+    let per_torque = 4.0 * std::f64::consts::PI / displacement_m3;
+    let load = load.or_else(|| table.index(2).map(|i| (i, per_torque)));
+    let (Some(speed), Some(bsfc), Some((load, factor))) = (speed, bsfc, load) else {
+        return None;
+    };
+    let rpm = Quantity::of("speed_rpm");
+    let rows: Vec<(f64, f64, f64)> = table
+        .rows
+        .iter()
+        .map(|r| (rpm.to_si(r[speed]), r[load] * factor, r[bsfc] / 3.6e9))
+        .collect();
+    let map = BsfcMap::from_rows(&rows, heating_value_j_kg, (0.0, 0.0))
+        .map_err(|why| {
+            let problem = Problem::conflict(why).allowed("a map of fuel over speed and load");
+            s.report_at(key, problem.hint(GRID));
+        })
+        .ok()?;
+    *made = Some((scale, map.clone()));
+    Some(map)
+}
+
+/// A measured torque-loss map from CSV; `first` is the name of its first axis, `ratio` or `gear`.
+pub(crate) fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) -> Option<LossMap> {
+    let torque = if first == "gear" {
+        "input_torque_nm"
+    } else {
+        "output_torque_nm"
+    };
+    let column = |name, low, high| Column::number(name, Bound::closed(low, high));
+    let columns = vec![
+        column(first, 0.2, 12.0),
+        column("input_speed_rpm", 0.0, 20_000.0),
+        column(torque, -3000.0, 3000.0),
+        column("secondary_pressure_bar", 0.0, 200.0),
+        column("oil_temp_degc", -60.0, 200.0),
+        column("torque_loss_nm", 0.0, 1000.0).required(),
+    ];
+    let quantities: Vec<Quantity> = columns.iter().map(|c| Quantity::of(&c.name)).collect();
+    let table = read(s, key, file, first, columns)?;
+    if let Some(map) = table.loss.get() {
+        return Some(map.clone());
+    }
+    let loss = table.index(GRID_AXES)?;
+    let axes: Vec<(Option<usize>, Quantity)> = quantities
+        .into_iter()
+        .take(GRID_AXES)
+        .enumerate()
+        .map(|(k, quantity)| (table.index(k), quantity))
+        .collect();
+    let rows: Vec<([f64; GRID_AXES], f64)> = table
+        .rows
+        .iter()
+        .map(|r| {
+            let mut x = [0.0; GRID_AXES];
+            for (x, (axis, quantity)) in x.iter_mut().zip(&axes) {
+                *x = axis.map_or(0.0, |i| quantity.to_si(r[i]));
+            }
+            (x, r[loss])
+        })
+        .collect();
+    let hint = "every combination of the columns' values has one row";
+    let grid = Grid::from_rows(&rows)
+        .map_err(|wrong| {
+            s.report_at(
+                key,
+                Problem::conflict(wrong).allowed("a full grid").hint(hint),
+            );
+        })
+        .ok()?;
+    Some(table.loss.get_or_init(|| LossMap::new(grid)).clone())
+}

@@ -1,0 +1,179 @@
+//! One pass over a document: what was read, what is known, what is wrong. A `Section` gives the values of a table of keys (`value`: one;
+//! `lists`; `choice`; `maps` of files), `log` keeps what was read, `unknown` names what was not.
+
+mod choice;
+mod lists;
+pub(crate) mod log;
+mod maps;
+pub(crate) mod raw_value;
+pub(crate) mod section;
+mod unknown;
+pub(crate) mod value;
+mod values;
+
+use std::cell::{Cell, RefCell};
+
+use crate::document::Document;
+use crate::files::Files;
+use crate::problem::place::Place;
+use crate::problem::{Problem, Problems};
+use crate::reader::log::{KeyInfo, Log, parent};
+use crate::reader::unknown::unread;
+
+/// One reading session. It collects all problems and what is known about every key that is read.
+///
+/// A check-only session checks the same and writes no text: it counts problems without describing them, and knows nothing about
+/// keys. Code that reads a section is the same for both: all texts are made inside `record` and `report`.
+pub struct Reader<'d> {
+    pub(crate) document: &'d Document,
+    /// None in a check-only session.
+    log: Option<RefCell<Log>>,
+    /// Problems so far.
+    problem_count: Cell<usize>,
+    /// Files that the document names.
+    pub(crate) files: Option<&'d dyn Files>,
+}
+
+impl<'d> Reader<'d> {
+    /// Starts to read `document`.
+    pub fn new(document: &'d Document) -> Self {
+        Reader {
+            log: Some(RefCell::default()),
+            ..Reader::check_only(document)
+        }
+    }
+
+    /// Starts a check-only session: [`Reader::finish`] then gives no keys, and problems without words. Keys that are present but
+    /// not known are not looked for.
+    pub fn check_only(document: &'d Document) -> Self {
+        Reader {
+            document,
+            log: None,
+            problem_count: Cell::new(0),
+            files: None,
+        }
+    }
+
+    /// With the files that the document names.
+    #[must_use]
+    pub fn with_files(self, files: &'d dyn Files) -> Self {
+        Reader {
+            files: Some(files),
+            ..self
+        }
+    }
+
+    /// True in check-only mode.
+    pub(crate) fn is_check_only(&self) -> bool {
+        self.log.is_none()
+    }
+
+    /// Writes something down, except in a check-only session.
+    pub(crate) fn record(&self, write: impl FnOnce(&mut Log)) {
+        if let Some(log) = &self.log {
+            write(&mut log.borrow_mut());
+        }
+    }
+
+    /// Counts a problem; `message` describes it, except in a check-only session or after many.
+    pub(crate) fn report(&self, message: impl FnOnce() -> Problem) {
+        self.count(|log| &mut log.problems, message);
+    }
+
+    /// Counts a missing key, apart from other problems.
+    pub(crate) fn report_missing(&self, message: impl FnOnce() -> Problem) {
+        self.count(|log| &mut log.missing, message);
+    }
+
+    fn count(
+        &self,
+        list: impl FnOnce(&mut Log) -> &mut Vec<Problem>,
+        message: impl FnOnce() -> Problem,
+    ) {
+        self.problem_count.set(self.problem_count.get() + 1);
+        self.record(|log| {
+            if log.has_room() {
+                list(log).push(message());
+            } else {
+                log.more += 1;
+            }
+        });
+    }
+
+    /// Problems so far.
+    pub(crate) fn problem_count(&self) -> usize {
+        self.problem_count.get()
+    }
+
+    /// Adds a problem found outside the reader.
+    pub fn problem(&self, problem: Problem) {
+        self.report(|| problem);
+    }
+
+    /// Every key that was looked up so far, whatever is wrong with its value.
+    pub fn known(&self) -> Vec<KeyInfo> {
+        self.log
+            .as_ref()
+            .map(|log| log.borrow().keys.clone())
+            .unwrap_or_default()
+    }
+
+    /// Ends the session with every key that was read, in the order of reading.
+    ///
+    /// # Errors
+    /// All problems, in the order of their places, including keys that are present but were never read; of a great many the last entry states
+    /// how many more there are. After a check-only session as many empty problems as were counted.
+    pub fn finish(self) -> Result<Vec<KeyInfo>, Problems> {
+        let document = self.document;
+        let Some(log) = self.log else {
+            let problem_count = self.problem_count.get();
+            return if problem_count == 0 {
+                Ok(Vec::new())
+            } else {
+                Err(std::iter::repeat_n(Problem::default(), problem_count).collect())
+            };
+        };
+        let mut log = log.into_inner();
+        let mut unknown = Vec::new();
+        unread(&log, &document.root, "", &mut unknown);
+        for (path, entry) in unknown {
+            if !log.has_room() {
+                log.more += 1;
+                continue;
+            }
+            let (problem, meant) = log.unknown(document, &path, entry);
+            // A mistyped option explains the missing choice around it, too.
+            let explained = |key: &str| {
+                meant
+                    .as_deref()
+                    .is_some_and(|meant| key == meant || key == parent(meant))
+            };
+            log.missing.retain(|missing| !explained(&missing.key));
+            log.problems.push(problem);
+        }
+        log.problems.append(&mut log.missing);
+        if log.problems.is_empty() {
+            return Ok(log.keys);
+        }
+        let rank = |place: &Place| {
+            document
+                .sources
+                .iter()
+                .position(|source| source.input == place.input)
+        };
+        log.problems.sort_by_key(|problem| {
+            let place = &problem.place;
+            (rank(place).unwrap_or(usize::MAX), place.line, place.column)
+        });
+        let mut problems = Problems::new();
+        for problem in log.problems {
+            if !problems.contains(&problem) {
+                problems.push(problem);
+            }
+        }
+        if log.more > 0 {
+            problems.push(Problem::more(document.sources[0].input.clone(), log.more));
+        }
+        Err(problems)
+    }
+}

@@ -1,0 +1,347 @@
+//! What the readings of all kinds of values have in common: look-up, origin, registration, complaints.
+use std::fmt::Display;
+
+use crate::document::syntax::{decimal_comma, number_hint, number_with_unit};
+use crate::document::{Node, Span, Table, Value};
+use crate::problem::Problem;
+use crate::problem::near::{did_you_mean, one_of, suggest};
+use crate::problem::place::Place;
+use crate::reader::log::{KeyInfo, join};
+use crate::reader::section::Section;
+use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Quantity};
+
+/// What a value's status may be in a file.
+pub(crate) const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
+/// Fields of a value with its origin.
+const FIELDS: [&str; 4] = ["value", "status", "source", "note"];
+
+/// A value as found, with its origin.
+pub(crate) struct Found<'r> {
+    pub node: &'r Node,
+    pub status: &'r str,
+    pub source: &'r str,
+    pub note: &'r str,
+}
+
+/// Value at a key.
+pub(crate) enum Lookup<'r> {
+    Absent,
+    /// Something that is no value; reported already.
+    Bad,
+    Found(Found<'r>),
+}
+
+/// What to write instead of a number in quotes.
+fn text_hint(text: &str) -> String {
+    if let Some((_, point)) = decimal_comma(text).filter(|(length, _)| *length == text.len()) {
+        format!("write {point} with a decimal point and without quotes")
+    } else if let Some((figure, unit)) = number_with_unit(text) {
+        number_hint(figure, unit)
+    } else if text.trim().parse::<f64>().is_ok() {
+        format!("write {} without quotes", text.trim())
+    } else {
+        String::new()
+    }
+}
+
+impl<'r> Section<'r> {
+    /// The number in SI units; an error says whether the key is absent (else it is reported already).
+    pub(crate) fn read_number(&self, key: &Key<'_>, allowed: Bound) -> Result<f64, bool> {
+        match self.open(key) {
+            Lookup::Found(found) => {
+                let value = self
+                    .check_number(key.name, key.quantity, found.node, allowed)
+                    .ok_or(false)?;
+                let si = key.quantity.to_si(value);
+                self.given(key.name, &found, value, Some(si));
+                Ok(si)
+            }
+            Lookup::Absent => Err(true),
+            Lookup::Bad => Err(false),
+        }
+    }
+
+    pub(crate) fn read_text(&self, key: &Key<'_>) -> Result<String, bool> {
+        match self.open(key) {
+            Lookup::Found(found) => match &found.node.value {
+                Value::Text(text) => {
+                    self.given(key.name, &found, text, None);
+                    Ok(text.clone())
+                }
+                _ => {
+                    self.wrong_type(key.name, found.node, "text");
+                    Err(false)
+                }
+            },
+            Lookup::Absent => Err(true),
+            Lookup::Bad => Err(false),
+        }
+    }
+
+    /// A finite number within its range, in its own unit.
+    pub(crate) fn check_number(
+        &self,
+        key: &str,
+        quantity: Quantity,
+        node: &Node,
+        allowed: Bound,
+    ) -> Option<f64> {
+        let value = match &node.value {
+            Value::Integer(value) => *value as f64,
+            Value::Float(value) => *value,
+            _ => {
+                self.wrong_type(key, node, "a number");
+                return None;
+            }
+        };
+        if allowed.contains(value) {
+            return Some(value);
+        }
+        let range = allowed.in_unit(quantity.unit());
+        if value.is_finite() {
+            self.report_out_of_range(key, node, &range);
+        } else {
+            let message = format!("`{}` is not a finite number", join(&self.path, key));
+            let problem = Problem::out_of_range(message).names_key().allowed(range);
+            self.report(&node.span, key, problem);
+        }
+        None
+    }
+
+    /// Looks a key up, counts it as read and as known, and unwraps `{ value = …, status = … }`.
+    pub(crate) fn open(&self, key: &Key<'_>) -> Lookup<'r> {
+        self.register(key);
+        let Some(entry) = self.table.and_then(|table| table.entries.get(key.name)) else {
+            return Lookup::Absent;
+        };
+        self.unwrap(key.name, &entry.node)
+    }
+
+    /// Counts a key as read and as known.
+    pub(crate) fn register(&self, key: &Key<'_>) {
+        self.reader.record(|log| {
+            let path = join(&self.path, key.name);
+            log.register(KeyInfo {
+                key: path.clone(),
+                unit: key.unit(),
+                allowed: key.allowed(),
+                is_number: key.is_number(),
+                doc: key.doc.to_string(),
+                labels: key.labels,
+                ..KeyInfo::default()
+            });
+            log.read.insert(path);
+        });
+    }
+
+    /// The value with its origin, from either of its two forms.
+    pub(crate) fn unwrap(&self, key: &str, node: &'r Node) -> Lookup<'r> {
+        let (status, source) = if node.span.is_set() {
+            ("set", "command line")
+        } else {
+            ("user", "")
+        };
+        let mut found = Found {
+            node,
+            status,
+            source,
+            note: "",
+        };
+        let Value::Table(table) = &node.value else {
+            return Lookup::Found(found);
+        };
+        let Some(value) = table.wrapped() else {
+            let message = format!("`{}` is a table without `value`", join(&self.path, key));
+            let hint = "write `KEY = VALUE` or `KEY = { value = VALUE, status = \"…\" }`";
+            let problem = Problem::wrong_type(message).names_key().hint(hint);
+            self.report(&node.span, key, problem);
+            return Lookup::Bad;
+        };
+        found.node = value;
+        if !self.reader.is_check_only() {
+            self.origin(key, table, &mut found);
+        }
+        Lookup::Found(found)
+    }
+
+    /// Reads status, source and note of the value.
+    fn origin(&self, key: &str, table: &'r Table, found: &mut Found<'r>) {
+        for (name, entry) in table.entries.iter().filter(|(name, _)| *name != "value") {
+            let text = match &entry.node.value {
+                Value::Text(text) => text.as_str(),
+                _ => "",
+            };
+            match name.as_str() {
+                "status" => self.check_status(key, &entry.node, text, &mut found.status),
+                "source" | "note" if !matches!(entry.node.value, Value::Text(_)) => {
+                    self.wrong_type(&format!("{key}.{name}"), &entry.node, "text");
+                }
+                "source" => found.source = text,
+                "note" => found.note = text,
+                _ => {
+                    let message = format!("unknown field `{name}` in `{}`", join(&self.path, key));
+                    let problem = Problem::unknown_key(message)
+                        .names_key()
+                        .allowed(FIELDS.join(", "))
+                        .hint(suggest(name, &FIELDS));
+                    self.report(&entry.key, key, problem);
+                }
+            }
+        }
+    }
+
+    fn check_status(&self, key: &str, node: &Node, text: &'r str, status: &mut &'r str) {
+        if !STATUSES.contains(&text) {
+            let message = format!("`{}` has no known status", join(&self.path, key));
+            let problem = Problem::unknown_name(message)
+                .names_key()
+                .allowed(one_of(&STATUSES))
+                .hint(did_you_mean(text, STATUSES).unwrap_or_default());
+            self.report(&node.span, key, problem);
+        } else if *status != "set" {
+            *status = text;
+        }
+    }
+
+    /// Completes what is known about a key with the value that was given.
+    pub(crate) fn given(&self, key: &str, found: &Found<'_>, value: impl Display, si: Option<f64>) {
+        self.fill(key, |info| {
+            (info.value, info.si) = (value.to_string(), si);
+            info.status = found.status.to_string();
+            info.source = found.source.to_string();
+            info.note = found.note.to_string();
+        });
+    }
+
+    /// Completes what is known about a key with its default.
+    pub(crate) fn defaulted(&self, key: &str, value: impl Display, si: Option<f64>) {
+        self.fill(key, |info| {
+            (info.value, info.si) = (value.to_string(), si);
+            info.status = "default".to_string();
+        });
+    }
+
+    fn fill(&self, key: &str, write: impl FnOnce(&mut KeyInfo)) {
+        self.reader
+            .record(|log| log.info(&join(&self.path, key)).map_or((), write));
+    }
+
+    pub(crate) fn report_out_of_range(&self, key: &str, node: &Node, allowed: &str) {
+        let message = format!("`{}` is out of range", join(&self.path, key));
+        let problem = Problem::out_of_range(message).names_key().allowed(allowed);
+        self.report(&node.span, key, problem);
+    }
+
+    pub(crate) fn wrong_type(&self, key: &str, node: &Node, expected: &str) {
+        let (path, found) = (self.dotted(key), node.value.kind());
+        let message = format!("`{path}`: expected {expected}, found {found}");
+        // The range that the key was registered with, where the message does not say it already.
+        let mut allowed = String::new();
+        self.reader.record(|log| {
+            let info = log.info(&join(&self.path, key));
+            let range = info.map(|info| info.allowed.clone());
+            allowed = range.filter(|range| *range != expected).unwrap_or_default();
+        });
+        let hint = self.type_hint(key, node, expected);
+        let problem = Problem::wrong_type(message).names_key();
+        let problem = problem.allowed(allowed).hint(hint);
+        self.report(&node.span, key, problem);
+    }
+
+    /// Reports a word that is none of those that the key knows.
+    pub(crate) fn unknown_word(&self, key: &Key<'_>, span: &Span, word: &str) {
+        let message = format!("`{word}` is not known for `{}`", join(&self.path, key.name));
+        let hint = suggest(word, &options(key).collect::<Vec<_>>());
+        let problem = Problem::unknown_name(message).names_key();
+        self.report(span, key.name, problem.allowed(key.allowed()).hint(hint));
+    }
+
+    /// Path of a key of this table, or of one in a table within it.
+    fn dotted(&self, key: &str) -> String {
+        key.split('.')
+            .fold(self.path.clone(), |path, name| join(&path, name))
+    }
+
+    /// What to write instead of a value of another kind.
+    fn type_hint(&self, key: &str, node: &Node, expected: &str) -> String {
+        let written = self.reader.document.written(&node.span);
+        match &node.value {
+            Value::Text(text) if expected.contains("number") || expected.contains("integer") => {
+                text_hint(text)
+            }
+            Value::Text(_) if expected == "true or false" => {
+                format!("write `{key} = true` or `{key} = false`, without quotes")
+            }
+            Value::Table(_) | Value::List(_) if expected == "text" => {
+                "write one text in quotes".to_string()
+            }
+            _ if expected == "text" => format!("write it in quotes: \"{written}\""),
+            _ if expected == "a table" => format!(
+                "write [{}] with its keys on the lines below",
+                self.dotted(key)
+            ),
+            Value::Text(_) | Value::Integer(_) | Value::Float(_)
+                if expected.starts_with("a list of") && !expected.contains("rows") =>
+            {
+                format!("write `{key} = [{written}]`")
+            }
+            _ => String::new(),
+        }
+    }
+
+    /// Reports a required key that is absent.
+    pub(crate) fn report_missing(&self, of: &Key<'_>) {
+        let key = of.name;
+        if self.muted {
+            return;
+        }
+        self.reader.report_missing(|| {
+            let table = match (self.path.as_str(), &self.reader.document.title) {
+                ("", Some(title)) => format!("its {title}"),
+                ("", None) => "the top of the file".to_string(),
+                (path, _) => format!("[{path}]"),
+            };
+            let message = format!("missing key `{}`", join(&self.path, key));
+            let problem = Problem::missing(message).names_key().allowed(of.allowed());
+            self.absent(key, problem.hint(format!("add `{key} = …` to {table}")))
+        });
+    }
+
+    /// A problem of a key that is absent: at the header of the table.
+    pub(crate) fn absent(&self, key: &str, problem: Problem) -> Problem {
+        let document = self.reader.document;
+        let whole = || Place::from(document.sources[0].input.clone());
+        let header = self.header.as_ref();
+        problem
+            .at(header.map_or_else(whole, |span| document.place(span)))
+            .of(join(&self.path, key))
+    }
+
+    /// Reports a problem of a value of this table.
+    pub(crate) fn report(&self, span: &Span, key: &str, problem: Problem) {
+        let document = self.reader.document;
+        self.reader.report(|| {
+            problem
+                .at(document.place(span))
+                .of(self.dotted(key))
+                .value(document.shown(span))
+        });
+    }
+}
+
+/// The option that a key takes when nothing is given.
+pub(crate) fn default_option(key: &Key<'_>) -> Option<&'static str> {
+    match key.presence {
+        Presence::Word(default) => options(key).find(|option| *option == default),
+        _ => None,
+    }
+}
+
+/// Names of the options of a key.
+pub(crate) fn options(key: &Key<'_>) -> impl Iterator<Item = &'static str> {
+    let choices = match key.kind {
+        Kind::Words(choices) | Kind::Options(choices) => choices,
+        _ => &[],
+    };
+    choices.iter().map(|choice| choice.name)
+}

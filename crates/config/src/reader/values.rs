@@ -1,0 +1,205 @@
+//! Values of the model's keys, read from a table of a file.
+use crate::document::Value;
+use crate::problem::Problem;
+use crate::reader::maps;
+use crate::reader::section::Section;
+use crate::reader::value::{Lookup, default_option, options};
+use cvtcycle_model::keys::{Key, Kind, Presence, Values};
+use cvtcycle_model::maps::BsfcMap;
+use cvtcycle_model::maps::LossMap;
+
+impl<'r> Values for Section<'r> {
+    fn table(&self, name: &str) -> Self {
+        Section::table(self, name)
+    }
+
+    fn has(&self, key: &Key<'_>) -> bool {
+        Section::has(self, key.name)
+    }
+
+    fn number(&self, key: &Key<'_>) -> f64 {
+        match key.presence {
+            Presence::Number(default) => Values::number_or(self, key, default),
+            _ => self.read_number(key, key.range()).unwrap_or_else(|absent| {
+                if absent {
+                    self.report_missing(key);
+                }
+                f64::NAN
+            }),
+        }
+    }
+
+    fn number_or(&self, key: &Key<'_>, default: f64) -> f64 {
+        debug_assert!(key.range().contains(default), "default of {}", key.name);
+        self.read_number(key, key.range()).unwrap_or_else(|absent| {
+            if !absent {
+                return f64::NAN;
+            }
+            let si = key.quantity.to_si(default);
+            self.defaulted(key.name, default, Some(si));
+            si
+        })
+    }
+
+    fn optional(&self, key: &Key<'_>) -> Option<f64> {
+        match self.read_number(key, key.range()) {
+            Ok(si) => Some(si),
+            Err(absent) => (!absent).then_some(f64::NAN),
+        }
+    }
+
+    fn integer(&self, key: &Key<'_>) -> i64 {
+        let (low, high) = match key.kind {
+            Kind::Integer(low, high) => (low, high),
+            _ => (i64::MIN, i64::MAX),
+        };
+        let default = match key.presence {
+            Presence::Integer(default) => default,
+            _ => low,
+        };
+        let si = |value: i64| Some(key.quantity.to_si(value as f64));
+        let found = match self.open(key) {
+            Lookup::Found(found) => found,
+            Lookup::Bad => return default,
+            Lookup::Absent => {
+                self.defaulted(key.name, default, si(default));
+                return default;
+            }
+        };
+        match found.node.value {
+            Value::Integer(value) if (low..=high).contains(&value) => {
+                self.given(key.name, &found, value, si(value));
+                value
+            }
+            Value::Integer(_) => {
+                self.report_out_of_range(key.name, found.node, &key.allowed());
+                default
+            }
+            _ => {
+                self.wrong_type(key.name, found.node, "an integer");
+                default
+            }
+        }
+    }
+
+    fn flag(&self, key: &Key<'_>) -> bool {
+        let default = matches!(key.presence, Presence::Flag(true));
+        match self.open(key) {
+            Lookup::Found(found) => {
+                if let Value::Boolean(value) = found.node.value {
+                    self.given(key.name, &found, value, None);
+                    return value;
+                }
+                self.wrong_type(key.name, found.node, "true or false");
+            }
+            Lookup::Absent => self.defaulted(key.name, default, None),
+            Lookup::Bad => {}
+        }
+        default
+    }
+
+    fn text(&self, key: &Key<'_>) -> String {
+        let default = match key.presence {
+            Presence::Required | Presence::RequiredIf(_) => None,
+            Presence::Word(default) => Some(default),
+            _ => Some(""),
+        };
+        match self.read_text(key) {
+            Ok(text) => text,
+            Err(false) => String::new(),
+            Err(true) => {
+                match default {
+                    Some(default) => self.defaulted(key.name, default, None),
+                    None => self.report_missing(key),
+                }
+                default.unwrap_or_default().to_owned()
+            }
+        }
+    }
+
+    fn text_or(&self, key: &Key<'_>, default: &str) -> String {
+        self.read_text(key).unwrap_or_else(|absent| {
+            if !absent {
+                return String::new();
+            }
+            self.defaulted(key.name, default, None);
+            default.to_string()
+        })
+    }
+
+    fn word(&self, key: &Key<'_>) -> &'static str {
+        self.read_word(key, default_option(key).unwrap_or_default())
+    }
+
+    fn choose(&self, key: &Key<'_>) -> (&'static str, Self) {
+        self.choose_option(key)
+    }
+
+    fn numbers(&self, key: &Key<'_>) -> Vec<f64> {
+        self.read_numbers(key)
+    }
+
+    fn rows(&self, key: &Key<'_>) -> Option<Vec<Vec<f64>>> {
+        let before = self.reader.problem_count();
+        let rows = self.read_rows(key);
+        if self.reader.problem_count() > before {
+            return None;
+        }
+        if matches!(key.presence, Presence::Required) && !Section::has(self, key.name) {
+            self.report_missing(key);
+            return None;
+        }
+        Some(rows)
+    }
+
+    fn loss_map(&self, key: &Key<'_>, first: &'static str) -> Option<LossMap> {
+        let file = self.read_text(key).ok()?;
+        maps::loss_map(self, key.name, &file, first)
+    }
+
+    fn bsfc_map(
+        &self,
+        key: &Key<'_>,
+        heating_value_j_kg: f64,
+        displacement_m3: f64,
+    ) -> Option<BsfcMap> {
+        let file = self.read_text(key);
+        if file == Err(true) {
+            self.report_missing(key);
+        }
+        maps::bsfc_map(
+            self,
+            key.name,
+            &file.ok()?,
+            heating_value_j_kg,
+            displacement_m3,
+        )
+    }
+
+    fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str) {
+        let problem = Problem::conflict(message).allowed(allowed).hint(hint);
+        self.report_at(key, problem);
+    }
+}
+
+impl Section<'_> {
+    /// One of the key's words; the default also after a problem.
+    pub(crate) fn read_word(&self, key: &Key<'_>, default: &'static str) -> &'static str {
+        match self.open(key) {
+            Lookup::Found(found) => {
+                let Value::Text(text) = &found.node.value else {
+                    self.wrong_type(key.name, found.node, "text");
+                    return default;
+                };
+                if let Some(word) = options(key).find(|word| word == text) {
+                    self.given(key.name, &found, text, None);
+                    return word;
+                }
+                self.unknown_word(key, &found.node.span, text);
+            }
+            Lookup::Absent => self.defaulted(key.name, default, None),
+            Lookup::Bad => {}
+        }
+        default
+    }
+}

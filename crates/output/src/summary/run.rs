@@ -1,0 +1,359 @@
+//! The numbers of one car: each is a field of [`RunSummary`] with its value in [`run_summary`].
+
+use serde::{Deserialize, Serialize};
+
+use super::{Driven, Named, Settings};
+use crate::number::finite;
+use crate::{Component, Flags, PhaseTotals, TERM_NAMES};
+use cvtcycle_config::cycle::{Cycle, Weighting};
+use cvtcycle_model::drive::{Outcome, litres_per_100km};
+use cvtcycle_model::engine::Engine;
+use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
+use cvtcycle_model::transmission::cvt::variator::Formulation;
+
+/// Ledger error above which a run counts as failed.
+const LEDGER_TOLERANCE: f64 = 1e-9;
+/// Flags that fail a strict run.
+const STRICT: [Flags; 4] = [
+    Flags::OUTSIDE_VALIDITY,
+    Flags::GROSS_SLIP,
+    Flags::LOW_CLAMP,
+    Flags::FLOW_LIMITED,
+];
+/// Miles per imperial gallon at 1 L/100 km.
+const MPG_UK: f64 = 282.481;
+/// Miles per US gallon at 1 L/100 km.
+const MPG_US: f64 = 235.215;
+
+/// One car's numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunSummary {
+    /// Name of the vehicle, unique within the run.
+    pub vehicle: String,
+    /// Name for people.
+    pub title: String,
+    /// `subject` or `baseline`.
+    pub role: String,
+    /// `cvt` or `manual`.
+    pub transmission: String,
+    /// Transmission oil.
+    pub lubricant: String,
+    /// Engine oil.
+    pub engine_oil: String,
+    /// Where a manual car's gears come from; null for a CVT.
+    pub gear_schedule: Option<String>,
+    /// Driven distance.
+    pub distance_km: f64,
+    /// Duration.
+    pub duration_s: f64,
+    /// Fuel mass.
+    pub fuel_kg: f64,
+    /// Fuel volume.
+    pub fuel_l: f64,
+    /// Fuel over the whole cycle.
+    pub fuel_l_per_100km: Option<f64>,
+    /// FTP75 only: fuel weighted by bag.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weighted_fuel_l_per_100km: Option<f64>,
+    /// Miles per imperial gallon, of the weighted fuel where there is one.
+    pub mpg_uk: Option<f64>,
+    /// Miles per US gallon, of the weighted fuel where there is one.
+    pub mpg_us: Option<f64>,
+    /// Carbon dioxide over the whole cycle.
+    pub co2_g_per_km: Option<f64>,
+    /// FTP75 only: carbon dioxide of the weighted fuel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weighted_co2_g_per_km: Option<f64>,
+    /// By group of phases.
+    pub phases: Vec<PhaseSummary>,
+    /// Demanded work at the wheels in driving.
+    pub wheel_work_positive_kj: f64,
+    /// Demanded work at the wheels in braking, negative.
+    pub wheel_work_negative_kj: f64,
+    /// Lower heating value of the fuel.
+    pub fuel_energy_kj: f64,
+    /// By component of this transmission, then accessories and brake.
+    pub loss_kj: Named,
+    /// Change of rotating energy.
+    pub kinetic_kj: f64,
+    /// Terms of both ledgers.
+    pub ledger_kj: Named,
+    /// Fuel at standstill.
+    pub standstill_fuel_g: f64,
+    /// Smallest clamp safety factor; null for a manual box.
+    pub min_clamp_safety: Option<f64>,
+    /// Time at a ratio limit; null for a manual box.
+    pub at_ratio_limit_s: Option<f64>,
+    /// Temperatures at the end.
+    pub end_degc: Named,
+    /// Largest ledger error of any row.
+    pub ledger_error: Option<f64>,
+    /// Ledger error of the terms summed over the run.
+    pub run_ledger_error: Option<f64>,
+    /// Time in which the car could not follow.
+    pub trace_missed_s: f64,
+    /// Time outside the validity of a model.
+    pub outside_validity_s: f64,
+    /// Seconds with each flag.
+    pub flags_s: Named,
+    /// Where most power was missing; null if the trace was followed.
+    pub worst_deficit: Option<Deficit>,
+    /// How the implicit solve went.
+    pub solve: Solve,
+    /// Names of the checks that failed: `missed_trace`, `ledger_error`, `not_converged`, or a flag under `--strict`.
+    pub failed_checks: Vec<String>,
+    /// Demanded work at the wheels in driving over that work with all losses of the transmission; null without either.
+    pub transmission_efficiency_percent: Option<f64>,
+}
+
+/// One group of phases.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PhaseSummary {
+    /// Name of the group.
+    pub name: String,
+    /// Driven distance.
+    pub distance_km: f64,
+    /// Duration.
+    pub duration_s: f64,
+    /// Fuel mass.
+    pub fuel_kg: f64,
+    /// Fuel; null without distance.
+    pub fuel_l_per_100km: Option<f64>,
+    /// Carbon dioxide; null without distance.
+    pub co2_g_per_km: Option<f64>,
+    /// Losses of the transmission.
+    pub transmission_loss_kj: f64,
+}
+
+/// The worst row of a missed trace.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Deficit {
+    /// Missing power.
+    pub power_w: f64,
+    /// Missing torque at the wheels.
+    pub wheel_torque_nm: Option<f64>,
+    /// End of the row.
+    pub at_s: f64,
+    /// Phase of the row.
+    pub phase: String,
+}
+
+/// How the implicit solve went.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Solve {
+    /// Largest residual, as a fraction of full-load torque.
+    pub worst_residual: f64,
+    /// Mean evaluations of the driveline a row.
+    pub evaluations_per_step: Option<f64>,
+}
+
+impl RunSummary {
+    /// Headline fuel of the car: weighted where the cycle is.
+    pub fn headline_fuel(&self) -> Option<f64> {
+        self.weighted_fuel_l_per_100km.or(self.fuel_l_per_100km)
+    }
+
+    /// Sum of the transmission's losses, kJ.
+    pub fn transmission_loss_kj(&self) -> f64 {
+        self.ledger_kj.get("losses").unwrap_or(0.0)
+    }
+
+    fn checks(&self, strict: bool) -> Vec<String> {
+        let flag = |flag: Flags| {
+            let name = flag.names().next().unwrap_or_default();
+            (name, self.flags_s.get(name).is_some_and(|s| s > 0.0))
+        };
+        // Stated as what is good, so that an error that is no number fails.
+        let closed = |error: Option<f64>| error.is_some_and(|e| e <= LEDGER_TOLERANCE);
+        let balanced = closed(self.ledger_error) && closed(self.run_ledger_error);
+        let mut list = vec![
+            flag(Flags::MISSED_TRACE),
+            ("ledger_error", !balanced),
+            flag(Flags::NOT_CONVERGED),
+        ];
+        if strict {
+            list.extend(STRICT.map(flag));
+        }
+        list.retain(|(_, failed)| *failed);
+        list.into_iter().map(|(name, _)| name.to_owned()).collect()
+    }
+}
+
+/// The numbers of one car. `role` is `subject` or `baseline`.
+pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driven) -> RunSummary {
+    let Driven {
+        name,
+        setup,
+        outcome,
+    } = *driven;
+    let totals = &outcome.totals;
+    let (engine, cvt) = (setup.engine(), setup.transmission().is_cvt());
+    let (oil, engine_oil) = setup.oils();
+    let all = totals.total();
+    let fuel = PhaseFuel::of(&all, engine);
+    let weighted = weighted_fuel(cycle, driven, engine);
+    let headline = weighted.or(fuel.l_per_100km).filter(|l| *l > 0.0);
+    let mpg = |factor: f64| headline.map(|l| factor / l);
+    let seconds = |flag: Flags| totals.seconds(flag);
+    let flags = Flags::NAMES.iter().zip(totals.flag_s);
+    let terms = TERM_NAMES.iter().zip(all.terms.as_array());
+    let mut summary = RunSummary {
+        vehicle: name.to_owned(),
+        title: setup.title.clone(),
+        role: role.to_owned(),
+        transmission: if cvt { "cvt" } else { "manual" }.to_owned(),
+        lubricant: oil.name.clone(),
+        engine_oil: engine_oil.name.clone(),
+        gear_schedule: (!outcome.gear_schedule.is_empty())
+            .then(|| outcome.gear_schedule.to_owned()),
+        distance_km: all.distance_m / 1e3,
+        duration_s: all.duration_s,
+        fuel_kg: all.fuel_kg,
+        fuel_l: all.fuel_kg / engine.fuel_density_kg_m3 * 1e3,
+        fuel_l_per_100km: fuel.l_per_100km,
+        weighted_fuel_l_per_100km: weighted,
+        mpg_uk: mpg(MPG_UK),
+        mpg_us: mpg(MPG_US),
+        co2_g_per_km: fuel.co2_g_per_km,
+        weighted_co2_g_per_km: weighted
+            .map(|l| l * engine.fuel_density_kg_m3 * engine.co2_kg_kg / 100.0),
+        phases: phases(cycle, driven, engine),
+        wheel_work_positive_kj: all.wheel_positive_j / 1e3,
+        wheel_work_negative_kj: all.wheel_negative_j / 1e3,
+        fuel_energy_kj: all.terms.fuel / 1e3,
+        loss_kj: losses(driven, settings, &all),
+        kinetic_kj: all.terms.kinetic / 1e3,
+        ledger_kj: terms
+            .map(|(name, joules)| (*name, finite(joules / 1e3)))
+            .collect(),
+        standstill_fuel_g: all.standstill_fuel_kg * 1e3,
+        min_clamp_safety: finite(totals.min_clamp_safety).filter(|_| cvt),
+        at_ratio_limit_s: cvt.then(|| seconds(Flags::RATIO_LIMIT)),
+        end_degc: end_temperatures(outcome, cvt),
+        ledger_error: finite(totals.ledger_error),
+        run_ledger_error: finite(larger(all.terms.power_error(), all.terms.heat_error())),
+        trace_missed_s: seconds(Flags::MISSED_TRACE),
+        outside_validity_s: seconds(Flags::OUTSIDE_VALIDITY),
+        flags_s: flags.map(|((_, name), s)| (*name, finite(s))).collect(),
+        worst_deficit: worst_deficit(cycle, driven, cvt),
+        solve: Solve {
+            worst_residual: totals.worst_residual,
+            evaluations_per_step: finite(totals.evaluations as f64 / totals.rows as f64),
+        },
+        failed_checks: Vec::new(),
+        transmission_efficiency_percent: finite(
+            100.0 * all.wheel_positive_j / (all.wheel_positive_j + all.terms.losses),
+        ),
+    };
+    summary.failed_checks = summary.checks(settings.strict);
+    summary
+}
+
+fn larger(a: f64, b: f64) -> f64 {
+    // What is no number must not hide behind the other.
+    if a.is_nan() || a > b { a } else { b }
+}
+
+/// Fuel of some part of a cycle over its distance.
+struct PhaseFuel {
+    l_per_100km: Option<f64>,
+    co2_g_per_km: Option<f64>,
+}
+
+impl PhaseFuel {
+    fn of(part: &PhaseTotals, engine: &Engine) -> Self {
+        let litres = litres_per_100km(part.fuel_kg, engine.fuel_density_kg_m3, part.distance_m);
+        PhaseFuel {
+            l_per_100km: finite(litres),
+            co2_g_per_km: finite(part.fuel_kg * engine.co2_kg_kg * 1e6 / part.distance_m),
+        }
+    }
+}
+
+fn phases(cycle: &Cycle, driven: &Driven, engine: &Engine) -> Vec<PhaseSummary> {
+    let groups = cycle.phase_groups().into_iter();
+    groups
+        .map(|(name, phases)| {
+            let part = driven.outcome.totals.over(&phases);
+            let fuel = PhaseFuel::of(&part, engine);
+            PhaseSummary {
+                name,
+                distance_km: part.distance_m / 1e3,
+                duration_s: part.duration_s,
+                fuel_kg: part.fuel_kg,
+                fuel_l_per_100km: fuel.l_per_100km,
+                co2_g_per_km: fuel.co2_g_per_km,
+                transmission_loss_kj: part.terms.losses / 1e3,
+            }
+        })
+        .collect()
+}
+
+/// 40 CFR 86.144: Y = 0.43 (Y_ct + Y_s)/(D_ct + D_s) + 0.57 (Y_ht + Y_s)/(D_ht + D_s).
+fn weighted_fuel(cycle: &Cycle, driven: &Driven, engine: &Engine) -> Option<f64> {
+    if cycle.weighting != Weighting::Ftp75 {
+        return None;
+    }
+    let groups = cycle.phase_groups();
+    let bags = |names: [&str; 2]| {
+        let named = groups
+            .iter()
+            .filter(|(name, _)| names.contains(&name.as_str()));
+        let phases: Vec<u16> = named.flat_map(|(_, list)| list.clone()).collect();
+        PhaseFuel::of(&driven.outcome.totals.over(&phases), engine).l_per_100km
+    };
+    let cold = bags(["cold_transient", "stabilised"])?;
+    let hot = bags(["hot_transient", "stabilised"])?;
+    Some(Weighting::FTP75_COLD * cold + Weighting::FTP75_HOT * hot)
+}
+
+fn losses(driven: &Driven, settings: &Settings, all: &PhaseTotals) -> Named {
+    // The verification formulations know no film of its own: whatever shear there is belongs to the bands.
+    let film =
+        settings.formulation.is_empty() || settings.formulation == Formulation::Smooth.name();
+    let joules = |c: Component| all.loss_j[c];
+    let part = |c: Component| match c {
+        Component::BeltFilm if !film => None,
+        Component::BeltBand if !film => finite((joules(c) + joules(Component::BeltFilm)) / 1e3),
+        _ => finite(joules(c) / 1e3),
+    };
+    let components = driven.setup.transmission().components();
+    let components = components.into_iter().map(|c| (c.name(), part(c)));
+    let rest = [
+        ("accessories", all.terms.accessories),
+        ("brake", all.terms.brake),
+    ];
+    let rest = rest.map(|(name, joules)| (name, finite(joules / 1e3)));
+    components.chain(rest).collect()
+}
+
+fn end_temperatures(outcome: &Outcome, cvt: bool) -> Named {
+    let degc = |node: usize| finite(outcome.end.node_k[node] - ZERO_DEGC_K);
+    [
+        ("transmission_sump", degc(SUMP)),
+        ("engine_oil", degc(ENGINE_OIL)),
+        ("coolant", degc(COOLANT)),
+        ("transmission_metal", degc(METAL)),
+        ("belt_spray", degc(BELT).filter(|_| cvt)),
+    ]
+    .into_iter()
+    .collect()
+}
+
+fn worst_deficit(cycle: &Cycle, driven: &Driven, cvt: bool) -> Option<Deficit> {
+    let totals = &driven.outcome.totals;
+    let at_s = finite(totals.worst_deficit_at_s)?;
+    let intervals = &cycle.trace_for(cvt).intervals;
+    let interval = intervals.iter().find(|i| at_s <= i.end_s + 1e-9)?;
+    let phase = cycle
+        .phases
+        .get(usize::from(interval.phase))
+        .unwrap_or(&cycle.name);
+    Some(Deficit {
+        power_w: totals.worst_deficit_w,
+        wheel_torque_nm: finite(totals.worst_deficit_nm),
+        at_s,
+        phase: phase.to_lowercase(),
+    })
+}

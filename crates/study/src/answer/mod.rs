@@ -1,0 +1,401 @@
+//! From a study's table to what it says: each output described, the subject held against its baselines, and which factor decides.
+
+pub mod ambient;
+mod study_table;
+mod tables;
+
+pub use study_table::{StudyTable, TableSource};
+pub use tables::tables;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use crate::design::{Role, saltelli_role};
+use crate::execute::outputs::EXCESS;
+use crate::plan::{Design, Factor, FactorValue, Plan};
+use crate::statistics::{
+    Blocks, Bootstrap, Groups, RankSensitivity, Share, SobolIndices, Summary, Tornado,
+    TornadoInput, group_means, rank_sensitivity, sobol_convergence, tornado,
+};
+use ambient::{Matrix, matrix};
+use cvtcycle_config::Problem;
+use study_table::Status;
+
+/// What a study says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Answer {
+    /// Version of this object.
+    pub schema: u32,
+    /// Name of the study.
+    pub title: String,
+    /// The question; may be empty.
+    pub question: String,
+    /// Points of the design.
+    pub points: u64,
+    /// Points whose runs are there.
+    pub points_done: u64,
+    /// Cars, the subject first.
+    pub cars: Vec<String>,
+    /// How the runs ended.
+    pub runs: Ended,
+    /// Samples that are described: of a Saltelli design A and B alone.
+    pub described: &'static str,
+    /// The subject against each baseline.
+    pub comparisons: Vec<Comparison>,
+    /// Each analysed output of each car.
+    pub outputs: Vec<OutputAnswer>,
+    /// The matrix, where the study is one of ambient temperatures and starts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matrix: Option<Matrix>,
+}
+
+/// How the runs ended.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Ended {
+    /// Fine.
+    pub ok: usize,
+    /// A check failed.
+    pub failed: usize,
+    /// The values do not go together.
+    pub not_run: usize,
+    /// Not there yet.
+    pub missing: usize,
+    /// First words of the reasons with their counts, the commonest first.
+    pub reasons: Vec<(String, usize)>,
+}
+
+/// The subject against one baseline.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// Name of the baseline.
+    pub baseline: String,
+    /// Excess of the subject's fuel, per cent.
+    pub excess_percent: Summary,
+    /// Pairs in which the subject uses more.
+    pub worse: Share,
+}
+
+/// One output of one car.
+#[derive(Clone, Debug, Serialize)]
+pub struct OutputAnswer {
+    /// Column.
+    pub output: String,
+    /// Its unit.
+    pub unit: String,
+    /// Car; for an excess the baseline.
+    pub car: String,
+    /// Description.
+    pub summary: Summary,
+    /// Sobol indices of growing numbers of samples, the last of all; of a Saltelli design.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sobol: Vec<SobolIndices>,
+    /// Of a one-at-a-time design.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tornado: Option<Tornado>,
+    /// Of factors that are numbers, in designs that sample.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rank: Option<Ranked>,
+    /// Means at the levels of factors: in grids of all, else of words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub levels: Vec<(String, Groups)>,
+}
+
+/// Rank correlations with the factors that are drawn numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ranked {
+    /// Names of the factors.
+    pub factors: Vec<String>,
+    /// Correlations, in their order.
+    pub of: RankSensitivity,
+}
+
+/// Computes what the study says from the parts that are there.
+///
+/// ```
+/// use std::collections::BTreeSet;
+/// use std::sync::Mutex;
+///
+/// use cvtcycle_config::{Problem, Problems};
+/// use cvtcycle_study::plan::Plan;
+/// use cvtcycle_study::store::{Rows, Values};
+/// use cvtcycle_study::{NoProgress, PartWriter, Study, StudyManifest, StudyTable, TableSource, answer};
+///
+/// /// Keeps the table of runs in memory.
+/// struct Memory<'s>(&'s Study, Mutex<Vec<(u64, Rows)>>);
+///
+/// impl PartWriter for Memory<'_> {
+///     fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
+///         self.1.lock().expect("not poisoned").push((part, runs.clone()));
+///         Ok(())
+///     }
+/// }
+///
+/// impl TableSource for Memory<'_> {
+///     fn parts(&self) -> Vec<u64> {
+///         (0..self.0.parts()).collect()
+///     }
+///     fn columns(&self, part: u64, names: &[&str]) -> Result<Vec<Values>, Problem> {
+///         let parts = self.1.lock().expect("not poisoned");
+///         let rows = parts.iter().find(|(index, _)| *index == part).expect("written");
+///         let column = |name: &&str| self.0.columns.iter().position(|head| head.name == *name);
+///         Ok(names.iter().filter_map(column).map(|k| rows.1.values[k].clone()).collect())
+///     }
+///     fn traces(&self, _: u64, _: &[&str]) -> Result<Vec<Values>, Problem> {
+///         Ok(Vec::new())
+///     }
+/// }
+///
+/// let text = "study.cycle = \"constant_50\"\nstudy.baselines = []\nstudy.design = \"grid\"\n\
+///     [[factor]]\nkey = \"ambient_degc\"\nvalues = [0, 25]\n";
+/// let study = Study::prepare(Plan::read("plan.toml", text)?)?;
+/// let table = Memory(&study, Mutex::default());
+/// study.execute(&BTreeSet::new(), &table, &NoProgress)?;
+/// let manifest = StudyManifest::of(&study);
+/// let answer = answer(&StudyTable::new(&manifest, &table)?)?;
+/// assert_eq!((answer.points, answer.runs.ok, answer.outputs[0].summary.n), (2, 2, 2));
+/// # Ok::<(), Problems>(())
+/// ```
+///
+/// # Errors
+/// A part that cannot be read.
+pub fn answer(frame: &StudyTable) -> Result<Answer, Problem> {
+    let outline = frame.outline;
+    let cars = 0..outline.cars.len();
+    let rows = described(frame);
+    let compare = |car: usize| -> Result<Comparison, Problem> {
+        let excess = pick(&frame.numbers(EXCESS, car)?, &rows);
+        Ok(Comparison {
+            baseline: outline.cars[car].clone(),
+            worse: Share::above_zero(&excess),
+            excess_percent: Summary::of(&excess),
+        })
+    };
+    let mut outputs = Vec::new();
+    for named in &outline.analysed {
+        // The subject has no excess over itself.
+        let first = usize::from(named.0.starts_with("subject_excess_"));
+        for car in cars.clone().skip(first) {
+            outputs.push(output(frame, &rows, named, car)?);
+        }
+    }
+    let is_done = |status: &Status| *status != Status::Missing;
+    Ok(Answer {
+        schema: crate::execute::manifest::SCHEMA,
+        title: outline.title.clone(),
+        question: outline.question.clone(),
+        points: outline.points,
+        points_done: frame.status(0).filter(is_done).count() as u64,
+        cars: outline.cars.clone(),
+        runs: ended(frame)?,
+        described: match is_saltelli(frame) {
+            true => "samples A and B",
+            false => "all points",
+        },
+        comparisons: cars.skip(1).map(compare).collect::<Result<_, _>>()?,
+        outputs,
+        matrix: matrix(frame)?,
+    })
+}
+
+fn is_saltelli(frame: &StudyTable) -> bool {
+    matches!(frame.outline.plan.design, Design::Saltelli { .. })
+}
+
+/// Points that are independent draws: all, but of a Saltelli design A and B; nothing else says something of the output's distribution.
+fn described(frame: &StudyTable) -> Vec<bool> {
+    let factors = frame.outline.plan.factors.len();
+    let mixed = is_saltelli(frame);
+    let is_drawn = |point| matches!(saltelli_role(factors, point).1, Role::A | Role::B);
+    (0..frame.outline.points)
+        .map(|point| !mixed || is_drawn(point))
+        .collect()
+}
+
+/// The numbers of a car that are described: of points that are independent draws.
+///
+/// # Errors
+/// A part that cannot be read.
+pub fn described_numbers(
+    frame: &StudyTable,
+    output: &str,
+    car: usize,
+) -> Result<Vec<f64>, Problem> {
+    Ok(pick(&frame.numbers(output, car)?, &described(frame)))
+}
+
+/// The numbers of the described points of which runs are there.
+fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
+    let pairs = numbers.iter().zip(rows);
+    pairs
+        .filter(|(_, described)| **described)
+        .map(|(x, _)| *x)
+        .collect()
+}
+
+fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
+    let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
+    let is_bad = |status: Status| matches!(status, Status::Failed | Status::NotRun);
+    for car in 0..frame.outline.cars.len() {
+        if !frame.status(car).any(is_bad) {
+            continue;
+        }
+        let words = frame.words("reason", car)?;
+        let bad = words
+            .iter()
+            .zip(frame.status(car))
+            .filter(|(_, status)| is_bad(*status));
+        for (reason, status) in bad {
+            for one in reason.split("; ") {
+                // Of a failed check the name alone: what follows differs from run to run.
+                let name = one.split(' ').next().unwrap_or_default();
+                let word = if status == Status::Failed { name } else { one };
+                *reasons.entry(word.to_owned()).or_default() += 1;
+            }
+        }
+    }
+    let mut reasons: Vec<(String, usize)> = reasons.into_iter().collect();
+    reasons.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    Ok(Ended {
+        ok: frame.count(Status::Ok),
+        failed: frame.count(Status::Failed),
+        not_run: frame.count(Status::NotRun),
+        missing: frame.count(Status::Missing),
+        reasons,
+    })
+}
+
+/// Points from which rank correlations are computed at most: more would cost memory and tell nothing that can be seen.
+const MAX_RANKED: usize = 1 << 16;
+
+/// The values of a factor at the first points, as the design has them. They need no table: a design is a function of the point.
+fn values(plan: &Plan, factor: usize, points: usize) -> impl Iterator<Item = Option<FactorValue>> {
+    let level = move |point| plan.design.level(&plan.factors, point, factor);
+    (0..points as u64).map(move |point| plan.factors[factor].value(level(point)))
+}
+
+/// Numbers of a factor.
+fn numbers(plan: &Plan, factor: usize, points: usize) -> Vec<f64> {
+    let number = |value: Option<FactorValue>| value.and_then(|x| x.number()).unwrap_or(f64::NAN);
+    values(plan, factor, points).map(number).collect()
+}
+
+/// Words of a factor, or its numbers as words; every word is held once.
+fn words(plan: &Plan, factor: usize, points: usize) -> Vec<Arc<str>> {
+    let mut known: Vec<(Option<FactorValue>, Arc<str>)> = vec![(None, "".into())];
+    let word = |value: Option<FactorValue>| {
+        if let Some((_, text)) = known.iter().find(|(other, _)| *other == value) {
+            return text.clone();
+        }
+        let text: Arc<str> = value
+            .iter()
+            .map(|value| label(value, ""))
+            .collect::<String>()
+            .into();
+        known.push((value, text.clone()));
+        text
+    };
+    values(plan, factor, points).map(word).collect()
+}
+
+fn output(
+    frame: &StudyTable,
+    rows: &[bool],
+    (name, unit): &(String, String),
+    car: usize,
+) -> Result<OutputAnswer, Problem> {
+    let plan = &frame.outline.plan;
+    let found = frame.numbers(name, car)?;
+    let mut answer = OutputAnswer {
+        output: name.clone(),
+        unit: unit.clone(),
+        car: frame.outline.cars[car].clone(),
+        summary: Summary::of(&pick(&found, rows)),
+        sobol: Vec::new(),
+        tornado: None,
+        rank: None,
+        levels: Vec::new(),
+    };
+    match plan.design {
+        Design::Saltelli { .. } => answer.sobol = sobol(&found, plan.factors.len()),
+        Design::OneAtATime { .. } => answer.tornado = Some(of_tornado(plan, &found)),
+        _ => {
+            let as_words =
+                |f: &usize| plan.design == Design::Grid || !plan.factors[*f].values.are_numbers();
+            let (levels, drawn): (Vec<usize>, Vec<usize>) =
+                (0..plan.factors.len()).partition(as_words);
+            answer.rank = (!drawn.is_empty()).then(|| ranked(plan, &drawn, &found));
+            let groups = |f| group_means(&words(plan, f, found.len()), &found);
+            let levels = levels.into_iter();
+            answer.levels = levels
+                .map(|f| (plan.factors[f].name.clone(), groups(f)))
+                .collect();
+        }
+    }
+    Ok(answer)
+}
+
+fn ranked(plan: &Plan, drawn: &[usize], found: &[f64]) -> Ranked {
+    let points = found.len().min(MAX_RANKED);
+    let columns: Vec<Vec<f64>> = drawn.iter().map(|&f| numbers(plan, f, points)).collect();
+    let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+    Ranked {
+        factors: drawn
+            .iter()
+            .map(|&f| plan.factors[f].name.clone())
+            .collect(),
+        of: rank_sensitivity(&columns, &found[..points]),
+    }
+}
+
+/// Splits the points of a Saltelli design into its blocks.
+fn sobol(numbers: &[f64], factors: usize) -> Vec<SobolIndices> {
+    let width = factors + 2;
+    let column = |k: usize| numbers.iter().skip(k).step_by(width).copied().collect();
+    let columns: Vec<Vec<f64>> = (0..width).map(column).collect();
+    let blocks = Blocks {
+        a: &columns[0],
+        b: &columns[1],
+        ab: columns[2..].iter().map(Vec::as_slice).collect(),
+    };
+    sobol_convergence(&blocks, Bootstrap::default())
+}
+
+/// Point 0 is the base; the others follow factor by factor.
+fn of_tornado(plan: &Plan, numbers: &[f64]) -> Tornado {
+    let input = |(f, factor): (usize, &Factor)| {
+        let points = values(plan, f, numbers.len()).zip(numbers).skip(1);
+        let entry = |(value, number): (Option<FactorValue>, &f64)| {
+            Some((label(&value?, &factor.unit), *number))
+        };
+        TornadoInput {
+            name: factor.name.clone(),
+            entries: points.filter_map(entry).collect(),
+        }
+    };
+    let inputs: Vec<TornadoInput> = plan.factors.iter().enumerate().map(input).collect();
+    tornado(numbers.first().copied().unwrap_or(f64::NAN), &inputs)
+}
+
+/// A value as a label: numbers with four figures and their unit.
+fn label(value: &FactorValue, unit: &str) -> String {
+    let x = match value {
+        FactorValue::Word(word) => return word.to_string(),
+        FactorValue::Number(x) => *x,
+    };
+    let digits = match x.abs() > 0.0 {
+        true => (3 - x.abs().log10().floor() as i32)
+            .clamp(0, 12)
+            .unsigned_abs(),
+        false => 0,
+    };
+    let mut text = format!("{x:.*}", digits as usize);
+    if text.contains('.') {
+        text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+    }
+    match unit {
+        "" | "-" => text,
+        unit => format!("{text} {unit}"),
+    }
+}

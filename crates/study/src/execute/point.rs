@@ -1,0 +1,290 @@
+//! One point of a study: every car with the point's draw, and the rows that come of it.
+
+use std::collections::HashMap;
+
+use super::cars::{Binding, StudyCar};
+use super::preflight::resolved;
+use super::prepare::Study;
+use super::rows::{PointRun, Status, Traces};
+use crate::plan::{Acts, Factor, FactorValue, Plan};
+use cvtcycle_config::Problem;
+use cvtcycle_config::setup::Setup;
+use cvtcycle_config::setup::template::{ParameterRef, Variant};
+use cvtcycle_model::drive::{Conditions, Row, Start, drive_into};
+use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_output::summary::{Driven, RunSummary, Settings, compare, run_summary};
+
+/// What one thread keeps from point to point: a bench for each variant of each car.
+#[derive(Default)]
+pub(super) struct Worker {
+    benches: HashMap<(usize, usize), Variant>,
+}
+
+/// A car at a point, with the values of the factors there.
+struct CarAtPoint<'a> {
+    study: &'a Study,
+    index: usize,
+    car: &'a StudyCar,
+    values: &'a [Option<FactorValue>],
+}
+
+impl Study {
+    /// Drives a point; the rows of its runs go into `traces`, if they are kept.
+    pub(super) fn point(
+        &self,
+        point: u64,
+        worker: &mut Worker,
+        mut traces: Option<&mut Traces>,
+    ) -> Vec<PointRun> {
+        let Plan {
+            factors, design, ..
+        } = &self.plan;
+        let value = |(f, factor): (usize, &Factor)| factor.value(design.level(factors, point, f));
+        let values: Vec<Option<FactorValue>> = factors.iter().enumerate().map(value).collect();
+        let mut subject: Option<RunSummary> = None;
+        let mut runs = Vec::with_capacity(self.cars.len());
+        for (index, car) in self.cars.iter().enumerate() {
+            if let Some(traces) = &mut traces {
+                traces.begin(point, car);
+            }
+            let at = CarAtPoint {
+                study: self,
+                index,
+                car,
+                values: &values,
+            };
+            let (run, summary) = at.run(worker, subject.as_ref(), traces.as_deref_mut());
+            if index == 0 {
+                subject = summary;
+            }
+            runs.push(run);
+        }
+        runs
+    }
+}
+
+impl CarAtPoint<'_> {
+    fn run(
+        &self,
+        worker: &mut Worker,
+        subject: Option<&RunSummary>,
+        traces: Option<&mut Traces>,
+    ) -> (PointRun, Option<RunSummary>) {
+        let outputs = &self.study.outputs;
+        let cycle = &self.study.cycles[self.cycle()];
+        let (factors, built) = self.build(worker);
+        let setup = match built {
+            Ok(setup) => setup,
+            Err(reason) => {
+                let run = PointRun {
+                    status: Status::NotRun(reason),
+                    factors,
+                    numbers: vec![f64::NAN; outputs.len()],
+                };
+                return (run, None);
+            }
+        };
+        let conditions = self.conditions();
+        let outcome = match traces {
+            Some(traces) => {
+                let mut push = |rows: &[Row]| traces.push(cycle, rows);
+                drive_into(&setup, cycle, &conditions, Some(&mut push))
+            }
+            None => drive_into(&setup, cycle, &conditions, None),
+        };
+        let formulation = self.option("formulation").map(FactorValue::to_string);
+        let settings = Settings {
+            formulation: formulation
+                .unwrap_or_else(|| self.study.plan.base.formulation.name().to_owned()),
+            ..Settings::default()
+        };
+        let named = Driven {
+            name: &self.car.name,
+            setup: &setup,
+            outcome: &outcome,
+        };
+        let summary = run_summary(cycle, &self.car.role, &settings, &named);
+        let excess = subject.map(|subject| compare(subject, &summary));
+        let status = status(&summary);
+        let row = (summary, excess);
+        let numbers = outputs
+            .iter()
+            .map(|column| column.number_of(&row))
+            .collect();
+        let run = PointRun {
+            status,
+            factors,
+            numbers,
+        };
+        (run, Some(row.0))
+    }
+
+    /// What each factor has become in the car, and the car with these values or the reason why there is none.
+    fn build(&self, worker: &mut Worker) -> (Vec<Option<FactorValue>>, Result<Setup, String>) {
+        let all = &self.study.plan.factors;
+        let weight =
+            |(f, value): (usize, &Option<FactorValue>)| self.car.weight(f, &all[f], value.as_ref());
+        let index = self.values.iter().enumerate().map(weight).sum();
+        let variant = self.car.variant(index, all);
+        let resolve = |f: usize| {
+            let slot = variant
+                .as_ref()
+                .ok()
+                .and_then(|variant| variant.slots[f].as_ref());
+            self.resolve(f, slot.map(ParameterRef::base))
+        };
+        let factors: Vec<_> = (0..all.len()).map(resolve).collect();
+        let variant = match variant {
+            Ok(variant) => variant,
+            Err(problems) => return (factors, Err(reason(problems))),
+        };
+        if let Some((_, problem)) = variant.unknown.first() {
+            let reason = reason(std::slice::from_ref(problem));
+            return (factors, Err(reason));
+        }
+        let bench = worker.benches.entry((self.index, index));
+        let bench = bench.or_insert_with(|| variant.blueprint.bench());
+        bench.reset();
+        for ((slot, value), given) in variant.slots.iter().zip(&factors).zip(self.values) {
+            // What the design leaves alone is not put in again: a file may well not give it.
+            if let (Some(slot), Some(FactorValue::Number(x)), Some(_)) = (slot, value, given) {
+                bench.set(slot, *x);
+            }
+        }
+        let built = bench.build().map_err(|_| reason(&bench.problems()));
+        (factors, built)
+    }
+
+    /// What a factor's value has become in the car, or the car's own where the design leaves it; none where the factor does not reach it.
+    fn resolve(&self, f: usize, base: Option<f64>) -> Option<FactorValue> {
+        let value = self.values[f].as_ref();
+        let own = &self.study.plan.base;
+        let number = |acts, base: f64| match value {
+            Some(FactorValue::Number(x)) => FactorValue::Number(resolved(acts, base, *x)),
+            Some(word) => word.clone(),
+            None => FactorValue::Number(base),
+        };
+        match self.car.bindings[f] {
+            Binding::Not => None,
+            Binding::Number(acts) => base.map(|base| number(acts, base)),
+            Binding::Ambient => Some(number(Acts::Value, own.ambient_degc)),
+            Binding::Step => Some(number(Acts::Value, own.dt_s)),
+            Binding::Start | Binding::Cycle | Binding::Words { .. } => {
+                value.cloned().or_else(|| self.own_word(f))
+            }
+        }
+    }
+
+    /// The word of the car that no factor has changed.
+    fn own_word(&self, f: usize) -> Option<FactorValue> {
+        let Plan { base, factors, .. } = &self.study.plan;
+        let setup = &self.car.variant(0, factors).ok()?.setup;
+        let word = match factors[f].key.as_str() {
+            "start" => base.start.clone(),
+            "cycle" => base.cycle.clone(),
+            "lubricant" => setup.oils().0.name.clone(),
+            "engine_oil" => setup.oils().1.name.clone(),
+            "formulation" => base.formulation.name().to_owned(),
+            key => setup
+                .keys
+                .iter()
+                .find(|info| info.key == key)?
+                .value
+                .clone(),
+        };
+        Some(FactorValue::Word(word.into()))
+    }
+
+    /// Index of the factor of a run option.
+    fn factor(&self, key: &str) -> Option<usize> {
+        self.study
+            .plan
+            .factors
+            .iter()
+            .position(|factor| factor.key == key)
+    }
+
+    /// The value of a run option at this point, if a factor gives it to this car.
+    fn option(&self, key: &str) -> Option<&FactorValue> {
+        let mut all = self.study.plan.factors.iter().zip(&self.car.bindings);
+        let is_it =
+            |(factor, binding): (&Factor, &Binding)| factor.key == key && *binding != Binding::Not;
+        let index = all.position(is_it)?;
+        self.values[index].as_ref()
+    }
+
+    /// Index of the cycle: the plan's comes first, then those of the factor's list.
+    fn cycle(&self) -> usize {
+        let factor = self.factor("cycle").map(|f| &self.study.plan.factors[f]);
+        let value = self.option("cycle");
+        factor
+            .zip(value)
+            .map_or(0, |(factor, value)| factor.entry_of(value))
+    }
+
+    fn conditions(&self) -> Conditions {
+        let base = &self.study.plan.base;
+        let number = |key: &str, base: f64| {
+            let value = self.factor(key).and_then(|f| self.resolve(f, None));
+            value.and_then(|value| value.number()).unwrap_or(base)
+        };
+        let start = match self.option("start") {
+            Some(FactorValue::Number(degc)) => Start::At(degc + ZERO_DEGC_K),
+            Some(FactorValue::Word(word)) => start(word),
+            None => start(&base.start),
+        };
+        Conditions {
+            ambient_k: number("ambient_degc", base.ambient_degc) + ZERO_DEGC_K,
+            start,
+            max_dt_s: number("dt_s", base.dt_s),
+            keep_rows: false,
+        }
+    }
+}
+
+fn start(word: &str) -> Start {
+    match word {
+        "soak" => Start::Soak,
+        "warm" => Start::Warm,
+        // The plan has checked that it is a number.
+        degc => degc
+            .parse()
+            .map_or(Start::Soak, |degc: f64| Start::At(degc + ZERO_DEGC_K)),
+    }
+}
+
+/// A run fails as `run` fails; gross slip, of which `run` only warns, makes its numbers no statement about a car that anyone would build.
+fn status(summary: &RunSummary) -> Status {
+    let mut reasons = summary.failed_checks.clone();
+    let slips = summary.flags_s.get("gross_slip").is_some_and(|s| s > 0.0);
+    if slips {
+        reasons.push("gross_slip".to_owned());
+    }
+    if reasons.is_empty() {
+        return Status::Ok;
+    }
+    let describe = |name: &String| match (name.as_str(), &summary.worst_deficit) {
+        ("missed_trace", Some(worst)) => {
+            let (missed_s, at_s, phase) = (summary.trace_missed_s, worst.at_s, &worst.phase);
+            let kw = worst.power_w / 1e3;
+            format!("missed_trace for {missed_s:.0} s, worst {kw:.1} kW at {at_s:.0} s in {phase}")
+        }
+        (name, _) => match summary.flags_s.get(name) {
+            Some(s) => format!("{name} for {s:.0} s"),
+            None => name.to_owned(),
+        },
+    };
+    Status::Failed(reasons.iter().map(describe).collect::<Vec<_>>().join("; "))
+}
+
+/// Problems in one line.
+fn reason(problems: &[Problem]) -> String {
+    let messages = problems
+        .iter()
+        .map(|problem| match problem.allowed.as_str() {
+            "" => problem.message.clone(),
+            allowed => format!("{} (allowed: {allowed})", problem.message),
+        });
+    let text = messages.collect::<Vec<_>>().join("; ");
+    text.replace(['\n', '\r'], " ")
+}

@@ -1,0 +1,185 @@
+//! A table of a study as one file: CSV, Parquet, or a workbook for Excel.
+//!
+//! | format | for | what to know |
+//! |---|---|---|
+//! | `.csv` | anything | names with units; begins with a byte order mark if and only if there is a letter beyond ASCII, since Excel takes such a file for another encoding without it; pandas, polars, DuckDB and Excel skip the mark |
+//! | `.parquet` | programs | names without units, which are in the metadata with the manifest; a row group a part |
+//! | `.xlsx` | Excel, LibreOffice | names with units, numbers as numbers whatever the decimal sign of the country; at most 1 048 575 rows, 16 384 columns and 5 000 000 cells |
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::RowWriter;
+use super::csv::{CsvTable, Header};
+use super::parquet::ParquetTable;
+use super::read::{Status, Study};
+use super::table::{Head, Kind, Rows, Values};
+use super::xlsx::{MAX_CELLS, MAX_COLUMNS, MAX_ROWS, XlsxTable};
+use cvtcycle_config::{Problem, Setting};
+use cvtcycle_output::file::OutputFile;
+use cvtcycle_output::files::problem;
+
+/// Byte order mark, as UTF-8.
+const BOM: &[u8] = b"\xEF\xBB\xBF";
+
+/// A format of one file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Comma-separated values, UTF-8.
+    Csv,
+    /// Parquet.
+    Parquet,
+    /// Office Open XML workbook.
+    Xlsx,
+}
+
+impl Format {
+    /// Formats by the ending of a file.
+    pub const NAMES: [(&'static str, Format); 3] = [
+        ("csv", Format::Csv),
+        ("parquet", Format::Parquet),
+        ("xlsx", Format::Xlsx),
+    ];
+
+    /// The format of the ending of a file's name.
+    ///
+    /// # Errors
+    /// A problem of `--out` that names the endings.
+    pub fn of(path: &Path) -> Result<Self, Problem> {
+        let ending = path.extension().unwrap_or_default();
+        let ending = ending.to_string_lossy().to_lowercase();
+        let known = Self::NAMES.iter().find(|(name, _)| *name == ending);
+        known.map(|(_, format)| *format).ok_or_else(|| {
+            let path_name = path.display();
+            let message =
+                format!("the ending of {path_name} does not say in which format to write");
+            problem(path, &message, "for example runs.csv")
+                .allowed("a name that ends in .csv, .parquet or .xlsx")
+        })
+    }
+}
+
+/// What was exported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Exported {
+    /// Rows without the header.
+    pub rows: u64,
+    /// How far the study had come.
+    pub status: Status,
+}
+
+/// Writes all rows of a table that are there, in the order of the parts; one part is in memory at a time. The caller commits the file.
+///
+/// # Errors
+/// A problem: no part is there yet, a part is damaged, the rows do not fit into a workbook (found before anything is written), or the
+/// words of the operating system.
+pub fn export(
+    study: &Study,
+    table: &str,
+    format: Format,
+    out: &mut OutputFile,
+) -> Result<Exported, Problem> {
+    let status = study.status();
+    let heads = study.heads(table)?;
+    if heads.is_empty() {
+        let message = format!(
+            "the study in {} has no rows yet: none of its {} parts is whole",
+            study.path().display(),
+            status.expected
+        );
+        let problem = problem(study.path(), &message, "continue it");
+        return Err(problem.settings(&[Setting::Resume]));
+    }
+    let rows = study.rows(table)?;
+    if format == Format::Xlsx {
+        check_size(out.path(), rows, heads.len())?;
+    }
+    let bom = format == Format::Csv && beyond_ascii(study, table, &heads)?;
+    let manifest = study.manifest().to_string();
+    let file = &mut *out;
+    let begin = |first: &Rows| -> io::Result<Box<dyn RowWriter + '_>> {
+        Ok(match format {
+            Format::Csv => {
+                file.write_all(if bom { BOM } else { b"" })?;
+                Box::new(CsvTable::new(file, &heads, Header::Units)?)
+            }
+            Format::Parquet => {
+                let metadata = [("cvtcycle.manifest", manifest.as_str())];
+                Box::new(ParquetTable::new(file, &heads, &metadata, first)?)
+            }
+            Format::Xlsx => Box::new(XlsxTable::new(file, table, &heads)?),
+        })
+    };
+    let written = copy(study, table, &heads, begin)?;
+    written.map_err(|error| match error.kind() {
+        // A cell that no workbook can hold.
+        io::ErrorKind::InvalidInput => problem(out.path(), &error.to_string(), NO_LIMIT),
+        _ => out.cannot_write(&error),
+    })?;
+    Ok(Exported { rows, status })
+}
+
+/// What helps where a workbook is too small.
+const NO_LIMIT: &str = "write .csv or .parquet, which have no such limit";
+
+/// Writes all parts to a table that is begun with the rows of the first one: a problem of reading them, or an error of the table.
+fn copy<'a>(
+    study: &Study,
+    table: &str,
+    heads: &[Head],
+    begin: impl FnOnce(&Rows) -> io::Result<Box<dyn RowWriter + 'a>>,
+) -> Result<io::Result<()>, Problem> {
+    let names: Vec<&str> = heads.iter().map(|head| head.name.as_str()).collect();
+    let read = |&index: &usize| study.part(index, table)?.read(&names);
+    let mut parts = study.present().iter().map(read);
+    let first = parts.next().unwrap_or_else(|| Ok(Rows::default()))?;
+    let mut writer = match begin(&first) {
+        Ok(writer) => writer,
+        Err(error) => return Ok(Err(error)),
+    };
+    for rows in std::iter::once(Ok(first)).chain(parts) {
+        if let Err(error) = writer.write(&rows?) {
+            return Ok(Err(error));
+        }
+    }
+    Ok(writer.finish())
+}
+
+/// Refuses what does not fit into a sheet, or into memory as a workbook.
+fn check_size(path: &Path, rows: u64, columns: usize) -> Result<(), Problem> {
+    let columns = columns as u64;
+    let cells = rows.saturating_mul(columns);
+    let message = if rows > MAX_ROWS {
+        format!(
+            "a sheet of Excel holds at most {MAX_ROWS} rows below its header, the study has {rows} rows"
+        )
+    } else if columns > MAX_COLUMNS {
+        format!(
+            "a sheet of Excel holds at most {MAX_COLUMNS} columns, the study has {columns} columns"
+        )
+    } else if cells > MAX_CELLS {
+        format!(
+            "a workbook is built in memory, with at most {MAX_CELLS} cells; the study has {rows} rows of {columns} columns, {cells} cells"
+        )
+    } else {
+        return Ok(());
+    };
+    Err(problem(path, &message, NO_LIMIT))
+}
+
+/// True if a head or a cell has a letter beyond ASCII.
+fn beyond_ascii(study: &Study, table: &str, heads: &[Head]) -> Result<bool, Problem> {
+    let is_ascii = |head: &Head| head.name.is_ascii() && head.unit.is_ascii();
+    let words = heads.iter().filter(|head| head.kind == Kind::Text);
+    let words: Vec<&str> = words.map(|head| head.name.as_str()).collect();
+    let mut beyond = !heads.iter().all(is_ascii);
+    for &index in study.present() {
+        if beyond {
+            break;
+        }
+        let rows = study.part(index, table)?.read(&words)?;
+        let is_ascii = |values: &Values| matches!(values, Values::Text(words) if words.iter().all(|word| word.is_ascii()));
+        beyond = !rows.values.iter().all(is_ascii);
+    }
+    Ok(beyond)
+}

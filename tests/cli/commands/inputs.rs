@@ -1,0 +1,282 @@
+//! `list`, `show`, `explain` and `check`: what the program knows, and input files without a run.
+
+use super::*;
+
+#[test]
+fn lists_name_what_can_be_driven() {
+    let cycles = json(&["list", "cycles", "--json"]);
+    let nedc = cycles["cycles"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|c| c["name"] == "ece15_eudc")
+        .unwrap();
+    assert_eq!(
+        (
+            nedc["duration_s"].as_f64(),
+            nedc["max_speed_kmh"].as_f64().map(f64::round)
+        ),
+        (Some(1180.0), Some(120.0))
+    );
+    assert!((nedc["distance_km"].as_f64().unwrap() - 11.028).abs() < 1e-3);
+    assert!((nedc["distance_automatic_km"].as_f64().unwrap() - 10.937).abs() < 1e-3);
+    assert_eq!(
+        json(&["list", "vehicles", "--json"])["vehicles"]
+            .as_array()
+            .unwrap()
+            .len(),
+        3
+    );
+    assert_eq!(
+        json(&["list", "lubricants", "--json"])["lubricants"]
+            .as_array()
+            .unwrap()
+            .len(),
+        6
+    );
+    for what in ["cycles", "vehicles", "lubricants"] {
+        let text = stdout(&run(&["list", what]));
+        assert!(
+            text.lines().count() > 4 && text.lines().all(|line| line.chars().count() <= 120),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn show_prints_values_with_status_and_source() {
+    let shown = json(&["show", "rover_216_cvt", "--json", "--status", "assumed"]);
+    let keys = shown["keys"].as_array().unwrap();
+    assert!(keys.len() > 20 && keys.iter().all(|key| key["status"] == "assumed"));
+    let text = stdout(&run(&["show", "rover_216_cvt"]));
+    for part in [
+        "[transmission.cvt.belt]",
+        "band_offset_mm",
+        "3 mm",
+        "source",
+        "thesis App. C",
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    assert!(stdout(&run(&["show", "dexron_iii"])).contains("kv40_mm2_s"));
+    assert!(stdout(&run(&["show", "ece15_eudc"])).contains("eudc"));
+    assert!(refused(&["show", "dexron_4"]).contains("did you mean `dexron_ii"));
+}
+
+#[test]
+fn explain_knows_keys_columns_flags_and_equations() {
+    let whole = stdout(&run(&["explain", "transmission.cvt.belt.band_offset_mm"]));
+    for part in [
+        "0 to 20 mm",
+        "BT-1",
+        "rover_216_cvt",
+        "3 mm",
+        "thesis App. C",
+    ] {
+        assert!(whole.contains(part), "{part} is not in\n{whole}");
+    }
+    assert_eq!(stdout(&run(&["explain", "band_offset_mm"])), whole);
+    let oil = json(&["explain", "engine_oil.kv40_mm2_s", "--json"]);
+    assert_eq!(oil["keys"][0]["values"].as_array().unwrap().len(), 6);
+    // An option that no embedded vehicle chooses.
+    assert!(
+        stdout(&run(&["explain", "dual_cavity"])).contains("share")
+            || run(&["explain", "kind.dual_cavity.share"]).status.success()
+    );
+    for word in [
+        "clamp_safety",
+        "gross_slip",
+        "SL-8",
+        "transmission.cvt.pump",
+        "missed_trace",
+    ] {
+        assert_eq!(run(&["explain", word]).status.code(), Some(0), "{word}");
+    }
+    assert!(
+        refused(&["explain", "band_ofset_mm"]).contains("transmission.cvt.belt.band_offset_mm")
+    );
+    let starts = stdout(&run(&["explain", "calibration.starts"]));
+    assert!(starts.contains("integer from 1 to 1000"), "{starts}");
+    assert!(refused(&["explain", "gros_slip"]).contains("gross_slip"));
+}
+
+/// Terms of the field are found under any spelling, with every name that belongs to them; so are columns of the summary.
+#[test]
+fn explain_knows_the_terms_of_the_field_and_the_summary() {
+    for (term, name) in [
+        ("clamping force", "transmission.cvt.clamp"),
+        ("spin-loss", "pump_loss_w"),
+        ("drag_torque", "transmission.cvt.reverse_clutch.drag_nm"),
+        ("Road load", "road_load.mass_kg"),
+        ("coast-down", "road_load.form.coefficients.f0_n"),
+        ("torque capacity", "min_clamp_safety"),
+        ("variogram", "transmission.cvt.ratio.low"),
+        ("ratio-span", "transmission.cvt.ratio.high"),
+        ("slip", "slip_percent"),
+        ("fuel_l_per_100km", "column of the summary"),
+        ("subject_excess_percent", "column of the summary"),
+        ("loss_pump_kj", "column of the summary"),
+    ] {
+        let text = stdout(&run(&["explain", term]));
+        assert!(
+            text.contains(name),
+            "{name} is not in the explanation of {term}:\n{text}"
+        );
+    }
+    // Every name of the table is explained.
+    let table = include_str!("../../../src/commands/explain/terms.txt");
+    for line in table.lines() {
+        let (terms, names) = line.split_once(':').unwrap();
+        let term = terms.split(',').next().unwrap();
+        let text = stdout(&run(&["explain", term]));
+        for name in names.split(',').map(str::trim) {
+            assert!(text.contains(name), "{term}: {name} is not in\n{text}");
+        }
+    }
+}
+
+#[test]
+fn check_reports_every_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, bytes: &[u8]| fs::write(dir.path().join(name), bytes).unwrap();
+    let embedded = |name: &str| fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap();
+    write("car.toml", &embedded("vehicles/rover_216_cvt.toml"));
+    write("oil.toml", &embedded("lubricants/dexron_ii.toml"));
+    write("town.csv", b"time_s,speed_kmh\n0,0\n1,3\n2,0\n");
+    let good = run_in(dir.path(), &["check", "car.toml", "oil.toml", "town.csv"]);
+    assert_eq!(good.status.code(), Some(0), "{}", stderr(&good));
+    assert_eq!(
+        stdout(&good),
+        "ok  car.toml (vehicle)\nok  oil.toml (lubricant)\nok  town.csv (cycle)\n"
+    );
+    write("semicolons.csv", b"time_s;speed_kmh\n0;0\n1;3\n");
+    write("back.csv", b"time_s,speed_kmh\n0,0\n2,3\n1,-4\n3,nan\n");
+    write("empty.toml", b"");
+    write("binary.toml", &[0, 159, 146, 150]);
+    write("other.toml", b"[package]\nname = 'x'\n");
+    write(
+        "thin.toml",
+        b"kv40_mm2_s = -3\nkv100_mm2_s = 7.2\ndensity15_kg_m3 = 865\n",
+    );
+    let files = [
+        "semicolons.csv",
+        "back.csv",
+        "empty.toml",
+        "binary.toml",
+        "other.toml",
+        "thin.toml",
+        "none.toml",
+        ".",
+    ];
+    let bad = run_in(dir.path(), &[&["check", "car.toml"], &files[..]].concat());
+    assert_eq!(
+        (bad.status.code(), stdout(&bad).as_str()),
+        (Some(2), "ok  car.toml (vehicle)\n")
+    );
+    let message = stderr(&bad);
+    let parts = [
+        "semicolons.csv:1",
+        "back.csv:4",
+        "back.csv:5",
+        "empty",
+        "binary file",
+        "neither",
+        "1.5 to 5000 mm²/s",
+        "cannot read `none.toml`",
+        "name a file in that directory",
+    ];
+    for part in parts {
+        assert!(message.contains(part), "{part} is not in\n{message}");
+    }
+    let listed = run_in(dir.path(), &["check", "--json", "car.toml", "back.csv"]);
+    let listed: Value = serde_json::from_slice(&listed.stdout).unwrap();
+    assert_eq!(
+        (&listed["files"][0]["ok"], &listed["files"][1]["ok"]),
+        (&Value::from(true), &Value::from(false))
+    );
+    assert!(listed["files"][1]["problems"].as_array().unwrap().len() >= 3);
+}
+
+#[test]
+fn check_knows_the_plan_of_a_calibration() {
+    let good = run(&["check", "rover_216_warm_up", "rover_216_cvt"]);
+    assert_eq!(
+        (good.status.code(), stdout(&good).as_str()),
+        (
+            Some(0),
+            "ok  rover_216_warm_up (calibration)\nok  rover_216_cvt (vehicle)\n"
+        )
+    );
+    // By its other tables, though the first is misspelt and a vehicle is named below it.
+    let folder = tempfile::tempdir().unwrap();
+    let plan = folder.path().join("plan.toml");
+    let text =
+        "[calibratoin]\nvehicle = \"rover_216_cvt\"\n[[parameters]]\nlow = 5\n[[date]]\nsd = 0.1\n";
+    fs::write(&plan, text).unwrap();
+    let bad = run(&["check", plan.to_str().unwrap()]);
+    assert_eq!((bad.status.code(), stdout(&bad).as_str()), (Some(2), ""));
+    assert!(
+        stderr(&bad).contains("did you mean [calibration]?"),
+        "{}",
+        stderr(&bad)
+    );
+    assert!(refused(&["show", "rover_216_warm_up"]).contains("the plan of a calibration"));
+}
+
+#[test]
+fn check_knows_the_plan_of_a_study() {
+    let good = run(&["check", "plans/uncertainty_rover.toml", "pump_and_offset"]);
+    assert_eq!(
+        (good.status.code(), stdout(&good).as_str()),
+        (
+            Some(0),
+            "ok  plans/uncertainty_rover.toml (study)\nok  pump_and_offset (study)\n"
+        )
+    );
+    // The first by its other tables, though a vehicle is named; a key that no car has shows only where the cars are read.
+    let dir = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string("plans/pump_and_offset.toml").unwrap();
+    fs::write(
+        dir.path().join("head.toml"),
+        text.replace("[study]", "[stdy]"),
+    )
+    .unwrap();
+    fs::write(
+        dir.path().join("key.toml"),
+        text.replace("belt.band_offset_mm", "belt.band_ofset_mm"),
+    )
+    .unwrap();
+    for (file, message) in [
+        ("head.toml", "did you mean `study`?"),
+        ("key.toml", "did you mean"),
+    ] {
+        let bad = run_in(dir.path(), &["check", file]);
+        assert_eq!((bad.status.code(), stdout(&bad).as_str()), (Some(2), ""));
+        assert!(
+            stderr(&bad).contains(message),
+            "{message} is not in\n{}",
+            stderr(&bad)
+        );
+    }
+    assert!(refused(&["show", "pump_and_offset"]).contains("the plan of a study"));
+}
+
+#[test]
+fn check_tells_what_cannot_be_read_before_what_is_not_known() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(
+        dir.path().join("deep.toml"),
+        format!("a = {}1{}\n", "[".repeat(500), "]".repeat(500)),
+    )
+    .unwrap();
+    fs::write(dir.path().join("open.toml"), "x = [1, 2\ny = \"\n").unwrap();
+    let bad = run_in(dir.path(), &["check", "deep.toml", "open.toml"]);
+    assert_eq!(bad.status.code(), Some(2));
+    for part in ["deep.toml:1", "nested", "open.toml:"] {
+        assert!(
+            stderr(&bad).contains(part),
+            "{part} is not in\n{}",
+            stderr(&bad)
+        );
+    }
+}

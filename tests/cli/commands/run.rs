@@ -1,0 +1,321 @@
+//! `run`: its summary, its table, its overrides.
+
+use super::*;
+
+#[test]
+fn json_of_a_run_has_every_key_of_the_contract() {
+    let summary = json(&["run", "--ambient", "-10", "--json"]);
+    for key in [
+        "schema",
+        "program",
+        "cycle",
+        "ambient_degc",
+        "start",
+        "runs",
+    ] {
+        assert!(keys(&summary).contains(&key), "{key}");
+    }
+    assert_eq!(summary["schema"], 1);
+    assert_eq!(
+        summary["program"],
+        concat!("cvtcycle ", env!("CARGO_PKG_VERSION"))
+    );
+    assert_eq!(summary["start"], "soak");
+    assert_eq!(summary["ambient_degc"], -10.0);
+    let run_keys = "vehicle role transmission distance_km duration_s fuel_l_per_100km co2_g_per_km phases wheel_work_positive_kj \
+        wheel_work_negative_kj fuel_energy_kj loss_kj kinetic_kj standstill_fuel_g min_clamp_safety at_ratio_limit_s end_degc \
+        ledger_error trace_missed_s outside_validity_s transmission_efficiency_percent";
+    let runs = summary["runs"].as_array().unwrap();
+    assert_eq!(runs.len(), 3);
+    for run in runs {
+        for key in run_keys.split_whitespace() {
+            assert!(keys(run).contains(&key), "{key}");
+        }
+        assert_eq!(run["phases"][0]["name"], "ece15");
+        assert_eq!(run["phases"][1]["name"], "eudc");
+        assert_eq!(run["phases"].as_array().unwrap().len(), 2);
+        for key in ["transmission_sump", "engine_oil", "coolant"] {
+            assert!(run["end_degc"][key].is_number(), "{key}");
+        }
+        assert!(
+            run["ledger_error"].as_f64().unwrap() < 1e-9
+                && run["run_ledger_error"].as_f64().unwrap() < 1e-9
+        );
+    }
+    let cvt = "launch_clutch pump input_shaft clutch_drag belt_band belt_film belt_slip belt_wedge belt_penetration final_drive \
+        accessories brake";
+    let manual = "launch_clutch gear_mesh bearing churning seal accessories brake";
+    assert_eq!(
+        keys(&runs[0]["loss_kj"]),
+        cvt.split_whitespace().collect::<Vec<_>>()
+    );
+    assert_eq!(
+        keys(&runs[1]["loss_kj"]),
+        manual.split_whitespace().collect::<Vec<_>>()
+    );
+    assert_eq!(
+        (&runs[0]["role"], &runs[1]["role"]),
+        (&Value::from("subject"), &Value::from("baseline"))
+    );
+    assert_eq!(runs[1]["min_clamp_safety"], Value::Null);
+    assert_eq!(runs[1]["at_ratio_limit_s"], Value::Null);
+}
+
+#[test]
+fn numbers_of_the_summary_belong_together() {
+    for formulation in ["smooth", "appendix_c", "chapter_8"] {
+        // Whether the solve converges everywhere in a verification formulation is not asked here.
+        let output = run(&[
+            "run",
+            "--json",
+            "--ambient",
+            "0",
+            "--formulation",
+            formulation,
+        ]);
+        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+        for run in summary["runs"].as_array().unwrap() {
+            let losses = run["loss_kj"].as_object().unwrap();
+            let own = losses
+                .iter()
+                .filter(|(name, _)| !["accessories", "brake"].contains(&name.as_str()));
+            let sum: f64 = own.filter_map(|(_, kj)| kj.as_f64()).sum();
+            let ledger = run["ledger_kj"]["losses"].as_f64().unwrap();
+            assert!(
+                (sum / ledger - 1.0).abs() < 1e-9,
+                "{formulation}: {sum} {ledger}"
+            );
+            let work = run["wheel_work_positive_kj"].as_f64().unwrap();
+            let efficiency = run["transmission_efficiency_percent"].as_f64().unwrap();
+            assert!((efficiency - 100.0 * work / (work + ledger)).abs() < 1e-9);
+            assert!((30.0..95.0).contains(&efficiency), "{efficiency}");
+            let l = run["fuel_l"].as_f64().unwrap() / run["distance_km"].as_f64().unwrap() * 100.0;
+            assert!((l / run["fuel_l_per_100km"].as_f64().unwrap() - 1.0).abs() < 1e-12);
+            assert!((run["mpg_us"].as_f64().unwrap() * l - 235.215).abs() < 1e-9);
+            assert!((run["mpg_uk"].as_f64().unwrap() * l - 282.481).abs() < 1e-9);
+            let parts: f64 = run["phases"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|p| p["fuel_kg"].as_f64().unwrap())
+                .sum();
+            assert!((parts / run["fuel_kg"].as_f64().unwrap() - 1.0).abs() < 1e-12);
+        }
+        let film = &summary["runs"][0]["loss_kj"]["belt_film"];
+        assert_eq!(film.is_null(), formulation != "smooth", "{formulation}");
+        let fuel = |k: usize| summary["runs"][k]["fuel_l_per_100km"].as_f64().unwrap();
+        for (k, comparison) in summary["comparison"].as_array().unwrap().iter().enumerate() {
+            let percent = comparison["fuel_percent"].as_f64().unwrap();
+            assert!((percent - (fuel(0) / fuel(k + 1) - 1.0) * 100.0).abs() < 1e-9);
+        }
+    }
+}
+
+/// 40 CFR 86.144 by hand: Y = 0.43 (Y_ct + Y_s)/(D_ct + D_s) + 0.57 (Y_ht + Y_s)/(D_ht + D_s).
+#[test]
+fn val_ftp75_is_weighted_by_bag() {
+    let summary = json(&["run", "--cycle", "ftp75", "--json", "--baseline", "none"]);
+    let run = &summary["runs"][0];
+    let phases = run["phases"].as_array().unwrap();
+    let bag = |name: &str| {
+        let phase = phases.iter().find(|p| p["name"] == name).unwrap();
+        (
+            phase["fuel_kg"].as_f64().unwrap() / 0.745,
+            phase["distance_km"].as_f64().unwrap(),
+        )
+    };
+    let (ct, s, ht) = (
+        bag("cold_transient"),
+        bag("stabilised"),
+        bag("hot_transient"),
+    );
+    let y = 0.43 * (ct.0 + s.0) / (ct.1 + s.1) + 0.57 * (ht.0 + s.0) / (ht.1 + s.1);
+    assert!((run["weighted_fuel_l_per_100km"].as_f64().unwrap() / (100.0 * y) - 1.0).abs() < 1e-12);
+    let soak = phases.iter().find(|p| p["name"] == "hot_soak").unwrap();
+    assert_eq!(
+        (soak["fuel_kg"].as_f64(), &soak["fuel_l_per_100km"]),
+        (Some(0.0), &Value::Null)
+    );
+    assert_eq!(summary["comparison"], Value::Array(Vec::new()));
+    assert!(!keys(&json(&["run", "--json"])["runs"][0]).contains(&"weighted_fuel_l_per_100km"));
+}
+
+#[test]
+fn the_table_has_the_fuel_of_every_car() {
+    let text = stdout(&run(&["run", "--ambient", "-10"]));
+    for part in [
+        "rover_216_cvt",
+        "total",
+        "L/100 km",
+        "mpg (UK)",
+        "mpg (US)",
+        "g/km",
+        "10.937",
+        "11.028",
+        "rover_216_cvt uses",
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    assert!(
+        text.lines().all(|line| line.chars().count() <= 100),
+        "{text}"
+    );
+    assert!(!text.contains("NaN") && !text.contains("inf") && !text.contains('\u{1b}'));
+    assert_eq!(stdout(&run(&["run", "--quiet"])), "");
+}
+
+#[test]
+fn all_bad_inputs_are_reported_at_once() {
+    let message = refused(&[
+        "run",
+        "--cycle",
+        "ece15_euds",
+        "--vehicle",
+        "rover_216_cvtt",
+        "--ambient",
+        "hot",
+        "--start",
+        "wam",
+        "--dt",
+        "0",
+        "--formulation",
+        "smoth",
+        "--lubricant",
+        "dexron_iv",
+        "--set",
+        "nonsense",
+        "--baseline",
+        "mondeo",
+    ]);
+    let parts = [
+        "--cycle: there is no cycle named `ece15_euds`",
+        "did you mean `ece15_eudc",
+        "did you mean `rover_216_cvt",
+        "--ambient: `hot`",
+        "-40 to 60",
+        "did you mean `warm",
+        "--dt: `0` is out of range",
+        "0.01 to 10 s",
+        "did you mean `smooth",
+        "did you mean `dexron_ii",
+        "--set nonsense",
+        "there is no vehicle named `mondeo`",
+        "9 problems in",
+    ];
+    for part in parts {
+        assert!(message.contains(part), "{part} is not in\n{message}");
+    }
+}
+
+#[test]
+fn unknown_and_impossible_overrides_name_the_key() {
+    let message = refused(&[
+        "run",
+        "--set",
+        "transmission.cvt.belt.band_ofset_mm=2",
+        "--set",
+        "road_load.mass_kg=nan",
+    ]);
+    assert!(
+        message.contains("transmission.cvt.belt.band_offset_mm")
+            && message.contains("road_load.mass_kg"),
+        "{message}"
+    );
+    let message = refused(&[
+        "run",
+        "--set-all",
+        "transmission.cvt.pump.displacement_cc_rev=8",
+    ]);
+    assert!(
+        message.contains("--set-all transmission.cvt") && message.contains("rover_216_5mt"),
+        "{message}"
+    );
+    for bad in ["nan", "inf", "-273", "20,5", "", "20C"] {
+        let message = refused(&["run", "--ambient", bad]);
+        assert!(
+            message.contains("--ambient") && message.contains("-40 to 60"),
+            "{message}"
+        );
+    }
+    assert!(
+        refused(&["run", "--baseline", "none", "--baseline", "mondeo_20_5mt"]).contains("none")
+    );
+    assert!(refused(&["run", "--nonsense"]).contains("--nonsense"));
+}
+
+#[test]
+fn overrides_and_fluids_reach_the_cars_they_are_meant_for() {
+    let fuel = |words: &[&str]| {
+        let all = json(
+            &[
+                &[
+                    "run",
+                    "--json",
+                    "--ambient",
+                    "-10",
+                    "--baseline",
+                    "rover_216_5mt",
+                ],
+                words,
+            ]
+            .concat(),
+        );
+        let of = |k: usize| all["runs"][k]["fuel_kg"].clone();
+        (of(0), of(1))
+    };
+    let plain = fuel(&[]);
+    let subject = |changed: (Value, Value)| changed.0 != plain.0 && changed.1 == plain.1;
+    let both = |changed: (Value, Value)| changed.0 != plain.0 && changed.1 != plain.1;
+    assert!(subject(fuel(&["--set", "road_load.mass_kg=1250"])));
+    assert!(both(fuel(&["--set-all", "road_load.mass_kg=1250"])));
+    assert!(subject(fuel(&["--lubricant", "dexron_ii"])));
+    assert!(both(fuel(&["--engine-oil", "engine_5w30"])));
+    assert!(both(fuel(&["--start", "60"])));
+    // What is set for the subject alone goes before what is set for all.
+    let mixed = fuel(&[
+        "--set-all",
+        "road_load.mass_kg=1250",
+        "--set",
+        "road_load.mass_kg=1130",
+    ]);
+    assert!(mixed.0 == plain.0 && mixed.1 != plain.1);
+}
+
+#[test]
+fn a_car_may_be_compared_with_itself() {
+    let words = [
+        "run",
+        "--json",
+        "--set",
+        "transmission.cvt.pump.displacement_cc_rev=8",
+        "--baseline",
+        "rover_216_cvt",
+    ];
+    let summary: Value = serde_json::from_slice(&run(&words).stdout).unwrap();
+    assert_eq!(summary["runs"][1]["vehicle"], "rover_216_cvt_2");
+    assert!(summary["comparison"][0]["fuel_percent"].as_f64().unwrap() < 0.0);
+    assert_eq!(summary["settings"]["set"][0], words[3]);
+}
+
+#[test]
+fn a_missed_trace_is_exit_code_1() {
+    let words = ["run", "--cycle", "us06", "--set", "road_load.mass_kg=3500"];
+    let output = run(&words);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr(&output).contains("rover_216_cvt misses the trace for"),
+        "{}",
+        stderr(&output)
+    );
+    let output = run(&[&words[..], &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let run = &summary["runs"][0];
+    assert_eq!(run["failed_checks"][0], "missed_trace");
+    assert!(run["trace_missed_s"].as_f64().unwrap() > 0.0);
+    assert!(
+        run["worst_deficit"]["power_w"].as_f64().unwrap() > 0.0
+            && run["worst_deficit"]["at_s"].is_number()
+    );
+    assert!(stderr(&output).contains("misses the trace"));
+}

@@ -1,0 +1,154 @@
+//! Files of the output directory, both streams, colours.
+
+use super::*;
+
+#[test]
+fn files_appear_together_and_are_not_overwritten() {
+    let dir = tempfile::tempdir().unwrap();
+    let words = [
+        "run",
+        "--cycle",
+        "ece15",
+        "--baseline",
+        "rover_216_5mt",
+        "--out",
+        "cold",
+    ];
+    let output = run_in(dir.path(), &words);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let names = "summary.json inputs.json fuel_comparison.svg trace_rover_216_cvt.csv driveline_rover_216_cvt.svg pressure_rover_216_cvt.svg \
+        temperatures_rover_216_cvt.svg losses_rover_216_cvt.svg operating_points_rover_216_cvt.svg trace_rover_216_5mt.csv \
+        driveline_rover_216_5mt.svg temperatures_rover_216_5mt.svg losses_rover_216_5mt.svg operating_points_rover_216_5mt.svg";
+    let out = dir.path().join("cold");
+    for name in names.split_whitespace() {
+        assert!(
+            out.join(name).is_file() && stdout(&output).contains(name),
+            "{name}"
+        );
+    }
+    assert_eq!(
+        fs::read_dir(&out).unwrap().count(),
+        names.split_whitespace().count()
+    );
+    let summary: Value =
+        serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(summary["cycle"], "ece15");
+    let trace = fs::read_to_string(out.join("trace_rover_216_cvt.csv")).unwrap();
+    assert_eq!(trace.lines().count(), 196);
+    let before = fs::read(out.join("summary.json")).unwrap();
+    let again = run_in(dir.path(), &[&words[..], &["--ambient", "0"]].concat());
+    assert_eq!(again.status.code(), Some(2));
+    assert!(stderr(&again).contains("--force"), "{}", stderr(&again));
+    assert_eq!(fs::read(out.join("summary.json")).unwrap(), before);
+    let forced = run_in(
+        dir.path(),
+        &[&words[..], &["--ambient", "0", "--force", "--json"]].concat(),
+    );
+    assert_eq!(forced.status.code(), Some(0), "{}", stderr(&forced));
+    assert_eq!(fs::read(out.join("summary.json")).unwrap(), forced.stdout);
+}
+
+#[test]
+fn nothing_is_left_after_a_failure() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("file"), "").unwrap();
+    let message = stderr(&run_in(dir.path(), &["run", "--out", "file/below"]));
+    assert!(message.contains("--out"), "{message}");
+    let output = run_in(
+        dir.path(),
+        &["run", "--out", "new/run", "--vehicle", "no_such_car"],
+    );
+    assert_eq!(output.status.code(), Some(2));
+    let left: Vec<_> = fs::read_dir(dir.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    assert_eq!(left, ["file"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_reported() {
+    for words in [
+        &["run"][..],
+        &["list", "cycles"],
+        &["--help"],
+        &["assumptions"],
+    ] {
+        let full = fs::OpenOptions::new()
+            .write(true)
+            .open("/dev/full")
+            .unwrap();
+        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("cvtcycle"));
+        let output = command
+            .args(words)
+            .stdout(full)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
+            .wait_with_output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{words:?}");
+        assert!(
+            stderr(&output).contains("standard output: cannot write"),
+            "{}",
+            stderr(&output)
+        );
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    for words in [&["assumptions"][..], &["run"], &["--help"]] {
+        let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin("cvtcycle"));
+        let mut child = command
+            .args(words)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(
+            (output.status.code(), stderr(&output)),
+            (Some(0), String::new()),
+            "{words:?}"
+        );
+    }
+}
+
+#[test]
+fn colours_are_for_terminals_and_for_those_who_ask() {
+    let coloured = |words: &[&str], no_color: bool| {
+        let mut command = program();
+        if no_color {
+            command.env("NO_COLOR", "1");
+        }
+        let output = command.args(words).output().unwrap();
+        (stdout(&output) + &stderr(&output)).contains('\u{1b}')
+    };
+    for words in [
+        &["run"][..],
+        &["--help"],
+        &["run", "--cycle", "x"],
+        &["list", "vehicles"],
+        &["--nonsense"],
+    ] {
+        assert!(
+            !coloured(words, false) && !coloured(words, true),
+            "{words:?}"
+        );
+        assert!(
+            !coloured(&[words, &["--color", "never"]].concat(), false),
+            "{words:?}"
+        );
+    }
+    for words in [
+        &["run", "--color=always"][..],
+        &["run", "--color", "always", "--help"],
+        &["--color=always", "run", "--cycle", "x"],
+    ] {
+        assert!(coloured(words, true), "{words:?}");
+    }
+    assert!(!coloured(&["run", "--json", "--color=always"], false));
+}

@@ -1,0 +1,194 @@
+//! Losses by component, by phase and by temperature.
+
+use super::svg_checks::{check, numbers};
+use cvtcycle::output::Component;
+use cvtcycle::report::charts::figures::{
+    CarLosses, LossTrace, PhaseLosses, loss_by_component, loss_by_phase, loss_by_temperature,
+};
+
+fn car(name: &str, losses: &[(Component, f64)]) -> CarLosses {
+    CarLosses {
+        name: name.to_owned(),
+        losses_kj: losses.to_vec(),
+    }
+}
+
+#[test]
+fn bars_are_in_proportion_and_shares_are_of_the_own_car() {
+    let cars = [
+        car(
+            "one",
+            &[
+                (Component::Pump, 550.0),
+                (Component::BeltBand, 400.0),
+                (Component::BeltFilm, 0.01),
+                (Component::FinalDrive, 0.0),
+            ],
+        ),
+        car(
+            &"long & odd <name> ".repeat(12),
+            &[(Component::Churning, 275.0)],
+        ),
+    ];
+    let picture = loss_by_component(&cars);
+    check(&picture);
+    let doc = roxmltree::Document::parse(&picture.svg).expect("well-formed");
+    let width = |row: &str| {
+        let bar = doc
+            .descendants()
+            .find(|n| n.attribute("class") == Some("bar") && n.attribute("data-row") == Some(row));
+        bar.and_then(|n| n.attribute("width"))
+            .and_then(|w| w.parse::<f64>().ok())
+            .unwrap_or(0.0)
+    };
+    assert!(
+        (width("0") / width("4") - 2.0).abs() < 0.01,
+        "one scale for all cars"
+    );
+    assert!((width("0") / width("1") - 550.0 / 400.0).abs() < 0.01);
+    let shares: f64 = picture.table.rows[..4]
+        .iter()
+        .map(|row| numbers(&row[3]))
+        .sum();
+    assert!((shares - 100.0).abs() < 0.03);
+    assert_eq!(picture.table.rows[4][3], "100.00");
+}
+
+#[test]
+fn nothing_or_broken_numbers_are_still_pictures() {
+    for cars in [
+        vec![],
+        vec![car("", &[])],
+        vec![car(
+            "x",
+            &[(Component::Seal, f64::NAN), (Component::Bearing, 0.0)],
+        )],
+    ] {
+        check(&loss_by_component(&cars));
+    }
+}
+
+#[test]
+fn parts_stand_end_to_end_and_the_label_is_their_sum() {
+    let parts = |k: f64| {
+        vec![
+            (Component::Pump, 40.0 * k),
+            (Component::BeltBand, 0.0),
+            (Component::FinalDrive, 25.5 * k),
+        ]
+    };
+    let groups = vec![
+        ("ece15".to_owned(), vec![parts(4.0), parts(1.0)]),
+        ("e<u>dc".to_owned(), vec![parts(2.0), vec![]]),
+    ];
+    let of = PhaseLosses {
+        subject: "s".to_owned(),
+        cars: vec!["a".to_owned(), "very long name of a car & more".repeat(4)],
+        groups,
+    };
+    let picture = loss_by_phase(&of);
+    check(&picture);
+    assert!(picture.svg.contains(">262.0</text>") && picture.svg.contains(">0.0</text>"));
+    let all: f64 = picture.table.rows.iter().map(|row| numbers(&row[3])).sum();
+    assert!((all - 65.5 * 7.0).abs() < 1e-6);
+    let doc = roxmltree::Document::parse(&picture.svg).expect("well-formed");
+    let number = |n: &roxmltree::Node, key: &str| {
+        n.attribute(key)
+            .and_then(|x| x.parse::<f64>().ok())
+            .unwrap_or(f64::NAN)
+    };
+    let bars: Vec<_> = doc
+        .descendants()
+        .filter(|n| n.attribute("class") == Some("bar"))
+        .take(2)
+        .collect();
+    assert!(
+        (number(&bars[0], "x") + number(&bars[0], "width") - number(&bars[1], "x")).abs() < 0.5
+    );
+}
+
+#[test]
+fn no_phase_is_still_a_picture() {
+    check(&loss_by_phase(&PhaseLosses::default()));
+    let no_cars = PhaseLosses {
+        groups: vec![("g".to_owned(), vec![])],
+        ..PhaseLosses::default()
+    };
+    check(&loss_by_phase(&no_cars));
+    let broken = vec![("g".to_owned(), vec![vec![(Component::Seal, f64::NAN)]])];
+    let soak = loss_by_phase(&PhaseLosses {
+        cars: vec!["c".to_owned()],
+        groups: broken,
+        ..PhaseLosses::default()
+    });
+    check(&soak);
+    assert!(soak.table.note.ends_with("per distance: g.") && soak.table.rows.is_empty());
+}
+
+#[test]
+fn energy_and_time_are_those_of_the_moving_car() {
+    let seconds = [1.0, 2.0, 1.0, 0.5, 3.0, 4.0];
+    let sump = [-7.0, -6.0, -2.0, 12.0, 21.0, 24.9];
+    let speed = [10.0, 20.0, 0.0, 30.0, 40.0, 50.0];
+    let (pump, drive) = ([100.0, 400.0, 900.0, 9e9, 50.0, 85.0], [10.0; 6]);
+    let losses_w = vec![
+        (Component::Pump, &pump[..]),
+        (Component::FinalDrive, &drive[..]),
+    ];
+    let trace = LossTrace {
+        subject: "<a & b>".to_owned(),
+        seconds: &seconds,
+        sump_degc: &sump,
+        speed_kmh: &speed,
+        losses_w,
+    };
+    let picture = loss_by_temperature(&trace);
+    check(&picture);
+    let rows: Vec<Vec<f64>> = picture
+        .table
+        .rows
+        .iter()
+        .map(|row| row.iter().map(|cell| numbers(cell)).collect())
+        .collect();
+    assert_eq!(
+        rows,
+        [
+            [-10.0, -5.0, 3.0, 300.0, 10.0, 310.0],
+            [20.0, 25.0, 7.0, 70.0, 10.0, 80.0]
+        ]
+    );
+    assert!(picture.table.note.contains("0.5 s in all") && picture.svg.contains("go together"));
+}
+
+#[test]
+fn many_temperatures_make_wider_bins() {
+    let sump: Vec<f64> = (0..400).map(|k| -40.0 + 0.5 * f64::from(k)).collect();
+    let (ones, speed) = (vec![1.0; 400], vec![30.0; 400]);
+    let losses_w = vec![(Component::Churning, &ones[..])];
+    let trace = LossTrace {
+        seconds: &ones,
+        sump_degc: &sump,
+        speed_kmh: &speed,
+        losses_w,
+        ..LossTrace::default()
+    };
+    let picture = loss_by_temperature(&trace);
+    check(&picture);
+    assert!(picture.table.rows.len() <= 20 && picture.table.rows.len() > 5);
+    let time: f64 = picture.table.rows.iter().map(|row| numbers(&row[2])).sum();
+    assert!((time - 400.0).abs() < 1e-9);
+}
+
+#[test]
+fn no_trace_is_still_a_picture() {
+    check(&loss_by_temperature(&LossTrace::default()));
+    let broken = [f64::NAN, 1.0];
+    let losses_w = vec![(Component::Seal, &broken[..1])];
+    check(&loss_by_temperature(&LossTrace {
+        seconds: &broken,
+        sump_degc: &broken,
+        speed_kmh: &broken,
+        losses_w,
+        ..LossTrace::default()
+    }));
+}

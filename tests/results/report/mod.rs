@@ -1,0 +1,434 @@
+//! `report`: the page says what the results say, and says what is missing. The page in a browser: tools/browser.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a test may stop at once")]
+
+mod forms;
+mod refused;
+
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// The program in a directory of its own.
+struct Place(TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Place(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn cvtcycle(&self, words: &[&str]) -> Output {
+        Command::cargo_bin("cvtcycle")
+            .unwrap()
+            .current_dir(self.path())
+            .args(words)
+            .output()
+            .unwrap()
+    }
+
+    /// Runs, and is content with nothing but success.
+    fn done(&self, words: &[&str]) -> String {
+        let out = self.cvtcycle(words);
+        assert_eq!(
+            out.status.code(),
+            Some(0),
+            "{words:?}: {}",
+            String::from_utf8_lossy(&out.stderr)
+        );
+        String::from_utf8(out.stdout).unwrap()
+    }
+
+    /// Runs, and wants an exit code and words on standard error.
+    fn refused(&self, words: &[&str], code: i32, said: &[&str]) {
+        let out = self.cvtcycle(words);
+        let stderr = String::from_utf8_lossy(&out.stderr);
+        assert_eq!(out.status.code(), Some(code), "{words:?}: {stderr}");
+        for part in said {
+            assert!(
+                stderr.contains(part),
+                "{words:?} does not say `{part}`: {stderr}"
+            );
+        }
+    }
+
+    fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.path().join(name)).unwrap()
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        fs::write(self.path().join(name), text).unwrap();
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.path().join(name).exists()
+    }
+}
+
+/// A short run of two cars, quick to make.
+fn run(place: &Place, dir: &str, more: &[&str]) {
+    let words = [
+        "run",
+        "--cycle",
+        "ece15",
+        "--ambient",
+        "-10",
+        "--baseline",
+        "rover_216_5mt",
+        "--sensitivity",
+        "never",
+        "--quiet",
+        "--out",
+        dir,
+    ];
+    place.done(&[&words[..], more].concat());
+}
+
+/// The text of a page without its marks.
+fn words_of(page: &str) -> String {
+    let body = &page[page.find("<main").unwrap()..page.find("</main>").unwrap()];
+    let mut text = String::new();
+    let mut inside = false;
+    for c in body.chars() {
+        match c {
+            '<' => {
+                inside = true;
+                text.push(' ');
+            }
+            '>' => inside = false,
+            c if !inside => text.push(if c == '\u{a0}' { ' ' } else { c }),
+            _ => {}
+        }
+    }
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Every figure's drawing, from its page.
+fn drawings(page: &str) -> Vec<&str> {
+    page.match_indices("<svg")
+        .map(|(at, _)| &page[at..at + page[at..].find("</svg>").unwrap() + 6])
+        .collect()
+}
+
+#[test]
+fn the_page_says_what_the_summary_says() {
+    let place = Place::new();
+    run(&place, "cold", &[]);
+    let said = place.done(&["report", "cold"]);
+    assert!(said.contains("cold/report.html"));
+    let page = place.text("cold/report.html");
+    let words = words_of(&page);
+    let summary: Value = serde_json::from_str(&place.text("cold/summary.json")).unwrap();
+    let number = |value: &Value, decimals: usize| format!("{:.decimals$}", value.as_f64().unwrap());
+    for run in summary["runs"].as_array().unwrap() {
+        for (key, decimals) in [("fuel_l_per_100km", 2), ("distance_km", 3)] {
+            assert!(words.contains(&number(&run[key], decimals)), "{key}");
+        }
+        for (name, kj) in run["loss_kj"].as_object().unwrap() {
+            if kj.as_f64().is_some_and(|kj| kj < 999.0)
+                && !["accessories", "brake"].contains(&name.as_str())
+            {
+                assert!(words.contains(&number(kj, 1)), "{name} {kj}");
+            }
+        }
+        for degc in run["end_degc"]
+            .as_object()
+            .unwrap()
+            .values()
+            .filter(|x| x.is_number())
+        {
+            assert!(
+                words.contains(&number(degc, 1).replace('-', "\u{2212}")),
+                "{degc}"
+            );
+        }
+    }
+    let percent = summary["comparison"][0]["fuel_percent"].as_f64().unwrap();
+    assert!(
+        percent > 0.0 && words.contains(&format!("{percent:.1} % more than")),
+        "{percent}"
+    );
+    assert!(
+        words.contains("cvtcycle run --cycle ece15 --ambient -10"),
+        "the exact command"
+    );
+    for hash in page.match_indices("SHA-256").map(|(at, _)| at).take(1) {
+        assert!(page[hash..].contains("embedded:rover_216_cvt.toml"));
+    }
+}
+
+/// Outside truth: a second reader of XML, and the table under a figure against the trace it was drawn from.
+#[test]
+fn val_figures_are_whole_and_their_tables_are_the_trace() {
+    let place = Place::new();
+    run(&place, "cold", &[]);
+    place.done(&["report", "cold", "--quiet"]);
+    let page = place.text("cold/report.html");
+    let drawings = drawings(&page);
+    let files: Vec<_> = fs::read_dir(place.path().join("cold/report_figures"))
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
+    assert!(
+        drawings.len() >= 15 && drawings.len() == files.len(),
+        "{} {}",
+        drawings.len(),
+        files.len()
+    );
+    for svg in drawings
+        .iter()
+        .copied()
+        .map(str::to_owned)
+        .chain(files.iter().map(|f| fs::read_to_string(f).unwrap()))
+    {
+        let document = roxmltree::Document::parse(&svg).unwrap();
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        let root = document.root_element();
+        assert!(
+            root.children().any(|n| n.has_tag_name("title"))
+                && root.children().any(|n| n.has_tag_name("desc"))
+        );
+        let width: f64 = root.attribute("width").unwrap().parse().unwrap();
+        assert!(width <= 880.0, "{width} px is too wide for A4");
+    }
+    // One name for one thing: no id is used twice in the page.
+    let mut ids: Vec<&str> = page
+        .match_indices(" id=\"")
+        .map(|(at, _)| page[at + 5..].split('"').next().unwrap())
+        .collect();
+    let count = ids.len();
+    ids.sort_unstable();
+    ids.dedup();
+    assert_eq!(count, ids.len());
+    // The sump's temperature at the end, from the trace's last row, in the table of the warm-up figure.
+    let trace = place.text("cold/trace_rover_216_cvt.csv");
+    let mut reader = csv::Reader::from_reader(trace.as_bytes());
+    let column = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .position(|h| h == "transmission_sump_degc")
+        .unwrap();
+    let last: f64 = reader.records().last().unwrap().unwrap()[column]
+        .parse()
+        .unwrap();
+    let figure = &page[page.find("id=\"fig-temperatures_rover_216_cvt\"").unwrap()..];
+    let table = &figure[figure.find("<tbody>").unwrap()..figure.find("</tbody>").unwrap()];
+    let row = &table[table.rfind("<tr").unwrap()..];
+    let shown: Vec<f64> = row
+        .split(['<', '>'])
+        .filter_map(|cell| cell.replace('\u{2212}', "-").parse().ok())
+        .collect();
+    assert!(
+        shown.iter().any(|x| (x - last).abs() <= 0.051),
+        "{last} in {shown:?}"
+    );
+}
+
+#[test]
+fn the_same_run_gives_the_same_page_and_is_not_in_the_way_of_the_next() {
+    let place = Place::new();
+    run(&place, "cold", &[]);
+    place.done(&["report", "cold"]);
+    let first = place.text("cold/report.html");
+    place.refused(&["report", "cold"], 2, &["is there already", "--force"]);
+    place.done(&["report", "cold", "--force"]);
+    assert_eq!(first, place.text("cold/report.html"));
+    run(&place, "cold", &["--force"]);
+    let said: Value =
+        serde_json::from_str(&place.done(&["report", "cold", "--force", "--json"])).unwrap();
+    assert_eq!(
+        said["figures"].as_array().unwrap().len(),
+        drawings(&first).len()
+    );
+    // A folder with something of the user's own in it is left alone.
+    place.write("cold/report_figures/mine.txt", "x");
+    place.refused(
+        &["report", "cold", "--force"],
+        2,
+        &["something else than figures", "mine.txt"],
+    );
+    assert!(place.has("cold/report_figures/mine.txt"));
+}
+
+#[test]
+fn a_year_of_traces_stays_small() {
+    let place = Place::new();
+    place.done(&[
+        "run",
+        "--cycle",
+        "ftp75",
+        "--sensitivity",
+        "never",
+        "--quiet",
+        "--out",
+        "ftp",
+    ]);
+    place.done(&["report", "ftp", "--quiet"]);
+    let size = fs::metadata(place.path().join("ftp/report.html"))
+        .unwrap()
+        .len();
+    assert!(size < 3_000_000, "{size} bytes");
+    let words = words_of(&place.text("ftp/report.html"));
+    assert!(
+        words.contains("weighted") && words.contains("cold transient"),
+        "bags and weighted fuel"
+    );
+}
+
+#[test]
+fn names_and_remarks_are_shown_as_text() {
+    let place = Place::new();
+    let vehicle = place.done(&["show", "rover_216_cvt", "--help"]);
+    assert!(!vehicle.is_empty());
+    let source = fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/vehicles/rover_216_cvt.toml"
+    ))
+    .unwrap();
+    let line = source
+        .lines()
+        .find(|line| line.trim_start().starts_with("title"))
+        .unwrap()
+        .to_owned();
+    place.write(
+        "own.toml",
+        &source.replace(&line, "title = \"<script>alert(1)</script> & <b>bold</b>\""),
+    );
+    place.write(
+        "cover.toml",
+        "author = \"<i>me</i>\"\n[remarks]\nanswer = \"<img src=x onerror=alert(2)> | *so*\"\n",
+    );
+    place.done(&[
+        "run",
+        "--cycle",
+        "ece15",
+        "--vehicle",
+        "own.toml",
+        "--baseline",
+        "none",
+        "--sensitivity",
+        "never",
+        "--quiet",
+        "--out",
+        "own",
+    ]);
+    place.done(&["report", "own", "--cover", "cover.toml"]);
+    let page = place.text("own/report.html");
+    for bad in ["<script>alert", "<b>bold", "<i>me", "<img src=x"] {
+        assert!(!page.contains(bad), "{bad}");
+    }
+    let words = words_of(&page);
+    assert!(
+        words.contains("alert(1)") && words.contains("onerror=alert(2)"),
+        "they are there, as text"
+    );
+    place.done(&["report", "own", "--cover", "cover.toml", "--format", "md"]);
+    let text = place.text("own/report.md");
+    assert!(!text.contains("<script>") && !text.contains("<img") && text.contains("\\| \\*so\\*"));
+    assert_eq!(
+        text.matches("](report_figures/").count(),
+        drawings(&page).len()
+    );
+}
+
+/// Outside truth: the difference of the two summaries.
+#[test]
+fn val_two_runs_differ_by_what_their_summaries_differ() {
+    let place = Place::new();
+    run(&place, "a", &[]);
+    run(
+        &place,
+        "b",
+        &["--set", "transmission.cvt.pump.displacement_cc_rev=12"],
+    );
+    place.done(&["report", "a", "b", "--out", "ab.html"]);
+    let page = place.text("ab.html");
+    let words = words_of(&page);
+    let fuel = |dir: &str| -> f64 {
+        let summary: Value =
+            serde_json::from_str(&place.text(&format!("{dir}/summary.json"))).unwrap();
+        summary["runs"][0]["fuel_l_per_100km"].as_f64().unwrap()
+    };
+    let (a, b) = (fuel("a"), fuel("b"));
+    assert!(
+        b > a
+            && words.contains(&format!("{:.3} L/100 km or", b - a))
+            && words.contains("more than that of a"),
+        "{a} {b}"
+    );
+    assert!(words.contains("transmission.cvt.pump.displacement_cc_rev") && words.contains(" 12 "));
+    // The terms add up to the fuel's difference in kJ: the table under the bars.
+    let figure = &page[page.find("id=\"fig-difference\"").unwrap()..];
+    let table = &figure[figure.find("<tbody>").unwrap()..figure.find("</tbody>").unwrap()];
+    assert!(
+        table.matches("<tr").count() > 12,
+        "every component and term has a row"
+    );
+
+    place.done(&[
+        "run",
+        "--cycle",
+        "eudc",
+        "--baseline",
+        "none",
+        "--sensitivity",
+        "never",
+        "--quiet",
+        "--out",
+        "other",
+    ]);
+    place.refused(
+        &["report", "a", "other"],
+        2,
+        &["ece15", "eudc", "runs of one cycle"],
+    );
+    place.done(&[
+        "study", "ambient", "--cycle", "ece15", "--quiet", "--out", "matrix",
+    ]);
+    place.refused(&["report", "a", "matrix"], 2, &["not two runs", "--with"]);
+}
+
+#[test]
+fn studies_and_validation_come_into_the_report_of_a_run() {
+    let place = Place::new();
+    run(&place, "cold", &[]);
+    place.done(&[
+        "study",
+        "ambient",
+        "--cycle",
+        "ece15",
+        "--quiet",
+        "--out",
+        "cold/matrix",
+    ]);
+    place.done(&["validate", "--chapter", "C", "--quiet", "--out", "check"]);
+    place.done(&["report", "cold", "--with", "check"]);
+    let words = words_of(&place.text("cold/report.html"));
+    assert!(
+        words.contains("Ambient temperatures")
+            && words.contains("Validation")
+            && words.contains("printed numbers")
+    );
+    place.refused(&["report", "check"], 2, &["cvtcycle validate", "--with"]);
+
+    place.done(&["report", "cold/matrix"]);
+    assert!(drawings(&place.text("cold/matrix/report.html")).len() >= 3);
+    // Half a study: reported as far as it is whole.
+    let mark = fs::read_dir(place.path().join("cold/matrix/parts"))
+        .unwrap()
+        .map(|e| e.unwrap().path());
+    let mark = mark
+        .filter(|path| path.extension().is_some_and(|e| e == "sha256"))
+        .max()
+        .unwrap();
+    fs::remove_file(mark).unwrap();
+    place.refused(&["report", "cold/matrix", "--force"], 1, &["not finished"]);
+    assert!(words_of(&place.text("cold/matrix/report.html")).contains("is not finished"));
+}

@@ -1,0 +1,232 @@
+//! What is no report, and what does not belong together.
+
+use super::*;
+
+#[test]
+fn what_is_missing_is_said_and_the_rest_is_there() {
+    let place = Place::new();
+    run(&place, "cold", &[]);
+    fs::remove_file(place.path().join("cold/trace_rover_216_cvt.csv")).unwrap();
+    place.refused(
+        &["report", "cold"],
+        1,
+        &["trace of rover_216_cvt is not there"],
+    );
+    let page = place.text("cold/report.html");
+    assert!(words_of(&page).contains("trace of rover_216_cvt is not there"));
+    assert!(
+        page.contains("fig-temperatures_rover_216_5mt")
+            && !page.contains("fig-temperatures_rover_216_cvt")
+    );
+    fs::remove_file(place.path().join("cold/inputs.json")).unwrap();
+    place.refused(
+        &["report", "cold", "--force"],
+        1,
+        &["inputs.json is not there"],
+    );
+    assert!(
+        place
+            .text("cold/report.html")
+            .contains("energy_flow_rover_216_cvt")
+    );
+}
+
+#[test]
+fn what_is_no_run_is_refused_with_a_hint_and_leaves_nothing() {
+    let place = Place::new();
+    run(&place, "cold", &[]);
+    fs::create_dir(place.path().join("empty")).unwrap();
+    place.refused(&["report", "nowhere"], 2, &["nowhere", "check the path"]);
+    place.refused(
+        &["report", "empty"],
+        2,
+        &["neither summary.json nor study.json", "cvtcycle run"],
+    );
+    place.refused(&["report", "cold/summary.json"], 2, &["name the directory"]);
+    place.refused(&["report", "cold", "empty"], 2, &["neither"]);
+    place.refused(
+        &["report", "cold", "--with", "empty"],
+        2,
+        &["neither a study nor a validation"],
+    );
+    place.refused(
+        &["report", "cold", "--format", "pdf"],
+        2,
+        &["pdf", "html, md"],
+    );
+    place.refused(
+        &["report", "cold", "--out", "no/such/report.html"],
+        2,
+        &["no directory"],
+    );
+    place.refused(&["report", "cold", "--out", "cold"], 2, &["is a directory"]);
+    place.refused(
+        &["report", "cold", "--cover", "none.toml"],
+        2,
+        &["none.toml"],
+    );
+
+    let summary = place.text("cold/summary.json");
+    place.write(
+        "cold/summary.json",
+        &summary.replacen("\"schema\": 1", "\"schema\": 9", 1),
+    );
+    place.refused(
+        &["report", "cold"],
+        2,
+        &["schema 9", "reads schema 1", "the program that wrote it"],
+    );
+    place.write("cold/summary.json", &summary[..summary.len() / 2]);
+    place.refused(&["report", "cold"], 2, &["no whole JSON", "damaged"]);
+    place.write(
+        "cold/summary.json",
+        &summary.replace("rover_216_5mt", "../../etc/passwd"),
+    );
+    place.refused(&["report", "cold"], 2, &["cannot be the name of a vehicle"]);
+    place.write("cold/summary.json", &summary);
+    let trace = place.text("cold/trace_rover_216_cvt.csv");
+    place.write(
+        "cold/trace_rover_216_cvt.csv",
+        &trace.replacen("\n2,", "\n1x,", 1),
+    );
+    place.refused(
+        &["report", "cold"],
+        2,
+        &["trace_rover_216_cvt.csv", "1x", "time_s"],
+    );
+    assert!(!place.has("cold/report.html") && !place.has("cold/report_figures"));
+    place.write("cold/trace_rover_216_cvt.csv", &trace);
+    place.done(&["report", "cold"]);
+}
+
+#[test]
+fn nothing_but_a_report_is_replaced() {
+    let place = Place::new();
+    run(&place, "cold", &[]);
+    let before = place.text("cold/summary.json");
+    place.refused(
+        &["report", "cold", "--out", "cold/summary.json", "--force"],
+        2,
+        &["ending", "html"],
+    );
+    place.write("notes.html", "<p>mine</p>");
+    place.refused(
+        &["report", "cold", "--out", "notes.html", "--force"],
+        2,
+        &["no report of this program"],
+    );
+    assert_eq!(
+        (place.text("cold/summary.json"), place.text("notes.html")),
+        (before, "<p>mine</p>".to_owned())
+    );
+    // The ending tells the form.
+    place.done(&["report", "cold", "--out", "a b.md"]);
+    place.done(&["report", "cold", "--out", "a b.md", "--force"]);
+    assert!(
+        place.text("a b.md").contains("](a%20b_figures/") && place.text("a b.md").starts_with("# ")
+    );
+}
+
+#[test]
+fn a_trace_has_to_be_that_of_the_summary() {
+    let place = Place::new();
+    run(&place, "cold", &[]);
+    run(&place, "warm", &["--start", "warm"]);
+    let trace = place.text("cold/trace_rover_216_cvt.csv");
+    let half: Vec<&str> = trace.lines().take(100).collect();
+    place.write("cold/trace_rover_216_cvt.csv", &(half.join("\n") + "\n"));
+    place.refused(
+        &["report", "cold"],
+        2,
+        &["not that of the summary", "time of 99"],
+    );
+    place.write(
+        "cold/trace_rover_216_cvt.csv",
+        &place.text("warm/trace_rover_216_cvt.csv"),
+    );
+    place.refused(
+        &["report", "cold"],
+        2,
+        &["not that of the summary", "fuel of"],
+    );
+    place.write(
+        "cold/trace_rover_216_cvt.csv",
+        &trace.replacen("pump_loss_w", "plump_loss_w", 1),
+    );
+    place.refused(
+        &["report", "cold"],
+        2,
+        &["losses of the transmission", "trace_rover_216_cvt.csv"],
+    );
+    place.write("cold/trace_rover_216_cvt.csv", &trace);
+    let summary = place.text("cold/summary.json");
+    let fuel = summary
+        .lines()
+        .find(|line| line.contains("\"fuel_l_per_100km\""))
+        .unwrap()
+        .to_owned();
+    place.write(
+        "cold/summary.json",
+        &summary.replacen(&fuel, "\"fuel_l_per_100km\": 5.0,", 1),
+    );
+    place.refused(&["report", "cold"], 2, &["do not agree with each other"]);
+    assert!(!place.has("cold/report.html"));
+}
+
+#[test]
+fn a_study_of_another_case_stays_out_of_the_answer() {
+    let place = Place::new();
+    run(&place, "cold", &[]);
+    place.done(&[
+        "study",
+        "ambient",
+        "--cycle",
+        "ece15",
+        "--quiet",
+        "--out",
+        "cold/matrix",
+    ]);
+    place.done(&[
+        "run",
+        "--cycle",
+        "eudc",
+        "--sensitivity",
+        "never",
+        "--quiet",
+        "--out",
+        "other",
+    ]);
+    place.done(&[
+        "report",
+        "other",
+        "--with",
+        "cold/matrix",
+        "--with",
+        "cold/matrix",
+    ]);
+    let words = words_of(&place.text("other/report.html"));
+    let answer = &words[..words.find("What to doubt").unwrap()];
+    assert!(
+        answer.contains("is of another case: cycle ece15 instead of eudc")
+            && !answer.contains("Fuel of rover_216_cvt over")
+    );
+    assert!(words.contains("no study of uncertainty of this case"));
+    assert_eq!(
+        place
+            .text("other/report.html")
+            .matches("id=\"fig-ambient_fuel\"")
+            .count(),
+        1,
+        "named twice, shown once"
+    );
+    place.done(&["report", "cold"]);
+    assert!(
+        words_of(&place.text("cold/report.html"))
+            .contains("Fuel of rover_216_cvt over rover_216_5mt")
+    );
+    place.refused(
+        &["report", "cold", "other", "--with", "cold/matrix"],
+        2,
+        &["not of two"],
+    );
+}

@@ -1,0 +1,9 @@
+#![no_main]
+//! The target that `CVTCYCLE_FUZZ_TARGET` names: see `targets`.
+
+use std::env::var;
+use std::sync::LazyLock;
+
+static TARGET: LazyLock<String> = LazyLock::new(|| var("CVTCYCLE_FUZZ_TARGET").unwrap_or_default());
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| cvtcycle_fuzz::targets::run(&TARGET, data));

@@ -1,4 +1,0 @@
-#![no_main]
-//! See `targets::belt`.
-
-libfuzzer_sys::fuzz_target!(|data: &[u8]| cvtcycle_fuzz::targets::run("belt", data));
