@@ -7,15 +7,7 @@ use crate::print::Terminal;
 
 #[path = "../fixtures/outcome.rs"]
 mod fixtures;
-use fixtures::every;
-
-fn named(name: &str) -> Outcome {
-    every()
-        .into_iter()
-        .find(|(own, _)| *own == name)
-        .map(|(_, outcome)| outcome)
-        .expect("a made-up outcome")
-}
+use fixtures::{every, named};
 
 fn printed(outcome: &Outcome) -> String {
     tables::tables(outcome, Terminal::new(clap::ColorChoice::Never).stdout)

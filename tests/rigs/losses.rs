@@ -5,7 +5,6 @@ use std::path::Path;
 use std::process::Output;
 
 use crate::common::{RPM, ZERO, car};
-use assert_cmd::Command;
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{Override, render};
 use cvtcycle::model::bench::{Bench, BenchPoint};
@@ -17,23 +16,11 @@ use cvtcycle::output::{Component, Flags};
 use serde_json::Value;
 
 fn run(words: &[&str]) -> Output {
-    Command::cargo_bin("cvtcycle")
-        .unwrap()
-        .arg("losses")
-        .args(words)
-        .output()
-        .unwrap()
+    crate::run(&["losses"], words)
 }
 
 fn good(words: &[&str]) -> String {
-    let output = run(words);
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{words:?}: {}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    String::from_utf8(output.stdout).unwrap()
+    crate::printed(&["losses"], words)
 }
 
 /// A refusal: exit code 2, nothing on standard output.

@@ -3,27 +3,14 @@
 
 use std::process::Output;
 
-use assert_cmd::Command;
 use serde_json::Value;
 
 fn run(words: &[&str]) -> Output {
-    Command::cargo_bin("cvtcycle")
-        .unwrap()
-        .args(["rig", "variator"])
-        .args(words)
-        .output()
-        .unwrap()
+    crate::run(&["rig", "variator"], words)
 }
 
 fn good(words: &[&str]) -> String {
-    let output = run(words);
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{words:?}: {}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    String::from_utf8(output.stdout).unwrap()
+    crate::printed(&["rig", "variator"], words)
 }
 
 /// Hand calculation for 6.3.1: 100 turns of a belt of 0.6486 m at 30.419 mm and 2000 rpm last 64.86 / 6.371 = 10.18 s, in which the primary

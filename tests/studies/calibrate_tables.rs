@@ -7,15 +7,7 @@ use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residua
 
 #[path = "../fixtures/outcome.rs"]
 mod outcomes;
-use outcomes::{every, noise};
-
-fn named(name: &str) -> Outcome {
-    every()
-        .into_iter()
-        .find(|(own, _)| *own == name)
-        .map(|(_, outcome)| outcome)
-        .expect("a made-up outcome")
-}
+use outcomes::{named, noise};
 
 /// Rows of a CSV file by the names of its columns.
 fn rows(bytes: &[u8]) -> Vec<HashMap<String, String>> {

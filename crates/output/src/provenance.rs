@@ -45,7 +45,7 @@ pub fn cycle_sha256(cycle: &Cycle) -> String {
     hash(format!("{cycle:?}").as_bytes())
 }
 
-/// Hash of a whole checked car: of [`car_text`].
+/// Hash of a whole checked car: of the text of its values and maps.
 pub fn car_sha256(setup: &Setup) -> String {
     hash(car_text(setup).as_bytes())
 }

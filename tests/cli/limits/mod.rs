@@ -37,6 +37,21 @@ pub fn sparse(path: &Path, bytes: u64) {
     File::create(path).unwrap().set_len(bytes).unwrap();
 }
 
+/// Drives the short cycle of [`folder`] with one car and keeps its results in `made`.
+pub fn short_run(dir: &Path) {
+    let made = within(
+        dir,
+        1000,
+        "run --cycle short.csv --baseline none --sensitivity never --quiet --out made",
+    );
+    assert_eq!(
+        made.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&made.stderr)
+    );
+}
+
 /// Runs the program in a folder with that much memory beyond its own, MiB; a run without an end is ended.
 pub fn within(dir: &Path, mib: u64, line: &str) -> Output {
     let script = format!(

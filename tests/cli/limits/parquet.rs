@@ -13,7 +13,7 @@ use parquet::file::metadata::{
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use tempfile::TempDir;
 
-use super::{folder, refused, sparse, within};
+use super::{folder, refused, short_run, sparse};
 
 const DAMAGED: &str =
     "the file is damaged: it is shorter than it says, or longer than any of this program";
@@ -163,17 +163,7 @@ fn a_trace_has_a_bounded_number_of_steps() {
 #[test]
 fn a_footer_as_long_as_the_file_is_not_read() {
     let dir = folder();
-    let made = within(
-        dir.path(),
-        1000,
-        "run --cycle short.csv --baseline none --sensitivity never --quiet --out made",
-    );
-    assert_eq!(
-        made.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&made.stderr)
-    );
+    short_run(dir.path());
     fs::remove_file(dir.path().join("made/trace_rover_216_cvt.csv")).unwrap();
     let path = dir.path().join("made/trace_rover_216_cvt.parquet");
     sparse(&path, 1 << 31);

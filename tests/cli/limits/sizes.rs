@@ -10,7 +10,7 @@ use cvtcycle::config::setup::{self, Options};
 
 use crate::sources::{Source, sources};
 
-use super::{MIB, folder, refused, refused_once, sparse, within};
+use super::{MIB, folder, refused, refused_once, short_run, sparse, within};
 
 /// What a command says about a file of a gigabyte.
 const GIGABYTE: u64 = 1 << 30;
@@ -67,17 +67,7 @@ fn a_file_of_a_gigabyte_is_refused_without_being_read() {
 #[test]
 fn results_of_a_gigabyte_are_refused_without_being_read() {
     let dir = folder();
-    let made = within(
-        dir.path(),
-        1000,
-        "run --cycle short.csv --baseline none --sensitivity never --quiet --out made",
-    );
-    assert_eq!(
-        made.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&made.stderr)
-    );
+    short_run(dir.path());
     let path = |name: &str| dir.path().join("made").join(name);
     let kept = |name: &str| fs::read(path(name)).unwrap();
     for (name, limit) in [

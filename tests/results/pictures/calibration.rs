@@ -9,15 +9,7 @@ use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residua
 
 #[path = "../../fixtures/outcome.rs"]
 mod outcomes;
-use outcomes::{every, noise};
-
-fn ordinary(name: &str) -> Outcome {
-    every()
-        .into_iter()
-        .find(|(own, _)| *own == name)
-        .map(|(_, outcome)| outcome)
-        .expect("a made-up outcome")
-}
+use outcomes::{every, named, noise};
 
 #[test]
 fn every_picture_is_tidy() {
@@ -37,7 +29,7 @@ fn every_picture_is_tidy() {
 #[test]
 fn a_picture_is_there_where_it_has_data() {
     let names = |name: &str| {
-        calibration_pictures(&ordinary(name))
+        calibration_pictures(&named(name))
             .into_iter()
             .map(|(plot, _)| plot)
             .collect::<Vec<_>>()
@@ -77,7 +69,7 @@ fn same(cell: &str, wanted: Option<f64>) {
 
 #[test]
 fn tables_have_the_numbers_of_the_outcome() {
-    let outcome = ordinary("ordinary");
+    let outcome = named("ordinary");
     let (scatter, residuals) = (scatter_plot(&outcome).table, residuals_plot(&outcome).table);
     assert_eq!((scatter.rows.len(), residuals.rows.len()), (24, 24));
     for ((r, row), of_sd) in outcome
@@ -137,7 +129,7 @@ fn tables_have_the_numbers_of_the_outcome() {
 
 #[test]
 fn a_trace_has_a_row_for_each_value_up_to_600_and_draws_its_deviation() {
-    let outcome = ordinary("mixed");
+    let outcome = named("mixed");
     let (name, picture) = trace_plots(&outcome).remove(0);
     assert_eq!(
         (name.as_str(), picture.table.rows.len()),
@@ -167,7 +159,7 @@ fn a_trace_has_a_row_for_each_value_up_to_600_and_draws_its_deviation() {
 #[test]
 fn marks_stand_where_the_numbers_are() {
     // A fitted residual of zero is in the middle of the grey band, for the band is as wide on both sides.
-    let mut outcome = ordinary("one");
+    let mut outcome = named("one");
     (
         outcome.residuals[0].after_sd,
         outcome.residuals[0].before_sd,
@@ -217,7 +209,7 @@ fn marks_stand_where_the_numbers_are() {
 #[test]
 fn long_data_are_thinned_and_say_so() {
     const MAX_SHOWN: usize = 600;
-    let outcome = ordinary("mixed");
+    let outcome = named("mixed");
     let table = scatter_plot(&outcome).table;
     let shown = table.rows.len();
     assert!(shown <= MAX_SHOWN + 10 && shown > MAX_SHOWN / 2, "{shown}");
@@ -230,15 +222,15 @@ fn long_data_are_thinned_and_say_so() {
     });
     assert_eq!(listed.count(), 40, "single numbers are all shown");
     assert!(table.note.contains("of 1220 observations"));
-    let all = scatter_plot(&ordinary("hundred")).table;
-    assert_eq!(all.rows.len(), ordinary("hundred").residuals.len());
+    let all = scatter_plot(&named("hundred")).table;
+    assert_eq!(all.rows.len(), named("hundred").residuals.len());
     assert!(!all.note.contains("observations are shown"));
     assert!(noise(3).abs() <= 1.0);
 }
 
 #[test]
 fn unknown_correlations_are_crossed_out_and_strong_ones_written() {
-    let outcome = ordinary("ordinary");
+    let outcome = named("ordinary");
     let picture = correlation_plot(&outcome);
     let unknown = outcome
         .correlation

@@ -90,6 +90,13 @@ fn run(place: &Place, dir: &str, more: &[&str]) {
     place.done(&[&words[..], more].concat());
 }
 
+/// The ambient matrix of the same cycle.
+fn matrix(place: &Place, dir: &str) {
+    place.done(&[
+        "study", "ambient", "--cycle", "ece15", "--quiet", "--out", dir,
+    ]);
+}
+
 /// The text of a page without its marks.
 fn words_of(page: &str) -> String {
     let body = &page[page.find("<main").unwrap()..page.find("</main>").unwrap()];
@@ -389,9 +396,7 @@ fn val_two_runs_differ_by_what_their_summaries_differ() {
         2,
         &["ece15", "eudc", "runs of one cycle"],
     );
-    place.done(&[
-        "study", "ambient", "--cycle", "ece15", "--quiet", "--out", "matrix",
-    ]);
+    matrix(&place, "matrix");
     place.refused(&["report", "a", "matrix"], 2, &["not two runs", "--with"]);
 }
 
@@ -399,15 +404,7 @@ fn val_two_runs_differ_by_what_their_summaries_differ() {
 fn studies_and_validation_come_into_the_report_of_a_run() {
     let place = Place::new();
     run(&place, "cold", &[]);
-    place.done(&[
-        "study",
-        "ambient",
-        "--cycle",
-        "ece15",
-        "--quiet",
-        "--out",
-        "cold/matrix",
-    ]);
+    matrix(&place, "cold/matrix");
     place.done(&["validate", "--chapter", "C", "--quiet", "--out", "check"]);
     place.done(&["report", "cold", "--with", "check"]);
     let words = words_of(&place.text("cold/report.html"));

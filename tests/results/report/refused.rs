@@ -177,15 +177,7 @@ fn a_trace_has_to_be_that_of_the_summary() {
 fn a_study_of_another_case_stays_out_of_the_answer() {
     let place = Place::new();
     run(&place, "cold", &[]);
-    place.done(&[
-        "study",
-        "ambient",
-        "--cycle",
-        "ece15",
-        "--quiet",
-        "--out",
-        "cold/matrix",
-    ]);
+    matrix(&place, "cold/matrix");
     place.done(&[
         "run",
         "--cycle",
