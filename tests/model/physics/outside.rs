@@ -101,7 +101,7 @@ fn every_engine_has_its_own_heat_capacity() {
     }
 }
 
-/// First idle of a start at -30 degC: at most 4 L/h in the first 11 s. Truth: the requirement; nobody measured it.
+/// First idle of a start at -30 degC: at most 4 L/h in the first 11 s. Truth: the requirement; it was not measured.
 #[test]
 fn first_idle_at_minus_30() {
     for name in CARS {
