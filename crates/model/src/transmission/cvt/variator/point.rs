@@ -242,13 +242,13 @@ pub fn driving_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoin
     }
 }
 
-/// A loss in parts like those of a pair; the pair itself where it is the loss (SL-11 makes them differ).
+/// A loss of the belt on each pulley, in the proportion of the pair that came before SL-11.
 fn split_nm(loss_nm: f64, pair: [f64; 2]) -> [f64; 2] {
     let [a, b] = pair.map(f64::abs);
-    if pair[0] + pair[1] == loss_nm && pair == [a, b] || a + b <= 0.0 {
-        pair
-    } else {
+    if a + b > 0.0 {
         [loss_nm * a / (a + b), loss_nm * b / (a + b)]
+    } else {
+        pair
     }
 }
 
