@@ -217,7 +217,7 @@ fn val_fuel_cut_by_hand() {
 fn no_fuel_is_cut_by_a_cold_engine() {
     let conditions = Conditions {
         keep_rows: true,
-        ..common::at(25.0, Start::Soak)
+        ..common::at(0.0, Start::Soak)
     };
     for name in CARS {
         let cut_s = |sets: &[&str]| {
