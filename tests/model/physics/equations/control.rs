@@ -46,13 +46,20 @@ fn val_target_by_hand() {
     for (share, want) in [
         (-0.1, 150.0),
         (0.0, 150.0),
-        (0.004, 162.0),
-        (0.01, 180.0),
+        (0.02, 154.0),
+        (0.075, 165.0),
         (0.15, 180.0),
         (0.45, 180.0 + 420.0 * 0.3),
         (1.4, 600.0),
     ] {
         same(c.target_rad_s(&demand(share, 100.0, 1.0)), want);
+    }
+    let steep = RatioControl {
+        gentle_share: 0.0,
+        ..c
+    };
+    for (share, want) in [(0.0, 150.0), (0.004, 162.0 + 420.0 * 0.004), (0.01, 184.2)] {
+        same(steep.target_rad_s(&demand(share, 100.0, 1.0)), want);
     }
     let route = |share: f64, full_load_rad_s: f64| {
         c.target_rad_s(&RatioDemand {

@@ -2,8 +2,8 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | RC-1 | target speed: 1700 rpm in gentle driving, + g (P/P_max - 15 %) above 15 % power | 1700 rpm source: thesis 1.1.2, Fig 1-6; rise ASSUMED |
-//! | RC-2 | overrun target: that of gentle driving, or one of its own, reached linearly over 1 % of rated power | source: thesis 1.1.2, Fig 1-6 prints one plateau; its own one ASSUMED |
+//! | RC-1 | target speed: 1700 rpm at 15 % power, + g (P/P_max - 15 %) above it | 1700 rpm source: thesis 1.1.2, Fig 1-6; 15 % and rise ASSUMED |
+//! | RC-2 | below 15 % power the target falls linearly to that without power, which holds in overrun too | source: thesis 3.7 and 1.1.2 (J of Fig 1-6) in words; size ASSUMED |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
 //! | RC-7 | where full load does not suffice, RC-3 is asked again with 10 % less efficiency each time, down to 40 % | derived: kick-down, within RC-4 and RC-5 |
 //! | RC-8 | target never above the speed of greatest power | source: thesis 1.1.2, maximum power route |
@@ -15,7 +15,7 @@
 //! The power asked for is wheel power, so the ratio never chases its own losses.
 
 use crate::keys::{Values, keys};
-use crate::math::{clamp, exp, ln, smaller};
+use crate::math::{clamp, exp, larger, ln, smaller};
 
 /// The checked controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,13 +24,13 @@ pub struct RatioControl {
     pub low: f64,
     /// Highest gear: smallest belt ratio.
     pub high: f64,
-    /// Speed in gentle driving, rad/s.
+    /// Speed in gentle acceleration, rad/s.
     pub gentle_rad_s: f64,
-    /// Share of rated power up to which driving is gentle.
+    /// Share of rated power in gentle acceleration.
     pub gentle_share: f64,
     /// Rise of speed over the share of rated power above it, rad/s.
     pub rise_rad_s: f64,
-    /// Speed in overrun, rad/s.
+    /// Speed without power and in overrun, rad/s.
     pub overrun_rad_s: f64,
     /// Highest target speed: that of the engine's greatest power, rad/s.
     pub highest_rad_s: f64,
@@ -77,7 +77,7 @@ impl RatioControl {
     /// Target primary speed, rad/s (RC-1 to RC-3).
     pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
         let share = d.power_w / d.rated_w;
-        let drive = clamp(share / 0.01, 0.0, 1.0);
+        let drive = clamp(share / larger(self.gentle_share, LEAST_GENTLE_SHARE), 0.0, 1.0);
         let mut speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
         if share > self.gentle_share {
             speed += self.rise_rad_s * (share - self.gentle_share); // RC-1
@@ -146,6 +146,9 @@ impl RatioControl {
 /// Primary speed over idle speed up to which the ratio turns round at once: the car pulls away and stops in low (RC-10).
 pub const FREE_OVER_IDLE: f64 = 1.2;
 
+/// Least share of rated power over which the target rises from that without power, so that it does not jump (RC-2).
+const LEAST_GENTLE_SHARE: f64 = 0.01;
+
 /// Change of ln I that counts as one (RC-10).
 const LEAST_CHANGE: f64 = 1e-4;
 
@@ -165,10 +168,10 @@ keys! {
     RATIO: RatioKeys = "ratio" [] {
         low: number(0.3, 3.3), "belt ratio of the lowest gear";
         high: number(0.3, 3.3), "belt ratio of the highest gear";
-        gentle_rpm: number(500.0, 10_000.0), "engine speed in gentle driving", ["RC-1"];
-        gentle_power_share: number(0.0, 1.0), "share of rated power up to which driving is gentle", ["RC-1"];
+        gentle_rpm: number(500.0, 10_000.0), "engine speed in gentle acceleration", ["RC-1"];
+        gentle_power_share: number(0.0, 1.0), "share of rated power in gentle acceleration", ["RC-1", "RC-2"];
         rise_rpm: number(0.0, 20_000.0), "rise of engine speed over the share of rated power above it", ["RC-1"];
-        overrun_rpm: optional(number(500.0, 10_000.0)), "engine speed in overrun; absent: that of gentle driving", ["RC-2"];
+        overrun_rpm: optional(number(500.0, 10_000.0)), "engine speed without power and in overrun; absent: that of gentle acceleration", ["RC-2"];
         route_efficiency: or(0.85, number(0.3, 1.0)), "wheel power over engine power on the full-load route", ["RC-3"];
         up_per_s: above(0.0, 20.0), "rate of ln I towards high", ["RC-4"];
         down_per_s: above(0.0, 20.0), "rate of ln I towards low", ["RC-4"];
