@@ -194,8 +194,8 @@ fn val_start_by_hand() {
         let state = begin(&car, wheel, power);
         let c = &cvt.ratio;
         let (ws, share) = (cvt.final_drive.ratio * wheel, power / car.engine.rated_w);
-        let mut target =
-            c.overrun_rad_s + (share / c.gentle_share).clamp(0.0, 1.0) * (c.gentle_rad_s - c.overrun_rad_s);
+        let mut target = c.overrun_rad_s
+            + (share / c.gentle_share).clamp(0.0, 1.0) * (c.gentle_rad_s - c.overrun_rad_s);
         target += c.rise_rad_s * (share - c.gentle_share).max(0.0);
         if share > 0.0 {
             target = target.max(super::route_rad_s(cvt, &engine, power / c.route_efficiency));

@@ -86,12 +86,12 @@ fn val_shift_by_hand() {
         assert_eq!(got.2, held, "{d:?}");
     };
     // Towards high: target 180/300 = 0.6.
-    check(demand(0.1, 300.0, 1.0), -0.175, false);
-    check(demand(0.1, 300.0, 0.65), (0.6f64 / 0.65).ln(), false);
+    check(demand(0.15, 300.0, 1.0), -0.175, false);
+    check(demand(0.15, 300.0, 0.65), (0.6f64 / 0.65).ln(), false);
     check(
         RatioDemand {
             flow_up_per_s: 0.2,
-            ..demand(0.1, 300.0, 1.0)
+            ..demand(0.15, 300.0, 1.0)
         },
         -0.1,
         true,
@@ -99,7 +99,7 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_up_per_s: 0.2,
-            ..demand(0.1, 300.0, 0.61)
+            ..demand(0.15, 300.0, 0.61)
         },
         (0.6f64 / 0.61).ln(),
         false,
@@ -107,18 +107,18 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_down_per_s: 0.0,
-            ..demand(0.1, 300.0, 1.0)
+            ..demand(0.15, 300.0, 1.0)
         },
         -0.175,
         false,
     );
     // Towards low: target 180/100 = 1.8.
-    check(demand(0.1, 100.0, 1.0), 0.45, false);
-    check(demand(0.1, 100.0, 1.7), (1.8f64 / 1.7).ln(), false);
+    check(demand(0.15, 100.0, 1.0), 0.45, false);
+    check(demand(0.15, 100.0, 1.7), (1.8f64 / 1.7).ln(), false);
     check(
         RatioDemand {
             flow_down_per_s: 0.3,
-            ..demand(0.1, 100.0, 1.0)
+            ..demand(0.15, 100.0, 1.0)
         },
         0.15,
         true,
@@ -126,7 +126,7 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_down_per_s: 0.3,
-            ..demand(0.1, 100.0, 1.75)
+            ..demand(0.15, 100.0, 1.75)
         },
         (1.8f64 / 1.75).ln(),
         false,
@@ -134,7 +134,7 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_up_per_s: 0.0,
-            ..demand(0.1, 100.0, 1.0)
+            ..demand(0.15, 100.0, 1.0)
         },
         0.45,
         false,
@@ -143,7 +143,7 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_down_per_s: 0.95,
-            ..demand(0.1, 100.0, 1.0)
+            ..demand(0.15, 100.0, 1.0)
         },
         0.45,
         false,
@@ -151,23 +151,23 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_up_per_s: 0.36,
-            ..demand(0.1, 300.0, 1.0)
+            ..demand(0.15, 300.0, 1.0)
         },
         -0.175,
         false,
     );
     // Slow primary: 0.8 of 50 rad/s are 40 % of the speed of the full rates.
-    check(demand(0.1, 50.0, 0.8), 0.9 * 0.4 * 0.5, false);
+    check(demand(0.15, 50.0, 0.8), 0.9 * 0.4 * 0.5, false);
     // Towards high with a slow primary: 300 of 400 rad/s; and flow that holds a change between what it gives in a step and in a second.
     let slow = RatioControl {
         rate_speed_rad_s: 400.0,
         ..c
     };
-    same(slow.step(&demand(0.1, 300.0, 1.0)).1, -0.35 * 0.75 * 0.5);
+    same(slow.step(&demand(0.15, 300.0, 1.0)).1, -0.35 * 0.75 * 0.5);
     check(
         RatioDemand {
             flow_up_per_s: 0.2,
-            ..demand(0.1, 300.0, 0.75)
+            ..demand(0.15, 300.0, 0.75)
         },
         -0.1,
         true,
@@ -175,37 +175,37 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_down_per_s: 0.2,
-            ..demand(0.1, 100.0, 1.44)
+            ..demand(0.15, 100.0, 1.44)
         },
         0.1,
         true,
     );
     // The ends of the ratio.
-    let (low, _, _) = step(demand(0.1, 20.0, 2.39));
+    let (low, _, _) = step(demand(0.15, 20.0, 2.39));
     same(low, 2.4);
-    let (high, _, _) = step(demand(0.1, 900.0, 0.42));
+    let (high, _, _) = step(demand(0.15, 900.0, 0.42));
     same(high, 0.41);
     // Not coupled: no up-shift, down-shift allowed.
     assert_eq!(
         step(RatioDemand {
             coupled: false,
-            ..demand(0.1, 300.0, 1.0)
+            ..demand(0.15, 300.0, 1.0)
         }),
         (1.0, 0.0, false)
     );
     check(
         RatioDemand {
             coupled: false,
-            ..demand(0.1, 100.0, 1.0)
+            ..demand(0.15, 100.0, 1.0)
         },
         0.45,
         false,
     );
     // At rest, and where nothing is wanted.
-    assert_eq!(step(demand(0.1, 0.0, 1.3)), (1.3, 0.0, false));
-    assert_eq!(step(demand(0.1, 100.0, 1.8)), (1.8, 0.0, false));
+    assert_eq!(step(demand(0.15, 0.0, 1.3)), (1.3, 0.0, false));
+    assert_eq!(step(demand(0.15, 100.0, 1.8)), (1.8, 0.0, false));
     // An unchanged ratio outside the limits comes back within them.
-    same(step(demand(0.1, 300.0, 3.0)).0, 2.4);
+    same(step(demand(0.15, 300.0, 3.0)).0, 2.4);
 }
 
 /// PC-1 and PC-2 in each piece of f(n).
@@ -328,7 +328,7 @@ fn val_hysteresis_by_hand() {
         c.step(&RatioDemand {
             last_direction,
             free_up_to_rad_s: 90.0,
-            ..demand(0.1, 100.0, before) // towards 1.8
+            ..demand(0.15, 100.0, before) // towards 1.8
         })
     };
     for (last, before, moves) in [
@@ -347,13 +347,13 @@ fn val_hysteresis_by_hand() {
     let slow = RatioDemand {
         last_direction: -1,
         free_up_to_rad_s: 190.0,
-        ..demand(0.1, 100.0, 1.8 / 1.04)
+        ..demand(0.15, 100.0, 1.8 / 1.04)
     };
     same(c.step(&slow).0, 1.8);
     let low = RatioDemand {
         last_direction: -1,
         free_up_to_rad_s: 90.0,
-        ..demand(0.1, 70.0, 2.35) // towards 2.57, held at the end
+        ..demand(0.15, 70.0, 2.35) // towards 2.57, held at the end
     };
     same(c.step(&low).0, 2.4);
 }

@@ -379,7 +379,8 @@ fn demand(secondary: f64, power: f64, before: f64) -> RatioDemand {
 #[test]
 fn val_variogram() {
     let c = control();
-    assert!((c.target_rad_s(&demand(100.0, 5e3, 1.0)) / RPM - 1700.0).abs() < 1e-9);
+    assert!((c.target_rad_s(&demand(100.0, 12.3e3, 1.0)) / RPM - 1700.0).abs() < 1e-9);
+    assert!((c.target_rad_s(&demand(100.0, 6.15e3, 1.0)) / RPM - 1600.0).abs() < 1e-9);
     assert!((c.target_rad_s(&demand(100.0, 41e3, 1.0)) / RPM - 3100.0).abs() < 1e-9);
     assert!((c.target_rad_s(&demand(100.0, -5e3, 1.0)) / RPM - 1500.0).abs() < 1e-9);
     assert!((c.step(&demand(0.0, 0.0, 1.3)).0 - 1.3).abs() < 1e-15);

@@ -77,7 +77,11 @@ impl RatioControl {
     /// Target primary speed, rad/s (RC-1 to RC-3).
     pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
         let share = d.power_w / d.rated_w;
-        let drive = clamp(share / larger(self.gentle_share, LEAST_GENTLE_SHARE), 0.0, 1.0);
+        let drive = clamp(
+            share / larger(self.gentle_share, LEAST_GENTLE_SHARE),
+            0.0,
+            1.0,
+        );
         let mut speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
         if share > self.gentle_share {
             speed += self.rise_rad_s * (share - self.gentle_share); // RC-1
