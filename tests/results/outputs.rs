@@ -65,9 +65,9 @@ fn columns_are_those_of_the_car_in_the_agreed_order() {
         names(true, &CVT),
         "time_s, dt_s, phase, speed_kmh, accel_m_s2, wheel_torque_nm, wheel_power_w, \
          engine_speed_rpm, engine_torque_nm, throttle, belt_ratio, overall_ratio, \
-         primary_pressure_bar, secondary_pressure_bar, slip_percent, clamp_safety, \
+         primary_pressure_bar, secondary_pressure_bar, clamp_cause, slip_percent, clamp_safety, \
          launch_clutch_loss_w, pump_loss_w, input_shaft_loss_w, clutch_drag_loss_w, \
-         belt_band_loss_w, belt_film_loss_w, belt_slip_loss_w, belt_wedge_loss_w, \
+         seal_ring_loss_w, pulley_bearing_loss_w, belt_band_loss_w, belt_film_loss_w, belt_slip_loss_w, belt_wedge_loss_w, \
          belt_penetration_loss_w, final_drive_loss_w, accessories_w, brake_w, kinetic_w, \
          deficit_w, fuel_g_s, fuel_power_w, engine_heat_w, exhaust_w, coolant_degc, \
          engine_oil_degc, transmission_sump_degc, transmission_metal_degc, belt_spray_degc, \

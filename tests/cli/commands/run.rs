@@ -23,7 +23,7 @@ fn json_of_a_run_has_every_key_of_the_contract() {
     assert_eq!(summary["start"], "soak");
     assert_eq!(summary["ambient_degc"], -10.0);
     let run_keys = "vehicle role transmission distance_km duration_s fuel_l_per_100km co2_g_per_km phases wheel_work_positive_kj \
-        wheel_work_negative_kj fuel_energy_kj loss_kj kinetic_kj standstill_fuel_g min_clamp_safety at_ratio_limit_s end_degc \
+        wheel_work_negative_kj fuel_energy_kj loss_kj kinetic_kj standstill_fuel_g min_clamp_safety clamp_cause_s at_ratio_limit_s end_degc \
         ledger_error trace_missed_s outside_validity_s transmission_efficiency_percent";
     let runs = summary["runs"].as_array().unwrap();
     assert_eq!(runs.len(), 3);
@@ -42,7 +42,7 @@ fn json_of_a_run_has_every_key_of_the_contract() {
                 && run["run_ledger_error"].as_f64().unwrap() < 1e-9
         );
     }
-    let cvt = "launch_clutch pump input_shaft clutch_drag belt_band belt_film belt_slip belt_wedge belt_penetration final_drive \
+    let cvt = "launch_clutch pump input_shaft clutch_drag seal_ring pulley_bearing belt_band belt_film belt_slip belt_wedge belt_penetration final_drive \
         accessories brake";
     let manual = "launch_clutch gear_mesh bearing churning seal accessories brake";
     assert_eq!(

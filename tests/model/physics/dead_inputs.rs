@@ -130,7 +130,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 20] = [
+const NEEDS: [(&str, &[&str], &str); 24] = [
     (
         "variator.piston_outer_mm",
         &["transmission.cvt.variator.compensated=false"],
@@ -192,14 +192,46 @@ const NEEDS: [(&str, &[&str], &str); 20] = [
         &[
             "transmission.cvt.clamp.map.base_bar=5",
             "transmission.cvt.clamp.map.throttle_bar=0",
-            "transmission.cvt.pressure.floor_bar=4",
+            "transmission.cvt.pressure.control_bar=4",
         ],
         "bounds gross slip, which needs a clamp that is too weak",
     ),
     (
-        "pressure.floor_bar",
+        "pressure.control_bar",
         &["transmission.cvt.clamp.map.base_bar=12"],
         "the Rover's map stays above its floor",
+    ),
+    (
+        "pressure.clutch_return_bar",
+        &[
+            "transmission.cvt.clamp=torque_following",
+            "transmission.cvt.pressure.clutch_bar_per_nm=0.3",
+        ],
+        "a map was measured with its causes in it",
+    ),
+    (
+        "pressure.clutch_bar_per_nm",
+        &[
+            "transmission.cvt.clamp=torque_following",
+            "transmission.cvt.pressure.clutch_bar_per_nm=0.3",
+        ],
+        "as the clutch's spring",
+    ),
+    (
+        "pressure.strand_n",
+        &[
+            "transmission.cvt.clamp=torque_following",
+            "transmission.cvt.pressure.strand_n=2000",
+        ],
+        "as the clutch's spring",
+    ),
+    (
+        "pressure.creep_per_rad",
+        &[
+            "transmission.cvt.clamp=torque_following",
+            "transmission.cvt.pressure.control_bar=1",
+        ],
+        "as the clutch's spring",
     ),
     (
         "pump.lubrication_l_min",

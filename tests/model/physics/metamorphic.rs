@@ -115,7 +115,17 @@ fn colder_is_never_cheaper_after_a_soak() {
 }
 
 /// Settings that take away a component's loss: (component, car, settings).
-const ZERO_LOSS: [(&str, &str, &[&str]); 11] = [
+const ZERO_LOSS: [(&str, &str, &[&str]); 13] = [
+    (
+        "seal_ring",
+        "rover_216_cvt",
+        &["transmission.cvt.seal_ring.friction=0"],
+    ),
+    (
+        "pulley_bearing",
+        "rover_216_cvt",
+        &["transmission.cvt.pulley_bearing.friction=0"],
+    ),
     (
         "input_shaft",
         "rover_216_cvt",

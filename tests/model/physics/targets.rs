@@ -213,14 +213,14 @@ fn val_ratio_use() {
     let high = share(&|r| r.time_s > 780.0, &|r| r.belt_ratio <= 0.42);
     let falls = o
         .rows
-        .windows(2)
+        .windows(3)
         .filter(|w| {
             w[0].accel_m_s2 > 0.2
-                && w[1].accel_m_s2.abs() < 1e-9
+                && w[1..].iter().all(|r| r.accel_m_s2.abs() < 1e-9)
                 && kmh(&w[1]) > 30.0
                 && w[1].belt_ratio > 0.42
         })
-        .map(|w| w[1].engine_speed_rad_s - w[0].engine_speed_rad_s)
+        .map(|w| w[2].engine_speed_rad_s - w[0].engine_speed_rad_s) // RC-9 spreads the fall over more than a second
         .collect::<Vec<f64>>();
     println!(
         "ECE15 between the ends {:.0} %, EUDC high {:.0} % of moving time; speed after acceleration {falls:.1?} rad/s",
@@ -328,18 +328,12 @@ impl Rig {
 
 const TEMPERATURES: [f64; 4] = [25.0, 50.0, 75.0, 95.0];
 
-/// What the belt lost in high with TE-7 and SL-11, Nm, until the pulleys' bearings and seal rings carry it.
-const MISSING_NM: f64 = 0.5;
-
 /// 5.3.1: no-load totals in low ratio 8.5-13 Nm over 1000-4000 rpm, in high (0.5 on the rig) 9-13 Nm over 2000-4000 rpm, at 25, 50,
 /// 75 and 95 degC: the ends of the ranges within 0.6 Nm (the transducer's 0.5 Nm of 5.2, and the reading). The parts are those of 5.5.
 #[test]
 fn val_rig_totals() {
     let rig = Rig::new(&car("rover_216_cvt", &[]));
-    for (ratio, from, low, high) in [
-        (2.417, 1000, 8.5, 13.0),
-        (0.5, 2000, 9.0 - MISSING_NM, 13.0 - MISSING_NM),
-    ] {
+    for (ratio, from, low, high) in [(2.417, 1000, 8.5, 13.0), (0.5, 2000, 9.0, 13.0)] {
         let mut totals = Vec::new();
         for t in TEMPERATURES {
             for rpm in (from..=4000).step_by(250) {

@@ -283,7 +283,7 @@ fn flags_name_what_a_point_departs_from_and_clamp_nothing() {
     let floor = one(
         "0.5,2000,12,10",
         &[],
-        &["--set", "transmission.cvt.pressure.floor_bar=20"],
+        &["--set", "transmission.cvt.pressure.control_bar=20"],
     );
     assert_eq!(floor.cell(0, "flags"), "below_pressure_floor");
 }

@@ -11,10 +11,14 @@ use cvtcycle_model::keys::{Quantity, stem};
 const ELSEWHERE: f64 = 0.75;
 
 /// Ends of keys of earlier versions, and what to do instead.
-const REPLACED: [(&str, &str); 3] = [
+const REPLACED: [(&str, &str); 4] = [
     (
         "engine.friction.temperature_exponent",
         "remove it: friction in the cold follows the oil's viscosity, with `viscous_share` and `viscous_exponent` (EN-2)",
+    ),
+    (
+        "transmission.cvt.pressure.floor_bar",
+        "write `control_bar`, the pressure that the valves need; clutch, belt and shifts have keys of their own (PC-5)",
     ),
     ("friction.band_floor", WITHOUT_BOUNDS),
     ("friction.band_ceiling", WITHOUT_BOUNDS),

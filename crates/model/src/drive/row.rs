@@ -5,6 +5,7 @@ use crate::cycle::Step;
 use crate::engine::{Burn, EngineAtTemperature};
 use crate::flags::Flags;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatStep, METAL, NODES, SUMP};
+use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::ByComponent;
 use crate::transmission::{StepInput, StepOutput};
 
@@ -49,6 +50,8 @@ pub struct Row {
     pub primary_pressure_pa: f64,
     /// Secondary pressure, Pa; NaN for a manual box.
     pub secondary_pressure_pa: f64,
+    /// What decided the secondary pressure (PC-5); of no meaning for a manual box.
+    pub clamp_cause: ClampCause,
     /// Belt slip as a fraction; NaN for a manual box.
     pub slip: f64,
     /// Torque capacity over torque of the belt; infinite at zero torque; NaN for a manual box.
@@ -183,6 +186,7 @@ pub(super) fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, En
         },
         primary_pressure_pa: d.primary_pa,
         secondary_pressure_pa: d.secondary_pa,
+        clamp_cause: d.clamp_cause,
         slip: d.slip,
         clamp_safety: d.clamp_safety,
         loss_w: d.loss_w,

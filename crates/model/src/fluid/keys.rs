@@ -17,7 +17,8 @@ keys! {
     FRICTION: FrictionKeys = "friction" [LiftKeys::TABLE] {
         band: or(0.13, number(0.0, 0.4)), "band boundary friction at 85 degC", ["LU-4"];
         band_rise_per_k: or(0.002, number(0.0, 0.02)), "rise of band friction with belt temperature", ["LU-4"];
-        segment: or(0.125, number(0.02, 0.4)), "friction segment on pulley", ["SL-4", "VA-2"];
+        segment: or(0.125, number(0.02, 0.4)), "friction segment on pulley in micro slip", ["SL-4"];
+        capacity: or(0.09, number(0.02, 0.4)), "friction segment on pulley in macro slip: torque capacity", ["VA-4"];
         flank: or(0.13, number(0.0, 0.4)), "friction in wedging and penetration", ["WE-3", "PE-1"];
     }
 
@@ -96,6 +97,7 @@ impl Friction {
             band,
             band_rise_per_k,
             segment: s.number(&FRICTION.segment),
+            capacity: s.number(&FRICTION.capacity),
             flank: s.number(&FRICTION.flank),
             lift_off: lift.flag(&LIFT.enabled),
             lift_reduction: lift.number(&LIFT.reduction),

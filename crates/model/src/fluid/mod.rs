@@ -39,8 +39,10 @@ pub struct Friction {
     pub band: f64,
     /// Rise of the band friction with belt temperature, 1/K.
     pub band_rise_per_k: f64,
-    /// Friction segment on pulley.
+    /// Friction segment on pulley in micro slip.
     pub segment: f64,
+    /// Friction segment on pulley in macro slip, which bounds the torque.
+    pub capacity: f64,
     /// Friction in wedging and penetration.
     pub flank: f64,
     /// Whether the bands can ride on oil at all (LU-5).

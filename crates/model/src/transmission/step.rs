@@ -1,5 +1,6 @@
 //! What a driveline receives and gives in a time step.
 
+use super::clamp_cause::ClampCause;
 use super::component::{ByComponent, Component};
 use super::coupling::Reach;
 use crate::cycle::GearCommand;
@@ -73,6 +74,8 @@ pub struct StepOutput {
     pub primary_pa: f64,
     /// Secondary pressure, Pa; NaN for a manual box.
     pub secondary_pa: f64,
+    /// What decided the secondary pressure; of no meaning for a manual box.
+    pub clamp_cause: ClampCause,
     /// Belt slip; NaN for a manual box.
     pub slip: f64,
     /// Capacity over torque; NaN for a manual box.
@@ -106,6 +109,7 @@ impl StepOutput {
             belt_ratio: f64::NAN,
             primary_pa: f64::NAN,
             secondary_pa: f64::NAN,
+            clamp_cause: ClampCause::Law,
             slip: f64::NAN,
             clamp_safety: f64::NAN,
             loss_w: ByComponent([0.0; Component::COUNT]),

@@ -10,6 +10,7 @@ use cvtcycle_model::drive::{Outcome, litres_per_100km};
 use cvtcycle_model::engine::Engine;
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
+use cvtcycle_model::transmission::clamp_cause::ClampCause;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Ledger error above which a run counts as failed.
@@ -83,6 +84,8 @@ pub struct RunSummary {
     pub standstill_fuel_g: f64,
     /// Smallest clamp safety factor; null for a manual box.
     pub min_clamp_safety: Option<f64>,
+    /// Moving time in which each cause decided the secondary pressure; null for a manual box.
+    pub clamp_cause_s: Option<Named>,
     /// Time at a ratio limit; null for a manual box.
     pub at_ratio_limit_s: Option<f64>,
     /// Temperatures at the end.
@@ -229,6 +232,10 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
             .collect(),
         standstill_fuel_g: all.standstill_fuel_kg * 1e3,
         min_clamp_safety: finite(totals.min_clamp_safety).filter(|_| cvt),
+        clamp_cause_s: cvt.then(|| {
+            let causes = ClampCause::NAMES.iter().zip(totals.clamp_cause_s);
+            causes.map(|((_, name), s)| (*name, finite(s))).collect()
+        }),
         at_ratio_limit_s: cvt.then(|| seconds(Flags::RATIO_LIMIT)),
         end_degc: end_temperatures(outcome, cvt),
         ledger_error: finite(totals.ledger_error),

@@ -110,6 +110,7 @@ impl Point {
             eta_pa_s: 0.02,
             film_thickness_m: 1.5e-6,
             segment_friction: self.mu_segment,
+            capacity_friction: self.mu_segment,
             flank_friction: self.mu_flank,
         }
     }

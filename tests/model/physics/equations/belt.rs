@@ -293,7 +293,15 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
             ),
         wedge,
         penetration,
-        capacity: 2.0 * mu * rs * fp.min(fs) / b.cos_wedge, // VA-2
+        capacity: 2.0
+            * if f == Formulation::Smooth {
+                l.capacity_friction
+            } else {
+                mu
+            }
+            * rs
+            * fp.min(fs)
+            / b.cos_wedge, // VA-2, VA-4
         held: if load < 0.0 {
             inverted.held
         } else {
@@ -320,6 +328,7 @@ fn load(output_torque_nm: f64, secondary_clamp_n: f64) -> BeltLoad {
         eta_pa_s: 0.02,
         film_thickness_m: 0.5e-6,
         segment_friction: 0.14,
+        capacity_friction: 0.095,
         flank_friction: 0.11,
     }
 }

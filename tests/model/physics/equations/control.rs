@@ -20,6 +20,7 @@ fn control() -> RatioControl {
         down_per_s: 0.9,
         rate_speed_rad_s: 100.0,
         hysteresis: 0.05,
+        filter_s: 0.0,
     }
 }
 
@@ -27,7 +28,7 @@ fn demand(power_share: f64, secondary_rad_s: f64, before: f64) -> RatioDemand {
     RatioDemand {
         secondary_rad_s,
         power_w: power_share * 80e3,
-        rated_w: 80e3,
+        share: power_share,
         full_load_rad_s: 0.0,
         ratio_before: before,
         flow_down_per_s: 9.0,
@@ -72,6 +73,37 @@ fn val_target_by_hand() {
     same(route(0.2, 800.0), 600.0);
     same(route(-0.2, 350.0), 150.0);
     same(route(0.0, 350.0), 150.0);
+}
+
+/// RC-9: a first-order filter of any step, none at 0 s; RC-3 sees the demand itself, RC-1 and RC-2 what is left of it.
+#[test]
+fn val_filtered_demand_by_hand() {
+    let filter = |filter_s: f64| RatioControl {
+        filter_s,
+        ..control()
+    };
+    // One second in steps of 1, 1/2 and 1/10 s with 2 s of time constant: 1 - exp(-1/2) of the way.
+    for steps in [1, 2, 10] {
+        let dt_s = 1.0 / f64::from(steps);
+        let share = (0..steps).fold(0.1, |u, _| filter(2.0).filtered_share(u, 0.5, dt_s));
+        assert!(
+            (share - (0.1 + 0.4 * 0.393_469_340_287)).abs() < 1e-10,
+            "{share}"
+        );
+    }
+    same(filter(0.0).filtered_share(0.1, 0.5, 1e-3), 0.5);
+    let sudden = RatioDemand {
+        share: 0.02,
+        full_load_rad_s: 420.0,
+        ..demand(0.6, 100.0, 1.0)
+    };
+    same(control().target_rad_s(&sudden), 420.0);
+    let faded = RatioDemand {
+        share: 0.35,
+        full_load_rad_s: 420.0,
+        ..demand(-0.1, 100.0, 1.0)
+    };
+    same(control().target_rad_s(&faded), 180.0 + 420.0 * 0.2);
 }
 
 /// RC-4, RC-5, RC-6: rate towards both ends, by pace, by flow and free, with the flag where flow holds.
@@ -237,6 +269,7 @@ fn val_clamp_map_by_hand() {
                 engine_rad_s: speed,
                 oil_k: degc + 273.15,
                 radius_factor: radius,
+                force_log: 0.0,
             };
             same(
                 law.pressure_pa(&s),
@@ -254,6 +287,7 @@ fn val_clamp_map_by_hand() {
         engine_rad_s: 160.0,
         oil_k: 353.15,
         radius_factor: 1.0,
+        force_log: 0.0,
     };
     same(odd.pressure_pa(&s), 1.25 * 20e5);
 }

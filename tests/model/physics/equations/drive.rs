@@ -12,6 +12,8 @@ use cvtcycle_model::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::coupling::CouplingLoad;
 use cvtcycle_model::transmission::cvt::controller::{ClampLaw, ClampSignals};
+use cvtcycle_model::transmission::cvt::floors::Floors;
+use cvtcycle_model::transmission::cvt::pulley_bearing::PulleyBearing;
 use cvtcycle_model::transmission::cvt::variator::{
     BeltAtRatio, BeltLoad, belt_state, sliding_speed_m_s,
 };
@@ -66,6 +68,7 @@ fn belt_load(b: &Bench, s: &Setting, wp: f64, secondary_nm: f64, clamp_n: f64) -
         eta_pa_s: eta,
         film_thickness_m: f.film_thickness_m,
         segment_friction: f.segment,
+        capacity_friction: f.capacity,
         flank_friction: f.flank,
     }
 }
@@ -110,9 +113,15 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
         cvtcycle_model::math::exp(drive.fall_exponent(ws)),
         ws,
     );
-    let secondary_nm = drive.secondary_torque_nm(drag_nm, output_nm);
+    let geared_nm = drive.secondary_torque_nm(drag_nm, output_nm);
     let at = BeltAtRatio::new(&cvt.belt, s.ratio);
-    let load = belt_load(b, s, wp, secondary_nm, cvt.secondary_clamp_n(pa, ws));
+    let clamp_n = cvt.secondary_clamp_n(pa, ws);
+    let pull_n = PulleyBearing::pull_per_clamp(&cvt.belt, &at) * clamp_n;
+    let bearing = [0, 1].map(|k| cvt.pulley_bearing.torque_nm(k, pull_n));
+    let ring = [clamp_n * at.thrust_ratio / cvt.primary_piston_m2, pa]
+        .map(|p| cvt.seal_ring.torque_per_pa() * p);
+    let secondary_nm = geared_nm + bearing[1] + ring[1];
+    let load = belt_load(b, s, wp, secondary_nm, clamp_n);
     let belt = belt_state(&cvt.belt, &at, &load);
     let lost = |c: Component| d.loss_w[c];
     // The solve stops at 1e-7 of slip, which is as much of the power through the belt (SL-11).
@@ -133,7 +142,12 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
     ] {
         watts(lost(part), nm * wp);
     }
-    watts(lost(Component::FinalDrive), (secondary_nm - output_nm) * ws);
+    watts(lost(Component::FinalDrive), (geared_nm - output_nm) * ws);
+    watts(
+        lost(Component::PulleyBearing),
+        bearing[0] * wp + bearing[1] * ws,
+    );
+    watts(lost(Component::SealRing), ring[0] * wp + ring[1] * ws);
     let pump = cvt.pump.state(
         &cvt.pump.at(o.eta_sump),
         we,
@@ -147,7 +161,7 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
     );
     near(d.oil_flow_m3_s, pump.working_m3_s, 1e-6);
     assert!((belt.losses.slip_total - d.slip).abs() < 2e-7, "{place}");
-    let primary_nm = belt.input_torque_nm + clutch_nm; // CV-2
+    let primary_nm = belt.input_torque_nm + clutch_nm + bearing[0] + ring[0]; // CV-2
     let spin_nm = pump.torque_nm + shaft_nm(cvt, o.nu_sump, we);
     let tight = |got: f64, want: f64| {
         assert!(
@@ -260,11 +274,12 @@ fn engine_and_clamp(x: &Solved) {
         engine_rad_s: we,
         oil_k: x.s.sump_degc + ZERO,
         radius_factor: cvt.radius_factor(&x.at),
+        force_log: 0.0,
     };
     let ws = cvt.final_drive.ratio * x.s.wheel_rad_s;
     near(
         d.secondary_pa,
-        cvt.pressure_pa(&signals, &x.at, || x.load, ws),
+        cvt.pressure_pa(&signals, &x.at, || x.load, ws).0,
         1e-5,
     );
     near(
@@ -380,7 +395,8 @@ fn a_weak_clamp_is_flagged() {
     let Transmission::Cvt(cvt) = &mut b.car.transmission else {
         panic!("a CVT")
     };
-    (cvt.floor_pa, cvt.cap_pa, cvt.spring_n, cvt.centrifugal_n_s2) = (1e3, 2e4, 50.0, 0.0);
+    cvt.floors = Floors::of_control(1e3);
+    (cvt.cap_pa, cvt.spring_n, cvt.centrifugal_n_s2) = (2e4, 50.0, 0.0);
     let mut low = [0; 2];
     for wheel_nm in [-80.0, -30.0, -10.0, -1.0, 1.0, 10.0, 30.0, 80.0] {
         let d = b.solve(&Setting {
@@ -408,7 +424,7 @@ fn val_standstill_from_its_parts() {
             safety: 1.5,
             least_torque_nm: 1.0,
         }; // looks at the creep torque
-        cvt.floor_pa = 1e3;
+        cvt.floors = Floors::of_control(1e3);
         cvt.spring_n = 10.0;
     }
     standing(&b);
@@ -456,6 +472,7 @@ fn standing(b: &Bench) {
             engine_rad_s: idle,
             oil_k: degc + ZERO,
             radius_factor: cvt.radius_factor(&at),
+            force_log: 0.0,
         };
         let load = belt_load(
             b,
@@ -466,7 +483,7 @@ fn standing(b: &Bench) {
         );
         near(
             d.secondary_pa,
-            cvt.pressure_pa(&signals, &at, || load, 0.0),
+            cvt.pressure_pa(&signals, &at, || load, 0.0).0,
             1e-6,
         );
         near(

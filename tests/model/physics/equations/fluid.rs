@@ -9,6 +9,7 @@ fn friction() -> Friction {
         band: 0.12,
         band_rise_per_k: 0.004,
         segment: 0.125,
+        capacity: 0.09,
         flank: 0.13,
         lift_off: true,
         lift_reduction: 0.6,

@@ -43,7 +43,7 @@ fn heat_w(car: &Car, row: &Row) -> [f64; NODES] {
     );
     let mut power = [0.0; NODES];
     power[BELT] = car.belt_heat_share * belt;
-    power[METAL] = sum(row, &[C::InputShaft, C::Bearing, C::Seal]);
+    power[METAL] = sum(row, &[C::InputShaft, C::PulleyBearing, C::Bearing, C::Seal]);
     let all: f64 = row.loss_w.iter().sum();
     let clutch = row.loss_w[C::LaunchClutch];
     power[SUMP] = all - power[BELT] - power[METAL] - if cvt { 0.0 } else { clutch };

@@ -59,7 +59,8 @@ fn shifted(
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive.ratio * wheel.wheel_rad_s,
         power_w: wheel.power_w,
-        rated_w: car.engine.rated_w,
+        // From nothing before, half a second of the filter (RC-9).
+        share: wheel.power_w / car.engine.rated_w * (1.0 - (-0.5 / cvt.ratio.filter_s).exp()),
         full_load_rad_s: super::route_rad_s(
             cvt,
             &engine,
@@ -102,7 +103,7 @@ fn val_shift_of_the_shipped_box() {
     if let Transmission::Cvt(cvt) = &mut b.car.transmission {
         cvt.pump.kind = PumpKind::Variable { least: 0.1 }; // its torque follows the need
     }
-    let (mut held, mut free, mut route, mut kicked) = (0, 0, 0, 0);
+    let (mut held, mut free, mut routed, mut kicked) = (0, 0, 0, 0);
     for (from, speed, power) in [
         (2.0, 40.0, 4e3),
         (0.5, 20.0, 9e3),
@@ -127,23 +128,33 @@ fn val_shift_of_the_shipped_box() {
                 let (d, demand) = shifted(&b, from, &wheel, pa, degc);
                 let k = degc + ZERO;
                 let engine = b.car.engine.at(k, k, &b.car.engine_oil, 0.8);
-                // Kick-down tries again with 10 % less efficiency each time (RC-7).
-                let asked = (0..9).map(|k| {
-                    let share = b.cvt().ratio.route_efficiency * 0.9f64.powi(k);
+                let route = |efficiency: f64| {
                     b.cvt().ratio.step(&RatioDemand {
-                        full_load_rad_s: super::route_rad_s(b.cvt(), &engine, power / share),
+                        full_load_rad_s: super::route_rad_s(b.cvt(), &engine, power / efficiency),
                         ..demand
                     })
-                });
-                let found = asked
-                    .enumerate()
-                    .find(|(_, (ratio, ..))| (d.belt_ratio / ratio - 1.0).abs() < 1e-6);
-                let Some((again, (ratio, change, short))) = found else {
-                    panic!(
-                        "{from} {speed} {pa} {degc}: {} from {demand:?}",
-                        d.belt_ratio
-                    )
                 };
+                // RC-7: the ratio of RC-3 where it suffices, else as much more as full load needs, else all that the rates allow.
+                let place = format!("{from} {speed} {pa} {degc}: {d:?} from {demand:?}");
+                let plain = route(b.cvt().ratio.route_efficiency);
+                let again = (d.belt_ratio / plain.0 - 1.0).abs() > 1e-9;
+                let missed = d.flags.contains(Flags::MISSED_TRACE);
+                let (ratio, change, short) = if missed {
+                    route(0.4)
+                } else if again {
+                    // An oil flow that bounds it bounds it still.
+                    let change = (d.belt_ratio / from).ln();
+                    let bound = change >= 0.5 * demand.flow_down_per_s * (1.0 - 1e-9);
+                    (d.belt_ratio, change, bound)
+                } else {
+                    plain
+                };
+                assert!((d.belt_ratio / ratio - 1.0).abs() < 1e-9, "{place}");
+                if again && !missed {
+                    // No more speed than full load needs, but for losses that fall as torque does.
+                    let needed = (0.95..=1.0).contains(&d.throttle);
+                    assert!(d.belt_ratio > plain.0 && needed, "{place}");
+                }
                 let without = b
                     .cvt()
                     .ratio
@@ -152,8 +163,8 @@ fn val_shift_of_the_shipped_box() {
                         ..demand
                     })
                     .0;
-                kicked += i32::from(again > 0 && !d.flags.contains(Flags::MISSED_TRACE));
-                route += i32::from(again == 0 && (ratio / without - 1.0).abs() > 1e-3);
+                kicked += i32::from(again && !missed);
+                routed += i32::from(!again && (ratio / without - 1.0).abs() > 1e-3);
                 let (down, up) = volumes(b.cvt(), from);
                 let flow = if change > 0.0 {
                     down * change
@@ -185,8 +196,8 @@ fn val_shift_of_the_shipped_box() {
         }
     }
     assert!(
-        held > 3 && free > 3 && route > 1 && kicked > 1,
-        "{held} {free} {route} {kicked}"
+        held > 3 && free > 3 && routed > 1 && kicked > 1,
+        "{held} {free} {routed} {kicked}"
     );
 }
 
@@ -376,9 +387,9 @@ fn effort(name: &str, cycle_name: &str, degc: f64) -> (u32, u16, f64) {
 #[test]
 fn evaluations_of_the_solve() {
     let frozen = [
-        (CARS[0], "ece15_eudc", -10.0, 2696, 8),
-        (CARS[0], "ftp75", 25.0, 5726, 10),
-        (CARS[0], "hill", 60.0, 375, 8),
+        (CARS[0], "ece15_eudc", -10.0, 2810, 9),
+        (CARS[0], "ftp75", 25.0, 5754, 17),
+        (CARS[0], "hill", 60.0, 377, 6),
         (CARS[1], "hill", 20.0, 278, 7),
     ];
     let got = frozen.map(|(name, cycle, degc, ..)| {

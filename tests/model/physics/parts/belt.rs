@@ -70,6 +70,7 @@ fn load(speed_rpm: f64, torque: f64, bar: f64, mu: f64) -> BeltLoad {
         eta_pa_s: 0.009,
         film_thickness_m: 0.5e-6,
         segment_friction: 0.125,
+        capacity_friction: 0.125,
         flank_friction: 0.13,
     }
 }

@@ -315,6 +315,7 @@ fn val_signs_of_the_map() {
         engine_rad_s: 150.0,
         oil_k: 300.0,
         radius_factor: 0.5,
+        force_log: 0.0,
     };
     let p = law().pressure_pa(&s);
     assert!(law().pressure_pa(&ClampSignals { throttle: 0.3, ..s }) > p);
@@ -356,6 +357,7 @@ fn control() -> RatioControl {
         down_per_s: 1.0,
         rate_speed_rad_s: 1000.0 * RPM,
         hysteresis: 0.05,
+        filter_s: 0.0,
     }
 }
 
@@ -363,7 +365,7 @@ fn demand(secondary: f64, power: f64, before: f64) -> RatioDemand {
     RatioDemand {
         secondary_rad_s: secondary,
         power_w: power,
-        rated_w: 82e3,
+        share: power / 82e3,
         full_load_rad_s: 0.0,
         ratio_before: before,
         flow_down_per_s: 9.0,

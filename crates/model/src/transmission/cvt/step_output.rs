@@ -9,12 +9,14 @@ use crate::fluid::VALID_K;
 use crate::math::clamp;
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::{BELT, SUMP};
+use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::Component;
 use crate::transmission::step::{DrivelineState, StepOutput};
 
 /// What pump and clamp law settle on with the car at rest in gear.
 struct Idling {
     pressure_pa: f64,
+    clamp_cause: ClampCause,
     torques: PartTorques,
     throttle: f64,
     /// Engine torque over full load.
@@ -36,6 +38,7 @@ fn idling<P: PrimeMover>(
     let (line, engine) = (&step.line, step.input.engine);
     let mut at = Idling {
         pressure_pa: 0.0,
+        clamp_cause: ClampCause::Law,
         torques: PartTorques::default(),
         throttle,
         load_share: 0.0,
@@ -51,7 +54,7 @@ fn idling<P: PrimeMover>(
     };
     while at.residual > TOLERANCE && at.evaluations < MAX_EVALUATIONS {
         let signals = line.signals(at.throttle, w);
-        at.pressure_pa = line.cvt.pressure_pa(&signals, line.at, load, 0.0);
+        (at.pressure_pa, at.clamp_cause) = line.cvt.pressure_pa(&signals, line.at, load, 0.0);
         let pump = line.turn_engine(
             &mut at.torques,
             w,
@@ -95,6 +98,7 @@ pub(super) fn standstill<P: PrimeMover>(
         belt_ratio: ratio,
         primary_pa: primary_pa(step, at.pressure_pa),
         secondary_pa: at.pressure_pa,
+        clamp_cause: at.clamp_cause,
         slip: 0.0,
         clamp_safety: if creep > 0.0 {
             capacity / (creep * ratio)
@@ -139,8 +143,10 @@ fn add_part_losses(
 
 fn primary_pa<P>(step: &Step<P>, pa: f64) -> f64 {
     let cvt = step.line.cvt;
-    cvt.secondary_clamp_n(pa, step.secondary_rad_s) * step.line.at.thrust_ratio
-        / cvt.primary_piston_m2
+    cvt.primary_pa(
+        cvt.secondary_clamp_n(pa, step.secondary_rad_s),
+        step.line.at,
+    )
 }
 
 /// True for a residual within tolerance, false for NaN.
@@ -172,6 +178,7 @@ pub(super) fn finish<P: PrimeMover>(
         belt_ratio: ratio,
         primary_pa: primary_pa(step, g.pressure_pa),
         secondary_pa: g.pressure_pa,
+        clamp_cause: p.clamp_cause,
         slip: g.slip,
         clamp_safety: p.torques.belt.capacity_nm / p.torques.secondary.abs(),
         oil_flow_m3_s: p.oil_flow_m3_s,

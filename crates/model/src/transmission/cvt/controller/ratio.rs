@@ -5,10 +5,11 @@
 //! | RC-1 | target speed: 1700 rpm at 15 % power, + g (P/P_max - 15 %) above it | 1700 rpm source: thesis 1.1.2, Fig 1-6; 15 % and rise ASSUMED |
 //! | RC-2 | below 15 % power the target falls linearly to that without power, which holds in overrun too | source: thesis 3.7 and 1.1.2 (J of Fig 1-6) in words; size ASSUMED |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
-//! | RC-7 | where full load does not suffice, RC-3 is asked again with 10 % less efficiency each time, down to 40 % | derived: kick-down, within RC-4 and RC-5 |
+//! | RC-7 | where full load does not suffice, RC-3 is asked again with 0.995 min(eta, P/P_e), P_e the engine power of that try, until it does, the ratio no longer changes, or 40 %; RC-10 holds none of it back | derived: kick-down, within RC-4 and RC-5 |
 //! | RC-8 | target never above the speed of greatest power | source: thesis 1.1.2, maximum power route |
 //! | RC-4 | \|d ln I/dt\| <= rate min(1, n_p/n_ref), up and down rates apart; none at rest | source: thesis 2.4, 3.7 in words; values ASSUMED |
 //! | RC-6 | no up-shift before the launch clutch has locked | source: thesis 1.1.2, order A-B-C-D of the variogram |
+//! | RC-9 | RC-1 and RC-2 look at u <- u + (P/P_max - u)(1 - exp(-dt/tau)); RC-3 at P itself | ASSUMED: tau 0 to 3 s |
 //! | RC-10 | a change against the last one is made where \|ln(I*/I)\| > h, then in full; always to the ends of the ratio, and below 1.2 idle speed of the primary | ASSUMED: spools have friction and a pitot signal is a difference; h 0.02 to 0.10 |
 //! | RC-5 | and <= free pump flow / (A 2 tan th \|dR/d ln I\|) | derived: thesis 9.1 |
 //!
@@ -44,6 +45,8 @@ pub struct RatioControl {
     pub rate_speed_rad_s: f64,
     /// Change of ln I from which the ratio turns round.
     pub hysteresis: f64,
+    /// Time constant of the demand that gentle driving looks at, s; 0 without a filter.
+    pub filter_s: f64,
 }
 
 /// What the controller looks at.
@@ -53,8 +56,8 @@ pub struct RatioDemand {
     pub secondary_rad_s: f64,
     /// Wheel power asked for, W.
     pub power_w: f64,
-    /// Rated engine power, W.
-    pub rated_w: f64,
+    /// Share of rated power that RC-1 and RC-2 look at (RC-9).
+    pub share: f64,
     /// Lowest speed at which full load gives the power asked for, rad/s.
     pub full_load_rad_s: f64,
     /// Ratio before the step.
@@ -76,7 +79,7 @@ pub struct RatioDemand {
 impl RatioControl {
     /// Target primary speed, rad/s (RC-1 to RC-3).
     pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
-        let share = d.power_w / d.rated_w;
+        let share = d.share;
         let drive = clamp(
             share / larger(self.gentle_share, LEAST_GENTLE_SHARE),
             0.0,
@@ -86,10 +89,20 @@ impl RatioControl {
         if share > self.gentle_share {
             speed += self.rise_rad_s * (share - self.gentle_share); // RC-1
         }
-        if share > 0.0 && d.full_load_rad_s > speed {
+        if d.power_w > 0.0 && d.full_load_rad_s > speed {
             speed = d.full_load_rad_s; // RC-3
         }
         smaller(speed, self.highest_rad_s)
+    }
+
+    /// Share of rated power that RC-1 and RC-2 look at after a step, from that before and the one asked for (RC-9).
+    #[inline]
+    pub fn filtered_share(&self, before: f64, asked: f64, dt_s: f64) -> f64 {
+        if self.filter_s > 0.0 {
+            before + (asked - before) * (1.0 - exp(-dt_s / self.filter_s)) // RC-9
+        } else {
+            asked
+        }
     }
 
     /// Ratio after the step and its change in ln I (RC-4, RC-5), and whether pump flow held it back.
@@ -181,6 +194,7 @@ keys! {
         down_per_s: above(0.0, 20.0), "rate of ln I towards low", ["RC-4"];
         rate_speed_rpm: number(500.0, 10_000.0), "primary speed from which the full rates hold", ["RC-4"];
         hysteresis: or(0.05, number(0.0, 0.5)), "change of ln I from which the ratio turns round", ["RC-10"];
+        filter_s: or(1.0, number(0.0, 10.0)), "time constant of the demand in gentle driving", ["RC-9"];
     }
 }
 
@@ -201,6 +215,7 @@ impl RatioControl {
             down_per_s: s.number(&RATIO.down_per_s),
             rate_speed_rad_s: s.number(&RATIO.rate_speed_rpm),
             hysteresis: s.number(&RATIO.hysteresis),
+            filter_s: s.number(&RATIO.filter_s),
         };
         if control.low <= control.high {
             s.complain(

@@ -51,7 +51,7 @@ pub struct Prepared {
     pub inv_secondary_radius: f64,
     /// Sum of both clamping forces over their wraps per clamping force of the secondary, 1/rad (TE-7).
     pub clamps_per_wrap: f64,
-    /// Torque capacity per clamping force and segment friction, m (VA-2).
+    /// Torque capacity per clamping force and friction, m (VA-2, VA-4).
     pub capacity_m: f64,
     /// One over the width of the blend between the loading branches, 1/N.
     pub per_blend_n: f64,

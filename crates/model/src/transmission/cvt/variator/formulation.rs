@@ -57,6 +57,15 @@ impl Formulation {
         }
     }
 
+    /// Friction that bounds the torque: of macro slip (VA-4), in the printed forms that of micro slip (VA-2).
+    #[inline]
+    pub fn capacity_friction(self, segment: f64, macro_slip: f64) -> f64 {
+        match self {
+            Formulation::Smooth => macro_slip,
+            Formulation::AppendixC | Formulation::Chapter8 => segment,
+        }
+    }
+
     /// Whether the bands may ride on oil: the film is no part of the thesis's two readings (LU-4, FI-1).
     #[inline]
     pub fn has_film(self) -> bool {

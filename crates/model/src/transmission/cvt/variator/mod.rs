@@ -3,10 +3,11 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | VA-1 | T_in = (T_out/I)(1 - slip) + band + film + slip loss + wedge + penetration | derived: energy with w_sec = w_pri (1 - slip)/I; the printed sum counts slip power twice |
-//! | VA-2 | T_cap = 2 mu_seg R_s min(F_p, F_s) / cos th | source: Coulomb limit on both pulleys; the thesis checks the primary only |
+//! | VA-2 | T_cap = 2 mu_seg R_s min(F_p, F_s) / cos th | source: Coulomb limit on both pulleys; the thesis checks the primary only; the printed forms' |
+//! | VA-4 | driving: VA-2 with mu_cap, the friction of macro slip | ASSUMED mu_cap, 0.08 to 0.10: below the friction at which micro slip is measured |
 //! | VA-3 | F_s = p A_s + spring + (1 - compensated) pi rho w2 (r_o4 - r_i4)/4 | source: App. C; centrifugal head from hydrostatics |
 //!
-//! Valid for clamping forces from zero on; torque above VA-2 is flagged `gross_slip` and slip is bounded (SL-9).
+//! Valid for clamping forces from zero on; torque above VA-4 is flagged `gross_slip` and slip is bounded (SL-9).
 
 mod at_ratio;
 mod bands;
@@ -116,6 +117,8 @@ pub struct BeltLoad {
     pub film_thickness_m: f64,
     /// Segment friction of the fluid.
     pub segment_friction: f64,
+    /// Friction of macro slip of the fluid.
+    pub capacity_friction: f64,
     /// Flank friction of the fluid.
     pub flank_friction: f64,
 }
@@ -132,6 +135,7 @@ impl BeltLoad {
             eta_pa_s,
             film_thickness_m: oil.friction.film_thickness_m,
             segment_friction: oil.friction.segment,
+            capacity_friction: oil.friction.capacity,
             flank_friction: oil.friction.flank,
         }
     }
@@ -199,11 +203,11 @@ impl BeltLosses {
     }
 }
 
-/// Torque capacity at the secondary, Nm (VA-2).
+/// Torque capacity at the secondary for a friction, Nm (VA-2, VA-4).
 #[inline]
-fn capacity_nm(at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> f64 {
+fn capacity_nm(at: &BeltAtRatio, t: &Tension, friction: f64) -> f64 {
     let weaker = smaller(t.primary_clamp_n, t.secondary_clamp_n);
-    weaker * mu_segment * at.prepared.capacity_m // VA-2
+    weaker * friction * at.prepared.capacity_m // VA-2, VA-4
 }
 
 /// Everything that the equations give at one operating point, pulley by pulley.
@@ -233,7 +237,12 @@ fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
         band_nm,
         film_nm,
         deflection: deflection::deflection(belt, at, &tension, load.flank_friction),
-        capacity_nm: capacity_nm(at, &tension, mu_segment),
+        capacity_nm: capacity_nm(
+            at,
+            &tension,
+            belt.formulation
+                .capacity_friction(mu_segment, load.capacity_friction),
+        ),
         tension,
     }
 }
@@ -284,7 +293,7 @@ pub fn belt_losses(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltLosses
     losses(load, &parts(belt, at, load))
 }
 
-/// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2).
+/// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2, VA-4).
 pub fn belt_capacity_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
     belt_losses(belt, at, load).capacity_nm
 }
