@@ -120,7 +120,7 @@ fn val_map_parts_take_their_own_torque() {
     );
     same(
         MapPart::SealRing.loss_nm(&bench, &p),
-        whole.part_nm(Component::SealRing),
+        bench.solve(&p).part_nm(Component::SealRing),
     );
     let parts = Parts {
         final_drive: false,
