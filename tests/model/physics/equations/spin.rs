@@ -1,4 +1,4 @@
-//! Pump PU-1, PU-2, PU-4, PU-5 (PU-3: `belt`); shaft, reverse clutch and final drive: IS-1, CD-1, FD-1, FD-2, FH-1.
+//! Pump PU-1, PU-2, PU-4, PU-5 (PU-3: `belt`); shaft, reverse clutch and final drive: IS-1, CD-1, CD-2, FD-1, FD-2, FH-1.
 
 use super::same;
 use cvtcycle_model::transmission::cvt::clutch_drag::ClutchDrag;
@@ -85,7 +85,7 @@ fn val_need_by_hand() {
     same(p.need_m3_s(20e5, 3e-12), 5e-5 + 6e-6);
 }
 
-/// IS-1, CD-1, FD-1 at the reference viscosity, warmer and colder; FD-2 in both directions.
+/// IS-1, CD-1, CD-2, FD-1 at the reference viscosity, warmer and colder; FD-2 in both directions.
 #[test]
 fn val_shafts_by_hand() {
     let shaft = ShaftDrag {
@@ -98,6 +98,9 @@ fn val_shafts_by_hand() {
         drag_nm: 0.25,
         exponent: 0.55,
         cap_nm: 0.5,
+        peak_rad_s: None,
+        clearance_m: 0.3e-3,
+        oil_share: 1.0,
     };
     let drive = FinalDrive {
         ratio: 6.0,
@@ -122,10 +125,18 @@ fn val_shafts_by_hand() {
                 1.2 * (-w / 210.0).exp() + heated(0.29 * ratio.powf(0.72), w, 300.0),
             );
         }
-        same(
-            clutch.torque_nm(power(0.55)),
-            (0.25 * ratio.powf(0.55)).min(0.5),
-        );
+        let film_nm = |clearance_mm: f64| (0.25 * ratio.powf(0.55) * 0.3 / clearance_mm).min(0.5);
+        for w in [0.0, 90.0, 700.0] {
+            same(clutch.torque_nm(power(0.55), w), film_nm(0.3));
+            let wide = ClutchDrag {
+                peak_rad_s: Some(420.0),
+                clearance_m: 0.5e-3,
+                oil_share: 0.4,
+                ..clutch
+            };
+            let rise = 2.0 * w / 420.0 / (1.0 + (w / 168.0) * (w / 168.0));
+            same(wide.torque_nm(power(0.55), w), film_nm(0.5) * rise);
+        }
     }
     for (out, want) in [
         (30.0, 31.0 / 0.98),

@@ -337,8 +337,9 @@ impl<'a> Driveline<'a> {
         if self.parts.reverse_clutch {
             let at = (primary_rad_s, 0.0, clamp.pressure_pa);
             let mapped = self.mapped(Component::ClutchDrag, at, inside);
+            let clutch = &self.cvt.clutch_drag;
             torques.clutch =
-                mapped.unwrap_or_else(|| self.cvt.clutch_drag.torque_nm(self.viscosity.clutch));
+                mapped.unwrap_or_else(|| clutch.torque_nm(self.viscosity.clutch, primary_rad_s));
         }
     }
 
