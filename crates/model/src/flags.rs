@@ -56,5 +56,6 @@ flags! {
         NOT_CONVERGED = 11, "not_converged", "the implicit solve stopped at its iteration bound above its tolerance; exit code 1";
         LAUNCH_NOT_IN_LOW = 12, "launch_not_in_low", "the car pulls away in another ratio than low";
         OVERSPEED = 13, "overspeed", "engine speed above its limit";
+        PRIMARY_PRESSURE_SHORT = 14, "primary_pressure_short", "the primary needs a higher pressure than the line pressure for its clamping force; its piston is too small for this ratio";
     }
 }

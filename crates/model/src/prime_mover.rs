@@ -22,4 +22,6 @@ pub trait PrimeMover {
     fn drag_nm(&self, speed_rad_s: f64) -> f64;
     /// Largest acceleration of the free shaft, rad/s2.
     fn max_accel_rad_s2(&self) -> f64;
+    /// Speed to which the shaft falls from another in `dt_s` with a load on it and no fuel.
+    fn slowed_rad_s(&self, from_rad_s: f64, load_nm: f64, dt_s: f64) -> f64;
 }

@@ -14,12 +14,16 @@ use cvtcycle_study::check::rule::Verdict;
 
 /// Counts of the verdicts in words.
 fn counts_in_words(value: &Value) -> String {
-    let counts = ["agrees", "fit", "differs", "not_comparable"];
-    let [agree, fit, differ, not] =
+    let counts = ["agrees", "fit", "differs", "not_comparable", "not_computed"];
+    let [agree, fit, differ, not, failed] =
         counts.map(|verdict| value["counts"][verdict].as_u64().unwrap_or(0));
-    let total = agree + fit + differ + not;
+    let total = agree + fit + differ + not + failed;
+    let failed = match failed {
+        0 => String::new(),
+        n => format!("; {n} cannot be computed for this car"),
+    };
     format!(
-        "of {total} printed numbers {agree} agree, {fit} were fitted to, {differ} differ, and {not} are not comparable"
+        "of {total} printed numbers {agree} agree, {fit} were fitted to, {differ} differ, and {not} are not comparable{failed}"
     )
 }
 
@@ -152,11 +156,11 @@ fn tolerance(judged: &Judged) -> String {
 
 fn line(judged: &Judged) -> Line {
     let row = &judged.row;
-    let (verdict, class) = match judged.verdict {
-        Verdict::Agrees => ("agrees", "agrees"),
-        Verdict::Fit => ("fit", "fit"),
-        Verdict::Differs => ("differs", "differs"),
-        Verdict::NotComparable => ("not comparable", "none"),
+    let class = match judged.verdict {
+        Verdict::Agrees => "agrees",
+        Verdict::Fit => "fit",
+        Verdict::Differs | Verdict::NotComputed => "differs",
+        Verdict::NotComparable => "none",
     };
     Line {
         id: row.id.clone(),
@@ -166,7 +170,7 @@ fn line(judged: &Judged) -> Line {
         tolerance: tolerance(judged),
         computed: computed_text(judged),
         unit: unit_text(&row.unit).to_owned(),
-        verdict,
+        verdict: judged.verdict.word(),
         class,
         notes: notes(judged),
     }

@@ -92,7 +92,11 @@ pub fn changed_verdicts(report: &Report) -> Vec<String> {
             row.recorded.map_or("", Verdict::word),
             judged.verdict.word(),
         );
-        let (computed, file, line) = (computed_text(judged), &place.input, place.line);
+        let (file, line) = (&place.input, place.line);
+        if let Some(why) = &judged.failure {
+            return format!("row {id}: `{now}`: {why} ({file} line {line})");
+        }
+        let computed = computed_text(judged);
         format!(
             "row {id}: `{recorded}` recorded, now `{now}`: computed {computed} {unit}, printed {printed} ({file} line {line})"
         )

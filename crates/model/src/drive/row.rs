@@ -54,6 +54,10 @@ pub struct Row {
     pub clamp_cause: ClampCause,
     /// Belt slip as a fraction; NaN for a manual box.
     pub slip: f64,
+    /// Torque that the primary pulley takes from its shaft, Nm; NaN without a belt that turns.
+    pub primary_nm: f64,
+    /// Torque that the secondary pulley gives to its shaft, Nm; NaN without a belt that turns.
+    pub secondary_nm: f64,
     /// Torque capacity over torque of the belt; infinite at zero torque; NaN for a manual box.
     pub clamp_safety: f64,
     /// Loss power of each component, W, never negative.
@@ -111,8 +115,8 @@ pub(super) struct Inertia {
     pub crank_nm: f64,
     pub accessories_nm: f64,
     pub kinetic_w: f64,
-    /// Rotating energy that the brakes take up with the car's (SI-4).
-    pub to_brake_w: f64,
+    /// Power of a slower engine that neither its drag nor its load takes up (SI-4).
+    pub surplus_w: f64,
 }
 
 /// Everything that a step computed.
@@ -188,6 +192,8 @@ pub(super) fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, En
         secondary_pressure_pa: d.secondary_pa,
         clamp_cause: d.clamp_cause,
         slip: d.slip,
+        primary_nm: d.primary_nm,
+        secondary_nm: d.secondary_nm,
         clamp_safety: d.clamp_safety,
         loss_w: d.loss_w,
         accessories_w: terms.accessories,

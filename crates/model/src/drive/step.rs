@@ -3,15 +3,16 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | SI-1 | crank torque = flywheel torque + accessories + T_k, T_k w = change of rotating energy / dt | derived |
-//! | SI-2 | T_k within the engine's room (drag below, full load above) and its largest value; rotating energy follows later otherwise | ASSUMED: a clutch slips in a shift; keeps the inertia bounded for any step |
-//! | SI-4 | braking with the clutch locked, rotating energy that the engine cannot take up goes to the brakes | derived |
+//! | SI-2 | rotating energy = J w2/2 after every step; T_k within the engine's room, drag below and full load above; only what full load cannot give follows later | derived: power is what the shafts pass on |
+//! | SI-4 | rotating energy of a slower engine that its drag and load do not take up makes up for a deficit or goes to the brakes, or into a coupling that slips | derived: it comes through the locked clutch to the wheels |
 //! | SI-3 | heat: engine to coolant and oil, 70 % of belt loss to the belt, input shaft to the metal, other losses to the sump | fitted share; rest ASSUMED |
 
 use super::row::{Inertia, Input, Solved, row};
 use super::{Car, EnergyTerms, Row, State};
 use crate::cycle::{GearCommand, Step, Trace};
 use crate::engine::{Burn, Running};
-use crate::math::{clamp, larger, smaller};
+use crate::flags::Flags;
+use crate::math::{clamp, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::component::{ByComponent, Component, HeatTo};
@@ -114,14 +115,14 @@ impl<'a> Drive<'a> {
             *kinetic_j = if step.engine_off { 0.0 } else { idling };
         }
         let mut output = car.transmission.solve(&input, transmission);
-        let inertia = inertia(
-            car,
-            &input,
-            &output,
-            *kinetic_j,
-            transmission.driveline.coupled,
-        );
-        output.brake_w += inertia.to_brake_w;
+        let inertia = inertia(car, &input, &output, *kinetic_j);
+        if output.flags.contains(Flags::CLUTCH_SLIPPING) {
+            output.loss_w[Component::LaunchClutch] += inertia.surplus_w; // SI-4
+        } else {
+            let helps_w = smaller(inertia.surplus_w, output.deficit_w);
+            output.deficit_w -= helps_w;
+            output.brake_w += inertia.surplus_w - helps_w; // SI-4
+        }
         let mut burn = engine.burn(output.engine_rad_s, inertia.crank_nm);
         if step.engine_off {
             burn.to_coolant_w = -inertia.kinetic_w; // the engine runs out against its own friction
@@ -163,48 +164,33 @@ impl<'a> Drive<'a> {
 }
 
 #[inline(always)]
-fn inertia(
-    car: &Car,
-    input: &Input,
-    output: &StepOutput,
-    kinetic_j: f64,
-    coupled: bool,
-) -> Inertia {
+fn inertia(car: &Car, input: &Input, output: &StepOutput, kinetic_j: f64) -> Inertia {
     let w = output.engine_rad_s;
     if w <= 0.0 {
         return Inertia {
             crank_nm: 0.0,
             accessories_nm: 0.0,
             kinetic_w: -kinetic_j / input.dt_s,
-            to_brake_w: 0.0,
+            surplus_w: 0.0,
         };
     }
     let engine = input.engine;
     let accessories_nm = engine.accessories_nm(w);
     let steady = output.shaft_nm + accessories_nm;
     let wanted = (0.5 * car.engine.inertia_kg_m2 * w * w - kinetic_j) / input.dt_s / w;
-    let bound = car.engine.inertia_torque_nm;
-    // Faster takes what is left below full load, slower what drag is left; never less than nothing, never more than the bound.
+    // Faster takes what is left below full load, slower what drag is left; never less than nothing.
     let torque = if wanted > 0.0 {
-        clamp(engine.full_load_nm(w) - steady, 0.0, smaller(wanted, bound)) // SI-2
+        clamp(engine.full_load_nm(w) - steady, 0.0, wanted) // SI-2
     } else {
-        clamp(
-            -(steady + engine.own_drag_nm(w)),
-            larger(wanted, -bound),
-            0.0,
-        ) // SI-2
+        clamp(-(steady + engine.own_drag_nm(w)), wanted, 0.0) // SI-2
     };
-    let over = if coupled && output.brake_w > 0.0 && wanted < torque {
-        torque - wanted
-    } else {
-        0.0
-    };
+    let over = if wanted < 0.0 { torque - wanted } else { 0.0 };
     Inertia {
         crank_nm: steady + torque,
         accessories_nm,
-        kinetic_w: (torque - over) * w,
-        to_brake_w: over * w,
-    } // SI-1, SI-4
+        kinetic_w: smaller(torque, wanted) * w,
+        surplus_w: over * w,
+    } // SI-1
 }
 
 #[inline(always)]

@@ -30,12 +30,13 @@ pub struct StepInput<'a, P> {
 }
 
 impl<P: PrimeMover> StepInput<'_, P> {
-    /// Engine speeds within reach of the one before the step.
+    /// Engine speeds within reach of the one before the step, for an engine that passes on at least `load_nm`.
     #[inline]
-    pub(super) fn reach(&self, from_rad_s: f64) -> Reach {
+    pub(super) fn reach(&self, from_rad_s: f64, load_nm: f64) -> Reach {
         Reach {
             from_rad_s,
-            change_rad_s: self.engine.max_accel_rad_s2() * self.dt_s,
+            slowest_rad_s: self.engine.slowed_rad_s(from_rad_s, load_nm, self.dt_s),
+            fastest_rad_s: from_rad_s + self.engine.max_accel_rad_s2() * self.dt_s,
         }
     }
 }
@@ -78,6 +79,10 @@ pub struct StepOutput {
     pub clamp_cause: ClampCause,
     /// Belt slip; NaN for a manual box.
     pub slip: f64,
+    /// Torque that the primary pulley takes from its shaft, Nm; NaN without a belt that turns.
+    pub primary_nm: f64,
+    /// Torque that the secondary pulley gives to its shaft, Nm; NaN without a belt that turns.
+    pub secondary_nm: f64,
     /// Capacity over torque; NaN for a manual box.
     pub clamp_safety: f64,
     /// Loss power of each component, W.
@@ -111,6 +116,8 @@ impl StepOutput {
             secondary_pa: f64::NAN,
             clamp_cause: ClampCause::Law,
             slip: f64::NAN,
+            primary_nm: f64::NAN,
+            secondary_nm: f64::NAN,
             clamp_safety: f64::NAN,
             loss_w: ByComponent([0.0; Component::COUNT]),
             output_w: 0.0,

@@ -104,6 +104,9 @@ pub struct RunSummary {
     pub worst_deficit: Option<Deficit>,
     /// How the implicit solve went.
     pub solve: Solve,
+    /// What a reader of these numbers should know.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// Names of the checks that failed: `missed_trace`, `ledger_error`, `not_converged`, or a flag under `--strict`.
     pub failed_checks: Vec<String>,
     /// Demanded work at the wheels in driving over that work with all losses of the transmission; null without either.
@@ -248,6 +251,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
             worst_residual: totals.worst_residual,
             evaluations_per_step: finite(totals.evaluations as f64 / totals.rows as f64),
         },
+        notes: setup.notes.clone(),
         failed_checks: Vec::new(),
         transmission_efficiency_percent: finite(
             100.0 * all.wheel_positive_j / (all.wheel_positive_j + all.terms.losses),

@@ -10,7 +10,7 @@ use super::rule::{Verdict, off, verdict};
 use super::source::Source;
 use super::store::{Cars, Store, View, once};
 use cvtcycle_config::setup::{NamedBy, Options, Setup, load};
-use cvtcycle_config::{KeyInfo, Override, Problem, Problems, Target, rig};
+use cvtcycle_config::{KeyInfo, Override, Problems, Target, rig};
 use cvtcycle_model::bench::transmission::Conditions;
 
 /// A row with its result.
@@ -20,14 +20,18 @@ pub struct Judged {
     pub row: ValidationRow,
     /// Its file.
     pub file: String,
-    /// Computed; none for what cannot be compared.
+    /// Computed; none for what cannot be compared, or not for this car.
     pub computed: Option<Computed>,
+    /// Why the row cannot be computed.
+    pub failure: Option<String>,
     /// Verdict of the rule.
     pub verdict: Verdict,
-    /// Whether it is another one than recorded.
+    /// Whether it is another one than recorded, or the row cannot be computed.
     pub moved: bool,
     /// Number behind the reason.
     pub cause: Option<Computed>,
+    /// Why that number cannot be computed.
+    pub cause_failure: Option<String>,
     /// Points of its sources left out because the belt slips grossly there.
     pub left_out: usize,
     /// Points that count although they lie outside the validity of a model.
@@ -111,7 +115,7 @@ impl Report {
 /// Judges the rows of some files for which `wanted` is true.
 ///
 /// # Errors
-/// Sources whose vehicle cannot be loaded, rows that cannot be computed.
+/// Sources whose vehicle cannot be loaded.
 pub fn judge(
     files: &[RowFile],
     candidate: &CandidateVehicle,
@@ -139,15 +143,8 @@ pub fn judge(
     let mut rows = Vec::new();
     for file in files {
         let view = View::new(&store, &file.sources);
-        for row in file.rows.iter().filter(|row| wanted(row)) {
-            match judged(&view, file, row) {
-                Ok(judged) => rows.push(judged),
-                Err(problem) => problems.push(problem),
-            }
-        }
-    }
-    if !problems.is_empty() {
-        return Err(problems);
+        let own = file.rows.iter().filter(|row| wanted(row));
+        rows.extend(own.map(|row| judged(&view, file, row)));
     }
     let candidate = candidate.clone();
     Ok(Report { candidate, rows })
@@ -193,38 +190,39 @@ impl Cars for FromFiles<'_> {
     }
 }
 
-fn judged(view: &View, file: &RowFile, row: &ValidationRow) -> Result<Judged, Problem> {
-    let computed = |what: &str, expr: Option<&Expr>| {
-        let result = expr.map(|expr| compute(expr, view)).transpose();
-        result.map_err(|why| {
-            let id = &row.id;
-            Problem::failed(format!("row {id}: `{what}` cannot be computed: {why}"))
-                .at(row.place.clone())
-                .key(what)
-                .names_key()
-                .value(row.compute_text.clone())
-        })
-    };
+/// A number, or why it cannot be computed.
+fn computed(expr: Option<&Expr>, view: &View) -> (Option<Computed>, Option<String>) {
+    match expr.map(|expr| compute(expr, view)) {
+        Some(Ok(number)) => (Some(number), None),
+        Some(Err(why)) => (None, Some(why)),
+        None => (None, None),
+    }
+}
+
+fn judged(view: &View, file: &RowFile, row: &ValidationRow) -> Judged {
     view.begin();
-    let number = computed("compute", row.compute.as_ref())?;
+    let (number, failure) = computed(row.compute.as_ref(), view);
     let (left_out, outside) = view.noted();
-    let cause = row.cause.as_ref().map(|cause| &cause.compute);
-    let cause = computed("cause.compute", cause)?;
+    let (cause, cause_failure) = computed(row.cause.as_ref().map(|cause| &cause.compute), view);
     let fitted = !row.fitted_to.is_empty();
     let verdict = match (&number, row.printed) {
+        _ if failure.is_some() => Verdict::NotComputed,
         (Some(number), Some(printed)) => verdict(number, printed, row.tolerance_widths, fitted),
         _ => Verdict::NotComparable,
     };
-    Ok(Judged {
+    let expected = row.recorded.unwrap_or(verdict);
+    Judged {
         row: row.clone(),
         file: file.name.clone(),
         computed: number,
+        moved: expected != verdict || failure.is_some(),
+        failure,
         verdict,
-        moved: row.recorded.is_some_and(|recorded| recorded != verdict),
         cause,
+        cause_failure,
         left_out,
         outside,
-    })
+    }
 }
 
 /// Vehicle of all sources that name none, with its fluids and overrides.

@@ -22,8 +22,10 @@ pub struct Counts {
     pub fit: usize,
     /// Otherwise.
     pub differs: usize,
-    /// Not computed.
+    /// Nothing to compare.
     pub not_comparable: usize,
+    /// Cannot be computed for this car.
+    pub not_computed: usize,
 }
 
 impl Counts {
@@ -35,6 +37,7 @@ impl Counts {
             fit: count(Verdict::Fit),
             differs: count(Verdict::Differs),
             not_comparable: count(Verdict::NotComparable),
+            not_computed: count(Verdict::NotComputed),
         }
     }
 }
@@ -97,6 +100,8 @@ fn row_of(judged: &Judged) -> Value {
         "cause_low": cause_low,
         "cause_high": cause_high,
         "cause_unit": row.cause.as_ref().map(|cause| &cause.unit),
+        "failure": judged.failure,
+        "cause_failure": judged.cause_failure,
         "remark": row.remark,
         "compute": row.compute_text,
         "gross_slip_left_out": judged.left_out,
@@ -212,6 +217,9 @@ pub fn computed_text(judged: &Judged) -> String {
 
 /// Number, unit and name of the cause; empty where there is none.
 fn cause_text(judged: &Judged) -> String {
+    if let Some((cause, why)) = judged.row.cause.as_ref().zip(judged.cause_failure.as_ref()) {
+        return format!("Cause: {} cannot be computed: {why}", cause.what);
+    }
     let Some((cause, computed)) = judged.row.cause.as_ref().zip(judged.cause.as_ref()) else {
         return String::new();
     };
@@ -224,6 +232,7 @@ fn cause_text(judged: &Judged) -> String {
 pub fn notes(judged: &Judged) -> Vec<String> {
     let row = &judged.row;
     let mut notes = Vec::new();
+    notes.extend(judged.failure.clone());
     if matches!(judged.verdict, Verdict::Differs | Verdict::NotComparable) {
         notes.extend([row.reason.clone(), cause_text(judged)]);
     }

@@ -15,29 +15,34 @@ pub enum Verdict {
     Fit,
     /// Computed otherwise.
     Differs,
-    /// Not computed.
+    /// The program has nothing to compare.
     NotComparable,
+    /// It has, but not for this car: the number does not exist.
+    NotComputed,
 }
 
 impl Verdict {
     /// All of them.
-    pub const ALL: [Verdict; 4] = [
+    pub const ALL: [Verdict; 5] = [
         Verdict::Agrees,
         Verdict::Fit,
         Verdict::Differs,
         Verdict::NotComparable,
+        Verdict::NotComputed,
     ];
 
     /// The word.
     #[must_use]
     pub fn word(self) -> &'static str {
-        VERDICTS[self as usize].name
+        let recorded = VERDICTS.get(self as usize);
+        recorded.map_or("not computed", |choice| choice.name)
     }
 
-    /// The verdict of a word.
+    /// The verdict of a word that a file may record: a row that cannot be computed is a finding, never what was expected.
     #[must_use]
     pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|verdict| verdict.word() == word)
+        let place = VERDICTS.iter().position(|choice| choice.name == word)?;
+        Some(Self::ALL[place])
     }
 }
 

@@ -24,7 +24,7 @@ proptest! {
         let s = -(p.ratio.ln() / belt.unity_width).tanh();
         let v = p.rpm * RPM * g.primary_radius_m;
         let pressed = |clamp_n: f64, wrap: f64| {
-            2.0 * clamp_n * belt.tan_wedge + wrap * (belt.mass_kg_m * v * v + t.compression_n.abs() / 2.0)
+            2.0 * clamp_n * belt.tan_wedge + wrap * (belt.masses_kg_m()[0] * v * v + t.compression_n.abs() / 2.0)
         };
         let primary_n = p.clamp_n * g.primary_wrap_rad / g.secondary_wrap_rad;
         let small = 1e-11 * (t.primary_shoulder_n + t.secondary_shoulder_n + t.compression_n.abs());

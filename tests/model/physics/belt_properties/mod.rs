@@ -55,6 +55,7 @@ pub fn thesis_belt(formulation: Formulation) -> Belt {
         band_width_m: 20e-3,
         band_offset_m: 3e-3,
         mass_kg_m: 1.039 / 0.6486,
+        band_mass_kg_m: 0.263 / 0.6486,
         youngs_pa: 206e9,
         strut_area_m2: 10e-6,
         initial_gap_m: 0.0,
@@ -130,8 +131,8 @@ impl Point {
             g.primary_wrap_rad
         };
         let clamp_n = self.clamp_n * at.thrust_ratio;
-        let pull =
-            wrap * (2.0 * clamp_n * belt.tan_wedge / g.primary_wrap_rad + belt.mass_kg_m * v * v);
+        let pull = wrap
+            * (2.0 * clamp_n * belt.tan_wedge / g.primary_wrap_rad + belt.masses_kg_m()[0] * v * v);
         (self.ratio.ln() / belt.unity_width).tanh() * self.mu_band * pull * g.secondary_radius_m
     }
 }

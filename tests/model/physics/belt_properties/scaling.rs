@@ -54,6 +54,7 @@ fn belt(b: &Belt, u: &Units, width: f64) -> Belt {
         band_width_m: b.band_width_m * width,
         initial_gap_m: b.initial_gap_m * u.length,
         mass_kg_m: b.mass_kg_m * u.force * u.time * u.time / (u.length * u.length),
+        band_mass_kg_m: b.band_mass_kg_m * u.force * u.time * u.time / (u.length * u.length),
         primary_compliance_per_n: b.primary_compliance_per_n / u.force,
         secondary_compliance_per_n: b.secondary_compliance_per_n / u.force,
         blend_n: b.blend_n * u.force,

@@ -24,6 +24,7 @@ pub fn belt(formulation: Formulation) -> Belt {
         band_width_m: 20e-3,
         band_offset_m: 3e-3,
         mass_kg_m: 1.6,
+        band_mass_kg_m: 0.4,
         youngs_pa: 206e9,
         strut_area_m2: 10e-6,
         initial_gap_m: 1e-5,
@@ -138,7 +139,9 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     let smooth = f == Formulation::Smooth;
     // The wrap that limits the force between bands and segments: the primary's, or the smaller one (TE-7).
     let grips = if smooth { bp.min(bs) } else { bp };
-    let a = (2.0 * fp * b.tan_wedge / bp + b.mass_kg_m * v * v) * grips;
+    let bands = if smooth { b.band_mass_kg_m } else { 0.0 };
+    let pressing = (b.mass_kg_m - bands) * v * v; // TE-8
+    let a = (2.0 * fp * b.tan_wedge / bp + pressing) * grips;
     let z = l.output_torque_nm / rs + s * l.band.mu * a;
     let c = l.band.mu * grips / 2.0;
     let cx = if z >= 0.0 {
@@ -146,8 +149,8 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     } else {
         z / (1.0 + s * c)
     }; // TE-5
-    let qp = 2.0 * fp * b.tan_wedge + b.mass_kg_m * bp * v * v + cx.abs() * bp / 2.0; // TE-2
-    let qs = 2.0 * fs * b.tan_wedge + b.mass_kg_m * bs * v * v + cx.abs() * bs / 2.0;
+    let qp = 2.0 * fp * b.tan_wedge + bp * pressing + cx.abs() * bp / 2.0; // TE-2
+    let qs = 2.0 * fs * b.tan_wedge + bs * pressing + cx.abs() * bs / 2.0;
     let dt = -s * l.band.mu * qp * grips / bp; // TE-3, TE-7
     same(cx, l.output_torque_nm / rs - dt); // TE-4
     let part = if smooth { s.abs() } else { 1.0 }; // BT-6
@@ -172,7 +175,8 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
         2.0 * t * fs / (b.cos_wedge * arc[1]),
     ];
     let step = [dt * t / (rp * bp.min(bs)), dt * t / (rs * bp.min(bs))];
-    let slack = qp / bp * b.length_m / (b.youngs_pa * n * b.band_width_m * b.band_thickness_m)
+    let slack = (qp / bp + bands * v * v) * b.length_m
+        / (b.youngs_pa * n * b.band_width_m * b.band_thickness_m)
         + b.initial_gap_m; // SL-1
     let grip = [mu * normal[0], mu * normal[1]];
     let load = match f {

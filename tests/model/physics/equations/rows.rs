@@ -11,7 +11,6 @@ use cvtcycle_model::engine::Running;
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, NODES, SUMP};
-use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 
 #[track_caller]
@@ -58,28 +57,12 @@ struct Carried {
     running: Running,
 }
 
-/// Whether the launch device holds at the end of a row (LC-5).
-fn coupled(car: &Car, row: &Row) -> bool {
-    let slips =
-        row.flags.contains(Flags::CLUTCH_SLIPPING) || row.flags.contains(Flags::CLUTCH_OPEN);
-    match &car.transmission {
-        Transmission::Manual(_) => !slips && row.gear > 0,
-        Transmission::Cvt(cvt) => {
-            let primary = row.belt_ratio * cvt.final_drive.ratio * row.speed_m_s
-                / car.road_load.wheel_radius_m
-                / (1.0 - row.slip);
-            row.speed_m_s > 0.0 && row.engine_speed_rad_s <= primary * (1.0 + 1e-4)
-        }
-    }
-}
-
 /// Counts of the regimes that rows went through.
 #[derive(Default, Debug)]
 struct Seen {
     wanted_up: u32,
     held_up: u32,
     wanted_down: u32,
-    held_down: u32,
     braked: u32,
     off: u32,
     missed: u32,
@@ -132,23 +115,12 @@ fn check(car: &Car, row: &Row, c: &mut Carried, seen: &mut Seen, place: &str) {
     } else {
         let steady = row.engine_torque_nm + accessories;
         let wanted = (begun - c.kinetic_j) / dt / w;
-        let bound = car.engine.inertia_torque_nm;
         let torque = if wanted > 0.0 {
-            (now.full_load_nm(w) - steady)
-                .max(0.0)
-                .min(wanted.min(bound))
+            (now.full_load_nm(w) - steady).max(0.0).min(wanted)
         } else {
-            (-(steady + now.own_drag_nm(w)))
-                .max(wanted.max(-bound))
-                .min(0.0)
+            (-(steady + now.own_drag_nm(w))).max(wanted).min(0.0)
         }; // SI-2
-        let surplus = torque - wanted;
-        let over =
-            if coupled(car, row) && surplus > 0.0 && row.brake_w > surplus * w * (1.0 + 1e-12) {
-                surplus
-            } else {
-                0.0
-            }; // SI-4
+        let over = if wanted < 0.0 { torque - wanted } else { 0.0 }; // SI-4
         close(row.kinetic_w, (torque - over) * w, 1e4, place); // SI-1
         c.kinetic_j += row.kinetic_w * dt;
         let burn = now.burn(w, steady + torque);
@@ -170,7 +142,6 @@ fn check(car: &Car, row: &Row, c: &mut Carried, seen: &mut Seen, place: &str) {
         seen.wanted_up += u32::from(wanted > 1e-6 && (torque - wanted).abs() < 1e-12);
         seen.held_up += u32::from(wanted > 1e-6 && torque < wanted - 1e-6);
         seen.wanted_down += u32::from(wanted < -1e-6 && (torque - wanted).abs() < 1e-12);
-        seen.held_down += u32::from(wanted < -1e-6 && torque > wanted + 1e-6);
         seen.braked += u32::from(over > 1e-6);
     }
     let mut power_w = heat_w(car, row);
@@ -286,23 +257,14 @@ fn val_rows_from_their_parts() {
         wanted_up,
         held_up,
         wanted_down,
-        held_down,
         braked,
         off,
         missed,
     } = seen;
     assert!(
-        [
-            wanted_up,
-            held_up,
-            wanted_down,
-            held_down,
-            braked,
-            off,
-            missed
-        ]
-        .iter()
-        .all(|n| *n > 2),
+        [wanted_up, held_up, wanted_down, braked, off, missed]
+            .iter()
+            .all(|n| *n > 2),
         "{seen:?}"
     );
 }

@@ -80,9 +80,27 @@ fn val_pump_by_hand() {
 fn val_need_by_hand() {
     let p = pump(PumpKind::Fixed);
     same(ETA_REFERENCE_PA_S, 0.010);
-    same(p.leakage_now_m3_s_pa(0.04), 1.7e-11 / 4.0);
+    same(p.at(0.04).leakage_m3_s_pa, 1.7e-11 / 4.0);
     same(p.steady_need_m3_s(20e5, 0.04), 5e-5 + 20e5 * 1.7e-11 / 4.0);
-    same(p.need_m3_s(20e5, 3e-12), 5e-5 + 6e-6);
+    same(p.steady_need_m3_s(0.0, 0.9), 5e-5);
+    same(p.steady_need_m3_s(0.0, 4.0), 5e-5 / 4.0);
+}
+
+/// PU-6: what lubrication and shift leave of the flow, over the leakage; a tenth of a bar where they leave nothing.
+#[test]
+fn val_pressure_that_a_flow_keeps_up_by_hand() {
+    let p = pump(PumpKind::Fixed);
+    let now = p.at(0.04);
+    let w = 300.0;
+    let spare = now.drawn_m3_s(p.displacement_m3_rad * w) - 5e-5 - 2e-5;
+    same(p.deliverable_pa(&now, w, 2e-5), spare * 4.0 / 1.7e-11);
+    same(p.deliverable_pa(&now, 1.0, 2e-5), 1e4);
+    // Where the flow just covers the need, it keeps up the pressure of that need.
+    let pa = p.deliverable_pa(&now, w, 0.0);
+    same(
+        p.steady_need_m3_s(pa, 0.04),
+        now.drawn_m3_s(p.displacement_m3_rad * w),
+    );
 }
 
 /// IS-1, CD-1, CD-2, FD-1 at the reference viscosity, warmer and colder; FD-2 in both directions.

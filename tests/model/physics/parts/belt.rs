@@ -207,6 +207,7 @@ fn printed_forms_rescale() {
             band_width_m: 2.0 * small.band_width_m,
             band_offset_m: 2.0 * small.band_offset_m,
             mass_kg_m: 4.0 * small.mass_kg_m,
+            band_mass_kg_m: 4.0 * small.band_mass_kg_m,
             strut_area_m2: 4.0 * small.strut_area_m2,
             primary_compliance_per_n: small.primary_compliance_per_n / 4.0,
             secondary_compliance_per_n: small.secondary_compliance_per_n / 4.0,

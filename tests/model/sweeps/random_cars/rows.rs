@@ -101,13 +101,13 @@ fn torque_in(row: &Row) -> Checked {
     let input_w = row.engine_torque_nm * row.engine_speed_rad_s;
     let losses: f64 = row.loss_w.iter().sum();
     let size = 1e-9 * (input_w.abs() + wheels_w.abs() + losses);
-    // What the brakes take up of the engine's own rotating energy (SI-4) does not come through the box from the wheels.
+    // What brakes or a slipping clutch take up of the engine's own rotating energy (SI-4) does not come through the box from the wheels.
     let rotating_w = wheels_w + losses - input_w;
     prop_assert!(
         rotating_w >= -size,
         "in {input_w} W, out {wheels_w} W, lost {losses} W"
     );
-    let slower = row.brake_w > 0.0 && rotating_w <= -row.kinetic_w + size;
+    let slower = row.kinetic_w < 0.0 && rotating_w <= -row.kinetic_w + size;
     prop_assert!(
         rotating_w <= size || slower,
         "in {input_w} W, out {wheels_w} W, lost {losses} W, rotating {} W",

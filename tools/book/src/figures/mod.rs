@@ -33,7 +33,7 @@ const fn page(stem: &'static str, keys: &'static [&'static str]) -> Page {
 }
 
 /// Pages of mechanisms in the order of the book.
-pub const PAGES: [Page; 25] = [
+pub const PAGES: [Page; 26] = [
     page(
         "belt",
         &[
@@ -86,6 +86,7 @@ pub const PAGES: [Page; 25] = [
     page("thermal", &["thermal."]),
     page("maps", &["transmission.cvt.maps."]),
     page("ledgers", &["vehicle."]),
+    page("physics_checks", &[]),
 ];
 
 /// Every generated file, its name below the book's `src`, and its text.

@@ -113,8 +113,6 @@ pub(crate) struct Driveline<'a> {
     pub viscosity: ViscosityPowers,
     pub pump: PumpAtTemperature,
     pub shafts: PulleyShafts,
-    /// Leakage of the oil circuit, m3/(s Pa).
-    pub leakage_m3_s_pa: f64,
     /// Factor of the clamp map at the ratio (PC-1).
     pub radius_factor: f64,
     /// Logarithm of the force ratio that the shift needs (PC-5).
@@ -218,7 +216,6 @@ impl<'a> Driveline<'a> {
             viscosity: ViscosityPowers::new(cvt, oil.kinematic_m2_s(oil_k)),
             pump: cvt.pump.at(eta_pa_s),
             shafts: PulleyShafts::new(cvt, at, parts),
-            leakage_m3_s_pa: cvt.pump.leakage_now_m3_s_pa(eta_pa_s),
             radius_factor: cvt.radius_factor(at),
             force_log: 0.0,
             oil_k,
@@ -357,7 +354,7 @@ impl<'a> Driveline<'a> {
         let mut state = PumpState::default();
         if self.parts.pump {
             let pump = &self.cvt.pump;
-            let need = pump.need_m3_s(pressure_pa, self.leakage_m3_s_pa) + shift_flow_m3_s;
+            let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
             state = pump.state(&self.pump, engine_rad_s, pressure_pa, need);
             if let Some(loss) = self.mapped(Component::Pump, at, inside) {
                 state.torque_nm = loss;
@@ -372,6 +369,17 @@ impl<'a> Driveline<'a> {
                     .torque_nm(self.viscosity.shaft, engine_rad_s)
             });
         state
+    }
+
+    /// The pressure that the circuit holds of the one that the clamp law sets, Pa, and whether the pump's flow is what limits it (PU-6). A pump
+    /// that is a measured map says nothing of its flow: it holds any pressure.
+    #[inline]
+    pub fn held_pa(&self, set_pa: f64, engine_rad_s: f64, shift_flow_m3_s: f64) -> (f64, bool) {
+        let pump = &self.cvt.pump;
+        let most_pa = pump.deliverable_pa(&self.pump, engine_rad_s, shift_flow_m3_s);
+        let short = set_pa > most_pa;
+        let limits = short && !self.cvt.has_map(Component::Pump);
+        (if limits { most_pa } else { set_pa }, short)
     }
 
     /// Signals of the clamp law.

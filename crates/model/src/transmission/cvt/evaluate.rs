@@ -223,12 +223,14 @@ impl<P: PrimeMover> Step<'_, P> {
         let throttle = clamp(crank_nm / full_load_nm, 0.0, 1.0);
         let signals = line.signals(throttle, next_engine_rad_s);
         let secondary_nm = torques.secondary;
-        let (next_pressure_pa, clamp_cause) = cvt.pressure_pa(
+        let (set_pa, clamp_cause) = cvt.pressure_pa(
             &signals,
             line.at,
             || load(secondary_nm),
             self.secondary_rad_s,
         );
+        let (next_pressure_pa, flow_limited) =
+            line.held_pa(set_pa, next_engine_rad_s, self.shift_flow_m3_s);
         *point = Point {
             guess: Guess {
                 engine_rad_s,
@@ -247,7 +249,7 @@ impl<P: PrimeMover> Step<'_, P> {
             miss_nm: primary_nm - wanted_nm,
             flywheel_nm,
             coupling_w: own.loss_w,
-            flow_limited: pump.flow_limited,
+            flow_limited,
             oil_flow_m3_s: pump.working_m3_s,
             inside_maps,
             locked,

@@ -57,6 +57,7 @@ impl Cvt {
         let belt = Belt::from_values(&s.table("belt"), &v, formulation);
         let low = Geometry::new(ratio.low, belt.centre_distance_m, belt.length_m);
         check_reach(s, &ratio, &belt, &low);
+        check_wedge(&v, &belt, oil);
         let pressure = s.table("pressure");
         let clamp = clamp(s, &CVT.clamp);
         let radius_exponent = pressure.number(&PRESSURE.radius_exponent);
@@ -110,6 +111,23 @@ fn check_reach<V: Values>(s: &V, ratio: &RatioControl, belt: &Belt, low: &Geomet
             "",
             "the belt cannot reach this ratio",
             "check belt length and centre distance against the ratio limits",
+        );
+    }
+}
+
+/// A segment leaves the wedge by itself: at an angle of friction above that of the wedge it would hold itself there, and the balance of forces
+/// between sheave and belt (GE, VA-2) would no longer be theirs. The printed forms run as printed.
+fn check_wedge<V: Values>(v: &V, belt: &Belt, oil: &Lubricant) {
+    let mu = oil.friction.segment;
+    if belt.formulation.by_statics() && belt.tan_wedge <= mu {
+        v.complain(
+            "half_wedge_deg",
+            &format!(
+                "above {:.2}, the angle of friction of segments on pulleys",
+                mu.atan().to_degrees()
+            ),
+            "segments would hold themselves in this wedge",
+            "open the angle, or take a fluid with less segment friction",
         );
     }
 }

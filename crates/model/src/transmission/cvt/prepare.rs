@@ -22,9 +22,8 @@ fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
     )
 }
 
-/// What the shift reckons with: leakage and inlet for the pump's free flow, efficiency for the full-load route.
+/// What the shift reckons with: the pump's free flow, efficiency for the full-load route.
 struct Route {
-    leakage_m3_s_pa: f64,
     pump: PumpAtTemperature,
     efficiency: f64,
     /// Direction that a small change must not turn round; 0 in a kick-down (RC-7).
@@ -68,7 +67,7 @@ fn shift<P: PrimeMover>(
     let drawn = route
         .pump
         .drawn_m3_s(cvt.pump.displacement_m3_rad * past.engine_rad_s);
-    let free = drawn - cvt.pump.need_m3_s(past.secondary_pa, route.leakage_m3_s_pa);
+    let free = drawn - route.pump.need_m3_s(past.secondary_pa);
     let free = larger(free, 0.0);
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive.ratio * input.wheel.wheel_rad_s,
@@ -184,10 +183,8 @@ pub(super) fn prepare<'a, P: PrimeMover>(
     let [nu_sump, nu_belt] = oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]);
     let eta_sump = nu_sump * oil.density_kg_m3(sump_k);
     let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
-    let leakage_m3_s_pa = cvt.pump.leakage_now_m3_s_pa(eta_sump);
     let inlet = cvt.pump.with_factor(eta_sump, 1.0);
     let route = Route {
-        leakage_m3_s_pa,
         pump: inlet,
         efficiency,
         last_direction: if efficiency < cvt.ratio.route_efficiency {
@@ -223,7 +220,6 @@ pub(super) fn prepare<'a, P: PrimeMover>(
                 ..inlet
             },
             shafts: PulleyShafts::new(cvt, at, Parts::ALL),
-            leakage_m3_s_pa,
             radius_factor: powers.radius_factor,
             force_log: cvt
                 .floors
@@ -238,7 +234,7 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         shift_flow_m3_s: shift.flow_m3_s,
         shift_held: shift.held,
         shifting: shift.kept,
-        reach: input.reach(past.engine_rad_s),
+        reach: input.reach(past.engine_rad_s, 0.0),
         pressure_before_pa: past.secondary_pa,
         coupled: past.coupled,
         locked_from_rad_s,

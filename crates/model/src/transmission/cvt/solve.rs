@@ -154,11 +154,9 @@ impl<P: PrimeMover> Step<'_, P> {
                 return;
             }
             last = Some((point.guess, point.next_pressure_pa));
-            let pressure_pa = clamp(
-                work.slopes.pressure_pa(point),
-                self.line.cvt.floors.control_pa,
-                self.line.cvt.cap_pa,
-            ); // CV-5
+            let cvt = self.line.cvt;
+            let least_pa = smaller(cvt.floors.control_pa, point.next_pressure_pa);
+            let pressure_pa = clamp(work.slopes.pressure_pa(point), least_pa, cvt.cap_pa); // CV-5
             let slip = point.guess.slip
                 + work.slopes.slip_per_pa * (pressure_pa - point.guess.pressure_pa);
             guess = Guess {

@@ -54,7 +54,9 @@ fn idling<P: PrimeMover>(
     };
     while at.residual > TOLERANCE && at.evaluations < MAX_EVALUATIONS {
         let signals = line.signals(at.throttle, w);
-        (at.pressure_pa, at.clamp_cause) = line.cvt.pressure_pa(&signals, line.at, load, 0.0);
+        let (set_pa, cause) = line.cvt.pressure_pa(&signals, line.at, load, 0.0);
+        at.clamp_cause = cause;
+        (at.pressure_pa, at.flow_limited) = line.held_pa(set_pa, w, step.shift_flow_m3_s);
         let pump = line.turn_engine(
             &mut at.torques,
             w,
@@ -62,7 +64,7 @@ fn idling<P: PrimeMover>(
             step.shift_flow_m3_s,
             &mut at.inside_maps,
         );
-        (at.flow_limited, at.oil_flow_m3_s) = (pump.flow_limited, pump.working_m3_s);
+        at.oil_flow_m3_s = pump.working_m3_s;
         at.load_share = (at.torques.flywheel_nm(coupling_nm) + engine.accessories_nm(w))
             / engine.full_load_nm(w);
         let next = clamp(at.load_share, 0.0, 1.0);
@@ -180,6 +182,8 @@ pub(super) fn finish<P: PrimeMover>(
         secondary_pa: g.pressure_pa,
         clamp_cause: p.clamp_cause,
         slip: g.slip,
+        primary_nm: p.primary_nm - p.torques.primary_nm(),
+        secondary_nm: p.torques.secondary,
         clamp_safety: p.torques.belt.capacity_nm / p.torques.secondary.abs(),
         oil_flow_m3_s: p.oil_flow_m3_s,
         residual: outcome.residual,
@@ -253,6 +257,11 @@ fn common_flags<P: PrimeMover>(step: &Step<P>, output: &mut StepOutput, valid: b
     output.flags.set(
         Flags::RATIO_LIMIT,
         ratio <= limits.high * (1.0 + 1e-9) || ratio >= limits.low * (1.0 - 1e-9),
+    );
+    let line_pa = output.secondary_pa + step.line.cvt.pump.line_drop_pa;
+    output.flags.set(
+        Flags::PRIMARY_PRESSURE_SHORT,
+        output.primary_pa > line_pa * (1.0 + 1e-9),
     );
     output.flags.set(
         Flags::OVERSPEED,

@@ -56,6 +56,8 @@ pub struct Belt {
     pub band_offset_m: f64,
     /// Mass per length, kg/m.
     pub mass_kg_m: f64,
+    /// Part of it in the bands, kg/m.
+    pub band_mass_kg_m: f64,
     /// Young's modulus of bands and segments, Pa.
     pub youngs_pa: f64,
     /// Contact area between segments in the free strut, m2.
@@ -87,6 +89,17 @@ impl Belt {
     #[inline]
     pub fn band_area_m2(&self) -> f64 {
         self.band_count * self.band_width_m * self.band_thickness_m
+    }
+
+    /// Mass per length that presses on the bands, and that of the bands where they carry themselves, kg/m (TE-8).
+    #[inline]
+    pub fn masses_kg_m(&self) -> [f64; 2] {
+        let bands = if self.formulation.by_statics() {
+            self.band_mass_kg_m
+        } else {
+            0.0
+        };
+        [self.mass_kg_m - bands, bands] // TE-8
     }
 
     /// Sliding speed of the innermost band that can carry a film, m/s; 0 for formulations without a film.

@@ -94,7 +94,9 @@ impl<'a> Contact<'a> {
         Contact {
             belt,
             at,
-            slack_m: t.primary_shoulder_n * prepared.band_gap_m_n + belt.initial_gap_m, // SL-1
+            slack_m: (t.primary_shoulder_n + t.ring_n * at.geometry.primary_wrap_rad)
+                * prepared.band_gap_m_n
+                + belt.initial_gap_m, // SL-1
             grip_n: [grip(t.primary_clamp_n, 0), grip(t.secondary_clamp_n, 1)],
             shoulder_n: [
                 t.step_n * prepared.shoulder_per_step[0],
