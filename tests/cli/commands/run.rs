@@ -287,7 +287,7 @@ fn a_car_may_be_compared_with_itself() {
         "run",
         "--json",
         "--set",
-        "transmission.cvt.pump.displacement_cc_rev=8",
+        "transmission.cvt.pump.displacement_cc_rev=6",
         "--baseline",
         "rover_216_cvt",
     ];
