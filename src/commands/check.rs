@@ -22,7 +22,7 @@ use physics::PhysicsPlan;
 #[command(after_help = "\
 Examples:
   cvtcycle check rover_216_cvt
-  cvtcycle check --physics my_car.toml --cycle ftp75 --ambient -10
+  cvtcycle check --physics rover_216_cvt --cycle ece15 --ambient -10
 
 Prints `ok` for every file without problems, and all problems of the others with place, value, allowed range and a hint; the exit \
 code is then 2. With --physics every vehicle is driven after a soak, and each law has a line: the step in which most of its bound is \
