@@ -71,7 +71,7 @@ fn columns_are_those_of_the_car_in_the_agreed_order() {
          belt_penetration_loss_w, final_drive_loss_w, accessories_w, brake_w, kinetic_w, \
          deficit_w, fuel_g_s, fuel_power_w, engine_heat_w, exhaust_w, coolant_degc, \
          engine_oil_degc, transmission_sump_degc, transmission_metal_degc, belt_spray_degc, \
-         cooler_in_degc, cooler_out_degc, stored_w, to_air_w, power_ledger_error, \
+         cooler_in_degc, cooler_out_degc, tyre_degc, stored_w, to_air_w, power_ledger_error, \
          heat_ledger_error, solve_residual, iterations, flags"
     );
     let manual = names(false, &MANUAL);

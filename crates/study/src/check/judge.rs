@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use super::expr::{Computed, Expr, compute};
 use super::rows::{RowFile, ValidationRow};
-use super::rule::{Verdict, off, verdict};
+use super::rule::{Fleet, Group, Printed, Verdict, off, verdict};
 use super::source::Source;
 use super::store::{Cars, Store, View, once};
 use cvtcycle_config::setup::{NamedBy, Options, Setup, load};
@@ -20,6 +20,8 @@ pub struct Judged {
     pub row: ValidationRow,
     /// Its file.
     pub file: String,
+    /// Whose number it has.
+    pub group: Group,
     /// Computed; none for what cannot be compared, or not for this car.
     pub computed: Option<Computed>,
     /// Why the row cannot be computed.
@@ -39,6 +41,24 @@ pub struct Judged {
 }
 
 impl Judged {
+    /// Distance from the mean of its fleet, with its sign, in standard deviations of one more car.
+    #[must_use]
+    pub fn z(&self) -> Option<f64> {
+        match (self.row.printed?, self.computed.as_ref()?) {
+            (Printed::Fleet(fleet), Computed::Number(x)) => Some(fleet.distance(*x)),
+            _ => None,
+        }
+    }
+
+    /// The fleet it is held against.
+    #[must_use]
+    pub fn fleet(&self) -> Option<Fleet> {
+        match self.row.printed? {
+            Printed::Fleet(fleet) => Some(fleet),
+            _ => None,
+        }
+    }
+
     /// Distance from the printed range, in widths of its tolerance.
     #[must_use]
     pub fn off(&self) -> Option<f64> {
@@ -81,12 +101,23 @@ impl Report {
             .count()
     }
 
-    /// Result of the rows to which no parameter was fitted.
+    /// Groups that have rows, in order.
     #[must_use]
-    pub fn held_out(&self) -> HeldOut {
+    pub fn groups(&self) -> Vec<Group> {
+        let has = |group: &Group| self.rows.iter().any(|row| row.group == *group);
+        Group::ALL.into_iter().filter(has).collect()
+    }
+
+    /// Rows of a group.
+    pub fn of_group(&self, group: Group) -> impl Iterator<Item = &Judged> + Clone {
+        self.rows.iter().filter(move |row| row.group == group)
+    }
+
+    /// Result of the rows of a group to which no parameter was fitted.
+    #[must_use]
+    pub fn held_out(&self, group: Group) -> HeldOut {
         let rows: Vec<&Judged> = self
-            .rows
-            .iter()
+            .of_group(group)
             .filter(|row| row.row.is_held_out())
             .collect();
         let agrees = |row: &&&Judged| row.verdict == Verdict::Agrees;
@@ -143,8 +174,8 @@ pub fn judge(
     let mut rows = Vec::new();
     for file in files {
         let view = View::new(&store, &file.sources);
-        let own = file.rows.iter().filter(|row| wanted(row));
-        rows.extend(own.map(|row| judged(&view, file, row)));
+        let wanted = file.rows.iter().filter(|row| wanted(row));
+        rows.extend(wanted.map(|row| judged(&view, file, row)));
     }
     let candidate = candidate.clone();
     Ok(Report { candidate, rows })
@@ -210,10 +241,15 @@ fn judged(view: &View, file: &RowFile, row: &ValidationRow) -> Judged {
         (Some(number), Some(printed)) => verdict(number, printed, row.tolerance_widths, fitted),
         _ => Verdict::NotComparable,
     };
+    let verdict = match (verdict, row.recorded) {
+        (Verdict::Agrees, Some(Verdict::Identity)) => Verdict::Identity,
+        (other, _) => other,
+    };
     let expected = row.recorded.unwrap_or(verdict);
     Judged {
         row: row.clone(),
         file: file.name.clone(),
+        group: file.group,
         computed: number,
         moved: expected != verdict || failure.is_some(),
         failure,
