@@ -45,7 +45,8 @@ fn a_trace_reads_back_to_the_same_numbers() {
                     Cell::Phase(_) => assert_eq!(field, "ECE 1"),
                     Cell::Flags(f) if f == Flags::default() => assert_eq!(field, ""),
                     Cell::Flags(_) => assert_eq!(field, "overrun|fuel_cut"),
-                    Cell::Text(_) | Cell::Names(_) => unreachable!(),
+                    Cell::Text(words) => assert_eq!(field, words),
+                    Cell::Names(_) => unreachable!(),
                 }
             }
         }
@@ -102,7 +103,7 @@ fn columns_are_those_of_the_car_in_the_agreed_order() {
             "{name}"
         );
     }
-    assert_eq!(COLUMNS.len(), 39 + Component::COUNT);
+    assert_eq!(COLUMNS.len(), 41 + Component::COUNT);
 }
 
 fn names_in(dir: &Path) -> Vec<String> {
