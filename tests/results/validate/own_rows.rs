@@ -187,7 +187,10 @@ fn what_cannot_be_computed_is_a_verdict_of_its_row() {
             "max(grip: slip_percent where torque_nm == 2000)",
             "gross slip",
         ),
-        ("key(transmission.manual.seal_nm)", "not known"),
+        (
+            "key(transmission.manual.neutral_share)",
+            "has no `transmission.manual.neutral_share`",
+        ),
     ] {
         let rows = row("a", &format!("{wide}\"{compute}\"")) + &row("b", &format!("{wide}\"3\""));
         let own = Own::new(&(SOURCES.to_owned() + &rows));
