@@ -58,7 +58,8 @@ impl Execute for CheckArgs {
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         if self.physics {
             let drive = (&*self.cycle, &*self.ambient);
-            return physics::plan(&self.files, drive, problems).map(CheckPlan::Physics);
+            return physics::plan(&self.files, drive, problems)
+                .map(|plan| CheckPlan::Physics(Box::new(plan)));
         }
         let files = self.files.iter().map(|file| (file.clone(), check(file)));
         Some(CheckPlan::Files(files.collect()))
@@ -75,7 +76,7 @@ impl Execute for CheckArgs {
 /// What is checked.
 pub enum CheckPlan {
     Files(Vec<(String, Checked)>),
-    Physics(PhysicsPlan),
+    Physics(Box<PhysicsPlan>),
 }
 
 impl CheckArgs {
