@@ -319,3 +319,42 @@ fn a_missed_trace_is_exit_code_1() {
     );
     assert!(stderr(&output).contains("misses the trace"));
 }
+
+/// An oil in place of the vehicle's that has its friction is said to; one with a friction of its own, and the vehicle's own oil, are not.
+#[test]
+fn a_comparison_of_oils_says_what_it_moves() {
+    let dir = tempfile::tempdir().unwrap();
+    let sheet = "kv40_mm2_s = 35\nkv100_mm2_s = 7.2\ndensity15_kg_m3 = 865\n";
+    fs::write(dir.path().join("sheet.toml"), sheet).unwrap();
+    let own = format!("{sheet}[friction]\nband = 0.12\n");
+    fs::write(dir.path().join("own.toml"), own).unwrap();
+    let note = "this oil has the friction of the vehicle's own one";
+    for (oil, says) in [
+        ("dexron_ii", true),
+        ("sheet.toml", true),
+        ("own.toml", false),
+    ] {
+        let words = [
+            "run",
+            "--vehicle",
+            "rover_216_cvt",
+            "--baseline",
+            "none",
+            "--cycle",
+            "ece15",
+        ];
+        let words = [&words[..], &["--lubricant", oil]].concat();
+        let output = run_in(dir.path(), &words);
+        assert_eq!(
+            stdout(&output).contains(note),
+            says,
+            "{oil}: {}",
+            stdout(&output)
+        );
+        let output = run_in(dir.path(), &[&words[..], &["--json"]].concat());
+        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(summary["runs"][0]["notes"].is_array(), says);
+    }
+    let output = run(&["run", "--vehicle", "rover_216_cvt", "--cycle", "ece15"]);
+    assert!(!stdout(&output).contains(note));
+}

@@ -23,4 +23,5 @@ mod outside;
 mod parts;
 mod rig_transmission;
 mod rig_variator;
+mod smaller_points;
 mod targets;

@@ -23,8 +23,10 @@ proptest! {
         let (g, t) = (at.geometry, p.state(&belt).tension);
         let s = -(p.ratio.ln() / belt.unity_width).tanh();
         let v = p.rpm * RPM * g.primary_radius_m;
+        let pressing_kg_m = belt.mass_kg_m - if f == Formulation::Smooth { belt.band_mass_kg_m } else { 0.0 };
+        prop_assert!((t.mean_tension_n(&g) - t.primary_shoulder_n / g.primary_wrap_rad - (belt.mass_kg_m - pressing_kg_m) * v * v).abs() <= 1e-9 * t.mean_tension_n(&g), "TE-8 {t:?}");
         let pressed = |clamp_n: f64, wrap: f64| {
-            2.0 * clamp_n * belt.tan_wedge + wrap * (belt.masses_kg_m()[0] * v * v + t.compression_n.abs() / 2.0)
+            2.0 * clamp_n * belt.tan_wedge + wrap * (pressing_kg_m * v * v + t.compression_n.abs() / 2.0)
         };
         let primary_n = p.clamp_n * g.primary_wrap_rad / g.secondary_wrap_rad;
         let small = 1e-11 * (t.primary_shoulder_n + t.secondary_shoulder_n + t.compression_n.abs());
